@@ -1,0 +1,1 @@
+//! Contact: a patch, an object and a pose → deflections.

@@ -1,0 +1,61 @@
+//! What can go wrong, in two kinds: the input is bad, or the world failed.
+
+use std::path::{Path, PathBuf};
+
+/// The result of everything that can fail here.
+pub type Result<T> = std::result::Result<T, Error>;
+
+/// An error that a person can act on.
+///
+/// The text reads `<where>: <what was given>; <what is allowed>`.
+#[derive(Debug, thiserror::Error)]
+pub enum Error {
+    /// The caller gave something that cannot be used. The command exits with code 2.
+    #[error("{place}: {given}; {allowed}")]
+    Input {
+        /// Where: a file (with line and key where known), an option, or an argument's name.
+        place: String,
+        /// What was given there.
+        given: String,
+        /// What is allowed there.
+        allowed: String,
+    },
+    /// Reading or writing failed for a reason outside the input. The command exits with code 1.
+    #[error("{path}: {action} failed: {source}", path = path.display())]
+    Io {
+        /// The file or folder.
+        path: PathBuf,
+        /// What was attempted: `read`, `write`, `create folder`, `rename`.
+        action: &'static str,
+        /// What the system answered.
+        source: std::io::Error,
+    },
+}
+
+impl Error {
+    /// An [`Error::Input`] from anything printable.
+    pub fn input(place: impl ToString, given: impl ToString, allowed: impl ToString) -> Self {
+        Self::Input {
+            place: place.to_string(),
+            given: given.to_string(),
+            allowed: allowed.to_string(),
+        }
+    }
+
+    /// An [`Error::Io`] that says which file and which action.
+    pub fn io(path: impl AsRef<Path>, action: &'static str, source: std::io::Error) -> Self {
+        Self::Io {
+            path: path.as_ref().to_owned(),
+            action,
+            source,
+        }
+    }
+
+    /// The command's exit code: 2 for bad input, 1 when the world failed.
+    pub fn exit_code(&self) -> u8 {
+        match self {
+            Self::Input { .. } => 2,
+            Self::Io { .. } => 1,
+        }
+    }
+}

@@ -1,0 +1,91 @@
+//! Rigid motions and boxes.
+
+use glam::{DQuat, DVec3};
+
+/// A rigid motion: rotate, then translate. `a_from_b` maps points of frame b to frame a.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Pose {
+    /// Unit quaternion.
+    pub rotation: DQuat,
+    /// Metres.
+    pub translation: DVec3,
+}
+
+impl Pose {
+    /// No motion.
+    pub const IDENTITY: Self = Self {
+        rotation: DQuat::IDENTITY,
+        translation: DVec3::ZERO,
+    };
+
+    /// Rotate by a unit quaternion, then translate (metres).
+    pub fn new(rotation: DQuat, translation: DVec3) -> Self {
+        Self {
+            rotation,
+            translation,
+        }
+    }
+
+    /// A pure translation, metres.
+    pub fn from_translation(translation: DVec3) -> Self {
+        Self::new(DQuat::IDENTITY, translation)
+    }
+
+    /// A pure rotation.
+    pub fn from_rotation(rotation: DQuat) -> Self {
+        Self::new(rotation, DVec3::ZERO)
+    }
+
+    /// `a_from_b.compose(&b_from_c)` is `a_from_c`: the right one acts first.
+    pub fn compose(&self, inner: &Self) -> Self {
+        Self::new(
+            (self.rotation * inner.rotation).normalize(),
+            self.transform_point(inner.translation),
+        )
+    }
+
+    /// The motion that undoes this one.
+    pub fn inverse(&self) -> Self {
+        let rotation = self.rotation.conjugate();
+        Self::new(rotation, -(rotation * self.translation))
+    }
+
+    /// Where the motion takes a point, metres.
+    pub fn transform_point(&self, point: DVec3) -> DVec3 {
+        self.rotation * point + self.translation
+    }
+
+    /// Where the motion takes a direction.
+    pub fn transform_vector(&self, vector: DVec3) -> DVec3 {
+        self.rotation * vector
+    }
+}
+
+/// An axis-aligned box, metres.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Aabb {
+    /// Smallest corner.
+    pub min: DVec3,
+    /// Largest corner.
+    pub max: DVec3,
+}
+
+impl Aabb {
+    /// The smallest box around other boxes; `None` for none.
+    pub fn around(boxes: impl IntoIterator<Item = Self>) -> Option<Self> {
+        boxes.into_iter().reduce(|a, b| Self {
+            min: a.min.min(b.min),
+            max: a.max.max(b.max),
+        })
+    }
+
+    /// Edge lengths.
+    pub fn size(&self) -> DVec3 {
+        self.max - self.min
+    }
+
+    /// The middle.
+    pub fn center(&self) -> DVec3 {
+        0.5 * (self.min + self.max)
+    }
+}

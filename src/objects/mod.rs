@@ -1,0 +1,16 @@
+//! Objects: a shape, a mesh, or spheres → [`SphereUnion`].
+
+mod sphere_union;
+
+pub use sphere_union::{Sphere, SphereUnion};
+
+/// A named object that a patch can touch.
+#[derive(Clone, Debug)]
+pub struct Object {
+    /// Unique within its set: `mug`, `can_68x40`.
+    pub name: String,
+    /// Its shape in its own frame: z up, resting on z = 0, centred in x and y unless its source says otherwise.
+    pub spheres: SphereUnion,
+    /// How many solids it is made of (1 for a mesh).
+    pub n_parts: usize,
+}

@@ -1,0 +1,85 @@
+//! The one shape that the contact kernel knows: a union of rigid spheres.
+
+use crate::error::{Error, Result};
+use crate::geometry::{Aabb, Pose};
+use glam::DVec3;
+
+/// A rigid sphere.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sphere {
+    /// Metres.
+    pub center: DVec3,
+    /// Metres, positive.
+    pub radius: f64,
+}
+
+/// A union of rigid spheres in the object's frame.
+///
+/// Invariant: at least one sphere, every centre finite, every radius finite and positive.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SphereUnion {
+    spheres: Vec<Sphere>,
+}
+
+impl SphereUnion {
+    /// Checks the invariant; the error names the first offending sphere.
+    pub fn new(spheres: Vec<Sphere>) -> Result<Self> {
+        if spheres.is_empty() {
+            return Err(Error::input(
+                "sphere union",
+                "no spheres",
+                "at least one sphere",
+            ));
+        }
+        for (index, sphere) in spheres.iter().enumerate() {
+            let place = || format!("sphere {}", index + 1);
+            if !sphere.center.is_finite() {
+                return Err(Error::input(
+                    place(),
+                    format!("centre {}", sphere.center),
+                    "finite coordinates in metres",
+                ));
+            }
+            if !(sphere.radius.is_finite() && sphere.radius > 0.0) {
+                return Err(Error::input(
+                    place(),
+                    format!("radius {}", sphere.radius),
+                    "a finite positive radius in metres",
+                ));
+            }
+        }
+        Ok(Self { spheres })
+    }
+
+    /// The spheres, in their order of construction.
+    pub fn spheres(&self) -> &[Sphere] {
+        &self.spheres
+    }
+
+    /// How many spheres.
+    pub fn n_spheres(&self) -> usize {
+        self.spheres.len()
+    }
+
+    /// The box around all spheres, metres.
+    pub fn bounds(&self) -> Aabb {
+        let boxes = self.spheres.iter().map(|s| Aabb {
+            min: s.center - DVec3::splat(s.radius),
+            max: s.center + DVec3::splat(s.radius),
+        });
+        Aabb::around(boxes).expect("a union has at least one sphere")
+    }
+
+    /// The same union after a rigid motion.
+    pub fn moved(&self, pose: &Pose) -> Self {
+        let spheres = self
+            .spheres
+            .iter()
+            .map(|s| Sphere {
+                center: pose.transform_point(s.center),
+                radius: s.radius,
+            })
+            .collect();
+        Self { spheres }
+    }
+}

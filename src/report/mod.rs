@@ -1,0 +1,3 @@
+//! Report: tables → files for people.
+
+pub mod files;

@@ -1,0 +1,3 @@
+//! Study: TOML → plan → table.
+
+pub mod table;
