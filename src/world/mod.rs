@@ -4,5 +4,9 @@
 //! In the **table frame** z points up and objects rest on z = 0.
 
 mod patch;
+mod scene;
+mod trajectory;
 
 pub use patch::{Grid, Patch, Taxel};
+pub use scene::Scene;
+pub use trajectory::{Phase, VelocityPlan};
