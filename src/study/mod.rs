@@ -1,3 +1,4 @@
 //! Study: TOML → plan → table.
 
+pub mod progress;
 pub mod table;
