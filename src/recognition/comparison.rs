@@ -98,3 +98,63 @@ fn check(a: &[f64], b: &[f64], size: TrialSize) -> Result<()> {
     }
     Ok(())
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const SIZE: TrialSize = TrialSize {
+        n_train: 300,
+        n_test: 100,
+    };
+
+    #[test]
+    fn the_comparison_is_the_formula_evaluated_with_scipy() {
+        // SciPy 1.17.1's Student t in the formula above. The plain paired t-test (ttest_rel) says p = 0.034.
+        let a = [0.91, 0.93, 0.90, 0.94, 0.92];
+        let b = [0.88, 0.92, 0.89, 0.90, 0.91];
+        let comparison = compare(&a, &b, SIZE, 0.95).unwrap().unwrap();
+        assert!((comparison.mean_difference - 0.02).abs() < 1e-15);
+        assert!((comparison.interval.low + 0.008675001744240358).abs() < 1e-9);
+        assert!((comparison.interval.high - 0.04867500174424035).abs() < 1e-9);
+        assert!((comparison.p_value - 0.12487982574290779).abs() < 1e-9);
+        assert_eq!(comparison.n_trials, 5);
+    }
+
+    #[test]
+    fn swapping_the_cells_swaps_the_sign_alone() {
+        let (a, b) = ([0.5, 0.7, 0.6], [0.4, 0.7, 0.3]);
+        let forth = compare(&a, &b, SIZE, 0.9).unwrap().unwrap();
+        let back = compare(&b, &a, SIZE, 0.9).unwrap().unwrap();
+        assert_eq!(forth.mean_difference, -back.mean_difference);
+        assert_eq!(forth.interval.low, -back.interval.high);
+        assert_eq!(forth.p_value, back.p_value);
+    }
+
+    #[test]
+    fn equal_scores_are_no_difference_and_equal_differences_no_certainty() {
+        let same = compare(&[0.9; 3], &[0.9; 3], SIZE, 0.95).unwrap().unwrap();
+        assert_eq!((same.mean_difference, same.p_value), (0.0, 1.0));
+        assert!(same.interval.low < 0.0 && same.interval.high > 0.0);
+        let constant = compare(&[0.9; 3], &[0.8; 3], SIZE, 0.95).unwrap().unwrap();
+        assert!(constant.p_value > 0.0 && constant.p_value < 0.01);
+    }
+
+    #[test]
+    fn one_trial_tells_nothing() {
+        assert_eq!(compare(&[0.9], &[0.8], SIZE, 0.95).unwrap(), None);
+        assert_eq!(compare(&[], &[], SIZE, 0.95).unwrap(), None);
+    }
+
+    #[test]
+    fn unpaired_or_broken_scores_are_refused() {
+        assert!(compare(&[0.9, 0.8], &[0.8], SIZE, 0.95).is_err());
+        assert!(compare(&[0.9, f64::NAN], &[0.8, 0.8], SIZE, 0.95).is_err());
+        assert!(compare(&[0.9, 0.8], &[0.8, 0.8], SIZE, 95.0).is_err());
+        let none = TrialSize {
+            n_train: 0,
+            n_test: 1,
+        };
+        assert!(compare(&[0.9, 0.8], &[0.8, 0.8], none, 0.95).is_err());
+    }
+}

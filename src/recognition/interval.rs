@@ -56,3 +56,46 @@ pub(crate) fn check_confidence(confidence: f64) -> Result<()> {
         "a number between 0 and 1, both excluded, is allowed",
     ))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn wilson_intervals_are_those_of_statsmodels() {
+        // statsmodels 0.15.0, proportion_confint(k, n, alpha, method="wilson").
+        let table = [
+            (98, 100, 0.95, 0.929988209271456, 0.9944980324498376),
+            (0, 20, 0.95, 0.0, 0.1611251580528194),
+            (20, 20, 0.95, 0.8388748419471804, 1.0),
+            (7, 29, 0.90, 0.13651169044753939, 0.3903849223887107),
+            (27_000, 27_864, 0.99, 0.9662037926742987, 0.9715574064144034),
+        ];
+        for (n_correct, n_rows, confidence, low, high) in table {
+            let interval = Interval::wilson(n_correct, n_rows, confidence).unwrap();
+            assert!((interval.low - low).abs() < 1e-9, "{interval:?}");
+            assert!((interval.high - high).abs() < 1e-9, "{interval:?}");
+        }
+    }
+
+    #[test]
+    fn an_interval_holds_its_estimate_and_stays_within_zero_and_one() {
+        for n_rows in 1..60 {
+            for n_correct in 0..=n_rows {
+                let interval = Interval::wilson(n_correct, n_rows, 0.95).unwrap();
+                let share = n_correct as f64 / n_rows as f64;
+                assert!(0.0 <= interval.low && interval.low <= share);
+                assert!(share <= interval.high && interval.high <= 1.0);
+            }
+        }
+    }
+
+    #[test]
+    fn impossible_counts_and_confidences_are_refused() {
+        assert!(Interval::wilson(0, 0, 0.95).is_err());
+        assert!(Interval::wilson(3, 2, 0.95).is_err());
+        for confidence in [0.0, 1.0, 95.0, f64::NAN] {
+            assert!(Interval::wilson(1, 2, confidence).is_err());
+        }
+    }
+}

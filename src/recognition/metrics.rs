@@ -88,3 +88,41 @@ fn shares(parts: ArrayView1<usize>, wholes: &Array1<usize>) -> Array1<f64> {
     };
     parts.iter().zip(wholes).map(share).collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use ndarray::array;
+
+    #[test]
+    fn scores_are_those_of_scikit_learn() {
+        // scikit-learn 1.9.1, zero_division=0. Class 3 is predicted but never true; 4 and 5 do not occur.
+        let truth = array![0, 0, 0, 1, 1, 1, 2, 2, 2, 2];
+        let predicted = array![0, 0, 1, 1, 1, 3, 2, 2, 0, 3];
+        let confusion = ConfusionMatrix::new(truth.view(), predicted.view(), 6).unwrap();
+        assert_eq!(confusion.counts.row(0), array![2, 1, 0, 0, 0, 0]);
+        assert_eq!(confusion.counts.row(2), array![1, 0, 2, 1, 0, 0]);
+        assert_eq!((confusion.n_correct(), confusion.n_rows()), (6, 10));
+        assert_eq!(confusion.accuracy(), 0.6);
+        let two_thirds = 2.0 / 3.0;
+        let precision = array![two_thirds, two_thirds, 1.0, 0.0, 0.0, 0.0];
+        assert_eq!(confusion.precision(), precision);
+        let recall = array![two_thirds, two_thirds, 0.5, 0.0, 0.0, 0.0];
+        assert_eq!(confusion.recall(), recall);
+        assert!((confusion.macro_f1() - 0.5).abs() < 1e-15);
+    }
+
+    #[test]
+    fn labels_that_do_not_fit_are_refused() {
+        let truth = array![0, 1];
+        assert!(ConfusionMatrix::new(truth.view(), array![0].view(), 2).is_err());
+        let error = ConfusionMatrix::new(truth.view(), array![0, 2].view(), 2).unwrap_err();
+        assert!(
+            error
+                .to_string()
+                .starts_with("labels, row 1: class 1 predicted as 2")
+        );
+        let none = Array1::zeros(0);
+        assert!(ConfusionMatrix::new(none.view(), none.view(), 2).is_err());
+    }
+}
