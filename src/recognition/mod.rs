@@ -4,8 +4,8 @@
 //! |---|---|
 //! | features y (n_rows × m) and labels `0..n_classes`: [`dataset`] | labels, a [confusion matrix](metrics), [intervals](interval), [comparisons](comparison) |
 //!
-//! Rows are [split](split) into training and test rows; a [`Classifier`](classifier::Classifier) learns its
-//! [scaling](scaling), the [choice of C](choice) and its [SVM](svm) from training rows alone, and test rows are only
+//! Rows are [split] into training and test rows; a [`Classifier`](classifier::Classifier) learns its
+//! [scaling], the [choice of C](choice) and its [SVM](svm) from training rows alone, and test rows are only
 //! ever predicted. Everything is deterministic; whatever is drawn comes from a named [`Seed`](crate::random::Seed).
 //!
 //! A binary soft-margin SVM decides by the sign of `f(x) = Σ_i y_i a_i K(x_i, x) − ρ`, where the multipliers minimise

