@@ -37,7 +37,7 @@ use serde::{Deserialize, Serialize};
 pub enum Ensemble {
     /// Independent Gaussian entries.
     Gaussian,
-    /// Scrambled block Hadamard [SBHE]: taxels permuted, Walsh–Hadamard transforms of blocks, coefficients in random order.
+    /// Scrambled block Hadamard \[SBHE\]: taxels permuted, Walsh–Hadamard transforms of blocks, coefficients in random order.
     Sbhe,
     /// Averages over blocks of neighbouring taxels: equal squares where the array allows them (64 × 64 at m = 1,024 is
     /// 2 × 2 taxels each), else the cells of recursive splitting, largest first, along its longer side.

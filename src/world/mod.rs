@@ -3,6 +3,7 @@
 //! Frames: in the **patch frame** the taxels rest in the plane z = 0 with their axes along +z, away from the substrate.
 //! In the **table frame** z points up and objects rest on z = 0.
 
+mod basins;
 mod mass;
 mod patch;
 mod placement;

@@ -5,6 +5,7 @@
 //! converges like Newton's method.
 
 use super::support::Support;
+use crate::objects::Sphere;
 use glam::{DMat3, DVec3};
 
 /// The first trust region, radians: about the spacing of the mesh of directions.
@@ -20,8 +21,15 @@ pub(super) fn settle(support: &Support, start: DVec3) -> DVec3 {
     let mut height = support.height(down);
     let mut reach = FIRST_REACH;
     let flat = 1e-15 * support.radius();
+    let mut gathered = (down, 4.0 * reach);
+    let mut spheres = support.candidates_near(gathered.0, gathered.1);
     for _ in 0..MAX_STEPS {
-        let (step, predicted) = linear_step(support, down, height, reach);
+        // The walls' corners are two reaches away.
+        if down.distance(gathered.0) + 2.0 * reach > gathered.1 {
+            gathered = (down, 4.0 * reach);
+            spheres = support.candidates_near(gathered.0, gathered.1);
+        }
+        let (step, predicted) = linear_step(&spheres, down, walls(support.radius(), height, reach));
         let gain = height - predicted;
         if gain <= flat || reach < LAST_REACH {
             break;
@@ -54,18 +62,15 @@ impl Piece {
     }
 }
 
-/// The tangent step that minimises the linearised height within about `reach`, and that height.
-fn linear_step(support: &Support, down: DVec3, height: f64, reach: f64) -> (DVec3, f64) {
+/// The tangent step that minimises the linearised height inside the walls, and that height.
+fn linear_step(spheres: &[Sphere], down: DVec3, walls: [Piece; 3]) -> (DVec3, f64) {
     let (u, v) = down.any_orthonormal_pair();
-    let pieces: Vec<_> = support
-        .candidates_near(down, reach)
-        .iter()
-        .map(|sphere| Piece {
-            value: sphere.center.dot(down) + sphere.radius,
-            slope: [sphere.center.dot(u), sphere.center.dot(v)],
-        })
-        .collect();
-    let (t, z) = lowest_maximum(&pieces, walls(support.radius(), height, reach));
+    let piece = |sphere: &Sphere| Piece {
+        value: sphere.center.dot(down) + sphere.radius,
+        slope: [sphere.center.dot(u), sphere.center.dot(v)],
+    };
+    let pieces: Vec<_> = spheres.iter().map(piece).collect();
+    let (t, z) = lowest_maximum(&pieces, walls);
     (t[0] * u + t[1] * v, z)
 }
 

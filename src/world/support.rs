@@ -6,7 +6,6 @@
 
 use crate::objects::{Sphere, SphereUnion};
 use glam::DVec3;
-use std::collections::HashMap;
 
 /// Subdivisions of the mesh of directions: 10,242 directions, 2.1° apart. One less halves the time and blurs basins under 8°
 /// wide; one more takes four times as long.
@@ -57,17 +56,20 @@ impl Support {
 
     /// h(d), metres; `down` is a unit vector.
     pub fn height(&self, down: DVec3) -> f64 {
-        self.highest(self.cell_of(down), down).1
+        self.highest(self.cell_of(down), down)
     }
 
     /// Every sphere that can be highest within about `reach` (radians) of `down`.
     pub fn candidates_near(&self, down: DVec3, reach: f64) -> Vec<Sphere> {
         let (u, v) = down.any_orthonormal_pair();
-        let ring = (0..8).map(|k| {
-            let (sin, cos) = (std::f64::consts::FRAC_PI_4 * k as f64).sin_cos();
-            self.cell_of((down + reach * (cos * u + sin * v)).normalize())
-        });
-        let mut cells: Vec<_> = ring.chain([self.cell_of(down)]).collect();
+        let ring = |reach: f64| {
+            (0..8).map(move |k| {
+                let (sin, cos) = (std::f64::consts::FRAC_PI_4 * f64::from(k)).sin_cos();
+                self.cell_of((down + reach * (cos * u + sin * v)).normalize())
+            })
+        };
+        let rings = ring(reach).chain(ring(0.5 * reach));
+        let mut cells: Vec<_> = rings.chain([self.cell_of(down)]).collect();
         cells.sort_unstable();
         cells.dedup();
         let mut indices: Vec<_> = cells
@@ -91,31 +93,36 @@ impl Support {
 
     /// The triangle of the last coarse level that holds a direction.
     fn cell_of(&self, direction: DVec3) -> usize {
-        let depth_in = |corners: &[usize; 3]| {
-            let [a, b, c] = corners.map(|v| self.directions[v]);
-            let sides = [(a, b), (b, c), (c, a)];
-            let depths = sides.map(|(from, to)| direction.dot(from.cross(to)));
-            depths.into_iter().fold(f64::INFINITY, f64::min)
+        let depths = |triangle: &[usize; 3]| {
+            let [a, b, c] = triangle.map(|v| self.directions[v]);
+            [(a, b), (b, c), (c, a)].map(|(from, to)| direction.dot(from.cross(to)))
         };
-        let deepest = |level: &[[usize; 3]], among: std::ops::Range<usize>| {
-            let depth = |&t: &usize| depth_in(&level[t]);
-            among.max_by(|a, b| depth(a).total_cmp(&depth(b)))
+        let smallest = |depths: [f64; 3]| {
+            let order = |a: &usize, b: &usize| depths[*a].total_cmp(&depths[*b]);
+            let side = (0..3).min_by(order).unwrap_or(0);
+            (side, depths[side])
         };
-        let mut cell = 0;
-        for (depth, level) in self.coarse.iter().enumerate() {
-            let among = if depth == 0 {
-                0..level.len()
-            } else {
-                4 * cell..4 * cell + 4
-            };
-            cell = deepest(level, among).unwrap_or(0);
+        let depth = |t: &usize| smallest(depths(&self.coarse[0][*t])).1;
+        let faces = 0..self.coarse[0].len();
+        let deepest = faces.max_by(|a, b| depth(a).total_cmp(&depth(b)));
+        let mut cell = deepest.unwrap_or(0);
+        for level in &self.coarse[1..] {
+            // Child 3 is the middle one; beyond its sides 0, 1, 2 lie the children at corners 1, 2, 0.
+            let (side, depth) = smallest(depths(&level[4 * cell + 3]));
+            let child = if depth >= 0.0 { 3 } else { (side + 1) % 3 };
+            cell = 4 * cell + child;
         }
         cell
     }
 
-    /// The highest candidate of a cell in a direction, and its height.
-    fn highest(&self, cell: usize, direction: DVec3) -> (u32, f64) {
-        highest_of(&self.spheres, &self.candidates[cell], direction)
+    /// The height of the highest candidate of a cell in a direction.
+    fn highest(&self, cell: usize, direction: DVec3) -> f64 {
+        let height = |&index: &u32| {
+            let sphere = &self.spheres[index as usize];
+            sphere.center.dot(direction) + sphere.radius
+        };
+        let heights = self.candidates[cell].iter().map(height);
+        heights.fold(f64::NEG_INFINITY, f64::max)
     }
 
     fn narrow_candidates(&mut self) {
@@ -141,7 +148,7 @@ impl Support {
         for (t, corners) in self.triangles.iter().enumerate() {
             for &vertex in corners {
                 if !known[vertex] {
-                    self.heights[vertex] = self.highest(t / 4, self.directions[vertex]).1;
+                    self.heights[vertex] = self.highest(t / 4, self.directions[vertex]);
                     known[vertex] = true;
                 }
             }
@@ -149,41 +156,37 @@ impl Support {
     }
 }
 
-fn highest_of(spheres: &[Sphere], candidates: &[u32], direction: DVec3) -> (u32, f64) {
-    let mut best = (0, f64::NEG_INFINITY);
-    for &index in candidates {
-        let sphere = &spheres[index as usize];
-        let height = sphere.center.dot(direction) + sphere.radius;
-        if height > best.1 {
-            best = (index, height);
-        }
-    }
-    best
-}
-
 /// The candidates that one sphere, highest at a corner of a triangle of directions, does not beat all over the triangle.
 ///
 /// Inside, d = v / |v| with v = Σ αᵢ vᵢ over the corners, αᵢ ≥ 0, Σ αᵢ = 1, and |v| from ϱ (the plane's distance) to 1. So
 /// (c − c*)·d + r − r* ≤ 0 all over if (c − c*)·vᵢ + max((r − r*) ϱ, r − r*) ≤ 0 at all three corners.
 fn not_dominated(spheres: &[Sphere], candidates: &[u32], corners: [DVec3; 3]) -> Vec<u32> {
-    let best = corners.map(|corner| highest_of(spheres, candidates, corner).0);
+    let values: Vec<_> = candidates
+        .iter()
+        .map(|&index| {
+            let sphere = &spheres[index as usize];
+            (corners.map(|v| sphere.center.dot(v)), sphere.radius)
+        })
+        .collect();
     let [a, b, c] = corners;
     let plane = (b - a).cross(c - a).normalize().dot(a).abs();
-    let leaders = best.map(|index| {
-        let leader = &spheres[index as usize];
-        (corners.map(|v| leader.center.dot(v)), leader.radius)
+    let leaders = [0, 1, 2].map(|corner| {
+        let height = |place: usize| values[place].0[corner] + values[place].1;
+        let highest = |a: &usize, b: &usize| height(*a).total_cmp(&height(*b));
+        (0..values.len()).max_by(highest).unwrap_or(0)
     });
-    let beaten = |index: u32| {
-        let sphere = &spheres[index as usize];
-        let values = corners.map(|v| sphere.center.dot(v));
-        leaders.iter().any(|(leader, radius)| {
-            let larger = sphere.radius - radius;
+    let beaten = |(value, radius): &([f64; 3], f64)| {
+        leaders.iter().any(|&leader| {
+            let (leader, leader_radius) = values[leader];
+            let larger = radius - leader_radius;
             let gain = larger.max(larger * plane);
-            (0..3).all(|i| values[i] - leader[i] + gain <= 0.0)
+            (0..3).all(|i| value[i] - leader[i] + gain <= 0.0)
         })
     };
-    let keep = |index: &u32| best.contains(index) || !beaten(*index);
-    candidates.iter().copied().filter(keep).collect()
+    (0..values.len())
+        .filter(|place| leaders.contains(place) || !beaten(&values[*place]))
+        .map(|place| candidates[place])
+        .collect()
 }
 
 /// Unit directions and the triangles of each level, from 20 down to the finest.
@@ -202,16 +205,18 @@ fn subdivided_icosahedron() -> (Vec<DVec3>, Vec<Vec<[usize; 3]>>) {
     }
     let mut levels = vec![icosahedron_faces(&directions)];
     for level in 0..LEVELS {
-        let mut middles = HashMap::new();
-        let mut finer = Vec::new();
+        // For each corner, the later corners that an edge joins it to, and that edge's middle.
+        let mut middles: Vec<Vec<(usize, usize)>> = vec![Vec::new(); directions.len()];
+        let mut finer = Vec::with_capacity(4 * levels[level].len());
         for &[a, b, c] in &levels[level] {
             let [ab, bc, ca] = [(a, b), (b, c), (c, a)].map(|(from, to)| {
-                *middles
-                    .entry((from.min(to), from.max(to)))
-                    .or_insert_with(|| {
-                        directions.push((directions[from] + directions[to]).normalize());
-                        directions.len() - 1
-                    })
+                let known = &mut middles[from.min(to)];
+                if let Some((_, middle)) = known.iter().find(|(end, _)| *end == from.max(to)) {
+                    return *middle;
+                }
+                known.push((from.max(to), directions.len()));
+                directions.push((directions[from] + directions[to]).normalize());
+                directions.len() - 1
             });
             finer.extend([[a, ab, ca], [ab, b, bc], [ca, bc, c], [ab, bc, ca]]);
         }
