@@ -138,3 +138,58 @@ fn common_point(basis: &[Piece; 3]) -> Option<([f64; 2], f64)> {
         .is_finite()
         .then_some(([solution.x, solution.y], solution.z))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::objects::SphereUnion;
+    use crate::random::Seed;
+    use rand::Rng;
+
+    #[test]
+    fn the_linear_step_finds_the_lowest_maximum() {
+        let mut rng = Seed::new(1).rng();
+        for n in [1, 2, 3, 10, 100] {
+            let mut random = || 2.0 * rng.r#gen::<f64>() - 1.0;
+            let pieces: Vec<_> = (0..n)
+                .map(|_| Piece {
+                    value: random(),
+                    slope: [random(), random()],
+                })
+                .collect();
+            let walls = walls(2.0, 1.0, 0.5);
+            let highest = |t: [f64; 2]| {
+                let heights = pieces.iter().chain(&walls).map(|piece| piece.at(t));
+                heights.fold(f64::NEG_INFINITY, f64::max)
+            };
+            let (t, z) = lowest_maximum(&pieces, walls);
+            assert!((highest(t) - z).abs() < 1e-12);
+            for i in -100..=100 {
+                for j in -100..=100 {
+                    let other = [0.01 * f64::from(i), 0.01 * f64::from(j)];
+                    assert!(highest(other) >= z - 1e-12);
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn settling_never_rises() {
+        let mut rng = Seed::new(2).rng();
+        let mut random = || 0.1 * (rng.r#gen::<f64>() - 0.5);
+        let sphere = |center| Sphere {
+            center,
+            radius: 0.02,
+        };
+        let centers: Vec<_> = (0..40)
+            .map(|_| DVec3::new(random(), random(), random()))
+            .collect();
+        let union = SphereUnion::new(centers.into_iter().map(sphere).collect()).unwrap();
+        let support = Support::about(DVec3::ZERO, &union);
+        for start in support.directions.iter().step_by(101) {
+            let end = settle(&support, *start);
+            assert!(support.height(end) <= support.height(*start));
+            assert!((end.length() - 1.0).abs() < 1e-12);
+        }
+    }
+}
