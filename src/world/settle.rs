@@ -12,6 +12,8 @@ use glam::{DMat3, DVec3};
 const FIRST_REACH: f64 = 0.04;
 /// The trust region below which a direction is final, radians.
 const LAST_REACH: f64 = 1e-9;
+/// The predicted gain that is rounding, as a share of the farthest point's distance.
+const LEAST_GAIN: f64 = 1e-14;
 /// Steps at most; 20 to 60 are usual.
 const MAX_STEPS: usize = 200;
 
@@ -20,7 +22,8 @@ pub(super) fn settle(support: &Support, start: DVec3) -> DVec3 {
     let mut down = start;
     let mut height = support.height(down);
     let mut reach = FIRST_REACH;
-    let flat = 1e-15 * support.radius();
+    let radius = support.radius();
+    let flat = LEAST_GAIN * radius;
     let mut gathered = (down, 4.0 * reach);
     let mut spheres = support.candidates_near(gathered.0, gathered.1);
     for _ in 0..MAX_STEPS {
@@ -29,7 +32,10 @@ pub(super) fn settle(support: &Support, start: DVec3) -> DVec3 {
             gathered = (down, 4.0 * reach);
             spheres = support.candidates_near(gathered.0, gathered.1);
         }
-        let (step, predicted) = linear_step(&spheres, down, walls(support.radius(), height, reach));
+        // Inside the walls no height changes by more than two reaches times the radius, so a sphere lower by twice that
+        // stays below the highest.
+        let lowest = height - 4.0 * reach * radius;
+        let (step, predicted) = linear_step(&spheres, down, lowest, walls(radius, height, reach));
         let gain = height - predicted;
         if gain <= flat || reach < LAST_REACH {
             break;
@@ -62,14 +68,16 @@ impl Piece {
     }
 }
 
-/// The tangent step that minimises the linearised height inside the walls, and that height.
-fn linear_step(spheres: &[Sphere], down: DVec3, walls: [Piece; 3]) -> (DVec3, f64) {
+/// The tangent step that minimises the linearised height inside the walls, and that height; spheres below `lowest` do not
+/// count.
+fn linear_step(spheres: &[Sphere], down: DVec3, lowest: f64, walls: [Piece; 3]) -> (DVec3, f64) {
     let (u, v) = down.any_orthonormal_pair();
     let piece = |sphere: &Sphere| Piece {
         value: sphere.center.dot(down) + sphere.radius,
         slope: [sphere.center.dot(u), sphere.center.dot(v)],
     };
-    let pieces: Vec<_> = spheres.iter().map(piece).collect();
+    let counts = |piece: &Piece| piece.value >= lowest;
+    let pieces: Vec<_> = spheres.iter().map(piece).filter(counts).collect();
     let (t, z) = lowest_maximum(&pieces, walls);
     (t[0] * u + t[1] * v, z)
 }
@@ -97,11 +105,15 @@ fn lowest_maximum(pieces: &[Piece], walls: [Piece; 3]) -> ([f64; 2], f64) {
     let mut answer = ([0.0; 2], walls[0].value);
     for _ in 0..MAX_STEPS {
         let (t, z) = answer;
-        let highest = |a: &&Piece, b: &&Piece| a.at(t).total_cmp(&b.at(t));
-        let Some(enters) = pieces.iter().chain(&walls).max_by(highest) else {
-            break;
-        };
-        if enters.at(t) <= z + 1e-15 * z.abs().max(f64::MIN_POSITIVE) {
+        let mut enters = (&walls[0], f64::NEG_INFINITY);
+        for piece in pieces.iter().chain(&walls) {
+            let height = piece.at(t);
+            if height > enters.1 {
+                enters = (piece, height);
+            }
+        }
+        let (enters, highest) = enters;
+        if highest <= z + 1e-15 * z.abs().max(f64::MIN_POSITIVE) {
             break;
         }
         let column = |piece: &Piece| DVec3::new(piece.slope[0], piece.slope[1], 1.0);
@@ -137,4 +149,59 @@ fn common_point(basis: &[Piece; 3]) -> Option<([f64; 2], f64)> {
     solution
         .is_finite()
         .then_some(([solution.x, solution.y], solution.z))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::objects::SphereUnion;
+    use crate::random::Seed;
+    use rand::Rng;
+
+    #[test]
+    fn the_linear_step_finds_the_lowest_maximum() {
+        let mut rng = Seed::new(1).rng();
+        for n in [1, 2, 3, 10, 100] {
+            let mut random = || 2.0 * rng.r#gen::<f64>() - 1.0;
+            let pieces: Vec<_> = (0..n)
+                .map(|_| Piece {
+                    value: random(),
+                    slope: [random(), random()],
+                })
+                .collect();
+            let walls = walls(2.0, 1.0, 0.5);
+            let highest = |t: [f64; 2]| {
+                let heights = pieces.iter().chain(&walls).map(|piece| piece.at(t));
+                heights.fold(f64::NEG_INFINITY, f64::max)
+            };
+            let (t, z) = lowest_maximum(&pieces, walls);
+            assert!((highest(t) - z).abs() < 1e-12);
+            for i in -100..=100 {
+                for j in -100..=100 {
+                    let other = [0.01 * f64::from(i), 0.01 * f64::from(j)];
+                    assert!(highest(other) >= z - 1e-12);
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn settling_never_rises() {
+        let mut rng = Seed::new(2).rng();
+        let mut random = || 0.1 * (rng.r#gen::<f64>() - 0.5);
+        let sphere = |center| Sphere {
+            center,
+            radius: 0.02,
+        };
+        let centers: Vec<_> = (0..40)
+            .map(|_| DVec3::new(random(), random(), random()))
+            .collect();
+        let union = SphereUnion::new(centers.into_iter().map(sphere).collect()).unwrap();
+        let support = Support::about(DVec3::ZERO, &union);
+        for start in support.directions.iter().step_by(101) {
+            let end = settle(&support, *start);
+            assert!(support.height(end) <= support.height(*start));
+            assert!((end.length() - 1.0).abs() < 1e-12);
+        }
+    }
 }
