@@ -1,8 +1,20 @@
 //! Objects: a shape, a mesh, or spheres → [`SphereUnion`].
 
+mod block;
+mod lathe;
+mod outline;
+mod pack;
+mod prism;
+mod solid;
 mod sphere_union;
+mod strand;
+mod surface_error;
+mod torus;
 
+pub use pack::{MAX_SPHERES, pack};
+pub use solid::{Part, Shape, Solid};
 pub use sphere_union::{Sphere, SphereUnion};
+pub use surface_error::{SurfaceError, surface_error};
 
 /// A named object that a patch can touch.
 #[derive(Clone, Debug)]
