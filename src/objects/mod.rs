@@ -1,16 +1,19 @@
 //! Objects: a shape, a mesh, or spheres → [`SphereUnion`].
 
 mod block;
+mod catalogue;
 mod lathe;
 mod outline;
 mod pack;
 mod prism;
 mod solid;
+mod solid_toml;
 mod sphere_union;
 mod strand;
 mod surface_error;
 mod torus;
 
+pub use catalogue::{Catalogue, Entry};
 pub use pack::{MAX_SPHERES, pack};
 pub use solid::{Part, Shape, Solid};
 pub use sphere_union::{Sphere, SphereUnion};

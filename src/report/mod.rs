@@ -1,3 +1,4 @@
 //! Report: tables → files for people.
 
 pub mod files;
+pub mod object_picture;
