@@ -1,8 +1,31 @@
 //! Objects: a shape, a mesh, or spheres → [`SphereUnion`].
 
+mod block;
+mod catalogue;
+mod lathe;
+mod mesh;
+mod outline;
+mod pack;
+mod ply;
+mod prism;
+mod solid;
+mod solid_toml;
+mod sphere_csv;
 mod sphere_union;
+mod strand;
+mod surface_error;
+mod torus;
+mod vertex_spheres;
 
+pub use catalogue::{Catalogue, Entry};
+pub use mesh::Mesh;
+pub use pack::{MAX_SPHERES, pack};
+pub use ply::read_ply;
+pub use solid::{Part, Shape, Solid};
+pub use sphere_csv::{read_spheres, write_spheres};
 pub use sphere_union::{Sphere, SphereUnion};
+pub use surface_error::{SurfaceError, surface_error};
+pub use vertex_spheres::vertex_spheres;
 
 /// A named object that a patch can touch.
 #[derive(Clone, Debug)]

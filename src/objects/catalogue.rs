@@ -1,0 +1,228 @@
+//! The catalogue: named objects, as parametric solids with real dimensions.
+//!
+//! A catalogue file is a list of objects, each a union of parts:
+//!
+//! ```toml
+//! [[object]]
+//! name = "lollipop"
+//! source = "measured with a ruler"
+//!   [[object.part]]
+//!   shape = "ball"
+//!   diameter_mm = 30
+//!   position_mm = [0, 0, 85]
+//!   [[object.part]]
+//!   shape = "cylinder"
+//!   diameter_mm = 4
+//!   height_mm = 70
+//!   position_mm = [0, 0, 35]
+//! ```
+//!
+//! Each object is then moved so that it rests on z = 0 with the middle of its box on the z axis, wherever its parts were
+//! written.
+
+use super::solid_toml::WrittenPart;
+use super::{Object, Solid, pack};
+use crate::error::{Error, Result};
+use serde::Deserialize;
+use std::collections::BTreeSet;
+use std::ops::Range;
+
+/// The files of `objects/`, by the name of their set.
+const BUILTIN: [(&str, &str); 4] = [
+    ("balls", include_str!("../../objects/balls.toml")),
+    ("boxes", include_str!("../../objects/boxes.toml")),
+    ("cans", include_str!("../../objects/cans.toml")),
+    ("household", include_str!("../../objects/household.toml")),
+];
+
+/// Named objects in named sets. Invariant: no two objects of one set share a name, every set has an object.
+#[derive(Clone, Debug)]
+pub struct Catalogue {
+    entries: Vec<Entry>,
+}
+
+/// One object of a catalogue.
+#[derive(Clone, Debug)]
+pub struct Entry {
+    /// The set that it belongs to: `balls`, `household`.
+    pub set: String,
+    /// Unique within the set.
+    pub name: String,
+    /// Where its dimensions are from.
+    pub source: String,
+    /// Its shape, resting on z = 0, the middle of its box on the z axis.
+    pub solid: Solid,
+}
+
+impl Entry {
+    /// Spheres for the shape, with this surface error in metres: see [`pack`].
+    pub fn build(&self, surface_error: f64) -> Result<Object> {
+        Ok(Object {
+            name: self.name.clone(),
+            spheres: pack(&self.solid, surface_error)?,
+            n_parts: self.solid.parts().len(),
+        })
+    }
+}
+
+impl Catalogue {
+    /// The objects that come with the crate: 16 balls, 16 boxes, 9 cans, and a household.
+    pub fn builtin() -> Result<Self> {
+        let mut entries = Vec::new();
+        for (set, text) in BUILTIN {
+            entries.extend(Self::parse(set, &format!("objects/{set}.toml"), text)?.entries);
+        }
+        Ok(Self { entries })
+    }
+
+    /// One set from the text of a catalogue file; errors begin with `place`, the file's name.
+    pub fn parse(set: &str, place: &str, text: &str) -> Result<Self> {
+        let file: File = toml::from_str(text).map_err(|e| unreadable(place, text, &e))?;
+        if file.object.is_empty() {
+            return Err(Error::input(place, "no objects", "at least one [[object]]"));
+        }
+        let mut names = BTreeSet::new();
+        let mut entries = Vec::new();
+        for object in file.object {
+            if !names.insert(object.name.clone()) {
+                return Err(Error::input(
+                    format!("{place}: object `{}`", object.name),
+                    "a name that an earlier object has",
+                    "a name of its own",
+                ));
+            }
+            entries.push(object.entry(set, place)?);
+        }
+        Ok(Self { entries })
+    }
+
+    /// All objects, set by set, in the order of their files.
+    pub fn entries(&self) -> &[Entry] {
+        &self.entries
+    }
+
+    /// The names of the sets, in order.
+    pub fn sets(&self) -> Vec<&str> {
+        let mut sets: Vec<&str> = self.entries.iter().map(|e| e.set.as_str()).collect();
+        sets.dedup();
+        sets
+    }
+
+    /// The objects of a set, in the order of its file. The error lists the sets there are.
+    pub fn set(&self, set: &str) -> Result<Vec<&Entry>> {
+        let entries: Vec<&Entry> = self.entries.iter().filter(|e| e.set == set).collect();
+        if entries.is_empty() {
+            return Err(Error::input(
+                "object set",
+                format!("`{set}`"),
+                format!("one of {}", self.sets().join(", ")),
+            ));
+        }
+        Ok(entries)
+    }
+
+    /// The object of this name, in any set. The error offers the names that resemble it.
+    pub fn object(&self, name: &str) -> Result<&Entry> {
+        if let Some(entry) = self.entries.iter().find(|e| e.name == name) {
+            return Ok(entry);
+        }
+        let close: Vec<&str> = self
+            .entries
+            .iter()
+            .map(|e| e.name.as_str())
+            .filter(|n| resemble(n, name))
+            .collect();
+        let allowed = if close.is_empty() {
+            "a name that `bubbletouch objects` lists".to_string()
+        } else {
+            format!("perhaps {}", close.join(", "))
+        };
+        Err(Error::input("object", format!("`{name}`"), allowed))
+    }
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct File {
+    #[serde(default)]
+    object: Vec<WrittenObject>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct WrittenObject {
+    name: String,
+    source: String,
+    part: Vec<WrittenPart>,
+}
+
+impl WrittenObject {
+    fn entry(self, set: &str, place: &str) -> Result<Entry> {
+        let place = format!("{place}: object `{}`", self.name);
+        if self.name.trim().is_empty() {
+            return Err(Error::input(place, "an empty name", "a name"));
+        }
+        let mut parts = Vec::new();
+        for (index, part) in self.part.into_iter().enumerate() {
+            let place = format!("{place}, part {} ({})", index + 1, part.name());
+            parts.push(part.part().map_err(|e| at(&place, e))?);
+        }
+        let solid = Solid::new(parts).map_err(|e| at(&place, e))?;
+        Ok(Entry {
+            set: set.to_string(),
+            name: self.name,
+            source: self.source,
+            solid: solid.resting(),
+        })
+    }
+}
+
+/// The same error with a longer place.
+fn at(outer: &str, error: Error) -> Error {
+    match error {
+        Error::Input {
+            place,
+            given,
+            allowed,
+        } => Error::input(format!("{outer}: {place}"), given, allowed),
+        other => other,
+    }
+}
+
+/// What the TOML reader says, with line and object.
+fn unreadable(place: &str, text: &str, error: &toml::de::Error) -> Error {
+    let place = match error.span() {
+        Some(Range { start, .. }) => {
+            let line = 1 + text[..start].matches('\n').count();
+            match object_around(text, start) {
+                Some(name) => format!("{place}, line {line}, object {name}"),
+                None => format!("{place}, line {line}"),
+            }
+        }
+        None => place.to_string(),
+    };
+    let given = error.message().replace('\n', ", ");
+    Error::input(
+        place,
+        given,
+        "[[object]] tables with name, source and parts in mm and degrees",
+    )
+}
+
+/// The name, in quotes, of the `[[object]]` that this byte lies in.
+fn object_around(text: &str, byte: usize) -> Option<&str> {
+    let start = text[..byte].rfind("[[object]]")?;
+    let body = &text[start + "[[object]]".len()..];
+    let end = body.find("[[object]]").unwrap_or(body.len());
+    let mut lines = body[..end].lines();
+    let value =
+        lines.find_map(|line| line.trim().strip_prefix("name")?.trim().strip_prefix('='))?;
+    Some(value.trim())
+}
+
+/// Whether one name is in the other, or they share their first three letters.
+fn resemble(a: &str, b: &str) -> bool {
+    let (a, b) = (a.to_lowercase(), b.to_lowercase());
+    let head = |s: &str| s.chars().take(3).collect::<String>();
+    !b.is_empty() && (a.contains(&b) || b.contains(&a) || head(&a) == head(&b))
+}

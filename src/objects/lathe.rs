@@ -1,0 +1,235 @@
+//! A solid of revolution: a polygon in the half plane (distance from the axis, height) turned about z.
+//!
+//! The nearest surface point of a solid of revolution lies in the same half plane, so its distance is the polygon's.
+
+use super::Sphere;
+use super::outline::Outline;
+use super::pack::MAX_SPHERES;
+use glam::{DVec2, DVec3};
+use std::f64::consts::{PI, TAU};
+
+/// A turned polygon.
+#[derive(Clone, Debug)]
+pub(super) struct Lathe {
+    outline: Outline,
+}
+
+/// Balls of one radius, evenly on a circle about the axis.
+#[derive(Clone, Copy, Debug)]
+struct Ring {
+    /// (distance from the axis, height) of the ball centres.
+    center: DVec2,
+    /// Tangent radius; the spheres are larger by the tolerance.
+    radius: f64,
+    n: f64,
+}
+
+/// The parts of each edge, as distances from its start, that no ring covers yet.
+struct Uncovered {
+    intervals: Vec<Vec<[f64; 2]>>,
+}
+
+impl Lathe {
+    /// `profile` holds (distance from the axis ≥ 0, height); sides on the axis are no surface.
+    pub fn new(profile: &[DVec2]) -> Self {
+        Self {
+            outline: Outline::new(profile, |a, b| a.x > 0.0 || b.x > 0.0),
+        }
+    }
+
+    pub fn distance(&self, point: DVec3) -> f64 {
+        self.outline
+            .distance(DVec2::new(point.truncate().length(), point.z))
+    }
+
+    /// Largest p·direction over the solid.
+    pub fn support(&self, direction: DVec3) -> f64 {
+        let across = direction.truncate().length();
+        let corners = self.outline.vertices().iter();
+        corners
+            .map(|v| v.x * across + v.y * direction.z)
+            .fold(f64::NEG_INFINITY, f64::max)
+    }
+
+    /// Rings until every point of the profile is covered all around.
+    pub fn pack(&self, tolerance: f64, spheres: &mut Vec<Sphere>) {
+        let mut uncovered = Uncovered::new(&self.outline);
+        while let Some(ring) = self.next_ring(&uncovered, tolerance) {
+            for (edge, intervals) in uncovered.intervals.iter_mut().enumerate() {
+                if let Some(covered) = self.covered(&ring, edge, tolerance) {
+                    subtract(intervals, covered);
+                }
+            }
+            ring.push_spheres(tolerance, spheres);
+            if spheres.len() > MAX_SPHERES {
+                return;
+            }
+        }
+    }
+
+    /// The ring that covers an end of the first uncovered interval and, over all edges, the most length a sphere.
+    fn next_ring(&self, uncovered: &Uncovered, e: f64) -> Option<Ring> {
+        let (edge, target, step) = uncovered.first_end(&self.outline)?;
+        let available = if step > 0.0 {
+            self.outline.edges[edge].length - target
+        } else {
+            target
+        };
+        let smallest = 1e-2 * e.min(available);
+        let mut best: Option<(f64, f64, Ring)> = None;
+        let mut consider = |ahead: f64| {
+            for ring in self.rings(edge, target + step * ahead, e) {
+                if !self.covers(&ring, edge, target, e) {
+                    continue;
+                }
+                let gain = self.gain(&ring, uncovered, e) / ring.n;
+                if best.is_none_or(|(most, ..)| gain > most) {
+                    best = Some((gain, ahead, ring));
+                }
+            }
+            best.map(|(_, ahead, _)| ahead)
+        };
+        const N_COARSE: i32 = 40;
+        const N_FINE: i32 = 6;
+        let ratio = (available / smallest).powf(1.0 / f64::from(N_COARSE));
+        let mut coarse = None;
+        for k in 0..N_COARSE {
+            coarse = consider(smallest * ratio.powi(k));
+        }
+        for k in -N_FINE..=N_FINE {
+            let near = coarse? * ratio.powf(f64::from(k) / f64::from(N_FINE));
+            if near < available {
+                consider(near);
+            }
+        }
+        best.map(|(.., ring)| ring)
+    }
+
+    /// Rings of the largest ball that touches an edge there, with several numbers of balls.
+    fn rings(&self, edge: usize, along: f64, e: f64) -> impl Iterator<Item = Ring> {
+        let foot = self.outline.edges[edge].point(along);
+        let inward = self.outline.edges[edge].inward;
+        let to_axis = if inward.x < 0.0 {
+            foot.x / -inward.x
+        } else {
+            f64::INFINITY
+        };
+        let radius = self.outline.tangent_radius(edge, foot).min(to_axis);
+        let mut center = foot + radius * inward;
+        // A centre meant to be on the axis is put there, so that one ball makes the ring.
+        if radius == to_axis || center.x < 1e-9 * radius {
+            center.x = 0.0;
+        }
+        let budget = 4.0 * e * (radius + e);
+        [0.35, 0.5, 0.65, 0.8].into_iter().map(move |share| {
+            let sine = (share * budget / (4.0 * foot.x * center.x)).sqrt();
+            let n = if sine < 1.0 {
+                (0.5 * PI / sine.asin()).ceil()
+            } else {
+                1.0
+            };
+            Ring { center, radius, n }
+        })
+    }
+
+    /// Which interval of an edge a ring covers all around.
+    ///
+    /// Half-way between two balls the profile point (ρ, z) is `(ρ − ρc)² + (z − zc)² + 4 ρ ρc sin²(π/2n)` from both
+    /// centres, squared: quadratic along an edge, and covered where it is at most `(r + 2e)²`.
+    fn covered(&self, ring: &Ring, edge: usize, e: f64) -> Option<[f64; 2]> {
+        let edge = &self.outline.edges[edge];
+        let from_center = edge.start - ring.center;
+        let lag = 2.0 * ring.center.x * (0.5 * PI / ring.n).sin().powi(2);
+        let reach = ring.radius + 2.0 * e;
+        let half_linear = from_center.dot(edge.along) + lag * edge.along.x;
+        let constant = from_center.length_squared() + 2.0 * lag * edge.start.x - reach * reach;
+        let square = half_linear * half_linear - constant;
+        if square <= 0.0 {
+            return None;
+        }
+        let root = square.sqrt();
+        let (low, high) = (-half_linear - root, -half_linear + root);
+        let (low, high) = (low.max(0.0), high.min(edge.length));
+        (low < high).then_some([low, high])
+    }
+
+    fn covers(&self, ring: &Ring, edge: usize, at: f64, e: f64) -> bool {
+        let slack = 1e-9 * self.outline.edges[edge].length;
+        self.covered(ring, edge, e)
+            .is_some_and(|[low, high]| low <= at + slack && at - slack <= high)
+    }
+
+    fn gain(&self, ring: &Ring, uncovered: &Uncovered, e: f64) -> f64 {
+        let edges = uncovered.intervals.iter().enumerate();
+        edges
+            .filter(|(_, intervals)| !intervals.is_empty())
+            .filter_map(|(edge, intervals)| Some((self.covered(ring, edge, e)?, intervals)))
+            .map(|(covered, intervals)| overlap(intervals, covered))
+            .sum()
+    }
+
+    pub fn surface_points(&self, spacing: f64, points: &mut Vec<DVec3>) {
+        for edge in &self.outline.edges {
+            let n = (edge.length / spacing).ceil().max(2.0);
+            for i in 0..=n as usize {
+                let at = edge.point(edge.length * i as f64 / n);
+                let m = (TAU * at.x / spacing).ceil().max(12.0);
+                points.extend((0..m as usize).map(|j| {
+                    let (sin, cos) = (TAU * j as f64 / m).sin_cos();
+                    DVec3::new(at.x * cos, at.x * sin, at.y)
+                }));
+            }
+        }
+    }
+}
+
+impl Ring {
+    fn push_spheres(&self, tolerance: f64, spheres: &mut Vec<Sphere>) {
+        spheres.extend((0..self.n as usize).take(MAX_SPHERES + 1).map(|i| {
+            let (sin, cos) = (TAU * i as f64 / self.n).sin_cos();
+            Sphere {
+                center: DVec3::new(self.center.x * cos, self.center.x * sin, self.center.y),
+                radius: self.radius + tolerance,
+            }
+        }));
+    }
+}
+
+impl Uncovered {
+    fn new(outline: &Outline) -> Self {
+        let whole = |length: f64| vec![[0.0, length]];
+        Self {
+            intervals: outline.edges.iter().map(|e| whole(e.length)).collect(),
+        }
+    }
+
+    /// (edge, end of its first uncovered interval, direction into the interval): the end nearer to a corner, so that
+    /// balls grow from both corners of an edge towards its middle.
+    fn first_end(&self, outline: &Outline) -> Option<(usize, f64, f64)> {
+        let edge = self.intervals.iter().position(|i| !i.is_empty())?;
+        let first = self.intervals[edge][0];
+        let last = self.intervals[edge].last()?;
+        if first[0] <= outline.edges[edge].length - last[1] {
+            Some((edge, first[0], 1.0))
+        } else {
+            Some((edge, last[1], -1.0))
+        }
+    }
+}
+
+/// Takes an interval out; leftovers shorter than a billionth of it are rounding and go too.
+fn subtract(intervals: &mut Vec<[f64; 2]>, [low, high]: [f64; 2]) {
+    let slack = 1e-9 * (high - low);
+    *intervals = intervals
+        .iter()
+        .flat_map(|&[start, end]| [[start, end.min(low)], [start.max(high), end]])
+        .filter(|[start, end]| end - start > slack)
+        .collect();
+}
+
+fn overlap(intervals: &[[f64; 2]], [low, high]: [f64; 2]) -> f64 {
+    let common = intervals
+        .iter()
+        .map(|[start, end]| (end.min(high) - start.max(low)).max(0.0));
+    common.sum()
+}

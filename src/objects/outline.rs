@@ -1,0 +1,221 @@
+//! A closed polygon in a plane: the profile of a lathe, the outline of a prism.
+
+use glam::DVec2;
+
+/// One straight piece of an outline, walked with the inside on its left.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Edge {
+    pub start: DVec2,
+    /// Unit vector from start to end.
+    pub along: DVec2,
+    /// Unit normal into the polygon.
+    pub inward: DVec2,
+    pub length: f64,
+}
+
+impl Edge {
+    fn new(start: DVec2, end: DVec2) -> Self {
+        let length = (end - start).length();
+        let along = (end - start) / length;
+        Self {
+            start,
+            along,
+            inward: along.perp(),
+            length,
+        }
+    }
+
+    /// The point this far from the start.
+    pub fn point(&self, distance: f64) -> DVec2 {
+        self.start + distance * self.along
+    }
+
+    fn end(&self) -> DVec2 {
+        self.point(self.length)
+    }
+
+    fn nearest(&self, point: DVec2) -> DVec2 {
+        let along = (point - self.start).dot(self.along);
+        self.point(along.clamp(0.0, self.length))
+    }
+
+    fn distance(&self, point: DVec2) -> f64 {
+        (point - self.nearest(point)).length()
+    }
+
+    /// Radius at which a disc growing from `foot` along `inward` first touches this edge; infinite if never.
+    ///
+    /// The disc through a point q has radius |q − foot|² / 2 n·(q − foot). Along a line that is quasi-convex, so its
+    /// least value on the edge lies where the disc is tangent to the line, or at an end.
+    fn tangent_radius(&self, foot: DVec2, inward: DVec2) -> f64 {
+        let height = (foot - self.start).dot(self.inward);
+        let towards = self.inward * height.signum();
+        let radius = height.abs() / (1.0 - inward.dot(towards));
+        let touch = (foot + radius * inward - self.start).dot(self.along);
+        if radius.is_finite() && (0.0..=self.length).contains(&touch) {
+            return radius;
+        }
+        let through = |q: DVec2| {
+            let ahead = inward.dot(q - foot);
+            if ahead > 1e-9 * self.length {
+                0.5 * (q - foot).length_squared() / ahead
+            } else {
+                f64::INFINITY
+            }
+        };
+        through(self.start).min(through(self.end()))
+    }
+}
+
+/// A simple polygon, counter-clockwise; the pieces of it that are surface.
+#[derive(Clone, Debug)]
+pub(super) struct Outline {
+    vertices: Vec<DVec2>,
+    pub edges: Vec<Edge>,
+}
+
+impl Outline {
+    /// Orders the vertices counter-clockwise and keeps as surface the edges for which `is_surface(start, end)`.
+    pub fn new(vertices: &[DVec2], is_surface: impl Fn(DVec2, DVec2) -> bool) -> Self {
+        let mut vertices = vertices.to_vec();
+        if area(&vertices) < 0.0 {
+            vertices.reverse();
+        }
+        let edges = closed_pairs(&vertices)
+            .filter(|&(start, end)| is_surface(start, end))
+            .map(|(start, end)| Edge::new(start, end))
+            .collect();
+        Self { vertices, edges }
+    }
+
+    /// Distance to the nearest surface edge, negative inside.
+    pub fn distance(&self, point: DVec2) -> f64 {
+        let distances = self.edges.iter().map(|edge| edge.distance(point));
+        let distance = distances.fold(f64::INFINITY, f64::min);
+        if self.contains(point) {
+            -distance
+        } else {
+            distance
+        }
+    }
+
+    /// The surface edge nearest to a point, and its point there.
+    pub fn nearest(&self, point: DVec2) -> (usize, DVec2) {
+        let mut best = (f64::INFINITY, 0, point);
+        for (index, edge) in self.edges.iter().enumerate() {
+            let foot = edge.nearest(point);
+            let distance = (point - foot).length();
+            if distance < best.0 {
+                best = (distance, index, foot);
+            }
+        }
+        (best.1, best.2)
+    }
+
+    /// The corners, counter-clockwise.
+    pub fn vertices(&self) -> &[DVec2] {
+        &self.vertices
+    }
+
+    /// Radius of the largest inscribed disc that touches edge `edge` at `foot`.
+    pub fn tangent_radius(&self, edge: usize, foot: DVec2) -> f64 {
+        let inward = self.edges[edge].inward;
+        let others = self.edges.iter().enumerate().filter(|&(i, _)| i != edge);
+        others
+            .map(|(_, other)| other.tangent_radius(foot, inward))
+            .fold(f64::INFINITY, f64::min)
+    }
+
+    /// Even-odd rule along a ray towards +x.
+    fn contains(&self, point: DVec2) -> bool {
+        let crossed = closed_pairs(&self.vertices).filter(|(a, b)| {
+            (a.y > point.y) != (b.y > point.y)
+                && point.x < a.x + (point.y - a.y) / (b.y - a.y) * (b.x - a.x)
+        });
+        crossed.count() % 2 == 1
+    }
+}
+
+/// Why a list of corners is not a simple polygon, if it is not.
+pub(super) fn polygon_fault(vertices: &[DVec2]) -> Option<String> {
+    if vertices.len() < 3 {
+        return Some(format!("{} corners", vertices.len()));
+    }
+    let pairs: Vec<_> = closed_pairs(vertices).collect();
+    if let Some(at) = pairs.iter().position(|(a, b)| a == b) {
+        return Some(format!("corner {} repeated", at + 1));
+    }
+    let n = pairs.len();
+    for i in 0..n {
+        for j in i + 1..n {
+            let neighbours = j == i + 1 || (i == 0 && j == n - 1);
+            if !neighbours && cross(pairs[i], pairs[j]) {
+                return Some(format!("side {} crosses side {}", i + 1, j + 1));
+            }
+        }
+    }
+    (area(vertices) == 0.0).then(|| "an outline without area".to_string())
+}
+
+fn closed_pairs(vertices: &[DVec2]) -> impl Iterator<Item = (DVec2, DVec2)> {
+    let next = vertices.iter().cycle().skip(1);
+    vertices.iter().copied().zip(next.copied())
+}
+
+fn area(vertices: &[DVec2]) -> f64 {
+    0.5 * closed_pairs(vertices)
+        .map(|(a, b)| a.perp_dot(b))
+        .sum::<f64>()
+}
+
+fn cross(a: (DVec2, DVec2), b: (DVec2, DVec2)) -> bool {
+    let side = |(p, q): (DVec2, DVec2), x: DVec2| (q - p).perp_dot(x - p);
+    side(a, b.0) * side(a, b.1) <= 0.0 && side(b, a.0) * side(b, a.1) <= 0.0
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn l_shape() -> Outline {
+        let corners = [[0., 0.], [4., 0.], [4., 1.], [1., 1.], [1., 3.], [0., 3.]];
+        Outline::new(&corners.map(DVec2::from), |_, _| true)
+    }
+
+    #[test]
+    fn the_tangent_disc_touches_the_outline_and_stays_inside() {
+        let outline = l_shape();
+        for (index, edge) in outline.edges.iter().enumerate() {
+            for k in 1..50 {
+                let foot = edge.point(edge.length * f64::from(k) / 50.0);
+                let radius = outline.tangent_radius(index, foot);
+                let center = foot + radius * edge.inward;
+                assert!(
+                    (outline.distance(center) + radius).abs() < 1e-12,
+                    "edge {index}, step {k}: radius {radius}"
+                );
+                let larger = foot + 1.001 * radius * edge.inward;
+                assert!(outline.distance(larger) > -1.001 * radius + 1e-6 * radius);
+            }
+        }
+    }
+
+    #[test]
+    fn both_walking_directions_give_the_same_distance() {
+        let outline = l_shape();
+        let mut backwards = outline.vertices().to_vec();
+        backwards.reverse();
+        let reversed = Outline::new(&backwards, |_, _| true);
+        for k in 0..400 {
+            let point = DVec2::new(0.3 * f64::from(k % 20) - 1.0, 0.3 * f64::from(k / 20) - 1.0);
+            assert_eq!(outline.distance(point), reversed.distance(point));
+        }
+    }
+
+    #[test]
+    fn a_bow_tie_is_not_a_polygon() {
+        let bow = [[0., 0.], [1., 1.], [1., 0.], [0., 1.]].map(DVec2::from);
+        assert_eq!(polygon_fault(&bow).unwrap(), "side 1 crosses side 3");
+        assert!(polygon_fault(l_shape().vertices()).is_none());
+    }
+}

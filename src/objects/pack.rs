@@ -1,0 +1,63 @@
+//! From a solid to the spheres that stand for it, with a stated surface error.
+//!
+//! Let e be the tolerance. Each sphere is the largest ball inside the solid that touches its surface at some point,
+//! radius r, inflated by e: no point of it lies more than e outside. Such a sphere comes within e of every surface point p
+//! with |p − c| ≤ r + 2e; the feet are chosen so that these reaches cover the whole surface. On a flat face a ball reaches
+//! 2·sqrt(e(r + e)) around its foot, so large balls are few; at a right-angled edge it must have r ≤ 2e/(√2 − 1) to reach
+//! the edge. Each form has its own closed layout of feet (`block`, `lathe`, `strand`, `torus`), or cells that are split
+//! until they are covered (`prism`).
+
+use super::{Solid, Sphere, SphereUnion};
+use crate::error::{Error, Result};
+
+/// The most spheres that [`pack`] makes of a part before it gives up: 100 MB of them, and hours of touches.
+pub const MAX_SPHERES: usize = 2_000_000;
+
+/// Spheres whose union is the solid to within `tolerance` (metres, positive).
+///
+/// No sphere reaches more than `tolerance` outside the solid, and no point of the solid's outer surface lies more than
+/// `tolerance` outside the spheres ([`surface_error`](super::surface_error) measures both). The same input gives the same
+/// spheres, in the order of the parts. An error for a tolerance that is not positive, or so small that a part would need
+/// more than [`MAX_SPHERES`].
+pub fn pack(solid: &Solid, tolerance: f64) -> Result<SphereUnion> {
+    if !(tolerance.is_finite() && tolerance > 0.0) {
+        return Err(Error::input(
+            "surface error",
+            format!("{tolerance} m"),
+            "a finite positive length",
+        ));
+    }
+    // Leaves rounding errors a place, so that what is promised is kept to the last digit.
+    let e = tolerance * (1.0 - 1e-6);
+    let mut kept = Vec::new();
+    for (index, part) in solid.parts().iter().enumerate() {
+        let spheres = part.pack(e);
+        if spheres.len() > MAX_SPHERES {
+            return Err(Error::input(
+                "surface error",
+                format!(
+                    "{tolerance} m, which takes more than {MAX_SPHERES} spheres for part {}",
+                    index + 1
+                ),
+                "a larger surface error",
+            ));
+        }
+        kept.extend(
+            spheres
+                .into_iter()
+                .filter(|s| !is_buried(s, index, solid, e)),
+        );
+    }
+    SphereUnion::new(kept)
+}
+
+/// Whether all surface that a sphere is there for lies inside another part.
+///
+/// It is there for surface points within radius + e of its centre. Of two equal parts the later one is buried.
+fn is_buried(sphere: &Sphere, part: usize, solid: &Solid, e: f64) -> bool {
+    let others = solid.parts().iter().enumerate().filter(|&(i, _)| i != part);
+    let reach = sphere.radius + e;
+    others
+        .map(|(_, other)| other.distance(sphere.center))
+        .any(|distance| distance < -reach)
+}

@@ -1,0 +1,226 @@
+//! Meshes from PLY files, ascii or binary of either byte order.
+//!
+//! Needs an element `vertex` with scalar properties x, y, z (metres); reads the element `face` if its list is called
+//! `vertex_indices` or `vertex_index`, and cuts faces of more than three corners into a fan around the first. Other
+//! elements and properties are skipped.
+
+use super::Mesh;
+use crate::error::{Error, Result};
+use glam::DVec3;
+use ply_rs_bw::parser::{ParseError, Parser, Reader};
+use ply_rs_bw::ply::{
+    ElementDef, Property, PropertyAccess, PropertyAccessResult, PropertyType, ScalarType,
+};
+use std::io::{BufRead, ErrorKind};
+
+/// A mesh from a PLY file's content; errors begin with `place`, the file's name.
+///
+/// An error for anything that is not a whole PLY file: another format, a cut-off file, no vertices, a coordinate that is
+/// not a finite number, an index of no vertex.
+pub fn read_ply(place: &str, mut source: impl BufRead) -> Result<Mesh> {
+    check_magic(place, &mut source)?;
+    let mut reader = Reader::new(source);
+    let header = Parser::<Vertex>::new()
+        .read_header(&mut reader)
+        .map_err(|e| malformed(place, &e))?;
+    check_header(place, header.elements.values())?;
+    let mut vertices = Vec::new();
+    let mut faces = Vec::new();
+    for element in header.elements.values() {
+        match element.name.as_str() {
+            "vertex" => {
+                vertices = Parser::<Vertex>::new()
+                    .read_payload_for_element(&mut reader, element, &header)
+                    .map_err(|e| malformed(place, &e))?;
+            }
+            "face" => {
+                faces = Parser::<Face>::new()
+                    .read_payload_for_element(&mut reader, element, &header)
+                    .map_err(|e| malformed(place, &e))?;
+            }
+            _ => {
+                Parser::<Skipped>::new()
+                    .read_payload_for_element(&mut reader, element, &header)
+                    .map_err(|e| malformed(place, &e))?;
+            }
+        }
+    }
+    let vertices = vertices.into_iter().map(|v| v.0).collect();
+    Mesh::new(place, vertices, triangles(place, &faces)?)
+}
+
+/// Fans: corners 0 1 2, 0 2 3, 0 3 4, … of each face.
+fn triangles(place: &str, faces: &[Face]) -> Result<Vec<[u32; 3]>> {
+    let mut triangles = Vec::with_capacity(faces.len());
+    for (index, Face(corners)) in faces.iter().enumerate() {
+        let wrong = |given: String| {
+            let place = format!("{place}: face {}", index + 1);
+            Error::input(place, given, "at least three vertex indices, from 0")
+        };
+        if corners.len() < 3 {
+            return Err(wrong(format!("{} corners", corners.len())));
+        }
+        let corner = |i: usize| {
+            u32::try_from(corners[i]).map_err(|_| wrong(format!("vertex index {}", corners[i])))
+        };
+        for i in 1..corners.len() - 1 {
+            triangles.push([corner(0)?, corner(i)?, corner(i + 1)?]);
+        }
+    }
+    Ok(triangles)
+}
+
+fn check_magic(place: &str, source: &mut impl BufRead) -> Result<()> {
+    let start = source.fill_buf().map_err(|e| Error::io(place, "read", e))?;
+    if start.starts_with(b"ply") {
+        return Ok(());
+    }
+    let given = if start.is_empty() {
+        "an empty file"
+    } else {
+        "not a PLY file"
+    };
+    Err(Error::input(place, given, "a file that begins with `ply`"))
+}
+
+/// What the reader cannot use, before it reads (and perhaps allocates) anything.
+fn check_header<'a>(place: &str, elements: impl Iterator<Item = &'a ElementDef>) -> Result<()> {
+    let mut has_vertices = false;
+    for element in elements {
+        // Nothing limits how many elements without content a file can claim to hold.
+        if element.properties.is_empty() && element.count > 0 {
+            return Err(Error::input(
+                place,
+                format!("element `{}` without properties", element.name),
+                "at least one property an element",
+            ));
+        }
+        match element.name.as_str() {
+            "vertex" => {
+                has_vertices = true;
+                check_vertex(place, element)?;
+            }
+            "face" => check_face(place, element)?,
+            _ => {}
+        }
+    }
+    if has_vertices {
+        return Ok(());
+    }
+    Err(Error::input(
+        place,
+        "no element `vertex`",
+        "vertices with x, y, z",
+    ))
+}
+
+fn check_vertex(place: &str, element: &ElementDef) -> Result<()> {
+    for name in ["x", "y", "z"] {
+        let property = element.properties.get(name).map(|p| &p.data_type);
+        if !matches!(property, Some(PropertyType::Scalar(_))) {
+            return Err(Error::input(
+                place,
+                format!("vertices without a number `{name}`"),
+                "vertices with x, y, z",
+            ));
+        }
+    }
+    Ok(())
+}
+
+fn check_face(place: &str, element: &ElementDef) -> Result<()> {
+    let names = ["vertex_indices", "vertex_index"];
+    let lists = names.map(|name| element.properties.get(name).map(|p| &p.data_type));
+    let is_index = |t: &ScalarType| !matches!(t, ScalarType::Float | ScalarType::Double);
+    let usable = lists.iter().flatten().any(
+        |t| matches!(t, PropertyType::List(count, index) if is_index(count) && is_index(index)),
+    );
+    if usable || element.count == 0 {
+        return Ok(());
+    }
+    Err(Error::input(
+        place,
+        "faces without a list of whole numbers `vertex_indices`",
+        "faces that list their vertices",
+    ))
+}
+
+fn malformed(place: &str, error: &ParseError) -> Error {
+    // The crate's messages quote input over several lines; the first says what is wrong.
+    let text = error.to_string();
+    let first = text.lines().next().unwrap_or_default().trim();
+    match error.kind() {
+        ErrorKind::UnexpectedEof => Error::input(
+            place,
+            format!("cut off: {first}"),
+            "as many elements as the header says",
+        ),
+        _ => Error::input(
+            place,
+            format!("not readable as PLY: {first}"),
+            "finite numbers as the header describes them",
+        ),
+    }
+}
+
+struct Vertex(DVec3);
+
+impl PropertyAccess for Vertex {
+    fn new() -> Self {
+        Self(DVec3::NAN)
+    }
+
+    fn set_property(&mut self, name: &str, property: Property) -> PropertyAccessResult {
+        let value = match property {
+            Property::Char(v) => f64::from(v),
+            Property::UChar(v) => f64::from(v),
+            Property::Short(v) => f64::from(v),
+            Property::UShort(v) => f64::from(v),
+            Property::Int(v) => f64::from(v),
+            Property::UInt(v) => f64::from(v),
+            Property::Float(v) => f64::from(v),
+            Property::Double(v) => v,
+            _ => return PropertyAccessResult::Ignored,
+        };
+        match name {
+            "x" => self.0.x = value,
+            "y" => self.0.y = value,
+            "z" => self.0.z = value,
+            _ => return PropertyAccessResult::Ignored,
+        }
+        PropertyAccessResult::Set
+    }
+}
+
+struct Face(Vec<i64>);
+
+impl PropertyAccess for Face {
+    fn new() -> Self {
+        Self(Vec::new())
+    }
+
+    fn set_property(&mut self, name: &str, property: Property) -> PropertyAccessResult {
+        if !matches!(name, "vertex_indices" | "vertex_index") {
+            return PropertyAccessResult::Ignored;
+        }
+        self.0 = match property {
+            Property::ListChar(v) => v.into_iter().map(i64::from).collect(),
+            Property::ListUChar(v) => v.into_iter().map(i64::from).collect(),
+            Property::ListShort(v) => v.into_iter().map(i64::from).collect(),
+            Property::ListUShort(v) => v.into_iter().map(i64::from).collect(),
+            Property::ListInt(v) => v.into_iter().map(i64::from).collect(),
+            Property::ListUInt(v) => v.into_iter().map(i64::from).collect(),
+            _ => return PropertyAccessResult::UnsupportedType,
+        };
+        PropertyAccessResult::Set
+    }
+}
+
+/// An element that is read past.
+struct Skipped;
+
+impl PropertyAccess for Skipped {
+    fn new() -> Self {
+        Self
+    }
+}

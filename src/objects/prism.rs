@@ -1,0 +1,168 @@
+//! A polygon with a thickness: its distance, its surface, its spheres.
+
+use super::Sphere;
+use super::outline::Outline;
+use super::pack::MAX_SPHERES;
+use glam::{DVec2, DVec3};
+
+/// A polygon in the plane z = 0, thickened by half the thickness both ways.
+#[derive(Clone, Debug)]
+pub(super) struct Prism {
+    outline: Outline,
+    /// Half of the thickness.
+    half: f64,
+}
+
+impl Prism {
+    pub fn new(outline: &[DVec2], thickness: f64) -> Self {
+        Self {
+            outline: Outline::new(outline, |_, _| true),
+            half: 0.5 * thickness,
+        }
+    }
+
+    pub fn distance(&self, point: DVec3) -> f64 {
+        let across = self.outline.distance(point.truncate());
+        let above = point.z.abs() - self.half;
+        let outside = DVec2::new(across, above).max(DVec2::ZERO).length();
+        outside + across.max(above).min(0.0)
+    }
+
+    /// Largest p·direction over the prism.
+    pub fn support(&self, direction: DVec3) -> f64 {
+        let corners = self.outline.vertices().iter();
+        let across = corners.map(|v| v.dot(direction.truncate()));
+        across.fold(f64::NEG_INFINITY, f64::max) + self.half * direction.z.abs()
+    }
+
+    /// Walls first, by cells of each wall; then what they leave of the two faces, by cells of a square around the outline.
+    ///
+    /// A cell holds the ball that touches the surface in its middle; the cell is split until that ball, inflated by e,
+    /// comes within e of its farthest point: |p − c| ≤ r + 2e, which is |p − foot|² ≤ 4e(r + e) on a plane.
+    pub fn pack(&self, tolerance: f64, spheres: &mut Vec<Sphere>) {
+        for edge in 0..self.outline.edges.len() {
+            let length = self.outline.edges[edge].length;
+            // Start from about square cells; walls are much longer than high.
+            let n = (0.5 * length / self.half).ceil();
+            for i in 0..n as usize {
+                let cell = Cell {
+                    middle: DVec2::new(length * (i as f64 + 0.5) / n, 0.0),
+                    half: DVec2::new(0.5 * length / n, self.half),
+                };
+                self.pack_wall(edge, cell, tolerance, spheres);
+            }
+        }
+        let corners = self.outline.vertices().iter();
+        let min = corners.clone().copied().reduce(DVec2::min);
+        let max = corners.copied().reduce(DVec2::max);
+        if let (Some(min), Some(max)) = (min, max) {
+            let cell = Cell {
+                middle: 0.5 * (min + max),
+                half: DVec2::splat(0.5 * (max - min).max_element()),
+            };
+            self.pack_face(cell, tolerance, spheres);
+        }
+    }
+
+    fn pack_wall(&self, edge: usize, cell: Cell, e: f64, spheres: &mut Vec<Sphere>) {
+        if spheres.len() > MAX_SPHERES {
+            return;
+        }
+        let wall = &self.outline.edges[edge];
+        let foot = wall.point(cell.middle.x);
+        let radius = self
+            .outline
+            .tangent_radius(edge, foot)
+            .min(self.half - cell.middle.y.abs());
+        let center = foot + radius * wall.inward;
+        if cell.half.length_squared() <= 4.0 * e * (radius + e) {
+            spheres.push(Sphere {
+                center: center.extend(cell.middle.y),
+                radius: radius + e,
+            });
+            return;
+        }
+        for part in cell.split() {
+            self.pack_wall(edge, part, e, spheres);
+        }
+    }
+
+    fn pack_face(&self, cell: Cell, e: f64, spheres: &mut Vec<Sphere>) {
+        let inset = -self.outline.distance(cell.middle);
+        if -inset > cell.half.length() || spheres.len() > MAX_SPHERES {
+            return;
+        }
+        let (center, radius) = if inset > 0.0 {
+            (cell.middle, inset.min(self.half))
+        } else {
+            self.border_disc(cell.middle, e)
+        };
+        let farthest = (cell.middle - center).length() + cell.half.length();
+        if farthest * farthest <= 4.0 * e * (radius + e) {
+            for z in [self.half - radius, radius - self.half] {
+                spheres.push(Sphere {
+                    center: center.extend(z),
+                    radius: radius + e,
+                });
+            }
+            return;
+        }
+        for part in cell.split() {
+            self.pack_face(part, e, spheres);
+        }
+    }
+
+    /// Centre and radius of a small disc inside that touches the outline where it is nearest to a point outside; at a
+    /// corner it is the corner itself, radius 0.
+    fn border_disc(&self, point: DVec2, e: f64) -> (DVec2, f64) {
+        let (edge, foot) = self.outline.nearest(point);
+        let largest = self.outline.tangent_radius(edge, foot);
+        let radius = largest.min(self.half).min(0.5 * e);
+        (foot + radius * self.outline.edges[edge].inward, radius)
+    }
+
+    pub fn surface_points(&self, spacing: f64, points: &mut Vec<DVec3>) {
+        let n_up = (2.0 * self.half / spacing).ceil().max(4.0);
+        for edge in &self.outline.edges {
+            let n = (edge.length / spacing).ceil().max(4.0);
+            for i in 0..=n as usize {
+                let at = edge.point(edge.length * i as f64 / n);
+                points.extend((0..=n_up as usize).map(|j| {
+                    let z = self.half * (2.0 * j as f64 / n_up - 1.0);
+                    at.extend(z)
+                }));
+            }
+        }
+        let corners = self.outline.vertices().iter();
+        let min = corners.clone().copied().fold(DVec2::MAX, DVec2::min);
+        let max = corners.copied().fold(DVec2::MIN, DVec2::max);
+        let n = ((max - min) / spacing).ceil().max(DVec2::splat(4.0));
+        for i in 0..=n.x as usize {
+            for j in 0..=n.y as usize {
+                let at = min + (max - min) * DVec2::new(i as f64, j as f64) / n;
+                if self.outline.distance(at) <= 0.0 {
+                    points.extend([at.extend(self.half), at.extend(-self.half)]);
+                }
+            }
+        }
+    }
+}
+
+/// A rectangle in the coordinates of a wall or a face.
+#[derive(Clone, Copy)]
+struct Cell {
+    middle: DVec2,
+    half: DVec2,
+}
+
+impl Cell {
+    /// Halves across the longer side.
+    fn split(&self) -> [Self; 2] {
+        let mut half = self.half;
+        let mut step = DVec2::ZERO;
+        let longer = usize::from(half.y > half.x);
+        half[longer] *= 0.5;
+        step[longer] = half[longer];
+        [self.middle - step, self.middle + step].map(|middle| Self { middle, half })
+    }
+}

@@ -1,0 +1,134 @@
+//! Sphere unions as CSV: columns x, y, z, r in metres.
+
+use super::{Sphere, SphereUnion};
+use crate::error::{Error, Result};
+use glam::DVec3;
+use std::io::{self, Read, Write};
+
+/// The columns, in order.
+const COLUMNS: [&str; 4] = ["x", "y", "z", "r"];
+
+/// Spheres from `x,y,z,r` in metres, with a header (columns in any order, others ignored) or without one (exactly four
+/// columns). Errors begin with `place`, the file's name, and give line and column.
+pub fn read_spheres(place: &str, source: impl Read) -> Result<SphereUnion> {
+    let mut reader = csv::ReaderBuilder::new()
+        .has_headers(false)
+        .flexible(true)
+        .trim(csv::Trim::All)
+        .from_reader(source);
+    let mut layout = None;
+    let mut spheres = Vec::new();
+    for record in reader.records() {
+        let record = record.map_err(|e| unreadable(place, e))?;
+        let line = record.position().map_or(0, |position| position.line());
+        let row = Row {
+            place: format!("{place}, line {line}"),
+            record: &record,
+        };
+        match &layout {
+            None if row.is_header() => layout = Some(row.header()?),
+            None => {
+                spheres.push(row.sphere(&[0, 1, 2, 3], 4)?);
+                layout = Some(([0, 1, 2, 3], 4));
+            }
+            Some((columns, n)) => spheres.push(row.sphere(columns, *n)?),
+        }
+    }
+    if spheres.is_empty() {
+        return Err(Error::input(
+            place,
+            "no spheres",
+            "rows of x,y,z,r in metres",
+        ));
+    }
+    SphereUnion::new(spheres)
+}
+
+/// Writes a header and one row a sphere, 17 significant digits: [`read_spheres`] gives back the same bits.
+pub fn write_spheres(union: &SphereUnion, mut sink: impl Write) -> io::Result<()> {
+    writeln!(sink, "{}", COLUMNS.join(","))?;
+    for Sphere { center, radius } in union.spheres() {
+        writeln!(
+            sink,
+            "{:.16e},{:.16e},{:.16e},{:.16e}",
+            center.x, center.y, center.z, radius
+        )?;
+    }
+    Ok(())
+}
+
+struct Row<'a> {
+    place: String,
+    record: &'a csv::StringRecord,
+}
+
+impl Row<'_> {
+    /// A first row with no number in it.
+    fn is_header(&self) -> bool {
+        self.record
+            .iter()
+            .all(|field| field.parse::<f64>().is_err())
+    }
+
+    /// Where x, y, z, r are, and how many columns there are.
+    fn header(&self) -> Result<([usize; 4], usize)> {
+        let mut columns = [0; 4];
+        for (column, name) in columns.iter_mut().zip(COLUMNS) {
+            let found = self
+                .record
+                .iter()
+                .position(|field| field.eq_ignore_ascii_case(name));
+            *column = found.ok_or_else(|| {
+                let header = self.record.iter().collect::<Vec<_>>().join(",");
+                Error::input(
+                    &self.place,
+                    format!("header `{header}` without a column {name}"),
+                    "columns x,y,z,r in metres",
+                )
+            })?;
+        }
+        Ok((columns, self.record.len()))
+    }
+
+    fn sphere(&self, columns: &[usize; 4], n_columns: usize) -> Result<Sphere> {
+        if self.record.len() != n_columns {
+            return Err(Error::input(
+                &self.place,
+                format!("{} columns", self.record.len()),
+                format!("{n_columns} columns in every row"),
+            ));
+        }
+        let [x, y, z, radius] = [0, 1, 2, 3].map(|k| self.number(columns[k], COLUMNS[k]));
+        let (center, radius) = (DVec3::new(x?, y?, z?), radius?);
+        if radius <= 0.0 {
+            return Err(Error::input(
+                format!("{}, column r", self.place),
+                radius,
+                "a positive radius in metres",
+            ));
+        }
+        Ok(Sphere { center, radius })
+    }
+
+    fn number(&self, column: usize, name: &str) -> Result<f64> {
+        let field = &self.record[column];
+        match field.parse::<f64>() {
+            Ok(value) if value.is_finite() => Ok(value),
+            _ => Err(Error::input(
+                format!("{}, column {name}", self.place),
+                format!("`{field}`"),
+                "a finite number of metres",
+            )),
+        }
+    }
+}
+
+fn unreadable(place: &str, error: csv::Error) -> Error {
+    let text = error.to_string();
+    match error.into_kind() {
+        csv::ErrorKind::Io(source) if source.kind() != io::ErrorKind::InvalidData => {
+            Error::io(place, "read", source)
+        }
+        _ => Error::input(place, text, "text rows of x,y,z,r in metres"),
+    }
+}

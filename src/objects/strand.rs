@@ -1,0 +1,160 @@
+//! A ball of changing size swept along a broken line: balls, capsules, handles, bananas.
+
+use super::Sphere;
+use super::pack::MAX_SPHERES;
+use glam::DVec3;
+
+/// The convex hull of each two neighbouring balls, all together.
+#[derive(Clone, Debug)]
+pub(super) struct Strand {
+    /// Centres and radii, at least one.
+    pub balls: Vec<Sphere>,
+}
+
+/// The hull of two balls, neither inside the other.
+struct Hull {
+    first: Sphere,
+    along: DVec3,
+    length: f64,
+    /// Change of the radius per metre along the axis; the sine of the cone's half angle, negative when it narrows.
+    slope: f64,
+}
+
+impl Hull {
+    /// `None` when one ball holds the other: then the larger ball is the hull.
+    fn new(first: Sphere, last: Sphere) -> Option<Self> {
+        let axis = last.center - first.center;
+        let length = axis.length();
+        let slope = (last.radius - first.radius) / length;
+        (slope.abs() < 1.0).then(|| Self {
+            first,
+            along: axis / length,
+            length,
+            slope,
+        })
+    }
+
+    fn ball(&self, t: f64) -> Sphere {
+        Sphere {
+            center: self.first.center + t * self.along,
+            radius: self.first.radius + t * self.slope,
+        }
+    }
+
+    fn cosine(&self) -> f64 {
+        (1.0 - self.slope * self.slope).sqrt()
+    }
+
+    /// min over t of |p − c(t)| − r(t), which is convex in t.
+    fn distance(&self, point: DVec3) -> f64 {
+        let from_first = point - self.first.center;
+        let x = from_first.dot(self.along);
+        let y = (from_first - x * self.along).length();
+        let t = (x + self.slope * y / self.cosine()).clamp(0.0, self.length);
+        y.hypot(x - t) - self.first.radius - t * self.slope
+    }
+
+    /// Balls between the two ends, each placed as far ahead as leaves no gap behind it.
+    ///
+    /// A ball at t touches the hull at u = t·cos along its side and covers u ± 2·sqrt(e(r + e)).
+    fn pack_between(&self, e: f64, spheres: &mut Vec<Sphere>) {
+        let reach = |t: f64| 2.0 * (e * (self.ball(t).radius + e)).sqrt();
+        let back = |t: f64| t * self.cosine() - reach(t);
+        let mut covered = reach(0.0);
+        while covered < back(self.length) && spheres.len() <= MAX_SPHERES {
+            let (mut low, mut high) = (0.0, self.length);
+            for _ in 0..60 {
+                let middle = 0.5 * (low + high);
+                if back(middle) <= covered {
+                    low = middle;
+                } else {
+                    high = middle;
+                }
+            }
+            let ball = self.ball(low);
+            spheres.push(Sphere {
+                center: ball.center,
+                radius: ball.radius + e,
+            });
+            covered = low * self.cosine() + reach(low);
+        }
+    }
+}
+
+impl Strand {
+    fn hulls(&self) -> impl Iterator<Item = Hull> {
+        self.balls
+            .windows(2)
+            .filter_map(|pair| Hull::new(pair[0], pair[1]))
+    }
+
+    /// Exact outside; inside, never deeper than the truth.
+    pub fn distance(&self, point: DVec3) -> f64 {
+        let to_balls = self
+            .balls
+            .iter()
+            .map(|b| (point - b.center).length() - b.radius);
+        let to_hulls = self.hulls().map(|hull| hull.distance(point));
+        to_balls.chain(to_hulls).fold(f64::INFINITY, f64::min)
+    }
+
+    /// Largest p·direction over the strand.
+    pub fn support(&self, direction: DVec3) -> f64 {
+        let length = direction.length();
+        let supports = self
+            .balls
+            .iter()
+            .map(|b| b.center.dot(direction) + b.radius * length);
+        supports.fold(f64::NEG_INFINITY, f64::max)
+    }
+
+    /// A row of balls along each hull.
+    pub fn pack(&self, tolerance: f64, spheres: &mut Vec<Sphere>) {
+        let closed = self.balls.len() > 1 && self.balls.first() == self.balls.last();
+        let ends = &self.balls[usize::from(closed)..];
+        spheres.extend(ends.iter().map(|b| Sphere {
+            center: b.center,
+            radius: b.radius + tolerance,
+        }));
+        for hull in self.hulls() {
+            hull.pack_between(tolerance, spheres);
+        }
+    }
+
+    pub fn surface_points(&self, spacing: f64, points: &mut Vec<DVec3>) {
+        for ball in &self.balls {
+            sphere_points(ball, spacing, points);
+        }
+        for hull in self.hulls() {
+            let n = (hull.length / spacing).ceil().max(4.0);
+            let (side, other) = hull.along.any_orthonormal_pair();
+            for i in 0..=n as usize {
+                let ball = hull.ball(hull.length * i as f64 / n);
+                let m = (std::f64::consts::TAU * ball.radius / spacing)
+                    .ceil()
+                    .max(8.0);
+                for j in 0..m as usize {
+                    let (sin, cos) = (std::f64::consts::TAU * j as f64 / m).sin_cos();
+                    let normal =
+                        hull.cosine() * (cos * side + sin * other) - hull.slope * hull.along;
+                    points.push(ball.center + ball.radius * normal);
+                }
+            }
+        }
+    }
+}
+
+/// Points of a sphere on a Fibonacci spiral, about `spacing` apart.
+pub(super) fn sphere_points(sphere: &Sphere, spacing: f64, points: &mut Vec<DVec3>) {
+    let ratio = sphere.radius / spacing;
+    let n = (4.0 * std::f64::consts::PI * ratio * ratio)
+        .ceil()
+        .max(24.0);
+    let golden = std::f64::consts::PI * (3.0 - 5f64.sqrt());
+    points.extend((0..n as usize).map(|i| {
+        let z = 1.0 - (2.0 * i as f64 + 1.0) / n;
+        let (sin, cos) = (golden * i as f64).sin_cos();
+        let out = (1.0 - z * z).sqrt();
+        sphere.center + sphere.radius * DVec3::new(out * cos, out * sin, z)
+    }));
+}

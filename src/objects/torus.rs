@@ -1,0 +1,55 @@
+//! A torus about z: its distance, its surface, its spheres.
+
+use super::Sphere;
+use super::pack::MAX_SPHERES;
+use glam::DVec3;
+
+/// All points within `tube` of the circle of radius `ring` about z.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Torus {
+    pub ring: f64,
+    pub tube: f64,
+}
+
+impl Torus {
+    pub fn distance(&self, point: DVec3) -> f64 {
+        let from_axis = point.truncate().length();
+        (from_axis - self.ring).hypot(point.z) - self.tube
+    }
+
+    /// Largest p·direction over the torus.
+    pub fn support(&self, direction: DVec3) -> f64 {
+        self.ring * direction.truncate().length() + self.tube * direction.length()
+    }
+
+    /// One ring of n tube-sized balls.
+    ///
+    /// Half-way between two balls a point of the tube at distance ρ from the axis is `tube² + 4 ρ ring sin²(π/2n)` from
+    /// both centres, squared; that is largest on the outer equator and must not exceed `(tube + 2e)²`.
+    pub fn pack(&self, tolerance: f64, spheres: &mut Vec<Sphere>) {
+        let (ring, tube, e) = (self.ring, self.tube, tolerance);
+        let sine = (e * (tube + e) / (ring * (ring + tube))).sqrt().min(1.0);
+        let n = (std::f64::consts::FRAC_PI_2 / sine.asin()).ceil();
+        spheres.extend((0..n as usize).take(MAX_SPHERES + 1).map(|i| {
+            let (sin, cos) = (std::f64::consts::TAU * i as f64 / n).sin_cos();
+            Sphere {
+                center: ring * DVec3::new(cos, sin, 0.0),
+                radius: tube + e,
+            }
+        }));
+    }
+
+    pub fn surface_points(&self, spacing: f64, points: &mut Vec<DVec3>) {
+        let tau = std::f64::consts::TAU;
+        let n_around = (tau * (self.ring + self.tube) / spacing).ceil().max(8.0);
+        let n_tube = (tau * self.tube / spacing).ceil().max(8.0);
+        for i in 0..n_around as usize {
+            let (sin, cos) = (tau * i as f64 / n_around).sin_cos();
+            for j in 0..n_tube as usize {
+                let (up, out) = (tau * j as f64 / n_tube).sin_cos();
+                let from_axis = self.ring + self.tube * out;
+                points.push(DVec3::new(from_axis * cos, from_axis * sin, self.tube * up));
+            }
+        }
+    }
+}

@@ -1,0 +1,202 @@
+//! One sphere per mesh vertex: the object model of the original [BT].
+
+use super::{Mesh, Sphere, SphereUnion};
+use crate::error::{Error, Result};
+use glam::DVec3;
+use std::collections::HashSet;
+
+/// A sphere around each vertex, all of radius R = 2 × the mean distance from a vertex to its nearest neighbour [BT].
+///
+/// Vertices at exactly the same place (files that store a corner once a face) count once: their nearest neighbour would
+/// be themselves, and R would shrink with how a file is written. Order: first occurrence. An error for fewer than two
+/// places; it begins with `place`.
+pub fn vertex_spheres(place: &str, mesh: &Mesh) -> Result<SphereUnion> {
+    let centers = distinct(mesh.vertices());
+    if centers.len() < 2 {
+        return Err(Error::input(
+            place,
+            "all vertices at one place",
+            "at least two vertices apart, since the radius is twice their distance",
+        ));
+    }
+    let distances = nearest_distances(&centers);
+    let radius = 2.0 * distances.iter().sum::<f64>() / distances.len() as f64;
+    let spheres = centers.into_iter().map(|center| Sphere { center, radius });
+    SphereUnion::new(spheres.collect())
+}
+
+fn distinct(vertices: &[DVec3]) -> Vec<DVec3> {
+    let mut seen = HashSet::new();
+    let is_new = |v: &DVec3| {
+        // Adding zero makes −0 and 0 the same place.
+        seen.insert((*v + DVec3::ZERO).to_array().map(f64::to_bits))
+    };
+    let mut seen_first = is_new;
+    vertices.iter().copied().filter(|v| seen_first(v)).collect()
+}
+
+/// For each point the distance to the nearest other one. At least two points, no two at the same place.
+///
+/// The points lie in the cells of a uniform grid; rings of cells around a point's own are searched until no unsearched
+/// cell can hold a nearer one.
+fn nearest_distances(points: &[DVec3]) -> Vec<f64> {
+    let grid = PointGrid::new(points);
+    (0..points.len()).map(|i| grid.nearest(i)).collect()
+}
+
+struct PointGrid<'a> {
+    points: &'a [DVec3],
+    low: DVec3,
+    cell: f64,
+    n: [usize; 3],
+    /// Points of cell k: `order[starts[k]..starts[k + 1]]`.
+    starts: Vec<usize>,
+    order: Vec<usize>,
+}
+
+impl<'a> PointGrid<'a> {
+    fn new(points: &'a [DVec3]) -> Self {
+        let low = points.iter().copied().fold(DVec3::MAX, DVec3::min);
+        let high = points.iter().copied().fold(DVec3::MIN, DVec3::max);
+        let size = high - low;
+        // About one point a cell on a surface, whose area is about longest². More than 128 cells each way would cost
+        // more memory than they save time.
+        let longest = size.max_element();
+        let cell = longest / (points.len() as f64).sqrt().clamp(1.0, 128.0);
+        let n = (size / cell).to_array().map(|s| s as usize + 1);
+        let mut grid = Self {
+            points,
+            low,
+            cell,
+            n,
+            starts: vec![0; n[0] * n[1] * n[2] + 1],
+            order: vec![0; points.len()],
+        };
+        let cells: Vec<usize> = points.iter().map(|&p| grid.index(grid.place(p))).collect();
+        for &cell in &cells {
+            grid.starts[cell + 1] += 1;
+        }
+        for k in 1..grid.starts.len() {
+            grid.starts[k] += grid.starts[k - 1];
+        }
+        let mut next = grid.starts.clone();
+        for (point, &cell) in cells.iter().enumerate() {
+            grid.order[next[cell]] = point;
+            next[cell] += 1;
+        }
+        grid
+    }
+
+    fn place(&self, point: DVec3) -> [usize; 3] {
+        let at = ((point - self.low) / self.cell).to_array();
+        [0, 1, 2].map(|axis| (at[axis] as usize).min(self.n[axis] - 1))
+    }
+
+    fn index(&self, [x, y, z]: [usize; 3]) -> usize {
+        (x * self.n[1] + y) * self.n[2] + z
+    }
+
+    fn nearest(&self, point: usize) -> f64 {
+        let home = self.place(self.points[point]);
+        let mut best = f64::INFINITY;
+        let n_rings = self.n.into_iter().max().unwrap_or(1);
+        for ring in 0..n_rings {
+            // Everything in ring k is at least k − 1 cells away, and the point's own cell can be left only at its border.
+            if best <= (ring as f64 - 1.0) * self.cell {
+                break;
+            }
+            self.each_in_ring(home, ring, |other| {
+                if other != point {
+                    let apart = (self.points[other] - self.points[point]).length();
+                    best = best.min(apart);
+                }
+            });
+        }
+        best
+    }
+
+    /// Points of the cells whose largest offset from `home` is `ring`.
+    fn each_in_ring(&self, home: [usize; 3], ring: usize, mut visit: impl FnMut(usize)) {
+        let range = |axis: usize| {
+            home[axis].saturating_sub(ring)..=(home[axis] + ring).min(self.n[axis] - 1)
+        };
+        for x in range(0) {
+            for y in range(1) {
+                let inner = x.abs_diff(home[0]) < ring && y.abs_diff(home[1]) < ring;
+                for z in range(2) {
+                    if inner && z.abs_diff(home[2]) < ring {
+                        continue;
+                    }
+                    let cell = self.index([x, y, z]);
+                    for &other in &self.order[self.starts[cell]..self.starts[cell + 1]] {
+                        visit(other);
+                    }
+                }
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::random::Seed;
+    use rand::Rng;
+
+    #[test]
+    fn the_grid_finds_the_same_neighbours_as_trying_all_pairs() {
+        for case in 0..60 {
+            let mut rng = Seed::new(1).named("neighbours").numbered(case).rng();
+            let n = rng.gen_range(2..400);
+            let stretch = DVec3::new(1.0, 10f64.powi(-(case as i32 % 4)), (case % 3) as f64);
+            let points: Vec<DVec3> = (0..n)
+                .map(|_| stretch * DVec3::new(rng.r#gen(), rng.r#gen::<f64>().powi(6), rng.r#gen()))
+                .collect();
+            let brute = |i: usize| {
+                let others = (0..n).filter(|&j| j != i);
+                others
+                    .map(|j| (points[j] - points[i]).length())
+                    .fold(f64::INFINITY, f64::min)
+            };
+            let expected: Vec<f64> = (0..n).map(brute).collect();
+            assert_eq!(
+                nearest_distances(&points),
+                expected,
+                "case {case}, {n} points"
+            );
+        }
+    }
+
+    #[test]
+    fn corners_stored_twice_change_nothing() {
+        let once: Vec<DVec3> = (0..20)
+            .map(|i| DVec3::new(f64::from(i * i), 1.0, -0.0))
+            .collect();
+        let twice: Vec<DVec3> = once
+            .iter()
+            .flat_map(|&v| [v, DVec3::new(v.x, 1.0, 0.0)])
+            .collect();
+        let union = |v| vertex_spheres("test", &Mesh::new("test", v, vec![]).unwrap()).unwrap();
+        assert_eq!(union(once), union(twice));
+    }
+
+    #[test]
+    fn the_radius_is_twice_the_mean_distance_to_the_nearest_vertex() {
+        let corners = vec![DVec3::ZERO, DVec3::X, DVec3::new(1.0, 3.0, 0.0)];
+        let mesh = Mesh::new("test", corners, vec![[0, 1, 2]]).unwrap();
+        let union = vertex_spheres("test", &mesh).unwrap();
+        let expected = 2.0 * (1.0 + 1.0 + 3.0) / 3.0;
+        assert!(union.spheres().iter().all(|s| s.radius == expected));
+        assert_eq!(union.n_spheres(), 3);
+    }
+
+    #[test]
+    fn one_place_has_no_radius() {
+        let mesh = Mesh::new("dot.ply", vec![DVec3::ONE; 5], vec![]).unwrap();
+        let error = vertex_spheres("dot.ply", &mesh).unwrap_err().to_string();
+        assert!(
+            error.starts_with("dot.ply: all vertices at one place"),
+            "{error}"
+        );
+    }
+}
