@@ -4,7 +4,7 @@ use crate::report::chart_plan::ChartPlan;
 use crate::report::colours::{GRID, INK, LINES, MUTED};
 use crate::report::drawing::{Align, Area, Drawing, Point, Stroke, TextStyle};
 use crate::report::text_width::{text_width, wrap};
-use crate::report::varying::{Axis, AxisValue, Levels, Settings};
+use crate::report::varying::{Axis, AxisValue, Levels, Settings, unbroken_parts};
 use crate::study::table::{Cell, CellScore, Tables};
 
 const LEFT: f64 = 66.0;
@@ -85,7 +85,15 @@ impl Chart<'_> {
         } else {
             6.0
         };
-        let pitch_down = panel_title + panel_height + 26.0;
+        let any_panel = Area {
+            x: 0.0,
+            y: 0.0,
+            width: panel_width,
+            height: panel_height,
+        };
+        let has_second_row = XScale::of(&self.plan.x, any_panel).has_second_row();
+        let labels_height = if has_second_row { 40.0 } else { 26.0 };
+        let pitch_down = panel_title + panel_height + labels_height;
         let height = heading.height() + panel_rows as f64 * pitch_down + 26.0;
         let mut drawing = Drawing::new(width, height);
         heading.draw(&mut drawing);
@@ -104,7 +112,10 @@ impl Chart<'_> {
             }
             if last_in_column {
                 let title = self.rows.first().map(|row| self.plan.x.axis.title(&row.0));
-                let below = (frame.x + frame.width / 2.0, frame.y + frame.height + 40.0);
+                let below = (
+                    frame.x + frame.width / 2.0,
+                    frame.y + frame.height + labels_height + 14.0,
+                );
                 let style = TextStyle::new(LABEL).align(Align::Middle);
                 drawing.text(below, &title.unwrap_or_default(), style);
             }
@@ -199,14 +210,10 @@ impl Heading {
                 .any(|(axis, _)| *axis == levels.axis);
             !stated && levels.axis != chart.plan.x.axis
         });
-        // A setting and its value stay on one line.
-        let constants: Vec<String> = constants
-            .iter()
-            .map(|levels| levels.sentence().replace(' ', "\u{a0}"))
-            .collect();
+        let constants: Vec<String> = constants.iter().map(Levels::sentence).collect();
         Self {
             title: wrap(&chart_title(chart.plan), f64::from(TITLE) * 1.12, inner),
-            settings: wrap(&constants.join(" · "), f64::from(SMALL), inner),
+            settings: wrap(&unbroken_parts(&constants), f64::from(SMALL), inner),
             legend: flow(legend_entries(chart), inner),
         }
     }
@@ -226,8 +233,7 @@ impl Heading {
         }
         for line in &self.settings {
             y += 17.0;
-            let line = line.replace('\u{a0}', " ");
-            drawing.text((LEFT, y), &line, TextStyle::new(SMALL).colour(MUTED));
+            drawing.text((LEFT, y), line, TextStyle::new(SMALL).colour(MUTED));
         }
         y += 4.0;
         for row in &self.legend {
@@ -322,6 +328,8 @@ fn flow(entries: Vec<LegendEntry>, width: f64) -> Vec<Vec<LegendEntry>> {
 /// Where the values of the x axis stand.
 struct XScale {
     ticks: Vec<(AxisValue, f64)>,
+    /// For each tick the row of labels in which it finds room: 0, 1 below it, or none.
+    label_rows: Vec<Option<usize>>,
 }
 
 impl XScale {
@@ -342,15 +350,33 @@ impl XScale {
             false => frame.x + frame.width / 2.0,
         };
         let ticks = levels.values.iter().cloned().zip(places);
-        Self {
-            ticks: ticks.map(|(value, place)| (value, x(place))).collect(),
-        }
+        let ticks: Vec<(AxisValue, f64)> = ticks.map(|(value, place)| (value, x(place))).collect();
+        let label_rows = label_rows(&ticks);
+        Self { ticks, label_rows }
+    }
+
+    fn has_second_row(&self) -> bool {
+        self.label_rows.contains(&Some(1))
     }
 
     fn x(&self, value: &AxisValue) -> Option<f64> {
         let tick = self.ticks.iter().find(|(tick, _)| tick == value);
         tick.map(|(_, x)| *x)
     }
+}
+
+fn label_rows(ticks: &[(AxisValue, f64)]) -> Vec<Option<usize>> {
+    let mut free_from = [f64::NEG_INFINITY; 2];
+    let mut rows = Vec::new();
+    for (value, x) in ticks {
+        let half = text_width(&value.tick, f64::from(SMALL)) / 2.0;
+        let row = (0..2).find(|&row| x - half > free_from[row]);
+        if let Some(row) = row {
+            free_from[row] = x + half + 6.0;
+        }
+        rows.push(row);
+    }
+    rows
 }
 
 fn is_logarithmic(axis: Axis, numbers: &[f64]) -> bool {
@@ -375,15 +401,13 @@ fn draw_grid(drawing: &mut Drawing, scale: &XScale, frame: Area) {
             Stroke::new(GRID, 1.0),
         );
     }
-    let mut free_from = f64::NEG_INFINITY;
-    for (value, x) in &scale.ticks {
+    for ((value, x), row) in scale.ticks.iter().zip(&scale.label_rows) {
         drawing.line((*x, frame.y), (*x, bottom), Stroke::new(GRID, 1.0));
         drawing.line((*x, bottom), (*x, bottom + 5.0), Stroke::new(INK, 1.0));
-        let half = text_width(&value.tick, f64::from(SMALL)) / 2.0;
-        if x - half > free_from {
+        if let Some(row) = row {
+            let below = (*x, bottom + 19.0 + 14.0 * *row as f64);
             let style = TextStyle::new(SMALL).align(Align::Middle);
-            drawing.text((*x, bottom + 19.0), &value.tick, style);
-            free_from = x + half + 5.0;
+            drawing.text(below, &value.tick, style);
         }
     }
     drawing.line(

@@ -1,6 +1,5 @@
 //! `report.html`: one page with everything in it, that needs no network and no script.
 
-use crate::error::Result;
 use crate::report::answer::{Answer, accuracy_sentence};
 use crate::report::drawing::{Drawing, escape};
 use crate::report::heat_map::Quantity;
@@ -78,17 +77,17 @@ impl Picture {
         }
     }
 
-    /// A PNG in the page: smaller than an SVG for pictures of many taxels.
-    pub fn raster(drawing: &Drawing, title: &str) -> Result<Self> {
-        let data = base64(&drawing.png()?);
+    /// A drawing's PNG in the page: smaller than an SVG for pictures of many taxels.
+    pub fn raster(drawing: &Drawing, png: &[u8], title: &str) -> Self {
+        let data = base64(png);
         let (width, height) = (drawing.width(), drawing.height());
-        Ok(Self {
+        Self {
             title: title.to_owned(),
             element: format!(
                 r#"<img src="data:image/png;base64,{data}" width="{width}" height="{height}" alt="{}">"#,
                 escape(title)
             ),
-        })
+        }
     }
 }
 
@@ -272,7 +271,7 @@ fn times_html(about: &ReportPage, tables: &Tables) -> String {
             short_number(seconds)
         );
     }
-    html += "<div class=\"wide\"><table><thead><tr><th>stage</th><th>at</th><th>touches</th><th>µs a touch</th>\
+    html += "<div class=\"wide times\"><table><thead><tr><th>stage</th><th>at</th><th>touches</th><th>µs a touch</th>\
              <th>processor s</th></tr></thead><tbody>";
     for stage in &tables.stages {
         let _ = write!(

@@ -248,6 +248,12 @@ impl Settings {
     }
 }
 
+/// Parts in one line, `a · b`, that breaks between parts only: spaces within a part are U+00A0.
+pub fn unbroken_parts(parts: &[String]) -> String {
+    let parts: Vec<String> = parts.iter().map(|p| p.replace(' ', "\u{a0}")).collect();
+    parts.join("\u{a0}· ")
+}
+
 /// A number as people write it: four significant digits, no trailing zeros.
 pub fn short_number(number: f64) -> String {
     if number == 0.0 || !number.is_finite() {
