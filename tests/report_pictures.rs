@@ -286,3 +286,25 @@ fn a_frame_file_of_another_kind_is_refused_before_anything_is_written() {
     assert!(write_frame(&dir.path().join("a.csv"), &array![[0.0], [0.0]], &grid).is_err());
     assert_eq!(fs::read_dir(dir.path()).unwrap().count(), 0);
 }
+
+#[test]
+fn between_words_nothing_is_drawn_and_many_lines_have_whiskers() {
+    let ensembles = many_cells().into_iter().filter(|cell| {
+        cell.pitch_mm == 2.0 && cell.size_mm == 64.0 && cell.noise_std == 0.0 && cell.ratio == 4.0
+    });
+    let charts = draw_charts(&tables(ensembles.collect(), 1, 4));
+    assert_eq!(charts[0].0, "accuracy_by_ensemble");
+    let svg = charts[0].2.svg("");
+    assert_eq!(count(&svg, r#"stroke-width="1.5""#), 5 + 1);
+    assert_eq!(count(&svg, r#"fill="none""#), 0);
+    assert!(!svg.contains("fill-opacity"));
+    // Five lines over ratios: five polylines, a whisker a point, one in the legend.
+    let over_ratios = many_cells()
+        .into_iter()
+        .filter(|cell| cell.pitch_mm == 2.0 && cell.size_mm == 64.0 && cell.noise_std == 0.0);
+    let svg = draw_charts(&tables(over_ratios.collect(), 1, 4))[0]
+        .2
+        .svg("");
+    assert_eq!(count(&svg, r#"stroke-width="1.5""#), 25 + 1);
+    assert_eq!(count(&svg, r#"fill="none""#), 5);
+}

@@ -1,9 +1,10 @@
 //! What was taken for what: a confusion matrix as a picture.
 
+use crate::report::axis::AXES;
 use crate::report::colours::{GRID, INK, MUTED, PAPER, share, text_on};
 use crate::report::drawing::{Align, Area, Drawing, Stroke, TextStyle};
 use crate::report::text_width::{shorten, text_width, wrap};
-use crate::report::varying::{AXES, Levels, unbroken_parts};
+use crate::report::varying::{Levels, unbroken_parts};
 use crate::study::table::{Confusion, Tables};
 use ndarray::Array2;
 

@@ -4,8 +4,9 @@
 //! ten where a sweep needs them at its own values, and number their clip paths per process, so that the same table would
 //! not always be the same bytes.
 
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::report::colours::{INK, PAPER, Rgb};
+use crate::report::raster::rasterise;
 use kuva::backend::svg::SvgBackend;
 use kuva::render::color::Color;
 use kuva::render::render::{PathData, Primitive, Scene, TextAnchor, TextSpan, build_path};
@@ -254,74 +255,9 @@ impl Drawing {
     }
 
     /// The drawing as a PNG file with two picture elements a pixel.
-    ///
-    /// kuva draws turned text and slanted lines jagged, so it draws at twice the size and each element becomes the mean of
-    /// four.
     pub fn png(&self) -> Result<Vec<u8>> {
-        const SCALE: u32 = 4;
-        let mut scene = Scene::new(self.scene.width, self.scene.height);
-        let elements = self.scene.elements.iter().cloned();
-        scene.elements = elements
-            .map(|element| scale_dashes(element, SCALE))
-            .collect();
-        let large = kuva::RasterBackend::new()
-            .with_scale(SCALE as f32)
-            .render_scene(&scene)
-            .map_err(|said| unfit(&said))?;
-        halve_png(&large).map_err(|said| unfit(&said))
+        rasterise(&self.scene)
     }
-}
-
-/// kuva scales everything in a raster but the dashes.
-fn scale_dashes(mut element: Primitive, scale: u32) -> Primitive {
-    if let Primitive::Line {
-        stroke_dasharray: Some(dashes),
-        ..
-    }
-    | Primitive::PolyLine {
-        stroke_dasharray: Some(dashes),
-        ..
-    } = &mut element
-    {
-        let lengths = dashes
-            .split(' ')
-            .filter_map(|length| length.parse::<u32>().ok());
-        let scaled: Vec<String> = lengths.map(|length| (length * scale).to_string()).collect();
-        *dashes = scaled.join(" ");
-    }
-    element
-}
-
-fn unfit(said: &dyn std::fmt::Display) -> Error {
-    Error::input("picture", said, "a size that fits into a PNG file")
-}
-
-/// A PNG of half the size (rounded down), each element the mean of four; opaque.
-fn halve_png(large: &[u8]) -> std::result::Result<Vec<u8>, Box<dyn std::error::Error>> {
-    let mut reader = png::Decoder::new(std::io::Cursor::new(large)).read_info()?;
-    let mut elements = vec![0; reader.output_buffer_size().ok_or("too large a picture")?];
-    let info = reader.next_frame(&mut elements)?;
-    let channels = info.color_type.samples();
-    let (width, height) = (info.width as usize / 2, info.height as usize / 2);
-    let mut small = Vec::with_capacity(width * height * 3);
-    for y in 0..height {
-        let rows = [2 * y, 2 * y + 1].map(|row| &elements[row * info.line_size..]);
-        for x in 0..width {
-            for channel in 0..3 {
-                let (left, right) = (2 * x * channels + channel, (2 * x + 1) * channels + channel);
-                let sum: u16 = rows
-                    .iter()
-                    .map(|row| u16::from(row[left]) + u16::from(row[right]))
-                    .sum();
-                small.push(((sum + 2) / 4) as u8);
-            }
-        }
-    }
-    let mut bytes = Vec::new();
-    let mut encoder = png::Encoder::new(&mut bytes, width as u32, height as u32);
-    encoder.set_color(png::ColorType::Rgb);
-    encoder.write_header()?.write_image_data(&small)?;
-    Ok(bytes)
 }
 
 /// Text with the letters escaped that mean something in HTML and SVG.
