@@ -1,6 +1,7 @@
 //! What a study found, in sentences made from its tables.
 
-use crate::report::varying::{Axis, AxisValue, Settings};
+use crate::report::axis::{Axis, AxisValue};
+use crate::report::varying::Settings;
 use crate::study::table::{Cell, CellScore, Tables};
 use std::collections::HashMap;
 
@@ -121,23 +122,16 @@ impl Answer {
 }
 
 impl Effect {
-    /// `compression 4:1 → 64:1: mean accuracy 0.95 → 0.80`.
+    /// `Mean accuracy by compression: 0.95 (4:1), 0.80 (64:1).`
     pub fn sentence(&self) -> String {
-        let labels: Vec<&str> = self
-            .means
-            .iter()
-            .map(|(value, _)| value.label.as_str())
-            .collect();
-        let means: Vec<String> = self
-            .means
-            .iter()
-            .map(|(_, mean)| format!("{mean:.2}"))
+        let means = self.means.iter();
+        let means: Vec<String> = means
+            .map(|(value, mean)| format!("{mean:.2} ({})", value.label))
             .collect();
         format!(
-            "Effect of {} ({}): mean accuracy {}.",
+            "Mean accuracy by {}: {}.",
             self.axis.name(),
-            labels.join(" → "),
-            means.join(" → ")
+            means.join(", ")
         )
     }
 }

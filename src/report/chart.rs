@@ -1,20 +1,21 @@
 //! Accuracy against a swept setting: lines with interval bands, side by side in panels.
 
+use crate::report::axis::{Axis, AxisValue};
 use crate::report::chart_plan::ChartPlan;
-use crate::report::colours::{GRID, INK, LINES, MUTED};
+use crate::report::colours::{GRID, INK};
 use crate::report::drawing::{Align, Area, Drawing, Point, Stroke, TextStyle};
-use crate::report::text_width::{text_width, wrap};
-use crate::report::varying::{Axis, AxisValue, Levels, Settings};
+use crate::report::legend::{
+    CHANCE, Heading, LEFT, LegendEntry, MARKER_RADIUS, Mark, RIGHT, line_colour, line_stroke,
+};
+use crate::report::varying::{Levels, Settings, unbroken_parts};
+use crate::report::x_scale::{TICK_SIZE, XScale};
 use crate::study::table::{Cell, CellScore, Tables};
 
-const LEFT: f64 = 66.0;
-const RIGHT: f64 = 18.0;
+/// Pixels between panels.
 const GAP: f64 = 26.0;
-const TITLE: u32 = 16;
 const LABEL: u32 = 13;
-const SMALL: u32 = 12;
-const LINE_WIDTH: f64 = 2.0;
-const MARKER_RADIUS: f64 = 4.2;
+/// Lines up to which bands do not hide each other; more lines get a whisker at each point.
+const MOST_BANDS: usize = 4;
 
 /// How many different objects the confusion table knows: chance is one in so many.
 pub fn n_classes(tables: &Tables) -> usize {
@@ -79,13 +80,26 @@ impl Chart<'_> {
         };
         let panel_rows = n_panels.div_ceil(columns);
         let width = LEFT + columns as f64 * panel_width + (columns - 1) as f64 * GAP + RIGHT;
-        let heading = Heading::of(self, width);
+        let heading = Heading::of(
+            &chart_title(self.plan),
+            &self.constants(),
+            self.legend_entries(),
+            width,
+        );
         let panel_title = if self.plan.panels.is_some() {
             24.0
         } else {
             6.0
         };
-        let pitch_down = panel_title + panel_height + 26.0;
+        let any_panel = Area {
+            x: 0.0,
+            y: 0.0,
+            width: panel_width,
+            height: panel_height,
+        };
+        let has_second_row = XScale::of(&self.plan.x, any_panel).has_second_row();
+        let labels_height = if has_second_row { 40.0 } else { 26.0 };
+        let pitch_down = panel_title + panel_height + labels_height;
         let height = heading.height() + panel_rows as f64 * pitch_down + 26.0;
         let mut drawing = Drawing::new(width, height);
         heading.draw(&mut drawing);
@@ -104,7 +118,10 @@ impl Chart<'_> {
             }
             if last_in_column {
                 let title = self.rows.first().map(|row| self.plan.x.axis.title(&row.0));
-                let below = (frame.x + frame.width / 2.0, frame.y + frame.height + 40.0);
+                let below = (
+                    frame.x + frame.width / 2.0,
+                    frame.y + frame.height + labels_height + 14.0,
+                );
                 let style = TextStyle::new(LABEL).align(Align::Middle);
                 drawing.text(below, &title.unwrap_or_default(), style);
             }
@@ -126,22 +143,32 @@ impl Chart<'_> {
         draw_grid(drawing, &scale, frame);
         if let Some(chance) = self.chance {
             let y = y_at(frame, chance);
-            let stroke = Stroke {
-                colour: MUTED,
-                width: 1.2,
-                dash: Some((5, 4)),
-            };
-            drawing.line((frame.x, y), (frame.x + frame.width, y), stroke);
+            drawing.line((frame.x, y), (frame.x + frame.width, y), CHANCE);
         }
         let lines: Vec<Vec<(f64, &CellScore)>> = (0..self.n_lines())
             .map(|line| self.points(line, panel, &scale))
             .collect();
         for (line, points) in lines.iter().enumerate() {
-            draw_band(drawing, points, frame, line_colour(line));
+            match self.has_bands() && points.len() > 1 {
+                true => draw_band(drawing, points, frame, line_colour(line)),
+                false => draw_whiskers(drawing, points, frame, line_stroke(line)),
+            }
         }
         for (line, points) in lines.iter().enumerate() {
-            draw_line(drawing, points, frame, line);
+            if self.has_numbers_along_x() {
+                draw_line(drawing, points, frame, line);
+            }
+            draw_markers(drawing, points, frame, line);
         }
+    }
+
+    /// Between words there is nothing, so nothing is drawn there: neither lines nor bands.
+    fn has_numbers_along_x(&self) -> bool {
+        self.plan.x.numbers().is_some()
+    }
+
+    fn has_bands(&self) -> bool {
+        self.has_numbers_along_x() && self.n_lines() <= MOST_BANDS
     }
 
     fn n_lines(&self) -> usize {
@@ -154,211 +181,58 @@ impl Chart<'_> {
             Some(levels) => levels.axis.value(cell) == levels.values[index],
             None => true,
         };
+        // Whiskers of different lines stand beside each other: on a numeric axis so little that no value seems to change.
+        let n_lines = self.n_lines() as f64;
+        let step = match (self.has_bands(), self.has_numbers_along_x()) {
+            (true, _) => 0.0,
+            (false, true) => f64::min(2.0, 14.0 / n_lines),
+            (false, false) => f64::min(12.0, 60.0 / n_lines),
+        };
+        let beside = step * (line as f64 - 0.5 * (n_lines - 1.0));
         let mut points: Vec<(f64, &CellScore)> = self
             .rows
             .iter()
             .filter(|row| matches(&self.plan.lines, line, &row.0))
             .filter(|row| matches(&self.plan.panels, panel, &row.0))
-            .filter_map(|row| Some((scale.x(&self.plan.x.axis.value(&row.0))?, &row.1)))
+            .filter_map(|row| Some((scale.x(&self.plan.x.axis.value(&row.0))? + beside, &row.1)))
             .collect();
         points.sort_by(|a, b| a.0.total_cmp(&b.0));
         points
     }
-}
 
-/// Title, fixed settings and legend, above the panels, so that nothing covers data.
-struct Heading {
-    title: Vec<String>,
-    settings: Vec<String>,
-    legend: Vec<Vec<LegendEntry>>,
-}
-
-struct LegendEntry {
-    text: String,
-    mark: Mark,
-    width: f64,
-}
-
-enum Mark {
-    None,
-    Line(usize),
-    Dashes,
-    Band,
-}
-
-impl Heading {
-    fn of(chart: &Chart, width: f64) -> Self {
-        let inner = width - LEFT - RIGHT;
-        let cells: Vec<&Cell> = chart.rows.iter().map(|row| &row.0).collect();
+    /// Settings that stay in the chart and stand neither in its title nor along x.
+    fn constants(&self) -> String {
+        let cells: Vec<&Cell> = self.rows.iter().map(|row| &row.0).collect();
         let mut constants = Settings::of(&cells).fixed;
         constants.retain(|levels| {
-            let stated = chart
-                .plan
-                .fixed
-                .iter()
-                .any(|(axis, _)| *axis == levels.axis);
-            !stated && levels.axis != chart.plan.x.axis
+            let mut stated = self.plan.fixed.iter();
+            !stated.any(|(axis, _)| *axis == levels.axis) && levels.axis != self.plan.x.axis
         });
-        // A setting and its value stay on one line.
-        let constants: Vec<String> = constants
-            .iter()
-            .map(|levels| levels.sentence().replace(' ', "\u{a0}"))
-            .collect();
-        Self {
-            title: wrap(&chart_title(chart.plan), f64::from(TITLE) * 1.12, inner),
-            settings: wrap(&constants.join(" · "), f64::from(SMALL), inner),
-            legend: flow(legend_entries(chart), inner),
-        }
+        let constants: Vec<String> = constants.iter().map(Levels::sentence).collect();
+        unbroken_parts(&constants)
     }
 
-    fn height(&self) -> f64 {
-        16.0 + 21.0 * self.title.len() as f64
-            + 17.0 * self.settings.len() as f64
-            + 21.0 * self.legend.len() as f64
-            + 10.0
-    }
-
-    fn draw(&self, drawing: &mut Drawing) {
-        let mut y = 10.0;
-        for line in &self.title {
-            y += 21.0;
-            drawing.bold_text((LEFT, y), line, TextStyle::new(TITLE));
-        }
-        for line in &self.settings {
-            y += 17.0;
-            let line = line.replace('\u{a0}', " ");
-            drawing.text((LEFT, y), &line, TextStyle::new(SMALL).colour(MUTED));
-        }
-        y += 4.0;
-        for row in &self.legend {
-            y += 21.0;
-            let mut x = LEFT;
-            for entry in row {
-                entry.draw(drawing, (x, y));
-                x += entry.width;
+    fn legend_entries(&self) -> Vec<LegendEntry> {
+        let mut entries = Vec::new();
+        if let Some(lines) = &self.plan.lines {
+            let name = format!("{}:", lines.heading());
+            entries.push(LegendEntry::new(name, Mark::None));
+            for (line, value) in lines.values.iter().enumerate() {
+                entries.push(LegendEntry::new(value.label.clone(), Mark::Line(line)));
             }
         }
-    }
-}
-
-fn legend_entries(chart: &Chart) -> Vec<LegendEntry> {
-    let mut entries = Vec::new();
-    if let Some(lines) = &chart.plan.lines {
-        let name = format!("{}:", lines.heading());
-        entries.push(LegendEntry::new(name, Mark::None));
-        for (line, value) in lines.values.iter().enumerate() {
-            entries.push(LegendEntry::new(value.label.clone(), Mark::Line(line)));
-        }
-    }
-    entries.push(LegendEntry::new("95 % interval".to_owned(), Mark::Band));
-    if let Some(chance) = chart.chance {
-        let text = format!("chance (1 in {:.0})", 1.0 / chance);
-        entries.push(LegendEntry::new(text, Mark::Dashes));
-    }
-    entries
-}
-
-impl LegendEntry {
-    fn new(text: String, mark: Mark) -> Self {
-        let mark_width = if matches!(mark, Mark::None) {
-            0.0
+        let interval = if self.has_bands() {
+            Mark::Band
         } else {
-            34.0
+            Mark::Whisker
         };
-        let gap = if matches!(mark, Mark::None) {
-            10.0
-        } else {
-            20.0
-        };
-        let width = mark_width + text_width(&text, f64::from(SMALL)) + gap;
-        Self { text, mark, width }
-    }
-
-    fn draw(&self, drawing: &mut Drawing, (x, y): Point) {
-        let middle = y - 4.5;
-        let mut text_x = x + 34.0;
-        match self.mark {
-            Mark::None => text_x = x,
-            Mark::Line(line) => {
-                let stroke = line_stroke(line);
-                drawing.line((x, middle), (x + 28.0, middle), stroke);
-                drawing.marker(line, (x + 14.0, middle), MARKER_RADIUS, stroke.colour);
-            }
-            Mark::Dashes => {
-                let stroke = Stroke {
-                    colour: MUTED,
-                    width: 1.2,
-                    dash: Some((5, 4)),
-                };
-                drawing.line((x, middle), (x + 28.0, middle), stroke);
-            }
-            Mark::Band => {
-                let (top, bottom) = (middle - 6.0, middle + 6.0);
-                let corners = [(x, top), (x + 28.0, top), (x + 28.0, bottom), (x, bottom)];
-                drawing.polygon(&corners, MUTED, 0.25);
-            }
+        entries.push(LegendEntry::new("95 % interval".to_owned(), interval));
+        if let Some(chance) = self.chance {
+            let text = format!("chance (1 in {:.0})", 1.0 / chance);
+            entries.push(LegendEntry::new(text, Mark::Dashes));
         }
-        drawing.text((text_x, y), &self.text, TextStyle::new(SMALL));
+        entries
     }
-}
-
-/// Entries in rows no wider than `width`.
-fn flow(entries: Vec<LegendEntry>, width: f64) -> Vec<Vec<LegendEntry>> {
-    let mut rows: Vec<Vec<LegendEntry>> = Vec::new();
-    let mut used = f64::INFINITY;
-    for entry in entries {
-        if used + entry.width > width + 20.0 {
-            rows.push(Vec::new());
-            used = 0.0;
-        }
-        used += entry.width;
-        if let Some(row) = rows.last_mut() {
-            row.push(entry);
-        }
-    }
-    rows
-}
-
-/// Where the values of the x axis stand.
-struct XScale {
-    ticks: Vec<(AxisValue, f64)>,
-}
-
-impl XScale {
-    /// Numbers stand on a logarithmic axis where ratios are what matters, words at equal distances.
-    fn of(levels: &Levels, frame: Area) -> Self {
-        let places: Vec<f64> = match levels.numbers() {
-            Some(numbers) if is_logarithmic(levels.axis, &numbers) => {
-                numbers.iter().map(|number| number.ln()).collect()
-            }
-            Some(numbers) => numbers,
-            None => (0..levels.values.len()).map(|i| i as f64).collect(),
-        };
-        let low = places.iter().copied().fold(f64::INFINITY, f64::min);
-        let high = places.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-        let margin = 0.06 * frame.width;
-        let x = |place: f64| match high > low {
-            true => frame.x + margin + (place - low) / (high - low) * (frame.width - 2.0 * margin),
-            false => frame.x + frame.width / 2.0,
-        };
-        let ticks = levels.values.iter().cloned().zip(places);
-        Self {
-            ticks: ticks.map(|(value, place)| (value, x(place))).collect(),
-        }
-    }
-
-    fn x(&self, value: &AxisValue) -> Option<f64> {
-        let tick = self.ticks.iter().find(|(tick, _)| tick == value);
-        tick.map(|(_, x)| *x)
-    }
-}
-
-fn is_logarithmic(axis: Axis, numbers: &[f64]) -> bool {
-    let by_nature = matches!(
-        axis,
-        Axis::Ratio | Axis::Measurements | Axis::C | Axis::TrainTouches
-    );
-    by_nature && numbers.iter().all(|&number| number > 0.0)
 }
 
 fn y_at(frame: Area, accuracy: f64) -> f64 {
@@ -375,15 +249,13 @@ fn draw_grid(drawing: &mut Drawing, scale: &XScale, frame: Area) {
             Stroke::new(GRID, 1.0),
         );
     }
-    let mut free_from = f64::NEG_INFINITY;
-    for (value, x) in &scale.ticks {
+    for ((value, x), row) in scale.ticks.iter().zip(&scale.label_rows) {
         drawing.line((*x, frame.y), (*x, bottom), Stroke::new(GRID, 1.0));
         drawing.line((*x, bottom), (*x, bottom + 5.0), Stroke::new(INK, 1.0));
-        let half = text_width(&value.tick, f64::from(SMALL)) / 2.0;
-        if x - half > free_from {
-            let style = TextStyle::new(SMALL).align(Align::Middle);
-            drawing.text((*x, bottom + 19.0), &value.tick, style);
-            free_from = x + half + 5.0;
+        if let Some(row) = row {
+            let below = (*x, bottom + 19.0 + 14.0 * *row as f64);
+            let style = TextStyle::new(TICK_SIZE).align(Align::Middle);
+            drawing.text(below, &value.tick, style);
         }
     }
     drawing.line(
@@ -398,7 +270,7 @@ fn draw_y_labels(drawing: &mut Drawing, frame: Area) {
     for step in 0..=5 {
         let accuracy = f64::from(step) / 5.0;
         let at = (frame.x - 9.0, y_at(frame, accuracy) + 4.5);
-        let style = TextStyle::new(SMALL).align(Align::End);
+        let style = TextStyle::new(TICK_SIZE).align(Align::End);
         drawing.line(
             (frame.x - 5.0, at.1 - 4.5),
             (frame.x, at.1 - 4.5),
@@ -411,63 +283,47 @@ fn draw_y_labels(drawing: &mut Drawing, frame: Area) {
     drawing.text(middle, "accuracy (share recognised)", style);
 }
 
+/// The interval between neighbouring points, shaded.
 fn draw_band(drawing: &mut Drawing, points: &[(f64, &CellScore)], frame: Area, fill: [u8; 3]) {
-    match points {
-        [] => {}
-        [(x, score)] => {
-            let (low, high) = (
-                y_at(frame, score.accuracy_low),
-                y_at(frame, score.accuracy_high),
-            );
-            let corners = [
-                (x - 7.0, low),
-                (x + 7.0, low),
-                (x + 7.0, high),
-                (x - 7.0, high),
-            ];
-            drawing.polygon(&corners, fill, 0.18);
-        }
-        _ => {
-            let lower = points
-                .iter()
-                .map(|(x, s)| (*x, y_at(frame, s.accuracy_low)));
-            let upper = points
-                .iter()
-                .rev()
-                .map(|(x, s)| (*x, y_at(frame, s.accuracy_high)));
-            let corners: Vec<Point> = lower.chain(upper).collect();
-            drawing.polygon(&corners, fill, 0.18);
-        }
+    let lower = points
+        .iter()
+        .map(|(x, s)| (*x, y_at(frame, s.accuracy_low)));
+    let upper = points
+        .iter()
+        .rev()
+        .map(|(x, s)| (*x, y_at(frame, s.accuracy_high)));
+    let corners: Vec<Point> = lower.chain(upper).collect();
+    drawing.polygon(&corners, fill, 0.18);
+}
+
+/// The interval of each point, as a bar.
+fn draw_whiskers(drawing: &mut Drawing, points: &[(f64, &CellScore)], frame: Area, line: Stroke) {
+    let stroke = Stroke::new(line.colour, 1.5);
+    for (x, score) in points {
+        let (low, high) = (
+            y_at(frame, score.accuracy_low),
+            y_at(frame, score.accuracy_high),
+        );
+        drawing.line((*x, low), (*x, high), stroke);
     }
 }
 
+/// The line through the points.
 fn draw_line(drawing: &mut Drawing, points: &[(f64, &CellScore)], frame: Area, line: usize) {
-    let stroke = line_stroke(line);
     let places: Vec<Point> = points
         .iter()
         .map(|(x, score)| (*x, y_at(frame, score.accuracy)))
         .collect();
-    drawing.polyline(&places, stroke);
-    for place in places {
-        drawing.marker(line, place, MARKER_RADIUS, stroke.colour);
+    if places.len() > 1 {
+        drawing.polyline(&places, line_stroke(line));
     }
 }
 
-fn line_colour(line: usize) -> [u8; 3] {
-    LINES[line % LINES.len()]
-}
-
-/// Beyond the palette, colours come again with dashes.
-fn line_stroke(line: usize) -> Stroke {
-    let dash = match line / LINES.len() {
-        0 => None,
-        1 => Some((7, 3)),
-        _ => Some((2, 3)),
-    };
-    Stroke {
-        colour: line_colour(line),
-        width: LINE_WIDTH,
-        dash,
+/// A marker at each point.
+fn draw_markers(drawing: &mut Drawing, points: &[(f64, &CellScore)], frame: Area, line: usize) {
+    for (x, score) in points {
+        let place = (*x, y_at(frame, score.accuracy));
+        drawing.marker(line, place, MARKER_RADIUS, line_colour(line));
     }
 }
 

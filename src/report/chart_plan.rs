@@ -4,7 +4,8 @@
 //! compression ratio if it varies, else another numeric axis; lines and panels take the next two; each combination of what
 //! is left gets a chart of its own, with the values in its name and title.
 
-use crate::report::varying::{Axis, AxisValue, Levels, Settings};
+use crate::report::axis::{Axis, AxisValue};
+use crate::report::varying::{Levels, Settings};
 use crate::study::table::Cell;
 
 /// What a chart shows where.

@@ -8,8 +8,8 @@ use crate::report::files::write_bytes;
 use crate::study::table::{
     Cell, CellScore, Comparison, Confusion, StageTime, Tables, TrialScore, TrialTime,
 };
+use serde::Serialize;
 use serde::de::DeserializeOwned;
-use serde::{Deserialize, Serialize};
 use std::fs::File;
 use std::path::{Path, PathBuf};
 
@@ -67,8 +67,11 @@ pub fn to_csv<R: Serialize>(rows: &[R]) -> std::result::Result<Vec<u8>, csv::Err
 
 /// Reads a table whose rows are a [`Cell`] followed by `R`.
 pub fn read_cell_rows<R: DeserializeOwned>(path: &Path) -> Result<Vec<(Cell, R)>> {
-    let rows: Vec<CellRow<R>> = read_rows(path)?;
-    Ok(rows.into_iter().map(|row| (row.cell, row.rest)).collect())
+    // Each line is read twice, once for either half: through one struct with two flattened halves, serde would take an
+    // empty field for an empty text, not for an absent value.
+    let cells: Vec<Cell> = read_rows(path)?;
+    let rest: Vec<R> = read_rows(path)?;
+    Ok(cells.into_iter().zip(rest).collect())
 }
 
 /// Reads a table; the error names the file and the line.
@@ -78,15 +81,6 @@ pub fn read_rows<R: DeserializeOwned>(path: &Path) -> Result<Vec<R>> {
         .into_deserialize()
         .map(|row| row.map_err(|e| read_error(path, e)))
         .collect()
-}
-
-/// A cell and what was found for it, side by side in one line.
-#[derive(Deserialize)]
-struct CellRow<R> {
-    #[serde(flatten)]
-    cell: Cell,
-    #[serde(flatten)]
-    rest: R,
 }
 
 fn read_error(path: &Path, error: csv::Error) -> Error {

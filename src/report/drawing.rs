@@ -4,8 +4,9 @@
 //! ten where a sweep needs them at its own values, and number their clip paths per process, so that the same table would
 //! not always be the same bytes.
 
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::report::colours::{INK, PAPER, Rgb};
+use crate::report::raster::rasterise;
 use kuva::backend::svg::SvgBackend;
 use kuva::render::color::Color;
 use kuva::render::render::{PathData, Primitive, Scene, TextAnchor, TextSpan, build_path};
@@ -222,7 +223,7 @@ impl Drawing {
 
     /// The marker of a line's number, filled, of a radius in pixels, with a white rim that parts it from what lies below.
     pub fn marker(&mut self, line: usize, at: Point, radius: f64, fill: Rgb) {
-        if line % N_MARKERS == 0 {
+        if line.is_multiple_of(N_MARKERS) {
             for (r, fill) in [(radius + 1.0, PAPER), (radius, fill)] {
                 self.scene.add(Primitive::Circle {
                     cx: snap(at.0),
@@ -255,10 +256,7 @@ impl Drawing {
 
     /// The drawing as a PNG file with two picture elements a pixel.
     pub fn png(&self) -> Result<Vec<u8>> {
-        kuva::RasterBackend::new()
-            .with_scale(2.0)
-            .render_scene(&self.scene)
-            .map_err(|said| Error::input("picture", said, "a size that fits into a PNG file"))
+        rasterise(&self.scene)
     }
 }
 

@@ -1,9 +1,9 @@
 //! A frame as a heat map with axes in millimetres and a colour bar, part of a drawing.
 
 use crate::error::{Error, Result};
+use crate::report::axis::short_number;
 use crate::report::colours::{INK, heat};
 use crate::report::drawing::{Align, Area, Drawing, Stroke, TextStyle};
-use crate::report::varying::short_number;
 use ndarray::{Array2, ArrayView2};
 
 /// What a frame holds.
@@ -140,35 +140,30 @@ pub fn draw_map(
     drawing.frame(area, Stroke::new(INK, 1.0));
 }
 
-/// Ticks and titles in millimetres around a map of an array centred on its origin.
-pub fn draw_map_axes(
-    drawing: &mut Drawing,
-    area: Area,
-    width_mm: f64,
-    height_mm: f64,
-    with_y: bool,
-) {
-    let step = tick_step(width_mm.max(height_mm));
+/// Ticks and title in millimetres below a map of an array centred on its origin.
+pub fn draw_x_axis(drawing: &mut Drawing, area: Area, width_mm: f64) {
     let style = TextStyle::new(12).align(Align::Middle);
-    for tick in ticks(width_mm, step) {
+    let bottom = area.y + area.height;
+    for tick in ticks(width_mm, tick_step(width_mm)) {
         let x = area.x + area.width * (tick / width_mm + 0.5);
-        let bottom = area.y + area.height;
         drawing.line((x, bottom), (x, bottom + 5.0), Stroke::new(INK, 1.0));
         drawing.text((x, bottom + 18.0), &short_number(tick), style);
     }
-    let below = (area.x + area.width / 2.0, area.y + area.height + 36.0);
+    let below = (area.x + area.width / 2.0, bottom + 36.0);
     drawing.text(below, "x (mm)", style);
-    if !with_y {
-        return;
-    }
-    for tick in ticks(height_mm, step) {
+}
+
+/// Ticks and title in millimetres to the left of a map of an array centred on its origin.
+pub fn draw_y_axis(drawing: &mut Drawing, area: Area, height_mm: f64) {
+    let style = TextStyle::new(12);
+    for tick in ticks(height_mm, tick_step(height_mm)) {
         let y = area.y + area.height * (0.5 - tick / height_mm);
         drawing.line((area.x - 5.0, y), (area.x, y), Stroke::new(INK, 1.0));
         let at = (area.x - 8.0, y + 4.5);
         drawing.text(at, &short_number(tick), style.align(Align::End));
     }
     let beside = (area.x - 44.0, area.y + area.height / 2.0);
-    drawing.text(beside, "y (mm)", style.angle(-90.0));
+    drawing.text(beside, "y (mm)", style.align(Align::Middle).angle(-90.0));
 }
 
 /// A colour bar to the right of what it explains, `area` wide and high.

@@ -8,6 +8,7 @@
 //! [`frame_files::write_frame`] and [`pressure_map`] show a single frame.
 
 pub mod answer;
+pub mod axis;
 pub mod chart;
 pub mod chart_plan;
 pub mod colours;
@@ -18,10 +19,14 @@ pub mod frame_files;
 pub mod heat_map;
 pub mod html;
 pub mod object_picture;
+mod html_tables;
+mod legend;
 pub mod pressure_map;
 pub mod progress;
+mod raster;
 pub mod results;
 pub mod snapshots;
 pub mod terminal;
 pub mod text_width;
 pub mod varying;
+mod x_scale;

@@ -1,13 +1,14 @@
 //! One frame for the eye: a heat map as a picture, and a drawing in the terminal.
 
 use crate::error::Result;
+use crate::report::axis::short_number;
 use crate::report::colours::{INK, MUTED, heat};
 use crate::report::drawing::{Area, Drawing, TextStyle};
 use crate::report::heat_map::{
-    ColourScale, Quantity, check_frame, draw_colour_bar, draw_map, draw_map_axes, largest_of_blocks,
+    ColourScale, Quantity, check_frame, draw_colour_bar, draw_map, draw_x_axis, draw_y_axis,
+    largest_of_blocks,
 };
 use crate::report::terminal::Ink;
-use crate::report::varying::short_number;
 use ndarray::Array2;
 
 /// Taxels that a picture shows each way, at most; longer arrays are shown by the largest value of blocks.
@@ -52,13 +53,8 @@ pub fn pressure_picture(frame: &Array2<f64>, pitch_mm: f64, quantity: Quantity) 
     }
     drawing.text((area.x, 40.0), &below, TextStyle::new(11).colour(MUTED));
     draw_map(&mut drawing, &shown, quantity, scale, area);
-    draw_map_axes(
-        &mut drawing,
-        area,
-        nx as f64 * pitch_mm,
-        ny as f64 * pitch_mm,
-        true,
-    );
+    draw_x_axis(&mut drawing, area, nx as f64 * pitch_mm);
+    draw_y_axis(&mut drawing, area, ny as f64 * pitch_mm);
     let bar = Area {
         x: area.x + area.width + 18.0,
         width: 16.0,

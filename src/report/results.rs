@@ -37,9 +37,10 @@ pub fn write_all(dir: &Path, tables: &Tables, about: &ReportPage) -> Result<Vec<
     let mut touches = None;
     if let Some(set) = &about.snapshots {
         let drawing = snapshots(&set.frames, set.pitch_mm, set.quantity, &set.caption)?;
-        touches = Some(Picture::raster(&drawing, &set.caption)?);
         // As SVG, ten thousand noisy taxels would be a megabyte.
-        files.push(("snapshots.png".to_owned(), drawing.png()?));
+        let png = drawing.png()?;
+        touches = Some(Picture::raster(&drawing, &png, &set.caption));
+        files.push(("snapshots.png".to_owned(), png));
     }
     let html = page(about, tables, &charts, confusion.as_ref(), touches.as_ref());
     files.push(("report.html".to_owned(), html.into_bytes()));

@@ -1,10 +1,11 @@
-//! Frames side by side on one colour scale, as in Figure 4 of [BT].
+//! Frames side by side on one colour scale, as in Figure 4 of \[BT\].
 
 use crate::error::{Error, Result};
 use crate::report::colours::MUTED;
 use crate::report::drawing::{Align, Area, Drawing, TextStyle};
 use crate::report::heat_map::{
-    ColourScale, Quantity, check_frame, draw_colour_bar, draw_map, draw_map_axes, largest_of_blocks,
+    ColourScale, Quantity, check_frame, draw_colour_bar, draw_map, draw_x_axis, draw_y_axis,
+    largest_of_blocks,
 };
 use crate::report::text_width::shorten;
 use ndarray::Array2;
@@ -57,13 +58,10 @@ pub fn snapshots(
         drawing.bold_text(above, &title, TextStyle::new(13).align(Align::Middle));
         draw_map(&mut drawing, &shown, quantity, scale, area);
         let (ny, nx) = frame.dim();
-        draw_map_axes(
-            &mut drawing,
-            area,
-            nx as f64 * pitch_mm,
-            ny as f64 * pitch_mm,
-            column == 0,
-        );
+        draw_x_axis(&mut drawing, area, nx as f64 * pitch_mm);
+        if column == 0 {
+            draw_y_axis(&mut drawing, area, ny as f64 * pitch_mm);
+        }
     }
     let bar = Area {
         x: maps_right,

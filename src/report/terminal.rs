@@ -3,9 +3,11 @@
 use crate::report::answer::{Answer, accuracy_sentence};
 use crate::report::chart_plan::plan_charts;
 use crate::report::colours::Rgb;
-use crate::report::varying::{Levels, Settings};
+use crate::report::varying::{Levels, Settings, unbroken_parts};
 use crate::study::table::{Cell, CellScore, Tables};
-use comfy_table::{CellAlignment, ContentArrangement, Table, TableComponent, presets};
+use comfy_table::{
+    CellAlignment, ColumnConstraint, ContentArrangement, Table, TableComponent, presets,
+};
 use std::io::IsTerminal;
 
 /// Cells up to which each gets a line; beyond, one axis runs across.
@@ -82,14 +84,10 @@ pub fn summary_table(tables: &Tables, width: usize, full_table: &str) -> String 
     }
     let settings = Settings::of(&cells);
     let mut text = String::new();
-    // A setting and its value stay on one line.
-    let fixed = settings
-        .fixed
-        .iter()
-        .map(|levels| levels.sentence().replace(' ', "\u{a0}"));
-    let fixed: Vec<String> = fixed.collect();
-    for line in wrap(&format!("All cells: {}", fixed.join(" · ")), width) {
-        text += &line.replace('\u{a0}', " ");
+    let fixed: Vec<String> = settings.fixed.iter().map(Levels::sentence).collect();
+    let fixed = format!("All cells: {}", unbroken_parts(&fixed));
+    for line in wrap(&fixed, width) {
+        text += &line;
         text.push('\n');
     }
     text.push('\n');
@@ -98,6 +96,13 @@ pub fn summary_table(tables: &Tables, width: usize, full_table: &str) -> String 
     } else {
         pivot(tables, &settings, width, full_table)
     };
+    if settings
+        .shown()
+        .iter()
+        .any(|levels| levels.heading() != levels.axis.name())
+    {
+        text += "Noise is its standard deviation in percent of the full scale.\n";
+    }
     text.push('\n');
     for sentence in Answer::of(tables).iter().flat_map(Answer::sentences) {
         for line in wrap(&sentence, width) {
@@ -113,7 +118,7 @@ fn list(tables: &Tables, settings: &Settings, width: usize) -> String {
     let axes = settings.shown();
     let best = Answer::of(tables).filter(|_| tables.summary.len() > 1);
     let mut table = empty_table(width);
-    let names = axes.iter().map(|levels| levels.heading());
+    let names = axes.iter().map(|levels| levels.axis.name().to_owned());
     let scores = ["accuracy [95 %]", "macro-F1", ""].map(str::to_owned);
     table.set_header(names.chain(scores));
     for (cell, score) in &tables.summary {
@@ -131,6 +136,10 @@ fn list(tables: &Tables, settings: &Settings, width: usize) -> String {
         table.add_row(row);
     }
     align(&mut table, &axes, 2);
+    // An interval broken over two lines cannot be read down the column.
+    if let Some(accuracy) = table.column_mut(axes.len()) {
+        accuracy.set_constraint(ColumnConstraint::ContentWidth);
+    }
     finish(&table)
 }
 
@@ -152,7 +161,7 @@ fn pivot(tables: &Tables, settings: &Settings, width: usize, full_table: &str) -
         .enumerate()
         .map(|(i, levels)| {
             let widths = lines.iter().map(|line| letters(&line.labels[i]));
-            widths.max().unwrap_or(0).max(letters(&levels.heading())) + 2
+            widths.max().unwrap_or(0).max(letters(levels.axis.name())) + 2
         })
         .sum();
     let column_wide = |i: usize| letters(&across.values[i].tick).max(4) + 2;
@@ -165,7 +174,7 @@ fn pivot(tables: &Tables, settings: &Settings, width: usize, full_table: &str) -
         n_columns += 1;
     }
     let mut table = empty_table(width);
-    let names = down.iter().map(|levels| levels.heading());
+    let names = down.iter().map(|levels| levels.axis.name().to_owned());
     let ticks = across.values[..n_columns]
         .iter()
         .map(|value| value.tick.clone());
@@ -184,18 +193,17 @@ fn pivot(tables: &Tables, settings: &Settings, width: usize, full_table: &str) -
     text += &finish(&table);
     let hidden_lines = lines.len().saturating_sub(MOST_LINES);
     let hidden_columns = across.values.len() - n_columns;
-    if hidden_lines + hidden_columns > 0 {
-        text += &format!(
-            "Left out here: {hidden_lines} of {} lines, {hidden_columns} of {} columns; all {} cells are in {full_table}\n",
-            lines.len(),
-            across.values.len(),
-            cells.len()
-        );
-    } else {
-        text += &format!(
-            "Intervals of all {} cells are in {full_table}\n",
-            cells.len()
-        );
+    let (n_lines, n_across, n_cells) = (lines.len(), across.values.len(), cells.len());
+    let remark = match hidden_lines + hidden_columns {
+        0 => format!("The intervals of all {n_cells} cells are in {full_table}"),
+        _ => format!(
+            "Left out here: {hidden_lines} of {n_lines} lines, {hidden_columns} of {n_across} columns; \
+             all {n_cells} cells are in {full_table}"
+        ),
+    };
+    for line in wrap(&remark, width) {
+        text += &line;
+        text.push('\n');
     }
     text
 }
@@ -260,7 +268,7 @@ fn letters(text: &str) -> usize {
     text.chars().count()
 }
 
-/// Breaks a text at spaces into lines of at most `width` letters.
+/// Breaks a text at spaces (not at U+00A0) into lines of at most `width` letters.
 fn wrap(text: &str, width: usize) -> Vec<String> {
     let mut lines: Vec<String> = Vec::new();
     for word in text.split(' ') {
@@ -272,5 +280,6 @@ fn wrap(text: &str, width: usize) -> Vec<String> {
             _ => lines.push(word.to_owned()),
         }
     }
-    lines
+    let plain = lines.into_iter().map(|line| line.replace('\u{a0}', " "));
+    plain.collect()
 }

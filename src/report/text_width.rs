@@ -31,19 +31,21 @@ pub fn bold_width(text: &str, size: f64) -> f64 {
     BOLD * text_width(text, size)
 }
 
-/// Breaks a text at spaces into lines no wider than `width`; a longer word stands alone.
+/// Breaks a text at spaces (not at U+00A0) into lines no wider than `width`; a longer word stands alone.
 pub fn wrap(text: &str, size: f64, width: f64) -> Vec<String> {
     let mut lines: Vec<String> = Vec::new();
+    let text_width = |line: &str| text_width(&line.replace('\u{a0}', " "), size);
     for word in text.split(' ').filter(|word| !word.is_empty()) {
         match lines.last_mut() {
-            Some(line) if text_width(&format!("{line} {word}"), size) <= width => {
+            Some(line) if text_width(&format!("{line} {word}")) <= width => {
                 line.push(' ');
                 line.push_str(word);
             }
             _ => lines.push(word.to_owned()),
         }
     }
-    lines
+    let plain = lines.into_iter().map(|line| line.replace('\u{a0}', " "));
+    plain.collect()
 }
 
 /// The text, or as much of it as fits with an ellipsis.
