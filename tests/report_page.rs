@@ -3,7 +3,7 @@
 mod report_synthetic;
 
 use bubbletouch::report::answer::Answer;
-use bubbletouch::report::html::{Limit, Picture, ReportPage, page};
+use bubbletouch::report::html::{Limit, Picture, Pictures, ReportPage, page};
 use bubbletouch::report::results::draw_charts;
 use bubbletouch::report::terminal::summary_table;
 use bubbletouch::study::table::Tables;
@@ -140,6 +140,7 @@ fn the_page_needs_no_network_and_no_script() {
         "5120 of 9830400",
         "41.3 s",
         "recognise with linear SVM",
+        "7 more charts lie beside this page",
     ] {
         assert!(html.contains(part), "{part}");
     }
@@ -195,9 +196,14 @@ fn the_page_of_300_cells_stays_small() {
 }
 
 fn whole_page(about: &ReportPage, made: &Tables) -> String {
-    let charts: Vec<Picture> = draw_charts(made)
-        .iter()
-        .map(|(_, title, drawing)| Picture::of(drawing, title))
-        .collect();
-    page(about, made, &charts, None, None)
+    let charts = draw_charts(made);
+    let pictures = Pictures {
+        charts: charts
+            .iter()
+            .map(|(_, title, drawing)| Picture::of(drawing, title))
+            .collect(),
+        n_more_charts: 7,
+        ..Pictures::default()
+    };
+    page(about, made, &pictures)
 }

@@ -96,12 +96,12 @@ fn equal_tables_give_equal_bytes_in_every_file() {
     assert_eq!(
         names[6..],
         [
-            "accuracy_by_noise.svg",
             "accuracy_by_noise.png",
-            "accuracy_by_noise_per_classifier.svg",
+            "accuracy_by_noise.svg",
             "accuracy_by_noise_per_classifier.png",
-            "confusion.svg",
+            "accuracy_by_noise_per_classifier.svg",
             "confusion.png",
+            "confusion.svg",
             "snapshots.png",
             "report.html",
         ]

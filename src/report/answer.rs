@@ -5,6 +5,9 @@ use crate::report::varying::Settings;
 use crate::study::table::{Cell, CellScore, Tables};
 use std::collections::HashMap;
 
+/// Values up to which a sentence lists them all.
+const MOST_LISTED: usize = 8;
+
 /// The findings that hold for any study.
 #[derive(Clone, Debug)]
 pub struct Answer {
@@ -124,15 +127,14 @@ impl Answer {
 impl Effect {
     /// `Mean accuracy by compression: 0.95 (4:1), 0.80 (64:1).`
     pub fn sentence(&self) -> String {
-        let means = self.means.iter();
-        let means: Vec<String> = means
-            .map(|(value, mean)| format!("{mean:.2} ({})", value.label))
-            .collect();
-        format!(
-            "Mean accuracy by {}: {}.",
-            self.axis.name(),
-            means.join(", ")
-        )
+        let written = |(value, mean): &(AxisValue, f64)| format!("{mean:.2} ({})", value.label);
+        let name = self.axis.name();
+        if let ([first, .., last], true) = (&self.means[..], self.means.len() > MOST_LISTED) {
+            let (first, last, n) = (written(first), written(last), self.means.len());
+            return format!("Mean accuracy by {name}, {n} values: from {first} to {last}.");
+        }
+        let means: Vec<String> = self.means.iter().map(written).collect();
+        format!("Mean accuracy by {name}: {}.", means.join(", "))
     }
 }
 

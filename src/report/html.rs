@@ -92,14 +92,21 @@ impl Picture {
     }
 }
 
+/// The pictures of a study.
+#[derive(Clone, Debug, Default)]
+pub struct Pictures {
+    /// Charts, the main one first.
+    pub charts: Vec<Picture>,
+    /// How many charts lie beside the page only.
+    pub n_more_charts: usize,
+    /// The confusion matrix of the best cell.
+    pub confusion: Option<Picture>,
+    /// Sample touches.
+    pub touches: Option<Picture>,
+}
+
 /// The page.
-pub fn page(
-    about: &ReportPage,
-    tables: &Tables,
-    charts: &[Picture],
-    confusion: Option<&Picture>,
-    touches: Option<&Picture>,
-) -> String {
+pub fn page(about: &ReportPage, tables: &Tables, pictures: &Pictures) -> String {
     let answer = Answer::of(tables);
     fill(TEMPLATE, |name| match name {
         "name" => escape(&about.name),
@@ -113,10 +120,13 @@ pub fn page(
         },
         "answer" => answer_html(answer.as_ref()),
         "settings" => settings_html(about, tables),
-        "charts" => charts.iter().map(figure).collect(),
-        "touches" => section("Sample touches", touches.map(figure)),
+        "charts" => charts_html(pictures),
+        "touches" => section("Sample touches", pictures.touches.as_ref().map(figure)),
         "summary" => summary_html(tables, answer.as_ref()),
-        "confusion" => section("What was taken for what", confusion.map(figure)),
+        "confusion" => section(
+            "What was taken for what",
+            pictures.confusion.as_ref().map(figure),
+        ),
         "limits" => limits_html(about, tables),
         "times" => times_html(about, tables),
         "command" => escape(&about.command),
@@ -153,6 +163,18 @@ fn answer_html(answer: Option<&Answer>) -> String {
             let _ = write!(html, "<li>{}</li>", escape(sentence));
         }
         html += "</ul>";
+    }
+    html
+}
+
+fn charts_html(pictures: &Pictures) -> String {
+    let mut html: String = pictures.charts.iter().map(figure).collect();
+    if pictures.n_more_charts > 0 {
+        let _ = write!(
+            html,
+            "<p>{} more charts lie beside this page: accuracy_by_….svg, one for each combination of the other settings.</p>",
+            pictures.n_more_charts
+        );
     }
     html
 }

@@ -5,7 +5,8 @@ use crate::report::axis::{classifier_name, short_number};
 use crate::report::drawing::escape;
 use crate::report::html::ReportPage;
 use crate::report::varying::Settings;
-use crate::study::table::{Cell, Tables};
+use crate::study::table::{Cell, Comparison, Tables};
+use std::collections::HashMap;
 use std::fmt::Write;
 
 /// Every cell with its score and its distance to the best.
@@ -13,7 +14,8 @@ pub(super) fn summary_html(tables: &Tables, answer: Option<&Answer>) -> String {
     let cells: Vec<&Cell> = tables.summary.iter().map(|(cell, _)| cell).collect();
     let settings = Settings::of(&cells);
     let axes = settings.shown();
-    let differences = |cell: usize| tables.comparison.iter().find(|row| row.cell == cell);
+    let rows = tables.comparison.iter().map(|row| (row.cell, row));
+    let comparisons: HashMap<usize, &Comparison> = rows.collect();
     let mut html = String::from("<table><thead><tr>");
     for levels in &axes {
         let _ = write!(html, "<th scope=\"col\">{}</th>", levels.heading());
@@ -35,7 +37,8 @@ pub(super) fn summary_html(tables: &Tables, answer: Option<&Answer>) -> String {
             let value = levels.axis.value(cell);
             let _ = write!(html, "<td>{}</td>", escape(&value.label));
         }
-        let row = differences(cell.cell).filter(|row| row.cell != row.best_cell);
+        let row = comparisons.get(&cell.cell);
+        let row = row.filter(|row| row.cell != row.best_cell);
         let difference = row.map_or(String::new(), |row| format!("{:+.3}", row.difference));
         let p = row
             .and_then(|row| row.p_value)

@@ -8,11 +8,14 @@ use crate::report::confusion_picture::confusion_picture;
 use crate::report::csv_tables::write_tables;
 use crate::report::drawing::Drawing;
 use crate::report::files::write_bytes;
-use crate::report::html::{Picture, ReportPage, page};
+use crate::report::html::{Picture, Pictures, ReportPage, page};
 use crate::report::snapshots::snapshots;
 use crate::study::table::{Cell, Tables};
 use std::fs;
 use std::path::{Path, PathBuf};
+
+/// Charts in the page and as PNG, at most; all are written as SVG. A thousand would make the page too heavy for a phone.
+const MOST_IN_PAGE: usize = 24;
 
 /// Writes tables, charts, pictures and the page into `dir` (created if missing); returns the paths in the order of
 /// writing, tables first.
@@ -21,28 +24,35 @@ use std::path::{Path, PathBuf};
 /// folder are left alone.
 pub fn write_all(dir: &Path, tables: &Tables, about: &ReportPage) -> Result<Vec<PathBuf>> {
     let mut files: Vec<(String, Vec<u8>)> = Vec::new();
-    let mut charts = Vec::new();
+    let mut pictures = Pictures::default();
     for (name, title, drawing) in draw_charts(tables) {
-        charts.push(Picture::of(&drawing, &title));
-        add_drawing(&mut files, &name, &title, &drawing)?;
+        if pictures.charts.len() < MOST_IN_PAGE {
+            pictures.charts.push(Picture::of(&drawing, &title));
+            files.push((format!("{name}.png"), drawing.png()?));
+        } else {
+            pictures.n_more_charts += 1;
+        }
+        files.push((format!("{name}.svg"), drawing.svg(&title).into_bytes()));
     }
-    let mut confusion = None;
     if let Some(answer) = Answer::of(tables)
         && let Some(drawing) = confusion_picture(tables, answer.best.0.cell)
     {
-        let title = "Confusion matrix of the best cell";
-        confusion = Some(Picture::of(&drawing, title));
-        add_drawing(&mut files, "confusion", title, &drawing)?;
+        let picture = Picture::of(&drawing, "Confusion matrix of the best cell");
+        files.push(("confusion.png".to_owned(), drawing.png()?));
+        files.push((
+            "confusion.svg".to_owned(),
+            picture.element.clone().into_bytes(),
+        ));
+        pictures.confusion = Some(picture);
     }
-    let mut touches = None;
     if let Some(set) = &about.snapshots {
         let drawing = snapshots(&set.frames, set.pitch_mm, set.quantity, &set.caption)?;
         // As SVG, ten thousand noisy taxels would be a megabyte.
         let png = drawing.png()?;
-        touches = Some(Picture::raster(&drawing, &png, &set.caption));
+        pictures.touches = Some(Picture::raster(&drawing, &png, &set.caption));
         files.push(("snapshots.png".to_owned(), png));
     }
-    let html = page(about, tables, &charts, confusion.as_ref(), touches.as_ref());
+    let html = page(about, tables, &pictures);
     files.push(("report.html".to_owned(), html.into_bytes()));
 
     make_folder(dir)?;
@@ -80,15 +90,4 @@ pub fn make_folder(dir: &Path) -> Result<()> {
         ));
     }
     fs::create_dir_all(dir).map_err(|e| Error::io(dir, "create folder", e))
-}
-
-fn add_drawing(
-    files: &mut Vec<(String, Vec<u8>)>,
-    name: &str,
-    title: &str,
-    drawing: &Drawing,
-) -> Result<()> {
-    files.push((format!("{name}.svg"), drawing.svg(title).into_bytes()));
-    files.push((format!("{name}.png"), drawing.png()?));
-    Ok(())
 }

@@ -16,6 +16,9 @@ const MOST_LISTED: usize = 40;
 /// Lines of the compact table, at most.
 const MOST_LINES: usize = 40;
 
+/// Blanks between two columns.
+const COLUMN_GAP: usize = 3;
+
 /// Which colours a stream may show.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Ink {
@@ -161,10 +164,10 @@ fn pivot(tables: &Tables, settings: &Settings, width: usize, full_table: &str) -
         .enumerate()
         .map(|(i, levels)| {
             let widths = lines.iter().map(|line| letters(&line.labels[i]));
-            widths.max().unwrap_or(0).max(letters(levels.axis.name())) + 2
+            widths.max().unwrap_or(0).max(letters(levels.axis.name())) + COLUMN_GAP
         })
         .sum();
-    let column_wide = |i: usize| letters(&across.values[i].tick).max(4) + 2;
+    let column_wide = |i: usize| letters(&across.values[i].tick).max(4) + COLUMN_GAP;
     let mut n_columns = 0;
     let mut used = labels_wide;
     while n_columns < across.values.len()
