@@ -9,7 +9,7 @@
 //! ```
 //!
 //! which is zero exactly where the taxel relaxes freely and positive where it is pushed: the complementarity
-//! 0 ≤ f ⟂ gap ≥ 0 of [PT] in closed form. It tends to `k δ + c δ̇` for Δt → 0 and is `k δ` for c = 0 or at rest.
+//! 0 ≤ f ⟂ gap ≥ 0 of \[PT\] in closed form. It tends to `k δ + c δ̇` for Δt → 0 and is `k δ` for c = 0 or at rest.
 
 use crate::world::Taxel;
 

@@ -1,4 +1,4 @@
-//! Contact: a [`Scene`](crate::world::Scene) and poses → deflections [BT].
+//! Contact: a [`Scene`](crate::world::Scene) and poses → deflections \[BT\].
 //!
 //! For taxel i (rest centre p, axis n, radius ρ) and sphere j (centre c, radius R): `S = ρ + R`, `h = (c − p)·n`,
 //! `b² = |c − p|² − h²`. If `b < S`, the sphere needs `δ_ij = √(S² − b²) − h`. The contact deflection is

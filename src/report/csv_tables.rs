@@ -4,7 +4,7 @@
 //! value is an empty field. A table without rows is an empty file.
 
 use crate::error::{Error, Result};
-use crate::report::files::write_bytes;
+use crate::files::write_bytes;
 use crate::study::table::{
     Cell, CellScore, Comparison, Confusion, StageTime, Tables, TrialScore, TrialTime,
 };

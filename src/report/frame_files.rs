@@ -1,9 +1,10 @@
 //! One frame as a file, in the format that its name asks for.
 
 use crate::error::{Error, Result};
-use crate::report::files::{write_bytes, write_whole};
-use crate::report::heat_map::{Quantity, check_frame};
+use crate::files::{write_bytes, write_whole};
+use crate::report::heat_map::check_frame;
 use crate::report::pressure_map::pressure_picture;
+use crate::signal::Quantity;
 use crate::world::Grid;
 use ndarray::{Array1, Array2};
 use ndarray_npy::NpzWriter;

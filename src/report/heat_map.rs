@@ -4,42 +4,8 @@ use crate::error::{Error, Result};
 use crate::report::axis::short_number;
 use crate::report::colours::{INK, heat};
 use crate::report::drawing::{Align, Area, Drawing, Stroke, TextStyle};
+use crate::signal::Quantity;
 use ndarray::{Array2, ArrayView2};
-
-/// What a frame holds.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Quantity {
-    /// Metres of deflection, shown in millimetres.
-    Deflection,
-    /// Newtons.
-    Force,
-}
-
-impl Quantity {
-    /// Shown value = stored value × this.
-    pub fn factor(self) -> f64 {
-        match self {
-            Self::Deflection => 1e3,
-            Self::Force => 1.0,
-        }
-    }
-
-    /// The unit of the shown value.
-    pub fn unit(self) -> &'static str {
-        match self {
-            Self::Deflection => "mm",
-            Self::Force => "N",
-        }
-    }
-
-    /// The name of the shown value.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Deflection => "deflection",
-            Self::Force => "force",
-        }
-    }
-}
 
 /// The lowest and the highest shown value that colours stand for.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -2,9 +2,9 @@
 
 use crate::report::answer::Answer;
 use crate::report::drawing::{Drawing, escape};
-use crate::report::heat_map::Quantity;
 use crate::report::html_tables::{limits_html, summary_html, times_html};
 use crate::report::varying::Settings;
+use crate::signal::Quantity;
 use crate::study::table::{Cell, Tables};
 use ndarray::Array2;
 use std::fmt::Write;

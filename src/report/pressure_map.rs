@@ -5,10 +5,11 @@ use crate::report::axis::short_number;
 use crate::report::colours::{INK, MUTED, heat};
 use crate::report::drawing::{Area, Drawing, TextStyle};
 use crate::report::heat_map::{
-    ColourScale, Quantity, check_frame, draw_colour_bar, draw_map, draw_x_axis, draw_y_axis,
+    ColourScale, check_frame, draw_colour_bar, draw_map, draw_x_axis, draw_y_axis,
     largest_of_blocks,
 };
 use crate::report::terminal::Ink;
+use crate::signal::Quantity;
 use ndarray::Array2;
 
 /// Taxels that a picture shows each way, at most; longer arrays are shown by the largest value of blocks.

@@ -1,13 +1,13 @@
 //! A study's folder: everything that people open after a run.
 
 use crate::error::{Error, Result};
+use crate::files::write_bytes;
 use crate::report::answer::Answer;
 use crate::report::chart::{chart_title, draw_chart};
 use crate::report::chart_plan::plan_charts;
 use crate::report::confusion_picture::confusion_picture;
 use crate::report::csv_tables::write_tables;
 use crate::report::drawing::Drawing;
-use crate::report::files::write_bytes;
 use crate::report::html::{Picture, Pictures, ReportPage, page};
 use crate::report::snapshots::snapshots;
 use crate::study::table::{Cell, Tables};

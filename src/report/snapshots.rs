@@ -4,10 +4,11 @@ use crate::error::{Error, Result};
 use crate::report::colours::MUTED;
 use crate::report::drawing::{Align, Area, Drawing, TextStyle};
 use crate::report::heat_map::{
-    ColourScale, Quantity, check_frame, draw_colour_bar, draw_map, draw_x_axis, draw_y_axis,
+    ColourScale, check_frame, draw_colour_bar, draw_map, draw_x_axis, draw_y_axis,
     largest_of_blocks,
 };
 use crate::report::text_width::shorten;
+use crate::signal::Quantity;
 use ndarray::Array2;
 
 const MOST_CELLS: usize = 128;

@@ -38,3 +38,29 @@ pub enum Quantity {
     /// Newtons.
     Force,
 }
+
+impl Quantity {
+    /// Shown value = stored value × this: deflections are shown in millimetres.
+    pub fn factor(self) -> f64 {
+        match self {
+            Self::Deflection => 1e3,
+            Self::Force => 1.0,
+        }
+    }
+
+    /// The unit of the shown value.
+    pub fn unit(self) -> &'static str {
+        match self {
+            Self::Deflection => "mm",
+            Self::Force => "N",
+        }
+    }
+
+    /// The name of the shown value.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Deflection => "deflection",
+            Self::Force => "force",
+        }
+    }
+}

@@ -194,7 +194,7 @@ fn range_of(axis: TouchAxis) -> (fn(f64) -> bool, &'static str) {
 
 fn count_error(given: impl ToString, most: usize) -> Error {
     Error::input(
-        "touches per object",
+        "touches per_object",
         given,
         format!("a number from 1 to {most}"),
     )

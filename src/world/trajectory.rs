@@ -1,4 +1,4 @@
-//! Imposed motion of a floating robot: piecewise-constant velocities [BT].
+//! Imposed motion of a floating robot: piecewise-constant velocities \[BT\].
 
 use crate::error::{Error, Result};
 use crate::geometry::Pose;
@@ -18,7 +18,7 @@ pub struct Phase {
 /// Where a body is at any time: a start pose, then one phase after another, then rest.
 ///
 /// Rotations are integrated exactly, `R(t) = exp(ω t) R(0)`.
-/// Differs from [BT]: the original adds ω × R a step, so its matrices grow, and switches phases one step early.
+/// Differs from \[BT\]: the original adds ω × R a step, so its matrices grow, and switches phases one step early.
 #[derive(Clone, Debug, PartialEq)]
 pub struct VelocityPlan {
     start: Pose,

@@ -2,10 +2,10 @@
 #![allow(dead_code)] // Each test file uses its own part.
 
 use bubbletouch::recognition::ClassifierKind;
-use bubbletouch::report::heat_map::Quantity;
 use bubbletouch::report::html::{Limit, ReportPage, Snapshots};
 use bubbletouch::sensing::Ensemble;
 use bubbletouch::signal::NoiseUnit;
+use bubbletouch::signal::Quantity;
 use bubbletouch::study::table::{
     Cell, CellScore, Comparison, Confusion, StageTime, Tables, TrialScore, TrialTime,
 };
