@@ -1,8 +1,9 @@
 //! The indentation kernel of a grid patch: only the spheres that reach the skin, only the taxels under them.
 
+use super::grid_lines::GridLines;
 use crate::geometry::Pose;
-use crate::world::{Grid, Patch, Scene};
-use glam::DVec3;
+use crate::world::{Patch, Scene};
+use glam::{DMat3, DVec3};
 
 /// What a press did, beside its deflections in [`Workspace::deflections`].
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -18,7 +19,9 @@ pub struct Contact {
 /// Scratch of one thread; it is reused, so a press allocates nothing once the largest scene has been seen.
 #[derive(Clone, Debug, Default)]
 pub struct Workspace {
-    /// Spheres over the patch, in the patch frame before any travel.
+    /// Of the last scene's grid.
+    lines: GridLines,
+    /// Spheres that can press, in the patch frame before any travel.
     spheres: Vec<PlacedSphere>,
     /// n_taxels deflections, metres, row by row.
     deflections: Vec<f64>,
@@ -43,8 +46,12 @@ impl Workspace {
         &self.deflections
     }
 
-    /// Loads the spheres whose shadow falls on the patch.
-    fn place(&mut self, scene: &Scene, patch_from_objects: &[Pose]) {
+    /// Keeps the spheres that can press a taxel on the way to the goal, and returns the travel to first contact if the
+    /// goal is a depth (`None` where no travel touches anything).
+    ///
+    /// Most spheres of an object are on its far side. They cost one row of the rotation and one comparison: a sphere
+    /// presses nothing before its lowest point meets the plane of the taxels.
+    fn gather(&mut self, scene: &Scene, patch_from_objects: &[Pose], goal: Goal) -> Option<f64> {
         assert_eq!(
             scene.objects.len(),
             patch_from_objects.len(),
@@ -53,17 +60,57 @@ impl Workspace {
         let grid = &scene.patch.grid;
         let rho = scene.patch.taxel.radius;
         let (half_x, half_y) = (grid.x(grid.nx - 1), grid.y(grid.ny - 1));
+        self.lines.lay(grid);
         self.spheres.clear();
+        let mut first = f64::INFINITY;
+        let mut farthest = match goal {
+            Goal::Travel(travel) => travel,
+            Goal::Depth(_) => f64::INFINITY,
+        };
         for (object, pose) in scene.objects.iter().zip(patch_from_objects) {
-            let rotation = glam::DMat3::from_quat(pose.rotation);
+            let rows = DMat3::from_quat(pose.rotation).transpose();
             for sphere in object.spheres() {
-                let center = rotation * sphere.center + pose.translation;
                 let reach = rho + sphere.radius;
-                if center.x.abs() < half_x + reach && center.y.abs() < half_y + reach {
-                    self.spheres.push(PlacedSphere { center, reach });
+                let z = rows.z_axis.dot(sphere.center) + pose.translation.z;
+                if z - reach >= farthest {
+                    continue;
                 }
+                let x = rows.x_axis.dot(sphere.center) + pose.translation.x;
+                let y = rows.y_axis.dot(sphere.center) + pose.translation.y;
+                if x.abs() >= half_x + reach || y.abs() >= half_y + reach {
+                    continue;
+                }
+                let placed = PlacedSphere {
+                    center: DVec3::new(x, y, z),
+                    reach,
+                };
+                if let Goal::Depth(depth) = goal {
+                    first = first.min(placed.first_touch(&self.lines));
+                    farthest = first + depth;
+                }
+                self.spheres.push(placed);
             }
         }
+        first.is_finite().then_some(first)
+    }
+}
+
+/// How far a press goes.
+#[derive(Clone, Copy)]
+enum Goal {
+    /// To this travel, metres.
+    Travel(f64),
+    /// To first contact and this far past it, metres.
+    Depth(f64),
+}
+
+impl PlacedSphere {
+    /// The travel at which the sphere meets the taxel nearest to its axis, its first; infinite if it passes between all.
+    fn first_touch(&self, lines: &GridLines) -> f64 {
+        let DVec3 { x, y, z } = self.center;
+        let (dx, dy) = (x - lines.x.nearest(x), y - lines.y.nearest(y));
+        let q = self.reach * self.reach - (dx * dx + dy * dy);
+        if q > 0.0 { z - q.sqrt() } else { f64::INFINITY }
     }
 }
 
@@ -79,8 +126,7 @@ pub fn first_contact(
     patch_from_objects: &[Pose],
     workspace: &mut Workspace,
 ) -> Option<f64> {
-    workspace.place(scene, patch_from_objects);
-    first_touch(&scene.patch.grid, &workspace.spheres)
+    workspace.gather(scene, patch_from_objects, Goal::Depth(0.0))
 }
 
 /// Presses until the patch is `depth` metres past first contact; `None` (and zero deflections) where it meets nothing.
@@ -93,8 +139,7 @@ pub fn press_to_depth(
     depth: f64,
     workspace: &mut Workspace,
 ) -> Option<Contact> {
-    workspace.place(scene, patch_from_objects);
-    let first = first_touch(&scene.patch.grid, &workspace.spheres);
+    let first = workspace.gather(scene, patch_from_objects, Goal::Depth(depth));
     let contact = indent(&scene.patch, first.unwrap_or(0.0) + depth, workspace);
     first.map(|_| contact)
 }
@@ -109,35 +154,13 @@ pub fn press_to_travel(
     travel: f64,
     workspace: &mut Workspace,
 ) -> Contact {
-    workspace.place(scene, patch_from_objects);
+    workspace.gather(scene, patch_from_objects, Goal::Travel(travel));
     indent(&scene.patch, travel, workspace)
-}
-
-fn first_touch(grid: &Grid, spheres: &[PlacedSphere]) -> Option<f64> {
-    let mut first = f64::INFINITY;
-    for sphere in spheres {
-        // No taxel can meet the sphere before its lowest point does.
-        if sphere.center.z - sphere.reach >= first {
-            continue;
-        }
-        let dx = sphere.center.x - grid.x(nearest(sphere.center.x, grid.x(0), grid.pitch, grid.nx));
-        let dy = sphere.center.y - grid.y(nearest(sphere.center.y, grid.y(0), grid.pitch, grid.ny));
-        let q = sphere.reach * sphere.reach - (dx * dx + dy * dy);
-        if q > 0.0 {
-            first = first.min(sphere.center.z - q.sqrt());
-        }
-    }
-    first.is_finite().then_some(first)
-}
-
-/// The index of the grid line nearest to a coordinate.
-fn nearest(coordinate: f64, origin: f64, pitch: f64, n: usize) -> usize {
-    let index = ((coordinate - origin) / pitch).round();
-    (index.max(0.0) as usize).min(n - 1)
 }
 
 fn indent(patch: &Patch, travel: f64, workspace: &mut Workspace) -> Contact {
     let Workspace {
+        lines,
         spheres,
         deflections,
     } = workspace;
@@ -147,7 +170,7 @@ fn indent(patch: &Patch, travel: f64, workspace: &mut Workspace) -> Contact {
     for sphere in spheres.iter() {
         let height = sphere.center.z - travel;
         if height < sphere.reach && height >= behind {
-            raise(&patch.grid, sphere, height, deflections);
+            raise(lines, sphere, height, deflections);
         }
     }
     let (n_touched, n_saturated) = stop_at_stroke(deflections, patch.taxel.stroke);
@@ -162,47 +185,24 @@ fn indent(patch: &Patch, travel: f64, workspace: &mut Workspace) -> Contact {
 ///
 /// The footprint is where the sphere needs more than zero: `b² < S² − max(h, 0)²`. Ranges are rounded outwards; the
 /// comparison with S in the innermost loop is what decides.
-fn raise(grid: &Grid, sphere: &PlacedSphere, height: f64, deflections: &mut [f64]) {
+fn raise(lines: &GridLines, sphere: &PlacedSphere, height: f64, deflections: &mut [f64]) {
     let reach2 = sphere.reach * sphere.reach;
     let lift = height.max(0.0);
     let footprint = (reach2 - lift * lift).max(0.0);
-    let rows = covered(
-        sphere.center.y,
-        footprint.sqrt(),
-        grid.y(0),
-        grid.pitch,
-        grid.ny,
-    );
-    for row in rows {
-        let dy = grid.y(row) - sphere.center.y;
+    let n_columns = lines.x.positions.len();
+    for row in lines.y.within(sphere.center.y, footprint.sqrt()) {
+        let dy = lines.y.positions[row] - sphere.center.y;
         let half_width = (footprint - dy * dy).max(0.0).sqrt();
-        let columns = covered(sphere.center.x, half_width, grid.x(0), grid.pitch, grid.nx);
+        let columns = lines.x.within(sphere.center.x, half_width);
         let row_reach2 = reach2 - dy * dy;
-        let first = columns.start;
-        let taxels = &mut deflections[row * grid.nx..][columns];
-        for (offset, deflection) in taxels.iter_mut().enumerate() {
-            let dx = grid.x(first + offset) - sphere.center.x;
+        let taxels = &mut deflections[row * n_columns..][columns.clone()];
+        for (deflection, x) in taxels.iter_mut().zip(&lines.x.positions[columns]) {
+            let dx = x - sphere.center.x;
             let q = row_reach2 - dx * dx;
             let needed = if q > 0.0 { q.sqrt() - height } else { 0.0 };
             *deflection = deflection.max(needed);
         }
     }
-}
-
-/// The grid lines within `half_width` of a coordinate, one line more on each side to be safe against rounding.
-fn covered(
-    coordinate: f64,
-    half_width: f64,
-    origin: f64,
-    pitch: f64,
-    n: usize,
-) -> std::ops::Range<usize> {
-    let low = ((coordinate - half_width - origin) / pitch).floor();
-    let high = ((coordinate + half_width - origin) / pitch).ceil() + 1.0;
-    // The casts saturate: far outside the grid they give an empty range.
-    let start = (low.max(0.0) as usize).min(n);
-    let end = (high.max(0.0) as usize).min(n);
-    start..end.max(start)
 }
 
 /// Counts touched and saturated taxels and stops the latter at their stroke.

@@ -15,6 +15,7 @@
 //! exactly, so a scene that has none needs no loop.
 
 mod damper;
+mod grid_lines;
 mod indentation;
 mod simulate;
 

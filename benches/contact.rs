@@ -1,0 +1,130 @@
+//! One press: the kernel beside every sphere against every taxel.
+
+use bubbletouch::contact::{Workspace, press_to_depth};
+use bubbletouch::geometry::Pose;
+use bubbletouch::objects::{Catalogue, Sphere, SphereUnion};
+use bubbletouch::random::Seed;
+use bubbletouch::world::{Grid, Patch, RestPoses, Scene, Taxel, Touch};
+use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
+use glam::DVec3;
+use rand::Rng;
+use std::hint::black_box;
+
+const DEPTH: f64 = 3e-3;
+
+/// A bumpy egg of n equal spheres on its surface, like the vertex spheres of a scanned object.
+fn egg(n: usize) -> SphereUnion {
+    let mut rng = Seed::new(6).rng();
+    let spheres = (0..n).map(|_| {
+        let direction = DVec3::from(rng.r#gen::<[f64; 3]>()) * 2.0 - DVec3::ONE;
+        Sphere {
+            center: direction.normalize_or(DVec3::Z) * DVec3::new(0.05, 0.04, 0.03),
+            radius: 2e-3,
+        }
+    });
+    SphereUnion::new(spheres.collect()).expect("radii are positive")
+}
+
+fn patch(n: usize) -> Patch {
+    let grid = Grid {
+        nx: n,
+        ny: n,
+        pitch: 0.128 / n as f64,
+    };
+    let taxel = Taxel {
+        radius: 0.5 * grid.pitch,
+        stiffness: 100.0,
+        damping: 0.0,
+        stroke: 5e-3,
+    };
+    Patch::new(grid, taxel).expect("the grid has taxels")
+}
+
+fn zero_touch(object: &SphereUnion) -> Pose {
+    let rest = RestPoses::AsModelled.of(object).swap_remove(0);
+    let touch = Touch {
+        rest: 0,
+        offset: [0.0; 2],
+        yaw: 0.3,
+        tilt: [0.0; 2],
+        depth: DEPTH,
+        indices: [None; 7],
+    };
+    touch.patch_from_object(&rest)
+}
+
+/// Every sphere against every taxel, at the travel that the kernel found.
+fn every_pair(scene: &Scene, pose: &Pose, travel: f64, deflections: &mut [f64]) {
+    let Patch { grid, taxel } = scene.patch;
+    deflections.fill(0.0);
+    for sphere in scene.objects[0].spheres() {
+        let c = pose.transform_point(sphere.center);
+        let reach2 = (taxel.radius + sphere.radius).powi(2);
+        for row in 0..grid.ny {
+            for column in 0..grid.nx {
+                let q = reach2 - (c.x - grid.x(column)).powi(2) - (c.y - grid.y(row)).powi(2);
+                if q > 0.0 {
+                    let deflection = &mut deflections[row * grid.nx + column];
+                    *deflection = deflection.max(q.sqrt() - (c.z - travel));
+                }
+            }
+        }
+    }
+}
+
+fn press(c: &mut Criterion) {
+    let mut group = c.benchmark_group("press");
+    for n_taxels in [32, 64, 128] {
+        for n_spheres in [1_000, 8_000] {
+            let scene = Scene {
+                patch: patch(n_taxels),
+                objects: vec![egg(n_spheres)],
+            };
+            let pose = zero_touch(&scene.objects[0]);
+            let size = format!("{n_taxels}x{n_taxels}_taxels_{n_spheres}_spheres");
+            let mut workspace = Workspace::new();
+            group.bench_function(BenchmarkId::new("kernel", &size), |b| {
+                b.iter(|| press_to_depth(black_box(&scene), &[pose], DEPTH, &mut workspace));
+            });
+        }
+    }
+    let scene = Scene {
+        patch: patch(64),
+        objects: vec![egg(8_000)],
+    };
+    let pose = zero_touch(&scene.objects[0]);
+    let travel = press_to_depth(&scene, &[pose], DEPTH, &mut Workspace::new())
+        .map_or(0.0, |contact| contact.travel);
+    let mut deflections = vec![0.0; 64 * 64];
+    group.sample_size(10);
+    group.bench_function("every_pair/64x64_taxels_8000_spheres", |b| {
+        b.iter(|| every_pair(black_box(&scene), &pose, travel, &mut deflections));
+    });
+    group.finish();
+}
+
+fn catalogue(c: &mut Criterion) {
+    let mut group = c.benchmark_group("press_object_64x64");
+    let catalogue = Catalogue::builtin().expect("the built-in catalogue is valid");
+    for name in ["banana", "mug", "scissors", "plate"] {
+        let object = catalogue
+            .object(name)
+            .and_then(|entry| entry.build(2.5e-4))
+            .expect("a built-in object");
+        let n_spheres = object.spheres.n_spheres();
+        let scene = Scene {
+            patch: patch(64),
+            objects: vec![object.spheres],
+        };
+        let pose = zero_touch(&scene.objects[0]);
+        let mut workspace = Workspace::new();
+        let id = BenchmarkId::new(name, format!("{n_spheres}_spheres"));
+        group.bench_function(id, |b| {
+            b.iter(|| press_to_depth(black_box(&scene), &[pose], DEPTH, &mut workspace));
+        });
+    }
+    group.finish();
+}
+
+criterion_group!(benches, press, catalogue);
+criterion_main!(benches);

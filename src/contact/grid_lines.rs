@@ -1,0 +1,121 @@
+//! The lines of a grid patch: where its rows and columns are, and which lie near a coordinate.
+
+use crate::world::Grid;
+use std::ops::Range;
+
+/// Columns and rows of a grid.
+#[derive(Clone, Debug, Default)]
+pub struct GridLines {
+    /// Columns, by their x.
+    pub x: Lines,
+    /// Rows, by their y.
+    pub y: Lines,
+    grid: Option<Grid>,
+}
+
+/// Equidistant lines, ascending.
+#[derive(Clone, Debug, Default)]
+pub struct Lines {
+    /// Metres.
+    pub positions: Vec<f64>,
+    /// Lines a metre.
+    density: f64,
+}
+
+impl GridLines {
+    /// Takes over a grid; nothing is computed if it is the one of the last call.
+    pub fn lay(&mut self, grid: &Grid) {
+        if self.grid.as_ref() == Some(grid) {
+            return;
+        }
+        self.grid = Some(*grid);
+        self.x
+            .lay((0..grid.nx).map(|column| grid.x(column)), grid.pitch);
+        self.y.lay((0..grid.ny).map(|row| grid.y(row)), grid.pitch);
+    }
+}
+
+impl Lines {
+    fn lay(&mut self, positions: impl Iterator<Item = f64>, pitch: f64) {
+        self.positions.clear();
+        self.positions.extend(positions);
+        self.density = 1.0 / pitch;
+    }
+
+    /// The position of the line nearest to a coordinate.
+    pub fn nearest(&self, coordinate: f64) -> f64 {
+        let index = (coordinate - self.positions[0]) * self.density + 0.5;
+        // The cast cuts off the fraction, and saturates beside the grid.
+        self.positions[(index as usize).min(self.positions.len() - 1)]
+    }
+
+    /// The lines within `half_width` of a coordinate, and up to two more on each side to be safe against rounding.
+    ///
+    /// Casts instead of floor and ceil, which are function calls on the oldest processors that this runs on.
+    pub fn within(&self, coordinate: f64, half_width: f64) -> Range<usize> {
+        let index = (coordinate - self.positions[0]) * self.density;
+        let spread = half_width * self.density;
+        let start = (index - spread) as usize;
+        let end = ((index + spread) as usize + 2).min(self.positions.len());
+        start.min(end)..end
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn lines() -> GridLines {
+        let mut lines = GridLines::default();
+        lines.lay(&Grid {
+            nx: 7,
+            ny: 4,
+            pitch: 2e-3,
+        });
+        lines
+    }
+
+    #[test]
+    fn every_line_within_is_in_the_range_and_at_most_two_beyond_on_a_side() {
+        let lines = lines();
+        for step in -3000..3000 {
+            let coordinate = f64::from(step) * 1e-5;
+            for half_width in [0.0, 1e-9, 1e-3, 2e-3, 3.3e-3, 1.0] {
+                let range = lines.x.within(coordinate, half_width);
+                for (index, position) in lines.x.positions.iter().enumerate() {
+                    let distance = (position - coordinate).abs();
+                    if distance <= half_width {
+                        assert!(range.contains(&index), "{coordinate} {half_width} {index}");
+                    }
+                    let beside_grid = coordinate.abs() > lines.x.positions[6] + half_width;
+                    if distance > half_width + 2.0 * 2e-3 && !beside_grid {
+                        assert!(!range.contains(&index), "{coordinate} {half_width} {index}");
+                    }
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn the_nearest_line_is_the_nearest() {
+        let lines = lines();
+        for step in -3000..3000 {
+            let coordinate = f64::from(step) * 1e-5;
+            let nearest = lines.y.nearest(coordinate);
+            for position in &lines.y.positions {
+                assert!((nearest - coordinate).abs() <= (position - coordinate).abs() + 1e-15);
+            }
+        }
+    }
+
+    #[test]
+    fn another_grid_is_laid_anew() {
+        let mut lines = lines();
+        lines.lay(&Grid {
+            nx: 2,
+            ny: 2,
+            pitch: 1.0,
+        });
+        assert_eq!(lines.x.positions, [-0.5, 0.5]);
+    }
+}
