@@ -1,4 +1,12 @@
 //! Objects: a shape, a mesh, or spheres → [`SphereUnion`].
+//!
+//! | from | by | gives |
+//! |---|---|---|
+//! | a [`Catalogue`] of [`Solid`]s (TOML, mm) | [`pack`] | few spheres, surface within a stated error |
+//! | a PLY file ([`read_ply`]) | [`vertex_spheres`] | one sphere a vertex, as the original \[BT\] |
+//! | a CSV file | [`read_spheres`] | those spheres |
+//!
+//! [`surface_error`] measures how well spheres fit a solid.
 
 mod block;
 mod catalogue;

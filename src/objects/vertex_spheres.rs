@@ -1,11 +1,11 @@
-//! One sphere per mesh vertex: the object model of the original [BT].
+//! One sphere per mesh vertex: the object model of the original \[BT\].
 
 use super::{Mesh, Sphere, SphereUnion};
 use crate::error::{Error, Result};
 use glam::DVec3;
 use std::collections::HashSet;
 
-/// A sphere around each vertex, all of radius R = 2 × the mean distance from a vertex to its nearest neighbour [BT].
+/// A sphere around each vertex, all of radius R = 2 × the mean distance from a vertex to its nearest neighbour \[BT\].
 ///
 /// Vertices at exactly the same place (files that store a corner once a face) count once: their nearest neighbour would
 /// be themselves, and R would shrink with how a file is written. Order: first occurrence. An error for fewer than two

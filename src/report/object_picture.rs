@@ -147,7 +147,7 @@ impl Picture {
 const BACKGROUND: u8 = 250;
 
 /// Rays a pixel, each way.
-const SUPERSAMPLING: usize = 3;
+const SUPERSAMPLING: usize = 2;
 
 struct Label {
     text: String,
@@ -198,11 +198,11 @@ fn draw_tile(
     labels: &mut Vec<Label>,
 ) {
     let side = width.min(height) as f64;
-    let margin = (0.09 * side).max(14.0);
+    let margin = (0.10 * side).max(14.0);
     let view = View::three_quarter();
     let (low, high) = extent(&view, union.spheres());
     let size = high - low;
-    let room = DVec2::new(width as f64 - margin, height as f64 - 2.6 * margin);
+    let room = DVec2::new(width as f64 - 1.6 * margin, height as f64 - 2.8 * margin);
     let pixels_per_metre = (room / size).min_element();
     let n = SUPERSAMPLING as f64;
     let mut canvas = Canvas {
@@ -336,12 +336,12 @@ impl Canvas {
         let foreshortening = self.view.towards_eye.z;
         for sphere in spheres {
             let height = sphere.center.z - floor;
-            let slant = DVec3::new(0.35, 0.25, -1.0);
+            let slant = DVec3::new(0.22, 0.16, -1.0);
             let center = self.view.project(sphere.center + height * slant);
             let radii = sphere.radius * DVec2::new(1.0, foreshortening);
             self.each_ray(center, radii, |index, _| dark[index] = 1.0);
         }
-        let blur = (self.width.min(self.height) / 60).max(2);
+        let blur = (self.width.min(self.height) / 40).max(2);
         for _ in 0..2 {
             dark = box_blur(&dark, self.width, blur);
         }
@@ -356,7 +356,7 @@ impl Canvas {
         let indexed = hits.iter().zip(normals).enumerate();
         indexed
             .map(|(index, (hit, normal))| match hit {
-                None => (1.0 - 0.30 * f64::from(shadow[index]), false),
+                None => (1.0 - 0.20 * f64::from(shadow[index]), false),
                 Some(hit) => {
                     let light =
                         0.30 + 0.62 * normal.dot(lamp).max(0.0) + 0.16 * normal.dot(fill).max(0.0);
@@ -466,4 +466,83 @@ fn box_blur(values: &[f32], width: usize, reach: usize) -> Vec<f32> {
         }
     }
     blurred
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn ball(radius: f64) -> SphereUnion {
+        let center = DVec3::new(0.0, 0.0, radius);
+        SphereUnion::new(vec![Sphere { center, radius }]).unwrap()
+    }
+
+    /// Paint is bluer than red; floor, shadow and type are grey.
+    fn n_painted(picture: &Picture) -> usize {
+        let painted = |pixel: &&[u8]| i16::from(pixel[2]) > i16::from(pixel[0]) + 8;
+        picture.rgb.chunks(3).filter(painted).count()
+    }
+
+    #[test]
+    fn a_ball_is_drawn_as_a_disc_that_fills_its_tile_whatever_its_size() {
+        let small = object_picture("", &ball(1e-3), 200, 200).unwrap();
+        let large = object_picture("", &ball(0.3), 200, 200).unwrap();
+        // The room is 200 − 2.8 × 20 pixels high.
+        let disc = 0.25 * std::f64::consts::PI * 144.0 * 144.0;
+        for picture in [&small, &large] {
+            let painted = n_painted(picture) as f64;
+            assert!(
+                (painted / disc - 1.0).abs() < 0.03,
+                "{painted} pixels of {disc}"
+            );
+        }
+    }
+
+    #[test]
+    fn the_same_object_gives_the_same_bytes() {
+        let draw = || {
+            object_picture("ball", &ball(0.02), 160, 120)
+                .unwrap()
+                .png()
+                .unwrap()
+        };
+        assert_eq!(draw(), draw());
+        assert!(draw().starts_with(b"\x89PNG"));
+    }
+
+    #[test]
+    fn a_name_and_the_length_of_the_bar_are_written() {
+        let dark = |name| {
+            let picture = object_picture(name, &ball(0.02), 200, 200).unwrap();
+            let head = &picture.rgb[..3 * 200 * 20];
+            head.iter().filter(|&&value| value < 100).count()
+        };
+        assert_eq!(dark(""), 0);
+        assert!(dark("ball") > 30);
+    }
+
+    #[test]
+    fn a_sheet_holds_all_tiles_and_refuses_none() {
+        let union = ball(0.02);
+        let sheet = contact_sheet(&[("a", &union); 5], 3, 100).unwrap();
+        assert_eq!((sheet.width, sheet.height), (300, 200));
+        let tile = object_picture("a", &union, 100, 100).unwrap();
+        assert_eq!(n_painted(&sheet), 5 * n_painted(&tile));
+        assert_eq!(contact_sheet(&[], 3, 100).unwrap_err().exit_code(), 2);
+        assert_eq!(
+            object_picture("a", &union, 10, 100)
+                .unwrap_err()
+                .exit_code(),
+            2
+        );
+    }
+
+    #[test]
+    fn bars_are_the_longest_round_number_that_fits() {
+        let lengths = [1.0, 1.99, 2.5, 7.0, 12.0, 49.0, 0.03].map(bar_length);
+        let expected = [1.0, 1.0, 2.0, 5.0, 10.0, 20.0, 0.02];
+        for (length, expected) in lengths.into_iter().zip(expected) {
+            assert!((length - expected).abs() < 1e-12, "{length}");
+        }
+    }
 }
