@@ -2,3 +2,4 @@
 
 pub mod files;
 pub mod object_picture;
+mod shaded_view;
