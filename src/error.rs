@@ -51,6 +51,29 @@ impl Error {
         }
     }
 
+    /// An [`Error::Input`] from a TOML file: `file:line:column: what was given; what is allowed`.
+    pub fn toml(place: &str, text: &str, error: &toml::de::Error) -> Self {
+        let position = error.span().map_or(String::new(), |span| {
+            let before = &text[..span.start.min(text.len())];
+            let line = before.matches('\n').count() + 1;
+            let column = before.chars().rev().take_while(|&c| c != '\n').count() + 1;
+            format!(":{line}:{column}")
+        });
+        // What Rust calls usize, people call a whole number.
+        let message = error
+            .message()
+            .replace('\n', " ")
+            .replace("expected usize", "expected a whole number")
+            .replace("expected u64", "expected a whole number")
+            .replace("expected u32", "expected a whole number")
+            .replace("expected f64", "expected a number");
+        let (given, allowed) = match message.split_once(", expected ") {
+            Some((given, allowed)) => (given.to_owned(), format!("expected {allowed}")),
+            None => (message, "TOML as in experiments/ and objects/".to_owned()),
+        };
+        Self::input(format!("{place}{position}"), given, allowed)
+    }
+
     /// The command's exit code: 2 for bad input, 1 when the world failed.
     pub fn exit_code(&self) -> u8 {
         match self {

@@ -7,6 +7,7 @@
 
 pub mod contact;
 pub mod error;
+pub mod files;
 pub mod geometry;
 pub mod objects;
 pub mod random;

@@ -1,1 +1,23 @@
-//! Contact: a patch, an object and a pose → deflections.
+//! Contact: a [`Scene`](crate::world::Scene) and poses → deflections \[BT\].
+//!
+//! For taxel i (rest centre p, axis n, radius ρ) and sphere j (centre c, radius R): `S = ρ + R`, `h = (c − p)·n`,
+//! `b² = |c − p|² − h²`. If `b < S`, the sphere needs `δ_ij = √(S² − b²) − h`. The contact deflection is
+//!
+//! ```text
+//! δ*_i = min(s, max(0, max_j δ_ij))
+//! ```
+//!
+//! A sphere whose centre is behind the substrate (`h < −s − ρ`) is on the far side of the skin and does not count.
+//! A taxel that would have to go further than its stroke s is saturated: counted in [`Contact`], never hidden.
+//!
+//! A **direct press** ([`press_to_depth`], [`press_to_travel`]) evaluates this once at the final pose. A **time loop**
+//! ([`DamperState`]) adds the damper: a taxel that nothing pushes relaxes, `k δ + c δ̇ = 0`. Without a damper both agree
+//! exactly, so a scene that has none needs no loop.
+
+mod damper;
+mod indentation;
+mod simulate;
+
+pub use damper::{DamperState, relaxation_factor};
+pub use indentation::{Contact, Workspace, first_contact, press_to_depth, press_to_travel};
+pub use simulate::{Recording, simulate};

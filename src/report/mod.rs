@@ -1,5 +1,33 @@
 //! Report: tables → files for people.
+//!
+//! In: the result tables ([`Tables`](crate::study::table::Tables)), frames (ny × nx, metres or newtons), and what the study
+//! says of itself ([`ReportPage`](html::ReportPage)). Out: CSV files, charts and pictures (SVG and PNG), terminal text, and
+//! one self-contained HTML page. Equal input gives equal bytes; every file is whole or not there.
+//!
+//! [`results::write_all`] writes a study's folder; [`terminal::summary_table`] is what a run prints at its end;
+//! [`frame_files::write_frame`] and [`pressure_map`] show a single frame.
 
-pub mod files;
+pub mod answer;
+pub mod axis;
+pub mod chart;
+pub mod chart_plan;
+pub mod colours;
+pub mod confusion_picture;
+pub mod csv_tables;
+pub mod drawing;
+pub mod frame_files;
+pub mod heat_map;
+pub mod html;
+mod html_tables;
+mod legend;
 pub mod object_picture;
+pub mod pressure_map;
+pub mod progress;
+mod raster;
+pub mod results;
 mod shaded_view;
+pub mod snapshots;
+pub mod terminal;
+pub mod text_width;
+pub mod varying;
+mod x_scale;

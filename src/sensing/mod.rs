@@ -1,4 +1,33 @@
 //! Sensing: frames → measurements `y = Φx`.
+//!
+//! A [`Projection`] turns a frame x of n taxels (ny × nx, row after row) into m measurements, 1 ≤ m ≤ n; n / m is the
+//! compression ratio.
+//!
+//! | ensemble | row of Φ | a row's norm | stored |
+//! |---|---|---|---|
+//! | [`Gaussian`](Ensemble::Gaussian) | independent N(0, 1/n) | 1 on average | m × n numbers |
+//! | [`Sbhe`](Ensemble::Sbhe) | ±1/√B on the B taxels of a scrambled block \[SBHE\] | 1 | n + m indices |
+//! | [`BlockAverage`](Ensemble::BlockAverage) | 1/area on a rectangle of taxels | 1/√area | m rectangles |
+//! | [`Subsample`](Ensemble::Subsample) | one taxel | 1 | m indices |
+//! | [`Identity`](Ensemble::Identity) | one taxel, all n in order | 1 | nothing |
+//!
+//! **Scale.** No entry depends on m. So √(n/m)·Φ preserves norms on average (Johnson and Lindenstrauss) for the random
+//! ensembles, and a study that scales its features need not care.
+//!
+//! **Nesting.** For one seed, the first m measurements of a larger projection are bit by bit the measurements of the
+//! smaller one ([`Ensemble::is_prefix_nested`]): a sweep over ratios projects once, at its largest m, and takes leading columns.
+//! Plain averages over blocks cannot nest so: one block is the whole array, two blocks are halves, and the mean of the
+//! array is neither half. Block averages nest in their own way instead: see [`Ensemble::BlockAverage`].
+//!
+//! **Repeatability.** A row of measurements has the same bits in whatever batch it is measured.
+
+mod block_average;
+mod gaussian;
+mod hadamard;
+mod projection;
+mod subsample;
+
+pub use projection::Projection;
 
 use serde::{Deserialize, Serialize};
 
@@ -8,12 +37,23 @@ use serde::{Deserialize, Serialize};
 pub enum Ensemble {
     /// Independent Gaussian entries.
     Gaussian,
-    /// Scrambled block Hadamard [SBHE].
+    /// Scrambled block Hadamard \[SBHE\]: taxels permuted, Walsh–Hadamard transforms of blocks, coefficients in random order.
     Sbhe,
-    /// Averages over blocks of neighbouring taxels.
+    /// Averages over blocks of neighbouring taxels: equal squares where the array allows them (64 × 64 at m = 1,024 is
+    /// 2 × 2 taxels each), else the cells of recursive splitting, largest first, along its longer side.
+    ///
+    /// A cell of a smaller m is a union of cells of a larger m, so the smaller measurements follow from the larger, among all
+    /// m of splitting and among squares whose sides divide each other (ratios 4, 16, 64 …).
     BlockAverage,
     /// Some taxels, drawn without replacement.
     Subsample,
-    /// The frame itself.
+    /// The frame itself, whatever m.
     Identity,
+}
+
+impl Ensemble {
+    /// Whether the first m measurements of a larger projection are those of the projection of size m.
+    pub fn is_prefix_nested(self) -> bool {
+        self != Self::BlockAverage
+    }
 }

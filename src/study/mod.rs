@@ -1,3 +1,35 @@
 //! Study: TOML → plan → table.
+//!
+//! [`StudySpec`] (as written) → [`Plan`] (checked, SI) → touches drawn → [`Sweep`] (splits and cells laid out) →
+//! [`run`] (simulate, measure, evaluate) → [`table::Tables`].
+//!
+//! Threads live here. Whatever their number, a study's tables are the same bytes, times apart: every touch, split, noise and
+//! projection is drawn from its own named stream, and sums are taken in a fixed order.
 
+mod check;
+mod estimate;
+mod evaluation;
+mod measurement;
+mod object_files;
+mod plan;
+mod plan_learning;
+mod plan_scene;
+pub mod progress;
+mod runner;
+mod samples;
+mod simulation;
+mod spec;
+mod summary;
+mod sweep;
 pub mod table;
+mod touch_files;
+
+pub use estimate::Estimate;
+pub use object_files::{load_mesh, load_objects};
+pub use plan::{Amount, Plan, SplitKind, SplitPlan};
+pub use runner::{ArrayOutcome, Outcome, run};
+pub use samples::{Samples, sample_frames};
+pub use simulation::{Frames, TouchedObject, draw_touches, simulate_array};
+pub use spec::*;
+pub use sweep::{Group, Sweep};
+pub use touch_files::write_touches;

@@ -1,0 +1,148 @@
+//! Training and prediction of the SVMs, with linfa-svm's own prediction beside ours.
+//!
+//! `cargo bench --bench recognition`: 20 classes of 30 training and 30 test touches, Gaussian measurements of synthetic
+//! frames, standardised. Ids end in the number of measurements m.
+
+use bubbletouch::random::Seed;
+use bubbletouch::recognition::dataset::{Dataset, dataset};
+use bubbletouch::recognition::kernel::{Gamma, Kernel};
+use bubbletouch::recognition::scaling::Scaling;
+use bubbletouch::recognition::svm::{Multiclass, SvmParams};
+use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
+use linfa::DatasetBase;
+use linfa::traits::Fit;
+use linfa_svm::Svm;
+use ndarray::{Array1, Array2, Axis};
+use rand::Rng;
+use rand_distr::StandardNormal;
+
+const N_CLASSES: usize = 20;
+const N_PER_CLASS: usize = 30;
+const SIDE: usize = 24;
+
+/// Frames of smooth non-negative bumps, four to a class, shifted and turned at random, and projected to m numbers.
+fn touches(m: usize, seed: &Seed) -> Dataset {
+    let n_rows = N_CLASSES * N_PER_CLASS;
+    let mut frames = Array2::zeros((n_rows, SIDE * SIDE));
+    let labels = Array1::from_iter((0..n_rows).map(|row| row / N_PER_CLASS));
+    for (row, mut frame) in frames.rows_mut().into_iter().enumerate() {
+        let mut shape = Seed::new(1)
+            .named("shape")
+            .numbered(labels[row] as u64)
+            .rng();
+        let bumps: [[f64; 4]; 4] = std::array::from_fn(|_| {
+            let (x, y) = (shape.gen_range(-4.0..4.0), shape.gen_range(-4.0..4.0));
+            [x, y, shape.gen_range(8.0..60.0), shape.gen_range(0.3..1.0)]
+        });
+        let mut pose = seed.numbered(row as u64).rng();
+        let (dx, dy) = (pose.gen_range(-3.0..3.0), pose.gen_range(-3.0..3.0));
+        let (sin, cos) = pose.gen_range(0.0..0.9_f64).sin_cos();
+        for (taxel, value) in frame.iter_mut().enumerate() {
+            let u = (taxel % SIDE) as f64 - 11.5 - dx;
+            let v = (taxel / SIDE) as f64 - 11.5 - dy;
+            let (u, v) = (cos * u - sin * v, sin * u + cos * v);
+            let height =
+                |[x, y, width, top]: [f64; 4]| top - ((u - x).powi(2) + (v - y).powi(2)) / width;
+            let noise: f64 = pose.sample(StandardNormal);
+            *value = bumps.map(height).into_iter().fold(0.0, f64::max) + 0.02 * noise;
+        }
+    }
+    let mut projection = Seed::new(1).named("projection").rng();
+    let projection = Array2::from_shape_fn((SIDE * SIDE, m), |_| {
+        projection.sample::<f64, _>(StandardNormal)
+    });
+    let features = frames.dot(&projection);
+    let scaling = Scaling::Standard.fit(features.view()).unwrap();
+    dataset(scaling.apply(features.view()).unwrap(), labels).unwrap()
+}
+
+fn kernels() -> [(&'static str, Kernel); 2] {
+    let gamma = Gamma::Scale;
+    [("linear", Kernel::Linear), ("rbf", Kernel::Rbf { gamma })]
+}
+
+fn train(criterion: &mut Criterion) {
+    let mut group = criterion.benchmark_group("train");
+    group.sample_size(10);
+    for m in [16, 64, 256, 1024] {
+        let data = touches(m, &Seed::new(2));
+        for (name, kernel) in kernels() {
+            for multiclass in [Multiclass::OneVsOne, Multiclass::OneVsRest] {
+                if multiclass == Multiclass::OneVsRest && m != 64 {
+                    continue;
+                }
+                let params = SvmParams {
+                    kernel,
+                    multiclass,
+                    ..SvmParams::default()
+                };
+                group.bench_function(
+                    BenchmarkId::new(format!("{name} {multiclass:?}"), m),
+                    |bencher| {
+                        bencher.iter(|| params.train(&data).unwrap());
+                    },
+                );
+            }
+        }
+    }
+    group.finish();
+}
+
+fn predict(criterion: &mut Criterion) {
+    let mut group = criterion.benchmark_group("predict 600 rows, one-vs-one");
+    group.sample_size(10);
+    for m in [64, 1024] {
+        let data = touches(m, &Seed::new(2));
+        let test = touches(m, &Seed::new(3)).records;
+        for (name, kernel) in kernels() {
+            let params = SvmParams {
+                kernel,
+                ..SvmParams::default()
+            };
+            let model = params.train(&data).unwrap();
+            group.bench_function(BenchmarkId::new(name, m), |bencher| {
+                bencher.iter(|| model.labels(test.view()).unwrap());
+            });
+            let oracles = linfa_models(kernel, &data);
+            group.bench_function(
+                BenchmarkId::new(format!("{name}, linfa-svm"), m),
+                |bencher| {
+                    bencher.iter(|| {
+                        let decide = |svm: &Svm<f64, bool>| {
+                            test.rows()
+                                .into_iter()
+                                .map(|row| svm.weighted_sum(&row) - svm.rho)
+                                .sum::<f64>()
+                        };
+                        oracles.iter().map(decide).sum::<f64>()
+                    });
+                },
+            );
+        }
+    }
+    group.finish();
+}
+
+/// linfa-svm's model of every pair of classes.
+fn linfa_models(kernel: Kernel, data: &Dataset) -> Vec<Svm<f64, bool>> {
+    let mut models = Vec::new();
+    for a in 0..N_CLASSES {
+        for b in a + 1..N_CLASSES {
+            let in_pair = |row: &usize| [a, b].contains(&data.targets[*row]);
+            let rows: Vec<usize> = (0..data.targets.len()).filter(in_pair).collect();
+            let targets = Array1::from_iter(rows.iter().map(|&row| data.targets[row] == a));
+            let params = Svm::<f64, bool>::params().eps(1e-3);
+            let params = match kernel {
+                Kernel::Linear => params.linear_kernel(),
+                // Standardised features: 1/γ is their number.
+                _ => params.gaussian_kernel(data.records.ncols() as f64),
+            };
+            let pair = DatasetBase::new(data.records.select(Axis(0), &rows), targets);
+            models.push(params.fit(&pair).unwrap());
+        }
+    }
+    models
+}
+
+criterion_group!(benches, train, predict);
+criterion_main!(benches);

@@ -1,0 +1,76 @@
+//! Time to find the resting poses of an object of 3,000 spheres.
+
+use bubbletouch::objects::{Sphere, SphereUnion};
+use bubbletouch::world::{center_of_mass, stable_poses};
+use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
+use glam::DVec3;
+
+/// Spheres of 3 mm on an ellipsoid with these half axes, in a spiral.
+fn ellipsoid(n: usize, axes: DVec3) -> SphereUnion {
+    let point = |i: usize| {
+        let z = 1.0 - (2 * i + 1) as f64 / n as f64;
+        let (sin, cos) = (2.399963229728653 * i as f64).sin_cos();
+        let flat = (1.0 - z * z).sqrt();
+        axes * DVec3::new(flat * cos, flat * sin, z)
+    };
+    shell((0..n).map(point))
+}
+
+/// Spheres of 3 mm on a can.
+fn can(n: usize, radius: f64, length: f64) -> SphereUnion {
+    let around = (n as f64).sqrt() as usize;
+    let point = |i: usize| {
+        let (sin, cos) = (std::f64::consts::TAU * (i % around) as f64 / around as f64).sin_cos();
+        let along = (i / around) as f64 * around as f64 / n as f64;
+        DVec3::new(radius * cos, radius * sin, length * along)
+    };
+    shell((0..n).map(point))
+}
+
+/// Spheres of 3 mm on the six sides of a box.
+fn carton(n: usize, size: DVec3) -> SphereUnion {
+    let per_side = ((n / 6) as f64).sqrt() as usize;
+    let place = |i: usize| i as f64 / (per_side - 1) as f64;
+    let sides = (0..6).flat_map(move |side| {
+        (0..per_side * per_side).map(move |i| {
+            let (u, v) = (place(i % per_side), place(i / per_side));
+            let w = f64::from(side % 2);
+            size * match side / 2 {
+                0 => DVec3::new(w, u, v),
+                1 => DVec3::new(u, w, v),
+                _ => DVec3::new(u, v, w),
+            }
+        })
+    });
+    shell(sides)
+}
+
+fn shell(points: impl Iterator<Item = DVec3>) -> SphereUnion {
+    let sphere = |center| Sphere {
+        center,
+        radius: 3e-3,
+    };
+    SphereUnion::new(points.map(sphere).collect()).expect("the spheres are valid")
+}
+
+fn rest(criterion: &mut Criterion) {
+    let mut group = criterion.benchmark_group("stable_poses");
+    group.sample_size(20);
+    for (name, union) in [
+        ("ellipsoid", ellipsoid(3000, DVec3::new(0.03, 0.04, 0.06))),
+        ("can", can(3000, 0.034, 0.1)),
+        ("carton", carton(3000, DVec3::new(0.04, 0.1, 0.15))),
+        ("ball", ellipsoid(3000, DVec3::splat(0.04))),
+    ] {
+        group.bench_function(BenchmarkId::new(name, 3000), |bencher| {
+            bencher.iter(|| stable_poses(&union));
+        });
+        group.bench_function(BenchmarkId::new(format!("{name}_mass"), 3000), |bencher| {
+            bencher.iter(|| center_of_mass(&union));
+        });
+    }
+    group.finish();
+}
+
+criterion_group!(benches, rest);
+criterion_main!(benches);

@@ -1,0 +1,48 @@
+//! The command line: one file a subcommand, each `Args` → work → files or terminal.
+
+mod objects;
+mod output;
+mod plan;
+mod press;
+mod run;
+mod study_args;
+mod touches;
+
+use bubbletouch::Result;
+use clap::{Parser, Subcommand};
+
+/// Simulated touch for robot skin: press objects on arrays of taxels, compress what they feel, recognise the object.
+///
+/// Without a subcommand it runs experiments/quickstart.toml and writes results/quickstart/.
+#[derive(Parser)]
+#[command(name = "bubbletouch", version, propagate_version = true)]
+struct CommandLine {
+    #[command(subcommand)]
+    command: Option<Command>,
+}
+
+#[derive(Subcommand)]
+enum Command {
+    /// Run a study: simulate, compress, recognise; write tables, charts and a report
+    Run(run::Args),
+    /// Say what a study would do: cells, touches, memory and time, without running it
+    Plan(plan::Args),
+    /// Write a study's touches as NumPy files, to train elsewhere
+    Touches(touches::Args),
+    /// Press one object on one array and write or draw the deflections
+    Press(press::Args),
+    /// List the built-in objects, or draw one
+    Objects(objects::Args),
+}
+
+/// Parses the command line and does what it says.
+pub fn dispatch() -> Result<()> {
+    match CommandLine::parse().command {
+        None => run::run(&run::Args::quickstart()),
+        Some(Command::Run(args)) => run::run(&args),
+        Some(Command::Plan(args)) => plan::plan(&args),
+        Some(Command::Touches(args)) => touches::touches(&args),
+        Some(Command::Press(args)) => press::press(&args),
+        Some(Command::Objects(args)) => objects::objects(&args),
+    }
+}

@@ -1,0 +1,126 @@
+//! `bubbletouch objects`: what there is to touch, as a list or as pictures.
+
+use bubbletouch::files::write_bytes;
+use bubbletouch::objects::{Catalogue, Entry, Object};
+use bubbletouch::report::object_picture::{contact_sheet, object_picture};
+use bubbletouch::study::load_mesh;
+use bubbletouch::{Error, Result};
+use comfy_table::{CellAlignment, Table, presets::NOTHING};
+use rayon::prelude::*;
+use std::path::PathBuf;
+
+/// Pixels along a side of one object's picture.
+const PICTURE: usize = 640;
+/// Pixels along a side of one object on a sheet of many.
+const TILE: usize = 240;
+/// Objects in a row of a sheet.
+const COLUMNS: usize = 6;
+
+/// List objects, or draw them.
+///
+/// Without a name: all built-in objects, or those of a set. Sizes are in millimetres, x × y × z.
+#[derive(clap::Args)]
+pub struct Args {
+    /// Objects by name; all when left out
+    names: Vec<String>,
+    /// Only this set: household, balls, boxes or cans
+    #[arg(long, value_name = "SET", conflicts_with = "names")]
+    set: Option<String>,
+    /// A PLY mesh in metres instead, as one sphere a vertex
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["names", "set"])]
+    mesh: Option<PathBuf>,
+    /// How far the spheres may be from the surface
+    #[arg(long, value_name = "MM", default_value_t = 0.25)]
+    surface_error_mm: f64,
+    /// Draw instead of listing: one picture, or a sheet if there are several objects
+    #[arg(long, value_name = "FILE.png")]
+    out: Option<PathBuf>,
+}
+
+/// An object and the set it is from.
+struct Listed {
+    set: String,
+    object: Object,
+}
+
+pub fn objects(args: &Args) -> Result<()> {
+    let listed = args.build()?;
+    let Some(path) = &args.out else {
+        println!("{}", table(&listed));
+        return Ok(());
+    };
+    if path.extension().is_none_or(|ending| ending != "png") {
+        return Err(Error::input(
+            path.display(),
+            "not a .png file",
+            "a name that ends in .png",
+        ));
+    }
+    let picture = match &listed[..] {
+        [one] => object_picture(&one.object.name, &one.object.spheres, PICTURE, PICTURE)?,
+        many => {
+            let tiles: Vec<_> = many
+                .iter()
+                .map(|l| (l.object.name.as_str(), &l.object.spheres))
+                .collect();
+            contact_sheet(&tiles, COLUMNS.min(tiles.len()), TILE)?
+        }
+    };
+    write_bytes(path, &picture.png()?)
+}
+
+impl Args {
+    fn build(&self) -> Result<Vec<Listed>> {
+        if let Some(path) = &self.mesh {
+            return Ok(vec![Listed {
+                set: "mesh".to_owned(),
+                object: load_mesh(path)?,
+            }]);
+        }
+        let catalogue = Catalogue::builtin()?;
+        self.chosen(&catalogue)?
+            .into_par_iter()
+            .map(|entry| {
+                Ok(Listed {
+                    set: entry.set.clone(),
+                    object: entry.build(self.surface_error_mm * 1e-3)?,
+                })
+            })
+            .collect()
+    }
+
+    fn chosen<'a>(&self, catalogue: &'a Catalogue) -> Result<Vec<&'a Entry>> {
+        if let Some(set) = &self.set {
+            return catalogue.set(set);
+        }
+        if self.names.is_empty() {
+            return Ok(catalogue.entries().iter().collect());
+        }
+        self.names
+            .iter()
+            .map(|name| catalogue.object(name))
+            .collect()
+    }
+}
+
+fn table(listed: &[Listed]) -> Table {
+    let mut table = Table::new();
+    table.load_preset(NOTHING);
+    table.set_header(["set", "name", "parts", "spheres", "size (mm)"]);
+    for Listed { set, object } in listed {
+        let size = object.spheres.bounds().size() * 1e3;
+        table.add_row([
+            set.clone(),
+            object.name.clone(),
+            object.n_parts.to_string(),
+            object.spheres.n_spheres().to_string(),
+            format!("{:.0} × {:.0} × {:.0}", size.x, size.y, size.z),
+        ]);
+    }
+    for column in [2, 3] {
+        if let Some(column) = table.column_mut(column) {
+            column.set_cell_alignment(CellAlignment::Right);
+        }
+    }
+    table
+}

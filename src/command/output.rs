@@ -1,0 +1,33 @@
+//! Where results go.
+
+use bubbletouch::{Error, Result};
+use std::path::Path;
+
+/// Makes a folder to write to; the error says if a file stands there.
+pub fn output_folder(folder: &Path) -> Result<()> {
+    if folder.exists() && !folder.is_dir() {
+        return Err(Error::input(
+            folder.display(),
+            "a file",
+            "a folder, or a path where one can be made",
+        ));
+    }
+    std::fs::create_dir_all(folder).map_err(|e| match e.kind() {
+        // Some parent is a file.
+        std::io::ErrorKind::NotADirectory | std::io::ErrorKind::AlreadyExists => Error::input(
+            folder.display(),
+            "below a file",
+            "a path where a folder can be made",
+        ),
+        _ => Error::io(folder, "create folder", e),
+    })
+}
+
+/// Columns of the terminal, or of a page where there is none.
+pub fn terminal_width() -> usize {
+    let terminal = console::Term::stdout();
+    match terminal.size_checked() {
+        Some((_, columns)) if terminal.is_term() => usize::from(columns),
+        _ => 100,
+    }
+}

@@ -1,0 +1,246 @@
+//! `bubbletouch press`: one object, one patch, one reading.
+
+use super::output::terminal_width;
+use bubbletouch::contact::{Contact, Workspace, press_to_depth, press_to_travel};
+use bubbletouch::geometry::Pose;
+use bubbletouch::objects::{Catalogue, SphereUnion, read_spheres};
+use bubbletouch::report::frame_files::write_frame;
+use bubbletouch::report::pressure_map::pressure_text;
+use bubbletouch::report::terminal::Ink;
+use bubbletouch::signal::Quantity;
+use bubbletouch::study::load_mesh;
+use bubbletouch::world::{Grid, Patch, RestPose, RestPoses, Scene, Taxel, Touch};
+use bubbletouch::{Error, Result};
+use ndarray::Array2;
+use std::fs::File;
+use std::path::PathBuf;
+
+const MM: f64 = 1e-3;
+
+/// Press one object on one array.
+///
+/// The object lies on a table and the patch comes from above, along its own axis, to first contact and then further by
+/// the depth.
+#[derive(clap::Args)]
+pub struct Args {
+    #[command(flatten)]
+    source: Source,
+    /// How far past first contact [default: 3 for objects and meshes; spheres are read where they are]
+    #[arg(long, value_name = "MM")]
+    depth_mm: Option<f64>,
+    #[command(flatten)]
+    place: Place,
+    /// How far the spheres of a built-in object may be from its surface
+    #[arg(long, value_name = "MM", default_value_t = 0.25)]
+    surface_error_mm: f64,
+    /// Columns and rows of the array
+    #[arg(long, value_name = "NXxNY", default_value = "64x64", value_parser = parse_taxels)]
+    taxels: (usize, usize),
+    /// Distance between taxels
+    #[arg(long, value_name = "MM", default_value_t = 2.0)]
+    pitch_mm: f64,
+    /// Radius of a taxel [default: half the pitch]
+    #[arg(long, value_name = "MM")]
+    taxel_radius_mm: Option<f64>,
+    /// How far a taxel can be pushed in
+    #[arg(long, value_name = "MM", default_value_t = 5.0)]
+    stroke_mm: f64,
+    /// Write ny × nx deflections in metres to a .csv, .npz or .png file instead of drawing them here
+    #[arg(long, value_name = "FILE")]
+    out: Option<PathBuf>,
+}
+
+#[derive(clap::Args)]
+#[group(required = true, multiple = false)]
+struct Source {
+    /// A built-in object (bubbletouch objects lists them)
+    #[arg(long, value_name = "NAME")]
+    object: Option<String>,
+    /// A PLY mesh in metres, as one sphere a vertex
+    #[arg(long, value_name = "FILE")]
+    mesh: Option<PathBuf>,
+    /// Spheres x,y,z,r in metres, in the patch frame: taxels rest in the plane z = 0, axes along +z
+    #[arg(long, value_name = "FILE", conflicts_with = "Place")]
+    spheres: Option<PathBuf>,
+}
+
+#[derive(clap::Args)]
+#[group(id = "Place", multiple = true)]
+struct Place {
+    /// Which stable pose the object lies in, from 0 (the likeliest) [default: as modelled, its z up]
+    #[arg(long, value_name = "N")]
+    rest: Option<usize>,
+    /// Where the patch is over the object's middle, along x [default: 0]
+    #[arg(long, value_name = "MM", allow_negative_numbers = true)]
+    offset_x_mm: Option<f64>,
+    /// The same along y [default: 0]
+    #[arg(long, value_name = "MM", allow_negative_numbers = true)]
+    offset_y_mm: Option<f64>,
+    /// How the object is turned about the vertical [default: 0]
+    #[arg(long, value_name = "DEG", allow_negative_numbers = true)]
+    yaw_deg: Option<f64>,
+    /// How the patch is tilted about its x axis [default: 0]
+    #[arg(long, value_name = "DEG", allow_negative_numbers = true)]
+    tilt_x_deg: Option<f64>,
+    /// The same about its y axis [default: 0]
+    #[arg(long, value_name = "DEG", allow_negative_numbers = true)]
+    tilt_y_deg: Option<f64>,
+}
+
+fn parse_taxels(text: &str) -> std::result::Result<(usize, usize), String> {
+    const MOST: usize = 4096;
+    let parsed = text
+        .split_once(['x', '×'])
+        .and_then(|(nx, ny)| Some((nx.parse().ok()?, ny.parse().ok()?)));
+    match parsed {
+        Some((nx, ny)) if (1..=MOST).contains(&nx) && (1..=MOST).contains(&ny) => Ok((nx, ny)),
+        _ => Err(format!(
+            "expected columns x rows, each from 1 to {MOST}, such as 64x64"
+        )),
+    }
+}
+
+pub fn press(args: &Args) -> Result<()> {
+    let patch = args.patch()?;
+    let (spheres, pose) = args.placed_object()?;
+    let scene = Scene {
+        patch,
+        objects: vec![spheres],
+    };
+    let mut workspace = Workspace::new();
+    let contact = args.contact(&scene, pose, &mut workspace)?;
+    let (nx, ny) = args.taxels;
+    let frame = Array2::from_shape_vec((ny, nx), workspace.deflections().to_vec())
+        .expect("a press gives one deflection a taxel");
+    match &args.out {
+        Some(path) => write_frame(path, &frame, &patch.grid)?,
+        None => print!(
+            "{}",
+            pressure_text(
+                &frame,
+                args.pitch_mm,
+                Quantity::Deflection,
+                Ink::of_stdout(),
+                terminal_width()
+            )?
+        ),
+    }
+    let deepest = frame.iter().fold(0.0_f64, |a, &b| a.max(b));
+    eprintln!(
+        "{} of {} taxels touched, {} saturated; deepest {:.3} mm",
+        contact.n_touched,
+        frame.len(),
+        contact.n_saturated,
+        1e3 * deepest
+    );
+    Ok(())
+}
+
+impl Args {
+    fn patch(&self) -> Result<Patch> {
+        let (nx, ny) = self.taxels;
+        Patch::new(
+            Grid {
+                nx,
+                ny,
+                pitch: self.pitch_mm * MM,
+            },
+            Taxel {
+                radius: self.taxel_radius_mm.unwrap_or(0.5 * self.pitch_mm) * MM,
+                stiffness: 1.0,
+                damping: 0.0,
+                stroke: self.stroke_mm * MM,
+            },
+        )
+    }
+
+    /// The spheres and `patch_from_object` before any travel.
+    fn placed_object(&self) -> Result<(SphereUnion, Pose)> {
+        let spheres = match (&self.source.spheres, &self.source.mesh, &self.source.object) {
+            (Some(path), _, _) => {
+                let place = path.display().to_string();
+                let file = File::open(path).map_err(|e| {
+                    Error::input(
+                        &place,
+                        format!("cannot be opened ({e})"),
+                        "a CSV of spheres",
+                    )
+                })?;
+                return Ok((read_spheres(&place, file)?, Pose::IDENTITY));
+            }
+            (_, Some(path), _) => load_mesh(path)?.spheres,
+            (_, _, Some(name)) => self.build(name)?,
+            (None, None, None) => unreachable!("the command line requires one source"),
+        };
+        let pose = self
+            .place
+            .touch()?
+            .patch_from_object(&self.place.rest(&spheres)?);
+        Ok((spheres, pose))
+    }
+
+    fn build(&self, name: &str) -> Result<SphereUnion> {
+        let catalogue = Catalogue::builtin()?;
+        let surface_error = self.surface_error_mm * MM;
+        Ok(catalogue.object(name)?.build(surface_error)?.spheres)
+    }
+
+    fn contact(&self, scene: &Scene, pose: Pose, workspace: &mut Workspace) -> Result<Contact> {
+        let depth_mm = match (self.depth_mm, &self.source.spheres) {
+            (None, Some(_)) => return Ok(press_to_travel(scene, &[pose], 0.0, workspace)),
+            (depth_mm, _) => depth_mm.unwrap_or(3.0),
+        };
+        if !(depth_mm.is_finite() && depth_mm > 0.0) {
+            return Err(Error::input(
+                "--depth-mm",
+                depth_mm,
+                "a positive number of millimetres",
+            ));
+        }
+        press_to_depth(scene, &[pose], depth_mm * MM, workspace).ok_or_else(|| {
+            Error::input(
+                "press",
+                "the object is not over the array",
+                "an offset that brings some of it over a taxel",
+            )
+        })
+    }
+}
+
+impl Place {
+    fn touch(&self) -> Result<Touch> {
+        let number = |name: &str, value: Option<f64>| match value.unwrap_or(0.0) {
+            v if v.is_finite() => Ok(v),
+            v => Err(Error::input(name, v, "a finite number")),
+        };
+        Ok(Touch {
+            rest: 0,
+            offset: [
+                number("--offset-x-mm", self.offset_x_mm)? * MM,
+                number("--offset-y-mm", self.offset_y_mm)? * MM,
+            ],
+            yaw: number("--yaw-deg", self.yaw_deg)?.to_radians(),
+            tilt: [
+                number("--tilt-x-deg", self.tilt_x_deg)?.to_radians(),
+                number("--tilt-y-deg", self.tilt_y_deg)?.to_radians(),
+            ],
+            depth: 0.0,
+            indices: [None; 7],
+        })
+    }
+
+    fn rest(&self, spheres: &SphereUnion) -> Result<RestPose> {
+        let Some(number) = self.rest else {
+            return Ok(RestPoses::AsModelled.of(spheres).swap_remove(0));
+        };
+        let mut poses = RestPoses::Stable.of(spheres);
+        if number >= poses.len() {
+            return Err(Error::input(
+                "--rest",
+                number,
+                format!("0 to {}, the stable poses of this object", poses.len() - 1),
+            ));
+        }
+        Ok(poses.swap_remove(number))
+    }
+}

@@ -1,0 +1,171 @@
+//! `bubbletouch run`: a study from its file to its folder of results.
+
+use super::output::{output_folder, terminal_width};
+use super::study_args::{LoadedStudy, StudyArgs};
+use bubbletouch::Result;
+use bubbletouch::files::write_bytes;
+use bubbletouch::report::html::{Limit, ReportPage, Snapshots};
+use bubbletouch::report::{progress, results, terminal};
+use bubbletouch::study::{Outcome, run as run_study, sample_frames};
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+#[derive(clap::Args)]
+pub struct Args {
+    #[command(flatten)]
+    study: StudyArgs,
+    /// Where to write tables, charts and report.html [default: results/ and the study's name]
+    #[arg(long, value_name = "FOLDER")]
+    out: Option<PathBuf>,
+}
+
+impl Args {
+    /// What a bare `bubbletouch` runs.
+    pub fn quickstart() -> Self {
+        Self {
+            study: StudyArgs::quickstart(),
+            out: None,
+        }
+    }
+}
+
+pub fn run(args: &Args) -> Result<()> {
+    let start = Instant::now();
+    let folder = match &args.out {
+        Some(folder) => folder.clone(),
+        None => Path::new("results").join(args.study.name()?),
+    };
+    let loaded = args.study.load()?;
+    output_folder(&folder)?;
+    let progress = progress::to_stderr();
+    let outcome = run_study(
+        &loaded.plan,
+        &loaded.sweep,
+        &loaded.touched,
+        progress.as_ref(),
+    )?;
+    let page = report_page(&loaded, &outcome, args, start.elapsed().as_secs_f64())?;
+    results::write_all(&folder, &outcome.tables, &page)?;
+    write_bytes(
+        &folder.join("study.toml"),
+        loaded.plan.spec.to_toml().as_bytes(),
+    )?;
+    progress.finish(&format!("{:.1} s", start.elapsed().as_secs_f64()));
+    let table = folder.join("summary.csv").display().to_string();
+    println!(
+        "{}",
+        terminal::summary_table(&outcome.tables, terminal_width(), &table)
+    );
+    println!(
+        "Results in {}; open {}",
+        folder.display(),
+        folder.join("report.html").display()
+    );
+    Ok(())
+}
+
+fn report_page(
+    loaded: &LoadedStudy,
+    outcome: &Outcome,
+    args: &Args,
+    wall_s: f64,
+) -> Result<ReportPage> {
+    let spec = &loaded.plan.spec;
+    let sample = sample_frames(&loaded.plan, &loaded.sweep, &loaded.touched)?;
+    Ok(ReportPage {
+        name: loaded.name.clone(),
+        question: spec.question.clone(),
+        expected: spec.expected.clone(),
+        settings: settings(loaded),
+        limits: limits(outcome),
+        snapshots: Some(Snapshots {
+            frames: sample.frames,
+            pitch_mm: sample.pitch_mm,
+            quantity: sample.quantity,
+            caption: sample.caption,
+        }),
+        wall_s: Some(wall_s),
+        command: command_line(args),
+        program: concat!("bubbletouch ", env!("CARGO_PKG_VERSION")).to_owned(),
+    })
+}
+
+fn settings(loaded: &LoadedStudy) -> Vec<(String, String)> {
+    let spec = &loaded.plan.spec;
+    let spheres: Vec<usize> = loaded
+        .touched
+        .iter()
+        .map(|t| t.object.spheres.n_spheres())
+        .collect();
+    let names: Vec<&str> = loaded
+        .touched
+        .iter()
+        .map(|t| t.object.name.as_str())
+        .collect();
+    let row = |name: &str, value: String| (name.to_owned(), value);
+    vec![
+        row("Objects", format!("{}: {}", names.len(), names.join(", "))),
+        row(
+            "Spheres an object",
+            format!(
+                "{} to {}",
+                spheres.iter().min().unwrap_or(&0),
+                spheres.iter().max().unwrap_or(&0)
+            ),
+        ),
+        row("Touches", loaded.sweep.labels.len().to_string()),
+        row("Stroke", format!("{} mm", spec.skin.stroke_mm)),
+        row("Trials", spec.trials.to_string()),
+        row("Seed", spec.seed.to_string()),
+    ]
+}
+
+fn limits(outcome: &Outcome) -> Vec<Limit> {
+    let sum = |count: fn(&bubbletouch::study::ArrayOutcome) -> usize| -> u64 {
+        outcome.arrays.iter().map(|array| count(array) as u64).sum()
+    };
+    let n_touches = sum(|a| a.n_touches);
+    let n_capped = outcome
+        .tables
+        .accuracy
+        .iter()
+        .filter(|(_, score)| score.n_capped > 0)
+        .count();
+    let limit = |what: &str, count, of, meaning: &str| Limit {
+        what: what.to_owned(),
+        count,
+        of,
+        meaning: meaning.to_owned(),
+    };
+    vec![
+        limit(
+            "touches that met nothing",
+            sum(|a| a.n_missed),
+            n_touches,
+            "no part of the object was over the array; their frames hold no contact",
+        ),
+        limit(
+            "touches with a saturated taxel",
+            sum(|a| a.n_saturated),
+            n_touches,
+            "a taxel was at its stroke, where it cannot tell how much further the object pushes",
+        ),
+        limit(
+            "fits stopped at the solver's iteration cap",
+            n_capped as u64,
+            outcome.tables.accuracy.len() as u64,
+            "at least one of their SVMs is short of its tolerance",
+        ),
+    ]
+}
+
+fn command_line(args: &Args) -> String {
+    let mut command = format!("bubbletouch run {}", args.study.study.display());
+    if let Some(objects) = &args.study.objects {
+        command += &format!(" --objects {}", objects.display());
+    }
+    if let Some(seed) = args.study.seed {
+        command += &format!(" --seed {seed}");
+    }
+    command
+}

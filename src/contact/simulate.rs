@@ -1,0 +1,86 @@
+//! The time loop: a moving patch over moving or fixed objects.
+
+use super::{DamperState, Workspace, press_to_travel};
+use crate::error::{Error, Result};
+use crate::geometry::Pose;
+use crate::world::{Scene, VelocityPlan};
+use ndarray::{Array1, Array2};
+
+/// Frames over time.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Recording {
+    /// n_frames, seconds.
+    pub time: Array1<f64>,
+    /// n_frames × n_taxels, metres.
+    pub deflection: Array2<f64>,
+    /// n_frames × n_taxels, newtons.
+    pub force: Array2<f64>,
+    /// Taxels at their stroke, summed over frames.
+    pub n_saturated: usize,
+}
+
+/// Moves the patch and the objects along their plans from t = 0 and records every `dt` seconds until `n_frames` frames
+/// are made; frame k is at (k + 1) dt.
+///
+/// `world_from_objects`: one plan an object; a fixed object's plan has no phases. Any `dt` is stable.
+/// The error names a `dt` that is not positive, or a number of plans that is not the number of objects.
+pub fn simulate(
+    scene: &Scene,
+    world_from_patch: &VelocityPlan,
+    world_from_objects: &[VelocityPlan],
+    dt: f64,
+    n_frames: usize,
+) -> Result<Recording> {
+    if !(dt.is_finite() && dt > 0.0) {
+        return Err(Error::input(
+            "time step",
+            format!("{dt} s"),
+            "a positive number",
+        ));
+    }
+    if world_from_objects.len() != scene.objects.len() {
+        return Err(Error::input(
+            "object trajectories",
+            format!(
+                "{} plans for {} objects",
+                world_from_objects.len(),
+                scene.objects.len()
+            ),
+            "one plan an object",
+        ));
+    }
+    let n_taxels = scene.patch.grid.n_taxels();
+    let mut recording = Recording {
+        time: Array1::from_shape_fn(n_frames, |k| (k + 1) as f64 * dt),
+        deflection: Array2::zeros((n_frames, n_taxels)),
+        force: Array2::zeros((n_frames, n_taxels)),
+        n_saturated: 0,
+    };
+    let mut state = DamperState::at_rest(n_taxels);
+    let mut workspace = Workspace::new();
+    let mut poses: Vec<Pose> = Vec::with_capacity(scene.objects.len());
+    for frame in 0..n_frames {
+        let time = recording.time[frame];
+        let patch_from_world = world_from_patch.pose_at(time).inverse();
+        poses.clear();
+        poses.extend(
+            world_from_objects
+                .iter()
+                .map(|plan| patch_from_world.compose(&plan.pose_at(time))),
+        );
+        let contact = press_to_travel(scene, &poses, 0.0, &mut workspace);
+        state.step(&scene.patch.taxel, dt, workspace.deflections());
+        recording.n_saturated += contact.n_saturated;
+        copy_into(&mut recording.deflection, frame, &state.deflection);
+        copy_into(&mut recording.force, frame, &state.force);
+    }
+    Ok(recording)
+}
+
+fn copy_into(frames: &mut Array2<f64>, frame: usize, values: &[f64]) {
+    frames
+        .row_mut(frame)
+        .iter_mut()
+        .zip(values)
+        .for_each(|(to, from)| *to = *from);
+}

@@ -1,0 +1,137 @@
+//! Files that are whole or not there: written beside their name, then renamed.
+
+use crate::error::{Error, Result};
+use std::fs::{self, File};
+use std::io::{self, BufWriter, Write};
+use std::path::{Path, PathBuf};
+
+/// A file in the making. [`commit`](Self::commit) puts it in place; dropped before, it leaves nothing behind.
+#[derive(Debug)]
+pub struct WholeFile {
+    path: PathBuf,
+    /// Where it is written until then; `None` for a device or a pipe, which no rename can replace.
+    partial: Option<PathBuf>,
+    writer: BufWriter<File>,
+}
+
+impl WholeFile {
+    /// Starts a file that will stand at `path`; the error says why it cannot.
+    pub fn create(path: &Path) -> Result<Self> {
+        let name = path.file_name().ok_or_else(|| {
+            Error::input(path.display(), "no file name", "a path that ends in one")
+        })?;
+        let partial = match fs::metadata(path) {
+            Ok(meta) if meta.is_dir() => {
+                return Err(Error::input(path.display(), "a folder", "a file to write"));
+            }
+            Ok(meta) if !meta.is_file() => None,
+            _ => {
+                let mut partial = name.to_owned();
+                partial.push(format!(".{}.partial", std::process::id()));
+                Some(path.with_file_name(partial))
+            }
+        };
+        let target = partial.as_deref().unwrap_or(path);
+        let file = File::create(target).map_err(|e| Error::io(path, "write", e))?;
+        Ok(Self {
+            path: path.to_owned(),
+            partial,
+            writer: BufWriter::new(file),
+        })
+    }
+
+    /// Writes part of it.
+    pub fn write(
+        &mut self,
+        fill: impl FnOnce(&mut BufWriter<File>) -> io::Result<()>,
+    ) -> Result<()> {
+        fill(&mut self.writer).map_err(|e| Error::io(&self.path, "write", e))
+    }
+
+    /// Makes it durable and puts it in place, over what stood there.
+    pub fn commit(mut self) -> Result<()> {
+        let Some(partial) = self.partial.clone() else {
+            return self.write(|writer| writer.flush());
+        };
+        self.write(|writer| {
+            writer.flush()?;
+            writer.get_ref().sync_all()
+        })?;
+        fs::rename(&partial, &self.path).map_err(|e| Error::io(&self.path, "rename", e))?;
+        self.partial = None;
+        Ok(())
+    }
+}
+
+impl Drop for WholeFile {
+    fn drop(&mut self) {
+        if let Some(partial) = &self.partial {
+            // It is ours alone; that it cannot be removed changes nothing in what is reported.
+            let _ = fs::remove_file(partial);
+        }
+    }
+}
+
+/// Writes a file through `fill`; on any failure what stood under `path` still stands there.
+pub fn write_whole(
+    path: &Path,
+    fill: impl FnOnce(&mut BufWriter<File>) -> io::Result<()>,
+) -> Result<()> {
+    let mut file = WholeFile::create(path)?;
+    file.write(fill)?;
+    file.commit()
+}
+
+/// Writes bytes as a whole file.
+pub fn write_bytes(path: &Path, bytes: &[u8]) -> Result<()> {
+    write_whole(path, |writer| writer.write_all(bytes))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn names(folder: &Path) -> Vec<String> {
+        let mut names: Vec<String> = fs::read_dir(folder)
+            .unwrap()
+            .map(|entry| entry.unwrap().file_name().into_string().unwrap())
+            .collect();
+        names.sort();
+        names
+    }
+
+    #[test]
+    fn a_file_that_fails_half_way_leaves_the_old_one_as_it_was() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("table.csv");
+        write_bytes(&path, b"old").unwrap();
+        let failed = write_whole(&path, |writer| {
+            writer.write_all(b"half of the new")?;
+            Err(io::Error::other("the disk is gone"))
+        });
+        assert_eq!(failed.unwrap_err().exit_code(), 1);
+        assert_eq!(fs::read(&path).unwrap(), b"old");
+        assert_eq!(names(folder.path()), ["table.csv"]);
+        write_bytes(&path, b"new").unwrap();
+        assert_eq!(fs::read(&path).unwrap(), b"new");
+        assert_eq!(names(folder.path()), ["table.csv"]);
+    }
+
+    #[test]
+    fn a_folder_is_not_a_file() {
+        let folder = tempfile::tempdir().unwrap();
+        assert_eq!(write_bytes(folder.path(), b"").unwrap_err().exit_code(), 2);
+    }
+
+    #[test]
+    fn a_full_device_is_an_error_and_stays_a_device() {
+        let full = Path::new("/dev/full");
+        if !full.exists() {
+            println!("SKIPPED: this system has no /dev/full");
+            return;
+        }
+        let error = write_bytes(full, &[0; 100_000]).unwrap_err();
+        assert_eq!(error.exit_code(), 1);
+        assert!(!fs::metadata(full).unwrap().is_file());
+    }
+}

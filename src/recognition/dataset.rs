@@ -1,0 +1,139 @@
+//! The labelled measurements: linfa's data set, checked before any classifier sees it.
+
+use linfa::DatasetBase;
+use ndarray::{Array1, Array2, ArrayBase, ArrayView1, ArrayView2, Axis, Data, Ix2};
+
+use crate::{Error, Result};
+
+/// Labelled measurements: linfa's data set of `features` (n_rows × m) and one label per row, `0..n_classes`.
+pub type Dataset = DatasetBase<Array2<f64>, Array1<usize>>;
+
+/// A data set of features (n_rows × m) and labels (n_rows), checked.
+///
+/// # Errors
+/// No rows, no columns, another number of labels than rows, or a NaN or infinite feature (named by row and column).
+pub fn dataset(features: Array2<f64>, labels: Array1<usize>) -> Result<Dataset> {
+    check_features(features.view())?;
+    check_labels(features.nrows(), labels.view())?;
+    Ok(DatasetBase::new(features, labels))
+}
+
+/// The rows of a data set at these indices, in this order (a copy).
+///
+/// # Errors
+/// An index beyond the last row.
+pub fn rows(data: &Dataset, indices: &[usize]) -> Result<Dataset> {
+    if let Some(&row) = indices.iter().find(|&&row| row >= data.records.nrows()) {
+        let last = data.records.nrows();
+        return Err(Error::input(
+            "rows",
+            row,
+            format!("an index below {last} is allowed"),
+        ));
+    }
+    let features = data.records.select(Axis(0), indices);
+    dataset(features, data.targets.select(Axis(0), indices))
+}
+
+/// Refuses empty features and any that is NaN or infinite, naming its row and column.
+pub(crate) fn check_features(features: ArrayView2<f64>) -> Result<()> {
+    let (n_rows, n_columns) = features.dim();
+    if n_rows == 0 || n_columns == 0 {
+        let given = format!("{n_rows} rows of {n_columns} values");
+        return Err(Error::input(
+            "features",
+            given,
+            "at least one row and one column are needed",
+        ));
+    }
+    match features
+        .indexed_iter()
+        .find(|(_, value)| !value.is_finite())
+    {
+        None => Ok(()),
+        Some(((row, column), value)) => Err(Error::input(
+            format!("features, row {row}, column {column}"),
+            value,
+            "only finite numbers are allowed",
+        )),
+    }
+}
+
+/// Refuses labels that are not one per row.
+pub(crate) fn check_labels(n_rows: usize, labels: ArrayView1<usize>) -> Result<()> {
+    if labels.len() == n_rows {
+        return Ok(());
+    }
+    Err(Error::input(
+        "labels",
+        format!("{} labels", labels.len()),
+        format!("one for each of the {n_rows} rows is needed"),
+    ))
+}
+
+/// Refuses features of another width than the model was trained on, and any that is NaN or infinite.
+pub(crate) fn check_width<D: Data<Elem = f64>>(
+    features: &ArrayBase<D, Ix2>,
+    width: usize,
+) -> Result<()> {
+    if features.ncols() != width {
+        return Err(Error::input(
+            "features",
+            format!("{} columns", features.ncols()),
+            format!("the {width} columns of training are needed"),
+        ));
+    }
+    if features.nrows() == 0 {
+        return Ok(());
+    }
+    check_features(features.view())
+}
+
+/// The distinct labels, ascending.
+pub(crate) fn distinct(labels: ArrayView1<usize>) -> Vec<usize> {
+    let mut classes = labels.to_vec();
+    classes.sort_unstable();
+    classes.dedup();
+    classes
+}
+
+/// linfa asks this of the error of every classifier that implements its traits.
+impl From<linfa::Error> for Error {
+    fn from(error: linfa::Error) -> Self {
+        Self::input(
+            "classifier",
+            error,
+            "see the documentation of linfa for what is allowed",
+        )
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use ndarray::array;
+
+    #[test]
+    fn a_bad_feature_is_named_by_row_and_column() {
+        for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+            let error = dataset(array![[0.0, 1.0], [2.0, bad]], array![0, 1]).unwrap_err();
+            assert!(error.to_string().starts_with("features, row 1, column 1: "));
+        }
+    }
+
+    #[test]
+    fn empty_or_mismatched_data_is_refused() {
+        assert!(dataset(Array2::zeros((0, 3)), Array1::zeros(0)).is_err());
+        assert!(dataset(Array2::zeros((3, 0)), Array1::zeros(3)).is_err());
+        assert!(dataset(Array2::zeros((3, 1)), Array1::zeros(2)).is_err());
+    }
+
+    #[test]
+    fn rows_come_in_the_order_asked() {
+        let data = dataset(array![[0.0], [1.0], [2.0]], array![5, 6, 7]).unwrap();
+        let some = rows(&data, &[2, 0]).unwrap();
+        assert_eq!(some.records, array![[2.0], [0.0]]);
+        assert_eq!(some.targets, array![7, 5]);
+        assert!(rows(&data, &[3]).is_err());
+    }
+}

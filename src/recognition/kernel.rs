@@ -1,0 +1,188 @@
+//! Kernels of the support vector machines, and their matrices by matrix products.
+
+use ndarray::{Array2, ArrayView2, Axis, Zip};
+use serde::{Deserialize, Serialize};
+
+use crate::{Error, Result};
+
+/// The width parameter γ of a kernel, in inverse squared feature units.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Gamma {
+    /// `1 / (m · var(X))`, the variance taken over all training features; 1 where that is 0 (scikit-learn's default).
+    Scale,
+    /// A number above 0.
+    Value(f64),
+}
+
+/// The kernel `K(x, z)` of a support vector machine.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Kernel {
+    /// `x·z`.
+    Linear,
+    /// `exp(−γ|x − z|²)`.
+    Rbf {
+        /// γ.
+        gamma: Gamma,
+    },
+    /// `(γ x·z + c₀)^d`.
+    Polynomial {
+        /// γ.
+        gamma: Gamma,
+        /// c₀ ≥ 0 (a negative one makes the dual problem non-convex).
+        coef0: f64,
+        /// d ≥ 1.
+        degree: u32,
+    },
+}
+
+impl Kernel {
+    /// The kernel with γ as a number, taken from the training features (n_rows × m).
+    pub(crate) fn resolve(&self, features: ArrayView2<f64>) -> Result<KernelFunction> {
+        Ok(match *self {
+            Self::Linear => KernelFunction::Linear,
+            Self::Rbf { gamma } => KernelFunction::Rbf {
+                gamma: gamma.resolve(features)?,
+            },
+            Self::Polynomial {
+                gamma,
+                coef0,
+                degree,
+            } => {
+                if !(coef0 >= 0.0 && coef0.is_finite()) {
+                    let allowed = "a finite number of at least 0 is allowed";
+                    return Err(Error::input("coef0", coef0, allowed));
+                }
+                if !(1..=20).contains(&degree) {
+                    return Err(Error::input("degree", degree, "1 to 20 is allowed"));
+                }
+                KernelFunction::Polynomial {
+                    gamma: gamma.resolve(features)?,
+                    coef0,
+                    degree: degree as i32,
+                }
+            }
+        })
+    }
+}
+
+impl Gamma {
+    fn resolve(self, features: ArrayView2<f64>) -> Result<f64> {
+        match self {
+            Self::Value(gamma) if gamma > 0.0 && gamma.is_finite() => Ok(gamma),
+            Self::Value(gamma) => Err(Error::input(
+                "gamma",
+                gamma,
+                "'scale' or a finite number above 0 is allowed",
+            )),
+            Self::Scale => {
+                let variance = features.var(0.0);
+                let scale = features.ncols() as f64 * variance;
+                Ok(if scale > 0.0 { 1.0 / scale } else { 1.0 })
+            }
+        }
+    }
+}
+
+/// A kernel with every parameter a number.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum KernelFunction {
+    Linear,
+    Rbf { gamma: f64 },
+    Polynomial { gamma: f64, coef0: f64, degree: i32 },
+}
+
+impl KernelFunction {
+    /// `K(a_i, b_j)` for all rows of `a` (p × m) and `b` (q × m): a p × q matrix.
+    ///
+    /// RBF distances come from `|a|² + |b|² − 2a·b`, so the rows should be centred: far from the origin, digits are lost.
+    pub(crate) fn matrix(&self, a: ArrayView2<f64>, b: ArrayView2<f64>) -> Array2<f64> {
+        let mut products = a.dot(&b.t());
+        match *self {
+            Self::Linear => {}
+            Self::Rbf { gamma } => {
+                let norms_a = squared_norms(a);
+                let norms_b = squared_norms(b);
+                Zip::from(products.rows_mut())
+                    .and(&norms_a)
+                    .for_each(|row, &norm_a| {
+                        Zip::from(row).and(&norms_b).for_each(|value, &norm_b| {
+                            let distance = (norm_a + norm_b - 2.0 * *value).max(0.0);
+                            *value = (-gamma * distance).exp();
+                        });
+                    });
+            }
+            Self::Polynomial {
+                gamma,
+                coef0,
+                degree,
+            } => products.mapv_inplace(|value| (gamma * value + coef0).powi(degree)),
+        }
+        products
+    }
+}
+
+fn squared_norms(rows: ArrayView2<f64>) -> ndarray::Array1<f64> {
+    rows.map_axis(Axis(1), |row| row.dot(&row))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use ndarray::array;
+
+    #[test]
+    fn matrices_by_products_equal_the_definitions() {
+        let a = array![[0.5, -1.0, 2.0], [0.0, 0.25, 1.0]];
+        let b = array![[1.0, 1.0, 1.0], [0.5, -1.0, 2.0], [-2.0, 0.0, 0.5]];
+        let polynomial = Kernel::Polynomial {
+            gamma: Gamma::Value(0.3),
+            coef0: 1.0,
+            degree: 3,
+        };
+        let rbf = Kernel::Rbf {
+            gamma: Gamma::Value(0.3),
+        };
+        let matrices = [Kernel::Linear, rbf, polynomial]
+            .map(|kernel| kernel.resolve(a.view()).unwrap().matrix(a.view(), b.view()));
+        for i in 0..2 {
+            for j in 0..3 {
+                let dot: f64 = (0..3).map(|k| a[[i, k]] * b[[j, k]]).sum();
+                let distance: f64 = (0..3).map(|k| (a[[i, k]] - b[[j, k]]).powi(2)).sum();
+                assert!((matrices[0][[i, j]] - dot).abs() < 1e-14);
+                assert!((matrices[1][[i, j]] - (-0.3 * distance).exp()).abs() < 1e-14);
+                assert!((matrices[2][[i, j]] - (0.3 * dot + 1.0).powi(3)).abs() < 1e-13);
+            }
+        }
+    }
+
+    #[test]
+    fn gamma_scale_is_the_inverse_of_columns_times_variance() {
+        let features = array![[1.0, 3.0], [5.0, 7.0]];
+        assert_eq!(
+            Gamma::Scale.resolve(features.view()).unwrap(),
+            1.0 / (2.0 * 5.0)
+        );
+        assert_eq!(
+            Gamma::Scale.resolve(Array2::ones((3, 2)).view()).unwrap(),
+            1.0
+        );
+    }
+
+    #[test]
+    fn parameters_out_of_range_are_refused() {
+        let features = array![[1.0]];
+        for gamma in [0.0, -1.0, f64::NAN, f64::INFINITY] {
+            assert!(Gamma::Value(gamma).resolve(features.view()).is_err());
+        }
+        for (coef0, degree) in [(-1.0, 2), (f64::NAN, 2), (0.0, 0), (0.0, 21)] {
+            let gamma = Gamma::Scale;
+            let kernel = Kernel::Polynomial {
+                gamma,
+                coef0,
+                degree,
+            };
+            assert!(kernel.resolve(features.view()).is_err());
+        }
+    }
+}

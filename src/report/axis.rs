@@ -1,0 +1,239 @@
+//! The axes of a study: each setting's name, its value in a cell, and how both are written for people.
+
+use crate::recognition::ClassifierKind;
+use crate::sensing::Ensemble;
+use crate::signal::NoiseUnit;
+use crate::study::table::Cell;
+
+/// A setting that a study can sweep.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Axis {
+    /// Compression ratio n / m.
+    Ratio,
+    /// Measurements a touch, m.
+    Measurements,
+    /// Millimetres between taxels.
+    Pitch,
+    /// Side lengths of the array.
+    Size,
+    /// Noise standard deviation.
+    Noise,
+    /// Standard deviation of the smoothing.
+    Smoothing,
+    /// How measurements are made.
+    Ensemble,
+    /// Which classifier.
+    Classifier,
+    /// Soft-margin penalty.
+    C,
+    /// Training touches an object.
+    TrainTouches,
+}
+
+/// Every axis, in the order in which tables show them.
+pub const AXES: [Axis; 10] = [
+    Axis::Pitch,
+    Axis::Size,
+    Axis::Noise,
+    Axis::Smoothing,
+    Axis::Ensemble,
+    Axis::Classifier,
+    Axis::C,
+    Axis::TrainTouches,
+    Axis::Ratio,
+    Axis::Measurements,
+];
+
+/// One value of an axis.
+#[derive(Clone, Debug, PartialEq)]
+pub struct AxisValue {
+    /// Where it stands on a numeric axis, in the unit of the axis title; none for a word.
+    pub number: Option<f64>,
+    /// The value for a tick, without unit: `10`, `4:1`, `sbhe`.
+    pub tick: String,
+    /// The value for a sentence, with unit: `10 %`.
+    pub label: String,
+}
+
+impl Axis {
+    /// One word, as in file names and column headers.
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Ratio => "ratio",
+            Self::Measurements => "measurements",
+            Self::Pitch => "pitch",
+            Self::Size => "size",
+            Self::Noise => "noise",
+            Self::Smoothing => "smoothing",
+            Self::Ensemble => "ensemble",
+            Self::Classifier => "classifier",
+            Self::C => "c",
+            Self::TrainTouches => "train_touches",
+        }
+    }
+
+    /// The name in a sentence or before a value.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Ratio => "compression",
+            Self::Measurements => "m",
+            Self::Pitch => "pitch",
+            Self::Size => "array size",
+            Self::Noise => "noise",
+            Self::Smoothing => "smoothing",
+            Self::Ensemble => "ensemble",
+            Self::Classifier => "classifier",
+            Self::C => "C",
+            Self::TrainTouches => "training touches",
+        }
+    }
+
+    /// The title of a chart's axis, with unit; the noise's unit is taken from a cell.
+    pub fn title(self, cell: &Cell) -> String {
+        let title = match self {
+            Self::Ratio => "compression ratio n : m",
+            Self::Measurements => "measurements a touch, m",
+            Self::Pitch => "taxel pitch (mm)",
+            Self::Size => "side length of the array (mm)",
+            Self::Noise => match cell.noise_unit {
+                NoiseUnit::FullScale => "noise standard deviation (% of full scale)",
+                NoiseUnit::Mm => "noise standard deviation (mm)",
+                NoiseUnit::N => "noise standard deviation (N)",
+            },
+            Self::Smoothing => "smoothing standard deviation (mm)",
+            Self::Ensemble => "ensemble of measurements",
+            Self::Classifier => "classifier",
+            Self::C => "soft-margin penalty C",
+            Self::TrainTouches => "training touches an object",
+        };
+        title.to_owned()
+    }
+
+    /// The value of this axis in a cell.
+    pub fn value(self, cell: &Cell) -> AxisValue {
+        match self {
+            Self::Ratio => with_suffix(cell.ratio, ":1", ":1"),
+            Self::Measurements => with_suffix(cell.measurements as f64, "", ""),
+            Self::Pitch => with_suffix(cell.pitch_mm, "", " mm"),
+            Self::Size => size(cell),
+            Self::Noise => noise(cell),
+            Self::Smoothing => with_suffix(cell.smoothing_mm, "", " mm"),
+            Self::Ensemble => word(ensemble_name(cell.ensemble)),
+            Self::Classifier => word(classifier_name(cell.classifier)),
+            Self::C => match cell.c {
+                Some(c) => with_suffix(c, "", ""),
+                None => word("chosen"),
+            },
+            Self::TrainTouches => with_suffix(cell.train_touches as f64, "", ""),
+        }
+    }
+}
+
+/// A number as people write it: four significant digits, no trailing zeros.
+pub fn short_number(number: f64) -> String {
+    if number == 0.0 || !number.is_finite() {
+        return if number == 0.0 {
+            "0".to_owned()
+        } else {
+            number.to_string()
+        };
+    }
+    let digits_before = number.abs().log10().floor() as i32 + 1;
+    if !(-3..=6).contains(&digits_before) {
+        return format!("{number:.2e}").replace(".00e", "e");
+    }
+    let decimals = (4 - digits_before).max(0) as usize;
+    let text = format!("{number:.decimals$}");
+    match text.contains('.') {
+        true => text.trim_end_matches('0').trim_end_matches('.').to_owned(),
+        false => text,
+    }
+}
+
+/// An ensemble in words.
+pub fn ensemble_name(ensemble: Ensemble) -> &'static str {
+    match ensemble {
+        Ensemble::Gaussian => "Gaussian",
+        Ensemble::Sbhe => "SBHE",
+        Ensemble::BlockAverage => "block average",
+        Ensemble::Subsample => "subsample",
+        Ensemble::Identity => "identity",
+    }
+}
+
+/// A classifier in words.
+pub fn classifier_name(classifier: ClassifierKind) -> &'static str {
+    match classifier {
+        ClassifierKind::LinearSvm => "linear SVM",
+        ClassifierKind::RbfSvm => "RBF SVM",
+        ClassifierKind::PolynomialSvm => "polynomial SVM",
+    }
+}
+
+fn with_suffix(number: f64, tick: &str, label: &str) -> AxisValue {
+    let text = short_number(number);
+    AxisValue {
+        number: Some(number),
+        tick: format!("{text}{tick}"),
+        label: format!("{text}{label}"),
+    }
+}
+
+fn word(text: &str) -> AxisValue {
+    AxisValue {
+        number: None,
+        tick: text.to_owned(),
+        label: text.to_owned(),
+    }
+}
+
+fn size(cell: &Cell) -> AxisValue {
+    let along_y = cell.ny as f64 * cell.pitch_mm;
+    if cell.nx == cell.ny {
+        return with_suffix(cell.size_mm, "", " mm");
+    }
+    let sides = format!("{} × {}", short_number(cell.size_mm), short_number(along_y));
+    AxisValue {
+        number: None,
+        label: format!("{sides} mm"),
+        tick: sides,
+    }
+}
+
+fn noise(cell: &Cell) -> AxisValue {
+    match cell.noise_unit {
+        // 100 × 0.07 is not 7 in floating point; the label is rounded, and so is the place on the axis.
+        NoiseUnit::FullScale => {
+            let percent = (cell.noise_std * 1e8).round() / 1e6;
+            with_suffix(percent, "", " %")
+        }
+        NoiseUnit::Mm => with_suffix(cell.noise_std, "", " mm"),
+        NoiseUnit::N => with_suffix(cell.noise_std, "", " N"),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_are_written_short_and_true() {
+        let written = [
+            0.0,
+            7.0,
+            0.1,
+            1.0 / 3.0,
+            1024.0,
+            102.4,
+            12345.6,
+            1e-5,
+            2.5e7,
+        ];
+        let expected = [
+            "0", "7", "0.1", "0.3333", "1024", "102.4", "12346", "1.00e-5", "2.50e7",
+        ];
+        for (number, text) in written.into_iter().zip(expected) {
+            assert_eq!(short_number(number), text.replace(".00e", "e"));
+        }
+    }
+}

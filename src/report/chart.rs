@@ -1,0 +1,335 @@
+//! Accuracy against a swept setting: lines with interval bands, side by side in panels.
+
+use crate::report::axis::{Axis, AxisValue};
+use crate::report::chart_plan::ChartPlan;
+use crate::report::colours::{GRID, INK};
+use crate::report::drawing::{Align, Area, Drawing, Point, Stroke, TextStyle};
+use crate::report::legend::{
+    CHANCE, Heading, LEFT, LegendEntry, MARKER_RADIUS, Mark, RIGHT, line_colour, line_stroke,
+};
+use crate::report::varying::{Levels, Settings, unbroken_parts};
+use crate::report::x_scale::{TICK_SIZE, XScale};
+use crate::study::table::{Cell, CellScore, Tables};
+
+/// Pixels between panels.
+const GAP: f64 = 26.0;
+const LABEL: u32 = 13;
+/// Lines up to which bands do not hide each other; more lines get a whisker at each point.
+const MOST_BANDS: usize = 4;
+
+/// How many different objects the confusion table knows: chance is one in so many.
+pub fn n_classes(tables: &Tables) -> usize {
+    let mut names: Vec<&str> = tables.confusion.iter().map(|c| c.object.as_str()).collect();
+    names.sort_unstable();
+    names.dedup();
+    names.len()
+}
+
+/// Draws one planned chart of the summary table.
+pub fn draw_chart(plan: &ChartPlan, tables: &Tables) -> Drawing {
+    let rows: Vec<&(Cell, CellScore)> = tables
+        .summary
+        .iter()
+        .filter(|(cell, _)| plan.shows(cell))
+        .collect();
+    let n_classes = n_classes(tables);
+    let chart = Chart {
+        plan,
+        rows: &rows,
+        chance: (n_classes > 0).then(|| 1.0 / n_classes as f64),
+    };
+    chart.draw()
+}
+
+/// What a chart is read as: `accuracy by compression, by pitch and array size (noise 10 % of full scale)`.
+pub fn chart_title(plan: &ChartPlan) -> String {
+    let mut title = format!("Accuracy by {}", plan.x.axis.name());
+    let others: Vec<&str> = [&plan.lines, &plan.panels]
+        .into_iter()
+        .flatten()
+        .map(|levels| levels.axis.name())
+        .collect();
+    if !others.is_empty() {
+        title += &format!(", for each {}", others.join(" and "));
+    }
+    if !plan.fixed.is_empty() {
+        let fixed: Vec<String> = plan.fixed.iter().map(|(a, v)| named(*a, v)).collect();
+        title += &format!(" ({})", fixed.join(", "));
+    }
+    title
+}
+
+struct Chart<'a> {
+    plan: &'a ChartPlan,
+    rows: &'a [&'a (Cell, CellScore)],
+    chance: Option<f64>,
+}
+
+impl Chart<'_> {
+    fn draw(&self) -> Drawing {
+        let n_panels = self.plan.panels.as_ref().map_or(1, |p| p.values.len());
+        let columns = match n_panels {
+            1 | 2 => n_panels,
+            4 => 2,
+            _ => 3,
+        };
+        let (panel_width, panel_height) = match columns {
+            1 => (660.0, 340.0),
+            2 => (385.0, 300.0),
+            _ => (272.0, 240.0),
+        };
+        let panel_rows = n_panels.div_ceil(columns);
+        let width = LEFT + columns as f64 * panel_width + (columns - 1) as f64 * GAP + RIGHT;
+        let heading = Heading::of(
+            &chart_title(self.plan),
+            &self.constants(),
+            self.legend_entries(),
+            width,
+        );
+        let panel_title = if self.plan.panels.is_some() {
+            24.0
+        } else {
+            6.0
+        };
+        let any_panel = Area {
+            x: 0.0,
+            y: 0.0,
+            width: panel_width,
+            height: panel_height,
+        };
+        let has_second_row = XScale::of(&self.plan.x, any_panel).has_second_row();
+        let labels_height = if has_second_row { 40.0 } else { 26.0 };
+        let pitch_down = panel_title + panel_height + labels_height;
+        let height = heading.height() + panel_rows as f64 * pitch_down + 26.0;
+        let mut drawing = Drawing::new(width, height);
+        heading.draw(&mut drawing);
+        for panel in 0..n_panels {
+            let (row, column) = (panel / columns, panel % columns);
+            let frame = Area {
+                x: LEFT + column as f64 * (panel_width + GAP),
+                y: heading.height() + row as f64 * pitch_down + panel_title,
+                width: panel_width,
+                height: panel_height,
+            };
+            let last_in_column = panel + columns >= n_panels;
+            self.draw_panel(&mut drawing, panel, frame);
+            if column == 0 {
+                draw_y_labels(&mut drawing, frame);
+            }
+            if last_in_column {
+                let title = self.rows.first().map(|row| self.plan.x.axis.title(&row.0));
+                let below = (
+                    frame.x + frame.width / 2.0,
+                    frame.y + frame.height + labels_height + 14.0,
+                );
+                let style = TextStyle::new(LABEL).align(Align::Middle);
+                drawing.text(below, &title.unwrap_or_default(), style);
+            }
+        }
+        drawing
+    }
+
+    fn draw_panel(&self, drawing: &mut Drawing, panel: usize, frame: Area) {
+        let panel_value = self
+            .plan
+            .panels
+            .as_ref()
+            .map(|p| (p.axis, &p.values[panel]));
+        if let Some((axis, value)) = panel_value {
+            let above = (frame.x, frame.y - 8.0);
+            drawing.bold_text(above, &named(axis, value), TextStyle::new(LABEL));
+        }
+        let scale = XScale::of(&self.plan.x, frame);
+        draw_grid(drawing, &scale, frame);
+        if let Some(chance) = self.chance {
+            let y = y_at(frame, chance);
+            drawing.line((frame.x, y), (frame.x + frame.width, y), CHANCE);
+        }
+        let lines: Vec<Vec<(f64, &CellScore)>> = (0..self.n_lines())
+            .map(|line| self.points(line, panel, &scale))
+            .collect();
+        for (line, points) in lines.iter().enumerate() {
+            match self.has_bands() && points.len() > 1 {
+                true => draw_band(drawing, points, frame, line_colour(line)),
+                false => draw_whiskers(drawing, points, frame, line_stroke(line)),
+            }
+        }
+        for (line, points) in lines.iter().enumerate() {
+            if self.has_numbers_along_x() {
+                draw_line(drawing, points, frame, line);
+            }
+            draw_markers(drawing, points, frame, line);
+        }
+    }
+
+    /// Between words there is nothing, so nothing is drawn there: neither lines nor bands.
+    fn has_numbers_along_x(&self) -> bool {
+        self.plan.x.numbers().is_some()
+    }
+
+    fn has_bands(&self) -> bool {
+        self.has_numbers_along_x() && self.n_lines() <= MOST_BANDS
+    }
+
+    fn n_lines(&self) -> usize {
+        self.plan.lines.as_ref().map_or(1, |l| l.values.len())
+    }
+
+    /// The cells of one line in one panel, along x.
+    fn points(&self, line: usize, panel: usize, scale: &XScale) -> Vec<(f64, &CellScore)> {
+        let matches = |levels: &Option<Levels>, index: usize, cell: &Cell| match levels {
+            Some(levels) => levels.axis.value(cell) == levels.values[index],
+            None => true,
+        };
+        // Whiskers of different lines stand beside each other: on a numeric axis so little that no value seems to change.
+        let n_lines = self.n_lines() as f64;
+        let step = match (self.has_bands(), self.has_numbers_along_x()) {
+            (true, _) => 0.0,
+            (false, true) => f64::min(2.0, 14.0 / n_lines),
+            (false, false) => f64::min(12.0, 60.0 / n_lines),
+        };
+        let beside = step * (line as f64 - 0.5 * (n_lines - 1.0));
+        let mut points: Vec<(f64, &CellScore)> = self
+            .rows
+            .iter()
+            .filter(|row| matches(&self.plan.lines, line, &row.0))
+            .filter(|row| matches(&self.plan.panels, panel, &row.0))
+            .filter_map(|row| Some((scale.x(&self.plan.x.axis.value(&row.0))? + beside, &row.1)))
+            .collect();
+        points.sort_by(|a, b| a.0.total_cmp(&b.0));
+        points
+    }
+
+    /// Settings that stay in the chart and stand neither in its title nor along x.
+    fn constants(&self) -> String {
+        let cells: Vec<&Cell> = self.rows.iter().map(|row| &row.0).collect();
+        let mut constants = Settings::of(&cells).fixed;
+        constants.retain(|levels| {
+            let mut stated = self.plan.fixed.iter();
+            !stated.any(|(axis, _)| *axis == levels.axis) && levels.axis != self.plan.x.axis
+        });
+        let constants: Vec<String> = constants.iter().map(Levels::sentence).collect();
+        unbroken_parts(&constants)
+    }
+
+    fn legend_entries(&self) -> Vec<LegendEntry> {
+        let mut entries = Vec::new();
+        if let Some(lines) = &self.plan.lines {
+            let name = format!("{}:", lines.heading());
+            entries.push(LegendEntry::new(name, Mark::None));
+            for (line, value) in lines.values.iter().enumerate() {
+                entries.push(LegendEntry::new(value.label.clone(), Mark::Line(line)));
+            }
+        }
+        let interval = if self.has_bands() {
+            Mark::Band
+        } else {
+            Mark::Whisker
+        };
+        entries.push(LegendEntry::new("95 % interval".to_owned(), interval));
+        if let Some(chance) = self.chance {
+            let text = format!("chance (1 in {:.0})", 1.0 / chance);
+            entries.push(LegendEntry::new(text, Mark::Dashes));
+        }
+        entries
+    }
+}
+
+fn y_at(frame: Area, accuracy: f64) -> f64 {
+    frame.y + frame.height * (1.0 - accuracy.clamp(0.0, 1.0))
+}
+
+fn draw_grid(drawing: &mut Drawing, scale: &XScale, frame: Area) {
+    let bottom = frame.y + frame.height;
+    for step in 0..=5 {
+        let y = y_at(frame, f64::from(step) / 5.0);
+        drawing.line(
+            (frame.x, y),
+            (frame.x + frame.width, y),
+            Stroke::new(GRID, 1.0),
+        );
+    }
+    for ((value, x), row) in scale.ticks.iter().zip(&scale.label_rows) {
+        drawing.line((*x, frame.y), (*x, bottom), Stroke::new(GRID, 1.0));
+        drawing.line((*x, bottom), (*x, bottom + 5.0), Stroke::new(INK, 1.0));
+        if let Some(row) = row {
+            let below = (*x, bottom + 19.0 + 14.0 * *row as f64);
+            let style = TextStyle::new(TICK_SIZE).align(Align::Middle);
+            drawing.text(below, &value.tick, style);
+        }
+    }
+    drawing.line(
+        (frame.x, bottom),
+        (frame.x + frame.width, bottom),
+        Stroke::new(INK, 1.0),
+    );
+    drawing.line((frame.x, frame.y), (frame.x, bottom), Stroke::new(INK, 1.0));
+}
+
+fn draw_y_labels(drawing: &mut Drawing, frame: Area) {
+    for step in 0..=5 {
+        let accuracy = f64::from(step) / 5.0;
+        let at = (frame.x - 9.0, y_at(frame, accuracy) + 4.5);
+        let style = TextStyle::new(TICK_SIZE).align(Align::End);
+        drawing.line(
+            (frame.x - 5.0, at.1 - 4.5),
+            (frame.x, at.1 - 4.5),
+            Stroke::new(INK, 1.0),
+        );
+        drawing.text(at, &format!("{accuracy:.1}"), style);
+    }
+    let middle = (frame.x - 44.0, frame.y + frame.height / 2.0);
+    let style = TextStyle::new(LABEL).align(Align::Middle).angle(-90.0);
+    drawing.text(middle, "accuracy (share recognised)", style);
+}
+
+/// The interval between neighbouring points, shaded.
+fn draw_band(drawing: &mut Drawing, points: &[(f64, &CellScore)], frame: Area, fill: [u8; 3]) {
+    let lower = points
+        .iter()
+        .map(|(x, s)| (*x, y_at(frame, s.accuracy_low)));
+    let upper = points
+        .iter()
+        .rev()
+        .map(|(x, s)| (*x, y_at(frame, s.accuracy_high)));
+    let corners: Vec<Point> = lower.chain(upper).collect();
+    drawing.polygon(&corners, fill, 0.18);
+}
+
+/// The interval of each point, as a bar.
+fn draw_whiskers(drawing: &mut Drawing, points: &[(f64, &CellScore)], frame: Area, line: Stroke) {
+    let stroke = Stroke::new(line.colour, 1.5);
+    for (x, score) in points {
+        let (low, high) = (
+            y_at(frame, score.accuracy_low),
+            y_at(frame, score.accuracy_high),
+        );
+        drawing.line((*x, low), (*x, high), stroke);
+    }
+}
+
+/// The line through the points.
+fn draw_line(drawing: &mut Drawing, points: &[(f64, &CellScore)], frame: Area, line: usize) {
+    let places: Vec<Point> = points
+        .iter()
+        .map(|(x, score)| (*x, y_at(frame, score.accuracy)))
+        .collect();
+    if places.len() > 1 {
+        drawing.polyline(&places, line_stroke(line));
+    }
+}
+
+/// A marker at each point.
+fn draw_markers(drawing: &mut Drawing, points: &[(f64, &CellScore)], frame: Area, line: usize) {
+    for (x, score) in points {
+        let place = (*x, y_at(frame, score.accuracy));
+        drawing.marker(line, place, MARKER_RADIUS, line_colour(line));
+    }
+}
+
+fn named(axis: Axis, value: &AxisValue) -> String {
+    match axis {
+        Axis::Ensemble | Axis::Classifier => value.label.clone(),
+        _ => format!("{} {}", axis.name(), value.label),
+    }
+}

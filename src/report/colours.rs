@@ -1,0 +1,92 @@
+//! Colours: for lines that a colour-blind reader tells apart, and for values as a heat map.
+
+use kuva::plot::ColorMap;
+
+/// Red, green, blue.
+pub type Rgb = [u8; 3];
+
+/// Text and axes.
+pub const INK: Rgb = [0x1f, 0x23, 0x28];
+/// Secondary text.
+pub const MUTED: Rgb = [0x5c, 0x63, 0x6b];
+/// Grid lines.
+pub const GRID: Rgb = [0xe4, 0xe6, 0xe9];
+/// The picture's ground.
+pub const PAPER: Rgb = [0xff, 0xff, 0xff];
+
+/// Line colours: Okabe and Ito's palette (2008) without its yellow, which is too pale on white.
+pub const LINES: [Rgb; 7] = [
+    [0x00, 0x72, 0xb2],
+    [0xd5, 0x5e, 0x00],
+    [0x00, 0x9e, 0x73],
+    [0xcc, 0x79, 0xa7],
+    [0xe6, 0x9f, 0x00],
+    [0x56, 0xb4, 0xe9],
+    [0x1f, 0x23, 0x28],
+];
+
+/// Colour of a value between 0 and 1 (others are clamped) on a perceptually uniform map: dark is low.
+pub fn heat(value: f64) -> Rgb {
+    let (r, g, b) = ColorMap::Viridis
+        .map_rgb(value.clamp(0.0, 1.0))
+        .unwrap_or((0, 0, 0));
+    [r, g, b]
+}
+
+/// Colour of a share between 0 and 1 on white paper: white is none, dark blue is all.
+pub fn share(value: f64) -> Rgb {
+    /// ColorBrewer's sequential blues.
+    const STOPS: [Rgb; 6] = [
+        [0xff, 0xff, 0xff],
+        [0xc6, 0xdb, 0xef],
+        [0x9e, 0xca, 0xe1],
+        [0x4d, 0x97, 0xc9],
+        [0x1f, 0x65, 0xae],
+        [0x08, 0x30, 0x6b],
+    ];
+    let place = value.clamp(0.0, 1.0) * (STOPS.len() - 1) as f64;
+    let below = (place.floor() as usize).min(STOPS.len() - 2);
+    let part = place - below as f64;
+    std::array::from_fn(|channel| {
+        let low = f64::from(STOPS[below][channel]);
+        let high = f64::from(STOPS[below + 1][channel]);
+        (low + part * (high - low)).round() as u8
+    })
+}
+
+/// Black or white, whichever is read more easily on the colour.
+pub fn text_on(ground: Rgb) -> Rgb {
+    let [r, g, b] = ground.map(f64::from);
+    // Rec. 709 luma: enough to tell light from dark.
+    if 0.2126 * r + 0.7152 * g + 0.0722 * b < 140.0 {
+        PAPER
+    } else {
+        INK
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn luma([r, g, b]: Rgb) -> f64 {
+        0.2126 * f64::from(r) + 0.7152 * f64::from(g) + 0.0722 * f64::from(b)
+    }
+
+    #[test]
+    fn heat_grows_lighter_and_share_grows_darker_all_the_way() {
+        for step in 0..32 {
+            let (low, high) = (f64::from(step) / 32.0, f64::from(step + 1) / 32.0);
+            assert!(luma(heat(low)) < luma(heat(high)), "{low}");
+            assert!(luma(share(low)) > luma(share(high)), "{low}");
+        }
+    }
+
+    #[test]
+    fn text_stands_out_from_every_share() {
+        for step in 0..=32 {
+            let ground = share(f64::from(step) / 32.0);
+            assert!((luma(text_on(ground)) - luma(ground)).abs() > 80.0);
+        }
+    }
+}

@@ -1,0 +1,97 @@
+//! Result tables as CSV, out and in.
+//!
+//! Floats are written in the shortest form that reads back as the same bits, so equal tables are equal bytes. An absent
+//! value is an empty field. A table without rows is an empty file.
+
+use crate::error::{Error, Result};
+use crate::files::write_bytes;
+use crate::study::table::{
+    Cell, CellScore, Comparison, Confusion, StageTime, Tables, TrialScore, TrialTime,
+};
+use serde::Serialize;
+use serde::de::DeserializeOwned;
+use std::fs::File;
+use std::path::{Path, PathBuf};
+
+/// File names of the tables, in the order in which [`write_tables`] writes them.
+pub const TABLE_FILES: [&str; 6] = [
+    "accuracy.csv",
+    "summary.csv",
+    "confusion.csv",
+    "comparison.csv",
+    "timing.csv",
+    "stages.csv",
+];
+
+/// Writes every table into `dir`, each as a whole file; returns their paths.
+pub fn write_tables(dir: &Path, tables: &Tables) -> Result<Vec<PathBuf>> {
+    let contents = [
+        to_csv(&tables.accuracy),
+        to_csv(&tables.summary),
+        to_csv(&tables.confusion),
+        to_csv(&tables.comparison),
+        to_csv(&tables.timing),
+        to_csv(&tables.stages),
+    ];
+    let mut paths = Vec::new();
+    for (name, bytes) in TABLE_FILES.into_iter().zip(contents) {
+        let path = dir.join(name);
+        let bytes = bytes.map_err(|e| Error::io(&path, "write", std::io::Error::other(e)))?;
+        write_bytes(&path, &bytes)?;
+        paths.push(path);
+    }
+    Ok(paths)
+}
+
+/// Reads the tables that [`write_tables`] wrote.
+pub fn read_tables(dir: &Path) -> Result<Tables> {
+    let path = |table: usize| dir.join(TABLE_FILES[table]);
+    Ok(Tables {
+        accuracy: read_cell_rows::<TrialScore>(&path(0))?,
+        summary: read_cell_rows::<CellScore>(&path(1))?,
+        confusion: read_rows::<Confusion>(&path(2))?,
+        comparison: read_rows::<Comparison>(&path(3))?,
+        timing: read_cell_rows::<TrialTime>(&path(4))?,
+        stages: read_rows::<StageTime>(&path(5))?,
+    })
+}
+
+/// One table as CSV with a header row; a `(Cell, score)` row becomes one line.
+pub fn to_csv<R: Serialize>(rows: &[R]) -> std::result::Result<Vec<u8>, csv::Error> {
+    let mut writer = csv::Writer::from_writer(Vec::new());
+    for row in rows {
+        writer.serialize(row)?;
+    }
+    writer.into_inner().map_err(|e| e.into_error().into())
+}
+
+/// Reads a table whose rows are a [`Cell`] followed by `R`.
+pub fn read_cell_rows<R: DeserializeOwned>(path: &Path) -> Result<Vec<(Cell, R)>> {
+    // Each line is read twice, once for either half: through one struct with two flattened halves, serde would take an
+    // empty field for an empty text, not for an absent value.
+    let cells: Vec<Cell> = read_rows(path)?;
+    let rest: Vec<R> = read_rows(path)?;
+    Ok(cells.into_iter().zip(rest).collect())
+}
+
+/// Reads a table; the error names the file and the line.
+pub fn read_rows<R: DeserializeOwned>(path: &Path) -> Result<Vec<R>> {
+    let file = File::open(path).map_err(|e| Error::io(path, "read", e))?;
+    csv::Reader::from_reader(file)
+        .into_deserialize()
+        .map(|row| row.map_err(|e| read_error(path, e)))
+        .collect()
+}
+
+fn read_error(path: &Path, error: csv::Error) -> Error {
+    let line = error.position().map(|position| position.line());
+    let place = match line {
+        Some(line) => format!("{}: line {line}", path.display()),
+        None => path.display().to_string(),
+    };
+    let said = error.to_string();
+    match error.into_kind() {
+        csv::ErrorKind::Io(source) => Error::io(path, "read", source),
+        _ => Error::input(place, said, "a result table with this version's columns"),
+    }
+}

@@ -1,0 +1,80 @@
+//! One frame as a file, in the format that its name asks for.
+
+use crate::error::{Error, Result};
+use crate::files::{write_bytes, write_whole};
+use crate::report::heat_map::check_frame;
+use crate::report::pressure_map::pressure_picture;
+use crate::signal::Quantity;
+use crate::world::Grid;
+use ndarray::{Array1, Array2};
+use ndarray_npy::NpzWriter;
+use std::fmt::Write as _;
+use std::io::{Cursor, Write as _};
+use std::path::Path;
+
+/// Writes deflections of a grid (ny × nx, metres): `.csv`, `.npz` or `.png` by the name's ending.
+///
+/// - `.csv`: ny lines of nx numbers with 17 significant digits, no header.
+/// - `.npz`: arrays `deflection` (ny × nx), `x` (nx) and `y` (ny), metres, f64; opens with `np.load`.
+/// - `.png`: a heat map.
+///
+/// Errors: another ending, a shape that is not the grid's, a picture of a frame with values that are not finite.
+pub fn write_frame(path: &Path, deflection: &Array2<f64>, grid: &Grid) -> Result<()> {
+    let ending = path.extension().and_then(|ending| ending.to_str());
+    if deflection.dim() != (grid.ny, grid.nx) {
+        return Err(Error::input(
+            "frame",
+            format!("{} × {}", deflection.nrows(), deflection.ncols()),
+            format!("{} rows × {} columns, as the grid", grid.ny, grid.nx),
+        ));
+    }
+    match ending.map(str::to_ascii_lowercase).as_deref() {
+        Some("csv") => write_bytes(path, frame_csv(deflection).as_bytes()),
+        Some("npz") => write_npz(path, deflection, grid),
+        Some("png") => {
+            check_frame(deflection)?;
+            let picture = pressure_picture(deflection, grid.pitch * 1e3, Quantity::Deflection)?;
+            write_bytes(path, &picture.png()?)
+        }
+        _ => Err(Error::input(
+            path.display(),
+            match ending {
+                Some(ending) => format!("ends in .{ending}"),
+                None => "has no ending".to_owned(),
+            },
+            "a name that ends in .csv, .npz or .png",
+        )),
+    }
+}
+
+/// A frame as CSV: every number with 17 significant digits, so that it reads back as the same bits.
+pub fn frame_csv(frame: &Array2<f64>) -> String {
+    let mut text = String::with_capacity(frame.len() * 24);
+    for row in frame.outer_iter() {
+        for (column, value) in row.iter().enumerate() {
+            if column > 0 {
+                text.push(',');
+            }
+            // Writing to a string cannot fail.
+            let _ = write!(text, "{value:.16e}");
+        }
+        text.push('\n');
+    }
+    text
+}
+
+fn write_npz(path: &Path, deflection: &Array2<f64>, grid: &Grid) -> Result<()> {
+    let x: Array1<f64> = (0..grid.nx).map(|column| grid.x(column)).collect();
+    let y: Array1<f64> = (0..grid.ny).map(|row| grid.y(row)).collect();
+    write_whole(path, |file| {
+        let mut bytes = Cursor::new(Vec::new());
+        let mut archive = NpzWriter::new(&mut bytes);
+        archive
+            .add_array("deflection", deflection)
+            .map_err(std::io::Error::other)?;
+        archive.add_array("x", &x).map_err(std::io::Error::other)?;
+        archive.add_array("y", &y).map_err(std::io::Error::other)?;
+        archive.finish().map_err(std::io::Error::other)?;
+        file.write_all(bytes.get_ref())
+    })
+}

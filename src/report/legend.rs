@@ -1,0 +1,174 @@
+//! What stands above a chart's panels: title, fixed settings, and the legend.
+
+use crate::report::colours::{LINES, MUTED, Rgb};
+use crate::report::drawing::{Drawing, Point, Stroke, TextStyle};
+use crate::report::text_width::{text_width, wrap};
+
+/// Left margin of a chart, pixels.
+pub(super) const LEFT: f64 = 66.0;
+/// Right margin, pixels.
+pub(super) const RIGHT: f64 = 18.0;
+/// Radius of a marker, pixels.
+pub(super) const MARKER_RADIUS: f64 = 4.2;
+/// The line of chance.
+pub(super) const CHANCE: Stroke = Stroke {
+    colour: MUTED,
+    width: 1.2,
+    dash: Some((5, 4)),
+};
+const TITLE: u32 = 16;
+const SMALL: u32 = 12;
+const LINE_WIDTH: f64 = 2.0;
+
+/// Title, fixed settings and legend, above the panels, so that nothing covers data.
+pub(super) struct Heading {
+    title: Vec<String>,
+    settings: Vec<String>,
+    legend: Vec<Vec<LegendEntry>>,
+}
+
+/// A mark and what it means.
+pub(super) struct LegendEntry {
+    text: String,
+    mark: Mark,
+    width: f64,
+}
+
+/// What a legend entry shows before its text.
+pub(super) enum Mark {
+    /// Nothing: the legend's title.
+    None,
+    /// The line of a number with its marker.
+    Line(usize),
+    /// The line of chance.
+    Dashes,
+    /// A band around a line.
+    Band,
+    /// A bar through a marker.
+    Whisker,
+}
+
+impl Heading {
+    /// A heading for a drawing of some width: lines break, and legend entries flow, within its margins.
+    pub(super) fn of(title: &str, settings: &str, entries: Vec<LegendEntry>, width: f64) -> Self {
+        let inner = width - LEFT - RIGHT;
+        Self {
+            // Bold letters are wider.
+            title: wrap(title, 1.12 * f64::from(TITLE), inner),
+            settings: wrap(settings, f64::from(SMALL), inner),
+            legend: flow(entries, inner),
+        }
+    }
+
+    /// Pixels down.
+    pub(super) fn height(&self) -> f64 {
+        16.0 + 21.0 * self.title.len() as f64
+            + 17.0 * self.settings.len() as f64
+            + 21.0 * self.legend.len() as f64
+            + 10.0
+    }
+
+    /// Draws it at the top of a drawing.
+    pub(super) fn draw(&self, drawing: &mut Drawing) {
+        let mut y = 10.0;
+        for line in &self.title {
+            y += 21.0;
+            drawing.bold_text((LEFT, y), line, TextStyle::new(TITLE));
+        }
+        for line in &self.settings {
+            y += 17.0;
+            drawing.text((LEFT, y), line, TextStyle::new(SMALL).colour(MUTED));
+        }
+        y += 4.0;
+        for row in &self.legend {
+            y += 21.0;
+            let mut x = LEFT;
+            for entry in row {
+                entry.draw(drawing, (x, y));
+                x += entry.width;
+            }
+        }
+    }
+}
+
+impl LegendEntry {
+    /// An entry as wide as its mark and text.
+    pub(super) fn new(text: String, mark: Mark) -> Self {
+        let mark_width = if matches!(mark, Mark::None) {
+            0.0
+        } else {
+            34.0
+        };
+        let gap = if matches!(mark, Mark::None) {
+            10.0
+        } else {
+            20.0
+        };
+        let width = mark_width + text_width(&text, f64::from(SMALL)) + gap;
+        Self { text, mark, width }
+    }
+
+    fn draw(&self, drawing: &mut Drawing, (x, y): Point) {
+        let middle = y - 4.5;
+        let mut text_x = x + 34.0;
+        match self.mark {
+            Mark::None => text_x = x,
+            Mark::Line(line) => {
+                let stroke = line_stroke(line);
+                drawing.line((x, middle), (x + 28.0, middle), stroke);
+                drawing.marker(line, (x + 14.0, middle), MARKER_RADIUS, stroke.colour);
+            }
+            Mark::Dashes => drawing.line((x, middle), (x + 28.0, middle), CHANCE),
+            Mark::Whisker => {
+                let centre = x + 14.0;
+                drawing.line(
+                    (centre, middle - 8.0),
+                    (centre, middle + 8.0),
+                    Stroke::new(MUTED, 1.5),
+                );
+            }
+            Mark::Band => {
+                let (top, bottom) = (middle - 6.0, middle + 6.0);
+                let corners = [(x, top), (x + 28.0, top), (x + 28.0, bottom), (x, bottom)];
+                drawing.polygon(&corners, MUTED, 0.25);
+            }
+        }
+        drawing.text((text_x, y), &self.text, TextStyle::new(SMALL));
+    }
+}
+
+/// Entries in rows no wider than `width`.
+fn flow(entries: Vec<LegendEntry>, width: f64) -> Vec<Vec<LegendEntry>> {
+    let mut rows: Vec<Vec<LegendEntry>> = Vec::new();
+    let mut used = f64::INFINITY;
+    for entry in entries {
+        if used + entry.width > width + 20.0 {
+            rows.push(Vec::new());
+            used = 0.0;
+        }
+        used += entry.width;
+        if let Some(row) = rows.last_mut() {
+            row.push(entry);
+        }
+    }
+    rows
+}
+
+/// Colour of a line by its number.
+pub(super) fn line_colour(line: usize) -> Rgb {
+    LINES[line % LINES.len()]
+}
+
+/// Beyond the palette, colours come again with dashes.
+pub(super) fn line_stroke(line: usize) -> Stroke {
+    let dash = match line / LINES.len() {
+        0 => None,
+        1 => Some((7, 3)),
+        _ => Some((2, 3)),
+    };
+    Stroke {
+        colour: line_colour(line),
+        width: LINE_WIDTH,
+        dash,
+    }
+}

@@ -1,0 +1,213 @@
+//! One frame for the eye: a heat map as a picture, and a drawing in the terminal.
+
+use crate::error::Result;
+use crate::report::axis::short_number;
+use crate::report::colours::{INK, MUTED, heat};
+use crate::report::drawing::{Area, Drawing, TextStyle};
+use crate::report::heat_map::{
+    ColourScale, check_frame, draw_colour_bar, draw_map, draw_x_axis, draw_y_axis,
+    largest_of_blocks,
+};
+use crate::report::terminal::Ink;
+use crate::signal::Quantity;
+use ndarray::Array2;
+
+/// Taxels that a picture shows each way, at most; longer arrays are shown by the largest value of blocks.
+const MOST_CELLS: usize = 512;
+
+/// Darkness for the plain terminal, from nothing to the peak.
+const RAMP: &[u8] = b" .:-=+*#%@";
+
+/// A picture of a frame (ny × nx, row = y ascending) with a colour bar and axes in millimetres.
+///
+/// Errors: a frame without taxels, or with a value that is not finite.
+pub fn pressure_picture(frame: &Array2<f64>, pitch_mm: f64, quantity: Quantity) -> Result<Drawing> {
+    check_frame(frame)?;
+    let (ny, nx) = frame.dim();
+    let block = ny.max(nx).div_ceil(MOST_CELLS);
+    let shown = largest_of_blocks(frame, (block, block));
+    let (rows, columns) = shown.dim();
+    // Whole pixels a taxel: no seams between neighbours.
+    let side = (400.0 / rows.max(columns) as f64).floor().max(1.0);
+    let area = Area {
+        x: 70.0,
+        y: 56.0,
+        width: side * columns as f64,
+        height: side * rows as f64,
+    };
+    let bar_height = area.height.max(90.0);
+    let mut drawing = Drawing::new(
+        (area.x + area.width + 110.0).max(330.0),
+        area.y + bar_height + 50.0,
+    );
+    let scale = ColourScale::over([frame], quantity);
+    let title = format!(
+        "{} × {} taxels, pitch {} mm",
+        nx,
+        ny,
+        short_number(pitch_mm)
+    );
+    drawing.text((area.x, 22.0), &title, TextStyle::new(13).colour(INK));
+    let mut below = peak_sentence(frame, pitch_mm, quantity);
+    if block > 1 {
+        below += &format!("; each cell is the largest of {block} × {block}");
+    }
+    drawing.text((area.x, 40.0), &below, TextStyle::new(11).colour(MUTED));
+    draw_map(&mut drawing, &shown, quantity, scale, area);
+    draw_x_axis(&mut drawing, area, nx as f64 * pitch_mm);
+    draw_y_axis(&mut drawing, area, ny as f64 * pitch_mm);
+    let bar = Area {
+        x: area.x + area.width + 18.0,
+        width: 16.0,
+        height: bar_height,
+        ..area
+    };
+    let bar_title = format!("{} ({})", quantity.name(), quantity.unit());
+    draw_colour_bar(&mut drawing, scale, &bar_title, bar);
+    Ok(drawing)
+}
+
+/// A frame drawn with characters, at most `width` columns wide, the highest y on top.
+///
+/// With colours, half blocks show two rows of taxels a line; without, ten ASCII characters from blank to `@`. Long arrays
+/// are shown by the largest value of blocks, and the text says so. Errors as for [`pressure_picture`].
+pub fn pressure_text(
+    frame: &Array2<f64>,
+    pitch_mm: f64,
+    quantity: Quantity,
+    ink: Ink,
+    width: usize,
+) -> Result<String> {
+    check_frame(frame)?;
+    let (ny, nx) = frame.dim();
+    let inside = width.saturating_sub(2).max(8);
+    let block = nx.div_ceil(inside);
+    let scale = ColourScale::over([frame], quantity);
+    let mut text = String::new();
+    let (columns, lines) = match ink {
+        Ink::Plain => {
+            // A character is about twice as high as wide: two rows a line, or two characters a taxel where they fit.
+            let wide = if 2 * nx <= inside { 2 } else { 1 };
+            let down = if wide == 2 { 1 } else { 2 * block };
+            let shown = largest_of_blocks(frame, (down, block));
+            (
+                shown.ncols() * wide,
+                ascii_lines(&shown, quantity, scale, wide),
+            )
+        }
+        Ink::Colours256 | Ink::TrueColour => {
+            let shown = largest_of_blocks(frame, (block, block));
+            (
+                shown.ncols(),
+                half_block_lines(&shown, quantity, scale, ink),
+            )
+        }
+    };
+    let border = format!("+{}+\n", "-".repeat(columns));
+    text += &border;
+    for line in lines {
+        text += &format!("|{line}|\n");
+    }
+    text += &border;
+    text += &format!(
+        "{nx} × {ny} taxels, pitch {} mm; {}\n",
+        short_number(pitch_mm),
+        peak_sentence(frame, pitch_mm, quantity)
+    );
+    text += &scale_sentence(scale, quantity, ink);
+    if block > 1 {
+        text += &format!("each place shows the largest of {block} × {block} taxels\n");
+    }
+    Ok(text)
+}
+
+fn peak_sentence(frame: &Array2<f64>, pitch_mm: f64, quantity: Quantity) -> String {
+    let (ny, nx) = frame.dim();
+    let touched = frame.iter().filter(|&&value| value > 0.0).count();
+    let mut peak = ((0, 0), f64::NEG_INFINITY);
+    for (place, &value) in frame.indexed_iter() {
+        if value > peak.1 {
+            peak = (place, value);
+        }
+    }
+    if touched == 0 {
+        return "no taxel is touched".to_owned();
+    }
+    let ((row, column), value) = peak;
+    format!(
+        "peak {} {} {} at x {} mm, y {} mm; {touched} of {} taxels above zero",
+        quantity.name(),
+        short_number(value * quantity.factor()),
+        quantity.unit(),
+        short_number((column as f64 - 0.5 * (nx as f64 - 1.0)) * pitch_mm),
+        short_number((row as f64 - 0.5 * (ny as f64 - 1.0)) * pitch_mm),
+        nx * ny
+    )
+}
+
+fn scale_sentence(scale: ColourScale, quantity: Quantity, ink: Ink) -> String {
+    let (low, high) = (short_number(scale.low), short_number(scale.high));
+    let unit = quantity.unit();
+    match ink {
+        Ink::Plain => {
+            let ramp = String::from_utf8_lossy(RAMP);
+            format!("scale \"{ramp}\" from {low} to {high} {unit}\n")
+        }
+        Ink::Colours256 | Ink::TrueColour => {
+            let ramp: String = (0..20)
+                .map(|step| format!("{} ", ink.ground(heat(f64::from(step) / 19.0))))
+                .collect();
+            format!("{low} {ramp}{} {high} {unit}\n", ink.reset())
+        }
+    }
+}
+
+fn ascii_lines(
+    shown: &Array2<f64>,
+    quantity: Quantity,
+    scale: ColourScale,
+    wide: usize,
+) -> Vec<String> {
+    let character = |value: &f64| {
+        let place = scale.place(value * quantity.factor());
+        let step = (place * RAMP.len() as f64) as usize;
+        // Whatever is above the lowest value shows: a light touch is not no touch.
+        let step = if place > 0.0 { step.max(1) } else { 0 };
+        char::from(RAMP[step.min(RAMP.len() - 1)])
+    };
+    let line = |row: ndarray::ArrayView1<f64>| {
+        let characters = row.iter().map(character);
+        characters
+            .flat_map(|c| std::iter::repeat_n(c, wide))
+            .collect()
+    };
+    shown.outer_iter().rev().map(line).collect()
+}
+
+fn half_block_lines(
+    shown: &Array2<f64>,
+    quantity: Quantity,
+    scale: ColourScale,
+    ink: Ink,
+) -> Vec<String> {
+    let (ny, nx) = shown.dim();
+    let colour =
+        |row: usize, column: usize| heat(scale.place(shown[(row, column)] * quantity.factor()));
+    let mut lines = Vec::new();
+    let mut upper = ny;
+    while upper > 0 {
+        upper -= 1;
+        let mut line = String::new();
+        for column in 0..nx {
+            line += &ink.letter(colour(upper, column));
+            if upper > 0 {
+                line += &ink.ground(colour(upper - 1, column));
+            }
+            line.push('▀');
+        }
+        line += ink.reset();
+        lines.push(line);
+        upper = upper.saturating_sub(1);
+    }
+    lines
+}

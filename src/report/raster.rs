@@ -1,0 +1,74 @@
+//! A scene as a PNG file.
+
+use crate::error::{Error, Result};
+use kuva::render::render::{Primitive, Scene};
+
+/// Draws a scene on white with two picture elements a pixel.
+///
+/// kuva draws turned text and slanted lines jagged, so it draws at twice that size and each element becomes the mean of
+/// four.
+pub(super) fn rasterise(scene: &Scene) -> Result<Vec<u8>> {
+    const SCALE: u32 = 4;
+    let mut large = Scene::new(scene.width, scene.height);
+    let elements = scene.elements.iter().cloned();
+    large.elements = elements
+        .map(|element| scale_dashes(element, SCALE))
+        .collect();
+    let large = kuva::RasterBackend::new()
+        .with_scale(SCALE as f32)
+        .render_scene(&large)
+        .map_err(|said| unfit(&said))?;
+    halve_png(&large).map_err(|said| unfit(&said))
+}
+
+/// kuva scales everything in a raster but the dashes.
+fn scale_dashes(mut element: Primitive, scale: u32) -> Primitive {
+    if let Primitive::Line {
+        stroke_dasharray: Some(dashes),
+        ..
+    }
+    | Primitive::PolyLine {
+        stroke_dasharray: Some(dashes),
+        ..
+    } = &mut element
+    {
+        let lengths = dashes
+            .split(' ')
+            .filter_map(|length| length.parse::<u32>().ok());
+        let scaled: Vec<String> = lengths.map(|length| (length * scale).to_string()).collect();
+        *dashes = scaled.join(" ");
+    }
+    element
+}
+
+fn unfit(said: &dyn std::fmt::Display) -> Error {
+    Error::input("picture", said, "a size that fits into a PNG file")
+}
+
+/// A PNG of half the size (rounded down), each element the mean of four; opaque.
+fn halve_png(large: &[u8]) -> std::result::Result<Vec<u8>, Box<dyn std::error::Error>> {
+    let mut reader = png::Decoder::new(std::io::Cursor::new(large)).read_info()?;
+    let mut elements = vec![0; reader.output_buffer_size().ok_or("too large a picture")?];
+    let info = reader.next_frame(&mut elements)?;
+    let channels = info.color_type.samples();
+    let (width, height) = (info.width as usize / 2, info.height as usize / 2);
+    let mut small = Vec::with_capacity(width * height * 3);
+    for y in 0..height {
+        let rows = [2 * y, 2 * y + 1].map(|row| &elements[row * info.line_size..]);
+        for x in 0..width {
+            for channel in 0..3 {
+                let (left, right) = (2 * x * channels + channel, (2 * x + 1) * channels + channel);
+                let sum: u16 = rows
+                    .iter()
+                    .map(|row| u16::from(row[left]) + u16::from(row[right]))
+                    .sum();
+                small.push(((sum + 2) / 4) as u8);
+            }
+        }
+    }
+    let mut bytes = Vec::new();
+    let mut encoder = png::Encoder::new(&mut bytes, width as u32, height as u32);
+    encoder.set_color(png::ColorType::Rgb);
+    encoder.write_header()?.write_image_data(&small)?;
+    Ok(bytes)
+}

@@ -1,0 +1,93 @@
+//! A study's folder: everything that people open after a run.
+
+use crate::error::{Error, Result};
+use crate::files::write_bytes;
+use crate::report::answer::Answer;
+use crate::report::chart::{chart_title, draw_chart};
+use crate::report::chart_plan::plan_charts;
+use crate::report::confusion_picture::confusion_picture;
+use crate::report::csv_tables::write_tables;
+use crate::report::drawing::Drawing;
+use crate::report::html::{Picture, Pictures, ReportPage, page};
+use crate::report::snapshots::snapshots;
+use crate::study::table::{Cell, Tables};
+use std::fs;
+use std::path::{Path, PathBuf};
+
+/// Charts in the page and as PNG, at most; all are written as SVG. A thousand would make the page too heavy for a phone.
+const MOST_IN_PAGE: usize = 24;
+
+/// Writes tables, charts, pictures and the page into `dir` (created if missing); returns the paths in the order of
+/// writing, tables first.
+///
+/// Everything is drawn before the first file is written, and each file is whole or not there. Files of other names in the
+/// folder are left alone.
+pub fn write_all(dir: &Path, tables: &Tables, about: &ReportPage) -> Result<Vec<PathBuf>> {
+    let mut files: Vec<(String, Vec<u8>)> = Vec::new();
+    let mut pictures = Pictures::default();
+    for (name, title, drawing) in draw_charts(tables) {
+        if pictures.charts.len() < MOST_IN_PAGE {
+            pictures.charts.push(Picture::of(&drawing, &title));
+            files.push((format!("{name}.png"), drawing.png()?));
+        } else {
+            pictures.n_more_charts += 1;
+        }
+        files.push((format!("{name}.svg"), drawing.svg(&title).into_bytes()));
+    }
+    if let Some(answer) = Answer::of(tables)
+        && let Some(drawing) = confusion_picture(tables, answer.best.0.cell)
+    {
+        let picture = Picture::of(&drawing, "Confusion matrix of the best cell");
+        files.push(("confusion.png".to_owned(), drawing.png()?));
+        files.push((
+            "confusion.svg".to_owned(),
+            picture.element.clone().into_bytes(),
+        ));
+        pictures.confusion = Some(picture);
+    }
+    if let Some(set) = &about.snapshots {
+        let drawing = snapshots(&set.frames, set.pitch_mm, set.quantity, &set.caption)?;
+        // As SVG, ten thousand noisy taxels would be a megabyte.
+        let png = drawing.png()?;
+        pictures.touches = Some(Picture::raster(&drawing, &png, &set.caption));
+        files.push(("snapshots.png".to_owned(), png));
+    }
+    let html = page(about, tables, &pictures);
+    files.push(("report.html".to_owned(), html.into_bytes()));
+
+    make_folder(dir)?;
+    let mut paths = write_tables(dir, tables)?;
+    for (name, bytes) in files {
+        let path = dir.join(name);
+        write_bytes(&path, &bytes)?;
+        paths.push(path);
+    }
+    Ok(paths)
+}
+
+/// Every chart of a study: file name without ending, title, drawing.
+pub fn draw_charts(tables: &Tables) -> Vec<(String, String, Drawing)> {
+    let cells: Vec<&Cell> = tables.summary.iter().map(|(cell, _)| cell).collect();
+    let plans = plan_charts(&cells).into_iter();
+    plans
+        .map(|plan| {
+            (
+                plan.name.clone(),
+                chart_title(&plan),
+                draw_chart(&plan, tables),
+            )
+        })
+        .collect()
+}
+
+/// Creates a folder and those above it; the error says if a file is in the way.
+pub fn make_folder(dir: &Path) -> Result<()> {
+    if fs::metadata(dir).is_ok_and(|meta| !meta.is_dir()) {
+        return Err(Error::input(
+            dir.display(),
+            "is not a folder",
+            "a folder, or a name that is free",
+        ));
+    }
+    fs::create_dir_all(dir).map_err(|e| Error::io(dir, "create folder", e))
+}

@@ -1,0 +1,86 @@
+//! How wide a text is in DejaVu Sans, the font that the pictures are drawn with.
+
+/// Advance widths of U+0020 … U+007E in thousandths of the font size (DejaVu Sans 2.37, read with fontTools 4).
+const ASCII: [u16; 95] = [
+    318, 401, 460, 838, 636, 950, 780, 275, 390, 390, 500, 838, 318, 361, 318, 337, 636, 636, 636,
+    636, 636, 636, 636, 636, 636, 636, 337, 337, 838, 838, 838, 531, 1000, 684, 686, 698, 770, 632,
+    575, 775, 752, 295, 295, 656, 557, 863, 748, 787, 603, 787, 695, 635, 611, 732, 684, 989, 685,
+    611, 685, 390, 337, 390, 838, 500, 500, 613, 635, 550, 635, 615, 352, 635, 634, 278, 278, 579,
+    278, 974, 634, 612, 635, 635, 411, 521, 392, 634, 592, 818, 592, 592, 525, 636, 337, 636, 838,
+];
+
+/// Bold letters are wider by about this factor.
+const BOLD: f64 = 1.12;
+
+/// Width of one line of text at a font size, in the unit of the size.
+///
+/// A letter outside ASCII counts as 0.7 em, a little more than its mean, so that reserved space suffices.
+pub fn text_width(text: &str, size: f64) -> f64 {
+    let thousandths: u64 = text
+        .chars()
+        .map(|letter| {
+            let place = (letter as usize).wrapping_sub(0x20);
+            u64::from(ASCII.get(place).copied().unwrap_or(700))
+        })
+        .sum();
+    thousandths as f64 * size / 1000.0
+}
+
+/// Width of one line of bold text.
+pub fn bold_width(text: &str, size: f64) -> f64 {
+    BOLD * text_width(text, size)
+}
+
+/// Breaks a text at spaces (not at U+00A0) into lines no wider than `width`; a longer word stands alone.
+pub fn wrap(text: &str, size: f64, width: f64) -> Vec<String> {
+    let mut lines: Vec<String> = Vec::new();
+    let text_width = |line: &str| text_width(&line.replace('\u{a0}', " "), size);
+    for word in text.split(' ').filter(|word| !word.is_empty()) {
+        match lines.last_mut() {
+            Some(line) if text_width(&format!("{line} {word}")) <= width => {
+                line.push(' ');
+                line.push_str(word);
+            }
+            _ => lines.push(word.to_owned()),
+        }
+    }
+    let plain = lines.into_iter().map(|line| line.replace('\u{a0}', " "));
+    plain.collect()
+}
+
+/// The text, or as much of it as fits with an ellipsis.
+pub fn shorten(text: &str, size: f64, width: f64) -> String {
+    if text_width(text, size) <= width {
+        return text.to_owned();
+    }
+    let mut kept: Vec<char> = text.chars().collect();
+    while kept.pop().is_some() {
+        let shorter: String = kept.iter().collect::<String>() + "…";
+        if text_width(&shorter, size) <= width {
+            return shorter;
+        }
+    }
+    "…".to_owned()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn wrapped_lines_fit_and_lose_no_word() {
+        let text = "a quasi-static tactile skin simulator with very many settings in one line";
+        let lines = wrap(text, 12.0, 140.0);
+        assert!(lines.len() > 2);
+        assert!(lines.iter().all(|line| text_width(line, 12.0) <= 140.0));
+        assert_eq!(lines.join(" "), text);
+    }
+
+    #[test]
+    fn a_shortened_text_fits_and_says_that_it_was_cut() {
+        let short = shorten("adjustable wrench, large", 10.0, 60.0);
+        assert!(text_width(&short, 10.0) <= 60.0);
+        assert!(short.ends_with('…') && short.starts_with("adj"));
+        assert_eq!(shorten("mug", 10.0, 60.0), "mug");
+    }
+}

@@ -1,0 +1,222 @@
+//! Which settings vary over the cells of a study, and which stay.
+//!
+//! Charts and terminal tables show the axes that vary and state the others once. An axis whose value is known from the
+//! other varying axes (the ratio, when only m and the array are chosen) follows them and gets no place of its own.
+
+use crate::report::axis::{AXES, Axis, AxisValue};
+use crate::study::table::Cell;
+use std::collections::HashMap;
+
+/// An axis and the values it takes, ascending (numbers) or in order of appearance (words).
+#[derive(Clone, Debug, PartialEq)]
+pub struct Levels {
+    /// Which axis.
+    pub axis: Axis,
+    /// Its values, each once.
+    pub values: Vec<AxisValue>,
+}
+
+/// The settings of a set of cells, sorted by whether they vary.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Settings {
+    /// Axes that vary by themselves, in the order of [`AXES`].
+    pub varying: Vec<Levels>,
+    /// Axes that vary only because others do.
+    pub following: Vec<Levels>,
+    /// Axes with one value.
+    pub fixed: Vec<Levels>,
+}
+
+impl Levels {
+    /// The values of an axis over cells.
+    pub fn of(axis: Axis, cells: &[&Cell]) -> Self {
+        let mut values: Vec<AxisValue> = Vec::new();
+        for cell in cells {
+            let value = axis.value(cell);
+            if !values.contains(&value) {
+                values.push(value);
+            }
+        }
+        if let Some(numbers) = numbers(&values) {
+            let mut order: Vec<usize> = (0..values.len()).collect();
+            order.sort_by(|&a, &b| numbers[a].total_cmp(&numbers[b]));
+            values = order.into_iter().map(|i| values[i].clone()).collect();
+        }
+        Self { axis, values }
+    }
+
+    /// The values as numbers; none if one of them is a word.
+    pub fn numbers(&self) -> Option<Vec<f64>> {
+        numbers(&self.values)
+    }
+
+    /// The name and the values: `pitch 2 mm, 4 mm`.
+    pub fn sentence(&self) -> String {
+        let labels: Vec<&str> = self.values.iter().map(|v| v.label.as_str()).collect();
+        let note = if self.is_of_full_scale() {
+            " of full scale"
+        } else {
+            ""
+        };
+        format!("{} {}{note}", self.axis.name(), labels.join(", "))
+    }
+
+    /// The name with what its percentages are of, for the head of a column or a legend.
+    pub fn heading(&self) -> String {
+        let note = if self.is_of_full_scale() {
+            " (of full scale)"
+        } else {
+            ""
+        };
+        format!("{}{note}", self.axis.name())
+    }
+
+    fn is_of_full_scale(&self) -> bool {
+        self.axis == Axis::Noise && self.values.iter().all(|value| value.label.ends_with('%'))
+    }
+}
+
+impl Settings {
+    /// Sorts the axes of some cells.
+    pub fn of(cells: &[&Cell]) -> Self {
+        let all = AXES.map(|axis| Levels::of(axis, cells));
+        let columns = Columns::of(&all, cells);
+        let (mut varying, fixed): (Vec<Levels>, Vec<Levels>) =
+            all.into_iter().partition(|levels| levels.values.len() > 1);
+        let mut following = Vec::new();
+        // m and the ratio say the same twice at one array; the array's sides follow its pitch when nx stays. An axis that a
+        // study can only choose directly is dropped last.
+        for axis in [
+            Axis::Measurements,
+            Axis::Ratio,
+            Axis::Size,
+            Axis::Pitch,
+            Axis::C,
+            Axis::TrainTouches,
+            Axis::Smoothing,
+            Axis::Noise,
+            Axis::Ensemble,
+            Axis::Classifier,
+        ] {
+            let others: Vec<Axis> = varying
+                .iter()
+                .map(|l| l.axis)
+                .filter(|&a| a != axis)
+                .collect();
+            if others.len() < varying.len() && is_function_of(axis, &others, &columns) {
+                following.extend(varying.extract_if(.., |levels| levels.axis == axis));
+            }
+        }
+        Self {
+            varying,
+            following,
+            fixed,
+        }
+    }
+
+    /// The axes that vary, by themselves or with others, in the order of [`AXES`].
+    pub fn shown(&self) -> Vec<&Levels> {
+        let mut shown: Vec<&Levels> = self.varying.iter().chain(&self.following).collect();
+        shown.sort_by_key(|levels| place(levels.axis));
+        shown
+    }
+}
+
+/// Parts in one line, `a · b`, that breaks between parts only: spaces within a part are U+00A0.
+pub fn unbroken_parts(parts: &[String]) -> String {
+    let parts: Vec<String> = parts.iter().map(|p| p.replace(' ', "\u{a0}")).collect();
+    parts.join("\u{a0}· ")
+}
+
+/// Whether equal values on the other axes always come with equal values on this one.
+fn is_function_of(axis: Axis, others: &[Axis], columns: &Columns) -> bool {
+    let mut known: HashMap<Vec<usize>, usize> = HashMap::new();
+    let column = &columns.0[place(axis)];
+    (0..column.len()).all(|cell| {
+        let key = others.iter().map(|&other| columns.0[place(other)][cell]);
+        *known.entry(key.collect()).or_insert(column[cell]) == column[cell]
+    })
+}
+
+/// For each axis in the order of [`AXES`], the number of each cell's value among the axis's levels.
+struct Columns(Vec<Vec<usize>>);
+
+impl Columns {
+    fn of(levels: &[Levels], cells: &[&Cell]) -> Self {
+        let column = |levels: &Levels| {
+            let numbers = cells.iter().map(|cell| {
+                let value = levels.axis.value(cell);
+                levels.values.iter().position(|v| *v == value).unwrap_or(0)
+            });
+            numbers.collect()
+        };
+        Self(levels.iter().map(column).collect())
+    }
+}
+
+fn place(axis: Axis) -> usize {
+    AXES.iter().position(|&a| a == axis).unwrap_or(0)
+}
+
+fn numbers(values: &[AxisValue]) -> Option<Vec<f64>> {
+    values.iter().map(|value| value.number).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::recognition::ClassifierKind;
+    use crate::sensing::Ensemble;
+    use crate::signal::NoiseUnit;
+
+    fn cell(pitch_mm: f64, nx: usize, measurements: usize) -> Cell {
+        Cell {
+            cell: 0,
+            pitch_mm,
+            nx,
+            ny: nx,
+            size_mm: pitch_mm * nx as f64,
+            noise_std: 0.07,
+            noise_unit: NoiseUnit::FullScale,
+            smoothing_mm: 0.0,
+            ensemble: Ensemble::Gaussian,
+            measurements,
+            ratio: (nx * nx) as f64 / measurements as f64,
+            classifier: ClassifierKind::LinearSvm,
+            c: None,
+            train_touches: 75,
+        }
+    }
+
+    fn varying(cells: &[Cell]) -> Vec<Axis> {
+        let settings = Settings::of(&cells.iter().collect::<Vec<_>>());
+        settings.varying.iter().map(|levels| levels.axis).collect()
+    }
+
+    #[test]
+    fn an_axis_that_others_determine_follows_them() {
+        let fixed_m = [cell(2.0, 16, 64), cell(2.0, 32, 64), cell(2.0, 64, 64)];
+        assert_eq!(varying(&fixed_m), [Axis::Size]);
+        let fixed_nx = [
+            cell(2.0, 32, 64),
+            cell(4.0, 32, 64),
+            cell(2.0, 32, 16),
+            cell(4.0, 32, 16),
+        ];
+        assert_eq!(varying(&fixed_nx), [Axis::Pitch, Axis::Ratio]);
+        let one_array = [cell(2.0, 32, 64), cell(2.0, 32, 16)];
+        assert_eq!(varying(&one_array), [Axis::Ratio]);
+        assert_eq!(varying(&[cell(2.0, 32, 64)]), []);
+    }
+
+    #[test]
+    fn axes_that_a_full_grid_sweeps_all_vary() {
+        let mut cells = Vec::new();
+        for (pitch, nx) in [(2.0, 32), (2.0, 64), (4.0, 16), (4.0, 32)] {
+            for ratio in [4, 16, 64] {
+                cells.push(cell(pitch, nx, nx * nx / ratio));
+            }
+        }
+        assert_eq!(varying(&cells), [Axis::Pitch, Axis::Size, Axis::Ratio]);
+    }
+}

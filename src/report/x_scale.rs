@@ -1,0 +1,74 @@
+//! Where the values of a chart's x axis stand.
+
+use crate::report::axis::{Axis, AxisValue};
+use crate::report::drawing::Area;
+use crate::report::text_width::text_width;
+use crate::report::varying::Levels;
+
+/// Font size of tick labels.
+pub(super) const TICK_SIZE: u32 = 12;
+
+/// Values, places and label rows of one panel's x axis.
+pub(super) struct XScale {
+    /// Each value with its x, pixels.
+    pub(super) ticks: Vec<(AxisValue, f64)>,
+    /// For each tick the row of labels in which it finds room: 0, 1 below it, or none.
+    pub(super) label_rows: Vec<Option<usize>>,
+}
+
+impl XScale {
+    /// Numbers stand on a logarithmic axis where ratios are what matters, words at equal distances.
+    pub(super) fn of(levels: &Levels, frame: Area) -> Self {
+        let places: Vec<f64> = match levels.numbers() {
+            Some(numbers) if is_logarithmic(levels.axis, &numbers) => {
+                numbers.iter().map(|number| number.ln()).collect()
+            }
+            Some(numbers) => numbers,
+            None => (0..levels.values.len()).map(|i| i as f64).collect(),
+        };
+        let low = places.iter().copied().fold(f64::INFINITY, f64::min);
+        let high = places.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        let margin = 0.06 * frame.width;
+        let x = |place: f64| match high > low {
+            true => frame.x + margin + (place - low) / (high - low) * (frame.width - 2.0 * margin),
+            false => frame.x + frame.width / 2.0,
+        };
+        let ticks = levels.values.iter().cloned().zip(places);
+        let ticks: Vec<(AxisValue, f64)> = ticks.map(|(value, place)| (value, x(place))).collect();
+        let label_rows = label_rows(&ticks);
+        Self { ticks, label_rows }
+    }
+
+    /// Whether the labels need two rows.
+    pub(super) fn has_second_row(&self) -> bool {
+        self.label_rows.contains(&Some(1))
+    }
+
+    /// Where a value stands, pixels; none for a value that is not on the axis.
+    pub(super) fn x(&self, value: &AxisValue) -> Option<f64> {
+        let tick = self.ticks.iter().find(|(tick, _)| tick == value);
+        tick.map(|(_, x)| *x)
+    }
+}
+
+fn label_rows(ticks: &[(AxisValue, f64)]) -> Vec<Option<usize>> {
+    let mut free_from = [f64::NEG_INFINITY; 2];
+    let mut rows = Vec::new();
+    for (value, x) in ticks {
+        let half = text_width(&value.tick, f64::from(TICK_SIZE)) / 2.0;
+        let row = (0..2).find(|&row| x - half > free_from[row]);
+        if let Some(row) = row {
+            free_from[row] = x + half + 6.0;
+        }
+        rows.push(row);
+    }
+    rows
+}
+
+fn is_logarithmic(axis: Axis, numbers: &[f64]) -> bool {
+    let by_nature = matches!(
+        axis,
+        Axis::Ratio | Axis::Measurements | Axis::C | Axis::TrainTouches
+    );
+    by_nature && numbers.iter().all(|&number| number > 0.0)
+}

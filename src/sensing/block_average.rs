@@ -1,0 +1,177 @@
+//! Averages over blocks of neighbouring taxels.
+
+use ndarray::{ArrayView2, ArrayViewMut2, s};
+use std::cmp::Reverse;
+use std::collections::BinaryHeap;
+use std::ops::Range;
+
+/// A rectangle of taxels.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) struct Block {
+    /// Along patch y.
+    pub rows: Range<usize>,
+    /// Along patch x.
+    pub columns: Range<usize>,
+}
+
+impl Block {
+    fn area(&self) -> usize {
+        self.rows.len() * self.columns.len()
+    }
+
+    /// Two halves along the longer side (rows when equal), the first not the smaller.
+    fn halves(self) -> [Self; 2] {
+        let half = |range: &Range<usize>| range.start + range.len().div_ceil(2);
+        if self.rows.len() >= self.columns.len() {
+            let middle = half(&self.rows);
+            let columns = self.columns.clone();
+            [(self.rows.start..middle), (middle..self.rows.end)].map(|rows| Self {
+                rows,
+                columns: columns.clone(),
+            })
+        } else {
+            let middle = half(&self.columns);
+            let rows = self.rows.clone();
+            [(self.columns.start..middle), (middle..self.columns.end)].map(|columns| Self {
+                rows: rows.clone(),
+                columns,
+            })
+        }
+    }
+}
+
+/// Splits an ny × nx array into m blocks, in reading order of their first taxels.
+pub(super) fn blocks(grid: (usize, usize), m: usize) -> Vec<Block> {
+    let mut blocks = equal_squares(grid, m).unwrap_or_else(|| split_blocks(grid, m));
+    blocks.sort_by_key(|block| (block.rows.start, block.columns.start));
+    blocks
+}
+
+/// The equal squares that tile the array with m blocks, if there are any.
+fn equal_squares((ny, nx): (usize, usize), m: usize) -> Option<Vec<Block>> {
+    let side = (ny * nx / m).isqrt();
+    let tiles = side * side * m == ny * nx && ny % side == 0 && nx % side == 0;
+    let range = |tile: usize| tile * side..(tile + 1) * side;
+    tiles.then(|| {
+        (0..ny / side)
+            .flat_map(|row| (0..nx / side).map(move |column| (row, column)))
+            .map(|(row, column)| Block {
+                rows: range(row),
+                columns: range(column),
+            })
+            .collect()
+    })
+}
+
+/// Halves the largest block (the oldest of equals) until there are m.
+fn split_blocks((ny, nx): (usize, usize), m: usize) -> Vec<Block> {
+    let whole = Block {
+        rows: 0..ny,
+        columns: 0..nx,
+    };
+    let mut blocks = vec![whole];
+    let mut largest_first = BinaryHeap::from([(ny * nx, Reverse(0), 0)]);
+    let mut age = 0;
+    while blocks.len() < m {
+        let Some((_, _, index)) = largest_first.pop() else {
+            break;
+        };
+        let [first, second] = blocks[index].clone().halves();
+        let other = blocks.len();
+        for (block, index) in [(&first, index), (&second, other)] {
+            age += 1;
+            largest_first.push((block.area(), Reverse(age), index));
+        }
+        blocks[index] = first;
+        blocks.push(second);
+    }
+    blocks
+}
+
+/// The mean of each block of each frame.
+pub(super) fn measure(blocks: &[Block], frames: ArrayView2<f64>, mut out: ArrayViewMut2<f64>) {
+    let nx = blocks.iter().map(|b| b.columns.end).max().unwrap_or(1);
+    for (frame, mut row) in frames.outer_iter().zip(out.outer_iter_mut()) {
+        for (y, block) in row.iter_mut().zip(blocks) {
+            let mut sum = 0.0;
+            for line in block.rows.clone() {
+                let taxels = line * nx + block.columns.start..line * nx + block.columns.end;
+                sum += match frame.as_slice() {
+                    Some(frame) => frame[taxels].iter().sum::<f64>(),
+                    None => frame.slice(s![taxels]).iter().sum::<f64>(),
+                };
+            }
+            *y = sum / block.area() as f64;
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn covered(grid: (usize, usize), blocks: &[Block]) -> Vec<usize> {
+        let mut count = vec![0; grid.0 * grid.1];
+        for block in blocks {
+            for row in block.rows.clone() {
+                for column in block.columns.clone() {
+                    count[row * grid.1 + column] += 1;
+                }
+            }
+        }
+        count
+    }
+
+    #[test]
+    fn any_number_of_blocks_covers_every_taxel_once() {
+        for grid in [(1, 1), (1, 9), (7, 3), (8, 8), (5, 12)] {
+            for m in 1..=grid.0 * grid.1 {
+                let blocks = blocks(grid, m);
+                assert_eq!(blocks.len(), m);
+                assert!(covered(grid, &blocks).iter().all(|&count| count == 1));
+            }
+        }
+    }
+
+    #[test]
+    fn blocks_are_equal_squares_where_the_array_allows() {
+        for (grid, m, side) in [
+            ((64, 64), 1024, 2),
+            ((64, 64), 256, 4),
+            ((64, 64), 64, 8),
+            ((40, 40), 100, 4),
+            ((32, 64), 128, 4),
+            ((9, 6), 6, 3),
+            ((5, 5), 25, 1),
+        ] {
+            for block in blocks(grid, m) {
+                assert_eq!((block.rows.len(), block.columns.len()), (side, side));
+            }
+        }
+    }
+
+    #[test]
+    fn splitting_meets_the_equal_squares_of_powers_of_two() {
+        for m in [1, 4, 16, 64, 256] {
+            let mut split = split_blocks((16, 16), m);
+            split.sort_by_key(|block| (block.rows.start, block.columns.start));
+            assert_eq!(Some(split), equal_squares((16, 16), m));
+        }
+    }
+
+    #[test]
+    fn a_smaller_number_of_blocks_is_a_coarsening_of_a_larger() {
+        let inside = |inner: &Block, outer: &Block| {
+            outer.rows.start <= inner.rows.start
+                && inner.rows.end <= outer.rows.end
+                && outer.columns.start <= inner.columns.start
+                && inner.columns.end <= outer.columns.end
+        };
+        for (coarse, fine) in [(1, 5), (5, 6), (6, 17), (17, 64), (30, 31)] {
+            let coarse = split_blocks((11, 7), coarse);
+            for cell in split_blocks((11, 7), fine) {
+                assert_eq!(coarse.iter().filter(|c| inside(&cell, c)).count(), 1);
+            }
+        }
+    }
+}

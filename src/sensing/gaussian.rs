@@ -1,0 +1,24 @@
+//! Gaussian random projection: a dense matrix.
+
+use crate::random::Seed;
+use ndarray::linalg::general_mat_mul;
+use ndarray::{Array2, ArrayView2, ArrayViewMut2};
+use rand::Rng;
+use rand_distr::StandardNormal;
+
+/// Φ, m × n, entries N(0, 1/n). Row r comes from the stream's child r alone, so a larger m keeps the smaller's rows.
+pub(super) fn matrix(m: usize, n: usize, stream: &Seed) -> Array2<f64> {
+    let scale = 1.0 / (n as f64).sqrt();
+    let mut matrix = Array2::zeros((m, n));
+    for (row, mut entries) in matrix.outer_iter_mut().enumerate() {
+        let mut rng = stream.numbered(row as u64).rng();
+        entries.mapv_inplace(|_: f64| scale * rng.sample::<f64, _>(StandardNormal));
+    }
+    matrix
+}
+
+/// Y = X Φᵀ by the blocked matrix product, which sums each entry over the taxels in one fixed order whatever the
+/// number of frames or measurements (a law-test holds it to that).
+pub(super) fn measure(matrix: &Array2<f64>, frames: ArrayView2<f64>, mut out: ArrayViewMut2<f64>) {
+    general_mat_mul(1.0, &frames, &matrix.t(), 0.0, &mut out);
+}

@@ -1,0 +1,133 @@
+//! One prepared projection of any ensemble.
+
+use super::{Ensemble, block_average, gaussian, hadamard::ScrambledHadamard, subsample};
+use crate::error::{Error, Result};
+use crate::random::Seed;
+use block_average::Block;
+use ndarray::{Array2, ArrayView2, ArrayViewMut2, Axis};
+
+/// A map y = Φx from frames of n taxels to m measurements, drawn once and applied to any number of frames.
+///
+/// ```
+/// use bubbletouch::random::Seed;
+/// use bubbletouch::sensing::{Ensemble, Projection};
+/// use ndarray::Array2;
+///
+/// let frames = Array2::ones((3, 64));
+/// let seed = Seed::new(2018).named("projection");
+/// let projection = Projection::new(Ensemble::Sbhe, (8, 8), 16, &seed)?;
+/// assert_eq!(projection.measure(frames.view()).dim(), (3, 16));
+/// # Ok::<(), bubbletouch::Error>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct Projection {
+    ensemble: Ensemble,
+    n_taxels: usize,
+    n_measurements: usize,
+    operator: Operator,
+}
+
+/// What each ensemble keeps.
+#[derive(Clone, Debug)]
+enum Operator {
+    /// Φ, m × n.
+    Dense(Array2<f64>),
+    Hadamard(ScrambledHadamard),
+    Blocks(Vec<Block>),
+    /// The taxel of each measurement.
+    Taxels(Vec<usize>),
+    Identity,
+}
+
+impl Projection {
+    /// Draws the projection of an ny × nx array to m measurements from its own streams of `seed`.
+    ///
+    /// [`Ensemble::Identity`] has n measurements whatever m.
+    ///
+    /// # Errors
+    /// An array without taxels; m = 0 or m > n.
+    pub fn new(ensemble: Ensemble, grid: (usize, usize), m: usize, seed: &Seed) -> Result<Self> {
+        let n = grid.0 * grid.1;
+        if n == 0 || m == 0 || m > n {
+            return Err(Error::input(
+                "number of measurements",
+                format!("{m} of {} × {} taxels", grid.1, grid.0),
+                "from 1 to the number of taxels",
+            ));
+        }
+        let operator = match ensemble {
+            Ensemble::Gaussian => Operator::Dense(gaussian::matrix(m, n, &seed.named("gaussian"))),
+            Ensemble::Sbhe => Operator::Hadamard(ScrambledHadamard::new(m, n, &seed.named("sbhe"))),
+            Ensemble::BlockAverage => Operator::Blocks(block_average::blocks(grid, m)),
+            Ensemble::Subsample => {
+                Operator::Taxels(subsample::taxels(m, n, &seed.named("subsample")))
+            }
+            Ensemble::Identity => Operator::Identity,
+        };
+        let n_measurements = if ensemble == Ensemble::Identity { n } else { m };
+        Ok(Self {
+            ensemble,
+            n_taxels: n,
+            n_measurements,
+            operator,
+        })
+    }
+
+    /// The ensemble it was drawn from.
+    pub fn ensemble(&self) -> Ensemble {
+        self.ensemble
+    }
+
+    /// n, the length of a frame.
+    pub fn n_taxels(&self) -> usize {
+        self.n_taxels
+    }
+
+    /// m, the length of a row of measurements.
+    pub fn n_measurements(&self) -> usize {
+        self.n_measurements
+    }
+
+    /// Measures frames (n_frames × n, one a row): n_frames × m.
+    ///
+    /// # Panics
+    /// When a frame does not have n values.
+    pub fn measure(&self, frames: ArrayView2<f64>) -> Array2<f64> {
+        let mut measurements = Array2::zeros((frames.nrows(), self.n_measurements));
+        self.measure_into(frames, measurements.view_mut());
+        measurements
+    }
+
+    /// Measures frames (n_frames × n) into `measurements` (n_frames × m), whatever was there.
+    ///
+    /// # Panics
+    /// When a shape does not match.
+    pub fn measure_into(&self, frames: ArrayView2<f64>, mut measurements: ArrayViewMut2<f64>) {
+        assert_eq!(frames.ncols(), self.n_taxels, "taxels in a frame");
+        let expected = (frames.nrows(), self.n_measurements);
+        assert_eq!(measurements.dim(), expected, "frames × measurements");
+        match &self.operator {
+            Operator::Dense(matrix) => gaussian::measure(matrix, frames, measurements),
+            Operator::Hadamard(hadamard) => hadamard.measure(frames, measurements),
+            Operator::Blocks(blocks) => block_average::measure(blocks, frames, measurements),
+            Operator::Taxels(taxels) => {
+                for (frame, mut row) in frames.outer_iter().zip(measurements.outer_iter_mut()) {
+                    row.iter_mut().zip(taxels).for_each(|(y, &i)| *y = frame[i]);
+                }
+            }
+            Operator::Identity => measurements.assign(&frames),
+        }
+    }
+
+    /// Φ itself, m × n: what [`measure`](Self::measure) applies, one unit frame at a time. For small arrays and for tests.
+    pub fn matrix(&self) -> Array2<f64> {
+        let mut matrix = Array2::zeros((self.n_measurements, self.n_taxels));
+        let mut frame = Array2::zeros((1, self.n_taxels));
+        for (taxel, mut column) in matrix.axis_iter_mut(Axis(1)).enumerate() {
+            frame[[0, taxel]] = 1.0;
+            column.assign(&self.measure(frame.view()).row(0));
+            frame[[0, taxel]] = 0.0;
+        }
+        matrix
+    }
+}

@@ -1,0 +1,118 @@
+//! Additive Gaussian noise.
+
+use super::Quantity;
+use crate::error::{Error, Result};
+use crate::random::Seed;
+use crate::world::Taxel;
+use rand::Rng;
+use rand_distr::StandardNormal;
+use serde::{Deserialize, Serialize};
+
+/// What a noise standard deviation is measured in.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum NoiseUnit {
+    /// A fraction of the full scale: the stroke, or the stroke times the stiffness for forces.
+    FullScale,
+    /// Millimetres of deflection.
+    Mm,
+    /// Newtons of force.
+    N,
+}
+
+/// Independent zero-mean Gaussian noise on every taxel, touched or not.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Noise {
+    /// σ in the unit beside it; zero or positive.
+    pub std: f64,
+    /// The unit of `std`.
+    pub unit: NoiseUnit,
+}
+
+impl Noise {
+    /// σ in the frame's own unit: metres for deflections, newtons for forces.
+    ///
+    /// # Errors
+    /// A negative or non-finite `std`; millimetres asked of forces; newtons asked of deflections.
+    pub fn std_of(&self, quantity: Quantity, taxel: &Taxel) -> Result<f64> {
+        if !(self.std.is_finite() && self.std >= 0.0) {
+            return Err(Error::input(
+                "noise std",
+                self.std,
+                "zero or a positive number",
+            ));
+        }
+        match (self.unit, quantity) {
+            (NoiseUnit::FullScale, Quantity::Deflection) => Ok(self.std * taxel.stroke),
+            (NoiseUnit::FullScale, Quantity::Force) => {
+                Ok(self.std * taxel.stroke * taxel.stiffness)
+            }
+            (NoiseUnit::Mm, Quantity::Deflection) => Ok(self.std * 1e-3),
+            (NoiseUnit::N, Quantity::Force) => Ok(self.std),
+            (NoiseUnit::Mm, Quantity::Force) => Err(Error::input(
+                "noise unit",
+                "mm on frames that are forces by then",
+                "n or full_scale, or noise listed before force",
+            )),
+            (NoiseUnit::N, Quantity::Deflection) => Err(Error::input(
+                "noise unit",
+                "n on frames that are still deflections",
+                "mm or full_scale, or noise listed after force",
+            )),
+        }
+    }
+}
+
+/// Adds σ zᵢ to each value, with z from the stream's start: the same z for every σ. σ = 0 draws nothing.
+pub(super) fn add_normal(frame: &mut [f64], std: f64, stream: &Seed) {
+    if std == 0.0 {
+        return;
+    }
+    let mut rng = stream.rng();
+    for value in frame {
+        let z: f64 = rng.sample(StandardNormal);
+        *value += std * z;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const TAXEL: Taxel = Taxel {
+        radius: 1e-3,
+        stiffness: 200.0,
+        damping: 0.0,
+        stroke: 5e-3,
+    };
+
+    fn std_of(std: f64, unit: NoiseUnit, quantity: Quantity) -> Result<f64> {
+        Noise { std, unit }.std_of(quantity, &TAXEL)
+    }
+
+    #[test]
+    fn full_scale_is_the_stroke_or_the_force_at_the_stroke() {
+        let deflection = std_of(0.1, NoiseUnit::FullScale, Quantity::Deflection).unwrap();
+        let force = std_of(0.1, NoiseUnit::FullScale, Quantity::Force).unwrap();
+        assert!((deflection - 0.5e-3).abs() < 1e-18);
+        assert!((force - 0.1).abs() < 1e-15);
+        let millimetres = std_of(0.5, NoiseUnit::Mm, Quantity::Deflection).unwrap();
+        assert!((millimetres - deflection).abs() < 1e-18);
+        assert_eq!(std_of(0.1, NoiseUnit::N, Quantity::Force).unwrap(), 0.1);
+    }
+
+    #[test]
+    fn a_unit_that_the_frame_does_not_have_is_refused() {
+        let newtons = std_of(0.1, NoiseUnit::N, Quantity::Deflection).unwrap_err();
+        assert!(newtons.to_string().contains("still deflections"));
+        let millimetres = std_of(0.1, NoiseUnit::Mm, Quantity::Force).unwrap_err();
+        assert!(millimetres.to_string().contains("forces by then"));
+    }
+
+    #[test]
+    fn a_negative_or_undefined_level_is_refused() {
+        for std in [-0.1, f64::NAN, f64::INFINITY] {
+            assert!(std_of(std, NoiseUnit::FullScale, Quantity::Deflection).is_err());
+        }
+    }
+}

@@ -1,0 +1,178 @@
+//! What a study will take: cells, touches, memory and time, told before it runs.
+
+use super::plan::Plan;
+use super::simulation::TouchedObject;
+use super::sweep::{Group, Sweep};
+use super::table::Cell;
+use crate::recognition::ClassifierKind;
+use std::fmt;
+
+/// Counts, and an estimate of memory and time.
+///
+/// Times come from rates measured on one core of a 2-core x86-64 server (see the constants); another machine, or touches
+/// that are hard to tell apart, can be a few times faster or slower.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Estimate {
+    /// Objects to tell apart.
+    pub n_objects: usize,
+    /// Touches, all objects.
+    pub n_touches: usize,
+    /// Arrays, each of which makes all touches.
+    pub n_arrays: usize,
+    /// Cells of the sweep.
+    pub n_cells: usize,
+    /// Repetitions of each cell.
+    pub n_trials: usize,
+    /// Most bytes held at once: the frames of one array, and the measurements in flight.
+    pub memory_bytes: f64,
+    /// Seconds to make all touches, one core.
+    pub simulate_s: f64,
+    /// Seconds to read and project all frames, one core.
+    pub measure_s: f64,
+    /// Seconds to fit and predict all cells, one core.
+    pub recognise_s: f64,
+    /// Threads that will share the work.
+    pub n_threads: usize,
+}
+
+/// Seconds to bring one sphere to the patch and decide whether it reaches the skin.
+const PLACE_SPHERE_S: f64 = 6e-9;
+/// Seconds to clear, count and store one taxel.
+const CLEAR_TAXEL_S: f64 = 2e-9;
+/// Seconds to draw noise for one taxel and to smooth it.
+const SIGNAL_TAXEL_S: f64 = 2.5e-8;
+/// Seconds for one multiply-add of a projection.
+const PROJECT_S: f64 = 7e-11;
+/// Seconds for one multiply-add of a kernel matrix in training.
+const KERNEL_S: f64 = 1e-9;
+/// Seconds for one multiply-add of a prediction by matrix product.
+const PREDICT_S: f64 = 2e-10;
+
+impl Estimate {
+    /// Estimates a study that is laid out.
+    pub fn new(plan: &Plan, touched: &[TouchedObject], sweep: &Sweep) -> Self {
+        let n_touches = sweep.labels.len();
+        let n_threads = rayon::current_num_threads();
+        let n_trials = plan.spec.trials;
+        let taxels = |group: &Group| plan.arrays[group.array].grid.n_taxels() as f64;
+        let largest = |group: &Group| group.projected().into_iter().max().unwrap_or(0) as f64;
+        let frames = sweep
+            .groups
+            .iter()
+            .map(|g| 4.0 * n_touches as f64 * taxels(g));
+        // Measurements, and the scaled copies that training and prediction make of them.
+        let in_flight = sweep
+            .groups
+            .iter()
+            .map(|g| 16.0 * n_touches as f64 * largest(g) * n_threads as f64);
+        let spheres: f64 = touched
+            .iter()
+            .map(|t| (t.object.spheres.n_spheres() * t.touches.len()) as f64)
+            .sum();
+        let simulate_s = plan
+            .arrays
+            .iter()
+            .map(|patch| {
+                PLACE_SPHERE_S * spheres
+                    + CLEAR_TAXEL_S * (n_touches * patch.grid.n_taxels()) as f64
+            })
+            .sum();
+        let read_s =
+            |g: &Group| n_touches as f64 * taxels(g) * (SIGNAL_TAXEL_S + PROJECT_S * largest(g));
+        let n_objects = touched.len();
+        Self {
+            n_objects,
+            n_touches,
+            n_arrays: plan.arrays.len(),
+            n_cells: sweep.n_cells(),
+            n_trials,
+            memory_bytes: largest_of(frames) + largest_of(in_flight),
+            simulate_s,
+            measure_s: n_trials as f64 * sweep.groups.iter().map(read_s).sum::<f64>(),
+            recognise_s: n_trials as f64
+                * sweep
+                    .cells()
+                    .map(|cell| recognise_s(cell, n_objects, n_touches))
+                    .sum::<f64>(),
+            n_threads,
+        }
+    }
+
+    /// Seconds until the study is done, with all its threads.
+    pub fn wall_s(&self) -> f64 {
+        (self.simulate_s + self.measure_s + self.recognise_s) / self.n_threads as f64
+    }
+}
+
+/// A fit of one kernel matrix a pair of objects, and the prediction of every test row.
+fn recognise_s(cell: &Cell, n_objects: usize, n_touches: usize) -> f64 {
+    let pairs = (n_objects * (n_objects - 1) / 2) as f64;
+    let pair_rows = 2.0 * cell.train_touches as f64;
+    let m = cell.measurements as f64;
+    let n_train = (cell.train_touches * n_objects) as f64;
+    let n_test = (n_touches as f64 - n_train).max(0.0);
+    let fit = KERNEL_S * pairs * pair_rows * pair_rows * m;
+    let predicted_per_row = match cell.classifier {
+        ClassifierKind::LinearSvm => pairs,
+        ClassifierKind::RbfSvm | ClassifierKind::PolynomialSvm => n_train,
+    };
+    fit + PREDICT_S * n_test * predicted_per_row * m
+}
+
+fn largest_of(values: impl Iterator<Item = f64>) -> f64 {
+    values.fold(0.0, f64::max)
+}
+
+impl fmt::Display for Estimate {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        writeln!(f, "  objects  {}", self.n_objects)?;
+        writeln!(
+            f,
+            "  touches  {} on each of {} arrays",
+            self.n_touches, self.n_arrays
+        )?;
+        writeln!(
+            f,
+            "  cells    {} × {} trials = {} fits",
+            self.n_cells,
+            self.n_trials,
+            self.n_cells * self.n_trials
+        )?;
+        writeln!(f, "  memory   about {}", Bytes(self.memory_bytes))?;
+        write!(
+            f,
+            "  time     about {} on {} threads (one core: touch {}, measure {}, recognise {})",
+            Seconds(self.wall_s()),
+            self.n_threads,
+            Seconds(self.simulate_s),
+            Seconds(self.measure_s),
+            Seconds(self.recognise_s)
+        )
+    }
+}
+
+struct Bytes(f64);
+
+impl fmt::Display for Bytes {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        let mib = self.0 / f64::from(1 << 20);
+        match mib {
+            _ if mib < 1.0 => write!(f, "1 MiB"),
+            _ if mib < 1024.0 => write!(f, "{mib:.0} MiB"),
+            _ => write!(f, "{:.1} GiB", mib / 1024.0),
+        }
+    }
+}
+
+struct Seconds(f64);
+
+impl fmt::Display for Seconds {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        match self.0 {
+            s if s < 1.0 => write!(f, "1 s"),
+            s if s < 100.0 => write!(f, "{s:.0} s"),
+            s if s < 6000.0 => write!(f, "{:.0} min", s / 60.0),
+            s => write!(f, "{:.1} h", s / 3600.0),
+        }
+    }
+}

@@ -1,0 +1,144 @@
+//! A study that can run: every key of its [`StudySpec`] checked, every unit SI.
+//!
+//! This is the only place where millimetres, degrees and fractions become metres, radians and absolute values.
+
+use super::check::{Check, not_negative};
+use super::spec::{GroupSpec, StepSpec, StudySpec};
+use crate::error::Result;
+use crate::sensing::Ensemble;
+use crate::signal::NoiseUnit;
+use crate::world::{Patch, Placement};
+
+/// Metres in a millimetre.
+pub(super) const MM: f64 = 1e-3;
+
+/// Axes and settings of a study, ready to run.
+#[derive(Clone, Debug)]
+pub struct Plan {
+    /// As it was written; recognition and object keys are used as they are.
+    pub spec: StudySpec,
+    /// One patch per value of the resolution axis and the size axis.
+    pub arrays: Vec<Patch>,
+    /// How touches are drawn.
+    pub placement: Placement,
+    /// Approach speed at the moment of reading, m/s.
+    pub speed: f64,
+    /// Steps of the signal, in order.
+    pub steps: Vec<StepSpec>,
+    /// What the noise axis is measured in.
+    pub noise_unit: NoiseUnit,
+    /// The noise axis, in `noise_unit`.
+    pub noise: Vec<f64>,
+    /// The smoothing axis, metres.
+    pub smoothing: Vec<f64>,
+    /// The ensemble axis.
+    pub ensembles: Vec<Ensemble>,
+    /// The axis of measurements.
+    pub amounts: Vec<Amount>,
+    /// The C axis; `None` is a C chosen on a validation split.
+    pub penalties: Vec<Option<f64>>,
+    /// The axis of training touches an object; `None` is all of them.
+    pub train_touches: Vec<Option<usize>>,
+    /// How touches are split.
+    pub split: SplitPlan,
+}
+
+/// How many measurements: absolute, or as a fraction of the taxels.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Amount {
+    /// n / m.
+    Ratio(f64),
+    /// m.
+    Measurements(usize),
+}
+
+/// How touches are split into training and test rows, trial by trial.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SplitPlan {
+    /// Hold-out or folds.
+    pub kind: SplitKind,
+    /// What stays together.
+    pub keep_together: Option<GroupSpec>,
+}
+
+/// The kind of a split.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum SplitKind {
+    /// This fraction is for testing, drawn anew each trial.
+    HoldOut(f64),
+    /// Trial t tests fold t mod k of division t / k.
+    Folds(usize),
+}
+
+impl Amount {
+    /// m on an array of `n_taxels`, at least 1.
+    pub fn measurements(&self, n_taxels: usize) -> usize {
+        match *self {
+            Self::Measurements(m) => m,
+            Self::Ratio(ratio) => ((n_taxels as f64 / ratio).round() as usize).max(1),
+        }
+    }
+}
+
+impl Plan {
+    /// Checks a study; the error names `place` (the file) and the first key that is out of its range.
+    pub fn new(place: &str, spec: StudySpec) -> Result<Self> {
+        let check = Check { place };
+        check.positive_count("trials", spec.trials)?;
+        check.objects(&spec)?;
+        let arrays = check.arrays(&spec.skin)?;
+        let placement = check.placement(&spec.touches)?;
+        let (noise_unit, noise) = check.noise(&spec)?;
+        let smoothing = match &spec.signal.smoothing_mm {
+            Some(axis) => check.axis(
+                "signal.smoothing_mm",
+                axis,
+                not_negative,
+                "zero or a positive number of millimetres",
+            )?,
+            None => vec![0.0],
+        };
+        check.steps(&spec)?;
+        let ensembles = check.list("sensing.ensemble", spec.sensing.ensemble.values())?;
+        let amounts = check.amounts(&spec.sensing, &arrays)?;
+        let penalties = check.penalties(&spec)?;
+        let train_touches = check.train_touches(&spec)?;
+        let split = check.split(&spec)?;
+        check.list(
+            "recognition.classifier",
+            spec.recognition.classifier.values(),
+        )?;
+        let speed = check.value(
+            "touches.speed_mm_per_s",
+            spec.touches.speed_mm_per_s,
+            not_negative,
+            "zero or a positive number",
+        )?;
+        Ok(Self {
+            arrays,
+            placement,
+            speed: speed * MM,
+            steps: spec.signal.steps.clone(),
+            noise_unit,
+            noise,
+            smoothing: smoothing.iter().map(|s| s * MM).collect(),
+            ensembles,
+            amounts,
+            penalties,
+            train_touches,
+            split,
+            spec,
+        })
+    }
+}
+
+impl Plan {
+    /// A noise level in words: `5 % of full scale`.
+    pub fn describe_noise(&self, level: f64) -> String {
+        match self.noise_unit {
+            NoiseUnit::FullScale => format!("{} % of full scale", (level * 1e8).round() / 1e6),
+            NoiseUnit::Mm => format!("{level} mm"),
+            NoiseUnit::N => format!("{level} N"),
+        }
+    }
+}

@@ -1,0 +1,204 @@
+//! From frames to objects: the checks of `[signal]`, `[sensing]` and `[recognition]`.
+
+use super::check::{Check, not_negative, positive};
+use super::plan::{Amount, SplitKind, SplitPlan};
+use super::spec::{Axis, SensingSpec, StepSpec, StudySpec};
+use crate::error::Result;
+use crate::signal::NoiseUnit;
+use crate::world::Patch;
+
+impl Check<'_> {
+    pub fn noise(&self, spec: &StudySpec) -> Result<(NoiseUnit, Vec<f64>)> {
+        let signal = &spec.signal;
+        let given: Vec<_> = [
+            (
+                "signal.noise_std_full_scale",
+                &signal.noise_std_full_scale,
+                NoiseUnit::FullScale,
+            ),
+            ("signal.noise_std_mm", &signal.noise_std_mm, NoiseUnit::Mm),
+            ("signal.noise_std_n", &signal.noise_std_n, NoiseUnit::N),
+        ]
+        .into_iter()
+        .filter_map(|(key, axis, unit)| axis.as_ref().map(|axis| (key, axis, unit)))
+        .collect();
+        let (key, axis, unit) = match given[..] {
+            [] => return Ok((NoiseUnit::FullScale, vec![0.0])),
+            [one] => one,
+            [(first, ..), (second, ..), ..] => {
+                return Err(self.error(
+                    second,
+                    format!("given beside {first}"),
+                    "one unit of noise a study",
+                ));
+            }
+        };
+        let force = signal.steps.iter().position(|s| *s == StepSpec::Force);
+        let noise = signal.steps.iter().position(|s| *s == StepSpec::Noise);
+        let of_force = force.is_some() && force < noise;
+        match unit {
+            NoiseUnit::Mm if of_force => {
+                return Err(self.error(
+                    key,
+                    "millimetres of noise on a force",
+                    "noise_std_n or noise_std_full_scale, or noise before force in signal.steps",
+                ));
+            }
+            NoiseUnit::N if !of_force => {
+                return Err(self.error(
+                    key,
+                    "newtons of noise on a deflection",
+                    "noise_std_mm or noise_std_full_scale, or force before noise in signal.steps",
+                ));
+            }
+            _ => {}
+        }
+        let values = self.axis(key, axis, not_negative, "zero or a positive number")?;
+        Ok((unit, values))
+    }
+
+    /// Each step at most once, and none whose axis is set but which is not listed: it would be silently ignored.
+    pub fn steps(&self, spec: &StudySpec) -> Result<()> {
+        let signal = &spec.signal;
+        for (index, step) in signal.steps.iter().enumerate() {
+            if signal.steps[..index].contains(step) {
+                return Err(self.error(
+                    "signal.steps",
+                    format!("{step:?} twice"),
+                    "each step at most once",
+                ));
+            }
+        }
+        let has_noise = signal.noise_std_full_scale.is_some()
+            || signal.noise_std_mm.is_some()
+            || signal.noise_std_n.is_some();
+        for (is_set, step, word) in [
+            (has_noise, StepSpec::Noise, "noise"),
+            (
+                signal.smoothing_mm.is_some(),
+                StepSpec::Smoothing,
+                "smoothing",
+            ),
+        ] {
+            if is_set && !signal.steps.contains(&step) {
+                return Err(self.error(
+                    "signal.steps",
+                    format!("no \"{word}\""),
+                    format!("\"{word}\" among the steps, since its axis is set"),
+                ));
+            }
+        }
+        Ok(())
+    }
+
+    pub fn amounts(&self, sensing: &SensingSpec, arrays: &[Patch]) -> Result<Vec<Amount>> {
+        let smallest = arrays.iter().map(|a| a.grid.n_taxels()).min().unwrap_or(0);
+        match (&sensing.ratio, &sensing.measurements) {
+            (Some(ratios), None) => {
+                let ratios = self.axis(
+                    "sensing.ratio",
+                    ratios,
+                    |r| r.is_finite() && r >= 1.0,
+                    "at least 1",
+                )?;
+                if let Some(ratio) = ratios.iter().find(|&&r| r > smallest as f64) {
+                    return Err(self.error(
+                        "sensing.ratio",
+                        ratio,
+                        format!("at most {smallest}, the taxels of the smallest array"),
+                    ));
+                }
+                Ok(ratios.into_iter().map(Amount::Ratio).collect())
+            }
+            (None, Some(counts)) => {
+                let counts = self.list("sensing.measurements", counts.values())?;
+                if let Some(m) = counts.iter().find(|&&m| m == 0 || m > smallest) {
+                    return Err(self.error(
+                        "sensing.measurements",
+                        m,
+                        format!("1 to {smallest}, the taxels of the smallest array"),
+                    ));
+                }
+                Ok(counts.into_iter().map(Amount::Measurements).collect())
+            }
+            (Some(_), Some(_)) => {
+                Err(self.error("sensing", "both ratio and measurements", "one of them"))
+            }
+            (None, None) => Ok(vec![Amount::Ratio(1.0)]),
+        }
+    }
+
+    pub fn penalties(&self, spec: &StudySpec) -> Result<Vec<Option<f64>>> {
+        let allowed = "a positive number";
+        match (&spec.recognition.c, &spec.recognition.choose_c) {
+            (Some(_), Some(_)) => {
+                Err(self.error("recognition", "both c and choose_c", "one of them"))
+            }
+            (None, None) => Ok(vec![Some(1.0)]),
+            (Some(axis), None) => {
+                let values = self.axis("recognition.c", axis, positive, allowed)?;
+                Ok(values.into_iter().map(Some).collect())
+            }
+            (None, Some(candidates)) => {
+                self.axis(
+                    "recognition.choose_c",
+                    &Axis::Many(candidates.clone()),
+                    positive,
+                    allowed,
+                )?;
+                Ok(vec![None])
+            }
+        }
+    }
+
+    pub fn train_touches(&self, spec: &StudySpec) -> Result<Vec<Option<usize>>> {
+        let Some(axis) = &spec.recognition.train_touches else {
+            return Ok(vec![None]);
+        };
+        let counts = self.list("recognition.train_touches", axis.values())?;
+        for &count in &counts {
+            self.positive_count("recognition.train_touches", count)?;
+        }
+        Ok(counts.into_iter().map(Some).collect())
+    }
+
+    pub fn split(&self, spec: &StudySpec) -> Result<SplitPlan> {
+        let recognition = &spec.recognition;
+        let kind = match (recognition.test_fraction, recognition.folds) {
+            (Some(_), Some(_)) => {
+                return Err(self.error(
+                    "recognition",
+                    "both test_fraction and folds",
+                    "one of them",
+                ));
+            }
+            (fraction, None) => {
+                let inside = |f: f64| f > 0.0 && f < 1.0;
+                let fraction = self.value(
+                    "recognition.test_fraction",
+                    fraction.unwrap_or(0.25),
+                    inside,
+                    "between 0 and 1",
+                )?;
+                SplitKind::HoldOut(fraction)
+            }
+            (None, Some(k)) => {
+                if k < 2 {
+                    return Err(self.error("recognition.folds", k, "at least 2"));
+                }
+                if !spec.trials.is_multiple_of(k) {
+                    return Err(self.error(
+                        "trials",
+                        spec.trials,
+                        format!("a multiple of recognition.folds = {k}"),
+                    ));
+                }
+                SplitKind::Folds(k)
+            }
+        };
+        Ok(SplitPlan {
+            kind,
+            keep_together: recognition.keep_together,
+        })
+    }
+}

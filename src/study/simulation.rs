@@ -1,0 +1,127 @@
+//! Touches of an array: made once, shared by all cells.
+
+use super::progress::Progress;
+use crate::contact::{Workspace, press_to_depth};
+use crate::error::Result;
+use crate::objects::Object;
+use crate::random::Seed;
+use crate::world::{Patch, Placement, RestPose, Scene, Touch, touches};
+use ndarray::{Array2, ArrayViewMut1, Axis};
+use rayon::prelude::*;
+use std::time::Instant;
+
+/// Touches simulated by one thread at a time: large enough to hide the hand-over, small enough to share out evenly.
+const BLOCK: usize = 32;
+
+/// An object with its ways of lying on the table and its touches.
+#[derive(Clone, Debug)]
+pub struct TouchedObject {
+    /// The object.
+    pub object: Object,
+    /// Rest poses; a touch names one by its index.
+    pub rests: Vec<RestPose>,
+    /// Its touches.
+    pub touches: Vec<Touch>,
+}
+
+/// Frames of an array and what happened while they were made.
+#[derive(Clone, Debug)]
+pub struct Frames {
+    /// n_touches × n_taxels, metres of deflection; object by object, touch by touch.
+    pub deflection: Array2<f32>,
+    /// Touches that met nothing: their frames are zero.
+    pub n_missed: usize,
+    /// Touches with at least one taxel at its stroke.
+    pub n_saturated: usize,
+    /// Processor-seconds, summed over threads.
+    pub cpu_s: f64,
+}
+
+/// Draws the touches of every object.
+pub fn draw_touches(
+    objects: Vec<Object>,
+    placement: &Placement,
+    seed: &Seed,
+) -> Result<Vec<TouchedObject>> {
+    objects
+        .into_par_iter()
+        .map(|object| {
+            let rests = placement.rest.of(&object.spheres);
+            let seed = seed.named("touches").named(&object.name);
+            let touches = touches(placement, &rests, &seed)?;
+            Ok(TouchedObject {
+                object,
+                rests,
+                touches,
+            })
+        })
+        .collect()
+}
+
+/// Presses one array on every object, touch by touch; the same bytes at any number of threads.
+pub fn simulate_array(touched: &[TouchedObject], patch: &Patch, progress: &dyn Progress) -> Frames {
+    let n_touches = touched.iter().map(|t| t.touches.len()).sum();
+    let mut deflection = Array2::zeros((n_touches, patch.grid.n_taxels()));
+    let (mut n_missed, mut n_saturated, mut cpu_s) = (0, 0, 0.0);
+    let mut first = 0;
+    for TouchedObject {
+        object,
+        rests,
+        touches,
+    } in touched
+    {
+        let scene = Scene {
+            patch: *patch,
+            objects: vec![object.spheres.clone()],
+        };
+        let mut frames = deflection.slice_mut(ndarray::s![first..first + touches.len(), ..]);
+        let blocks: Vec<_> = frames
+            .axis_chunks_iter_mut(Axis(0), BLOCK)
+            .into_par_iter()
+            .zip(touches.par_chunks(BLOCK))
+            .map_init(Workspace::new, |workspace, (mut rows, touches)| {
+                let start = Instant::now();
+                let mut counts = (0, 0);
+                for (row, touch) in rows.outer_iter_mut().zip(touches) {
+                    let (missed, saturated) =
+                        press_into(&scene, &rests[touch.rest], touch, workspace, row);
+                    counts.0 += usize::from(missed);
+                    counts.1 += usize::from(saturated);
+                }
+                progress.advance(touches.len() as u64);
+                (counts, start.elapsed().as_secs_f64())
+            })
+            .collect();
+        for ((missed, saturated), seconds) in blocks {
+            n_missed += missed;
+            n_saturated += saturated;
+            cpu_s += seconds;
+        }
+        first += touches.len();
+    }
+    Frames {
+        deflection,
+        n_missed,
+        n_saturated,
+        cpu_s,
+    }
+}
+
+/// One touch into one row; whether it met nothing, and whether it saturated a taxel.
+fn press_into(
+    scene: &Scene,
+    rest: &RestPose,
+    touch: &Touch,
+    workspace: &mut Workspace,
+    row: ArrayViewMut1<f32>,
+) -> (bool, bool) {
+    let pose = touch.patch_from_object(rest);
+    let contact = press_to_depth(scene, &[pose], touch.depth, workspace);
+    for (to, &from) in row.into_iter().zip(workspace.deflections()) {
+        *to = from as f32;
+    }
+    (
+        contact.is_none(),
+        contact.is_some_and(|c| c.n_saturated > 0),
+    )
+}

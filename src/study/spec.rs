@@ -1,0 +1,383 @@
+//! A study as it is written: the keys of its TOML file, in the units of its keys.
+//!
+//! Nothing is checked here beyond names and types; [`Plan`](super::Plan) does that. An axis takes one value or a list.
+
+use crate::error::{Error, Result};
+use crate::recognition::ClassifierKind;
+use crate::recognition::scaling::Scaling;
+use crate::recognition::svm::Multiclass;
+use crate::sensing::Ensemble;
+use serde::de::value::SeqAccessDeserializer;
+use serde::de::{self, IntoDeserializer, SeqAccess, Visitor};
+use serde::{Deserialize, Deserializer, Serialize};
+use std::fmt;
+use std::marker::PhantomData;
+use std::path::PathBuf;
+
+/// One value, or a list of them: an axis.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[serde(untagged)]
+pub enum Axis<T> {
+    /// `key = 2.0`
+    One(T),
+    /// `key = [2.0, 4.0]`
+    Many(Vec<T>),
+}
+
+impl<T: Clone> Axis<T> {
+    /// The values, in their order.
+    pub fn values(&self) -> Vec<T> {
+        match self {
+            Self::One(value) => vec![value.clone()],
+            Self::Many(values) => values.clone(),
+        }
+    }
+}
+
+/// Written out, because an untagged enum forgets which value was wrong and what would have been right.
+impl<'de, T: Deserialize<'de>> Deserialize<'de> for Axis<T> {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> std::result::Result<Self, D::Error> {
+        deserializer.deserialize_any(AxisVisitor(PhantomData))
+    }
+}
+
+struct AxisVisitor<T>(PhantomData<T>);
+
+impl<'de, T: Deserialize<'de>> Visitor<'de> for AxisVisitor<T> {
+    type Value = Axis<T>;
+
+    fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        f.write_str("a value or a list of values")
+    }
+
+    fn visit_i64<E: de::Error>(self, value: i64) -> std::result::Result<Axis<T>, E> {
+        T::deserialize(value.into_deserializer()).map(Axis::One)
+    }
+
+    fn visit_f64<E: de::Error>(self, value: f64) -> std::result::Result<Axis<T>, E> {
+        T::deserialize(value.into_deserializer()).map(Axis::One)
+    }
+
+    fn visit_str<E: de::Error>(self, value: &str) -> std::result::Result<Axis<T>, E> {
+        T::deserialize(value.into_deserializer()).map(Axis::One)
+    }
+
+    fn visit_seq<A: SeqAccess<'de>>(self, values: A) -> std::result::Result<Axis<T>, A::Error> {
+        Vec::deserialize(SeqAccessDeserializer::new(values)).map(Axis::Many)
+    }
+}
+
+/// How a touch parameter is spread over touches.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(
+    untagged,
+    expecting = "expected a number, a list, { grid = [first, last, count] } or { uniform = [low, high] }"
+)]
+pub enum SpreadSpec {
+    /// `yaw_deg = 30.0`
+    One(f64),
+    /// `yaw_deg = [0.0, 10.0, 20.0]`
+    List(Vec<f64>),
+    /// `yaw_deg = { grid = [0.0, 50.0, 6] }` or `{ uniform = [0.0, 360.0] }`
+    Range(RangeSpec),
+}
+
+/// A grid or an interval.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case", deny_unknown_fields)]
+pub enum RangeSpec {
+    /// First value, last value, how many.
+    Grid(f64, f64, usize),
+    /// Drawn uniformly between two values.
+    Uniform(f64, f64),
+}
+
+/// The file.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct StudySpec {
+    /// What the study asks, in a sentence.
+    pub question: String,
+    /// What the author expected before it ran.
+    #[serde(default)]
+    pub expected: String,
+    /// Root of all randomness.
+    #[serde(default = "default_seed")]
+    pub seed: u64,
+    /// How often each cell is repeated with a new split, projection and noise.
+    #[serde(default = "one")]
+    pub trials: usize,
+    /// What is touched.
+    pub objects: ObjectsSpec,
+    /// What touches.
+    pub skin: SkinSpec,
+    /// How it touches.
+    pub touches: TouchesSpec,
+    /// What happens to a frame before it is sensed.
+    #[serde(default)]
+    pub signal: SignalSpec,
+    /// How a frame is compressed.
+    pub sensing: SensingSpec,
+    /// How objects are recognised.
+    pub recognition: RecognitionSpec,
+    /// What the report shows.
+    #[serde(default)]
+    pub report: ReportSpec,
+}
+
+/// `[objects]`
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ObjectsSpec {
+    /// Sets of solids: built-in names (`household`, `balls`, `boxes`, `cans`) or TOML files.
+    #[serde(default)]
+    pub sets: Vec<String>,
+    /// Only these objects of the sets and meshes; all when left out.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub names: Option<Vec<String>>,
+    /// A folder of PLY meshes, one object a file.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub meshes: Option<PathBuf>,
+    /// How far the spheres of a solid may be from its surface, mm.
+    #[serde(default = "default_surface_error_mm")]
+    pub surface_error_mm: f64,
+}
+
+/// `[skin]`
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct SkinSpec {
+    /// Axis: distance between taxels, mm.
+    pub pitch_mm: Axis<f64>,
+    /// Axis: side length of the square array, mm; a whole number of pitches.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub size_mm: Option<Axis<f64>>,
+    /// Axis, instead of `size_mm`: taxels along a side.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub taxels: Option<Axis<usize>>,
+    /// ρ, mm; half the pitch when left out.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub taxel_radius_mm: Option<f64>,
+    /// s, mm.
+    pub stroke_mm: f64,
+    /// k, N/m.
+    #[serde(default = "default_stiffness")]
+    pub stiffness_n_per_m: f64,
+    /// c, N·s/m.
+    #[serde(default)]
+    pub damping_n_s_per_m: f64,
+}
+
+/// `[touches]`
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct TouchesSpec {
+    /// How the object lies on the table.
+    #[serde(default)]
+    pub rest: RestSpec,
+    /// Touches an object; all combinations when left out.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub per_object: Option<usize>,
+    /// Where the patch's centre is over the object's, along table x, mm.
+    #[serde(default = "zero")]
+    pub offset_x_mm: SpreadSpec,
+    /// The same along table y, mm.
+    #[serde(default = "zero")]
+    pub offset_y_mm: SpreadSpec,
+    /// How the object is turned about the vertical, degrees.
+    #[serde(default = "zero")]
+    pub yaw_deg: SpreadSpec,
+    /// How the patch is tilted about its x axis, degrees.
+    #[serde(default = "zero")]
+    pub tilt_x_deg: SpreadSpec,
+    /// The same about its y axis, degrees.
+    #[serde(default = "zero")]
+    pub tilt_y_deg: SpreadSpec,
+    /// How far the patch goes past first contact, mm.
+    pub depth_mm: SpreadSpec,
+    /// Approach speed at the moment of reading, mm/s: what the damper feels.
+    #[serde(default)]
+    pub speed_mm_per_s: f64,
+}
+
+/// How an object lies on the table.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum RestSpec {
+    /// With its own z axis up.
+    #[default]
+    AsModelled,
+    /// In one of its stable poses, the likelier ones more often.
+    Stable,
+}
+
+/// `[signal]`
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct SignalSpec {
+    /// What is done to a frame of deflections, in this order; each step at most once.
+    pub steps: Vec<StepSpec>,
+    /// Axis: noise standard deviation as a fraction of the full scale.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub noise_std_full_scale: Option<Axis<f64>>,
+    /// Axis, instead: the same in millimetres (of deflection).
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub noise_std_mm: Option<Axis<f64>>,
+    /// Axis, instead: the same in newtons (of force).
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub noise_std_n: Option<Axis<f64>>,
+    /// Axis: standard deviation of the Gaussian that smooths, mm.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub smoothing_mm: Option<Axis<f64>>,
+}
+
+/// A step of the signal stage.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum StepSpec {
+    /// Deflection → force, newtons.
+    Force,
+    /// Additive zero-mean Gaussian noise.
+    Noise,
+    /// Gaussian smoothing over the array.
+    Smoothing,
+}
+
+/// `[sensing]`
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct SensingSpec {
+    /// Axis: how measurements are made.
+    #[serde(default = "default_ensemble")]
+    pub ensemble: Axis<Ensemble>,
+    /// Axis: compression ratio, taxels per measurement.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub ratio: Option<Axis<f64>>,
+    /// Axis, instead of `ratio`: measurements a touch.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub measurements: Option<Axis<usize>>,
+}
+
+/// `[recognition]`
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct RecognitionSpec {
+    /// Axis: which classifier.
+    pub classifier: Axis<ClassifierKind>,
+    /// How two-class SVMs make a many-class one.
+    #[serde(default)]
+    pub multiclass: Multiclass,
+    /// How features are scaled, fitted on training rows.
+    #[serde(default)]
+    pub scaling: Scaling,
+    /// Axis: soft-margin penalty; 1 when left out.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub c: Option<Axis<f64>>,
+    /// Instead of `c`: candidates of which each fit chooses one on a validation split of its training rows.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub choose_c: Option<Vec<f64>>,
+    /// γ of the RBF and polynomial kernels; 1 / (m · variance) when left out.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub gamma: Option<f64>,
+    /// d of the polynomial kernel.
+    #[serde(default = "default_degree")]
+    pub degree: u32,
+    /// c₀ of the polynomial kernel.
+    #[serde(default = "default_coef0")]
+    pub coef0: f64,
+    /// Axis: training touches an object, at most; all of the training split when left out.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub train_touches: Option<Axis<usize>>,
+    /// Fraction of the touches held out for testing (without `folds`; 0.25 when both are left out).
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub test_fraction: Option<f64>,
+    /// Instead of `test_fraction`: k of a k-fold split; `trials` is then a multiple of k.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub folds: Option<usize>,
+    /// Touches that share this are never on both sides of the split.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub keep_together: Option<GroupSpec>,
+}
+
+/// `[report]`
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ReportSpec {
+    /// Objects whose touches are drawn side by side; four spread over the list when left out.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub samples: Option<Vec<String>>,
+}
+
+/// What groups touches for a split that keeps groups together.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum GroupSpec {
+    /// Rest pose, offset, yaw and tilt: everything but the depth.
+    Pose,
+    /// Both offsets.
+    Offset,
+    /// The yaw.
+    Yaw,
+    /// Both tilts.
+    Tilt,
+    /// The stable pose.
+    Rest,
+    /// The depth.
+    Depth,
+}
+
+impl StudySpec {
+    /// Reads a study; the error names the file, the line and the key.
+    pub fn parse(place: &str, text: &str) -> Result<Self> {
+        toml::from_str(text).map_err(|error| Error::toml(place, text, &error))
+    }
+
+    /// Writes the study with every default spelt out.
+    pub fn to_toml(&self) -> String {
+        toml::to_string(self).expect("every field of a study has a TOML form")
+    }
+}
+
+impl Default for SignalSpec {
+    fn default() -> Self {
+        Self {
+            steps: vec![StepSpec::Noise, StepSpec::Smoothing],
+            noise_std_full_scale: None,
+            noise_std_mm: None,
+            noise_std_n: None,
+            smoothing_mm: None,
+        }
+    }
+}
+
+fn default_seed() -> u64 {
+    2018
+}
+
+fn one() -> usize {
+    1
+}
+
+fn zero() -> SpreadSpec {
+    SpreadSpec::One(0.0)
+}
+
+fn default_surface_error_mm() -> f64 {
+    0.25
+}
+
+fn default_stiffness() -> f64 {
+    100.0
+}
+
+fn default_ensemble() -> Axis<Ensemble> {
+    Axis::One(Ensemble::Gaussian)
+}
+
+fn default_degree() -> u32 {
+    3
+}
+
+fn default_coef0() -> f64 {
+    1.0
+}

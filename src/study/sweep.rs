@@ -1,0 +1,261 @@
+//! The cells of a study, grouped by what they can share.
+//!
+//! ```text
+//! array ── touches simulated once
+//!   └─ noise × smoothing × ensemble (a group), and trial ── frames read and projected once, at the largest m
+//!        └─ m × classifier × C × training touches (a cell) ── fit, predict, score
+//! ```
+
+use super::plan::{Plan, SplitKind};
+use super::simulation::TouchedObject;
+use super::spec::GroupSpec;
+use super::table::Cell;
+use crate::error::{Error, Result};
+use crate::random::Seed;
+use crate::recognition::ClassifierKind;
+use crate::recognition::split::{
+    Split, group_hold_out, group_k_fold, stratified_hold_out, stratified_k_fold,
+};
+use crate::sensing::Ensemble;
+use crate::world::{Patch, TouchAxis};
+use ndarray::Array1;
+use std::collections::BTreeMap;
+
+/// Everything that is decided before the first touch is simulated.
+#[derive(Clone, Debug)]
+pub struct Sweep {
+    /// Groups, array by array.
+    pub groups: Vec<Group>,
+    /// One split a trial, of all touches.
+    pub splits: Vec<Split>,
+    /// The object of every touch, by its number.
+    pub labels: Array1<usize>,
+    /// The group of every touch, when the study keeps groups together.
+    pub group_keys: Option<Array1<usize>>,
+}
+
+/// Cells that are read from the same measurements.
+#[derive(Clone, Debug)]
+pub struct Group {
+    /// Index into the plan's arrays.
+    pub array: usize,
+    /// Noise standard deviation, in the plan's unit.
+    pub noise: f64,
+    /// Standard deviation of the smoothing, metres.
+    pub smoothing: f64,
+    /// How measurements are made.
+    pub ensemble: Ensemble,
+    /// Its cells.
+    pub cells: Vec<Cell>,
+}
+
+impl Group {
+    /// The measurements that serve every cell: of the largest m if smaller ones are its prefixes, else one set per m.
+    pub fn projected(&self) -> Vec<usize> {
+        let mut counts: Vec<usize> = self.cells.iter().map(|c| c.measurements).collect();
+        counts.sort_unstable();
+        counts.dedup();
+        if self.ensemble.is_prefix_nested() {
+            counts.drain(..counts.len() - 1);
+        }
+        counts
+    }
+}
+
+impl Sweep {
+    /// Lays out splits and cells; the error says which objects or touches are too few.
+    pub fn new(plan: &Plan, touched: &[TouchedObject]) -> Result<Self> {
+        if touched.len() < 2 {
+            return Err(Error::input(
+                "objects",
+                format!("{} object", touched.len()),
+                "at least two, since recognition tells objects apart",
+            ));
+        }
+        let labels = touched
+            .iter()
+            .enumerate()
+            .flat_map(|(label, t)| std::iter::repeat_n(label, t.touches.len()))
+            .collect();
+        let keys = plan
+            .split
+            .keep_together
+            .map(|kind| group_keys(touched, kind))
+            .transpose()?;
+        let splits = (0..plan.spec.trials)
+            .map(|trial| split(plan, &labels, keys.as_ref(), trial))
+            .collect::<Result<Vec<_>>>()?;
+        let train_touches = train_touches(plan, &splits, &labels)?;
+        let mut sweep = Self {
+            groups: Vec::new(),
+            splits,
+            labels,
+            group_keys: keys,
+        };
+        for array in 0..plan.arrays.len() {
+            for &noise in &plan.noise {
+                for &smoothing in &plan.smoothing {
+                    for &ensemble in &plan.ensembles {
+                        let group = Group {
+                            array,
+                            noise,
+                            smoothing,
+                            ensemble,
+                            cells: Vec::new(),
+                        };
+                        sweep.add_group(plan, group, &train_touches);
+                    }
+                }
+            }
+        }
+        Ok(sweep)
+    }
+
+    /// All cells, in their order.
+    pub fn cells(&self) -> impl Iterator<Item = &Cell> {
+        self.groups.iter().flat_map(|group| &group.cells)
+    }
+
+    /// How many cells.
+    pub fn n_cells(&self) -> usize {
+        self.groups.iter().map(|group| group.cells.len()).sum()
+    }
+
+    fn add_group(&mut self, plan: &Plan, mut group: Group, train_touches: &[usize]) {
+        let patch = &plan.arrays[group.array];
+        let mut cell = self.n_cells();
+        for measurements in measurement_counts(plan, patch, group.ensemble) {
+            for classifier in plan.spec.recognition.classifier.values() {
+                for &c in &plan.penalties {
+                    for &train_touches in train_touches {
+                        let axes = (measurements, classifier, c, train_touches);
+                        group.cells.push(describe(plan, &group, cell, axes));
+                        cell += 1;
+                    }
+                }
+            }
+        }
+        self.groups.push(group);
+    }
+}
+
+/// The m axis on an array; a ratio axis can name the same m twice on a small one.
+fn measurement_counts(plan: &Plan, patch: &Patch, ensemble: Ensemble) -> Vec<usize> {
+    let n_taxels = patch.grid.n_taxels();
+    if ensemble == Ensemble::Identity {
+        return vec![n_taxels];
+    }
+    let mut counts = Vec::new();
+    for amount in &plan.amounts {
+        let m = amount.measurements(n_taxels);
+        if !counts.contains(&m) {
+            counts.push(m);
+        }
+    }
+    counts
+}
+
+fn describe(
+    plan: &Plan,
+    group: &Group,
+    cell: usize,
+    (measurements, classifier, c, train_touches): (usize, ClassifierKind, Option<f64>, usize),
+) -> Cell {
+    let grid = &plan.arrays[group.array].grid;
+    // Millimetres as people write them: 2, not 2.0000000000000004.
+    let millimetres = |metres: f64| (metres * 1e9).round() / 1e6;
+    Cell {
+        cell,
+        pitch_mm: millimetres(grid.pitch),
+        nx: grid.nx,
+        ny: grid.ny,
+        size_mm: millimetres(grid.pitch * grid.nx as f64),
+        noise_std: group.noise,
+        noise_unit: plan.noise_unit,
+        smoothing_mm: millimetres(group.smoothing),
+        ensemble: group.ensemble,
+        measurements,
+        ratio: grid.n_taxels() as f64 / measurements as f64,
+        classifier,
+        c,
+        train_touches,
+    }
+}
+
+fn split(
+    plan: &Plan,
+    labels: &Array1<usize>,
+    keys: Option<&Array1<usize>>,
+    trial: usize,
+) -> Result<Split> {
+    let seed = Seed::new(plan.spec.seed).named("split");
+    match plan.split.kind {
+        SplitKind::HoldOut(fraction) => {
+            let seed = seed.numbered(trial as u64);
+            match keys {
+                None => stratified_hold_out(labels.view(), fraction, &seed),
+                Some(keys) => group_hold_out(labels.view(), keys.view(), fraction, &seed),
+            }
+        }
+        SplitKind::Folds(k) => {
+            let seed = seed.numbered((trial / k) as u64);
+            let mut folds = match keys {
+                None => stratified_k_fold(labels.view(), k, &seed)?,
+                Some(keys) => group_k_fold(labels.view(), keys.view(), k, &seed)?,
+            };
+            Ok(folds.swap_remove(trial % k))
+        }
+    }
+}
+
+/// The training-touches axis: what is asked for, or all that the smallest training split has for every object.
+fn train_touches(plan: &Plan, splits: &[Split], labels: &Array1<usize>) -> Result<Vec<usize>> {
+    let n_objects = labels.iter().max().map_or(0, |last| last + 1);
+    let fewest = splits
+        .iter()
+        .map(|split| fewest_per_object(split, labels, n_objects))
+        .min()
+        .unwrap_or(0);
+    plan.train_touches
+        .iter()
+        .map(|asked| match *asked {
+            None => Ok(fewest),
+            Some(count) if count <= fewest => Ok(count),
+            Some(count) => Err(Error::input(
+                "key recognition.train_touches",
+                count,
+                format!("at most {fewest}, the training touches of every object in every trial"),
+            )),
+        })
+        .collect()
+}
+
+fn fewest_per_object(split: &Split, labels: &Array1<usize>, n_objects: usize) -> usize {
+    let mut counts = vec![0; n_objects];
+    for &row in &split.train {
+        counts[labels[row]] += 1;
+    }
+    counts.into_iter().min().unwrap_or(0)
+}
+
+/// One group number a touch: touches with the same values on the grouping axes share it, whatever their object.
+fn group_keys(touched: &[TouchedObject], kind: GroupSpec) -> Result<Array1<usize>> {
+    use TouchAxis::{Depth, OffsetX, OffsetY, Rest, TiltX, TiltY, Yaw};
+    let axes: &[TouchAxis] = match kind {
+        GroupSpec::Pose => &[Rest, OffsetX, OffsetY, Yaw, TiltX, TiltY],
+        GroupSpec::Offset => &[OffsetX, OffsetY],
+        GroupSpec::Yaw => &[Yaw],
+        GroupSpec::Tilt => &[TiltX, TiltY],
+        GroupSpec::Rest => &[Rest],
+        GroupSpec::Depth => &[Depth],
+    };
+    let mut numbers = BTreeMap::new();
+    touched
+        .iter()
+        .flat_map(|t| &t.touches)
+        .map(|touch| {
+            let next = numbers.len();
+            Ok(*numbers.entry(touch.group(axes)?).or_insert(next))
+        })
+        .collect()
+}

@@ -1,0 +1,215 @@
+//! A study's touches as files, for people who train elsewhere: NumPy arrays and CSV, streamed.
+//!
+//! | file | holds |
+//! |---|---|
+//! | `frames.npy` | n × ny × nx, f32, metres of deflection |
+//! | `labels.npy` | n, i64: the object's number |
+//! | `poses.npy` | n × 7, f64: the object in the patch frame when it is read: x, y, z in metres, quaternion x, y, z, w |
+//! | `depths.npy` | n, f64: metres past first contact |
+//! | `touches.csv` | one row a touch: object, resting pose, offset, yaw, tilts, depth, taxels touched and saturated |
+//! | `objects.csv` | one row an object: number, name, spheres, touches |
+
+use super::progress::Progress;
+use super::simulation::TouchedObject;
+use crate::contact::{Workspace, press_to_depth};
+use crate::error::Result;
+use crate::files::WholeFile;
+use crate::world::{Patch, Scene, Touch};
+use ndarray_npy::{WritableElement, write_zeroed_npy};
+use rayon::prelude::*;
+use serde::Serialize;
+use std::io::{self, Seek, SeekFrom, Write};
+use std::path::Path;
+
+/// Touches simulated before they are written: all that is held in memory at once.
+const BLOCK: usize = 256;
+
+#[derive(Serialize)]
+struct TouchRow<'a> {
+    touch: usize,
+    label: usize,
+    object: &'a str,
+    rest: usize,
+    offset_x_mm: f64,
+    offset_y_mm: f64,
+    yaw_deg: f64,
+    tilt_x_deg: f64,
+    tilt_y_deg: f64,
+    depth_mm: f64,
+    n_touched: usize,
+    n_saturated: usize,
+}
+
+#[derive(Serialize)]
+struct ObjectRow<'a> {
+    label: usize,
+    object: &'a str,
+    n_spheres: usize,
+    n_touches: usize,
+}
+
+/// One touch as it goes into the files.
+struct Reading {
+    frame: Vec<f32>,
+    /// Translation and quaternion.
+    pose: [f64; 7],
+    n_touched: usize,
+    n_saturated: usize,
+}
+
+/// Simulates all touches of an array and writes them into a folder that exists.
+pub fn write_touches(
+    folder: &Path,
+    touched: &[TouchedObject],
+    patch: &Patch,
+    progress: &dyn Progress,
+) -> Result<()> {
+    let mut files = TouchFiles::create(folder, touched, patch)?;
+    let mut objects = Table::create(&folder.join("objects.csv"))?;
+    for (label, object) in touched.iter().enumerate() {
+        objects.row(ObjectRow {
+            label,
+            object: &object.object.name,
+            n_spheres: object.object.spheres.n_spheres(),
+            n_touches: object.touches.len(),
+        })?;
+        let scene = Scene {
+            patch: *patch,
+            objects: vec![object.object.spheres.clone()],
+        };
+        for touches in object.touches.chunks(BLOCK) {
+            let readings: Vec<Reading> = touches
+                .par_iter()
+                .map_init(Workspace::new, |workspace, touch| {
+                    read(&scene, object, touch, workspace)
+                })
+                .collect();
+            for (touch, reading) in touches.iter().zip(&readings) {
+                files.add(label, &object.object.name, touch, reading)?;
+            }
+            progress.advance(touches.len() as u64);
+        }
+    }
+    objects.commit()?;
+    files.commit()
+}
+
+fn read(
+    scene: &Scene,
+    object: &TouchedObject,
+    touch: &Touch,
+    workspace: &mut Workspace,
+) -> Reading {
+    let mut pose = touch.patch_from_object(&object.rests[touch.rest]);
+    let contact = press_to_depth(scene, &[pose], touch.depth, workspace);
+    pose.translation.z -= contact.map_or(0.0, |c| c.travel);
+    let (t, q) = (pose.translation, pose.rotation);
+    Reading {
+        frame: workspace.deflections().iter().map(|&d| d as f32).collect(),
+        pose: [t.x, t.y, t.z, q.x, q.y, q.z, q.w],
+        n_touched: contact.map_or(0, |c| c.n_touched),
+        n_saturated: contact.map_or(0, |c| c.n_saturated),
+    }
+}
+
+/// The files with one entry a touch.
+struct TouchFiles {
+    frames: WholeFile,
+    labels: WholeFile,
+    poses: WholeFile,
+    depths: WholeFile,
+    table: Table,
+    n_written: usize,
+}
+
+impl TouchFiles {
+    fn create(folder: &Path, touched: &[TouchedObject], patch: &Patch) -> Result<Self> {
+        let n: usize = touched.iter().map(|t| t.touches.len()).sum();
+        let shape = [n, patch.grid.ny, patch.grid.nx];
+        Ok(Self {
+            frames: start_npy::<f32>(&folder.join("frames.npy"), &shape)?,
+            labels: start_npy::<i64>(&folder.join("labels.npy"), &[n])?,
+            poses: start_npy::<f64>(&folder.join("poses.npy"), &[n, 7])?,
+            depths: start_npy::<f64>(&folder.join("depths.npy"), &[n])?,
+            table: Table::create(&folder.join("touches.csv"))?,
+            n_written: 0,
+        })
+    }
+
+    fn add(&mut self, label: usize, object: &str, touch: &Touch, reading: &Reading) -> Result<()> {
+        let numbers =
+            |values: &[f64]| -> Vec<u8> { values.iter().flat_map(|v| v.to_le_bytes()).collect() };
+        let frame: Vec<u8> = reading.frame.iter().flat_map(|v| v.to_le_bytes()).collect();
+        self.frames.write(|w| w.write_all(&frame))?;
+        self.labels
+            .write(|w| w.write_all(&(label as i64).to_le_bytes()))?;
+        self.poses.write(|w| w.write_all(&numbers(&reading.pose)))?;
+        self.depths
+            .write(|w| w.write_all(&numbers(&[touch.depth])))?;
+        self.table.row(TouchRow {
+            touch: self.n_written,
+            label,
+            object,
+            rest: touch.rest,
+            offset_x_mm: 1e3 * touch.offset[0],
+            offset_y_mm: 1e3 * touch.offset[1],
+            yaw_deg: touch.yaw.to_degrees(),
+            tilt_x_deg: touch.tilt[0].to_degrees(),
+            tilt_y_deg: touch.tilt[1].to_degrees(),
+            depth_mm: 1e3 * touch.depth,
+            n_touched: reading.n_touched,
+            n_saturated: reading.n_saturated,
+        })?;
+        self.n_written += 1;
+        Ok(())
+    }
+
+    fn commit(self) -> Result<()> {
+        self.frames.commit()?;
+        self.labels.commit()?;
+        self.poses.commit()?;
+        self.depths.commit()?;
+        self.table.commit()
+    }
+}
+
+/// Starts an array file: its header now, its data (little-endian, row by row) as it comes.
+fn start_npy<A: WritableElement>(path: &Path, shape: &[usize]) -> Result<WholeFile> {
+    let mut file = WholeFile::create(path)?;
+    file.write(|writer| {
+        write_zeroed_npy::<A, _>(writer.get_ref(), shape).map_err(io::Error::other)?;
+        let n_bytes = shape.iter().product::<usize>() * size_of::<A>();
+        writer.seek(SeekFrom::End(-(n_bytes as i64))).map(|_| ())
+    })?;
+    Ok(file)
+}
+
+/// A CSV file that grows row by row.
+struct Table {
+    file: WholeFile,
+    has_header: bool,
+}
+
+impl Table {
+    fn create(path: &Path) -> Result<Self> {
+        Ok(Self {
+            file: WholeFile::create(path)?,
+            has_header: false,
+        })
+    }
+
+    fn row(&mut self, row: impl Serialize) -> Result<()> {
+        let is_first = !std::mem::replace(&mut self.has_header, true);
+        self.file.write(|writer| {
+            let mut csv = csv::WriterBuilder::new()
+                .has_headers(is_first)
+                .from_writer(writer);
+            csv.serialize(row).map_err(io::Error::other)?;
+            csv.flush()
+        })
+    }
+
+    fn commit(self) -> Result<()> {
+        self.file.commit()
+    }
+}

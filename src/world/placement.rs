@@ -1,0 +1,273 @@
+//! Where and how a patch touches an object that rests on the table.
+//!
+//! The object rests in one of its poses with its bounding box centred at x = y = 0, turned by the yaw about the table's z. The
+//! patch comes from above, facing down. Its axis passes through the offset (x, y) at the height of the object's top; it
+//! is tilted there about its own x, then about its own y:
+//!
+//! patch_from_table = R_y(tilt_y)⁻¹ · R_x(tilt_x)⁻¹ · F · T(−offset_x, −offset_y, −height), F = half a turn about x.
+//!
+//! How far along its own axis the patch goes is left to the contact stage: to first contact, then `depth` further.
+
+use super::rest::{RestPose, as_modelled, stable_poses};
+use crate::error::{Error, Result};
+use crate::geometry::Pose;
+use crate::objects::SphereUnion;
+use glam::{DQuat, DVec3};
+
+/// Half a turn about x: the patch's z points down. Written out, so that it is exact.
+const FACING_DOWN: DQuat = DQuat::from_xyzw(1.0, 0.0, 0.0, 0.0);
+
+/// Which values a coordinate of a touch takes. SI units: metres, radians.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Spread {
+    /// One of these, all different, at least one.
+    Values(Vec<f64>),
+    /// Anything from `low` up to `high`, uniformly.
+    Uniform {
+        /// Smallest value.
+        low: f64,
+        /// Largest value, at least `low`.
+        high: f64,
+    },
+}
+
+/// Which resting poses are touched.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum RestPoses {
+    /// The object's own z points up.
+    AsModelled,
+    /// The poses in which the object can rest on the table.
+    Stable,
+}
+
+impl RestPoses {
+    /// The poses of one object.
+    pub fn of(self, spheres: &SphereUnion) -> Vec<RestPose> {
+        match self {
+            Self::AsModelled => vec![as_modelled(spheres)],
+            Self::Stable => stable_poses(spheres),
+        }
+    }
+}
+
+/// A coordinate of a touch.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum TouchAxis {
+    /// The resting pose.
+    Rest,
+    /// Offset along table x.
+    OffsetX,
+    /// Offset along table y.
+    OffsetY,
+    /// Turn of the object about table z.
+    Yaw,
+    /// Tilt of the patch about its own x.
+    TiltX,
+    /// Tilt of the patch about its own y.
+    TiltY,
+    /// Travel past first contact.
+    Depth,
+}
+
+impl TouchAxis {
+    /// In the order in which products run, slowest first.
+    pub const ALL: [Self; 7] = [
+        Self::Rest,
+        Self::OffsetX,
+        Self::OffsetY,
+        Self::Yaw,
+        Self::TiltX,
+        Self::TiltY,
+        Self::Depth,
+    ];
+
+    /// The word in a study file and in a table's header, without its unit.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Rest => "rest",
+            Self::OffsetX => "offset_x",
+            Self::OffsetY => "offset_y",
+            Self::Yaw => "yaw",
+            Self::TiltX => "tilt_x",
+            Self::TiltY => "tilt_y",
+            Self::Depth => "depth",
+        }
+    }
+}
+
+/// How the touches of an object are chosen; [`touches`](super::touches()) does it.
+///
+/// - No uniform spread, no `per_object`: every combination, resting poses × values; [`TouchAxis::ALL`] runs slowest first.
+/// - No uniform spread, `per_object` given: that many different combinations, drawn without replacement, all equally likely.
+/// - A uniform spread: `per_object` touches, each drawn alone by its number; resting poses by their probability.
+///
+/// Drawn touches nest: fewer `per_object` are the first of more.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Placement {
+    /// Resting poses of the object.
+    pub rest: RestPoses,
+    /// Where the patch's axis passes, along table x from the middle of the object's box; metres.
+    pub offset_x: Spread,
+    /// The same along table y; metres.
+    pub offset_y: Spread,
+    /// Turn of the object about table z; radians.
+    pub yaw: Spread,
+    /// Tilt of the patch about its own x; radians, less than a quarter turn either way.
+    pub tilt_x: Spread,
+    /// Tilt of the patch about its own y, after `tilt_x`; radians, less than a quarter turn either way.
+    pub tilt_y: Spread,
+    /// Travel past first contact; metres, zero or positive.
+    pub depth: Spread,
+    /// How many touches of each object; every combination if `None`.
+    pub per_object: Option<usize>,
+}
+
+/// One touch of one object.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Touch {
+    /// Index of the resting pose.
+    pub rest: usize,
+    /// Where the patch's axis passes at the height of the object's top, table x and y, metres.
+    pub offset: [f64; 2],
+    /// Turn of the object about table z, radians.
+    pub yaw: f64,
+    /// Tilt of the patch about its own x, then y, radians.
+    pub tilt: [f64; 2],
+    /// Travel past first contact, metres.
+    pub depth: f64,
+    /// For each of [`TouchAxis::ALL`], which of the listed values this is; `None` where the spread is uniform.
+    pub indices: [Option<usize>; 7],
+}
+
+impl Touch {
+    /// What this touch shares with others of its group: its value's index on each of these axes. Splits keep whole groups
+    /// (an offset, a yaw, a resting pose) out of training.
+    ///
+    /// # Errors
+    /// An axis whose values are spread uniformly: no two touches share one.
+    pub fn group(&self, axes: &[TouchAxis]) -> Result<Vec<usize>> {
+        let index = |axis: &TouchAxis| {
+            self.indices[*axis as usize].ok_or_else(|| {
+                Error::input(
+                    "group of touches",
+                    format!("{}, which is spread uniformly", axis.name()),
+                    "axes with listed values, or rest",
+                )
+            })
+        };
+        axes.iter().map(index).collect()
+    }
+
+    /// The object's pose in the patch frame, before the patch moves along its own axis: for the zero touch, the top of the
+    /// object's box lies in the plane z = 0 and the rest of it in front (z > 0).
+    pub fn patch_from_object(&self, rest: &RestPose) -> Pose {
+        let yawed = Pose::from_rotation(DQuat::from_rotation_z(self.yaw));
+        let to_axis = DVec3::new(-self.offset[0], -self.offset[1], -rest.height);
+        let tilt = DQuat::from_rotation_x(self.tilt[0]) * DQuat::from_rotation_y(self.tilt[1]);
+        Pose::from_rotation(tilt.conjugate() * FACING_DOWN)
+            .compose(&Pose::from_translation(to_axis))
+            .compose(&yawed)
+            .compose(&rest.table_from_object)
+    }
+}
+
+impl Placement {
+    /// The spread of each axis but [`TouchAxis::Rest`], in product order.
+    pub fn spreads(&self) -> [(TouchAxis, &Spread); 6] {
+        [
+            (TouchAxis::OffsetX, &self.offset_x),
+            (TouchAxis::OffsetY, &self.offset_y),
+            (TouchAxis::Yaw, &self.yaw),
+            (TouchAxis::TiltX, &self.tilt_x),
+            (TouchAxis::TiltY, &self.tilt_y),
+            (TouchAxis::Depth, &self.depth),
+        ]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::f64::consts::FRAC_PI_2;
+
+    const REST: RestPose = RestPose {
+        table_from_object: Pose::IDENTITY,
+        height: 0.12,
+        probability: 1.0,
+    };
+
+    fn touch() -> Touch {
+        Touch {
+            rest: 0,
+            offset: [0.0; 2],
+            yaw: 0.0,
+            tilt: [0.0; 2],
+            depth: 0.0,
+            indices: [Some(0); 7],
+        }
+    }
+
+    fn close(a: DVec3, b: DVec3) {
+        assert!((a - b).length() < 1e-15, "{a} is not {b}");
+    }
+
+    #[test]
+    fn the_zero_touch_flips_the_object_and_puts_its_top_in_the_taxel_plane() {
+        let pose = touch().patch_from_object(&REST);
+        let seen = pose.transform_point(DVec3::new(0.01, 0.02, 0.12));
+        assert_eq!(seen, DVec3::new(0.01, -0.02, 0.0));
+        let table = pose.transform_point(DVec3::ZERO);
+        assert_eq!(table, DVec3::new(0.0, 0.0, 0.12));
+    }
+
+    #[test]
+    fn the_offset_is_the_place_on_the_table_above_which_the_patch_stands() {
+        let mut touch = touch();
+        touch.offset = [0.03, -0.01];
+        touch.yaw = 0.4;
+        let pose = touch.patch_from_object(&REST);
+        let yawed = DQuat::from_rotation_z(-0.4);
+        let under_patch = yawed * DVec3::new(0.03, -0.01, 0.12);
+        close(pose.transform_point(under_patch), DVec3::ZERO);
+    }
+
+    #[test]
+    fn yaw_turns_the_object_counterclockwise_seen_from_above() {
+        let mut touch = touch();
+        touch.yaw = FRAC_PI_2;
+        let pose = touch.patch_from_object(&REST);
+        // Object x points along table y, which the patch, flipped about x, sees as −y.
+        close(pose.transform_vector(DVec3::X), DVec3::NEG_Y);
+        close(pose.transform_vector(DVec3::Y), DVec3::NEG_X);
+    }
+
+    #[test]
+    fn tilts_turn_the_patch_about_its_own_x_and_then_its_own_y() {
+        let mut touch = touch();
+        touch.offset = [0.03, -0.01];
+        touch.tilt = [0.2, -0.1];
+        let table_from_patch = touch.patch_from_object(&REST).inverse();
+        let turns = [
+            FACING_DOWN,
+            DQuat::from_rotation_x(0.2),
+            DQuat::from_rotation_y(-0.1),
+        ];
+        let axis = turns[0] * (turns[1] * (turns[2] * DVec3::Z));
+        close(table_from_patch.transform_vector(DVec3::Z), axis);
+        // The patch turns about its own centre.
+        close(
+            table_from_patch.transform_point(DVec3::ZERO),
+            DVec3::new(0.03, -0.01, 0.12),
+        );
+    }
+
+    #[test]
+    fn groups_are_the_indices_of_listed_values_and_uniform_axes_have_none() {
+        let mut touch = touch();
+        touch.indices = [Some(1), Some(2), Some(0), None, Some(0), Some(0), Some(0)];
+        let group = touch.group(&[TouchAxis::Rest, TouchAxis::OffsetX]).unwrap();
+        assert_eq!(group, [1, 2]);
+        let error = touch.group(&[TouchAxis::Yaw]).unwrap_err().to_string();
+        assert!(error.contains("yaw, which is spread uniformly"));
+    }
+}

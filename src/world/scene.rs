@@ -1,0 +1,13 @@
+//! The immutable description of what presses on what.
+
+use super::Patch;
+use crate::objects::SphereUnion;
+
+/// A patch and the objects it can touch. Where they are is said at each press.
+#[derive(Clone, Debug)]
+pub struct Scene {
+    /// The patch; all deflections are its taxels'.
+    pub patch: Patch,
+    /// The objects, each in its own frame.
+    pub objects: Vec<SphereUnion>,
+}

@@ -1,0 +1,201 @@
+//! From a [`Placement`] to the list of an object's touches.
+
+use super::placement::{Placement, Spread, Touch, TouchAxis};
+use super::rest::RestPose;
+use crate::error::{Error, Result};
+use crate::random::Seed;
+use rand::Rng;
+use std::collections::HashMap;
+use std::f64::consts::FRAC_PI_2;
+
+/// The most touches of one object; far above any study, it turns a slip in a list into an error before memory runs out.
+const MAX_TOUCHES: usize = 10_000_000;
+
+/// The touches of one object, by the rules of [`Placement`]; `seed` names the object's own streams.
+///
+/// # Errors
+/// No resting pose, or probabilities that are none; a spread that is empty, repeats a value or leaves its range; a uniform
+/// spread without `per_object`; zero touches, more than ten million, or more than there are combinations.
+pub fn touches(placement: &Placement, rests: &[RestPose], seed: &Seed) -> Result<Vec<Touch>> {
+    check_rests(rests)?;
+    let spreads = placement.spreads();
+    for (axis, spread) in spreads {
+        check_spread(axis, spread)?;
+    }
+    let is_uniform = |(_, spread): &(_, &Spread)| matches!(spread, Spread::Uniform { .. });
+    let Some((axis, _)) = spreads.into_iter().find(is_uniform) else {
+        return combinations(&spreads, rests.len(), placement.per_object, seed);
+    };
+    let given = match placement.per_object {
+        Some(count @ 1..=MAX_TOUCHES) => {
+            let numbers = 0..count as u64;
+            return Ok(numbers
+                .map(|number| drawn(&spreads, rests, &seed.numbered(number)))
+                .collect());
+        }
+        Some(count) => count.to_string(),
+        None => format!("no number, with {} spread uniformly", axis.name()),
+    };
+    Err(count_error(given, MAX_TOUCHES))
+}
+
+/// Touches out of the full product: all in order, or `count` different ones in random order.
+fn combinations(
+    spreads: &[(TouchAxis, &Spread); 6],
+    n_rests: usize,
+    count: Option<usize>,
+    seed: &Seed,
+) -> Result<Vec<Touch>> {
+    let values = spreads.map(|(_, spread)| match spread {
+        Spread::Values(values) => values.as_slice(),
+        Spread::Uniform { .. } => &[],
+    });
+    let sizes = values.iter().map(|v| v.len());
+    let n_combinations = sizes.fold(n_rests, usize::saturating_mul);
+    let count_or_all = count.unwrap_or(n_combinations);
+    if count_or_all == 0 || count_or_all > n_combinations.min(MAX_TOUCHES) {
+        return Err(count_error(count_or_all, n_combinations.min(MAX_TOUCHES)));
+    }
+    let touch = |combination| combined(&values, combination);
+    if count.is_none() {
+        return Ok((0..n_combinations).map(touch).collect());
+    }
+    let chosen = without_replacement(n_combinations, count_or_all, seed);
+    Ok(chosen.into_iter().map(touch).collect())
+}
+
+/// The touch at one place of the product; the last axis runs fastest.
+fn combined(values: &[&[f64]; 6], mut combination: usize) -> Touch {
+    let mut indices = [0; 7];
+    for (axis, values) in values.iter().enumerate().rev() {
+        indices[axis + 1] = combination % values.len();
+        combination /= values.len();
+    }
+    indices[0] = combination;
+    let coordinates = std::array::from_fn(|axis| values[axis][indices[axis + 1]]);
+    touch_at(coordinates, indices.map(Some))
+}
+
+/// `count` different numbers below n in random order: the start of a shuffle that remembers only the places it has moved,
+/// so that a smaller count is a prefix of a larger.
+fn without_replacement(n: usize, count: usize, seed: &Seed) -> Vec<usize> {
+    let mut rng = seed.named("combinations").rng();
+    let mut moved = HashMap::new();
+    (0..count)
+        .map(|place| {
+            let other = rng.gen_range(place as u64..n as u64) as usize;
+            let here = moved.get(&place).copied().unwrap_or(place);
+            moved.insert(other, here).unwrap_or(other)
+        })
+        .collect()
+}
+
+/// One touch from its own streams, one for each axis: changing one spread leaves the other axes' draws as they were.
+fn drawn(spreads: &[(TouchAxis, &Spread); 6], rests: &[RestPose], touch: &Seed) -> Touch {
+    let draw = |axis: TouchAxis| touch.named(axis.name()).rng();
+    let mut indices = [None; 7];
+    indices[0] = Some(drawn_rest(rests, draw(TouchAxis::Rest).r#gen()));
+    let mut coordinates = [0.0; 6];
+    for (place, (axis, spread)) in spreads.iter().enumerate() {
+        let mut rng = draw(*axis);
+        coordinates[place] = match spread {
+            Spread::Uniform { low, high } => low + (high - low) * rng.r#gen::<f64>(),
+            Spread::Values(values) => {
+                let index = rng.gen_range(0..values.len() as u64) as usize;
+                indices[place + 1] = Some(index);
+                values[index]
+            }
+        };
+    }
+    touch_at(coordinates, indices)
+}
+
+/// The resting pose whose share of [0, 1) holds `position`.
+fn drawn_rest(rests: &[RestPose], position: f64) -> usize {
+    let total: f64 = rests.iter().map(|rest| rest.probability).sum();
+    let mut left = position * total;
+    for (index, rest) in rests.iter().enumerate() {
+        left -= rest.probability;
+        if left < 0.0 {
+            return index;
+        }
+    }
+    rests.len() - 1
+}
+
+/// Coordinates in the order of [`TouchAxis::ALL`] after the resting pose.
+fn touch_at(coordinates: [f64; 6], indices: [Option<usize>; 7]) -> Touch {
+    let [offset_x, offset_y, yaw, tilt_x, tilt_y, depth] = coordinates;
+    Touch {
+        rest: indices[0].unwrap_or(0),
+        offset: [offset_x, offset_y],
+        yaw,
+        tilt: [tilt_x, tilt_y],
+        depth,
+        indices,
+    }
+}
+
+fn check_rests(rests: &[RestPose]) -> Result<()> {
+    let valid = |p: f64| p.is_finite() && p > 0.0;
+    match rests.iter().find(|rest| !valid(rest.probability)) {
+        None if rests.is_empty() => Err(Error::input("resting poses", "none", "at least one")),
+        None => Ok(()),
+        Some(rest) => Err(Error::input(
+            "resting poses",
+            format!("probability {}", rest.probability),
+            "positive numbers",
+        )),
+    }
+}
+
+fn check_spread(axis: TouchAxis, spread: &Spread) -> Result<()> {
+    let refuse = |given: String, allowed: &str| Err(Error::input(axis.name(), given, allowed));
+    let ends = match spread {
+        Spread::Values(values) => {
+            if values.is_empty() {
+                return refuse("no values".into(), "at least one value");
+            }
+            let mut sorted = values.clone();
+            sorted.sort_by(f64::total_cmp);
+            if let Some(pair) = sorted.windows(2).find(|pair| pair[0] == pair[1]) {
+                return refuse(format!("{} twice", pair[0]), "different values");
+            }
+            sorted
+        }
+        Spread::Uniform { low, high } => {
+            if low > high {
+                return refuse(format!("from {low} to {high}"), "a low end below the high");
+            }
+            vec![*low, *high]
+        }
+    };
+    let (allowed, range) = range_of(axis);
+    match ends.into_iter().find(|value| !allowed(*value)) {
+        Some(value) => refuse(value.to_string(), range),
+        None => Ok(()),
+    }
+}
+
+/// Which values an axis may take, and how to say it.
+fn range_of(axis: TouchAxis) -> (fn(f64) -> bool, &'static str) {
+    match axis {
+        TouchAxis::Depth => (
+            |v| v.is_finite() && v >= 0.0,
+            "zero or a positive number of metres",
+        ),
+        TouchAxis::TiltX | TouchAxis::TiltY => (
+            |v| v.abs() < FRAC_PI_2,
+            "less than a quarter turn either way",
+        ),
+        _ => (f64::is_finite, "finite numbers"),
+    }
+}
+
+fn count_error(given: impl ToString, most: usize) -> Error {
+    Error::input(
+        "touches per_object",
+        given,
+        format!("a number from 1 to {most}"),
+    )
+}

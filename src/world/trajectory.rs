@@ -1,0 +1,123 @@
+//! Imposed motion of a floating robot: piecewise-constant velocities \[BT\].
+
+use crate::error::{Error, Result};
+use crate::geometry::Pose;
+use glam::{DQuat, DVec3};
+
+/// A stretch of time with constant velocity.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Phase {
+    /// Seconds, zero or positive.
+    pub duration: f64,
+    /// Velocity of the body's origin in the world, m/s.
+    pub linear: DVec3,
+    /// Angular velocity in the world, rad/s, about the body's origin.
+    pub angular: DVec3,
+}
+
+/// Where a body is at any time: a start pose, then one phase after another, then rest.
+///
+/// Rotations are integrated exactly, `R(t) = exp(ω t) R(0)`.
+/// Differs from \[BT\]: the original adds ω × R a step, so its matrices grow, and switches phases one step early.
+#[derive(Clone, Debug, PartialEq)]
+pub struct VelocityPlan {
+    start: Pose,
+    phases: Vec<Phase>,
+}
+
+impl VelocityPlan {
+    /// The error names the first phase (from 1) with a negative duration or a value that is not finite.
+    pub fn new(start: Pose, phases: Vec<Phase>) -> Result<Self> {
+        for (index, phase) in phases.iter().enumerate() {
+            let place = format!("velocity plan, phase {}", index + 1);
+            if !(phase.duration.is_finite() && phase.duration >= 0.0) {
+                return Err(Error::input(
+                    place,
+                    format!("duration {} s", phase.duration),
+                    "zero or a positive number",
+                ));
+            }
+            if !(phase.linear.is_finite() && phase.angular.is_finite()) {
+                return Err(Error::input(
+                    place,
+                    format!("velocity {} m/s, {} rad/s", phase.linear, phase.angular),
+                    "finite numbers",
+                ));
+            }
+        }
+        Ok(Self { start, phases })
+    }
+
+    /// Seconds until the last phase ends.
+    pub fn duration(&self) -> f64 {
+        self.phases.iter().map(|p| p.duration).sum()
+    }
+
+    /// `world_from_body` at a time in seconds (before 0: the start; after the last phase: where it ended).
+    pub fn pose_at(&self, time: f64) -> Pose {
+        let mut pose = self.start;
+        let mut left = time.max(0.0);
+        for phase in &self.phases {
+            let dt = left.min(phase.duration);
+            pose = Pose::new(
+                (DQuat::from_scaled_axis(phase.angular * dt) * pose.rotation).normalize(),
+                pose.translation + phase.linear * dt,
+            );
+            left -= dt;
+            if left <= 0.0 {
+                break;
+            }
+        }
+        pose
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::f64::consts::FRAC_PI_2;
+
+    #[test]
+    fn a_quarter_turn_in_two_phases_is_a_quarter_turn_in_one() {
+        let turn = |duration| Phase {
+            duration,
+            linear: DVec3::new(0.0, 0.1, 0.0),
+            angular: DVec3::new(0.0, 0.0, FRAC_PI_2),
+        };
+        let one = VelocityPlan::new(Pose::IDENTITY, vec![turn(1.0)]).unwrap();
+        let two = VelocityPlan::new(Pose::IDENTITY, vec![turn(0.25), turn(0.75)]).unwrap();
+        let (a, b) = (one.pose_at(1.0), two.pose_at(1.0));
+        assert!(
+            (a.transform_point(DVec3::X) - DVec3::new(0.0, 1.1, 0.0)).length() < 1e-15,
+            "{a:?}"
+        );
+        assert!((a.transform_point(DVec3::X) - b.transform_point(DVec3::X)).length() < 1e-15);
+        assert_eq!(one.pose_at(5.0), a, "it rests where it ended");
+        assert_eq!(one.duration(), two.duration());
+    }
+
+    #[test]
+    fn a_million_small_steps_keep_the_rotation_a_rotation() {
+        let phase = Phase {
+            duration: 1e-5,
+            linear: DVec3::ZERO,
+            angular: DVec3::new(3.0, -2.0, 1.0),
+        };
+        let plan = VelocityPlan::new(Pose::IDENTITY, vec![phase; 100_000]).unwrap();
+        assert!((plan.pose_at(1.0).rotation.length() - 1.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn a_negative_duration_is_refused_with_its_phase() {
+        let phase = Phase {
+            duration: -1.0,
+            linear: DVec3::ZERO,
+            angular: DVec3::ZERO,
+        };
+        let error = VelocityPlan::new(Pose::IDENTITY, vec![phase]).unwrap_err();
+        assert_eq!(
+            error.to_string(),
+            "velocity plan, phase 1: duration -1 s; zero or a positive number"
+        );
+    }
+}

@@ -1,0 +1,328 @@
+//! Bad input on the real command: one clear sentence, the right exit code, nothing half-written.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+use tempfile::TempDir;
+
+/// A small study that runs; the tests break one thing in it at a time.
+const STUDY: &str = r#"
+question = "Does it work?"
+trials = 2
+
+[objects]
+sets = ["household"]
+names = ["mug", "banana", "scissors"]
+surface_error_mm = 1.0
+
+[skin]
+pitch_mm = 4.0
+size_mm = 64.0
+stroke_mm = 5.0
+
+[touches]
+per_object = 8
+offset_x_mm = { uniform = [-5.0, 5.0] }
+depth_mm = 3.0
+
+[sensing]
+ratio = [4, 16]
+
+[recognition]
+classifier = "linear_svm"
+"#;
+
+struct Case {
+    folder: TempDir,
+}
+
+impl Case {
+    fn new() -> Self {
+        Self {
+            folder: tempfile::tempdir().unwrap(),
+        }
+    }
+
+    fn path(&self, name: &str) -> PathBuf {
+        self.folder.path().join(name)
+    }
+
+    fn file(&self, name: &str, content: impl AsRef<[u8]>) -> PathBuf {
+        let path = self.path(name);
+        fs::write(&path, content).unwrap();
+        path
+    }
+
+    fn run(&self, arguments: &[&str]) -> Output {
+        Command::new(env!("CARGO_BIN_EXE_bubbletouch"))
+            .args(arguments)
+            .current_dir(self.folder.path())
+            .output()
+            .unwrap()
+    }
+
+    /// Runs the study with `old` replaced by `new`; it must be refused with all of `words` and write nothing.
+    fn refuses(&self, old: &str, new: &str, words: &[&str]) {
+        assert!(
+            STUDY.contains(old),
+            "the test replaces something that is there: {old}"
+        );
+        self.file("study.toml", STUDY.replace(old, new));
+        refused(&self.run(&["run", "study.toml"]), 2, words);
+        assert!(!self.path("results").exists(), "nothing is written");
+    }
+
+    /// Presses with these arguments; it must be refused and write nothing.
+    fn refuses_press(&self, arguments: &[&str], words: &[&str]) {
+        let all = [&["press", "--out", "out.csv"], arguments].concat();
+        refused(&self.run(&all), 2, words);
+        assert!(!self.path("out.csv").exists(), "nothing is written");
+    }
+}
+
+fn refused(output: &Output, code: i32, words: &[&str]) {
+    let error = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(code), "{error}");
+    let sentences: Vec<&str> = error.lines().filter(|l| l.starts_with("error:")).collect();
+    assert_eq!(sentences.len(), 1, "one sentence: {error}");
+    for word in words {
+        assert!(error.contains(word), "no '{word}' in: {error}");
+    }
+    assert!(!error.contains("panicked"), "{error}");
+}
+
+#[test]
+fn the_study_that_the_tests_break_runs() {
+    let case = Case::new();
+    case.file("study.toml", STUDY);
+    let output = case.run(&["run", "study.toml"]);
+    assert!(
+        output.status.success(),
+        "{}",
+        String::from_utf8_lossy(&output.stderr)
+    );
+    assert!(case.path("results/study/accuracy.csv").exists());
+}
+
+#[test]
+fn an_unknown_key_is_named_with_its_line() {
+    Case::new().refuses(
+        "stroke_mm",
+        "strke_mm",
+        &["study.toml:13", "strke_mm", "stroke_mm"],
+    );
+}
+
+#[test]
+fn a_wrong_type_is_named_with_its_line() {
+    Case::new().refuses(
+        "trials = 2",
+        "trials = \"two\"",
+        &["study.toml:3", "\"two\"", "whole number"],
+    );
+    Case::new().refuses(
+        "depth_mm = 3.0",
+        "depth_mm = \"deep\"",
+        &["study.toml:18", "uniform"],
+    );
+}
+
+#[test]
+fn a_file_that_is_not_toml_is_refused() {
+    Case::new().refuses("[skin]", "[skin", &["study.toml:10"]);
+}
+
+#[test]
+fn sizes_that_make_no_array_are_refused() {
+    Case::new().refuses(
+        "pitch_mm = 4.0",
+        "pitch_mm = -4.0",
+        &["skin.pitch_mm", "-4"],
+    );
+    Case::new().refuses(
+        "pitch_mm = 4.0",
+        "pitch_mm = nan",
+        &["skin.pitch_mm", "NaN"],
+    );
+    Case::new().refuses("size_mm = 64.0", "taxels = 0", &["skin.taxels", "0 taxels"]);
+    Case::new().refuses(
+        "size_mm = 64.0",
+        "size_mm = 63.0",
+        &["whole number of pitches"],
+    );
+    Case::new().refuses(
+        "stroke_mm = 5.0",
+        "stroke_mm = 0.0",
+        &["skin.stroke_mm", "positive"],
+    );
+}
+
+#[test]
+fn too_few_objects_are_refused() {
+    Case::new().refuses("sets = [\"household\"]", "sets = []", &["objects", "sets"]);
+    let names = "[\"mug\", \"banana\", \"scissors\"]";
+    Case::new().refuses(names, "[]", &["objects.names"]);
+    Case::new().refuses(names, "[\"mug\"]", &["1 object", "at least two"]);
+    Case::new().refuses(names, "[\"mug\", \"unicorn\"]", &["unicorn"]);
+    Case::new().refuses("\"household\"", "\"zoo\"", &["zoo", "household"]);
+}
+
+#[test]
+fn axes_out_of_range_are_refused() {
+    Case::new().refuses("[4, 16]", "[4, 257]", &["sensing.ratio", "257", "256"]);
+    Case::new().refuses("[4, 16]", "[0.5]", &["sensing.ratio", "at least 1"]);
+    Case::new().refuses("[4, 16]", "[]", &["sensing.ratio", "empty"]);
+    Case::new().refuses("[4, 16]", "[4, 4]", &["twice"]);
+    Case::new().refuses("\"linear_svm\"", "\"oracle\"", &["oracle", "linear_svm"]);
+    Case::new().refuses("trials = 2", "trials = 0", &["trials", "at least 1"]);
+    Case::new().refuses("per_object = 8", "per_object = 1", &["row"]);
+    Case::new().refuses("per_object = 8\n", "", &["per_object"]);
+}
+
+#[test]
+fn a_study_that_is_not_there_is_refused() {
+    let case = Case::new();
+    refused(&case.run(&["run", "missing.toml"]), 2, &["missing.toml"]);
+}
+
+#[test]
+fn an_output_folder_that_is_a_file_is_refused_and_left_alone() {
+    let case = Case::new();
+    case.file("study.toml", STUDY);
+    case.file("taken", "precious");
+    refused(
+        &case.run(&["run", "study.toml", "--out", "taken"]),
+        2,
+        &["taken", "folder"],
+    );
+    refused(
+        &case.run(&["run", "study.toml", "--out", "taken/below"]),
+        2,
+        &["taken"],
+    );
+    refused(
+        &case.run(&["touches", "study.toml", "--out", "taken"]),
+        2,
+        &["taken", "folder"],
+    );
+    assert_eq!(fs::read_to_string(case.path("taken")).unwrap(), "precious");
+}
+
+#[test]
+fn broken_meshes_are_refused() {
+    let case = Case::new();
+    let header = |n: usize| {
+        format!(
+            "ply\nformat ascii 1.0\nelement vertex {n}\nproperty float x\nproperty float y\nproperty float z\nend_header\n"
+        )
+    };
+    case.refuses_press(&["--mesh", "missing.ply"], &["missing.ply"]);
+    case.file("truncated.ply", header(3) + "0 0 0\n0 0 1\n");
+    case.refuses_press(&["--mesh", "truncated.ply"], &["truncated.ply"]);
+    case.file("nan.ply", header(2) + "0 0 0\n0 nan 1\n");
+    case.refuses_press(&["--mesh", "nan.ply"], &["nan.ply"]);
+    case.file("zero.ply", header(0));
+    case.refuses_press(&["--mesh", "zero.ply"], &["zero.ply"]);
+    case.file("text.ply", "this is not a mesh\n");
+    case.refuses_press(&["--mesh", "text.ply"], &["text.ply"]);
+    case.file("empty.ply", "");
+    case.refuses_press(&["--mesh", "empty.ply"], &["empty.ply"]);
+}
+
+#[test]
+fn broken_spheres_are_refused_with_their_line() {
+    let case = Case::new();
+    let good = "x,y,z,r\n0,0,0.01,0.02\n";
+    for (name, line, word) in [
+        ("nan", "0,nan,0,0.01", "nan"),
+        ("negative", "0,0,0,-0.01", "-0.01"),
+        ("zero", "0,0,0,0", "0"),
+        ("short", "0,0,0", "4 columns"),
+        ("text", "0,zero,0,0.01", "zero"),
+    ] {
+        let name = format!("spheres_{name}.csv");
+        case.file(&name, format!("{good}{line}\n"));
+        case.refuses_press(&["--spheres", &name], &[&name, "3", word]);
+    }
+    case.file("none.csv", "x,y,z,r\n");
+    case.refuses_press(&["--spheres", "none.csv"], &["none.csv"]);
+}
+
+#[test]
+fn press_options_out_of_range_are_refused() {
+    let case = Case::new();
+    let mug = ["--object", "mug"];
+    let with = |more: &[&'static str]| [&mug, more].concat();
+    case.refuses_press(&with(&["--taxels", "0x4"]), &["0x4"]);
+    case.refuses_press(&with(&["--taxels", "many"]), &["many"]);
+    case.refuses_press(&with(&["--pitch-mm", "-1"]), &["-1"]);
+    case.refuses_press(&with(&["--pitch-mm", "nan"]), &["pitch"]);
+    case.refuses_press(&with(&["--stroke-mm", "0"]), &["stroke"]);
+    case.refuses_press(&with(&["--depth-mm", "0"]), &["--depth-mm"]);
+    case.refuses_press(&with(&["--rest", "99"]), &["--rest", "99"]);
+    case.refuses_press(&with(&["--offset-x-mm", "900"]), &["offset"]);
+    case.refuses_press(&["--object", "unicorn"], &["unicorn"]);
+    case.refuses_press(&["--object", "mug", "--mesh", "cup.ply"], &["--mesh"]);
+    case.refuses_press(&[], &["--object"]);
+    refused(
+        &case.run(&["press", "--object", "mug", "--out", "map.jpeg"]),
+        2,
+        &["map.jpeg", ".png"],
+    );
+}
+
+#[test]
+#[cfg(target_os = "linux")]
+fn a_full_disk_is_the_worlds_fault_and_leaves_nothing() {
+    let case = Case::new();
+    std::os::unix::fs::symlink("/dev/full", case.path("full.csv")).unwrap();
+    let output = case.run(&["press", "--object", "mug", "--out", "full.csv"]);
+    refused(&output, 1, &["full.csv", "No space left"]);
+    case.file("study.toml", STUDY);
+    let small = case.path("small");
+    fs::create_dir(&small).unwrap();
+    let Some(_mount) = SmallDisk::mount(&small) else {
+        println!("SKIPPED: no right to mount a small tmpfs here");
+        return;
+    };
+    let output = case.run(&["run", "study.toml", "--out", "small/results"]);
+    refused(&output, 1, &["No space left"]);
+    for entry in fs::read_dir(small.join("results")).unwrap() {
+        let path = entry.unwrap().path();
+        assert!(is_whole(&path), "{} is half-written", path.display());
+    }
+}
+
+/// A table ends in a newline, a picture in its end mark, a page in its closing tag.
+fn is_whole(path: &Path) -> bool {
+    let bytes = fs::read(path).unwrap();
+    match path.extension().and_then(|e| e.to_str()) {
+        Some("csv" | "toml") => bytes.ends_with(b"\n"),
+        Some("svg") => bytes.trim_ascii_end().ends_with(b"</svg>"),
+        Some("html") => bytes.trim_ascii_end().ends_with(b"</html>"),
+        Some("png") => bytes.windows(4).any(|w| w == b"IEND"),
+        _ => false,
+    }
+}
+
+/// A file system of 16 KiB, gone when dropped.
+struct SmallDisk(PathBuf);
+
+impl SmallDisk {
+    fn mount(folder: &Path) -> Option<Self> {
+        let status = Command::new("mount")
+            .args(["-t", "tmpfs", "-o", "size=16k", "tmpfs"])
+            .arg(folder)
+            .output();
+        status
+            .is_ok_and(|output| output.status.success())
+            .then(|| Self(folder.to_owned()))
+    }
+}
+
+impl Drop for SmallDisk {
+    fn drop(&mut self) {
+        // The folder is in a temporary one; a mount that stays is cleaned up with the machine.
+        let _ = Command::new("umount").arg(&self.0).status();
+    }
+}

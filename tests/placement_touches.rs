@@ -1,0 +1,279 @@
+//! Laws of touch placement.
+
+use bubbletouch::geometry::Pose;
+use bubbletouch::random::Seed;
+use bubbletouch::world::{Placement, RestPose, RestPoses, Spread, Touch, TouchAxis, touches};
+
+fn rests(probabilities: &[f64]) -> Vec<RestPose> {
+    let rest = |&probability| RestPose {
+        table_from_object: Pose::IDENTITY,
+        height: 0.1,
+        probability,
+    };
+    probabilities.iter().map(rest).collect()
+}
+
+fn listed(values: &[f64]) -> Spread {
+    Spread::Values(values.to_vec())
+}
+
+/// 2 offsets × 3 yaws × 2 depths.
+fn grid() -> Placement {
+    Placement {
+        rest: RestPoses::Stable,
+        offset_x: listed(&[0.0, 0.002]),
+        offset_y: listed(&[0.0]),
+        yaw: listed(&[0.0, 0.5, 1.0]),
+        tilt_x: listed(&[0.0]),
+        tilt_y: listed(&[0.0]),
+        depth: listed(&[0.003, 0.004]),
+        per_object: None,
+    }
+}
+
+fn made(placement: &Placement, probabilities: &[f64]) -> Vec<Touch> {
+    touches(placement, &rests(probabilities), &Seed::new(2018)).unwrap()
+}
+
+fn refused(placement: &Placement, probabilities: &[f64]) -> String {
+    let result = touches(placement, &rests(probabilities), &Seed::new(2018));
+    result.unwrap_err().to_string()
+}
+
+#[test]
+fn lists_alone_give_every_combination_with_the_last_axis_fastest() {
+    let all = made(&grid(), &[0.7, 0.3]);
+    assert_eq!(all.len(), 2 * 2 * 3 * 2);
+    let mut expected = Vec::new();
+    for rest in 0..2 {
+        for x in [0.0, 0.002] {
+            for yaw in [0.0, 0.5, 1.0] {
+                for depth in [0.003, 0.004] {
+                    expected.push((rest, [x, 0.0], yaw, depth));
+                }
+            }
+        }
+    }
+    let made: Vec<_> = all
+        .iter()
+        .map(|t| (t.rest, t.offset, t.yaw, t.depth))
+        .collect();
+    assert_eq!(made, expected);
+}
+
+#[test]
+fn a_number_of_combinations_is_drawn_without_repetition_and_nests() {
+    let all = made(&grid(), &[0.7, 0.3]);
+    let drawn = |count| {
+        let per_object = Some(count);
+        made(
+            &Placement {
+                per_object,
+                ..grid()
+            },
+            &[0.7, 0.3],
+        )
+    };
+    let every = drawn(24);
+    for touch in &every {
+        assert!(all.contains(touch));
+        assert_eq!(every.iter().filter(|other| *other == touch).count(), 1);
+    }
+    assert_ne!(every, all);
+    for count in [1, 5, 23] {
+        assert_eq!(drawn(count), every[..count]);
+    }
+}
+
+#[test]
+fn each_combination_is_equally_likely_to_be_drawn() {
+    let mut count = [0; 24];
+    for seed in 0..4000 {
+        let placement = Placement {
+            per_object: Some(6),
+            ..grid()
+        };
+        let drawn = touches(&placement, &rests(&[0.7, 0.3]), &Seed::new(seed)).unwrap();
+        for touch in drawn {
+            let index = |axis| touch.group(&[axis]).unwrap()[0];
+            let within = index(TouchAxis::OffsetX) * 6 + index(TouchAxis::Yaw) * 2;
+            count[touch.rest * 12 + within + index(TouchAxis::Depth)] += 1;
+        }
+    }
+    // 1,000 expected each, standard deviation 27; five of them, at a fixed set of seeds.
+    assert!(
+        count.iter().all(|&c: &i32| (c - 1000).abs() < 137),
+        "{count:?}"
+    );
+}
+
+#[test]
+fn uniform_spreads_fill_their_range_and_resting_poses_follow_their_probability() {
+    let yaw = Spread::Uniform {
+        low: -1.0,
+        high: 3.0,
+    };
+    let placement = Placement {
+        yaw,
+        per_object: Some(20_000),
+        ..grid()
+    };
+    let all = made(&placement, &[0.7, 0.1, 0.2]);
+    let n = all.len() as f64;
+    let mean = all.iter().map(|t| t.yaw).sum::<f64>() / n;
+    assert!((mean - 1.0).abs() < 5.0 * 4.0 / (12.0 * n).sqrt());
+    assert!(all.iter().all(|t| (-1.0..3.0).contains(&t.yaw)));
+    for (rest, probability) in [0.7, 0.1, 0.2].into_iter().enumerate() {
+        let share = all.iter().filter(|t| t.rest == rest).count() as f64 / n;
+        assert!((share - probability).abs() < 5.0 * 0.5 / n.sqrt());
+    }
+    let deep = all.iter().filter(|t| t.depth == 0.004).count() as f64 / n;
+    assert!((deep - 0.5).abs() < 5.0 * 0.5 / n.sqrt());
+}
+
+#[test]
+fn a_touch_is_drawn_alone_by_its_number_and_each_axis_by_its_name() {
+    let yaw = Spread::Uniform {
+        low: 0.0,
+        high: 1.0,
+    };
+    let some = Placement {
+        yaw: yaw.clone(),
+        per_object: Some(5),
+        ..grid()
+    };
+    let more = Placement {
+        yaw,
+        per_object: Some(50),
+        ..grid()
+    };
+    assert_eq!(made(&some, &[1.0]), made(&more, &[1.0])[..5]);
+    let other_depths = Placement {
+        depth: listed(&[0.001]),
+        ..some.clone()
+    };
+    for (a, b) in made(&some, &[1.0]).iter().zip(made(&other_depths, &[1.0])) {
+        assert_eq!((a.offset, a.yaw), (b.offset, b.yaw));
+    }
+}
+
+#[test]
+fn touches_group_by_their_listed_values_but_not_by_uniform_ones() {
+    let yaw = Spread::Uniform {
+        low: 0.0,
+        high: 1.0,
+    };
+    let placement = Placement {
+        yaw,
+        per_object: Some(30),
+        ..grid()
+    };
+    for touch in made(&placement, &[0.5, 0.5]) {
+        let group = touch.group(&[TouchAxis::Rest, TouchAxis::OffsetX]).unwrap();
+        assert_eq!(group[0], touch.rest);
+        assert_eq!([0.0, 0.002][group[1]], touch.offset[0]);
+        assert!(touch.group(&[TouchAxis::Yaw]).is_err());
+    }
+}
+
+#[test]
+fn placements_that_cannot_be_made_are_refused_with_their_reason() {
+    let uniform = |low, high| Spread::Uniform { low, high };
+    let cases = [
+        (
+            Placement {
+                yaw: uniform(0.0, 1.0),
+                ..grid()
+            },
+            "yaw spread uniformly",
+        ),
+        (
+            Placement {
+                per_object: Some(0),
+                ..grid()
+            },
+            "1 to 12",
+        ),
+        (
+            Placement {
+                per_object: Some(13),
+                ..grid()
+            },
+            "1 to 12",
+        ),
+        (
+            Placement {
+                offset_x: listed(&[]),
+                ..grid()
+            },
+            "offset_x: no values",
+        ),
+        (
+            Placement {
+                yaw: listed(&[0.5, 0.1, 0.5]),
+                ..grid()
+            },
+            "yaw: 0.5 twice",
+        ),
+        (
+            Placement {
+                depth: listed(&[-0.001]),
+                ..grid()
+            },
+            "depth: -0.001",
+        ),
+        (
+            Placement {
+                tilt_x: listed(&[1.6]),
+                ..grid()
+            },
+            "quarter turn",
+        ),
+        (
+            Placement {
+                offset_y: listed(&[f64::NAN]),
+                ..grid()
+            },
+            "offset_y: NaN",
+        ),
+        (
+            Placement {
+                yaw: uniform(2.0, 1.0),
+                ..grid()
+            },
+            "from 2 to 1",
+        ),
+        (
+            Placement {
+                yaw: uniform(0.0, f64::INFINITY),
+                ..grid()
+            },
+            "yaw: inf",
+        ),
+    ];
+    for (placement, reason) in cases {
+        let message = refused(&placement, &[1.0]);
+        assert!(message.contains(reason), "{message}");
+    }
+    assert!(refused(&grid(), &[]).contains("resting poses: none"));
+    assert!(refused(&grid(), &[0.5, -0.5]).contains("probability -0.5"));
+}
+
+#[test]
+fn a_slip_that_asks_for_endless_combinations_is_refused_before_memory_runs_out() {
+    let many: Vec<f64> = (0..10_000).map(|i| i as f64 * 1e-6).collect();
+    let axis = || Spread::Values(many.clone());
+    let placement = Placement {
+        offset_x: axis(),
+        offset_y: axis(),
+        yaw: axis(),
+        depth: axis(),
+        ..grid()
+    };
+    assert!(refused(&placement, &[1.0]).contains("1 to 10000000"));
+    let some = Placement {
+        per_object: Some(7),
+        ..placement
+    };
+    assert_eq!(made(&some, &[1.0]).len(), 7);
+}

@@ -1,0 +1,231 @@
+//! The classifier of a study: scaling and C see training rows only, and linfa's classifiers join in.
+
+use bubbletouch::Error;
+use bubbletouch::random::Seed;
+use bubbletouch::recognition::ClassifierKind;
+use bubbletouch::recognition::classifier::{Classifier, Cost, predict_split};
+use bubbletouch::recognition::dataset::{Dataset, dataset, rows};
+use bubbletouch::recognition::scaling::Scaling;
+use bubbletouch::recognition::split::stratified_hold_out;
+use bubbletouch::recognition::svm::SvmParams;
+use linfa::traits::{Fit, Predict, PredictInplace};
+use ndarray::{Array1, Array2, Axis};
+use rand::Rng;
+
+/// Three overlapping clusters in four features of very different units.
+fn clusters() -> Dataset {
+    let mut rng = Seed::new(11).rng();
+    let features = Array2::from_shape_fn((150, 4), |(i, j)| {
+        let centre = ((i % 3) * (j + 1)) as f64 * 0.4;
+        (centre + rng.gen_range(-1.0..1.0)) * [1.0, 1e3, 1e-3, 10.0][j]
+    });
+    dataset(features, Array1::from_iter((0..150).map(|i| i % 3))).unwrap()
+}
+
+fn chosen(candidates: &[f64]) -> Cost {
+    Cost::Chosen {
+        candidates: candidates.to_vec(),
+        validation_fraction: 0.25,
+    }
+}
+
+const KINDS: [ClassifierKind; 3] = [
+    ClassifierKind::LinearSvm,
+    ClassifierKind::RbfSvm,
+    ClassifierKind::PolynomialSvm,
+];
+
+#[test]
+fn test_rows_cannot_influence_scaling_or_c() {
+    let data = clusters();
+    let split = stratified_hold_out(data.targets.view(), 0.3, &Seed::new(1)).unwrap();
+    let mut shaken = data.clone();
+    for &row in &split.test {
+        shaken.records.row_mut(row).fill(1e9);
+        shaken.targets[row] = 2;
+    }
+    for kind in KINDS {
+        let classifier = Classifier {
+            c: chosen(&[0.01, 1.0, 100.0]),
+            ..Classifier::new(kind)
+        };
+        let train = |data: &Dataset| {
+            let training = rows(data, &split.train).unwrap();
+            classifier.train(&training, &Seed::new(2)).unwrap()
+        };
+        let (a, b) = (train(&data), train(&shaken));
+        assert_eq!(a.scaling(), b.scaling());
+        assert_eq!(a.chosen(), b.chosen());
+        let decisions = |model: &bubbletouch::recognition::classifier::TrainedClassifier| {
+            let scaled = model.scaling().apply(data.records.view()).unwrap();
+            model.svm().unwrap().decision_values(scaled.view()).unwrap()
+        };
+        assert_eq!(decisions(&a), decisions(&b));
+    }
+}
+
+#[test]
+fn standard_scaling_forgets_the_units() {
+    let data = clusters();
+    let mut converted = data.clone();
+    for (mut column, factor) in converted
+        .records
+        .axis_iter_mut(Axis(1))
+        .zip([0.125, 16.0, 1024.0, 2.0])
+    {
+        // Powers of 2 change no digit.
+        column *= factor;
+    }
+    for kind in KINDS {
+        let classifier = Classifier::new(kind);
+        let a = classifier.fit(&data).unwrap().predict(&data);
+        let b = classifier.fit(&converted).unwrap().predict(&converted);
+        assert_eq!(a, b);
+    }
+}
+
+#[test]
+fn a_chosen_c_is_the_most_accurate_and_the_smaller_on_a_tie() {
+    let data = clusters();
+    let classifier = Classifier {
+        c: chosen(&[10.0, 1e-5, 1.0, 1.0, 0.1]),
+        ..Classifier::new(ClassifierKind::LinearSvm)
+    };
+    let model = classifier.train(&data, &Seed::new(3)).unwrap();
+    let tried = &model.chosen().unwrap().accuracies;
+    assert_eq!(
+        tried.iter().map(|tried| tried.0).collect::<Vec<_>>(),
+        [1e-5, 0.1, 1.0, 10.0]
+    );
+    let best = tried.iter().map(|tried| tried.1).fold(0.0, f64::max);
+    let smallest = tried.iter().find(|tried| tried.1 == best).unwrap().0;
+    assert_eq!(model.c(), smallest);
+    // The model is the one of that C on all training rows.
+    let fixed = Classifier {
+        c: Cost::Fixed(smallest),
+        ..classifier
+    };
+    assert_eq!(
+        fixed.fit(&data).unwrap().predict(&data),
+        model.predict(&data)
+    );
+}
+
+#[test]
+fn impossible_choices_of_c_are_refused() {
+    let data = clusters();
+    for c in [
+        chosen(&[]),
+        chosen(&[1.0, -1.0]),
+        chosen(&[f64::NAN]),
+        Cost::Fixed(0.0),
+    ] {
+        let classifier = Classifier {
+            c,
+            ..Classifier::new(ClassifierKind::RbfSvm)
+        };
+        assert!(classifier.fit(&data).is_err());
+    }
+}
+
+#[test]
+fn the_classifier_is_its_svm_on_scaled_features() {
+    let data = clusters();
+    for scaling in [Scaling::None, Scaling::Standard, Scaling::Overall] {
+        let classifier = Classifier {
+            scaling,
+            // Unscaled features of a thousand units need a small C to converge.
+            c: Cost::Fixed(1e-4),
+            ..Classifier::new(ClassifierKind::LinearSvm)
+        };
+        let by_hand = scaling.fit(data.records.view()).unwrap();
+        let scaled = by_hand.apply(data.records.view()).unwrap();
+        let svm = SvmParams {
+            c: 1e-4,
+            ..SvmParams::default()
+        };
+        let svm = svm
+            .train(&dataset(scaled.clone(), data.targets.clone()).unwrap())
+            .unwrap();
+        let expected = svm.labels(scaled.view()).unwrap();
+        assert_eq!(classifier.fit(&data).unwrap().predict(&data), expected);
+    }
+}
+
+/// A classifier that knows nothing of this crate but linfa's traits: the nearest class mean.
+struct NearestMean;
+
+struct Means(Array2<f64>);
+
+impl Fit<Array2<f64>, Array1<usize>, linfa::Error> for NearestMean {
+    type Object = Means;
+
+    fn fit(&self, data: &Dataset) -> linfa::error::Result<Means> {
+        if data.records.is_empty() {
+            return Err(linfa::Error::NotEnoughSamples);
+        }
+        let n_classes = data.targets.iter().max().unwrap() + 1;
+        let mean = |class: usize, column: usize| {
+            let of_class = |row: &usize| data.targets[*row] == class;
+            let values: Vec<f64> = (0..data.records.nrows())
+                .filter(of_class)
+                .map(|row| data.records[[row, column]])
+                .collect();
+            values.iter().sum::<f64>() / values.len() as f64
+        };
+        let shape = (n_classes, data.records.ncols());
+        Ok(Means(Array2::from_shape_fn(shape, |(class, column)| {
+            mean(class, column)
+        })))
+    }
+}
+
+impl PredictInplace<Array2<f64>, Array1<usize>> for Means {
+    fn predict_inplace(&self, features: &Array2<f64>, labels: &mut Array1<usize>) {
+        for (row, label) in features.rows().into_iter().zip(labels) {
+            let distance = |class: usize| (&row - &self.0.row(class)).mapv(|d| d * d).sum();
+            *label = (0..self.0.nrows())
+                .min_by(|&a, &b| distance(a).total_cmp(&distance(b)))
+                .unwrap();
+        }
+    }
+
+    fn default_target(&self, features: &Array2<f64>) -> Array1<usize> {
+        Array1::zeros(features.nrows())
+    }
+}
+
+#[test]
+fn whatever_implements_linfas_traits_plugs_in() {
+    let mut data = clusters();
+    data.records = Scaling::Standard
+        .fit(data.records.view())
+        .unwrap()
+        .apply(data.records.view())
+        .unwrap();
+    let split = stratified_hold_out(data.targets.view(), 0.3, &Seed::new(1)).unwrap();
+    let truth = data.targets.select(Axis(0), &split.test);
+    let accuracy = |labels: Array1<usize>| {
+        let n_right = labels.iter().zip(&truth).filter(|(a, b)| a == b).count();
+        n_right as f64 / truth.len() as f64
+    };
+    let foreign = accuracy(predict_split(&NearestMean, &data, &split).unwrap());
+    let svm = accuracy(predict_split(&SvmParams::default(), &data, &split).unwrap());
+    let choice = Classifier::new(ClassifierKind::LinearSvm);
+    let choice = accuracy(predict_split(&choice, &data, &split).unwrap());
+    // A third would be chance.
+    assert!(
+        foreign > 0.8 && svm > 0.8 && choice > 0.8,
+        "{foreign} {svm} {choice}"
+    );
+    let bad = SvmParams {
+        c: -1.0,
+        ..SvmParams::default()
+    };
+    let error = predict_split(&bad, &data, &split).unwrap_err();
+    assert_eq!(
+        error.to_string(),
+        "C: -1; a finite number above 0 is allowed"
+    );
+    assert!(matches!(error, Error::Input { .. }));
+}

@@ -1,0 +1,493 @@
+//! The support vector machines against scikit-learn's numbers, linfa-svm's own predictions and the optimality
+//! conditions, on easy and on hard sets.
+
+use bubbletouch::recognition::dataset::{Dataset, dataset};
+use bubbletouch::recognition::kernel::{Gamma, Kernel};
+use bubbletouch::recognition::svm::{BinaryProblem, Multiclass, SvmParams};
+use linfa::DatasetBase;
+use linfa::traits::{Fit, Predict};
+use linfa_svm::Svm;
+use ndarray::{Array1, Array2, ArrayView1, Axis, array, s};
+
+/// Rows that Python evaluates to the same bits: the linear congruential generator
+/// `s ← (1103515245 s + 12345) mod 2³¹` from 12345 gives `s / 2³¹`, and class c moves feature j by `0.25 (c (j + 2) mod 5)`.
+fn generated(n_rows: usize, n_columns: usize, n_classes: usize) -> Dataset {
+    let mut state = 12345_u64;
+    let features = Array2::from_shape_fn((n_rows, n_columns), |(i, j)| {
+        state = (state * 1_103_515_245 + 12345) % (1 << 31);
+        state as f64 / (1_u64 << 31) as f64 + 0.25 * ((i % n_classes * (j + 2)) % 5) as f64
+    });
+    let labels = Array1::from_iter((0..n_rows).map(|i| i % n_classes));
+    dataset(features, labels).unwrap()
+}
+
+/// 80 training and 40 test rows of 4 features in 4 classes.
+fn fixed() -> (Dataset, Array2<f64>) {
+    let all = generated(120, 4, 4);
+    let test = all.records.slice(s![80.., ..]).to_owned();
+    let train = all.records.slice(s![..80, ..]).to_owned();
+    (
+        dataset(train, all.targets.slice(s![..80]).to_owned()).unwrap(),
+        test,
+    )
+}
+
+/// How far decision values may lie from LIBSVM's, however small the tolerance: it keeps kernel values in f32, and the
+/// multipliers, up to C each, carry their rounding on. (On classes 1 and 2, linear, C = 100, its solution at a
+/// tolerance of 1e-9 violates the optimality conditions by 1.4e-4, this crate's by 1e-9.)
+fn near(c: f64) -> f64 {
+    1e-4 * c.sqrt()
+}
+
+const RBF: Kernel = Kernel::Rbf {
+    gamma: Gamma::Scale,
+};
+const CUBIC: Kernel = Kernel::Polynomial {
+    gamma: Gamma::Scale,
+    coef0: 1.0,
+    degree: 3,
+};
+
+fn params(kernel: Kernel, c: f64, tolerance: f64) -> SvmParams {
+    SvmParams {
+        kernel,
+        c,
+        tolerance,
+        ..SvmParams::default()
+    }
+}
+
+/// `K(x, z)`, from the definition.
+fn kernel_value(kernel: Kernel, data: &Dataset, x: ArrayView1<f64>, z: ArrayView1<f64>) -> f64 {
+    let number = |gamma: Gamma| match gamma {
+        Gamma::Value(gamma) => gamma,
+        Gamma::Scale => {
+            let spread = data.records.ncols() as f64 * data.records.var(0.0);
+            if spread > 0.0 { 1.0 / spread } else { 1.0 }
+        }
+    };
+    match kernel {
+        Kernel::Linear => x.dot(&z),
+        Kernel::Rbf { gamma } => {
+            let difference = &x - &z;
+            (-number(gamma) * difference.dot(&difference)).exp()
+        }
+        Kernel::Polynomial {
+            gamma,
+            coef0,
+            degree,
+        } => (number(gamma) * x.dot(&z) + coef0).powi(degree as i32),
+    }
+}
+
+/// `Σ_j y_j a_j K(x_i, x_j)` for every row i of a problem.
+fn weighted_sums(kernel: Kernel, data: &Dataset, problem: &BinaryProblem) -> Vec<f64> {
+    let row = |i: usize| data.records.row(problem.rows[i]);
+    let coefficients = &problem.solution.coefficients;
+    let sum = |i| -> f64 {
+        (0..coefficients.len())
+            .map(|j| coefficients[j] * kernel_value(kernel, data, row(i), row(j)))
+            .sum()
+    };
+    (0..coefficients.len()).map(sum).collect()
+}
+
+fn dual_objective(kernel: Kernel, data: &Dataset, problem: &BinaryProblem) -> f64 {
+    let sums = weighted_sums(kernel, data, problem);
+    let terms = problem.solution.coefficients.iter().zip(sums);
+    terms.map(|(a, sum)| 0.5 * a * sum - a.abs()).sum()
+}
+
+/// Every row's multiplier within 0..=C, their signed sum 0, and each margin on the right side: `y f ≥ 1` at 0, `= 1`
+/// between, `≤ 1` at C, within the solver's tolerance.
+fn assert_optimal(params: SvmParams, data: &Dataset, problem: &BinaryProblem) {
+    let sums = weighted_sums(params.kernel, data, problem);
+    // Multipliers are sums of up to thousands of steps: rounding in them grows with C.
+    let rounding = 1e-9 * params.c.max(1.0);
+    let slack = params.tolerance
+        + rounding
+            * sums
+                .iter()
+                .fold(1.0, |max: f64, sum| max.max(sum.abs() / params.c));
+    for (i, &coefficient) in problem.solution.coefficients.iter().enumerate() {
+        let y = if data.targets[problem.rows[i]] == problem.positive {
+            1.0
+        } else {
+            -1.0
+        };
+        let a = y * coefficient;
+        assert!(a >= -rounding && a <= params.c + rounding, "0 ≤ {a} ≤ C");
+        let margin = y * (sums[i] - problem.solution.rho);
+        assert!(
+            a > 0.0 || margin >= 1.0 - slack,
+            "{params:?}: margin {margin} at 0"
+        );
+        assert!(
+            a < params.c || margin <= 1.0 + slack,
+            "{params:?}: margin {margin} at C"
+        );
+        let is_free = a > 0.0 && a < params.c;
+        assert!(
+            !is_free || (margin - 1.0).abs() <= slack,
+            "{params:?}: margin {margin} between"
+        );
+    }
+    let signed_sum: f64 = problem.solution.coefficients.iter().sum();
+    assert!(signed_sum.abs() <= rounding * problem.rows.len() as f64);
+}
+
+fn digits(labels: &Array1<usize>) -> String {
+    labels.iter().map(usize::to_string).collect()
+}
+
+/// scikit-learn 1.9.1 on `fixed()`: SVC(C, kernel, gamma="scale", degree=3, coef0=1): labels with the default
+/// tolerance; with tol=1e-9 the first test row's decision values and the sum of the pairs' dual objectives.
+const SCIKIT_LEARN: [(Kernel, f64, &str, [f64; 6], f64); 6] = [
+    (
+        Kernel::Linear,
+        1.0,
+        "0123012301230120032321030123032301230123",
+        [
+            1.501563536,
+            1.318926053,
+            1.4115571,
+            -0.628503751,
+            -0.543994928,
+            -0.206455909,
+        ],
+        -70.42094188013797,
+    ),
+    (
+        Kernel::Linear,
+        100.0,
+        "0123022301230120032321230323032001230113",
+        [
+            6.481878154,
+            2.525664445,
+            6.060794649,
+            -0.707203693,
+            -1.07281149,
+            -1.031230275,
+        ],
+        -1990.3958642991047,
+    ),
+    (
+        RBF,
+        1.0,
+        "0123032301230120032321030323032301230113",
+        [
+            1.262036056,
+            1.254311998,
+            1.176622927,
+            0.19147599,
+            -0.297148676,
+            -0.234677654,
+        ],
+        -63.29598462810894,
+    ),
+    (
+        RBF,
+        100.0,
+        "0123022303230120032321230323032201230113",
+        [
+            4.114052901,
+            1.75534816,
+            3.138452027,
+            -0.018802961,
+            -1.166220008,
+            0.774799601,
+        ],
+        -469.7904133717947,
+    ),
+    (
+        CUBIC,
+        1.0,
+        "0123022303230120032321230323032301230113",
+        [
+            3.918161857,
+            1.990917736,
+            3.345543902,
+            -0.043859347,
+            -0.874461499,
+            -1.236145268,
+        ],
+        -16.908507235781546,
+    ),
+    (
+        CUBIC,
+        100.0,
+        "0123022301230123032321230323032301230113",
+        [
+            4.989807863,
+            1.990917736,
+            3.894076326,
+            4.782748056,
+            -1.206917912,
+            -1.403337976,
+        ],
+        -53.96048479793074,
+    ),
+];
+
+#[test]
+fn labels_decisions_and_objectives_are_those_of_scikit_learn() {
+    let (train, test) = fixed();
+    for (kernel, c, labels, decision, objective) in SCIKIT_LEARN {
+        let usual = params(kernel, c, 1e-3).train(&train).unwrap();
+        assert_eq!(
+            digits(&usual.labels(test.view()).unwrap()),
+            labels,
+            "{kernel:?} {c}"
+        );
+        let exact = params(kernel, c, 1e-9).train(&train).unwrap();
+        let values = exact.decision_values(test.view()).unwrap();
+        for (ours, theirs) in values.row(0).iter().zip(decision) {
+            assert!(
+                (ours - theirs).abs() < near(c),
+                "{kernel:?} {c}: {ours} and {theirs}"
+            );
+        }
+        let sum = |problems: &[BinaryProblem]| -> f64 {
+            problems
+                .iter()
+                .map(|problem| dual_objective(kernel, &train, problem))
+                .sum()
+        };
+        assert!((sum(exact.problems()) / objective - 1.0).abs() < 1e-8);
+        assert!((sum(usual.problems()) / objective - 1.0).abs() < 1e-4);
+    }
+}
+
+#[test]
+fn one_against_the_rest_is_that_of_scikit_learn() {
+    // scikit-learn 1.9.1: SVC(C=1, tol=1e-9) per class against the rest, largest decision value.
+    let rbf = Kernel::Rbf {
+        gamma: Gamma::Value(0.5),
+    };
+    let table = [
+        (
+            Kernel::Linear,
+            "0123032101230120032301230123032301230123",
+            [0.710870992, -1.916430603, -1.578925286, -1.585987075],
+        ),
+        (
+            rbf,
+            "0223032301230120032321230323032301230123",
+            [0.755827785, -1.382307847, -1.231978773, -1.493095979],
+        ),
+    ];
+    let (train, test) = fixed();
+    for (kernel, labels, decision) in table {
+        let params = SvmParams {
+            multiclass: Multiclass::OneVsRest,
+            ..params(kernel, 1.0, 1e-9)
+        };
+        let model = params.train(&train).unwrap();
+        assert_eq!(digits(&model.labels(test.view()).unwrap()), labels);
+        let values = model.decision_values(test.view()).unwrap();
+        assert!(
+            values
+                .row(0)
+                .iter()
+                .zip(decision)
+                .all(|(a, b)| (a - b).abs() < near(1.0))
+        );
+    }
+}
+
+#[test]
+fn decisions_by_matrix_products_equal_those_of_linfa_svm() {
+    let (train, test) = fixed();
+    let gamma = 1.0 / (4.0 * train.records.var(0.0));
+    for kernel in [Kernel::Linear, RBF, CUBIC] {
+        let model = params(kernel, 2.0, 1e-3).train(&train).unwrap();
+        let values = model.decision_values(test.view()).unwrap();
+        for (column, problem) in model.problems().iter().enumerate() {
+            let mut records = train.records.select(Axis(0), &problem.rows);
+            let mut rows = test.clone();
+            let oracle = Svm::<f64, bool>::params()
+                .eps(1e-3)
+                .pos_neg_weights(2.0, 2.0);
+            let oracle = match kernel {
+                Kernel::Linear => oracle.linear_kernel(),
+                Kernel::Rbf { .. } => oracle.gaussian_kernel(1.0 / gamma),
+                Kernel::Polynomial { .. } => {
+                    records *= gamma.sqrt();
+                    rows *= gamma.sqrt();
+                    oracle.polynomial_kernel(1.0, 3.0)
+                }
+            };
+            let is_positive = problem
+                .rows
+                .iter()
+                .map(|&row| train.targets[row] == problem.positive);
+            let targets: Array1<bool> = is_positive.collect();
+            let oracle = oracle.fit(&DatasetBase::new(records, targets)).unwrap();
+            for (value, row) in values.column(column).iter().zip(rows.rows()) {
+                let expected = oracle.weighted_sum(&row) - oracle.rho;
+                assert!(
+                    (value - expected).abs() < 1e-9,
+                    "{kernel:?}: {value}, {expected}"
+                );
+                assert_eq!(*value >= 0.0, oracle.predict(row.to_owned()));
+            }
+        }
+    }
+}
+
+#[test]
+fn labels_are_the_votes_of_the_decision_values() {
+    let (train, test) = fixed();
+    let model = params(RBF, 1.0, 1e-3).train(&train).unwrap();
+    let values = model.decision_values(test.view()).unwrap();
+    let labels = model.labels(test.view()).unwrap();
+    for (values, &label) in values.rows().into_iter().zip(&labels) {
+        let mut votes = [0; 4];
+        for (value, problem) in values.iter().zip(model.problems()) {
+            let winner = if *value > 0.0 {
+                problem.positive
+            } else {
+                problem.negative.unwrap()
+            };
+            votes[winner] += 1;
+        }
+        let most = *votes.iter().max().unwrap();
+        assert_eq!(
+            label,
+            votes.iter().position(|&count| count == most).unwrap()
+        );
+    }
+}
+
+#[test]
+fn solutions_are_optimal_for_every_kernel_and_c() {
+    let (train, _) = fixed();
+    for kernel in [Kernel::Linear, RBF, CUBIC] {
+        for (c, tolerance) in [
+            (1e-6, 1e-3),
+            (1e-2, 1e-3),
+            (1.0, 1e-3),
+            (100.0, 1e-3),
+            (100.0, 1e-9),
+        ] {
+            let params = params(kernel, c, tolerance);
+            let model = params.train(&train).unwrap();
+            assert_eq!(model.n_capped(), 0);
+            model
+                .problems()
+                .iter()
+                .for_each(|problem| assert_optimal(params, &train, problem));
+        }
+    }
+    // Wide features: the factor of the kernel is solved in their stead.
+    let wide = generated(24, 64, 3);
+    for kernel in [Kernel::Linear, RBF, CUBIC] {
+        let params = params(kernel, 1.0, 1e-3);
+        let model = params.train(&wide).unwrap();
+        model
+            .problems()
+            .iter()
+            .for_each(|problem| assert_optimal(params, &wide, problem));
+    }
+}
+
+#[test]
+fn constant_features_change_nothing() {
+    let (train, test) = fixed();
+    let widened = |features: &Array2<f64>| {
+        let constant = Array2::from_elem((features.nrows(), 1), 7.0);
+        ndarray::concatenate(Axis(1), &[features.view(), constant.view()]).unwrap()
+    };
+    let with = dataset(widened(&train.records), train.targets.clone()).unwrap();
+    let rbf = Kernel::Rbf {
+        gamma: Gamma::Value(0.8),
+    };
+    for kernel in [Kernel::Linear, rbf] {
+        let params = params(kernel, 1.0, 1e-8);
+        let a = params
+            .train(&train)
+            .unwrap()
+            .decision_values(test.view())
+            .unwrap();
+        let b = params
+            .train(&with)
+            .unwrap()
+            .decision_values(widened(&test).view())
+            .unwrap();
+        assert!(
+            (a - b).iter().all(|difference| difference.abs() < 1e-5),
+            "{kernel:?}"
+        );
+    }
+    // Nothing but constants: no class can be told, none is preferred over the first in every vote, nothing breaks.
+    let blind = dataset(Array2::ones((6, 3)), array![0, 0, 1, 1, 2, 2]).unwrap();
+    let model = params(RBF, 1.0, 1e-3).train(&blind).unwrap();
+    let values = model.decision_values(blind.records.view()).unwrap();
+    assert!(values.iter().all(|value| value.is_finite()));
+}
+
+#[test]
+fn far_from_the_origin_gaussian_distances_keep_their_digits() {
+    let (train, test) = fixed();
+    let moved = dataset(&train.records + 1e6, train.targets.clone()).unwrap();
+    let params = params(
+        Kernel::Rbf {
+            gamma: Gamma::Value(1.0),
+        },
+        1.0,
+        1e-6,
+    );
+    let near = params
+        .train(&train)
+        .unwrap()
+        .decision_values(test.view())
+        .unwrap();
+    let far = params
+        .train(&moved)
+        .unwrap()
+        .decision_values((&test + 1e6).view())
+        .unwrap();
+    assert!(
+        (near - far)
+            .iter()
+            .all(|difference| difference.abs() < 1e-5)
+    );
+}
+
+#[test]
+fn bad_input_is_refused_before_training() {
+    let (train, test) = fixed();
+    for c in [0.0, -1.0, f64::NAN, f64::INFINITY] {
+        assert!(params(Kernel::Linear, c, 1e-3).train(&train).is_err());
+        assert!(params(Kernel::Linear, 1.0, c).train(&train).is_err());
+    }
+    let refusal = |features: Array2<f64>, labels: Array1<usize>| {
+        let unchecked = DatasetBase::new(features, labels);
+        SvmParams::default()
+            .train(&unchecked)
+            .unwrap_err()
+            .to_string()
+    };
+    let mut broken = train.records.clone();
+    broken[[7, 2]] = f64::NAN;
+    let error = refusal(broken, train.targets.clone());
+    assert_eq!(
+        error,
+        "features, row 7, column 2: NaN; only finite numbers are allowed"
+    );
+    let error = refusal(array![[1.0], [2.0]], array![4, 4]);
+    assert_eq!(
+        error,
+        "labels: the single class 4; at least two classes are needed"
+    );
+    assert!(refusal(Array2::zeros((0, 2)), Array1::zeros(0)).starts_with("features"));
+    assert!(refusal(array![[1.0], [2.0]], array![0]).starts_with("labels"));
+    let model = SvmParams::default().train(&train).unwrap();
+    assert!(model.labels(test.slice(s![.., ..3])).is_err());
+    assert!(
+        model
+            .labels(array![[0.0, f64::NAN, 0.0, 0.0]].view())
+            .is_err()
+    );
+    assert_eq!(model.labels(Array2::zeros((0, 4)).view()).unwrap().len(), 0);
+}

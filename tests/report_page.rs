@@ -1,0 +1,209 @@
+//! What people read: the terminal table and the page.
+
+mod report_synthetic;
+
+use bubbletouch::report::answer::Answer;
+use bubbletouch::report::html::{Limit, Picture, Pictures, ReportPage, page};
+use bubbletouch::report::results::draw_charts;
+use bubbletouch::report::terminal::summary_table;
+use bubbletouch::study::table::Tables;
+use report_synthetic::{about, cell, many_cells, noise_cells, quickstart_cells, tables};
+
+#[test]
+fn the_terminal_table_fits_its_width_without_escape_codes() {
+    for cells in [
+        quickstart_cells(),
+        vec![cell()],
+        noise_cells(),
+        many_cells(),
+    ] {
+        let made = tables(cells, 3, 24);
+        for width in [80, 100, 120] {
+            let text = summary_table(&made, width, "results/x/summary.csv");
+            assert!(
+                text.lines().all(|line| line.chars().count() <= width),
+                "{width}\n{text}"
+            );
+            assert!(!text.contains('\u{1b}') && !text.contains('\u{a0}'));
+        }
+    }
+}
+
+#[test]
+fn each_of_few_cells_has_one_line_with_its_interval() {
+    for (cells, heading) in [
+        (
+            quickstart_cells(),
+            "pitch  array size  compression     m   accuracy [95 %]  macro-F1",
+        ),
+        (noise_cells(), "noise  smoothing  classifier"),
+    ] {
+        let made = tables(cells, 3, 24);
+        for width in [80, 100, 120] {
+            let text = summary_table(&made, width, "summary.csv");
+            let spaced = |text: &str| text.split_whitespace().collect::<Vec<_>>().join(" ");
+            assert!(spaced(&text).contains(&spaced(heading)), "{text}");
+            let intervals = text
+                .lines()
+                .filter(|line| line.contains("] ") && !line.starts_with(['B', 'W']));
+            // The heading has a bracket too.
+            assert_eq!(intervals.count(), made.summary.len() + 1, "{width}\n{text}");
+        }
+    }
+}
+
+#[test]
+fn many_cells_stand_compactly_and_what_is_left_out_is_said() {
+    let made = tables(many_cells(), 3, 24);
+    let text = summary_table(&made, 100, "results/x/summary.csv");
+    assert!(text.contains("100:1"));
+    assert!(
+        text.contains("Left out here: 20 of 60 lines, 0 of 5 columns; all 300 cells are in results/x/summary.csv"),
+        "{text}"
+    );
+    let narrow = summary_table(&made, 60, "results/x/summary.csv");
+    assert!(
+        narrow.contains("of 5 columns") && !narrow.contains("0 of 5 columns"),
+        "{narrow}"
+    );
+    let none = summary_table(&Tables::default(), 80, "x");
+    assert_eq!(none, "No cell has been computed.\n");
+}
+
+#[test]
+fn the_answer_names_the_best_the_frugal_and_each_effect() {
+    let mut made = tables(quickstart_cells(), 3, 24);
+    // Cell 4 is the best (0.76); let 16:1 there come within its interval.
+    made.summary[5].1.accuracy = 0.74;
+    let answer = Answer::of(&made).unwrap();
+    assert_eq!(answer.best.0.cell, 4);
+    assert_eq!(answer.frugal.0.cell, 5);
+    let sentences = answer.sentences();
+    assert!(
+        sentences[0].starts_with("Best accuracy 0.76 ["),
+        "{sentences:?}"
+    );
+    assert!(
+        sentences[0].ends_with("at pitch 2 mm, array size 128 mm, compression 4:1, m = 1024."),
+        "{sentences:?}"
+    );
+    assert!(
+        sentences[1].ends_with("at pitch 2 mm, array size 128 mm, compression 16:1, m = 256."),
+        "{sentences:?}"
+    );
+    // Each effect's means are those of a plain average over the other settings.
+    for effect in &answer.effects {
+        for (value, mean) in &effect.means {
+            let rows = made
+                .summary
+                .iter()
+                .filter(|(cell, _)| effect.axis.value(cell) == *value);
+            let accuracies: Vec<f64> = rows.map(|(_, score)| score.accuracy).collect();
+            assert_eq!(accuracies.len(), effect.n_combinations);
+            let plain = accuracies.iter().sum::<f64>() / accuracies.len() as f64;
+            assert!((plain - mean).abs() < 1e-12);
+        }
+    }
+    assert_eq!(answer.effects.len(), 3);
+    assert!(Answer::of(&Tables::default()).is_none());
+}
+
+#[test]
+fn an_effect_leaves_out_settings_that_lack_a_value() {
+    let mut made = tables(quickstart_cells(), 1, 24);
+    // Without the finest array's 256:1, that array must not lift the other ratios' means.
+    made.summary
+        .retain(|(cell, _)| !(cell.nx == 64 && cell.ratio == 256.0));
+    let answer = Answer::of(&made).unwrap();
+    let ratio = answer
+        .effects
+        .iter()
+        .find(|effect| effect.means.len() == 4)
+        .unwrap();
+    assert_eq!(ratio.n_combinations, 3);
+}
+
+#[test]
+fn the_page_needs_no_network_and_no_script() {
+    let html = whole_page(&about(), &tables(quickstart_cells(), 3, 24));
+    assert!(
+        !html.contains("<script")
+            && !html.contains("@import")
+            && !html.contains("<link rel=\"stylesheet")
+    );
+    let without_names = html.replace("http://www.w3.org/2000/svg", "");
+    assert!(!without_names.contains("http://") && !without_names.contains("https://"));
+    assert!(!html.contains("{{") && !html.contains("(no value for"));
+    for part in [
+        "quickstart",
+        "array size &amp; compression when m &lt; n?",
+        "5120 of 9830400",
+        "41.3 s",
+        "recognise with linear SVM",
+        "7 more charts lie beside this page",
+    ] {
+        assert!(html.contains(part), "{part}");
+    }
+    // Every row of the summary.
+    assert_eq!(
+        html.matches("<tr><td>2 mm</td>").count() + html.matches("<tr><td>4 mm</td>").count(),
+        15
+    );
+    assert_eq!(html.matches("<tr class=\"best\">").count(), 1);
+}
+
+#[test]
+fn nothing_a_user_writes_becomes_markup() {
+    let evil = "<img src=x onerror=alert(1)>\"'&{{command}}".to_owned();
+    let page = ReportPage {
+        name: evil.clone(),
+        question: evil.clone(),
+        expected: evil.clone(),
+        settings: vec![(evil.clone(), evil.clone())],
+        limits: vec![Limit {
+            what: evil.clone(),
+            count: 1,
+            of: 0,
+            meaning: evil.clone(),
+        }],
+        command: evil.clone(),
+        program: evil.clone(),
+        ..ReportPage::default()
+    };
+    let mut made = tables(vec![cell()], 1, 3);
+    for row in &mut made.confusion {
+        row.object = evil.clone();
+    }
+    made.stages[0].stage = evil;
+    let html = whole_page(&page, &made);
+    assert!(!html.contains("<img src=x"));
+    assert_eq!(
+        html.matches("&lt;img src=x onerror=alert(1)&gt;").count(),
+        11
+    );
+}
+
+#[test]
+fn a_study_without_anything_still_has_a_page() {
+    let html = whole_page(&ReportPage::default(), &Tables::default());
+    assert!(html.contains("No cell has been computed."));
+}
+
+#[test]
+fn the_page_of_300_cells_stays_small() {
+    let html = whole_page(&about(), &tables(many_cells(), 3, 24));
+    assert!(html.len() < 1_000_000, "{}", html.len());
+}
+
+fn whole_page(about: &ReportPage, made: &Tables) -> String {
+    let charts = draw_charts(made);
+    let pictures = Pictures {
+        charts: charts
+            .iter()
+            .map(|(_, title, drawing)| Picture::of(drawing, title))
+            .collect(),
+        n_more_charts: 7,
+        ..Pictures::default()
+    };
+    page(about, made, &pictures)
+}

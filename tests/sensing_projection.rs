@@ -1,0 +1,204 @@
+//! Laws that every ensemble obeys.
+
+use bubbletouch::random::Seed;
+use bubbletouch::sensing::{Ensemble, Projection};
+use ndarray::{Array2, ArrayView2, s};
+
+const ENSEMBLES: [Ensemble; 5] = [
+    Ensemble::Gaussian,
+    Ensemble::Sbhe,
+    Ensemble::BlockAverage,
+    Ensemble::Subsample,
+    Ensemble::Identity,
+];
+
+fn projection(ensemble: Ensemble, grid: (usize, usize), m: usize) -> Projection {
+    Projection::new(ensemble, grid, m, &Seed::new(2018)).unwrap()
+}
+
+fn frames(n_frames: usize, n: usize) -> Array2<f64> {
+    Array2::from_shape_fn((n_frames, n), |(i, j)| {
+        ((1 + i) as f64 * 0.37 * j as f64).sin()
+    })
+}
+
+fn bits(values: ArrayView2<f64>) -> Vec<u64> {
+    values.iter().map(|v| v.to_bits()).collect()
+}
+
+#[test]
+fn measuring_is_multiplying_by_the_matrix() {
+    for ensemble in ENSEMBLES {
+        for (grid, m) in [((1, 1), 1), ((3, 5), 4), ((12, 9), 50), ((8, 8), 64)] {
+            let projection = projection(ensemble, grid, m);
+            let frames = frames(13, grid.0 * grid.1);
+            let matrix = projection.matrix();
+            let slow = Array2::from_shape_fn((13, matrix.nrows()), |(i, k)| {
+                let terms = frames
+                    .row(i)
+                    .into_iter()
+                    .zip(matrix.row(k))
+                    .map(|(x, a)| x * a);
+                terms.sum::<f64>()
+            });
+            let error = &projection.measure(frames.view()) - &slow;
+            assert!(
+                error.iter().all(|e| e.abs() < 1e-13),
+                "{ensemble:?} {grid:?}"
+            );
+        }
+    }
+}
+
+#[test]
+fn a_frame_has_the_same_measurements_in_every_batch() {
+    for ensemble in ENSEMBLES {
+        for (grid, m) in [((64, 64), 64), ((31, 17), 100), ((5, 7), 35), ((9, 9), 1)] {
+            let projection = projection(ensemble, grid, m);
+            let frames = frames(150, grid.0 * grid.1);
+            let together = projection.measure(frames.view());
+            for batch in [1, 2, 3, 7, 8, 64, 149] {
+                for start in [0, 1, 150 - batch] {
+                    let rows = s![start..start + batch, ..];
+                    let apart = projection.measure(frames.slice(rows));
+                    assert_eq!(
+                        bits(apart.view()),
+                        bits(together.slice(rows)),
+                        "{ensemble:?}, batch of {batch} from {start}"
+                    );
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn memory_layout_changes_nothing() {
+    for ensemble in ENSEMBLES {
+        let projection = projection(ensemble, (16, 16), 40);
+        let frames = frames(21, 256);
+        let column_major = frames.t().as_standard_layout().into_owned();
+        let mut wide = Array2::zeros((21, 2 * projection.n_measurements()));
+        projection.measure_into(column_major.t(), wide.slice_mut(s![.., ..;2]));
+        let expected = projection.measure(frames.view());
+        assert_eq!(
+            bits(wide.slice(s![.., ..;2])),
+            bits(expected.view()),
+            "{ensemble:?}"
+        );
+    }
+}
+
+#[test]
+fn a_smaller_projection_is_a_prefix_of_a_larger_bit_by_bit() {
+    for ensemble in ENSEMBLES {
+        if !ensemble.is_prefix_nested() || ensemble == Ensemble::Identity {
+            continue;
+        }
+        for grid in [(32, 32), (13, 11)] {
+            let n = grid.0 * grid.1;
+            let frames = frames(9, n);
+            let largest = projection(ensemble, grid, n).measure(frames.view());
+            for m in [1, 2, 5, 16, 64, 100, n - 1] {
+                let smaller = projection(ensemble, grid, m).measure(frames.view());
+                assert_eq!(
+                    bits(smaller.view()),
+                    bits(largest.slice(s![.., ..m])),
+                    "{ensemble:?} {m}"
+                );
+            }
+        }
+    }
+}
+
+#[test]
+fn coarse_block_averages_are_averages_of_fine_ones() {
+    let frames = frames(4, 256);
+    let fine = projection(Ensemble::BlockAverage, (16, 16), 64).measure(frames.view());
+    let coarse = projection(Ensemble::BlockAverage, (16, 16), 16).measure(frames.view());
+    for frame in 0..4 {
+        for block in 0..16 {
+            let corner = 16 * (block / 4) + 2 * (block % 4);
+            let children = [corner, corner + 1, corner + 8, corner + 9];
+            let mean = children.iter().map(|&c| fine[[frame, c]]).sum::<f64>() / 4.0;
+            assert!((coarse[[frame, block]] - mean).abs() < 1e-15);
+        }
+    }
+}
+
+#[test]
+fn random_ensembles_keep_distances_between_frames() {
+    let (n, m) = (1024, 256);
+    let frames = frames(12, n);
+    for ensemble in [Ensemble::Gaussian, Ensemble::Sbhe] {
+        let measured = projection(ensemble, (32, 32), m).measure(frames.view());
+        for a in 0..12 {
+            for b in 0..a {
+                let square = |rows: &Array2<f64>| {
+                    let difference = &rows.row(a) - &rows.row(b);
+                    difference.dot(&difference)
+                };
+                let ratio = square(&measured) * n as f64 / m as f64 / square(&frames);
+                // Johnson and Lindenstrauss: one pair strays by more than ε with probability
+                // 2 exp(−m (ε²/4 − ε³/6)) = 3e-5 at ε = 0.45; there are 132 pairs and the seed is fixed.
+                assert!((ratio - 1.0).abs() < 0.45, "{ensemble:?}: {ratio}");
+            }
+        }
+    }
+}
+
+#[test]
+fn gaussian_entries_have_mean_zero_and_variance_one_over_n() {
+    let matrix = projection(Ensemble::Gaussian, (20, 20), 400).matrix();
+    let count = 160_000.0f64;
+    let mean = matrix.sum() / count;
+    let variance = matrix.iter().map(|v| v * v).sum::<f64>() / count;
+    assert!(mean.abs() < 4.0 / (400.0 * count).sqrt());
+    assert!((variance * 400.0 - 1.0).abs() < 4.0 * (2.0 / count).sqrt());
+}
+
+#[test]
+fn a_subsample_takes_each_taxel_at_most_once() {
+    let matrix = projection(Ensemble::Subsample, (9, 7), 63).matrix();
+    assert_eq!(matrix.sum(), 63.0);
+    assert!(matrix.columns().into_iter().all(|c| c.sum() == 1.0));
+}
+
+#[test]
+fn identity_gives_the_frame_whatever_is_asked() {
+    let frames = frames(3, 20);
+    let projection = projection(Ensemble::Identity, (4, 5), 2);
+    assert_eq!(projection.n_measurements(), 20);
+    assert_eq!(projection.measure(frames.view()), frames);
+}
+
+#[test]
+fn another_seed_draws_another_projection() {
+    for ensemble in [Ensemble::Gaussian, Ensemble::Sbhe, Ensemble::Subsample] {
+        let of = |seed| {
+            Projection::new(ensemble, (8, 8), 16, &Seed::new(seed))
+                .unwrap()
+                .matrix()
+        };
+        assert_eq!(of(1), of(1));
+        assert_ne!(of(1), of(2));
+    }
+}
+
+#[test]
+fn no_measurement_and_more_than_taxels_are_refused() {
+    for ensemble in ENSEMBLES {
+        for (grid, m) in [((4, 4), 0), ((4, 4), 17), ((0, 4), 1)] {
+            let error = Projection::new(ensemble, grid, m, &Seed::new(1)).unwrap_err();
+            assert!(error.to_string().starts_with("number of measurements"));
+        }
+    }
+}
+
+#[test]
+fn no_frames_have_no_measurements() {
+    for ensemble in ENSEMBLES {
+        let none = projection(ensemble, (4, 4), 3).measure(Array2::zeros((0, 16)).view());
+        assert_eq!(none.nrows(), 0);
+    }
+}

@@ -1,0 +1,66 @@
+//! A chain that has seen one frame allocates nothing for the next ones.
+
+use bubbletouch::random::Seed;
+use bubbletouch::signal::{Chain, Noise, NoiseUnit, Scratch, SignalStep};
+use bubbletouch::world::{Grid, Patch, Taxel};
+use std::alloc::{GlobalAlloc, Layout, System};
+use std::cell::Cell;
+
+/// Counts this thread's allocations, so that the test harness's own threads do not count.
+struct Counting;
+
+thread_local! {
+    static COUNT: Cell<usize> = const { Cell::new(0) };
+}
+
+unsafe impl GlobalAlloc for Counting {
+    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
+        COUNT.with(|count| count.set(count.get() + 1));
+        unsafe { System.alloc(layout) }
+    }
+
+    unsafe fn dealloc(&self, pointer: *mut u8, layout: Layout) {
+        unsafe { System.dealloc(pointer, layout) }
+    }
+}
+
+#[global_allocator]
+static COUNTING: Counting = Counting;
+
+fn allocations(work: impl FnOnce()) -> usize {
+    let before = COUNT.with(Cell::get);
+    work();
+    COUNT.with(Cell::get) - before
+}
+
+#[test]
+fn touches_after_the_first_allocate_nothing() {
+    let grid = Grid {
+        nx: 64,
+        ny: 48,
+        pitch: 2e-3,
+    };
+    let taxel = Taxel {
+        radius: 1e-3,
+        stiffness: 200.0,
+        damping: 0.4,
+        stroke: 5e-3,
+    };
+    let noise = SignalStep::Noise(Noise {
+        std: 0.1,
+        unit: NoiseUnit::FullScale,
+    });
+    let smoothing = SignalStep::Smoothing { width: 4e-3 };
+    let steps = [SignalStep::Force, noise, smoothing];
+    let chain = Chain::new(&steps, &Patch::new(grid, taxel).unwrap()).unwrap();
+    let mut frame = vec![1e-3; 64 * 48];
+    let rate = vec![0.01; 64 * 48];
+    let mut scratch = Scratch::default();
+    let mut touch = |number| {
+        let seed = Seed::new(2018).numbered(number);
+        frame.fill(1e-3);
+        chain.apply(&mut frame, Some(&rate), &seed, &mut scratch);
+    };
+    assert!(allocations(|| touch(0)) > 0);
+    assert_eq!(allocations(|| (1..20).for_each(touch)), 0);
+}
