@@ -211,10 +211,11 @@ fn unreadable(place: &str, text: &str, error: &toml::de::Error) -> Error {
 
 /// The name, in quotes, of the `[[object]]` that this byte lies in.
 fn object_around(text: &str, byte: usize) -> Option<&str> {
-    let start = text[..byte].rfind("[[object]]")?;
-    let body = &text[start + "[[object]]".len()..];
-    let end = body.find("[[object]]").unwrap_or(body.len());
-    let mut lines = body[..end].lines();
+    let mut starts = text.match_indices("[[object]]").map(|(at, _)| at);
+    let start = starts.clone().take_while(|&at| at <= byte).last()?;
+    let end = starts.find(|&at| at > byte).unwrap_or(text.len());
+    let body = &text[start..end];
+    let mut lines = body.lines();
     let value =
         lines.find_map(|line| line.trim().strip_prefix("name")?.trim().strip_prefix('='))?;
     Some(value.trim())

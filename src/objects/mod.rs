@@ -1,4 +1,12 @@
 //! Objects: a shape, a mesh, or spheres → [`SphereUnion`].
+//!
+//! | from | by | gives |
+//! |---|---|---|
+//! | a [`Catalogue`] of [`Solid`]s (TOML, mm) | [`pack`] | few spheres, surface within a stated error |
+//! | a PLY file ([`read_ply`]) | [`vertex_spheres`] | one sphere a vertex, as the original \[BT\] |
+//! | a CSV file | [`read_spheres`] | those spheres |
+//!
+//! [`surface_error`] measures how well spheres fit a solid.
 
 mod block;
 mod catalogue;
@@ -8,6 +16,7 @@ mod outline;
 mod pack;
 mod ply;
 mod prism;
+mod shape;
 mod solid;
 mod solid_toml;
 mod sphere_csv;
@@ -21,7 +30,8 @@ pub use catalogue::{Catalogue, Entry};
 pub use mesh::Mesh;
 pub use pack::{MAX_SPHERES, pack};
 pub use ply::read_ply;
-pub use solid::{Part, Shape, Solid};
+pub use shape::Shape;
+pub use solid::{Part, Solid};
 pub use sphere_csv::{read_spheres, write_spheres};
 pub use sphere_union::{Sphere, SphereUnion};
 pub use surface_error::{SurfaceError, surface_error};

@@ -116,9 +116,18 @@ impl Prism {
     /// corner it is the corner itself, radius 0.
     fn border_disc(&self, point: DVec2, e: f64) -> (DVec2, f64) {
         let (edge, foot) = self.outline.nearest(point);
-        let largest = self.outline.tangent_radius(edge, foot);
-        let radius = largest.min(self.half).min(0.5 * e);
-        (foot + radius * self.outline.edges[edge].inward, radius)
+        let step = self
+            .half
+            .min(0.5 * e)
+            .min(self.outline.tangent_radius(edge, foot));
+        let center = foot + step * self.outline.edges[edge].inward;
+        // At a corner rounding decides which neighbour the foot lies on; only the distance itself is to be trusted.
+        let inset = -self.outline.distance(center);
+        if inset > 0.0 {
+            (center, inset.min(self.half))
+        } else {
+            (foot, 0.0)
+        }
     }
 
     pub fn surface_points(&self, spacing: f64, points: &mut Vec<DVec3>) {

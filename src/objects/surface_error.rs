@@ -29,6 +29,11 @@ fn protrusion(solid: &Solid, spheres: &[Sphere]) -> f64 {
     let mut largest = 0.0f64;
     let mut points = Vec::new();
     for sphere in spheres {
+        // No point of a sphere is farther out than this; most spheres cannot raise the largest by more than rounding.
+        let bound = solid.distance(sphere.center) + sphere.radius;
+        if bound <= largest + 1e-9 * sphere.radius {
+            continue;
+        }
         points.clear();
         sphere_points(sphere, sphere.radius, &mut points);
         points.push(outermost_point(solid, sphere));

@@ -25,6 +25,7 @@ pub mod pressure_map;
 pub mod progress;
 mod raster;
 pub mod results;
+mod shaded_view;
 pub mod snapshots;
 pub mod terminal;
 pub mod text_width;

@@ -1,0 +1,262 @@
+//! The built-in objects: what they are, where they stand, how well their spheres fit; and catalogue files that are wrong.
+
+use bubbletouch::geometry::Pose;
+use bubbletouch::objects::{Catalogue, Shape, surface_error};
+use glam::{DQuat, DVec3};
+
+const MM: f64 = 1e-3;
+
+#[test]
+fn the_sets_hold_the_published_numbers_of_objects() {
+    let catalogue = Catalogue::builtin().unwrap();
+    assert_eq!(catalogue.sets(), ["balls", "boxes", "cans", "household"]);
+    let n = |set| catalogue.set(set).unwrap().len();
+    assert_eq!([n("balls"), n("boxes"), n("cans")], [16, 16, 9]);
+    assert!(n("household") >= 24);
+}
+
+#[test]
+fn balls_boxes_and_cans_have_the_published_dimensions() {
+    let catalogue = Catalogue::builtin().unwrap();
+    let shapes = |set| {
+        let entries = catalogue.set(set).unwrap().into_iter();
+        entries
+            .map(|e| e.solid.parts()[0].shape().clone())
+            .collect::<Vec<_>>()
+    };
+    let diameters = [
+        39.5, 42.67, 57., 63.5, 65.41, 71.3, 73., 92., 97.1, 107., 110., 185., 207., 216., 226.,
+        238.8,
+    ];
+    let balls = diameters.map(|d| Shape::Ball { diameter: d * MM });
+    assert_eq!(shapes("balls"), balls);
+    let sizes = [
+        [158, 60, 210],
+        [89, 38, 175],
+        [110, 28, 89],
+        [85, 50, 73],
+        [197, 51, 304],
+        [197, 63, 304],
+        [141, 100, 252],
+        [82, 33, 140],
+        [80, 49, 116],
+        [152, 57, 195],
+        [135, 44, 197],
+        [154, 16, 78],
+        [158, 51, 108],
+        [133, 63, 196],
+        [143, 38, 193],
+        [168, 65, 144],
+    ];
+    let boxes = sizes.map(|size| Shape::Box {
+        size: DVec3::from(size.map(f64::from)) * MM,
+        rounding: 0.0,
+    });
+    assert_eq!(shapes("boxes"), boxes);
+    let cans = [
+        (54., 57.2),
+        (68.3, 39.7),
+        (76.2, 39.7),
+        (77.8, 34.9),
+        (81., 111.1),
+        (87.3, 46.),
+        (103.2, 119.1),
+        (108., 87.3),
+        (157.2, 109.5),
+    ];
+    let cans = cans.map(|(d, h)| Shape::Cylinder {
+        diameter: d * MM,
+        height: h * MM,
+    });
+    assert_eq!(shapes("cans"), cans);
+}
+
+#[test]
+fn every_object_rests_on_the_table_in_the_middle() {
+    let tolerance = 0.5 * MM;
+    for entry in Catalogue::builtin().unwrap().entries() {
+        let exact = entry.solid.bounds();
+        assert!(exact.min.z.abs() < 1e-12, "{}", entry.name);
+        assert!(exact.center().truncate().length() < 1e-12, "{}", entry.name);
+        let spheres = entry.build(tolerance).unwrap().spheres.bounds();
+        for apart in [spheres.min - exact.min, spheres.max - exact.max] {
+            assert!(
+                apart.abs().max_element() <= tolerance,
+                "{}: {apart}",
+                entry.name
+            );
+        }
+    }
+}
+
+#[test]
+fn every_object_packs_within_its_surface_error() {
+    for entry in Catalogue::builtin().unwrap().entries() {
+        for tolerance in [0.5 * MM, 0.25 * MM] {
+            let union = entry.build(tolerance).unwrap().spheres;
+            let spacing = entry.solid.bounds().size().max_element() / 60.0;
+            let error = surface_error(&entry.solid, &union, spacing);
+            assert!(
+                error.protrusion <= tolerance && error.gap <= tolerance,
+                "{} at {tolerance}: {error:?}",
+                entry.name
+            );
+        }
+    }
+}
+
+#[test]
+fn names_are_unique_over_all_sets() {
+    let catalogue = Catalogue::builtin().unwrap();
+    for entry in catalogue.entries() {
+        let found = catalogue.object(&entry.name).unwrap();
+        assert_eq!(found.set, entry.set, "{}", entry.name);
+        assert!(!entry.source.is_empty());
+    }
+}
+
+#[test]
+fn rotations_turn_about_the_fixed_x_then_y_then_z_axis() {
+    let text = r#"
+        [[object]]
+        name = "rod"
+        source = "test"
+        [[object.part]]
+        shape = "box"
+        size_mm = [1, 2, 30]
+        rotation_deg = [20, 30, 40]
+        position_mm = [5, 6, 7]
+    "#;
+    let catalogue = Catalogue::parse("own", "own.toml", text).unwrap();
+    let solid = &catalogue.entries()[0].solid;
+    let [x, y, z] = [20f64, 30., 40.].map(f64::to_radians);
+    let turned = DQuat::from_rotation_z(z) * DQuat::from_rotation_y(y) * DQuat::from_rotation_x(x);
+    let middle = solid.bounds().center();
+    let tip = Pose::new(turned, middle).transform_point(DVec3::new(0.0, 0.0, 15.0 * MM));
+    assert!(solid.distance(tip).abs() < 1e-12);
+    assert!((solid.distance(middle) + 0.5 * MM).abs() < 1e-12);
+}
+
+#[test]
+fn a_wrong_catalogue_names_file_line_and_object() {
+    let good = "[[object]]\nname = \"mug\"\nsource = \"us\"\n[[object.part]]\nshape = \"cylinder\"\ndiameter_mm = 80\nheight_mm = 90\n";
+    assert_eq!(
+        Catalogue::parse("own", "own.toml", good)
+            .unwrap()
+            .entries()
+            .len(),
+        1
+    );
+    let tube = good.replace("cylinder", "tube").replace(
+        "diameter_mm = 80",
+        "inner_diameter_mm = 9\nouter_diameter_mm = 8",
+    );
+    let bow_tie = good.replace("cylinder", "prism").replace(
+        "diameter_mm = 80\nheight_mm = 90",
+        "outline_mm = [[0, 0], [9, 9], [9, 0], [0, 9]]\nthickness_mm = 2",
+    );
+    let cases = [
+        (String::new(), "own.toml: no objects"),
+        (
+            good.replace("= 80", "= "),
+            "own.toml, line 6, object \"mug\": ",
+        ),
+        (
+            good.replace("height_mm", "hieght_mm"),
+            "own.toml, line 7, object \"mug\": unknown field `hieght_mm`",
+        ),
+        (
+            good.replace("80", "\"wide\""),
+            "own.toml, line 6, object \"mug\": invalid type: string",
+        ),
+        (
+            good.replace("cylinder", "cilinder"),
+            "own.toml, line 5, object \"mug\": unknown variant `cilinder`",
+        ),
+        (
+            good.replace("source = \"us\"\n", ""),
+            "own.toml, line 1, object \"mug\": missing field `source`",
+        ),
+        (
+            good.replace("80", "-80"),
+            "own.toml: object `mug`, part 1 (cylinder): diameter: -0.08 m; a finite positive",
+        ),
+        (
+            good.replace("80", "nan"),
+            "own.toml: object `mug`, part 1 (cylinder): diameter: NaN m; a finite positive",
+        ),
+        (
+            good.replace("80", "0"),
+            "own.toml: object `mug`, part 1 (cylinder): diameter: 0 m; a finite positive",
+        ),
+        (
+            good.replace("height_mm", "length_mm"),
+            "own.toml: object `mug`, part 1 (cylinder): height_mm: missing",
+        ),
+        (
+            good.to_string() + "length_mm = 3\n",
+            "own.toml: object `mug`, part 1 (cylinder): length_mm: given for a cylinder",
+        ),
+        (
+            good.to_string() + "position_mm = [0, 0, inf]\n",
+            "own.toml: object `mug`, part 1 (cylinder): position",
+        ),
+        (
+            good.repeat(2),
+            "own.toml: object `mug`: a name that an earlier object has",
+        ),
+        (
+            good.replace("\"mug\"", "\" \""),
+            "own.toml: object ` `: an empty name",
+        ),
+        (tube, "own.toml: object `mug`, part 1 (tube): wall: "),
+        (
+            bow_tie,
+            "own.toml: object `mug`, part 1 (prism): outline: side 1 crosses side 3",
+        ),
+        (
+            good[..good.find("[[object.part]]").unwrap()].to_string() + "part = []\n",
+            "own.toml: object `mug`: solid: no parts",
+        ),
+    ];
+    for (text, expected) in cases {
+        let error = Catalogue::parse("own", "own.toml", &text).unwrap_err();
+        assert_eq!(error.exit_code(), 2);
+        let shown = error.to_string();
+        assert!(
+            shown.starts_with(expected) && !shown.contains('\n'),
+            "expected `{expected}` in: {shown}"
+        );
+    }
+}
+
+#[test]
+fn an_unknown_name_is_answered_with_names_that_resemble_it() {
+    let catalogue = Catalogue::builtin().unwrap();
+    let error = catalogue.object("drill").unwrap_err().to_string();
+    assert_eq!(error, "object: `drill`; perhaps power_drill");
+    let error = catalogue.set("bottles").unwrap_err().to_string();
+    assert_eq!(
+        error,
+        "object set: `bottles`; one of balls, boxes, cans, household"
+    );
+}
+
+#[test]
+fn an_unusable_surface_error_is_refused() {
+    let catalogue = Catalogue::builtin().unwrap();
+    for name in ["soup_can", "cracker_box", "scissors", "banana", "plate"] {
+        let entry = catalogue.object(name).unwrap();
+        for tolerance in [0.0, -1e-3, f64::NAN, f64::INFINITY] {
+            let error = entry.build(tolerance).unwrap_err().to_string();
+            assert!(error.starts_with("surface error: "), "{error}");
+        }
+    }
+    for name in ["soup_can", "cracker_box", "scissors", "plate"] {
+        let error = catalogue.object(name).unwrap().build(1e-8).unwrap_err();
+        assert!(
+            error.to_string().contains("more than 2000000 spheres"),
+            "{name}: {error}"
+        );
+    }
+}
