@@ -1,8 +1,109 @@
-//! Simulated touch for robot skin.
+//! Simulated touch for robot skin: press, sense, recognise.
 //!
-//! Source keys: `[BT]` Hollis, Patterson, Cui, Trinkle, *BubbleTouch: a quasi-static tactile skin simulator*, 2018
-//! (arXiv 1809.09153). `[CL]` Hollis, Patterson, Trinkle, *Compressed learning for tactile object recognition*, RA-L 2018.
-//! `[SBHE]` Gan, Do, Tran, *Fast compressive imaging using scrambled block Hadamard ensemble*, 2008.
+//! # Words
+//!
+//! - A **taxel** is one sensing element: a sphere on a spring and damper, sliding along one axis.
+//! - A **patch** is a rigid substrate with a grid of taxels; a **frame** is what they all report at one instant.
+//! - An **object** is a union of rigid spheres.
+//! - A **touch** is one contact experiment: a patch comes down on an object that lies on a table, to first contact and then
+//!   further by a **depth**.
+//! - A **measurement** is a compressed frame, `y = Φx`; the **compression ratio** is taxels per measurement, n / m.
+//! - A **study** is a TOML file that asks a question: axes to sweep, in; tables and charts, out.
+//!
+//! # One touch, from the object to the picture
+//!
+//! ```
+//! use bubbletouch::contact::{Workspace, press_to_depth};
+//! use bubbletouch::objects::Catalogue;
+//! use bubbletouch::random::Seed;
+//! use bubbletouch::report::pressure_map::pressure_text;
+//! use bubbletouch::report::terminal::Ink;
+//! use bubbletouch::sensing::{Ensemble, Projection};
+//! use bubbletouch::signal::{Chain, Noise, NoiseUnit, Quantity, Scratch, SignalStep};
+//! use bubbletouch::world::{Grid, Patch, Placement, RestPoses, Scene, Spread, Taxel, touches};
+//! use ndarray::Array2;
+//!
+//! // An object: a mug of real size, as spheres that are within half a millimetre of its surface.
+//! let mug = Catalogue::builtin()?.object("mug")?.build(0.5e-3)?;
+//!
+//! // A patch: 32 × 32 taxels, 4 mm apart.
+//! let grid = Grid { nx: 32, ny: 32, pitch: 4e-3 };
+//! let taxel = Taxel { radius: 2e-3, stiffness: 100.0, damping: 0.0, stroke: 5e-3 };
+//! let patch = Patch::new(grid, taxel)?;
+//!
+//! // Touches: the mug stands as it does, 3 mm deep, at one of five offsets.
+//! let zero = || Spread::Values(vec![0.0]);
+//! let placement = Placement {
+//!     rest: RestPoses::AsModelled,
+//!     offset_x: Spread::Values(vec![-8e-3, -4e-3, 0.0, 4e-3, 8e-3]),
+//!     offset_y: zero(),
+//!     yaw: zero(),
+//!     tilt_x: zero(),
+//!     tilt_y: zero(),
+//!     depth: Spread::Values(vec![3e-3]),
+//!     per_object: None,
+//! };
+//! let rests = placement.rest.of(&mug.spheres);
+//! let seed = Seed::new(2018).named("mug");
+//! let all = touches(&placement, &rests, &seed)?;
+//! assert_eq!(all.len(), 5);
+//!
+//! // Press once: no time loop, since nothing in this scene needs one.
+//! let touch = &all[2];
+//! let pose = touch.patch_from_object(&rests[touch.rest]);
+//! let scene = Scene { patch, objects: vec![mug.spheres] };
+//! let mut workspace = Workspace::new();
+//! let contact = press_to_depth(&scene, &[pose], touch.depth, &mut workspace).expect("the mug is under the patch");
+//! assert!(contact.n_touched > 50 && contact.n_saturated == 0);
+//! let mut frame = workspace.deflections().to_vec();
+//! let deepest = frame.iter().fold(0.0_f64, |a, &b| a.max(b));
+//! assert!((deepest - 3e-3).abs() < 1e-12);
+//!
+//! // What the electronics make of it: noise of 5 % of full scale, then smoothing.
+//! let noise = Noise { std: 0.05, unit: NoiseUnit::FullScale };
+//! let steps = [SignalStep::Noise(noise), SignalStep::Smoothing { width: 4e-3 }];
+//! let chain = Chain::new(&steps, &patch)?;
+//! chain.apply(&mut frame, None, &seed.numbered(2), &mut Scratch::default());
+//!
+//! // 64 measurements instead of 1,024 numbers.
+//! let projection = Projection::new(Ensemble::Gaussian, (grid.ny, grid.nx), 64, &seed)?;
+//! let frame = Array2::from_shape_vec((1, 1024), frame).expect("one number a taxel");
+//! assert_eq!(projection.measure(frame.view()).dim(), (1, 64));
+//!
+//! // And for the eye: a ring, the mug's rim.
+//! let frame = frame.into_shape_with_order((32, 32)).expect("one number a taxel");
+//! println!("{}", pressure_text(&frame, 4.0, Quantity::Deflection, Ink::Plain, 80)?);
+//! # Ok::<(), bubbletouch::Error>(())
+//! ```
+//!
+//! A whole [`study`] does this for every object and touch, splits them into training and test rows, and trains the
+//! classifiers of [`recognition`].
+//!
+//! # The pipeline
+//!
+//! Each stage imports only from those before it; [`geometry`], [`random`], [`files`] and [`error`] serve all.
+//!
+//! | stage | in → out |
+//! |---|---|
+//! | [`objects`] | a shape, a mesh, or spheres → a union of spheres |
+//! | [`world`] | taxels, layouts, resting poses → touches |
+//! | [`contact`] | a scene and poses → deflections |
+//! | [`signal`] | deflections → frames |
+//! | [`sensing`] | frames → measurements |
+//! | [`recognition`] | labelled measurements → classifier, scores |
+//! | [`study`] | TOML → plan → tables |
+//! | [`report`] | tables → files for people |
+//!
+//! The six stages from `objects` to `recognition` are pure: no files, clock, threads, printing or global state. Threads live
+//! in `study`; files in `study` and `report`.
+//!
+//! # Sources
+//!
+//! - `[BT]` Hollis, Patterson, Cui, Trinkle, *BubbleTouch: a quasi-static tactile skin simulator*, 2018 (arXiv 1809.09153).
+//! - `[CL]` Hollis, Patterson, Trinkle, *Compressed learning for tactile object recognition*, RA-L 2018 (arXiv 1609.07542,
+//!   1705.05247).
+//! - `[PT]` Pang, Trinkle, Lo, *A complementarity approach to a quasistatic multi-rigid-body contact problem*, COAP 1996.
+//! - `[SBHE]` Gan, Do, Tran, *Fast compressive imaging using scrambled block Hadamard ensemble*, 2008.
 #![warn(missing_docs)]
 
 pub mod contact;

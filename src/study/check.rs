@@ -1,6 +1,6 @@
 //! Checks of single keys: each error names the file and the key, what was given and what is allowed.
 
-use super::spec::Axis;
+use super::axis::Axis;
 use crate::error::{Error, Result};
 
 pub fn positive(value: f64) -> bool {

@@ -1,10 +1,13 @@
 //! What a study will take: cells, touches, memory and time, told before it runs.
 
+use super::evaluation::VALIDATION_FRACTION;
 use super::plan::Plan;
 use super::simulation::TouchedObject;
 use super::sweep::{Group, Sweep};
 use super::table::Cell;
 use crate::recognition::ClassifierKind;
+use crate::recognition::svm::Multiclass;
+use crate::sensing::Ensemble;
 use std::fmt;
 
 /// Counts, and an estimate of memory and time.
@@ -36,15 +39,19 @@ pub struct Estimate {
 }
 
 /// Seconds to bring one sphere to the patch and decide whether it reaches the skin.
-const PLACE_SPHERE_S: f64 = 6e-9;
+const PLACE_SPHERE_S: f64 = 1.2e-8;
 /// Seconds to clear, count and store one taxel.
 const CLEAR_TAXEL_S: f64 = 2e-9;
 /// Seconds to draw noise for one taxel and to smooth it.
 const SIGNAL_TAXEL_S: f64 = 2.5e-8;
 /// Seconds for one multiply-add of a projection.
 const PROJECT_S: f64 = 7e-11;
-/// Seconds for one multiply-add of a kernel matrix in training.
-const KERNEL_S: f64 = 1e-9;
+/// Seconds of the solver for one entry of a binary problem's kernel matrix: iterations apart from products.
+const SOLVE_ENTRY_S: f64 = 7e-8;
+/// Seconds for one dot product's element in the solver's kernel matrix, at most as many as the problem has rows.
+const KERNEL_ELEMENT_S: f64 = 1e-9;
+/// Seconds for one multiply-add of the matrix product that brings wider features down to that many.
+const REDUCE_ELEMENT_S: f64 = 5e-11;
 /// Seconds for one multiply-add of a prediction by matrix product.
 const PREDICT_S: f64 = 2e-10;
 
@@ -60,11 +67,15 @@ impl Estimate {
             .groups
             .iter()
             .map(|g| 4.0 * n_touches as f64 * taxels(g));
-        // Measurements, and the scaled copies that training and prediction make of them.
-        let in_flight = sweep
-            .groups
-            .iter()
-            .map(|g| 16.0 * n_touches as f64 * largest(g) * n_threads as f64);
+        // Of every group in flight: its measurements, the scaled copies that training and prediction make of them, and a
+        // matrix if its ensemble has one.
+        let in_flight = sweep.groups.iter().map(|g| {
+            let matrix = match g.ensemble {
+                Ensemble::Gaussian => 8.0 * taxels(g) * largest(g),
+                _ => 0.0,
+            };
+            n_threads as f64 * (16.0 * n_touches as f64 * largest(g) + matrix)
+        });
         let spheres: f64 = touched
             .iter()
             .map(|t| (t.object.spheres.n_spheres() * t.touches.len()) as f64)
@@ -92,7 +103,7 @@ impl Estimate {
             recognise_s: n_trials as f64
                 * sweep
                     .cells()
-                    .map(|cell| recognise_s(cell, n_objects, n_touches))
+                    .map(|cell| recognise_s(plan, cell, n_objects, n_touches))
                     .sum::<f64>(),
             n_threads,
         }
@@ -104,19 +115,30 @@ impl Estimate {
     }
 }
 
-/// A fit of one kernel matrix a pair of objects, and the prediction of every test row.
-fn recognise_s(cell: &Cell, n_objects: usize, n_touches: usize) -> f64 {
-    let pairs = (n_objects * (n_objects - 1) / 2) as f64;
-    let pair_rows = 2.0 * cell.train_touches as f64;
+/// The fits of a cell in one trial, and the prediction of every test row.
+fn recognise_s(plan: &Plan, cell: &Cell, n_objects: usize, n_touches: usize) -> f64 {
     let m = cell.measurements as f64;
     let n_train = (cell.train_touches * n_objects) as f64;
     let n_test = (n_touches as f64 - n_train).max(0.0);
-    let fit = KERNEL_S * pairs * pair_rows * pair_rows * m;
+    let (n_problems, rows) = match plan.spec.recognition.multiclass {
+        Multiclass::OneVsOne => (
+            (n_objects * (n_objects - 1) / 2) as f64,
+            2.0 * cell.train_touches as f64,
+        ),
+        Multiclass::OneVsRest => (n_objects as f64, n_train),
+    };
+    let fit = |rows: f64| {
+        let entry_s = SOLVE_ENTRY_S + KERNEL_ELEMENT_S * m.min(rows) + REDUCE_ELEMENT_S * m;
+        n_problems * rows * rows * entry_s
+    };
+    let candidates = plan.spec.recognition.choose_c.as_ref().map_or(0, Vec::len) as f64;
     let predicted_per_row = match cell.classifier {
-        ClassifierKind::LinearSvm => pairs,
+        ClassifierKind::LinearSvm => n_problems,
         ClassifierKind::RbfSvm | ClassifierKind::PolynomialSvm => n_train,
     };
-    fit + PREDICT_S * n_test * predicted_per_row * m
+    fit(rows)
+        + candidates * fit((1.0 - VALIDATION_FRACTION) * rows)
+        + PREDICT_S * n_test * predicted_per_row * m
 }
 
 fn largest_of(values: impl Iterator<Item = f64>) -> f64 {

@@ -17,7 +17,7 @@ use std::time::Instant;
 /// Confidence of every interval in the tables.
 pub const CONFIDENCE: f64 = 0.95;
 /// Share of the training rows that validates a choice of C.
-const VALIDATION_FRACTION: f64 = 0.25;
+pub const VALIDATION_FRACTION: f64 = 0.25;
 
 /// What a cell scored in a trial.
 #[derive(Clone, Debug)]

@@ -6,6 +6,7 @@
 //! Threads live here. Whatever their number, a study's tables are the same bytes, times apart: every touch, split, noise and
 //! projection is drawn from its own named stream, and sums are taken in a fixed order.
 
+mod axis;
 mod check;
 mod estimate;
 mod evaluation;
@@ -24,6 +25,7 @@ mod sweep;
 pub mod table;
 mod touch_files;
 
+pub use axis::Axis;
 pub use estimate::Estimate;
 pub use object_files::{load_mesh, load_objects};
 pub use plan::{Amount, Plan, SplitKind, SplitPlan};

@@ -1,8 +1,9 @@
 //! From frames to objects: the checks of `[signal]`, `[sensing]` and `[recognition]`.
 
+use super::axis::Axis;
 use super::check::{Check, not_negative, positive};
 use super::plan::{Amount, SplitKind, SplitPlan};
-use super::spec::{Axis, SensingSpec, StepSpec, StudySpec};
+use super::spec::{SensingSpec, StepSpec, StudySpec};
 use crate::error::Result;
 use crate::signal::NoiseUnit;
 use crate::world::Patch;

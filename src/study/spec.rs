@@ -2,70 +2,14 @@
 //!
 //! Nothing is checked here beyond names and types; [`Plan`](super::Plan) does that. An axis takes one value or a list.
 
+use super::axis::Axis;
 use crate::error::{Error, Result};
 use crate::recognition::ClassifierKind;
 use crate::recognition::scaling::Scaling;
 use crate::recognition::svm::Multiclass;
 use crate::sensing::Ensemble;
-use serde::de::value::SeqAccessDeserializer;
-use serde::de::{self, IntoDeserializer, SeqAccess, Visitor};
-use serde::{Deserialize, Deserializer, Serialize};
-use std::fmt;
-use std::marker::PhantomData;
+use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
-
-/// One value, or a list of them: an axis.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-#[serde(untagged)]
-pub enum Axis<T> {
-    /// `key = 2.0`
-    One(T),
-    /// `key = [2.0, 4.0]`
-    Many(Vec<T>),
-}
-
-impl<T: Clone> Axis<T> {
-    /// The values, in their order.
-    pub fn values(&self) -> Vec<T> {
-        match self {
-            Self::One(value) => vec![value.clone()],
-            Self::Many(values) => values.clone(),
-        }
-    }
-}
-
-/// Written out, because an untagged enum forgets which value was wrong and what would have been right.
-impl<'de, T: Deserialize<'de>> Deserialize<'de> for Axis<T> {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> std::result::Result<Self, D::Error> {
-        deserializer.deserialize_any(AxisVisitor(PhantomData))
-    }
-}
-
-struct AxisVisitor<T>(PhantomData<T>);
-
-impl<'de, T: Deserialize<'de>> Visitor<'de> for AxisVisitor<T> {
-    type Value = Axis<T>;
-
-    fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        f.write_str("a value or a list of values")
-    }
-
-    fn visit_i64<E: de::Error>(self, value: i64) -> std::result::Result<Axis<T>, E> {
-        T::deserialize(value.into_deserializer()).map(Axis::One)
-    }
-
-    fn visit_f64<E: de::Error>(self, value: f64) -> std::result::Result<Axis<T>, E> {
-        T::deserialize(value.into_deserializer()).map(Axis::One)
-    }
-
-    fn visit_str<E: de::Error>(self, value: &str) -> std::result::Result<Axis<T>, E> {
-        T::deserialize(value.into_deserializer()).map(Axis::One)
-    }
-
-    fn visit_seq<A: SeqAccess<'de>>(self, values: A) -> std::result::Result<Axis<T>, A::Error> {
-        Vec::deserialize(SeqAccessDeserializer::new(values)).map(Axis::Many)
-    }
-}
 
 /// How a touch parameter is spread over touches.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
