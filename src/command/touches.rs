@@ -4,7 +4,7 @@ use super::output::output_folder;
 use super::study_args::StudyArgs;
 use bubbletouch::Result;
 use bubbletouch::report::progress;
-use bubbletouch::study::write_touches;
+use bubbletouch::study::{millimetres, write_touches};
 use std::path::PathBuf;
 
 #[derive(clap::Args)]
@@ -23,7 +23,7 @@ pub fn touches(args: &Args) -> Result<()> {
     let progress = progress::to_stderr();
     for patch in arrays {
         let grid = &patch.grid;
-        let pitch_mm = (grid.pitch * 1e9).round() / 1e6;
+        let pitch_mm = millimetres(grid.pitch);
         let folder = match arrays.len() {
             1 => args.out.clone(),
             _ => args

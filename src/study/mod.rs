@@ -28,7 +28,7 @@ mod touch_files;
 pub use axis::Axis;
 pub use estimate::Estimate;
 pub use object_files::{load_mesh, load_objects};
-pub use plan::{Amount, Plan, SplitKind, SplitPlan};
+pub use plan::{Amount, Plan, SplitKind, SplitPlan, millimetres};
 pub use runner::{ArrayOutcome, Outcome, run};
 pub use samples::{Samples, sample_frames};
 pub use simulation::{Frames, TouchedObject, draw_touches, simulate_array};

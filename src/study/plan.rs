@@ -12,6 +12,11 @@ use crate::world::{Patch, Placement};
 /// Metres in a millimetre.
 pub(super) const MM: f64 = 1e-3;
 
+/// Millimetres as people write them: 2, not 2.0000000000000004.
+pub fn millimetres(metres: f64) -> f64 {
+    (metres * 1e9).round() / 1e6
+}
+
 /// Axes and settings of a study, ready to run.
 #[derive(Clone, Debug)]
 pub struct Plan {

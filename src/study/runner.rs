@@ -2,7 +2,7 @@
 
 use super::evaluation::{Evaluation, Trial};
 use super::measurement::{Measurements, Reading, measure, touch_seeds};
-use super::plan::Plan;
+use super::plan::{Plan, millimetres};
 use super::progress::Progress;
 use super::simulation::{Frames, TouchedObject, simulate_array};
 use super::spec::StepSpec;
@@ -46,68 +46,88 @@ struct Scored {
 }
 
 /// Runs a study. The tables but for times are the same bytes at any number of threads.
+///
+/// # Errors
+/// What a stage refuses: a signal step, a projection, a classifier's parameters.
 pub fn run(
     plan: &Plan,
     sweep: &Sweep,
     touched: &[TouchedObject],
     progress: &dyn Progress,
 ) -> Result<Outcome> {
-    let n_touches = sweep.labels.len();
     let mut tables = Tables::default();
     let mut arrays = Vec::new();
     let mut scored = Vec::new();
     for (array, patch) in plan.arrays.iter().enumerate() {
-        let groups: Vec<&Group> = sweep.groups.iter().filter(|g| g.array == array).collect();
+        let n_touches = sweep.labels.len();
         progress.stage(&format!("touch {}", describe(patch)), n_touches as u64);
         let frames = simulate_array(touched, patch, progress);
-        tables
-            .stages
-            .push(stage_time("simulate", patch, n_touches, frames.cpu_s));
-        let n_fits: usize = groups
-            .iter()
-            .map(|g| g.cells.len() * plan.spec.trials)
-            .sum();
-        progress.stage(&format!("recognise {}", describe(patch)), n_fits as u64);
-        let jobs: Vec<(usize, &Group)> = (0..plan.spec.trials)
-            .flat_map(|trial| groups.iter().map(move |group| (trial, *group)))
-            .collect();
-        let results = jobs
-            .into_par_iter()
-            .map(|(trial, group)| {
-                let job = Job {
-                    plan,
-                    sweep,
-                    touched,
-                    patch,
-                    frames: &frames,
-                    group,
-                    trial,
-                };
-                job.run(progress)
-            })
-            .collect::<Result<Vec<_>>>()?;
-        let n_measured = results.len() * n_touches;
-        let measure_s = results.iter().map(|(_, seconds)| seconds).sum();
-        tables
-            .stages
-            .push(stage_time("measure", patch, n_measured, measure_s));
-        scored.extend(results.into_iter().flat_map(|(scored, _)| scored));
+        let simulate = stage_time("simulate", patch, n_touches, frames.cpu_s);
         arrays.push(ArrayOutcome {
             patch: *patch,
             n_touches,
             n_missed: frames.n_missed,
             n_saturated: frames.n_saturated,
         });
+        let study = Study {
+            plan,
+            sweep,
+            touched,
+            progress,
+        };
+        let (array_scored, measure) = study.recognise(array, &frames)?;
+        scored.extend(array_scored);
+        tables.stages.extend([simulate, measure]);
     }
     fill(&mut tables, scored, touched)?;
     Ok(Outcome { tables, arrays })
 }
 
-/// One group of cells in one trial.
-struct Job<'a> {
+/// What every job of a run shares.
+#[derive(Clone, Copy)]
+struct Study<'a> {
     plan: &'a Plan,
     sweep: &'a Sweep,
     touched: &'a [TouchedObject],
+    progress: &'a dyn Progress,
+}
+
+impl Study<'_> {
+    /// All groups and trials of an array, and what measuring them cost.
+    fn recognise(&self, array: usize, frames: &Frames) -> Result<(Vec<Scored>, StageTime)> {
+        let patch = &self.plan.arrays[array];
+        let n_trials = self.plan.spec.trials;
+        let groups: Vec<&Group> = self
+            .sweep
+            .groups
+            .iter()
+            .filter(|group| group.array == array)
+            .collect();
+        let n_fits: usize = groups.iter().map(|g| g.cells.len() * n_trials).sum();
+        let stage = format!("recognise {}", describe(patch));
+        self.progress.stage(&stage, n_fits as u64);
+        let jobs: Vec<Job> = (0..n_trials)
+            .flat_map(|trial| {
+                groups.iter().map(move |group| Job {
+                    study: *self,
+                    patch,
+                    frames,
+                    group,
+                    trial,
+                })
+            })
+            .collect();
+        let results = jobs.par_iter().map(Job::run).collect::<Result<Vec<_>>>()?;
+        let n_measured = results.len() * self.sweep.labels.len();
+        let cpu_s = results.iter().map(|(_, seconds)| seconds).sum();
+        let scored = results.into_iter().flat_map(|(scored, _)| scored).collect();
+        Ok((scored, stage_time("measure", patch, n_measured, cpu_s)))
+    }
+}
+
+/// One group of cells in one trial.
+struct Job<'a> {
+    study: Study<'a>,
     patch: &'a Patch,
     frames: &'a Frames,
     group: &'a Group,
@@ -116,8 +136,8 @@ struct Job<'a> {
 
 impl Job<'_> {
     /// Measures, then evaluates the cells; with it the processor-seconds of measuring.
-    fn run(&self, progress: &dyn Progress) -> Result<(Vec<Scored>, f64)> {
-        let chain = Chain::new(&signal_steps(self.plan, self.group), self.patch)?;
+    fn run(&self) -> Result<(Vec<Scored>, f64)> {
+        let chain = Chain::new(&signal_steps(self.study.plan, self.group), self.patch)?;
         let mut scored = Vec::new();
         let mut measure_s = 0.0;
         for n_measurements in self.group.projected() {
@@ -132,17 +152,17 @@ impl Job<'_> {
                 .filter(|cell| nested || cell.measurements == n_measurements)
                 .collect();
             let trial = Trial {
-                recognition: &self.plan.spec.recognition,
-                sweep: self.sweep,
+                recognition: &self.study.plan.spec.recognition,
+                sweep: self.study.sweep,
                 measurements: measured.values.view(),
                 number: self.trial,
-                seed: Seed::new(self.plan.spec.seed),
+                seed: Seed::new(self.study.plan.spec.seed),
             };
             let results = cells
                 .into_par_iter()
                 .map(|cell| {
                     let evaluation = trial.evaluate(cell)?;
-                    progress.advance(1);
+                    self.study.progress.advance(1);
                     Ok(Scored {
                         cell: cell.clone(),
                         evaluation,
@@ -155,7 +175,7 @@ impl Job<'_> {
     }
 
     fn measure(&self, chain: &Chain, n_measurements: usize) -> Result<Measurements> {
-        let seed = Seed::new(self.plan.spec.seed);
+        let seed = Seed::new(self.study.plan.spec.seed);
         let trial = self.trial as u64;
         let projection = Projection::new(
             self.group.ensemble,
@@ -167,9 +187,9 @@ impl Job<'_> {
             chain,
             projection: &projection,
             taxel: self.patch.taxel,
-            speed: self.plan.speed,
+            speed: self.study.plan.speed,
         };
-        let seeds = touch_seeds(self.touched, &seed.named("signal").numbered(trial));
+        let seeds = touch_seeds(self.study.touched, &seed.named("signal").numbered(trial));
         Ok(measure(reading, self.frames.deflection.view(), &seeds))
     }
 }
@@ -193,18 +213,13 @@ pub fn signal_steps(plan: &Plan, group: &Group) -> Vec<SignalStep> {
 
 fn describe(patch: &Patch) -> String {
     let grid = &patch.grid;
-    format!(
-        "{}×{} at {} mm",
-        grid.nx,
-        grid.ny,
-        (grid.pitch * 1e9).round() / 1e6
-    )
+    format!("{}×{} at {} mm", grid.nx, grid.ny, millimetres(grid.pitch))
 }
 
 fn stage_time(stage: &str, patch: &Patch, n_touches: usize, cpu_s: f64) -> StageTime {
     StageTime {
         stage: stage.to_owned(),
-        pitch_mm: (patch.grid.pitch * 1e9).round() / 1e6,
+        pitch_mm: millimetres(patch.grid.pitch),
         nx: patch.grid.nx,
         ny: patch.grid.ny,
         n_touches,

@@ -1,6 +1,6 @@
 //! Sample touches for the eye: what the array feels of a few objects, noise included.
 
-use super::plan::Plan;
+use super::plan::{Plan, millimetres};
 use super::runner::signal_steps;
 use super::simulation::TouchedObject;
 use super::sweep::{Group, Sweep};
@@ -56,7 +56,7 @@ pub fn sample_frames(plan: &Plan, sweep: &Sweep, touched: &[TouchedObject]) -> R
             .expect("one value a taxel");
         frames.push((object.object.name.replace('_', " "), frame));
     }
-    let pitch_mm = (patch.grid.pitch * 1e9).round() / 1e6;
+    let pitch_mm = millimetres(patch.grid.pitch);
     let noise = match group.noise {
         0.0 => "no noise".to_owned(),
         level => format!("noise of {}", plan.describe_noise(level)),

@@ -6,7 +6,7 @@
 //!        └─ m × classifier × C × training touches (a cell) ── fit, predict, score
 //! ```
 
-use super::plan::{Plan, SplitKind};
+use super::plan::{Plan, SplitKind, millimetres};
 use super::simulation::TouchedObject;
 use super::spec::GroupSpec;
 use super::table::Cell;
@@ -162,8 +162,6 @@ fn describe(
     (measurements, classifier, c, train_touches): (usize, ClassifierKind, Option<f64>, usize),
 ) -> Cell {
     let grid = &plan.arrays[group.array].grid;
-    // Millimetres as people write them: 2, not 2.0000000000000004.
-    let millimetres = |metres: f64| (metres * 1e9).round() / 1e6;
     Cell {
         cell,
         pitch_mm: millimetres(grid.pitch),
