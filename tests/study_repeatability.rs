@@ -9,7 +9,7 @@ use std::collections::BTreeSet;
 use std::fs;
 use study::{Study, trials_of};
 
-/// Every axis but C has two values, C is chosen, and offsets stay together.
+/// Several arrays, ensembles (one of them not nested), ratios and classifiers; C is chosen, and offsets stay together.
 const WIDE: &str = r#"
 question = "Do threads matter?"
 seed = 7
@@ -33,17 +33,17 @@ yaw_deg = { grid = [0.0, 40.0, 3] }
 depth_mm = [2.0, 3.0]
 
 [signal]
-noise_std_full_scale = [0.1, 0.3]
-smoothing_mm = [0.0, 6.0]
+noise_std_full_scale = 0.2
+smoothing_mm = 6.0
 
 [sensing]
 ensemble = ["gaussian", "block_average"]
-ratio = [4, 16]
+ratio = [2, 4, 16]
 
 [recognition]
 classifier = ["linear_svm", "rbf_svm"]
 choose_c = [0.1, 1.0, 10.0]
-train_touches = [8, 12]
+train_touches = 12
 keep_together = "offset"
 "#;
 
