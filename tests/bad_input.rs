@@ -1,9 +1,11 @@
 //! Bad input on the real command: one clear sentence, the right exit code, nothing half-written.
 
+mod command;
+
+use command::Case;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
-use tempfile::TempDir;
 
 /// A small study that runs; the tests break one thing in it at a time.
 const STUDY: &str = r#"
@@ -32,35 +34,7 @@ ratio = [4, 16]
 classifier = "linear_svm"
 "#;
 
-struct Case {
-    folder: TempDir,
-}
-
 impl Case {
-    fn new() -> Self {
-        Self {
-            folder: tempfile::tempdir().unwrap(),
-        }
-    }
-
-    fn path(&self, name: &str) -> PathBuf {
-        self.folder.path().join(name)
-    }
-
-    fn file(&self, name: &str, content: impl AsRef<[u8]>) -> PathBuf {
-        let path = self.path(name);
-        fs::write(&path, content).unwrap();
-        path
-    }
-
-    fn run(&self, arguments: &[&str]) -> Output {
-        Command::new(env!("CARGO_BIN_EXE_bubbletouch"))
-            .args(arguments)
-            .current_dir(self.folder.path())
-            .output()
-            .unwrap()
-    }
-
     /// Runs the study with `old` replaced by `new`; it must be refused with all of `words` and write nothing.
     fn refuses(&self, old: &str, new: &str, words: &[&str]) {
         assert!(

@@ -1,0 +1,51 @@
+//! A study from its text to its outcome, as the command does it.
+// Each test file uses its part of this.
+#![allow(dead_code)]
+
+use bubbletouch::random::Seed;
+use bubbletouch::study::progress::Silent;
+use bubbletouch::study::table::{Cell, TrialScore};
+use bubbletouch::study::{
+    Outcome, Plan, StudySpec, Sweep, TouchedObject, draw_touches, load_objects, run,
+};
+
+/// A study that is laid out.
+pub struct Study {
+    pub plan: Plan,
+    pub touched: Vec<TouchedObject>,
+    pub sweep: Sweep,
+}
+
+impl Study {
+    pub fn new(text: &str) -> Self {
+        let spec = StudySpec::parse("study.toml", text).unwrap();
+        let plan = Plan::new("study.toml", spec).unwrap();
+        let objects = load_objects(&plan.spec.objects).unwrap();
+        let touched = draw_touches(objects, &plan.placement, &Seed::new(plan.spec.seed)).unwrap();
+        let sweep = Sweep::new(&plan, &touched).unwrap();
+        Self {
+            plan,
+            touched,
+            sweep,
+        }
+    }
+
+    pub fn run(&self) -> Outcome {
+        run(&self.plan, &self.sweep, &self.touched, &Silent).unwrap()
+    }
+}
+
+/// The trials of the only cell with these settings; its number in the sweep does not count.
+pub fn trials_of<'a>(outcome: &'a Outcome, wanted: &Cell) -> Vec<&'a TrialScore> {
+    let same = |cell: &Cell| {
+        let numbered = Cell {
+            cell: cell.cell,
+            ..wanted.clone()
+        };
+        *cell == numbered
+    };
+    let rows = outcome.tables.accuracy.iter();
+    rows.filter(|(cell, _)| same(cell))
+        .map(|(_, score)| score)
+        .collect()
+}

@@ -1,0 +1,63 @@
+//! The experiments that come with the crate: they say what they ask, and they can run.
+
+use bubbletouch::random::Seed;
+use bubbletouch::study::{Plan, StudySpec, Sweep, draw_touches, load_objects};
+use std::fs;
+use std::path::{Path, PathBuf};
+
+/// What a header tells, in this order.
+const HEADER: [&str; 4] = ["# Question", "# Source", "# Expected", "# Run time"];
+
+fn experiments() -> Vec<PathBuf> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("experiments");
+    let mut paths: Vec<PathBuf> = fs::read_dir(folder)
+        .unwrap()
+        .map(|entry| entry.unwrap().path())
+        .filter(|path| path.extension().is_some_and(|ending| ending == "toml"))
+        .collect();
+    paths.sort();
+    assert!(paths.len() >= 10, "{paths:?}");
+    paths
+}
+
+#[test]
+fn every_experiment_says_what_it_asks_from_where_what_to_expect_and_how_long_it_takes() {
+    for path in experiments() {
+        let text = fs::read_to_string(&path).unwrap();
+        let header: Vec<&str> = text.lines().take_while(|l| l.starts_with('#')).collect();
+        let keys: Vec<&str> = header
+            .iter()
+            .filter_map(|line| HEADER.into_iter().find(|key| line.starts_with(key)))
+            .collect();
+        assert_eq!(keys, HEADER, "{}", path.display());
+        for (line, key) in header.iter().filter_map(|line| {
+            let key = HEADER.into_iter().find(|key| line.starts_with(key))?;
+            Some((line, key))
+        }) {
+            let said = line[key.len()..].trim();
+            assert!(!said.is_empty(), "{}: {key}", path.display());
+        }
+    }
+}
+
+#[test]
+fn every_experiment_can_run() {
+    for path in experiments() {
+        let place = path.display().to_string();
+        let spec = StudySpec::parse(&place, &fs::read_to_string(&path).unwrap()).unwrap();
+        assert!(
+            !spec.question.is_empty() && !spec.expected.is_empty(),
+            "{place}"
+        );
+        let plan = Plan::new(&place, spec).unwrap();
+        if plan.spec.objects.meshes.is_some() {
+            println!("{place}: planned; its meshes are not part of the crate");
+            continue;
+        }
+        let objects = load_objects(&plan.spec.objects).unwrap();
+        let seed = Seed::new(plan.spec.seed);
+        let touched = draw_touches(objects, &plan.placement, &seed).unwrap();
+        let sweep = Sweep::new(&plan, &touched).unwrap();
+        assert!(sweep.n_cells() > 1, "{place} compares something");
+    }
+}

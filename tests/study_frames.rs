@@ -1,0 +1,213 @@
+//! Frames and splits of a study, against touches pressed one by one and rows counted by hand.
+
+mod study;
+
+use bubbletouch::contact::{Workspace, press_to_depth};
+use bubbletouch::recognition::split::Split;
+use bubbletouch::study::progress::Silent;
+use bubbletouch::study::{TouchedObject, simulate_array};
+use bubbletouch::world::{Patch, Scene, Touch, TouchAxis};
+use std::collections::BTreeSet;
+use study::Study;
+
+/// Some touches are beside the array, some deeper than its stroke.
+const STUDY: &str = r#"
+question = "What happens to every touch?"
+trials = 6
+
+[objects]
+sets = ["household"]
+names = ["mug", "banana", "scissors"]
+surface_error_mm = 2.0
+
+[skin]
+pitch_mm = 4.0
+size_mm = 48.0
+stroke_mm = 3.5
+
+[touches]
+offset_x_mm = [-6.0, 0.0, 6.0, 400.0]
+offset_y_mm = [0.0, 10.0]
+yaw_deg = [0.0, 30.0]
+tilt_x_deg = [0.0, 5.0]
+depth_mm = [2.0, 4.0]
+
+[sensing]
+ratio = 4
+
+[recognition]
+classifier = "linear_svm"
+"#;
+
+#[test]
+fn every_frame_is_its_touch_pressed_alone() {
+    let study = Study::new(STUDY);
+    let patch = study.plan.arrays[0];
+    let frames = simulate_array(&study.touched, &patch, &Silent);
+    let mut row = 0;
+    let (mut n_missed, mut n_saturated) = (0, 0);
+    for object in &study.touched {
+        for touch in &object.touches {
+            let mut workspace = Workspace::new();
+            let scene = Scene {
+                patch,
+                objects: vec![object.object.spheres.clone()],
+            };
+            let pose = touch.patch_from_object(&object.rests[touch.rest]);
+            let contact = press_to_depth(&scene, &[pose], touch.depth, &mut workspace);
+            let alone: Vec<f32> = workspace.deflections().iter().map(|&d| d as f32).collect();
+            assert_eq!(frames.deflection.row(row).to_vec(), alone, "row {row}");
+            n_missed += usize::from(contact.is_none());
+            n_saturated += usize::from(contact.is_some_and(|c| c.n_saturated > 0));
+            row += 1;
+        }
+    }
+    assert_eq!(row, frames.deflection.nrows());
+    assert_eq!(frames.n_missed, n_missed);
+    assert_eq!(frames.n_saturated, n_saturated);
+}
+
+/// What the equations of contact give, taxel by taxel and sphere by sphere; `None` if no travel meets the object.
+fn by_the_equations(patch: &Patch, object: &TouchedObject, touch: &Touch) -> Option<Vec<f64>> {
+    let pose = touch.patch_from_object(&object.rests[touch.rest]);
+    let grid = &patch.grid;
+    let spheres = object.object.spheres.spheres();
+    let needs: Vec<f64> = (0..grid.n_taxels())
+        .map(|taxel| {
+            let (x, y) = (grid.x(taxel % grid.nx), grid.y(taxel / grid.nx));
+            spheres.iter().fold(f64::NEG_INFINITY, |deepest, sphere| {
+                let c = pose.transform_point(sphere.center);
+                let reach = patch.taxel.radius + sphere.radius;
+                let b2 = (c.x - x).powi(2) + (c.y - y).powi(2);
+                match b2 < reach * reach {
+                    true => deepest.max((reach * reach - b2).sqrt() - c.z),
+                    false => deepest,
+                }
+            })
+        })
+        .collect();
+    let first = needs.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    let pressed = |need: f64| (need - first + touch.depth).max(0.0);
+    first
+        .is_finite()
+        .then(|| needs.into_iter().map(pressed).collect())
+}
+
+#[test]
+fn missed_and_saturated_touches_are_counted_as_the_equations_say() {
+    let study = Study::new(STUDY);
+    let patch = study.plan.arrays[0];
+    let stroke = patch.taxel.stroke;
+    let frames = simulate_array(&study.touched, &patch, &Silent);
+    let touches = study
+        .touched
+        .iter()
+        .flat_map(|object| object.touches.iter().map(move |touch| (object, touch)));
+    let (mut n_missed, mut n_saturated) = (0, 0);
+    for (row, (object, touch)) in frames.deflection.outer_iter().zip(touches) {
+        let expected = by_the_equations(&patch, object, touch);
+        n_missed += usize::from(expected.is_none());
+        let expected = expected.unwrap_or_else(|| vec![0.0; patch.grid.n_taxels()]);
+        n_saturated += usize::from(expected.iter().any(|&d| d > stroke * (1.0 + 1e-9)));
+        for (&simulated, expected) in row.iter().zip(expected) {
+            let difference = (f64::from(simulated) - expected.min(stroke)).abs();
+            assert!(difference < 1e-9, "{difference} m");
+        }
+    }
+    let n_touches = 3 * 4 * 2 * 2 * 2 * 2;
+    assert_eq!(frames.deflection.nrows(), n_touches);
+    assert_eq!(n_missed, n_touches / 4, "the offset of 400 mm");
+    assert_eq!(frames.n_missed, n_missed);
+    assert_eq!(n_saturated, 3 * n_touches / 8, "the depth of 4 mm");
+    assert_eq!(frames.n_saturated, n_saturated);
+    let outcome = study.run();
+    assert_eq!(outcome.arrays[0].n_missed, n_missed);
+    assert_eq!(outcome.arrays[0].n_saturated, n_saturated);
+    assert_eq!(outcome.arrays[0].n_touches, n_touches);
+}
+
+fn with_recognition(keys: &str) -> Study {
+    Study::new(&format!("{STUDY}{keys}\n"))
+}
+
+/// Every row is on one side, once.
+fn assert_is_a_division(split: &Split, n_rows: usize) {
+    let mut rows = [split.train.clone(), split.test.clone()].concat();
+    rows.sort_unstable();
+    assert_eq!(rows, (0..n_rows).collect::<Vec<_>>());
+    assert!(!split.test.is_empty() && !split.train.is_empty());
+}
+
+#[test]
+fn what_is_kept_together_is_never_on_both_sides() {
+    use TouchAxis::{Depth, OffsetX, OffsetY, Rest, TiltX, TiltY, Yaw};
+    let kinds: [(&str, &[TouchAxis], &str); 7] = [
+        ("offset", &[OffsetX, OffsetY], ""),
+        ("offset", &[OffsetX, OffsetY], "folds = 3"),
+        ("yaw", &[Yaw], "test_fraction = 0.5"),
+        ("tilt", &[TiltX, TiltY], "test_fraction = 0.5"),
+        ("depth", &[Depth], "folds = 2"),
+        ("pose", &[Rest, OffsetX, OffsetY, Yaw, TiltX, TiltY], ""),
+        (
+            "pose",
+            &[Rest, OffsetX, OffsetY, Yaw, TiltX, TiltY],
+            "folds = 6",
+        ),
+    ];
+    for (kind, axes, keys) in kinds {
+        let study = with_recognition(&format!("keep_together = \"{kind}\"\n{keys}"));
+        let touches: Vec<&Touch> = study.touched.iter().flat_map(|t| &t.touches).collect();
+        assert_eq!(study.sweep.splits.len(), 6);
+        for split in &study.sweep.splits {
+            assert_is_a_division(split, touches.len());
+            let groups = |rows: &[usize]| -> BTreeSet<Vec<usize>> {
+                rows.iter()
+                    .map(|&row| touches[row].group(axes).unwrap())
+                    .collect()
+            };
+            let (train, test) = (groups(&split.train), groups(&split.test));
+            assert!(train.is_disjoint(&test), "{kind}: {train:?} and {test:?}");
+        }
+    }
+}
+
+#[test]
+fn without_keeping_together_offsets_are_on_both_sides() {
+    let study = with_recognition("");
+    let touches: Vec<&Touch> = study.touched.iter().flat_map(|t| &t.touches).collect();
+    let split = &study.sweep.splits[0];
+    let offsets = |rows: &[usize]| -> BTreeSet<Vec<usize>> {
+        let axes = [TouchAxis::OffsetX, TouchAxis::OffsetY];
+        rows.iter()
+            .map(|&row| touches[row].group(&axes).unwrap())
+            .collect()
+    };
+    assert!(!offsets(&split.train).is_disjoint(&offsets(&split.test)));
+}
+
+#[test]
+fn over_the_folds_each_touch_is_tested_exactly_once() {
+    for keys in ["folds = 3", "folds = 3\nkeep_together = \"pose\""] {
+        let study = with_recognition(keys);
+        let n_rows = study.sweep.labels.len();
+        let divisions: Vec<&[Split]> = study.sweep.splits.chunks(3).collect();
+        assert_eq!(divisions.len(), 2);
+        for folds in &divisions {
+            let mut tested: Vec<usize> = folds.iter().flat_map(|f| f.test.clone()).collect();
+            tested.sort_unstable();
+            assert_eq!(tested, (0..n_rows).collect::<Vec<_>>(), "{keys}");
+            folds.iter().for_each(|f| assert_is_a_division(f, n_rows));
+        }
+        assert_ne!(divisions[0][0].test, divisions[1][0].test, "divided anew");
+    }
+}
+
+#[test]
+fn a_study_tests_what_its_splits_hold_out() {
+    let study = with_recognition("folds = 3\ntrain_touches = [5, 10]");
+    for (cell, score) in &study.run().tables.accuracy {
+        assert_eq!(score.n_test, study.sweep.splits[score.trial].test.len());
+        assert_eq!(score.n_train, 3 * cell.train_touches);
+        assert_eq!(score.accuracy, score.n_correct as f64 / score.n_test as f64);
+    }
+}
