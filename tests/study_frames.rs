@@ -5,7 +5,7 @@ mod study;
 use bubbletouch::contact::{Workspace, press_to_depth};
 use bubbletouch::recognition::split::Split;
 use bubbletouch::study::progress::Silent;
-use bubbletouch::study::{TouchedObject, simulate_array};
+use bubbletouch::study::{TouchedObject, sample_frames, simulate_array};
 use bubbletouch::world::{Patch, Scene, Touch, TouchAxis};
 use std::collections::BTreeSet;
 use study::Study;
@@ -210,4 +210,37 @@ fn a_study_tests_what_its_splits_hold_out() {
         assert_eq!(score.n_train, 3 * cell.train_touches);
         assert_eq!(score.accuracy, score.n_correct as f64 / score.n_test as f64);
     }
+}
+
+#[test]
+fn a_damper_pushes_back_on_taxels_that_move_and_not_on_saturated_ones() {
+    let text = STUDY
+        .replace(
+            "stroke_mm = 3.5",
+            "stroke_mm = 3.5\nstiffness_n_per_m = 200.0\ndamping_n_s_per_m = 4.0",
+        )
+        .replace("[2.0, 4.0]\n", "4.0\nspeed_mm_per_s = 50.0\n")
+        .replace("[sensing]", "[signal]\nsteps = [\"force\"]\n\n[sensing]");
+    let study = Study::new(&text);
+    let patch = study.plan.arrays[0];
+    let frames = simulate_array(&study.touched, &patch, &Silent).deflection;
+    let samples = sample_frames(&study.plan, &study.sweep, &study.touched).unwrap();
+    assert_eq!(samples.frames.len(), study.touched.len());
+    let per_object = study.touched[0].touches.len();
+    let (mut n_moving, mut n_saturated) = (0, 0);
+    for (object, (_, forces)) in samples.frames.iter().enumerate() {
+        for (&deflection, &force) in frames.row(object * per_object).iter().zip(forces) {
+            let spring = 200.0 * f64::from(deflection);
+            let is_saturated = deflection == patch.taxel.stroke as f32;
+            let is_moving = deflection > 0.0 && !is_saturated;
+            let damper = if is_moving { 4.0 * 0.05 } else { 0.0 };
+            assert!((force - spring - damper).abs() < 1e-6, "{force} N");
+            n_moving += usize::from(is_moving);
+            n_saturated += usize::from(is_saturated);
+        }
+    }
+    assert!(
+        n_moving > 20 && n_saturated > 0,
+        "{n_moving}, {n_saturated}"
+    );
 }

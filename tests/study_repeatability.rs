@@ -38,7 +38,7 @@ smoothing_mm = 6.0
 
 [sensing]
 ensemble = ["gaussian", "block_average"]
-ratio = [2, 4, 16]
+ratio = [4, 16]
 
 [recognition]
 classifier = ["linear_svm", "rbf_svm"]
@@ -86,30 +86,16 @@ fn the_tables_are_the_same_bytes_at_any_number_of_threads() {
 }
 
 #[test]
-fn another_seed_is_another_experiment_and_the_same_seed_the_same() {
+fn another_seed_is_another_experiment_and_the_study_that_it_wrote_down_repeats_it() {
     let case = Case::new();
     case.file("study.toml", WIDE);
-    for (seed, out) in [("7", "seven"), ("8", "eight")] {
-        case.succeeds(&["run", "study.toml", "--seed", seed, "--out", out]);
-    }
-    case.file("other.toml", WIDE.replace("seed = 7", "seed = 8"));
-    case.succeeds(&["run", "other.toml", "--out", "written"]);
+    case.succeeds(&["run", "study.toml", "--out", "seven"]);
+    case.succeeds(&["run", "study.toml", "--seed", "8", "--out", "eight"]);
+    case.succeeds(&["run", "eight/study.toml", "--out", "again"]);
     let read = |folder: &str, name: &str| fs::read(case.path(folder).join(name)).unwrap();
     assert!(read("seven", "accuracy.csv") != read("eight", "accuracy.csv"));
     for name in REPEATABLE {
-        assert!(read("eight", name) == read("written", name), "{name}");
-    }
-}
-
-#[test]
-fn the_study_that_a_run_wrote_down_gives_the_same_tables() {
-    let case = Case::new();
-    case.file("study.toml", WIDE);
-    case.succeeds(&["run", "study.toml", "--out", "first"]);
-    case.succeeds(&["run", "first/study.toml", "--out", "second"]);
-    let read = |folder: &str, name: &str| fs::read(case.path(folder).join(name)).unwrap();
-    for name in REPEATABLE {
-        assert!(read("first", name) == read("second", name), "{name}");
+        assert!(read("eight", name) == read("again", name), "{name}");
     }
 }
 
@@ -153,7 +139,7 @@ fn a_cell_does_not_depend_on_the_other_cells_of_its_study() {
     for ensemble in ["gaussian", "sbhe", "block_average", "subsample", "identity"] {
         let narrow = NARROW.replace("ENSEMBLE", ensemble);
         let wide = [
-            ("pitch_mm = 4.0", "pitch_mm = [8.0, 4.0, 2.0]"),
+            ("pitch_mm = 4.0", "pitch_mm = [8.0, 4.0]"),
             ("full_scale = 0.2", "full_scale = [0.0, 0.2]"),
             ("smoothing_mm = 4.0", "smoothing_mm = [8.0, 4.0]"),
             ("ratio = 16", "ratio = [2, 64, 16]"),

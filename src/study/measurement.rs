@@ -78,23 +78,50 @@ fn measure_block(
         let frame = frame
             .as_slice_mut()
             .expect("rows of a new array are contiguous");
-        let rate = rates_of(reading, frame, &mut rates);
+        let rate = rates_of(frame, &reading.taxel, reading.speed, &mut rates);
         reading.chain.apply(frame, rate, seed, scratch);
     }
     reading.projection.measure_into(frames.view(), out);
 }
 
-/// δ̇ of every taxel: the approach speed where the object pushes a taxel that can still move; `None` at rest.
-fn rates_of<'a>(reading: Reading, frame: &[f64], rates: &'a mut Vec<f64>) -> Option<&'a [f64]> {
-    if reading.speed == 0.0 {
+/// δ̇ of every taxel: the approach speed (m/s) where the object pushes a taxel that can still move; `None` at rest.
+pub fn rates_of<'a>(
+    frame: &[f64],
+    taxel: &Taxel,
+    speed: f64,
+    rates: &'a mut Vec<f64>,
+) -> Option<&'a [f64]> {
+    if speed == 0.0 {
         return None;
     }
-    let moves = |deflection: f64| deflection > 0.0 && deflection < reading.taxel.stroke;
+    // Frames are kept in f32, where a saturated taxel holds the rounded stroke, which may be the smaller one.
+    let stroke = taxel.stroke as f32;
+    let moves = |deflection: f64| deflection > 0.0 && (deflection as f32) < stroke;
     rates.clear();
-    rates.extend(
-        frame
-            .iter()
-            .map(|&d| if moves(d) { reading.speed } else { 0.0 }),
-    );
+    rates.extend(frame.iter().map(|&d| if moves(d) { speed } else { 0.0 }));
     Some(rates)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_damper_feels_taxels_that_move_and_none_that_is_free_or_saturated() {
+        // 5 mm is smaller in f32 than in f64, 3 mm is larger.
+        for stroke in [5e-3, 3e-3] {
+            let taxel = Taxel {
+                radius: 1e-3,
+                stiffness: 100.0,
+                damping: 1.0,
+                stroke,
+            };
+            let kept = |d: f64| f64::from(d as f32);
+            let frame = [0.0, kept(1e-3), kept(stroke), stroke];
+            let mut rates = Vec::new();
+            let given = rates_of(&frame, &taxel, 0.01, &mut rates);
+            assert_eq!(given, Some(&[0.0, 0.01, 0.0, 0.0][..]), "stroke {stroke}");
+            assert_eq!(rates_of(&frame, &taxel, 0.0, &mut rates), None);
+        }
+    }
 }

@@ -1,5 +1,6 @@
 //! Sample touches for the eye: what the array feels of a few objects, noise included.
 
+use super::measurement::rates_of;
 use super::plan::{Plan, millimetres};
 use super::runner::signal_steps;
 use super::simulation::TouchedObject;
@@ -40,7 +41,7 @@ pub fn sample_frames(plan: &Plan, sweep: &Sweep, touched: &[TouchedObject]) -> R
     let chain = Chain::new(&steps, &patch)?;
     let seed = Seed::new(plan.spec.seed).named("signal").numbered(0);
     let (mut workspace, mut scratch) = (Workspace::new(), Scratch::default());
-    let mut frames = Vec::new();
+    let (mut frames, mut rates) = (Vec::new(), Vec::new());
     for object in chosen(plan, touched)? {
         let touch = &object.touches[0];
         let scene = Scene {
@@ -51,7 +52,8 @@ pub fn sample_frames(plan: &Plan, sweep: &Sweep, touched: &[TouchedObject]) -> R
         press_to_depth(&scene, &[pose], touch.depth, &mut workspace);
         let mut frame = workspace.deflections().to_vec();
         let touch_seed = seed.named(&object.object.name).numbered(0);
-        chain.apply(&mut frame, None, &touch_seed, &mut scratch);
+        let rate = rates_of(&frame, &patch.taxel, plan.speed, &mut rates);
+        chain.apply(&mut frame, rate, &touch_seed, &mut scratch);
         let frame = Array2::from_shape_vec((patch.grid.ny, patch.grid.nx), frame)
             .expect("one value a taxel");
         frames.push((object.object.name.replace('_', " "), frame));
