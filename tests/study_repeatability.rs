@@ -184,7 +184,7 @@ fn an_object_is_touched_the_same_whatever_else_is_in_the_set() {
     for text in [uniform, listed] {
         let stable = text.replace("[touches]", "[touches]\nrest = \"stable\"");
         for text in [text, stable] {
-            let few = Study::new(&text.replace("\"mug\", \"banana\", \"scissors\", ", "\"mug\", "));
+            let few = Study::new(&text.replace("\"mug\", \"banana\", ", ""));
             let many = Study::new(&text);
             assert_eq!((few.touched.len(), many.touched.len()), (2, 4));
             let patch = &few.plan.arrays[0];
@@ -217,7 +217,7 @@ fn the_noise_on_a_touch_does_not_depend_on_the_other_objects() {
     };
     let (name, frame) = sample(&text);
     assert_eq!(name, "power drill");
-    let few = text.replace("\"mug\", \"banana\", \"scissors\", ", "\"mug\", ");
+    let few = text.replace("\"mug\", \"banana\", ", "");
     assert_eq!(sample(&few), (name.clone(), frame.clone()));
     let quiet = text.replace("full_scale = 0.2", "full_scale = 0.0");
     assert_ne!(sample(&quiet), (name, frame), "there is noise to compare");
