@@ -44,12 +44,14 @@ pub fn run(args: &Args) -> Result<()> {
         &loaded.touched,
         progress.as_ref(),
     )?;
+    progress.stage("report", 1);
     let page = report_page(&loaded, &outcome, args, start.elapsed().as_secs_f64())?;
     results::write_all(&folder, &outcome.tables, &page)?;
     write_bytes(
         &folder.join("study.toml"),
         loaded.plan.spec.to_toml().as_bytes(),
     )?;
+    progress.advance(1);
     progress.finish(&format!("{:.1} s", start.elapsed().as_secs_f64()));
     let table = folder.join("summary.csv").display().to_string();
     println!(

@@ -3,6 +3,9 @@
 use crate::world::Grid;
 use std::ops::Range;
 
+/// What rounding can move a place on the grid, in pitches: far above 1e-16 of the largest grid, far below what is felt.
+const ROUNDING: f64 = 1e-9;
+
 /// Columns and rows of a grid.
 #[derive(Clone, Debug, Default)]
 pub struct GridLines {
@@ -49,14 +52,15 @@ impl Lines {
         self.positions[(index as usize).min(self.positions.len() - 1)]
     }
 
-    /// The lines within `half_width` of a coordinate, and up to two more on each side to be safe against rounding.
+    /// The lines within `half_width` of a coordinate, and those that are beyond by no more than rounding.
     ///
-    /// Casts instead of floor and ceil, which are function calls on the oldest processors that this runs on.
+    /// Casts, which cut off the fraction and saturate beside the grid, instead of floor and ceil: those are function calls
+    /// on the oldest processors that this runs on.
     pub fn within(&self, coordinate: f64, half_width: f64) -> Range<usize> {
         let index = (coordinate - self.positions[0]) * self.density;
-        let spread = half_width * self.density;
-        let start = (index - spread) as usize;
-        let end = ((index + spread) as usize + 2).min(self.positions.len());
+        let spread = half_width * self.density + ROUNDING;
+        let start = (index - spread + 1.0) as usize;
+        let end = ((index + spread) as usize + 1).min(self.positions.len());
         start.min(end)..end
     }
 }
@@ -76,7 +80,7 @@ mod tests {
     }
 
     #[test]
-    fn every_line_within_is_in_the_range_and_at_most_two_beyond_on_a_side() {
+    fn every_line_within_is_in_the_range_and_none_beyond_rounding() {
         let lines = lines();
         for step in -3000..3000 {
             let coordinate = f64::from(step) * 1e-5;
@@ -87,8 +91,8 @@ mod tests {
                     if distance <= half_width {
                         assert!(range.contains(&index), "{coordinate} {half_width} {index}");
                     }
-                    let beside_grid = coordinate.abs() > lines.x.positions[6] + half_width;
-                    if distance > half_width + 2.0 * 2e-3 && !beside_grid {
+                    let left_of_grid = coordinate + half_width < lines.x.positions[0];
+                    if distance > half_width + 1e-11 && !left_of_grid {
                         assert!(!range.contains(&index), "{coordinate} {half_width} {index}");
                     }
                 }

@@ -2,6 +2,7 @@
 
 use super::grid_lines::GridLines;
 use crate::geometry::Pose;
+use crate::objects::Sphere;
 use crate::world::{Patch, Scene};
 use glam::{DMat3, DVec3};
 
@@ -50,48 +51,90 @@ impl Workspace {
     /// goal is a depth (`None` where no travel touches anything).
     ///
     /// Most spheres of an object are on its far side. They cost one row of the rotation and one comparison: a sphere
-    /// presses nothing before its lowest point meets the plane of the taxels.
+    /// presses nothing before its lowest point meets the plane of the taxels. For a depth, a few spheres are looked at
+    /// beforehand, so that the comparison is with a travel close to the final one from the start.
     fn gather(&mut self, scene: &Scene, patch_from_objects: &[Pose], goal: Goal) -> Option<f64> {
         assert_eq!(
             scene.objects.len(),
             patch_from_objects.len(),
             "one pose an object"
         );
-        let grid = &scene.patch.grid;
-        let rho = scene.patch.taxel.radius;
-        let (half_x, half_y) = (grid.x(grid.nx - 1), grid.y(grid.ny - 1));
-        self.lines.lay(grid);
+        self.lines.lay(&scene.patch.grid);
         self.spheres.clear();
-        let mut first = f64::INFINITY;
-        let mut farthest = match goal {
-            Goal::Travel(travel) => travel,
-            Goal::Depth(_) => f64::INFINITY,
+        let views = || {
+            let pairs = scene.objects.iter().zip(patch_from_objects);
+            pairs.map(|(object, pose)| (object.spheres(), View::new(&scene.patch, pose)))
         };
-        for (object, pose) in scene.objects.iter().zip(patch_from_objects) {
-            let rows = DMat3::from_quat(pose.rotation).transpose();
-            for sphere in object.spheres() {
-                let reach = rho + sphere.radius;
-                let z = rows.z_axis.dot(sphere.center) + pose.translation.z;
-                if z - reach >= farthest {
-                    continue;
+        let depth = match goal {
+            Goal::Depth(depth) => depth,
+            Goal::Travel(travel) => {
+                for (spheres, view) in views() {
+                    let near = spheres.iter().filter_map(|s| view.place(s, travel));
+                    self.spheres.extend(near);
                 }
-                let x = rows.x_axis.dot(sphere.center) + pose.translation.x;
-                let y = rows.y_axis.dot(sphere.center) + pose.translation.y;
-                if x.abs() >= half_x + reach || y.abs() >= half_y + reach {
-                    continue;
-                }
-                let placed = PlacedSphere {
-                    center: DVec3::new(x, y, z),
-                    reach,
-                };
-                if let Goal::Depth(depth) = goal {
+                return None;
+            }
+        };
+        let mut first = f64::INFINITY;
+        for (spheres, view) in views() {
+            for sphere in spheres.iter().step_by(PREVIEW_STRIDE) {
+                if let Some(placed) = view.place(sphere, first) {
                     first = first.min(placed.first_touch(&self.lines));
-                    farthest = first + depth;
                 }
-                self.spheres.push(placed);
+            }
+        }
+        for (spheres, view) in views() {
+            for sphere in spheres {
+                if let Some(placed) = view.place(sphere, first + depth) {
+                    first = first.min(placed.first_touch(&self.lines));
+                    self.spheres.push(placed);
+                }
             }
         }
         first.is_finite().then_some(first)
+    }
+}
+
+/// One sphere in so many is looked at to estimate first contact. Larger: a worse estimate, so more spheres are placed in
+/// vain; smaller: more spheres are looked at twice.
+const PREVIEW_STRIDE: usize = 16;
+
+/// An object's frame seen from the patch.
+struct View {
+    /// Rows of the rotation.
+    rows: DMat3,
+    translation: DVec3,
+    /// ρ.
+    taxel_radius: f64,
+    /// The outermost taxels' |x| and |y|.
+    half_size: [f64; 2],
+}
+
+impl View {
+    fn new(patch: &Patch, pose: &Pose) -> Self {
+        let grid = &patch.grid;
+        Self {
+            rows: DMat3::from_quat(pose.rotation).transpose(),
+            translation: pose.translation,
+            taxel_radius: patch.taxel.radius,
+            half_size: [grid.x(grid.nx - 1), grid.y(grid.ny - 1)],
+        }
+    }
+
+    /// The sphere in the patch frame; `None` if it meets no taxel before `travel` or its shadow misses the patch.
+    fn place(&self, sphere: &Sphere, travel: f64) -> Option<PlacedSphere> {
+        let reach = self.taxel_radius + sphere.radius;
+        let z = self.rows.z_axis.dot(sphere.center) + self.translation.z;
+        if z - reach >= travel {
+            return None;
+        }
+        let x = self.rows.x_axis.dot(sphere.center) + self.translation.x;
+        let y = self.rows.y_axis.dot(sphere.center) + self.translation.y;
+        let [half_x, half_y] = self.half_size;
+        (x.abs() < half_x + reach && y.abs() < half_y + reach).then_some(PlacedSphere {
+            center: DVec3::new(x, y, z),
+            reach,
+        })
     }
 }
 

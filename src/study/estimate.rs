@@ -150,8 +150,12 @@ impl fmt::Display for Estimate {
         writeln!(f, "  objects  {}", self.n_objects)?;
         writeln!(
             f,
-            "  touches  {} on each of {} arrays",
-            self.n_touches, self.n_arrays
+            "  touches  {} on {}",
+            self.n_touches,
+            match self.n_arrays {
+                1 => "one array".to_owned(),
+                n => format!("each of {n} arrays"),
+            }
         )?;
         writeln!(
             f,

@@ -200,12 +200,13 @@ impl Table {
 
     fn row(&mut self, row: impl Serialize) -> Result<()> {
         let is_first = !std::mem::replace(&mut self.has_header, true);
+        // Through a buffer of its own: flushing the CSV writer would flush the file with every row.
+        let mut csv = csv::WriterBuilder::new()
+            .has_headers(is_first)
+            .from_writer(Vec::new());
         self.file.write(|writer| {
-            let mut csv = csv::WriterBuilder::new()
-                .has_headers(is_first)
-                .from_writer(writer);
             csv.serialize(row).map_err(io::Error::other)?;
-            csv.flush()
+            writer.write_all(&csv.into_inner().map_err(|e| e.into_error())?)
         })
     }
 
