@@ -127,7 +127,8 @@ mod tests {
     fn a_full_device_is_an_error_and_stays_a_device() {
         let full = Path::new("/dev/full");
         if !full.exists() {
-            println!("SKIPPED: this system has no /dev/full");
+            writeln!(std::io::stderr(), "SKIPPED: this system has no /dev/full")
+                .expect("standard error takes a line");
             return;
         }
         let error = write_bytes(full, &[0; 100_000]).unwrap_err();

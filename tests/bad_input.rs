@@ -4,6 +4,7 @@ mod command;
 
 use command::Case;
 use std::fs;
+use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
@@ -256,7 +257,11 @@ fn a_full_disk_is_the_worlds_fault_and_leaves_nothing() {
     let small = case.path("small");
     fs::create_dir(&small).unwrap();
     let Some(_mount) = SmallDisk::mount(&small) else {
-        println!("SKIPPED: no right to mount a small tmpfs here");
+        writeln!(
+            std::io::stderr(),
+            "SKIPPED: no right to mount a small tmpfs here"
+        )
+        .expect("standard error takes a line");
         return;
     };
     let output = case.run(&["run", "study.toml", "--out", "small/results"]);

@@ -5,7 +5,8 @@ use glam::DVec3;
 use std::fmt::Write as _;
 use std::fs::File;
 use std::io::BufReader;
-use std::path::{Path, PathBuf};
+use std::io::Write;
+use std::path::PathBuf;
 
 const HEADER: &str = "ply
 format FORMAT 1.0
@@ -227,19 +228,21 @@ fn spheres_that_cannot_be_used_say_why() {
     assert_eq!(latin.exit_code(), 2, "{latin}");
 }
 
-fn shared(folder: &str) -> Option<PathBuf> {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR"))
-        .join("../shared")
-        .join(folder);
-    if !path.is_dir() {
-        eprintln!("SKIPPED: {} is not there", path.display());
+/// A folder of reference data, found by an environment variable.
+fn reference(variable: &str) -> Option<PathBuf> {
+    let folder = std::env::var_os(variable).map(PathBuf::from);
+    if folder.is_none() {
+        writeln!(std::io::stderr(), "SKIPPED: {variable} names no folder")
+            .expect("standard error takes a line");
     }
-    path.is_dir().then_some(path)
+    folder
 }
 
 #[test]
 fn the_scanned_objects_are_read_and_get_spheres_of_millimetres() {
-    let Some(folder) = shared("ycb") else { return };
+    let Some(folder) = reference("BUBBLETOUCH_YCB") else {
+        return;
+    };
     let mut n_meshes = 0;
     for file in std::fs::read_dir(folder).unwrap() {
         let path = file.unwrap().path();

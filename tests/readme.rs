@@ -6,6 +6,7 @@ mod command;
 use bubbletouch::study::{Plan, StudySpec};
 use command::Case;
 use std::fs;
+use std::io::Write;
 use std::path::Path;
 use std::process::Command;
 
@@ -13,7 +14,8 @@ use std::process::Command;
 fn readme() -> Option<String> {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("README.md");
     if !path.exists() {
-        println!("SKIPPED: there is no README.md");
+        writeln!(std::io::stderr(), "SKIPPED: there is no README.md")
+            .expect("standard error takes a line");
         return None;
     }
     Some(fs::read_to_string(path).unwrap())

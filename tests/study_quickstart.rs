@@ -5,6 +5,7 @@ mod study;
 use bubbletouch::report::csv_tables::read_cell_rows;
 use bubbletouch::study::table::TrialScore;
 use std::fs;
+use std::io::Write;
 use std::path::Path;
 use study::Study;
 
@@ -13,7 +14,12 @@ fn the_quickstart_still_gives_its_committed_results() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     let committed = root.join("results/quickstart/accuracy.csv");
     if !committed.exists() {
-        println!("SKIPPED: there is no {}", committed.display());
+        writeln!(
+            std::io::stderr(),
+            "SKIPPED: there is no {}",
+            committed.display()
+        )
+        .expect("standard error takes a line");
         return;
     }
     let committed = read_cell_rows::<TrialScore>(&committed).unwrap();

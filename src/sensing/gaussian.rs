@@ -2,19 +2,19 @@
 
 use crate::random::Seed;
 use ndarray::linalg::general_mat_mul;
-use ndarray::{Array2, ArrayView2, ArrayViewMut2};
-use rand::Rng;
+use ndarray::{Array1, Array2, ArrayView2, ArrayViewMut2};
+use ndarray_rand::RandomExt;
 use rand_distr::StandardNormal;
 
 /// Φ, m × n, entries N(0, 1/n). Row r comes from the stream's child r alone, so a larger m keeps the smaller's rows.
 pub(super) fn matrix(m: usize, n: usize, stream: &Seed) -> Array2<f64> {
     let scale = 1.0 / (n as f64).sqrt();
-    let mut matrix = Array2::zeros((m, n));
+    let mut matrix: Array2<f64> = Array2::zeros((m, n));
     for (row, mut entries) in matrix.outer_iter_mut().enumerate() {
         let mut rng = stream.numbered(row as u64).rng();
-        entries.mapv_inplace(|_: f64| scale * rng.sample::<f64, _>(StandardNormal));
+        entries.assign(&Array1::random_using(n, StandardNormal, &mut rng));
     }
-    matrix
+    matrix * scale
 }
 
 /// Y = X Φᵀ by the blocked matrix product, which sums each entry over the taxels in one fixed order whatever the
