@@ -315,7 +315,7 @@ fn high_water_mark(status: &str) -> Option<u64> {
 }
 
 #[test]
-fn memory_grows_by_the_list_of_touches_and_not_by_their_frames() {
+fn fifty_thousand_touches_need_no_more_memory_than_five_hundred() {
     let (few, many) = (balls(250), balls(25_000));
     let (Some(small), Some(large)) = (peak_memory(&few), peak_memory(&many)) else {
         writeln!(
@@ -330,6 +330,6 @@ fn memory_grows_by_the_list_of_touches_and_not_by_their_frames() {
         "{small} KiB for 500 touches, {large} KiB for 50,000: {} bytes a touch",
         grown * 1024 / 49_500
     );
-    // Their frames are 50,000 KiB.
-    assert!(grown < 16 * 1024, "{grown} KiB more");
+    // Their frames are 50,000 KiB, a list of them would be 8,000; buffers settle within a few hundred.
+    assert!(grown < 2 * 1024, "{grown} KiB more");
 }

@@ -48,8 +48,8 @@ impl StudyArgs {
             .ok_or_else(|| Error::input("study", self.study.display(), "a file with a name"))
     }
 
-    /// Reads and checks the study, builds its objects, draws its touches and lays out its cells.
-    pub fn load(&self) -> Result<LoadedStudy> {
+    /// Reads and checks the study.
+    pub fn plan(&self) -> Result<Plan> {
         self.set_threads()?;
         let place = self.study.display().to_string();
         let mut spec = StudySpec::parse(&place, &self.text()?)?;
@@ -60,7 +60,12 @@ impl StudyArgs {
             spec.objects.meshes = Some(folder.clone());
             spec.objects.sets.clear();
         }
-        let plan = Plan::new(&place, spec)?;
+        Plan::new(&place, spec)
+    }
+
+    /// Reads and checks the study, builds its objects, draws its touches and lays out its cells.
+    pub fn load(&self) -> Result<LoadedStudy> {
+        let plan = self.plan()?;
         let objects = load_objects(&plan.spec.objects)?;
         let touched = draw_touches(objects, &plan.placement, &Seed::new(plan.spec.seed))?;
         let sweep = Sweep::new(&plan, &touched)?;

@@ -3,8 +3,9 @@
 use super::output::output_folder;
 use super::study_args::StudyArgs;
 use bubbletouch::Result;
+use bubbletouch::random::Seed;
 use bubbletouch::report::progress;
-use bubbletouch::study::{millimetres, write_touches};
+use bubbletouch::study::{load_objects, millimetres, write_touches};
 use std::path::PathBuf;
 
 #[derive(clap::Args)]
@@ -18,27 +19,31 @@ pub struct Args {
 }
 
 pub fn touches(args: &Args) -> Result<()> {
-    let loaded = args.study.load()?;
-    let arrays = &loaded.plan.arrays;
+    let plan = args.study.plan()?;
+    let objects = load_objects(&plan.spec.objects)?;
+    let seed = Seed::new(plan.spec.seed);
     let progress = progress::to_stderr();
-    for patch in arrays {
+    let mut n_touches = 0;
+    for patch in &plan.arrays {
         let grid = &patch.grid;
-        let pitch_mm = millimetres(grid.pitch);
-        let folder = match arrays.len() {
+        let folder = match plan.arrays.len() {
             1 => args.out.clone(),
-            _ => args
-                .out
-                .join(format!("{}x{}_at_{pitch_mm}_mm", grid.nx, grid.ny)),
+            _ => {
+                let pitch_mm = millimetres(grid.pitch);
+                args.out
+                    .join(format!("{}x{}_at_{pitch_mm}_mm", grid.nx, grid.ny))
+            }
         };
         output_folder(&folder)?;
-        let name = format!("touch {}×{} at {pitch_mm} mm", grid.nx, grid.ny);
-        progress.stage(&name, loaded.sweep.labels.len() as u64);
-        write_touches(&folder, &loaded.touched, patch, progress.as_ref())?;
+        n_touches += write_touches(
+            &folder,
+            &objects,
+            &plan.placement,
+            &seed,
+            patch,
+            progress.as_ref(),
+        )?;
     }
-    progress.finish(&format!(
-        "{} touches in {}",
-        loaded.sweep.labels.len(),
-        args.out.display()
-    ));
+    progress.finish(&format!("{n_touches} touches in {}", args.out.display()));
     Ok(())
 }

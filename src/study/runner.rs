@@ -211,7 +211,8 @@ pub fn signal_steps(plan: &Plan, group: &Group) -> Vec<SignalStep> {
         .collect()
 }
 
-fn describe(patch: &Patch) -> String {
+/// An array in words: `64×64 at 2 mm`.
+pub fn describe(patch: &Patch) -> String {
     let grid = &patch.grid;
     format!("{}×{} at {} mm", grid.nx, grid.ny, millimetres(grid.pitch))
 }

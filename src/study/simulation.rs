@@ -47,8 +47,7 @@ pub fn draw_touches(
         .into_par_iter()
         .map(|object| {
             let rests = placement.rest.of(&object.spheres);
-            let seed = seed.named("touches").named(&object.name);
-            let touches = touches(placement, &rests, &seed)?;
+            let touches = touches(placement, &rests, &touch_stream(seed, &object))?;
             Ok(TouchedObject {
                 object,
                 rests,
@@ -56,6 +55,11 @@ pub fn draw_touches(
             })
         })
         .collect()
+}
+
+/// What an object's touches are drawn from.
+pub fn touch_stream(seed: &Seed, object: &Object) -> Seed {
+    seed.named("touches").named(&object.name)
 }
 
 /// Presses one array on every object, touch by touch; the same bytes at any number of threads.

@@ -10,11 +10,14 @@
 //! | `objects.csv` | one row an object: number, name, spheres, touches |
 
 use super::progress::Progress;
-use super::simulation::TouchedObject;
+use super::runner::describe;
+use super::simulation::touch_stream;
 use crate::contact::{Workspace, press_to_depth};
 use crate::error::Result;
 use crate::files::WholeFile;
-use crate::world::{Patch, Scene, Touch};
+use crate::objects::Object;
+use crate::random::Seed;
+use crate::world::{Patch, Placement, RestPose, Scene, Touch, TouchSource};
 use ndarray_npy::{WritableElement, write_zeroed_npy};
 use rayon::prelude::*;
 use serde::Serialize;
@@ -57,50 +60,66 @@ struct Reading {
     n_saturated: usize,
 }
 
-/// Simulates all touches of an array and writes them into a folder that exists.
+/// Simulates all touches of an array and writes them into a folder that exists; returns how many.
+///
+/// # Errors
+/// What [`TouchSource::new`] refuses; a file that cannot be written.
 pub fn write_touches(
     folder: &Path,
-    touched: &[TouchedObject],
+    objects: &[Object],
+    placement: &Placement,
+    seed: &Seed,
     patch: &Patch,
     progress: &dyn Progress,
-) -> Result<()> {
-    let mut files = TouchFiles::create(folder, touched, patch)?;
-    let mut objects = Table::create(&folder.join("objects.csv"))?;
-    for (label, object) in touched.iter().enumerate() {
-        objects.row(ObjectRow {
+) -> Result<usize> {
+    let rests: Vec<Vec<RestPose>> = objects
+        .par_iter()
+        .map(|object| placement.rest.of(&object.spheres))
+        .collect();
+    let sources = objects
+        .iter()
+        .zip(&rests)
+        .map(|(object, rests)| TouchSource::new(placement, rests, &touch_stream(seed, object)))
+        .collect::<Result<Vec<_>>>()?;
+    let n_touches = sources.iter().map(TouchSource::n_touches).sum();
+    progress.stage(&format!("touch {}", describe(patch)), n_touches as u64);
+    let mut files = TouchFiles::create(folder, n_touches, patch)?;
+    let mut table = Table::create(&folder.join("objects.csv"))?;
+    for (label, ((object, rests), source)) in objects.iter().zip(&rests).zip(&sources).enumerate() {
+        table.row(ObjectRow {
             label,
-            object: &object.object.name,
-            n_spheres: object.object.spheres.n_spheres(),
-            n_touches: object.touches.len(),
+            object: &object.name,
+            n_spheres: object.spheres.n_spheres(),
+            n_touches: source.n_touches(),
         })?;
         let scene = Scene {
             patch: *patch,
-            objects: vec![object.object.spheres.clone()],
+            objects: vec![object.spheres.clone()],
         };
-        for touches in object.touches.chunks(BLOCK) {
-            let readings: Vec<Reading> = touches
-                .par_iter()
-                .map_init(Workspace::new, |workspace, touch| {
-                    read(&scene, object, touch, workspace)
+        for first in (0..source.n_touches()).step_by(BLOCK) {
+            let numbers = first..source.n_touches().min(first + BLOCK);
+            let n_block = numbers.len() as u64;
+            let block: Vec<(Touch, Reading)> = numbers
+                .into_par_iter()
+                .map_init(Workspace::new, |workspace, number| {
+                    let touch = source.touch(number);
+                    let reading = read(&scene, &rests[touch.rest], &touch, workspace);
+                    (touch, reading)
                 })
                 .collect();
-            for (touch, reading) in touches.iter().zip(&readings) {
-                files.add(label, &object.object.name, touch, reading)?;
+            for (touch, reading) in &block {
+                files.add(label, &object.name, touch, reading)?;
             }
-            progress.advance(touches.len() as u64);
+            progress.advance(n_block);
         }
     }
-    objects.commit()?;
-    files.commit()
+    table.commit()?;
+    files.commit()?;
+    Ok(n_touches)
 }
 
-fn read(
-    scene: &Scene,
-    object: &TouchedObject,
-    touch: &Touch,
-    workspace: &mut Workspace,
-) -> Reading {
-    let mut pose = touch.patch_from_object(&object.rests[touch.rest]);
+fn read(scene: &Scene, rest: &RestPose, touch: &Touch, workspace: &mut Workspace) -> Reading {
+    let mut pose = touch.patch_from_object(rest);
     let contact = press_to_depth(scene, &[pose], touch.depth, workspace);
     pose.translation.z -= contact.map_or(0.0, |c| c.travel);
     let (t, q) = (pose.translation, pose.rotation);
@@ -123,8 +142,7 @@ struct TouchFiles {
 }
 
 impl TouchFiles {
-    fn create(folder: &Path, touched: &[TouchedObject], patch: &Patch) -> Result<Self> {
-        let n: usize = touched.iter().map(|t| t.touches.len()).sum();
+    fn create(folder: &Path, n: usize, patch: &Patch) -> Result<Self> {
         let shape = [n, patch.grid.ny, patch.grid.nx];
         Ok(Self {
             frames: start_npy::<f32>(&folder.join("frames.npy"), &shape)?,

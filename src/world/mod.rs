@@ -19,5 +19,5 @@ pub use patch::{Grid, Patch, Taxel};
 pub use placement::{Placement, RestPoses, Spread, Touch, TouchAxis};
 pub use rest::{RestPose, as_modelled, stable_poses, stable_poses_about};
 pub use scene::Scene;
-pub use touches::touches;
+pub use touches::{TouchSource, touches};
 pub use trajectory::{Phase, VelocityPlan};

@@ -11,57 +11,113 @@ use std::f64::consts::FRAC_PI_2;
 /// The most touches of one object; far above any study, it turns a slip in a list into an error before memory runs out.
 const MAX_TOUCHES: usize = 10_000_000;
 
-/// The touches of one object, by the rules of [`Placement`]; `seed` names the object's own streams.
-///
-/// # Errors
-/// No resting pose, or probabilities that are none; a spread that is empty, repeats a value or leaves its range; a uniform
-/// spread without `per_object`; zero touches, more than ten million, or more than there are combinations.
-pub fn touches(placement: &Placement, rests: &[RestPose], seed: &Seed) -> Result<Vec<Touch>> {
-    check_rests(rests)?;
-    let spreads = placement.spreads();
-    for (axis, spread) in spreads {
-        check_spread(axis, spread)?;
-    }
-    let is_uniform = |(_, spread): &(_, &Spread)| matches!(spread, Spread::Uniform { .. });
-    let Some((axis, _)) = spreads.into_iter().find(is_uniform) else {
-        return combinations(&spreads, rests.len(), placement.per_object, seed);
-    };
-    let given = match placement.per_object {
-        Some(count @ 1..=MAX_TOUCHES) => {
-            let numbers = 0..count as u64;
-            return Ok(numbers
-                .map(|number| drawn(&spreads, rests, &seed.numbered(number)))
-                .collect());
-        }
-        Some(count) => count.to_string(),
-        None => format!("no number, with {} spread uniformly", axis.name()),
-    };
-    Err(count_error(given, MAX_TOUCHES))
+/// The touches of one object, by the rules of [`Placement`], made one at a time: a list of millions needs no memory.
+#[derive(Clone, Debug)]
+pub struct TouchSource<'a> {
+    spreads: [(TouchAxis, &'a Spread); 6],
+    rests: &'a [RestPose],
+    seed: Seed,
+    order: Order,
 }
 
-/// Touches out of the full product: all in order, or `count` different ones in random order.
-fn combinations(
+/// Which touch has which number.
+#[derive(Clone, Debug)]
+enum Order {
+    /// So many, each drawn by its own number.
+    Drawn(usize),
+    /// All combinations in order, so many.
+    Product(usize),
+    /// These combinations.
+    Chosen(Vec<usize>),
+}
+
+impl<'a> TouchSource<'a> {
+    /// Checks a placement for an object with these resting poses; `seed` names the object's own streams.
+    ///
+    /// # Errors
+    /// No resting pose, or probabilities that are none; a spread that is empty, repeats a value or leaves its range; a
+    /// uniform spread without `per_object`; zero touches, more than ten million, or more than there are combinations.
+    pub fn new(placement: &'a Placement, rests: &'a [RestPose], seed: &Seed) -> Result<Self> {
+        check_rests(rests)?;
+        let spreads = placement.spreads();
+        for (axis, spread) in spreads {
+            check_spread(axis, spread)?;
+        }
+        Ok(Self {
+            spreads,
+            rests,
+            seed: *seed,
+            order: order(&spreads, rests.len(), placement.per_object, seed)?,
+        })
+    }
+
+    /// How many touches.
+    pub fn n_touches(&self) -> usize {
+        match &self.order {
+            Order::Drawn(n) | Order::Product(n) => *n,
+            Order::Chosen(combinations) => combinations.len(),
+        }
+    }
+
+    /// The touch of a number below [`n_touches`](Self::n_touches).
+    ///
+    /// # Panics
+    /// Of a chosen combination: at that number or above.
+    pub fn touch(&self, number: usize) -> Touch {
+        match &self.order {
+            Order::Drawn(_) => {
+                let seed = self.seed.numbered(number as u64);
+                drawn(&self.spreads, self.rests, &seed)
+            }
+            Order::Product(_) => combined(&values(&self.spreads), number),
+            Order::Chosen(combinations) => combined(&values(&self.spreads), combinations[number]),
+        }
+    }
+}
+
+/// All touches of one object; errors as [`TouchSource::new`].
+pub fn touches(placement: &Placement, rests: &[RestPose], seed: &Seed) -> Result<Vec<Touch>> {
+    let source = TouchSource::new(placement, rests, seed)?;
+    Ok((0..source.n_touches()).map(|n| source.touch(n)).collect())
+}
+
+fn order(
     spreads: &[(TouchAxis, &Spread); 6],
     n_rests: usize,
     count: Option<usize>,
     seed: &Seed,
-) -> Result<Vec<Touch>> {
-    let values = spreads.map(|(_, spread)| match spread {
+) -> Result<Order> {
+    let is_uniform = |(_, spread): &&(_, &Spread)| matches!(spread, Spread::Uniform { .. });
+    if let Some((axis, _)) = spreads.iter().find(is_uniform) {
+        return match count {
+            Some(count @ 1..=MAX_TOUCHES) => Ok(Order::Drawn(count)),
+            Some(count) => Err(count_error(count, MAX_TOUCHES)),
+            None => {
+                let given = format!("no number, with {} spread uniformly", axis.name());
+                Err(count_error(given, MAX_TOUCHES))
+            }
+        };
+    }
+    let sizes = values(spreads).map(<[f64]>::len).into_iter();
+    let n_combinations = sizes.fold(n_rests, usize::saturating_mul);
+    let most = n_combinations.min(MAX_TOUCHES);
+    match count {
+        None if n_combinations <= MAX_TOUCHES => Ok(Order::Product(n_combinations)),
+        Some(count) if (1..=most).contains(&count) => Ok(Order::Chosen(without_replacement(
+            n_combinations,
+            count,
+            seed,
+        ))),
+        given => Err(count_error(given.unwrap_or(n_combinations), most)),
+    }
+}
+
+/// The listed values of each axis; none of a uniform one.
+fn values<'a>(spreads: &[(TouchAxis, &'a Spread); 6]) -> [&'a [f64]; 6] {
+    spreads.map(|(_, spread)| match spread {
         Spread::Values(values) => values.as_slice(),
         Spread::Uniform { .. } => &[],
-    });
-    let sizes = values.iter().map(|v| v.len());
-    let n_combinations = sizes.fold(n_rests, usize::saturating_mul);
-    let count_or_all = count.unwrap_or(n_combinations);
-    if count_or_all == 0 || count_or_all > n_combinations.min(MAX_TOUCHES) {
-        return Err(count_error(count_or_all, n_combinations.min(MAX_TOUCHES)));
-    }
-    let touch = |combination| combined(&values, combination);
-    if count.is_none() {
-        return Ok((0..n_combinations).map(touch).collect());
-    }
-    let chosen = without_replacement(n_combinations, count_or_all, seed);
-    Ok(chosen.into_iter().map(touch).collect())
+    })
 }
 
 /// The touch at one place of the product; the last axis runs fastest.
