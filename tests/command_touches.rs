@@ -330,6 +330,6 @@ fn fifty_thousand_touches_need_no_more_memory_than_five_hundred() {
         "{small} KiB for 500 touches, {large} KiB for 50,000: {} bytes a touch",
         grown * 1024 / 49_500
     );
-    // Their frames are 50,000 KiB, a list of them would be 8,000; buffers settle within a few hundred.
-    assert!(grown < 2 * 1024, "{grown} KiB more");
+    // Their frames are 50,000 KiB, a list of them would be 8,000; buffers and a peak seen a millisecond late, a few hundred.
+    assert!(grown < 4 * 1024, "{grown} KiB more");
 }
