@@ -181,6 +181,25 @@ impl TrainedClassifier {
         }
     }
 
+    /// Scores (n_rows × n_scores) of unscaled features, of which [`labels_of_scores`](Self::labels_of_scores) makes
+    /// labels. The sum of the scores of several touches of one object is the score of all of them together.
+    ///
+    /// # Errors
+    /// As [`labels`](Self::labels).
+    pub fn scores(&self, features: ArrayView2<f64>) -> Result<Array2<f64>> {
+        let scaled = self.scaling.apply(features)?;
+        match &self.model {
+            Model::Svm(model) => model.decision_values(scaled.view()),
+        }
+    }
+
+    /// The label that each row of scores speaks for.
+    pub fn labels_of_scores(&self, scores: ArrayView2<f64>) -> Array1<usize> {
+        match &self.model {
+            Model::Svm(model) => model.labels_of_values(scores),
+        }
+    }
+
     /// The C that it was trained with.
     pub fn c(&self) -> f64 {
         self.c

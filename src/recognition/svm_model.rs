@@ -122,22 +122,23 @@ impl SvmModel {
     /// # Errors
     /// Another number of columns than in training, or a NaN or infinite feature.
     pub fn labels(&self, features: ArrayView2<f64>) -> Result<Array1<usize>> {
-        let mut labels = Array1::zeros(features.nrows());
-        check_width(&features, self.n_features)?;
-        for (block, mut labels) in features
-            .axis_chunks_iter(Axis(0), BLOCK_ROWS)
-            .zip(labels.axis_chunks_iter_mut(Axis(0), BLOCK_ROWS))
-        {
-            let values = self.weighted_sums(block) - &self.rho;
-            for (label, values) in labels.iter_mut().zip(values.rows()) {
+        Ok(self.labels_of_values(self.decision_values(features)?.view()))
+    }
+
+    /// The label that each row of decision values (n_rows × n_problems) speaks for. The rows may be sums over several
+    /// touches of one object.
+    pub fn labels_of_values(&self, values: ArrayView2<f64>) -> Array1<usize> {
+        values
+            .rows()
+            .into_iter()
+            .map(|values| {
                 let winner = match self.multiclass {
                     Multiclass::OneVsOne => first_maximum(&self.votes(values.iter())),
                     Multiclass::OneVsRest => first_maximum(&values.to_vec()),
                 };
-                *label = self.classes[winner];
-            }
-        }
-        Ok(labels)
+                self.classes[winner]
+            })
+            .collect()
     }
 
     /// Votes per class, as LIBSVM counts them: a value above 0 is for the positive class, any other for the negative.
