@@ -92,13 +92,13 @@ fn a_chosen_c_is_the_most_accurate_and_the_smaller_on_a_tie() {
         ..Classifier::new(ClassifierKind::LinearSvm)
     };
     let model = classifier.train(&data, &Seed::new(3)).unwrap();
-    let tried = &model.chosen().unwrap().accuracies;
+    let tried = &model.chosen().unwrap().tried;
     assert_eq!(
-        tried.iter().map(|tried| tried.0).collect::<Vec<_>>(),
+        tried.iter().map(|tried| tried.c).collect::<Vec<_>>(),
         [1e-5, 0.1, 1.0, 10.0]
     );
-    let best = tried.iter().map(|tried| tried.1).fold(0.0, f64::max);
-    let smallest = tried.iter().find(|tried| tried.1 == best).unwrap().0;
+    let best = tried.iter().map(|tried| tried.accuracy).fold(0.0, f64::max);
+    let smallest = tried.iter().find(|tried| tried.accuracy == best).unwrap().c;
     assert_eq!(model.c(), smallest);
     // The model is the one of that C on all training rows.
     let fixed = Classifier {

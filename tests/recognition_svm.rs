@@ -3,7 +3,7 @@
 
 use bubbletouch::recognition::dataset::{Dataset, dataset};
 use bubbletouch::recognition::kernel::{Gamma, Kernel};
-use bubbletouch::recognition::svm::{BinaryProblem, Multiclass, SvmParams};
+use bubbletouch::recognition::svm::{BinaryProblem, Multiclass, Solver, SvmParams};
 use linfa::DatasetBase;
 use linfa::traits::{Fit, Predict};
 use linfa_svm::Svm;
@@ -300,7 +300,11 @@ fn decisions_by_matrix_products_equal_those_of_linfa_svm() {
     let (train, test) = fixed();
     let gamma = 1.0 / (4.0 * train.records.var(0.0));
     for kernel in [Kernel::Linear, RBF, CUBIC] {
-        let model = params(kernel, 2.0, 1e-3).train(&train).unwrap();
+        let params = SvmParams {
+            solver: Solver::Linfa,
+            ..params(kernel, 2.0, 1e-3)
+        };
+        let model = params.train(&train).unwrap();
         let values = model.decision_values(test.view()).unwrap();
         for (column, problem) in model.problems().iter().enumerate() {
             let mut records = train.records.select(Axis(0), &problem.rows);

@@ -1,64 +1,347 @@
-//! The choice of C on a validation split of the training rows; the test rows are never seen.
+//! The choice of C and γ by cross-validation on training rows; test rows are never seen.
 
-use crate::recognition::dataset::{Dataset, rows};
-use crate::recognition::metrics::ConfusionMatrix;
-use crate::recognition::scaling::Scaling;
+use ndarray::Array2;
+
+use crate::recognition::dataset::{Dataset, check_features, check_labels, distinct, rows};
+use crate::recognition::grid::Grid;
+use crate::recognition::kernel::{Gamma, Kernel, KernelFunction};
+use crate::recognition::scalar::Scalar;
 use crate::recognition::split::Split;
-use crate::recognition::svm::SvmParams;
+use crate::recognition::svm::{Solver, SvmParams};
+use crate::recognition::training::{Goal, Sorted, centre};
 use crate::{Error, Result};
 
-/// A chosen C and what it was chosen from.
+/// What may be chosen.
 #[derive(Clone, Debug, PartialEq)]
-pub struct ChosenC {
-    /// The chosen C.
-    pub c: f64,
-    /// Every candidate, ascending, with its accuracy on the validation rows.
-    pub accuracies: Vec<(f64, f64)>,
+pub struct Candidates {
+    /// Values of C; at least one.
+    pub c: Vec<f64>,
+    /// Values of γ, as multiples of [`Gamma::Scale`]'s; empty: γ as it is. A linear kernel has none.
+    pub gamma_scales: Vec<f64>,
 }
 
-/// Tries every candidate C and keeps the most accurate on the validation rows; the smaller C on a tie (more
-/// regularised, and faster).
+/// A candidate and how it did.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Tried {
+    /// C.
+    pub c: f64,
+    /// γ as a number; `None` for a linear kernel.
+    pub gamma: Option<f64>,
+    /// Validation rows recognised, over all folds, as a fraction.
+    pub accuracy: f64,
+}
+
+/// What was chosen, and from what.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Chosen {
+    /// The most accurate candidate.
+    pub best: Tried,
+    /// All of them: γ by γ, ascending, C ascending within.
+    pub tried: Vec<Tried>,
+    /// Solves, of all folds and candidates, that stopped at the iteration cap.
+    pub n_capped: usize,
+}
+
+/// Tries every C with every γ on every fold, and keeps the most accurate; of equals the smaller γ, then the smaller C
+/// (smoother, more regularised, and faster).
 ///
-/// `training` holds training rows alone, and `validation` splits those. The scaling is fitted on the validation
-/// split's training rows, so validation rows are as unseen as test rows will be. A duplicated candidate counts once.
+/// `training` holds scaled training rows alone; the scaling may have seen all of them (not their labels). `folds` split
+/// those rows. The whole grid is evaluated on one matrix of products. A duplicated candidate counts once.
 ///
 /// # Errors
-/// No candidates, a candidate out of range, a row beyond the training rows, or what training refuses.
-pub fn choose_c(
+/// No candidates or one out of range, no folds, a row beyond the training rows, a fold whose training rows have a single
+/// class, what [`SvmParams::train`] refuses, or more rows than the matrix has memory for.
+pub fn choose(
     params: &SvmParams,
-    scaling: Scaling,
     training: &Dataset,
-    validation: &Split,
-    candidates: &[f64],
-) -> Result<ChosenC> {
-    let mut candidates = candidates.to_vec();
-    candidates.sort_by(f64::total_cmp);
-    candidates.dedup();
-    if candidates.is_empty() {
-        return Err(Error::input("C", "no candidates", "at least one is needed"));
-    }
-    let mut fitting = rows(training, &validation.train)?;
-    let mut held_out = rows(training, &validation.test)?;
-    let scaling = scaling.fit(fitting.records.view())?;
-    fitting.records = scaling.apply(fitting.records.view())?;
-    held_out.records = scaling.apply(held_out.records.view())?;
-    let n_classes = training.targets.iter().max().map_or(0, |max| max + 1);
-    let accuracies = candidates
-        .into_iter()
-        .map(|c| {
-            let model = SvmParams { c, ..*params }.train(&fitting)?;
-            let predicted = model.labels(held_out.records.view())?;
-            let truth = held_out.targets.view();
-            let confusion = ConfusionMatrix::new(truth, predicted.view(), n_classes)?;
-            Ok((c, confusion.accuracy()))
+    folds: &[Split],
+    candidates: &Candidates,
+) -> Result<Chosen> {
+    let path = ascending(&candidates.c);
+    params.check(&path)?;
+    check_features(training.records.view())?;
+    check_labels(training.records.nrows(), training.targets.view())?;
+    check_folds(training, folds)?;
+    let kernels = kernels(params, training, &candidates.gamma_scales)?;
+    let (counts, n_capped) = match params.solver {
+        Solver::Smo => on_one_matrix(params, training, folds, &kernels, &path)?,
+        _ => one_by_one(params, training, folds, &kernels, &path)?,
+    };
+    let n_validated: usize = folds.iter().map(|fold| fold.test.len()).sum();
+    let tried: Vec<Tried> = counts
+        .indexed_iter()
+        .map(|((kernel, c), &n_correct)| Tried {
+            c: path[c],
+            gamma: gamma_of(&kernels[kernel]),
+            accuracy: n_correct as f64 / n_validated as f64,
         })
-        .collect::<Result<Vec<_>>>()?;
-    let best = accuracies.iter().fold(
-        accuracies[0],
-        |best, &tried| if tried.1 > best.1 { tried } else { best },
-    );
-    Ok(ChosenC {
-        c: best.0,
-        accuracies,
+        .collect();
+    let better = |best: Tried, &tried: &Tried| {
+        if tried.accuracy > best.accuracy {
+            tried
+        } else {
+            best
+        }
+    };
+    Ok(Chosen {
+        best: tried.iter().fold(tried[0], better),
+        tried,
+        n_capped,
     })
+}
+
+fn ascending(values: &[f64]) -> Vec<f64> {
+    let mut values = values.to_vec();
+    values.sort_by(f64::total_cmp);
+    values.dedup();
+    values
+}
+
+fn gamma_of(kernel: &KernelFunction) -> Option<f64> {
+    match *kernel {
+        KernelFunction::Linear => None,
+        KernelFunction::Rbf { gamma } | KernelFunction::Polynomial { gamma, .. } => Some(gamma),
+    }
+}
+
+/// The kernel with every γ that is asked for, ascending.
+fn kernels(params: &SvmParams, training: &Dataset, scales: &[f64]) -> Result<Vec<KernelFunction>> {
+    if scales.is_empty() || params.kernel == Kernel::Linear {
+        return Ok(vec![params.kernel.resolve(training.records.view())?]);
+    }
+    let unit = Gamma::Scale.resolve(training.records.view())?;
+    ascending(scales)
+        .into_iter()
+        .map(|scale| {
+            let kernel = params.kernel.with_gamma(Gamma::Value(scale * unit));
+            kernel.resolve(training.records.view())
+        })
+        .collect()
+}
+
+fn check_folds(training: &Dataset, folds: &[Split]) -> Result<()> {
+    if folds.iter().all(|fold| fold.test.is_empty()) {
+        return Err(Error::input(
+            "folds",
+            "no validation rows",
+            "at least one is needed",
+        ));
+    }
+    for fold in folds {
+        for part in [&fold.train, &fold.test] {
+            rows_exist(training, part)?;
+        }
+        let labels = fold.train.iter().map(|&row| training.targets[row]);
+        let classes = distinct(labels.collect::<ndarray::Array1<_>>().view());
+        if classes.len() < 2 {
+            return Err(Error::input(
+                "folds",
+                format!("training rows of {} class", classes.len()),
+                "at least two classes are needed",
+            ));
+        }
+    }
+    Ok(())
+}
+
+fn rows_exist(training: &Dataset, part: &[usize]) -> Result<()> {
+    let n_rows = training.records.nrows();
+    match part.iter().find(|&&row| row >= n_rows) {
+        None => Ok(()),
+        Some(&row) => Err(Error::input(
+            "rows",
+            row,
+            format!("an index below {n_rows} is allowed"),
+        )),
+    }
+}
+
+/// Validation rows recognised (kernels.len() × path.len()), and capped solves.
+fn on_one_matrix(
+    params: &SvmParams,
+    training: &Dataset,
+    folds: &[Split],
+    kernels: &[KernelFunction],
+    path: &[f64],
+) -> Result<(Array2<usize>, usize)> {
+    let centre = centre(training.records.view(), &kernels[0]);
+    let is_double = kernels
+        .iter()
+        .any(|&kernel| params.wants_double(training, kernel, path, centre.view()));
+    let size = if is_double {
+        size_of::<f64>()
+    } else {
+        size_of::<f32>()
+    };
+    // Twice: products, and the kernel made of them.
+    let most = (params.memory_bytes / (2 * size)).isqrt();
+    if training.records.nrows() > most {
+        return Err(Error::input(
+            "training rows",
+            format!("{} to choose C or gamma on", training.records.nrows()),
+            format!("at most {most} fit in memory; let fewer touches take part in the choice"),
+        ));
+    }
+    Ok(if is_double {
+        grid::<f64>(params, training, folds, kernels, path)
+    } else {
+        grid::<f32>(params, training, folds, kernels, path)
+    })
+}
+
+fn grid<T: Scalar>(
+    params: &SvmParams,
+    training: &Dataset,
+    folds: &[Split],
+    kernels: &[KernelFunction],
+    path: &[f64],
+) -> (Array2<usize>, usize) {
+    let classes = distinct(training.targets.view());
+    let centre = centre(training.records.view(), &kernels[0]);
+    let sorted = Sorted::<T>::new(training, &classes, kernels[0], centre.view());
+    let goal = Goal {
+        path,
+        tolerance: params.tolerance,
+        memory: params.memory_bytes,
+    };
+    let grid = Grid {
+        sorted: &sorted,
+        data: training,
+        folds,
+        multiclass: params.multiclass,
+    };
+    grid.n_correct(kernels, goal)
+}
+
+/// The same by training a model for each fold and candidate: for solvers that share nothing, and as an oracle.
+fn one_by_one(
+    params: &SvmParams,
+    training: &Dataset,
+    folds: &[Split],
+    kernels: &[KernelFunction],
+    path: &[f64],
+) -> Result<(Array2<usize>, usize)> {
+    let mut counts = Array2::zeros((kernels.len(), path.len()));
+    let mut n_capped = 0;
+    for fold in folds {
+        let fitting = rows(training, &fold.train)?;
+        let held_out = rows(training, &fold.test)?;
+        for (kernel, mut counts) in kernels.iter().zip(counts.rows_mut()) {
+            let kernel = match gamma_of(kernel) {
+                Some(gamma) => params.kernel.with_gamma(Gamma::Value(gamma)),
+                None => params.kernel,
+            };
+            let models = SvmParams { kernel, ..*params }.train_path(&fitting, path)?;
+            for (count, model) in counts.iter_mut().zip(models) {
+                let labels = model.labels(held_out.records.view())?;
+                let pairs = labels.iter().zip(&held_out.targets);
+                *count += pairs.filter(|(a, b)| a == b).count();
+                n_capped += model.n_capped();
+            }
+        }
+    }
+    Ok((counts, n_capped))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::random::Seed;
+    use crate::recognition::dataset::dataset;
+    use crate::recognition::split::stratified_k_fold;
+    use crate::recognition::svm::Multiclass;
+    use ndarray::{Array1, Array2};
+
+    /// Three overlapping classes.
+    fn overlapping(n: usize) -> Dataset {
+        let features = Array2::from_shape_fn((n, 4), |(i, j)| {
+            (i % 3) as f64 * 0.6 + ((i * 7 + j * 13) as f64 * 1.7).sin()
+        });
+        dataset(features, Array1::from_iter((0..n).map(|i| i % 3))).unwrap()
+    }
+
+    #[test]
+    fn one_matrix_gives_the_accuracies_of_training_every_candidate() {
+        let data = overlapping(150);
+        let folds = stratified_k_fold(data.targets.view(), 3, &Seed::new(1)).unwrap();
+        let path = [0.01, 1.0, 100.0];
+        for multiclass in [Multiclass::OneVsOne, Multiclass::OneVsRest] {
+            for kernel in [
+                Kernel::Linear,
+                Kernel::Rbf {
+                    gamma: Gamma::Scale,
+                },
+            ] {
+                let params = SvmParams {
+                    kernel,
+                    multiclass,
+                    tolerance: 1e-8,
+                    ..SvmParams::default()
+                };
+                let kernels = kernels(&params, &data, &[0.3, 3.0]).unwrap();
+                let fast = on_one_matrix(&params, &data, &folds, &kernels, &path).unwrap();
+                let slow = one_by_one(&params, &data, &folds, &kernels, &path).unwrap();
+                assert_eq!(fast, slow, "{kernel:?} {multiclass:?}");
+                assert_eq!(fast.0.nrows(), if kernel == Kernel::Linear { 1 } else { 2 });
+            }
+        }
+    }
+
+    #[test]
+    fn of_equally_good_candidates_the_smoothest_is_kept() {
+        // Far apart: whatever C and gamma, everything is recognised.
+        let features = Array2::from_shape_fn((60, 2), |(i, j)| {
+            (i % 2) as f64 * 50.0 + ((i + j) as f64).sin()
+        });
+        let data = dataset(features, Array1::from_iter((0..60).map(|i| i % 2))).unwrap();
+        let folds = stratified_k_fold(data.targets.view(), 5, &Seed::new(1)).unwrap();
+        let params = SvmParams {
+            kernel: Kernel::Rbf {
+                gamma: Gamma::Scale,
+            },
+            ..SvmParams::default()
+        };
+        let candidates = Candidates {
+            c: vec![10.0, 1.0, 1.0],
+            gamma_scales: vec![2.0, 1.0],
+        };
+        let chosen = choose(&params, &data, &folds, &candidates).unwrap();
+        assert_eq!(chosen.tried.len(), 4);
+        assert_eq!(chosen.best, chosen.tried[0]);
+        assert_eq!((chosen.best.c, chosen.best.accuracy), (1.0, 1.0));
+    }
+
+    #[test]
+    fn what_cannot_be_chosen_from_is_refused() {
+        let data = overlapping(30);
+        let folds = stratified_k_fold(data.targets.view(), 3, &Seed::new(1)).unwrap();
+        let params = SvmParams::default();
+        let refuse = |params: &SvmParams, c: &[f64], folds: &[Split]| {
+            let candidates = Candidates {
+                c: c.to_vec(),
+                gamma_scales: Vec::new(),
+            };
+            choose(params, &data, folds, &candidates)
+                .unwrap_err()
+                .to_string()
+        };
+        assert!(refuse(&params, &[], &folds).starts_with("C: "));
+        assert!(refuse(&params, &[-1.0], &folds).starts_with("C: "));
+        assert!(refuse(&params, &[1.0], &[]).starts_with("folds: "));
+        let beyond = Split {
+            train: vec![0, 1, 2],
+            test: vec![30],
+        };
+        assert!(refuse(&params, &[1.0], &[beyond]).starts_with("rows: "));
+        let single = Split {
+            train: vec![0, 3],
+            test: vec![1],
+        };
+        assert!(refuse(&params, &[1.0], &[single]).starts_with("folds: "));
+        let small = SvmParams {
+            memory_bytes: 1000,
+            ..params
+        };
+        assert!(refuse(&small, &[1.0], &folds).contains("at most 7 fit"));
+    }
 }

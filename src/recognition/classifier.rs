@@ -10,7 +10,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::random::Seed;
 use crate::recognition::ClassifierKind;
-use crate::recognition::choice::{ChosenC, choose_c};
+use crate::recognition::choice::{Candidates, Chosen, choose};
 use crate::recognition::dataset::{Dataset, rows};
 use crate::recognition::kernel::{Gamma, Kernel};
 use crate::recognition::scaling::{FittedScaling, Scaling};
@@ -103,9 +103,16 @@ impl Classifier {
         match &self.c {
             Cost::Fixed(c) => self.train_with_c(training, *c, None),
             Cost::Chosen { candidates, .. } => {
-                let params = self.params(1.0);
-                let chosen = choose_c(&params, self.scaling, training, validation, candidates)?;
-                self.train_with_c(training, chosen.c, Some(chosen))
+                let scaling = self.scaling.fit(training.records.view())?;
+                let scaled = scaling.apply(training.records.view())?;
+                let scaled = Dataset::new(scaled, training.targets.clone());
+                let candidates = Candidates {
+                    c: candidates.clone(),
+                    gamma_scales: Vec::new(),
+                };
+                let folds = std::slice::from_ref(validation);
+                let chosen = choose(&self.params(1.0), &scaled, folds, &candidates)?;
+                self.train_with_c(training, chosen.best.c, Some(chosen))
             }
         }
     }
@@ -114,7 +121,7 @@ impl Classifier {
         &self,
         training: &Dataset,
         c: f64,
-        chosen: Option<ChosenC>,
+        chosen: Option<Chosen>,
     ) -> Result<TrainedClassifier> {
         let scaling = self.scaling.fit(training.records.view())?;
         let scaled = scaling.apply(training.records.view())?;
@@ -142,6 +149,7 @@ impl Classifier {
             multiclass: self.multiclass,
             c,
             tolerance: self.tolerance,
+            ..SvmParams::default()
         }
     }
 }
@@ -161,7 +169,7 @@ pub struct TrainedClassifier {
     scaling: FittedScaling,
     model: Model,
     c: f64,
-    chosen: Option<ChosenC>,
+    chosen: Option<Chosen>,
 }
 
 #[derive(Clone, Debug)]
@@ -206,7 +214,7 @@ impl TrainedClassifier {
     }
 
     /// How C was chosen, if it was.
-    pub fn chosen(&self) -> Option<&ChosenC> {
+    pub fn chosen(&self) -> Option<&Chosen> {
         self.chosen.as_ref()
     }
 

@@ -1,6 +1,6 @@
-//! Kernels of the support vector machines, and their matrices by matrix products.
+//! Kernels of the support vector machines.
 
-use ndarray::{Array2, ArrayView2, Axis, Zip};
+use ndarray::ArrayView2;
 use serde::{Deserialize, Serialize};
 
 use crate::{Error, Result};
@@ -37,6 +37,19 @@ pub enum Kernel {
 }
 
 impl Kernel {
+    /// The same kernel with another γ; a linear one has none.
+    pub fn with_gamma(self, gamma: Gamma) -> Self {
+        match self {
+            Self::Linear => Self::Linear,
+            Self::Rbf { .. } => Self::Rbf { gamma },
+            Self::Polynomial { coef0, degree, .. } => Self::Polynomial {
+                gamma,
+                coef0,
+                degree,
+            },
+        }
+    }
+
     /// The kernel with γ as a number, taken from the training features (n_rows × m).
     pub(crate) fn resolve(&self, features: ArrayView2<f64>) -> Result<KernelFunction> {
         Ok(match *self {
@@ -67,7 +80,7 @@ impl Kernel {
 }
 
 impl Gamma {
-    fn resolve(self, features: ArrayView2<f64>) -> Result<f64> {
+    pub(crate) fn resolve(self, features: ArrayView2<f64>) -> Result<f64> {
         match self {
             Self::Value(gamma) if gamma > 0.0 && gamma.is_finite() => Ok(gamma),
             Self::Value(gamma) => Err(Error::input(
@@ -92,69 +105,10 @@ pub(crate) enum KernelFunction {
     Polynomial { gamma: f64, coef0: f64, degree: i32 },
 }
 
-impl KernelFunction {
-    /// `K(a_i, b_j)` for all rows of `a` (p × m) and `b` (q × m): a p × q matrix.
-    ///
-    /// RBF distances come from `|a|² + |b|² − 2a·b`, so the rows should be centred: far from the origin, digits are lost.
-    pub(crate) fn matrix(&self, a: ArrayView2<f64>, b: ArrayView2<f64>) -> Array2<f64> {
-        let mut products = a.dot(&b.t());
-        match *self {
-            Self::Linear => {}
-            Self::Rbf { gamma } => {
-                let norms_a = squared_norms(a);
-                let norms_b = squared_norms(b);
-                Zip::from(products.rows_mut())
-                    .and(&norms_a)
-                    .for_each(|row, &norm_a| {
-                        Zip::from(row).and(&norms_b).for_each(|value, &norm_b| {
-                            let distance = (norm_a + norm_b - 2.0 * *value).max(0.0);
-                            *value = (-gamma * distance).exp();
-                        });
-                    });
-            }
-            Self::Polynomial {
-                gamma,
-                coef0,
-                degree,
-            } => products.mapv_inplace(|value| (gamma * value + coef0).powi(degree)),
-        }
-        products
-    }
-}
-
-fn squared_norms(rows: ArrayView2<f64>) -> ndarray::Array1<f64> {
-    rows.map_axis(Axis(1), |row| row.dot(&row))
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-    use ndarray::array;
-
-    #[test]
-    fn matrices_by_products_equal_the_definitions() {
-        let a = array![[0.5, -1.0, 2.0], [0.0, 0.25, 1.0]];
-        let b = array![[1.0, 1.0, 1.0], [0.5, -1.0, 2.0], [-2.0, 0.0, 0.5]];
-        let polynomial = Kernel::Polynomial {
-            gamma: Gamma::Value(0.3),
-            coef0: 1.0,
-            degree: 3,
-        };
-        let rbf = Kernel::Rbf {
-            gamma: Gamma::Value(0.3),
-        };
-        let matrices = [Kernel::Linear, rbf, polynomial]
-            .map(|kernel| kernel.resolve(a.view()).unwrap().matrix(a.view(), b.view()));
-        for i in 0..2 {
-            for j in 0..3 {
-                let dot: f64 = (0..3).map(|k| a[[i, k]] * b[[j, k]]).sum();
-                let distance: f64 = (0..3).map(|k| (a[[i, k]] - b[[j, k]]).powi(2)).sum();
-                assert!((matrices[0][[i, j]] - dot).abs() < 1e-14);
-                assert!((matrices[1][[i, j]] - (-0.3 * distance).exp()).abs() < 1e-14);
-                assert!((matrices[2][[i, j]] - (0.3 * dot + 1.0).powi(3)).abs() < 1e-13);
-            }
-        }
-    }
+    use ndarray::{Array2, array};
 
     #[test]
     fn gamma_scale_is_the_inverse_of_columns_times_variance() {

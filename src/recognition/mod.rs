@@ -9,8 +9,9 @@
 //! ever predicted. Everything is deterministic; whatever is drawn comes from a named [`Seed`](crate::random::Seed).
 //!
 //! A binary soft-margin SVM decides by the sign of `f(x) = Σ_i y_i a_i K(x_i, x) − ρ`, where the multipliers minimise
-//! `½ Σ_ij a_i a_j y_i y_j K(x_i, x_j) − Σ_i a_i` over `0 ≤ a_i ≤ C`, `Σ_i y_i a_i = 0`; [`binary`] solves it by
-//! linfa-svm, [`svm`] makes one classifier of many.
+//! `½ Σ_ij a_i a_j y_i y_j K(x_i, x_j) − Σ_i a_i` over `0 ≤ a_i ≤ C`, `Σ_i y_i a_i = 0`; our own sequential
+//! minimal optimisation solves it on Gram matrices that all problems of a data set share; [`svm`] makes one classifier of
+//! many, and can have linfa-svm solve them instead.
 //!
 //! ```
 //! use bubbletouch::random::Seed;
@@ -34,18 +35,26 @@
 
 use serde::{Deserialize, Serialize};
 
-pub mod binary;
 pub mod choice;
 pub mod classifier;
 pub mod comparison;
 pub mod dataset;
+mod decision;
+pub mod dual;
+mod grid;
 pub mod interval;
 pub mod kernel;
+mod linfa_solver;
 pub mod metrics;
+mod points;
+mod scalar;
 pub mod scaling;
+mod smo;
 pub mod split;
 pub mod svm;
 pub mod svm_model;
+mod training;
+mod voting;
 
 /// A classifier that a study can sweep.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]

@@ -1,13 +1,16 @@
 //! Soft-margin support vector machines for many classes: parameters and training.
 
 use linfa::traits::Fit;
-use ndarray::{Array1, Array2, Axis};
+use ndarray::{Array1, Array2, ArrayView1};
 use serde::{Deserialize, Serialize};
 
-use crate::recognition::binary::{DualSolution, solve};
 use crate::recognition::dataset::{Dataset, check_features, check_labels, distinct};
+use crate::recognition::dual::DualSolution;
 use crate::recognition::kernel::{Kernel, KernelFunction};
+use crate::recognition::linfa_solver;
+use crate::recognition::scalar::Scalar;
 use crate::recognition::svm_model::SvmModel;
+use crate::recognition::training::{Goal, Sorted, centre};
 use crate::{Error, Result};
 
 /// How binary classifiers make one for many classes.
@@ -24,6 +27,31 @@ pub enum Multiclass {
     OneVsRest,
 }
 
+/// What solves the binary problems.
+#[derive(
+    Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize,
+)]
+#[serde(rename_all = "snake_case")]
+pub enum Solver {
+    /// Our own sequential minimal optimisation on shared Gram matrices.
+    #[default]
+    Smo,
+    /// Dual coordinate descent: linear kernel and one-vs-rest, with a regularised bias (LIBLINEAR's problem).
+    CoordinateDescent,
+    /// linfa-svm: the same dual problem as `Smo`, much slower; an independent program to compare with.
+    Linfa,
+}
+
+/// Rows below which kernel values are always f64: it costs nothing that a person would notice.
+const SINGLE_FROM_ROWS: usize = 1000;
+/// The smallest tolerance that f32 kernel values can be trusted with.
+const SINGLE_TOLERANCE: f64 = 1e-4;
+/// The largest C · K(x, x), and the largest K(x, x), for f32: rounding of K, 6e-8 of it, is multiplied by coefficients of at
+/// most C.
+const SINGLE_MOST: f64 = 1e5;
+/// Bytes of kernel values held at once, unless asked otherwise: one-vs-rest on 16,384 rows in f32.
+pub const DEFAULT_MEMORY_BYTES: usize = 2 << 30;
+
 /// What a soft-margin SVM is trained with. Implements linfa's [`Fit`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SvmParams {
@@ -32,22 +60,28 @@ pub struct SvmParams {
     /// How binary classifiers make one for many classes.
     pub multiclass: Multiclass,
     /// C > 0: what a unit of margin violation costs. Larger fits the training rows more closely and trains longer.
-    /// A binary problem may take up to 10 million steps: with few measurements of overlapping classes, a linear kernel
-    /// at C = 1,000 trains 25 times longer than at C = 10 (20 classes of 30 rows, m = 16: 4.8 against 0.2 s).
+    /// A binary problem may take up to 10 million iterations, or 100 a row.
     pub c: f64,
     /// How far the optimality (KKT) conditions may be violated when the solver stops, in units of the decision value;
     /// above 0. LIBSVM's default is 1e-3.
     pub tolerance: f64,
+    /// What solves the binary problems.
+    pub solver: Solver,
+    /// Most bytes of kernel values held at once (apart from linfa's). Where they do not fit, rows are computed when asked
+    /// for and the latest kept: slower, the same solution.
+    pub memory_bytes: usize,
 }
 
 impl Default for SvmParams {
-    /// Linear, one-vs-one, C = 1, tolerance 1e-3.
+    /// Linear, one-vs-one, C = 1, tolerance 1e-3, our own solver within 2 GiB.
     fn default() -> Self {
         Self {
             kernel: Kernel::Linear,
             multiclass: Multiclass::OneVsOne,
             c: 1.0,
             tolerance: 1e-3,
+            solver: Solver::Smo,
+            memory_bytes: DEFAULT_MEMORY_BYTES,
         }
     }
 }
@@ -72,10 +106,19 @@ impl SvmParams {
     ///
     /// # Errors
     /// C, tolerance or a kernel parameter out of range; empty data, a NaN or infinite feature (named by row and
-    /// column), another number of labels than rows, a single class, or more than
-    /// [`MAX_BINARY_ROWS`](crate::recognition::binary::MAX_BINARY_ROWS) rows in a binary problem.
+    /// column), another number of labels than rows, a single class; what the [`Solver`] does not do.
     pub fn train(&self, data: &Dataset) -> Result<SvmModel> {
-        self.check()?;
+        let mut models = self.train_path(data, &[self.c])?;
+        Ok(models.swap_remove(0))
+    }
+
+    /// Trains for several C (in place of `self.c`) from the same kernel values, each solution starting from that of the
+    /// next smaller C; the models come in the order asked.
+    ///
+    /// # Errors
+    /// As [`train`](Self::train).
+    pub fn train_path(&self, data: &Dataset, path: &[f64]) -> Result<Vec<SvmModel>> {
+        self.check(path)?;
         check_features(data.records.view())?;
         check_labels(data.records.nrows(), data.targets.view())?;
         let classes = distinct(data.targets.view());
@@ -87,21 +130,113 @@ impl SvmParams {
             ));
         }
         let kernel = self.kernel.resolve(data.records.view())?;
-        let problems = match self.multiclass {
-            Multiclass::OneVsOne => self.solve_pairs(data, &classes, &kernel)?,
-            Multiclass::OneVsRest => self.solve_against_rest(data, &classes, &kernel)?,
+        let mut ascending = path.to_vec();
+        ascending.sort_by(f64::total_cmp);
+        ascending.dedup();
+        let trained = match self.solver {
+            Solver::Smo => self.train_smo(data, &classes, kernel, &ascending),
+            Solver::Linfa => self.train_linfa(data, &classes, kernel, &ascending)?,
+            Solver::CoordinateDescent => return Err(coordinate_descent_is_linear_only()),
         };
-        Ok(SvmModel::new(
-            data,
-            classes,
-            kernel,
-            self.multiclass,
-            problems,
-        ))
+        let at = |c: f64| ascending.partition_point(|&other| other < c);
+        Ok(path.iter().map(|&c| trained[at(c)].clone()).collect())
     }
 
-    fn check(&self) -> Result<()> {
-        for (name, value) in [("C", self.c), ("tolerance", self.tolerance)] {
+    fn train_smo(
+        &self,
+        data: &Dataset,
+        classes: &[usize],
+        kernel: KernelFunction,
+        path: &[f64],
+    ) -> Vec<SvmModel> {
+        let centre = centre(data.records.view(), &kernel);
+        if self.wants_double(data, kernel, path, centre.view()) {
+            let sorted = Sorted::<f64>::new(data, classes, kernel, centre.view());
+            self.solve_sorted(&sorted, data, classes, kernel, path)
+        } else {
+            let sorted = Sorted::<f32>::new(data, classes, kernel, centre.view());
+            self.solve_sorted(&sorted, data, classes, kernel, path)
+        }
+    }
+
+    /// Whether f32 kernel values would not do: few rows (then f64 costs nothing), a tolerance near f32's rounding, or
+    /// coefficients that multiply that rounding.
+    pub(crate) fn wants_double(
+        &self,
+        data: &Dataset,
+        kernel: KernelFunction,
+        path: &[f64],
+        centre: ArrayView1<f64>,
+    ) -> bool {
+        let largest = match kernel {
+            KernelFunction::Polynomial { .. } => return true,
+            KernelFunction::Rbf { .. } => 1.0,
+            KernelFunction::Linear => {
+                let norm = |row: ArrayView1<f64>| (&row - &centre).mapv(|x| x * x).sum();
+                let norms = data.records.rows().into_iter().map(norm);
+                norms.fold(0.0, f64::max)
+            }
+        };
+        let c = path.iter().copied().fold(0.0, f64::max);
+        data.records.nrows() < SINGLE_FROM_ROWS
+            || self.tolerance < SINGLE_TOLERANCE
+            || c * largest > SINGLE_MOST
+            || largest > SINGLE_MOST
+    }
+
+    fn solve_sorted<T: Scalar>(
+        &self,
+        sorted: &Sorted<T>,
+        data: &Dataset,
+        classes: &[usize],
+        kernel: KernelFunction,
+        path: &[f64],
+    ) -> Vec<SvmModel> {
+        let goal = Goal {
+            path,
+            tolerance: self.tolerance,
+            memory: self.memory_bytes,
+        };
+        let trained = match self.multiclass {
+            Multiclass::OneVsOne => sorted.one_vs_one(goal),
+            Multiclass::OneVsRest => sorted.one_vs_rest(goal),
+        };
+        trained
+            .into_iter()
+            .map(|problems| SvmModel::new::<T>(data, classes, kernel, self.multiclass, problems))
+            .collect()
+    }
+
+    fn train_linfa(
+        &self,
+        data: &Dataset,
+        classes: &[usize],
+        kernel: KernelFunction,
+        path: &[f64],
+    ) -> Result<Vec<SvmModel>> {
+        path.iter()
+            .map(|&c| {
+                let problems = linfa_solver::solve_all(
+                    data,
+                    classes,
+                    &kernel,
+                    self.multiclass,
+                    (c, self.tolerance),
+                )?;
+                let multiclass = self.multiclass;
+                Ok(SvmModel::new::<f64>(
+                    data, classes, kernel, multiclass, problems,
+                ))
+            })
+            .collect()
+    }
+
+    pub(crate) fn check(&self, path: &[f64]) -> Result<()> {
+        if path.is_empty() {
+            return Err(Error::input("C", "none", "at least one is needed"));
+        }
+        let penalties = path.iter().map(|&c| ("C", c));
+        for (name, value) in penalties.chain([("tolerance", self.tolerance)]) {
             if !(value > 0.0 && value.is_finite()) {
                 return Err(Error::input(
                     name,
@@ -112,71 +247,14 @@ impl SvmParams {
         }
         Ok(())
     }
+}
 
-    fn solve_pairs(
-        &self,
-        data: &Dataset,
-        classes: &[usize],
-        kernel: &KernelFunction,
-    ) -> Result<Vec<BinaryProblem>> {
-        let rows_of: Vec<Vec<usize>> = classes
-            .iter()
-            .map(|&class| {
-                (0..data.targets.len())
-                    .filter(|&row| data.targets[row] == class)
-                    .collect()
-            })
-            .collect();
-        let mut problems = Vec::with_capacity(classes.len() * (classes.len() - 1) / 2);
-        for (a, &positive) in classes.iter().enumerate() {
-            for (b, &negative) in classes.iter().enumerate().skip(a + 1) {
-                let rows = [rows_of[a].as_slice(), &rows_of[b]].concat();
-                let is_positive: Vec<bool> =
-                    (0..rows.len()).map(|i| i < rows_of[a].len()).collect();
-                let features = data.records.select(Axis(0), &rows);
-                let solution = solve(
-                    features.view(),
-                    &is_positive,
-                    kernel,
-                    self.c,
-                    self.tolerance,
-                )?;
-                problems.push(BinaryProblem {
-                    positive,
-                    negative: Some(negative),
-                    rows,
-                    solution,
-                });
-            }
-        }
-        Ok(problems)
-    }
-
-    fn solve_against_rest(
-        &self,
-        data: &Dataset,
-        classes: &[usize],
-        kernel: &KernelFunction,
-    ) -> Result<Vec<BinaryProblem>> {
-        classes
-            .iter()
-            .map(|&positive| {
-                let is_positive: Vec<bool> = data
-                    .targets
-                    .iter()
-                    .map(|&label| label == positive)
-                    .collect();
-                let features = data.records.view();
-                let solution = solve(features, &is_positive, kernel, self.c, self.tolerance)?;
-                Ok(BinaryProblem {
-                    positive,
-                    negative: None,
-                    rows: (0..data.targets.len()).collect(),
-                    solution,
-                })
-            })
-            .collect()
-    }
+fn coordinate_descent_is_linear_only() -> Error {
+    Error::input(
+        "solver",
+        "coordinate_descent",
+        "smo or linfa solve the dual problem of a kernel; coordinate_descent is for linear SVMs, one-vs-rest",
+    )
 }
 
 impl Fit<Array2<f64>, Array1<usize>, Error> for SvmParams {

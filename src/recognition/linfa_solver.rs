@@ -1,38 +1,76 @@
-//! One binary problem (class against class, or class against the rest), solved by linfa-svm.
+//! One binary problem (class against class, or class against the rest), solved by linfa-svm: the only file that calls it.
 //!
-//! The only file that calls linfa-svm. The dual problem: minimise `½ Σ_ij a_i a_j y_i y_j K(x_i, x_j) − Σ_i a_i` over
-//! `0 ≤ a_i ≤ C`, `Σ_i y_i a_i = 0`, with y = +1 for positive rows and −1 for the others. The decision function is
-//! `f(x) = Σ_i y_i a_i K(x_i, x) − ρ`.
+//! It is kept as a choice and as an oracle: an independent program for the same dual problem.
 
 use linfa::DatasetBase;
 use linfa::traits::Fit;
 use linfa_svm::Svm;
-use ndarray::{Array1, Array2, ArrayView2, s};
+use ndarray::{Array1, Array2, ArrayView2, Axis, s};
 
+use crate::recognition::dataset::Dataset;
+use crate::recognition::dual::DualSolution;
 use crate::recognition::kernel::KernelFunction;
+use crate::recognition::points::Points;
+use crate::recognition::svm::{BinaryProblem, Multiclass};
 use crate::{Error, Result};
 
 /// Most rows of one binary problem: linfa-svm holds a dense n × n kernel of f64, 2 GiB at this n. Larger would not fit
 /// beside the rest in 4 GiB; smaller would refuse one-vs-rest on sets that fit.
 pub const MAX_BINARY_ROWS: usize = 16_384;
 
+/// Rows of the kernel that the objective is summed over at once: 64 MiB at the most rows.
+const OBJECTIVE_ROWS: usize = 512;
+
 /// A pivot below this fraction of the kernel's largest diagonal entry ends the factor: the rest of the matrix is
 /// rounding. Larger would change the problem by more than the solver's tolerance; smaller keeps columns of noise.
 const RANK_TOLERANCE: f64 = 1e-13;
 
-/// The solution of one binary dual problem.
-#[derive(Clone, Debug, PartialEq)]
-pub struct DualSolution {
-    /// `y_i a_i`, per row of the problem: positive for positive rows, 0 for rows that are no support vectors.
-    pub coefficients: Vec<f64>,
-    /// ρ.
-    pub rho: f64,
-    /// Whether the solver stopped at its iteration cap (10 million) short of its tolerance.
-    pub is_capped: bool,
+/// Solves all problems of a multi-class SVM, for a C and a tolerance.
+pub(crate) fn solve_all(
+    data: &Dataset,
+    classes: &[usize],
+    kernel: &KernelFunction,
+    multiclass: Multiclass,
+    (c, tolerance): (f64, f64),
+) -> Result<Vec<BinaryProblem>> {
+    let labels = data.targets.view();
+    let rows_of = |wanted: &dyn Fn(usize) -> bool| -> Vec<usize> {
+        (0..labels.len())
+            .filter(|&row| wanted(labels[row]))
+            .collect()
+    };
+    let sides: Vec<(usize, Option<usize>)> = match multiclass {
+        Multiclass::OneVsOne => classes
+            .iter()
+            .enumerate()
+            .flat_map(|(a, &first)| classes[a + 1..].iter().map(move |&b| (first, Some(b))))
+            .collect(),
+        Multiclass::OneVsRest => classes.iter().map(|&class| (class, None)).collect(),
+    };
+    sides
+        .into_iter()
+        .map(|(positive, negative)| {
+            let rows = match negative {
+                Some(negative) => {
+                    let sides = [positive, negative].map(|class| rows_of(&|label| label == class));
+                    sides.concat()
+                }
+                None => rows_of(&|_| true),
+            };
+            let is_positive: Vec<bool> = rows.iter().map(|&row| labels[row] == positive).collect();
+            let features = data.records.select(Axis(0), &rows);
+            Ok(BinaryProblem {
+                positive,
+                negative,
+                solution: solve(features.view(), &is_positive, kernel, c, tolerance)?,
+                rows,
+            })
+        })
+        .collect()
 }
 
 /// Solves one binary problem on these rows (n × m).
-pub(crate) fn solve(
+fn solve(
     features: ArrayView2<f64>,
     is_positive: &[bool],
     kernel: &KernelFunction,
@@ -51,7 +89,7 @@ pub(crate) fn solve(
         .pos_neg_weights(c, c)
         .eps(tolerance);
     let (records, params) = if features.ncols() > n_rows {
-        let matrix = kernel.matrix(features, features);
+        let matrix = gram(features, kernel);
         (factor(&matrix), params.linear_kernel())
     } else {
         match *kernel {
@@ -77,8 +115,37 @@ pub(crate) fn solve(
     Ok(DualSolution {
         is_capped: stopped_at_cap(&svm),
         rho: svm.rho,
+        objective: objective(features, kernel, &svm.alpha),
+        violation: None,
+        n_iterations: None,
         coefficients: svm.alpha,
     })
+}
+
+/// `Σ |β| − ½ β K β`, a block of rows at a time; linfa-svm keeps its own to itself.
+fn objective(features: ArrayView2<f64>, kernel: &KernelFunction, beta: &[f64]) -> f64 {
+    let origin = Array1::zeros(features.ncols());
+    let points = Points::<f64>::new(features, origin.view());
+    let weights = Array1::from(beta.to_vec());
+    let blocks = (0..points.len()).step_by(OBJECTIVE_ROWS);
+    let quadratic: f64 = blocks
+        .map(|start| {
+            let rows = start..(start + OBJECTIVE_ROWS).min(points.len());
+            let products = points
+                .range(rows.clone())
+                .kernel(points.all(), kernel)
+                .dot(&weights);
+            products.dot(&weights.slice(s![rows]))
+        })
+        .sum();
+    weights.mapv(f64::abs).sum() - 0.5 * quadratic
+}
+
+/// K of these rows, n × n.
+fn gram(features: ArrayView2<f64>, kernel: &KernelFunction) -> Array2<f64> {
+    let origin = Array1::zeros(features.ncols());
+    let points = Points::<f64>::new(features, origin.view());
+    points.all().kernel(points.all(), kernel)
 }
 
 /// linfa-svm keeps the reason for stopping private; its `Display` is where it tells.
@@ -134,7 +201,7 @@ mod tests {
         let copy = features.row(3).to_owned();
         features.row_mut(17).assign(&copy);
         for kernel in [KernelFunction::Linear, KernelFunction::Rbf { gamma: 0.02 }] {
-            let matrix = kernel.matrix(features.view(), features.view());
+            let matrix = gram(features.view(), &kernel);
             let factor = factor(&matrix);
             assert!(
                 factor.ncols() < 30,
@@ -172,9 +239,7 @@ mod tests {
             // With a linear kernel in 5 dimensions the coefficients need not be unique; the hyperplane is.
             let sums = |solution: &DualSolution| {
                 let coefficients = Array1::from(solution.coefficients.clone());
-                kernel
-                    .matrix(narrow.view(), narrow.view())
-                    .dot(&coefficients)
+                gram(narrow.view(), &kernel).dot(&coefficients)
             };
             let difference = sums(&direct) - sums(&factored);
             assert!(

@@ -1,0 +1,193 @@
+//! Rows of features in the precision that kernels are computed in, and their kernel values by matrix products.
+
+use std::ops::Range;
+
+use ndarray::{Array1, Array2, ArrayView1, ArrayView2, Axis, Zip, s};
+
+use crate::recognition::kernel::KernelFunction;
+use crate::recognition::scalar::Scalar;
+
+/// Rows (n × m) moved to a centre, with their squared norms.
+///
+/// The linear and the RBF kernel may be taken about any centre: a constant added to all features changes no RBF distance,
+/// and of a linear decision function only ρ, since the coefficients sum to zero. About the mean, products are small and
+/// keep their digits.
+#[derive(Clone, Debug)]
+pub(crate) struct Points<T> {
+    /// n × m.
+    values: Array2<T>,
+    /// `|x|²` per row.
+    norms: Array1<T>,
+}
+
+impl<T: Scalar> Points<T> {
+    /// Features (n × m) less the centre (m).
+    pub fn new(features: ArrayView2<f64>, centre: ArrayView1<f64>) -> Self {
+        let mut values = Array2::zeros(features.raw_dim());
+        Zip::from(values.rows_mut())
+            .and(features.rows())
+            .for_each(|to, from| {
+                Zip::from(to)
+                    .and(from)
+                    .and(centre)
+                    .for_each(|to, &from, &centre| *to = T::of(from - centre));
+            });
+        let norms = values.map_axis(Axis(1), |row| row.dot(&row));
+        Self { values, norms }
+    }
+
+    /// n.
+    pub fn len(&self) -> usize {
+        self.values.nrows()
+    }
+
+    /// Some rows, by number.
+    pub fn select(&self, rows: &[usize]) -> Self {
+        Self {
+            values: self.values.select(Axis(0), rows),
+            norms: self.norms.select(Axis(0), rows),
+        }
+    }
+
+    /// All of them.
+    pub fn all(&self) -> PointsView<'_, T> {
+        self.range(0..self.len())
+    }
+
+    /// Some of them, by range.
+    pub fn range(&self, rows: Range<usize>) -> PointsView<'_, T> {
+        PointsView {
+            values: self.values.slice(s![rows.clone(), ..]),
+            norms: self.norms.slice(s![rows]),
+        }
+    }
+}
+
+/// Some [`Points`].
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct PointsView<'a, T> {
+    /// n × m.
+    pub values: ArrayView2<'a, T>,
+    norms: ArrayView1<'a, T>,
+}
+
+impl<T: Scalar> PointsView<'_, T> {
+    /// `K(x, x)` per row.
+    pub fn diagonal(&self, kernel: &KernelFunction) -> Vec<T> {
+        self.norms
+            .iter()
+            .map(|&norm| match *kernel {
+                KernelFunction::Linear => norm,
+                KernelFunction::Rbf { .. } => T::one(),
+                KernelFunction::Polynomial {
+                    gamma,
+                    coef0,
+                    degree,
+                } => polynomial(norm, gamma, coef0, degree),
+            })
+            .collect()
+    }
+
+    /// `x_i · z_j`: n × n of the others.
+    pub fn products(&self, others: PointsView<T>) -> Array2<T> {
+        self.values.dot(&others.values.t())
+    }
+
+    /// `K(x_i, z_j)`: n × n of the others.
+    pub fn kernel(&self, others: PointsView<T>, kernel: &KernelFunction) -> Array2<T> {
+        let mut values = self.products(others);
+        self.apply(&mut values, others, kernel);
+        values
+    }
+
+    /// Turns products with the others into kernel values, in place.
+    pub fn apply(&self, products: &mut Array2<T>, others: PointsView<T>, kernel: &KernelFunction) {
+        match *kernel {
+            KernelFunction::Linear => {}
+            KernelFunction::Rbf { gamma } => {
+                let norms = others.norms.to_vec();
+                for (mut row, &norm) in products.rows_mut().into_iter().zip(self.norms) {
+                    let row = row.as_slice_mut().expect("a product is stored row by row");
+                    distances(row, norm, &norms);
+                    T::exponentials(row, gamma);
+                }
+            }
+            KernelFunction::Polynomial {
+                gamma,
+                coef0,
+                degree,
+            } => products.mapv_inplace(|value| polynomial(value, gamma, coef0, degree)),
+        }
+    }
+}
+
+fn polynomial<T: Scalar>(product: T, gamma: f64, coef0: f64, degree: i32) -> T {
+    T::of((gamma * product.wide() + coef0).powi(degree))
+}
+
+/// `|x|² + |z|² − 2 x·z` in place of each product, not below 0.
+#[multiversion::multiversion(targets("x86_64+avx2+fma"))]
+fn distances<T: Scalar>(products: &mut [T], norm: T, norms: &[T]) {
+    let two = T::one() + T::one();
+    for (value, &other) in products.iter_mut().zip(norms) {
+        let distance = norm + other - two * *value;
+        *value = if distance > T::zero() {
+            distance
+        } else {
+            T::zero()
+        };
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use ndarray::array;
+
+    #[test]
+    fn kernels_by_products_equal_their_definitions_in_both_precisions() {
+        let a = array![[0.5, -1.0, 2.0], [0.0, 0.25, 1.0]];
+        let b = array![[1.0, 1.0, 1.0], [0.5, -1.0, 2.0], [-2.0, 0.0, 0.5]];
+        let polynomial = KernelFunction::Polynomial {
+            gamma: 0.3,
+            coef0: 1.0,
+            degree: 3,
+        };
+        let rbf = KernelFunction::Rbf { gamma: 0.3 };
+        for kernel in [KernelFunction::Linear, rbf, polynomial] {
+            let double = matrix::<f64>(&a, &b, &kernel);
+            let single = matrix::<f32>(&a, &b, &kernel);
+            for ((i, j), &value) in double.indexed_iter() {
+                let dot: f64 = (0..3).map(|k| a[[i, k]] * b[[j, k]]).sum();
+                let distance: f64 = (0..3).map(|k| (a[[i, k]] - b[[j, k]]).powi(2)).sum();
+                let expected = match kernel {
+                    KernelFunction::Linear => dot,
+                    KernelFunction::Rbf { .. } => (-0.3 * distance).exp(),
+                    KernelFunction::Polynomial { .. } => (0.3 * dot + 1.0).powi(3),
+                };
+                assert!((value - expected).abs() < 1e-13, "{kernel:?}");
+                assert!(
+                    (f64::from(single[[i, j]]) - expected).abs() < 1e-6,
+                    "{kernel:?}"
+                );
+            }
+        }
+    }
+
+    fn matrix<T: Scalar>(a: &Array2<f64>, b: &Array2<f64>, kernel: &KernelFunction) -> Array2<T> {
+        let origin = Array1::zeros(3);
+        let [a, b] = [a, b].map(|rows| Points::<T>::new(rows.view(), origin.view()));
+        a.all().kernel(b.all(), kernel)
+    }
+
+    #[test]
+    fn the_centre_changes_no_distance() {
+        let rows = array![[1e6, 1.0], [1e6 + 1.0, 3.0]];
+        let centre = array![1e6, 2.0];
+        let points = Points::<f32>::new(rows.view(), centre.view());
+        let kernel = KernelFunction::Rbf { gamma: 0.5 };
+        let values = points.all().kernel(points.all(), &kernel);
+        assert!((f64::from(values[[0, 1]]) - (-2.5_f64).exp()).abs() < 1e-7);
+        assert_eq!(points.all().diagonal(&kernel), [1.0, 1.0]);
+    }
+}

@@ -1,0 +1,312 @@
+//! Gram matrices as the solver reads them: two rows at a time, the diagonal, a weighted sum of rows, a part.
+
+use ndarray::{Array2, ArrayView1, ArrayView2, Axis};
+
+use super::passes::padded;
+use crate::recognition::kernel::KernelFunction;
+use crate::recognition::points::Points;
+use crate::recognition::scalar::Scalar;
+
+/// Rows and columns transposed at once.
+const TILE: usize = 16;
+
+/// K of one binary problem, n × n, symmetric and positive semidefinite. Rows are padded to whole lanes with zeros.
+pub(crate) trait Gram<T> {
+    /// n.
+    fn len(&self) -> usize;
+    /// Rows i and j.
+    fn rows(&mut self, i: usize, j: usize) -> (&[T], &[T]);
+    /// Row i and the diagonal, padded like a row.
+    fn row_and_diagonal(&mut self, i: usize) -> (&[T], &[T]);
+    /// `K β`, summed in f64 (n values).
+    fn times(&self, beta: &[f64]) -> Vec<f64>;
+    /// Whether a part of this many rows would fit in memory.
+    fn fits(&self, n: usize) -> bool;
+    /// The rows and columns at these indices.
+    fn part(&self, indices: &[usize]) -> Dense<T>;
+}
+
+/// A Gram matrix that is held whole.
+#[derive(Clone, Debug)]
+pub(crate) struct Dense<T> {
+    n: usize,
+    stride: usize,
+    /// n rows of `stride` values.
+    values: Vec<T>,
+    diagonal: Vec<T>,
+}
+
+impl<T> Default for Dense<T> {
+    /// No rows yet.
+    fn default() -> Self {
+        Self {
+            n: 0,
+            stride: 0,
+            values: Vec::new(),
+            diagonal: Vec::new(),
+        }
+    }
+}
+
+impl<T: Scalar> Dense<T> {
+    /// Bytes that a matrix of n rows takes.
+    pub fn bytes(n: usize) -> usize {
+        n * padded(n) * size_of::<T>()
+    }
+
+    /// Takes on a new matrix of n rows, in the memory of the old one; `fill` writes the n values of each row.
+    pub fn refill(&mut self, n: usize, mut fill: impl FnMut(usize, &mut [T])) {
+        self.n = n;
+        self.stride = padded(n);
+        self.values.clear();
+        self.values.resize(n * self.stride, T::zero());
+        for (i, row) in self.values.chunks_exact_mut(self.stride.max(1)).enumerate() {
+            fill(i, &mut row[..n]);
+        }
+        self.diagonal.clear();
+        self.diagonal
+            .extend((0..n).map(|i| self.values[i * self.stride + i]));
+        self.diagonal.resize(self.stride, T::zero());
+    }
+
+    /// K of two classes from its blocks: within the first, between them (first × second), within the second.
+    pub fn of_blocks(
+        &mut self,
+        first: ArrayView2<T>,
+        across: ArrayView2<T>,
+        second: ArrayView2<T>,
+    ) {
+        let (n_first, n_second) = across.dim();
+        self.refill(n_first + n_second, |i, row| {
+            let (left, right) = row.split_at_mut(n_first);
+            if i < n_first {
+                copy(left, &first.row(i));
+                copy(right, &across.row(i));
+            } else {
+                copy(right, &second.row(i - n_first));
+            }
+        });
+        self.mirror(n_first);
+    }
+
+    /// Copies what is above the diagonal block of the first `n_first` rows to below it, in tiles that stay in the cache.
+    fn mirror(&mut self, n_first: usize) {
+        let (n, stride) = (self.n, self.stride);
+        let (above, below) = self.values.split_at_mut(n_first * stride);
+        for left in (0..n_first).step_by(TILE) {
+            for top in (n_first..n).step_by(TILE) {
+                for j in top..(top + TILE).min(n) {
+                    let row = &mut below[(j - n_first) * stride..][..n_first];
+                    for (i, to) in row.iter_mut().enumerate().skip(left).take(TILE) {
+                        *to = above[i * stride + j];
+                    }
+                }
+            }
+        }
+    }
+
+    /// A whole matrix.
+    pub fn of_whole(&mut self, whole: ArrayView2<T>) {
+        self.refill(whole.nrows(), |i, to| copy(to, &whole.row(i)));
+    }
+
+    /// K of some rows of a larger one.
+    pub fn of_rows(&mut self, whole: ArrayView2<T>, rows: &[usize]) {
+        let whole = whole.as_standard_layout();
+        let (values, n) = (whole.as_slice().unwrap_or_default(), whole.ncols());
+        self.refill(rows.len(), |i, to| {
+            gather(to, &values[rows[i] * n..(rows[i] + 1) * n], rows);
+        });
+    }
+
+    fn at(&self, i: usize) -> &[T] {
+        &self.values[i * self.stride..(i + 1) * self.stride]
+    }
+}
+
+fn copy<T: Copy>(to: &mut [T], from: &ArrayView1<T>) {
+    match from.as_slice() {
+        Some(from) => to.copy_from_slice(from),
+        None => to.iter_mut().zip(from).for_each(|(to, &from)| *to = from),
+    }
+}
+
+impl<T: Scalar> Gram<T> for Dense<T> {
+    fn len(&self) -> usize {
+        self.n
+    }
+
+    #[inline(always)]
+    fn rows(&mut self, i: usize, j: usize) -> (&[T], &[T]) {
+        (self.at(i), self.at(j))
+    }
+
+    #[inline(always)]
+    fn row_and_diagonal(&mut self, i: usize) -> (&[T], &[T]) {
+        (self.at(i), &self.diagonal)
+    }
+
+    fn times(&self, beta: &[f64]) -> Vec<f64> {
+        let mut sums = vec![0.0; self.n];
+        for (j, &beta) in beta.iter().enumerate().filter(|(_, beta)| **beta != 0.0) {
+            add_row(&mut sums, self.at(j), beta);
+        }
+        sums
+    }
+
+    fn fits(&self, _: usize) -> bool {
+        true
+    }
+
+    fn part(&self, indices: &[usize]) -> Self {
+        let mut part = Self::default();
+        part.refill(indices.len(), |i, to| {
+            gather(to, self.at(indices[i]), indices)
+        });
+        part
+    }
+}
+
+fn gather<T: Copy>(to: &mut [T], from: &[T], columns: &[usize]) {
+    for (to, &column) in to.iter_mut().zip(columns) {
+        *to = from[column];
+    }
+}
+
+#[multiversion::multiversion(targets("x86_64+avx2+fma"))]
+fn add_row<T: Scalar>(sums: &mut [f64], row: &[T], beta: f64) {
+    for (sum, value) in sums.iter_mut().zip(row) {
+        *sum += beta * value.wide();
+    }
+}
+
+/// A Gram matrix too large to hold: rows are computed when asked for, and the latest kept.
+pub(crate) struct Cached<'a, T> {
+    points: &'a Points<T>,
+    kernel: KernelFunction,
+    stride: usize,
+    diagonal: Vec<T>,
+    /// Bytes that kept rows, and a part of the matrix, may take.
+    limit: usize,
+    rows: Vec<Kept<T>>,
+    /// Where row i is kept.
+    place: Vec<Option<usize>>,
+    n_asked: u64,
+}
+
+/// A row in the cache.
+struct Kept<T> {
+    row: usize,
+    last_asked: u64,
+    values: Vec<T>,
+}
+
+/// Kernel rows computed at once for a weighted sum.
+const BLOCK: usize = 256;
+
+impl<'a, T: Scalar> Cached<'a, T> {
+    /// K of these points; kept rows take at most `limit` bytes, but two are always kept.
+    pub fn new(points: &'a Points<T>, kernel: KernelFunction, limit: usize) -> Self {
+        let n = points.len();
+        let mut diagonal = points.all().diagonal(&kernel);
+        diagonal.resize(padded(n), T::zero());
+        Self {
+            points,
+            kernel,
+            stride: padded(n),
+            diagonal,
+            limit,
+            rows: Vec::new(),
+            place: vec![None; n],
+            n_asked: 0,
+        }
+    }
+
+    /// Makes sure that row i is kept, and says where.
+    fn fetch(&mut self, i: usize) -> usize {
+        self.n_asked += 1;
+        let at = match self.place[i] {
+            Some(at) => at,
+            None => {
+                let at = self.make_room();
+                let row = self.points.range(i..i + 1);
+                let kernel = row.kernel(self.points.all(), &self.kernel);
+                let values = &mut self.rows[at].values;
+                values.clear();
+                values.extend(kernel.iter());
+                values.resize(self.stride, T::zero());
+                self.rows[at].row = i;
+                self.place[i] = Some(at);
+                at
+            }
+        };
+        self.rows[at].last_asked = self.n_asked;
+        at
+    }
+
+    /// An empty place, or that of the row that was not asked for the longest.
+    fn make_room(&mut self) -> usize {
+        let most = (self.limit / (self.stride * size_of::<T>()).max(1)).max(2);
+        if self.rows.len() < most {
+            self.rows.push(Kept {
+                row: 0,
+                last_asked: 0,
+                values: Vec::new(),
+            });
+            return self.rows.len() - 1;
+        }
+        let mut oldest = 0;
+        for (at, kept) in self.rows.iter().enumerate() {
+            if kept.last_asked < self.rows[oldest].last_asked {
+                oldest = at;
+            }
+        }
+        self.place[self.rows[oldest].row] = None;
+        oldest
+    }
+}
+
+impl<T: Scalar> Gram<T> for Cached<'_, T> {
+    fn len(&self) -> usize {
+        self.points.len()
+    }
+
+    fn rows(&mut self, i: usize, j: usize) -> (&[T], &[T]) {
+        self.fetch(i);
+        let at_j = self.fetch(j);
+        // Row i was asked for last before j, so it was not j's that replaced it.
+        let at_i = self.place[i].unwrap_or(at_j);
+        (&self.rows[at_i].values, &self.rows[at_j].values)
+    }
+
+    fn row_and_diagonal(&mut self, i: usize) -> (&[T], &[T]) {
+        let at = self.fetch(i);
+        (&self.rows[at].values, &self.diagonal)
+    }
+
+    fn times(&self, beta: &[f64]) -> Vec<f64> {
+        let mut sums = vec![0.0; self.points.len()];
+        let support: Vec<usize> = (0..beta.len()).filter(|&j| beta[j] != 0.0).collect();
+        for block in support.chunks(BLOCK) {
+            let rows = self.points.select(block);
+            let values: Array2<T> = rows.all().kernel(self.points.all(), &self.kernel);
+            for (row, &j) in values.axis_iter(Axis(0)).zip(block) {
+                for (sum, value) in sums.iter_mut().zip(row) {
+                    *sum += beta[j] * value.wide();
+                }
+            }
+        }
+        sums
+    }
+
+    fn fits(&self, n: usize) -> bool {
+        Dense::<T>::bytes(n) <= self.limit
+    }
+
+    fn part(&self, indices: &[usize]) -> Dense<T> {
+        let some = self.points.select(indices);
+        let mut part = Dense::default();
+        part.of_whole(some.all().kernel(some.all(), &self.kernel).view());
+        part
+    }
+}

@@ -1,0 +1,265 @@
+//! One binary soft-margin problem, solved by sequential minimal optimisation.
+//!
+//! In terms of `β_i = y_i a_i` the dual problem is: maximise `Σ_i y_i β_i − ½ Σ_ij β_i β_j K_ij` over
+//! `0 ≤ y_i β_i ≤ C`, `Σ_i β_i = 0`. With `f = y − Kβ`, its gradient, a β is optimal when no variable that can be raised has
+//! a larger f than one that can be lowered. Each iteration takes such a pair, chosen by second-order information
+//! [Fan, Chen, Lin 2005], to the optimum along its line: two passes over f ([`passes`]).
+//!
+//! - **Shrinking** [Joachims 1999]: variables that sit at a bound and want to stay there are left out, and what remains of
+//!   the Gram matrix is copied together, so that iterations run over short contiguous rows.
+//! - **Warm start along C**: the last solution, stretched by the factor that is best for the objective.
+//! - **Precision**: Gram matrix and f may be f32; whenever the solver believes to be done, f is summed again in f64 and has
+//!   the last word.
+
+mod gram;
+mod passes;
+mod variables;
+
+pub(crate) use gram::{Cached, Dense, Gram};
+
+use crate::recognition::dual::DualSolution;
+use crate::recognition::scalar::Scalar;
+use passes::{select_down, select_up, step_and_select};
+use variables::{Variables, extremes, rho};
+
+/// Iterations after which a problem counts as not solved, as in LIBSVM; or 100 a row, if that is more.
+const MOST_ITERATIONS: u64 = 10_000_000;
+/// Curvature along a pair's line, at least, relative to the Gram matrix's largest entry: equal rows with unequal labels
+/// have none.
+const SMALLEST_CURVATURE: f64 = 1e-12;
+/// Times that f64 may disagree with a solver that believes to be done.
+const MOST_REFRESHES: usize = 30;
+/// Iterations before a look at which variables to leave out.
+const SHRINK_PERIOD: u64 = 1000;
+/// Rows below which leaving variables out gains less than copying costs.
+const SHRINK_ROWS: usize = 400;
+/// The share of the variables that may remain for the copy to be worth it.
+const SHRINK_SHARE: f64 = 0.7;
+
+/// A binary problem on a Gram matrix, and the solution of the C that it was last solved for.
+pub(crate) struct Smo<'a, G> {
+    gram: &'a mut G,
+    is_positive: &'a [bool],
+    beta: Vec<f64>,
+    /// y − Kβ.
+    f: Vec<f64>,
+    /// The C that β belongs to; 0 before the first.
+    c: f64,
+}
+
+impl<'a, G> Smo<'a, G> {
+    /// A problem that is not solved yet.
+    pub fn new(gram: &'a mut G, is_positive: &'a [bool]) -> Self {
+        Self {
+            gram,
+            beta: vec![0.0; is_positive.len()],
+            f: is_positive
+                .iter()
+                .map(|&is_positive| sign(is_positive))
+                .collect(),
+            is_positive,
+            c: 0.0,
+        }
+    }
+
+    /// Solves for this C, starting from the solution of the last one, to a violation of the optimality conditions of at most
+    /// `tolerance`.
+    pub fn solve<T: Scalar>(&mut self, c: f64, tolerance: f64) -> DualSolution
+    where
+        G: Gram<T>,
+    {
+        self.stretch(c);
+        let mut search = Search::new(self.beta.len(), tolerance);
+        let is_solved = self.search(&mut search);
+        let (highest, lowest) = extremes(&self.beta, self.is_positive, &self.f, c);
+        DualSolution {
+            rho: rho(&self.beta, self.is_positive, &self.f, c),
+            is_capped: !is_solved,
+            objective: self.objective(),
+            violation: Some((highest - lowest).max(0.0)),
+            n_iterations: Some(search.n_iterations),
+            coefficients: self.beta.clone(),
+        }
+    }
+
+    /// Takes β to another C: multiplied by what is best for the objective, as far as the new bounds allow.
+    fn stretch(&mut self, c: f64) {
+        let (mut linear, mut quadratic) = (0.0, 0.0);
+        for ((&beta, &f), &is_positive) in self.beta.iter().zip(&self.f).zip(self.is_positive) {
+            linear += beta * sign(is_positive);
+            quadratic += beta * (sign(is_positive) - f);
+        }
+        if self.c > 0.0 && quadratic > 0.0 {
+            let most = c / self.c;
+            let factor = (linear / quadratic).clamp(0.0, most);
+            for (beta, &is_positive) in self.beta.iter_mut().zip(self.is_positive) {
+                let is_at_bound = *beta == self.c * sign(is_positive);
+                *beta = if is_at_bound && factor == most {
+                    c * sign(is_positive)
+                } else {
+                    (factor * *beta).clamp(-c, c)
+                };
+            }
+            for (f, &is_positive) in self.f.iter_mut().zip(self.is_positive) {
+                *f = sign(is_positive) - factor * (sign(is_positive) - *f);
+            }
+        }
+        self.c = c;
+    }
+
+    /// `Σ y β − ½ β K β`.
+    fn objective(&self) -> f64 {
+        let terms = self.beta.iter().zip(&self.f).zip(self.is_positive);
+        terms
+            .map(|((&beta, &f), &is_positive)| 0.5 * beta * (sign(is_positive) + f))
+            .sum()
+    }
+
+    /// Whether it ended within the tolerance.
+    fn search<T: Scalar>(&mut self, search: &mut Search) -> bool
+    where
+        G: Gram<T>,
+    {
+        for round in 0..MOST_REFRESHES {
+            let mut all = Variables::<T>::new(&self.beta, self.is_positive, &self.f, self.c);
+            let first_look = if round == 0 { SHRINK_PERIOD } else { 0 };
+            let stop = run(self.gram, &mut all, search, first_look);
+            self.beta = all.beta.clone();
+            if let Stop::Shrink(indices) = &stop {
+                let part = self.gram.part(indices);
+                let tolerance = search.tolerance;
+                // The first time only roughly: what was left out should be looked at again before much work goes on.
+                if round == 0 {
+                    search.tolerance *= 10.0;
+                }
+                let beta = solve_part(part, all.select(indices), search);
+                search.tolerance = tolerance;
+                beta.into_iter()
+                    .for_each(|(at, value)| self.beta[indices[at]] = value);
+            }
+            let products = self.gram.times(&self.beta);
+            for ((f, product), &is_positive) in
+                self.f.iter_mut().zip(products).zip(self.is_positive)
+            {
+                *f = sign(is_positive) - product;
+            }
+            let (highest, lowest) = extremes(&self.beta, self.is_positive, &self.f, self.c);
+            if highest - lowest <= search.tolerance {
+                return true;
+            }
+            if search.n_iterations >= search.most_iterations {
+                return false;
+            }
+        }
+        false
+    }
+}
+
+/// Solves on a part of the Gram matrix, and on parts of that. β of the part's variables, by their index in it.
+fn solve_part<T: Scalar>(
+    mut part: Dense<T>,
+    mut variables: Variables<T>,
+    search: &mut Search,
+) -> Vec<(usize, f64)> {
+    let mut indices: Vec<usize> = (0..variables.beta.len()).collect();
+    let mut solved = Vec::new();
+    loop {
+        let stop = run(&mut part, &mut variables, search, SHRINK_PERIOD);
+        let beta = indices.iter().zip(&variables.beta);
+        solved.extend(beta.map(|(&index, &beta)| (index, beta)));
+        match stop {
+            Stop::Shrink(keep) => {
+                part = part.part(&keep);
+                variables = variables.select(&keep);
+                indices = keep.iter().map(|&at| indices[at]).collect();
+            }
+            Stop::Done => return solved,
+        }
+    }
+}
+
+/// How far the search may go, and has gone.
+struct Search {
+    tolerance: f64,
+    most_iterations: u64,
+    n_iterations: u64,
+}
+
+impl Search {
+    fn new(n: usize, tolerance: f64) -> Self {
+        Self {
+            tolerance,
+            most_iterations: MOST_ITERATIONS.max(100 * n as u64),
+            n_iterations: 0,
+        }
+    }
+}
+
+/// Why the iteration stopped.
+enum Stop {
+    /// Within the tolerance, or at the cap.
+    Done,
+    /// Only these variables may still move.
+    Shrink(Vec<usize>),
+}
+
+/// Moves pairs of variables until the optimality conditions hold, iterations run out, or few variables are left to move.
+#[multiversion::multiversion(targets("x86_64+avx2+fma"))]
+fn run<T: Scalar, G: Gram<T>>(
+    gram: &mut G,
+    variables: &mut Variables<T>,
+    search: &mut Search,
+    first_look: u64,
+) -> Stop {
+    let Some(mut i) = select_up(&variables.f, &variables.up) else {
+        return Stop::Done;
+    };
+    let largest = gram
+        .row_and_diagonal(i)
+        .1
+        .iter()
+        .fold(T::zero(), |a, &b| a.max(b));
+    let smallest_curvature = T::of(SMALLEST_CURVATURE) * largest.max(T::min_positive_value());
+    // A little more than asked, so that f64 agrees.
+    let tolerance = T::of(0.95 * search.tolerance);
+    let mut until_look = first_look;
+    loop {
+        let highest = variables.f[i];
+        let (row_i, diagonal) = gram.row_and_diagonal(i);
+        let own = diagonal[i];
+        let down = select_down(
+            (&variables.f, &variables.low),
+            (row_i, diagonal),
+            (highest, own),
+            smallest_curvature,
+            &mut variables.gains,
+        );
+        let Some(j) = down.j.filter(|_| down.violation > tolerance) else {
+            return Stop::Done;
+        };
+        let curvature = (own + diagonal[j]).wide() - 2.0 * row_i[j].wide();
+        if until_look == 0 && gram.len() >= SHRINK_ROWS {
+            let keep = variables.worth_keeping(highest, highest - down.violation);
+            let few = SHRINK_SHARE * gram.len() as f64;
+            if (keep.len() as f64) < few && gram.fits(keep.len()) {
+                return Stop::Shrink(keep);
+            }
+            until_look = SHRINK_PERIOD;
+        }
+        if search.n_iterations >= search.most_iterations {
+            return Stop::Done;
+        }
+        search.n_iterations += 1;
+        until_look = until_look.saturating_sub(1);
+        let step = variables.step(i, j, curvature.max(smallest_curvature.wide()));
+        let (row_i, row_j) = gram.rows(i, j);
+        match step_and_select(&mut variables.f, (row_i, row_j), &variables.up, T::of(step)) {
+            Some(next) => i = next,
+            None => return Stop::Done,
+        }
+    }
+}
+
+fn sign(is_positive: bool) -> f64 {
+    if is_positive { 1.0 } else { -1.0 }
+}

@@ -1,0 +1,147 @@
+//! The variables of the dual problem that the solver may move, and one step of two of them.
+
+use super::passes::padded;
+use crate::recognition::scalar::Scalar;
+
+/// Where a variable may be: between 0 and C for a positive row, between −C and 0 for a negative one.
+fn bounds(is_positive: bool, c: f64) -> (f64, f64) {
+    if is_positive { (0.0, c) } else { (-c, 0.0) }
+}
+
+/// β and what the passes read of it; slices are padded to whole lanes with variables that cannot move.
+#[derive(Clone, Debug)]
+pub(super) struct Variables<T> {
+    /// `β_i = y_i a_i`.
+    pub beta: Vec<f64>,
+    is_positive: Vec<bool>,
+    c: f64,
+    /// `f_i = y_i − (Kβ)_i`, the gradient of the dual objective along β_i.
+    pub f: Vec<T>,
+    /// 0 where β_i can be raised, −∞ elsewhere.
+    pub up: Vec<T>,
+    /// 0 where β_i can be lowered, +∞ elsewhere.
+    pub low: Vec<T>,
+    /// Scratch of the second pass.
+    pub gains: Vec<T>,
+}
+
+impl<T: Scalar> Variables<T> {
+    pub fn new(beta: &[f64], is_positive: &[bool], f: &[f64], c: f64) -> Self {
+        let n = beta.len();
+        let mut variables = Self {
+            beta: beta.to_vec(),
+            is_positive: is_positive.to_vec(),
+            c,
+            f: f.iter().map(|&f| T::of(f)).collect(),
+            up: vec![T::neg_infinity(); padded(n)],
+            low: vec![T::infinity(); padded(n)],
+            gains: vec![T::zero(); padded(n)],
+        };
+        variables.f.resize(padded(n), T::zero());
+        (0..n).for_each(|i| variables.mark(i));
+        variables
+    }
+
+    /// Only the variables at these indices.
+    pub fn select(&self, indices: &[usize]) -> Self {
+        let beta: Vec<f64> = indices.iter().map(|&i| self.beta[i]).collect();
+        let is_positive: Vec<bool> = indices.iter().map(|&i| self.is_positive[i]).collect();
+        let f: Vec<f64> = indices.iter().map(|&i| self.f[i].wide()).collect();
+        Self::new(&beta, &is_positive, &f, self.c)
+    }
+
+    /// Notes in which directions β_i can move.
+    #[inline(always)]
+    fn mark(&mut self, i: usize) {
+        let (lowest, highest) = bounds(self.is_positive[i], self.c);
+        self.up[i] = if self.beta[i] < highest {
+            T::zero()
+        } else {
+            T::neg_infinity()
+        };
+        self.low[i] = if self.beta[i] > lowest {
+            T::zero()
+        } else {
+            T::infinity()
+        };
+    }
+
+    /// Raises β_i and lowers β_j by as much: to the optimum along that line, or to the first bound. How much it was.
+    #[inline(always)]
+    pub fn step(&mut self, i: usize, j: usize, curvature: f64) -> f64 {
+        let wanted = (self.f[i].wide() - self.f[j].wide()) / curvature;
+        let (lowest, highest) = (
+            bounds(self.is_positive[j], self.c).0,
+            bounds(self.is_positive[i], self.c).1,
+        );
+        let (room_i, room_j) = (highest - self.beta[i], self.beta[j] - lowest);
+        let step = wanted.min(room_i).min(room_j);
+        // Exactly on a bound that was reached: rounding must not leave a variable a hair from it.
+        self.beta[i] = if step == room_i {
+            highest
+        } else {
+            self.beta[i] + step
+        };
+        self.beta[j] = if step == room_j {
+            lowest
+        } else {
+            self.beta[j] - step
+        };
+        self.mark(i);
+        self.mark(j);
+        step
+    }
+
+    /// The variables that may still move, when `highest` is the largest f of those that can be raised and `lowest` the
+    /// smallest of those that can be lowered: the others are at a bound and want to stay there [Joachims 1999].
+    pub fn worth_keeping(&self, highest: T, lowest: T) -> Vec<usize> {
+        (0..self.beta.len())
+            .filter(|&i| {
+                let can_rise = self.up[i] == T::zero();
+                let can_fall = self.low[i] == T::zero();
+                match (can_rise, can_fall) {
+                    (true, true) => true,
+                    (true, false) => self.f[i] >= lowest,
+                    (false, true) => self.f[i] <= highest,
+                    (false, false) => false,
+                }
+            })
+            .collect()
+    }
+}
+
+/// `(max of f that can be raised, min of f that can be lowered)`, in f64, for any β within its bounds.
+pub(super) fn extremes(beta: &[f64], is_positive: &[bool], f: &[f64], c: f64) -> (f64, f64) {
+    let mut highest = f64::NEG_INFINITY;
+    let mut lowest = f64::INFINITY;
+    for ((&beta, &is_positive), &f) in beta.iter().zip(is_positive).zip(f) {
+        let (low, high) = bounds(is_positive, c);
+        if beta < high {
+            highest = highest.max(f);
+        }
+        if beta > low {
+            lowest = lowest.min(f);
+        }
+    }
+    (highest, lowest)
+}
+
+/// ρ: the mean of −f over the variables between their bounds, or the middle of what the others allow (LIBSVM's rule).
+pub(super) fn rho(beta: &[f64], is_positive: &[bool], f: &[f64], c: f64) -> f64 {
+    let (mut sum, mut n_free) = (0.0, 0_usize);
+    for ((&beta, &is_positive), &f) in beta.iter().zip(is_positive).zip(f) {
+        let (low, high) = bounds(is_positive, c);
+        if beta > low && beta < high {
+            sum += f;
+            n_free += 1;
+        }
+    }
+    if n_free > 0 {
+        return -sum / n_free as f64;
+    }
+    match extremes(beta, is_positive, f, c) {
+        (highest, lowest) if highest.is_finite() && lowest.is_finite() => -(highest + lowest) / 2.0,
+        (highest, _) if highest.is_finite() => -highest,
+        (_, lowest) => -lowest,
+    }
+}
