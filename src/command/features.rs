@@ -34,7 +34,7 @@ pub fn features(args: &Args) -> Result<()> {
         (args.cell, args.trial),
         progress.as_ref(),
     )?;
-    let (n_touches, n_measurements) = set.features.dim();
+    let (n_touches, n_measurements) = set.data.records.dim();
     progress.finish(&format!(
         "{n_touches} touches of {n_measurements} measurements, {} to train on and {} to test, in {}",
         set.split.train.len(),

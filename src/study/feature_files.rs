@@ -20,22 +20,22 @@ use super::table::Cell;
 use crate::error::{Error, Result};
 use crate::files::{write_bytes, write_whole};
 use crate::random::Seed;
+use crate::recognition::dataset::{Dataset, dataset, rows};
 use crate::recognition::split::Split;
 use crate::sensing::Projection;
 use crate::signal::Chain;
-use ndarray::{Array1, Array2, ArrayBase, Data, Dimension, s};
-use ndarray_npy::{WritableElement, WriteNpyExt};
+use ndarray::{Array, Array1, Array2, ArrayBase, Data, Dimension, s};
+use ndarray_npy::{ReadNpyExt, ReadableElement, WritableElement, WriteNpyExt};
 use serde::Serialize;
-use std::io;
+use std::fs::File;
+use std::io::{self, BufReader};
 use std::path::Path;
 
 /// Labelled measurements and the rows that one trial trains on and tests.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug)]
 pub struct FeatureSet {
-    /// n_touches × m, before scaling.
-    pub features: Array2<f64>,
-    /// The object of every touch, by its number.
-    pub labels: Array1<usize>,
+    /// n_touches × m, before scaling; the object of every touch, by its number.
+    pub data: Dataset,
     /// The trial's rows.
     pub split: Split,
 }
@@ -98,9 +98,9 @@ pub fn cell_features(
     };
     let seeds = touch_seeds(touched, &seed.named("signal").numbered(trial as u64));
     let measured = measure(reading, frames.deflection.view(), &seeds).values;
+    let features = measured.slice(s![.., ..cell.measurements]).to_owned();
     Ok(FeatureSet {
-        features: measured.slice(s![.., ..cell.measurements]).to_owned(),
-        labels: sweep.labels.clone(),
+        data: dataset(features, sweep.labels.clone())?,
         split,
     })
 }
@@ -119,8 +119,11 @@ pub fn write_features(
 ) -> Result<FeatureSet> {
     let set = cell_features(plan, sweep, touched, (cell, trial), progress)?;
     let Split { train, test } = &set.split;
-    write_npy(&folder.join("features.npy"), &set.features)?;
-    write_npy(&folder.join("labels.npy"), &whole_numbers(&set.labels))?;
+    write_npy(&folder.join("features.npy"), &set.data.records)?;
+    write_npy(
+        &folder.join("labels.npy"),
+        &whole_numbers(&set.data.targets),
+    )?;
     write_npy(&folder.join("train.npy"), &whole_numbers(train))?;
     write_npy(&folder.join("test.npy"), &whole_numbers(test))?;
     write_whole(&folder.join("objects.csv"), |writer| {
@@ -146,6 +149,55 @@ pub fn write_features(
     Ok(set)
 }
 
+/// Reads a folder that [`write_features`] or another program wrote; only the four arrays are needed.
+///
+/// # Errors
+/// A file that is missing, has another number of dimensions or another type of elements than the table above says; a NaN
+/// or infinite feature (named by row and column); labels that are not one a row, or outside `0..n`; training or test rows
+/// that are none, beyond the features, or named twice (in one list or in both).
+pub fn read_features(folder: &Path) -> Result<FeatureSet> {
+    let file = |name: &str| folder.join(name);
+    let path = file("features.npy");
+    let features: Array2<f64> = read_npy(&path, "n × m of float64")?;
+    let n_rows = features.nrows();
+    let labels = read_indices(&file("labels.npy"), "labels", n_rows)?;
+    let split = Split {
+        train: read_indices(&file("train.npy"), "rows", n_rows)?,
+        test: read_indices(&file("test.npy"), "rows", n_rows)?,
+    };
+    check_split(folder, &split, n_rows)?;
+    let data = dataset(
+        features.as_standard_layout().into_owned(),
+        Array1::from(labels),
+    )
+    .map_err(|error| within(folder, error))?;
+    Ok(FeatureSet { data, split })
+}
+
+impl FeatureSet {
+    /// The training rows, or the first `n` of them.
+    ///
+    /// # Errors
+    /// No rows, or more than the split trains on.
+    pub fn training(&self, n: Option<usize>) -> Result<Dataset> {
+        let train = &self.split.train;
+        let n = n.unwrap_or(train.len());
+        if n == 0 || n > train.len() {
+            let allowed = format!("1 to {}, the training rows of the split", train.len());
+            return Err(Error::input("training rows", n, allowed));
+        }
+        rows(&self.data, &train[..n])
+    }
+
+    /// The test rows.
+    ///
+    /// # Errors
+    /// No rows.
+    pub fn test(&self) -> Result<Dataset> {
+        rows(&self.data, &self.split.test)
+    }
+}
+
 /// Writes an array as a whole `.npy` file.
 ///
 /// # Errors
@@ -163,6 +215,80 @@ where
 
 fn whole_numbers<'a>(numbers: impl IntoIterator<Item = &'a usize>) -> Array1<i64> {
     numbers.into_iter().map(|&number| number as i64).collect()
+}
+
+fn read_npy<A: ReadableElement, D: Dimension>(path: &Path, what: &str) -> Result<Array<A, D>> {
+    let file = File::open(path).map_err(|error| {
+        Error::input(
+            path.display(),
+            format!("cannot be read ({error})"),
+            format!("a .npy file, {what}"),
+        )
+    })?;
+    Array::read_npy(BufReader::new(file))
+        .map_err(|error| Error::input(path.display(), error, format!("a .npy file, {what}")))
+}
+
+/// Whole numbers from 0 to below `n_rows`.
+fn read_indices(path: &Path, what: &str, n_rows: usize) -> Result<Vec<usize>> {
+    let numbers: Array1<i64> = read_npy(path, "one dimension of int64")?;
+    if numbers.is_empty() {
+        return Err(Error::input(
+            path.display(),
+            format!("no {what}"),
+            "at least one",
+        ));
+    }
+    numbers
+        .iter()
+        .enumerate()
+        .map(|(position, &number)| {
+            let index = usize::try_from(number).ok().filter(|&index| index < n_rows);
+            index.ok_or_else(|| {
+                Error::input(
+                    format!("{}, position {position}", path.display()),
+                    number,
+                    format!(
+                        "0 to {}, as there are {n_rows} rows of features",
+                        n_rows.saturating_sub(1)
+                    ),
+                )
+            })
+        })
+        .collect()
+}
+
+/// Refuses a row that is named twice: a tested row must not have been trained on, and none may count twice.
+fn check_split(folder: &Path, split: &Split, n_rows: usize) -> Result<()> {
+    let mut named_in = vec![None; n_rows];
+    for (file, rows) in [("train.npy", &split.train), ("test.npy", &split.test)] {
+        for &row in rows {
+            if let Some(earlier) = named_in[row].replace(file) {
+                let given = match earlier == file {
+                    true => format!("row {row} twice"),
+                    false => format!("row {row}, which {earlier} names too"),
+                };
+                return Err(Error::input(
+                    folder.join(file).display(),
+                    given,
+                    "every row at most once, to train on or to test",
+                ));
+            }
+        }
+    }
+    Ok(())
+}
+
+/// An error of the data, with the folder that they come from.
+fn within(folder: &Path, error: Error) -> Error {
+    match error {
+        Error::Input {
+            place,
+            given,
+            allowed,
+        } => Error::input(format!("{}: {place}", folder.display()), given, allowed),
+        other => other,
+    }
 }
 
 fn find(sweep: &Sweep, number: usize) -> Result<(&Group, &Cell)> {
