@@ -1,5 +1,7 @@
 //! The command line: one file a subcommand, each `Args` → work → files or terminal.
 
+mod classify;
+mod features;
 mod objects;
 mod output;
 mod plan;
@@ -29,6 +31,10 @@ enum Command {
     Plan(plan::Args),
     /// Write a study's touches as NumPy files, to train elsewhere
     Touches(touches::Args),
+    /// Write what one cell of a study learns from as NumPy files, to train on exactly those rows elsewhere
+    Features(features::Args),
+    /// Train and test one classifier on such a folder, and time it
+    Classify(classify::Args),
     /// Press one object on one array and write or draw the deflections
     Press(press::Args),
     /// List the built-in objects, or draw one
@@ -42,6 +48,8 @@ pub fn dispatch() -> Result<()> {
         Some(Command::Run(args)) => run::run(&args),
         Some(Command::Plan(args)) => plan::plan(&args),
         Some(Command::Touches(args)) => touches::touches(&args),
+        Some(Command::Features(args)) => features::features(&args),
+        Some(Command::Classify(args)) => classify::classify(&args),
         Some(Command::Press(args)) => press::press(&args),
         Some(Command::Objects(args)) => objects::objects(&args),
     }

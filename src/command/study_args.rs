@@ -50,7 +50,7 @@ impl StudyArgs {
 
     /// Reads and checks the study.
     pub fn plan(&self) -> Result<Plan> {
-        self.set_threads()?;
+        set_threads(self.threads)?;
         let place = self.study.display().to_string();
         let mut spec = StudySpec::parse(&place, &self.text()?)?;
         if let Some(seed) = self.seed {
@@ -90,23 +90,24 @@ impl StudyArgs {
             )
         })
     }
+}
 
-    fn set_threads(&self) -> Result<()> {
-        let Some(threads) = self.threads else {
-            return Ok(());
-        };
-        if threads == 0 {
-            return Err(Error::input("--threads", 0, "at least 1"));
-        }
-        rayon::ThreadPoolBuilder::new()
-            .num_threads(threads)
-            .build_global()
-            .map_err(|error| {
-                Error::input(
-                    "--threads",
-                    format!("{threads} ({error})"),
-                    "a number of threads that the system can start",
-                )
-            })
+/// Sets the number of threads of everything that follows; all cores when left out.
+pub fn set_threads(threads: Option<usize>) -> Result<()> {
+    let Some(threads) = threads else {
+        return Ok(());
+    };
+    if threads == 0 {
+        return Err(Error::input("--threads", 0, "at least 1"));
     }
+    rayon::ThreadPoolBuilder::new()
+        .num_threads(threads)
+        .build_global()
+        .map_err(|error| {
+            Error::input(
+                "--threads",
+                format!("{threads} ({error})"),
+                "a number of threads that the system can start",
+            )
+        })
 }

@@ -10,6 +10,7 @@ mod axis;
 mod check;
 mod estimate;
 mod evaluation;
+mod feature_files;
 mod measurement;
 mod object_files;
 mod plan;
@@ -27,6 +28,7 @@ mod touch_files;
 
 pub use axis::Axis;
 pub use estimate::Estimate;
+pub use feature_files::{FeatureSet, cell_features, read_features, write_features, write_npy};
 pub use object_files::{load_mesh, load_objects};
 pub use plan::{Amount, Plan, SplitKind, SplitPlan, millimetres};
 pub use runner::{ArrayOutcome, Outcome, run};

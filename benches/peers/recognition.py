@@ -1,0 +1,314 @@
+#!/usr/bin/env python3
+"""Times scikit-learn and bubbletouch on the same touches, side by side: the same rows, the same split, one run.
+
+Both read the folders that `bubbletouch features` writes. Features are standardised on the training rows (population
+standard deviation, as both do it). A comparison alternates peer and ours and takes medians; predictions are compared row
+by row, and the dual objectives of the SVMs that solve the same problem. See README.md beside this file.
+"""
+
+import argparse
+import csv
+import datetime
+import json
+import os
+import statistics
+import subprocess
+import sys
+import tempfile
+import time
+import warnings
+from pathlib import Path
+
+# The numbers of threads of NumPy's and scikit-learn's libraries are set per comparison by threadpoolctl.
+import numpy as np
+import scipy
+import sklearn
+from sklearn.ensemble import RandomForestClassifier
+from sklearn.linear_model import LogisticRegression
+from sklearn.naive_bayes import GaussianNB
+from sklearn.neighbors import KNeighborsClassifier
+from sklearn.preprocessing import StandardScaler
+from sklearn.svm import SVC, LinearSVC
+from sklearn.tree import DecisionTreeClassifier
+from threadpoolctl import threadpool_limits
+
+ROOT = Path(__file__).resolve().parents[2]
+
+# Peer, its maker, what of ours answers the same question, and whether both solve the same optimisation problem.
+OVO = ["--multiclass", "one_vs_one"]
+OVR = ["--multiclass", "one_vs_rest"]
+COMPARISONS = [
+    ("SVC(linear)", lambda jobs: SVC(kernel="linear"), ["--classifier", "linear_svm", *OVO], True),
+    ("SVC(rbf)", lambda jobs: SVC(kernel="rbf"), ["--classifier", "rbf_svm", *OVO], True),
+    ("SVC(poly, coef0=1)", lambda jobs: SVC(kernel="poly", coef0=1.0), ["--classifier", "polynomial_svm", *OVO], True),
+    ("LinearSVC(hinge)", lambda jobs: LinearSVC(loss="hinge"), ["--classifier", "linear_svm", *OVO], False),
+    ("LinearSVC(hinge)", lambda jobs: LinearSVC(loss="hinge"), ["--classifier", "linear_svm", *OVR], False),
+    ("LinearSVC()", lambda jobs: LinearSVC(), ["--classifier", "linear_svm", *OVO], False),
+    ("LogisticRegression", lambda jobs: LogisticRegression(max_iter=200), ["--classifier", "logistic_regression"], False),
+    ("KNeighbors(5)", lambda jobs: KNeighborsClassifier(5, n_jobs=jobs), ["--classifier", "nearest_neighbours"], False),
+    ("GaussianNB", lambda jobs: GaussianNB(), ["--classifier", "naive_bayes"], False),
+    ("DecisionTree", lambda jobs: DecisionTreeClassifier(random_state=0), ["--classifier", "decision_tree"], False),
+    ("RandomForest(100)", lambda jobs: RandomForestClassifier(random_state=0, n_jobs=jobs), ["--classifier", "random_forest"], False),
+]
+
+COLUMNS = [
+    "date", "machine", "bubbletouch", "scikit_learn", "numpy", "threads", "noise_std", "smoothing_mm", "measurements", "n_train", "n_test",
+    "peer", "ours", "peer_fit_s", "our_fit_s", "fit_ratio", "peer_predict_s", "our_predict_s", "predict_ratio",
+    "peer_accuracy", "our_accuracy", "identical_share", "peer_dual", "our_dual", "dual_difference",
+]
+
+
+class Folder:
+    """A folder of features, read and standardised."""
+
+    def __init__(self, path, n_train):
+        self.path = path
+        features, labels = np.load(path / "features.npy"), np.load(path / "labels.npy")
+        train, test = np.load(path / "train.npy")[:n_train], np.load(path / "test.npy")
+        scaler = StandardScaler().fit(features[train])
+        self.train, self.test = scaler.transform(features[train]), scaler.transform(features[test])
+        self.train_labels, self.test_labels = labels[train], labels[test]
+        cell = (path / "cell.toml").read_text()
+        self.settings = {key: toml_number(cell, key) for key in ["noise_std", "smoothing_mm", "measurements"]}
+
+
+def toml_number(text, key):
+    """One number of a flat TOML table: Python has a reader of its own only since 3.11."""
+    return float(next(line.split("=")[1] for line in text.splitlines() if line.startswith(f"{key} =")))
+
+
+class Ours:
+    """The command on a folder, with a number of threads."""
+
+    def __init__(self, binary, threads, n_train):
+        self.binary, self.n_train = binary, n_train
+        self.environment = dict(os.environ, RAYON_NUM_THREADS=str(threads))
+
+    def classify(self, folder, options, repeat=1):
+        """What the command says and predicts; None where it does not know an option's value."""
+        with tempfile.TemporaryDirectory() as scratch:
+            predictions = Path(scratch) / "predictions.npy"
+            command = [self.binary, "classify", str(folder.path), *options, "--json", "--repeat", str(repeat)]
+            command += ["--train-rows", str(self.n_train), "--predictions", str(predictions)]
+            done = subprocess.run(command, env=self.environment, capture_output=True, text=True)
+            if done.returncode != 0:
+                if "unknown variant" in done.stderr or "unexpected argument" in done.stderr:
+                    return None
+                sys.exit(done.stderr)
+            return json.loads(done.stdout), np.load(predictions)
+
+
+def timed(action):
+    start = time.perf_counter()
+    result = action()
+    return time.perf_counter() - start, result
+
+
+def dual_objective(model, labels):
+    """Sum over all pairs of ½ Σ a_i a_j y_i y_j K(x_i, x_j) − Σ a_i, from the coefficients that libsvm returns.
+
+    scikit-learn's dual_coef_ (n_classes − 1, n_SV) packs, for a support vector of class i, the coefficients of the pairs
+    (i, j) in row j − 1 if j > i, else in row j.
+    """
+    n_classes = len(model.classes_)
+    vectors, packed = model.support_vectors_, model.dual_coef_
+    first = np.concatenate([[0], np.cumsum(model.n_support_)])
+    gamma = model._gamma
+    total = 0.0
+    for i in range(n_classes):
+        for j in range(i + 1, n_classes):
+            rows = np.r_[first[i]:first[i + 1], first[j]:first[j + 1]]
+            coefficients = np.concatenate([packed[j - 1, first[i]:first[i + 1]], packed[i, first[j]:first[j + 1]]])
+            used = coefficients != 0.0
+            points, coefficients = vectors[rows[used]], coefficients[used]
+            products = points @ points.T
+            if model.kernel == "rbf":
+                norms = np.diag(products)
+                products = np.exp(-gamma * np.maximum(norms[:, None] + norms[None, :] - 2.0 * products, 0.0))
+            elif model.kernel == "poly":
+                products = (gamma * products + model.coef0) ** model.degree
+            total += 0.5 * coefficients @ products @ coefficients - np.abs(coefficients).sum()
+    return total
+
+
+def compare(folder, ours, comparison, threads, repeats):
+    """One row of the table; the peer and ours take turns."""
+    name, make, options, is_same_problem = comparison
+    peer_times, our_times, model, answer = [], [], None, None
+    with threadpool_limits(threads), warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        for _ in range(repeats):
+            # A command that starts anew has cold caches; the second of two fits is as warm as the peer's.
+            answer = ours.classify(folder, options, repeat=2)
+            model = make(threads)
+            fit_s, _ = timed(lambda: model.fit(folder.train, folder.train_labels))
+            predict_s, predicted = timed(lambda: model.predict(folder.test))
+            peer_times.append((fit_s, predict_s))
+            if answer:
+                our_times.append((answer[0]["fit_s"][-1], answer[0]["predict_s"][-1]))
+        row = {"peer": name, "peer_accuracy": np.mean(predicted == folder.test_labels)}
+        row["peer_fit_s"], row["peer_predict_s"] = map(statistics.median, zip(*peer_times))
+        if isinstance(model, SVC):
+            row["peer_dual"] = dual_objective(model, folder.train_labels)
+    if answer:
+        found, labels = answer
+        row["ours"] = " ".join(options[1::2])
+        row["our_fit_s"], row["our_predict_s"] = map(statistics.median, zip(*our_times))
+        row["fit_ratio"] = row["peer_fit_s"] / row["our_fit_s"]
+        row["predict_ratio"] = row["peer_predict_s"] / row["our_predict_s"]
+        row["our_accuracy"] = found["accuracy"]
+        row["identical_share"] = np.mean(labels == predicted)
+        if is_same_problem and found["svm"]:
+            row["our_dual"] = found["svm"]["dual_objective"]
+            row["dual_difference"] = (row["our_dual"] - row["peer_dual"]) / abs(row["peer_dual"])
+    return row
+
+
+def compare_with_linfa(folder, ours, threads):
+    """Our engine against linfa-svm, both in our command."""
+    rows = []
+    for classifier in ["linear_svm", "rbf_svm"]:
+        options = ["--classifier", classifier, *OVO]
+        linfa = ours.classify(folder, [*options, "--solver", "linfa"])
+        own = ours.classify(folder, options, repeat=3)
+        if not (linfa and own):
+            continue
+        (theirs, their_labels), (found, labels) = linfa, own
+        row = {"peer": f"linfa-svm {classifier}", "ours": " ".join(options[1::2])}
+        for key, side in [("peer", theirs), ("our", found)]:
+            row |= {f"{key}_fit_s": side["fit_median_s"], f"{key}_predict_s": side["predict_median_s"]}
+            row |= {f"{key}_accuracy": side["accuracy"], f"{key}_dual": side["svm"]["dual_objective"]}
+        row["fit_ratio"] = row["peer_fit_s"] / row["our_fit_s"]
+        row["predict_ratio"] = row["peer_predict_s"] / row["our_predict_s"]
+        row["identical_share"] = np.mean(labels == their_labels)
+        row["dual_difference"] = (row["our_dual"] - row["peer_dual"]) / abs(row["peer_dual"])
+        rows.append(row)
+    return rows
+
+
+def compare_grid(folder, ours, threads, repeats):
+    """Our 6 × 6 grid of C and γ with 5-fold cross-validation against three fits of SVC(rbf)."""
+    gamma = 1.0 / (folder.train.shape[1] * folder.train.var())
+    penalties = ",".join(f"{10.0 ** k:g}" for k in range(-1, 5))
+    gammas = ",".join(f"{gamma * 4.0 ** k:.6g}" for k in range(-4, 2))
+    options = ["--classifier", "rbf_svm", *OVO, "--choose-c", penalties, "--choose-gamma", gammas, "--choose-folds", "5"]
+    peer_times, our_times = [], []
+    with threadpool_limits(threads):
+        for _ in range(repeats):
+            answer = ours.classify(folder, options)
+            if not answer:
+                print("grid: this bubbletouch has no --choose-gamma yet")
+                return []
+            our_times.append(answer[0]["fit_s"][0])
+            peer_times.append(sum(timed(lambda: SVC().fit(folder.train, folder.train_labels))[0] for _ in range(3)))
+    row = {"peer": "3 fits of SVC(rbf)", "ours": "6 x 6 grid of C and gamma, 5 folds", "our_accuracy": answer[0]["accuracy"]}
+    row["peer_fit_s"], row["our_fit_s"] = statistics.median(peer_times), statistics.median(our_times)
+    row["fit_ratio"] = row["peer_fit_s"] / row["our_fit_s"]
+    return [row]
+
+
+def show(row):
+    def number(key, form):
+        return format(row[key], form) if row.get(key) is not None else ""
+
+    print(
+        f"{row['threads']:>7} {row['measurements']:>5.0f} {row['noise_std']:>5g} {row['peer']:<22} {row.get('ours', 'none'):<26}"
+        f"{number('peer_fit_s', '9.3f'):>9}{number('our_fit_s', '9.3f'):>9}{number('fit_ratio', '8.1f'):>8}"
+        f"{number('peer_predict_s', '10.3f'):>10}{number('our_predict_s', '9.4f'):>9}{number('predict_ratio', '8.1f'):>8}"
+        f"{number('peer_accuracy', '9.4f'):>9}{number('our_accuracy', '8.4f'):>8}{number('identical_share', '10.4f'):>10}"
+        f"{number('dual_difference', '+11.1e'):>11}",
+        flush=True,
+    )
+
+
+HEADER = (
+    f"{'threads':>7} {'m':>5} {'noise':>5} {'peer':<22} {'ours':<26}{'fit s':>9}{'ours':>9}{'ratio':>8}"
+    f"{'predict s':>10}{'ours':>9}{'ratio':>8}{'accuracy':>9}{'ours':>8}{'identical':>10}{'dual':>11}"
+)
+
+
+def make_folders(arguments):
+    """One folder a cell, by the command; folders that are there are used as they are."""
+    folders = []
+    for cell in arguments.cells:
+        path = arguments.work / f"{arguments.study.stem}_cell_{cell}"
+        if not (path / "cell.toml").exists():
+            command = [arguments.binary, "features", str(arguments.study), "--cell", str(cell), "--out", str(path)]
+            if arguments.objects:
+                command += ["--objects", str(arguments.objects)]
+            subprocess.run(command, check=True)
+        folders.append(path)
+    return folders
+
+
+def parse():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--objects", type=Path, help="a folder of PLY meshes in metres; replaces the study's objects")
+    parser.add_argument("--study", type=Path, default=ROOT / "experiments/peers.toml")
+    parser.add_argument("--cells", type=int, nargs="+", default=[0, 1, 2, 9, 10, 11], help="cells of the study")
+    parser.add_argument("--work", type=Path, default=ROOT / "target/peers", help="where the features go")
+    parser.add_argument("--binary", default=str(ROOT / "target/release/bubbletouch"))
+    parser.add_argument("--train-rows", type=int, default=6000)
+    parser.add_argument("--repeats", type=int, default=3)
+    parser.add_argument("--threads", type=int, nargs="+", default=[1, os.cpu_count()])
+    parser.add_argument("--only", default="", help="only peers whose names hold this")
+    parser.add_argument("--grid", action="store_true", help="only the grid of C and gamma against three fits")
+    parser.add_argument("--out", type=Path, default=ROOT / "results/peers/recognition.csv")
+    return parser.parse_args()
+
+
+def machine():
+    """The processor's name, where the system tells."""
+    try:
+        lines = Path("/proc/cpuinfo").read_text().splitlines()
+        return next(line.split(":")[1].strip() for line in lines if line.startswith("model name"))
+    except (OSError, StopIteration):
+        return ""
+
+
+def main():
+    arguments = parse()
+    version = subprocess.run([arguments.binary, "--version"], check=True, capture_output=True, text=True).stdout.split()[-1]
+    print(f"bubbletouch {version}, scikit-learn {sklearn.__version__}, NumPy {np.__version__}, SciPy {scipy.__version__}, {machine()}")
+    common = {
+        "date": datetime.date.today().isoformat(), "machine": machine(), "bubbletouch": version,
+        "scikit_learn": sklearn.__version__, "numpy": np.__version__,
+    }
+    print(HEADER)
+    rows = []
+    for threads in dict.fromkeys(arguments.threads):
+        ours = Ours(arguments.binary, threads, arguments.train_rows)
+        for path in make_folders(arguments):
+            folder = Folder(path, arguments.train_rows)
+            sizes = {"n_train": len(folder.train), "n_test": len(folder.test), "threads": threads}
+            for found in measure(folder, ours, threads, arguments):
+                rows.append(common | sizes | folder.settings | found)
+                show(rows[-1])
+                write(arguments.out, rows)
+    print(f"{len(rows)} comparisons in {arguments.out}")
+
+
+def measure(folder, ours, threads, arguments):
+    if arguments.grid:
+        yield from compare_grid(folder, ours, threads, arguments.repeats)
+        return
+    for comparison in COMPARISONS:
+        if arguments.only in comparison[0]:
+            yield compare(folder, ours, comparison, threads, arguments.repeats)
+    if arguments.only in "linfa-svm":
+        yield from compare_with_linfa(folder, ours, threads)
+
+
+def write(path, rows):
+    """The rows so far: a file beside it, then renamed."""
+    path.parent.mkdir(parents=True, exist_ok=True)
+    partial = path.with_suffix(".partial")
+    with partial.open("w", newline="") as file:
+        table = csv.DictWriter(file, COLUMNS)
+        table.writeheader()
+        table.writerows(rows)
+    partial.replace(path)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,266 @@
+//! `bubbletouch classify`: one classifier on one folder of features, timed.
+
+use super::study_args::set_threads;
+use bubbletouch::random::Seed;
+use bubbletouch::recognition::ClassifierKind;
+use bubbletouch::recognition::classifier::{Classifier, Cost, TrainedClassifier};
+use bubbletouch::recognition::dataset::Dataset;
+use bubbletouch::recognition::interval::Interval;
+use bubbletouch::recognition::kernel::Gamma;
+use bubbletouch::recognition::scaling::Scaling;
+use bubbletouch::recognition::svm::Multiclass;
+use bubbletouch::study::{FeatureSet, read_features, write_npy};
+use bubbletouch::{Error, Result};
+use ndarray::Array1;
+use serde::de::IntoDeserializer;
+use serde::{Deserialize, Serialize};
+use std::path::PathBuf;
+use std::time::Instant;
+
+/// Confidence of the interval around the accuracy.
+const CONFIDENCE: f64 = 0.95;
+
+#[derive(clap::Args)]
+pub struct Args {
+    /// A folder with features.npy, labels.npy, train.npy and test.npy, as bubbletouch features writes it
+    folder: PathBuf,
+    /// Which classifier, by its name in studies: linear_svm, rbf_svm, polynomial_svm …
+    #[arg(long, value_name = "NAME", value_parser = word::<ClassifierKind>)]
+    classifier: ClassifierKind,
+    /// Soft-margin penalty C
+    #[arg(long, value_name = "C", default_value_t = 1.0)]
+    c: f64,
+    /// γ of the RBF and polynomial kernels, for scaled features: a number, or scale for 1 / (m · variance)
+    #[arg(long, value_name = "GAMMA", default_value = "scale", value_parser = gamma)]
+    gamma: Gamma,
+    /// d of the polynomial kernel
+    #[arg(long, value_name = "D", default_value_t = 3)]
+    degree: u32,
+    /// c₀ of the polynomial kernel
+    #[arg(long, value_name = "C0", default_value_t = 1.0)]
+    coef0: f64,
+    /// How two-class SVMs make a many-class one: one_vs_one, one_vs_rest …
+    #[arg(long, value_name = "HOW", default_value = "one_vs_one", value_parser = word::<Multiclass>)]
+    multiclass: Multiclass,
+    /// How features are scaled, fitted on training rows: standard, overall or none
+    #[arg(long, value_name = "HOW", default_value = "standard", value_parser = word::<Scaling>)]
+    scaling: Scaling,
+    /// The solver's stopping tolerance
+    #[arg(long, value_name = "EPS", default_value_t = 1e-3)]
+    tolerance: f64,
+    /// Root of whatever the classifier draws
+    #[arg(long, value_name = "N", default_value_t = 2018)]
+    seed: u64,
+    /// Train on the first N training rows [default: all]
+    #[arg(long, value_name = "N")]
+    train_rows: Option<usize>,
+    /// Train and predict N times; the times are medians
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    repeat: usize,
+    /// Write the predicted labels of the test rows, in their order, to a .npy file
+    #[arg(long, value_name = "FILE")]
+    predictions: Option<PathBuf>,
+    /// Print one JSON object instead of lines for people
+    #[arg(long)]
+    json: bool,
+    /// Threads; all cores when left out. Results are the same at any number
+    #[arg(long, value_name = "N")]
+    threads: Option<usize>,
+}
+
+/// What is printed: in JSON, one key a field.
+#[derive(Serialize)]
+struct Findings {
+    program: &'static str,
+    classifier: ClassifierKind,
+    multiclass: Multiclass,
+    scaling: Scaling,
+    /// C that was used.
+    c: f64,
+    n_train: usize,
+    n_test: usize,
+    n_measurements: usize,
+    n_correct: usize,
+    accuracy: f64,
+    accuracy_low: f64,
+    accuracy_high: f64,
+    /// Seconds to fit, scaling included; one a repeat.
+    fit_s: Vec<f64>,
+    fit_median_s: f64,
+    /// Seconds to predict all test rows, scaling included; one a repeat.
+    predict_s: Vec<f64>,
+    predict_median_s: f64,
+    /// `None` for what is no SVM.
+    svm: Option<SvmFindings>,
+}
+
+#[derive(Serialize)]
+struct SvmFindings {
+    /// Training rows with a multiplier above 0 in some problem.
+    n_support_vectors: usize,
+    n_problems: usize,
+    /// Problems that stopped at the solver's cap, short of its tolerance.
+    n_capped: usize,
+    /// Sum over the problems of `½ Σ_ij a_i a_j y_i y_j K(x_i, x_j) − Σ_i a_i`, which training minimises.
+    dual_objective: f64,
+}
+
+pub fn classify(args: &Args) -> Result<()> {
+    set_threads(args.threads)?;
+    if args.repeat == 0 {
+        return Err(Error::input("--repeat", 0, "at least 1"));
+    }
+    let set = read_features(&args.folder)?;
+    let (findings, predicted) = args.train_and_test(&set)?;
+    if let Some(path) = &args.predictions {
+        write_npy(path, &predicted.mapv(|label| label as i64))?;
+    }
+    match args.json {
+        true => {
+            let json = serde_json::to_string(&findings).expect("findings have a JSON form");
+            println!("{json}");
+        }
+        false => print(&findings),
+    }
+    Ok(())
+}
+
+impl Args {
+    fn train_and_test(&self, set: &FeatureSet) -> Result<(Findings, Array1<usize>)> {
+        let classifier = self.classifier();
+        let (training, test) = (set.training(self.train_rows)?, set.test()?);
+        let (mut fit_s, mut predict_s) = (Vec::new(), Vec::new());
+        let mut last = None;
+        for _ in 0..self.repeat {
+            let start = Instant::now();
+            let trained = classifier.train(&training, &Seed::new(self.seed))?;
+            fit_s.push(start.elapsed().as_secs_f64());
+            let start = Instant::now();
+            let predicted = trained.labels(test.records.view())?;
+            predict_s.push(start.elapsed().as_secs_f64());
+            last = Some((trained, predicted));
+        }
+        let (trained, predicted) = last.expect("at least one repeat");
+        let n_test = predicted.len();
+        let pairs = predicted.iter().zip(&test.targets);
+        let n_correct = pairs
+            .filter(|(predicted, truth)| predicted == truth)
+            .count();
+        let interval = Interval::wilson(n_correct, n_test, CONFIDENCE)?;
+        let findings = Findings {
+            program: concat!("bubbletouch ", env!("CARGO_PKG_VERSION")),
+            classifier: self.classifier,
+            multiclass: self.multiclass,
+            scaling: self.scaling,
+            c: trained.c(),
+            n_train: training.records.nrows(),
+            n_test,
+            n_measurements: training.records.ncols(),
+            n_correct,
+            accuracy: n_correct as f64 / n_test as f64,
+            accuracy_low: interval.low,
+            accuracy_high: interval.high,
+            fit_median_s: median(&fit_s),
+            fit_s,
+            predict_median_s: median(&predict_s),
+            predict_s,
+            svm: svm_findings(&trained, &training)?,
+        };
+        Ok((findings, predicted))
+    }
+
+    fn classifier(&self) -> Classifier {
+        Classifier {
+            scaling: self.scaling,
+            multiclass: self.multiclass,
+            c: Cost::Fixed(self.c),
+            gamma: self.gamma,
+            coef0: self.coef0,
+            degree: self.degree,
+            tolerance: self.tolerance,
+            ..Classifier::new(self.classifier)
+        }
+    }
+}
+
+fn svm_findings(trained: &TrainedClassifier, training: &Dataset) -> Result<Option<SvmFindings>> {
+    let Some(model) = trained.svm() else {
+        return Ok(None);
+    };
+    let scaled = trained.scaling().apply(training.records.view())?;
+    let values = model.decision_values(scaled.view())?;
+    let mut is_support = vec![false; scaled.nrows()];
+    let mut dual_objective = 0.0;
+    for (problem, values) in model.problems().iter().zip(values.columns()) {
+        let solution = &problem.solution;
+        for (&row, &coefficient) in problem.rows.iter().zip(&solution.coefficients) {
+            is_support[row] |= coefficient != 0.0;
+            // The decision value is the sum over the support vectors, less ρ.
+            let sum = values[row] + solution.rho;
+            dual_objective += 0.5 * coefficient * sum - coefficient.abs();
+        }
+    }
+    Ok(Some(SvmFindings {
+        n_support_vectors: is_support.into_iter().filter(|&is| is).count(),
+        n_problems: model.problems().len(),
+        n_capped: model.n_capped(),
+        dual_objective,
+    }))
+}
+
+fn median(values: &[f64]) -> f64 {
+    let mut sorted = values.to_vec();
+    sorted.sort_by(f64::total_cmp);
+    let middle = sorted.len() / 2;
+    match sorted.len() % 2 {
+        1 => sorted[middle],
+        _ => 0.5 * (sorted[middle - 1] + sorted[middle]),
+    }
+}
+
+fn print(findings: &Findings) {
+    let Findings {
+        n_train,
+        n_test,
+        n_measurements,
+        n_correct,
+        accuracy,
+        accuracy_low,
+        accuracy_high,
+        fit_median_s,
+        predict_median_s,
+        ..
+    } = findings;
+    println!(
+        "rows      {n_train} to train on, {n_test} to test, {n_measurements} measurements each"
+    );
+    println!(
+        "accuracy  {accuracy:.4} ({accuracy_low:.4} to {accuracy_high:.4}): {n_correct} of {n_test}"
+    );
+    println!("training  {fit_median_s:.4} s");
+    let each_us = 1e6 * predict_median_s / *n_test as f64;
+    println!("testing   {predict_median_s:.4} s, {each_us:.1} µs a row");
+    if let Some(svm) = &findings.svm {
+        println!(
+            "SVM       {} support vectors, {} of {} problems stopped short of the tolerance, dual objective {:.6}",
+            svm.n_support_vectors, svm.n_capped, svm.n_problems, svm.dual_objective
+        );
+    }
+}
+
+/// A word as studies spell it; the error lists what is allowed.
+fn word<T: for<'a> Deserialize<'a>>(text: &str) -> std::result::Result<T, String> {
+    let deserializer: serde::de::value::StrDeserializer<serde::de::value::Error> =
+        text.into_deserializer();
+    T::deserialize(deserializer).map_err(|error| error.to_string())
+}
+
+fn gamma(text: &str) -> std::result::Result<Gamma, String> {
+    match text {
+        "scale" => Ok(Gamma::Scale),
+        _ => text
+            .parse()
+            .map(Gamma::Value)
+            .map_err(|_| "expected a number, or scale".to_owned()),
+    }
+}

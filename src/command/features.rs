@@ -1,0 +1,45 @@
+//! `bubbletouch features`: what one cell of a study learns from.
+
+use super::output::output_folder;
+use super::study_args::StudyArgs;
+use bubbletouch::Result;
+use bubbletouch::report::progress;
+use bubbletouch::study::write_features;
+use std::path::PathBuf;
+
+#[derive(clap::Args)]
+pub struct Args {
+    #[command(flatten)]
+    study: StudyArgs,
+    /// Which cell, by its number in the study's tables
+    #[arg(long, value_name = "N", default_value_t = 0)]
+    cell: usize,
+    /// Which trial, from 0
+    #[arg(long, value_name = "T", default_value_t = 0)]
+    trial: usize,
+    /// Where to write features.npy, labels.npy, train.npy, test.npy, objects.csv and cell.toml
+    #[arg(long, value_name = "FOLDER")]
+    out: PathBuf,
+}
+
+pub fn features(args: &Args) -> Result<()> {
+    let loaded = args.study.load()?;
+    output_folder(&args.out)?;
+    let progress = progress::to_stderr();
+    let set = write_features(
+        &args.out,
+        &loaded.plan,
+        &loaded.sweep,
+        &loaded.touched,
+        (args.cell, args.trial),
+        progress.as_ref(),
+    )?;
+    let (n_touches, n_measurements) = set.data.records.dim();
+    progress.finish(&format!(
+        "{n_touches} touches of {n_measurements} measurements, {} to train on and {} to test, in {}",
+        set.split.train.len(),
+        set.split.test.len(),
+        args.out.display()
+    ));
+    Ok(())
+}

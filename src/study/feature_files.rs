@@ -1,0 +1,318 @@
+//! What one cell of a study learns from, as files: so that any program can train on exactly those rows.
+//!
+//! | file | holds |
+//! |---|---|
+//! | `features.npy` | n × m, f64: the measurements of every touch, before scaling |
+//! | `labels.npy` | n, i64: the object's number |
+//! | `train.npy` | i64: the rows that the trial trains on, in its order; a prefix is a smaller training set |
+//! | `test.npy` | i64: the rows that it tests, ascending |
+//! | `objects.csv` | one row an object: number, name |
+//! | `cell.toml` | the settings of the cell and the trial |
+
+use super::measurement::{Reading, measure, touch_seeds};
+use super::plan::Plan;
+use super::progress::Progress;
+use super::runner::{describe, signal_steps};
+use super::simulation::{TouchedObject, simulate_array};
+use super::spec::RecognitionSpec;
+use super::sweep::{Group, Sweep};
+use super::table::Cell;
+use crate::error::{Error, Result};
+use crate::files::{write_bytes, write_whole};
+use crate::random::Seed;
+use crate::recognition::dataset::{Dataset, dataset, rows};
+use crate::recognition::split::Split;
+use crate::sensing::Projection;
+use crate::signal::Chain;
+use ndarray::{Array, Array1, Array2, ArrayBase, Data, Dimension, s};
+use ndarray_npy::{ReadNpyExt, ReadableElement, WritableElement, WriteNpyExt};
+use serde::Serialize;
+use std::fs::File;
+use std::io::{self, BufReader};
+use std::path::Path;
+
+/// Labelled measurements and the rows that one trial trains on and tests.
+#[derive(Clone, Debug)]
+pub struct FeatureSet {
+    /// n_touches × m, before scaling; the object of every touch, by its number.
+    pub data: Dataset,
+    /// The trial's rows.
+    pub split: Split,
+}
+
+#[derive(Serialize)]
+struct ObjectRow<'a> {
+    label: usize,
+    object: &'a str,
+}
+
+/// `cell.toml`.
+#[derive(Serialize)]
+struct Settings<'a> {
+    question: &'a str,
+    seed: u64,
+    trial: usize,
+    n_train: usize,
+    n_test: usize,
+    cell: &'a Cell,
+    recognition: &'a RecognitionSpec,
+}
+
+/// Makes the measurements of one cell in one trial: the numbers that [`run`](super::run) gives its classifier.
+///
+/// # Errors
+/// A cell or a trial that the study does not have; what a signal step or a projection refuses.
+pub fn cell_features(
+    plan: &Plan,
+    sweep: &Sweep,
+    touched: &[TouchedObject],
+    (cell, trial): (usize, usize),
+    progress: &dyn Progress,
+) -> Result<FeatureSet> {
+    let (group, cell) = find(sweep, cell)?;
+    let split = split(plan, sweep, cell, trial)?;
+    let patch = &plan.arrays[group.array];
+    progress.stage(
+        &format!("touch {}", describe(patch)),
+        sweep.labels.len() as u64,
+    );
+    let frames = simulate_array(touched, patch, progress);
+    let seed = Seed::new(plan.spec.seed);
+    // As the run does it: nested measurements are the leading ones of the largest m.
+    let n_projected = group
+        .projected()
+        .into_iter()
+        .find(|&m| group.ensemble.is_prefix_nested() || m == cell.measurements)
+        .unwrap_or(cell.measurements);
+    let projection = Projection::new(
+        group.ensemble,
+        (patch.grid.ny, patch.grid.nx),
+        n_projected,
+        &seed.named("projection").numbered(trial as u64),
+    )?;
+    let reading = Reading {
+        chain: &Chain::new(&signal_steps(plan, group), patch)?,
+        projection: &projection,
+        taxel: patch.taxel,
+        speed: plan.speed,
+    };
+    let seeds = touch_seeds(touched, &seed.named("signal").numbered(trial as u64));
+    let measured = measure(reading, frames.deflection.view(), &seeds).values;
+    let features = measured.slice(s![.., ..cell.measurements]).to_owned();
+    Ok(FeatureSet {
+        data: dataset(features, sweep.labels.clone())?,
+        split,
+    })
+}
+
+/// Writes the measurements of one cell in one trial into a folder that exists.
+///
+/// # Errors
+/// As [`cell_features`]; a file that cannot be written.
+pub fn write_features(
+    folder: &Path,
+    plan: &Plan,
+    sweep: &Sweep,
+    touched: &[TouchedObject],
+    (cell, trial): (usize, usize),
+    progress: &dyn Progress,
+) -> Result<FeatureSet> {
+    let set = cell_features(plan, sweep, touched, (cell, trial), progress)?;
+    let Split { train, test } = &set.split;
+    write_npy(&folder.join("features.npy"), &set.data.records)?;
+    write_npy(
+        &folder.join("labels.npy"),
+        &whole_numbers(&set.data.targets),
+    )?;
+    write_npy(&folder.join("train.npy"), &whole_numbers(train))?;
+    write_npy(&folder.join("test.npy"), &whole_numbers(test))?;
+    write_whole(&folder.join("objects.csv"), |writer| {
+        let mut csv = csv::Writer::from_writer(writer);
+        for (label, touched) in touched.iter().enumerate() {
+            let object = touched.object.name.as_str();
+            csv.serialize(ObjectRow { label, object })
+                .map_err(io::Error::other)?;
+        }
+        csv.flush()
+    })?;
+    let settings = Settings {
+        question: &plan.spec.question,
+        seed: plan.spec.seed,
+        trial,
+        n_train: train.len(),
+        n_test: test.len(),
+        cell: find(sweep, cell)?.1,
+        recognition: &plan.spec.recognition,
+    };
+    let text = toml::to_string(&settings).expect("every setting of a cell has a TOML form");
+    write_bytes(&folder.join("cell.toml"), text.as_bytes())?;
+    Ok(set)
+}
+
+/// Reads a folder that [`write_features`] or another program wrote; only the four arrays are needed.
+///
+/// # Errors
+/// A file that is missing, has another number of dimensions or another type of elements than the table above says; a NaN
+/// or infinite feature (named by row and column); labels that are not one a row, or outside `0..n`; training or test rows
+/// that are none, beyond the features, or named twice (in one list or in both).
+pub fn read_features(folder: &Path) -> Result<FeatureSet> {
+    let file = |name: &str| folder.join(name);
+    let path = file("features.npy");
+    let features: Array2<f64> = read_npy(&path, "n × m of float64")?;
+    let n_rows = features.nrows();
+    let labels = read_indices(&file("labels.npy"), "labels", n_rows)?;
+    let split = Split {
+        train: read_indices(&file("train.npy"), "rows", n_rows)?,
+        test: read_indices(&file("test.npy"), "rows", n_rows)?,
+    };
+    check_split(folder, &split, n_rows)?;
+    let data = dataset(
+        features.as_standard_layout().into_owned(),
+        Array1::from(labels),
+    )
+    .map_err(|error| within(folder, error))?;
+    Ok(FeatureSet { data, split })
+}
+
+impl FeatureSet {
+    /// The training rows, or the first `n` of them.
+    ///
+    /// # Errors
+    /// No rows, or more than the split trains on.
+    pub fn training(&self, n: Option<usize>) -> Result<Dataset> {
+        let train = &self.split.train;
+        let n = n.unwrap_or(train.len());
+        if n == 0 || n > train.len() {
+            let allowed = format!("1 to {}, the training rows of the split", train.len());
+            return Err(Error::input("training rows", n, allowed));
+        }
+        rows(&self.data, &train[..n])
+    }
+
+    /// The test rows.
+    ///
+    /// # Errors
+    /// No rows.
+    pub fn test(&self) -> Result<Dataset> {
+        rows(&self.data, &self.split.test)
+    }
+}
+
+/// Writes an array as a whole `.npy` file.
+///
+/// # Errors
+/// A file that cannot be written.
+pub fn write_npy<A, S, D>(path: &Path, array: &ArrayBase<S, D>) -> Result<()>
+where
+    A: WritableElement,
+    S: Data<Elem = A>,
+    D: Dimension,
+{
+    write_whole(path, |writer| {
+        array.write_npy(writer).map_err(io::Error::other)
+    })
+}
+
+fn whole_numbers<'a>(numbers: impl IntoIterator<Item = &'a usize>) -> Array1<i64> {
+    numbers.into_iter().map(|&number| number as i64).collect()
+}
+
+fn read_npy<A: ReadableElement, D: Dimension>(path: &Path, what: &str) -> Result<Array<A, D>> {
+    let file = File::open(path).map_err(|error| {
+        Error::input(
+            path.display(),
+            format!("cannot be read ({error})"),
+            format!("a .npy file, {what}"),
+        )
+    })?;
+    Array::read_npy(BufReader::new(file))
+        .map_err(|error| Error::input(path.display(), error, format!("a .npy file, {what}")))
+}
+
+/// Whole numbers from 0 to below `n_rows`.
+fn read_indices(path: &Path, what: &str, n_rows: usize) -> Result<Vec<usize>> {
+    let numbers: Array1<i64> = read_npy(path, "one dimension of int64")?;
+    if numbers.is_empty() {
+        return Err(Error::input(
+            path.display(),
+            format!("no {what}"),
+            "at least one",
+        ));
+    }
+    numbers
+        .iter()
+        .enumerate()
+        .map(|(position, &number)| {
+            let index = usize::try_from(number).ok().filter(|&index| index < n_rows);
+            index.ok_or_else(|| {
+                Error::input(
+                    format!("{}, position {position}", path.display()),
+                    number,
+                    format!(
+                        "0 to {}, as there are {n_rows} rows of features",
+                        n_rows.saturating_sub(1)
+                    ),
+                )
+            })
+        })
+        .collect()
+}
+
+/// Refuses a row that is named twice: a tested row must not have been trained on, and none may count twice.
+fn check_split(folder: &Path, split: &Split, n_rows: usize) -> Result<()> {
+    let mut named_in = vec![None; n_rows];
+    for (file, rows) in [("train.npy", &split.train), ("test.npy", &split.test)] {
+        for &row in rows {
+            if let Some(earlier) = named_in[row].replace(file) {
+                let given = match earlier == file {
+                    true => format!("row {row} twice"),
+                    false => format!("row {row}, which {earlier} names too"),
+                };
+                return Err(Error::input(
+                    folder.join(file).display(),
+                    given,
+                    "every row at most once, to train on or to test",
+                ));
+            }
+        }
+    }
+    Ok(())
+}
+
+/// An error of the data, with the folder that they come from.
+fn within(folder: &Path, error: Error) -> Error {
+    match error {
+        Error::Input {
+            place,
+            given,
+            allowed,
+        } => Error::input(format!("{}: {place}", folder.display()), given, allowed),
+        other => other,
+    }
+}
+
+fn find(sweep: &Sweep, number: usize) -> Result<(&Group, &Cell)> {
+    sweep
+        .groups
+        .iter()
+        .flat_map(|group| group.cells.iter().map(move |cell| (group, cell)))
+        .find(|(_, cell)| cell.cell == number)
+        .ok_or_else(|| {
+            Error::input(
+                "cell",
+                number,
+                format!("0 to {}, the cells of the study", sweep.n_cells() - 1),
+            )
+        })
+}
+
+fn split(plan: &Plan, sweep: &Sweep, cell: &Cell, trial: usize) -> Result<Split> {
+    let split = sweep.splits.get(trial).ok_or_else(|| {
+        let last = sweep.splits.len() - 1;
+        Error::input("trial", trial, format!("0 to {last}, the study's trials"))
+    })?;
+    match plan.spec.recognition.train_touches {
+        None => Ok(split.clone()),
+        Some(_) => split.at_most(sweep.labels.view(), cell.train_touches),
+    }
+}
