@@ -1,5 +1,7 @@
 //! The decision functions of all binary problems, by matrix products.
 
+use std::ops::Range;
+
 use ndarray::{Array1, Array2, ArrayView2, Axis, s};
 
 use crate::recognition::dataset::Dataset;
@@ -9,9 +11,9 @@ use crate::recognition::scalar::Scalar;
 use crate::recognition::svm::BinaryProblem;
 use crate::recognition::training::centre;
 
-/// Rows whose decision values are computed at once: a kernel block of 512 × 1,000 support vectors is 4 MB. Larger
+/// Rows whose decision values are computed at once: with 5,000 support vectors their kernel values take 5 MB. Larger
 /// leaves the processor's cache, smaller makes the products inefficient.
-const BLOCK_ROWS: usize = 512;
+const BLOCK_ROWS: usize = 256;
 
 /// `Σ y a K(x_i, x) − ρ` for all problems.
 #[derive(Clone, Debug)]
@@ -28,18 +30,18 @@ pub(crate) struct DecisionFunctions<T> {
 enum Sums<T> {
     /// The hyperplanes' normals, m × n_problems.
     Hyperplanes(Array2<T>),
-    /// Support vectors, class by class.
-    SupportVectors(KernelFunction, Vec<ClassSupport<T>>),
+    /// Support vectors, class by class, and what they weigh.
+    SupportVectors(KernelFunction, Points<T>, Vec<ClassWeights<T>>),
 }
 
-/// The support vectors of one class and their coefficients in the problems that the class takes part in.
+/// The coefficients of one class's support vectors in the problems that the class takes part in.
 #[derive(Clone, Debug)]
-struct ClassSupport<T> {
-    /// n_support × m.
-    vectors: Points<T>,
+struct ClassWeights<T> {
+    /// Which support vectors.
+    vectors: Range<usize>,
     /// The problems, ascending.
     problems: Vec<usize>,
-    /// n_support × problems.len().
+    /// vectors.len() × problems.len().
     coefficients: Array2<T>,
 }
 
@@ -59,20 +61,20 @@ impl<T: Scalar> DecisionFunctions<T> {
                 Sums::Hyperplanes(normals.mapv(T::of))
             }
             _ => {
-                let of_class = |&class| {
-                    let Coefficients {
-                        rows,
-                        problems,
-                        values,
-                    } = Coefficients::new(data, class, problems);
-                    let vectors = data.records.select(Axis(0), &rows);
-                    ClassSupport {
-                        vectors: Points::new(vectors.view(), centre.view()),
-                        problems,
-                        coefficients: values.mapv(T::of),
+                let mut rows = Vec::new();
+                let weights = classes.iter().map(|&class| {
+                    let own = Coefficients::new(data, class, problems);
+                    let first = rows.len();
+                    rows.extend(own.rows);
+                    ClassWeights {
+                        vectors: first..rows.len(),
+                        problems: own.problems,
+                        coefficients: own.values.mapv(T::of),
                     }
-                };
-                Sums::SupportVectors(kernel, classes.iter().map(of_class).collect())
+                });
+                let weights = weights.collect();
+                let vectors = data.records.select(Axis(0), &rows);
+                Sums::SupportVectors(kernel, Points::new(vectors.view(), centre.view()), weights)
             }
         };
         Self { centre, rho, sums }
@@ -95,11 +97,12 @@ impl<T: Scalar> DecisionFunctions<T> {
     fn sums(&self, points: &Points<T>) -> Array2<T> {
         match &self.sums {
             Sums::Hyperplanes(normals) => points.all().values.dot(normals),
-            Sums::SupportVectors(kernel, classes) => {
+            Sums::SupportVectors(kernel, vectors, weights) => {
+                let values = points.all().kernel(vectors.all(), kernel);
                 let mut sums = Array2::zeros((points.len(), self.rho.len()));
-                for class in classes {
-                    let values = points.all().kernel(class.vectors.all(), kernel);
-                    let part = values.dot(&class.coefficients);
+                for class in weights {
+                    let own = values.slice(s![.., class.vectors.clone()]);
+                    let part = own.dot(&class.coefficients);
                     for (mut sums, part) in sums.rows_mut().into_iter().zip(part.rows()) {
                         for (&problem, &value) in class.problems.iter().zip(part) {
                             sums[problem] += value;

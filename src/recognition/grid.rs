@@ -31,10 +31,33 @@ struct Fold {
     validation: Vec<usize>,
 }
 
-/// A binary problem of a fold: classes by their position in [`Fold::training`].
-struct Problem {
-    positive: usize,
-    negative: Option<usize>,
+impl Fold {
+    /// The binary problems: positions in `training` of the positive class, and of the negative one (`None`: all others).
+    fn problems(&self, multiclass: Multiclass) -> Vec<(usize, Option<usize>)> {
+        let n = self.training.len();
+        match multiclass {
+            Multiclass::OneVsRest => (0..n).map(|class| (class, None)).collect(),
+            _ => (0..n)
+                .flat_map(|first| (first + 1..n).map(move |second| (first, Some(second))))
+                .collect(),
+        }
+    }
+}
+
+/// What a class's training rows weigh in the problems that it takes part in, for every C.
+struct Weights<T> {
+    /// rows × (problems of the class × C).
+    coefficients: Array2<T>,
+    /// Its problems, ascending.
+    problems: Vec<usize>,
+}
+
+/// All problems of a fold, solved.
+struct Solved<T> {
+    weights: Vec<Weights<T>>,
+    /// n_path × n_problems.
+    rho: Array2<f64>,
+    n_capped: usize,
 }
 
 impl<T: Scalar> Grid<'_, T> {
@@ -50,12 +73,13 @@ impl<T: Scalar> Grid<'_, T> {
             let mut values = products.clone();
             all.apply(&mut values, all, kernel);
             for fold in &folds {
-                let (correct, capped) = self.evaluate(fold, values.view(), goal);
+                let solved = self.solve(fold, values.view(), goal);
+                let correct = self.validate(fold, values.view(), &solved);
                 counts
                     .iter_mut()
                     .zip(correct)
                     .for_each(|(sum, n)| *sum += n);
-                n_capped += capped;
+                n_capped += solved.n_capped;
             }
         }
         (counts, n_capped)
@@ -84,62 +108,63 @@ impl<T: Scalar> Grid<'_, T> {
         }
     }
 
-    /// Validation rows recognised per C, and solves stopped at the cap.
-    fn evaluate(&self, fold: &Fold, kernel: ArrayView2<T>, goal: Goal) -> (Vec<usize>, usize) {
-        let problems = self.problems(fold.training.len());
+    fn solve(&self, fold: &Fold, kernel: ArrayView2<T>, goal: Goal) -> Solved<T> {
+        let problems = fold.problems(self.multiclass);
         let n_path = goal.path.len();
-        // Coefficients by class: rows × (problems of the class × C), and where a problem stands among its class's.
-        let mut coefficients: Vec<Array2<T>> = Vec::new();
-        let mut columns: Vec<Vec<usize>> = vec![Vec::new(); fold.training.len()];
-        for (index, problem) in problems.iter().enumerate() {
-            for (class, columns) in columns.iter_mut().enumerate() {
-                if problem.takes(class) {
-                    columns.push(index);
-                }
+        let takes_part = |class: usize, &(positive, negative): &(usize, Option<usize>)| {
+            negative.is_none_or(|negative| class == positive || class == negative)
+        };
+        let weights = fold.training.iter().enumerate().map(|(class, (_, rows))| {
+            let own = (0..problems.len()).filter(|&at| takes_part(class, &problems[at]));
+            let problems: Vec<usize> = own.collect();
+            Weights {
+                coefficients: Array2::zeros((rows.len(), problems.len() * n_path)),
+                problems,
             }
-        }
-        for ((_, rows), columns) in fold.training.iter().zip(&columns) {
-            coefficients.push(Array2::zeros((rows.len(), columns.len() * n_path)));
-        }
-        let mut filled = vec![0; fold.training.len()];
-        let mut rho = Array2::<f64>::zeros((n_path, problems.len()));
-        let mut n_capped = 0;
+        });
+        let mut solved = Solved {
+            weights: weights.collect(),
+            rho: Array2::zeros((n_path, problems.len())),
+            n_capped: 0,
+        };
         let mut gram = Dense::default();
         for (index, problem) in problems.iter().enumerate() {
             let classes: Vec<usize> = (0..fold.training.len())
-                .filter(|&c| problem.takes(c))
+                .filter(|&class| takes_part(class, problem))
                 .collect();
-            let rows: Vec<usize> = classes
-                .iter()
-                .flat_map(|&c| fold.training[c].1.clone())
-                .collect();
+            let rows_of = |&class: &usize| fold.training[class].1.as_slice();
+            let rows = classes.iter().map(rows_of).collect::<Vec<_>>().concat();
             let is_positive: Vec<bool> = classes
                 .iter()
-                .flat_map(|&c| std::iter::repeat_n(c == problem.positive, fold.training[c].1.len()))
+                .flat_map(|class| std::iter::repeat_n(*class == problem.0, rows_of(class).len()))
                 .collect();
             gram.of_rows(kernel, &rows);
             let mut smo = Smo::new(&mut gram, &is_positive);
             for (at, &c) in goal.path.iter().enumerate() {
                 let solution = smo.solve(c, goal.tolerance);
-                n_capped += usize::from(solution.is_capped);
-                rho[[at, index]] = solution.rho;
+                solved.n_capped += usize::from(solution.is_capped);
+                solved.rho[[at, index]] = solution.rho;
                 let mut from = solution.coefficients.iter();
                 for &class in &classes {
-                    let column = filled[class] * n_path + at;
-                    for to in coefficients[class].column_mut(column) {
-                        *to = from.next().map_or(T::zero(), |&beta| T::of(beta));
-                    }
+                    solved.weights[class].take(index, (at, n_path), &mut from);
                 }
             }
-            classes.iter().for_each(|&class| filled[class] += 1);
         }
-        let mut sums = Array3::<T>::zeros((n_path, fold.validation.len(), problems.len()));
-        for (((_, rows), columns), coefficients) in
-            fold.training.iter().zip(&columns).zip(&coefficients)
-        {
-            let part = gather(kernel, &fold.validation, rows).dot(coefficients);
+        solved
+    }
+
+    /// Validation rows recognised, per C.
+    fn validate(&self, fold: &Fold, kernel: ArrayView2<T>, solved: &Solved<T>) -> Vec<usize> {
+        let (n_path, n_problems) = solved.rho.dim();
+        let mut sums = Array3::<T>::zeros((n_path, fold.validation.len(), n_problems));
+        for ((_, rows), weights) in fold.training.iter().zip(&solved.weights) {
+            let part = gather(kernel, &fold.validation, rows).dot(&weights.coefficients);
             for (row, values) in part.rows().into_iter().enumerate() {
-                for (chunk, &problem) in values.exact_chunks(n_path).into_iter().zip(columns) {
+                for (chunk, &problem) in values
+                    .exact_chunks(n_path)
+                    .into_iter()
+                    .zip(&weights.problems)
+                {
                     for (at, &value) in chunk.iter().enumerate() {
                         sums[[at, row, problem]] += value;
                     }
@@ -147,48 +172,32 @@ impl<T: Scalar> Grid<'_, T> {
             }
         }
         let classes: Vec<usize> = fold.training.iter().map(|&(class, _)| class).collect();
-        let sides = problems
-            .iter()
-            .map(|p| (classes[p.positive], p.negative.map(|class| classes[class])));
-        let voting = Voting::new(&classes, self.multiclass, sides);
-        let truth: Vec<usize> = fold
-            .validation
-            .iter()
-            .map(|&row| self.data.targets[self.sorted.order()[row]])
-            .collect();
-        let correct = sums.axis_iter(Axis(0)).zip(rho.rows()).map(|(sums, rho)| {
-            let values = sums.mapv(T::wide) - rho;
-            let labels = voting.labels(values.view());
-            labels.iter().zip(&truth).filter(|(a, b)| a == b).count()
-        });
-        (correct.collect(), n_capped)
-    }
-
-    fn problems(&self, n_classes: usize) -> Vec<Problem> {
-        match self.multiclass {
-            Multiclass::OneVsRest => (0..n_classes)
-                .map(|positive| Problem {
-                    positive,
-                    negative: None,
-                })
-                .collect(),
-            _ => (0..n_classes)
-                .flat_map(|positive| {
-                    (positive + 1..n_classes).map(move |negative| Problem {
-                        positive,
-                        negative: Some(negative),
-                    })
-                })
-                .collect(),
-        }
+        let voting = Voting::new(&classes, self.multiclass);
+        let label = |&row: &usize| self.data.targets[self.sorted.order()[row]];
+        let truth: Vec<usize> = fold.validation.iter().map(label).collect();
+        sums.axis_iter(Axis(0))
+            .zip(solved.rho.rows())
+            .map(|(sums, rho)| {
+                let values = sums.mapv(T::wide) - rho;
+                let labels = voting.labels(values.view());
+                labels.iter().zip(&truth).filter(|(a, b)| a == b).count()
+            })
+            .collect()
     }
 }
 
-impl Problem {
-    /// Whether the class has rows in it.
-    fn takes(&self, class: usize) -> bool {
-        self.negative
-            .is_none_or(|negative| class == negative || class == self.positive)
+impl<T: Scalar> Weights<T> {
+    /// Takes the class's coefficients in a problem, for one C of the path, from those of all its rows.
+    fn take<'a>(
+        &mut self,
+        problem: usize,
+        (at, n_path): (usize, usize),
+        from: &mut impl Iterator<Item = &'a f64>,
+    ) {
+        let column = self.problems.partition_point(|&other| other < problem) * n_path + at;
+        for (to, &beta) in self.coefficients.column_mut(column).iter_mut().zip(from) {
+            *to = T::of(beta);
+        }
     }
 }
 

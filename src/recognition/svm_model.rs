@@ -47,11 +47,7 @@ impl SvmModel {
         };
         Self {
             n_features: data.records.ncols(),
-            voting: Voting::new(
-                classes,
-                multiclass,
-                problems.iter().map(|p| (p.positive, p.negative)),
-            ),
+            voting: Voting::new(classes, multiclass),
             problems,
             decision,
         }

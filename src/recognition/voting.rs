@@ -4,27 +4,18 @@ use ndarray::{Array1, ArrayView2};
 
 use crate::recognition::svm::Multiclass;
 
-/// Which class each decision value speaks for.
+/// Which class the decision values speak for: for one-vs-one those of all pairs (0, 1), (0, 2), …, (1, 2), … of the
+/// classes' positions, the first positive; for one-vs-rest one a class.
 #[derive(Clone, Debug)]
 pub(crate) struct Voting {
     classes: Vec<usize>,
     multiclass: Multiclass,
-    /// For every problem, the positions in `classes` of its positive and its negative class.
-    sides: Vec<(usize, Option<usize>)>,
 }
 
 impl Voting {
-    /// For problems between these classes (ascending): the class whose rows are positive, and the other (`None`: all).
-    pub fn new(
-        classes: &[usize],
-        multiclass: Multiclass,
-        problems: impl Iterator<Item = (usize, Option<usize>)>,
-    ) -> Self {
-        let position = |class: usize| classes.partition_point(|&other| other < class);
+    /// Between these classes, ascending.
+    pub fn new(classes: &[usize], multiclass: Multiclass) -> Self {
         Self {
-            sides: problems
-                .map(|(positive, negative)| (position(positive), negative.map(position)))
-                .collect(),
             classes: classes.to_vec(),
             multiclass,
         }
@@ -38,41 +29,51 @@ impl Voting {
     /// The label that each row of decision values (n_rows × n_problems) speaks for.
     pub fn labels(&self, values: ArrayView2<f64>) -> Array1<usize> {
         let mut votes = vec![0_u32; self.classes.len()];
+        let values = values.as_standard_layout();
         values
             .rows()
             .into_iter()
-            .map(|values| {
+            .map(|row| {
+                let row = row.as_slice().unwrap_or_default();
                 let winner = match self.multiclass {
-                    Multiclass::OneVsRest => first_maximum(values.iter()),
+                    Multiclass::OneVsRest => first_maximum(row),
                     _ => {
-                        self.count(values.iter(), &mut votes);
-                        first_maximum(votes.iter())
+                        count(row, &mut votes);
+                        first_maximum(&votes)
                     }
                 };
                 self.classes[winner]
             })
             .collect()
     }
+}
 
-    /// Votes per class, as LIBSVM counts them: a value above 0 is for the positive class, any other for the negative.
-    fn count<'a>(&self, values: impl Iterator<Item = &'a f64>, votes: &mut [u32]) {
-        votes.fill(0);
-        for (&value, &(positive, negative)) in values.zip(&self.sides) {
-            let negative = negative.unwrap_or(positive);
-            votes[if value > 0.0 { positive } else { negative }] += 1;
+/// Votes per class, as LIBSVM counts them: a value above 0 is for the positive class, any other for the negative. The
+/// problems are all pairs of classes in order, so those of a class with all later ones lie side by side.
+fn count(values: &[f64], votes: &mut [u32]) {
+    votes.fill(0);
+    let mut rest = values;
+    for class in 0..votes.len() {
+        let (own, later) = votes[class..].split_at_mut(1);
+        let (values, after) = rest.split_at(later.len());
+        rest = after;
+        for (vote, &value) in later.iter_mut().zip(values) {
+            let is_own = u32::from(value > 0.0);
+            own[0] += is_own;
+            *vote += 1 - is_own;
         }
     }
 }
 
 /// The position of the largest value; the first of equals.
-fn first_maximum<'a, V: PartialOrd + 'a>(values: impl Iterator<Item = &'a V>) -> usize {
-    let mut best: Option<(usize, &V)> = None;
-    for (i, value) in values.enumerate() {
-        if best.is_none_or(|(_, largest)| value > largest) {
-            best = Some((i, value));
+fn first_maximum<V: PartialOrd>(values: &[V]) -> usize {
+    let mut best = 0;
+    for (i, value) in values.iter().enumerate() {
+        if *value > values[best] {
+            best = i;
         }
     }
-    best.map_or(0, |(i, _)| i)
+    best
 }
 
 #[cfg(test)]
@@ -82,13 +83,11 @@ mod tests {
 
     #[test]
     fn ties_go_to_the_lowest_class() {
-        let pairs = [(2, Some(5)), (2, Some(9)), (5, Some(9))];
-        let voting = Voting::new(&[2, 5, 9], Multiclass::OneVsOne, pairs.into_iter());
+        let voting = Voting::new(&[2, 5, 9], Multiclass::OneVsOne);
         // A cycle: one vote each.
         let values = array![[1.0, -1.0, 1.0], [-1.0, -1.0, 1.0], [0.0, 0.0, 0.0]];
         assert_eq!(voting.labels(values.view()), array![2, 5, 9]);
-        let rest = [(2, None), (5, None), (9, None)];
-        let voting = Voting::new(&[2, 5, 9], Multiclass::OneVsRest, rest.into_iter());
+        let voting = Voting::new(&[2, 5, 9], Multiclass::OneVsRest);
         let values = array![[0.5, 0.5, -1.0], [-3.0, -2.0, -2.0]];
         assert_eq!(voting.labels(values.view()), array![2, 5]);
     }
