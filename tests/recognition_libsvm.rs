@@ -146,12 +146,15 @@ fn objectives(c: f64, data: &Dataset, kernel: &Array2<f64>, problem: &BinaryProb
 
 fn trained(case: &Case, set: &Set) -> (Dataset, SvmModel) {
     let data = dataset(matrix(&set.rows), Array1::from(set.labels.clone())).unwrap();
-    let params = SvmParams {
+    let usual = SvmParams {
         kernel: case.kernel(),
-        multiclass: case.multiclass,
         c: case.c,
         tolerance: case.tolerance,
         ..SvmParams::default()
+    };
+    let params = SvmParams {
+        multiclass: case.multiclass,
+        ..usual
     };
     let model = params.train(&data).unwrap();
     (data, model)
