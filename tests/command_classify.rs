@@ -214,8 +214,8 @@ fn rows_that_are_not_there_or_named_twice_are_refused() {
         ),
         (
             "test.npy",
-            array![0, 1, 1],
-            ["test.npy: row 1 twice", "at most once"],
+            array![0, 7, 7],
+            ["test.npy: row 7 twice", "at most once"],
         ),
         (
             "test.npy",

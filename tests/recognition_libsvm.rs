@@ -146,12 +146,15 @@ fn objectives(c: f64, data: &Dataset, kernel: &Array2<f64>, problem: &BinaryProb
 
 fn trained(case: &Case, set: &Set) -> (Dataset, SvmModel) {
     let data = dataset(matrix(&set.rows), Array1::from(set.labels.clone())).unwrap();
-    let params = SvmParams {
+    let usual = SvmParams {
         kernel: case.kernel(),
-        multiclass: case.multiclass,
         c: case.c,
         tolerance: case.tolerance,
         ..SvmParams::default()
+    };
+    let params = SvmParams {
+        multiclass: case.multiclass,
+        ..usual
     };
     let model = params.train(&data).unwrap();
     (data, model)
@@ -172,12 +175,15 @@ fn check(case: &Case, set: &Set) {
         case.n_capped
     );
     let scale = case.dual.abs();
-    // No worse than LIBSVM, and no better than the duality gap of its solution allows.
-    assert!(ours.dual <= case.dual + 1e-3 * scale, "{name}");
+    // No better than the duality gap of LIBSVM's solution allows.
     assert!(ours.dual >= case.dual - case.gap - 1e-9 * scale, "{name}");
     if case.n_capped == 0 {
         assert_eq!(model.n_capped(), 0, "{name}");
         assert!((ours.dual - case.dual).abs() <= 1e-3 * scale, "{name}");
+    } else {
+        // Where LIBSVM gave up: no worse than it, or given up as well and counted.
+        let is_no_worse = ours.dual <= case.dual + 1e-3 * scale;
+        assert!(is_no_worse || model.n_capped() > 0, "{name}");
     }
     let Some(decision) = &case.decision else {
         return;
