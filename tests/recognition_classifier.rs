@@ -99,7 +99,7 @@ fn a_chosen_c_is_the_most_accurate_and_the_smaller_on_a_tie() {
     );
     let best = tried.iter().map(|tried| tried.1).fold(0.0, f64::max);
     let smallest = tried.iter().find(|tried| tried.1 == best).unwrap().0;
-    assert_eq!(model.c(), smallest);
+    assert_eq!(model.c(), Some(smallest));
     // The model is the one of that C on all training rows.
     let fixed = Classifier {
         c: Cost::Fixed(smallest),

@@ -1,5 +1,7 @@
 //! The choice of C on a validation split of the training rows; the test rows are never seen.
 
+use ndarray::Array1;
+
 use crate::recognition::dataset::{Dataset, rows};
 use crate::recognition::metrics::ConfusionMatrix;
 use crate::recognition::scaling::Scaling;
@@ -31,6 +33,26 @@ pub fn choose_c(
     validation: &Split,
     candidates: &[f64],
 ) -> Result<ChosenC> {
+    choose_c_by(
+        |fitting, held_out, c| {
+            let model = SvmParams { c, ..*params }.train(fitting)?;
+            model.labels(held_out.records.view())
+        },
+        scaling,
+        training,
+        validation,
+        candidates,
+    )
+}
+
+/// [`choose_c`] for any classifier: `predict` trains on its first argument with this C and labels the rows of its second.
+pub(crate) fn choose_c_by(
+    predict: impl Fn(&Dataset, &Dataset, f64) -> Result<Array1<usize>>,
+    scaling: Scaling,
+    training: &Dataset,
+    validation: &Split,
+    candidates: &[f64],
+) -> Result<ChosenC> {
     let mut candidates = candidates.to_vec();
     candidates.sort_by(f64::total_cmp);
     candidates.dedup();
@@ -46,8 +68,7 @@ pub fn choose_c(
     let accuracies = candidates
         .into_iter()
         .map(|c| {
-            let model = SvmParams { c, ..*params }.train(&fitting)?;
-            let predicted = model.labels(held_out.records.view())?;
+            let predicted = predict(&fitting, &held_out, c)?;
             let truth = held_out.targets.view();
             let confusion = ConfusionMatrix::new(truth, predicted.view(), n_classes)?;
             Ok((c, confusion.accuracy()))

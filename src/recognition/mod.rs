@@ -36,16 +36,29 @@ use serde::{Deserialize, Serialize};
 
 pub mod binary;
 pub mod choice;
+pub mod class_model;
 pub mod classifier;
 pub mod comparison;
+pub(crate) mod coordinate_descent;
+pub(crate) mod crammer_singer;
 pub mod dataset;
+pub mod decision_tree;
 pub mod interval;
+pub mod k_nearest;
 pub mod kernel;
+pub(crate) mod lbfgs;
+pub mod linear_model;
+pub mod linear_svm;
+pub mod logistic;
 pub mod metrics;
+pub mod naive_bayes;
+pub mod random_forest;
+pub(crate) mod ranked;
 pub mod scaling;
 pub mod split;
 pub mod svm;
 pub mod svm_model;
+pub mod trained_classifier;
 
 /// A classifier that a study can sweep.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
@@ -57,4 +70,24 @@ pub enum ClassifierKind {
     RbfSvm,
     /// Soft-margin SVM, polynomial kernel `(γ x·z + c₀)^d`.
     PolynomialSvm,
+    /// Multinomial [logistic regression](logistic).
+    LogisticRegression,
+    /// [k nearest neighbours](k_nearest).
+    KNearest,
+    /// Gaussian [naive Bayes](naive_bayes).
+    NaiveBayes,
+    /// A single [classification tree](decision_tree).
+    DecisionTree,
+    /// A [random forest](random_forest).
+    RandomForest,
+}
+
+impl ClassifierKind {
+    /// Whether it has a C: the soft-margin SVMs and logistic regression. The others train the same whatever C is given.
+    pub fn has_c(self) -> bool {
+        match self {
+            Self::LinearSvm | Self::RbfSvm | Self::PolynomialSvm | Self::LogisticRegression => true,
+            Self::KNearest | Self::NaiveBayes | Self::DecisionTree | Self::RandomForest => false,
+        }
+    }
 }

@@ -22,6 +22,25 @@ pub enum Multiclass {
     OneVsOne,
     /// One classifier per class against all others; the largest decision value wins. On a tie, the lowest index.
     OneVsRest,
+    /// All classes in one problem, by Crammer and Singer: the true class must beat every other by a margin of 1. Linear
+    /// only; see [`linear_svm`](crate::recognition::linear_svm). The largest decision value wins, on a tie the lowest index.
+    CrammerSinger,
+}
+
+/// Which solver trains a soft-margin SVM.
+#[derive(
+    Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize,
+)]
+#[serde(rename_all = "snake_case")]
+pub enum Solver {
+    /// Sequential minimal optimisation.
+    #[default]
+    Smo,
+    /// Dual coordinate descent: a linear kernel one-vs-rest, with a regularised bias; see
+    /// [`linear_svm`](crate::recognition::linear_svm).
+    CoordinateDescent,
+    /// linfa-svm.
+    Linfa,
 }
 
 /// What a soft-margin SVM is trained with. Implements linfa's [`Fit`].
@@ -90,6 +109,13 @@ impl SvmParams {
         let problems = match self.multiclass {
             Multiclass::OneVsOne => self.solve_pairs(data, &classes, &kernel)?,
             Multiclass::OneVsRest => self.solve_against_rest(data, &classes, &kernel)?,
+            Multiclass::CrammerSinger => {
+                return Err(Error::input(
+                    "multiclass",
+                    "crammer_singer with a kernel",
+                    "it is linear only: one_vs_one or one_vs_rest is allowed here",
+                ));
+            }
         };
         Ok(SvmModel::new(
             data,

@@ -134,7 +134,7 @@ impl SvmModel {
             .map(|values| {
                 let winner = match self.multiclass {
                     Multiclass::OneVsOne => first_maximum(&self.votes(values.iter())),
-                    Multiclass::OneVsRest => first_maximum(&values.to_vec()),
+                    _ => first_maximum(&values.to_vec()),
                 };
                 self.classes[winner]
             })
