@@ -20,7 +20,6 @@ const LANES: usize = 8;
 pub(crate) const ROUNDING: f64 = 1e-12;
 
 /// Training rows with the bias feature appended and padded by zeros: contiguous, in f64.
-///
 #[derive(Clone, Debug)]
 pub(crate) struct Rows {
     values: Array2<f64>,

@@ -10,6 +10,9 @@ const MEMORY: usize = 10;
 /// Share of the predicted decrease that a step must reach (Armijo's condition).
 const SUFFICIENT_DECREASE: f64 = 1e-4;
 
+/// Changes of the value below this share of it are rounding.
+const ROUNDING: f64 = 1e-14;
+
 /// Halvings of a step before the search gives up: the decrease is then below rounding.
 const MAX_HALVINGS: usize = 40;
 
@@ -54,7 +57,11 @@ pub(crate) fn minimise(
         for _ in 0..MAX_HALVINGS {
             let next = &at + &(&direction * step);
             let (next_value, next_gradient) = function(&next);
-            if next_value <= value + SUFFICIENT_DECREASE * step * slope {
+            let decreases = next_value <= value + SUFFICIENT_DECREASE * step * slope;
+            // Near the bottom rounding hides the decrease of the value, not that of the slope [Hager & Zhang 2005].
+            let flattens = next_value <= value + ROUNDING * value.abs()
+                && direction.dot(&next_gradient).abs() <= 0.9 * slope.abs();
+            if decreases || flattens {
                 accepted = Some((next, next_value, next_gradient));
                 break;
             }
