@@ -87,7 +87,8 @@ pub(crate) fn solve(
         let mut seen = (f64::INFINITY, f64::NEG_INFINITY);
         let mut visited = 0;
         while visited < n_active {
-            let other = rng.gen_range(visited..n_active);
+            // 32 bits: the draw takes as long as a short row's product.
+            let other = visited + rng.gen_range(0..(n_active - visited) as u32) as usize;
             order.swap(visited, other);
             let i = order[visited];
             let x = rows.row(i);

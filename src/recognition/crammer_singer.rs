@@ -59,7 +59,8 @@ pub(crate) fn solve(
         let mut violation = f64::NEG_INFINITY;
         let mut visited = 0;
         while visited < n_active {
-            let other = rng.gen_range(visited..n_active);
+            // 32 bits: the draw takes as long as a short row's product.
+            let other = visited + rng.gen_range(0..(n_active - visited) as u32) as usize;
             order.swap(visited, other);
             match problem.visit(order[visited]) {
                 Some(spread) => {

@@ -10,7 +10,9 @@
 //!
 //! A binary soft-margin SVM decides by the sign of `f(x) = Σ_i y_i a_i K(x_i, x) − ρ`, where the multipliers minimise
 //! `½ Σ_ij a_i a_j y_i y_j K(x_i, x_j) − Σ_i a_i` over `0 ≤ a_i ≤ C`, `Σ_i y_i a_i = 0`; [`binary`] solves it by
-//! linfa-svm, [`svm`] makes one classifier of many.
+//! linfa-svm, [`svm`] makes one classifier of many. [`linear_svm`] trains the linear case without a kernel matrix, and
+//! [`logistic`], [`naive_bayes`], [`k_nearest`], [`decision_tree`] and [`random_forest`] stand beside it as
+//! [`ClassModel`](class_model::ClassModel)s.
 //!
 //! ```
 //! use bubbletouch::random::Seed;
@@ -27,6 +29,8 @@
 //! let split = stratified_hold_out(data.targets.view(), 0.25, &Seed::new(2018))?;
 //! // Any classifier that implements linfa's traits can stand here.
 //! let predicted = predict_split(&Classifier::new(ClassifierKind::LinearSvm), &data, &split)?;
+//! let foreign = predict_split(&linfa_bayes::GaussianNb::params(), &data, &split)?;
+//! assert_eq!(foreign, predicted);
 //! let truth = data.targets.select(Axis(0), &split.test);
 //! assert_eq!(ConfusionMatrix::new(truth.view(), predicted.view(), 2)?.accuracy(), 1.0);
 //! # Ok::<(), bubbletouch::Error>(())
