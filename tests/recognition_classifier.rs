@@ -3,6 +3,7 @@
 use bubbletouch::Error;
 use bubbletouch::random::Seed;
 use bubbletouch::recognition::ClassifierKind;
+use bubbletouch::recognition::choice::Candidates;
 use bubbletouch::recognition::classifier::{Classifier, Cost, predict_split};
 use bubbletouch::recognition::dataset::{Dataset, dataset, rows};
 use bubbletouch::recognition::scaling::Scaling;
@@ -23,10 +24,10 @@ fn clusters() -> Dataset {
 }
 
 fn chosen(candidates: &[f64]) -> Cost {
-    Cost::Chosen {
-        candidates: candidates.to_vec(),
-        validation_fraction: 0.25,
-    }
+    Cost::Chosen(Candidates {
+        c: candidates.to_vec(),
+        gamma_scales: Vec::new(),
+    })
 }
 
 const KINDS: [ClassifierKind; 3] = [
@@ -99,7 +100,7 @@ fn a_chosen_c_is_the_most_accurate_and_the_smaller_on_a_tie() {
     );
     let best = tried.iter().map(|tried| tried.accuracy).fold(0.0, f64::max);
     let smallest = tried.iter().find(|tried| tried.accuracy == best).unwrap().c;
-    assert_eq!(model.c(), smallest);
+    assert_eq!(model.c(), Some(smallest));
     // The model is the one of that C on all training rows.
     let fixed = Classifier {
         c: Cost::Fixed(smallest),

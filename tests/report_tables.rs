@@ -28,8 +28,8 @@ fn tables_read_back_as_they_were_written() {
     // C chosen on a validation split, and floats that only the shortest round-trip form keeps.
     written.accuracy[0].0.c = None;
     written.accuracy[1].1.accuracy = 0.1 + 0.2;
-    written.accuracy[2].1.c_used = f64::MIN_POSITIVE;
-    written.accuracy[3].1.c_used = 1e300 / 3.0;
+    written.accuracy[2].1.c_used = Some(f64::MIN_POSITIVE);
+    written.accuracy[3].1.c_used = Some(1e300 / 3.0);
     written.timing[0].1.fit_s = 5e-324;
     written.confusion[0].object = "box, \"large\"\n2".to_owned();
     write_tables(dir.path(), &written).unwrap();

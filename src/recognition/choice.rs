@@ -1,6 +1,7 @@
 //! The choice of C and γ by cross-validation on training rows; test rows are never seen.
 
-use ndarray::Array2;
+use ndarray::{Array1, Array2};
+use serde::{Deserialize, Serialize};
 
 use crate::recognition::dataset::{Dataset, check_features, check_labels, distinct, rows};
 use crate::recognition::grid::Grid;
@@ -12,7 +13,7 @@ use crate::recognition::training::{Goal, Sorted, centre};
 use crate::{Error, Result};
 
 /// What may be chosen.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Candidates {
     /// Values of C; at least one.
     pub c: Vec<f64>,
@@ -68,26 +69,75 @@ pub fn choose(
         _ => one_by_one(params, training, folds, &kernels, &path)?,
     };
     let n_validated: usize = folds.iter().map(|fold| fold.test.len()).sum();
-    let tried: Vec<Tried> = counts
+    let tried = counts
         .indexed_iter()
         .map(|((kernel, c), &n_correct)| Tried {
             c: path[c],
             gamma: gamma_of(&kernels[kernel]),
             accuracy: n_correct as f64 / n_validated as f64,
-        })
-        .collect();
-    let better = |best: Tried, &tried: &Tried| {
-        if tried.accuracy > best.accuracy {
-            tried
-        } else {
-            best
+        });
+    Ok(Chosen::of(tried.collect(), n_capped))
+}
+
+/// [`choose`] of C alone, for any classifier: `train` learns from rows with a C, and gives what labels others and how many
+/// of its solves stopped at their cap.
+///
+/// # Errors
+/// As [`choose`], and what `train` refuses.
+pub fn choose_c<P>(
+    train: impl Fn(&Dataset, f64) -> Result<(P, usize)>,
+    training: &Dataset,
+    folds: &[Split],
+    candidates: &[f64],
+) -> Result<Chosen>
+where
+    P: Fn(&Dataset) -> Result<Array1<usize>>,
+{
+    let path = ascending(candidates);
+    if path.is_empty() {
+        return Err(Error::input("C", "none", "at least one is needed"));
+    }
+    check_folds(training, folds)?;
+    let n_validated: usize = folds.iter().map(|fold| fold.test.len()).sum();
+    let mut n_capped = 0;
+    let mut tried = Vec::new();
+    for c in path {
+        let mut n_correct = 0;
+        for fold in folds {
+            let (predict, capped) = train(&rows(training, &fold.train)?, c)?;
+            let held_out = rows(training, &fold.test)?;
+            n_correct += n_equal(&predict(&held_out)?, &held_out.targets);
+            n_capped += capped;
         }
-    };
-    Ok(Chosen {
-        best: tried.iter().fold(tried[0], better),
-        tried,
-        n_capped,
-    })
+        tried.push(Tried {
+            c,
+            gamma: None,
+            accuracy: n_correct as f64 / n_validated as f64,
+        });
+    }
+    Ok(Chosen::of(tried, n_capped))
+}
+
+impl Chosen {
+    /// The first of the most accurate.
+    fn of(tried: Vec<Tried>, n_capped: usize) -> Self {
+        let better = |best: Tried, &tried: &Tried| {
+            if tried.accuracy > best.accuracy {
+                tried
+            } else {
+                best
+            }
+        };
+        Self {
+            best: tried.iter().fold(tried[0], better),
+            tried,
+            n_capped,
+        }
+    }
+}
+
+fn n_equal(a: &Array1<usize>, b: &Array1<usize>) -> usize {
+    a.iter().zip(b).filter(|(a, b)| a == b).count()
 }
 
 fn ascending(values: &[f64]) -> Vec<f64> {
@@ -132,7 +182,7 @@ fn check_folds(training: &Dataset, folds: &[Split]) -> Result<()> {
             rows_exist(training, part)?;
         }
         let labels = fold.train.iter().map(|&row| training.targets[row]);
-        let classes = distinct(labels.collect::<ndarray::Array1<_>>().view());
+        let classes = distinct(labels.collect::<Array1<_>>().view());
         if classes.len() < 2 {
             return Err(Error::input(
                 "folds",
@@ -234,8 +284,7 @@ fn one_by_one(
             let models = SvmParams { kernel, ..*params }.train_path(&fitting, path)?;
             for (count, model) in counts.iter_mut().zip(models) {
                 let labels = model.labels(held_out.records.view())?;
-                let pairs = labels.iter().zip(&held_out.targets);
-                *count += pairs.filter(|(a, b)| a == b).count();
+                *count += n_equal(&labels, &held_out.targets);
                 n_capped += model.n_capped();
             }
         }
@@ -250,7 +299,6 @@ mod tests {
     use crate::recognition::dataset::dataset;
     use crate::recognition::split::stratified_k_fold;
     use crate::recognition::svm::Multiclass;
-    use ndarray::{Array1, Array2};
 
     /// Three overlapping classes.
     fn overlapping(n: usize) -> Dataset {

@@ -4,45 +4,57 @@
 //! linfa classifier does; and whatever implements those traits is scored the same way by
 //! [`predict_split`].
 
+use std::sync::Arc;
+
 use linfa::traits::{Fit, PredictInplace};
-use ndarray::{Array1, Array2, ArrayBase, ArrayView2, Data, Ix2};
+use ndarray::{Array1, Array2};
 use serde::{Deserialize, Serialize};
 
 use crate::random::Seed;
 use crate::recognition::ClassifierKind;
-use crate::recognition::choice::{Candidates, Chosen, choose};
+use crate::recognition::choice::{Candidates, Chosen, choose, choose_c};
 use crate::recognition::dataset::{Dataset, rows};
+use crate::recognition::decision_tree::DecisionTree;
+use crate::recognition::k_nearest::KNearest;
 use crate::recognition::kernel::{Gamma, Kernel};
+use crate::recognition::linear_svm::{LinearMargin, LinearSvmParams};
+use crate::recognition::logistic::LogisticParams;
+use crate::recognition::naive_bayes::NaiveBayes;
+use crate::recognition::random_forest::RandomForest;
 use crate::recognition::scaling::{FittedScaling, Scaling};
-use crate::recognition::split::{Split, stratified_hold_out};
-use crate::recognition::svm::{Multiclass, SvmParams};
-use crate::recognition::svm_model::SvmModel;
+use crate::recognition::split::{Split, stratified_k_fold};
+use crate::recognition::svm::{Multiclass, Solver, SvmParams};
+use crate::recognition::trained_classifier::Model;
 use crate::{Error, Result};
 
-/// The C of a soft-margin SVM: given, or chosen on a validation split of the training rows.
+pub use crate::recognition::trained_classifier::TrainedClassifier;
+
+/// The C of a soft-margin SVM or a logistic regression: given, or chosen by cross-validation of the training rows.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Cost {
     /// This C.
     Fixed(f64),
-    /// The most accurate of these on the validation rows, the smaller on a tie; then all training rows are used.
-    Chosen {
-        /// Values of C to try.
-        candidates: Vec<f64>,
-        /// The share of the training rows that validates, between 0 and 1.
-        validation_fraction: f64,
-    },
+    /// The most accurate of these (and of the γ beside them) on validation rows; of equals the smaller γ, then the smaller
+    /// C. Then all training rows are used.
+    Chosen(Candidates),
 }
 
-/// A classifier and its options. Options that its kind has no use for are ignored (γ of a linear SVM).
+/// Folds of the cross-validation that chooses C and γ, unless others are given: scikit-learn's default.
+const FOLDS: usize = 5;
+
+/// A classifier and its options. Options that its kind has no use for are ignored: γ of a linear SVM, C of all but SVMs
+/// and logistic regression ([`ClassifierKind::has_c`]; [`TrainedClassifier::c`] is then `None`).
 #[derive(Clone, Debug, PartialEq)]
 pub struct Classifier {
     /// Which.
     pub kind: ClassifierKind,
     /// How features are scaled, fitted on the training rows.
     pub scaling: Scaling,
-    /// How binary classifiers make one for many classes.
+    /// How binary SVMs make one for many classes.
     pub multiclass: Multiclass,
+    /// Which solver trains an SVM.
+    pub solver: Solver,
     /// C.
     pub c: Cost,
     /// γ of the RBF and polynomial kernels, in inverse squared units of the scaled features.
@@ -51,106 +63,256 @@ pub struct Classifier {
     pub coef0: f64,
     /// Degree of the polynomial kernel, 1 to 20.
     pub degree: u32,
-    /// The solver's stopping tolerance, above 0; see [`SvmParams::tolerance`].
+    /// The solver's stopping tolerance, above 0; see [`SvmParams::tolerance`] and [`LinearSvmParams::tolerance`].
+    /// Logistic regression takes a tenth of it as [`LogisticParams::tolerance`].
     pub tolerance: f64,
+    /// k of the k nearest neighbours, 1 to the number of training rows.
+    pub n_neighbours: usize,
+    /// Trees of a random forest, at least 1.
+    pub n_trees: usize,
+    /// Splits below each other in a tree or in a forest's trees, at least 1; `None`: until leaves are pure.
+    pub max_depth: Option<usize>,
 }
 
 impl Classifier {
-    /// A classifier with scikit-learn's defaults (C = 1, γ 'scale', degree 3; but c₀ = 1, since c₀ = 0 leaves out all
-    /// lower powers) on standardised features, one-vs-one.
+    /// A classifier with scikit-learn's defaults (C = 1, γ 'scale', degree 3, 5 neighbours, 100 trees of any depth; but
+    /// c₀ = 1, since c₀ = 0 leaves out all lower powers) on standardised features; SVMs one-vs-one.
     pub fn new(kind: ClassifierKind) -> Self {
         Self {
             kind,
             scaling: Scaling::Standard,
             multiclass: Multiclass::OneVsOne,
+            solver: Solver::Smo,
             c: Cost::Fixed(1.0),
             gamma: Gamma::Scale,
             coef0: 1.0,
             degree: 3,
             tolerance: 1e-3,
+            n_neighbours: 5,
+            n_trees: 100,
+            max_depth: None,
         }
     }
 
-    /// Trains on training rows; a C to be chosen is chosen on a stratified validation split drawn by `seed`.
+    /// Trains on training rows. Whatever is drawn comes from `seed`: the five stratified folds on which a C to be chosen is
+    /// chosen, a forest's trees, the order of coordinate descent.
     ///
     /// # Errors
-    /// Parameters out of range, or data that [`SvmParams::train`] or [`stratified_hold_out`] refuses.
+    /// Parameters out of range, or data that the kind's training or [`stratified_k_fold`] refuses.
     pub fn train(&self, training: &Dataset, seed: &Seed) -> Result<TrainedClassifier> {
-        match &self.c {
-            Cost::Fixed(c) => self.train_with_c(training, *c, None),
-            Cost::Chosen {
-                validation_fraction,
-                ..
-            } => {
+        let folds = match &self.c {
+            Cost::Chosen(_) if self.kind.has_c() => {
                 let labels = training.targets.view();
-                let seed = seed.named("validation");
-                let split = stratified_hold_out(labels, *validation_fraction, &seed)?;
-                self.train_validated(training, &split)
+                stratified_k_fold(labels, FOLDS, &seed.named("validation"))?
             }
-        }
+            _ => Vec::new(),
+        };
+        self.train_validated(training, &folds, seed)
     }
 
-    /// Trains on training rows; a C to be chosen is chosen on this validation split of them (such as one that keeps
-    /// groups apart), given in positions within `training`.
+    /// Trains on training rows; a C to be chosen is chosen on these folds of them (such as some that keep groups apart),
+    /// given in positions within `training`. The scaling sees all training rows, but not their labels, before they are
+    /// folded. Whatever else is drawn comes from `seed`.
     ///
     /// # Errors
-    /// Parameters out of range, or data that [`SvmParams::train`] refuses.
+    /// Parameters out of range, or data that the kind's training or [`choose`] refuses.
     pub fn train_validated(
         &self,
         training: &Dataset,
-        validation: &Split,
+        folds: &[Split],
+        seed: &Seed,
     ) -> Result<TrainedClassifier> {
         match &self.c {
-            Cost::Fixed(c) => self.train_with_c(training, *c, None),
-            Cost::Chosen { candidates, .. } => {
-                let scaling = self.scaling.fit(training.records.view())?;
-                let scaled = scaling.apply(training.records.view())?;
-                let scaled = Dataset::new(scaled, training.targets.clone());
-                let candidates = Candidates {
-                    c: candidates.clone(),
-                    gamma_scales: Vec::new(),
-                };
-                let folds = std::slice::from_ref(validation);
-                let chosen = choose(&self.params(1.0), &scaled, folds, &candidates)?;
-                self.train_with_c(training, chosen.best.c, Some(chosen))
+            Cost::Chosen(candidates) if self.kind.has_c() => {
+                let chosen = self.choose(training, folds, candidates, seed)?;
+                self.with_choice(&chosen).train_with_c(
+                    training,
+                    Some(chosen.best.c),
+                    Some(chosen),
+                    seed,
+                )
             }
+            _ => self.train_without_choice(training, seed),
         }
+    }
+
+    /// The best of the candidates on folds of the training rows; see [`choose`].
+    ///
+    /// # Errors
+    /// As [`choose`].
+    pub fn choose(
+        &self,
+        training: &Dataset,
+        folds: &[Split],
+        candidates: &Candidates,
+        seed: &Seed,
+    ) -> Result<Chosen> {
+        let (_, scaled) = self.scaled(training)?;
+        if let Some(params) = self.kernel_svm(1.0) {
+            return choose(&params, &scaled, folds, candidates);
+        }
+        let train = |fitting: &Dataset, c| {
+            let model = self.train_model(fitting, Some(c), seed)?;
+            let n_capped = model.n_capped();
+            let predict = move |rows: &Dataset| model.labels(rows.records.view());
+            Ok((predict, n_capped))
+        };
+        choose_c(train, &scaled, folds, &candidates.c)
+    }
+
+    /// The same classifier with C and γ as they were chosen.
+    pub fn with_choice(&self, chosen: &Chosen) -> Self {
+        Self {
+            c: Cost::Fixed(chosen.best.c),
+            gamma: chosen.best.gamma.map_or(self.gamma, Gamma::Value),
+            ..self.clone()
+        }
+    }
+
+    /// With the C that was given, if the kind has one.
+    fn train_without_choice(&self, training: &Dataset, seed: &Seed) -> Result<TrainedClassifier> {
+        let c = match self.c {
+            Cost::Fixed(c) if self.kind.has_c() => Some(c),
+            _ => None,
+        };
+        self.train_with_c(training, c, None, seed)
+    }
+
+    /// Trains for several C, in the order asked; kernel SVMs from one Gram matrix ([`SvmParams::train_path`]).
+    ///
+    /// # Errors
+    /// As [`train`](Self::train); a kind without C.
+    pub fn train_path(
+        &self,
+        training: &Dataset,
+        path: &[f64],
+        seed: &Seed,
+    ) -> Result<Vec<TrainedClassifier>> {
+        if !self.kind.has_c() {
+            let given = format!("for {:?}", self.kind);
+            return Err(Error::input("C", given, "it has none"));
+        }
+        let (scaling, scaled) = self.scaled(training)?;
+        let models: Vec<Model> = match self.kernel_svm(1.0) {
+            Some(params) => params
+                .train_path(&scaled, path)?
+                .into_iter()
+                .map(|model| Model::Svm(Box::new(model)))
+                .collect(),
+            None => path
+                .iter()
+                .map(|&c| self.train_model(&scaled, Some(c), seed))
+                .collect::<Result<_>>()?,
+        };
+        let trained = models.into_iter().zip(path);
+        Ok(trained
+            .map(|(model, &c)| TrainedClassifier::new(scaling.clone(), model, Some(c), None))
+            .collect())
+    }
+
+    fn scaled(&self, training: &Dataset) -> Result<(FittedScaling, Dataset)> {
+        let scaling = self.scaling.fit(training.records.view())?;
+        let scaled = scaling.apply(training.records.view())?;
+        Ok((scaling, Dataset::new(scaled, training.targets.clone())))
     }
 
     fn train_with_c(
         &self,
         training: &Dataset,
-        c: f64,
+        c: Option<f64>,
         chosen: Option<Chosen>,
+        seed: &Seed,
     ) -> Result<TrainedClassifier> {
-        let scaling = self.scaling.fit(training.records.view())?;
-        let scaled = scaling.apply(training.records.view())?;
-        let scaled = Dataset::new(scaled, training.targets.clone());
-        Ok(TrainedClassifier {
-            model: Model::Svm(self.params(c).train(&scaled)?),
-            scaling,
-            c,
-            chosen,
+        let (scaling, scaled) = self.scaled(training)?;
+        let model = self.train_model(&scaled, c, seed)?;
+        Ok(TrainedClassifier::new(scaling, model, c, chosen))
+    }
+
+    /// The model on scaled rows: one arm for each kind.
+    fn train_model(&self, scaled: &Dataset, c: Option<f64>, seed: &Seed) -> Result<Model> {
+        let c = c.unwrap_or(1.0);
+        Ok(match self.kind {
+            ClassifierKind::LinearSvm | ClassifierKind::RbfSvm | ClassifierKind::PolynomialSvm => {
+                match self.kernel_svm(c) {
+                    Some(params) => Model::Svm(Box::new(params.train(scaled)?)),
+                    None => Model::Classes(Arc::new(
+                        self.linear_svm(c)?.train(scaled, &seed.named("descent"))?,
+                    )),
+                }
+            }
+            ClassifierKind::LogisticRegression => {
+                let params = LogisticParams {
+                    c,
+                    tolerance: 0.1 * self.tolerance,
+                    ..LogisticParams::default()
+                };
+                Model::Classes(Arc::new(params.train(scaled)?))
+            }
+            ClassifierKind::KNearest => {
+                Model::Classes(Arc::new(KNearest::train(scaled, self.n_neighbours)?))
+            }
+            ClassifierKind::NaiveBayes => Model::Classes(Arc::new(NaiveBayes::train(scaled)?)),
+            ClassifierKind::DecisionTree => {
+                Model::Classes(Arc::new(DecisionTree::train(scaled, self.max_depth)?))
+            }
+            ClassifierKind::RandomForest => {
+                let seed = seed.named("forest");
+                let forest = RandomForest::train(scaled, self.n_trees, self.max_depth, &seed)?;
+                Model::Classes(Arc::new(forest))
+            }
         })
     }
 
-    fn params(&self, c: f64) -> SvmParams {
+    /// What the kernel SVM is trained with, if that is what the options ask for.
+    fn kernel_svm(&self, c: f64) -> Option<SvmParams> {
         let gamma = self.gamma;
-        SvmParams {
-            kernel: match self.kind {
-                ClassifierKind::LinearSvm => Kernel::Linear,
-                ClassifierKind::RbfSvm => Kernel::Rbf { gamma },
-                ClassifierKind::PolynomialSvm => Kernel::Polynomial {
-                    gamma,
-                    coef0: self.coef0,
-                    degree: self.degree,
-                },
+        let kernel = match self.kind {
+            ClassifierKind::LinearSvm => Kernel::Linear,
+            ClassifierKind::RbfSvm => Kernel::Rbf { gamma },
+            ClassifierKind::PolynomialSvm => Kernel::Polynomial {
+                gamma,
+                coef0: self.coef0,
+                degree: self.degree,
             },
+            _ => return None,
+        };
+        let is_kernel_free = self.multiclass == Multiclass::CrammerSinger
+            || self.solver == Solver::CoordinateDescent;
+        (!is_kernel_free).then_some(SvmParams {
+            kernel,
             multiclass: self.multiclass,
             c,
             tolerance: self.tolerance,
+            solver: self.solver,
             ..SvmParams::default()
-        }
+        })
+    }
+
+    /// What the linear SVM without a kernel matrix is trained with.
+    fn linear_svm(&self, c: f64) -> Result<LinearSvmParams> {
+        let is_linear = self.kind == ClassifierKind::LinearSvm;
+        let margin = match (self.multiclass, self.solver) {
+            (Multiclass::CrammerSinger, Solver::Smo | Solver::CoordinateDescent) if is_linear => {
+                LinearMargin::CrammerSinger
+            }
+            (Multiclass::CrammerSinger, solver) => {
+                let given = format!("crammer_singer with {:?} and {solver:?}", self.kind);
+                let allowed = "linear_svm with its own solver is allowed: leave 'solver' out";
+                return Err(Error::input("multiclass", given, allowed));
+            }
+            (Multiclass::OneVsRest, _) if is_linear => LinearMargin::OneVsRest,
+            (multiclass, _) => {
+                let given = format!("coordinate_descent with {:?} and {multiclass:?}", self.kind);
+                let allowed = "it trains linear_svm with one_vs_rest alone";
+                return Err(Error::input("solver", given, allowed));
+            }
+        };
+        Ok(LinearSvmParams {
+            margin,
+            c,
+            tolerance: self.tolerance,
+            ..LinearSvmParams::default()
+        })
     }
 }
 
@@ -160,98 +322,6 @@ impl Fit<Array2<f64>, Array1<usize>, Error> for Classifier {
     /// [`Classifier::train`] with the validation split of seed 0.
     fn fit(&self, training: &Dataset) -> Result<TrainedClassifier> {
         self.train(training, &Seed::new(0))
-    }
-}
-
-/// A trained classifier: scaling and model.
-#[derive(Clone, Debug)]
-pub struct TrainedClassifier {
-    scaling: FittedScaling,
-    model: Model,
-    c: f64,
-    chosen: Option<Chosen>,
-}
-
-#[derive(Clone, Debug)]
-enum Model {
-    Svm(SvmModel),
-}
-
-impl TrainedClassifier {
-    /// The predicted label of each row of unscaled features (n_rows × m).
-    ///
-    /// # Errors
-    /// Another number of columns than in training, or a NaN or infinite feature.
-    pub fn labels(&self, features: ArrayView2<f64>) -> Result<Array1<usize>> {
-        let scaled = self.scaling.apply(features)?;
-        match &self.model {
-            Model::Svm(model) => model.labels(scaled.view()),
-        }
-    }
-
-    /// Scores (n_rows × n_scores) of unscaled features, of which [`labels_of_scores`](Self::labels_of_scores) makes
-    /// labels. The sum of the scores of several touches of one object is the score of all of them together.
-    ///
-    /// # Errors
-    /// As [`labels`](Self::labels).
-    pub fn scores(&self, features: ArrayView2<f64>) -> Result<Array2<f64>> {
-        let scaled = self.scaling.apply(features)?;
-        match &self.model {
-            Model::Svm(model) => model.decision_values(scaled.view()),
-        }
-    }
-
-    /// The label that each row of scores speaks for.
-    pub fn labels_of_scores(&self, scores: ArrayView2<f64>) -> Array1<usize> {
-        match &self.model {
-            Model::Svm(model) => model.labels_of_values(scores),
-        }
-    }
-
-    /// The C that it was trained with.
-    pub fn c(&self) -> f64 {
-        self.c
-    }
-
-    /// How C was chosen, if it was.
-    pub fn chosen(&self) -> Option<&Chosen> {
-        self.chosen.as_ref()
-    }
-
-    /// How many binary problems stopped at the solver's iteration cap, short of its tolerance.
-    pub fn n_capped(&self) -> usize {
-        match &self.model {
-            Model::Svm(model) => model.n_capped(),
-        }
-    }
-
-    /// The trained SVM, which takes scaled features; see [`scaling`](Self::scaling).
-    pub fn svm(&self) -> Option<&SvmModel> {
-        match &self.model {
-            Model::Svm(model) => Some(model),
-        }
-    }
-
-    /// The scaling, as fitted on the training rows.
-    pub fn scaling(&self) -> &FittedScaling {
-        &self.scaling
-    }
-}
-
-impl<D: Data<Elem = f64>> PredictInplace<ArrayBase<D, Ix2>, Array1<usize>> for TrainedClassifier {
-    /// Writes the predicted labels into `targets`.
-    ///
-    /// # Panics
-    /// As [`SvmModel`]'s; [`TrainedClassifier::labels`] returns an error instead.
-    fn predict_inplace(&self, features: &ArrayBase<D, Ix2>, targets: &mut Array1<usize>) {
-        match self.labels(features.view()) {
-            Ok(labels) => targets.assign(&labels),
-            Err(error) => panic!("{error}"),
-        }
-    }
-
-    fn default_target(&self, features: &ArrayBase<D, Ix2>) -> Array1<usize> {
-        Array1::zeros(features.nrows())
     }
 }
 

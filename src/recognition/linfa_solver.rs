@@ -45,7 +45,7 @@ pub(crate) fn solve_all(
             .enumerate()
             .flat_map(|(a, &first)| classes[a + 1..].iter().map(move |&b| (first, Some(b))))
             .collect(),
-        Multiclass::OneVsRest => classes.iter().map(|&class| (class, None)).collect(),
+        _ => classes.iter().map(|&class| (class, None)).collect(),
     };
     sides
         .into_iter()

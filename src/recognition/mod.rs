@@ -11,7 +11,9 @@
 //! A binary soft-margin SVM decides by the sign of `f(x) = Σ_i y_i a_i K(x_i, x) − ρ`, where the multipliers minimise
 //! `½ Σ_ij a_i a_j y_i y_j K(x_i, x_j) − Σ_i a_i` over `0 ≤ a_i ≤ C`, `Σ_i y_i a_i = 0`; our own sequential
 //! minimal optimisation solves it on Gram matrices that all problems of a data set share; [`svm`] makes one classifier of
-//! many, and can have linfa-svm solve them instead.
+//! many, and can have linfa-svm solve them instead. [`linear_svm`] trains the linear case without a kernel
+//! matrix, and [`logistic`], [`naive_bayes`], [`k_nearest`], [`decision_tree`] and [`random_forest`] stand beside it as
+//! [`ClassModel`](class_model::ClassModel)s.
 //!
 //! ```
 //! use bubbletouch::random::Seed;
@@ -28,6 +30,8 @@
 //! let split = stratified_hold_out(data.targets.view(), 0.25, &Seed::new(2018))?;
 //! // Any classifier that implements linfa's traits can stand here.
 //! let predicted = predict_split(&Classifier::new(ClassifierKind::LinearSvm), &data, &split)?;
+//! let foreign = predict_split(&linfa_bayes::GaussianNb::params(), &data, &split)?;
+//! assert_eq!(foreign, predicted);
 //! let truth = data.targets.select(Axis(0), &split.test);
 //! assert_eq!(ConfusionMatrix::new(truth.view(), predicted.view(), 2)?.accuracy(), 1.0);
 //! # Ok::<(), bubbletouch::Error>(())
@@ -36,23 +40,36 @@
 use serde::{Deserialize, Serialize};
 
 pub mod choice;
+pub mod class_model;
 pub mod classifier;
 pub mod comparison;
+pub(crate) mod coordinate_descent;
+pub(crate) mod crammer_singer;
 pub mod dataset;
 mod decision;
+pub mod decision_tree;
 pub mod dual;
 mod grid;
 pub mod interval;
+pub mod k_nearest;
 pub mod kernel;
+pub(crate) mod lbfgs;
+pub mod linear_model;
+pub mod linear_svm;
 mod linfa_solver;
+pub mod logistic;
 pub mod metrics;
+pub mod naive_bayes;
 mod points;
+pub mod random_forest;
+pub(crate) mod ranked;
 mod scalar;
 pub mod scaling;
 mod smo;
 pub mod split;
 pub mod svm;
 pub mod svm_model;
+pub mod trained_classifier;
 mod training;
 mod voting;
 
@@ -66,4 +83,24 @@ pub enum ClassifierKind {
     RbfSvm,
     /// Soft-margin SVM, polynomial kernel `(γ x·z + c₀)^d`.
     PolynomialSvm,
+    /// Multinomial [logistic regression](logistic).
+    LogisticRegression,
+    /// [k nearest neighbours](k_nearest).
+    KNearest,
+    /// Gaussian [naive Bayes](naive_bayes).
+    NaiveBayes,
+    /// A single [classification tree](decision_tree).
+    DecisionTree,
+    /// A [random forest](random_forest).
+    RandomForest,
+}
+
+impl ClassifierKind {
+    /// Whether it has a C: the soft-margin SVMs and logistic regression. The others train the same whatever C is given.
+    pub fn has_c(self) -> bool {
+        match self {
+            Self::LinearSvm | Self::RbfSvm | Self::PolynomialSvm | Self::LogisticRegression => true,
+            Self::KNearest | Self::NaiveBayes | Self::DecisionTree | Self::RandomForest => false,
+        }
+    }
 }

@@ -25,6 +25,9 @@ pub enum Multiclass {
     OneVsOne,
     /// One classifier per class against all others; the largest decision value wins. On a tie, the lowest index.
     OneVsRest,
+    /// All classes in one problem, by Crammer and Singer: the true class must beat every other by a margin of 1. Linear
+    /// only; see [`linear_svm`](crate::recognition::linear_svm). The largest decision value wins, on a tie the lowest index.
+    CrammerSinger,
 }
 
 /// What solves the binary problems.
@@ -36,7 +39,8 @@ pub enum Solver {
     /// Our own sequential minimal optimisation on shared Gram matrices.
     #[default]
     Smo,
-    /// Dual coordinate descent: linear kernel and one-vs-rest, with a regularised bias (LIBLINEAR's problem).
+    /// Dual coordinate descent: linear kernel and one-vs-rest, with a regularised bias (LIBLINEAR's problem); see
+    /// [`linear_svm`](crate::recognition::linear_svm).
     CoordinateDescent,
     /// linfa-svm: the same dual problem as `Smo`, much slower; an independent program to compare with.
     Linfa,
@@ -129,6 +133,13 @@ impl SvmParams {
                 "at least two classes are needed",
             ));
         }
+        if self.multiclass == Multiclass::CrammerSinger {
+            return Err(Error::input(
+                "multiclass",
+                "crammer_singer with a kernel",
+                "it is linear only: one_vs_one or one_vs_rest is allowed here",
+            ));
+        }
         let kernel = self.kernel.resolve(data.records.view())?;
         let mut ascending = path.to_vec();
         ascending.sort_by(f64::total_cmp);
@@ -199,7 +210,7 @@ impl SvmParams {
         };
         let trained = match self.multiclass {
             Multiclass::OneVsOne => sorted.one_vs_one(goal),
-            Multiclass::OneVsRest => sorted.one_vs_rest(goal),
+            _ => sorted.one_vs_rest(goal),
         };
         trained
             .into_iter()

@@ -167,6 +167,11 @@ pub fn classifier_name(classifier: ClassifierKind) -> &'static str {
         ClassifierKind::LinearSvm => "linear SVM",
         ClassifierKind::RbfSvm => "RBF SVM",
         ClassifierKind::PolynomialSvm => "polynomial SVM",
+        ClassifierKind::LogisticRegression => "logistic regression",
+        ClassifierKind::KNearest => "k nearest neighbours",
+        ClassifierKind::NaiveBayes => "naive Bayes",
+        ClassifierKind::DecisionTree => "decision tree",
+        ClassifierKind::RandomForest => "random forest",
     }
 }
 

@@ -125,7 +125,7 @@ fn recognise_s(plan: &Plan, cell: &Cell, n_objects: usize, n_touches: usize) -> 
             (n_objects * (n_objects - 1) / 2) as f64,
             2.0 * cell.train_touches as f64,
         ),
-        Multiclass::OneVsRest => (n_objects as f64, n_train),
+        Multiclass::OneVsRest | Multiclass::CrammerSinger => (n_objects as f64, n_train),
     };
     let fit = |rows: f64| {
         let entry_s = SOLVE_ENTRY_S + KERNEL_ELEMENT_S * m.min(rows) + REDUCE_ELEMENT_S * m;
@@ -134,7 +134,10 @@ fn recognise_s(plan: &Plan, cell: &Cell, n_objects: usize, n_touches: usize) -> 
     let candidates = plan.spec.recognition.choose_c.as_ref().map_or(0, Vec::len) as f64;
     let predicted_per_row = match cell.classifier {
         ClassifierKind::LinearSvm => n_problems,
-        ClassifierKind::RbfSvm | ClassifierKind::PolynomialSvm => n_train,
+        ClassifierKind::RbfSvm | ClassifierKind::PolynomialSvm | ClassifierKind::KNearest => {
+            n_train
+        }
+        _ => n_objects as f64,
     };
     fit(rows)
         + candidates * fit((1.0 - VALIDATION_FRACTION) * rows)

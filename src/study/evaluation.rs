@@ -120,7 +120,7 @@ impl Trial<'_> {
                 group_hold_out(labels, keys.view(), VALIDATION_FRACTION, &seed)?
             }
         };
-        classifier.train_validated(training, &validation)
+        classifier.train_validated(training, &validation, &seed)
     }
 
     fn classifier(&self, cell: &Cell) -> Classifier {

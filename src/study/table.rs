@@ -60,7 +60,7 @@ pub struct TrialScore {
     /// Mean over classes of the F1 score.
     pub macro_f1: f64,
     /// The C that was used (given, or chosen on a validation split of the training rows).
-    pub c_used: f64,
+    pub c_used: Option<f64>,
     /// Binary SVMs that stopped at the iteration cap.
     pub n_capped: usize,
 }

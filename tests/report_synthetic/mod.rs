@@ -181,7 +181,7 @@ fn add_cell(tables: &mut Tables, cell: Cell, n_trials: usize, n_objects: usize) 
                 accuracy_low: low,
                 accuracy_high: high,
                 macro_f1: accuracy - 0.004,
-                c_used: cell.c.unwrap_or(10.0),
+                c_used: Some(cell.c.unwrap_or(10.0)),
                 n_capped: 0,
             },
         ));

@@ -1,0 +1,56 @@
+//! Features by rank: all that a tree needs to know of them, and quick to sort.
+
+use ndarray::{Array2, ArrayView2, Axis};
+
+/// Every feature's distinct values, ascending, and for every row the place of its value among them.
+#[derive(Clone, Debug)]
+pub(crate) struct Ranked {
+    /// m × n_rows: a feature's ranks are contiguous.
+    ranks: Array2<u32>,
+    /// Per feature.
+    values: Vec<Vec<f64>>,
+}
+
+impl Ranked {
+    /// Ranks features (n_rows × m, finite).
+    pub(crate) fn new(features: ArrayView2<f64>) -> Self {
+        let mut ranks = Array2::zeros((features.ncols(), features.nrows()));
+        let mut values = Vec::with_capacity(features.ncols());
+        for (column, mut ranks) in features.axis_iter(Axis(1)).zip(ranks.rows_mut()) {
+            let mut order: Vec<(f64, u32)> = column.iter().copied().zip(0..).collect();
+            order.sort_unstable_by(|a, b| a.0.total_cmp(&b.0));
+            let mut distinct: Vec<f64> = Vec::new();
+            for (value, row) in order {
+                // −0 and 0 are equal, whatever total_cmp says.
+                if distinct.last() != Some(&value) {
+                    distinct.push(value);
+                }
+                ranks[row as usize] = distinct.len() as u32 - 1;
+            }
+            values.push(distinct);
+        }
+        Self { ranks, values }
+    }
+
+    pub(crate) fn n_features(&self) -> usize {
+        self.values.len()
+    }
+
+    pub(crate) fn n_rows(&self) -> usize {
+        self.ranks.ncols()
+    }
+
+    pub(crate) fn rank(&self, feature: usize, row: u32) -> u32 {
+        self.ranks[[feature, row as usize]]
+    }
+
+    /// Half-way between the values of two ranks; the lower value where rounding takes the middle up to the upper.
+    pub(crate) fn threshold(&self, feature: usize, lower: u32, upper: u32) -> f64 {
+        let (low, high) = (
+            self.values[feature][lower as usize],
+            self.values[feature][upper as usize],
+        );
+        let middle = 0.5 * low + 0.5 * high;
+        if middle < high { middle.max(low) } else { low }
+    }
+}

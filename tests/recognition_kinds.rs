@@ -1,0 +1,383 @@
+//! Every kind of classifier, asked the same way; and naive Bayes, neighbours, tree and forest against their definitions.
+//!
+//! Goldens: scikit-learn 1.9.1, `GaussianNB()`, `KNeighborsClassifier(5)` trained on the first 40 rows of [`waves`], and
+//! `DecisionTreeClassifier(max_depth=3)` on all 60.
+
+use bubbletouch::random::Seed;
+use bubbletouch::recognition::ClassifierKind;
+use bubbletouch::recognition::choice::Candidates;
+use bubbletouch::recognition::class_model::ClassModel;
+use bubbletouch::recognition::classifier::{Classifier, Cost, predict_split};
+use bubbletouch::recognition::dataset::{Dataset, dataset, rows};
+use bubbletouch::recognition::decision_tree::DecisionTree;
+use bubbletouch::recognition::k_nearest::KNearest;
+use bubbletouch::recognition::naive_bayes::NaiveBayes;
+use bubbletouch::recognition::random_forest::RandomForest;
+use bubbletouch::recognition::split::stratified_hold_out;
+use linfa::traits::Fit;
+use ndarray::{Array1, Array2, ArrayView1, Axis, array};
+use rand::Rng;
+
+const KINDS: [ClassifierKind; 8] = [
+    ClassifierKind::LinearSvm,
+    ClassifierKind::RbfSvm,
+    ClassifierKind::PolynomialSvm,
+    ClassifierKind::LogisticRegression,
+    ClassifierKind::KNearest,
+    ClassifierKind::NaiveBayes,
+    ClassifierKind::DecisionTree,
+    ClassifierKind::RandomForest,
+];
+
+/// 60 rows of 5 features, 4 classes in turn.
+fn waves() -> Dataset {
+    let value = |(i, j): (usize, usize)| {
+        let wave = (1.7 * (i * 5 + j) as f64 + 0.3 * (j * j) as f64).sin();
+        wave + 0.8 * (2.1 * ((i % 4) * (j + 1)) as f64).cos()
+    };
+    let features = Array2::from_shape_fn((60, 5), value);
+    dataset(features, Array1::from_iter((0..60).map(|i| i % 4))).unwrap()
+}
+
+/// Touches in miniature: a bump of its class's width and height, at a random place on 6 × 6 taxels.
+fn bumps(n_classes: usize, n_per_class: usize) -> Dataset {
+    let n_rows = n_classes * n_per_class;
+    let mut rng = Seed::new(4).rng();
+    let mut features = Array2::zeros((n_rows, 36));
+    for (row, mut frame) in features.rows_mut().into_iter().enumerate() {
+        let class = (row % n_classes) as f64;
+        let (x, y) = (rng.gen_range(2.0..3.0), rng.gen_range(2.0..3.0));
+        for (taxel, value) in frame.iter_mut().enumerate() {
+            let (u, v) = ((taxel % 6) as f64 - x, (taxel / 6) as f64 - y);
+            let height = 1.0 + 0.2 * class - (u * u + v * v) / (3.0 + 2.0 * class);
+            *value = height.max(0.0) + 0.02 * rng.gen_range(-1.0..1.0);
+        }
+    }
+    dataset(
+        features,
+        Array1::from_iter((0..n_rows).map(|row| row % n_classes)),
+    )
+    .unwrap()
+}
+
+/// Splits rows into the first `n` and the rest.
+fn at(data: &Dataset, n: usize) -> (Dataset, Dataset) {
+    let indices: Vec<usize> = (0..data.records.nrows()).collect();
+    (
+        rows(data, &indices[..n]).unwrap(),
+        rows(data, &indices[n..]).unwrap(),
+    )
+}
+
+fn accuracy(predicted: &Array1<usize>, truth: &Array1<usize>) -> f64 {
+    let n_right = predicted.iter().zip(truth).filter(|(a, b)| a == b).count();
+    n_right as f64 / truth.len() as f64
+}
+
+#[test]
+fn every_kind_recognises_small_touches_and_repeats_itself() {
+    let data = bumps(6, 40);
+    let split = stratified_hold_out(data.targets.view(), 0.25, &Seed::new(1)).unwrap();
+    let truth = data.targets.select(Axis(0), &split.test);
+    for kind in KINDS {
+        let classifier = Classifier::new(kind);
+        let predicted = predict_split(&classifier, &data, &split).unwrap();
+        let accuracy = accuracy(&predicted, &truth);
+        // A sixth is chance.
+        assert!(accuracy > 0.8, "{kind:?}: {accuracy}");
+        assert_eq!(
+            predicted,
+            predict_split(&classifier, &data, &split).unwrap()
+        );
+    }
+}
+
+#[test]
+fn labels_are_those_of_the_scores_and_sums_of_scores_fuse_touches() {
+    let (training, test) = at(&bumps(6, 40), 120);
+    for kind in KINDS {
+        let model = Classifier::new(kind).fit(&training).unwrap();
+        let scores = model.scores(test.records.view()).unwrap();
+        assert!(scores.iter().all(|score| score.is_finite()), "{kind:?}");
+        let labels = model.labels(test.records.view()).unwrap();
+        assert_eq!(labels, model.labels_of_scores(scores.view()));
+        // Five touches of each object: rows 6i + k, i = 0 … 4, are of class k.
+        let fused = Array2::from_shape_fn((6, scores.ncols()), |(class, column)| {
+            (0..5).map(|i| scores[[6 * i + class, column]]).sum()
+        });
+        let fused = model.labels_of_scores(fused.view());
+        let single = accuracy(&labels, &test.targets);
+        let fused = accuracy(&fused, &Array1::from_iter(0..6));
+        assert!(fused >= single, "{kind:?}: {single} alone, {fused} of five");
+    }
+}
+
+#[test]
+fn a_prior_counts_once_however_many_touches_are_summed() {
+    // A feature that says nothing: one touch or a hundred, the more frequent class keeps its posterior.
+    let features = Array2::from_shape_fn((40, 1), |(i, _)| ((i / 4) % 2) as f64);
+    let labels = Array1::from_iter((0..40).map(|i| usize::from(i % 4 == 0)));
+    let data = dataset(features, labels).unwrap();
+    for kind in [
+        ClassifierKind::NaiveBayes,
+        ClassifierKind::LogisticRegression,
+    ] {
+        let model = Classifier::new(kind).fit(&data).unwrap();
+        let scores = model.scores(data.records.view()).unwrap();
+        let differences = &scores.column(0) - &scores.column(1);
+        assert!(
+            differences.iter().all(|d| d.abs() < 1e-3),
+            "{kind:?}: {differences}"
+        );
+        assert!(
+            model
+                .labels(data.records.view())
+                .unwrap()
+                .iter()
+                .all(|&label| label == 0)
+        );
+    }
+}
+
+#[test]
+fn only_kinds_with_c_have_one() {
+    let data = bumps(3, 20);
+    for kind in KINDS {
+        let classifier = Classifier {
+            c: Cost::Chosen(Candidates {
+                c: vec![0.1, 1.0],
+                gamma_scales: Vec::new(),
+            }),
+            ..Classifier::new(kind)
+        };
+        let model = classifier.fit(&data).unwrap();
+        assert_eq!(model.c().is_some(), kind.has_c());
+        assert_eq!(model.chosen().is_some(), kind.has_c());
+        assert_eq!(model.n_capped(), 0);
+    }
+}
+
+#[test]
+fn bad_input_is_refused_by_every_kind() {
+    let data = bumps(3, 20);
+    let mut broken = data.clone();
+    broken.records[[2, 5]] = f64::NAN;
+    let single = Dataset::new(data.records.clone(), Array1::zeros(60));
+    let short = Dataset::new(data.records.clone(), Array1::zeros(59));
+    for kind in KINDS {
+        let classifier = Classifier::new(kind);
+        let error = classifier.fit(&broken).unwrap_err().to_string();
+        assert!(error.starts_with("features, row 2, column 5"), "{error}");
+        assert!(classifier.fit(&single).is_err() && classifier.fit(&short).is_err());
+        let model = classifier.fit(&data).unwrap();
+        assert!(model.labels(Array2::zeros((2, 35)).view()).is_err());
+        assert!(model.labels(broken.records.view()).is_err());
+        assert_eq!(
+            model.labels(Array2::zeros((0, 36)).view()).unwrap().len(),
+            0
+        );
+    }
+}
+
+#[test]
+fn options_out_of_range_are_refused() {
+    let data = bumps(3, 20);
+    for n_neighbours in [0, 61] {
+        let error = KNearest::train(&data, n_neighbours)
+            .unwrap_err()
+            .to_string();
+        assert!(error.contains("1 to the 60 training rows"), "{error}");
+    }
+    let seed = Seed::new(0);
+    assert!(RandomForest::train(&data, 0, None, &seed).is_err());
+    assert!(RandomForest::train(&data, 1, Some(0), &seed).is_err());
+    assert!(DecisionTree::train(&data, Some(0)).is_err());
+    let constant = dataset(Array2::ones((4, 2)), array![0, 1, 0, 1]).unwrap();
+    assert!(NaiveBayes::train(&constant).is_err());
+    assert!(KNearest::train(&dataset(array![[1e200], [0.0]], array![0, 1]).unwrap(), 1).is_err());
+}
+
+#[test]
+fn naive_bayes_likelihoods_are_scikit_learns() {
+    let (training, test) = at(&waves(), 40);
+    let model = NaiveBayes::train(&training).unwrap();
+    let joint = model.joint_log_likelihoods(test.records.view()).unwrap();
+    let expected = array![
+        [
+            -6.245924759272,
+            -16.119227166812,
+            -16.098681496165,
+            -6.200239707798
+        ],
+        [
+            -15.858146205797,
+            -8.178559992767,
+            -7.775409935974,
+            -15.376946943681
+        ],
+        [
+            -13.351169776818,
+            -6.725777494499,
+            -6.838005233536,
+            -13.67780399988
+        ],
+    ];
+    for ((row, class), expected) in expected.indexed_iter() {
+        assert!((joint[[row, class]] - expected).abs() < 1e-9);
+    }
+}
+
+/// The labels that k nearest neighbours are defined by: one distance at a time, ties to the lower index and label.
+fn by_brute_force(training: &Dataset, row: ArrayView1<f64>, k: usize) -> (Vec<usize>, usize) {
+    let distance = |other: usize| {
+        let other = training.records.row(other);
+        row.iter()
+            .zip(other)
+            .map(|(a, b)| (a - b) * (a - b))
+            .sum::<f64>()
+    };
+    let mut order: Vec<usize> = (0..training.records.nrows()).collect();
+    order.sort_by(|&a, &b| distance(a).total_cmp(&distance(b)));
+    order.truncate(k);
+    let votes = |class: usize| {
+        order
+            .iter()
+            .filter(|&&row| training.targets[row] == class)
+            .count()
+    };
+    let label = (0..10).rev().max_by_key(|&class| votes(class)).unwrap();
+    (order, label)
+}
+
+#[test]
+fn neighbours_are_those_of_a_search_one_pair_at_a_time() {
+    let mut rng = Seed::new(8).rng();
+    // Coarse values make ties of distance and copies of rows; an offset takes the digits from the products.
+    for offset in [0.0, 1e7] {
+        let features =
+            Array2::from_shape_fn((400, 12), |_| offset + f64::from(rng.gen_range(0..3)) * 0.1);
+        let labels = Array1::from_iter((0..400).map(|_| rng.gen_range(0..7)));
+        let (training, test) = at(&dataset(features, labels).unwrap(), 250);
+        for k in [1, 2, 5, 250] {
+            let model = KNearest::train(&training, k).unwrap();
+            let neighbours = model.neighbours(test.records.view()).unwrap();
+            let labels = model.labels(test.records.view()).unwrap();
+            for (row, features) in test.records.rows().into_iter().enumerate() {
+                let (nearest, label) = by_brute_force(&training, features, k);
+                assert_eq!(neighbours.row(row).to_vec(), nearest);
+                assert_eq!(labels[row], label);
+            }
+        }
+    }
+}
+
+#[test]
+fn five_neighbours_vote_as_scikit_learns() {
+    let (training, test) = at(&waves(), 40);
+    let labels = KNearest::train(&training, 5)
+        .unwrap()
+        .labels(test.records.view())
+        .unwrap();
+    let expected = [3, 2, 2, 0, 0, 2, 2, 0, 0, 1, 2, 3, 0, 2, 2, 3, 0, 1, 2, 3];
+    assert_eq!(labels.to_vec(), expected);
+}
+
+#[test]
+fn a_shallow_tree_is_scikit_learns() {
+    // Labels without ties between splits: scikit-learn's tree is the same whatever its random_state.
+    let mut data = waves();
+    data.targets = Array1::from_iter((0..60).map(|i| i * i / 7 % 3));
+    let tree = DecisionTree::train(&data, Some(3)).unwrap();
+    let (feature, threshold) = tree.first_split().unwrap();
+    assert_eq!((feature, tree.n_leaves()), (4, 5));
+    assert!((threshold + 1.3317).abs() < 1e-5);
+    let expected = [
+        2, 0, 0, 0, 0, 0, 2, 0, 2, 2, 0, 2, 2, 0, 1, 2, 0, 2, 0, 0, 0, 0, 0, 0, 0, 2, 2, 0, 2, 0,
+        2, 2, 2, 2, 2, 0, 0, 2, 0, 0, 0, 0, 2, 0, 0, 1, 2, 0, 2, 0, 2, 2, 0, 2, 2, 0, 0, 2, 0, 2,
+    ];
+    let labels = tree.labels(data.records.view()).unwrap();
+    assert_eq!(labels.to_vec(), expected);
+}
+
+#[test]
+fn scores_are_the_logarithms_of_the_leafs_smoothed_shares() {
+    let data = dataset(array![[0.0], [0.0], [0.0], [1.0]], array![0, 0, 1, 2]).unwrap();
+    let tree = DecisionTree::train(&data, None).unwrap();
+    let scores = tree.scores(array![[0.4]].view()).unwrap();
+    for (score, share) in scores.iter().zip([3.0 / 6.0, 2.0 / 6.0, 1.0 / 6.0_f64]) {
+        assert!((score - share.ln()).abs() < 1e-15);
+    }
+}
+
+#[test]
+fn an_unpruned_tree_knows_its_training_rows_in_any_order() {
+    let mut data = bumps(6, 40);
+    // Labels that the features say nothing of are learnt by heart all the same.
+    data.targets
+        .iter_mut()
+        .step_by(7)
+        .for_each(|label| *label = 5 - *label);
+    let tree = DecisionTree::train(&data, None).unwrap();
+    assert_eq!(tree.labels(data.records.view()).unwrap(), data.targets);
+    let reversed: Vec<usize> = (0..240).rev().collect();
+    let other = DecisionTree::train(&rows(&data, &reversed).unwrap(), None).unwrap();
+    let between = &data.records * 0.9 + 0.02;
+    assert_eq!(
+        tree.scores(between.view()).unwrap(),
+        other.scores(between.view()).unwrap()
+    );
+}
+
+#[test]
+fn exclusive_or_is_split_though_no_first_split_helps() {
+    let data = dataset(
+        array![[0.0, 0.0], [0.0, 1.0], [1.0, 0.0], [1.0, 1.0]],
+        array![0, 1, 1, 0],
+    );
+    let data = data.unwrap();
+    let tree = DecisionTree::train(&data, None).unwrap();
+    assert_eq!(tree.labels(data.records.view()).unwrap(), data.targets);
+    assert_eq!(tree.n_leaves(), 4);
+}
+
+#[test]
+fn rows_that_only_the_label_tells_apart_share_a_leaf() {
+    let data = dataset(array![[0.0], [-0.0], [0.0]], array![1, 0, 1]).unwrap();
+    let tree = DecisionTree::train(&data, None).unwrap();
+    assert_eq!((tree.n_leaves(), tree.first_split()), (1, None));
+    assert_eq!(tree.labels(data.records.view()).unwrap(), array![1, 1, 1]);
+}
+
+#[test]
+fn a_forest_is_better_than_its_trees_and_follows_its_seed() {
+    let mut data = bumps(8, 60);
+    let mut rng = Seed::new(6).rng();
+    data.records
+        .mapv_inplace(|value| value + rng.gen_range(-0.5..0.5));
+    let (training, test) = at(&data, 240);
+    let share = |n_trees: usize, seed: u64| {
+        let forest = RandomForest::train(&training, n_trees, None, &Seed::new(seed)).unwrap();
+        let scores = forest.scores(test.records.view()).unwrap();
+        (
+            accuracy(&forest.labels_of_scores(scores.view()), &test.targets),
+            scores,
+        )
+    };
+    let (single, _) = share(1, 3);
+    let (many, scores) = share(60, 3);
+    assert!(many > single + 0.03, "{single} alone, {many} together");
+    assert_eq!(scores, share(60, 3).1);
+    assert_ne!(scores, share(60, 4).1);
+}
+
+#[test]
+fn a_classifier_of_linfas_plugs_in() {
+    let data = bumps(6, 40);
+    let split = stratified_hold_out(data.targets.view(), 0.25, &Seed::new(1)).unwrap();
+    let truth = data.targets.select(Axis(0), &split.test);
+    let foreign = linfa_bayes::GaussianNb::<f64, usize>::params();
+    let foreign = predict_split(&foreign, &data, &split).unwrap();
+    let ours = predict_split(&Classifier::new(ClassifierKind::NaiveBayes), &data, &split).unwrap();
+    assert_eq!(foreign, ours, "naive Bayes does not care for scaling");
+    assert!(accuracy(&foreign, &truth) > 0.8);
+}

@@ -1,0 +1,299 @@
+//! Linear SVMs without a kernel matrix, and logistic regression.
+//!
+//! Goldens: scikit-learn 1.9.1, `LinearSVC(C=0.5, loss="hinge", dual=True, tol=1e-9, max_iter=10**6)` with `multi_class`
+//! "ovr" and "crammer_singer", and `LogisticRegression(tol=1e-10)`, on the rows of [`waves`].
+
+use bubbletouch::random::Seed;
+use bubbletouch::recognition::ClassifierKind;
+use bubbletouch::recognition::choice::Candidates;
+use bubbletouch::recognition::class_model::ClassModel;
+use bubbletouch::recognition::classifier::{Classifier, Cost};
+use bubbletouch::recognition::dataset::{Dataset, dataset, rows};
+use bubbletouch::recognition::linear_svm::{LinearMargin, LinearSvm, LinearSvmParams};
+use bubbletouch::recognition::logistic::LogisticParams;
+use bubbletouch::recognition::svm::{Multiclass, Solver};
+use linfa::traits::Fit;
+use ndarray::{Array1, Array2};
+use rand::Rng;
+
+/// 60 rows of 5 features, 4 classes in turn.
+fn waves() -> Dataset {
+    let value = |(i, j): (usize, usize)| {
+        let wave = (1.7 * (i * 5 + j) as f64 + 0.3 * (j * j) as f64).sin();
+        wave + 0.8 * (2.1 * ((i % 4) * (j + 1)) as f64).cos()
+    };
+    let features = Array2::from_shape_fn((60, 5), value);
+    dataset(features, Array1::from_iter((0..60).map(|i| i % 4))).unwrap()
+}
+
+/// Overlapping clusters of unequal size.
+fn clusters(n_rows: usize, m: usize, n_classes: usize, seed: u64) -> Dataset {
+    let mut rng = Seed::new(seed).rng();
+    let centres = Array2::from_shape_fn((n_classes, m), |_| rng.gen_range(-1.0..1.0));
+    let class = |row: usize| (row % (n_classes + 1)).min(n_classes - 1);
+    let features = Array2::from_shape_fn((n_rows, m), |(row, column)| {
+        centres[[class(row), column]] + rng.gen_range(-1.5..1.5)
+    });
+    dataset(features, Array1::from_iter((0..n_rows).map(class))).unwrap()
+}
+
+fn train(data: &Dataset, margin: LinearMargin, c: f64, tolerance: f64) -> LinearSvm {
+    let params = LinearSvmParams {
+        margin,
+        c,
+        tolerance,
+        max_passes: 1_000_000,
+    };
+    params.train(data, &Seed::new(5)).unwrap()
+}
+
+fn assert_near(found: impl IntoIterator<Item = f64>, expected: &[f64], tolerance: f64) {
+    let found: Vec<f64> = found.into_iter().collect();
+    assert_eq!(found.len(), expected.len());
+    for (found, expected) in found.iter().zip(expected) {
+        assert!(
+            (found - expected).abs() <= tolerance,
+            "{found} is not {expected}"
+        );
+    }
+}
+
+#[test]
+fn one_vs_rest_equals_scikit_learns_linear_svc() {
+    let svm = train(&waves(), LinearMargin::OneVsRest, 0.5, 1e-9);
+    let ends = svm.convergence();
+    let objectives = [
+        15.366914573528,
+        15.060105298778,
+        14.906813368505,
+        15.376657926016,
+    ];
+    assert_near(ends.iter().map(|end| end.primal), &objectives, 1e-6);
+    assert_near(ends.iter().map(|end| end.dual), &objectives, 1e-6);
+    let first = [
+        -0.143818134943,
+        0.15983118678,
+        -0.186518484283,
+        -0.052406494197,
+        0.338279044233,
+    ];
+    assert_near(svm.model().weights.row(0).to_vec(), &first, 1e-6);
+    let bias = [
+        -0.739283887419,
+        -0.324594715372,
+        -0.263073204499,
+        -0.7490272399,
+    ];
+    assert_near(svm.model().bias.to_vec(), &bias, 1e-6);
+}
+
+#[test]
+fn crammer_singer_equals_scikit_learns() {
+    let svm = train(&waves(), LinearMargin::CrammerSinger, 0.5, 1e-9);
+    let end = svm.convergence()[0];
+    assert_near([end.primal, end.dual], &[29.669554141512; 2], 1e-6);
+    let first = [
+        0.065811460015,
+        0.037655876507,
+        -0.006224908467,
+        0.048936601095,
+        0.097268419958,
+    ];
+    assert_near(svm.model().weights.row(0).to_vec(), &first, 1e-6);
+    let bias = [
+        -0.035806073627,
+        0.140612766187,
+        -0.073424913735,
+        -0.031381778826,
+    ];
+    assert_near(svm.model().bias.to_vec(), &bias, 1e-6);
+}
+
+#[test]
+fn the_duality_gap_is_never_negative_and_closes_with_the_tolerance() {
+    for seed in 0..4 {
+        let data = clusters(150, 8, 5, seed);
+        for margin in [LinearMargin::OneVsRest, LinearMargin::CrammerSinger] {
+            for c in [0.01, 1.0, 30.0] {
+                let gap = |tolerance: f64| {
+                    let svm = train(&data, margin, c, tolerance);
+                    assert_eq!(svm.n_capped(), 0);
+                    let ends = svm.convergence().iter();
+                    ends.map(|end| {
+                        let gap = (end.primal - end.dual) / end.primal;
+                        assert!(gap > -1e-12, "{gap}");
+                        gap
+                    })
+                    .fold(0.0, f64::max)
+                };
+                let (coarse, fine) = (gap(0.1), gap(1e-6));
+                assert!(
+                    coarse < 0.2 && fine < 2e-6,
+                    "{margin:?} {c} {coarse} {fine}"
+                );
+            }
+        }
+    }
+}
+
+#[test]
+fn crammer_singer_of_two_classes_is_the_binary_svm_of_twice_the_cost() {
+    // With w_0 = −w_1 and u = w_1 − w_0 the problem reads ¼|u|² + C Σ hinge(u) = ½ (½|u|² + 2C Σ hinge(u)).
+    let data = clusters(120, 6, 2, 9);
+    for c in [0.05, 1.0] {
+        let both = train(&data, LinearMargin::CrammerSinger, c, 1e-9);
+        let binary = train(&data, LinearMargin::OneVsRest, 2.0 * c, 1e-9);
+        let weights = &both.model().weights;
+        let difference = &weights.row(1) - &weights.row(0);
+        let expected = binary.model().weights.row(1);
+        assert_near(difference, expected.to_slice().unwrap(), 1e-5);
+        let half = 0.5 * binary.convergence()[1].primal;
+        assert_near([both.convergence()[0].primal], &[half], 1e-6);
+    }
+}
+
+#[test]
+fn the_optimum_does_not_depend_on_the_order_of_rows_or_draws() {
+    let data = clusters(100, 6, 3, 2);
+    let reversed: Vec<usize> = (0..100).rev().collect();
+    let other = rows(&data, &reversed).unwrap();
+    for margin in [LinearMargin::OneVsRest, LinearMargin::CrammerSinger] {
+        let (a, b) = (
+            train(&data, margin, 1.0, 1e-9),
+            train(&other, margin, 1.0, 1e-9),
+        );
+        let expected = a.model().weights.as_standard_layout().into_owned();
+        assert_near(
+            b.model().weights.iter().copied(),
+            expected.as_slice().unwrap(),
+            1e-5,
+        );
+        assert_eq!(a, train(&data, margin, 1.0, 1e-9), "same seed, same bits");
+    }
+}
+
+#[test]
+fn a_pass_cap_that_is_hit_is_counted() {
+    let data = clusters(200, 4, 3, 3);
+    for (margin, n_capped) in [
+        (LinearMargin::OneVsRest, 3),
+        (LinearMargin::CrammerSinger, 1),
+    ] {
+        let params = LinearSvmParams {
+            margin,
+            c: 100.0,
+            tolerance: 1e-9,
+            max_passes: 2,
+        };
+        let svm = params.train(&data, &Seed::new(0)).unwrap();
+        assert_eq!(svm.n_capped(), n_capped);
+        assert!(svm.convergence().iter().all(|end| end.n_passes == 2));
+    }
+}
+
+#[test]
+fn logistic_regression_reaches_scikit_learns_optimum() {
+    let all = waves();
+    let two: Vec<usize> = (0..60).filter(|row| row % 4 < 2).collect();
+    let two = rows(&all, &two).unwrap();
+    // Two classes: only the difference of the weights is regularised.
+    let cases = [
+        (&all, 0.5, 1.0, 48.674741576237),
+        (&all, 0.5, 100.0, 3265.611903134408),
+        (&two, 1.0, 1.0, 5.382137411098),
+        (&two, 1.0, 100.0, 27.381791327347),
+    ];
+    for (data, penalty, c, expected) in cases {
+        for (tolerance, within) in [(1e-4, 1e-4), (1e-9, 1e-9)] {
+            let params = LogisticParams {
+                c,
+                tolerance,
+                ..LogisticParams::default()
+            };
+            let model = params.train(data).unwrap();
+            assert_eq!(model.n_capped(), 0);
+            let log_p = model.log_probabilities(data.records.view()).unwrap();
+            let labels = data.targets.iter().enumerate();
+            let loss: f64 = labels.map(|(row, &label)| -log_p[[row, label]]).sum();
+            let squares = model.model().weights.mapv(|w| w * w).sum();
+            let objective = c * loss + penalty * squares;
+            let excess = objective / expected - 1.0;
+            assert!(
+                excess.abs() < within,
+                "C = {c}: {objective} is not {expected}"
+            );
+        }
+    }
+}
+
+#[test]
+fn logistic_regression_on_separable_rows_stays_right() {
+    // Scores of rows differ by far more than 34 here, where linfa-logistic goes wrong: a larger C must only fit closer.
+    let mut data = clusters(300, 30, 5, 3);
+    data.records *= 3.0;
+    let loss = |c: f64| {
+        let params = LogisticParams {
+            c,
+            ..LogisticParams::default()
+        };
+        let model = params.train(&data).unwrap();
+        let log_p = model.log_probabilities(data.records.view()).unwrap();
+        let labels = data.targets.iter().enumerate();
+        labels
+            .map(|(row, &label)| -log_p[[row, label]])
+            .sum::<f64>()
+    };
+    assert!(loss(1000.0) < loss(1.0) && loss(1.0) < loss(0.001));
+}
+
+#[test]
+fn the_choice_of_solver_and_margin_is_kept() {
+    let data = clusters(120, 6, 3, 4);
+    let linear = Classifier {
+        solver: Solver::CoordinateDescent,
+        multiclass: Multiclass::OneVsRest,
+        c: Cost::Chosen(Candidates {
+            c: vec![1e-6, 0.1],
+            gamma_scales: Vec::new(),
+        }),
+        ..Classifier::new(ClassifierKind::LinearSvm)
+    };
+    let trained = linear.fit(&data).unwrap();
+    assert!(trained.svm().is_none());
+    assert_eq!(trained.c(), trained.chosen().map(|chosen| chosen.best.c));
+    let one = Classifier {
+        multiclass: Multiclass::CrammerSinger,
+        c: Cost::Fixed(0.1),
+        ..Classifier::new(ClassifierKind::LinearSvm)
+    };
+    assert_eq!(
+        one.fit(&data)
+            .unwrap()
+            .scores(data.records.view())
+            .unwrap()
+            .ncols(),
+        3
+    );
+    let refused = [
+        Classifier {
+            kind: ClassifierKind::RbfSvm,
+            ..one.clone()
+        },
+        Classifier {
+            solver: Solver::Linfa,
+            ..one
+        },
+        Classifier {
+            kind: ClassifierKind::RbfSvm,
+            ..linear.clone()
+        },
+        Classifier {
+            multiclass: Multiclass::OneVsOne,
+            ..linear
+        },
+    ];
+    for classifier in refused {
+        let error = classifier.fit(&data).unwrap_err().to_string();
+        assert!(error.contains("linear_svm"), "{error}");
+    }
+}
