@@ -189,8 +189,8 @@ fn an_object_is_touched_the_same_whatever_else_is_in_the_set() {
             assert_eq!((few.touched.len(), many.touched.len()), (2, 4));
             let patch = &few.plan.arrays[0];
             let silent = &bubbletouch::study::progress::Silent;
-            let few_frames = simulate_array(&few.touched, patch, silent).deflection;
-            let many_frames = simulate_array(&many.touched, patch, silent).deflection;
+            let few_frames = simulate_array(&few.touched, patch, 1, silent).deflection;
+            let many_frames = simulate_array(&many.touched, patch, 1, silent).deflection;
             for (label, object) in few.touched.iter().enumerate() {
                 let name = &object.object.name;
                 let other = many.touched.iter().position(|o| o.object.name == *name);

@@ -39,6 +39,8 @@ pub mod choice;
 pub mod classifier;
 pub mod comparison;
 pub mod dataset;
+pub mod features;
+pub mod fusion;
 pub mod interval;
 pub mod kernel;
 pub mod metrics;

@@ -330,6 +330,7 @@ fn draw_markers(drawing: &mut Drawing, points: &[(f64, &CellScore)], frame: Area
 fn named(axis: Axis, value: &AxisValue) -> String {
     match axis {
         Axis::Ensemble | Axis::Classifier => value.label.clone(),
+        Axis::Features => format!("{} features", value.label),
         _ => format!("{} {}", axis.name(), value.label),
     }
 }

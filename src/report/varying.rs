@@ -93,8 +93,11 @@ impl Settings {
             Axis::Pitch,
             Axis::C,
             Axis::TrainTouches,
+            Axis::FusedTouches,
             Axis::Smoothing,
             Axis::Noise,
+            Axis::Frames,
+            Axis::Features,
             Axis::Ensemble,
             Axis::Classifier,
         ] {
@@ -165,26 +168,16 @@ fn numbers(values: &[AxisValue]) -> Option<Vec<f64>> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::recognition::ClassifierKind;
-    use crate::sensing::Ensemble;
-    use crate::signal::NoiseUnit;
 
     fn cell(pitch_mm: f64, nx: usize, measurements: usize) -> Cell {
         Cell {
-            cell: 0,
             pitch_mm,
             nx,
             ny: nx,
             size_mm: pitch_mm * nx as f64,
-            noise_std: 0.07,
-            noise_unit: NoiseUnit::FullScale,
-            smoothing_mm: 0.0,
-            ensemble: Ensemble::Gaussian,
             measurements,
             ratio: (nx * nx) as f64 / measurements as f64,
-            classifier: ClassifierKind::LinearSvm,
-            c: None,
-            train_touches: 75,
+            ..crate::study::table::tests::cell()
         }
     }
 
