@@ -387,6 +387,7 @@ pub fn about() -> ReportPage {
             quantity: Quantity::Deflection,
             caption: "Pressed 4 mm deep; noise standard deviation 5 % of full scale".to_owned(),
         }),
+        pareto: None,
         wall_s: Some(41.3),
         command: "bubbletouch run experiments/quickstart.toml --seed 1 --out results/quickstart"
             .to_owned(),
