@@ -47,7 +47,11 @@ pub fn chart_title(plan: &ChartPlan) -> String {
     let others: Vec<&str> = [&plan.lines, &plan.panels]
         .into_iter()
         .flatten()
-        .map(|levels| levels.axis.name())
+        .map(|levels| match levels.axis {
+            Axis::Features => "kind of features",
+            Axis::Frames => "number of frames",
+            axis => axis.name(),
+        })
         .collect();
     if !others.is_empty() {
         title += &format!(", for each {}", others.join(" and "));
@@ -331,6 +335,8 @@ fn named(axis: Axis, value: &AxisValue) -> String {
     match axis {
         Axis::Ensemble | Axis::Classifier => value.label.clone(),
         Axis::Features => format!("{} features", value.label),
+        Axis::Frames if value.label == "1" => "1 frame a touch".to_owned(),
+        Axis::Frames | Axis::FusedTouches => format!("{} {}", value.label, axis.name()),
         _ => format!("{} {}", axis.name(), value.label),
     }
 }
