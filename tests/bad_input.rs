@@ -305,3 +305,62 @@ impl Drop for SmallDisk {
         let _ = Command::new("umount").arg(&self.0).status();
     }
 }
+
+#[test]
+fn keys_of_features_frames_and_fused_touches_are_checked() {
+    let refuses = |section: &str, line: &str, words: &[&str]| {
+        Case::new().refuses(section, &format!("{section}\n{line}"), words);
+    };
+    refuses("[touches]", "frames = 0", &["touches.frames", "at least 1"]);
+    refuses("[touches]", "frames = [2, 2]", &["touches.frames", "twice"]);
+    refuses(
+        "[recognition]",
+        "features = \"loud\"",
+        &["study.toml:24", "loud", "unit_norm"],
+    );
+    refuses(
+        "[recognition]",
+        "fused_touches = [1, 0]",
+        &["recognition.fused_touches", "at least 1"],
+    );
+    // Two of eight touches are for testing.
+    refuses(
+        "[recognition]",
+        "fused_touches = 3",
+        &["recognition.fused_touches", "at most 2", "test touches"],
+    );
+}
+
+#[test]
+fn keys_of_a_choice_are_checked_and_none_is_silently_ignored() {
+    let refuses = |line: &str, words: &[&str]| {
+        Case::new().refuses("[recognition]", &format!("[recognition]\n{line}"), words);
+    };
+    refuses(
+        "choose_gamma = [1.0]",
+        &["choose_gamma", "no classifier", "γ"],
+    );
+    refuses("gamma = 1.0", &["recognition.gamma", "no classifier"]);
+    refuses("choose_folds = 3", &["choose_folds", "choose_c"]);
+    refuses("choose_touches = 3", &["choose_touches", "choose_c"]);
+    refuses(
+        "choose_c = [1.0, 2.0]\nchoose_folds = 1",
+        &["choose_folds", "at least 2"],
+    );
+    refuses(
+        "choose_c = [1.0, 2.0]\nchoose_folds = 7",
+        &["choose_folds", "at most 6", "training touches"],
+    );
+    let rbf = |line: &str, words: &[&str]| {
+        let old = "classifier = \"linear_svm\"";
+        Case::new().refuses(old, &format!("classifier = \"rbf_svm\"\n{line}"), words);
+    };
+    rbf(
+        "gamma = 1.0\nchoose_gamma = [1.0]",
+        &["both gamma and choose_gamma"],
+    );
+    rbf(
+        "choose_gamma = [1.0, -1.0]",
+        &["choose_gamma", "-1", "positive"],
+    );
+}

@@ -121,7 +121,7 @@ fn the_frames_are_the_librarys_one_folder_an_array() {
         let files = Files::read(&case.path(folder));
         let (ny, nx) = (patch.grid.ny, patch.grid.nx);
         assert_eq!(files.frames.dim(), (900, ny, nx));
-        let expected = simulate_array(&study.touched, patch, &Silent);
+        let expected = simulate_array(&study.touched, patch, 1, &Silent);
         let flat = files.frames.to_shape((900, ny * nx)).unwrap();
         assert_eq!(flat, expected.deflection);
         let n_missed = files.touches.iter().filter(|t| t.n_touched == 0).count();

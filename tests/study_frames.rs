@@ -43,7 +43,7 @@ classifier = "linear_svm"
 fn every_frame_is_its_touch_pressed_alone() {
     let study = Study::new(STUDY);
     let patch = study.plan.arrays[0];
-    let frames = simulate_array(&study.touched, &patch, &Silent);
+    let frames = simulate_array(&study.touched, &patch, 1, &Silent);
     let mut row = 0;
     let (mut n_missed, mut n_saturated) = (0, 0);
     for object in &study.touched {
@@ -98,7 +98,7 @@ fn missed_and_saturated_touches_are_counted_as_the_equations_say() {
     let study = Study::new(STUDY);
     let patch = study.plan.arrays[0];
     let stroke = patch.taxel.stroke;
-    let frames = simulate_array(&study.touched, &patch, &Silent);
+    let frames = simulate_array(&study.touched, &patch, 1, &Silent);
     let touches = study
         .touched
         .iter()
@@ -223,7 +223,7 @@ fn a_damper_pushes_back_on_taxels_that_move_and_not_on_saturated_ones() {
         .replace("[sensing]", "[signal]\nsteps = [\"force\"]\n\n[sensing]");
     let study = Study::new(&text);
     let patch = study.plan.arrays[0];
-    let frames = simulate_array(&study.touched, &patch, &Silent).deflection;
+    let frames = simulate_array(&study.touched, &patch, 1, &Silent).deflection;
     let samples = sample_frames(&study.plan, &study.sweep, &study.touched).unwrap();
     assert_eq!(samples.frames.len(), study.touched.len());
     let per_object = study.touched[0].touches.len();

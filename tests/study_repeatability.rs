@@ -9,7 +9,8 @@ use std::collections::BTreeSet;
 use std::fs;
 use study::{Study, trials_of};
 
-/// Several arrays, ensembles (one of them not nested), ratios and classifiers; C is chosen, and offsets stay together.
+/// Several arrays, frames, ensembles (one of them not nested), ratios, features, classifiers and fused touches; C and γ are
+/// chosen, and offsets stay together.
 const WIDE: &str = r#"
 question = "Do threads matter?"
 seed = 7
@@ -31,6 +32,7 @@ offset_x_mm = [-8.0, 0.0, 8.0]
 offset_y_mm = [-8.0, 0.0, 8.0]
 yaw_deg = { grid = [0.0, 40.0, 3] }
 depth_mm = [2.0, 3.0]
+frames = [1, 2]
 
 [signal]
 noise_std_full_scale = 0.2
@@ -41,8 +43,11 @@ ensemble = ["gaussian", "block_average"]
 ratio = [4, 16]
 
 [recognition]
+features = ["raw", "centred_unit_norm"]
 classifier = ["linear_svm", "rbf_svm"]
 choose_c = [0.1, 1.0, 10.0]
+choose_gamma = [0.5, 2.0]
+fused_touches = [1, 2]
 train_touches = 12
 keep_together = "offset"
 "#;
@@ -189,8 +194,8 @@ fn an_object_is_touched_the_same_whatever_else_is_in_the_set() {
             assert_eq!((few.touched.len(), many.touched.len()), (2, 4));
             let patch = &few.plan.arrays[0];
             let silent = &bubbletouch::study::progress::Silent;
-            let few_frames = simulate_array(&few.touched, patch, silent).deflection;
-            let many_frames = simulate_array(&many.touched, patch, silent).deflection;
+            let few_frames = simulate_array(&few.touched, patch, 1, silent).deflection;
+            let many_frames = simulate_array(&many.touched, patch, 1, silent).deflection;
             for (label, object) in few.touched.iter().enumerate() {
                 let name = &object.object.name;
                 let other = many.touched.iter().position(|o| o.object.name == *name);

@@ -3,17 +3,20 @@
 use super::study_args::set_threads;
 use bubbletouch::random::Seed;
 use bubbletouch::recognition::ClassifierKind;
+use bubbletouch::recognition::choice::{Candidates, Chosen};
 use bubbletouch::recognition::classifier::{Classifier, Cost, TrainedClassifier};
 use bubbletouch::recognition::dataset::Dataset;
 use bubbletouch::recognition::interval::Interval;
 use bubbletouch::recognition::kernel::Gamma;
 use bubbletouch::recognition::scaling::Scaling;
-use bubbletouch::recognition::svm::Multiclass;
+use bubbletouch::recognition::split::{Split, stratified_k_fold};
+use bubbletouch::recognition::svm::{Multiclass, Solver};
 use bubbletouch::study::{FeatureSet, read_features, write_npy};
 use bubbletouch::{Error, Result};
 use ndarray::Array1;
 use serde::de::IntoDeserializer;
 use serde::{Deserialize, Serialize};
+use std::collections::BTreeSet;
 use std::path::PathBuf;
 use std::time::Instant;
 
@@ -30,6 +33,29 @@ pub struct Args {
     /// Soft-margin penalty C
     #[arg(long, value_name = "C", default_value_t = 1.0)]
     c: f64,
+    /// Choose C among these instead, by cross-validation of the training rows
+    #[arg(
+        long,
+        value_name = "C,C,…",
+        value_delimiter = ',',
+        conflicts_with = "c"
+    )]
+    choose_c: Vec<f64>,
+    /// Choose γ among these multiples of scale as well
+    #[arg(
+        long,
+        value_name = "X,X,…",
+        value_delimiter = ',',
+        conflicts_with = "gamma",
+        requires = "choose_c"
+    )]
+    choose_gamma: Vec<f64>,
+    /// Folds of that cross-validation
+    #[arg(long, value_name = "K", default_value_t = 5)]
+    choose_folds: usize,
+    /// What trains an SVM: smo, coordinate_descent or linfa
+    #[arg(long, value_name = "NAME", default_value = "smo", value_parser = word::<Solver>)]
+    solver: Solver,
     /// γ of the RBF and polynomial kernels, for scaled features: a number, or scale for 1 / (m · variance)
     #[arg(long, value_name = "GAMMA", default_value = "scale", value_parser = gamma)]
     gamma: Gamma,
@@ -75,8 +101,11 @@ struct Findings {
     classifier: ClassifierKind,
     multiclass: Multiclass,
     scaling: Scaling,
-    /// C that was used.
-    c: f64,
+    solver: Solver,
+    /// C that was used; `None` for what has none.
+    c: Option<f64>,
+    /// What C, and γ, was chosen from.
+    chosen: Option<Chosen>,
     n_train: usize,
     n_test: usize,
     n_measurements: usize,
@@ -129,11 +158,12 @@ impl Args {
     fn train_and_test(&self, set: &FeatureSet) -> Result<(Findings, Array1<usize>)> {
         let classifier = self.classifier();
         let (training, test) = (set.training(self.train_rows)?, set.test()?);
+        let seed = Seed::new(self.seed);
         let (mut fit_s, mut predict_s) = (Vec::new(), Vec::new());
         let mut last = None;
         for _ in 0..self.repeat {
             let start = Instant::now();
-            let trained = classifier.train(&training, &Seed::new(self.seed))?;
+            let trained = classifier.train_validated(&training, &self.folds(&training)?, &seed)?;
             fit_s.push(start.elapsed().as_secs_f64());
             let start = Instant::now();
             let predicted = trained.labels(test.records.view())?;
@@ -152,7 +182,9 @@ impl Args {
             classifier: self.classifier,
             multiclass: self.multiclass,
             scaling: self.scaling,
+            solver: self.solver,
             c: trained.c(),
+            chosen: trained.chosen().cloned(),
             n_train: training.records.nrows(),
             n_test,
             n_measurements: training.records.ncols(),
@@ -164,16 +196,32 @@ impl Args {
             fit_s,
             predict_median_s: median(&predict_s),
             predict_s,
-            svm: svm_findings(&trained, &training)?,
+            svm: svm_findings(&trained),
         };
         Ok((findings, predicted))
+    }
+
+    /// Folds of the choice, if there is one.
+    fn folds(&self, training: &Dataset) -> Result<Vec<Split>> {
+        if self.choose_c.is_empty() {
+            return Ok(Vec::new());
+        }
+        let seed = Seed::new(self.seed).named("validation");
+        stratified_k_fold(training.targets.view(), self.choose_folds, &seed)
     }
 
     fn classifier(&self) -> Classifier {
         Classifier {
             scaling: self.scaling,
             multiclass: self.multiclass,
-            c: Cost::Fixed(self.c),
+            solver: self.solver,
+            c: match &self.choose_c[..] {
+                [] => Cost::Fixed(self.c),
+                candidates => Cost::Chosen(Candidates {
+                    c: candidates.to_vec(),
+                    gamma_scales: self.choose_gamma.clone(),
+                }),
+            },
             gamma: self.gamma,
             coef0: self.coef0,
             degree: self.degree,
@@ -183,29 +231,21 @@ impl Args {
     }
 }
 
-fn svm_findings(trained: &TrainedClassifier, training: &Dataset) -> Result<Option<SvmFindings>> {
-    let Some(model) = trained.svm() else {
-        return Ok(None);
-    };
-    let scaled = trained.scaling().apply(training.records.view())?;
-    let values = model.decision_values(scaled.view())?;
-    let mut is_support = vec![false; scaled.nrows()];
-    let mut dual_objective = 0.0;
-    for (problem, values) in model.problems().iter().zip(values.columns()) {
-        let solution = &problem.solution;
-        for (&row, &coefficient) in problem.rows.iter().zip(&solution.coefficients) {
-            is_support[row] |= coefficient != 0.0;
-            // The decision value is the sum over the support vectors, less ρ.
-            let sum = values[row] + solution.rho;
-            dual_objective += 0.5 * coefficient * sum - coefficient.abs();
-        }
-    }
-    Ok(Some(SvmFindings {
-        n_support_vectors: is_support.into_iter().filter(|&is| is).count(),
-        n_problems: model.problems().len(),
-        n_capped: model.n_capped(),
-        dual_objective,
-    }))
+fn svm_findings(trained: &TrainedClassifier) -> Option<SvmFindings> {
+    let problems = trained.svm()?.problems();
+    let support: BTreeSet<usize> = problems
+        .iter()
+        .flat_map(|problem| problem.rows.iter().zip(&problem.solution.coefficients))
+        .filter(|(_, coefficient)| **coefficient != 0.0)
+        .map(|(&row, _)| row)
+        .collect();
+    Some(SvmFindings {
+        n_support_vectors: support.len(),
+        n_problems: problems.len(),
+        n_capped: trained.n_capped(),
+        // What training minimises is the dual objective with the other sign.
+        dual_objective: -problems.iter().map(|p| p.solution.objective).sum::<f64>(),
+    })
 }
 
 fn median(values: &[f64]) -> f64 {
@@ -237,6 +277,18 @@ fn print(findings: &Findings) {
     println!(
         "accuracy  {accuracy:.4} ({accuracy_low:.4} to {accuracy_high:.4}): {n_correct} of {n_test}"
     );
+    if let Some(chosen) = &findings.chosen {
+        let best = &chosen.best;
+        let gamma = best
+            .gamma
+            .map_or_else(String::new, |gamma| format!(" and γ = {gamma:.3e}"));
+        println!(
+            "choice    C = {}{gamma}, {:.4} on validation rows, of {} candidates",
+            best.c,
+            best.accuracy,
+            chosen.tried.len()
+        );
+    }
     println!("training  {fit_median_s:.4} s");
     let each_us = 1e6 * predict_median_s / *n_test as f64;
     println!("testing   {predict_median_s:.4} s, {each_us:.1} µs a row");

@@ -86,6 +86,7 @@ fn report_page(
             quantity: sample.quantity,
             caption: sample.caption,
         }),
+        pareto: spec.report.pareto,
         wall_s: Some(wall_s),
         command: command_line(args),
         program: concat!("bubbletouch ", env!("CARGO_PKG_VERSION")).to_owned(),

@@ -22,7 +22,7 @@ pub struct Candidates {
 }
 
 /// A candidate and how it did.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Tried {
     /// C.
     pub c: f64,
@@ -33,7 +33,7 @@ pub struct Tried {
 }
 
 /// What was chosen, and from what.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Chosen {
     /// The most accurate candidate.
     pub best: Tried,

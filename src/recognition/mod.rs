@@ -49,6 +49,8 @@ pub mod dataset;
 mod decision;
 pub mod decision_tree;
 pub mod dual;
+pub mod features;
+pub mod fusion;
 mod grid;
 pub mod interval;
 pub mod k_nearest;
@@ -102,5 +104,10 @@ impl ClassifierKind {
             Self::LinearSvm | Self::RbfSvm | Self::PolynomialSvm | Self::LogisticRegression => true,
             Self::KNearest | Self::NaiveBayes | Self::DecisionTree | Self::RandomForest => false,
         }
+    }
+
+    /// Whether it has a kernel with a γ.
+    pub fn has_gamma(self) -> bool {
+        matches!(self, Self::RbfSvm | Self::PolynomialSvm)
     }
 }

@@ -20,6 +20,7 @@ pub struct Answer {
     settings: Settings,
     n_cells: usize,
     n_capped: usize,
+    n_left_out: usize,
 }
 
 /// Mean accuracy at each value of an axis, over those combinations of the other settings that have all of its values.
@@ -56,12 +57,14 @@ impl Answer {
         });
         let cells: Vec<&Cell> = rows.iter().map(|row| &row.0).collect();
         let settings = Settings::of(&cells);
+        let left_out = tables.accuracy.iter().map(|(_, trial)| trial.n_left_out);
         Some(Self {
             best: best.clone(),
             frugal: frugal.clone(),
             effects: effects(rows, &settings),
             n_cells: rows.len(),
             n_capped: rows.iter().map(|row| row.1.n_capped).sum(),
+            n_left_out: left_out.max().unwrap_or(0),
             settings,
         })
     }
@@ -90,6 +93,12 @@ impl Answer {
             });
         }
         sentences.extend(self.effects.iter().map(Effect::sentence));
+        if self.n_left_out > 0 {
+            sentences.push(format!(
+                "Up to {} test touches of a trial fill no whole group of fused touches and are left out.",
+                self.n_left_out
+            ));
+        }
         if self.n_capped > 0 {
             sentences.push(format!(
                 "{} binary SVMs stopped at the iteration cap: their cells may do better with more iterations or a smaller C.",
@@ -116,7 +125,9 @@ impl Answer {
             let axis = levels.axis;
             let label = axis.value(cell).label;
             match axis {
-                Axis::Measurements | Axis::C => format!("{} = {label}", axis.name()),
+                Axis::Measurements | Axis::C | Axis::Frames | Axis::FusedTouches => {
+                    format!("{} = {label}", axis.name())
+                }
                 _ => format!("{} {label}", axis.name()),
             }
         });

@@ -1,6 +1,7 @@
 //! The axes of a study: each setting's name, its value in a cell, and how both are written for people.
 
 use crate::recognition::ClassifierKind;
+use crate::recognition::features::Features;
 use crate::sensing::Ensemble;
 use crate::signal::NoiseUnit;
 use crate::study::table::Cell;
@@ -10,8 +11,12 @@ use crate::study::table::Cell;
 pub enum Axis {
     /// Compression ratio n / m.
     Ratio,
-    /// Measurements a touch, m.
+    /// Measurements a frame, m.
     Measurements,
+    /// Frames a touch.
+    Frames,
+    /// What is made of measurements.
+    Features,
     /// Millimetres between taxels.
     Pitch,
     /// Side lengths of the array.
@@ -28,18 +33,23 @@ pub enum Axis {
     C,
     /// Training touches an object.
     TrainTouches,
+    /// Test touches decided on together.
+    FusedTouches,
 }
 
 /// Every axis, in the order in which tables show them.
-pub const AXES: [Axis; 10] = [
+pub const AXES: [Axis; 13] = [
     Axis::Pitch,
     Axis::Size,
     Axis::Noise,
     Axis::Smoothing,
+    Axis::Frames,
     Axis::Ensemble,
+    Axis::Features,
     Axis::Classifier,
     Axis::C,
     Axis::TrainTouches,
+    Axis::FusedTouches,
     Axis::Ratio,
     Axis::Measurements,
 ];
@@ -61,6 +71,8 @@ impl Axis {
         match self {
             Self::Ratio => "ratio",
             Self::Measurements => "measurements",
+            Self::Frames => "frames",
+            Self::Features => "features",
             Self::Pitch => "pitch",
             Self::Size => "size",
             Self::Noise => "noise",
@@ -69,6 +81,7 @@ impl Axis {
             Self::Classifier => "classifier",
             Self::C => "c",
             Self::TrainTouches => "train_touches",
+            Self::FusedTouches => "fused_touches",
         }
     }
 
@@ -77,6 +90,8 @@ impl Axis {
         match self {
             Self::Ratio => "compression",
             Self::Measurements => "m",
+            Self::Frames => "frames a touch",
+            Self::Features => "features",
             Self::Pitch => "pitch",
             Self::Size => "array size",
             Self::Noise => "noise",
@@ -85,6 +100,7 @@ impl Axis {
             Self::Classifier => "classifier",
             Self::C => "C",
             Self::TrainTouches => "training touches",
+            Self::FusedTouches => "touches fused",
         }
     }
 
@@ -92,7 +108,12 @@ impl Axis {
     pub fn title(self, cell: &Cell) -> String {
         let title = match self {
             Self::Ratio => "compression ratio n : m",
-            Self::Measurements => "measurements a touch, m",
+            Self::Measurements => match cell.frames {
+                1 => "measurements a touch, m",
+                _ => "measurements a frame, m",
+            },
+            Self::Frames => "frames a touch",
+            Self::Features => "features",
             Self::Pitch => "taxel pitch (mm)",
             Self::Size => "side length of the array (mm)",
             Self::Noise => match cell.noise_unit {
@@ -105,6 +126,7 @@ impl Axis {
             Self::Classifier => "classifier",
             Self::C => "soft-margin penalty C",
             Self::TrainTouches => "training touches an object",
+            Self::FusedTouches => "touches decided on together",
         };
         title.to_owned()
     }
@@ -114,6 +136,8 @@ impl Axis {
         match self {
             Self::Ratio => with_suffix(cell.ratio, ":1", ":1"),
             Self::Measurements => with_suffix(cell.measurements as f64, "", ""),
+            Self::Frames => with_suffix(cell.frames as f64, "", ""),
+            Self::Features => word(features_name(cell.features)),
             Self::Pitch => with_suffix(cell.pitch_mm, "", " mm"),
             Self::Size => size(cell),
             Self::Noise => noise(cell),
@@ -122,9 +146,11 @@ impl Axis {
             Self::Classifier => word(classifier_name(cell.classifier)),
             Self::C => match cell.c {
                 Some(c) => with_suffix(c, "", ""),
-                None => word("chosen"),
+                None if cell.classifier.has_c() => word("chosen"),
+                None => word("none"),
             },
             Self::TrainTouches => with_suffix(cell.train_touches as f64, "", ""),
+            Self::FusedTouches => with_suffix(cell.fused_touches as f64, "", ""),
         }
     }
 }
@@ -158,6 +184,16 @@ pub fn ensemble_name(ensemble: Ensemble) -> &'static str {
         Ensemble::BlockAverage => "block average",
         Ensemble::Subsample => "subsample",
         Ensemble::Identity => "identity",
+    }
+}
+
+/// What is made of measurements, in words.
+pub fn features_name(features: Features) -> &'static str {
+    match features {
+        Features::Raw => "raw",
+        Features::Centred => "centred",
+        Features::UnitNorm => "unit norm",
+        Features::CentredUnitNorm => "centred, unit norm",
     }
 }
 

@@ -47,7 +47,11 @@ pub fn chart_title(plan: &ChartPlan) -> String {
     let others: Vec<&str> = [&plan.lines, &plan.panels]
         .into_iter()
         .flatten()
-        .map(|levels| levels.axis.name())
+        .map(|levels| match levels.axis {
+            Axis::Features => "kind of features",
+            Axis::Frames => "number of frames",
+            axis => axis.name(),
+        })
         .collect();
     if !others.is_empty() {
         title += &format!(", for each {}", others.join(" and "));
@@ -235,20 +239,24 @@ impl Chart<'_> {
     }
 }
 
-fn y_at(frame: Area, accuracy: f64) -> f64 {
+/// Where an accuracy stands in a panel, pixels down.
+pub(super) fn y_at(frame: Area, accuracy: f64) -> f64 {
     frame.y + frame.height * (1.0 - accuracy.clamp(0.0, 1.0))
+}
+
+/// The axes of a panel, and lines across it at the accuracies of their ticks.
+pub(super) fn draw_axes(drawing: &mut Drawing, frame: Area) {
+    let (right, bottom) = (frame.x + frame.width, frame.y + frame.height);
+    for step in 0..=5 {
+        let y = y_at(frame, f64::from(step) / 5.0);
+        drawing.line((frame.x, y), (right, y), Stroke::new(GRID, 1.0));
+    }
+    drawing.line((frame.x, bottom), (right, bottom), Stroke::new(INK, 1.0));
+    drawing.line((frame.x, frame.y), (frame.x, bottom), Stroke::new(INK, 1.0));
 }
 
 fn draw_grid(drawing: &mut Drawing, scale: &XScale, frame: Area) {
     let bottom = frame.y + frame.height;
-    for step in 0..=5 {
-        let y = y_at(frame, f64::from(step) / 5.0);
-        drawing.line(
-            (frame.x, y),
-            (frame.x + frame.width, y),
-            Stroke::new(GRID, 1.0),
-        );
-    }
     for ((value, x), row) in scale.ticks.iter().zip(&scale.label_rows) {
         drawing.line((*x, frame.y), (*x, bottom), Stroke::new(GRID, 1.0));
         drawing.line((*x, bottom), (*x, bottom + 5.0), Stroke::new(INK, 1.0));
@@ -258,15 +266,11 @@ fn draw_grid(drawing: &mut Drawing, scale: &XScale, frame: Area) {
             drawing.text(below, &value.tick, style);
         }
     }
-    drawing.line(
-        (frame.x, bottom),
-        (frame.x + frame.width, bottom),
-        Stroke::new(INK, 1.0),
-    );
-    drawing.line((frame.x, frame.y), (frame.x, bottom), Stroke::new(INK, 1.0));
+    draw_axes(drawing, frame);
 }
 
-fn draw_y_labels(drawing: &mut Drawing, frame: Area) {
+/// Ticks, numbers and title of the accuracy axis, left of a panel.
+pub(super) fn draw_y_labels(drawing: &mut Drawing, frame: Area) {
     for step in 0..=5 {
         let accuracy = f64::from(step) / 5.0;
         let at = (frame.x - 9.0, y_at(frame, accuracy) + 4.5);
@@ -330,6 +334,9 @@ fn draw_markers(drawing: &mut Drawing, points: &[(f64, &CellScore)], frame: Area
 fn named(axis: Axis, value: &AxisValue) -> String {
     match axis {
         Axis::Ensemble | Axis::Classifier => value.label.clone(),
+        Axis::Features => format!("{} features", value.label),
+        Axis::Frames if value.label == "1" => "1 frame a touch".to_owned(),
+        Axis::Frames | Axis::FusedTouches => format!("{} {}", value.label, axis.name()),
         _ => format!("{} {}", axis.name(), value.label),
     }
 }

@@ -24,27 +24,33 @@ pub struct ChartPlan {
 }
 
 /// First choice first: what a reader looks for along x.
-const ALONG_X: [Axis; 10] = [
+const ALONG_X: [Axis; 13] = [
     Axis::Ratio,
     Axis::Measurements,
     Axis::TrainTouches,
+    Axis::FusedTouches,
     Axis::Noise,
     Axis::Smoothing,
     Axis::C,
     Axis::Pitch,
     Axis::Size,
+    Axis::Frames,
+    Axis::Features,
     Axis::Ensemble,
     Axis::Classifier,
 ];
 
 /// What makes good lines: resolution first, then ways of treating the signal.
-const AS_LINES: [Axis; 10] = [
+const AS_LINES: [Axis; 13] = [
     Axis::Pitch,
     Axis::Ensemble,
+    Axis::Features,
     Axis::Smoothing,
     Axis::Classifier,
     Axis::Size,
     Axis::Noise,
+    Axis::Frames,
+    Axis::FusedTouches,
     Axis::TrainTouches,
     Axis::C,
     Axis::Ratio,
@@ -52,12 +58,15 @@ const AS_LINES: [Axis; 10] = [
 ];
 
 /// What makes good panels.
-const AS_PANELS: [Axis; 10] = [
+const AS_PANELS: [Axis; 13] = [
     Axis::Size,
+    Axis::Frames,
     Axis::Classifier,
     Axis::Noise,
     Axis::Ensemble,
+    Axis::Features,
     Axis::Smoothing,
+    Axis::FusedTouches,
     Axis::TrainTouches,
     Axis::C,
     Axis::Pitch,
@@ -154,26 +163,7 @@ mod tests {
     use super::*;
     use crate::recognition::ClassifierKind;
     use crate::sensing::Ensemble;
-    use crate::signal::NoiseUnit;
-
-    fn cell() -> Cell {
-        Cell {
-            cell: 0,
-            pitch_mm: 2.0,
-            nx: 32,
-            ny: 32,
-            size_mm: 64.0,
-            noise_std: 0.1,
-            noise_unit: NoiseUnit::FullScale,
-            smoothing_mm: 0.0,
-            ensemble: Ensemble::Gaussian,
-            measurements: 64,
-            ratio: 16.0,
-            classifier: ClassifierKind::LinearSvm,
-            c: Some(1.0),
-            train_touches: 75,
-        }
-    }
+    use crate::study::table::tests::cell;
 
     fn roles(plan: &ChartPlan) -> (Axis, Option<Axis>, Option<Axis>) {
         let axis = |levels: &Option<Levels>| levels.as_ref().map(|l| l.axis);

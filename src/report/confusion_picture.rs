@@ -63,7 +63,9 @@ pub fn confusion_picture(tables: &Tables, cell: usize) -> Option<Drawing> {
     );
     let mut parts: Vec<String> = AXES
         .iter()
-        .map(|axis| Levels::of(*axis, &[settings]).sentence())
+        .map(|axis| Levels::of(*axis, &[settings]))
+        .filter(|levels| !levels.go_without_saying())
+        .map(|levels| levels.sentence())
         .collect();
     if score.n_trials > 1 {
         parts.push(format!("{} trials together", score.n_trials));

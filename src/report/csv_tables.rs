@@ -6,7 +6,7 @@
 use crate::error::{Error, Result};
 use crate::files::write_bytes;
 use crate::study::table::{
-    Cell, CellScore, Comparison, Confusion, StageTime, Tables, TrialScore, TrialTime,
+    Cell, CellScore, Comparison, Confusion, Pareto, StageTime, Tables, TrialScore, TrialTime,
 };
 use serde::Serialize;
 use serde::de::DeserializeOwned;
@@ -14,12 +14,13 @@ use std::fs::File;
 use std::path::{Path, PathBuf};
 
 /// File names of the tables, in the order in which [`write_tables`] writes them.
-pub const TABLE_FILES: [&str; 6] = [
+pub const TABLE_FILES: [&str; 7] = [
     "accuracy.csv",
     "summary.csv",
     "confusion.csv",
     "comparison.csv",
     "timing.csv",
+    "pareto.csv",
     "stages.csv",
 ];
 
@@ -31,6 +32,7 @@ pub fn write_tables(dir: &Path, tables: &Tables) -> Result<Vec<PathBuf>> {
         to_csv(&tables.confusion),
         to_csv(&tables.comparison),
         to_csv(&tables.timing),
+        to_csv(&tables.pareto),
         to_csv(&tables.stages),
     ];
     let mut paths = Vec::new();
@@ -52,7 +54,8 @@ pub fn read_tables(dir: &Path) -> Result<Tables> {
         confusion: read_rows::<Confusion>(&path(2))?,
         comparison: read_rows::<Comparison>(&path(3))?,
         timing: read_cell_rows::<TrialTime>(&path(4))?,
-        stages: read_rows::<StageTime>(&path(5))?,
+        pareto: read_cell_rows::<Pareto>(&path(5))?,
+        stages: read_rows::<StageTime>(&path(6))?,
     })
 }
 

@@ -26,6 +26,8 @@ pub struct ReportPage {
     pub limits: Vec<Limit>,
     /// Sample touches.
     pub snapshots: Option<Snapshots>,
+    /// Whether accuracy is charted against time; `None` leaves it to the number of classifiers.
+    pub pareto: Option<bool>,
     /// Seconds from start to end, if known.
     pub wall_s: Option<f64>,
     /// The command that makes the folder again.
@@ -97,6 +99,8 @@ impl Picture {
 pub struct Pictures {
     /// Charts, the main one first.
     pub charts: Vec<Picture>,
+    /// Charts of accuracy against time.
+    pub times: Vec<Picture>,
     /// How many charts lie beside the page only.
     pub n_more_charts: usize,
     /// The confusion matrix of the best cell.
@@ -176,6 +180,7 @@ fn charts_html(pictures: &Pictures) -> String {
             pictures.n_more_charts
         );
     }
+    html.extend(pictures.times.iter().map(figure));
     html
 }
 

@@ -1,6 +1,6 @@
 //! What stands above a chart's panels: title, fixed settings, and the legend.
 
-use crate::report::colours::{LINES, MUTED, Rgb};
+use crate::report::colours::{INK, LINES, MUTED, Rgb};
 use crate::report::drawing::{Drawing, Point, Stroke, TextStyle};
 use crate::report::text_width::{text_width, wrap};
 
@@ -15,6 +15,12 @@ pub(super) const CHANCE: Stroke = Stroke {
     colour: MUTED,
     width: 1.2,
     dash: Some((5, 4)),
+};
+/// The line of a Pareto front.
+pub(super) const FRONT: Stroke = Stroke {
+    colour: INK,
+    width: 1.4,
+    dash: None,
 };
 const TITLE: u32 = 16;
 const SMALL: u32 = 12;
@@ -40,6 +46,10 @@ pub(super) enum Mark {
     None,
     /// The line of a number with its marker.
     Line(usize),
+    /// The marker of a number, without a line.
+    Point(usize),
+    /// The steps of a Pareto front.
+    Front,
     /// The line of chance.
     Dashes,
     /// A band around a line.
@@ -94,11 +104,7 @@ impl Heading {
 impl LegendEntry {
     /// An entry as wide as its mark and text.
     pub(super) fn new(text: String, mark: Mark) -> Self {
-        let mark_width = if matches!(mark, Mark::None) {
-            0.0
-        } else {
-            34.0
-        };
+        let mark_width = mark.width();
         let gap = if matches!(mark, Mark::None) {
             10.0
         } else {
@@ -110,9 +116,27 @@ impl LegendEntry {
 
     fn draw(&self, drawing: &mut Drawing, (x, y): Point) {
         let middle = y - 4.5;
-        let mut text_x = x + 34.0;
+        let text_x = x + self.mark.width();
         match self.mark {
-            Mark::None => text_x = x,
+            Mark::None => {}
+            Mark::Point(number) => {
+                drawing.marker(
+                    number,
+                    (x + 6.0, middle),
+                    MARKER_RADIUS,
+                    line_colour(number),
+                );
+            }
+            Mark::Front => {
+                let corner = (x + 14.0, middle + 4.0);
+                let steps = [
+                    (x, corner.1),
+                    corner,
+                    (corner.0, middle - 4.0),
+                    (x + 28.0, middle - 4.0),
+                ];
+                drawing.polyline(&steps, FRONT);
+            }
             Mark::Line(line) => {
                 let stroke = line_stroke(line);
                 drawing.line((x, middle), (x + 28.0, middle), stroke);
@@ -134,6 +158,17 @@ impl LegendEntry {
             }
         }
         drawing.text((text_x, y), &self.text, TextStyle::new(SMALL));
+    }
+}
+
+impl Mark {
+    /// Pixels that it takes before its text.
+    fn width(&self) -> f64 {
+        match self {
+            Self::None => 0.0,
+            Self::Point(_) => 18.0,
+            _ => 34.0,
+        }
     }
 }
 

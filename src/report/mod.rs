@@ -21,6 +21,7 @@ pub mod html;
 mod html_tables;
 mod legend;
 pub mod object_picture;
+pub mod pareto_chart;
 pub mod pressure_map;
 pub mod progress;
 mod raster;

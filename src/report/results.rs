@@ -9,6 +9,7 @@ use crate::report::confusion_picture::confusion_picture;
 use crate::report::csv_tables::write_tables;
 use crate::report::drawing::Drawing;
 use crate::report::html::{Picture, Pictures, ReportPage, page};
+use crate::report::pareto_chart::{Cost, draw_pareto, is_wanted};
 use crate::report::snapshots::snapshots;
 use crate::study::table::{Cell, Tables};
 use std::fs;
@@ -25,6 +26,11 @@ const MOST_IN_PAGE: usize = 24;
 pub fn write_all(dir: &Path, tables: &Tables, about: &ReportPage) -> Result<Vec<PathBuf>> {
     let mut files: Vec<(String, Vec<u8>)> = Vec::new();
     let mut pictures = Pictures::default();
+    for (name, title, drawing) in draw_pareto_charts(tables, about.pareto) {
+        pictures.times.push(Picture::of(&drawing, &title));
+        files.push((format!("{name}.png"), drawing.png()?));
+        files.push((format!("{name}.svg"), drawing.svg(&title).into_bytes()));
+    }
     for (name, title, drawing) in draw_charts(tables) {
         if pictures.charts.len() < MOST_IN_PAGE {
             pictures.charts.push(Picture::of(&drawing, &title));
@@ -78,6 +84,19 @@ pub fn draw_charts(tables: &Tables) -> Vec<(String, String, Drawing)> {
             )
         })
         .collect()
+}
+
+/// Accuracy against the time to train and to decide, for a study that asks for it or compares classifiers: as
+/// [`draw_charts`].
+pub fn draw_pareto_charts(tables: &Tables, asked: Option<bool>) -> Vec<(String, String, Drawing)> {
+    if !is_wanted(tables, asked) {
+        return Vec::new();
+    }
+    let draw = |cost: Cost| {
+        let drawing = draw_pareto(tables, cost);
+        (cost.name().to_owned(), cost.title().to_owned(), drawing)
+    };
+    [Cost::Training, Cost::Prediction].map(draw).into()
 }
 
 /// Creates a folder and those above it; the error says if a file is in the way.

@@ -23,7 +23,7 @@ pub struct Settings {
     pub varying: Vec<Levels>,
     /// Axes that vary only because others do.
     pub following: Vec<Levels>,
-    /// Axes with one value.
+    /// Axes with one value, but for those that [go without saying](Levels::go_without_saying).
     pub fixed: Vec<Levels>,
 }
 
@@ -71,6 +71,16 @@ impl Levels {
         format!("{}{note}", self.axis.name())
     }
 
+    /// Whether all cells do what nobody expects otherwise: read a touch once, raw, and decide on it alone.
+    pub fn go_without_saying(&self) -> bool {
+        let usual = match self.axis {
+            Axis::Frames | Axis::FusedTouches => "1",
+            Axis::Features => "raw",
+            _ => return false,
+        };
+        self.values.iter().all(|value| value.label == usual)
+    }
+
     fn is_of_full_scale(&self) -> bool {
         self.axis == Axis::Noise && self.values.iter().all(|value| value.label.ends_with('%'))
     }
@@ -81,8 +91,9 @@ impl Settings {
     pub fn of(cells: &[&Cell]) -> Self {
         let all = AXES.map(|axis| Levels::of(axis, cells));
         let columns = Columns::of(&all, cells);
-        let (mut varying, fixed): (Vec<Levels>, Vec<Levels>) =
+        let (mut varying, mut fixed): (Vec<Levels>, Vec<Levels>) =
             all.into_iter().partition(|levels| levels.values.len() > 1);
+        fixed.retain(|levels| !levels.go_without_saying());
         let mut following = Vec::new();
         // m and the ratio say the same twice at one array; the array's sides follow its pitch when nx stays. An axis that a
         // study can only choose directly is dropped last.
@@ -93,8 +104,11 @@ impl Settings {
             Axis::Pitch,
             Axis::C,
             Axis::TrainTouches,
+            Axis::FusedTouches,
             Axis::Smoothing,
             Axis::Noise,
+            Axis::Frames,
+            Axis::Features,
             Axis::Ensemble,
             Axis::Classifier,
         ] {
@@ -165,26 +179,16 @@ fn numbers(values: &[AxisValue]) -> Option<Vec<f64>> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::recognition::ClassifierKind;
-    use crate::sensing::Ensemble;
-    use crate::signal::NoiseUnit;
 
     fn cell(pitch_mm: f64, nx: usize, measurements: usize) -> Cell {
         Cell {
-            cell: 0,
             pitch_mm,
             nx,
             ny: nx,
             size_mm: pitch_mm * nx as f64,
-            noise_std: 0.07,
-            noise_unit: NoiseUnit::FullScale,
-            smoothing_mm: 0.0,
-            ensemble: Ensemble::Gaussian,
             measurements,
             ratio: (nx * nx) as f64 / measurements as f64,
-            classifier: ClassifierKind::LinearSvm,
-            c: None,
-            train_touches: 75,
+            ..crate::study::table::tests::cell()
         }
     }
 

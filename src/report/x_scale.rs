@@ -68,7 +68,12 @@ fn label_rows(ticks: &[(AxisValue, f64)]) -> Vec<Option<usize>> {
 fn is_logarithmic(axis: Axis, numbers: &[f64]) -> bool {
     let by_nature = matches!(
         axis,
-        Axis::Ratio | Axis::Measurements | Axis::C | Axis::TrainTouches
+        Axis::Ratio
+            | Axis::Measurements
+            | Axis::C
+            | Axis::TrainTouches
+            | Axis::FusedTouches
+            | Axis::Frames
     );
     by_nature && numbers.iter().all(|&number| number > 0.0)
 }

@@ -59,6 +59,14 @@ impl Check<'_> {
         Ok(values)
     }
 
+    pub fn counts(&self, key: &str, axis: &Axis<usize>) -> Result<Vec<usize>> {
+        let counts = self.list(key, axis.values())?;
+        for &count in &counts {
+            self.positive_count(key, count)?;
+        }
+        Ok(counts)
+    }
+
     pub fn axis(
         &self,
         key: &str,

@@ -1,6 +1,5 @@
 //! What a study will take: cells, touches, memory and time, told before it runs.
 
-use super::evaluation::VALIDATION_FRACTION;
 use super::plan::Plan;
 use super::simulation::TouchedObject;
 use super::sweep::{Group, Sweep};
@@ -8,6 +7,7 @@ use super::table::Cell;
 use crate::recognition::ClassifierKind;
 use crate::recognition::svm::Multiclass;
 use crate::sensing::Ensemble;
+use crate::world::Patch;
 use std::fmt;
 
 /// Counts, and an estimate of memory and time.
@@ -26,7 +26,10 @@ pub struct Estimate {
     pub n_cells: usize,
     /// Repetitions of each cell.
     pub n_trials: usize,
-    /// Most bytes held at once: the frames of one array, and the measurements in flight.
+    /// Fits of one trial, those of a choice of C and γ not counted; cells that differ in how many touches are fused share
+    /// one.
+    pub n_fits: usize,
+    /// Most bytes held at once: the frames of one array (F · n_touches · n_taxels, f32), the measurements in flight.
     pub memory_bytes: f64,
     /// Seconds to make all touches, one core.
     pub simulate_s: f64,
@@ -66,7 +69,7 @@ impl Estimate {
         let frames = sweep
             .groups
             .iter()
-            .map(|g| 4.0 * n_touches as f64 * taxels(g));
+            .map(|g| 4.0 * (n_touches * g.frames) as f64 * taxels(g));
         // Of every group in flight: its measurements, the scaled copies that training and prediction make of them, and a
         // matrix if its ensemble has one.
         let in_flight = sweep.groups.iter().map(|g| {
@@ -74,22 +77,26 @@ impl Estimate {
                 Ensemble::Gaussian => 8.0 * taxels(g) * largest(g),
                 _ => 0.0,
             };
-            n_threads as f64 * (16.0 * n_touches as f64 * largest(g) + matrix)
+            n_threads as f64 * (16.0 * (n_touches * g.frames) as f64 * largest(g) + matrix)
         });
         let spheres: f64 = touched
             .iter()
             .map(|t| (t.object.spheres.n_spheres() * t.touches.len()) as f64)
             .sum();
-        let simulate_s = plan
-            .arrays
-            .iter()
-            .map(|patch| {
-                PLACE_SPHERE_S * spheres
-                    + CLEAR_TAXEL_S * (n_touches * patch.grid.n_taxels()) as f64
-            })
-            .sum();
-        let read_s =
-            |g: &Group| n_touches as f64 * taxels(g) * (SIGNAL_TAXEL_S + PROJECT_S * largest(g));
+        let n_presses = plan.frames.iter().sum::<usize>() as f64;
+        let press_s = |patch: &Patch| {
+            PLACE_SPHERE_S * spheres + CLEAR_TAXEL_S * (n_touches * patch.grid.n_taxels()) as f64
+        };
+        let simulate_s = n_presses * plan.arrays.iter().map(press_s).sum::<f64>();
+        let read_s = |g: &Group| {
+            let n_frames = (n_touches * g.frames) as f64;
+            n_frames * taxels(g) * (SIGNAL_TAXEL_S + PROJECT_S * largest(g))
+        };
+        // Of the cells that share a fit, the first.
+        let fits = || {
+            let families = sweep.groups.iter().flat_map(Group::families);
+            families.flat_map(|family| family.chunk_by(|a, b| a.c == b.c).map(|cells| &cells[0]))
+        };
         let n_objects = touched.len();
         Self {
             n_objects,
@@ -97,12 +104,12 @@ impl Estimate {
             n_arrays: plan.arrays.len(),
             n_cells: sweep.n_cells(),
             n_trials,
+            n_fits: fits().count(),
             memory_bytes: largest_of(frames) + largest_of(in_flight),
             simulate_s,
             measure_s: n_trials as f64 * sweep.groups.iter().map(read_s).sum::<f64>(),
             recognise_s: n_trials as f64
-                * sweep
-                    .cells()
+                * fits()
                     .map(|cell| recognise_s(plan, cell, n_objects, n_touches))
                     .sum::<f64>(),
             n_threads,
@@ -115,9 +122,9 @@ impl Estimate {
     }
 }
 
-/// The fits of a cell in one trial, and the prediction of every test row.
+/// The fits of a family with one C in one trial, and the prediction of every test touch.
 fn recognise_s(plan: &Plan, cell: &Cell, n_objects: usize, n_touches: usize) -> f64 {
-    let m = cell.measurements as f64;
+    let m = (cell.frames * cell.measurements) as f64;
     let n_train = (cell.train_touches * n_objects) as f64;
     let n_test = (n_touches as f64 - n_train).max(0.0);
     let (n_problems, rows) = match plan.spec.recognition.multiclass {
@@ -131,7 +138,23 @@ fn recognise_s(plan: &Plan, cell: &Cell, n_objects: usize, n_touches: usize) -> 
         let entry_s = SOLVE_ENTRY_S + KERNEL_ELEMENT_S * m.min(rows) + REDUCE_ELEMENT_S * m;
         n_problems * rows * rows * entry_s
     };
-    let candidates = plan.spec.recognition.choose_c.as_ref().map_or(0, Vec::len) as f64;
+    let choice = &plan.choice;
+    let n_c = match cell.classifier.has_c() && cell.c.is_none() {
+        true => choice.c.len(),
+        false => 1,
+    };
+    let n_gamma = match cell.classifier.has_gamma() {
+        true => choice.gamma_multiples.len().max(1),
+        false => 1,
+    };
+    let choosing = choice.touches.map_or(1.0, |most| {
+        (most as f64 / cell.train_touches as f64).min(1.0)
+    });
+    let n_folds = choice.folds as f64;
+    let choose_s = match n_c * n_gamma {
+        1 => 0.0,
+        n => n as f64 * n_folds * fit((n_folds - 1.0) / n_folds * choosing * rows),
+    };
     let predicted_per_row = match cell.classifier {
         ClassifierKind::LinearSvm => n_problems,
         ClassifierKind::RbfSvm | ClassifierKind::PolynomialSvm | ClassifierKind::KNearest => {
@@ -139,9 +162,7 @@ fn recognise_s(plan: &Plan, cell: &Cell, n_objects: usize, n_touches: usize) -> 
         }
         _ => n_objects as f64,
     };
-    fit(rows)
-        + candidates * fit((1.0 - VALIDATION_FRACTION) * rows)
-        + PREDICT_S * n_test * predicted_per_row * m
+    fit(rows) + choose_s + PREDICT_S * n_test * predicted_per_row * m
 }
 
 fn largest_of(values: impl Iterator<Item = f64>) -> f64 {
@@ -162,10 +183,13 @@ impl fmt::Display for Estimate {
         )?;
         writeln!(
             f,
-            "  cells    {} × {} trials = {} fits",
+            "  cells    {} × {} trials = {}",
             self.n_cells,
             self.n_trials,
-            self.n_cells * self.n_trials
+            match (self.n_cells * self.n_trials, self.n_fits * self.n_trials) {
+                (results, fits) if results == fits => format!("{fits} fits"),
+                (results, fits) => format!("{results} results of {fits} fits"),
+            }
         )?;
         writeln!(f, "  memory   about {}", Bytes(self.memory_bytes))?;
         write!(

@@ -1,23 +1,22 @@
-//! One cell in one trial: fit on training rows, predict test rows, score.
+//! A family of cells in one trial: fit on training rows once for each C, score test touches once, decide for each k.
 
-use super::spec::RecognitionSpec;
+use super::measurement::Measurements;
+use super::plan::Plan;
 use super::sweep::Sweep;
 use super::table::{Cell, TrialScore, TrialTime};
+use super::training::{Fitted, Training};
 use crate::error::Result;
 use crate::random::Seed;
-use crate::recognition::classifier::{Classifier, Cost, TrainedClassifier};
 use crate::recognition::dataset::{Dataset, dataset};
+use crate::recognition::fusion::{fuse_rows, fuse_scores};
 use crate::recognition::interval::Interval;
-use crate::recognition::kernel::Gamma;
 use crate::recognition::metrics::ConfusionMatrix;
-use crate::recognition::split::{Split, group_hold_out, stratified_hold_out};
-use ndarray::{ArrayView2, Axis, s};
+use crate::recognition::split::Split;
+use ndarray::{ArrayView2, Axis};
 use std::time::Instant;
 
 /// Confidence of every interval in the tables.
 pub const CONFIDENCE: f64 = 0.95;
-/// Share of the training rows that validates a choice of C.
-pub const VALIDATION_FRACTION: f64 = 0.25;
 
 /// What a cell scored in a trial.
 #[derive(Clone, Debug)]
@@ -33,51 +32,86 @@ pub struct Evaluation {
 /// What the evaluations of a group share in a trial.
 #[derive(Clone, Copy)]
 pub struct Trial<'a> {
-    /// The study's keys.
-    pub recognition: &'a RecognitionSpec,
+    /// The study.
+    pub plan: &'a Plan,
     /// Labels, splits and groups.
     pub sweep: &'a Sweep,
-    /// Measurements of all touches: n_touches × at least the cell's m.
-    pub measurements: ArrayView2<'a, f64>,
+    /// Measurements of all touches, at least the cell's m a frame.
+    pub measurements: &'a Measurements,
     /// Number of the trial.
     pub number: usize,
-    /// The study's root of randomness.
-    pub seed: Seed,
+}
+
+/// Test touches, scored by one fit.
+struct ScoredTouches<'a> {
+    fitted: &'a Fitted,
+    test: &'a Dataset,
+    scores: ArrayView2<'a, f64>,
+    score_s: f64,
+    n_train: usize,
 }
 
 impl Trial<'_> {
-    /// Fits and scores one cell on its leading measurements.
-    pub fn evaluate(&self, cell: &Cell) -> Result<Evaluation> {
-        let split = self.split(cell)?;
-        let fit_start = Instant::now();
-        let training = self.rows(cell, &split.train)?;
-        let trained = self.fit(cell, &training, &split)?;
-        let fit_s = fit_start.elapsed().as_secs_f64();
-        let test = self.rows(cell, &split.test)?;
-        let predict_start = Instant::now();
-        let predicted = trained.labels(test.records.view())?;
-        let predict_s = predict_start.elapsed().as_secs_f64();
+    /// Fits and scores the cells of a [family](super::sweep::Group::families) on their leading measurements, in their order.
+    pub fn evaluate(&self, family: &[Cell]) -> Result<Vec<Evaluation>> {
+        let split = self.split(&family[0])?;
+        let training = self.training(&family[0], &split)?;
+        let test = self.rows(&family[0], &split.test)?;
+        let same_fit: Vec<&[Cell]> = family.chunk_by(|a, b| a.c == b.c).collect();
+        let penalties: Vec<Option<f64>> = same_fit.iter().map(|cells| cells[0].c).collect();
+        let fitted = training.train_all(&penalties)?;
+        let mut evaluations = Vec::with_capacity(family.len());
+        for (fitted, cells) in fitted.iter().zip(same_fit) {
+            let start = Instant::now();
+            let scores = fitted.classifier.scores(test.records.view())?;
+            let scored = ScoredTouches {
+                fitted,
+                test: &test,
+                scores: scores.view(),
+                score_s: start.elapsed().as_secs_f64(),
+                n_train: split.train.len(),
+            };
+            for cell in cells {
+                evaluations.push(self.decide(cell, &scored)?);
+            }
+        }
+        Ok(evaluations)
+    }
+
+    /// One label for each group of the cell's k test touches.
+    fn decide(&self, cell: &Cell, scored: &ScoredTouches) -> Result<Evaluation> {
+        let truth = &scored.test.targets;
+        let seed = self.seed("fused_touches");
+        let rows = fuse_rows(truth.view(), cell.fused_touches, &seed);
+        let start = Instant::now();
+        let fused = fuse_scores(scored.scores, &rows.groups);
+        let predicted = scored.fitted.classifier.labels_of_scores(fused.view());
+        let predict_s = scored.score_s + start.elapsed().as_secs_f64();
+        let truth = rows.groups.iter().map(|group| truth[group[0]]).collect();
+        let truth: ndarray::Array1<usize> = truth;
         let n_objects = self.sweep.labels.iter().max().map_or(0, |last| last + 1);
-        let matrix = ConfusionMatrix::new(test.targets.view(), predicted.view(), n_objects)?;
+        let matrix = ConfusionMatrix::new(truth.view(), predicted.view(), n_objects)?;
         let interval = Interval::wilson(matrix.n_correct(), matrix.n_rows(), CONFIDENCE)?;
         Ok(Evaluation {
             score: TrialScore {
                 trial: self.number,
-                n_train: split.train.len(),
-                n_test: split.test.len(),
+                n_train: scored.n_train,
+                n_test: matrix.n_rows(),
+                n_left_out: rows.n_left_out,
                 n_correct: matrix.n_correct(),
                 accuracy: matrix.accuracy(),
                 accuracy_low: interval.low,
                 accuracy_high: interval.high,
                 macro_f1: matrix.macro_f1(),
-                c_used: trained.c(),
-                n_capped: trained.n_capped(),
+                c_used: scored.fitted.c,
+                gamma_used: scored.fitted.gamma,
+                n_capped: scored.fitted.classifier.n_capped(),
             },
             time: TrialTime {
                 trial: self.number,
-                fit_s,
+                fit_s: scored.fitted.fit_s,
                 predict_s,
-                predict_us_per_touch: 1e6 * predict_s / split.test.len() as f64,
+                predict_us_per_touch: 1e6 * predict_s / scored.test.targets.len() as f64,
             },
             confusion: matrix
                 .counts
@@ -91,54 +125,31 @@ impl Trial<'_> {
     /// The trial's split, with no more training touches an object than the cell allows.
     fn split(&self, cell: &Cell) -> Result<Split> {
         let split = &self.sweep.splits[self.number];
-        match self.recognition.train_touches {
+        match self.plan.spec.recognition.train_touches {
             None => Ok(split.clone()),
             Some(_) => split.at_most(self.sweep.labels.view(), cell.train_touches),
         }
     }
 
-    fn rows(&self, cell: &Cell, rows: &[usize]) -> Result<Dataset> {
-        let leading = self.measurements.slice(s![.., ..cell.measurements]);
-        dataset(
-            leading.select(Axis(0), rows),
-            self.sweep.labels.select(Axis(0), rows),
-        )
+    fn training(&self, cell: &Cell, split: &Split) -> Result<Training<'_>> {
+        let keys = self.sweep.group_keys.as_ref();
+        Ok(Training {
+            recognition: &self.plan.spec.recognition,
+            choice: &self.plan.choice,
+            kind: cell.classifier,
+            data: self.rows(cell, &split.train)?,
+            group_keys: keys.map(|keys| keys.select(Axis(0), &split.train)),
+            seed: self.seed("validation"),
+        })
     }
 
-    fn fit(&self, cell: &Cell, training: &Dataset, split: &Split) -> Result<TrainedClassifier> {
-        let classifier = self.classifier(cell);
-        let seed = self.seed.named("validation").numbered(self.number as u64);
-        if cell.c.is_some() {
-            return classifier.train(training, &seed);
-        }
-        let labels = training.targets.view();
-        let validation = match &self.sweep.group_keys {
-            None => stratified_hold_out(labels, VALIDATION_FRACTION, &seed)?,
-            // What stays together in the split stays together in the validation split inside it.
-            Some(keys) => {
-                let keys = keys.select(Axis(0), &split.train);
-                group_hold_out(labels, keys.view(), VALIDATION_FRACTION, &seed)?
-            }
-        };
-        classifier.train_validated(training, &validation, &seed)
+    fn rows(&self, cell: &Cell, touches: &[usize]) -> Result<Dataset> {
+        let labels = self.sweep.labels.select(Axis(0), touches);
+        dataset(self.measurements.features(cell, touches), labels)
     }
 
-    fn classifier(&self, cell: &Cell) -> Classifier {
-        let recognition = self.recognition;
-        Classifier {
-            scaling: recognition.scaling,
-            multiclass: recognition.multiclass,
-            c: match cell.c {
-                Some(c) => Cost::Fixed(c),
-                None => Cost::Chosen {
-                    candidates: recognition.choose_c.clone().unwrap_or_default(),
-                    validation_fraction: VALIDATION_FRACTION,
-                },
-            },
-            gamma: recognition.gamma.map_or(Gamma::Scale, Gamma::Value),
-            coef0: recognition.coef0,
-            degree: recognition.degree,
-            ..Classifier::new(cell.classifier)
-        }
+    fn seed(&self, name: &str) -> Seed {
+        let seed = Seed::new(self.plan.spec.seed).named(name);
+        seed.numbered(self.number as u64)
     }
 }

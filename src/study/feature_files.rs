@@ -9,22 +9,19 @@
 //! | `objects.csv` | one row an object: number, name |
 //! | `cell.toml` | the settings of the cell and the trial |
 
-use super::measurement::{Reading, measure, touch_seeds};
+use super::measurement::measure_group;
 use super::plan::Plan;
 use super::progress::Progress;
-use super::runner::{describe, signal_steps};
+use super::runner::describe;
 use super::simulation::{TouchedObject, simulate_array};
 use super::spec::RecognitionSpec;
 use super::sweep::{Group, Sweep};
 use super::table::Cell;
 use crate::error::{Error, Result};
 use crate::files::{write_bytes, write_whole};
-use crate::random::Seed;
 use crate::recognition::dataset::{Dataset, dataset, rows};
 use crate::recognition::split::Split;
-use crate::sensing::Projection;
-use crate::signal::Chain;
-use ndarray::{Array, Array1, Array2, ArrayBase, Data, Dimension, s};
+use ndarray::{Array, Array1, Array2, ArrayBase, Data, Dimension};
 use ndarray_npy::{ReadNpyExt, ReadableElement, WritableElement, WriteNpyExt};
 use serde::Serialize;
 use std::fs::File;
@@ -76,29 +73,16 @@ pub fn cell_features(
         &format!("touch {}", describe(patch)),
         sweep.labels.len() as u64,
     );
-    let frames = simulate_array(touched, patch, progress);
-    let seed = Seed::new(plan.spec.seed);
+    let frames = simulate_array(touched, patch, group.frames, progress);
     // As the run does it: nested measurements are the leading ones of the largest m.
     let n_projected = group
         .projected()
         .into_iter()
         .find(|&m| group.ensemble.is_prefix_nested() || m == cell.measurements)
         .unwrap_or(cell.measurements);
-    let projection = Projection::new(
-        group.ensemble,
-        (patch.grid.ny, patch.grid.nx),
-        n_projected,
-        &seed.named("projection").numbered(trial as u64),
-    )?;
-    let reading = Reading {
-        chain: &Chain::new(&signal_steps(plan, group), patch)?,
-        projection: &projection,
-        taxel: patch.taxel,
-        speed: plan.speed,
-    };
-    let seeds = touch_seeds(touched, &seed.named("signal").numbered(trial as u64));
-    let measured = measure(reading, frames.deflection.view(), &seeds).values;
-    let features = measured.slice(s![.., ..cell.measurements]).to_owned();
+    let measured = measure_group(plan, group, (touched, &frames), trial, n_projected)?;
+    let all: Vec<usize> = (0..sweep.labels.len()).collect();
+    let features = measured.features(cell, &all);
     Ok(FeatureSet {
         data: dataset(features, sweep.labels.clone())?,
         split,

@@ -1,52 +1,129 @@
 //! Frames → signal → measurements, for one setting of noise, smoothing, ensemble and trial.
 
-use super::simulation::TouchedObject;
+use super::plan::Plan;
+use super::runner::signal_steps;
+use super::simulation::{Frames, TouchedObject};
+use super::sweep::Group;
+use super::table::Cell;
+use crate::error::Result;
 use crate::random::Seed;
 use crate::sensing::Projection;
 use crate::signal::{Chain, Scratch};
 use crate::world::Taxel;
-use ndarray::{Array2, ArrayView2, ArrayViewMut2, Axis};
+use ndarray::{Array1, Array2, ArrayView2, ArrayViewMut2, Axis, s};
 use rayon::prelude::*;
 use std::time::Instant;
 
-/// Touches measured together: one matrix product. Fixed, so that results do not depend on the number of threads.
+/// Frames measured together: one matrix product. Fixed, so that results do not depend on the number of threads.
 const BLOCK: usize = 128;
 
 /// Measurements of all touches of a group of cells.
 #[derive(Clone, Debug)]
 pub struct Measurements {
-    /// n_touches × m.
+    /// (n_touches · F) × m: the frames of a touch follow each other, the deepest last.
     pub values: Array2<f64>,
+    /// F, frames a touch.
+    pub n_frames: usize,
+    /// Φ1 (m): what a frame of ones measures.
+    pub of_ones: Array1<f64>,
     /// Processor-seconds, summed over threads.
     pub cpu_s: f64,
 }
 
-/// What a reading is made with, the same for all touches.
+/// What a reading is made with, the same for all frames.
 #[derive(Clone, Copy)]
-pub struct Reading<'a> {
+struct Reading<'a> {
     /// Signal steps.
-    pub chain: &'a Chain,
+    chain: &'a Chain,
     /// The ensemble's matrix.
-    pub projection: &'a Projection,
+    projection: &'a Projection,
     /// The taxels that were pressed.
-    pub taxel: Taxel,
+    taxel: Taxel,
     /// Approach speed at the moment of reading, m/s.
-    pub speed: f64,
+    speed: f64,
 }
 
-/// One name a touch, by object and number within it: what its noise is drawn from.
-pub fn touch_seeds(touched: &[TouchedObject], seed: &Seed) -> Vec<Seed> {
+impl Measurements {
+    /// What a cell learns from these touches (by number): n × F·m, the leading m measurements of each frame, made into
+    /// the cell's features.
+    pub fn features(&self, cell: &Cell, touches: &[usize]) -> Array2<f64> {
+        let m = cell.measurements;
+        let mut rows = Array2::zeros((touches.len(), self.n_frames * m));
+        for (mut row, touch) in rows.outer_iter_mut().zip(touches) {
+            for (frame, mut part) in row.exact_chunks_mut(m).into_iter().enumerate() {
+                let place = touch * self.n_frames + frame;
+                part.assign(&self.values.slice(s![place, ..m]));
+            }
+        }
+        let of_ones = self.of_ones.slice(s![..m]);
+        cell.features.apply(rows.view_mut(), of_ones);
+        rows
+    }
+}
+
+/// One name a frame, by object, number of the touch within it, and number of the frame: what its noise is drawn from.
+///
+/// The last frame has the name of the touch, so a touch's deepest reading is the same whatever came before it.
+pub fn frame_seeds(touched: &[TouchedObject], n_frames: usize, seed: &Seed) -> Vec<Seed> {
     touched
         .iter()
         .flat_map(|t| {
             let object = seed.named(&t.object.name);
             (0..t.touches.len() as u64).map(move |touch| object.numbered(touch))
         })
+        .flat_map(|touch| {
+            let before = touch.named("frame");
+            let earlier = (1..n_frames as u64).map(move |frame| before.numbered(frame));
+            earlier.chain([touch])
+        })
         .collect()
 }
 
-/// Reads every frame (n_touches × n_taxels, metres of deflection); `seeds` has one name a touch.
-pub fn measure(reading: Reading, deflection: ArrayView2<f32>, seeds: &[Seed]) -> Measurements {
+/// Reads and projects all frames of a group in one trial, to a number of measurements among
+/// [`Group::projected`](super::Group::projected).
+///
+/// # Errors
+/// What a signal step or the projection refuses.
+pub fn measure_group(
+    plan: &Plan,
+    group: &Group,
+    (touched, frames): (&[TouchedObject], &Frames),
+    trial: usize,
+    n_measurements: usize,
+) -> Result<Measurements> {
+    let patch = &plan.arrays[group.array];
+    let seed = Seed::new(plan.spec.seed);
+    let trial = trial as u64;
+    let projection = Projection::new(
+        group.ensemble,
+        (patch.grid.ny, patch.grid.nx),
+        n_measurements,
+        &seed.named("projection").numbered(trial),
+    )?;
+    let reading = Reading {
+        chain: &Chain::new(&signal_steps(plan, group), patch)?,
+        projection: &projection,
+        taxel: patch.taxel,
+        speed: plan.speed,
+    };
+    let seeds = frame_seeds(
+        touched,
+        frames.n_frames,
+        &seed.named("signal").numbered(trial),
+    );
+    let (values, cpu_s) = measure(reading, frames.deflection.view(), &seeds);
+    let ones = Array2::ones((1, patch.grid.n_taxels()));
+    Ok(Measurements {
+        values,
+        n_frames: frames.n_frames,
+        of_ones: projection.measure(ones.view()).row(0).to_owned(),
+        cpu_s,
+    })
+}
+
+/// Reads every frame (n_frames × n_taxels, metres of deflection); `seeds` has one name a frame. With the measurements
+/// (n_frames × m) come processor-seconds.
+fn measure(reading: Reading, deflection: ArrayView2<f32>, seeds: &[Seed]) -> (Array2<f64>, f64) {
     let n_measurements = reading.projection.n_measurements();
     let mut values = Array2::zeros((deflection.nrows(), n_measurements));
     let cpu_s = values
@@ -62,7 +139,7 @@ pub fn measure(reading: Reading, deflection: ArrayView2<f32>, seeds: &[Seed]) ->
         .collect::<Vec<_>>()
         .iter()
         .sum();
-    Measurements { values, cpu_s }
+    (values, cpu_s)
 }
 
 fn measure_block(

@@ -25,6 +25,7 @@ mod summary;
 mod sweep;
 pub mod table;
 mod touch_files;
+mod training;
 
 pub use axis::Axis;
 pub use estimate::Estimate;
@@ -37,3 +38,4 @@ pub use simulation::{Frames, TouchedObject, draw_touches, simulate_array};
 pub use spec::*;
 pub use sweep::{Group, Sweep};
 pub use touch_files::write_touches;
+pub use training::ChoicePlan;

@@ -4,7 +4,10 @@
 
 use super::check::{Check, not_negative};
 use super::spec::{GroupSpec, StepSpec, StudySpec};
+use super::training::ChoicePlan;
 use crate::error::Result;
+use crate::recognition::ClassifierKind;
+use crate::recognition::features::Features;
 use crate::sensing::Ensemble;
 use crate::signal::NoiseUnit;
 use crate::world::{Patch, Placement};
@@ -40,10 +43,20 @@ pub struct Plan {
     pub ensembles: Vec<Ensemble>,
     /// The axis of measurements.
     pub amounts: Vec<Amount>,
-    /// The C axis; `None` is a C chosen on a validation split.
+    /// The axis of frames a touch.
+    pub frames: Vec<usize>,
+    /// The axis of features.
+    pub features: Vec<Features>,
+    /// The axis of classifiers.
+    pub classifiers: Vec<ClassifierKind>,
+    /// The C axis, for classifiers that have one; `None` is a C chosen by cross-validation.
     pub penalties: Vec<Option<f64>>,
     /// The axis of training touches an object; `None` is all of them.
     pub train_touches: Vec<Option<usize>>,
+    /// The axis of test touches that are decided on together.
+    pub fused_touches: Vec<usize>,
+    /// How C and γ are chosen where they are.
+    pub choice: ChoicePlan,
     /// How touches are split.
     pub split: SplitPlan,
 }
@@ -106,13 +119,18 @@ impl Plan {
         check.steps(&spec)?;
         let ensembles = check.list("sensing.ensemble", spec.sensing.ensemble.values())?;
         let amounts = check.amounts(&spec.sensing, &arrays)?;
-        let penalties = check.penalties(&spec)?;
-        let train_touches = check.train_touches(&spec)?;
-        let split = check.split(&spec)?;
-        check.list(
+        let frames = check.counts("touches.frames", &spec.touches.frames)?;
+        let features = check.list("recognition.features", spec.recognition.features.values())?;
+        let classifiers = check.list(
             "recognition.classifier",
             spec.recognition.classifier.values(),
         )?;
+        let penalties = check.penalties(&spec)?;
+        let choice = check.choice(&spec)?;
+        let fused_touches =
+            check.counts("recognition.fused_touches", &spec.recognition.fused_touches)?;
+        let train_touches = check.train_touches(&spec)?;
+        let split = check.split(&spec)?;
         let speed = check.value(
             "touches.speed_mm_per_s",
             spec.touches.speed_mm_per_s,
@@ -129,8 +147,13 @@ impl Plan {
             smoothing: smoothing.iter().map(|s| s * MM).collect(),
             ensembles,
             amounts,
+            frames,
+            features,
+            classifiers,
             penalties,
             train_touches,
+            fused_touches,
+            choice,
             split,
             spec,
         })

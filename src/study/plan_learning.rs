@@ -4,7 +4,9 @@ use super::axis::Axis;
 use super::check::{Check, not_negative, positive};
 use super::plan::{Amount, SplitKind, SplitPlan};
 use super::spec::{SensingSpec, StepSpec, StudySpec};
+use super::training::{ChoicePlan, DEFAULT_FOLDS};
 use crate::error::Result;
+use crate::recognition::ClassifierKind;
 use crate::signal::NoiseUnit;
 use crate::world::Patch;
 
@@ -131,6 +133,18 @@ impl Check<'_> {
 
     pub fn penalties(&self, spec: &StudySpec) -> Result<Vec<Option<f64>>> {
         let allowed = "a positive number";
+        for (key, is_set) in [
+            ("recognition.c", spec.recognition.c.is_some()),
+            ("recognition.choose_c", spec.recognition.choose_c.is_some()),
+        ] {
+            self.is_of_use(
+                key,
+                is_set,
+                spec,
+                ClassifierKind::has_c,
+                "a C (an SVM or logistic regression)",
+            )?;
+        }
         match (&spec.recognition.c, &spec.recognition.choose_c) {
             (Some(_), Some(_)) => {
                 Err(self.error("recognition", "both c and choose_c", "one of them"))
@@ -152,14 +166,87 @@ impl Check<'_> {
         }
     }
 
+    /// How C and γ are chosen, for fits that leave one of them open.
+    pub fn choice(&self, spec: &StudySpec) -> Result<ChoicePlan> {
+        let recognition = &spec.recognition;
+        if let (Some(_), Some(_)) = (recognition.gamma, &recognition.choose_gamma) {
+            return Err(self.error("recognition", "both gamma and choose_gamma", "one of them"));
+        }
+        for (key, is_set) in [
+            ("recognition.gamma", recognition.gamma.is_some()),
+            (
+                "recognition.choose_gamma",
+                recognition.choose_gamma.is_some(),
+            ),
+        ] {
+            self.is_of_use(
+                key,
+                is_set,
+                spec,
+                ClassifierKind::has_gamma,
+                "a γ (an RBF or polynomial SVM)",
+            )?;
+        }
+        let is_open = recognition.choose_c.is_some() || recognition.choose_gamma.is_some();
+        for (key, count) in [
+            ("recognition.choose_folds", recognition.choose_folds),
+            ("recognition.choose_touches", recognition.choose_touches),
+        ] {
+            let Some(count) = count else { continue };
+            self.positive_count(key, count)?;
+            if !is_open {
+                let allowed = "choose_c or choose_gamma beside it, which it belongs to";
+                return Err(self.error(key, count, allowed));
+            }
+        }
+        let folds = recognition.choose_folds.unwrap_or(DEFAULT_FOLDS);
+        if folds < 2 {
+            return Err(self.error("recognition.choose_folds", folds, "at least 2"));
+        }
+        let c = recognition.choose_c.clone().unwrap_or_default();
+        let gamma_multiples = match &recognition.choose_gamma {
+            None => Vec::new(),
+            Some(multiples) => self.axis(
+                "recognition.choose_gamma",
+                &Axis::Many(multiples.clone()),
+                positive,
+                "a positive number, times 'scale'",
+            )?,
+        };
+        Ok(ChoicePlan {
+            c,
+            gamma_multiples,
+            folds,
+            touches: recognition.choose_touches,
+        })
+    }
+
+    /// Refuses a key that no swept classifier has a use for: it would be silently ignored.
+    fn is_of_use(
+        &self,
+        key: &str,
+        is_set: bool,
+        spec: &StudySpec,
+        has_it: fn(ClassifierKind) -> bool,
+        what: &str,
+    ) -> Result<()> {
+        let mut kinds = spec.recognition.classifier.values().into_iter();
+        if !is_set || kinds.any(has_it) {
+            return Ok(());
+        }
+        let given = "given, but no classifier of the study has a use for it";
+        Err(self.error(
+            key,
+            given,
+            format!("a classifier with {what}, or no such key"),
+        ))
+    }
+
     pub fn train_touches(&self, spec: &StudySpec) -> Result<Vec<Option<usize>>> {
         let Some(axis) = &spec.recognition.train_touches else {
             return Ok(vec![None]);
         };
-        let counts = self.list("recognition.train_touches", axis.values())?;
-        for &count in &counts {
-            self.positive_count("recognition.train_touches", count)?;
-        }
+        let counts = self.counts("recognition.train_touches", axis)?;
         Ok(counts.into_iter().map(Some).collect())
     }
 

@@ -1,18 +1,16 @@
 //! Runs a plan: simulate each array once, measure each group once a trial, evaluate every cell.
 
 use super::evaluation::{Evaluation, Trial};
-use super::measurement::{Measurements, Reading, measure, touch_seeds};
+use super::measurement::measure_group;
 use super::plan::{Plan, millimetres};
 use super::progress::Progress;
 use super::simulation::{Frames, TouchedObject, simulate_array};
 use super::spec::StepSpec;
-use super::summary::{compare_with_best, summarise};
+use super::summary::{compare_with_best, pareto, summarise};
 use super::sweep::{Group, Sweep};
 use super::table::{Cell, Confusion, StageTime, Tables};
 use crate::error::Result;
-use crate::random::Seed;
-use crate::sensing::Projection;
-use crate::signal::{Chain, Noise, SignalStep};
+use crate::signal::{Noise, SignalStep};
 use crate::world::Patch;
 use rayon::prelude::*;
 use std::collections::BTreeMap;
@@ -60,24 +58,31 @@ pub fn run(
     let mut scored = Vec::new();
     for (array, patch) in plan.arrays.iter().enumerate() {
         let n_touches = sweep.labels.len();
-        progress.stage(&format!("touch {}", describe(patch)), n_touches as u64);
-        let frames = simulate_array(touched, patch, progress);
-        let simulate = stage_time("simulate", patch, n_touches, frames.cpu_s);
-        arrays.push(ArrayOutcome {
-            patch: *patch,
-            n_touches,
-            n_missed: frames.n_missed,
-            n_saturated: frames.n_saturated,
-        });
-        let study = Study {
-            plan,
-            sweep,
-            touched,
-            progress,
-        };
-        let (array_scored, measure) = study.recognise(array, &frames)?;
-        scored.extend(array_scored);
-        tables.stages.extend([simulate, measure]);
+        for (place, &n_frames) in plan.frames.iter().enumerate() {
+            let stage = in_frames(&format!("touch {}", describe(patch)), n_frames);
+            progress.stage(&stage, n_touches as u64);
+            let frames = simulate_array(touched, patch, n_frames, progress);
+            let stage = in_frames("simulate", n_frames);
+            let simulate = stage_time(&stage, patch, n_touches, frames.cpu_s);
+            // The deepest frame is the same however many come before it.
+            if place == 0 {
+                arrays.push(ArrayOutcome {
+                    patch: *patch,
+                    n_touches,
+                    n_missed: frames.n_missed,
+                    n_saturated: frames.n_saturated,
+                });
+            }
+            let study = Study {
+                plan,
+                sweep,
+                touched,
+                progress,
+            };
+            let (array_scored, measure) = study.recognise(array, &frames)?;
+            scored.extend(array_scored);
+            tables.stages.extend([simulate, measure]);
+        }
     }
     fill(&mut tables, scored, touched)?;
     Ok(Outcome { tables, arrays })
@@ -93,7 +98,7 @@ struct Study<'a> {
 }
 
 impl Study<'_> {
-    /// All groups and trials of an array, and what measuring them cost.
+    /// All groups and trials of an array read in so many frames a touch, and what measuring them cost.
     fn recognise(&self, array: usize, frames: &Frames) -> Result<(Vec<Scored>, StageTime)> {
         let patch = &self.plan.arrays[array];
         let n_trials = self.plan.spec.trials;
@@ -101,16 +106,15 @@ impl Study<'_> {
             .sweep
             .groups
             .iter()
-            .filter(|group| group.array == array)
+            .filter(|group| group.array == array && group.frames == frames.n_frames)
             .collect();
         let n_fits: usize = groups.iter().map(|g| g.cells.len() * n_trials).sum();
-        let stage = format!("recognise {}", describe(patch));
+        let stage = in_frames(&format!("recognise {}", describe(patch)), frames.n_frames);
         self.progress.stage(&stage, n_fits as u64);
         let jobs: Vec<Job> = (0..n_trials)
             .flat_map(|trial| {
                 groups.iter().map(move |group| Job {
                     study: *self,
-                    patch,
                     frames,
                     group,
                     trial,
@@ -121,14 +125,14 @@ impl Study<'_> {
         let n_measured = results.len() * self.sweep.labels.len();
         let cpu_s = results.iter().map(|(_, seconds)| seconds).sum();
         let scored = results.into_iter().flat_map(|(scored, _)| scored).collect();
-        Ok((scored, stage_time("measure", patch, n_measured, cpu_s)))
+        let stage = in_frames("measure", frames.n_frames);
+        Ok((scored, stage_time(&stage, patch, n_measured, cpu_s)))
     }
 }
 
 /// One group of cells in one trial.
 struct Job<'a> {
     study: Study<'a>,
-    patch: &'a Patch,
     frames: &'a Frames,
     group: &'a Group,
     trial: usize,
@@ -137,60 +141,42 @@ struct Job<'a> {
 impl Job<'_> {
     /// Measures, then evaluates the cells; with it the processor-seconds of measuring.
     fn run(&self) -> Result<(Vec<Scored>, f64)> {
-        let chain = Chain::new(&signal_steps(self.study.plan, self.group), self.patch)?;
+        let Study { plan, sweep, .. } = self.study;
         let mut scored = Vec::new();
         let mut measure_s = 0.0;
         for n_measurements in self.group.projected() {
-            let measured = self.measure(&chain, n_measurements)?;
+            let touches = (self.study.touched, self.frames);
+            let measured = measure_group(plan, self.group, touches, self.trial, n_measurements)?;
             measure_s += measured.cpu_s;
             // A group of prefixes is projected once and serves all cells; else each m serves its own.
             let nested = self.group.ensemble.is_prefix_nested();
-            let cells: Vec<&Cell> = self
+            let families: Vec<&[Cell]> = self
                 .group
-                .cells
-                .iter()
-                .filter(|cell| nested || cell.measurements == n_measurements)
+                .families()
+                .filter(|family| nested || family[0].measurements == n_measurements)
                 .collect();
             let trial = Trial {
-                recognition: &self.study.plan.spec.recognition,
-                sweep: self.study.sweep,
-                measurements: measured.values.view(),
+                plan,
+                sweep,
+                measurements: &measured,
                 number: self.trial,
-                seed: Seed::new(self.study.plan.spec.seed),
             };
-            let results = cells
+            let results = families
                 .into_par_iter()
-                .map(|cell| {
-                    let evaluation = trial.evaluate(cell)?;
-                    self.study.progress.advance(1);
-                    Ok(Scored {
-                        cell: cell.clone(),
-                        evaluation,
-                    })
-                })
+                .map(|family| self.evaluate(&trial, family))
                 .collect::<Result<Vec<_>>>()?;
-            scored.extend(results);
+            scored.extend(results.into_iter().flatten());
         }
         Ok((scored, measure_s))
     }
 
-    fn measure(&self, chain: &Chain, n_measurements: usize) -> Result<Measurements> {
-        let seed = Seed::new(self.study.plan.spec.seed);
-        let trial = self.trial as u64;
-        let projection = Projection::new(
-            self.group.ensemble,
-            (self.patch.grid.ny, self.patch.grid.nx),
-            n_measurements,
-            &seed.named("projection").numbered(trial),
-        )?;
-        let reading = Reading {
-            chain,
-            projection: &projection,
-            taxel: self.patch.taxel,
-            speed: self.study.plan.speed,
-        };
-        let seeds = touch_seeds(self.study.touched, &seed.named("signal").numbered(trial));
-        Ok(measure(reading, self.frames.deflection.view(), &seeds))
+    fn evaluate(&self, trial: &Trial, family: &[Cell]) -> Result<Vec<Scored>> {
+        let evaluations = trial.evaluate(family)?;
+        self.study.progress.advance(family.len() as u64);
+        let cells = family.iter().cloned().zip(evaluations);
+        Ok(cells
+            .map(|(cell, evaluation)| Scored { cell, evaluation })
+            .collect())
     }
 }
 
@@ -215,6 +201,14 @@ pub fn signal_steps(plan: &Plan, group: &Group) -> Vec<SignalStep> {
 pub fn describe(patch: &Patch) -> String {
     let grid = &patch.grid;
     format!("{}×{} at {} mm", grid.nx, grid.ny, millimetres(grid.pitch))
+}
+
+/// A stage's name, with the number of frames a touch where it is not one.
+fn in_frames(stage: &str, n_frames: usize) -> String {
+    match n_frames {
+        1 => stage.to_owned(),
+        n => format!("{stage}, {n} frames a touch"),
+    }
 }
 
 fn stage_time(stage: &str, patch: &Patch, n_touches: usize, cpu_s: f64) -> StageTime {
@@ -254,5 +248,6 @@ fn fill(tables: &mut Tables, mut scored: Vec<Scored>, touched: &[TouchedObject])
         .collect();
     tables.summary = summarise(&tables.accuracy)?;
     tables.comparison = compare_with_best(&tables.accuracy)?;
+    tables.pareto = pareto(&tables.accuracy, &tables.timing);
     Ok(())
 }

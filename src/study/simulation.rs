@@ -6,7 +6,7 @@ use crate::error::Result;
 use crate::objects::Object;
 use crate::random::Seed;
 use crate::world::{Patch, Placement, RestPose, Scene, Touch, touches};
-use ndarray::{Array2, ArrayViewMut1, Axis};
+use ndarray::{Array2, ArrayViewMut2, Axis, s};
 use rayon::prelude::*;
 use std::time::Instant;
 
@@ -27,11 +27,13 @@ pub struct TouchedObject {
 /// Frames of an array and what happened while they were made.
 #[derive(Clone, Debug)]
 pub struct Frames {
-    /// n_touches × n_taxels, metres of deflection; object by object, touch by touch.
+    /// (n_touches · F) × n_taxels, metres of deflection; object by object, touch by touch, the deepest frame of a touch last.
     pub deflection: Array2<f32>,
+    /// F, frames a touch.
+    pub n_frames: usize,
     /// Touches that met nothing: their frames are zero.
     pub n_missed: usize,
-    /// Touches with at least one taxel at its stroke.
+    /// Touches with at least one taxel at its stroke when they are deepest.
     pub n_saturated: usize,
     /// Processor-seconds, summed over threads.
     pub cpu_s: f64,
@@ -63,9 +65,17 @@ pub fn touch_stream(seed: &Seed, object: &Object) -> Seed {
 }
 
 /// Presses one array on every object, touch by touch; the same bytes at any number of threads.
-pub fn simulate_array(touched: &[TouchedObject], patch: &Patch, progress: &dyn Progress) -> Frames {
-    let n_touches = touched.iter().map(|t| t.touches.len()).sum();
-    let mut deflection = Array2::zeros((n_touches, patch.grid.n_taxels()));
+///
+/// A touch to a depth d is read at `n_frames` ≥ 1 depths, d/F, 2d/F … d: each is a direct press of its own, since a taxel at
+/// rest does not remember how it came there.
+pub fn simulate_array(
+    touched: &[TouchedObject],
+    patch: &Patch,
+    n_frames: usize,
+    progress: &dyn Progress,
+) -> Frames {
+    let n_touches: usize = touched.iter().map(|t| t.touches.len()).sum();
+    let mut deflection = Array2::zeros((n_touches * n_frames, patch.grid.n_taxels()));
     let (mut n_missed, mut n_saturated, mut cpu_s) = (0, 0, 0.0);
     let mut first = 0;
     for TouchedObject {
@@ -78,17 +88,19 @@ pub fn simulate_array(touched: &[TouchedObject], patch: &Patch, progress: &dyn P
             patch: *patch,
             objects: vec![object.spheres.clone()],
         };
-        let mut frames = deflection.slice_mut(ndarray::s![first..first + touches.len(), ..]);
+        let n_rows = touches.len() * n_frames;
+        let mut frames = deflection.slice_mut(s![first..first + n_rows, ..]);
         let blocks: Vec<_> = frames
-            .axis_chunks_iter_mut(Axis(0), BLOCK)
+            .axis_chunks_iter_mut(Axis(0), BLOCK * n_frames)
             .into_par_iter()
             .zip(touches.par_chunks(BLOCK))
             .map_init(Workspace::new, |workspace, (mut rows, touches)| {
                 let start = Instant::now();
                 let mut counts = (0, 0);
-                for (row, touch) in rows.outer_iter_mut().zip(touches) {
+                let rows = rows.axis_chunks_iter_mut(Axis(0), n_frames);
+                for (rows, touch) in rows.zip(touches) {
                     let (missed, saturated) =
-                        press_into(&scene, &rests[touch.rest], touch, workspace, row);
+                        press_into(&scene, &rests[touch.rest], touch, workspace, rows);
                     counts.0 += usize::from(missed);
                     counts.1 += usize::from(saturated);
                 }
@@ -101,28 +113,34 @@ pub fn simulate_array(touched: &[TouchedObject], patch: &Patch, progress: &dyn P
             n_saturated += saturated;
             cpu_s += seconds;
         }
-        first += touches.len();
+        first += n_rows;
     }
     Frames {
         deflection,
+        n_frames,
         n_missed,
         n_saturated,
         cpu_s,
     }
 }
 
-/// One touch into one row; whether it met nothing, and whether it saturated a taxel.
+/// One touch into its frames; whether it met nothing, and whether it saturated a taxel when it was deepest.
 fn press_into(
     scene: &Scene,
     rest: &RestPose,
     touch: &Touch,
     workspace: &mut Workspace,
-    row: ArrayViewMut1<f32>,
+    mut rows: ArrayViewMut2<f32>,
 ) -> (bool, bool) {
     let pose = touch.patch_from_object(rest);
-    let contact = press_to_depth(scene, &[pose], touch.depth, workspace);
-    for (to, &from) in row.into_iter().zip(workspace.deflections()) {
-        *to = from as f32;
+    let n_frames = rows.nrows();
+    let mut contact = None;
+    for (frame, row) in rows.outer_iter_mut().enumerate() {
+        let part = (frame + 1) as f64 / n_frames as f64;
+        contact = press_to_depth(scene, &[pose], touch.depth * part, workspace);
+        for (to, &from) in row.into_iter().zip(workspace.deflections()) {
+            *to = from as f32;
+        }
     }
     (
         contact.is_none(),

@@ -5,8 +5,9 @@
 use super::axis::Axis;
 use crate::error::{Error, Result};
 use crate::recognition::ClassifierKind;
+use crate::recognition::features::Features;
 use crate::recognition::scaling::Scaling;
-use crate::recognition::svm::Multiclass;
+use crate::recognition::svm::{Multiclass, Solver};
 use crate::sensing::Ensemble;
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
@@ -139,6 +140,10 @@ pub struct TouchesSpec {
     pub tilt_y_deg: SpreadSpec,
     /// How far the patch goes past first contact, mm.
     pub depth_mm: SpreadSpec,
+    /// Axis: F, frames a touch: it is read at the depths d/F, 2d/F … d, each frame with noise of its own, and the measurements
+    /// of all of them are its features.
+    #[serde(default = "one_value")]
+    pub frames: Axis<usize>,
     /// Approach speed at the moment of reading, mm/s: what the damper feels.
     #[serde(default)]
     pub speed_mm_per_s: f64,
@@ -206,23 +211,39 @@ pub struct SensingSpec {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct RecognitionSpec {
+    /// Axis: what is made of a touch's measurements before they are scaled. (Features of force: `"force"` among
+    /// `signal.steps`.)
+    #[serde(default = "default_features")]
+    pub features: Axis<Features>,
     /// Axis: which classifier.
     pub classifier: Axis<ClassifierKind>,
     /// How two-class SVMs make a many-class one.
     #[serde(default)]
     pub multiclass: Multiclass,
+    /// What trains an SVM.
+    #[serde(default)]
+    pub solver: Solver,
     /// How features are scaled, fitted on training rows.
     #[serde(default)]
     pub scaling: Scaling,
-    /// Axis: soft-margin penalty; 1 when left out.
+    /// Axis: soft-margin penalty of the classifiers that have one; 1 when left out.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub c: Option<Axis<f64>>,
-    /// Instead of `c`: candidates of which each fit chooses one on a validation split of its training rows.
+    /// Instead of `c`: candidates of which each fit chooses one by cross-validation within its training rows.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub choose_c: Option<Vec<f64>>,
-    /// γ of the RBF and polynomial kernels; 1 / (m · variance) when left out.
+    /// γ of the RBF and polynomial kernels; 1 / (F · m · variance), 'scale', when left out.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub gamma: Option<f64>,
+    /// Instead of `gamma`: candidates as multiples of 'scale', of which each fit chooses one together with C.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub choose_gamma: Option<Vec<f64>>,
+    /// Folds of the cross-validation that chooses C and γ; 5 when left out. What the split keeps together, they do.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub choose_folds: Option<usize>,
+    /// Training touches an object that take part in that choice, at most; all when left out.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub choose_touches: Option<usize>,
     /// d of the polynomial kernel.
     #[serde(default = "default_degree")]
     pub degree: u32,
@@ -232,6 +253,10 @@ pub struct RecognitionSpec {
     /// Axis: training touches an object, at most; all of the training split when left out.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub train_touches: Option<Axis<usize>>,
+    /// Axis: k, test touches of an object that are decided on together by the sum of their scores. An object's test touches
+    /// are grouped at random; fewer than k that remain are left out.
+    #[serde(default = "one_value")]
+    pub fused_touches: Axis<usize>,
     /// Fraction of the touches held out for testing (without `folds`; 0.25 when both are left out).
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub test_fraction: Option<f64>,
@@ -250,6 +275,9 @@ pub struct ReportSpec {
     /// Objects whose touches are drawn side by side; four spread over the list when left out.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub samples: Option<Vec<String>>,
+    /// Whether to chart accuracy against time with its Pareto front; when left out, if at least three classifiers are swept.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub pareto: Option<bool>,
 }
 
 /// What groups touches for a split that keeps groups together.
@@ -300,6 +328,14 @@ fn default_seed() -> u64 {
 
 fn one() -> usize {
     1
+}
+
+fn one_value() -> Axis<usize> {
+    Axis::One(1)
+}
+
+fn default_features() -> Axis<Features> {
+    Axis::One(Features::Raw)
 }
 
 fn zero() -> SpreadSpec {

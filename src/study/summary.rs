@@ -1,7 +1,7 @@
 //! Trials → cells: means, intervals, and every cell against the best one.
 
 use super::evaluation::CONFIDENCE;
-use super::table::{Cell, CellScore, Comparison, TrialScore};
+use super::table::{Cell, CellScore, Comparison, Pareto, TrialScore, TrialTime};
 use crate::error::Result;
 use crate::recognition::comparison::{TrialSize, compare};
 use crate::recognition::interval::Interval;
@@ -64,9 +64,10 @@ pub fn compare_with_best(rows: &[Row]) -> Result<Vec<Comparison>> {
 fn against(trials: &[Row], best: &[Row]) -> Result<Comparison> {
     let scores = |rows: &[Row]| -> Vec<f64> { rows.iter().map(|(_, t)| t.accuracy).collect() };
     let (ours, theirs) = (scores(trials), scores(best));
+    // How much the trials overlap is a matter of touches, however many of them one decision takes.
     let size = TrialSize {
         n_train: trials[0].1.n_train,
-        n_test: trials[0].1.n_test,
+        n_test: trials[0].1.n_test * trials[0].0.fused_touches,
     };
     let test = compare(&ours, &theirs, size, CONFIDENCE)?;
     Ok(Comparison {
@@ -78,4 +79,88 @@ fn against(trials: &[Row], best: &[Row]) -> Result<Comparison> {
         difference_high: test.map(|t| t.interval.high),
         p_value: test.map(|t| t.p_value),
     })
+}
+
+/// What the accuracy of every cell costs, and which cells are worth their cost; both tables have the same rows.
+pub fn pareto(rows: &[Row], times: &[(Cell, TrialTime)]) -> Vec<(Cell, Pareto)> {
+    let same_cell = |a: &(Cell, TrialTime), b: &(Cell, TrialTime)| a.0.cell == b.0.cell;
+    let mut table: Vec<(Cell, Pareto)> = rows
+        .chunk_by(|a, b| a.0.cell == b.0.cell)
+        .zip(times.chunk_by(same_cell))
+        .map(|(trials, times)| {
+            let n_trials = times.len() as f64;
+            let mean_time = |time: fn(&TrialTime) -> f64| {
+                times.iter().map(|(_, t)| time(t)).sum::<f64>() / n_trials
+            };
+            let fit_s = mean_time(|t| t.fit_s);
+            let cell = &trials[0].0;
+            let row = Pareto {
+                accuracy: mean(trials, |t| t.accuracy),
+                fit_s,
+                fit_us_per_touch: 1e6 * fit_s / mean(trials, |t| t.n_train as f64),
+                predict_us_per_decision: cell.fused_touches as f64
+                    * mean_time(|t| t.predict_us_per_touch),
+                on_training_front: false,
+                on_prediction_front: false,
+            };
+            (cell.clone(), row)
+        })
+        .collect();
+    let on_training = on_front(&table, |row| row.fit_s);
+    let on_prediction = on_front(&table, |row| row.predict_us_per_decision);
+    for (((_, row), training), prediction) in table.iter_mut().zip(on_training).zip(on_prediction) {
+        row.on_training_front = training;
+        row.on_prediction_front = prediction;
+    }
+    table
+}
+
+/// For each cell, whether no cell with the same noise beats it.
+fn on_front(table: &[(Cell, Pareto)], cost: fn(&Pareto) -> f64) -> Vec<bool> {
+    let beats = |other: &Pareto, row: &Pareto| {
+        let no_worse = other.accuracy >= row.accuracy && cost(other) <= cost(row);
+        no_worse && (other.accuracy > row.accuracy || cost(other) < cost(row))
+    };
+    let is_on = |(cell, row): &(Cell, Pareto)| {
+        let mut rivals = table.iter().filter(|(c, _)| c.noise_std == cell.noise_std);
+        !rivals.any(|(_, other)| beats(other, row))
+    };
+    table.iter().map(is_on).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn cell(number: usize, noise_std: f64, (accuracy, fit_s): (f64, f64)) -> (Cell, Pareto) {
+        let cell = Cell {
+            cell: number,
+            noise_std,
+            ..crate::study::table::tests::cell()
+        };
+        let row = Pareto {
+            accuracy,
+            fit_s,
+            fit_us_per_touch: 0.0,
+            predict_us_per_decision: 0.0,
+            on_training_front: false,
+            on_prediction_front: false,
+        };
+        (cell, row)
+    }
+
+    #[test]
+    fn a_cell_is_on_the_front_unless_one_of_the_same_noise_is_no_worse_and_better_in_something() {
+        let table = [
+            cell(0, 0.0, (0.9, 1.0)),
+            cell(1, 0.0, (0.9, 2.0)), // as accurate, slower than 0
+            cell(2, 0.0, (0.95, 3.0)),
+            cell(3, 0.0, (0.8, 0.5)),
+            cell(4, 0.0, (0.7, 0.5)),  // as fast as 3, less accurate
+            cell(5, 0.0, (0.95, 3.0)), // the same as 2
+            cell(6, 0.1, (0.1, 9.0)),  // alone with its noise
+        ];
+        let on = on_front(&table, |row| row.fit_s);
+        assert_eq!(on, [true, false, true, true, false, true, true]);
+    }
 }

@@ -1,9 +1,11 @@
 //! The cells of a study, grouped by what they can share.
 //!
 //! ```text
-//! array ── touches simulated once
+//! array × frames a touch ── touches simulated once
 //!   └─ noise × smoothing × ensemble (a group), and trial ── frames read and projected once, at the largest m
-//!        └─ m × classifier × C × training touches (a cell) ── fit, predict, score
+//!        └─ m × features × classifier × training touches (a family) ── rows made once
+//!             └─ C ── fit, score test touches
+//!                  └─ fused touches (a cell) ── decide
 //! ```
 
 use super::plan::{Plan, SplitKind, millimetres};
@@ -12,7 +14,6 @@ use super::spec::GroupSpec;
 use super::table::Cell;
 use crate::error::{Error, Result};
 use crate::random::Seed;
-use crate::recognition::ClassifierKind;
 use crate::recognition::split::{
     Split, group_hold_out, group_k_fold, stratified_hold_out, stratified_k_fold,
 };
@@ -39,17 +40,29 @@ pub struct Sweep {
 pub struct Group {
     /// Index into the plan's arrays.
     pub array: usize,
+    /// Frames a touch.
+    pub frames: usize,
     /// Noise standard deviation, in the plan's unit.
     pub noise: f64,
     /// Standard deviation of the smoothing, metres.
     pub smoothing: f64,
     /// How measurements are made.
     pub ensemble: Ensemble,
-    /// Its cells.
+    /// Its cells, family by family.
     pub cells: Vec<Cell>,
 }
 
 impl Group {
+    /// Its cells by family. The cells of a family learn from the same rows of the same features: they differ only in C
+    /// and in how many touches are fused, those with the same C following each other.
+    pub fn families(&self) -> impl Iterator<Item = &[Cell]> {
+        let family = |cell: &Cell| {
+            let (m, kind) = (cell.measurements, cell.classifier);
+            (m, cell.features, kind, cell.train_touches)
+        };
+        self.cells.chunk_by(move |a, b| family(a) == family(b))
+    }
+
     /// The measurements that serve every cell: of the largest m if smaller ones are its prefixes, else one set per m.
     pub fn projected(&self) -> Vec<usize> {
         let mut counts: Vec<usize> = self.cells.iter().map(|c| c.measurements).collect();
@@ -86,6 +99,8 @@ impl Sweep {
             .map(|trial| split(plan, &labels, keys.as_ref(), trial))
             .collect::<Result<Vec<_>>>()?;
         let train_touches = train_touches(plan, &splits, &labels)?;
+        check_fused_touches(plan, &splits, &labels)?;
+        check_folds(plan, &train_touches)?;
         let mut sweep = Self {
             groups: Vec::new(),
             splits,
@@ -93,22 +108,29 @@ impl Sweep {
             group_keys: keys,
         };
         for array in 0..plan.arrays.len() {
-            for &noise in &plan.noise {
-                for &smoothing in &plan.smoothing {
-                    for &ensemble in &plan.ensembles {
-                        let group = Group {
-                            array,
-                            noise,
-                            smoothing,
-                            ensemble,
-                            cells: Vec::new(),
-                        };
-                        sweep.add_group(plan, group, &train_touches);
-                    }
-                }
+            for &frames in &plan.frames {
+                sweep.add_groups(plan, (array, frames), &train_touches);
             }
         }
         Ok(sweep)
+    }
+
+    fn add_groups(&mut self, plan: &Plan, (array, frames): (usize, usize), train: &[usize]) {
+        for &noise in &plan.noise {
+            for &smoothing in &plan.smoothing {
+                for &ensemble in &plan.ensembles {
+                    let group = Group {
+                        array,
+                        frames,
+                        noise,
+                        smoothing,
+                        ensemble,
+                        cells: Vec::new(),
+                    };
+                    self.add_group(plan, group, train);
+                }
+            }
+        }
     }
 
     /// All cells, in their order.
@@ -123,17 +145,24 @@ impl Sweep {
 
     fn add_group(&mut self, plan: &Plan, mut group: Group, train_touches: &[usize]) {
         let patch = &plan.arrays[group.array];
-        let mut cell = self.n_cells();
+        let first = self.n_cells();
         for measurements in measurement_counts(plan, patch, group.ensemble) {
-            for classifier in plan.spec.recognition.classifier.values() {
-                for &c in &plan.penalties {
+            for &features in &plan.features {
+                for &classifier in &plan.classifiers {
                     for &train_touches in train_touches {
-                        let axes = (measurements, classifier, c, train_touches);
-                        group.cells.push(describe(plan, &group, cell, axes));
-                        cell += 1;
+                        let family = Cell {
+                            features,
+                            classifier,
+                            train_touches,
+                            ..group_cell(plan, &group, measurements)
+                        };
+                        group.cells.extend(family_cells(plan, &family));
                     }
                 }
             }
+        }
+        for (number, cell) in group.cells.iter_mut().enumerate() {
+            cell.cell = first + number;
         }
         self.groups.push(group);
     }
@@ -155,15 +184,27 @@ fn measurement_counts(plan: &Plan, patch: &Patch, ensemble: Ensemble) -> Vec<usi
     counts
 }
 
-fn describe(
-    plan: &Plan,
-    group: &Group,
-    cell: usize,
-    (measurements, classifier, c, train_touches): (usize, ClassifierKind, Option<f64>, usize),
-) -> Cell {
+/// The cells of a family: every C that its classifier has a use for, with every number of fused touches.
+fn family_cells(plan: &Plan, family: &Cell) -> Vec<Cell> {
+    let penalties = match family.classifier.has_c() {
+        true => &plan.penalties[..],
+        false => &[None],
+    };
+    let of_penalty = |&c: &Option<f64>| {
+        plan.fused_touches.iter().map(move |&fused_touches| Cell {
+            c,
+            fused_touches,
+            ..family.clone()
+        })
+    };
+    penalties.iter().flat_map(of_penalty).collect()
+}
+
+/// A cell of a group, with m and with the first value of each axis that the group leaves open.
+fn group_cell(plan: &Plan, group: &Group, measurements: usize) -> Cell {
     let grid = &plan.arrays[group.array].grid;
     Cell {
-        cell,
+        cell: 0,
         pitch_mm: millimetres(grid.pitch),
         nx: grid.nx,
         ny: grid.ny,
@@ -174,9 +215,12 @@ fn describe(
         ensemble: group.ensemble,
         measurements,
         ratio: grid.n_taxels() as f64 / measurements as f64,
-        classifier,
-        c,
-        train_touches,
+        frames: group.frames,
+        features: plan.features[0],
+        classifier: plan.classifiers[0],
+        c: None,
+        train_touches: 0,
+        fused_touches: plan.fused_touches[0],
     }
 }
 
@@ -211,7 +255,7 @@ fn train_touches(plan: &Plan, splits: &[Split], labels: &Array1<usize>) -> Resul
     let n_objects = labels.iter().max().map_or(0, |last| last + 1);
     let fewest = splits
         .iter()
-        .map(|split| fewest_per_object(split, labels, n_objects))
+        .map(|split| fewest_per_object(&split.train, labels, n_objects))
         .min()
         .unwrap_or(0);
     plan.train_touches
@@ -228,9 +272,43 @@ fn train_touches(plan: &Plan, splits: &[Split], labels: &Array1<usize>) -> Resul
         .collect()
 }
 
-fn fewest_per_object(split: &Split, labels: &Array1<usize>, n_objects: usize) -> usize {
+/// Every object has test touches for at least one group in every trial.
+fn check_fused_touches(plan: &Plan, splits: &[Split], labels: &Array1<usize>) -> Result<()> {
+    let n_objects = labels.iter().max().map_or(0, |last| last + 1);
+    let fewest = splits
+        .iter()
+        .map(|split| fewest_per_object(&split.test, labels, n_objects))
+        .min()
+        .unwrap_or(0);
+    match plan.fused_touches.iter().find(|&&k| k > fewest) {
+        None => Ok(()),
+        Some(k) => Err(Error::input(
+            "key recognition.fused_touches",
+            k,
+            format!("at most {fewest}, the test touches of every object in every trial"),
+        )),
+    }
+}
+
+/// Where C or γ is chosen, every object has a training touch for each fold.
+fn check_folds(plan: &Plan, train_touches: &[usize]) -> Result<()> {
+    let choice = &plan.choice;
+    let fewest = train_touches.iter().min().copied().unwrap_or(0);
+    let fewest = choice.touches.map_or(fewest, |most| fewest.min(most));
+    let is_open = !(choice.c.is_empty() && choice.gamma_multiples.is_empty());
+    if is_open && choice.folds > fewest {
+        return Err(Error::input(
+            "key recognition.choose_folds",
+            choice.folds,
+            format!("at most {fewest}, the training touches of every object that take part"),
+        ));
+    }
+    Ok(())
+}
+
+fn fewest_per_object(rows: &[usize], labels: &Array1<usize>, n_objects: usize) -> usize {
     let mut counts = vec![0; n_objects];
-    for &row in &split.train {
+    for &row in rows {
         counts[labels[row]] += 1;
     }
     counts.into_iter().min().unwrap_or(0)

@@ -3,6 +3,7 @@
 //! A row of `accuracy.csv` is a [`Cell`] followed by a [`TrialScore`]; the other tables are built the same way.
 
 use crate::recognition::ClassifierKind;
+use crate::recognition::features::Features;
 use crate::sensing::Ensemble;
 use crate::signal::NoiseUnit;
 use serde::{Deserialize, Serialize};
@@ -28,16 +29,22 @@ pub struct Cell {
     pub smoothing_mm: f64,
     /// How measurements are made.
     pub ensemble: Ensemble,
-    /// Measurements a touch, m.
+    /// Measurements a frame, m.
     pub measurements: usize,
     /// Compression ratio n / m.
     pub ratio: f64,
+    /// Frames a touch, F: a row of features has F · m values.
+    pub frames: usize,
+    /// What is made of the measurements.
+    pub features: Features,
     /// Which classifier.
     pub classifier: ClassifierKind,
-    /// Soft-margin penalty C; empty when it is chosen on a validation split.
+    /// Soft-margin penalty C; empty when it is chosen by cross-validation, or when the classifier has none.
     pub c: Option<f64>,
     /// Training touches an object, at most.
     pub train_touches: usize,
+    /// Test touches of an object that are decided on together, by the sum of their scores.
+    pub fused_touches: usize,
 }
 
 /// How one trial of a cell went (with the [`Cell`] before it: a row of `accuracy.csv`).
@@ -47,8 +54,10 @@ pub struct TrialScore {
     pub trial: usize,
     /// Training rows.
     pub n_train: usize,
-    /// Test rows.
+    /// Test rows: groups of `fused_touches` test touches.
     pub n_test: usize,
+    /// Test touches that no whole group was left for, all objects.
+    pub n_left_out: usize,
     /// Test rows recognised.
     pub n_correct: usize,
     /// `n_correct / n_test`.
@@ -59,8 +68,10 @@ pub struct TrialScore {
     pub accuracy_high: f64,
     /// Mean over classes of the F1 score.
     pub macro_f1: f64,
-    /// The C that was used (given, or chosen on a validation split of the training rows).
+    /// The C that was used (given, or chosen by cross-validation within the training rows); empty without one.
     pub c_used: Option<f64>,
+    /// The γ of the RBF or polynomial kernel that was used (given, scaled or chosen); empty without one.
+    pub gamma_used: Option<f64>,
     /// Binary SVMs that stopped at the iteration cap.
     pub n_capped: usize,
 }
@@ -70,7 +81,7 @@ pub struct TrialScore {
 pub struct CellScore {
     /// How many trials.
     pub n_trials: usize,
-    /// Test rows of one trial.
+    /// Test rows of one trial: groups of `fused_touches` test touches.
     pub n_test: usize,
     /// Mean accuracy over trials.
     pub accuracy: f64,
@@ -125,18 +136,38 @@ pub struct Comparison {
 pub struct TrialTime {
     /// Number of the trial, from 0.
     pub trial: usize,
-    /// Seconds to fit (scaling and C's choice included).
+    /// Seconds to fit (scaling and the choice of C and γ included). Cells that differ in `fused_touches` share one fit.
     pub fit_s: f64,
-    /// Seconds to predict all test rows.
+    /// Seconds to score all test touches (shared in the same way) and to decide all test rows.
     pub predict_s: f64,
-    /// Microseconds to predict one test row.
+    /// The same for one test touch, microseconds.
     pub predict_us_per_touch: f64,
+}
+
+/// What a cell's accuracy costs (with the [`Cell`] before it: a row of `pareto.csv`).
+///
+/// A cell is on a front if no cell with the same noise is at least as accurate in at most the same time and better in one
+/// of the two. Noise is the world's doing; all other settings are choices.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Pareto {
+    /// Mean accuracy over trials.
+    pub accuracy: f64,
+    /// Mean seconds to fit.
+    pub fit_s: f64,
+    /// Mean microseconds of fitting for one training touch.
+    pub fit_us_per_touch: f64,
+    /// Mean microseconds to decide once: to predict `fused_touches` touches.
+    pub predict_us_per_decision: f64,
+    /// Whether it is on the front of accuracy against `fit_s`.
+    pub on_training_front: bool,
+    /// Whether it is on the front of accuracy against `predict_us_per_decision`.
+    pub on_prediction_front: bool,
 }
 
 /// What a stage before recognition cost: a row of `stages.csv`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct StageTime {
-    /// `simulate` or `measure` (signal and projection).
+    /// `simulate` or `measure` (signal and projection), with the number of frames a touch if it is not one.
     pub stage: String,
     /// Millimetres between taxels.
     pub pitch_mm: f64,
@@ -165,6 +196,36 @@ pub struct Tables {
     pub comparison: Vec<Comparison>,
     /// One row per cell and trial.
     pub timing: Vec<(Cell, TrialTime)>,
-    /// One row per array and stage.
+    /// One row per cell.
+    pub pareto: Vec<(Cell, Pareto)>,
+    /// One row per array, number of frames and stage.
     pub stages: Vec<StageTime>,
+}
+
+#[cfg(test)]
+pub(crate) mod tests {
+    use super::*;
+
+    /// A cell for tests to start from: 32 × 32 taxels at 2 mm, 16:1.
+    pub(crate) fn cell() -> Cell {
+        Cell {
+            cell: 0,
+            pitch_mm: 2.0,
+            nx: 32,
+            ny: 32,
+            size_mm: 64.0,
+            noise_std: 0.1,
+            noise_unit: NoiseUnit::FullScale,
+            smoothing_mm: 0.0,
+            ensemble: Ensemble::Gaussian,
+            measurements: 64,
+            ratio: 16.0,
+            frames: 1,
+            features: Features::Raw,
+            classifier: ClassifierKind::LinearSvm,
+            c: Some(1.0),
+            train_touches: 75,
+            fused_touches: 1,
+        }
+    }
 }

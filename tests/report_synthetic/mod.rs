@@ -2,12 +2,13 @@
 #![allow(dead_code)] // Each test file uses its own part.
 
 use bubbletouch::recognition::ClassifierKind;
+use bubbletouch::recognition::features::Features;
 use bubbletouch::report::html::{Limit, ReportPage, Snapshots};
 use bubbletouch::sensing::Ensemble;
 use bubbletouch::signal::NoiseUnit;
 use bubbletouch::signal::Quantity;
 use bubbletouch::study::table::{
-    Cell, CellScore, Comparison, Confusion, StageTime, Tables, TrialScore, TrialTime,
+    Cell, CellScore, Comparison, Confusion, Pareto, StageTime, Tables, TrialScore, TrialTime,
 };
 use ndarray::Array2;
 
@@ -53,9 +54,12 @@ pub fn cell() -> Cell {
         ensemble: Ensemble::Gaussian,
         measurements: 256,
         ratio: 16.0,
+        frames: 1,
+        features: Features::Raw,
         classifier: ClassifierKind::LinearSvm,
         c: Some(1.0),
         train_touches: 75,
+        fused_touches: 1,
     }
 }
 
@@ -176,12 +180,14 @@ fn add_cell(tables: &mut Tables, cell: Cell, n_trials: usize, n_objects: usize) 
                 trial,
                 n_train: 75 * n_objects,
                 n_test,
+                n_left_out: 0,
                 n_correct,
                 accuracy,
                 accuracy_low: low,
                 accuracy_high: high,
                 macro_f1: accuracy - 0.004,
                 c_used: Some(cell.c.unwrap_or(10.0)),
+                gamma_used: (cell.classifier == ClassifierKind::RbfSvm).then_some(1.0 / 64.0),
                 n_capped: 0,
             },
         ));
@@ -200,6 +206,18 @@ fn add_cell(tables: &mut Tables, cell: Cell, n_trials: usize, n_objects: usize) 
     let variance = accuracies.iter().map(|a| (a - mean).powi(2)).sum::<f64>();
     let (accuracy_low, accuracy_high) = wilson(mean, n_test);
     add_confusion(tables, &cell, mean, n_trials, n_objects);
+    let fit_s = 1e-4 * cell.measurements as f64;
+    tables.pareto.push((
+        cell.clone(),
+        Pareto {
+            accuracy: mean,
+            fit_s,
+            fit_us_per_touch: 1e6 * fit_s / (75 * n_objects) as f64,
+            predict_us_per_decision: 4.0,
+            on_training_front: cell.cell.is_multiple_of(2),
+            on_prediction_front: cell.cell == 0,
+        },
+    ));
     tables.summary.push((
         cell,
         CellScore {
@@ -369,6 +387,7 @@ pub fn about() -> ReportPage {
             quantity: Quantity::Deflection,
             caption: "Pressed 4 mm deep; noise standard deviation 5 % of full scale".to_owned(),
         }),
+        pareto: None,
         wall_s: Some(41.3),
         command: "bubbletouch run experiments/quickstart.toml --seed 1 --out results/quickstart"
             .to_owned(),

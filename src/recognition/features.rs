@@ -1,0 +1,224 @@
+//! Features: what is made of a touch's measurements before a classifier scales and learns them.
+//!
+//! The measurements of a touch are F frames of m, one after the other (F = 1 unless a touch is read at several depths).
+//! Everything here is done to one touch at a time and learns nothing, so training and test touches need not be kept apart.
+//!
+//! **Centred.** A pressure that is the same on all taxels, x = a·1, measures as y = a·u with u = Φ1. Centring removes that
+//! part from each frame: `y − u (u·y) / (u·u)`, the measurements' component at right angles to u. So a touch reads the
+//! same whatever constant is added to all its taxels, and no more than the measurements and Φ need be known. Where every
+//! row of Φ sums to one (block averages, single taxels), u = 1 and this takes each frame's mean over its own measurements
+//! off it. Nothing is removed where u = 0 (scrambled Hadamard measurements without a block's mean), and nothing is left of
+//! a single measurement that feels u.
+//!
+//! Differs from centring the frame before it is measured, y − mean(x) u, because the mean of the frame is not in its
+//! measurements; both have the same invariance.
+//!
+//! **Unit norm.** All F·m values of a touch are divided by their Euclidean norm, so a touch reads the same on a stiffer
+//! skin; how much a touch grows from frame to frame is kept. A touch of zeros stays zero.
+
+use ndarray::{ArrayView1, ArrayViewMut1, ArrayViewMut2};
+use serde::{Deserialize, Serialize};
+
+/// What is made of measurements.
+#[derive(
+    Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize,
+)]
+#[serde(rename_all = "snake_case")]
+pub enum Features {
+    /// The measurements.
+    #[default]
+    Raw,
+    /// Each frame without what a constant pressure adds to it.
+    Centred,
+    /// Each touch scaled to norm 1.
+    UnitNorm,
+    /// Centred, then scaled to norm 1.
+    CentredUnitNorm,
+}
+
+/// What an element of u = Φ1 is rounded to in double precision where it is 0 (rows of Φ have norms of about 1, and at most
+/// 2²⁴ taxels); smaller ones count as 0.
+const ROUNDING: f64 = 1e-12;
+
+impl Features {
+    /// Makes features of measurements (n_touches × F·m) in place; `of_ones` is u = Φ1 (m).
+    ///
+    /// # Panics
+    /// When a row is not a whole number of frames.
+    pub fn apply(self, mut rows: ArrayViewMut2<f64>, of_ones: ArrayView1<f64>) {
+        let m = of_ones.len();
+        assert!(m > 0 && rows.ncols().is_multiple_of(m), "whole frames");
+        let felt = of_ones.mapv(|u| if u.abs() <= ROUNDING { 0.0 } else { u });
+        let square = felt.dot(&felt);
+        for mut row in rows.outer_iter_mut() {
+            if self.is_centred() && square > 0.0 {
+                for mut frame in row.exact_chunks_mut(m) {
+                    let share = felt.dot(&frame) / square;
+                    frame.scaled_add(-share, &felt);
+                }
+            }
+            if self.is_unit_norm() {
+                scale_to_one(row);
+            }
+        }
+    }
+
+    fn is_centred(self) -> bool {
+        matches!(self, Self::Centred | Self::CentredUnitNorm)
+    }
+
+    fn is_unit_norm(self) -> bool {
+        matches!(self, Self::UnitNorm | Self::CentredUnitNorm)
+    }
+}
+
+/// Divides by the norm, by way of the largest value, so that no square overflows or vanishes.
+fn scale_to_one(mut row: ArrayViewMut1<f64>) {
+    let largest = row.iter().fold(0.0_f64, |largest, v| largest.max(v.abs()));
+    if largest == 0.0 || !largest.is_finite() {
+        return;
+    }
+    row /= largest;
+    let norm = row.dot(&row).sqrt();
+    row /= norm;
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::random::Seed;
+    use crate::sensing::{Ensemble, Projection};
+    use ndarray::{Array1, Array2, Axis, array, concatenate};
+    use rand::Rng;
+
+    const GRID: (usize, usize) = (8, 8);
+    const M: usize = 16;
+
+    /// Twelve uneven frames of 8 × 8 taxels.
+    fn frames() -> Array2<f64> {
+        let mut rng = Seed::new(3).named("frames").rng();
+        Array2::from_shape_fn((12, 64), |_| 1e-3 * rng.r#gen::<f64>())
+    }
+
+    fn projection(ensemble: Ensemble) -> Projection {
+        Projection::new(ensemble, GRID, M, &Seed::new(5)).unwrap()
+    }
+
+    fn of_ones(projection: &Projection) -> Array1<f64> {
+        projection
+            .measure(Array2::ones((1, 64)).view())
+            .row(0)
+            .to_owned()
+    }
+
+    fn features(kind: Features, projection: &Projection, frames: &Array2<f64>) -> Array2<f64> {
+        let mut rows = projection.measure(frames.view());
+        kind.apply(rows.view_mut(), of_ones(projection).view());
+        rows
+    }
+
+    fn largest_difference(a: &Array2<f64>, b: &Array2<f64>) -> f64 {
+        (a - b).iter().fold(0.0_f64, |most, d| most.max(d.abs()))
+    }
+
+    const ENSEMBLES: [Ensemble; 5] = [
+        Ensemble::Gaussian,
+        Ensemble::Sbhe,
+        Ensemble::BlockAverage,
+        Ensemble::Subsample,
+        Ensemble::Identity,
+    ];
+
+    #[test]
+    fn raw_features_are_the_measurements_bit_by_bit() {
+        let projection = projection(Ensemble::Gaussian);
+        let measured = projection.measure(frames().view());
+        assert_eq!(features(Features::Raw, &projection, &frames()), measured);
+    }
+
+    #[test]
+    fn unit_norm_rows_have_norm_one_and_do_not_change_with_scale() {
+        for ensemble in ENSEMBLES {
+            let projection = projection(ensemble);
+            for kind in [Features::UnitNorm, Features::CentredUnitNorm] {
+                let rows = features(kind, &projection, &frames());
+                for row in rows.outer_iter() {
+                    assert!((row.dot(&row).sqrt() - 1.0).abs() < 1e-14);
+                }
+                for scale in [1e-200, 0.1, 7.0, 1e200] {
+                    let scaled = features(kind, &projection, &(frames() * scale));
+                    assert!(largest_difference(&rows, &scaled) < 1e-12, "{scale}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_touch_of_nothing_stays_nothing() {
+        let mut rows = array![[0.0, 0.0, 0.0], [1.0, 2.0, 3.0]];
+        Features::CentredUnitNorm.apply(rows.view_mut(), array![1.0, 1.0, 1.0].view());
+        assert_eq!(rows.row(0), array![0.0, 0.0, 0.0]);
+        let half = 0.5_f64.sqrt();
+        assert!(
+            (&rows.row(1) - array![-half, 0.0, half])
+                .iter()
+                .all(|d| d.abs() < 1e-15)
+        );
+    }
+
+    #[test]
+    fn a_constant_on_all_taxels_does_not_change_centred_features() {
+        for ensemble in ENSEMBLES {
+            let projection = projection(ensemble);
+            let rows = features(Features::Centred, &projection, &frames());
+            let raised = features(Features::Centred, &projection, &(frames() + 4e-3));
+            assert!(largest_difference(&rows, &raised) < 1e-15, "{ensemble:?}");
+            // A projection: done twice, it is done once; and what it takes is not nothing.
+            let mut twice = rows.clone();
+            Features::Centred.apply(twice.view_mut(), of_ones(&projection).view());
+            assert!(largest_difference(&rows, &twice) < 1e-15, "{ensemble:?}");
+            let raw = features(Features::Raw, &projection, &(frames() + 4e-3));
+            let moved = largest_difference(&rows, &raw) > 1e-4;
+            let feels = of_ones(&projection).iter().any(|u| u.abs() > ROUNDING);
+            assert_eq!(moved, feels, "{ensemble:?}");
+        }
+    }
+
+    #[test]
+    fn centring_takes_the_mean_off_where_rows_of_the_ensemble_sum_to_one() {
+        for ensemble in [
+            Ensemble::BlockAverage,
+            Ensemble::Subsample,
+            Ensemble::Identity,
+        ] {
+            let projection = projection(ensemble);
+            let measured = projection.measure(frames().view());
+            let means = measured.mean_axis(Axis(1)).unwrap().insert_axis(Axis(1));
+            let centred = features(Features::Centred, &projection, &frames());
+            assert!(largest_difference(&centred, &(measured - means)) < 1e-15);
+        }
+    }
+
+    #[test]
+    fn frames_are_centred_each_and_scaled_together() {
+        let projection = projection(Ensemble::Gaussian);
+        let u = of_ones(&projection);
+        let one = projection.measure(frames().view());
+        let two = projection.measure((frames() * 3.0).view());
+        let mut both = concatenate![Axis(1), one, two];
+        Features::Centred.apply(both.view_mut(), u.view());
+        let alone = features(Features::Centred, &projection, &frames());
+        assert_eq!(both.slice(ndarray::s![.., ..M]), alone);
+        let ratio = &both.slice(ndarray::s![.., M..]) / &alone;
+        Features::UnitNorm.apply(both.view_mut(), u.view());
+        let kept = &both.slice(ndarray::s![.., M..]) / &both.slice(ndarray::s![.., ..M]);
+        assert!(largest_difference(&ratio, &kept) < 1e-9);
+    }
+
+    #[test]
+    fn a_response_that_is_only_rounding_is_none() {
+        let mut rows = array![[1.0, 2.0]];
+        Features::Centred.apply(rows.view_mut(), array![3e-16, -1e-17].view());
+        assert_eq!(rows, array![[1.0, 2.0]]);
+    }
+}

@@ -1,0 +1,329 @@
+//! Accuracy against time, with the Pareto front: which cells are worth what they cost.
+
+use crate::report::axis::Axis;
+use crate::report::chart::{draw_axes, draw_y_labels, n_classes, y_at};
+use crate::report::colours::{GRID, INK, Rgb};
+use crate::report::drawing::{Align, Area, Drawing, Point, Stroke, TextStyle};
+use crate::report::legend::{
+    CHANCE, FRONT, Heading, LEFT, LegendEntry, MARKER_RADIUS, Mark, RIGHT, line_colour,
+};
+use crate::report::varying::{Levels, Settings, unbroken_parts};
+use crate::report::x_scale::TICK_SIZE;
+use crate::study::table::{Cell, Pareto, Tables};
+
+/// Classifiers from which on a study is about choosing one.
+const MANY_CLASSIFIERS: usize = 3;
+/// Pixels between panels.
+const GAP: f64 = 26.0;
+const LABEL: u32 = 13;
+
+/// Whose time runs along x.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Cost {
+    /// Seconds to fit.
+    Training,
+    /// Time to decide once.
+    Prediction,
+}
+
+impl Cost {
+    /// File name without ending.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Training => "pareto_training",
+            Self::Prediction => "pareto_prediction",
+        }
+    }
+
+    /// What the chart is read as.
+    pub fn title(self) -> &'static str {
+        match self {
+            Self::Training => "Accuracy against the time to train",
+            Self::Prediction => "Accuracy against the time to decide on an object",
+        }
+    }
+
+    fn axis_title(self) -> &'static str {
+        match self {
+            Self::Training => "time of one fit, all training touches (mean of the trials)",
+            Self::Prediction => "time of one decision, its touches measured (mean of the trials)",
+        }
+    }
+
+    fn seconds(self, row: &Pareto) -> f64 {
+        let seconds = match self {
+            Self::Training => row.fit_s,
+            Self::Prediction => 1e-6 * row.predict_us_per_decision,
+        };
+        // A clock that saw no time pass cannot stand on a logarithmic axis.
+        seconds.max(1e-9)
+    }
+
+    fn is_on_front(self, row: &Pareto) -> bool {
+        match self {
+            Self::Training => row.on_training_front,
+            Self::Prediction => row.on_prediction_front,
+        }
+    }
+}
+
+/// Whether a study gets charts of accuracy against time: as it asks, else if it sweeps three classifiers or more.
+pub fn is_wanted(tables: &Tables, asked: Option<bool>) -> bool {
+    let cells: Vec<&Cell> = tables.pareto.iter().map(|(cell, _)| cell).collect();
+    let n_kinds = Levels::of(Axis::Classifier, &cells).values.len();
+    !cells.is_empty() && asked.unwrap_or(n_kinds >= MANY_CLASSIFIERS)
+}
+
+/// Draws accuracy against time: one panel for each noise, one colour for each classifier (or, with one classifier, for each
+/// value of the first other setting that varies); cells on the front are ringed and joined by steps.
+pub fn draw_pareto(tables: &Tables, cost: Cost) -> Drawing {
+    let cells: Vec<&Cell> = tables.pareto.iter().map(|(cell, _)| cell).collect();
+    let settings = Settings::of(&cells);
+    let is_shown = |axis: Axis| settings.varying.iter().find(|levels| levels.axis == axis);
+    let others = settings.varying.iter().find(|l| l.axis != Axis::Noise);
+    let n_classes = n_classes(tables);
+    let chart = Chart {
+        rows: &tables.pareto,
+        cost,
+        colours: is_shown(Axis::Classifier).or(others).cloned(),
+        panels: is_shown(Axis::Noise).cloned(),
+        chance: (n_classes > 0).then(|| 1.0 / n_classes as f64),
+    };
+    let constants: Vec<String> = settings.fixed.iter().map(Levels::sentence).collect();
+    chart.draw(&unbroken_parts(&constants))
+}
+
+struct Chart<'a> {
+    rows: &'a [(Cell, Pareto)],
+    cost: Cost,
+    colours: Option<Levels>,
+    panels: Option<Levels>,
+    chance: Option<f64>,
+}
+
+impl Chart<'_> {
+    fn draw(&self, constants: &str) -> Drawing {
+        let n_panels = self.panels.as_ref().map_or(1, |p| p.values.len());
+        let columns = n_panels.min(2);
+        let (panel_width, panel_height) = match columns {
+            1 => (660.0, 340.0),
+            _ => (385.0, 300.0),
+        };
+        let width = LEFT + columns as f64 * panel_width + (columns - 1) as f64 * GAP + RIGHT;
+        let heading = Heading::of(self.cost.title(), constants, self.legend(), width);
+        let panel_title = if n_panels > 1 { 24.0 } else { 6.0 };
+        let pitch_down = panel_title + panel_height + 26.0;
+        let n_rows = n_panels.div_ceil(columns);
+        let height = heading.height() + n_rows as f64 * pitch_down + 26.0;
+        let mut drawing = Drawing::new(width, height);
+        heading.draw(&mut drawing);
+        let scale = TimeScale::of(self.rows.iter().map(|(_, row)| self.cost.seconds(row)));
+        for panel in 0..n_panels {
+            let (row, column) = (panel / columns, panel % columns);
+            let frame = Area {
+                x: LEFT + column as f64 * (panel_width + GAP),
+                y: heading.height() + row as f64 * pitch_down + panel_title,
+                width: panel_width,
+                height: panel_height,
+            };
+            if let Some(levels) = &self.panels {
+                let text = format!("{} {}", levels.axis.name(), levels.values[panel].label);
+                drawing.bold_text((frame.x, frame.y - 8.0), &text, TextStyle::new(LABEL));
+            }
+            self.draw_panel(&mut drawing, panel, frame, &scale);
+            if column == 0 {
+                draw_y_labels(&mut drawing, frame);
+            }
+            if panel + columns >= n_panels {
+                let below = (frame.x + frame.width / 2.0, frame.y + frame.height + 40.0);
+                let style = TextStyle::new(LABEL).align(Align::Middle);
+                drawing.text(below, self.cost.axis_title(), style);
+            }
+        }
+        drawing
+    }
+
+    fn draw_panel(&self, drawing: &mut Drawing, panel: usize, frame: Area, scale: &TimeScale) {
+        let bottom = frame.y + frame.height;
+        draw_axes(drawing, frame);
+        for (seconds, is_labelled) in scale.ticks(frame) {
+            let x = scale.x(seconds, frame);
+            drawing.line((x, frame.y), (x, bottom), Stroke::new(GRID, 1.0));
+            drawing.line((x, bottom), (x, bottom + 5.0), Stroke::new(INK, 1.0));
+            if is_labelled {
+                let style = TextStyle::new(TICK_SIZE).align(Align::Middle);
+                drawing.text((x, bottom + 19.0), &time_label(seconds), style);
+            }
+        }
+        if let Some(chance) = self.chance {
+            let y = y_at(frame, chance);
+            drawing.line((frame.x, y), (frame.x + frame.width, y), CHANCE);
+        }
+        let is_here = |cell: &Cell| match &self.panels {
+            Some(levels) => levels.axis.value(cell) == levels.values[panel],
+            None => true,
+        };
+        let mut front: Vec<(Point, usize)> = Vec::new();
+        for (cell, row) in self.rows.iter().filter(|(cell, _)| is_here(cell)) {
+            let at = (
+                scale.x(self.cost.seconds(row), frame),
+                y_at(frame, row.accuracy),
+            );
+            match self.cost.is_on_front(row) {
+                true => front.push((at, self.colour_of(cell))),
+                false => {
+                    let colour = self.colour_of(cell);
+                    drawing.marker(colour, at, 0.8 * MARKER_RADIUS, paler(line_colour(colour)));
+                }
+            }
+        }
+        front.sort_by(|(a, _), (b, _)| a.0.total_cmp(&b.0));
+        let places: Vec<Point> = front.iter().map(|(at, _)| *at).collect();
+        draw_steps(drawing, &places, frame);
+        for (at, colour) in front {
+            drawing.marker(colour, at, MARKER_RADIUS + 2.4, INK);
+            drawing.marker(colour, at, MARKER_RADIUS, line_colour(colour));
+        }
+    }
+
+    fn colour_of(&self, cell: &Cell) -> usize {
+        let Some(levels) = &self.colours else {
+            return 0;
+        };
+        let value = levels.axis.value(cell);
+        levels.values.iter().position(|v| *v == value).unwrap_or(0)
+    }
+
+    fn legend(&self) -> Vec<LegendEntry> {
+        let mut entries = Vec::new();
+        if let Some(levels) = &self.colours {
+            let name = format!("{}:", levels.heading());
+            entries.push(LegendEntry::new(name, Mark::None));
+            for (number, value) in levels.values.iter().enumerate() {
+                entries.push(LegendEntry::new(value.label.clone(), Mark::Point(number)));
+            }
+        }
+        let front = "Pareto front: nothing is both faster and as accurate";
+        entries.push(LegendEntry::new(front.to_owned(), Mark::Front));
+        if let Some(chance) = self.chance {
+            let text = format!("chance (1 in {:.0})", 1.0 / chance);
+            entries.push(LegendEntry::new(text, Mark::Dashes));
+        }
+        entries
+    }
+}
+
+/// What accuracy a budget of time buys: level until the next cell of the front.
+fn draw_steps(drawing: &mut Drawing, front: &[Point], frame: Area) {
+    let Some(&last) = front.last() else {
+        return;
+    };
+    let mut steps = Vec::new();
+    for pair in front.windows(2) {
+        steps.extend([pair[0], (pair[1].0, pair[0].1)]);
+    }
+    steps.extend([last, (frame.x + frame.width, last.1)]);
+    drawing.polyline(&steps, FRONT);
+}
+
+fn paler(colour: Rgb) -> Rgb {
+    colour.map(|channel| channel + ((255 - channel) as f64 * 0.45) as u8)
+}
+
+/// A logarithmic axis of time.
+struct TimeScale {
+    low: f64,
+    high: f64,
+}
+
+impl TimeScale {
+    /// From the shortest to the longest time (seconds), and a little further.
+    fn of(seconds: impl Iterator<Item = f64> + Clone) -> Self {
+        let low = seconds.clone().fold(f64::INFINITY, f64::min);
+        let high = seconds.fold(0.0, f64::max);
+        Self {
+            low: 0.7 * low,
+            high: 1.4 * high,
+        }
+    }
+
+    fn x(&self, seconds: f64, frame: Area) -> f64 {
+        let share = (seconds / self.low).ln() / (self.high / self.low).ln();
+        frame.x + share * frame.width
+    }
+
+    /// 1, 2 and 5 of every decade within the axis, and whether there is room for each one's label.
+    fn ticks(&self, frame: Area) -> Vec<(f64, bool)> {
+        let first = self.low.log10().floor() as i32;
+        let last = self.high.log10().ceil() as i32;
+        let decade = (self.x(10.0, frame) - self.x(1.0, frame)).abs();
+        let is_labelled = |digit: i32| match digit {
+            1 => true,
+            _ => decade > 150.0,
+        };
+        (first..=last)
+            .flat_map(|power| [1, 2, 5].map(|digit| (digit, power)))
+            .map(|(digit, power)| (power_of_ten(digit, power), is_labelled(digit)))
+            .filter(|(seconds, _)| (self.low..=self.high).contains(seconds))
+            .collect()
+    }
+}
+
+/// `digit · 10^power` as the nearest number, which a product with a rounded power is not.
+fn power_of_ten(digit: i32, power: i32) -> f64 {
+    match power {
+        0.. => f64::from(digit) * 10_f64.powi(power),
+        _ => f64::from(digit) / 10_f64.powi(-power),
+    }
+}
+
+/// `20 µs`, `5 ms`, `100 s`.
+fn time_label(seconds: f64) -> String {
+    let (number, unit) = match seconds {
+        s if s < 0.999e-6 => (s * 1e9, "ns"),
+        s if s < 0.999e-3 => (s * 1e6, "µs"),
+        s if s < 0.999 => (s * 1e3, "ms"),
+        s => (s, "s"),
+    };
+    format!("{number:.0} {unit}")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn times_are_labelled_in_the_unit_that_suits_them() {
+        for (seconds, label) in [
+            (1e-9, "1 ns"),
+            (5e-7, "500 ns"),
+            (1e-6, "1 µs"),
+            (2e-4, "200 µs"),
+            (1e-3, "1 ms"),
+            (0.5, "500 ms"),
+            (1.0, "1 s"),
+            (200.0, "200 s"),
+        ] {
+            assert_eq!(time_label(seconds), label);
+        }
+    }
+
+    #[test]
+    fn every_time_stands_within_the_frame_and_ticks_ascend() {
+        let frame = Area {
+            x: 10.0,
+            y: 0.0,
+            width: 400.0,
+            height: 1.0,
+        };
+        for times in [vec![3e-6], vec![2e-9, 7e3], vec![1.0, 1.1, 1.2]] {
+            let scale = TimeScale::of(times.iter().copied());
+            for &seconds in &times {
+                let x = scale.x(seconds, frame);
+                assert!(x > frame.x && x < frame.x + frame.width, "{times:?}");
+            }
+            let ticks: Vec<f64> = scale.ticks(frame).iter().map(|(s, _)| *s).collect();
+            assert!(ticks.is_sorted() && !ticks.is_empty(), "{ticks:?}");
+        }
+    }
+}

@@ -1,0 +1,165 @@
+//! Training of a family of cells: the same rows and features, one fit for each C.
+
+use super::spec::RecognitionSpec;
+use crate::error::Result;
+use crate::random::Seed;
+use crate::recognition::ClassifierKind;
+use crate::recognition::choice::Candidates;
+use crate::recognition::classifier::{Classifier, TrainedClassifier};
+use crate::recognition::dataset::Dataset;
+use crate::recognition::kernel::Gamma;
+use crate::recognition::split::{Split, group_k_fold, stratified_k_fold};
+use ndarray::{Array1, s};
+use std::time::Instant;
+
+/// Folds of the cross-validation that chooses C and γ, when a study does not say.
+pub const DEFAULT_FOLDS: usize = 5;
+
+/// How C and γ are chosen by cross-validation within the training rows.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ChoicePlan {
+    /// Values of C to try; none when C is given.
+    pub c: Vec<f64>,
+    /// Values of γ to try, as multiples of 'scale'; none when γ is given.
+    pub gamma_multiples: Vec<f64>,
+    /// Folds.
+    pub folds: usize,
+    /// Training touches an object that take part, at most; `None` is all of them.
+    pub touches: Option<usize>,
+}
+
+/// The training rows of a family in one trial, and what they are trained with.
+pub struct Training<'a> {
+    /// The study's keys.
+    pub recognition: &'a RecognitionSpec,
+    /// How what is left open is chosen.
+    pub choice: &'a ChoicePlan,
+    /// Which classifier.
+    pub kind: ClassifierKind,
+    /// Training rows in drawing order, one of each object in turn.
+    pub data: Dataset,
+    /// The group of each row, when the study keeps groups together.
+    pub group_keys: Option<Array1<usize>>,
+    /// What the folds of a choice are drawn from.
+    pub seed: Seed,
+}
+
+/// A trained classifier and what it was trained with.
+pub struct Fitted {
+    /// The classifier, with its scaling.
+    pub classifier: TrainedClassifier,
+    /// C, of a classifier that has one.
+    pub c: Option<f64>,
+    /// γ, of a classifier that has one.
+    pub gamma: Option<f64>,
+    /// Seconds to choose and to train.
+    pub fit_s: f64,
+}
+
+impl Training<'_> {
+    /// One classifier for each C (`None`: chosen, or a classifier that has none), in their order.
+    ///
+    /// # Errors
+    /// What a fold or a training refuses.
+    pub fn train_all(&self, penalties: &[Option<f64>]) -> Result<Vec<Fitted>> {
+        let given: Option<Vec<f64>> = penalties.iter().copied().collect();
+        match given {
+            Some(path) if !self.chooses_gamma() => self.train_path(&path),
+            _ => penalties.iter().map(|&c| self.train(c)).collect(),
+        }
+    }
+
+    fn chooses_gamma(&self) -> bool {
+        self.kind.has_gamma() && !self.choice.gamma_multiples.is_empty()
+    }
+
+    /// For several C that are given: what they share is computed once, and its time told to each in equal parts.
+    fn train_path(&self, path: &[f64]) -> Result<Vec<Fitted>> {
+        let start = Instant::now();
+        let classifier = self.classifier();
+        let trained = classifier.train_path(&self.data, path, &self.seed)?;
+        let gamma = self.gamma()?;
+        let fit_s = start.elapsed().as_secs_f64() / path.len() as f64;
+        let fitted = trained.into_iter().map(|classifier| Fitted {
+            c: classifier.c(),
+            classifier,
+            gamma,
+            fit_s,
+        });
+        Ok(fitted.collect())
+    }
+
+    /// With this C, or one that is chosen, or none; and a γ that may be chosen.
+    fn train(&self, c: Option<f64>) -> Result<Fitted> {
+        let start = Instant::now();
+        let mut classifier = self.classifier();
+        let mut gamma = None;
+        if self.kind.has_c() {
+            let data = self.choosing_rows();
+            let candidates = Candidates {
+                c: c.map_or_else(|| self.choice.c.clone(), |c| vec![c]),
+                gamma_scales: self.choice.gamma_multiples.clone(),
+            };
+            let folds = self.folds(&data)?;
+            let chosen = classifier.choose(&data, &folds, &candidates, &self.seed)?;
+            classifier = classifier.with_choice(&chosen);
+            gamma = chosen.best.gamma;
+        }
+        let classifier = classifier.train(&self.data, &self.seed)?;
+        Ok(Fitted {
+            c: classifier.c(),
+            classifier,
+            gamma,
+            fit_s: start.elapsed().as_secs_f64(),
+        })
+    }
+
+    /// The γ of a classifier that has one, where it is not chosen.
+    fn gamma(&self) -> Result<Option<f64>> {
+        if !self.kind.has_gamma() {
+            return Ok(None);
+        }
+        let records = self.data.records.view();
+        let scaled = self.recognition.scaling.fit(records)?.apply(records)?;
+        let gamma = self.recognition.gamma.map_or(Gamma::Scale, Gamma::Value);
+        gamma.resolve(scaled.view()).map(Some)
+    }
+
+    /// The leading training rows, as many of each object as take part in a choice.
+    fn choosing_rows(&self) -> Dataset {
+        let labels = &self.data.targets;
+        let n_objects = labels.iter().max().map_or(0, |last| last + 1);
+        let wanted = self.choice.touches.map_or(usize::MAX, |touches| {
+            // Rows come one of each object in turn, so these hold as many of each.
+            touches.saturating_mul(n_objects)
+        });
+        let n_rows = wanted.min(labels.len());
+        Dataset::new(
+            self.data.records.slice(s![..n_rows, ..]).to_owned(),
+            labels.slice(s![..n_rows]).to_owned(),
+        )
+    }
+
+    /// What stays together in the study's split stays together here.
+    fn folds(&self, data: &Dataset) -> Result<Vec<Split>> {
+        let labels = data.targets.view();
+        let k = self.choice.folds;
+        match &self.group_keys {
+            None => stratified_k_fold(labels, k, &self.seed),
+            Some(keys) => group_k_fold(labels, keys.slice(s![..labels.len()]), k, &self.seed),
+        }
+    }
+
+    fn classifier(&self) -> Classifier {
+        let recognition = self.recognition;
+        Classifier {
+            scaling: recognition.scaling,
+            multiclass: recognition.multiclass,
+            solver: recognition.solver,
+            gamma: recognition.gamma.map_or(Gamma::Scale, Gamma::Value),
+            coef0: recognition.coef0,
+            degree: recognition.degree,
+            ..Classifier::new(self.kind)
+        }
+    }
+}
