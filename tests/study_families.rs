@@ -244,20 +244,17 @@ fn accuracy(outcome: &Outcome, is_wanted: impl Fn(&Cell) -> bool) -> f64 {
 }
 
 #[test]
-fn touching_again_and_reading_more_frames_recognise_more_in_noise() {
-    let text = with("frames = [1, 4]", "fused_touches = [1, 2, 6]")
+fn touching_again_recognises_more_in_noise() {
+    let text = with("", "fused_touches = [1, 2, 6]")
         .replace("trials = 2", "trials = 4")
-        .replace("full_scale = 0.2", "full_scale = 0.4");
+        .replace("full_scale = 0.2", "full_scale = 0.1");
     let outcome = Study::new(&text).run();
-    for frames in [1, 4] {
-        let by_k =
-            [1, 2, 6].map(|k| accuracy(&outcome, |c| c.frames == frames && c.fused_touches == k));
-        println!("{frames} frames: {by_k:.3?}");
-        assert!(by_k[1] > by_k[0] && by_k[2] > by_k[0] + 0.15, "{by_k:?}");
-    }
-    let by_frames =
-        [1, 4].map(|frames| accuracy(&outcome, |c| c.frames == frames && c.fused_touches == 1));
-    assert!(by_frames[1] > by_frames[0], "{by_frames:?}");
+    let by_k = [1, 2, 6].map(|k| accuracy(&outcome, |c| c.fused_touches == k));
+    println!("{by_k:.3?}");
+    assert!(
+        by_k[1] > by_k[0] && by_k[2] > by_k[0] + 0.1,
+        "1, 2 and 6 touches: {by_k:?}"
+    );
 }
 
 #[test]

@@ -208,7 +208,8 @@ mod tests {
         let mut both = concatenate![Axis(1), one, two];
         Features::Centred.apply(both.view_mut(), u.view());
         let alone = features(Features::Centred, &projection, &frames());
-        assert_eq!(both.slice(ndarray::s![.., ..M]), alone);
+        let first = both.slice(ndarray::s![.., ..M]).to_owned();
+        assert!(largest_difference(&first, &alone) < 1e-15);
         let ratio = &both.slice(ndarray::s![.., M..]) / &alone;
         Features::UnitNorm.apply(both.view_mut(), u.view());
         let kept = &both.slice(ndarray::s![.., M..]) / &both.slice(ndarray::s![.., ..M]);

@@ -252,7 +252,8 @@ impl TimeScale {
         frame.x + share * frame.width
     }
 
-    /// 1, 2 and 5 of every decade within the axis, and whether there is room for each one's label.
+    /// 1, 2 and 5 of every decade within the axis (all digits of a decade that fills it), and whether there is room for each
+    /// one's label.
     fn ticks(&self, frame: Area) -> Vec<(f64, bool)> {
         let first = self.low.log10().floor() as i32;
         let last = self.high.log10().ceil() as i32;
@@ -261,8 +262,12 @@ impl TimeScale {
             1 => true,
             _ => decade > 150.0,
         };
+        let digits: &[i32] = match decade > 0.8 * frame.width {
+            true => &[1, 2, 3, 4, 5, 6, 7, 8, 9],
+            false => &[1, 2, 5],
+        };
         (first..=last)
-            .flat_map(|power| [1, 2, 5].map(|digit| (digit, power)))
+            .flat_map(|power| digits.iter().map(move |&digit| (digit, power)))
             .map(|(digit, power)| (power_of_ten(digit, power), is_labelled(digit)))
             .filter(|(seconds, _)| (self.low..=self.high).contains(seconds))
             .collect()
