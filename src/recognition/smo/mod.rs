@@ -19,7 +19,7 @@ pub(crate) use gram::{Cached, Dense, Gram};
 
 use crate::recognition::dual::DualSolution;
 use crate::recognition::scalar::Scalar;
-use passes::{select_down, select_up, step_and_select};
+use passes::{select_down, select_up, step_along};
 use variables::{Variables, extremes, rho};
 
 /// Iterations after which a problem counts as not solved, as in LIBSVM; or 100 a row, if that is more.
@@ -253,7 +253,8 @@ fn run<T: Scalar, G: Gram<T>>(
         until_look = until_look.saturating_sub(1);
         let step = variables.step(i, j, curvature.max(smallest_curvature.wide()));
         let (row_i, row_j) = gram.rows(i, j);
-        match step_and_select(&mut variables.f, (row_i, row_j), &variables.up, T::of(step)) {
+        step_along(&mut variables.f, row_i, row_j, T::of(step));
+        match select_up(&variables.f, &variables.up) {
             Some(next) => i = next,
             None => return Stop::Done,
         }

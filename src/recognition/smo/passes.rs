@@ -13,49 +13,18 @@ pub(super) fn padded(n: usize) -> usize {
     n.next_multiple_of(LANES)
 }
 
-/// The largest of what the lanes hold; −∞ when they hold nothing larger.
+/// The largest of `a + b`. A lane keeps its own; they meet at the end.
 #[inline(always)]
-fn largest<T: Scalar>(lanes: &[T; LANES]) -> T {
-    lanes
-        .iter()
-        .fold(T::neg_infinity(), |a, &b| if b > a { b } else { a })
-}
-
-/// The first index of a value that is the largest.
-#[inline(always)]
-fn first<T: Scalar>(n_chunks: usize, largest: T, value: impl Fn(usize, usize) -> T) -> usize {
-    for chunk in 0..n_chunks {
-        // Without an early exit among the lanes, they are compared all at once.
-        let mut is_here = false;
-        for lane in 0..LANES {
-            is_here |= value(chunk, lane) == largest;
-        }
-        if is_here {
-            let lane = (0..LANES).find(|&lane| value(chunk, lane) == largest);
-            return chunk * LANES + lane.unwrap_or(0);
-        }
-    }
-    0
-}
-
-/// `f − step (row_i − row_j)` in place, and where the largest of `f + up` is: the next variable to raise. `None` when none
-/// can be.
-#[inline(always)]
-pub(super) fn step_and_select<T: Scalar>(
-    f: &mut [T],
-    (row_i, row_j): (&[T], &[T]),
-    up: &[T],
-    step: T,
-) -> Option<usize> {
+fn largest_sum<T: Scalar>(a: &[T], b: &[T]) -> T {
     let mut lanes = [T::neg_infinity(); LANES];
-    let f = f.as_chunks_mut::<LANES>().0;
-    let row_i = row_i.as_chunks::<LANES>().0;
-    let row_j = row_j.as_chunks::<LANES>().0;
-    let up = up.as_chunks::<LANES>().0;
-    for (((f, row_i), row_j), up) in f.iter_mut().zip(row_i).zip(row_j).zip(up) {
+    for (a, b) in a
+        .as_chunks::<LANES>()
+        .0
+        .iter()
+        .zip(b.as_chunks::<LANES>().0)
+    {
         for lane in 0..LANES {
-            f[lane] = f[lane] - step * (row_i[lane] - row_j[lane]);
-            let value = f[lane] + up[lane];
+            let value = a[lane] + b[lane];
             lanes[lane] = if value > lanes[lane] {
                 value
             } else {
@@ -63,26 +32,62 @@ pub(super) fn step_and_select<T: Scalar>(
             };
         }
     }
-    let highest = largest(&lanes);
-    (highest > T::neg_infinity()).then(|| {
-        first(f.len(), highest, |chunk, lane| {
-            f[chunk][lane] + up[chunk][lane]
-        })
-    })
+    lanes
+        .iter()
+        .fold(T::neg_infinity(), |a, &b| if b > a { b } else { a })
 }
 
-/// Where the largest of `f + up` is.
+/// The largest of `a`, at least 0.
 #[inline(always)]
-pub(super) fn select_up<T: Scalar>(f: &[T], up: &[T]) -> Option<usize> {
-    let mut best = None;
-    let mut highest = T::neg_infinity();
-    for (index, (&f, &up)) in f.iter().zip(up).enumerate() {
-        if f + up > highest {
-            highest = f + up;
-            best = Some(index);
+fn largest<T: Scalar>(a: &[T]) -> T {
+    let mut lanes = [T::zero(); LANES];
+    for a in a.as_chunks::<LANES>().0 {
+        for lane in 0..LANES {
+            lanes[lane] = if a[lane] > lanes[lane] {
+                a[lane]
+            } else {
+                lanes[lane]
+            };
         }
     }
-    best
+    lanes
+        .iter()
+        .fold(T::zero(), |a, &b| if b > a { b } else { a })
+}
+
+/// The first index for which `is` holds; `any` says whether it does anywhere in a chunk, all lanes at once.
+#[inline(always)]
+fn first(n: usize, is: impl Fn(usize) -> bool) -> usize {
+    for start in (0..n).step_by(LANES) {
+        let mut is_here = false;
+        for lane in 0..LANES {
+            is_here |= is(start + lane);
+        }
+        if is_here {
+            return (start..start + LANES)
+                .find(|&index| is(index))
+                .unwrap_or(start);
+        }
+    }
+    0
+}
+
+/// Where the largest of `f + up` is, the first of equals: the next variable to raise. `None` when none can be.
+#[inline(always)]
+pub(super) fn select_up<T: Scalar>(f: &[T], up: &[T]) -> Option<usize> {
+    let up = &up[..f.len()];
+    let highest = largest_sum(f, up);
+    (highest > T::neg_infinity()).then(|| first(f.len(), |at| f[at] + up[at] == highest))
+}
+
+/// `f − step (row_i − row_j)` in place.
+#[inline(always)]
+pub(super) fn step_along<T: Scalar>(f: &mut [T], row_i: &[T], row_j: &[T], step: T) {
+    let n = f.len();
+    let (row_i, row_j) = (&row_i[..n], &row_j[..n]);
+    for at in 0..n {
+        f[at] = f[at] - step * (row_i[at] - row_j[at]);
+    }
 }
 
 /// What the second pass found.
@@ -95,7 +100,7 @@ pub(super) struct Down<T> {
 }
 
 /// The variable to lower when i, whose f is `highest`, is raised. `row` is row i of the Gram matrix; `low` is 0 where a
-/// variable can be lowered and +∞ elsewhere; `gains` is scratch.
+/// variable can be lowered and −∞ elsewhere; `gains` is scratch.
 #[inline(always)]
 pub(super) fn select_down<T: Scalar>(
     (f, low): (&[T], &[T]),
@@ -104,48 +109,54 @@ pub(super) fn select_down<T: Scalar>(
     smallest_curvature: T,
     gains: &mut [T],
 ) -> Down<T> {
-    let mut lanes = [T::zero(); LANES];
-    let mut violations = [T::zero(); LANES];
+    let n = gains.len();
+    let (f, low, row, diagonal) = (&f[..n], &low[..n], &row[..n], &diagonal[..n]);
     let two = T::one() + T::one();
-    let f = f.as_chunks::<LANES>().0;
-    let low = low.as_chunks::<LANES>().0;
-    let row = row.as_chunks::<LANES>().0;
-    let diagonal = diagonal.as_chunks::<LANES>().0;
-    let gains = gains.as_chunks_mut::<LANES>().0;
-    let chunks = f.iter().zip(low).zip(row).zip(diagonal);
-    for ((((f, low), row), diagonal), gains) in chunks.zip(gains.iter_mut()) {
+    for at in 0..n {
+        let difference = highest - f[at] + low[at];
+        let difference = if difference > T::zero() {
+            difference
+        } else {
+            T::zero()
+        };
+        let curvature = own + diagonal[at] - two * row[at];
+        let curvature = if curvature > smallest_curvature {
+            curvature
+        } else {
+            smallest_curvature
+        };
+        gains[at] = difference * difference / curvature;
+    }
+    let best = largest(gains);
+    let gains = &*gains;
+    Down {
+        j: (best > T::zero()).then(|| first(n, |at| gains[at] == best)),
+        violation: violation(f, low, highest),
+    }
+}
+
+/// The largest of `highest − f + low`, at least 0.
+#[inline(always)]
+fn violation<T: Scalar>(f: &[T], low: &[T], highest: T) -> T {
+    let mut lanes = [T::zero(); LANES];
+    for (f, low) in f
+        .as_chunks::<LANES>()
+        .0
+        .iter()
+        .zip(low.as_chunks::<LANES>().0)
+    {
         for lane in 0..LANES {
-            let difference = highest - (f[lane] + low[lane]);
-            let difference = if difference > T::zero() {
-                difference
-            } else {
-                T::zero()
-            };
-            let curvature = own + diagonal[lane] - two * row[lane];
-            let curvature = if curvature > smallest_curvature {
-                curvature
-            } else {
-                smallest_curvature
-            };
-            let gain = difference * difference / curvature;
-            gains[lane] = gain;
-            lanes[lane] = if gain > lanes[lane] {
-                gain
+            let value = highest - f[lane] + low[lane];
+            lanes[lane] = if value > lanes[lane] {
+                value
             } else {
                 lanes[lane]
             };
-            violations[lane] = if difference > violations[lane] {
-                difference
-            } else {
-                violations[lane]
-            };
         }
     }
-    let best = largest(&lanes);
-    Down {
-        j: (best > T::zero()).then(|| first(gains.len(), best, |chunk, lane| gains[chunk][lane])),
-        violation: largest(&violations),
-    }
+    lanes
+        .iter()
+        .fold(T::zero(), |a, &b| if b > a { b } else { a })
 }
 
 #[cfg(test)]
@@ -180,7 +191,7 @@ mod tests {
         let mut f = values(n, 0.9);
         let mut plain = f.clone();
 
-        let found = step_and_select(&mut f, (&row_i, &row_j), &up, 0.3);
+        step_along(&mut f, &row_i, &row_j, 0.3);
         for i in 0..n {
             plain[i] -= 0.3 * (row_i[i] - row_j[i]);
         }
@@ -191,7 +202,6 @@ mod tests {
                 best = (plain[i] + up[i], i);
             }
         }
-        assert_eq!(found, Some(best.1));
         assert_eq!(select_up(&f, &up), Some(best.1));
 
         let (highest, i) = best;
@@ -204,7 +214,7 @@ mod tests {
         );
         let (mut gain, mut at, mut violation) = (0.0, None, 0.0_f64);
         for j in 0..n {
-            let difference = highest - f[j] - low[j];
+            let difference = highest - f[j] + low[j];
             if difference > 0.0 {
                 let curvature = (diagonal[i] + diagonal[j] - 2.0 * row_i[j]).max(1e-12);
                 violation = violation.max(difference);
@@ -222,7 +232,7 @@ mod tests {
     fn nothing_is_found_where_nothing_can_move() {
         let f = vec![1.0_f32; LANES];
         assert_eq!(select_up(&f, &[f32::NEG_INFINITY; LANES]), None);
-        let low = [f32::INFINITY; LANES];
+        let low = [f32::NEG_INFINITY; LANES];
         let row = [0.0; LANES];
         let down = select_down(
             (&f, &low),

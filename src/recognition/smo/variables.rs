@@ -19,7 +19,7 @@ pub(super) struct Variables<T> {
     pub f: Vec<T>,
     /// 0 where β_i can be raised, −∞ elsewhere.
     pub up: Vec<T>,
-    /// 0 where β_i can be lowered, +∞ elsewhere.
+    /// 0 where β_i can be lowered, −∞ elsewhere.
     pub low: Vec<T>,
     /// Scratch of the second pass.
     pub gains: Vec<T>,
@@ -34,7 +34,7 @@ impl<T: Scalar> Variables<T> {
             c,
             f: f.iter().map(|&f| T::of(f)).collect(),
             up: vec![T::neg_infinity(); padded(n)],
-            low: vec![T::infinity(); padded(n)],
+            low: vec![T::neg_infinity(); padded(n)],
             gains: vec![T::zero(); padded(n)],
         };
         variables.f.resize(padded(n), T::zero());
@@ -62,7 +62,7 @@ impl<T: Scalar> Variables<T> {
         self.low[i] = if self.beta[i] > lowest {
             T::zero()
         } else {
-            T::infinity()
+            T::neg_infinity()
         };
     }
 
