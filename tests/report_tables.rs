@@ -94,7 +94,7 @@ fn equal_tables_give_equal_bytes_in_every_file() {
         .collect();
     assert_eq!(names[..TABLE_FILES.len()], TABLE_FILES);
     assert_eq!(
-        names[6..],
+        names[TABLE_FILES.len()..],
         [
             "accuracy_by_noise.png",
             "accuracy_by_noise.svg",

@@ -260,7 +260,7 @@ impl TimeScale {
         let decade = (self.x(10.0, frame) - self.x(1.0, frame)).abs();
         let is_labelled = |digit: i32| match digit {
             1 => true,
-            _ => decade > 150.0,
+            _ => decade > 190.0,
         };
         let digits: &[i32] = match decade > 0.8 * frame.width {
             true => &[1, 2, 3, 4, 5, 6, 7, 8, 9],
