@@ -248,7 +248,14 @@ fn grid<T: Scalar>(
 ) -> (Array2<usize>, usize) {
     let classes = distinct(training.targets.view());
     let centre = centre(training.records.view(), &kernels[0]);
-    let sorted = Sorted::<T>::new(training, &classes, kernels[0], centre.view());
+    // By fold within a class: what a fold trains on then lies in few runs.
+    let mut fold_of = vec![0; training.targets.len()];
+    for (number, fold) in folds.iter().enumerate() {
+        fold.test.iter().for_each(|&row| fold_of[row] = number);
+    }
+    let by_fold = |row: usize| fold_of[row];
+    let sorted =
+        Sorted::<T>::within_classes(training, &classes, kernels[0], centre.view(), by_fold);
     let goal = Goal {
         path,
         tolerance: params.tolerance,

@@ -4,7 +4,7 @@
 //! are gathered from that, and along C each solution starts from the last. Validation rows meet all problems of a class
 //! and all C in one matrix product.
 
-use ndarray::{Array2, Array3, ArrayView2, Axis, s};
+use ndarray::{Array2, ArrayView2, s};
 
 use crate::recognition::dataset::Dataset;
 use crate::recognition::kernel::KernelFunction;
@@ -46,7 +46,7 @@ impl Fold {
 
 /// What a class's training rows weigh in the problems that it takes part in, for every C.
 struct Weights<T> {
-    /// rows × (problems of the class × C).
+    /// rows × (C × problems of the class).
     coefficients: Array2<T>,
     /// Its problems, ascending.
     problems: Vec<usize>,
@@ -146,7 +146,7 @@ impl<T: Scalar> Grid<'_, T> {
                 solved.rho[[at, index]] = solution.rho;
                 let mut from = solution.coefficients.iter();
                 for &class in &classes {
-                    solved.weights[class].take(index, (at, n_path), &mut from);
+                    solved.weights[class].take(index, at, &mut from);
                 }
             }
         }
@@ -156,58 +156,61 @@ impl<T: Scalar> Grid<'_, T> {
     /// Validation rows recognised, per C.
     fn validate(&self, fold: &Fold, kernel: ArrayView2<T>, solved: &Solved<T>) -> Vec<usize> {
         let (n_path, n_problems) = solved.rho.dim();
-        let mut sums = Array3::<T>::zeros((n_path, fold.validation.len(), n_problems));
+        // A validation row's values of all C and problems lie side by side, so that adding to them stays in the cache.
+        let mut sums = vec![T::zero(); fold.validation.len() * n_path * n_problems];
         for ((_, rows), weights) in fold.training.iter().zip(&solved.weights) {
             let part = gather(kernel, &fold.validation, rows).dot(&weights.coefficients);
-            for (row, values) in part.rows().into_iter().enumerate() {
-                for (chunk, &problem) in values
-                    .exact_chunks(n_path)
-                    .into_iter()
-                    .zip(&weights.problems)
-                {
-                    for (at, &value) in chunk.iter().enumerate() {
-                        sums[[at, row, problem]] += value;
-                    }
+            let part = part.as_slice().expect("a product is stored row by row");
+            let parts = part.chunks_exact(weights.problems.len());
+            for (sums, part) in sums.chunks_exact_mut(n_problems).zip(parts) {
+                for (&problem, &value) in weights.problems.iter().zip(part) {
+                    sums[problem] += value;
                 }
             }
         }
         let classes: Vec<usize> = fold.training.iter().map(|&(class, _)| class).collect();
         let voting = Voting::new(&classes, self.multiclass);
-        let label = |&row: &usize| self.data.targets[self.sorted.order()[row]];
-        let truth: Vec<usize> = fold.validation.iter().map(label).collect();
-        sums.axis_iter(Axis(0))
-            .zip(solved.rho.rows())
-            .map(|(sums, rho)| {
-                let values = sums.mapv(T::wide) - rho;
-                let labels = voting.labels(values.view());
-                labels.iter().zip(&truth).filter(|(a, b)| a == b).count()
-            })
-            .collect()
+        let mut n_correct = vec![0; n_path];
+        let mut values = Vec::with_capacity(n_problems);
+        let mut votes = Vec::new();
+        for (&row, sums) in fold
+            .validation
+            .iter()
+            .zip(sums.chunks_exact(n_path * n_problems))
+        {
+            let truth = self.data.targets[self.sorted.order()[row]];
+            let of_path = sums.chunks_exact(n_problems).zip(solved.rho.rows());
+            for (n_correct, (sums, rho)) in n_correct.iter_mut().zip(of_path) {
+                values.clear();
+                values.extend(sums.iter().zip(rho).map(|(sum, rho)| sum.wide() - rho));
+                *n_correct += usize::from(voting.label(&values, &mut votes) == truth);
+            }
+        }
+        n_correct
     }
 }
 
 impl<T: Scalar> Weights<T> {
     /// Takes the class's coefficients in a problem, for one C of the path, from those of all its rows.
-    fn take<'a>(
-        &mut self,
-        problem: usize,
-        (at, n_path): (usize, usize),
-        from: &mut impl Iterator<Item = &'a f64>,
-    ) {
-        let column = self.problems.partition_point(|&other| other < problem) * n_path + at;
+    fn take<'a>(&mut self, problem: usize, at: usize, from: &mut impl Iterator<Item = &'a f64>) {
+        let n_problems = self.problems.len();
+        let column = at * n_problems + self.problems.partition_point(|&other| other < problem);
         for (to, &beta) in self.coefficients.column_mut(column).iter_mut().zip(from) {
             *to = T::of(beta);
         }
     }
 }
 
-/// Rows and columns of a larger matrix.
+/// Rows and columns of a larger matrix; columns that follow each other are copied at once.
 fn gather<T: Scalar>(whole: ArrayView2<T>, rows: &[usize], columns: &[usize]) -> Array2<T> {
     let mut part = Array2::zeros((rows.len(), columns.len()));
+    let runs: Vec<&[usize]> = columns.chunk_by(|a, b| a + 1 == *b).collect();
     for (&row, mut to) in rows.iter().zip(part.rows_mut()) {
-        let from = whole.slice(s![row, ..]);
-        for (to, &column) in to.iter_mut().zip(columns) {
-            *to = from[column];
+        let mut start = 0;
+        for run in &runs {
+            let from = whole.slice(s![row, run[0]..run[0] + run.len()]);
+            to.slice_mut(s![start..start + run.len()]).assign(&from);
+            start += run.len();
         }
     }
     part

@@ -48,9 +48,20 @@ impl<T: Scalar> Sorted<T> {
         kernel: KernelFunction,
         centre: ArrayView1<f64>,
     ) -> Self {
+        Self::within_classes(data, classes, kernel, centre, |_| 0)
+    }
+
+    /// Sorts rows by class, and within a class by a key.
+    pub fn within_classes(
+        data: &Dataset,
+        classes: &[usize],
+        kernel: KernelFunction,
+        centre: ArrayView1<f64>,
+        key: impl Fn(usize) -> usize,
+    ) -> Self {
         let labels = data.targets.view();
         let mut order: Vec<usize> = (0..labels.len()).collect();
-        order.sort_by_key(|&row| labels[row]);
+        order.sort_by_key(|&row| (labels[row], key(row)));
         let start = |class: usize| order.partition_point(|&row| labels[row] < class);
         let ranges = classes
             .iter()

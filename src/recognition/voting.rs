@@ -28,30 +28,33 @@ impl Voting {
 
     /// The label that each row of decision values (n_rows × n_problems) speaks for.
     pub fn labels(&self, values: ArrayView2<f64>) -> Array1<usize> {
-        let mut votes = vec![0_u32; self.classes.len()];
         let values = values.as_standard_layout();
+        let mut votes = Vec::new();
         values
             .rows()
             .into_iter()
-            .map(|row| {
-                let row = row.as_slice().unwrap_or_default();
-                let winner = match self.multiclass {
-                    Multiclass::OneVsRest => first_maximum(row),
-                    _ => {
-                        count(row, &mut votes);
-                        first_maximum(&votes)
-                    }
-                };
-                self.classes[winner]
-            })
+            .map(|row| self.label(row.as_slice().unwrap_or_default(), &mut votes))
             .collect()
+    }
+
+    /// The label that a row of decision values speaks for; `votes` is scratch.
+    pub fn label(&self, values: &[f64], votes: &mut Vec<u32>) -> usize {
+        let winner = match self.multiclass {
+            Multiclass::OneVsRest => first_maximum(values),
+            _ => {
+                votes.clear();
+                votes.resize(self.classes.len(), 0);
+                count(values, votes);
+                first_maximum(votes)
+            }
+        };
+        self.classes[winner]
     }
 }
 
 /// Votes per class, as LIBSVM counts them: a value above 0 is for the positive class, any other for the negative. The
 /// problems are all pairs of classes in order, so those of a class with all later ones lie side by side.
 fn count(values: &[f64], votes: &mut [u32]) {
-    votes.fill(0);
     let mut rest = values;
     for class in 0..votes.len() {
         let (own, later) = votes[class..].split_at_mut(1);

@@ -110,12 +110,18 @@ impl<T: Scalar> Dense<T> {
         self.refill(whole.nrows(), |i, to| copy(to, &whole.row(i)));
     }
 
-    /// K of some rows of a larger one.
+    /// K of some rows of a larger one. Rows that follow each other there are copied at once.
     pub fn of_rows(&mut self, whole: ArrayView2<T>, rows: &[usize]) {
         let whole = whole.as_standard_layout();
         let (values, n) = (whole.as_slice().unwrap_or_default(), whole.ncols());
-        self.refill(rows.len(), |i, to| {
-            gather(to, &values[rows[i] * n..(rows[i] + 1) * n], rows);
+        let runs: Vec<&[usize]> = rows.chunk_by(|a, b| a + 1 == *b).collect();
+        self.refill(rows.len(), |i, mut to| {
+            let from = &values[rows[i] * n..(rows[i] + 1) * n];
+            for run in &runs {
+                let (now, later) = to.split_at_mut(run.len());
+                now.copy_from_slice(&from[run[0]..run[0] + run.len()]);
+                to = later;
+            }
         });
     }
 
