@@ -23,6 +23,8 @@ fn measure(criterion: &mut Criterion) {
     group.sample_size(10);
     for (name, ensemble) in [
         ("gaussian", Ensemble::Gaussian),
+        ("bernoulli", Ensemble::Bernoulli),
+        ("sparse", Ensemble::Sparse),
         ("sbhe", Ensemble::Sbhe),
         ("block_average", Ensemble::BlockAverage),
         ("subsample", Ensemble::Subsample),

@@ -154,6 +154,8 @@ pub fn short_number(number: f64) -> String {
 pub fn ensemble_name(ensemble: Ensemble) -> &'static str {
     match ensemble {
         Ensemble::Gaussian => "Gaussian",
+        Ensemble::Bernoulli => "Bernoulli",
+        Ensemble::Sparse => "sparse",
         Ensemble::Sbhe => "SBHE",
         Ensemble::BlockAverage => "block average",
         Ensemble::Subsample => "subsample",

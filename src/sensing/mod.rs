@@ -6,6 +6,8 @@
 //! | ensemble | row of Φ | a row's norm | stored |
 //! |---|---|---|---|
 //! | [`Gaussian`](Ensemble::Gaussian) | independent N(0, 1/n) | 1 on average | m × n numbers |
+//! | [`Bernoulli`](Ensemble::Bernoulli) | independent ±1/√n | 1 | m × n numbers |
+//! | [`Sparse`](Ensemble::Sparse) | independent ±√(s/n) at a density of 1/s, s = √n, else 0 | 1 on average | m√n indices |
 //! | [`Sbhe`](Ensemble::Sbhe) | ±1/√B on the B taxels of a scrambled block \[SBHE\] | 1 | n + m indices |
 //! | [`BlockAverage`](Ensemble::BlockAverage) | 1/area on a rectangle of taxels | 1/√area | m rectangles |
 //! | [`Subsample`](Ensemble::Subsample) | one taxel | 1 | m indices |
@@ -22,9 +24,10 @@
 //! **Repeatability.** A row of measurements has the same bits in whatever batch it is measured.
 
 mod block_average;
-mod gaussian;
+mod dense;
 mod hadamard;
 mod projection;
+mod sparse;
 mod subsample;
 
 pub use projection::Projection;
@@ -37,6 +40,11 @@ use serde::{Deserialize, Serialize};
 pub enum Ensemble {
     /// Independent Gaussian entries.
     Gaussian,
+    /// Independent entries ±1/√n, either sign as likely.
+    Bernoulli,
+    /// Independent entries +√(s/n), 0, −√(s/n) with probabilities 1/2s, 1 − 1/s, 1/2s, where s = √n: the very sparse
+    /// projections of Li, Hastie and Church (2006). A measurement reads √n taxels on average.
+    Sparse,
     /// Scrambled block Hadamard \[SBHE\]: taxels permuted, Walsh–Hadamard transforms of blocks, coefficients in random order.
     Sbhe,
     /// Averages over blocks of neighbouring taxels: equal squares where the array allows them (64 × 64 at m = 1,024 is
