@@ -88,6 +88,15 @@ fn split_blocks((ny, nx): (usize, usize), m: usize) -> Vec<Block> {
     blocks
 }
 
+/// Root mean square norm of a row of Φ.
+pub(super) fn row_norm(blocks: &[Block]) -> f64 {
+    let square = blocks
+        .iter()
+        .map(|block| 1.0 / block.area() as f64)
+        .sum::<f64>();
+    (square / blocks.len() as f64).sqrt()
+}
+
 /// The mean of each block of each frame.
 pub(super) fn measure(blocks: &[Block], frames: ArrayView2<f64>, mut out: ArrayViewMut2<f64>) {
     let nx = blocks.iter().map(|b| b.columns.end).max().unwrap_or(1);

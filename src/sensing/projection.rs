@@ -127,6 +127,20 @@ impl Projection {
         }
     }
 
+    /// Root mean square norm of a row of Φ: how much louder noise on a taxel is in a measurement.
+    pub fn row_norm(&self) -> f64 {
+        match &self.operator {
+            Operator::Dense(matrix) => {
+                let square = matrix.iter().map(|v| v * v).sum::<f64>();
+                (square / self.n_measurements as f64).sqrt()
+            }
+            Operator::Sparse(sparse) => sparse.row_norm(),
+            Operator::Hadamard(hadamard) => hadamard.row_norm(),
+            Operator::Blocks(blocks) => block_average::row_norm(blocks),
+            Operator::Taxels(_) | Operator::Identity => 1.0,
+        }
+    }
+
     /// Φ itself, m × n: what [`measure`](Self::measure) applies.
     pub fn matrix(&self) -> Array2<f64> {
         // Unit frames are measured so many at a time, to bound their memory.

@@ -39,6 +39,15 @@ impl VerySparse {
         }
     }
 
+    pub(super) fn row_norm(&self) -> f64 {
+        let n_entries: usize = self
+            .rows
+            .iter()
+            .map(|row| row.plus.len() + row.minus.len())
+            .sum();
+        self.scale * (n_entries as f64 / self.rows.len() as f64).sqrt()
+    }
+
     pub(super) fn measure(&self, frames: ArrayView2<f64>, mut out: ArrayViewMut2<f64>) {
         let mut values = vec![[0.0; LANES]; self.n_taxels];
         let groups = frames.axis_chunks_iter(ndarray::Axis(0), LANES);
