@@ -1,7 +1,7 @@
 //! The axes of a study: each setting's name, its value in a cell, and how both are written for people.
 
 use crate::recognition::ClassifierKind;
-use crate::sensing::Ensemble;
+use crate::sensing::{Basis, Ensemble, Solver};
 use crate::signal::NoiseUnit;
 use crate::study::table::Cell;
 
@@ -160,6 +160,25 @@ pub fn ensemble_name(ensemble: Ensemble) -> &'static str {
         Ensemble::BlockAverage => "block average",
         Ensemble::Subsample => "subsample",
         Ensemble::Identity => "identity",
+    }
+}
+
+/// A basis in words.
+pub fn basis_name(basis: Basis) -> &'static str {
+    match basis {
+        Basis::Dct => "DCT",
+        Basis::Haar => "Haar",
+        Basis::Daubechies4 => "Daubechies 4",
+        Basis::Pca => "PCA",
+    }
+}
+
+/// A solver in words.
+pub fn solver_name(solver: Solver) -> &'static str {
+    match solver {
+        Solver::Omp => "OMP",
+        Solver::L1 => "ℓ1",
+        Solver::Lmmse => "LMMSE",
     }
 }
 

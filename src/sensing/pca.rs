@@ -6,6 +6,7 @@
 
 use super::symmetric_eigen::symmetric_eigen;
 use crate::random::Seed;
+use ndarray::linalg::general_mat_mul;
 use ndarray::{Array1, Array2, ArrayView2, ArrayViewMut1, Axis, s};
 use ndarray_rand::RandomExt;
 use rand_distr::StandardNormal;
@@ -16,6 +17,8 @@ const OVERSAMPLING: usize = 16;
 const ITERATIONS: usize = 3;
 /// Directions whose variance is below this part of the largest are rounding.
 const LEAST_VARIANCE: f64 = 1e-12;
+/// A row of which less than this is left by those before it depends on them.
+const DEPENDENT: f64 = 1e-10;
 
 /// The mean frame and the directions in which frames differ most.
 #[derive(Clone, Debug)]
@@ -77,21 +80,31 @@ fn point_up(mut row: ArrayViewMut1<f64>) {
 }
 
 /// Gram–Schmidt, twice over for accuracy; rows that depend on those before them are left out.
-fn orthonormal_rows(rows: Array2<f64>) -> Array2<f64> {
+///
+/// Rows are made orthogonal to all earlier blocks by matrix products, then to each other within their block.
+fn orthonormal_rows(mut rows: Array2<f64>) -> Array2<f64> {
+    const BLOCK: usize = 32;
+    let before = rows.map_axis(Axis(1), |row| row.dot(&row).sqrt());
     let mut basis: Array2<f64> = Array2::zeros(rows.dim());
     let mut n_kept = 0;
-    for row in rows.outer_iter() {
-        let before = row.dot(&row).sqrt();
-        let mut left = row.to_owned();
+    for (block, mut rows) in rows.axis_chunks_iter_mut(Axis(0), BLOCK).enumerate() {
+        let earlier = n_kept;
         for _ in 0..2 {
-            let kept = basis.slice(s![..n_kept, ..]);
-            let along = kept.dot(&left);
-            left -= &along.dot(&kept);
+            let kept = basis.slice(s![..earlier, ..]);
+            let along = rows.dot(&kept.t());
+            general_mat_mul(-1.0, &along, &kept, 1.0, &mut rows);
         }
-        let after = left.dot(&left).sqrt();
-        if after > 1e-10 * before {
-            basis.row_mut(n_kept).assign(&(left / after));
-            n_kept += 1;
+        for (number, mut row) in rows.outer_iter_mut().enumerate() {
+            for _ in 0..2 {
+                for kept in basis.slice(s![earlier..n_kept, ..]).outer_iter() {
+                    row.scaled_add(-row.dot(&kept), &kept);
+                }
+            }
+            let after = row.dot(&row).sqrt();
+            if after > DEPENDENT * before[block * BLOCK + number] {
+                basis.row_mut(n_kept).assign(&(&row / after));
+                n_kept += 1;
+            }
         }
     }
     basis.slice_move(s![..n_kept, ..])
@@ -131,6 +144,9 @@ mod tests {
     fn frames_that_span_few_directions_have_few_components() {
         let frames = frames(40, 25);
         let pca = Pca::new(frames.view(), 25, &Seed::new(1));
+        let unit = pca.components.dot(&pca.components.t());
+        let error = unit - Array2::<f64>::eye(pca.components.nrows());
+        assert!(error.iter().all(|e| e.abs() < 1e-12));
         assert!(pca.components.nrows() <= 7, "seven cosines");
         assert!((pca.variance.sum() / pca.total_variance - 1.0).abs() < 1e-10);
         let same = Array2::from_elem((3, 4), 2.0);

@@ -98,15 +98,16 @@ enum Prepared {
     Lmmse(Box<Lmmse>),
 }
 
-/// λ without noise, as a part of what would be used if noise were as large as the mean training frame's root mean square:
-/// small enough to hardly shrink coefficients, large enough to converge.
-const LEAST_LAMBDA: f64 = 1e-3;
+/// Noise that the ℓ1 problem always allows for, as a part of the training frames' root mean square: with a λ of zero it would
+/// never converge.
+const LEAST_NOISE: f64 = 1e-3;
 
 impl<'a> Reconstructor<'a> {
     /// Prepares a solver for noise of standard deviation σ (the frames' unit, zero or positive) on each taxel.
     ///
-    /// Rows of Φ have norm 1 on average, so matching pursuit and the ℓ1 problem take a measurement's noise to be σ times the
-    /// root mean square norm of a row; the linear estimate uses ΦΦᵀ itself.
+    /// All solvers take what no atom shows for noise too: √(σ² + τ) a taxel, τ from training frames
+    /// ([`Energy::rest`](super::Energy)). Matching pursuit and the ℓ1 problem take a measurement's noise to be that times the root
+    /// mean square norm of a row of Φ; the linear estimate uses ΦΦᵀ itself.
     ///
     /// # Errors
     /// What [`Lmmse::new`] refuses; limits of `effort` that are out of range are refused when frames are reconstructed.
@@ -116,19 +117,22 @@ impl<'a> Reconstructor<'a> {
         effort: &Effort,
         noise_std: f64,
     ) -> Result<Self> {
+        let rest = sensed
+            .dictionary()
+            .energy()
+            .map_or(0.0, |energy| energy.rest);
+        let of_taxels = (noise_std * noise_std + rest).sqrt();
+        let noise = of_taxels * sensed.projection().row_norm();
         let prepared = match solver {
             Solver::Lmmse => Prepared::Lmmse(Box::new(Lmmse::new(sensed, noise_std)?)),
             Solver::Omp => {
                 let m = sensed.projection().n_measurements();
-                let noise = noise_std * sensed.projection().row_norm();
                 Prepared::Omp(Omp::for_noise(effort.most_atoms, noise, m))
             }
             Solver::L1 => {
-                let noise = noise_std * sensed.projection().row_norm();
-                let floor = LEAST_LAMBDA * frame_scale(sensed);
-                let lambda = Lasso::universal_lambda(sensed, noise.max(floor));
+                let floor = LEAST_NOISE * frame_scale(sensed);
                 let lasso = Lasso {
-                    lambda: effort.lambda_scale * lambda,
+                    lambda: effort.lambda_scale * Lasso::universal_lambda(sensed, noise.max(floor)),
                     tolerance: effort.tolerance,
                     most_steps: effort.most_steps,
                 };
@@ -177,8 +181,9 @@ impl<'a> Reconstructor<'a> {
 impl Default for Effort {
     fn default() -> Self {
         Self {
-            most_atoms: 256,
-            lambda_scale: 1.0,
+            most_atoms: 128,
+            // The universal threshold shrinks too much: on noisy touches the error is least at a third of it.
+            lambda_scale: 0.3,
             tolerance: 1e-3,
             most_steps: 500,
         }

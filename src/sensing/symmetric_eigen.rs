@@ -51,7 +51,11 @@ fn tridiagonalise(a: &mut Array2<f64>) -> (Vec<f64>, Vec<f64>) {
     // T = … H₁ H₀ A H₀ H₁ …, so Q = … H₁ H₀.
     let mut q = Array2::eye(n);
     for (v, factor) in &reflections {
-        let projected: Array1<f64> = v.dot(&q) * *factor;
+        // vᵀQ row by row, since rows lie together in memory.
+        let mut projected: Array1<f64> = Array1::zeros(n);
+        for (row, &vi) in q.outer_iter().zip(v) {
+            projected.scaled_add(factor * vi, &row);
+        }
         for (mut row, &vi) in q.outer_iter_mut().zip(v) {
             if vi != 0.0 {
                 row.scaled_add(-vi, &projected);

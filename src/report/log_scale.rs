@@ -1,0 +1,72 @@
+//! A logarithmic axis: places and round ticks.
+
+/// Values from `low` to `high` (positive) along pixels `from` to `to`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct LogScale {
+    low: f64,
+    high: f64,
+    from: f64,
+    to: f64,
+}
+
+impl LogScale {
+    /// The scale that covers the positive values, with a margin; 0.1 to 10 when there are none.
+    pub(super) fn over(values: impl IntoIterator<Item = f64>, from: f64, to: f64) -> Self {
+        let range = values
+            .into_iter()
+            .filter(|v| v.is_finite() && *v > 0.0)
+            .fold((f64::INFINITY, 0.0), |(low, high): (f64, f64), v| {
+                (low.min(v), high.max(v))
+            });
+        let (low, high) = match range.0 <= range.1 {
+            true => range,
+            false => (0.1, 10.0),
+        };
+        // At least a third of a decade, so that equal values do not stand at the edges.
+        let margin = (0.06 * (high / low).log10()).max(0.08);
+        Self {
+            low: low / 10f64.powf(margin),
+            high: high * 10f64.powf(margin),
+            from,
+            to,
+        }
+    }
+
+    /// Where a value stands, pixels; values beyond the scale at its ends.
+    pub(super) fn place(&self, value: f64) -> f64 {
+        let part = (value.max(f64::MIN_POSITIVE) / self.low).ln() / (self.high / self.low).ln();
+        self.from + part.clamp(0.0, 1.0) * (self.to - self.from)
+    }
+
+    /// Powers of ten and, over few decades, twice and five times them.
+    pub(super) fn ticks(&self) -> Vec<f64> {
+        let decades = (self.high / self.low).log10();
+        let factors: &[f64] = if decades < 3.5 {
+            &[1.0, 2.0, 5.0]
+        } else {
+            &[1.0]
+        };
+        let first = self.low.log10().floor() as i32;
+        let last = self.high.log10().ceil() as i32;
+        (first..=last)
+            .flat_map(|power| factors.iter().map(move |f| f * 10f64.powi(power)))
+            .filter(|tick| (self.low..=self.high).contains(tick))
+            .collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ticks_are_round_and_every_factor_takes_the_same_room() {
+        let scale = LogScale::over([1.0, 100.0], 0.0, 300.0);
+        assert_eq!(scale.ticks(), [1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0]);
+        let step = scale.place(10.0) - scale.place(1.0);
+        assert!((scale.place(100.0) - scale.place(10.0) - step).abs() < 1e-9);
+        assert!(scale.place(1.0) > 0.0 && scale.place(100.0) < 300.0);
+        assert_eq!(scale.place(0.0), 0.0);
+        assert!(!LogScale::over([], 0.0, 1.0).ticks().is_empty());
+    }
+}
