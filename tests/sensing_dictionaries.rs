@@ -123,7 +123,7 @@ fn sensed_atoms_are_the_projection_times_the_dictionary() {
 }
 
 #[test]
-fn the_row_norm_is_that_of_the_matrix() {
+fn row_norm_and_row_gram_are_those_of_the_matrix() {
     for ensemble in [
         Ensemble::Gaussian,
         Ensemble::Bernoulli,
@@ -139,6 +139,8 @@ fn the_row_norm_is_that_of_the_matrix() {
             let square = matrix.iter().map(|v| v * v).sum::<f64>() / matrix.nrows() as f64;
             let error = projection.row_norm() - square.sqrt();
             assert!(error.abs() < 1e-12, "{ensemble:?}: {error}");
+            let gram = projection.row_gram() - matrix.dot(&matrix.t());
+            assert!(largest(&gram) < 1e-12, "{ensemble:?}");
         }
     }
 }

@@ -38,14 +38,23 @@ impl LogScale {
         self.from + part.clamp(0.0, 1.0) * (self.to - self.from)
     }
 
-    /// Powers of ten and, over few decades, twice and five times them.
+    /// Powers of ten and, the fewer decades there are, the more of their multiples: at least about three ticks.
     pub(super) fn ticks(&self) -> Vec<f64> {
-        let decades = (self.high / self.low).log10();
-        let factors: &[f64] = if decades < 3.5 {
-            &[1.0, 2.0, 5.0]
-        } else {
-            &[1.0]
-        };
+        const STEPS: [&[f64]; 4] = [
+            &[1.0],
+            &[1.0, 2.0, 5.0],
+            &[1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 7.0],
+            &[
+                1.0, 1.2, 1.4, 1.6, 1.8, 2.0, 2.2, 2.4, 2.6, 2.8, 3.0, 3.5, 4.0, 4.5, 5.0, 6.0,
+                7.0, 8.0, 9.0,
+            ],
+        ];
+        let finer = STEPS.iter().map(|factors| self.multiples(factors));
+        let enough = finer.clone().find(|ticks| ticks.len() >= 3);
+        enough.or_else(|| finer.last()).unwrap_or_default()
+    }
+
+    fn multiples(&self, factors: &[f64]) -> Vec<f64> {
         let first = self.low.log10().floor() as i32;
         let last = self.high.log10().ceil() as i32;
         (first..=last)
@@ -62,7 +71,8 @@ mod tests {
     #[test]
     fn ticks_are_round_and_every_factor_takes_the_same_room() {
         let scale = LogScale::over([1.0, 100.0], 0.0, 300.0);
-        assert_eq!(scale.ticks(), [1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0]);
+        assert_eq!(scale.ticks(), [1.0, 10.0, 100.0]);
+        assert_eq!(LogScale::over([0.3, 0.6], 0.0, 1.0).ticks().len(), 4);
         let step = scale.place(10.0) - scale.place(1.0);
         assert!((scale.place(100.0) - scale.place(10.0) - step).abs() < 1e-9);
         assert!(scale.place(1.0) > 0.0 && scale.place(100.0) < 300.0);

@@ -1,6 +1,6 @@
 //! Averages over blocks of neighbouring taxels.
 
-use ndarray::{ArrayView2, ArrayViewMut2, s};
+use ndarray::{Array1, ArrayView2, ArrayViewMut2, s};
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 use std::ops::Range;
@@ -88,13 +88,12 @@ fn split_blocks((ny, nx): (usize, usize), m: usize) -> Vec<Block> {
     blocks
 }
 
-/// Root mean square norm of a row of Φ.
-pub(super) fn row_norm(blocks: &[Block]) -> f64 {
-    let square = blocks
+/// ‖φᵢ‖² of each row of Φ; rows are orthogonal.
+pub(super) fn row_squares(blocks: &[Block]) -> Array1<f64> {
+    blocks
         .iter()
         .map(|block| 1.0 / block.area() as f64)
-        .sum::<f64>();
-    (square / blocks.len() as f64).sqrt()
+        .collect()
 }
 
 /// The mean of each block of each frame.

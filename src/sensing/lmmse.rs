@@ -54,8 +54,8 @@ impl Lmmse {
         // (E Aᵀ) with one atom a row: k × m.
         let weighted = &sensed.atoms() * &energy.of_atoms.view().insert_axis(ndarray::Axis(1));
         let mut covariance = weighted.t().dot(&sensed.atoms());
-        let phi = sensed.projection().matrix();
-        covariance.scaled_add(energy.rest + noise_std * noise_std, &phi.dot(&phi.t()));
+        let of_noise = sensed.projection().row_gram();
+        covariance.scaled_add(energy.rest + noise_std * noise_std, &of_noise);
         let m = covariance.nrows();
         let least = LEAST_NOISE * covariance.diag().sum() / m as f64;
         covariance.diag_mut().iter_mut().for_each(|v| *v += least);

@@ -136,8 +136,24 @@ impl Projection {
             }
             Operator::Sparse(sparse) => sparse.row_norm(),
             Operator::Hadamard(hadamard) => hadamard.row_norm(),
-            Operator::Blocks(blocks) => block_average::row_norm(blocks),
+            Operator::Blocks(blocks) => block_average::row_squares(blocks)
+                .mean()
+                .unwrap_or(1.0)
+                .sqrt(),
             Operator::Taxels(_) | Operator::Identity => 1.0,
+        }
+    }
+
+    /// ΦΦᵀ, m × m: the covariance of measurements of independent noise of variance 1 on every taxel.
+    pub fn row_gram(&self) -> Array2<f64> {
+        match &self.operator {
+            Operator::Taxels(_) | Operator::Identity => Array2::eye(self.n_measurements),
+            Operator::Blocks(blocks) => Array2::from_diag(&block_average::row_squares(blocks)),
+            Operator::Dense(matrix) => matrix.dot(&matrix.t()),
+            Operator::Sparse(_) | Operator::Hadamard(_) => {
+                let matrix = self.matrix();
+                matrix.dot(&matrix.t())
+            }
         }
     }
 
