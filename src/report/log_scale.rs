@@ -49,9 +49,9 @@ impl LogScale {
                 7.0, 8.0, 9.0,
             ],
         ];
-        let finer = STEPS.iter().map(|factors| self.multiples(factors));
-        let enough = finer.clone().find(|ticks| ticks.len() >= 3);
-        enough.or_else(|| finer.last()).unwrap_or_default()
+        let finer = STEPS.map(|factors| self.multiples(factors));
+        let enough = finer.iter().position(|ticks| ticks.len() >= 3);
+        finer[enough.unwrap_or(STEPS.len() - 1)].clone()
     }
 
     fn multiples(&self, factors: &[f64]) -> Vec<f64> {
