@@ -6,7 +6,7 @@ use bubbletouch::Result;
 use bubbletouch::files::write_bytes;
 use bubbletouch::random::Seed;
 use bubbletouch::report::progress;
-use bubbletouch::report::reconstruction_charts::draw_samples;
+use bubbletouch::report::reconstruction_frames::draw_samples;
 use bubbletouch::report::reconstruction_results::write_reconstruction;
 use bubbletouch::report::reconstruction_text::reconstruction_summary;
 use bubbletouch::study::reconstruction::reconstruct;

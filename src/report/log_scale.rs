@@ -1,4 +1,9 @@
-//! A logarithmic axis: places and round ticks.
+//! Logarithmic axes: places, round ticks, and how they are drawn.
+
+use crate::report::axis::short_number;
+use crate::report::colours::{GRID, INK};
+use crate::report::drawing::{Align, Area, Drawing, Stroke, TextStyle};
+use crate::report::text_width::text_width;
 
 /// Values from `low` to `high` (positive) along pixels `from` to `to`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -61,6 +66,59 @@ impl LogScale {
             .flat_map(|power| factors.iter().map(move |f| f * 10f64.powi(power)))
             .filter(|tick| (self.low..=self.high).contains(tick))
             .collect()
+    }
+}
+
+/// Both axes of a panel with their ticks and grid; of x labels that would touch, the later are left out.
+pub(super) fn draw_axes(
+    drawing: &mut Drawing,
+    area: Area,
+    (x, x_ticks): (LogScale, &[f64]),
+    (y, y_ticks): (LogScale, &[f64]),
+) {
+    let (right, bottom) = (area.x + area.width, area.y + area.height);
+    let ink = Stroke::new(INK, 1.0);
+    let mut free_from = f64::NEG_INFINITY;
+    let mut ticks = x_ticks.to_vec();
+    ticks.sort_by(f64::total_cmp);
+    for tick in ticks {
+        let at = x.place(tick);
+        drawing.line((at, area.y), (at, bottom), Stroke::new(GRID, 1.0));
+        drawing.line((at, bottom), (at, bottom + 5.0), ink);
+        let text = short_number(tick);
+        let half = text_width(&text, 12.0) / 2.0;
+        if at - half > free_from {
+            drawing.text(
+                (at, bottom + 19.0),
+                &text,
+                TextStyle::new(12).align(Align::Middle),
+            );
+            free_from = at + half + 5.0;
+        }
+    }
+    for &tick in y_ticks {
+        let at = y.place(tick);
+        drawing.line((area.x, at), (right, at), Stroke::new(GRID, 1.0));
+        drawing.line((area.x - 5.0, at), (area.x, at), ink);
+        let beside = (area.x - 9.0, at + 4.5);
+        drawing.text(
+            beside,
+            &short_number(tick),
+            TextStyle::new(12).align(Align::End),
+        );
+    }
+    drawing.line((area.x, bottom), (right, bottom), ink);
+    drawing.line((area.x, area.y), (area.x, bottom), ink);
+}
+
+/// What runs along x, and along y.
+pub(super) fn axis_titles(drawing: &mut Drawing, area: Area, along_x: &str, along_y: Option<&str>) {
+    let style = TextStyle::new(13).align(Align::Middle);
+    let below = (area.x + area.width / 2.0, area.y + area.height + 38.0);
+    drawing.text(below, along_x, style);
+    if let Some(text) = along_y {
+        let beside = (area.x - 46.0, area.y + area.height / 2.0);
+        drawing.text(beside, text, style.angle(-90.0));
     }
 }
 

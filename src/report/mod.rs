@@ -26,6 +26,8 @@ pub mod pressure_map;
 pub mod progress;
 mod raster;
 pub mod reconstruction_charts;
+pub mod reconstruction_frames;
+mod reconstruction_rates;
 pub mod reconstruction_results;
 pub mod reconstruction_text;
 pub mod results;

@@ -11,7 +11,9 @@ mod runner;
 mod score;
 mod spec;
 pub mod table;
+mod touches;
 
 pub use plan::ReconstructionPlan;
-pub use runner::{ReconstructionOutcome, SampleFrames, reconstruct};
+pub use runner::{ReconstructionOutcome, reconstruct};
 pub use spec::{ReconstructionSpec, ReconstructionStudySpec, is_reconstruction_study};
+pub use touches::SampleFrames;

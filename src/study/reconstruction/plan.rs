@@ -2,7 +2,8 @@
 
 use super::spec::{ReconstructionSpec, ReconstructionStudySpec};
 use crate::error::Result;
-use crate::sensing::{Basis, Dictionary, Effort, Ensemble, Solver};
+use crate::random::Seed;
+use crate::sensing::{Basis, Dictionary, Effort, Ensemble, Projection, Solver};
 use crate::signal::{Noise, NoiseUnit, Quantity, SignalStep};
 use crate::study::check::{Check, not_negative, positive};
 use crate::study::plan::{Amount, MM};
@@ -122,6 +123,13 @@ impl ReconstructionPlan {
         counts.sort_unstable();
         counts.dedup();
         counts
+    }
+
+    /// The study's projection of an ensemble to m measurements.
+    pub(super) fn projection(&self, ensemble: Ensemble, m: usize) -> Result<Projection> {
+        let grid = (self.patch.grid.ny, self.patch.grid.nx);
+        let seed = Seed::new(self.spec.seed).named("projection").numbered(0);
+        Projection::new(ensemble, grid, m, &seed)
     }
 
     /// How many cells.
