@@ -20,7 +20,7 @@ use ndarray::Array2;
 pub struct Coherence {
     /// μ, over atoms that can be sensed; 0 when there are fewer than two.
     pub mutual: f64,
-    /// Welch's bound for k atoms and m measurements; 0 when k ≤ m.
+    /// Welch's bound for as many atoms as can be sensed and m measurements; 0 when there are at most m.
     pub welch_bound: f64,
     /// Atoms that the projection cannot see: their column is zero.
     pub n_invisible: usize,
@@ -56,7 +56,7 @@ impl SensedDictionary<'_> {
                 mutual = mutual.max(gram[[i, j]].abs() / (norms[i] * norms[j]));
             }
         }
-        let (k, m) = (norms.len() as f64, self.atoms().ncols() as f64);
+        let (k, m) = (visible.len() as f64, self.atoms().ncols() as f64);
         Coherence {
             mutual,
             welch_bound: ((k - m).max(0.0) / (m * (k - 1.0).max(1.0))).sqrt(),

@@ -89,7 +89,7 @@ pub struct EnsembleStatistics {
     pub atoms: usize,
     /// Mutual coherence over the atoms that are not invisible.
     pub coherence: f64,
-    /// The least that any k columns in m dimensions have.
+    /// The least that any as many columns in m dimensions have.
     pub welch_bound: f64,
     /// Atoms that Φ maps to zero.
     pub n_invisible: usize,
