@@ -1,7 +1,9 @@
-//! Time to measure 1,000 touches of a 64 × 64 array, and to make their noise and smoothing.
+//! Time to measure 1,000 touches of a 64 × 64 array, to make their noise and smoothing, and to reconstruct 64 of them.
 
 use bubbletouch::random::Seed;
-use bubbletouch::sensing::{Ensemble, Projection};
+use bubbletouch::sensing::{
+    Basis, Dictionary, Effort, Ensemble, Projection, Reconstructor, SensedDictionary, Solver,
+};
 use bubbletouch::signal::{Chain, Noise, NoiseUnit, Scratch, SignalStep};
 use bubbletouch::world::{Grid, Patch, Taxel};
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
@@ -23,6 +25,8 @@ fn measure(criterion: &mut Criterion) {
     group.sample_size(10);
     for (name, ensemble) in [
         ("gaussian", Ensemble::Gaussian),
+        ("bernoulli", Ensemble::Bernoulli),
+        ("sparse", Ensemble::Sparse),
         ("sbhe", Ensemble::Sbhe),
         ("block_average", Ensemble::BlockAverage),
         ("subsample", Ensemble::Subsample),
@@ -77,5 +81,46 @@ fn signal(criterion: &mut Criterion) {
     group.finish();
 }
 
-criterion_group!(benches, measure, signal);
+/// Bumps that wander over the array: what dictionaries learn from, and what is reconstructed.
+fn bumps(n_frames: usize) -> Array2<f64> {
+    Array2::from_shape_fn((n_frames, SIDE * SIDE), |(i, j)| {
+        let (y, x) = ((j / SIDE) as f64, (j % SIDE) as f64);
+        let (cy, cx) = ((i * 7 % 64) as f64, (i * 11 % 61) as f64);
+        let (dy, dx) = (y - cy, x - cx);
+        2e-3 * (1.0 - (dx * dx + dy * dy) / (40.0 + (i % 13) as f64)).max(0.0)
+    })
+}
+
+fn reconstruct(criterion: &mut Criterion) {
+    const BATCH: usize = 64;
+    let seed = Seed::new(1);
+    let (train, grid) = (bumps(600), (SIDE, SIDE));
+    let mut group = criterion.benchmark_group("reconstruct_64_touches_64x64_from_1024");
+    group.throughput(Throughput::Elements(BATCH as u64));
+    group.sample_size(10);
+    let projection = Projection::new(Ensemble::Sbhe, grid, 1024, &seed).expect("m is in its range");
+    let measurements = projection.measure(bumps(BATCH).view());
+    for (name, basis) in [("dct", Basis::Dct), ("pca", Basis::Pca)] {
+        let dictionary = Dictionary::learned(basis, grid, train.view(), Some(256), &seed)
+            .expect("training frames are finite");
+        let sensed = SensedDictionary::new(&projection, &dictionary).expect("one array");
+        for (solver_name, solver) in [
+            ("omp", Solver::Omp),
+            ("l1", Solver::L1),
+            ("lmmse", Solver::Lmmse),
+        ] {
+            let reconstructor = Reconstructor::new(solver, &sensed, &Effort::default(), 5e-4)
+                .expect("the dictionary is learned");
+            group.bench_function(
+                BenchmarkId::new(solver_name, format!("{name}_256")),
+                |bencher| {
+                    bencher.iter(|| reconstructor.reconstruct(measurements.view()));
+                },
+            );
+        }
+    }
+    group.finish();
+}
+
+criterion_group!(benches, measure, signal, reconstruct);
 criterion_main!(benches);

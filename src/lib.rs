@@ -89,7 +89,7 @@
 //! | [`world`] | taxels, layouts, resting poses → touches |
 //! | [`contact`] | a scene and poses → deflections |
 //! | [`signal`] | deflections → frames |
-//! | [`sensing`] | frames → measurements |
+//! | [`sensing`] | frames → measurements, and back |
 //! | [`recognition`] | labelled measurements → classifier, scores |
 //! | [`study`] | TOML → plan → tables |
 //! | [`report`] | tables → files for people |

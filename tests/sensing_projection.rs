@@ -4,12 +4,22 @@ use bubbletouch::random::Seed;
 use bubbletouch::sensing::{Ensemble, Projection};
 use ndarray::{Array2, ArrayView2, s};
 
-const ENSEMBLES: [Ensemble; 5] = [
+const ENSEMBLES: [Ensemble; 7] = [
     Ensemble::Gaussian,
+    Ensemble::Bernoulli,
+    Ensemble::Sparse,
     Ensemble::Sbhe,
     Ensemble::BlockAverage,
     Ensemble::Subsample,
     Ensemble::Identity,
+];
+
+/// Ensembles whose rows mix taxels at random.
+const RANDOM: [Ensemble; 4] = [
+    Ensemble::Gaussian,
+    Ensemble::Bernoulli,
+    Ensemble::Sparse,
+    Ensemble::Sbhe,
 ];
 
 fn projection(ensemble: Ensemble, grid: (usize, usize), m: usize) -> Projection {
@@ -130,7 +140,7 @@ fn coarse_block_averages_are_averages_of_fine_ones() {
 fn random_ensembles_keep_distances_between_frames() {
     let (n, m) = (1024, 256);
     let frames = frames(12, n);
-    for ensemble in [Ensemble::Gaussian, Ensemble::Sbhe] {
+    for ensemble in RANDOM {
         let measured = projection(ensemble, (32, 32), m).measure(frames.view());
         for a in 0..12 {
             for b in 0..a {
@@ -148,13 +158,35 @@ fn random_ensembles_keep_distances_between_frames() {
 }
 
 #[test]
-fn gaussian_entries_have_mean_zero_and_variance_one_over_n() {
-    let matrix = projection(Ensemble::Gaussian, (20, 20), 400).matrix();
-    let count = 160_000.0f64;
-    let mean = matrix.sum() / count;
-    let variance = matrix.iter().map(|v| v * v).sum::<f64>() / count;
-    assert!(mean.abs() < 4.0 / (400.0 * count).sqrt());
-    assert!((variance * 400.0 - 1.0).abs() < 4.0 * (2.0 / count).sqrt());
+fn independent_entries_have_mean_zero_and_variance_one_over_n() {
+    // Variance of z² for a standardised entry z: 2 for Gaussian, 0 for ±1, s − 1 for sparse.
+    for (ensemble, of_squares) in [
+        (Ensemble::Gaussian, 2.0),
+        (Ensemble::Bernoulli, 1e-20),
+        (Ensemble::Sparse, 19.0),
+    ] {
+        let matrix = projection(ensemble, (20, 20), 400).matrix();
+        let count = 160_000.0f64;
+        let mean = matrix.sum() / count;
+        let variance = matrix.iter().map(|v| v * v).sum::<f64>() / count;
+        assert!(mean.abs() < 4.0 / (400.0 * count).sqrt(), "{ensemble:?}");
+        let error = (variance * 400.0 - 1.0).abs();
+        assert!(error < 4.0 * f64::sqrt(of_squares / count), "{ensemble:?}");
+    }
+}
+
+#[test]
+fn bernoulli_entries_have_one_magnitude_and_sparse_ones_three_values_at_a_density_of_one_over_root_n()
+ {
+    let bernoulli = projection(Ensemble::Bernoulli, (16, 16), 100).matrix();
+    assert!(bernoulli.iter().all(|v| v.abs() == 1.0 / 16.0));
+    let sparse = projection(Ensemble::Sparse, (16, 16), 256).matrix();
+    // s = 16, so entries are ±√(16/256) = ±0.25.
+    assert!(sparse.iter().all(|v| [0.0, 0.25].contains(&v.abs())));
+    let n_set = sparse.iter().filter(|v| **v != 0.0).count() as f64;
+    let (entries, density) = (65_536.0, 1.0 / 16.0);
+    let std = f64::sqrt(entries * density * (1.0 - density));
+    assert!((n_set - entries * density).abs() < 4.0 * std, "{n_set}");
 }
 
 #[test]
@@ -174,7 +206,7 @@ fn identity_gives_the_frame_whatever_is_asked() {
 
 #[test]
 fn another_seed_draws_another_projection() {
-    for ensemble in [Ensemble::Gaussian, Ensemble::Sbhe, Ensemble::Subsample] {
+    for ensemble in RANDOM.into_iter().chain([Ensemble::Subsample]) {
         let of = |seed| {
             Projection::new(ensemble, (8, 8), 16, &Seed::new(seed))
                 .unwrap()

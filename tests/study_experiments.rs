@@ -1,6 +1,9 @@
 //! The experiments that come with the crate: they say what they ask, and they can run.
 
 use bubbletouch::random::Seed;
+use bubbletouch::study::reconstruction::{
+    ReconstructionPlan, ReconstructionStudySpec, is_reconstruction_study,
+};
 use bubbletouch::study::{Plan, StudySpec, Sweep, draw_touches, load_objects};
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -44,7 +47,15 @@ fn every_experiment_says_what_it_asks_from_where_what_to_expect_and_how_long_it_
 fn every_experiment_can_run() {
     for path in experiments() {
         let place = path.display().to_string();
-        let spec = StudySpec::parse(&place, &fs::read_to_string(&path).unwrap()).unwrap();
+        let text = fs::read_to_string(&path).unwrap();
+        if is_reconstruction_study(&text) {
+            let spec = ReconstructionStudySpec::parse(&place, &text).unwrap();
+            assert!(!spec.question.is_empty() && !spec.expected.is_empty());
+            let plan = ReconstructionPlan::new(&place, spec).unwrap();
+            assert!(plan.n_cells() > 1, "{place} compares something");
+            continue;
+        }
+        let spec = StudySpec::parse(&place, &text).unwrap();
         assert!(
             !spec.question.is_empty() && !spec.expected.is_empty(),
             "{place}"

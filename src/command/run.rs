@@ -1,6 +1,7 @@
 //! `bubbletouch run`: a study from its file to its folder of results.
 
 use super::output::{output_folder, terminal_width};
+use super::run_reconstruction::run_reconstruction;
 use super::study_args::{LoadedStudy, StudyArgs};
 use bubbletouch::Result;
 use bubbletouch::files::write_bytes;
@@ -35,6 +36,9 @@ pub fn run(args: &Args) -> Result<()> {
         Some(folder) => folder.clone(),
         None => Path::new("results").join(args.study.name()?),
     };
+    if args.study.is_reconstruction()? {
+        return run_reconstruction(&args.study, &folder);
+    }
     let loaded = args.study.load()?;
     output_folder(&folder)?;
     let progress = progress::to_stderr();

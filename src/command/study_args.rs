@@ -1,6 +1,9 @@
 //! What `run`, `plan` and `touches` have in common: a study file, and what overrides it.
 
 use bubbletouch::random::Seed;
+use bubbletouch::study::reconstruction::{
+    ReconstructionPlan, ReconstructionStudySpec, is_reconstruction_study,
+};
 use bubbletouch::study::{Plan, StudySpec, Sweep, TouchedObject, draw_touches, load_objects};
 use bubbletouch::{Error, Result};
 use std::path::PathBuf;
@@ -52,6 +55,13 @@ impl StudyArgs {
     pub fn plan(&self) -> Result<Plan> {
         set_threads(self.threads)?;
         let place = self.study.display().to_string();
+        if self.is_reconstruction()? {
+            return Err(Error::input(
+                place,
+                "a study that reconstructs frames",
+                "a study that recognises objects (bubbletouch run runs both kinds)",
+            ));
+        }
         let mut spec = StudySpec::parse(&place, &self.text()?)?;
         if let Some(seed) = self.seed {
             spec.seed = seed;
@@ -61,6 +71,24 @@ impl StudyArgs {
             spec.objects.sets.clear();
         }
         Plan::new(&place, spec)
+    }
+
+    /// Whether the study reconstructs frames rather than recognising objects.
+    pub fn is_reconstruction(&self) -> Result<bool> {
+        Ok(is_reconstruction_study(&self.text()?))
+    }
+
+    /// Reads and checks a study that reconstructs frames.
+    pub fn reconstruction_plan(&self) -> Result<ReconstructionPlan> {
+        self.set_threads()?;
+        let place = self.study.display().to_string();
+        let mut spec = ReconstructionStudySpec::parse(&place, &self.text()?)?;
+        spec.seed = self.seed.unwrap_or(spec.seed);
+        if let Some(folder) = &self.objects {
+            spec.objects.meshes = Some(folder.clone());
+            spec.objects.sets.clear();
+        }
+        ReconstructionPlan::new(&place, spec)
     }
 
     /// Reads and checks the study, builds its objects, draws its touches and lays out its cells.

@@ -2,7 +2,7 @@
 
 use crate::recognition::ClassifierKind;
 use crate::recognition::features::Features;
-use crate::sensing::Ensemble;
+use crate::sensing::{Basis, Ensemble, Solver};
 use crate::signal::NoiseUnit;
 use crate::study::table::Cell;
 
@@ -180,6 +180,8 @@ pub fn short_number(number: f64) -> String {
 pub fn ensemble_name(ensemble: Ensemble) -> &'static str {
     match ensemble {
         Ensemble::Gaussian => "Gaussian",
+        Ensemble::Bernoulli => "Bernoulli",
+        Ensemble::Sparse => "sparse",
         Ensemble::Sbhe => "SBHE",
         Ensemble::BlockAverage => "block average",
         Ensemble::Subsample => "subsample",
@@ -194,6 +196,25 @@ pub fn features_name(features: Features) -> &'static str {
         Features::Centred => "centred",
         Features::UnitNorm => "unit norm",
         Features::CentredUnitNorm => "centred, unit norm",
+    }
+}
+
+/// A basis in words.
+pub fn basis_name(basis: Basis) -> &'static str {
+    match basis {
+        Basis::Dct => "DCT",
+        Basis::Haar => "Haar",
+        Basis::Daubechies4 => "Daubechies 4",
+        Basis::Pca => "PCA",
+    }
+}
+
+/// A solver in words.
+pub fn solver_name(solver: Solver) -> &'static str {
+    match solver {
+        Solver::Omp => "OMP",
+        Solver::L1 => "ℓ1",
+        Solver::Lmmse => "LMMSE",
     }
 }
 

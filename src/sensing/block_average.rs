@@ -1,6 +1,6 @@
 //! Averages over blocks of neighbouring taxels.
 
-use ndarray::{ArrayView2, ArrayViewMut2, s};
+use ndarray::{Array1, ArrayView2, ArrayViewMut2, s};
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 use std::ops::Range;
@@ -86,6 +86,14 @@ fn split_blocks((ny, nx): (usize, usize), m: usize) -> Vec<Block> {
         blocks.push(second);
     }
     blocks
+}
+
+/// ‖φᵢ‖² of each row of Φ; rows are orthogonal.
+pub(super) fn row_squares(blocks: &[Block]) -> Array1<f64> {
+    blocks
+        .iter()
+        .map(|block| 1.0 / block.area() as f64)
+        .collect()
 }
 
 /// The mean of each block of each frame.

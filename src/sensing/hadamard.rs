@@ -65,6 +65,20 @@ impl ScrambledHadamard {
         }
     }
 
+    /// Below 1 where zeros were scattered among the taxels.
+    pub(super) fn row_norm(&self) -> f64 {
+        let in_block = |coefficient: usize| {
+            let first = coefficient / self.block * self.block;
+            let taxels = &self.taxels[first..first + self.block];
+            taxels
+                .iter()
+                .filter(|&&taxel| taxel < self.n_taxels)
+                .count()
+        };
+        let n_entries: usize = self.picks.iter().map(|pick| in_block(pick.0)).sum();
+        (n_entries as f64 / (self.block * self.picks.len()) as f64).sqrt()
+    }
+
     fn same_block(&self, a: &(usize, usize), b: &(usize, usize)) -> bool {
         a.0 / self.block == b.0 / self.block
     }

@@ -1,4 +1,4 @@
-//! Sensing: frames → measurements `y = Φx`.
+//! Sensing: frames → measurements `y = Φx`, and back.
 //!
 //! A [`Projection`] turns a frame x of n taxels (ny × nx, row after row) into m measurements, 1 ≤ m ≤ n; n / m is the
 //! compression ratio.
@@ -6,6 +6,8 @@
 //! | ensemble | row of Φ | a row's norm | stored |
 //! |---|---|---|---|
 //! | [`Gaussian`](Ensemble::Gaussian) | independent N(0, 1/n) | 1 on average | m × n numbers |
+//! | [`Bernoulli`](Ensemble::Bernoulli) | independent ±1/√n | 1 | m × n numbers |
+//! | [`Sparse`](Ensemble::Sparse) | independent ±√(s/n) at a density of 1/s, s = √n, else 0 | 1 on average | m√n indices |
 //! | [`Sbhe`](Ensemble::Sbhe) | ±1/√B on the B taxels of a scrambled block \[SBHE\] | 1 | n + m indices |
 //! | [`BlockAverage`](Ensemble::BlockAverage) | 1/area on a rectangle of taxels | 1/√area | m rectangles |
 //! | [`Subsample`](Ensemble::Subsample) | one taxel | 1 | m indices |
@@ -20,14 +22,51 @@
 //! array is neither half. Block averages nest in their own way instead: see [`Ensemble::BlockAverage`].
 //!
 //! **Repeatability.** A row of measurements has the same bits in whatever batch it is measured.
+//!
+//! # Back to frames
+//!
+//! A [`Dictionary`] Ψ of orthonormal atoms says what frames are made of: x = x₀ + Ψα. Seen through Φ it is A = ΦΨ, a
+//! [`SensedDictionary`], and a [`Reconstructor`] finds α from y − Φx₀ = Aα + Φ·noise.
+//!
+//! | solver | α | a frame costs |
+//! |---|---|---|
+//! | [`Omp`] | s atoms, greedily, until the residual is noise | mk + ks² |
+//! | [`Lasso`] (FISTA) | argmin ½‖y − Aα‖² + λ‖α‖₁ | steps × 2 min(k², 2mk) |
+//! | [`Lmmse`] | E Aᵀ(A E Aᵀ + (τ + σ²)ΦΦᵀ)⁻¹ y, E and τ from training frames | min(mn, k(m + n)) |
+//!
+//! **Where noise enters.** On the taxels, before Φ: y = Φ(x + noise). So a measurement carries noise of σ times its row's norm
+//! however few measurements there are, and full sampling is the noisy frame itself.
+//!
+//! How well a pair of Φ and Ψ can do is bounded by its [`Coherence`] and restricted isometry
+//! ([`SensedDictionary::isometry`]).
 
 mod block_average;
-mod gaussian;
+mod cholesky;
+mod coherence;
+mod cosine;
+mod dense;
+mod dictionary;
 mod hadamard;
+mod lasso;
+mod lmmse;
+mod omp;
+mod pca;
 mod projection;
+mod reconstruction;
+mod sensed;
+mod sparse;
 mod subsample;
+mod symmetric_eigen;
+mod wavelet;
 
+pub use coherence::{Coherence, Extremes};
+pub use dictionary::{Basis, Dictionary, Energy};
+pub use lasso::Lasso;
+pub use lmmse::Lmmse;
+pub use omp::Omp;
 pub use projection::Projection;
+pub use reconstruction::{Effort, Reconstruction, Reconstructor, Solved, Solver};
+pub use sensed::SensedDictionary;
 
 use serde::{Deserialize, Serialize};
 
@@ -37,6 +76,11 @@ use serde::{Deserialize, Serialize};
 pub enum Ensemble {
     /// Independent Gaussian entries.
     Gaussian,
+    /// Independent entries ±1/√n, either sign as likely.
+    Bernoulli,
+    /// Independent entries +√(s/n), 0, −√(s/n) with probabilities 1/2s, 1 − 1/s, 1/2s, where s = √n: the very sparse
+    /// projections of Li, Hastie and Church (2006). A measurement reads √n taxels on average.
+    Sparse,
     /// Scrambled block Hadamard \[SBHE\]: taxels permuted, Walsh–Hadamard transforms of blocks, coefficients in random order.
     Sbhe,
     /// Averages over blocks of neighbouring taxels: equal squares where the array allows them (64 × 64 at m = 1,024 is

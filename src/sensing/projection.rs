@@ -1,10 +1,12 @@
 //! One prepared projection of any ensemble.
 
-use super::{Ensemble, block_average, gaussian, hadamard::ScrambledHadamard, subsample};
+use super::hadamard::ScrambledHadamard;
+use super::sparse::VerySparse;
+use super::{Ensemble, block_average, dense, subsample};
 use crate::error::{Error, Result};
 use crate::random::Seed;
 use block_average::Block;
-use ndarray::{Array2, ArrayView2, ArrayViewMut2, Axis};
+use ndarray::{Array2, ArrayView2, ArrayViewMut2, Axis, s};
 
 /// A map y = Φx from frames of n taxels to m measurements, drawn once and applied to any number of frames.
 ///
@@ -32,6 +34,7 @@ pub struct Projection {
 enum Operator {
     /// Φ, m × n.
     Dense(Array2<f64>),
+    Sparse(VerySparse),
     Hadamard(ScrambledHadamard),
     Blocks(Vec<Block>),
     /// The taxel of each measurement.
@@ -56,7 +59,11 @@ impl Projection {
             ));
         }
         let operator = match ensemble {
-            Ensemble::Gaussian => Operator::Dense(gaussian::matrix(m, n, &seed.named("gaussian"))),
+            Ensemble::Gaussian => Operator::Dense(dense::gaussian(m, n, &seed.named("gaussian"))),
+            Ensemble::Bernoulli => {
+                Operator::Dense(dense::bernoulli(m, n, &seed.named("bernoulli")))
+            }
+            Ensemble::Sparse => Operator::Sparse(VerySparse::new(m, n, &seed.named("sparse"))),
             Ensemble::Sbhe => Operator::Hadamard(ScrambledHadamard::new(m, n, &seed.named("sbhe"))),
             Ensemble::BlockAverage => Operator::Blocks(block_average::blocks(grid, m)),
             Ensemble::Subsample => {
@@ -107,7 +114,8 @@ impl Projection {
         let expected = (frames.nrows(), self.n_measurements);
         assert_eq!(measurements.dim(), expected, "frames × measurements");
         match &self.operator {
-            Operator::Dense(matrix) => gaussian::measure(matrix, frames, measurements),
+            Operator::Dense(matrix) => dense::measure(matrix, frames, measurements),
+            Operator::Sparse(sparse) => sparse.measure(frames, measurements),
             Operator::Hadamard(hadamard) => hadamard.measure(frames, measurements),
             Operator::Blocks(blocks) => block_average::measure(blocks, frames, measurements),
             Operator::Taxels(taxels) => {
@@ -119,14 +127,49 @@ impl Projection {
         }
     }
 
-    /// Φ itself, m × n: what [`measure`](Self::measure) applies, one unit frame at a time. For small arrays and for tests.
+    /// Root mean square norm of a row of Φ: how much louder noise on a taxel is in a measurement.
+    pub fn row_norm(&self) -> f64 {
+        match &self.operator {
+            Operator::Dense(matrix) => {
+                let square = matrix.iter().map(|v| v * v).sum::<f64>();
+                (square / self.n_measurements as f64).sqrt()
+            }
+            Operator::Sparse(sparse) => sparse.row_norm(),
+            Operator::Hadamard(hadamard) => hadamard.row_norm(),
+            Operator::Blocks(blocks) => block_average::row_squares(blocks)
+                .mean()
+                .unwrap_or(1.0)
+                .sqrt(),
+            Operator::Taxels(_) | Operator::Identity => 1.0,
+        }
+    }
+
+    /// ΦΦᵀ, m × m: the covariance of measurements of independent noise of variance 1 on every taxel.
+    pub fn row_gram(&self) -> Array2<f64> {
+        match &self.operator {
+            Operator::Taxels(_) | Operator::Identity => Array2::eye(self.n_measurements),
+            Operator::Blocks(blocks) => Array2::from_diag(&block_average::row_squares(blocks)),
+            Operator::Dense(matrix) => matrix.dot(&matrix.t()),
+            Operator::Sparse(_) | Operator::Hadamard(_) => {
+                let matrix = self.matrix();
+                matrix.dot(&matrix.t())
+            }
+        }
+    }
+
+    /// Φ itself, m × n: what [`measure`](Self::measure) applies.
     pub fn matrix(&self) -> Array2<f64> {
+        // Unit frames are measured so many at a time, to bound their memory.
+        const BLOCK: usize = 256;
+        if let Operator::Dense(matrix) = &self.operator {
+            return matrix.clone();
+        }
         let mut matrix = Array2::zeros((self.n_measurements, self.n_taxels));
-        let mut frame = Array2::zeros((1, self.n_taxels));
-        for (taxel, mut column) in matrix.axis_iter_mut(Axis(1)).enumerate() {
-            frame[[0, taxel]] = 1.0;
-            column.assign(&self.measure(frame.view()).row(0));
-            frame[[0, taxel]] = 0.0;
+        for (block, mut columns) in matrix.axis_chunks_iter_mut(Axis(1), BLOCK).enumerate() {
+            let mut frames = Array2::zeros((columns.ncols(), self.n_taxels));
+            let mut units = frames.slice_mut(s![.., block * BLOCK..]);
+            units.diag_mut().fill(1.0);
+            columns.assign(&self.measure(frames.view()).t());
         }
         matrix
     }

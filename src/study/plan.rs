@@ -103,10 +103,10 @@ impl Plan {
     pub fn new(place: &str, spec: StudySpec) -> Result<Self> {
         let check = Check { place };
         check.positive_count("trials", spec.trials)?;
-        check.objects(&spec)?;
+        check.objects(&spec.objects)?;
         let arrays = check.arrays(&spec.skin)?;
         let placement = check.placement(&spec.touches)?;
-        let (noise_unit, noise) = check.noise(&spec)?;
+        let (noise_unit, noise) = check.noise(&spec.signal)?;
         let smoothing = match &spec.signal.smoothing_mm {
             Some(axis) => check.axis(
                 "signal.smoothing_mm",
@@ -116,7 +116,7 @@ impl Plan {
             )?,
             None => vec![0.0],
         };
-        check.steps(&spec)?;
+        check.steps(&spec.signal)?;
         let ensembles = check.list("sensing.ensemble", spec.sensing.ensemble.values())?;
         let amounts = check.amounts(&spec.sensing, &arrays)?;
         let frames = check.counts("touches.frames", &spec.touches.frames)?;

@@ -3,7 +3,7 @@
 use super::axis::Axis;
 use super::check::{Check, not_negative, positive};
 use super::plan::{Amount, SplitKind, SplitPlan};
-use super::spec::{SensingSpec, StepSpec, StudySpec};
+use super::spec::{SensingSpec, SignalSpec, StepSpec, StudySpec};
 use super::training::{ChoicePlan, DEFAULT_FOLDS};
 use crate::error::Result;
 use crate::recognition::ClassifierKind;
@@ -11,8 +11,7 @@ use crate::signal::NoiseUnit;
 use crate::world::Patch;
 
 impl Check<'_> {
-    pub fn noise(&self, spec: &StudySpec) -> Result<(NoiseUnit, Vec<f64>)> {
-        let signal = &spec.signal;
+    pub fn noise(&self, signal: &SignalSpec) -> Result<(NoiseUnit, Vec<f64>)> {
         let given: Vec<_> = [
             (
                 "signal.noise_std_full_scale",
@@ -61,8 +60,7 @@ impl Check<'_> {
     }
 
     /// Each step at most once, and none whose axis is set but which is not listed: it would be silently ignored.
-    pub fn steps(&self, spec: &StudySpec) -> Result<()> {
-        let signal = &spec.signal;
+    pub fn steps(&self, signal: &SignalSpec) -> Result<()> {
         for (index, step) in signal.steps.iter().enumerate() {
             if signal.steps[..index].contains(step) {
                 return Err(self.error(

@@ -2,13 +2,12 @@
 
 use super::check::{Check, not_negative, positive};
 use super::plan::MM;
-use super::spec::{RangeSpec, RestSpec, SkinSpec, SpreadSpec, StudySpec, TouchesSpec};
+use super::spec::{ObjectsSpec, RangeSpec, RestSpec, SkinSpec, SpreadSpec, TouchesSpec};
 use crate::error::Result;
 use crate::world::{Grid, Patch, Placement, RestPoses, Spread, Taxel};
 
 impl Check<'_> {
-    pub fn objects(&self, spec: &StudySpec) -> Result<()> {
-        let objects = &spec.objects;
+    pub fn objects(&self, objects: &ObjectsSpec) -> Result<()> {
         if objects.sets.is_empty() && objects.meshes.is_none() {
             return Err(self.error(
                 "objects",

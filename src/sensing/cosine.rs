@@ -1,0 +1,31 @@
+//! The discrete cosine basis.
+
+use ndarray::Array2;
+use std::f64::consts::PI;
+
+/// The orthonormal DCT-II of length n: row k is √(2/n) cos(π (i + ½) k / n), row 0 is 1/√n.
+pub(super) fn cosines(n: usize) -> Array2<f64> {
+    Array2::from_shape_fn((n, n), |(k, i)| {
+        let scale = if k == 0 { 1.0 } else { 2.0 };
+        let angle = PI * (i as f64 + 0.5) * k as f64 / n as f64;
+        f64::sqrt(scale / n as f64) * angle.cos()
+    })
+}
+
+/// W_y X W_xᵀ of one ny × nx array.
+pub(super) fn analyse(
+    x: ndarray::ArrayView2<f64>,
+    wy: &Array2<f64>,
+    wx: &Array2<f64>,
+) -> Array2<f64> {
+    wy.dot(&x).dot(&wx.t())
+}
+
+/// W_yᵀ A W_x: the inverse of [`analyse`], since both are orthonormal.
+pub(super) fn synthesise(
+    a: ndarray::ArrayView2<f64>,
+    wy: &Array2<f64>,
+    wx: &Array2<f64>,
+) -> Array2<f64> {
+    wy.t().dot(&a).dot(wx)
+}

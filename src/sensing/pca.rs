@@ -1,0 +1,158 @@
+//! Principal components of frames, by a randomised range finder.
+//!
+//! Halko, Martinsson and Tropp (2011), *Finding structure with randomness*, algorithm 4.4 (subspace iteration), then the
+//! Rayleigh–Ritz step: the frames restricted to the subspace found are diagonalised exactly. With as many directions as the
+//! frames' rank the result is that of the full eigendecomposition.
+
+use super::symmetric_eigen::symmetric_eigen;
+use crate::random::Seed;
+use ndarray::linalg::general_mat_mul;
+use ndarray::{Array1, Array2, ArrayView2, ArrayViewMut1, Axis, s};
+use ndarray_rand::RandomExt;
+use rand_distr::StandardNormal;
+
+/// Directions beyond those that are kept: fewer lose the last components, more only cost time.
+const OVERSAMPLING: usize = 16;
+/// Products with the covariance; each squares the gap between what is kept and what is not.
+const ITERATIONS: usize = 3;
+/// Directions whose variance is below this part of the largest are rounding.
+const LEAST_VARIANCE: f64 = 1e-12;
+/// A row of which less than this is left by those before it depends on them.
+const DEPENDENT: f64 = 1e-10;
+
+/// The mean frame and the directions in which frames differ most.
+#[derive(Clone, Debug)]
+pub(super) struct Pca {
+    /// Mean frame, n.
+    pub mean: Array1<f64>,
+    /// k × n, orthonormal rows, the largest variance first; the largest entry of each is positive.
+    pub components: Array2<f64>,
+    /// Mean square of the frames along each component (divisor: the number of frames).
+    pub variance: Array1<f64>,
+    /// Mean square of the frames about their mean, all directions together.
+    pub total_variance: f64,
+}
+
+impl Pca {
+    /// At most k components of frames (n_frames × n); fewer when the frames span fewer.
+    pub(super) fn new(frames: ArrayView2<f64>, k: usize, seed: &Seed) -> Self {
+        let (n_frames, n) = frames.dim();
+        let mean = frames
+            .mean_axis(Axis(0))
+            .unwrap_or_else(|| Array1::zeros(n));
+        let centred = &frames - &mean;
+        let n_directions = (k + OVERSAMPLING).min(n_frames).min(n);
+        let mut rng = seed.named("pca").rng();
+        let random = Array2::random_using((n_directions, n_frames), StandardNormal, &mut rng);
+        let mut basis = orthonormal_rows(random.dot(&centred));
+        for _ in 0..ITERATIONS {
+            let across = orthonormal_rows(basis.dot(&centred.t()));
+            basis = orthonormal_rows(across.dot(&centred));
+        }
+        let scores = basis.dot(&centred.t());
+        let covariance = scores.dot(&scores.t()) / n_frames.max(1) as f64;
+        let (values, vectors) = symmetric_eigen(covariance.view());
+        let largest = values.last().copied().unwrap_or(0.0);
+        let kept: Vec<usize> = (0..values.len())
+            .rev()
+            .take(k)
+            .take_while(|&i| values[i] > LEAST_VARIANCE * largest)
+            .collect();
+        let mut components = vectors.select(Axis(0), &kept).dot(&basis);
+        components.outer_iter_mut().for_each(point_up);
+        Self {
+            mean,
+            components,
+            variance: values.select(Axis(0), &kept),
+            total_variance: centred.iter().map(|x| x * x).sum::<f64>() / n_frames.max(1) as f64,
+        }
+    }
+}
+
+/// Turns a direction so that its largest entry is positive: a component has no sign of its own.
+fn point_up(mut row: ArrayViewMut1<f64>) {
+    let largest = row
+        .iter()
+        .fold(0.0f64, |a, &b| if b.abs() > a.abs() { b } else { a });
+    if largest < 0.0 {
+        row.mapv_inplace(|v| -v);
+    }
+}
+
+/// Gram–Schmidt, twice over for accuracy; rows that depend on those before them are left out.
+///
+/// Rows are made orthogonal to all earlier blocks by matrix products, then to each other within their block.
+fn orthonormal_rows(mut rows: Array2<f64>) -> Array2<f64> {
+    const BLOCK: usize = 32;
+    let before = rows.map_axis(Axis(1), |row| row.dot(&row).sqrt());
+    let mut basis: Array2<f64> = Array2::zeros(rows.dim());
+    let mut n_kept = 0;
+    for (block, mut rows) in rows.axis_chunks_iter_mut(Axis(0), BLOCK).enumerate() {
+        let earlier = n_kept;
+        for _ in 0..2 {
+            let kept = basis.slice(s![..earlier, ..]);
+            let along = rows.dot(&kept.t());
+            general_mat_mul(-1.0, &along, &kept, 1.0, &mut rows);
+        }
+        for (number, mut row) in rows.outer_iter_mut().enumerate() {
+            for _ in 0..2 {
+                for kept in basis.slice(s![earlier..n_kept, ..]).outer_iter() {
+                    row.scaled_add(-row.dot(&kept), &kept);
+                }
+            }
+            let after = row.dot(&row).sqrt();
+            if after > DEPENDENT * before[block * BLOCK + number] {
+                basis.row_mut(n_kept).assign(&(&row / after));
+                n_kept += 1;
+            }
+        }
+    }
+    basis.slice_move(s![..n_kept, ..])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn frames(n_frames: usize, n: usize) -> Array2<f64> {
+        // A spectrum that falls: neighbours resemble each other.
+        Array2::from_shape_fn((n_frames, n), |(i, j)| {
+            let x = j as f64 / n as f64;
+            (1..8)
+                .map(|k| ((i * k * k) as f64).sin() / k as f64 * (k as f64 * 3.0 * x).cos())
+                .sum()
+        })
+    }
+
+    #[test]
+    fn components_are_those_of_the_full_eigendecomposition() {
+        let frames = frames(50, 30);
+        let pca = Pca::new(frames.view(), 5, &Seed::new(1));
+        let centred = &frames - &frames.mean_axis(Axis(0)).unwrap();
+        let covariance = centred.t().dot(&centred) / 50.0;
+        let (values, vectors) = symmetric_eigen(covariance.view());
+        for k in 0..5 {
+            let (value, vector) = (values[29 - k], vectors.row(29 - k));
+            assert!((pca.variance[k] - value).abs() < 1e-10 * values[29]);
+            let along = vector.dot(&pca.components.row(k)).abs();
+            assert!((along - 1.0).abs() < 1e-8, "{k}: {along}");
+        }
+        assert!((pca.total_variance - values.sum()).abs() < 1e-10);
+    }
+
+    #[test]
+    fn frames_that_span_few_directions_have_few_components() {
+        let frames = frames(40, 25);
+        let pca = Pca::new(frames.view(), 25, &Seed::new(1));
+        let unit = pca.components.dot(&pca.components.t());
+        let error = unit - Array2::<f64>::eye(pca.components.nrows());
+        assert!(error.iter().all(|e| e.abs() < 1e-12));
+        assert!(pca.components.nrows() <= 7, "seven cosines");
+        assert!((pca.variance.sum() / pca.total_variance - 1.0).abs() < 1e-10);
+        let same = Array2::from_elem((3, 4), 2.0);
+        assert_eq!(
+            Pca::new(same.view(), 2, &Seed::new(1)).components.nrows(),
+            0
+        );
+    }
+}

@@ -1,0 +1,112 @@
+//! Orthonormal wavelet pyramids of square-by-two arrays: Haar, and Daubechies' with four taps.
+
+use crate::error::{Error, Result};
+use ndarray::{Array1, ArrayViewMut1, ArrayViewMut2, Axis, s};
+
+/// The low-pass filter of an orthonormal wavelet; its high-pass is gₖ = (−1)ᵏ h₍L₋₁₋ₖ₎.
+#[derive(Clone, Debug)]
+pub(super) struct Wavelet {
+    low: Vec<f64>,
+    high: Vec<f64>,
+}
+
+impl Wavelet {
+    /// Haar: averages and differences of neighbours.
+    pub(super) fn haar() -> Self {
+        let h = std::f64::consts::FRAC_1_SQRT_2;
+        Self::from_low(vec![h, h])
+    }
+
+    /// Daubechies' wavelet with two vanishing moments (1988), periodic at the edges.
+    pub(super) fn daubechies4() -> Self {
+        let (root, scale) = (3f64.sqrt(), 1.0 / (4.0 * 2f64.sqrt()));
+        let taps = [1.0 + root, 3.0 + root, 3.0 - root, 1.0 - root];
+        Self::from_low(taps.iter().map(|tap| tap * scale).collect())
+    }
+
+    fn from_low(low: Vec<f64>) -> Self {
+        let signs = [1.0, -1.0].into_iter().cycle();
+        let high = low.iter().rev().zip(signs).map(|(h, sign)| h * sign);
+        Self {
+            high: high.collect(),
+            low,
+        }
+    }
+
+    /// Checks that an ny × nx array can be halved down to one number.
+    pub(super) fn check((ny, nx): (usize, usize)) -> Result<()> {
+        if ny.is_power_of_two() && nx.is_power_of_two() {
+            return Ok(());
+        }
+        Err(Error::input(
+            "wavelet dictionary",
+            format!("{nx} × {ny} taxels"),
+            "a power of two along each side (or the dct or pca dictionary)",
+        ))
+    }
+
+    /// The pyramid of averages and details, in place: each level halves every side that is longer than one.
+    pub(super) fn analyse(&self, mut frame: ArrayViewMut2<f64>) {
+        for (ny, nx) in levels(frame.dim()) {
+            let mut corner = frame.slice_mut(s![..ny, ..nx]);
+            for (axis, length) in [(Axis(1), nx), (Axis(0), ny)] {
+                if length > 1 {
+                    corner
+                        .lanes_mut(axis)
+                        .into_iter()
+                        .for_each(|lane| self.split(lane));
+                }
+            }
+        }
+    }
+
+    /// The inverse of [`analyse`](Self::analyse).
+    pub(super) fn synthesise(&self, mut frame: ArrayViewMut2<f64>) {
+        for (ny, nx) in levels(frame.dim()).into_iter().rev() {
+            let mut corner = frame.slice_mut(s![..ny, ..nx]);
+            for (axis, length) in [(Axis(0), ny), (Axis(1), nx)] {
+                if length > 1 {
+                    corner
+                        .lanes_mut(axis)
+                        .into_iter()
+                        .for_each(|lane| self.join(lane));
+                }
+            }
+        }
+    }
+
+    /// A lane of even length becomes its averages, then its details.
+    fn split(&self, mut lane: ArrayViewMut1<f64>) {
+        let n = lane.len();
+        let mut parts = Array1::zeros(n);
+        for half in 0..n / 2 {
+            for (tap, (low, high)) in self.low.iter().zip(&self.high).enumerate() {
+                let x = lane[(2 * half + tap) % n];
+                parts[half] += low * x;
+                parts[n / 2 + half] += high * x;
+            }
+        }
+        lane.assign(&parts);
+    }
+
+    fn join(&self, mut lane: ArrayViewMut1<f64>) {
+        let n = lane.len();
+        let mut whole = Array1::zeros(n);
+        for half in 0..n / 2 {
+            for (tap, (low, high)) in self.low.iter().zip(&self.high).enumerate() {
+                whole[(2 * half + tap) % n] += low * lane[half] + high * lane[n / 2 + half];
+            }
+        }
+        lane.assign(&whole);
+    }
+}
+
+/// The sides of the corner that each level splits, finest first.
+fn levels((mut ny, mut nx): (usize, usize)) -> Vec<(usize, usize)> {
+    let mut levels = Vec::new();
+    while ny > 1 || nx > 1 {
+        levels.push((ny, nx));
+        (ny, nx) = (ny.div_ceil(2), nx.div_ceil(2));
+    }
+    levels
+}

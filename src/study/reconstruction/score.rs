@@ -1,0 +1,126 @@
+//! Errors of reconstructed frames, and which cells no other beats.
+
+use super::table::{
+    ReconstructionCell, ReconstructionPareto, ReconstructionScore, ReconstructionTime,
+};
+use ndarray::{Array2, ArrayView2};
+
+/// 95 % of a normal distribution lies within so many standard deviations.
+const NORMAL_95: f64 = 1.959_963_984_540_054;
+
+/// ‖a − b‖² of each row.
+pub(super) fn square_errors(a: ArrayView2<f64>, b: ArrayView2<f64>) -> Vec<f64> {
+    let rows = a.outer_iter().zip(b.outer_iter());
+    rows.map(|(a, b)| a.iter().zip(b).map(|(a, b)| (a - b) * (a - b)).sum())
+        .collect()
+}
+
+/// What clean frames a cell's frames are compared with.
+pub(super) struct Truth {
+    /// ‖x‖² of each test frame.
+    squares: Vec<f64>,
+    n_taxels: usize,
+    /// The largest value a taxel can have.
+    full_scale: f64,
+}
+
+/// What a cell's solver did.
+pub(super) struct Outcome {
+    /// ‖x̂ − x‖² of each test frame.
+    pub errors: Vec<f64>,
+    /// Coefficients that are not zero, all frames.
+    pub n_atoms: usize,
+    pub n_capped: usize,
+}
+
+impl Truth {
+    pub(super) fn new(frames: &Array2<f64>, full_scale: f64) -> Self {
+        let rows = frames.outer_iter();
+        Self {
+            squares: rows.map(|x| x.dot(&x)).collect(),
+            n_taxels: frames.ncols(),
+            full_scale,
+        }
+    }
+
+    /// `full` holds ‖noisy − x‖² of each frame.
+    pub(super) fn score(&self, outcome: &Outcome, full: &[f64]) -> ReconstructionScore {
+        let n_frames = self.squares.len();
+        let (error, half_width) = self.ratio(&outcome.errors);
+        let (full_sampling, _) = self.ratio(full);
+        let n_values = (n_frames * self.n_taxels) as f64;
+        let mean_square = outcome.errors.iter().sum::<f64>() / n_values;
+        ReconstructionScore {
+            n_frames,
+            error: error.sqrt(),
+            error_low: (error - half_width).max(0.0).sqrt(),
+            error_high: (error + half_width).sqrt(),
+            full_sampling_error: full_sampling.sqrt(),
+            snr_db: -10.0 * error.log10(),
+            psnr_db: -10.0 * (mean_square / (self.full_scale * self.full_scale)).log10(),
+            atoms_used: outcome.n_atoms as f64 / n_frames as f64,
+            n_capped: outcome.n_capped,
+        }
+    }
+
+    /// Σe / Σ‖x‖², and half its 95 % interval over frames: that of a ratio of means, by linearisation (the delta method).
+    fn ratio(&self, errors: &[f64]) -> (f64, f64) {
+        let n = errors.len() as f64;
+        let mean = self.squares.iter().sum::<f64>() / n;
+        let ratio = errors.iter().sum::<f64>() / n / mean;
+        let pairs = errors.iter().zip(&self.squares);
+        let spread: f64 = pairs.map(|(e, x)| (e - ratio * x).powi(2)).sum();
+        let variance = spread / (n * (n - 1.0).max(1.0)) / (mean * mean);
+        (ratio, NORMAL_95 * variance.sqrt())
+    }
+}
+
+/// Marks, among cells of one noise level, those that no other beats in both error and rate.
+pub(super) fn pareto(
+    scores: &[(ReconstructionCell, ReconstructionScore)],
+    times: &[(ReconstructionCell, ReconstructionTime)],
+) -> Vec<(ReconstructionCell, ReconstructionPareto)> {
+    let points: Vec<(f64, f64, f64)> = scores
+        .iter()
+        .zip(times)
+        .map(|((cell, score), (_, time))| (cell.noise_std, score.error, time.frames_per_s_per_core))
+        .collect();
+    let beats = |a: &(f64, f64, f64), b: &(f64, f64, f64)| {
+        a.0 == b.0 && a.1 <= b.1 && a.2 >= b.2 && (a.1 < b.1 || a.2 > b.2)
+    };
+    let rows = scores.iter().zip(&points);
+    rows.map(|((cell, _), point)| {
+        let row = ReconstructionPareto {
+            error: point.1,
+            frames_per_s_per_core: point.2,
+            on_front: !points.iter().any(|other| beats(other, point)),
+        };
+        (cell.clone(), row)
+    })
+    .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use ndarray::array;
+
+    #[test]
+    fn the_error_is_relative_to_the_clean_frames_and_its_interval_covers_it() {
+        let clean = array![[3.0, 4.0], [0.0, 5.0], [5.0, 0.0]];
+        let truth = Truth::new(&clean, 10.0);
+        let outcome = Outcome {
+            errors: vec![1.0, 2.0, 0.0],
+            n_atoms: 6,
+            n_capped: 1,
+        };
+        let score = truth.score(&outcome, &[25.0, 25.0, 25.0]);
+        // 3 of 75.
+        assert!((score.error - 0.2).abs() < 1e-15);
+        assert_eq!((score.full_sampling_error, score.atoms_used), (1.0, 2.0));
+        assert!(score.error_low < 0.2 && 0.2 < score.error_high);
+        assert!((score.snr_db - 13.979_400_086_720_376).abs() < 1e-12);
+        // Mean square error 0.5 of a taxel against 10².
+        assert!((score.psnr_db - 23.010_299_956_639_813).abs() < 1e-12);
+    }
+}

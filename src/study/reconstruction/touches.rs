@@ -1,0 +1,170 @@
+//! Frames of all touches: simulated once, split, with and without noise; and the dictionaries learned from them.
+
+use super::plan::ReconstructionPlan;
+use super::score::{Truth, square_errors};
+use crate::error::Result;
+use crate::random::Seed;
+use crate::recognition::split::{Split, stratified_hold_out};
+use crate::sensing::{Dictionary, Ensemble};
+use crate::signal::{Chain, Noise, NoiseUnit};
+use crate::study::measurement::{Reading, measure, touch_seeds};
+use crate::study::progress::Progress;
+use crate::study::simulation::{Frames, TouchedObject, simulate_array};
+use ndarray::{Array1, Array2, Axis};
+use rayon::prelude::*;
+
+/// Test frames that are kept for the eye.
+const N_SAMPLES: usize = 3;
+
+/// Test frames for the eye, n_samples × n each.
+#[derive(Clone, Debug)]
+pub struct SampleFrames {
+    /// Objects' names.
+    pub names: Vec<String>,
+    /// Without noise.
+    pub clean: Array2<f64>,
+    /// At each level of the noise axis.
+    pub noisy: Vec<(f64, Array2<f64>)>,
+    /// As each cell reconstructed them.
+    pub reconstructed: Vec<Array2<f64>>,
+}
+
+/// Frames of all touches, split.
+pub(super) struct Touches {
+    /// Clean training frames.
+    pub train: Array2<f64>,
+    /// Clean test frames.
+    pub test: Array2<f64>,
+    pub truth: Truth,
+    pub noisy: Vec<Noisy>,
+    /// The test rows that are kept for the eye, and their objects.
+    pub shown: Vec<(usize, String)>,
+}
+
+/// Test frames at one noise level.
+pub(super) struct Noisy {
+    pub level: f64,
+    /// σ of a taxel, in the frame's unit.
+    pub std: f64,
+    pub frames: Array2<f64>,
+    /// ‖noise‖² of each frame.
+    pub errors: Vec<f64>,
+}
+
+impl Touches {
+    pub(super) fn simulate(
+        plan: &ReconstructionPlan,
+        touched: &[TouchedObject],
+        progress: &dyn Progress,
+    ) -> Result<Self> {
+        let n_touches: usize = touched.iter().map(|t| t.touches.len()).sum();
+        progress.stage("touch", n_touches as u64);
+        let frames = simulate_array(touched, &plan.patch, progress);
+        let seed = Seed::new(plan.spec.seed);
+        let labels = touched
+            .iter()
+            .enumerate()
+            .flat_map(|(label, t)| std::iter::repeat_n(label, t.touches.len()))
+            .collect::<Array1<usize>>();
+        let fraction = plan.spec.reconstruction.test_fraction;
+        let split = stratified_hold_out(labels.view(), fraction, &seed.named("split").numbered(0))?;
+        let seeds = touch_seeds(touched, &seed.named("signal").numbered(0));
+        let read = |rows: &[usize], noise| read(plan, &frames, &seeds, rows, noise);
+        let test = read(&split.test, None)?;
+        let noisy = plan.noise.iter().map(|&level| {
+            let frames = read(&split.test, Some(level))?;
+            let noise = Noise {
+                std: level,
+                unit: plan.noise_unit,
+            };
+            Ok(Noisy {
+                level,
+                std: noise.std_of(plan.quantity(), &plan.patch.taxel)?,
+                errors: square_errors(frames.view(), test.view()),
+                frames,
+            })
+        });
+        let noisy = noisy.collect::<Result<Vec<_>>>()?;
+        let one = Noise {
+            std: 1.0,
+            unit: NoiseUnit::FullScale,
+        };
+        let full_scale = one.std_of(plan.quantity(), &plan.patch.taxel)?;
+        Ok(Self {
+            train: read(&split.train, None)?,
+            truth: Truth::new(&test, full_scale),
+            shown: shown(touched, &labels, &split),
+            test,
+            noisy,
+        })
+    }
+
+    pub(super) fn learn(
+        &self,
+        plan: &ReconstructionPlan,
+        progress: &dyn Progress,
+    ) -> Result<Vec<Dictionary>> {
+        let grid = (plan.patch.grid.ny, plan.patch.grid.nx);
+        let atoms = plan.spec.reconstruction.atoms;
+        let seed = Seed::new(plan.spec.seed).named("dictionary");
+        plan.dictionaries
+            .par_iter()
+            .map(|&basis| {
+                let learned = Dictionary::learned(basis, grid, self.train.view(), atoms, &seed);
+                progress.advance(1);
+                learned
+            })
+            .collect()
+    }
+
+    pub(super) fn samples(&self, reconstructed: Vec<Array2<f64>>) -> SampleFrames {
+        let rows: Vec<usize> = self.shown.iter().map(|(row, _)| *row).collect();
+        let pick = |frames: &Array2<f64>| frames.select(Axis(0), &rows);
+        SampleFrames {
+            names: self.shown.iter().map(|(_, name)| name.clone()).collect(),
+            clean: pick(&self.test),
+            noisy: self
+                .noisy
+                .iter()
+                .map(|n| (n.level, pick(&n.frames)))
+                .collect(),
+            reconstructed,
+        }
+    }
+}
+
+/// Frames of some touches, with or without noise.
+fn read(
+    plan: &ReconstructionPlan,
+    frames: &Frames,
+    seeds: &[Seed],
+    rows: &[usize],
+    noise: Option<f64>,
+) -> Result<Array2<f64>> {
+    let chain = Chain::new(&plan.signal_steps(noise), &plan.patch)?;
+    let projection = plan.projection(Ensemble::Identity, 1)?;
+    let reading = Reading {
+        chain: &chain,
+        projection: &projection,
+        taxel: plan.patch.taxel,
+        speed: plan.speed,
+    };
+    let deflection = frames.deflection.select(Axis(0), rows);
+    let seeds: Vec<Seed> = rows.iter().map(|&row| seeds[row]).collect();
+    Ok(measure(reading, deflection.view(), &seeds).values)
+}
+
+/// The first test touch of a few objects spread over the list.
+fn shown(touched: &[TouchedObject], labels: &Array1<usize>, split: &Split) -> Vec<(usize, String)> {
+    let n = N_SAMPLES.min(touched.len());
+    let objects = (0..n).map(|sample| sample * touched.len() / n);
+    objects
+        .filter_map(|object| {
+            let row = split
+                .test
+                .iter()
+                .position(|&touch| labels[touch] == object)?;
+            Some((row, touched[object].object.name.clone()))
+        })
+        .collect()
+}

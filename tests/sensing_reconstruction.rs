@@ -1,0 +1,442 @@
+//! Laws of the solvers, slow oracles beside them, and numbers of an independent program.
+
+use bubbletouch::random::Seed;
+use bubbletouch::sensing::{
+    Basis, Dictionary, Effort, Ensemble, Lasso, Lmmse, Omp, Projection, Reconstructor,
+    SensedDictionary, Solver,
+};
+use ndarray::{Array1, Array2, ArrayView1, ArrayView2, Axis, s};
+
+const RANDOM: [Ensemble; 4] = [
+    Ensemble::Gaussian,
+    Ensemble::Bernoulli,
+    Ensemble::Sparse,
+    Ensemble::Sbhe,
+];
+
+fn largest<'a>(values: impl IntoIterator<Item = &'a f64>) -> f64 {
+    values.into_iter().fold(0.0, |most, v| most.max(v.abs()))
+}
+
+/// s-sparse coefficients at scattered places, no two magnitudes the same.
+fn sparse_rows(n_frames: usize, k: usize, s: usize) -> Array2<f64> {
+    let mut rows = Array2::zeros((n_frames, k));
+    for frame in 0..n_frames {
+        for atom in 0..s {
+            let place = (atom * 37 + frame * 11 + atom * atom * 5) % k;
+            let sign = if (atom + frame) % 2 == 0 { 1.0 } else { -1.0 };
+            rows[[frame, place]] = sign * (1.0 + 0.3 * atom as f64);
+        }
+    }
+    rows
+}
+
+fn wavy_frames(n_frames: usize, n: usize) -> Array2<f64> {
+    Array2::from_shape_fn((n_frames, n), |(i, j)| {
+        let x = j as f64 / n as f64;
+        (1..9)
+            .map(|k| ((i * k * k) as f64).sin() / k as f64 * (k as f64 * 3.0 * x).cos())
+            .sum()
+    })
+}
+
+#[test]
+fn pursuit_and_l1_recover_sparse_frames_from_enough_measurements_without_noise() {
+    let grid = (16, 16);
+    for ensemble in RANDOM {
+        let projection = Projection::new(ensemble, grid, 100, &Seed::new(5)).unwrap();
+        for basis in [Basis::Dct, Basis::Haar, Basis::Daubechies4] {
+            let dictionary = Dictionary::complete(basis, grid).unwrap();
+            let sensed = SensedDictionary::new(&projection, &dictionary).unwrap();
+            let truth = sparse_rows(6, 256, 8);
+            let frames = dictionary.synthesise(truth.view());
+            let y = projection.measure(frames.view());
+            let omp = Omp {
+                most_atoms: 20,
+                residual: 1e-9,
+            };
+            let found = omp.solve(&sensed, y.view()).unwrap();
+            assert!(!found.capped.contains(&true), "{ensemble:?} {basis:?}");
+            let error = &found.coefficients - &truth;
+            assert!(largest(&error) < 1e-8, "OMP, {ensemble:?} {basis:?}");
+            let lasso = Lasso {
+                lambda: 1e-4,
+                tolerance: 1e-10,
+                most_steps: 20_000,
+            };
+            let found = lasso.solve(&sensed, y.view()).unwrap();
+            assert!(!found.capped.contains(&true), "{ensemble:?} {basis:?}");
+            let error = &found.coefficients - &truth;
+            assert!(largest(&error) < 2e-3, "ℓ1, {ensemble:?} {basis:?}");
+        }
+    }
+}
+
+/// Matching pursuit as in the textbook: residual, largest cosine, least squares on all chosen columns by normal equations.
+fn naive_omp(a: ArrayView2<f64>, y: ArrayView1<f64>, n_atoms: usize) -> Array1<f64> {
+    let mut chosen: Vec<usize> = Vec::new();
+    let mut residual = y.to_owned();
+    let mut solution = Array1::zeros(0);
+    for _ in 0..n_atoms {
+        let cosine = |j: usize| {
+            let column = a.column(j);
+            column.dot(&residual).abs() / column.dot(&column).sqrt()
+        };
+        let best = (0..a.ncols())
+            .filter(|j| !chosen.contains(j))
+            .max_by(|&i, &j| cosine(i).total_cmp(&cosine(j)).then(j.cmp(&i)));
+        chosen.push(best.unwrap());
+        let part = a.select(Axis(1), &chosen);
+        solution = gauss(part.t().dot(&part), part.t().dot(&y));
+        residual = &y - &part.dot(&solution);
+    }
+    let mut coefficients = Array1::zeros(a.ncols());
+    for (&atom, &value) in chosen.iter().zip(&solution) {
+        coefficients[atom] = value;
+    }
+    coefficients
+}
+
+/// Gaussian elimination with pivots.
+fn gauss(mut a: Array2<f64>, mut b: Array1<f64>) -> Array1<f64> {
+    let n = b.len();
+    for i in 0..n {
+        let pivot = (i..n)
+            .max_by(|&p, &q| a[[p, i]].abs().total_cmp(&a[[q, i]].abs()))
+            .unwrap();
+        for j in 0..n {
+            a.swap([i, j], [pivot, j]);
+        }
+        b.swap(i, pivot);
+        for row in i + 1..n {
+            let factor = a[[row, i]] / a[[i, i]];
+            for j in i..n {
+                a[[row, j]] -= factor * a[[i, j]];
+            }
+            b[row] -= factor * b[i];
+        }
+    }
+    for i in (0..n).rev() {
+        let known: f64 = (i + 1..n).map(|j| a[[i, j]] * b[j]).sum();
+        b[i] = (b[i] - known) / a[[i, i]];
+    }
+    b
+}
+
+#[test]
+fn batch_pursuit_is_the_textbook_pursuit() {
+    let (grid, frames) = ((8, 8), wavy_frames(12, 64));
+    for ensemble in RANDOM {
+        let projection = Projection::new(ensemble, grid, 30, &Seed::new(6)).unwrap();
+        let dictionary = Dictionary::complete(Basis::Dct, grid).unwrap();
+        let sensed = SensedDictionary::new(&projection, &dictionary).unwrap();
+        let y = projection.measure(frames.view());
+        for n_atoms in [1, 3, 10] {
+            let omp = Omp {
+                most_atoms: n_atoms,
+                residual: 0.0,
+            };
+            let found = omp.solve(&sensed, y.view()).unwrap();
+            for (frame, row) in found.coefficients.outer_iter().enumerate() {
+                let slow = naive_omp(sensed.atoms().t(), y.row(frame), n_atoms);
+                let error = largest(&(&row - &slow));
+                assert!(error < 1e-9, "{ensemble:?}, {n_atoms} atoms: {error}");
+            }
+        }
+    }
+}
+
+#[test]
+fn pursuit_stops_at_the_residual_and_says_when_it_could_not_reach_it() {
+    let (grid, frames) = ((8, 8), wavy_frames(10, 64));
+    let projection = Projection::new(Ensemble::Gaussian, grid, 40, &Seed::new(6)).unwrap();
+    let dictionary = Dictionary::complete(Basis::Dct, grid).unwrap();
+    let sensed = SensedDictionary::new(&projection, &dictionary).unwrap();
+    let y = projection.measure(frames.view());
+    for (most_atoms, residual) in [(40, 0.5), (3, 0.05)] {
+        let omp = Omp {
+            most_atoms,
+            residual,
+        };
+        let found = omp.solve(&sensed, y.view()).unwrap();
+        for (frame, alpha) in found.coefficients.outer_iter().enumerate() {
+            let left = &y.row(frame) - &alpha.dot(&sensed.atoms());
+            let norm = left.dot(&left).sqrt();
+            assert_eq!(found.capped[frame], norm > residual, "{norm}");
+        }
+        assert_eq!(found.capped.contains(&true), most_atoms == 3);
+    }
+}
+
+#[test]
+fn the_l1_solution_meets_the_optimality_conditions() {
+    let (grid, frames) = ((8, 8), wavy_frames(20, 64));
+    for (ensemble, m) in [(Ensemble::Gaussian, 20), (Ensemble::Sbhe, 50)] {
+        let projection = Projection::new(ensemble, grid, m, &Seed::new(6)).unwrap();
+        let dictionary = Dictionary::complete(Basis::Dct, grid).unwrap();
+        let sensed = SensedDictionary::new(&projection, &dictionary).unwrap();
+        let y = projection.measure(frames.view());
+        for lambda in [0.01, 0.1, 0.5] {
+            let lasso = Lasso {
+                lambda,
+                tolerance: 1e-12,
+                most_steps: 100_000,
+            };
+            let found = lasso.solve(&sensed, y.view()).unwrap();
+            assert!(!found.capped.contains(&true));
+            for (frame, alpha) in found.coefficients.outer_iter().enumerate() {
+                let left = &y.row(frame) - &alpha.dot(&sensed.atoms());
+                let slopes = sensed.atoms().dot(&left);
+                for (slope, value) in slopes.iter().zip(alpha) {
+                    assert!(slope.abs() <= lambda * (1.0 + 1e-3));
+                    if value.abs() > 1e-4 {
+                        assert!((slope - lambda * value.signum()).abs() < 1e-3 * lambda);
+                    }
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn a_penalty_above_every_correlation_leaves_nothing() {
+    let (grid, frames) = ((8, 8), wavy_frames(4, 64));
+    let projection = Projection::new(Ensemble::Gaussian, grid, 20, &Seed::new(6)).unwrap();
+    let dictionary = Dictionary::complete(Basis::Dct, grid).unwrap();
+    let sensed = SensedDictionary::new(&projection, &dictionary).unwrap();
+    let y = projection.measure(frames.view());
+    let lasso = Lasso {
+        lambda: 1.0001 * largest(&y.dot(&sensed.atoms().t())),
+        tolerance: 1e-9,
+        most_steps: 50,
+    };
+    let found = lasso.solve(&sensed, y.view()).unwrap();
+    assert_eq!(largest(&found.coefficients), 0.0);
+    assert!(!found.capped.contains(&true));
+}
+
+/// 24 taxels in a row, 12 averages over blocks of 2, 1, 2, 1, 2, 1, 2, 1, 3, 3, 3, 3 taxels, all 24 cosines; y given.
+fn golden_problem() -> (Projection, Dictionary, Array2<f64>) {
+    let grid = (1, 24);
+    let projection = Projection::new(Ensemble::BlockAverage, grid, 12, &Seed::new(1)).unwrap();
+    let dictionary = Dictionary::complete(Basis::Dct, grid).unwrap();
+    let y = Array2::from_shape_fn((1, 12), |(_, i)| (0.7 * i as f64).sin() + 0.1 * i as f64);
+    (projection, dictionary, y)
+}
+
+fn assert_golden(found: ArrayView1<f64>, golden: &[(usize, f64)], tolerance: f64) {
+    let mut expected = Array1::zeros(found.len());
+    for &(atom, value) in golden {
+        expected[atom] = value;
+    }
+    let error = largest(&(&found - &expected));
+    assert!(error < tolerance, "{error}: {found}");
+}
+
+/// scikit-learn 1.9.1: `orthogonal_mp(A / norms, y, n_nonzero_coefs=s) / norms`.
+#[test]
+fn pursuit_agrees_with_scikit_learn() {
+    let (projection, dictionary, y) = golden_problem();
+    let sensed = SensedDictionary::new(&projection, &dictionary).unwrap();
+    let goldens: [&[(usize, f64)]; 2] = [
+        &[
+            (0, 4.062960186997649),
+            (1, -2.130175708784426),
+            (2, 2.4227224489983423),
+            (4, -1.719015576818368),
+        ],
+        &[
+            (0, 4.003284897151221),
+            (1, -2.1584436749661724),
+            (2, 2.4869500688335626),
+            (3, -0.7370446821538311),
+            (4, -1.3733008259626769),
+            (5, -0.9778699633507022),
+            (6, -0.40478491924633986),
+        ],
+    ];
+    for golden in goldens {
+        let omp = Omp {
+            most_atoms: golden.len(),
+            residual: 0.0,
+        };
+        let found = omp.solve(&sensed, y.view()).unwrap();
+        assert_golden(found.coefficients.row(0), golden, 1e-10);
+    }
+}
+
+/// scikit-learn 1.9.1: `Lasso(alpha=lam / 12, fit_intercept=False, tol=1e-14, max_iter=1000000).fit(A, y).coef_`.
+#[test]
+fn the_l1_solution_agrees_with_scikit_learn() {
+    let (projection, dictionary, y) = golden_problem();
+    let sensed = SensedDictionary::new(&projection, &dictionary).unwrap();
+    let goldens: [(f64, &[(usize, f64)]); 2] = [
+        (
+            0.05,
+            &[
+                (0, 3.8685264913835513),
+                (1, -1.9878666099457125),
+                (2, 2.33444753078984),
+                (3, -0.605527230465077),
+                (4, -1.2920915396352814),
+                (5, -0.9249708898431726),
+                (6, -0.2876001687601436),
+                (8, -0.02955945078432672),
+                (9, -0.03866260584577458),
+            ],
+        ),
+        (
+            0.5,
+            &[
+                (0, 2.5448651016992954),
+                (1, -0.4365192450648285),
+                (2, 1.1864726763795508),
+                (4, -0.562873751098255),
+                (5, -0.1535705440297503),
+            ],
+        ),
+    ];
+    for (lambda, golden) in goldens {
+        let lasso = Lasso {
+            lambda,
+            tolerance: 1e-15,
+            most_steps: 1_000_000,
+        };
+        let found = lasso.solve(&sensed, y.view()).unwrap();
+        assert_golden(found.coefficients.row(0), golden, 1e-6);
+    }
+}
+
+/// The covariance written out, and one system solved for each measurement.
+fn dense_lmmse(sensed: &SensedDictionary, noise_std: f64, y: ArrayView2<f64>) -> Array2<f64> {
+    let (phi, dictionary) = (sensed.projection().matrix(), sensed.dictionary());
+    let energy = dictionary.energy().unwrap();
+    let k = dictionary.n_atoms();
+    let atoms = dictionary.synthesise(Array2::eye(k).view()) - dictionary.origin();
+    let prior = atoms
+        .t()
+        .dot(&Array2::from_diag(&energy.of_atoms))
+        .dot(&atoms);
+    let rest = (energy.rest + noise_std * noise_std) * phi.dot(&phi.t());
+    let of_measurements = phi.dot(&prior).dot(&phi.t()) + rest;
+    let cross = prior.dot(&phi.t());
+    let mut frames = Array2::zeros((y.nrows(), phi.ncols()));
+    for (y, mut frame) in y.outer_iter().zip(frames.outer_iter_mut()) {
+        let centred = &y - &phi.dot(dictionary.origin());
+        let weights = gauss(of_measurements.clone(), centred);
+        frame.assign(&(dictionary.origin() + &cross.dot(&weights)));
+    }
+    frames
+}
+
+#[test]
+fn the_linear_estimate_is_its_dense_formula() {
+    let (grid, frames) = ((6, 6), wavy_frames(40, 36));
+    let noise_std = 0.2;
+    for ensemble in RANDOM.into_iter().chain([Ensemble::BlockAverage]) {
+        // 4 atoms go through coefficients, 30 straight to taxels.
+        for (basis, k) in [(Basis::Pca, 4), (Basis::Dct, 30), (Basis::Dct, 36)] {
+            let seed = Seed::new(7);
+            let projection = Projection::new(ensemble, grid, 9, &seed).unwrap();
+            let train = frames.slice(s![..30, ..]);
+            let dictionary = Dictionary::learned(basis, grid, train, Some(k), &seed).unwrap();
+            let sensed = SensedDictionary::new(&projection, &dictionary).unwrap();
+            let y = projection.measure(frames.slice(s![30.., ..]));
+            let fast = Lmmse::new(&sensed, noise_std).unwrap().estimate(y.view());
+            let slow = dense_lmmse(&sensed, noise_std, y.view());
+            let error = largest(&(&fast - &slow));
+            assert!(error < 1e-9, "{ensemble:?} {basis:?} {k}: {error}");
+        }
+    }
+}
+
+#[test]
+fn the_linear_estimate_trusts_training_alone_when_noise_drowns_the_measurements() {
+    let (grid, frames) = ((6, 6), wavy_frames(40, 36));
+    let seed = Seed::new(7);
+    let projection = Projection::new(Ensemble::Sbhe, grid, 20, &seed).unwrap();
+    let dictionary = Dictionary::learned(Basis::Pca, grid, frames.view(), Some(8), &seed).unwrap();
+    let sensed = SensedDictionary::new(&projection, &dictionary).unwrap();
+    let y = projection.measure(frames.view());
+    let drowned = Lmmse::new(&sensed, 1e6).unwrap().estimate(y.view());
+    assert!(largest(&(&drowned - dictionary.origin())) < 1e-9);
+    // Eight components show these frames, and 20 measurements without noise find them.
+    let clear = Lmmse::new(&sensed, 0.0).unwrap().estimate(y.view());
+    let square = |a: &Array2<f64>| a.iter().map(|e| e * e).sum::<f64>();
+    assert!(square(&(&clear - &frames)) < 1e-6 * square(&frames));
+}
+
+#[test]
+fn a_frame_is_reconstructed_the_same_in_every_batch() {
+    let (grid, frames) = ((8, 8), wavy_frames(70, 64));
+    let seed = Seed::new(8);
+    let projection = Projection::new(Ensemble::Gaussian, grid, 24, &seed).unwrap();
+    for basis in [Basis::Dct, Basis::Pca] {
+        let dictionary = Dictionary::learned(basis, grid, frames.view(), Some(40), &seed).unwrap();
+        let sensed = SensedDictionary::new(&projection, &dictionary).unwrap();
+        let y = projection.measure(frames.view());
+        for solver in [Solver::Omp, Solver::L1, Solver::Lmmse] {
+            let reconstructor =
+                Reconstructor::new(solver, &sensed, &Effort::default(), 0.02).unwrap();
+            let together = reconstructor.reconstruct(y.view()).unwrap();
+            for (start, end) in [(0, 1), (3, 5), (10, 70)] {
+                let apart = reconstructor
+                    .reconstruct(y.slice(s![start..end, ..]))
+                    .unwrap();
+                assert_eq!(apart.frames, together.frames.slice(s![start..end, ..]));
+                assert_eq!(apart.n_atoms, together.n_atoms[start..end]);
+                assert_eq!(apart.capped, together.capped[start..end]);
+            }
+            let none = reconstructor.reconstruct(y.slice(s![..0, ..])).unwrap();
+            assert_eq!(none.frames.dim(), (0, 64));
+        }
+    }
+}
+
+#[test]
+fn limits_out_of_range_and_untrained_dictionaries_are_refused() {
+    let grid = (4, 4);
+    let projection = Projection::new(Ensemble::Gaussian, grid, 8, &Seed::new(1)).unwrap();
+    let dictionary = Dictionary::complete(Basis::Dct, grid).unwrap();
+    let sensed = SensedDictionary::new(&projection, &dictionary).unwrap();
+    let y = Array2::zeros((1, 8));
+    let omp = |most_atoms, residual| {
+        let omp = Omp {
+            most_atoms,
+            residual,
+        };
+        omp.solve(&sensed, y.view()).unwrap_err().to_string()
+    };
+    assert_eq!(omp(0, 0.1), "most atoms: 0; at least 1");
+    assert!(omp(1, -0.1).starts_with("residual: -0.1"));
+    assert!(omp(1, f64::NAN).starts_with("residual: NaN"));
+    let lasso = |lambda, tolerance, most_steps| {
+        let lasso = Lasso {
+            lambda,
+            tolerance,
+            most_steps,
+        };
+        lasso.solve(&sensed, y.view()).unwrap_err().to_string()
+    };
+    assert!(lasso(0.0, 1e-3, 10).starts_with("lambda: 0"));
+    assert!(lasso(1.0, f64::INFINITY, 10).starts_with("tolerance"));
+    assert_eq!(lasso(1.0, 1e-3, 0), "most steps: 0; at least 1");
+    let untrained = Lmmse::new(&sensed, 0.1).unwrap_err().to_string();
+    assert!(
+        untrained.contains("has seen no training frames"),
+        "{untrained}"
+    );
+    let frames = Array2::ones((3, 16));
+    let trained =
+        Dictionary::learned(Basis::Dct, grid, frames.view(), None, &Seed::new(1)).unwrap();
+    let sensed = SensedDictionary::new(&projection, &trained).unwrap();
+    assert!(
+        Lmmse::new(&sensed, -1.0)
+            .unwrap_err()
+            .to_string()
+            .starts_with("noise std: -1")
+    );
+    // A frame of zeros has no atoms.
+    let zero = Reconstructor::new(Solver::Omp, &sensed, &Effort::default(), 0.1).unwrap();
+    assert_eq!(zero.reconstruct(y.view()).unwrap().n_atoms, [0]);
+}
