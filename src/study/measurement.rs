@@ -32,15 +32,15 @@ pub struct Measurements {
 
 /// What a reading is made with, the same for all frames.
 #[derive(Clone, Copy)]
-struct Reading<'a> {
+pub struct Reading<'a> {
     /// Signal steps.
-    chain: &'a Chain,
+    pub chain: &'a Chain,
     /// The ensemble's matrix.
-    projection: &'a Projection,
+    pub projection: &'a Projection,
     /// The taxels that were pressed.
-    taxel: Taxel,
+    pub taxel: Taxel,
     /// Approach speed at the moment of reading, m/s.
-    speed: f64,
+    pub speed: f64,
 }
 
 impl Measurements {
@@ -123,7 +123,11 @@ pub fn measure_group(
 
 /// Reads every frame (n_frames × n_taxels, metres of deflection); `seeds` has one name a frame. With the measurements
 /// (n_frames × m) come processor-seconds.
-fn measure(reading: Reading, deflection: ArrayView2<f32>, seeds: &[Seed]) -> (Array2<f64>, f64) {
+pub fn measure(
+    reading: Reading,
+    deflection: ArrayView2<f32>,
+    seeds: &[Seed],
+) -> (Array2<f64>, f64) {
     let n_measurements = reading.projection.n_measurements();
     let mut values = Array2::zeros((deflection.nrows(), n_measurements));
     let cpu_s = values

@@ -7,7 +7,7 @@ use crate::random::Seed;
 use crate::recognition::split::{Split, stratified_hold_out};
 use crate::sensing::{Dictionary, Ensemble};
 use crate::signal::{Chain, Noise, NoiseUnit};
-use crate::study::measurement::{Reading, measure, touch_seeds};
+use crate::study::measurement::{Reading, frame_seeds, measure};
 use crate::study::progress::Progress;
 use crate::study::simulation::{Frames, TouchedObject, simulate_array};
 use ndarray::{Array1, Array2, Axis};
@@ -59,7 +59,7 @@ impl Touches {
     ) -> Result<Self> {
         let n_touches: usize = touched.iter().map(|t| t.touches.len()).sum();
         progress.stage("touch", n_touches as u64);
-        let frames = simulate_array(touched, &plan.patch, progress);
+        let frames = simulate_array(touched, &plan.patch, 1, progress);
         let seed = Seed::new(plan.spec.seed);
         let labels = touched
             .iter()
@@ -68,7 +68,7 @@ impl Touches {
             .collect::<Array1<usize>>();
         let fraction = plan.spec.reconstruction.test_fraction;
         let split = stratified_hold_out(labels.view(), fraction, &seed.named("split").numbered(0))?;
-        let seeds = touch_seeds(touched, &seed.named("signal").numbered(0));
+        let seeds = frame_seeds(touched, 1, &seed.named("signal").numbered(0));
         let read = |rows: &[usize], noise| read(plan, &frames, &seeds, rows, noise);
         let test = read(&split.test, None)?;
         let noisy = plan.noise.iter().map(|&level| {
@@ -151,7 +151,7 @@ fn read(
     };
     let deflection = frames.deflection.select(Axis(0), rows);
     let seeds: Vec<Seed> = rows.iter().map(|&row| seeds[row]).collect();
-    Ok(measure(reading, deflection.view(), &seeds).values)
+    Ok(measure(reading, deflection.view(), &seeds).0)
 }
 
 /// The first test touch of a few objects spread over the list.
