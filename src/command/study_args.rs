@@ -80,7 +80,7 @@ impl StudyArgs {
 
     /// Reads and checks a study that reconstructs frames.
     pub fn reconstruction_plan(&self) -> Result<ReconstructionPlan> {
-        self.set_threads()?;
+        set_threads(self.threads)?;
         let place = self.study.display().to_string();
         let mut spec = ReconstructionStudySpec::parse(&place, &self.text()?)?;
         spec.seed = self.seed.unwrap_or(spec.seed);
