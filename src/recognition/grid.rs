@@ -15,6 +15,10 @@ use crate::recognition::svm::Multiclass;
 use crate::recognition::training::{Goal, Sorted};
 use crate::recognition::voting::Voting;
 
+/// Validation rows whose decision values are summed at once: with 43 classes and six C they take 1.4 MB. Larger leaves the
+/// processor's cache, smaller makes the products inefficient.
+const BLOCK_ROWS: usize = 64;
+
 /// Training rows and their division into folds.
 pub(crate) struct Grid<'a, T> {
     /// The rows, by class.
@@ -156,10 +160,34 @@ impl<T: Scalar> Grid<'_, T> {
     /// Validation rows recognised, per C.
     fn validate(&self, fold: &Fold, kernel: ArrayView2<T>, solved: &Solved<T>) -> Vec<usize> {
         let (n_path, n_problems) = solved.rho.dim();
-        // A validation row's values of all C and problems lie side by side, so that adding to them stays in the cache.
-        let mut sums = vec![T::zero(); fold.validation.len() * n_path * n_problems];
-        for ((_, rows), weights) in fold.training.iter().zip(&solved.weights) {
-            let part = gather(kernel, &fold.validation, rows).dot(&weights.coefficients);
+        let classes: Vec<usize> = fold.training.iter().map(|&(class, _)| class).collect();
+        let voting = Voting::new(&classes, self.multiclass);
+        let mut n_correct = vec![0; n_path];
+        let mut values = Vec::with_capacity(n_problems);
+        let mut votes = Vec::new();
+        for rows in fold.validation.chunks(BLOCK_ROWS) {
+            let sums = solved.sums(fold, kernel, rows);
+            for (&row, sums) in rows.iter().zip(sums.chunks_exact(n_path * n_problems)) {
+                let truth = self.data.targets[self.sorted.order()[row]];
+                let of_path = sums.chunks_exact(n_problems).zip(solved.rho.rows());
+                for (n_correct, (sums, rho)) in n_correct.iter_mut().zip(of_path) {
+                    values.clear();
+                    values.extend(sums.iter().zip(rho).map(|(sum, rho)| sum.wide() - rho));
+                    *n_correct += usize::from(voting.label(&values, &mut votes) == truth);
+                }
+            }
+        }
+        n_correct
+    }
+}
+
+impl<T: Scalar> Solved<T> {
+    /// Decision values before ρ: for each of these rows, C by C, those of all problems.
+    fn sums(&self, fold: &Fold, kernel: ArrayView2<T>, rows: &[usize]) -> Vec<T> {
+        let (n_path, n_problems) = self.rho.dim();
+        let mut sums = vec![T::zero(); rows.len() * n_path * n_problems];
+        for ((_, training), weights) in fold.training.iter().zip(&self.weights) {
+            let part = gather(kernel, rows, training).dot(&weights.coefficients);
             let part = part.as_slice().expect("a product is stored row by row");
             let parts = part.chunks_exact(weights.problems.len());
             for (sums, part) in sums.chunks_exact_mut(n_problems).zip(parts) {
@@ -168,25 +196,7 @@ impl<T: Scalar> Grid<'_, T> {
                 }
             }
         }
-        let classes: Vec<usize> = fold.training.iter().map(|&(class, _)| class).collect();
-        let voting = Voting::new(&classes, self.multiclass);
-        let mut n_correct = vec![0; n_path];
-        let mut values = Vec::with_capacity(n_problems);
-        let mut votes = Vec::new();
-        for (&row, sums) in fold
-            .validation
-            .iter()
-            .zip(sums.chunks_exact(n_path * n_problems))
-        {
-            let truth = self.data.targets[self.sorted.order()[row]];
-            let of_path = sums.chunks_exact(n_problems).zip(solved.rho.rows());
-            for (n_correct, (sums, rho)) in n_correct.iter_mut().zip(of_path) {
-                values.clear();
-                values.extend(sums.iter().zip(rho).map(|(sum, rho)| sum.wide() - rho));
-                *n_correct += usize::from(voting.label(&values, &mut votes) == truth);
-            }
-        }
-        n_correct
+        sums
     }
 }
 
