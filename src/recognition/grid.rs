@@ -9,7 +9,7 @@ use ndarray::{Array2, ArrayView2, s};
 use crate::recognition::dataset::Dataset;
 use crate::recognition::kernel::KernelFunction;
 use crate::recognition::scalar::Scalar;
-use crate::recognition::smo::{Dense, Smo};
+use crate::recognition::smo::{Part, Room, Smo};
 use crate::recognition::split::Split;
 use crate::recognition::svm::Multiclass;
 use crate::recognition::training::{Goal, Sorted};
@@ -131,7 +131,7 @@ impl<T: Scalar> Grid<'_, T> {
             rho: Array2::zeros((n_path, problems.len())),
             n_capped: 0,
         };
-        let mut gram = Dense::default();
+        let mut room = Room::new();
         for (index, problem) in problems.iter().enumerate() {
             let classes: Vec<usize> = (0..fold.training.len())
                 .filter(|&class| takes_part(class, problem))
@@ -142,7 +142,7 @@ impl<T: Scalar> Grid<'_, T> {
                 .iter()
                 .flat_map(|class| std::iter::repeat_n(*class == problem.0, rows_of(class).len()))
                 .collect();
-            gram.of_rows(kernel, &rows);
+            let mut gram = Part::new(&kernel, &rows, &mut room);
             let mut smo = Smo::new(&mut gram, &is_positive);
             for (at, &c) in goal.path.iter().enumerate() {
                 let solution = smo.solve(c, goal.tolerance);

@@ -19,11 +19,11 @@ pub(crate) trait Gram<T> {
     /// Row i and the diagonal, padded like a row.
     fn row_and_diagonal(&mut self, i: usize) -> (&[T], &[T]);
     /// `K β`, summed in f64 (n values).
-    fn times(&self, beta: &[f64]) -> Vec<f64>;
+    fn times(&mut self, beta: &[f64]) -> Vec<f64>;
     /// Whether a part of this many rows would fit in memory.
     fn fits(&self, n: usize) -> bool;
     /// The rows and columns at these indices.
-    fn part(&self, indices: &[usize]) -> Dense<T>;
+    fn part(&mut self, indices: &[usize]) -> Dense<T>;
 }
 
 /// A Gram matrix that is held whole.
@@ -110,21 +110,6 @@ impl<T: Scalar> Dense<T> {
         self.refill(whole.nrows(), |i, to| copy(to, &whole.row(i)));
     }
 
-    /// K of some rows of a larger one. Rows that follow each other there are copied at once.
-    pub fn of_rows(&mut self, whole: ArrayView2<T>, rows: &[usize]) {
-        let whole = whole.as_standard_layout();
-        let (values, n) = (whole.as_slice().unwrap_or_default(), whole.ncols());
-        let runs: Vec<&[usize]> = rows.chunk_by(|a, b| a + 1 == *b).collect();
-        self.refill(rows.len(), |i, mut to| {
-            let from = &values[rows[i] * n..(rows[i] + 1) * n];
-            for run in &runs {
-                let (now, later) = to.split_at_mut(run.len());
-                now.copy_from_slice(&from[run[0]..run[0] + run.len()]);
-                to = later;
-            }
-        });
-    }
-
     fn at(&self, i: usize) -> &[T] {
         &self.values[i * self.stride..(i + 1) * self.stride]
     }
@@ -152,7 +137,7 @@ impl<T: Scalar> Gram<T> for Dense<T> {
         (self.at(i), &self.diagonal)
     }
 
-    fn times(&self, beta: &[f64]) -> Vec<f64> {
+    fn times(&mut self, beta: &[f64]) -> Vec<f64> {
         let mut sums = vec![0.0; self.n];
         for (j, &beta) in beta.iter().enumerate().filter(|(_, beta)| **beta != 0.0) {
             add_row(&mut sums, self.at(j), beta);
@@ -164,7 +149,7 @@ impl<T: Scalar> Gram<T> for Dense<T> {
         true
     }
 
-    fn part(&self, indices: &[usize]) -> Self {
+    fn part(&mut self, indices: &[usize]) -> Self {
         let mut part = Self::default();
         part.refill(indices.len(), |i, to| {
             gather(to, self.at(indices[i]), indices)
@@ -180,7 +165,7 @@ fn gather<T: Copy>(to: &mut [T], from: &[T], columns: &[usize]) {
 }
 
 #[multiversion::multiversion(targets("x86_64+avx2+fma"))]
-fn add_row<T: Scalar>(sums: &mut [f64], row: &[T], beta: f64) {
+pub(super) fn add_row<T: Scalar>(sums: &mut [f64], row: &[T], beta: f64) {
     for (sum, value) in sums.iter_mut().zip(row) {
         *sum += beta * value.wide();
     }
@@ -290,7 +275,7 @@ impl<T: Scalar> Gram<T> for Cached<'_, T> {
         (&self.rows[at].values, &self.diagonal)
     }
 
-    fn times(&self, beta: &[f64]) -> Vec<f64> {
+    fn times(&mut self, beta: &[f64]) -> Vec<f64> {
         let mut sums = vec![0.0; self.points.len()];
         let support: Vec<usize> = (0..beta.len()).filter(|&j| beta[j] != 0.0).collect();
         for block in support.chunks(BLOCK) {
@@ -309,7 +294,7 @@ impl<T: Scalar> Gram<T> for Cached<'_, T> {
         Dense::<T>::bytes(n) <= self.limit
     }
 
-    fn part(&self, indices: &[usize]) -> Dense<T> {
+    fn part(&mut self, indices: &[usize]) -> Dense<T> {
         let some = self.points.select(indices);
         let mut part = Dense::default();
         part.of_whole(some.all().kernel(some.all(), &self.kernel).view());

@@ -12,10 +12,12 @@
 //!   the last word.
 
 mod gram;
+mod part;
 mod passes;
 mod variables;
 
 pub(crate) use gram::{Cached, Dense, Gram};
+pub(crate) use part::{Part, Room};
 
 use crate::recognition::dual::DualSolution;
 use crate::recognition::scalar::Scalar;
