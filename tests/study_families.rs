@@ -218,7 +218,11 @@ fn cells_that_differ_in_fused_touches_share_one_fit_and_all_c_are_trained_togeth
     }
     distinct.sort_unstable();
     distinct.dedup();
-    assert_eq!(distinct.len(), 2, "each trial's C share one training, in equal parts");
+    assert_eq!(
+        distinct.len(),
+        2,
+        "each trial's C share one training, in equal parts"
+    );
 }
 
 #[test]
