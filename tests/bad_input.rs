@@ -364,3 +364,38 @@ fn keys_of_a_choice_are_checked_and_none_is_silently_ignored() {
         &["choose_gamma", "-1", "positive"],
     );
 }
+
+#[test]
+fn a_published_accuracy_about_no_cell_is_refused_before_the_study_runs() {
+    let case = Case::new();
+    let with = |keys: &str| {
+        format!(
+            "classifier = \"linear_svm\"\n[report]\npublished = [{{ claim = \"98 %\", accuracy = 0.98, source = \"[CL]\", {keys} }}]"
+        )
+    };
+    for (keys, words) in [
+        ("ratio = 64", ["claim '98 %', ratio", "one of 4.0, 16.0"]),
+        ("kernel = \"rbf\"", ["kernel: is no setting", "classifier"]),
+        ("classifier = \"rbf_svm\"", ["rbf_svm", "linear_svm"]),
+    ] {
+        case.refuses("classifier = \"linear_svm\"", &with(keys), &words);
+    }
+}
+
+#[test]
+fn a_published_accuracy_is_shown_beside_ours_and_kept_in_a_table() {
+    let case = Case::new();
+    let published = "\n[report]\npublished = [{ claim = \"98 % at 16:1\", accuracy = 0.98, source = \"[CL]\", ratio = 16, noise = 0 }]\n";
+    case.file("study.toml", STUDY.to_owned() + published);
+    let (said, _) = case.succeeds(&["run", "study.toml"]);
+    assert!(said.contains("98 % at 16:1 [CL]"), "{said}");
+    let table = fs::read_to_string(case.path("results/study/published.csv")).unwrap();
+    assert!(
+        table.lines().count() == 2 && table.contains("98 % at 16:1,[CL],0.98,"),
+        "{table}"
+    );
+    // What the run says it did, it does again.
+    let again = fs::read_to_string(case.path("results/study/study.toml")).unwrap();
+    case.file("again.toml", again);
+    case.succeeds(&["plan", "again.toml"]);
+}

@@ -3,11 +3,14 @@
 mod report_synthetic;
 
 use bubbletouch::report::answer::Answer;
+use bubbletouch::report::headlines;
 use bubbletouch::report::html::{Limit, Picture, Pictures, ReportPage, page};
 use bubbletouch::report::results::draw_charts;
 use bubbletouch::report::terminal::summary_table;
 use bubbletouch::study::table::Tables;
-use report_synthetic::{about, cell, many_cells, noise_cells, quickstart_cells, tables};
+use report_synthetic::{
+    about, add_headlines, cell, many_cells, noise_cells, quickstart_cells, tables,
+};
 
 #[test]
 fn the_terminal_table_fits_its_width_without_escape_codes() {
@@ -206,4 +209,46 @@ fn whole_page(about: &ReportPage, made: &Tables) -> String {
         ..Pictures::default()
     };
     page(about, made, &pictures)
+}
+
+#[test]
+fn published_accuracies_and_confused_pairs_stand_on_the_terminal_and_on_the_page() {
+    let mut made = tables(quickstart_cells(), 3, 24);
+    let without = page(&about(), &made, &Pictures::default());
+    assert!(!without.contains("Beside what was published") && !without.contains("Most often"));
+    assert_eq!(headlines::text(&made, 80), "");
+    add_headlines(&mut made);
+    let (cell, score) = &made.summary[5];
+    let ours = format!(
+        "{:.3} [{:.3}, {:.3}]",
+        score.accuracy, score.accuracy_low, score.accuracy_high
+    );
+    let difference = format!("{:+.3}", score.accuracy - 0.98);
+    let html = page(&about(), &made, &Pictures::default());
+    for text in [
+        "Beside what was published",
+        "98 % of touches, noise &lt; 1 % [CL]",
+        "(best of 4 cells)",
+        &ours,
+        &difference,
+        "Most often confused",
+        "bowl &lt;&amp;&gt;",
+        "24 of 75",
+    ] {
+        assert!(html.contains(text), "the page says {text}");
+    }
+    assert!(
+        html.find("Beside what").unwrap() < html.find("<h2>Accuracy").unwrap(),
+        "what was published comes right after the answer"
+    );
+    let text = headlines::text(&made, 100);
+    let m = format!("m = {}", cell.measurements);
+    for said in ["[CL]", "0.98", &ours, &difference, "24 of 75", "0.32", &m] {
+        assert!(text.contains(said), "the terminal says {said}:\n{text}");
+    }
+    for width in [80, 100, 120] {
+        let text = headlines::text(&made, width);
+        let widest = text.lines().map(|line| line.chars().count()).max();
+        assert!(widest <= Some(width), "{widest:?}\n{text}");
+    }
 }

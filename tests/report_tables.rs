@@ -6,7 +6,7 @@ use bubbletouch::report::csv_tables::{TABLE_FILES, read_tables, to_csv, write_ta
 use bubbletouch::report::html::ReportPage;
 use bubbletouch::report::results::write_all;
 use bubbletouch::study::table::{Cell, Comparison, Tables};
-use report_synthetic::{about, cell, noise_cells, quickstart_cells, tables};
+use report_synthetic::{about, add_headlines, cell, noise_cells, quickstart_cells, tables};
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
@@ -32,6 +32,7 @@ fn tables_read_back_as_they_were_written() {
     written.accuracy[3].1.c_used = None;
     written.timing[0].1.fit_s = 5e-324;
     written.confusion[0].object = "box, \"large\"\n2".to_owned();
+    add_headlines(&mut written);
     write_tables(dir.path(), &written).unwrap();
     assert_eq!(read_tables(dir.path()).unwrap(), written);
     // One cell with one trial has no interval of a difference.

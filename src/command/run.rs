@@ -6,7 +6,7 @@ use super::study_args::{LoadedStudy, StudyArgs};
 use bubbletouch::Result;
 use bubbletouch::files::write_bytes;
 use bubbletouch::report::html::{Limit, ReportPage, Snapshots};
-use bubbletouch::report::{progress, results, terminal};
+use bubbletouch::report::{headlines, progress, results, terminal};
 use bubbletouch::study::{Outcome, run as run_study, sample_frames};
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -62,6 +62,7 @@ pub fn run(args: &Args) -> Result<()> {
         "{}",
         terminal::summary_table(&outcome.tables, terminal_width(), &table)
     );
+    print!("{}", headlines::text(&outcome.tables, terminal_width()));
     println!(
         "Results in {}; open {}",
         folder.display(),

@@ -119,19 +119,11 @@ impl Answer {
         }
     }
 
-    /// The settings of a cell that vary in the study.
-    fn place(&self, cell: &Cell) -> String {
-        let parts = self.settings.shown().into_iter().map(|levels| {
-            let axis = levels.axis;
-            let label = axis.value(cell).label;
-            match axis {
-                Axis::Measurements | Axis::C | Axis::Frames | Axis::FusedTouches => {
-                    format!("{} = {label}", axis.name())
-                }
-                _ => format!("{} {label}", axis.name()),
-            }
-        });
-        parts.collect::<Vec<_>>().join(", ")
+    /// The settings of a cell that vary in the study: `classifier RBF SVM, m = 64`; empty if none varies.
+    pub fn place(&self, cell: &Cell) -> String {
+        let shown = self.settings.shown().into_iter();
+        let parts: Vec<String> = shown.map(|levels| levels.axis.phrase(cell)).collect();
+        parts.join(", ")
     }
 }
 

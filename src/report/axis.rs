@@ -155,6 +155,19 @@ impl Axis {
     }
 }
 
+impl Axis {
+    /// The name and the value in a cell: `m = 64`, `compression 64:1`.
+    pub fn phrase(self, cell: &Cell) -> String {
+        let label = self.value(cell).label;
+        match self {
+            Self::Measurements | Self::C | Self::Frames | Self::FusedTouches => {
+                format!("{} = {label}", self.name())
+            }
+            _ => format!("{} {label}", self.name()),
+        }
+    }
+}
+
 /// A number as people write it: four significant digits, no trailing zeros.
 pub fn short_number(number: f64) -> String {
     if number == 0.0 || !number.is_finite() {

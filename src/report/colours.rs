@@ -14,8 +14,9 @@ pub const GRID: Rgb = [0xe4, 0xe6, 0xe9];
 /// The picture's ground.
 pub const PAPER: Rgb = [0xff, 0xff, 0xff];
 
-/// Line colours: Okabe and Ito's palette (2008) without its yellow, which is too pale on white.
-pub const LINES: [Rgb; 7] = [
+/// Line colours: Okabe and Ito's palette (2008) without its yellow, which is too pale on white;
+/// then a purple, since a study can compare eight classifiers.
+pub const LINES: [Rgb; 8] = [
     [0x00, 0x72, 0xb2],
     [0xd5, 0x5e, 0x00],
     [0x00, 0x9e, 0x73],
@@ -23,6 +24,7 @@ pub const LINES: [Rgb; 7] = [
     [0xe6, 0x9f, 0x00],
     [0x56, 0xb4, 0xe9],
     [0x1f, 0x23, 0x28],
+    [0x6a, 0x3d, 0x9a],
 ];
 
 /// Colour of a value between 0 and 1 (others are clamped) on a perceptually uniform map: dark is low.

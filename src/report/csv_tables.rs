@@ -6,7 +6,8 @@
 use crate::error::{Error, Result};
 use crate::files::write_bytes;
 use crate::study::table::{
-    Cell, CellScore, Comparison, Confusion, Pareto, StageTime, Tables, TrialScore, TrialTime,
+    Cell, CellScore, Comparison, Confused, Confusion, Pareto, Published, StageTime, Tables,
+    TrialScore, TrialTime,
 };
 use serde::Serialize;
 use serde::de::DeserializeOwned;
@@ -14,7 +15,7 @@ use std::fs::File;
 use std::path::{Path, PathBuf};
 
 /// File names of the tables, in the order in which [`write_tables`] writes them.
-pub const TABLE_FILES: [&str; 7] = [
+pub const TABLE_FILES: [&str; 9] = [
     "accuracy.csv",
     "summary.csv",
     "confusion.csv",
@@ -22,6 +23,8 @@ pub const TABLE_FILES: [&str; 7] = [
     "timing.csv",
     "pareto.csv",
     "stages.csv",
+    "confused.csv",
+    "published.csv",
 ];
 
 /// Writes every table into `dir`, each as a whole file; returns their paths.
@@ -34,6 +37,8 @@ pub fn write_tables(dir: &Path, tables: &Tables) -> Result<Vec<PathBuf>> {
         to_csv(&tables.timing),
         to_csv(&tables.pareto),
         to_csv(&tables.stages),
+        to_csv(&tables.confused),
+        to_csv(&tables.published),
     ];
     let mut paths = Vec::new();
     for (name, bytes) in TABLE_FILES.into_iter().zip(contents) {
@@ -56,6 +61,8 @@ pub fn read_tables(dir: &Path) -> Result<Tables> {
         timing: read_cell_rows::<TrialTime>(&path(4))?,
         pareto: read_cell_rows::<Pareto>(&path(5))?,
         stages: read_rows::<StageTime>(&path(6))?,
+        confused: read_rows::<Confused>(&path(7))?,
+        published: read_cell_rows::<Published>(&path(8))?,
     })
 }
 

@@ -101,7 +101,7 @@ impl Stroke {
 }
 
 /// Shapes that mark the points of a line, so that colour alone never tells lines apart.
-pub const N_MARKERS: usize = 7;
+pub const N_MARKERS: usize = 8;
 
 /// A drawing on white paper.
 pub struct Drawing {
@@ -304,7 +304,7 @@ fn anchor(align: Align) -> TextAnchor {
     }
 }
 
-/// Corners of a regular polygon: square, triangle up, diamond, triangle down, pentagon, star-like hexagon.
+/// Corners of a regular polygon: square, triangle up, diamond, triangle down, pentagon, hexagon; then a star of four points.
 fn marker_outline(line: usize, (x, y): Point, radius: f64) -> Vec<Point> {
     let (corners, turn, scale) = match line % N_MARKERS {
         1 => (4, 45.0, 1.25),
@@ -312,14 +312,21 @@ fn marker_outline(line: usize, (x, y): Point, radius: f64) -> Vec<Point> {
         3 => (4, 0.0, 1.3),
         4 => (3, 90.0, 1.4),
         5 => (5, -90.0, 1.2),
-        _ => (6, 0.0, 1.2),
+        6 => (6, 0.0, 1.2),
+        _ => (8, 0.0, 1.7),
     };
+    let is_star = corners == 8;
     (0..corners)
         .map(|corner| {
             let angle = (turn + 360.0 * f64::from(corner) / f64::from(corners)).to_radians();
+            let inwards = if is_star && corner % 2 == 1 {
+                0.45
+            } else {
+                1.0
+            };
             (
-                x + scale * radius * angle.cos(),
-                y + scale * radius * angle.sin(),
+                x + scale * inwards * radius * angle.cos(),
+                y + scale * inwards * radius * angle.sin(),
             )
         })
         .collect()

@@ -1,7 +1,9 @@
 //! `report.html`: one page with everything in it, that needs no network and no script.
 
 use crate::report::answer::Answer;
+use crate::report::csv_tables::TABLE_FILES;
 use crate::report::drawing::{Drawing, escape};
+use crate::report::headlines::{confused_table, published_table};
 use crate::report::html_tables::{limits_html, summary_html, times_html};
 use crate::report::varying::Settings;
 use crate::signal::Quantity;
@@ -127,10 +129,13 @@ pub fn page(about: &ReportPage, tables: &Tables, pictures: &Pictures) -> String 
         "charts" => charts_html(pictures),
         "touches" => section("Sample touches", pictures.touches.as_ref().map(figure)),
         "summary" => summary_html(tables, answer.as_ref()),
+        "published" => published_table(tables).map_or(String::new(), |table| table.html()),
         "confusion" => section(
             "What was taken for what",
             pictures.confusion.as_ref().map(figure),
         ),
+        "confused" => confused_table(tables).map_or(String::new(), |table| table.html()),
+        "files" => TABLE_FILES.join(", "),
         "limits" => limits_html(about, tables),
         "times" => times_html(about, tables),
         "command" => escape(&about.command),

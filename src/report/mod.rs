@@ -16,6 +16,7 @@ pub mod confusion_picture;
 pub mod csv_tables;
 pub mod drawing;
 pub mod frame_files;
+pub mod headlines;
 pub mod heat_map;
 pub mod html;
 mod html_tables;

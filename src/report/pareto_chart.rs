@@ -7,6 +7,7 @@ use crate::report::drawing::{Align, Area, Drawing, Point, Stroke, TextStyle};
 use crate::report::legend::{
     CHANCE, FRONT, Heading, LEFT, LegendEntry, MARKER_RADIUS, Mark, RIGHT, line_colour,
 };
+use crate::report::text_width::text_width;
 use crate::report::varying::{Levels, Settings, unbroken_parts};
 use crate::report::x_scale::TICK_SIZE;
 use crate::study::table::{Cell, Pareto, Tables};
@@ -16,6 +17,8 @@ const MANY_CLASSIFIERS: usize = 3;
 /// Pixels between panels.
 const GAP: f64 = 26.0;
 const LABEL: u32 = 13;
+/// Letters of the names on the front.
+const NAME: u32 = 11;
 
 /// Whose time runs along x.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -75,7 +78,8 @@ pub fn is_wanted(tables: &Tables, asked: Option<bool>) -> bool {
 }
 
 /// Draws accuracy against time: one panel for each noise, one colour for each classifier (or, with one classifier, for each
-/// value of the first other setting that varies); cells on the front are ringed and joined by steps.
+/// value of the first other setting that varies); cells on the front are ringed and joined by steps,
+/// and named where there is room.
 pub fn draw_pareto(tables: &Tables, cost: Cost) -> Drawing {
     let cells: Vec<&Cell> = tables.pareto.iter().map(|(cell, _)| cell).collect();
     let settings = Settings::of(&cells);
@@ -87,6 +91,12 @@ pub fn draw_pareto(tables: &Tables, cost: Cost) -> Drawing {
         cost,
         colours: is_shown(Axis::Classifier).or(others).cloned(),
         panels: is_shown(Axis::Noise).cloned(),
+        named_by: settings
+            .varying
+            .iter()
+            .map(|levels| levels.axis)
+            .filter(|&axis| axis != Axis::Noise)
+            .collect(),
         chance: (n_classes > 0).then(|| 1.0 / n_classes as f64),
     };
     let constants: Vec<String> = settings.fixed.iter().map(Levels::sentence).collect();
@@ -98,6 +108,8 @@ struct Chart<'a> {
     cost: Cost,
     colours: Option<Levels>,
     panels: Option<Levels>,
+    /// The settings that tell two cells of a panel apart.
+    named_by: Vec<Axis>,
     chance: Option<f64>,
 }
 
@@ -163,14 +175,14 @@ impl Chart<'_> {
             Some(levels) => levels.axis.value(cell) == levels.values[panel],
             None => true,
         };
-        let mut front: Vec<(Point, usize)> = Vec::new();
+        let mut front: Vec<(Point, &Cell)> = Vec::new();
         for (cell, row) in self.rows.iter().filter(|(cell, _)| is_here(cell)) {
             let at = (
                 scale.x(self.cost.seconds(row), frame),
                 y_at(frame, row.accuracy),
             );
             match self.cost.is_on_front(row) {
-                true => front.push((at, self.colour_of(cell))),
+                true => front.push((at, cell)),
                 false => {
                     let colour = self.colour_of(cell);
                     drawing.marker(colour, at, 0.8 * MARKER_RADIUS, paler(line_colour(colour)));
@@ -180,10 +192,28 @@ impl Chart<'_> {
         front.sort_by(|(a, _), (b, _)| a.0.total_cmp(&b.0));
         let places: Vec<Point> = front.iter().map(|(at, _)| *at).collect();
         draw_steps(drawing, &places, frame);
-        for (at, colour) in front {
-            drawing.marker(colour, at, MARKER_RADIUS + 2.4, INK);
-            drawing.marker(colour, at, MARKER_RADIUS, line_colour(colour));
+        for (at, cell) in &front {
+            let colour = self.colour_of(cell);
+            drawing.marker(colour, *at, MARKER_RADIUS + 2.4, INK);
+            drawing.marker(colour, *at, MARKER_RADIUS, line_colour(colour));
         }
+        let names: Vec<String> = front.iter().map(|(_, cell)| self.name(cell)).collect();
+        for (place, name) in name_places(&places, &names, frame).iter().zip(&names) {
+            if let Some(place) = place {
+                drawing.text(*place, name, TextStyle::new(NAME));
+            }
+        }
+    }
+
+    /// `RBF SVM, 64:1`, `RBF SVM, m = 64`.
+    fn name(&self, cell: &Cell) -> String {
+        let words = self.named_by.iter().map(|axis| match axis {
+            Axis::Ratio | Axis::Classifier | Axis::Ensemble | Axis::Features => {
+                axis.value(cell).label
+            }
+            _ => axis.phrase(cell),
+        });
+        words.collect::<Vec<_>>().join(", ")
     }
 
     fn colour_of(&self, cell: &Cell) -> usize {
@@ -224,6 +254,33 @@ fn draw_steps(drawing: &mut Drawing, front: &[Point], frame: Area) {
     }
     steps.extend([last, (frame.x + frame.width, last.1)]);
     drawing.polyline(&steps, FRONT);
+}
+
+/// Where the names of the points of a front begin: above each point and to its left, where no cell can be, since it would be
+/// faster and more accurate. A name that would lie on another one, or beyond the frame, has no place; the more accurate
+/// cells come first.
+fn name_places(front: &[Point], names: &[String], frame: Area) -> Vec<Option<Point>> {
+    let line = f64::from(NAME) + 2.0;
+    let mut taken: Vec<(Point, f64)> = Vec::new();
+    let mut places = vec![None; front.len()];
+    for (index, &(x, y)) in front.iter().enumerate().rev() {
+        let width = text_width(&names[index], f64::from(NAME));
+        let start = (x + MARKER_RADIUS - width).max(frame.x + 4.0);
+        let is_free = |at: &Point| {
+            let is_apart = |((left, base), wide): &(Point, f64)| {
+                (base - at.1).abs() >= line || at.0 > left + wide || *left > at.0 + width
+            };
+            at.1 - line > frame.y
+                && start + width < frame.x + frame.width
+                && taken.iter().all(is_apart)
+        };
+        let above = y - MARKER_RADIUS - 7.0;
+        places[index] = [(start, above), (start, above - line)]
+            .into_iter()
+            .find(is_free);
+        taken.extend(places[index].map(|at| (at, width)));
+    }
+    places
 }
 
 fn paler(colour: Rgb) -> Rgb {
@@ -310,6 +367,35 @@ mod tests {
             (200.0, "200 s"),
         ] {
             assert_eq!(time_label(seconds), label);
+        }
+    }
+
+    #[test]
+    fn names_on_a_front_never_lie_on_each_other_and_the_most_accurate_cell_has_one() {
+        let frame = Area {
+            x: 60.0,
+            y: 20.0,
+            width: 400.0,
+            height: 300.0,
+        };
+        let front: Vec<Point> = (0..30)
+            .map(|i| (70.0 + 12.0 * f64::from(i), 310.0 - 6.0 * f64::from(i)))
+            .collect();
+        let names: Vec<String> = (0..30).map(|i| format!("random forest, {i}:1")).collect();
+        let places = name_places(&front, &names, frame);
+        assert!(places[29].is_some());
+        let placed: Vec<(Point, f64)> = places
+            .iter()
+            .zip(&names)
+            .filter_map(|(at, name)| at.map(|at| (at, text_width(name, f64::from(NAME)))))
+            .collect();
+        assert!(placed.len() > 5 && placed.len() < 30, "{}", placed.len());
+        for (number, ((x, y), width)) in placed.iter().enumerate() {
+            assert!(*x >= frame.x && x + width <= frame.x + frame.width);
+            for ((other_x, other_y), other_width) in &placed[..number] {
+                let beside = x + width < *other_x || other_x + other_width < *x;
+                assert!(beside || (y - other_y).abs() >= f64::from(NAME));
+            }
         }
     }
 

@@ -238,7 +238,7 @@ fn pivot_lines(tables: &Tables, across: &Levels, down: &[&Levels]) -> Vec<PivotL
     lines
 }
 
-fn empty_table(width: usize) -> Table {
+pub(super) fn empty_table(width: usize) -> Table {
     let mut table = Table::new();
     table.load_preset(presets::NOTHING);
     table.remove_style(TableComponent::VerticalLines);
@@ -262,7 +262,7 @@ fn align(table: &mut Table, axes: &[&Levels], n_numbers: usize) {
     }
 }
 
-fn finish(table: &Table) -> String {
+pub(super) fn finish(table: &Table) -> String {
     let lines = table.lines().map(|line| line.trim_end().to_owned() + "\n");
     lines.collect()
 }

@@ -5,7 +5,7 @@ use super::simulation::TouchedObject;
 use super::sweep::{Group, Sweep};
 use super::table::Cell;
 use crate::recognition::ClassifierKind;
-use crate::recognition::svm::Multiclass;
+use crate::recognition::svm::{Multiclass, Solver};
 use crate::sensing::Ensemble;
 use crate::world::Patch;
 use std::fmt;
@@ -49,12 +49,26 @@ const CLEAR_TAXEL_S: f64 = 2e-9;
 const SIGNAL_TAXEL_S: f64 = 2.5e-8;
 /// Seconds for one multiply-add of a projection.
 const PROJECT_S: f64 = 7e-11;
-/// Seconds of the solver for one entry of a binary problem's kernel matrix: iterations apart from products.
+/// Seconds of linfa's solver for one entry of a binary problem's kernel matrix: iterations apart from products.
 const SOLVE_ENTRY_S: f64 = 7e-8;
-/// Seconds for one dot product's element in the solver's kernel matrix, at most as many as the problem has rows.
+/// Seconds for one dot product's element in that solver's kernel matrix, at most as many as the problem has rows.
 const KERNEL_ELEMENT_S: f64 = 1e-9;
 /// Seconds for one multiply-add of the matrix product that brings wider features down to that many.
 const REDUCE_ELEMENT_S: f64 = 5e-11;
+/// Seconds of our solvers for one entry of a binary problem's kernel matrix.
+const OWN_ENTRY_S: f64 = 8e-9;
+/// Seconds for one multiply-add of the kernel matrix that all their problems share.
+const GRAM_ELEMENT_S: f64 = 5e-11;
+/// Seconds of a logistic regression for one measurement of a training row and one object.
+const LOGISTIC_S: f64 = 1.5e-7;
+/// Seconds to scale and to store one measurement of a training row, for nearest neighbours.
+const K_NEAREST_S: f64 = 1.2e-8;
+/// Seconds of naive Bayes for one measurement of a training row.
+const NAIVE_BAYES_S: f64 = 2e-8;
+/// Seconds of a decision tree for one measurement of a training row.
+const TREE_S: f64 = 3.3e-7;
+/// Seconds of a random forest for one training row and one of the √m measurements that a split looks at.
+const FOREST_S: f64 = 3.4e-5;
 /// Seconds for one multiply-add of a prediction by matrix product.
 const PREDICT_S: f64 = 2e-10;
 
@@ -127,17 +141,8 @@ fn recognise_s(plan: &Plan, cell: &Cell, n_objects: usize, n_touches: usize) -> 
     let m = (cell.frames * cell.measurements) as f64;
     let n_train = (cell.train_touches * n_objects) as f64;
     let n_test = (n_touches as f64 - n_train).max(0.0);
-    let (n_problems, rows) = match plan.spec.recognition.multiclass {
-        Multiclass::OneVsOne => (
-            (n_objects * (n_objects - 1) / 2) as f64,
-            2.0 * cell.train_touches as f64,
-        ),
-        Multiclass::OneVsRest | Multiclass::CrammerSinger => (n_objects as f64, n_train),
-    };
-    let fit = |rows: f64| {
-        let entry_s = SOLVE_ENTRY_S + KERNEL_ELEMENT_S * m.min(rows) + REDUCE_ELEMENT_S * m;
-        n_problems * rows * rows * entry_s
-    };
+    let n_pairs = (n_objects * (n_objects - 1) / 2) as f64;
+    let fit = |share: f64| fit_s(plan, cell, n_objects, share * cell.train_touches as f64);
     let choice = &plan.choice;
     let n_c = match cell.classifier.has_c() && cell.c.is_none() {
         true => choice.c.len(),
@@ -153,16 +158,48 @@ fn recognise_s(plan: &Plan, cell: &Cell, n_objects: usize, n_touches: usize) -> 
     let n_folds = choice.folds as f64;
     let choose_s = match n_c * n_gamma {
         1 => 0.0,
-        n => n as f64 * n_folds * fit((n_folds - 1.0) / n_folds * choosing * rows),
+        n => n as f64 * n_folds * fit((n_folds - 1.0) / n_folds * choosing),
     };
     let predicted_per_row = match cell.classifier {
-        ClassifierKind::LinearSvm => n_problems,
+        ClassifierKind::LinearSvm => match plan.spec.recognition.multiclass {
+            Multiclass::OneVsOne => n_pairs,
+            Multiclass::OneVsRest | Multiclass::CrammerSinger => n_objects as f64,
+        },
         ClassifierKind::RbfSvm | ClassifierKind::PolynomialSvm | ClassifierKind::KNearest => {
             n_train
         }
         _ => n_objects as f64,
     };
-    fit(rows) + choose_s + PREDICT_S * n_test * predicted_per_row * m
+    fit(1.0) + choose_s + PREDICT_S * n_test * predicted_per_row * m
+}
+
+/// One fit with so many training touches an object.
+fn fit_s(plan: &Plan, cell: &Cell, n_objects: usize, touches: f64) -> f64 {
+    let m = (cell.frames * cell.measurements) as f64;
+    let n_objects = n_objects as f64;
+    let n_train = touches * n_objects;
+    match cell.classifier {
+        ClassifierKind::LogisticRegression => LOGISTIC_S * n_train * n_objects * m,
+        ClassifierKind::KNearest => K_NEAREST_S * n_train * m,
+        ClassifierKind::NaiveBayes => NAIVE_BAYES_S * n_train * m,
+        ClassifierKind::DecisionTree => TREE_S * n_train * m,
+        ClassifierKind::RandomForest => FOREST_S * n_train * m.sqrt(),
+        ClassifierKind::LinearSvm | ClassifierKind::RbfSvm | ClassifierKind::PolynomialSvm => {
+            let recognition = &plan.spec.recognition;
+            let (n_problems, rows) = match recognition.multiclass {
+                Multiclass::OneVsOne => (n_objects * (n_objects - 1.0) / 2.0, 2.0 * touches),
+                Multiclass::OneVsRest | Multiclass::CrammerSinger => (n_objects, n_train),
+            };
+            let entries = n_problems * rows * rows;
+            match recognition.solver {
+                Solver::Linfa => {
+                    let products_s = KERNEL_ELEMENT_S * m.min(rows) + REDUCE_ELEMENT_S * m;
+                    entries * (SOLVE_ENTRY_S + products_s)
+                }
+                _ => entries * OWN_ENTRY_S + GRAM_ELEMENT_S * n_train * n_train * m,
+            }
+        }
+    }
 }
 
 fn largest_of(values: impl Iterator<Item = f64>) -> f64 {

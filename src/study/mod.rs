@@ -17,6 +17,7 @@ mod plan;
 mod plan_learning;
 mod plan_scene;
 pub mod progress;
+mod published;
 pub mod reconstruction;
 mod runner;
 mod samples;

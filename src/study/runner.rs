@@ -4,9 +4,10 @@ use super::evaluation::{Evaluation, Trial};
 use super::measurement::measure_group;
 use super::plan::{Plan, millimetres};
 use super::progress::Progress;
+use super::published::compare_with_published;
 use super::simulation::{Frames, TouchedObject, simulate_array};
 use super::spec::StepSpec;
-use super::summary::{compare_with_best, pareto, summarise};
+use super::summary::{compare_with_best, most_confused, pareto, summarise};
 use super::sweep::{Group, Sweep};
 use super::table::{Cell, Confusion, StageTime, Tables};
 use crate::error::Result;
@@ -85,6 +86,8 @@ pub fn run(
         }
     }
     fill(&mut tables, scored, touched)?;
+    let published = &plan.spec.report.published;
+    tables.published = compare_with_published(published, &tables.summary);
     Ok(Outcome { tables, arrays })
 }
 
@@ -248,6 +251,9 @@ fn fill(tables: &mut Tables, mut scored: Vec<Scored>, touched: &[TouchedObject])
         .collect();
     tables.summary = summarise(&tables.accuracy)?;
     tables.comparison = compare_with_best(&tables.accuracy)?;
+    if let Some(row) = tables.comparison.first() {
+        tables.confused = most_confused(&tables.confusion, row.best_cell);
+    }
     tables.pareto = pareto(&tables.accuracy, &tables.timing);
     Ok(())
 }

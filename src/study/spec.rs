@@ -278,6 +278,24 @@ pub struct ReportSpec {
     /// Whether to chart accuracy against time with its Pareto front; when left out, if at least three classifiers are swept.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub pareto: Option<bool>,
+    /// Accuracies that others published, shown beside the best of the cells that each is about.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub published: Vec<PublishedSpec>,
+}
+
+/// `{ claim = "98 % at 64:1", accuracy = 0.98, source = "[CL]", ratio = 64.0, ensemble = "sbhe" }`
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct PublishedSpec {
+    /// What was claimed, in words.
+    pub claim: String,
+    /// The published share of test touches recognised, 0 to 1.
+    pub accuracy: f64,
+    /// Where it was published.
+    pub source: String,
+    /// Every other key narrows the cells that it is compared with: the name of a column of [`Cell`](super::table::Cell)
+    /// (`noise` is short for `noise_std`) and its value there.
+    #[serde(flatten)]
+    pub at: toml::Table,
 }
 
 /// What groups touches for a split that keeps groups together.

@@ -1,10 +1,13 @@
 //! Trials → cells: means, intervals, and every cell against the best one.
 
 use super::evaluation::CONFIDENCE;
-use super::table::{Cell, CellScore, Comparison, Pareto, TrialScore, TrialTime};
+use super::table::{
+    Cell, CellScore, Comparison, Confused, Confusion, Pareto, TrialScore, TrialTime,
+};
 use crate::error::Result;
 use crate::recognition::comparison::{TrialSize, compare};
 use crate::recognition::interval::Interval;
+use std::collections::BTreeMap;
 
 /// A row of the accuracy table.
 type Row = (Cell, TrialScore);
@@ -81,6 +84,36 @@ fn against(trials: &[Row], best: &[Row]) -> Result<Comparison> {
     })
 }
 
+/// Pairs that a list of confusions shows, at most.
+const MOST_CONFUSED: usize = 15;
+
+/// The pairs of objects that a cell confuses most often, by the share of the touched object's test rows; of equals the one
+/// that the table has first.
+pub fn most_confused(confusion: &[Confusion], cell: usize) -> Vec<Confused> {
+    let rows = || confusion.iter().filter(|row| row.cell == cell);
+    let mut n_test: BTreeMap<&str, usize> = BTreeMap::new();
+    for row in rows() {
+        *n_test.entry(&row.object).or_default() += row.count;
+    }
+    let mut pairs: Vec<Confused> = rows()
+        .filter(|row| row.object != row.predicted)
+        .map(|row| {
+            let n_test = n_test[row.object.as_str()];
+            Confused {
+                cell,
+                object: row.object.clone(),
+                predicted: row.predicted.clone(),
+                count: row.count,
+                n_test,
+                share: row.count as f64 / n_test as f64,
+            }
+        })
+        .collect();
+    pairs.sort_by(|a, b| b.share.total_cmp(&a.share));
+    pairs.truncate(MOST_CONFUSED);
+    pairs
+}
+
 /// What the accuracy of every cell costs, and which cells are worth their cost; both tables have the same rows.
 pub fn pareto(rows: &[Row], times: &[(Cell, TrialTime)]) -> Vec<(Cell, Pareto)> {
     let same_cell = |a: &(Cell, TrialTime), b: &(Cell, TrialTime)| a.0.cell == b.0.cell;
@@ -147,6 +180,39 @@ mod tests {
             on_prediction_front: false,
         };
         (cell, row)
+    }
+
+    #[test]
+    fn pairs_are_listed_by_their_share_of_the_objects_test_touches_and_hits_are_not() {
+        let row = |cell, object: &str, predicted: &str, count| Confusion {
+            cell,
+            object: object.to_owned(),
+            predicted: predicted.to_owned(),
+            count,
+        };
+        let mut table = vec![
+            row(0, "mug", "bowl", 9), // another cell
+            row(1, "mug", "mug", 6),
+            row(1, "mug", "bowl", 4), // 4 of 10
+            row(1, "bowl", "bowl", 1),
+            row(1, "bowl", "mug", 3), // 3 of 4: fewer, but a larger share
+        ];
+        let found = |table: &[Confusion]| -> Vec<(String, usize, usize, f64)> {
+            let pairs = most_confused(table, 1).into_iter();
+            pairs
+                .map(|p| (p.object, p.count, p.n_test, p.share))
+                .collect()
+        };
+        let expected = [
+            ("bowl".to_owned(), 3, 4, 0.75),
+            ("mug".to_owned(), 4, 10, 0.4),
+        ];
+        assert_eq!(found(&table), expected);
+        for other in 0..20 {
+            table.push(row(1, "pear", &format!("apple {other}"), 1));
+        }
+        assert_eq!(found(&table).len(), MOST_CONFUSED);
+        assert!(most_confused(&table, 7).is_empty());
     }
 
     #[test]

@@ -9,6 +9,7 @@
 //! ```
 
 use super::plan::{Plan, SplitKind, millimetres};
+use super::published::check_published;
 use super::simulation::TouchedObject;
 use super::spec::GroupSpec;
 use super::table::Cell;
@@ -112,6 +113,8 @@ impl Sweep {
                 sweep.add_groups(plan, (array, frames), &train_touches);
             }
         }
+        let cells: Vec<&Cell> = sweep.cells().collect();
+        check_published(&plan.spec.report.published, &cells)?;
         Ok(sweep)
     }
 

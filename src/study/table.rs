@@ -112,6 +112,45 @@ pub struct Confusion {
     pub count: usize,
 }
 
+/// A pair of objects that the best cell confuses most often: a row of `confused.csv`.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Confused {
+    /// Number of the best cell.
+    pub cell: usize,
+    /// What was touched.
+    pub object: String,
+    /// What it was taken for.
+    pub predicted: String,
+    /// How many of the object's test rows, all trials.
+    pub count: usize,
+    /// The object's test rows, all trials.
+    pub n_test: usize,
+    /// `count / n_test`.
+    pub share: f64,
+}
+
+/// A published accuracy beside ours (with the [`Cell`] before it, the most accurate of those it is about: a row of
+/// `published.csv`).
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Published {
+    /// What was claimed, in words.
+    pub claim: String,
+    /// Where it was published.
+    pub source: String,
+    /// The published accuracy.
+    pub published_accuracy: f64,
+    /// Our mean accuracy over trials.
+    pub accuracy: f64,
+    /// Lower end of its 95 % Wilson interval at one trial's test rows.
+    pub accuracy_low: f64,
+    /// Upper end of the same interval.
+    pub accuracy_high: f64,
+    /// `accuracy − published_accuracy`.
+    pub difference: f64,
+    /// Cells that the claim is about.
+    pub n_matching: usize,
+}
+
 /// A cell against the best cell, paired over trials: a row of `comparison.csv`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Comparison {
@@ -200,6 +239,10 @@ pub struct Tables {
     pub pareto: Vec<(Cell, Pareto)>,
     /// One row per array, number of frames and stage.
     pub stages: Vec<StageTime>,
+    /// The pairs of objects that the best cell confuses most often, the worst first.
+    pub confused: Vec<Confused>,
+    /// One row per published accuracy.
+    pub published: Vec<(Cell, Published)>,
 }
 
 #[cfg(test)]

@@ -1,0 +1,140 @@
+//! Two short tables that people ask for first: published accuracies beside ours, and what is confused most often; the same
+//! rows for the terminal and for the page.
+
+use crate::report::answer::Answer;
+use crate::report::axis::short_number;
+use crate::report::drawing::escape;
+use crate::report::terminal::{empty_table, finish};
+use crate::study::table::Tables;
+use comfy_table::{CellAlignment, ColumnConstraint};
+use std::fmt::Write;
+
+/// A table of texts with a title.
+pub struct TextTable {
+    title: &'static str,
+    /// What to know before reading it.
+    note: String,
+    /// Heads of the columns, and whether a column holds numbers.
+    heads: Vec<(&'static str, bool)>,
+    rows: Vec<Vec<String>>,
+}
+
+/// Each published accuracy beside the most accurate of our cells that it is about; none if the study names none.
+pub fn published_table(tables: &Tables) -> Option<TextTable> {
+    let answer = Answer::of(tables)?;
+    let row = |(cell, row): &(_, crate::study::table::Published)| {
+        vec![
+            format!("{} {}", row.claim, row.source),
+            short_number(row.published_accuracy),
+            format!(
+                "{:.3} [{:.3}, {:.3}]",
+                row.accuracy, row.accuracy_low, row.accuracy_high
+            ),
+            format!("{:+.3}", row.difference),
+            match row.n_matching {
+                1 => answer.place(cell),
+                n => format!("{} (best of {n} cells)", answer.place(cell)),
+            },
+        ]
+    };
+    let rows: Vec<Vec<String>> = tables.published.iter().map(row).collect();
+    (!rows.is_empty()).then_some(TextTable {
+        title: "Beside what was published",
+        note: "Ours: the most accurate of the cells that have the settings of the claim."
+            .to_owned(),
+        heads: vec![
+            ("published", false),
+            ("accuracy", true),
+            ("ours [95 %]", true),
+            ("difference", true),
+            ("our settings", false),
+        ],
+        rows,
+    })
+}
+
+/// The pairs of objects that the best cell confuses most often; none if it confuses nothing.
+pub fn confused_table(tables: &Tables) -> Option<TextTable> {
+    let answer = Answer::of(tables)?;
+    let rows: Vec<Vec<String>> = tables
+        .confused
+        .iter()
+        .map(|pair| {
+            vec![
+                pair.object.clone(),
+                pair.predicted.clone(),
+                format!("{:.2}", pair.share),
+                format!("{} of {}", pair.count, pair.n_test),
+            ]
+        })
+        .collect();
+    let note = match &answer.place(&answer.best.0)[..] {
+        "" => "All trials together.".to_owned(),
+        place => format!("At {place}, all trials together."),
+    };
+    (!rows.is_empty()).then_some(TextTable {
+        title: "Most often confused",
+        note,
+        heads: vec![
+            ("touched", false),
+            ("taken for", false),
+            ("share", true),
+            ("test touches", true),
+        ],
+        rows,
+    })
+}
+
+/// Both tables as text without escape codes, lines at most `width` letters long; empty if there is neither.
+pub fn text(tables: &Tables, width: usize) -> String {
+    let both = [published_table(tables), confused_table(tables)];
+    let texts: Vec<String> = both.iter().flatten().map(|t| t.text(width)).collect();
+    texts.concat()
+}
+
+impl TextTable {
+    /// For the terminal: the title, the table, an empty line.
+    pub fn text(&self, width: usize) -> String {
+        let mut table = empty_table(width);
+        table.set_header(self.heads.iter().map(|(head, _)| *head));
+        for row in &self.rows {
+            table.add_row(row);
+        }
+        for (column, (_, is_number)) in table.column_iter_mut().zip(&self.heads) {
+            column.set_padding((0, 2));
+            if *is_number {
+                column.set_cell_alignment(CellAlignment::Right);
+                column.set_constraint(ColumnConstraint::ContentWidth);
+            }
+        }
+        format!("{}\n\n{}\n", self.title, finish(&table))
+    }
+
+    /// For the page: a section.
+    pub fn html(&self) -> String {
+        let class = |is_number: bool| match is_number {
+            true => " class=\"number\"",
+            false => "",
+        };
+        let title = self.title;
+        let mut html = format!(
+            "<section><h2>{title}</h2><p class=\"quiet\">{}</p><div class=\"wide words\" tabindex=\"0\" role=\"region\" \
+             aria-label=\"{title}\"><table><thead><tr>",
+            escape(&self.note)
+        );
+        for (head, is_number) in &self.heads {
+            let class = class(*is_number);
+            let _ = write!(html, "<th scope=\"col\"{class}>{head}</th>");
+        }
+        html += "</tr></thead><tbody>";
+        for row in &self.rows {
+            html += "<tr>";
+            for (text, (_, is_number)) in row.iter().zip(&self.heads) {
+                let class = class(*is_number);
+                let _ = write!(html, "<td{class}>{}</td>", escape(text));
+            }
+            html += "</tr>";
+        }
+        html + "</tbody></table></div></section>"
+    }
+}

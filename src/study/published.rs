@@ -1,0 +1,245 @@
+//! Published accuracies beside ours: which cells a claim is about, and the most accurate of them.
+
+use super::spec::PublishedSpec;
+use super::table::{Cell, CellScore, Published};
+use crate::error::{Error, Result};
+use toml::{Table, Value};
+
+/// Numbers this close, relative to the larger, are the same setting: a ratio of 100 on 4,096 taxels is 41 measurements, which
+/// are 99.90:1. Larger, and neighbouring settings would be taken for each other; smaller, and that ratio would be refused.
+const SAME_SETTING: f64 = 1e-3;
+
+/// Every claim is an accuracy about at least one cell.
+///
+/// # Errors
+/// A claim whose accuracy is not from 0 to 1, a key that is no column of [`Cell`], a value that no cell has, or keys of which
+/// no cell has all.
+pub fn check_published(published: &[PublishedSpec], cells: &[&Cell]) -> Result<()> {
+    published.iter().try_for_each(|claim| check(claim, cells))
+}
+
+fn check(claim: &PublishedSpec, cells: &[&Cell]) -> Result<()> {
+    let place = |key: &str| format!("key report.published, claim '{}', {key}", claim.claim);
+    if !(0.0..=1.0).contains(&claim.accuracy) {
+        let allowed = "a share of test touches, 0 to 1";
+        return Err(Error::input(place("accuracy"), claim.accuracy, allowed));
+    }
+    let rows: Vec<Table> = cells.iter().map(|cell| columns(cell)).collect();
+    for (key, wanted) in &claim.at {
+        let mut values: Vec<&Value> = Vec::new();
+        for value in rows.iter().filter_map(|row| row.get(column(key))) {
+            if !values.contains(&value) {
+                values.push(value);
+            }
+        }
+        if values.iter().any(|value| agree(value, wanted)) {
+            continue;
+        }
+        let known: Vec<String> = rows.iter().flat_map(Table::keys).cloned().collect();
+        let (given, allowed) = match values.is_empty() {
+            true => ("is no setting of this study".to_owned(), words(known)),
+            false => {
+                let values = values.iter().map(ToString::to_string).collect();
+                (wanted.to_string(), words(values))
+            }
+        };
+        return Err(Error::input(place(key), given, allowed));
+    }
+    match rows.iter().any(|row| is_about(claim, row)) {
+        true => Ok(()),
+        false => Err(Error::input(
+            place("all keys together"),
+            Value::Table(claim.at.clone()),
+            "values that one cell of the study has together",
+        )),
+    }
+}
+
+/// Each claim beside the cell with the highest mean accuracy (the first of equals) among those it is about.
+pub fn compare_with_published(
+    published: &[PublishedSpec],
+    summary: &[(Cell, CellScore)],
+) -> Vec<(Cell, Published)> {
+    let row = |claim: &PublishedSpec| {
+        let matching = || summary.iter().filter(|(c, _)| is_about(claim, &columns(c)));
+        let (cell, score) = matching().reduce(|best, row| {
+            if row.1.accuracy > best.1.accuracy {
+                row
+            } else {
+                best
+            }
+        })?;
+        let ours = Published {
+            claim: claim.claim.clone(),
+            source: claim.source.clone(),
+            published_accuracy: claim.accuracy,
+            accuracy: score.accuracy,
+            accuracy_low: score.accuracy_low,
+            accuracy_high: score.accuracy_high,
+            difference: score.accuracy - claim.accuracy,
+            n_matching: matching().count(),
+        };
+        Some((cell.clone(), ours))
+    };
+    published.iter().filter_map(row).collect()
+}
+
+fn is_about(claim: &PublishedSpec, row: &Table) -> bool {
+    let mut keys = claim.at.iter();
+    keys.all(|(key, wanted)| {
+        row.get(column(key))
+            .is_some_and(|value| agree(value, wanted))
+    })
+}
+
+/// The cell as its columns; its number says nothing about it, and an absent C is left out.
+fn columns(cell: &Cell) -> Table {
+    let mut row = Table::try_from(cell).expect("every field of a cell has a TOML form");
+    row.remove("cell");
+    row
+}
+
+fn column(key: &str) -> &str {
+    match key {
+        "noise" => "noise_std",
+        other => other,
+    }
+}
+
+fn agree(value: &Value, wanted: &Value) -> bool {
+    match (number(value), number(wanted)) {
+        (Some(a), Some(b)) => (a - b).abs() <= SAME_SETTING * a.abs().max(b.abs()),
+        _ => value == wanted,
+    }
+}
+
+fn number(value: &Value) -> Option<f64> {
+    value
+        .as_float()
+        .or_else(|| value.as_integer().map(|integer| integer as f64))
+}
+
+/// The values, each once.
+fn words(mut values: Vec<String>) -> String {
+    let mut seen: Vec<String> = Vec::new();
+    values.retain(|value| {
+        let is_new = !seen.contains(value);
+        seen.push(value.clone());
+        is_new
+    });
+    format!("one of {}", values.join(", "))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::recognition::ClassifierKind;
+
+    fn claim(keys: &str) -> PublishedSpec {
+        let text = format!("claim = \"it works\"\naccuracy = 0.9\nsource = \"[CL]\"\n{keys}");
+        toml::from_str(&text).unwrap()
+    }
+
+    /// Two classifiers × two ratios × no or 10 % noise; accuracies grow with the number.
+    fn summary() -> Vec<(Cell, CellScore)> {
+        let mut rows = Vec::new();
+        for noise_std in [0.0, 0.1] {
+            for classifier in [ClassifierKind::LinearSvm, ClassifierKind::KNearest] {
+                for (measurements, ratio) in [(64, 64.0), (41, 4096.0 / 41.0)] {
+                    let cell = Cell {
+                        cell: rows.len(),
+                        noise_std,
+                        classifier,
+                        measurements,
+                        ratio,
+                        c: classifier.has_c().then_some(1.0),
+                        ..crate::study::table::tests::cell()
+                    };
+                    let accuracy = 0.5 + 0.05 * rows.len() as f64;
+                    let score = CellScore {
+                        n_trials: 1,
+                        n_test: 100,
+                        accuracy,
+                        accuracy_std: 0.0,
+                        accuracy_low: accuracy - 0.1,
+                        accuracy_high: accuracy + 0.1,
+                        macro_f1: accuracy,
+                        n_capped: 0,
+                    };
+                    rows.push((cell, score));
+                }
+            }
+        }
+        rows
+    }
+
+    #[test]
+    fn a_claim_stands_beside_the_most_accurate_of_the_cells_with_its_settings() {
+        let summary = summary();
+        for (keys, cell, n_matching) in [
+            ("", 7, 8),
+            ("noise = 0.0", 3, 4),
+            ("noise_std = 0", 3, 4),
+            ("classifier = \"linear_svm\"", 5, 4),
+            ("classifier = \"linear_svm\"\nratio = 64\nnoise = 0.1", 4, 1),
+            ("ratio = 100.0\nc = 1.0", 5, 2), // a ratio as it was asked for
+            ("measurements = 64\nnoise = 0.0", 2, 2),
+        ] {
+            let cells: Vec<&Cell> = summary.iter().map(|(cell, _)| cell).collect();
+            let claims = [claim(keys)];
+            check_published(&claims, &cells).unwrap();
+            let found = compare_with_published(&claims, &summary);
+            let (ours, row) = &found[0];
+            assert_eq!((ours.cell, row.n_matching), (cell, n_matching), "{keys}");
+            assert_eq!(row.accuracy, summary[cell].1.accuracy);
+            assert_eq!(row.difference, row.accuracy - 0.9);
+        }
+    }
+
+    #[test]
+    fn a_claim_about_no_cell_is_refused_with_what_the_study_has() {
+        let summary = summary();
+        let cells: Vec<&Cell> = summary.iter().map(|(cell, _)| cell).collect();
+        for (keys, said) in [
+            ("colour = 1", "colour: is no setting of this study; one of "),
+            ("cell = 0", "cell: is no setting of this study; one of "),
+            ("ratio = 16.0", "ratio: 16.0; one of 64.0, 99.9"),
+            (
+                "classifier = \"rbf_svm\"",
+                "classifier: \"rbf_svm\"; one of \"linear_svm\", \"k_nearest\"",
+            ),
+            ("classifier = 3", "classifier: 3; one of \"linear_svm\""),
+            (
+                "classifier = \"k_nearest\"\nc = 1.0",
+                "values that one cell of the study has together",
+            ),
+        ] {
+            let error = check_published(&[claim(keys)], &cells).unwrap_err();
+            assert!(error.to_string().contains(said), "{error}");
+        }
+        let percent = PublishedSpec {
+            accuracy: 98.0,
+            ..claim("")
+        };
+        let error = check_published(&[percent], &cells).unwrap_err();
+        assert!(
+            error
+                .to_string()
+                .contains("accuracy: 98; a share of test touches, 0 to 1"),
+            "{error}"
+        );
+    }
+
+    #[test]
+    fn a_claim_needs_its_words_its_accuracy_and_its_source() {
+        for missing in ["claim", "accuracy", "source"] {
+            let lines = ["claim = \"a\"", "accuracy = 0.5", "source = \"[CL]\""];
+            let text: Vec<&str> = lines
+                .into_iter()
+                .filter(|line| !line.starts_with(missing))
+                .collect();
+            let error = toml::from_str::<PublishedSpec>(&text.join("\n")).unwrap_err();
+            assert!(error.message().contains(missing), "{error}");
+        }
+    }
+}
