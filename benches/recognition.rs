@@ -1,13 +1,15 @@
-//! Training and prediction of the SVMs, with linfa-svm's own prediction beside ours.
+//! Training, choice and prediction of the SVMs on our solver, with linfa-svm's own training and prediction beside it.
 //!
 //! `cargo bench --bench recognition`: 20 classes of 30 training and 30 test touches, Gaussian measurements of synthetic
 //! frames, standardised. Ids end in the number of measurements m.
 
 use bubbletouch::random::Seed;
+use bubbletouch::recognition::choice::{Candidates, choose};
 use bubbletouch::recognition::dataset::{Dataset, dataset};
 use bubbletouch::recognition::kernel::{Gamma, Kernel};
 use bubbletouch::recognition::scaling::Scaling;
-use bubbletouch::recognition::svm::{Multiclass, SvmParams};
+use bubbletouch::recognition::split::stratified_k_fold;
+use bubbletouch::recognition::svm::{Multiclass, Solver, SvmParams};
 use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
 use linfa::DatasetBase;
 use linfa::traits::Fit;
@@ -61,23 +63,28 @@ fn kernels() -> [(&'static str, Kernel); 2] {
     [("linear", Kernel::Linear), ("rbf", Kernel::Rbf { gamma })]
 }
 
+/// What trains: our solver in both multi-class schemes, and linfa-svm beside it.
+const TRAINERS: [(Solver, Multiclass); 3] = [
+    (Solver::Smo, Multiclass::OneVsOne),
+    (Solver::Smo, Multiclass::OneVsRest),
+    (Solver::Linfa, Multiclass::OneVsOne),
+];
+
 fn train(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("train");
     group.sample_size(10);
-    for m in [16, 64, 256, 1024] {
+    for m in [64, 256] {
         let data = touches(m, &Seed::new(2));
         for (name, kernel) in kernels() {
-            for multiclass in [Multiclass::OneVsOne, Multiclass::OneVsRest] {
-                if multiclass == Multiclass::OneVsRest && m != 64 {
-                    continue;
-                }
+            for (solver, multiclass) in TRAINERS {
                 let params = SvmParams {
                     kernel,
                     multiclass,
+                    solver,
                     ..SvmParams::default()
                 };
                 group.bench_function(
-                    BenchmarkId::new(format!("{name} {multiclass:?}"), m),
+                    BenchmarkId::new(format!("{name} {multiclass:?} {solver:?}"), m),
                     |bencher| {
                         bencher.iter(|| params.train(&data).unwrap());
                     },
@@ -88,10 +95,34 @@ fn train(criterion: &mut Criterion) {
     group.finish();
 }
 
+/// Three C, and three γ of the RBF kernel, on three folds.
+fn choice(criterion: &mut Criterion) {
+    let mut group = criterion.benchmark_group("choose C and gamma");
+    group.sample_size(10);
+    let candidates = Candidates {
+        c: vec![0.1, 1.0, 10.0],
+        gamma_scales: vec![0.3, 1.0, 3.0],
+    };
+    for m in [64, 256] {
+        let data = touches(m, &Seed::new(2));
+        let folds = stratified_k_fold(data.targets.view(), 3, &Seed::new(4)).unwrap();
+        for (name, kernel) in kernels() {
+            let params = SvmParams {
+                kernel,
+                ..SvmParams::default()
+            };
+            group.bench_function(BenchmarkId::new(name, m), |bencher| {
+                bencher.iter(|| choose(&params, &data, &folds, &candidates).unwrap());
+            });
+        }
+    }
+    group.finish();
+}
+
 fn predict(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("predict 600 rows, one-vs-one");
     group.sample_size(10);
-    for m in [64, 1024] {
+    for m in [64, 256] {
         let data = touches(m, &Seed::new(2));
         let test = touches(m, &Seed::new(3)).records;
         for (name, kernel) in kernels() {
@@ -144,5 +175,5 @@ fn linfa_models(kernel: Kernel, data: &Dataset) -> Vec<Svm<f64, bool>> {
     models
 }
 
-criterion_group!(benches, train, predict);
+criterion_group!(benches, train, choice, predict);
 criterion_main!(benches);

@@ -56,7 +56,7 @@ impl<T: Scalar> DecisionFunctions<T> {
         let mut rho: Array1<f64> = problems.iter().map(|p| p.solution.rho).collect();
         let sums = match kernel {
             KernelFunction::Linear => {
-                let normals = hyperplanes(data, classes, problems);
+                let normals = hyperplanes(data, classes, problems, &centre);
                 rho -= &centre.dot(&normals);
                 Sums::Hyperplanes(normals.mapv(T::of))
             }
@@ -162,12 +162,19 @@ impl Coefficients {
     }
 }
 
-/// `w = Σ y_i a_i x_i` per problem: m × n_problems. Class by class, each by one matrix product.
-fn hyperplanes(data: &Dataset, classes: &[usize], problems: &[BinaryProblem]) -> Array2<f64> {
+/// `w = Σ y_i a_i x_i` per problem: m × n_problems. Class by class, each by one matrix product. The rows are taken about
+/// the centre: coefficients sum to zero, so that nothing changes but rounding, which the distance to the origin would
+/// multiply.
+fn hyperplanes(
+    data: &Dataset,
+    classes: &[usize],
+    problems: &[BinaryProblem],
+    centre: &Array1<f64>,
+) -> Array2<f64> {
     let mut normals = Array2::zeros((problems.len(), data.records.ncols()));
     for &class in classes {
         let own = Coefficients::new(data, class, problems);
-        let vectors = data.records.select(Axis(0), &own.rows);
+        let vectors = data.records.select(Axis(0), &own.rows) - centre;
         let part = own.values.t().dot(&vectors);
         for (part, &problem) in part.rows().into_iter().zip(&own.problems) {
             let mut normal = normals.slice_mut(s![problem, ..]);

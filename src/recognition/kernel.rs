@@ -52,7 +52,7 @@ impl Kernel {
 
     /// The kernel with γ as a number, taken from the training features (n_rows × m).
     pub(crate) fn resolve(&self, features: ArrayView2<f64>) -> Result<KernelFunction> {
-        Ok(match *self {
+        let function = match *self {
             Self::Linear => KernelFunction::Linear,
             Self::Rbf { gamma } => KernelFunction::Rbf {
                 gamma: gamma.resolve(features)?,
@@ -75,7 +75,9 @@ impl Kernel {
                     degree: degree as i32,
                 }
             }
-        })
+        };
+        function.check(features)?;
+        Ok(function)
     }
 }
 
@@ -103,6 +105,31 @@ pub(crate) enum KernelFunction {
     Linear,
     Rbf { gamma: f64 },
     Polynomial { gamma: f64, coef0: f64, degree: i32 },
+}
+
+impl KernelFunction {
+    /// Refuses features (n_rows × m) so large that some kernel value is infinite. None exceeds those of a row with itself,
+    /// nor a squared distance four times the largest squared norm.
+    fn check(&self, features: ArrayView2<f64>) -> Result<()> {
+        let norms = features.rows().into_iter().map(|row| row.dot(&row));
+        let norm = norms.fold(0.0, f64::max);
+        let largest = match *self {
+            Self::Linear | Self::Rbf { .. } => 4.0 * norm,
+            Self::Polynomial {
+                gamma,
+                coef0,
+                degree,
+            } => (gamma * norm + coef0).powi(degree),
+        };
+        if largest.is_finite() {
+            return Ok(());
+        }
+        Err(Error::input(
+            "features",
+            format!("a row of squared length {norm:e}"),
+            "its kernel value must be a finite number: scale the features, or take a smaller gamma or degree",
+        ))
+    }
 }
 
 #[cfg(test)]

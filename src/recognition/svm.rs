@@ -51,7 +51,7 @@ const SINGLE_FROM_ROWS: usize = 1000;
 /// The smallest tolerance that f32 kernel values can be trusted with.
 const SINGLE_TOLERANCE: f64 = 1e-4;
 /// The largest C · K(x, x), and the largest K(x, x), for f32: rounding of K, 6e-8 of it, is multiplied by coefficients of at
-/// most C.
+/// most C. Of an RBF kernel the exponent, which is as large as γ times the squared distance between two rows.
 const SINGLE_MOST: f64 = 1e5;
 /// Bytes of kernel values held at once, unless asked otherwise: one-vs-rest on 16,384 rows in f32.
 pub const DEFAULT_MEMORY_BYTES: usize = 2 << 30;
@@ -133,13 +133,6 @@ impl SvmParams {
                 "at least two classes are needed",
             ));
         }
-        if self.multiclass == Multiclass::CrammerSinger {
-            return Err(Error::input(
-                "multiclass",
-                "crammer_singer with a kernel",
-                "it is linear only: one_vs_one or one_vs_rest is allowed here",
-            ));
-        }
         let kernel = self.kernel.resolve(data.records.view())?;
         let mut ascending = path.to_vec();
         ascending.sort_by(f64::total_cmp);
@@ -179,14 +172,13 @@ impl SvmParams {
         path: &[f64],
         centre: ArrayView1<f64>,
     ) -> bool {
+        let norm = |row: ArrayView1<f64>| (&row - &centre).mapv(|x| x * x).sum();
+        let norms = data.records.rows().into_iter().map(norm);
+        let farthest = norms.fold(0.0, f64::max);
         let largest = match kernel {
             KernelFunction::Polynomial { .. } => return true,
-            KernelFunction::Rbf { .. } => 1.0,
-            KernelFunction::Linear => {
-                let norm = |row: ArrayView1<f64>| (&row - &centre).mapv(|x| x * x).sum();
-                let norms = data.records.rows().into_iter().map(norm);
-                norms.fold(0.0, f64::max)
-            }
+            KernelFunction::Rbf { gamma } => (4.0 * gamma * farthest).max(1.0),
+            KernelFunction::Linear => farthest,
         };
         let c = path.iter().copied().fold(0.0, f64::max);
         data.records.nrows() < SINGLE_FROM_ROWS
@@ -242,6 +234,7 @@ impl SvmParams {
             .collect()
     }
 
+    /// Refuses what no data set could be trained with.
     pub(crate) fn check(&self, path: &[f64]) -> Result<()> {
         if path.is_empty() {
             return Err(Error::input("C", "none", "at least one is needed"));
@@ -255,6 +248,13 @@ impl SvmParams {
                     "a finite number above 0 is allowed",
                 ));
             }
+        }
+        if self.multiclass == Multiclass::CrammerSinger {
+            return Err(Error::input(
+                "multiclass",
+                "crammer_singer with a kernel",
+                "it is linear only: one_vs_one or one_vs_rest is allowed here",
+            ));
         }
         Ok(())
     }

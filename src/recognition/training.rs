@@ -69,13 +69,10 @@ impl<T: Scalar> Sorted<T> {
             .collect();
         let sorted = data.records.select(Axis(0), &order);
         let centre_products = match kernel {
+            // Row by row: far from the origin, x·c − c·c would be two large numbers less each other.
             KernelFunction::Linear => {
-                let own = centre.dot(&centre);
-                sorted
-                    .dot(&centre)
-                    .iter()
-                    .map(|product| product - own)
-                    .collect()
+                let product = |row: ArrayView1<f64>| (&row - &centre).dot(&centre);
+                sorted.rows().into_iter().map(product).collect()
             }
             _ => Vec::new(),
         };

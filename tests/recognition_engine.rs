@@ -1,0 +1,689 @@
+//! The SVM engine against the definitions: every objective, violation and duality gap here is computed again from the
+//! features, one kernel value at a time, whatever the solver kept, shared, shrank, cached or rounded on its way.
+
+use bubbletouch::random::Seed;
+use bubbletouch::recognition::choice::{Candidates, Chosen, choose};
+use bubbletouch::recognition::dataset::{Dataset, dataset, rows};
+use bubbletouch::recognition::kernel::{Gamma, Kernel};
+use bubbletouch::recognition::split::{Split, stratified_k_fold};
+use bubbletouch::recognition::svm::{BinaryProblem, Multiclass, Solver, SvmParams};
+use bubbletouch::recognition::svm_model::SvmModel;
+use ndarray::{Array1, Array2, ArrayView1, Axis, concatenate};
+use rand::Rng;
+use rand_distr::StandardNormal;
+
+const RBF: Kernel = Kernel::Rbf {
+    gamma: Gamma::Value(0.15),
+};
+const CUBIC: Kernel = Kernel::Polynomial {
+    gamma: Gamma::Value(0.1),
+    coef0: 1.0,
+    degree: 3,
+};
+const KERNELS: [Kernel; 3] = [Kernel::Linear, RBF, CUBIC];
+
+fn params(kernel: Kernel, c: f64, tolerance: f64) -> SvmParams {
+    SvmParams {
+        kernel,
+        c,
+        tolerance,
+        ..SvmParams::default()
+    }
+}
+
+/// Normal clouds of `counts` rows in `m` features of unit spread, a class each, whose centres lie `apart` times a normal
+/// vector from the origin; the rows of all classes are mixed.
+fn clouds(counts: &[usize], m: usize, apart: f64, seed: u64) -> Dataset {
+    let seed = Seed::new(seed);
+    let mut rng = seed.named("centres").rng();
+    let centres = Array2::from_shape_fn((counts.len(), m), |_| {
+        apart * rng.sample::<f64, _>(StandardNormal)
+    });
+    let mut labels: Vec<usize> = (0..counts.len())
+        .flat_map(|class| std::iter::repeat_n(class, counts[class]))
+        .collect();
+    let mut rng = seed.named("rows").rng();
+    for last in (1..labels.len()).rev() {
+        labels.swap(last, rng.gen_range(0..=last));
+    }
+    let features = Array2::from_shape_fn((labels.len(), m), |(i, j)| {
+        centres[[labels[i], j]] + rng.sample::<f64, _>(StandardNormal)
+    });
+    dataset(features, Array1::from(labels)).unwrap()
+}
+
+/// `K(x, z)`, from the definition.
+fn kernel_value(kernel: Kernel, x: ArrayView1<f64>, z: ArrayView1<f64>) -> f64 {
+    let dot = || x.iter().zip(z).map(|(x, z)| x * z).sum::<f64>();
+    match kernel {
+        Kernel::Linear => dot(),
+        Kernel::Rbf {
+            gamma: Gamma::Value(gamma),
+        } => {
+            let squares = x.iter().zip(z).map(|(x, z)| (x - z) * (x - z));
+            (-gamma * squares.sum::<f64>()).exp()
+        }
+        Kernel::Polynomial {
+            gamma: Gamma::Value(gamma),
+            coef0,
+            degree,
+        } => (gamma * dot() + coef0).powi(degree as i32),
+        _ => panic!("γ is a number here"),
+    }
+}
+
+/// What a solution of a binary problem is worth, from the definitions.
+#[derive(Debug)]
+struct Worth {
+    /// `Σ_i a_i − ½ Σ_ij β_i β_j K_ij`.
+    dual: f64,
+    /// `½ |w|² + C Σ_i max(0, 1 − y_i f(x_i))` less the dual: at the optimum 0, never below.
+    gap: f64,
+    /// The largest gradient of what can be raised less the smallest of what can be lowered.
+    violation: f64,
+}
+
+impl Worth {
+    /// Panics where the solution is not feasible: `0 ≤ y β ≤ C`, exactly, and `Σ β = 0`.
+    fn of(params: SvmParams, data: &Dataset, problem: &BinaryProblem) -> Self {
+        let (c, beta) = (params.c, &problem.solution.coefficients);
+        let row = |i: usize| data.records.row(problem.rows[i]);
+        let support: Vec<usize> = (0..beta.len()).filter(|&j| beta[j] != 0.0).collect();
+        let product = |i: usize| -> f64 {
+            let terms = support
+                .iter()
+                .map(|&j| beta[j] * kernel_value(params.kernel, row(i), row(j)));
+            terms.sum()
+        };
+        let (mut dual, mut primal) = (0.0, 0.0);
+        let (mut highest, mut lowest) = (f64::NEG_INFINITY, f64::INFINITY);
+        for (i, &beta) in beta.iter().enumerate() {
+            let y = if data.targets[problem.rows[i]] == problem.positive {
+                1.0
+            } else {
+                -1.0
+            };
+            let (multiplier, product) = (y * beta, product(i));
+            assert!((0.0..=c).contains(&multiplier), "0 ≤ {multiplier} ≤ {c}");
+            dual += multiplier - 0.5 * beta * product;
+            primal +=
+                0.5 * beta * product + c * (1.0 - y * (product - problem.solution.rho)).max(0.0);
+            if (y > 0.0 && multiplier < c) || (y < 0.0 && multiplier > 0.0) {
+                highest = highest.max(y - product);
+            }
+            if (y > 0.0 && multiplier > 0.0) || (y < 0.0 && multiplier < c) {
+                lowest = lowest.min(y - product);
+            }
+        }
+        let sum: f64 = beta.iter().sum();
+        assert!(sum.abs() <= 1e-10 * c * beta.len() as f64, "Σβ = {sum}");
+        Self {
+            dual,
+            gap: primal - dual,
+            violation: (highest - lowest).max(0.0),
+        }
+    }
+}
+
+fn near(a: f64, b: f64, relative: f64) -> bool {
+    (a - b).abs() <= relative * a.abs().max(b.abs())
+}
+
+fn assert_same_objectives(a: &SvmModel, b: &SvmModel, relative: f64, name: &str) {
+    assert_eq!(a.problems().len(), b.problems().len(), "{name}");
+    for (a, b) in a.problems().iter().zip(b.problems()) {
+        assert_eq!((a.positive, a.negative), (b.positive, b.negative), "{name}");
+        let [a, b] = [a, b].map(|problem| problem.solution.objective);
+        assert!(near(a, b, relative), "{name}: {a} and {b}");
+    }
+}
+
+/// Whether kernel values are f32. Which precision stands behind a model is seen from its `Debug` alone.
+fn is_single(model: &SvmModel) -> bool {
+    format!("{model:?}").contains("Single(")
+}
+
+/// The share of equal labels.
+fn agreement(a: &Array1<usize>, b: &Array1<usize>) -> f64 {
+    a.iter().zip(b).filter(|(a, b)| a == b).count() as f64 / a.len() as f64
+}
+
+fn worst_difference(a: &Array2<f64>, b: &Array2<f64>) -> f64 {
+    (a - b).iter().fold(0.0, |max, value| value.abs().max(max))
+}
+
+// Memory.
+
+/// 600 rows in a pair and 900 in all, so that variables are left out on the way where there is room for what remains.
+fn assert_memory_changes_nothing(multiclass: Multiclass) {
+    let data = clouds(&[300, 300, 300], 6, 0.6, 1);
+    let probes = clouds(&[70, 70, 70], 6, 0.6, 1).records;
+    for kernel in KERNELS {
+        let ample = SvmParams {
+            multiclass,
+            ..params(kernel, 1.0, 1e-5)
+        };
+        let expected = ample.train(&data).unwrap();
+        // Two rows; some dozen rows; most rows, and room for a part of the matrix.
+        for memory_bytes in [1, 100_000, 2_500_000] {
+            let scarce = SvmParams {
+                memory_bytes,
+                ..ample
+            };
+            let model = scarce.train(&data).unwrap();
+            let name = format!("{kernel:?}, {memory_bytes} bytes");
+            assert_eq!(model.n_capped(), 0, "{name}");
+            assert_same_objectives(&expected, &model, 1e-6, &name);
+            for problem in model.problems() {
+                assert!(problem.solution.violation.unwrap() <= 1e-5, "{name}");
+            }
+            assert_eq!(
+                model.labels(probes.view()).unwrap(),
+                expected.labels(probes.view()).unwrap(),
+                "{name}"
+            );
+        }
+    }
+}
+
+#[test]
+fn pairs_of_classes_are_solved_alike_in_any_memory_down_to_two_rows() {
+    assert_memory_changes_nothing(Multiclass::OneVsOne);
+}
+
+#[test]
+fn a_class_against_the_rest_is_solved_alike_in_any_memory_down_to_two_rows() {
+    assert_memory_changes_nothing(Multiclass::OneVsRest);
+}
+
+// Paths of C.
+
+#[test]
+fn each_model_of_a_path_is_that_of_training_its_c_alone_in_the_order_asked() {
+    let data = clouds(&[30, 25, 20], 5, 1.0, 2);
+    let path = [1e6, 100.0, 1e-6, 1.0, 1.0, 0.01, 1e4, 1e-6];
+    for (tolerance, relative) in [(1e-3, 1e-4), (1e-8, 1e-8)] {
+        for kernel in [RBF, CUBIC] {
+            for multiclass in [Multiclass::OneVsOne, Multiclass::OneVsRest] {
+                let params = SvmParams {
+                    multiclass,
+                    ..params(kernel, 1.0, tolerance)
+                };
+                let models = params.train_path(&data, &path).unwrap();
+                assert_eq!(models.len(), path.len());
+                for (model, &c) in models.iter().zip(&path) {
+                    let params = SvmParams { c, ..params };
+                    let alone = params.train(&data).unwrap();
+                    let name = format!("{kernel:?} {multiclass:?}, C = {c}, {tolerance}");
+                    assert_eq!((model.n_capped(), alone.n_capped()), (0, 0), "{name}");
+                    assert_same_objectives(model, &alone, relative, &name);
+                }
+            }
+        }
+    }
+}
+
+// Precision.
+
+/// Four classes of 300 rows: f32 at the usual tolerance.
+fn large() -> (Dataset, Array2<f64>) {
+    let data = clouds(&[300, 300, 300, 300], 8, 0.7, 3);
+    let mut rng = Seed::new(4).rng();
+    let probes = Array2::from_shape_fn((800, 8), |_| 1.3 * rng.sample::<f64, _>(StandardNormal));
+    (data, probes)
+}
+
+#[test]
+fn single_precision_is_double_precision_to_the_tolerance() {
+    let (data, probes) = large();
+    for kernel in [Kernel::Linear, RBF] {
+        for c in [0.1, 1.0, 100.0] {
+            let double = params(kernel, c, 1e-5).train(&data).unwrap();
+            assert!(!is_single(&double));
+            let expected = double.decision_values(probes.view()).unwrap();
+            for tolerance in [1e-3, 1e-4] {
+                // Some tolerances, since it bounds f at the support vectors alone, and f32's rounding times C.
+                let apart = 20.0 * tolerance + 3e-5 * c;
+                let single = params(kernel, c, tolerance).train(&data).unwrap();
+                let name = format!("{kernel:?}, C = {c}, tolerance {tolerance}");
+                assert!(is_single(&single), "{name}");
+                assert_same_objectives(&double, &single, 1e-4, &name);
+                let values = single.decision_values(probes.view()).unwrap();
+                let worst = worst_difference(&values, &expected);
+                println!("{name}: decision values {worst:.1e} apart");
+                assert!(worst <= apart, "{name}: {worst}");
+                let labels = [&single, &double].map(|model| model.labels(probes.view()).unwrap());
+                assert!(agreement(&labels[0], &labels[1]) >= 0.995, "{name}");
+            }
+        }
+    }
+}
+
+#[test]
+fn a_million_added_to_every_feature_changes_only_their_rounding() {
+    let (data, probes) = large();
+    let moved = dataset(&data.records + 1e6, data.targets.clone()).unwrap();
+    let moved_probes = &probes + 1e6;
+    for kernel in [Kernel::Linear, RBF] {
+        // At 1e6 features lose digits from 1e-10 on: in f64 no label changes, in f32 what the tolerance leaves open may.
+        for (tolerance, least, apart) in [(1e-3, 0.99, 2e-2), (1e-6, 1.0, 1e-5)] {
+            let params = params(kernel, 1.0, tolerance);
+            let (here, there) = (params.train(&data).unwrap(), params.train(&moved).unwrap());
+            assert_eq!(is_single(&here), tolerance == 1e-3);
+            let labels = here.labels(probes.view()).unwrap();
+            let moved_labels = there.labels(moved_probes.view()).unwrap();
+            let share = agreement(&labels, &moved_labels);
+            assert!(share >= least, "{kernel:?}, {tolerance}: {share}");
+            let worst = worst_difference(
+                &here.decision_values(probes.view()).unwrap(),
+                &there.decision_values(moved_probes.view()).unwrap(),
+            );
+            assert!(worst <= apart, "{kernel:?}, {tolerance}: {worst}");
+        }
+    }
+}
+
+#[test]
+fn classes_that_lie_close_in_clusters_that_lie_far_apart_are_told_apart() {
+    // Distances of 1 within clusters that lie 4,000 apart: the difference of squares of 4e6 has no digit left in f32.
+    let mut data = clouds(&[550, 550], 4, 0.0, 5);
+    for (i, (mut row, &label)) in data
+        .records
+        .rows_mut()
+        .into_iter()
+        .zip(&data.targets)
+        .enumerate()
+    {
+        row *= 0.2;
+        row[0] += label as f64 + if i % 2 == 0 { 2000.0 } else { -2000.0 };
+    }
+    let kernel = Kernel::Rbf {
+        gamma: Gamma::Value(1.0),
+    };
+    let model = params(kernel, 1.0, 1e-3).train(&data).unwrap();
+    let labels = model.labels(data.records.view()).unwrap();
+    assert!(agreement(&labels, &data.targets) > 0.98);
+}
+
+// Optimality.
+
+/// Two overlapping classes of 750 rows: thousands of iterations, in which most variables are left out at some time.
+fn assert_optimal(kernel: Kernel) {
+    let data = clouds(&[750, 750], 6, 0.5, 6);
+    let own = |row| kernel_value(kernel, row, row);
+    for c in [0.01, 1.0, 100.0] {
+        let params = params(kernel, c, 1e-3);
+        let model = params.train(&data).unwrap();
+        let problem = &model.problems()[0];
+        let worth = Worth::of(params, &data, problem);
+        let name = format!("{kernel:?}, C = {c}");
+        // f32 kernel values are rounded by 6e-8, and up to C times that adds up over hundreds of support vectors.
+        let unit = if is_single(&model) { 2e-6 } else { 1e-10 };
+        let largest = data.records.rows().into_iter().map(own).fold(1.0, f64::max);
+        let rounding = unit * c * largest;
+        println!("{name}: {worth:?}, {:?}", problem.solution.objective);
+        assert_eq!(model.n_capped(), 0, "{name}");
+        assert!(
+            worth.violation <= 1.01 * params.tolerance + unit * c,
+            "{name}"
+        );
+        // Each row's hinge is within the tolerance of what its multiplier says: C each at the most.
+        assert!(worth.gap >= -1e-9 * worth.dual, "{name}");
+        assert!(worth.gap <= c * 1500.0 * params.tolerance, "{name}");
+        assert!(worth.gap <= 2e-3 * worth.dual, "{name}");
+        assert!(near(worth.dual, problem.solution.objective, 1e-4), "{name}");
+        let violation = problem.solution.violation.unwrap();
+        assert!(violation <= params.tolerance, "{name}");
+        assert!((violation - worth.violation).abs() <= rounding, "{name}");
+    }
+}
+
+#[test]
+fn a_linear_solution_is_optimal_by_its_definition() {
+    assert_optimal(Kernel::Linear);
+}
+
+#[test]
+fn a_gaussian_solution_is_optimal_by_its_definition() {
+    assert_optimal(RBF);
+}
+
+#[test]
+fn a_cubic_solution_is_optimal_by_its_definition() {
+    assert_optimal(CUBIC);
+}
+
+#[test]
+fn our_solver_and_linfas_reach_the_same_objective() {
+    let data = clouds(&[40, 30, 20], 5, 0.8, 7);
+    for kernel in KERNELS {
+        for multiclass in [Multiclass::OneVsOne, Multiclass::OneVsRest] {
+            for c in [0.01, 1.0, 100.0] {
+                let ours = SvmParams {
+                    multiclass,
+                    ..params(kernel, c, 1e-6)
+                };
+                let theirs = SvmParams {
+                    solver: Solver::Linfa,
+                    ..ours
+                };
+                let name = format!("{kernel:?} {multiclass:?}, C = {c}");
+                let [ours, theirs] = [ours, theirs].map(|params| params.train(&data).unwrap());
+                assert_eq!((ours.n_capped(), theirs.n_capped()), (0, 0), "{name}");
+                assert_same_objectives(&ours, &theirs, 1e-5, &name);
+            }
+        }
+    }
+}
+
+// Hard sets.
+
+/// Trains and looks at every problem by its definition: feasible, within the tolerance, not capped.
+fn optimal(params: SvmParams, data: &Dataset) -> SvmModel {
+    let model = params.train(data).unwrap();
+    for problem in model.problems() {
+        let worth = Worth::of(params, data, problem);
+        let allowed = 1.01 * params.tolerance + 2e-6 * params.c;
+        assert!(worth.violation <= allowed, "{params:?}: {worth:?}");
+    }
+    assert_eq!(model.n_capped(), 0, "{params:?}");
+    model
+}
+
+fn multipliers(model: &SvmModel) -> Vec<f64> {
+    let of = |problem: &BinaryProblem| problem.solution.coefficients.clone();
+    let all = model.problems().iter().flat_map(of);
+    all.map(f64::abs).collect()
+}
+
+#[test]
+fn one_row_in_a_hundred_is_found_where_it_stands_apart_and_given_up_where_it_does_not() {
+    for (apart, c, expected) in [(3.0, 10.0, 10), (0.0, 0.1, 0)] {
+        let data = clouds(&[1000, 10], 5, apart, 8);
+        for kernel in [Kernel::Linear, RBF] {
+            let model = optimal(params(kernel, c, 1e-3), &data);
+            assert!(is_single(&model));
+            let labels = model.labels(data.records.view()).unwrap();
+            let few = |labels: &Array1<usize>| labels.iter().filter(|&&label| label == 1).count();
+            assert_eq!(few(&labels), expected, "{kernel:?}");
+        }
+    }
+}
+
+#[test]
+fn two_rows_a_class_are_enough_for_thirty_classes() {
+    let data = clouds(&[2; 30], 40, 2.0, 9);
+    for kernel in [Kernel::Linear, RBF, CUBIC] {
+        for multiclass in [Multiclass::OneVsOne, Multiclass::OneVsRest] {
+            let params = SvmParams {
+                multiclass,
+                ..params(kernel, 100.0, 1e-3)
+            };
+            let labels = optimal(params, &data).labels(data.records.view()).unwrap();
+            assert_eq!(labels, data.targets, "{kernel:?} {multiclass:?}");
+        }
+    }
+}
+
+#[test]
+fn of_equal_rows_the_more_frequent_label_wins() {
+    // 3 rows of class 0 and 5 of class 1, or 500 and 600 (f32): Kβ = 0, so the fewer all end at C, and f = −1 everywhere.
+    for counts in [[3, 5], [500, 600]] {
+        let labels = (0..2).flat_map(|class| std::iter::repeat_n(class, counts[class]));
+        let equal = Array2::from_elem((counts[0] + counts[1], 3), 0.7);
+        let data = dataset(equal, labels.collect()).unwrap();
+        for kernel in KERNELS {
+            let model = optimal(params(kernel, 2.0, 1e-3), &data);
+            let solution = &model.problems()[0].solution;
+            let of_fewer = &solution.coefficients[..counts[0]];
+            assert!(of_fewer.iter().all(|&beta| beta == 2.0), "{kernel:?}");
+            assert!(near(solution.objective, 4.0 * counts[0] as f64, 1e-6));
+            let values = model.decision_values(data.records.view()).unwrap();
+            assert!(values.iter().all(|value| (value + 1.0).abs() < 1e-3));
+        }
+    }
+}
+
+#[test]
+fn as_c_vanishes_every_multiplier_is_zero_or_c() {
+    let data = clouds(&[20, 30, 50], 4, 1.0, 10);
+    for kernel in KERNELS {
+        for multiclass in [Multiclass::OneVsOne, Multiclass::OneVsRest] {
+            let c = 1e-9;
+            let params = SvmParams {
+                multiclass,
+                ..params(kernel, c, 1e-3)
+            };
+            let model = optimal(params, &data);
+            assert!(multipliers(&model).iter().all(|&a| a == 0.0 || a == c));
+            for problem in model.problems() {
+                let n_positive = data.targets.iter().filter(|&&l| l == problem.positive);
+                let n_positive = n_positive.count();
+                // All rows of the smaller side, and as many of the other.
+                let n_fewer = n_positive.min(problem.rows.len() - n_positive) as f64;
+                assert!(near(problem.solution.objective, 2.0 * n_fewer * c, 1e-6));
+            }
+        }
+    }
+}
+
+#[test]
+fn a_mislabelled_row_ends_at_c_and_is_recognised_as_what_it_is() {
+    let truth = clouds(&[80, 80], 4, 4.0, 11);
+    let mut labels = truth.targets.clone();
+    (0..160)
+        .step_by(20)
+        .for_each(|row| labels[row] = 1 - labels[row]);
+    let data = dataset(truth.records.clone(), labels).unwrap();
+    for kernel in [Kernel::Linear, RBF] {
+        let model = optimal(params(kernel, 0.5, 1e-3), &data);
+        let recognised = model.labels(data.records.view()).unwrap();
+        assert_eq!(recognised, truth.targets, "{kernel:?}");
+        let problem = &model.problems()[0];
+        for (row, beta) in problem.rows.iter().zip(&problem.solution.coefficients) {
+            assert!(row % 20 != 0 || beta.abs() == 0.5, "{kernel:?}, row {row}");
+        }
+    }
+}
+
+#[test]
+fn a_class_whose_rows_are_anothers_shares_them_and_disturbs_no_third() {
+    let two = clouds(&[40, 40], 4, 3.0, 12);
+    let of_one: Vec<usize> = (0..80).filter(|&row| two.targets[row] == 1).collect();
+    let copies = two.records.select(Axis(0), &of_one);
+    let features = concatenate(Axis(0), &[two.records.view(), copies.view()]).unwrap();
+    let labels: Vec<usize> = two.targets.iter().copied().chain([2; 40]).collect();
+    let data = dataset(features, Array1::from(labels)).unwrap();
+    for kernel in KERNELS {
+        let model = optimal(params(kernel, 1.0, 1e-3), &data);
+        let labels = model.labels(data.records.view()).unwrap();
+        for (&label, &truth) in labels.iter().zip(&data.targets) {
+            assert_eq!(label == 0, truth == 0, "{kernel:?}");
+        }
+        let between = model.decision_values(data.records.view()).unwrap();
+        let worst = between.column(2).fold(0.0_f64, |max, v| max.max(v.abs()));
+        assert!(worst < 1e-3, "{kernel:?}: {worst}");
+    }
+}
+
+#[test]
+fn features_whose_kernel_values_are_no_numbers_are_refused() {
+    let data = clouds(&[5, 5], 3, 1.0, 13);
+    let huge = dataset(&data.records * 1e200, data.targets.clone()).unwrap();
+    let rbf = Kernel::Rbf {
+        gamma: Gamma::Scale,
+    };
+    let steep = Kernel::Polynomial {
+        gamma: Gamma::Value(1e20),
+        coef0: 0.0,
+        degree: 20,
+    };
+    for (kernel, data) in [(Kernel::Linear, &huge), (rbf, &huge), (steep, &data)] {
+        for solver in [Solver::Smo, Solver::Linfa] {
+            let params = SvmParams {
+                solver,
+                ..params(kernel, 1.0, 1e-3)
+            };
+            let error = params.train(data).unwrap_err().to_string();
+            assert!(error.starts_with("features: "), "{error}");
+        }
+    }
+}
+
+// Determinism.
+
+#[test]
+fn training_again_gives_the_same_bytes_and_another_order_of_rows_the_same_labels() {
+    for (counts, tolerance) in [(vec![60, 50, 40], 1e-7), (vec![400, 400, 400], 1e-3)] {
+        let data = clouds(&counts, 6, 0.8, 14);
+        let probes = clouds(&[150; 3], 6, 0.8, 15).records;
+        let n = data.targets.len();
+        let order: Vec<usize> = (0..n).map(|row| row * 7 % n).rev().collect();
+        let permuted = rows(&data, &order).unwrap();
+        for kernel in KERNELS {
+            let params = params(kernel, 1.0, tolerance);
+            let values = |data| params.train(data).unwrap().decision_values(probes.view());
+            let bytes = |values: &Array2<f64>| values.mapv(f64::to_bits);
+            let (first, again) = (values(&data).unwrap(), values(&data).unwrap());
+            assert_eq!(bytes(&first), bytes(&again), "{kernel:?}");
+            let model = params.train(&permuted).unwrap();
+            let labels = params.train(&data).unwrap().labels(probes.view()).unwrap();
+            let other = model.labels(probes.view()).unwrap();
+            // What the tolerance leaves open depends on the order in which equally good steps are taken.
+            let least = if tolerance < 1e-6 { 1.0 } else { 0.99 };
+            assert!(agreement(&labels, &other) >= least, "{kernel:?}");
+        }
+    }
+}
+
+// The choice of C and γ.
+
+fn candidates() -> Candidates {
+    Candidates {
+        c: vec![0.1, 10.0],
+        gamma_scales: vec![0.5, 2.0],
+    }
+}
+
+/// [`choose`] by its definition: a model for every fold and candidate, trained alone.
+fn accuracies(params: SvmParams, data: &Dataset, folds: &[Split], chosen: &Chosen) -> Vec<f64> {
+    let of = |c: f64, gamma: Option<f64>| {
+        let gamma = gamma.map(Gamma::Value);
+        let kernel = gamma.map_or(params.kernel, |gamma| params.kernel.with_gamma(gamma));
+        let params = SvmParams {
+            kernel,
+            c,
+            ..params
+        };
+        let (mut n_correct, mut n_all) = (0, 0);
+        for fold in folds {
+            let fitting = rows(data, &fold.train).unwrap();
+            let held_out = rows(data, &fold.test).unwrap();
+            let labels = params.train(&fitting).unwrap();
+            let labels = labels.labels(held_out.records.view()).unwrap();
+            let pairs = labels.iter().zip(&held_out.targets);
+            n_correct += pairs.filter(|(a, b)| a == b).count();
+            n_all += held_out.targets.len();
+        }
+        n_correct as f64 / n_all as f64
+    };
+    chosen.tried.iter().map(|t| of(t.c, t.gamma)).collect()
+}
+
+#[test]
+fn of_43_small_classes_the_choice_on_one_matrix_is_that_of_training_one_by_one() {
+    let data = clouds(&[8; 43], 12, 0.8, 16);
+    let folds = stratified_k_fold(data.targets.view(), 2, &Seed::new(1)).unwrap();
+    for kernel in [Kernel::Linear, RBF] {
+        for multiclass in [Multiclass::OneVsOne, Multiclass::OneVsRest] {
+            let params = SvmParams {
+                multiclass,
+                ..params(kernel, 1.0, 1e-6)
+            };
+            let chosen = choose(&params, &data, &folds, &candidates()).unwrap();
+            let tried: Vec<f64> = chosen.tried.iter().map(|tried| tried.accuracy).collect();
+            let expected = accuracies(params, &data, &folds, &chosen);
+            assert_eq!(tried, expected, "{kernel:?} {multiclass:?}");
+            let best = tried.iter().copied().fold(0.0, f64::max);
+            assert!(best > 0.3 && chosen.best.accuracy == best);
+        }
+    }
+}
+
+#[test]
+fn labels_of_rows_that_no_fold_holds_change_no_choice() {
+    let data = clouds(&[30, 30, 30], 4, 0.7, 17);
+    let (held, seen): (Vec<usize>, Vec<usize>) = (0..90).partition(|row| row % 3 == 0);
+    let labels = seen.iter().map(|&row| data.targets[row]);
+    let labels: Array1<usize> = labels.collect();
+    let folds = stratified_k_fold(labels.view(), 3, &Seed::new(1)).unwrap();
+    let whole = |rows: &[usize]| rows.iter().map(|&at| seen[at]).collect();
+    let folds = folds.iter().map(|fold| Split {
+        train: whole(&fold.train),
+        test: whole(&fold.test),
+    });
+    let folds: Vec<Split> = folds.collect();
+    for kernel in [Kernel::Linear, RBF] {
+        let params = params(kernel, 1.0, 1e-6);
+        let expected = choose(&params, &data, &folds, &candidates()).unwrap();
+        // The labels of others, and of classes that no fold knows.
+        for flip in [|label| (label + 1) % 3, |label| 100 + label] {
+            let mut flipped = data.clone();
+            held.iter()
+                .for_each(|&row| flipped.targets[row] = flip(flipped.targets[row]));
+            let chosen = choose(&params, &flipped, &folds, &candidates()).unwrap();
+            assert_eq!(chosen, expected, "{kernel:?}");
+        }
+    }
+}
+
+#[test]
+fn a_class_that_a_fold_does_not_train_on_is_never_recognised_there() {
+    // Three far clusters; the first fold trains without class 2, the second without class 0.
+    let data = clouds(&[20, 20, 20], 4, 8.0, 18);
+    let of = |wanted: &[usize], part: usize| -> Vec<usize> {
+        let is_in = |row: &usize| wanted.contains(&data.targets[*row]) && row % 2 == part;
+        (0..60).filter(is_in).collect()
+    };
+    let folds = [
+        Split {
+            train: of(&[0, 1], 0),
+            test: of(&[0, 1, 2], 1),
+        },
+        Split {
+            train: of(&[1, 2], 1),
+            test: of(&[0, 1, 2], 0),
+        },
+    ];
+    let n_absent = of(&[2], 1).len() + of(&[0], 0).len();
+    let expected = (60 - n_absent) as f64 / 60.0;
+    for kernel in [Kernel::Linear, RBF] {
+        for multiclass in [Multiclass::OneVsOne, Multiclass::OneVsRest] {
+            let params = SvmParams {
+                multiclass,
+                ..params(kernel, 1.0, 1e-6)
+            };
+            let candidates = Candidates {
+                c: vec![10.0, 100.0],
+                ..candidates()
+            };
+            let chosen = choose(&params, &data, &folds, &candidates).unwrap();
+            for tried in chosen.tried {
+                assert_eq!(tried.accuracy, expected, "{params:?}: {tried:?}");
+            }
+        }
+    }
+}
+
+#[test]
+fn a_choice_for_a_problem_that_training_would_refuse_is_refused() {
+    let data = clouds(&[20, 20], 4, 1.0, 19);
+    let folds = stratified_k_fold(data.targets.view(), 2, &Seed::new(1)).unwrap();
+    let params = SvmParams {
+        multiclass: Multiclass::CrammerSinger,
+        ..SvmParams::default()
+    };
+    let expected = params.train(&data).unwrap_err().to_string();
+    let error = choose(&params, &data, &folds, &candidates()).unwrap_err();
+    assert_eq!(error.to_string(), expected);
+}
