@@ -4,7 +4,7 @@
 use crate::report::answer::Answer;
 use crate::report::axis::short_number;
 use crate::report::drawing::escape;
-use crate::report::terminal::{empty_table, finish};
+use crate::report::terminal::{empty_table, finish, wrap};
 use crate::study::table::Tables;
 use comfy_table::{CellAlignment, ColumnConstraint};
 use std::fmt::Write;
@@ -93,7 +93,7 @@ pub fn text(tables: &Tables, width: usize) -> String {
 }
 
 impl TextTable {
-    /// For the terminal: the title, the table, an empty line.
+    /// For the terminal: the title and the note, the table, an empty line.
     pub fn text(&self, width: usize) -> String {
         let mut table = empty_table(width);
         table.set_header(self.heads.iter().map(|(head, _)| *head));
@@ -107,7 +107,8 @@ impl TextTable {
                 column.set_constraint(ColumnConstraint::ContentWidth);
             }
         }
-        format!("{}\n\n{}\n", self.title, finish(&table))
+        let said = wrap(&format!("{}. {}", self.title, self.note), width);
+        format!("{}\n\n{}\n", said.join("\n"), finish(&table))
     }
 
     /// For the page: a section.

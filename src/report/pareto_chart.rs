@@ -163,8 +163,12 @@ impl Chart<'_> {
             drawing.line((x, frame.y), (x, bottom), Stroke::new(GRID, 1.0));
             drawing.line((x, bottom), (x, bottom + 5.0), Stroke::new(INK, 1.0));
             if is_labelled {
+                let label = time_label(seconds);
+                // At the very end of the axis, half a label would leave the paper.
+                let half = text_width(&label, f64::from(TICK_SIZE)) / 2.0;
+                let middle = x.min(frame.x + frame.width + RIGHT - 2.0 - half);
                 let style = TextStyle::new(TICK_SIZE).align(Align::Middle);
-                drawing.text((x, bottom + 19.0), &time_label(seconds), style);
+                drawing.text((middle, bottom + 19.0), &label, style);
             }
         }
         if let Some(chance) = self.chance {
@@ -257,7 +261,8 @@ fn draw_steps(drawing: &mut Drawing, front: &[Point], frame: Area) {
 }
 
 /// Where the names of the points of a front begin: above each point and to its left, where no cell can be, since it would be
-/// faster and more accurate. A name that would lie on another one, or beyond the frame, has no place; the more accurate
+/// faster and more accurate. A name that would lie on another one, on the
+/// next step, or beyond the frame, has no place; the more accurate
 /// cells come first.
 fn name_places(front: &[Point], names: &[String], frame: Area) -> Vec<Option<Point>> {
     let line = f64::from(NAME) + 2.0;
@@ -266,13 +271,14 @@ fn name_places(front: &[Point], names: &[String], frame: Area) -> Vec<Option<Poi
     for (index, &(x, y)) in front.iter().enumerate().rev() {
         let width = text_width(&names[index], f64::from(NAME));
         let start = (x + MARKER_RADIUS - width).max(frame.x + 4.0);
+        // Pushed right by the frame's edge, a name can reach the step up to the next point.
+        let next_step = front.get(index + 1).map_or(f64::INFINITY, |next| next.0);
+        let end = (frame.x + frame.width).min(next_step);
         let is_free = |at: &Point| {
             let is_apart = |((left, base), wide): &(Point, f64)| {
                 (base - at.1).abs() >= line || at.0 > left + wide || *left > at.0 + width
             };
-            at.1 - line > frame.y
-                && start + width < frame.x + frame.width
-                && taken.iter().all(is_apart)
+            at.1 - line > frame.y && start + width < end && taken.iter().all(is_apart)
         };
         let above = y - MARKER_RADIUS - 7.0;
         places[index] = [(start, above), (start, above - line)]

@@ -272,7 +272,7 @@ fn letters(text: &str) -> usize {
 }
 
 /// Breaks a text at spaces (not at U+00A0) into lines of at most `width` letters.
-fn wrap(text: &str, width: usize) -> Vec<String> {
+pub(super) fn wrap(text: &str, width: usize) -> Vec<String> {
     let mut lines: Vec<String> = Vec::new();
     for word in text.split(' ') {
         match lines.last_mut() {
