@@ -223,8 +223,8 @@ fn on_one_matrix(
     } else {
         size_of::<f32>()
     };
-    // Twice: products, and the kernel made of them.
-    let most = (params.memory_bytes / (2 * size)).isqrt();
+    // Three matrices at most: products, the kernel made of them, and the part that a fold trains on.
+    let most = (params.memory_bytes / (3 * size)).isqrt();
     if training.records.nrows() > most {
         return Err(Error::input(
             "training rows",
@@ -397,6 +397,6 @@ mod tests {
             memory_bytes: 1000,
             ..params
         };
-        assert!(refuse(&small, &[1.0], &folds).contains("at most 7 fit"));
+        assert!(refuse(&small, &[1.0], &folds).contains("at most 6 fit"));
     }
 }

@@ -9,6 +9,7 @@ use std::fmt::Debug;
 use ndarray::{Array1, Array2, ArrayView1, ArrayView2, Axis};
 
 use crate::Result;
+use crate::recognition::voting::first_maximum;
 
 /// A trained classifier that scores every class.
 ///
@@ -43,7 +44,9 @@ pub trait ClassModel: Debug + Send + Sync {
         scores
             .rows()
             .into_iter()
-            .map(|row| self.classes()[first_maximum((&row + &prior).view())])
+            .map(|row| {
+                self.classes()[first_maximum((&row + &prior).as_slice().unwrap_or_default())]
+            })
             .collect()
     }
 
@@ -54,17 +57,6 @@ pub trait ClassModel: Debug + Send + Sync {
     fn labels(&self, features: ArrayView2<f64>) -> Result<Array1<usize>> {
         Ok(self.labels_of_scores(self.scores(features)?.view()))
     }
-}
-
-/// The position of the largest value; the first of equals.
-pub(crate) fn first_maximum(values: ArrayView1<f64>) -> usize {
-    let mut best = 0;
-    for (i, &value) in values.iter().enumerate() {
-        if value > values[best] {
-            best = i;
-        }
-    }
-    best
 }
 
 /// `ln((votes + 1) / (all votes + n_classes))` of each row: Laplace's rule of succession.

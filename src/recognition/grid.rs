@@ -23,8 +23,11 @@ const BLOCK_ROWS: usize = 64;
 pub(crate) struct Grid<'a, T> {
     /// The rows, by class.
     pub sorted: &'a Sorted<T>,
+    /// The same rows, in their own order.
     pub data: &'a Dataset,
+    /// How they are divided, by their own numbers; a row counts once in a fold.
     pub folds: &'a [Split],
+    /// One-vs-one or one-vs-rest.
     pub multiclass: Multiclass,
 }
 

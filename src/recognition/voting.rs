@@ -69,7 +69,7 @@ fn count(values: &[f64], votes: &mut [u32]) {
 }
 
 /// The position of the largest value; the first of equals.
-fn first_maximum<V: PartialOrd>(values: &[V]) -> usize {
+pub(crate) fn first_maximum<V: PartialOrd>(values: &[V]) -> usize {
     let mut best = 0;
     for (i, value) in values.iter().enumerate() {
         if *value > values[best] {

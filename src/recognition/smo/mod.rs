@@ -117,8 +117,12 @@ impl<'a, G> Smo<'a, G> {
             .sum()
     }
 
-    /// How far the optimality conditions are violated; below 0 when they hold with room to spare.
+    /// How far the optimality conditions are violated; below 0 when they hold with room to spare, infinite when kernel values
+    /// have left nothing to go by.
     fn violation(&self) -> f64 {
+        if self.f.iter().any(|f| !f.is_finite()) {
+            return f64::INFINITY;
+        }
         let (highest, lowest) = extremes(&self.beta, self.is_positive, &self.f, self.c);
         highest - lowest
     }

@@ -86,7 +86,7 @@ pub(super) fn step_along<T: Scalar>(f: &mut [T], row_i: &[T], row_j: &[T], step:
     let n = f.len();
     let (row_i, row_j) = (&row_i[..n], &row_j[..n]);
     for at in 0..n {
-        f[at] = f[at] - step * (row_i[at] - row_j[at]);
+        f[at] -= step * (row_i[at] - row_j[at]);
     }
 }
 
