@@ -1,8 +1,8 @@
 //! Many binary problems from one set of rows: what they share is computed once.
 //!
 //! One-vs-one needs every block of kernel values between two classes exactly once, and every block within a class for all
-//! its pairs: rows are sorted by class, blocks within classes are kept, and one panel (a class against all later ones)
-//! is made at a time by a matrix product. So n rows of k classes take about n²/k values in memory, not n². One-vs-rest
+//! its pairs: rows are sorted by class, blocks within classes are kept, and one panel (a few classes against all later
+//! ones) is made at a time by a matrix product. So n rows of k classes take about n²/k values in memory, not n². One-vs-rest
 //! shares the whole matrix. All C of a path are solved while a problem's Gram matrix is at hand, each from the last.
 
 use std::ops::Range;
@@ -15,6 +15,9 @@ use crate::recognition::points::Points;
 use crate::recognition::scalar::Scalar;
 use crate::recognition::smo::{Cached, Dense, Gram, Smo};
 use crate::recognition::svm::BinaryProblem;
+
+/// Rows of a panel, at least, while classes last: enough that a product's time goes into its multiplications.
+const PANEL_ROWS: usize = 512;
 
 /// Training rows sorted by class, about their centre.
 pub(crate) struct Sorted<T> {
@@ -121,7 +124,8 @@ impl<T: Scalar> Sorted<T> {
         let sizes = || self.ranges.iter().map(Range::len);
         let largest = sizes().max().unwrap_or(0);
         let within: usize = sizes().map(|n| n * n).sum();
-        (within + largest * n_rows) * size_of::<T>() + Dense::<T>::bytes(2 * largest) <= memory
+        (within + (PANEL_ROWS + largest) * n_rows) * size_of::<T>() + Dense::<T>::bytes(2 * largest)
+            <= memory
     }
 
     fn pairs_from_panels(&self, goal: Goal, problems: &mut [Vec<BinaryProblem>]) {
@@ -134,16 +138,36 @@ impl<T: Scalar> Sorted<T> {
             })
             .collect();
         let mut gram = Dense::default();
-        for (a, first) in self.ranges.iter().enumerate() {
-            let later = self.points.range(first.end..self.points.len());
-            let panel = self.points.range(first.clone()).kernel(later, &self.kernel);
-            for (b, second) in self.ranges.iter().enumerate().skip(a + 1) {
-                let columns = second.start - first.end..second.end - first.end;
-                let across = panel.slice(s![.., columns]);
-                gram.of_blocks(within[a].view(), across, within[b].view());
-                self.solve_pair(&mut gram, (a, b), goal, problems);
+        let mut next = 0;
+        while next < self.ranges.len() {
+            let group = self.group_from(next);
+            next = group.end;
+            let start = self.ranges[group.start].start;
+            let own = self.points.range(start..self.ranges[group.end - 1].end);
+            let later = self.points.range(start..self.points.len());
+            let panel = own.kernel(later, &self.kernel);
+            let within_panel = |range: &Range<usize>| range.start - start..range.end - start;
+            for a in group {
+                for b in a + 1..self.ranges.len() {
+                    let rows = within_panel(&self.ranges[a]);
+                    let columns = within_panel(&self.ranges[b]);
+                    let across = panel.slice(s![rows, columns]);
+                    gram.of_blocks(within[a].view(), across, within[b].view());
+                    self.solve_pair(&mut gram, (a, b), goal, problems);
+                }
             }
         }
+    }
+
+    /// The classes from this one on whose rows make one panel.
+    fn group_from(&self, first: usize) -> Range<usize> {
+        let start = self.ranges[first].start;
+        let is_short = |range: &Range<usize>| range.end - start < PANEL_ROWS;
+        let n_short = self.ranges[first..]
+            .iter()
+            .take_while(|range| is_short(range))
+            .count();
+        first..(first + n_short + 1).min(self.ranges.len())
     }
 
     fn pairs_from_rows(&self, goal: Goal, problems: &mut [Vec<BinaryProblem>]) {
