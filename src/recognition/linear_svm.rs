@@ -3,10 +3,10 @@
 //! The bias is the weight of an added feature of constant 1, and so is regularised with the others, as in LIBLINEAR
 //! (`intercept_scaling = 1`): centre the features, or expect a bias closer to 0 than the kernel SVM's.
 //!
-//! - One-vs-rest: for each class `½|w|² + C Σ_i max(0, 1 − y_i w·x_i)`, by [dual coordinate
-//!   descent](crate::recognition::coordinate_descent).
+//! - One-vs-rest: for each class `½|w|² + C Σ_i max(0, 1 − y_i w·x_i)`, by dual coordinate
+//!   descent.
 //! - Crammer–Singer: all classes in one problem, `½ Σ_k |w_k|² + C Σ_i max_k (1[k ≠ y_i] + w_k·x_i − w_{y_i}·x_i)`, by
-//!   the [sequential dual method](crate::recognition::crammer_singer).
+//!   the sequential dual method.
 
 use ndarray::{Array1, Array2, ArrayView2, Axis, Zip, s};
 

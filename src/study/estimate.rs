@@ -56,9 +56,9 @@ const KERNEL_ELEMENT_S: f64 = 1e-9;
 /// Seconds for one multiply-add of the matrix product that brings wider features down to that many.
 const REDUCE_ELEMENT_S: f64 = 5e-11;
 /// Seconds of our solvers for one entry of a binary problem's kernel matrix.
-const OWN_ENTRY_S: f64 = 8e-9;
+const OWN_ENTRY_S: f64 = 4e-9;
 /// Seconds for one multiply-add of the kernel matrix that all their problems share.
-const GRAM_ELEMENT_S: f64 = 5e-11;
+const GRAM_ELEMENT_S: f64 = 2.2e-11;
 /// Seconds of a logistic regression for one measurement of a training row and one object.
 const LOGISTIC_S: f64 = 1.5e-7;
 /// Seconds to scale and to store one measurement of a training row, for nearest neighbours.
@@ -70,7 +70,7 @@ const TREE_S: f64 = 3.3e-7;
 /// Seconds of a random forest for one training row and one of the √m measurements that a split looks at.
 const FOREST_S: f64 = 3.4e-5;
 /// Seconds for one multiply-add of a prediction by matrix product.
-const PREDICT_S: f64 = 2e-10;
+const PREDICT_S: f64 = 2.5e-11;
 
 impl Estimate {
     /// Estimates a study that is laid out.
