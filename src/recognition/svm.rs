@@ -51,8 +51,11 @@ const SINGLE_FROM_ROWS: usize = 1000;
 /// The smallest tolerance that f32 kernel values can be trusted with.
 const SINGLE_TOLERANCE: f64 = 1e-4;
 /// The largest C · K(x, x), and the largest K(x, x), for f32: rounding of K, 6e-8 of it, is multiplied by coefficients of at
-/// most C. Of an RBF kernel the exponent, which is as large as γ times the squared distance between two rows.
+/// most C.
 const SINGLE_MOST: f64 = 1e5;
+/// The largest exponent of an RBF kernel, γ times the squared distance between two rows, for f32: the exponent's rounding is
+/// the kernel value's relative error.
+const SINGLE_EXPONENT: f64 = 1e4;
 /// Bytes of kernel values held at once, unless asked otherwise: one-vs-rest on 16,384 rows in f32.
 pub const DEFAULT_MEMORY_BYTES: usize = 2 << 30;
 
@@ -177,7 +180,11 @@ impl SvmParams {
         let farthest = norms.fold(0.0, f64::max);
         let largest = match kernel {
             KernelFunction::Polynomial { .. } => return true,
-            KernelFunction::Rbf { gamma } => (4.0 * gamma * farthest).max(1.0),
+            // Where exponents are large, K is nearly the identity and coefficients are near 1, whatever C.
+            KernelFunction::Rbf { gamma } if 4.0 * gamma * farthest > SINGLE_EXPONENT => {
+                return true;
+            }
+            KernelFunction::Rbf { .. } => 1.0,
             KernelFunction::Linear => farthest,
         };
         let c = path.iter().copied().fold(0.0, f64::max);
