@@ -38,19 +38,6 @@ struct Fold {
     validation: Vec<usize>,
 }
 
-impl Fold {
-    /// The binary problems: positions in `training` of the positive class, and of the negative one (`None`: all others).
-    fn problems(&self, multiclass: Multiclass) -> Vec<(usize, Option<usize>)> {
-        let n = self.training.len();
-        match multiclass {
-            Multiclass::OneVsRest => (0..n).map(|class| (class, None)).collect(),
-            _ => (0..n)
-                .flat_map(|first| (first + 1..n).map(move |second| (first, Some(second))))
-                .collect(),
-        }
-    }
-}
-
 /// What a class's training rows weigh in the problems that it takes part in, for every C.
 struct Weights<T> {
     /// rows × (C × problems of the class).
@@ -116,7 +103,7 @@ impl<T: Scalar> Grid<'_, T> {
     }
 
     fn solve(&self, fold: &Fold, kernel: ArrayView2<T>, goal: Goal) -> Solved<T> {
-        let problems = fold.problems(self.multiclass);
+        let problems = self.multiclass.problems(fold.training.len());
         let n_path = goal.path.len();
         let takes_part = |class: usize, &(positive, negative): &(usize, Option<usize>)| {
             negative.is_none_or(|negative| class == positive || class == negative)

@@ -39,17 +39,11 @@ pub(crate) fn solve_all(
             .filter(|&row| wanted(labels[row]))
             .collect()
     };
-    let sides: Vec<(usize, Option<usize>)> = match multiclass {
-        Multiclass::OneVsOne => classes
-            .iter()
-            .enumerate()
-            .flat_map(|(a, &first)| classes[a + 1..].iter().map(move |&b| (first, Some(b))))
-            .collect(),
-        _ => classes.iter().map(|&class| (class, None)).collect(),
-    };
-    sides
+    multiclass
+        .problems(classes.len())
         .into_iter()
         .map(|(positive, negative)| {
+            let (positive, negative) = (classes[positive], negative.map(|class| classes[class]));
             let rows = match negative {
                 Some(negative) => {
                     let sides = [positive, negative].map(|class| rows_of(&|label| label == class));

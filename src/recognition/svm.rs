@@ -30,6 +30,18 @@ pub enum Multiclass {
     CrammerSinger,
 }
 
+impl Multiclass {
+    /// The binary problems between n classes: the positive class, and the negative one (`None`: all others).
+    pub(crate) fn problems(self, n: usize) -> Vec<(usize, Option<usize>)> {
+        match self {
+            Self::OneVsOne => (0..n)
+                .flat_map(|first| (first + 1..n).map(move |second| (first, Some(second))))
+                .collect(),
+            Self::OneVsRest | Self::CrammerSinger => (0..n).map(|class| (class, None)).collect(),
+        }
+    }
+}
+
 /// What solves the binary problems.
 #[derive(
     Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize,
@@ -145,6 +157,9 @@ impl SvmParams {
             Solver::Linfa => self.train_linfa(data, &classes, kernel, &ascending)?,
             Solver::CoordinateDescent => return Err(coordinate_descent_is_linear_only()),
         };
+        if ascending == path {
+            return Ok(trained);
+        }
         let at = |c: f64| ascending.partition_point(|&other| other < c);
         Ok(path.iter().map(|&c| trained[at(c)].clone()).collect())
     }
