@@ -108,18 +108,30 @@ impl<T: Scalar> DecisionFunctions<T> {
     /// `Σ y a K(x_i, x)` of blocks of rows: n_problems × rows, so that all rows of a problem lie side by side.
     fn sums<'a>(&'a self, features: &'a ArrayView2<f64>) -> impl Iterator<Item = Array2<T>> + 'a {
         let n_blocks = features.nrows().div_ceil(BLOCK_ROWS);
+        // Kernel values of a block: written over and over, so that their memory is asked for once.
+        let mut scratch = Array2::zeros((self.n_vectors(), BLOCK_ROWS.min(features.nrows())));
         (0..n_blocks).map(move |block| {
             let end = features.nrows().min((block + 1) * BLOCK_ROWS);
             let rows = features.slice(s![block * BLOCK_ROWS..end, ..]);
-            self.sums_of(&Points::new(rows, self.centre.view()))
+            self.sums_of(&Points::new(rows, self.centre.view()), &mut scratch)
         })
     }
 
-    fn sums_of(&self, points: &Points<T>) -> Array2<T> {
+    fn n_vectors(&self) -> usize {
+        match &self.sums {
+            Sums::Hyperplanes(_) => 0,
+            Sums::SupportVectors(_, vectors, _) => vectors.len(),
+        }
+    }
+
+    fn sums_of(&self, points: &Points<T>, scratch: &mut Array2<T>) -> Array2<T> {
         match &self.sums {
             Sums::Hyperplanes(normals) => normals.dot(&points.all().values.t()),
             Sums::SupportVectors(kernel, vectors, weights) => {
-                let values = vectors.all().kernel(points.all(), kernel);
+                let mut values = scratch.slice_mut(s![.., ..points.len()]);
+                vectors
+                    .all()
+                    .kernel_into(points.all(), kernel, values.view_mut());
                 let mut sums = Array2::zeros((self.rho.len(), points.len()));
                 for class in weights {
                     let own = values.slice(s![class.vectors.clone(), ..]);

@@ -4,7 +4,7 @@
 //! are gathered from that, and along C each solution starts from the last. A problem's decision values are sums of its
 //! support vectors' rows over all validation rows at once, and are counted as votes right away.
 
-use ndarray::{Array2, ArrayView2, ArrayViewMut1, s};
+use ndarray::{Array2, ArrayView2, ArrayViewMut1};
 
 use crate::recognition::dataset::Dataset;
 use crate::recognition::kernel::KernelFunction;
@@ -183,11 +183,15 @@ fn gather<T: Scalar>(whole: ArrayView2<T>, rows: &[usize], columns: &[usize]) ->
     let mut part = Array2::zeros((rows.len(), columns.len()));
     let runs: Vec<&[usize]> = columns.chunk_by(|a, b| a + 1 == *b).collect();
     for (&row, mut to) in rows.iter().zip(part.rows_mut()) {
-        let mut start = 0;
+        let from = whole
+            .row(row)
+            .to_slice()
+            .expect("a product is stored row by row");
+        let mut to = to.as_slice_mut().expect("a new array is contiguous");
         for run in &runs {
-            let from = whole.slice(s![row, run[0]..run[0] + run.len()]);
-            to.slice_mut(s![start..start + run.len()]).assign(&from);
-            start += run.len();
+            let (now, later) = to.split_at_mut(run.len());
+            now.copy_from_slice(&from[run[0]..run[0] + run.len()]);
+            to = later;
         }
     }
     part
