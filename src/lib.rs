@@ -85,6 +85,7 @@
 //!
 //! | stage | in → out |
 //! |---|---|
+//! | [`mesh`] | a file of triangles → a surface: distances, inside and outside |
 //! | [`objects`] | a shape, a mesh, or spheres → a union of spheres |
 //! | [`world`] | taxels, layouts, resting poses → touches |
 //! | [`contact`] | a scene and poses → deflections |
@@ -94,7 +95,7 @@
 //! | [`study`] | TOML → plan → tables |
 //! | [`report`] | tables → files for people |
 //!
-//! The six stages from `objects` to `recognition` are pure: no files, clock, threads, printing or global state. Threads live
+//! The seven stages from `mesh` to `recognition` are pure: no files, clock, threads, printing or global state. Threads live
 //! in `study`; files in `study` and `report`.
 //!
 //! # Sources
@@ -103,6 +104,11 @@
 //! - `[CL]` Hollis, Patterson, Trinkle, *Compressed learning for tactile object recognition*, RA-L 2018 (arXiv 1609.07542,
 //!   1705.05247).
 //! - `[PT]` Pang, Trinkle, Lo, *A complementarity approach to a quasistatic multi-rigid-body contact problem*, COAP 1996.
+//! - `[MT]` Möller, Trumbore, *Fast, minimum storage ray/triangle intersection*, J. Graphics Tools 1997.
+//! - `[VS]` van Oosterom, Strackee, *The solid angle of a plane triangle*, IEEE Trans. Biomed. Eng. 1983.
+//! - `[BA]` Bærentzen, Aanæs, *Signed distance computation using the angle weighted pseudonormal*, TVCG 2005.
+//! - `[GWN]` Jacobson, Kavan, Sorkine-Hornung, *Robust inside-outside segmentation using generalized winding numbers*, 2013.
+//! - `[FWN]` Barill et al., *Fast winding numbers for soups and clouds*, 2018.
 //! - `[SBHE]` Gan, Do, Tran, *Fast compressive imaging using scrambled block Hadamard ensemble*, 2008.
 #![warn(missing_docs)]
 
@@ -110,6 +116,7 @@ pub mod contact;
 pub mod error;
 pub mod files;
 pub mod geometry;
+pub mod mesh;
 pub mod objects;
 pub mod random;
 pub mod recognition;

@@ -3,7 +3,7 @@
 //! | from | by | gives |
 //! |---|---|---|
 //! | a [`Catalogue`] of [`Solid`]s (TOML, mm) | [`pack`] | few spheres, surface within a stated error |
-//! | a PLY file ([`read_ply`]) | [`vertex_spheres`] | one sphere a vertex, as the original \[BT\] |
+//! | the vertices of a [mesh](crate::mesh) | [`vertex_spheres`] | one sphere a vertex, as the original \[BT\] |
 //! | a CSV file | [`read_spheres`] | those spheres |
 //!
 //! [`surface_error`] measures how well spheres fit a solid.
@@ -11,10 +11,8 @@
 mod block;
 mod catalogue;
 mod lathe;
-mod mesh;
 mod outline;
 mod pack;
-mod ply;
 mod prism;
 mod shape;
 mod solid;
@@ -27,9 +25,7 @@ mod torus;
 mod vertex_spheres;
 
 pub use catalogue::{Catalogue, Entry};
-pub use mesh::Mesh;
 pub use pack::{MAX_SPHERES, pack};
-pub use ply::read_ply;
 pub use shape::Shape;
 pub use solid::{Part, Solid};
 pub use sphere_csv::{read_spheres, write_spheres};

@@ -2,7 +2,8 @@
 
 use super::spec::ObjectsSpec;
 use crate::error::{Error, Result};
-use crate::objects::{Catalogue, Entry, Object, read_ply, vertex_spheres};
+use crate::mesh::read_ply;
+use crate::objects::{Catalogue, Entry, Object, vertex_spheres};
 use rayon::prelude::*;
 use std::collections::BTreeSet;
 use std::fs::File;
@@ -49,7 +50,7 @@ pub fn load_mesh(path: &Path) -> Result<Object> {
         .into_owned();
     Ok(Object {
         name,
-        spheres: vertex_spheres(&place, &mesh)?,
+        spheres: vertex_spheres(&place, mesh.vertices())?,
         n_parts: 1,
     })
 }

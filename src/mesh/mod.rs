@@ -1,0 +1,35 @@
+//! Meshes: a file of triangles → distances, inside and outside, and what is wrong with it.
+//!
+//! | from | by | gives |
+//! |---|---|---|
+//! | a PLY file | [`read_ply`] | a [`MeshFile`]: corners and polygons as written, metres |
+//! | a [`MeshFile`] | [`MeshFile::into_mesh`] | a [`TriangleMesh`] |
+//! | a [`TriangleMesh`] | [`Surface::new`] | nearest points, signed distances, winding numbers |
+//!
+//! For a point x outside the mesh the signed distance is positive, inside it is negative:
+//!
+//! ```text
+//! d(x) = ± min_y |x − y|,   y on a triangle
+//! ```
+//!
+//! On a closed mesh the sign is that of `(x − y)·n`, n the angle-weighted pseudonormal of the face, edge or vertex that y
+//! lies on \[BA\]: exact if the mesh does not cut through itself. On a mesh with holes x is inside where
+//! the generalised winding number exceeds one half \[GWN\], summed over a tree of dipoles
+//! \[FWN\]. Nothing is repaired here.
+
+mod bvh;
+mod mesh_file;
+mod ply;
+mod pseudonormals;
+mod surface;
+mod triangle;
+mod triangle_mesh;
+mod welded;
+mod winding;
+
+pub use bvh::{Bvh, Closest, Hit};
+pub use mesh_file::MeshFile;
+pub use ply::read_ply;
+pub use surface::Surface;
+pub use triangle::{Feature, Triangle};
+pub use triangle_mesh::TriangleMesh;
