@@ -4,7 +4,7 @@
 //!
 //! - A **taxel** is one sensing element: a sphere on a spring and damper, sliding along one axis.
 //! - A **patch** is a rigid substrate with a grid of taxels; a **frame** is what they all report at one instant.
-//! - An **object** is a union of rigid spheres.
+//! - An **object** is a union of rigid spheres, or a triangle mesh.
 //! - A **touch** is one contact experiment: a patch comes down on an object that lies on a table, to first contact and then
 //!   further by a **depth**.
 //! - A **measurement** is a compressed frame, `y = Φx`; the **compression ratio** is taxels per measurement, n / m.
@@ -43,7 +43,7 @@
 //!     depth: Spread::Values(vec![3e-3]),
 //!     per_object: None,
 //! };
-//! let rests = placement.rest.of(&mug.spheres);
+//! let rests = placement.rest.of(&mug.model);
 //! let seed = Seed::new(2018).named("mug");
 //! let all = touches(&placement, &rests, &seed)?;
 //! assert_eq!(all.len(), 5);
@@ -51,7 +51,7 @@
 //! // Press once: no time loop, since nothing in this scene needs one.
 //! let touch = &all[2];
 //! let pose = touch.patch_from_object(&rests[touch.rest]);
-//! let scene = Scene { patch, objects: vec![mug.spheres] };
+//! let scene = Scene { patch, objects: vec![mug.model] };
 //! let mut workspace = Workspace::new();
 //! let contact = press_to_depth(&scene, &[pose], touch.depth, &mut workspace).expect("the mug is under the patch");
 //! assert!(contact.n_touched > 50 && contact.n_saturated == 0);
@@ -85,7 +85,8 @@
 //!
 //! | stage | in → out |
 //! |---|---|
-//! | [`objects`] | a shape, a mesh, or spheres → a union of spheres |
+//! | [`mesh`] | a file of triangles → a surface: distances, inside and outside |
+//! | [`objects`] | a shape, a mesh, or spheres → a model: spheres or triangles |
 //! | [`world`] | taxels, layouts, resting poses → touches |
 //! | [`contact`] | a scene and poses → deflections |
 //! | [`signal`] | deflections → frames |
@@ -94,7 +95,7 @@
 //! | [`study`] | TOML → plan → tables |
 //! | [`report`] | tables → files for people |
 //!
-//! The six stages from `objects` to `recognition` are pure: no files, clock, threads, printing or global state. Threads live
+//! The seven stages from `mesh` to `recognition` are pure: no files, clock, threads, printing or global state. Threads live
 //! in `study`; files in `study` and `report`.
 //!
 //! # Sources
@@ -103,6 +104,11 @@
 //! - `[CL]` Hollis, Patterson, Trinkle, *Compressed learning for tactile object recognition*, RA-L 2018 (arXiv 1609.07542,
 //!   1705.05247).
 //! - `[PT]` Pang, Trinkle, Lo, *A complementarity approach to a quasistatic multi-rigid-body contact problem*, COAP 1996.
+//! - `[MT]` Möller, Trumbore, *Fast, minimum storage ray/triangle intersection*, J. Graphics Tools 1997.
+//! - `[VS]` van Oosterom, Strackee, *The solid angle of a plane triangle*, IEEE Trans. Biomed. Eng. 1983.
+//! - `[BA]` Bærentzen, Aanæs, *Signed distance computation using the angle weighted pseudonormal*, TVCG 2005.
+//! - `[GWN]` Jacobson, Kavan, Sorkine-Hornung, *Robust inside-outside segmentation using generalized winding numbers*, 2013.
+//! - `[FWN]` Barill et al., *Fast winding numbers for soups and clouds*, 2018.
 //! - `[SBHE]` Gan, Do, Tran, *Fast compressive imaging using scrambled block Hadamard ensemble*, 2008.
 #![warn(missing_docs)]
 
@@ -110,6 +116,7 @@ pub mod contact;
 pub mod error;
 pub mod files;
 pub mod geometry;
+pub mod mesh;
 pub mod objects;
 pub mod random;
 pub mod recognition;

@@ -1,6 +1,7 @@
 //! Meshes and spheres from files: what is read, and what is refused with which words.
 
-use bubbletouch::objects::{read_ply, read_spheres, vertex_spheres, write_spheres};
+use bubbletouch::mesh::read_ply;
+use bubbletouch::objects::{read_spheres, vertex_spheres, write_spheres};
 use glam::DVec3;
 use std::fmt::Write as _;
 use std::fs::File;
@@ -103,7 +104,7 @@ fn ply_error(bytes: &[u8]) -> String {
 fn the_three_encodings_of_a_ply_give_the_same_mesh() {
     let mesh = read_ply("p", ascii().as_bytes()).unwrap();
     assert_eq!(mesh.vertices(), CORNERS.map(DVec3::from));
-    assert_eq!(mesh.faces(), TRIANGLES);
+    assert_eq!(mesh.clone().into_mesh("p").unwrap().triangles(), TRIANGLES);
     assert_eq!(read_ply("p", &little_endian()[..]).unwrap(), mesh);
     let big = binary!(to_be_bytes, "binary_big_endian");
     assert_eq!(read_ply("p", &big[..]).unwrap(), mesh);
@@ -142,7 +143,7 @@ fn a_ply_that_cannot_be_used_says_why() {
         (text.replace("1 0 255 0", "1 NaN 255 0"), "not readable as PLY: Line 17"),
         (text.replace("1 0 255 0", "1 inf 255 0"), "not readable as PLY: Line 17"),
         (text.replace("1 0 255 0", "1 255 0"), "not readable as PLY: Line 17"),
-        (text.replace("9 3 0 1 4", "9 3 0 1 5"), "face 3: vertex indices [0, 1, 5]; 0 to 4"),
+        (text.replace("9 3 0 1 4", "9 3 0 1 5"), "face 2: vertex indices [0, 1, 5]; 0 to 4"),
         (text.replace("9 3 0 1 4", "9 3 0 1 -1"), "face 2: vertex index -1"),
         (text.replace("9 3 0 1 4", "9 2 0 1"), "face 2: 2 corners"),
         (text.replace("int vertex_indices", "float vertex_indices"), "faces without a list"),
@@ -252,7 +253,7 @@ fn the_scanned_objects_are_read_and_get_spheres_of_millimetres() {
         let place = path.display().to_string();
         let mesh = read_ply(&place, BufReader::new(File::open(&path).unwrap())).unwrap();
         assert!((8_000..8_200).contains(&mesh.vertices().len()), "{place}");
-        let union = vertex_spheres(&place, &mesh).unwrap();
+        let union = vertex_spheres(&place, mesh.vertices()).unwrap();
         let radius = union.spheres()[0].radius;
         // From the dice to the pitcher; the median is 2.3 mm.
         assert!((0.6e-3..5.2e-3).contains(&radius), "{place}: {radius}");

@@ -1,6 +1,6 @@
 //! One sphere per mesh vertex: the object model of the original \[BT\].
 
-use super::{Mesh, Sphere, SphereUnion};
+use super::{Sphere, SphereUnion};
 use crate::error::{Error, Result};
 use glam::DVec3;
 use std::collections::HashSet;
@@ -10,8 +10,8 @@ use std::collections::HashSet;
 /// Vertices at exactly the same place (files that store a corner once a face) count once: their nearest neighbour would
 /// be themselves, and R would shrink with how a file is written. Order: first occurrence. An error for fewer than two
 /// places; it begins with `place`.
-pub fn vertex_spheres(place: &str, mesh: &Mesh) -> Result<SphereUnion> {
-    let centers = distinct(mesh.vertices());
+pub fn vertex_spheres(place: &str, vertices: &[DVec3]) -> Result<SphereUnion> {
+    let centers = distinct(vertices);
     if centers.len() < 2 {
         return Err(Error::input(
             place,
@@ -176,15 +176,14 @@ mod tests {
             .iter()
             .flat_map(|&v| [v, DVec3::new(v.x, 1.0, 0.0)])
             .collect();
-        let union = |v| vertex_spheres("test", &Mesh::new("test", v, vec![]).unwrap()).unwrap();
-        assert_eq!(union(once), union(twice));
+        let union = |v: &[DVec3]| vertex_spheres("test", v).unwrap();
+        assert_eq!(union(&once), union(&twice));
     }
 
     #[test]
     fn the_radius_is_twice_the_mean_distance_to_the_nearest_vertex() {
-        let corners = vec![DVec3::ZERO, DVec3::X, DVec3::new(1.0, 3.0, 0.0)];
-        let mesh = Mesh::new("test", corners, vec![[0, 1, 2]]).unwrap();
-        let union = vertex_spheres("test", &mesh).unwrap();
+        let corners = [DVec3::ZERO, DVec3::X, DVec3::new(1.0, 3.0, 0.0)];
+        let union = vertex_spheres("test", &corners).unwrap();
         let expected = 2.0 * (1.0 + 1.0 + 3.0) / 3.0;
         assert!(union.spheres().iter().all(|s| s.radius == expected));
         assert_eq!(union.n_spheres(), 3);
@@ -192,8 +191,9 @@ mod tests {
 
     #[test]
     fn one_place_has_no_radius() {
-        let mesh = Mesh::new("dot.ply", vec![DVec3::ONE; 5], vec![]).unwrap();
-        let error = vertex_spheres("dot.ply", &mesh).unwrap_err().to_string();
+        let error = vertex_spheres("dot.ply", &[DVec3::ONE; 5])
+            .unwrap_err()
+            .to_string();
         assert!(
             error.starts_with("dot.ply: all vertices at one place"),
             "{error}"

@@ -1,10 +1,9 @@
 //! Meshes from PLY files, ascii or binary of either byte order.
 //!
 //! Needs an element `vertex` with scalar properties x, y, z (metres); reads the element `face` if its list is called
-//! `vertex_indices` or `vertex_index`, and cuts faces of more than three corners into a fan around the first. Other
-//! elements and properties are skipped.
+//! `vertex_indices` or `vertex_index`. Other elements and properties are skipped.
 
-use super::Mesh;
+use super::MeshFile;
 use crate::error::{Error, Result};
 use glam::DVec3;
 use ply_rs_bw::parser::{ParseError, Parser, Reader};
@@ -17,7 +16,7 @@ use std::io::{BufRead, ErrorKind};
 ///
 /// An error for anything that is not a whole PLY file: another format, a cut-off file, no vertices, a coordinate that is
 /// not a finite number, an index of no vertex.
-pub fn read_ply(place: &str, mut source: impl BufRead) -> Result<Mesh> {
+pub fn read_ply(place: &str, mut source: impl BufRead) -> Result<MeshFile> {
     check_magic(place, &mut source)?;
     let mut reader = Reader::new(source);
     let header = Parser::<Vertex>::new()
@@ -46,28 +45,25 @@ pub fn read_ply(place: &str, mut source: impl BufRead) -> Result<Mesh> {
         }
     }
     let vertices = vertices.into_iter().map(|v| v.0).collect();
-    Mesh::new(place, vertices, triangles(place, &faces)?)
+    MeshFile::new(place, vertices, polygons(place, &faces)?)
 }
 
-/// Fans: corners 0 1 2, 0 2 3, 0 3 4, … of each face.
-fn triangles(place: &str, faces: &[Face]) -> Result<Vec<[u32; 3]>> {
-    let mut triangles = Vec::with_capacity(faces.len());
-    for (index, Face(corners)) in faces.iter().enumerate() {
-        let wrong = |given: String| {
-            let place = format!("{place}: face {}", index + 1);
-            Error::input(place, given, "at least three vertex indices, from 0")
-        };
-        if corners.len() < 3 {
-            return Err(wrong(format!("{} corners", corners.len())));
-        }
-        let corner = |i: usize| {
-            u32::try_from(corners[i]).map_err(|_| wrong(format!("vertex index {}", corners[i])))
-        };
-        for i in 1..corners.len() - 1 {
-            triangles.push([corner(0)?, corner(i)?, corner(i + 1)?]);
-        }
-    }
-    Ok(triangles)
+/// Indices are read as signed numbers; the ones that name no vertex are refused here or when the surface is made.
+fn polygons(place: &str, faces: &[Face]) -> Result<Vec<Vec<u32>>> {
+    let index = |face: usize, corner: i64| {
+        u32::try_from(corner).map_err(|_| {
+            Error::input(
+                format!("{place}: face {}", face + 1),
+                format!("vertex index {corner}"),
+                "at least three vertex indices, from 0",
+            )
+        })
+    };
+    let polygon = |(face, Face(corners)): (usize, &Face)| {
+        let indices = corners.iter().map(|&corner| index(face, corner));
+        indices.collect()
+    };
+    faces.iter().enumerate().map(polygon).collect()
 }
 
 fn check_magic(place: &str, source: &mut impl BufRead) -> Result<()> {

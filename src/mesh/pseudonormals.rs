@@ -1,0 +1,60 @@
+//! Normals of faces, edges and corners that tell inside from outside \[BA\].
+
+use super::welded::Welded;
+use super::{Feature, TriangleMesh};
+use glam::DVec3;
+
+/// For every feature of a mesh the sum of the normals of the faces around it, weighted by their angle there.
+///
+/// A triangle too thin to have a normal counts nothing.
+#[derive(Clone, Debug)]
+pub(super) struct Pseudonormals {
+    /// n_triangles, unit or zero.
+    faces: Vec<DVec3>,
+    /// n_triangles × 3.
+    edges: Vec<[DVec3; 3]>,
+    /// n_triangles × 3.
+    corners: Vec<[DVec3; 3]>,
+}
+
+impl Pseudonormals {
+    pub fn new(mesh: &TriangleMesh, welded: &Welded) -> Self {
+        let n = mesh.n_triangles();
+        let faces: Vec<DVec3> = (0..n)
+            .map(|t| mesh.triangle(t).normal().unwrap_or(DVec3::ZERO))
+            .collect();
+        let mut edges = vec![[DVec3::ZERO; 3]; n];
+        for sides in welded.edges() {
+            let sum = sides.iter().map(|s| faces[s.triangle as usize]).sum();
+            for side in sides {
+                edges[side.triangle as usize][usize::from(side.side)] = sum;
+            }
+        }
+        let mut around = vec![DVec3::ZERO; mesh.vertices().len()];
+        for (triangle, corners) in welded.corners.iter().enumerate() {
+            let at = mesh.triangle(triangle).0;
+            for k in 0..3 {
+                let (to_next, to_last) = (at[(k + 1) % 3] - at[k], at[(k + 2) % 3] - at[k]);
+                let angle = to_next.cross(to_last).length().atan2(to_next.dot(to_last));
+                around[corners[k] as usize] += angle * faces[triangle];
+            }
+        }
+        let corners = welded.corners.iter();
+        Self {
+            edges,
+            corners: corners
+                .map(|corners| corners.map(|c| around[c as usize]))
+                .collect(),
+            faces,
+        }
+    }
+
+    /// Points outwards; any length.
+    pub fn at(&self, triangle: usize, feature: Feature) -> DVec3 {
+        match feature {
+            Feature::Face => self.faces[triangle],
+            Feature::Edge(k) => self.edges[triangle][usize::from(k)],
+            Feature::Vertex(k) => self.corners[triangle][usize::from(k)],
+        }
+    }
+}

@@ -1,0 +1,88 @@
+//! A triangle mesh, as scanners and modellers write it.
+
+use super::Triangle;
+use crate::error::{Error, Result};
+use crate::geometry::{Aabb, Pose};
+use glam::DVec3;
+
+/// Triangles over shared corners, in the object's frame. Nothing is said about holes or orientation.
+///
+/// Invariant: at least one triangle; every vertex finite; every index below the number of vertices.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TriangleMesh {
+    vertices: Vec<DVec3>,
+    triangles: Vec<[u32; 3]>,
+}
+
+impl TriangleMesh {
+    /// Checks the invariant. Errors begin with `place` and count from 1; vertices are metres.
+    pub fn new(place: &str, vertices: Vec<DVec3>, triangles: Vec<[u32; 3]>) -> Result<Self> {
+        check_vertices(place, &vertices)?;
+        if triangles.is_empty() {
+            return Err(Error::input(place, "no triangles", "at least one triangle"));
+        }
+        let n = vertices.len();
+        let outside = |face: &[u32; 3]| face.iter().any(|&corner| corner as usize >= n);
+        if let Some(index) = triangles.iter().position(outside) {
+            return Err(Error::input(
+                format!("{place}: face {}", index + 1),
+                format!("vertex indices {:?}", triangles[index]),
+                format!("0 to {}, the indices of the vertices", n - 1),
+            ));
+        }
+        Ok(Self {
+            vertices,
+            triangles,
+        })
+    }
+
+    /// Corners, metres.
+    pub fn vertices(&self) -> &[DVec3] {
+        &self.vertices
+    }
+
+    /// Three vertex indices a triangle; counter-clockwise seen from outside, if the file keeps to that.
+    pub fn triangles(&self) -> &[[u32; 3]] {
+        &self.triangles
+    }
+
+    /// How many triangles.
+    pub fn n_triangles(&self) -> usize {
+        self.triangles.len()
+    }
+
+    /// The corners of a triangle.
+    pub fn triangle(&self, triangle: usize) -> Triangle {
+        Triangle(self.triangles[triangle].map(|corner| self.vertices[corner as usize]))
+    }
+
+    /// The box around all triangles (vertices of no triangle do not count), metres.
+    pub fn bounds(&self) -> Aabb {
+        let boxes = (0..self.n_triangles()).map(|t| self.triangle(t).bounds());
+        Aabb::around(boxes).expect("a mesh has at least one triangle")
+    }
+
+    /// The same mesh after a rigid motion.
+    pub fn moved(&self, pose: &Pose) -> Self {
+        let vertices = self.vertices.iter().map(|&v| pose.transform_point(v));
+        Self {
+            vertices: vertices.collect(),
+            triangles: self.triangles.clone(),
+        }
+    }
+}
+
+/// At least one vertex, all finite.
+pub(super) fn check_vertices(place: &str, vertices: &[DVec3]) -> Result<()> {
+    if vertices.is_empty() {
+        return Err(Error::input(place, "no vertices", "at least one vertex"));
+    }
+    if let Some(index) = vertices.iter().position(|v| !v.is_finite()) {
+        return Err(Error::input(
+            format!("{place}: vertex {}", index + 1),
+            vertices[index],
+            "finite coordinates",
+        ));
+    }
+    Ok(())
+}

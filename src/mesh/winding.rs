@@ -1,0 +1,121 @@
+//! The generalised winding number: how often a surface, closed or not, goes around a point.
+//!
+//! It is the sum of the solid angles of all triangles over 4π \[GWN\]: 1 inside a closed mesh, 0 outside, and
+//! something between near a hole. A far part of the mesh counts as one dipole, its area vector A at its centre c
+//! \[FWN\]: `A·(c − x) / (4π |c − x|³)`.
+
+use super::{Bvh, Triangle};
+use glam::DVec3;
+use std::f64::consts::PI;
+
+/// A part is far from a point that is this many of its radii away. Larger: slower; smaller: the number is wrong by more
+/// than a tenth on real meshes.
+const FAR: f64 = 2.5;
+
+/// One dipole a node of a [`Bvh`].
+#[derive(Clone, Debug)]
+pub(super) struct WindingTree {
+    dipoles: Vec<Dipole>,
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Dipole {
+    /// Mean of the triangles' middles, weighted by their areas.
+    center: DVec3,
+    /// Σ area · normal.
+    area: DVec3,
+    /// Square of the distance from which on the dipole stands for its triangles.
+    far2: f64,
+}
+
+impl WindingTree {
+    pub fn new(bvh: &Bvh) -> Self {
+        let mut moments = vec![Moments::default(); bvh.n_nodes()];
+        // Children come after their parents.
+        for node in (0..bvh.n_nodes()).rev() {
+            moments[node] = match bvh.children(node) {
+                Some([a, b]) => moments[a].plus(moments[b]),
+                None => bvh
+                    .leaf(node)
+                    .iter()
+                    .map(Moments::of)
+                    .fold(Moments::default(), Moments::plus),
+            };
+        }
+        let dipole = |(node, m): (usize, &Moments)| {
+            let bounds = bvh.node_bounds(node);
+            let center = match m.area > 0.0 {
+                true => m.first / m.area,
+                false => bounds.center(),
+            };
+            let radius = (center - bounds.min).max(bounds.max - center).length();
+            Dipole {
+                center,
+                area: m.vector,
+                far2: (FAR * radius).powi(2),
+            }
+        };
+        Self {
+            dipoles: moments.iter().enumerate().map(dipole).collect(),
+        }
+    }
+
+    /// The winding number of a point.
+    pub fn winding_number(&self, bvh: &Bvh, point: DVec3) -> f64 {
+        self.solid_angle(bvh, 0, point) / (4.0 * PI)
+    }
+
+    fn solid_angle(&self, bvh: &Bvh, node: usize, point: DVec3) -> f64 {
+        let dipole = &self.dipoles[node];
+        let away = dipole.center - point;
+        let distance2 = away.length_squared();
+        if distance2 > dipole.far2 {
+            return dipole.area.dot(away) / (distance2 * distance2.sqrt());
+        }
+        match bvh.children(node) {
+            Some(children) => children
+                .map(|child| self.solid_angle(bvh, child, point))
+                .into_iter()
+                .sum(),
+            None => bvh.leaf(node).iter().map(|t| solid_angle(t, point)).sum(),
+        }
+    }
+}
+
+#[derive(Clone, Copy, Debug, Default)]
+struct Moments {
+    area: f64,
+    /// Σ area · middle.
+    first: DVec3,
+    /// Σ area · normal.
+    vector: DVec3,
+}
+
+impl Moments {
+    fn of(triangle: &Triangle) -> Self {
+        let vector = 0.5 * triangle.double_area();
+        let area = vector.length();
+        let [a, b, c] = triangle.0;
+        Self {
+            area,
+            first: area * (a + b + c) / 3.0,
+            vector,
+        }
+    }
+
+    fn plus(self, other: Self) -> Self {
+        Self {
+            area: self.area + other.area,
+            first: self.first + other.first,
+            vector: self.vector + other.vector,
+        }
+    }
+}
+
+/// The solid angle under which a triangle is seen, positive from behind its front \[VS\].
+pub(super) fn solid_angle(triangle: &Triangle, point: DVec3) -> f64 {
+    let [a, b, c] = triangle.0.map(|corner| corner - point);
+    let (la, lb, lc) = (a.length(), b.length(), c.length());
+    let volume = a.dot(b.cross(c));
+    2.0 * volume.atan2(la * lb * lc + a.dot(b) * lc + b.dot(c) * la + c.dot(a) * lb)
+}
