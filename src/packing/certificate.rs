@@ -1,0 +1,73 @@
+//! Proof that no point of the outer surface is farther than the tolerance from the spheres, or points that are.
+//!
+//! A ball holds a triangle if it holds its corners. So a triangle of the mesh is cut in halves until each piece lies
+//! within the reach of one ball (proved), the middle of a piece lies within the reach of none (disproved), or the piece is
+//! so small that the question is left.
+
+use super::ball::Ball;
+use super::sampling::Sample;
+use super::target::{Target, bisected, triangle_middle};
+use crate::mesh::Triangle;
+
+/// Pieces smaller than this share of the tolerance count as gaps if one ball alone does not hold them.
+const SMALLEST: f64 = 0.02;
+
+/// Where the outer surface is farther than `e` from the spheres of these balls, or not proved to be nearer; none at all if
+/// the promise holds.
+pub(super) fn gaps(target: &Target, outer: &[usize], balls: &[Ball]) -> Vec<Sample> {
+    let Target { surface, e, .. } = *target;
+    let mut balls_near = vec![Vec::new(); surface.mesh().n_triangles()];
+    for (index, ball) in balls.iter().enumerate() {
+        let reach2 = ball.reach(e).powi(2);
+        surface.bvh().search(
+            reach2,
+            |bounds| bounds.distance_squared(ball.center),
+            |number, triangle, limit| {
+                if touches(triangle, ball, e) {
+                    balls_near[number].push(index as u32);
+                }
+                limit
+            },
+        );
+    }
+    let mut gaps = Vec::new();
+    for &number in outer {
+        let near = std::mem::take(&mut balls_near[number]);
+        gaps_of(surface.mesh().triangle(number), near, balls, e, &mut gaps);
+    }
+    gaps
+}
+
+fn touches(triangle: &Triangle, ball: &Ball, e: f64) -> bool {
+    let nearest = triangle.closest(ball.center).0;
+    nearest.distance_squared(ball.center) < ball.reach(e).powi(2)
+}
+
+fn gaps_of(triangle: Triangle, near: Vec<u32>, balls: &[Ball], e: f64, gaps: &mut Vec<Sample>) {
+    let mut waiting = vec![(triangle, near)];
+    while let Some((piece, near)) = waiting.pop() {
+        let holds = |index: u32, point| {
+            let ball = &balls[index as usize];
+            ball.center.distance_squared(point) <= ball.reach(e).powi(2)
+        };
+        let holds_all = |&index: &u32| piece.0.iter().all(|&corner| holds(index, corner));
+        if near.iter().any(holds_all) {
+            continue;
+        }
+        let middle = triangle_middle(&piece);
+        let is_held = near.iter().any(|&index| holds(index, middle));
+        let is_small = piece.longest_edge_squared() < (SMALLEST * e).powi(2);
+        if !is_held || is_small {
+            gaps.push(Sample {
+                position: middle,
+                radius: 0.5 * piece.longest_edge_squared().sqrt(),
+            });
+            continue;
+        }
+        for half in bisected(&piece) {
+            let still_near = near.iter().copied();
+            let still_near = still_near.filter(|&i| touches(&half, &balls[i as usize], e));
+            waiting.push((half, still_near.collect()));
+        }
+    }
+}

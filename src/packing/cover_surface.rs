@@ -1,0 +1,230 @@
+//! Few balls that cover the outer surface: cell by cell, then again with other cells, until no gap is left.
+
+use super::ball::Ball;
+use super::cells::Cells;
+use super::certificate::gaps;
+use super::sampling::{Sample, SampleTree, Sampling, candidates, sample};
+use super::set_cover::{Cover, Lists};
+use super::target::Target;
+use crate::random::Seed;
+use glam::DVec3;
+use rand::Rng;
+
+/// Samples in a cell. Larger: fewer seams between cells, but the search falls out of the processor's cache.
+const CELL: usize = 24_000;
+
+/// How a pass over all cells works.
+struct Pass {
+    /// At which share of the points a cell is cut; another one moves the seams.
+    cut: f64,
+    /// Exchanges of the local search for each ball.
+    steps_a_ball: usize,
+    /// Shifted copies of each chosen ball among the candidates.
+    n_moves: usize,
+}
+
+/// Passes that look for fewer balls; after each one gaps become samples.
+const PASSES: [Pass; 3] = [
+    Pass {
+        cut: 0.5,
+        steps_a_ball: 200,
+        n_moves: 0,
+    },
+    Pass {
+        cut: 0.4,
+        steps_a_ball: 100,
+        n_moves: 8,
+    },
+    Pass {
+        cut: 0.6,
+        steps_a_ball: 100,
+        n_moves: 8,
+    },
+];
+
+/// Rounds in which balls are added where a gap is left. Each takes what the one before left, mostly nothing after three.
+const MAX_REPAIRS: usize = 40;
+
+/// Balls whose spheres come within `e` of every point of the outer surface, and how many gaps are left: none, unless
+/// [`MAX_REPAIRS`] was reached.
+pub(super) fn cover_surface(target: &Target) -> (Vec<Ball>, usize) {
+    let mut covering = Covering::new(target);
+    let t = std::time::Instant::now();
+    for (number, pass) in PASSES.iter().enumerate() {
+        covering.pass(pass, number as u64);
+        let gaps = covering.gaps();
+        if std::env::var("TALK").is_ok() { eprintln!("  pass {number}: {} balls, {} gaps, {:.1} s", covering.chosen.len(), gaps.len(), t.elapsed().as_secs_f64()); }
+        if number + 1 < PASSES.len() {
+            covering.sample_gaps(&gaps);
+        }
+    }
+    let mut gaps = covering.gaps();
+    for _ in 0..MAX_REPAIRS {
+        if gaps.is_empty() {
+            break;
+        }
+        covering.fill(&gaps);
+        gaps = covering.gaps();
+        if std::env::var("TALK").is_ok() { eprintln!("  repair: {} balls, {} gaps, {:.1} s", covering.chosen.len(), gaps.len(), t.elapsed().as_secs_f64()); }
+    }
+    (covering.chosen, gaps.len())
+}
+
+struct Covering<'a> {
+    target: &'a Target<'a>,
+    sampling: Sampling,
+    tree: SampleTree,
+    chosen: Vec<Ball>,
+    /// How many chosen balls cover each sample.
+    counts: Vec<u32>,
+}
+
+impl<'a> Covering<'a> {
+    fn new(target: &'a Target<'a>) -> Self {
+        let t = std::time::Instant::now();
+        let sampling = sample(target);
+        if std::env::var("TALK").is_ok() { eprintln!("  {} samples, {} balls, {:.1} s", sampling.samples.len(), sampling.balls.len(), t.elapsed().as_secs_f64()); }
+        Self {
+            target,
+            tree: SampleTree::new(&sampling.samples),
+            chosen: Vec::new(),
+            counts: vec![0; sampling.samples.len()],
+            sampling,
+        }
+    }
+
+    fn gaps(&self) -> Vec<Sample> {
+        gaps(self.target, &self.sampling.outer, &self.chosen)
+    }
+
+    /// Works on one cell after another.
+    fn pass(&mut self, pass: &Pass, number: u64) {
+        let positions: Vec<DVec3> = self.sampling.samples.iter().map(|s| s.position).collect();
+        let cells = Cells::new(&positions, CELL, pass.cut);
+        let mut samples_in = vec![Vec::new(); cells.n_cells()];
+        for (index, &position) in positions.iter().enumerate() {
+            samples_in[cells.cell_of(position)].push(index);
+        }
+        let mut balls_in = vec![Vec::new(); cells.n_cells()];
+        for ball in &self.sampling.balls {
+            balls_in[cells.cell_of(ball.foot)].push(*ball);
+        }
+        let mut freed_in = vec![Vec::new(); cells.n_cells()];
+        for ball in self.chosen.drain(..) {
+            freed_in[cells.cell_of(ball.foot)].push(ball);
+        }
+        let seed = Seed::new(number).named("packing");
+        for cell in 0..cells.n_cells() {
+            let mut rng = seed.numbered(cell as u64).rng();
+            let freed = std::mem::take(&mut freed_in[cell]);
+            let candidates = std::mem::take(&mut balls_in[cell]);
+            self.work_on(freed, candidates, &samples_in[cell], pass, &mut rng);
+        }
+    }
+
+    /// Chooses anew in one cell: balls for its samples, and for all that its freed balls covered alone.
+    fn work_on(
+        &mut self,
+        freed: Vec<Ball>,
+        candidates: Vec<Ball>,
+        samples: &[usize],
+        pass: &Pass,
+        rng: &mut impl Rng,
+    ) {
+        let n_freed = freed.len();
+        let moved = self.moved(&freed, pass.n_moves, rng);
+        let mut balls = freed;
+        balls.extend(candidates);
+        balls.extend(moved);
+        const NOT_HERE: u32 = u32::MAX;
+        let mut row_of = vec![NOT_HERE; self.counts.len()];
+        let mut n_rows = 0;
+        let mut needs = |sample: usize, counts: &[u32]| {
+            if counts[sample] == 0 && row_of[sample] == NOT_HERE {
+                row_of[sample] = n_rows;
+                n_rows += 1;
+            }
+        };
+        for ball in &balls[..n_freed] {
+            self.tree.each_covered(&self.sampling.samples, ball, self.target.e, |s| self.counts[s] -= 1);
+        }
+        for ball in &balls[..n_freed] {
+            self.tree.each_covered(&self.sampling.samples, ball, self.target.e, |s| needs(s, &self.counts));
+        }
+        samples.iter().for_each(|&s| needs(s, &self.counts));
+        let mut rows_of = Lists::new();
+        let mut rows = Vec::new();
+        for ball in &balls {
+            rows.clear();
+            self.tree.each_covered(&self.sampling.samples, ball, self.target.e, |s| {
+                if row_of[s] != NOT_HERE {
+                    rows.push(row_of[s]);
+                }
+            });
+            rows_of.push(rows.iter().copied());
+        }
+        let mut cover = Cover::new(&rows_of, n_rows as usize);
+        (0..n_freed).for_each(|set| cover.add(set));
+        cover.complete();
+        cover.improve(pass.steps_a_ball * cover.chosen().len(), rng);
+        let mut chosen: Vec<u32> = cover.chosen().to_vec();
+        chosen.sort_unstable();
+        for set in chosen {
+            let ball = balls[set as usize];
+            self.tree.each_covered(&self.sampling.samples, &ball, self.target.e, |s| self.counts[s] += 1);
+            self.chosen.push(ball);
+        }
+    }
+
+    /// Copies of balls, their centres shifted by up to half of what they cover.
+    fn moved(&self, balls: &[Ball], n_moves: usize, rng: &mut impl Rng) -> Vec<Ball> {
+        let mut moved = Vec::new();
+        for ball in balls {
+            for _ in 0..n_moves {
+                let shift = DVec3::from_array(std::array::from_fn(|_| rng.gen_range(-1.0..1.0)));
+                let center = ball.center + 0.5 * ball.half_width(self.target.e) * shift;
+                if let Some(copy) = self.target.ball_around(center) {
+                    moved.push(Ball { foot: ball.foot, ..copy });
+                }
+            }
+        }
+        moved
+    }
+
+    /// Balls that cover a gap, larger and smaller.
+    fn candidates_at(&self, gap: &Sample) -> Vec<Ball> {
+        let normal = self.target.normal_at(gap.position);
+        candidates(self.target, gap.position, normal)
+    }
+
+    /// Makes samples of gaps, and candidates of the balls that cover them.
+    fn sample_gaps(&mut self, gaps: &[Sample]) {
+        for gap in gaps {
+            let candidates = self.candidates_at(gap);
+            self.sampling.balls.extend(candidates);
+        }
+        self.sampling.samples.extend_from_slice(gaps);
+        self.tree = SampleTree::new(&self.sampling.samples);
+        self.counts = vec![0; self.sampling.samples.len()];
+        for ball in &self.chosen {
+            self.tree.each_covered(&self.sampling.samples, ball, self.target.e, |s| self.counts[s] += 1);
+        }
+    }
+
+    /// Adds few balls that cover these gaps.
+    fn fill(&mut self, gaps: &[Sample]) {
+        let tree = SampleTree::new(gaps);
+        let balls: Vec<Ball> = gaps.iter().flat_map(|gap| self.candidates_at(gap)).collect();
+        let mut rows_of = Lists::new();
+        for ball in &balls {
+            let mut rows = Vec::new();
+            tree.each_covered(gaps, ball, self.target.e, |s| rows.push(s as u32));
+            rows_of.push(rows);
+        }
+        let mut cover = Cover::new(&rows_of, gaps.len());
+        cover.complete();
+        let mut chosen = cover.chosen().to_vec();
+        chosen.sort_unstable();
+        self.chosen.extend(chosen.into_iter().map(|set| balls[set as usize]));
+    }
+}

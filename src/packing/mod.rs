@@ -1,0 +1,15 @@
+//! Sphere packing: a mesh and a tolerance → a union of few spheres.
+
+mod ball;
+mod cells;
+mod certificate;
+mod cover_surface;
+mod pack;
+mod packing_error;
+mod sampling;
+mod set_cover;
+mod target;
+
+pub use pack::{Packing, pack_mesh};
+pub use packing_error::{PackingError, Spread, packing_error};
+pub use target::Body;

@@ -1,0 +1,144 @@
+//! What is packed: a mesh, what of it counts, and how near the spheres must come.
+
+use super::ball::Ball;
+use crate::error::{Error, Result};
+use crate::mesh::{Surface, Triangle, TriangleMesh};
+use glam::DVec3;
+use std::collections::HashMap;
+
+/// What a mesh stands for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Body {
+    /// The solid that it encloses. It must have no holes.
+    Solid,
+    /// Itself, without thickness: spheres as small as the tolerance, centred on it. Holes stay open; the spheres are many.
+    Sheet,
+}
+
+/// A mesh that can be packed.
+pub(super) struct Target<'a> {
+    pub surface: &'a Surface,
+    pub body: Body,
+    /// How far spheres may be from the outer surface, metres.
+    pub e: f64,
+}
+
+impl<'a> Target<'a> {
+    /// Checks that the mesh has what the body needs.
+    pub fn new(surface: &'a Surface, body: Body, tolerance: f64) -> Result<Self> {
+        if !(tolerance.is_finite() && tolerance > 0.0) {
+            return Err(Error::input(
+                "tolerance",
+                format!("{tolerance} m"),
+                "a finite positive length",
+            ));
+        }
+        if body == Body::Solid {
+            check_enclosure(surface.mesh())?;
+        }
+        // Leaves rounding errors a place, so that what is promised is kept to the last digit.
+        let e = tolerance * (1.0 - 1e-6);
+        Ok(Self { surface, body, e })
+    }
+
+    /// No ball is larger, metres.
+    pub fn largest_radius(&self) -> f64 {
+        0.5 * self.surface.bounds().size().length()
+    }
+
+    /// The ball around a point, or near it on a sheet; `None` outside a solid.
+    pub fn ball_around(&self, center: DVec3) -> Option<Ball> {
+        let nearest = self.surface.closest(center, f64::INFINITY)?;
+        if self.body == Body::Sheet {
+            return Some(Ball::on_surface(nearest.point));
+        }
+        let is_inside = nearest.distance > 0.0 && !self.surface.is_outside(center, &nearest);
+        is_inside.then_some(Ball {
+            center,
+            depth: nearest.distance,
+            foot: nearest.point,
+        })
+    }
+
+    /// The outward unit normal near a point of the surface; zero where there is none.
+    pub fn normal_at(&self, point: DVec3) -> DVec3 {
+        let nearest = self.surface.closest(point, f64::INFINITY);
+        let normal = nearest.map(|nearest| self.surface.pseudonormal(&nearest));
+        normal.unwrap_or_default().normalize_or_zero()
+    }
+
+    /// Whether a face of a solid lies inside other parts of the mesh: its middle and three points near its corners do,
+    /// when they are lifted off it by a thousandth of the tolerance.
+    pub fn is_buried(&self, triangle: &Triangle, normal: DVec3) -> bool {
+        let middle = triangle_middle(triangle);
+        let near_corners = triangle.0.map(|corner| corner.lerp(middle, 0.2));
+        let points = [middle, near_corners[0], near_corners[1], near_corners[2]];
+        let lift = normal * (1e-3 * self.e);
+        self.body == Body::Solid && points.iter().all(|&p| self.surface.contains(p + lift))
+    }
+}
+
+/// An error unless every edge is passed as often in one direction as in the other, and the enclosed volume is positive.
+fn check_enclosure(mesh: &TriangleMesh) -> Result<()> {
+    let n_open = n_open_edges(mesh);
+    if n_open > 0 {
+        return Err(Error::input(
+            "mesh",
+            format!("{n_open} edges at holes or between faces that disagree about the outside"),
+            "a closed mesh, or its surface packed as a sheet",
+        ));
+    }
+    let corners = (0..mesh.n_triangles()).map(|t| mesh.triangle(t).0);
+    let volume: f64 = corners.map(|[a, b, c]| a.dot(b.cross(c)) / 6.0).sum();
+    if volume <= 0.0 {
+        return Err(Error::input(
+            "mesh",
+            format!("an enclosed volume of {volume:.3e} m³"),
+            "faces counter-clockwise seen from outside, around a positive volume",
+        ));
+    }
+    Ok(())
+}
+
+fn n_open_edges(mesh: &TriangleMesh) -> usize {
+    // Vertices at the same place are one; adding zero makes −0 and 0 the same place.
+    let place = |v: DVec3| v.to_array().map(|x| (x + 0.0).to_bits());
+    let mut balance: HashMap<_, i64> = HashMap::new();
+    for triangle in 0..mesh.n_triangles() {
+        let corners = mesh.triangle(triangle).0.map(place);
+        for side in 0..3 {
+            let (from, to) = (corners[side], corners[(side + 1) % 3]);
+            if from < to {
+                *balance.entry((from, to)).or_default() += 1;
+            } else if to < from {
+                *balance.entry((to, from)).or_default() -= 1;
+            }
+        }
+    }
+    balance.values().filter(|&&passes| passes != 0).count()
+}
+
+/// The mean of the corners.
+pub(super) fn triangle_middle(triangle: &Triangle) -> DVec3 {
+    let [a, b, c] = triangle.0;
+    (a + b + c) / 3.0
+}
+
+/// Cut across the middle of the longest edge.
+pub(super) fn bisected(triangle: &Triangle) -> [Triangle; 2] {
+    let [a, b, c] = triangle.0;
+    let (ab, bc, ca) = (
+        a.distance_squared(b),
+        b.distance_squared(c),
+        c.distance_squared(a),
+    );
+    let (from, to, apex) = if ab >= bc && ab >= ca {
+        (a, b, c)
+    } else if bc >= ca {
+        (b, c, a)
+    } else {
+        (c, a, b)
+    };
+    let middle = 0.5 * (from + to);
+    [Triangle([from, middle, apex]), Triangle([middle, to, apex])]
+}
