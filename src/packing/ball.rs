@@ -29,7 +29,8 @@ impl Ball {
     /// |foot + t u − q| ≥ t − s   ⟺   t ≤ (|q − foot|² − s²) / (2 (u·(q − foot) − s))   if u·(q − foot) > s
     /// ```
     ///
-    /// so t shrinks from `limit` until no such q is left. `None` if the centre is not inside the mesh, and for a sheet.
+    /// so t shrinks from `limit` until no such q is left. `None` if the centre is beyond a wall
+    /// thinner than the slack, and for a sheet.
     pub fn largest(
         target: &Target,
         foot: DVec3,
@@ -41,7 +42,11 @@ impl Ball {
             return None;
         }
         let surface = target.surface;
-        let mut t = limit;
+        // The ray inward meets a point q with u·(q − foot) = |q − foot|, which makes the bound (|q − foot| + s) / 2; from
+        // there on queries are cheap, since they are not far from the surface.
+        let beyond_foot = 1e-9 * limit..2.0 * limit;
+        let hit = surface.bvh().first_hit(foot, inward, beyond_foot);
+        let mut t = hit.map_or(limit, |hit| (0.5 * (hit.along + slack)).clamp(slack, limit));
         for _ in 0..MAX_STEPS {
             let center = foot + t * inward;
             // The foot is no farther than t, so there is a nearest point.
@@ -52,13 +57,15 @@ impl Ball {
             // A hair of room, so that the foot itself does not count.
             let is_clear = nearest.distance >= (t - slack) * (1.0 - 1e-9);
             if is_clear || rise <= 0.0 || next >= t {
-                let is_inside = nearest.distance > 0.0 && !surface.is_outside(center, &nearest);
-                let depth = nearest.distance;
-                return is_inside.then_some(Self {
+                let ball = Self {
                     center,
-                    depth,
+                    depth: nearest.distance,
                     foot,
-                });
+                };
+                // Nothing lies between the foot and the centre of a ball without slack.
+                let is_inside = slack == 0.0
+                    || (center - nearest.point).dot(surface.pseudonormal(&nearest)) < 0.0;
+                return is_inside.then_some(ball);
             }
             t = next.max(slack);
         }

@@ -3,7 +3,7 @@
 use super::ball::Ball;
 use super::cells::Cells;
 use super::certificate::gaps;
-use super::sampling::{Sample, SampleTree, Sampling, candidates, sample};
+use super::sampling::{Sample, SampleTree, Sampling, sample};
 use super::set_cover::{Cover, Lists};
 use super::target::Target;
 use crate::random::Seed;
@@ -17,28 +17,27 @@ const CELL: usize = 24_000;
 struct Pass {
     /// At which share of the points a cell is cut; another one moves the seams.
     cut: f64,
-    /// Exchanges of the local search for each ball.
-    steps_a_ball: usize,
-    /// Shifted copies of each chosen ball among the candidates.
-    n_moves: usize,
+    /// Share of the whole effort for exchanges and shifted copies.
+    steps: f64,
+    moves: f64,
 }
 
 /// Passes that look for fewer balls; after each one gaps become samples.
 const PASSES: [Pass; 3] = [
     Pass {
         cut: 0.5,
-        steps_a_ball: 200,
-        n_moves: 0,
+        steps: 1.0,
+        moves: 0.0,
     },
     Pass {
         cut: 0.4,
-        steps_a_ball: 100,
-        n_moves: 8,
+        steps: 0.5,
+        moves: 1.0,
     },
     Pass {
         cut: 0.6,
-        steps_a_ball: 100,
-        n_moves: 8,
+        steps: 0.5,
+        moves: 1.0,
     },
 ];
 
@@ -50,11 +49,12 @@ const MAX_REPAIRS: usize = 40;
 pub(super) fn cover_surface(target: &Target) -> (Vec<Ball>, usize) {
     let mut covering = Covering::new(target);
     let t = std::time::Instant::now();
-    for (number, pass) in PASSES.iter().enumerate() {
+    let n_passes = covering.sampling.effort.n_passes;
+    for (number, pass) in PASSES.iter().take(n_passes).enumerate() {
         covering.pass(pass, number as u64);
         let gaps = covering.gaps();
         if std::env::var("TALK").is_ok() { eprintln!("  pass {number}: {} balls, {} gaps, {:.1} s", covering.chosen.len(), gaps.len(), t.elapsed().as_secs_f64()); }
-        if number + 1 < PASSES.len() {
+        if number + 1 < n_passes {
             covering.sample_gaps(&gaps);
         }
     }
@@ -132,7 +132,7 @@ impl<'a> Covering<'a> {
         rng: &mut impl Rng,
     ) {
         let n_freed = freed.len();
-        let moved = self.moved(&freed, pass.n_moves, rng);
+        let moved = self.moved(&freed, pass.moves * self.sampling.effort.moves_a_ball, rng);
         let mut balls = freed;
         balls.extend(candidates);
         balls.extend(moved);
@@ -166,7 +166,8 @@ impl<'a> Covering<'a> {
         let mut cover = Cover::new(&rows_of, n_rows as usize);
         (0..n_freed).for_each(|set| cover.add(set));
         cover.complete();
-        cover.improve(pass.steps_a_ball * cover.chosen().len(), rng);
+        let steps_a_ball = pass.steps * self.sampling.effort.steps_a_ball;
+        cover.improve((steps_a_ball * cover.chosen().len() as f64) as usize, rng);
         let mut chosen: Vec<u32> = cover.chosen().to_vec();
         chosen.sort_unstable();
         for set in chosen {
@@ -176,33 +177,31 @@ impl<'a> Covering<'a> {
         }
     }
 
-    /// Copies of balls, their centres shifted by up to half of what they cover.
-    fn moved(&self, balls: &[Ball], n_moves: usize, rng: &mut impl Rng) -> Vec<Ball> {
+    /// Balls beside these, up to half of what they cover away; about `n_moves` for each.
+    fn moved(&self, balls: &[Ball], n_moves: f64, rng: &mut impl Rng) -> Vec<Ball> {
+        let n_moves = n_moves * balls.len() as f64;
         let mut moved = Vec::new();
-        for ball in balls {
-            for _ in 0..n_moves {
-                let shift = DVec3::from_array(std::array::from_fn(|_| rng.gen_range(-1.0..1.0)));
-                let center = ball.center + 0.5 * ball.half_width(self.target.e) * shift;
-                if let Some(copy) = self.target.ball_around(center) {
-                    moved.push(Ball { foot: ball.foot, ..copy });
-                }
-            }
+        for number in 0..n_moves as usize {
+            let ball = &balls[number % balls.len()];
+            let shift = DVec3::from_array(std::array::from_fn(|_| rng.gen_range(-1.0..1.0)));
+            let shift = 0.5 * ball.half_width(self.target.e) * shift;
+            moved.extend(self.target.ball_beside(ball, shift));
         }
         moved
     }
 
-    /// Balls that cover a gap, larger and smaller.
-    fn candidates_at(&self, gap: &Sample) -> Vec<Ball> {
-        let normal = self.target.normal_at(gap.position);
-        candidates(self.target, gap.position, normal)
+    /// Balls that cover gaps, one for each.
+    fn balls_at(&self, gaps: &[Sample]) -> Vec<Ball> {
+        let ball = |gap: &Sample| {
+            let normal = self.target.normal_at(gap.position);
+            self.target.ball_at(gap.position, normal)
+        };
+        gaps.iter().map(ball).collect()
     }
 
     /// Makes samples of gaps, and candidates of the balls that cover them.
     fn sample_gaps(&mut self, gaps: &[Sample]) {
-        for gap in gaps {
-            let candidates = self.candidates_at(gap);
-            self.sampling.balls.extend(candidates);
-        }
+        self.sampling.balls.extend(self.balls_at(gaps));
         self.sampling.samples.extend_from_slice(gaps);
         self.tree = SampleTree::new(&self.sampling.samples);
         self.counts = vec![0; self.sampling.samples.len()];
@@ -214,7 +213,7 @@ impl<'a> Covering<'a> {
     /// Adds few balls that cover these gaps.
     fn fill(&mut self, gaps: &[Sample]) {
         let tree = SampleTree::new(gaps);
-        let balls: Vec<Ball> = gaps.iter().flat_map(|gap| self.candidates_at(gap)).collect();
+        let balls = self.balls_at(gaps);
         let mut rows_of = Lists::new();
         for ball in &balls {
             let mut rows = Vec::new();

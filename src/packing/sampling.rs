@@ -15,37 +15,69 @@ pub(super) struct Sample {
 
 /// What is to be covered, and what with.
 pub(super) struct Sampling {
+    pub effort: Effort,
     /// Triangles that are not buried inside the mesh.
     pub outer: Vec<usize>,
     pub samples: Vec<Sample>,
     pub balls: Vec<Ball>,
 }
 
-/// Samples in the area that one ball has to itself in the best covering of a plane. More: fewer gaps to mend, slower;
-/// fewer: the local search plans for gaps that it cannot see.
-pub(super) const SAMPLES_A_BALL: f64 = 80.0;
-/// Places at which candidate balls touch, in that area. More: better coverings, slower.
-const FEET_A_BALL: f64 = 25.0;
-/// Slacks of the candidates at each foot, in tolerances. With slack 2 the foot is at the rim of what the ball covers.
-const SLACKS: [f64; 3] = [2.0, 1.0, 0.0];
+/// Sizes are computed anew at this share of what a ball covers. Larger: edges and tips are sampled too thinly; smaller: slower.
+const NEAR: f64 = 0.3;
 /// Share of a plane's covering by discs of unit radius that each has to itself: 3·√3/2, a hexagon.
 const HEXAGON: f64 = 2.598_076_211_353_316;
 
+/// How much work a packing is worth; less for each sphere where there are many.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Effort {
+    /// Samples in the area that one ball has to itself in the best covering of a plane. More: fewer gaps to mend, slower;
+    /// fewer: the local search plans for gaps that it cannot see.
+    pub samples_a_ball: f64,
+    /// Places in that area at which a candidate ball touches. More: better coverings, slower.
+    pub feet_a_ball: f64,
+    /// Exchanges of the local search for each chosen ball.
+    pub steps_a_ball: f64,
+    /// Shifted copies of each chosen ball that the next search may take instead.
+    pub moves_a_ball: f64,
+    /// Searches over all cells.
+    pub n_passes: usize,
+}
+
+impl Effort {
+    /// All of it up to 2,000 spheres, then less for each, so that the time grows more slowly than their number.
+    fn for_about(n_balls: f64) -> Self {
+        let share = (super::knob("FULL", 2000.0) / n_balls).clamp(0.03, 1.0);
+        use super::knob;
+        Self {
+            samples_a_ball: knob("SPB0", 20.0) + knob("SPB", 60.0) * share.sqrt(),
+            feet_a_ball: knob("FPB0", 5.0) + knob("FPB", 35.0) * share.sqrt(),
+            steps_a_ball: knob("STEPS", 200.0) * share,
+            moves_a_ball: knob("MOVES", 8.0) * share,
+            n_passes: if share < 0.15 { 1 } else { 3 },
+        }
+    }
+}
+
 /// Samples the surface; the same mesh always gives the same samples.
 pub(super) fn sample(target: &Target) -> Sampling {
+    let surface = target.surface;
+    let effort = Effort::for_about(n_balls_about(target));
     let mut sampler = Sampler {
-        target,
+        sizes: Sizes {
+            target,
+            known: None,
+        },
+        effort,
         due_samples: 1.0,
         due_feet: 1.0,
-        known: None,
         sampling: Sampling {
+            effort,
             outer: Vec::new(),
             samples: Vec::new(),
             balls: Vec::new(),
         },
     };
     // In the order of the tree, neighbours on the surface are neighbours in the list.
-    let surface = target.surface;
     surface.bvh().each_in_box(&surface.bounds(), |number, triangle| {
         if let Some(normal) = triangle.normal()
             && !target.is_buried(triangle, normal)
@@ -57,14 +89,43 @@ pub(super) fn sample(target: &Target) -> Sampling {
     sampler.sampling
 }
 
+/// About how many balls it takes, from every eighth triangle.
+fn n_balls_about(target: &Target) -> f64 {
+    const EVERY: usize = 8;
+    let mesh = target.surface.mesh();
+    let mut sizes = Sizes {
+        target,
+        known: None,
+    };
+    let (mut balls, mut tried, mut all) = (0.0, 0.0, 0.0);
+    for number in 0..mesh.n_triangles() {
+        let triangle = mesh.triangle(number);
+        let Some(normal) = triangle.normal() else {
+            continue;
+        };
+        all += triangle.area();
+        if number % EVERY == 0 {
+            tried += triangle.area();
+            balls += triangle.area() / sizes.share(triangle_middle(&triangle), normal);
+        }
+    }
+    balls * all / tried.max(f64::MIN_POSITIVE)
+}
+
 struct Sampler<'a> {
-    target: &'a Target<'a>,
+    sizes: Sizes<'a>,
+    effort: Effort,
     /// A sample is placed whenever this passes one: evenly, however the surface is cut into triangles.
     due_samples: f64,
     due_feet: f64,
-    /// Where the local size was last computed.
-    known: Option<Local>,
     sampling: Sampling,
+}
+
+/// How much of the surface a ball has to itself, here and there.
+struct Sizes<'a> {
+    target: &'a Target<'a>,
+    /// Where it was last computed.
+    known: Option<Local>,
 }
 
 /// How large balls are somewhere.
@@ -78,42 +139,48 @@ struct Local {
 
 impl Sampler<'_> {
     fn visit(&mut self, triangle: Triangle, normal: DVec3) {
+        let Effort {
+            samples_a_ball,
+            feet_a_ball,
+            ..
+        } = self.effort;
         let mut waiting = vec![triangle];
         while let Some(triangle) = waiting.pop() {
             let foot = triangle_middle(&triangle);
-            let share = HEXAGON * self.half_width(foot, normal).powi(2);
+            let share = self.sizes.share(foot, normal);
             let balls = triangle.area() / share;
             // Compact pieces only: a long one reaches to places that its middle knows nothing of.
-            let is_long = triangle.longest_edge_squared() * SAMPLES_A_BALL > 8.0 * share;
-            if balls * SAMPLES_A_BALL > 1.0 || is_long {
+            let is_long = triangle.longest_edge_squared() * samples_a_ball > 8.0 * share;
+            if balls * samples_a_ball > 1.0 || is_long {
                 let [first, second] = bisected(&triangle);
                 waiting.extend([second, first]);
                 continue;
             }
-            self.due_samples += balls * SAMPLES_A_BALL;
+            self.due_samples += balls * samples_a_ball;
             if self.due_samples >= 1.0 {
                 self.due_samples -= 1.0;
                 self.sampling.samples.push(Sample {
                     position: foot,
-                    radius: (share / (HEXAGON * SAMPLES_A_BALL)).sqrt(),
+                    radius: (share / (HEXAGON * samples_a_ball)).sqrt(),
                 });
             }
-            self.due_feet += balls * FEET_A_BALL;
+            self.due_feet += balls * feet_a_ball;
             if self.due_feet >= 1.0 {
                 self.due_feet -= 1.0;
-                let candidates = candidates(self.target, foot, normal);
-                self.sampling.balls.extend(candidates);
+                self.sampling.balls.push(self.sizes.target.ball_at(foot, normal));
             }
         }
     }
+}
 
-    /// Of the largest ball that covers a point.
-    fn half_width(&mut self, foot: DVec3, normal: DVec3) -> f64 {
+impl Sizes<'_> {
+    /// Of the largest ball that covers a point of the surface, m².
+    fn share(&mut self, foot: DVec3, normal: DVec3) -> f64 {
         if let Some(known) = self.known
-            && foot.distance(known.foot) < 0.15 * known.half_width
+            && foot.distance(known.foot) < NEAR * known.half_width
             && normal.dot(known.normal) > 0.95
         {
-            return known.half_width;
+            return HEXAGON * known.half_width.powi(2);
         }
         let (slack, limit) = (2.0 * self.target.e, self.target.largest_radius());
         let ball = Ball::largest(self.target, foot, -normal, slack, limit);
@@ -123,25 +190,8 @@ impl Sampler<'_> {
             normal,
             half_width,
         });
-        half_width
+        HEXAGON * half_width.powi(2)
     }
-}
-
-/// Balls that cover a point of the surface, larger and smaller; at least one.
-pub(super) fn candidates(target: &Target, foot: DVec3, normal: DVec3) -> Vec<Ball> {
-    let mut limit = target.largest_radius();
-    let mut balls = Vec::with_capacity(SLACKS.len());
-    for slack in SLACKS {
-        if let Some(ball) = Ball::largest(target, foot, -normal, slack * target.e, limit) {
-            // Less slack never allows a larger one.
-            limit = ball.center.distance(foot);
-            balls.push(ball);
-        }
-    }
-    if balls.is_empty() {
-        balls.push(Ball::on_surface(foot));
-    }
-    balls
 }
 
 /// A tree over samples, as triangles without size.

@@ -98,13 +98,13 @@ pub(super) struct Cover<'a> {
     chosen: Members,
     uncovered: Members,
     /// Of each row.
-    weights: Vec<i64>,
+    weights: Vec<i32>,
     /// How many chosen sets hold a row.
     counts: Vec<u32>,
     /// Their numbers, combined by exclusive or: if it is one set, which.
     holders: Vec<u32>,
     /// Of a set that is not chosen: the weight that it would cover. Of a chosen one: less the weight that only it covers.
-    scores: Vec<i64>,
+    scores: Vec<i32>,
     /// When a set was last put in or taken out.
     moved_at: Vec<u32>,
 }
@@ -122,7 +122,7 @@ impl<'a> Cover<'a> {
         }
         let n_sets = rows_of.len();
         Self {
-            scores: (0..n_sets).map(|s| rows_of.of(s).len() as i64).collect(),
+            scores: (0..n_sets).map(|s| rows_of.of(s).len() as i32).collect(),
             rows_of,
             sets_of,
             chosen: Members::none_of(n_sets),
@@ -177,7 +177,7 @@ impl<'a> Cover<'a> {
     }
 
     /// Changes the scores of the sets that hold a row.
-    fn raise_all_but(&mut self, set: usize, row: usize, by: i64) {
+    fn raise_all_but(&mut self, set: usize, row: usize, by: i32) {
         for &other in self.sets_of.of(row) {
             if other as usize != set {
                 self.scores[other as usize] += by;
@@ -188,7 +188,7 @@ impl<'a> Cover<'a> {
     /// Chooses the set that covers most until all rows are covered, then drops those that became superfluous.
     pub fn complete(&mut self) {
         let candidates = (0..self.rows_of.len()).filter(|&set| !self.chosen.contains(set));
-        let entry = |set: usize, score: i64| (score, Reverse(set));
+        let entry = |set: usize, score: i32| (score, Reverse(set));
         let mut heap: BinaryHeap<_> = candidates.map(|s| entry(s, self.scores[s])).collect();
         while !self.uncovered.members.is_empty() {
             let Some((score, Reverse(set))) = heap.pop() else {
@@ -242,7 +242,7 @@ impl<'a> Cover<'a> {
     }
 
     /// What is best to put in or take out: the highest score, then the one that has rested longest.
-    fn merit(&self, set: u32) -> (i64, Reverse<u32>, u32) {
+    fn merit(&self, set: u32) -> (i32, Reverse<u32>, u32) {
         let index = set as usize;
         (self.scores[index], Reverse(self.moved_at[index]), set)
     }

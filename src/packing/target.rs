@@ -46,18 +46,26 @@ impl<'a> Target<'a> {
         0.5 * self.surface.bounds().size().length()
     }
 
-    /// The ball around a point, or near it on a sheet; `None` outside a solid.
-    pub fn ball_around(&self, center: DVec3) -> Option<Ball> {
+    /// The largest ball that touches the surface from inside at a point; on a sheet around it.
+    pub fn ball_at(&self, foot: DVec3, normal: DVec3) -> Ball {
+        let largest = Ball::largest(self, foot, -normal, 0.0, self.largest_radius());
+        largest.unwrap_or(Ball::on_surface(foot))
+    }
+
+    /// The largest ball that touches the surface where it is nearest to a point beside the centre of another ball; on a
+    /// sheet around that place. `None` if the point is outside a solid.
+    pub fn ball_beside(&self, ball: &Ball, shift: DVec3) -> Option<Ball> {
+        let center = ball.center + shift;
         let nearest = self.surface.closest(center, f64::INFINITY)?;
         if self.body == Body::Sheet {
             return Some(Ball::on_surface(nearest.point));
         }
-        let is_inside = nearest.distance > 0.0 && !self.surface.is_outside(center, &nearest);
-        is_inside.then_some(Ball {
-            center,
-            depth: nearest.distance,
-            foot: nearest.point,
-        })
+        let is_inside = shift.length() < ball.depth || !self.surface.is_outside(center, &nearest);
+        if nearest.distance <= 0.0 || !is_inside {
+            return None;
+        }
+        let inward = (center - nearest.point) / nearest.distance;
+        Ball::largest(self, nearest.point, inward, 0.0, self.largest_radius())
     }
 
     /// The outward unit normal near a point of the surface; zero where there is none.
