@@ -2,7 +2,8 @@
 
 use bubbletouch::contact::{Workspace, press_to_depth};
 use bubbletouch::geometry::Pose;
-use bubbletouch::objects::{Catalogue, Sphere, SphereUnion};
+use bubbletouch::mesh::TriangleMesh;
+use bubbletouch::objects::{Catalogue, MeshModel, Model, Sphere, SphereUnion, vertex_spheres};
 use bubbletouch::random::Seed;
 use bubbletouch::world::{Grid, Patch, RestPoses, Scene, Taxel, Touch};
 use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
@@ -40,7 +41,7 @@ fn patch(n: usize) -> Patch {
     Patch::new(grid, taxel).expect("the grid has taxels")
 }
 
-fn zero_touch(object: &SphereUnion) -> Pose {
+fn zero_touch(object: &Model) -> Pose {
     let rest = RestPoses::AsModelled.of(object).swap_remove(0);
     let touch = Touch {
         rest: 0,
@@ -57,7 +58,10 @@ fn zero_touch(object: &SphereUnion) -> Pose {
 fn every_pair(scene: &Scene, pose: &Pose, travel: f64, deflections: &mut [f64]) {
     let Patch { grid, taxel } = scene.patch;
     deflections.fill(0.0);
-    for sphere in scene.objects[0].spheres() {
+    let spheres = scene.objects[0]
+        .spheres()
+        .map_or(&[][..], SphereUnion::spheres);
+    for sphere in spheres {
         let c = pose.transform_point(sphere.center);
         let reach2 = (taxel.radius + sphere.radius).powi(2);
         for row in 0..grid.ny {
@@ -78,7 +82,7 @@ fn press(c: &mut Criterion) {
         for n_spheres in [1_000, 8_000] {
             let scene = Scene {
                 patch: patch(n_taxels),
-                objects: vec![egg(n_spheres)],
+                objects: vec![egg(n_spheres).into()],
             };
             let pose = zero_touch(&scene.objects[0]);
             let size = format!("{n_taxels}x{n_taxels}_taxels_{n_spheres}_spheres");
@@ -90,7 +94,7 @@ fn press(c: &mut Criterion) {
     }
     let scene = Scene {
         patch: patch(64),
-        objects: vec![egg(8_000)],
+        objects: vec![egg(8_000).into()],
     };
     let pose = zero_touch(&scene.objects[0]);
     let travel = press_to_depth(&scene, &[pose], DEPTH, &mut Workspace::new())
@@ -111,10 +115,10 @@ fn catalogue(c: &mut Criterion) {
             .object(name)
             .and_then(|entry| entry.build(2.5e-4))
             .expect("a built-in object");
-        let n_spheres = object.spheres.n_spheres();
+        let n_spheres = object.model.n_spheres();
         let scene = Scene {
             patch: patch(64),
-            objects: vec![object.spheres],
+            objects: vec![object.model],
         };
         let pose = zero_touch(&scene.objects[0]);
         let mut workspace = Workspace::new();
@@ -126,5 +130,53 @@ fn catalogue(c: &mut Criterion) {
     group.finish();
 }
 
-criterion_group!(benches, press, catalogue);
+/// A ball of n triangles with hills, like a scanned object.
+fn scan(n_rings: usize) -> TriangleMesh {
+    let n = n_rings as u32;
+    let corner = |ring: u32, k: u32| {
+        let (up, out) = (std::f64::consts::PI * f64::from(ring) / f64::from(n)).sin_cos();
+        let (sin, cos) =
+            (std::f64::consts::TAU * f64::from(k % (2 * n)) / f64::from(2 * n)).sin_cos();
+        let hill = 1.0 + 0.01 * (9.0 * out).sin() * (7.0 * cos).cos();
+        hill * DVec3::new(up * cos, up * sin, out) * DVec3::new(0.05, 0.04, 0.03)
+    };
+    let vertices = (0..=n).flat_map(|ring| (0..2 * n).map(move |k| corner(ring, k)));
+    let at = |ring: u32, k: u32| ring * 2 * n + k % (2 * n);
+    let cells = (0..n).flat_map(|ring| (0..2 * n).map(move |k| (ring, k)));
+    let triangles = cells.flat_map(|(ring, k)| {
+        let [a, b] = [at(ring, k), at(ring, k + 1)];
+        let [c, d] = [at(ring + 1, k), at(ring + 1, k + 1)];
+        [[a, c, b], [b, c, d]]
+    });
+    TriangleMesh::new("scan", vertices.collect(), triangles.collect()).expect("a valid mesh")
+}
+
+/// The triangles themselves beside spheres around their vertices.
+fn mesh(c: &mut Criterion) {
+    let mut group = c.benchmark_group("press_mesh_64x64");
+    for n_rings in [32, 64] {
+        let mesh = scan(n_rings);
+        let n_triangles = mesh.n_triangles();
+        let spheres = vertex_spheres("scan", mesh.vertices()).expect("vertices apart");
+        let models: [(&str, Model); 2] = [
+            ("mesh", MeshModel::new(mesh).into()),
+            ("vertex_spheres", spheres.into()),
+        ];
+        for (name, model) in models {
+            let scene = Scene {
+                patch: patch(64),
+                objects: vec![model],
+            };
+            let pose = zero_touch(&scene.objects[0]);
+            let mut workspace = Workspace::new();
+            let id = BenchmarkId::new(name, format!("{n_triangles}_triangles"));
+            group.bench_function(id, |b| {
+                b.iter(|| press_to_depth(black_box(&scene), &[pose], DEPTH, &mut workspace));
+            });
+        }
+    }
+    group.finish();
+}
+
+criterion_group!(benches, press, catalogue, mesh);
 criterion_main!(benches);

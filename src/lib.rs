@@ -4,7 +4,7 @@
 //!
 //! - A **taxel** is one sensing element: a sphere on a spring and damper, sliding along one axis.
 //! - A **patch** is a rigid substrate with a grid of taxels; a **frame** is what they all report at one instant.
-//! - An **object** is a union of rigid spheres.
+//! - An **object** is a union of rigid spheres, or a triangle mesh.
 //! - A **touch** is one contact experiment: a patch comes down on an object that lies on a table, to first contact and then
 //!   further by a **depth**.
 //! - A **measurement** is a compressed frame, `y = Φx`; the **compression ratio** is taxels per measurement, n / m.
@@ -43,7 +43,7 @@
 //!     depth: Spread::Values(vec![3e-3]),
 //!     per_object: None,
 //! };
-//! let rests = placement.rest.of(&mug.spheres);
+//! let rests = placement.rest.of(&mug.model);
 //! let seed = Seed::new(2018).named("mug");
 //! let all = touches(&placement, &rests, &seed)?;
 //! assert_eq!(all.len(), 5);
@@ -51,7 +51,7 @@
 //! // Press once: no time loop, since nothing in this scene needs one.
 //! let touch = &all[2];
 //! let pose = touch.patch_from_object(&rests[touch.rest]);
-//! let scene = Scene { patch, objects: vec![mug.spheres] };
+//! let scene = Scene { patch, objects: vec![mug.model] };
 //! let mut workspace = Workspace::new();
 //! let contact = press_to_depth(&scene, &[pose], touch.depth, &mut workspace).expect("the mug is under the patch");
 //! assert!(contact.n_touched > 50 && contact.n_saturated == 0);
@@ -86,7 +86,7 @@
 //! | stage | in → out |
 //! |---|---|
 //! | [`mesh`] | a file of triangles → a surface: distances, inside and outside |
-//! | [`objects`] | a shape, a mesh, or spheres → a union of spheres |
+//! | [`objects`] | a shape, a mesh, or spheres → a model: spheres or triangles |
 //! | [`world`] | taxels, layouts, resting poses → touches |
 //! | [`contact`] | a scene and poses → deflections |
 //! | [`signal`] | deflections → frames |

@@ -145,7 +145,7 @@ fn labels_depths_and_tables_agree_and_are_the_touches_of_the_study() {
         assert_eq!(files.objects.len(), study.touched.len());
         for (label, (object, row)) in study.touched.iter().zip(&files.objects).enumerate() {
             assert_eq!((row.label, &row.object), (label, &object.object.name));
-            assert_eq!(row.n_spheres, object.object.spheres.n_spheres());
+            assert_eq!(row.n_spheres, object.object.model.n_spheres());
             assert_eq!(row.n_touches, object.touches.len());
             for touch in &object.touches {
                 let row = rows.next().unwrap();
@@ -183,7 +183,7 @@ fn pressing_at_the_recorded_pose_reproduces_the_frame() {
             let rotation = DQuat::from_xyzw(pose[3], pose[4], pose[5], pose[6]);
             assert!((rotation.length() - 1.0).abs() < 1e-12);
             let pose = Pose::new(rotation, DVec3::new(pose[0], pose[1], pose[2]));
-            let spheres = &study.touched[files.labels[touch] as usize].object.spheres;
+            let spheres = &study.touched[files.labels[touch] as usize].object.model;
             let scene = Scene {
                 patch: *patch,
                 objects: vec![spheres.clone()],

@@ -2,7 +2,7 @@
 
 use bubbletouch::contact::{Workspace, first_contact, press_to_depth, press_to_travel, simulate};
 use bubbletouch::geometry::Pose;
-use bubbletouch::objects::{Sphere, SphereUnion};
+use bubbletouch::objects::{Model, Sphere, SphereUnion};
 use bubbletouch::random::Seed;
 use bubbletouch::world::{Grid, Patch, Phase, Scene, Taxel, VelocityPlan};
 use glam::{DQuat, DVec3};
@@ -23,13 +23,13 @@ fn random_scene(rng: &mut ChaCha8Rng) -> (Scene, Vec<Pose>) {
         pitch: 10f64.powf(rng.gen_range(-3.5..-2.0)),
     };
     let scale = 10f64.powf(rng.gen_range(-3.0..-1.0));
-    let objects: Vec<SphereUnion> = (0..rng.gen_range(1..4))
+    let objects: Vec<Model> = (0..rng.gen_range(1..4))
         .map(|_| {
             let spheres = (0..rng.gen_range(1..60)).map(|_| Sphere {
                 center: scale * DVec3::from(rng.r#gen::<[f64; 3]>()) - DVec3::splat(0.5 * scale),
                 radius: scale * rng.gen_range(0.001..0.5),
             });
-            SphereUnion::new(spheres.collect()).unwrap()
+            SphereUnion::new(spheres.collect()).unwrap().into()
         })
         .collect();
     let poses = objects.iter().map(|_| random_pose(rng, 0.02)).collect();
@@ -50,7 +50,7 @@ fn oracle(scene: &Scene, poses: &[Pose], travel: f64) -> Vec<f64> {
     let Patch { grid, taxel } = scene.patch;
     let mut deflections = vec![0.0_f64; grid.n_taxels()];
     for (object, pose) in scene.objects.iter().zip(poses) {
-        for sphere in object.spheres() {
+        for sphere in object.spheres().unwrap().spheres() {
             let c = pose.transform_point(sphere.center);
             let reach = taxel.radius + sphere.radius;
             let h = c.z - travel;
@@ -217,7 +217,7 @@ fn a_ball_pressed_on_the_array_leaves_its_cap() {
     };
     let scene = Scene {
         patch: Patch::new(grid, TAXEL).unwrap(),
-        objects: vec![SphereUnion::new(vec![ball]).unwrap()],
+        objects: vec![SphereUnion::new(vec![ball]).unwrap().into()],
     };
     let mut workspace = Workspace::new();
     let contact = press_to_depth(&scene, &[Pose::IDENTITY], depth, &mut workspace).unwrap();
@@ -246,7 +246,7 @@ fn saturation_is_counted_and_stops_at_the_stroke() {
     };
     let scene = Scene {
         patch: Patch::new(grid, TAXEL).unwrap(),
-        objects: vec![SphereUnion::new(vec![wall]).unwrap()],
+        objects: vec![SphereUnion::new(vec![wall]).unwrap().into()],
     };
     let mut workspace = Workspace::new();
     let at_stroke =
@@ -271,7 +271,8 @@ fn an_object_on_the_far_side_of_the_skin_does_not_press() {
                 center: DVec3::new(0.0, 0.0, z),
                 radius: 0.02,
             }])
-            .unwrap(),
+            .unwrap()
+            .into(),
         ],
     };
     let mut workspace = Workspace::new();
@@ -298,7 +299,8 @@ fn spheres_from_a_micrometre_to_a_kilometre_press_to_their_depth() {
                     center: DVec3::ZERO,
                     radius,
                 }])
-                .unwrap(),
+                .unwrap()
+                .into(),
             ],
         };
         press_to_depth(&scene, &[Pose::IDENTITY], 1e-3, &mut workspace).unwrap();

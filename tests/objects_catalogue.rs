@@ -78,7 +78,7 @@ fn every_object_rests_on_the_table_in_the_middle() {
         let exact = entry.solid.bounds();
         assert!(exact.min.z.abs() < 1e-12, "{}", entry.name);
         assert!(exact.center().truncate().length() < 1e-12, "{}", entry.name);
-        let spheres = entry.build(tolerance).unwrap().spheres.bounds();
+        let spheres = entry.build(tolerance).unwrap().model.bounds();
         for apart in [spheres.min - exact.min, spheres.max - exact.max] {
             assert!(
                 apart.abs().max_element() <= tolerance,
@@ -93,9 +93,10 @@ fn every_object_rests_on_the_table_in_the_middle() {
 fn every_object_packs_within_its_surface_error() {
     for entry in Catalogue::builtin().unwrap().entries() {
         for tolerance in [0.5 * MM, 0.25 * MM] {
-            let union = entry.build(tolerance).unwrap().spheres;
+            let model = entry.build(tolerance).unwrap().model;
+            let union = model.spheres().unwrap();
             let spacing = entry.solid.bounds().size().max_element() / 60.0;
-            let error = surface_error(&entry.solid, &union, spacing);
+            let error = surface_error(&entry.solid, union, spacing);
             assert!(
                 error.protrusion <= tolerance && error.gap <= tolerance,
                 "{} at {tolerance}: {error:?}",

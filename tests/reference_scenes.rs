@@ -98,7 +98,7 @@ fn deflections(json: &Value, frame: &Value, spheres: &[Vec<f64>], patch: Patch) 
                 - rest,
             radius: row[3],
         });
-        objects.push(SphereUnion::new(placed.collect()).unwrap());
+        objects.push(SphereUnion::new(placed.collect()).unwrap().into());
     }
     let poses = vec![Pose::IDENTITY; objects.len()];
     let mut workspace = Workspace::new();

@@ -83,7 +83,7 @@ fn slow_rows(study: &Study, cell: &Cell, trial: u64) -> Array2<f64> {
     for touched in &study.touched {
         let scene = Scene {
             patch,
-            objects: vec![touched.object.spheres.clone()],
+            objects: vec![touched.object.model.clone()],
         };
         for (number, touch) in touched.touches.iter().enumerate() {
             let name = seed.named("signal").numbered(trial);

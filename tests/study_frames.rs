@@ -51,7 +51,7 @@ fn every_frame_is_its_touch_pressed_alone() {
             let mut workspace = Workspace::new();
             let scene = Scene {
                 patch,
-                objects: vec![object.object.spheres.clone()],
+                objects: vec![object.object.model.clone()],
             };
             let pose = touch.patch_from_object(&object.rests[touch.rest]);
             let contact = press_to_depth(&scene, &[pose], touch.depth, &mut workspace);
@@ -71,7 +71,7 @@ fn every_frame_is_its_touch_pressed_alone() {
 fn by_the_equations(patch: &Patch, object: &TouchedObject, touch: &Touch) -> Option<Vec<f64>> {
     let pose = touch.patch_from_object(&object.rests[touch.rest]);
     let grid = &patch.grid;
-    let spheres = object.object.spheres.spheres();
+    let spheres = object.object.model.spheres().unwrap().spheres();
     let needs: Vec<f64> = (0..grid.n_taxels())
         .map(|taxel| {
             let (x, y) = (grid.x(taxel % grid.nx), grid.y(taxel / grid.nx));

@@ -1,9 +1,10 @@
 //! `bubbletouch objects`: what there is to touch, as a list or as pictures.
 
 use bubbletouch::files::write_bytes;
-use bubbletouch::objects::{Catalogue, Entry, Object};
+use bubbletouch::mesh::{LengthUnit, MeshReport};
+use bubbletouch::objects::{Catalogue, Entry, Object, SphereUnion};
 use bubbletouch::report::object_picture::{contact_sheet, object_picture};
-use bubbletouch::study::load_mesh;
+use bubbletouch::study::{ModelSpec, load_mesh, read_mesh_file};
 use bubbletouch::{Error, Result};
 use comfy_table::{CellAlignment, Table, presets::NOTHING};
 use rayon::prelude::*;
@@ -16,17 +17,20 @@ const TILE: usize = 240;
 /// Objects in a row of a sheet.
 const COLUMNS: usize = 6;
 
-/// List objects, or draw them.
+/// List objects, draw them, or look at a mesh.
 ///
 /// Without a name: all built-in objects, or those of a set. Sizes are in millimetres, x × y × z.
 #[derive(clap::Args)]
+#[command(args_conflicts_with_subcommands = true)]
 pub struct Args {
+    #[command(subcommand)]
+    action: Option<Action>,
     /// Objects by name; all when left out
     names: Vec<String>,
     /// Only this set: household, balls, boxes or cans
     #[arg(long, value_name = "SET", conflicts_with = "names")]
     set: Option<String>,
-    /// A PLY mesh in metres instead, as one sphere a vertex
+    /// A PLY, OBJ or STL mesh in metres instead, as one sphere a vertex
     #[arg(long, value_name = "FILE", conflicts_with_all = ["names", "set"])]
     mesh: Option<PathBuf>,
     /// How far the spheres may be from the surface
@@ -37,6 +41,21 @@ pub struct Args {
     out: Option<PathBuf>,
 }
 
+#[derive(clap::Subcommand)]
+enum Action {
+    /// Say how large a mesh is, whether it is closed, and what is wrong with it
+    Mesh(MeshArgs),
+}
+
+#[derive(clap::Args)]
+struct MeshArgs {
+    /// A PLY, OBJ or STL file
+    file: PathBuf,
+    /// Unit of the file: m, cm, mm or in
+    #[arg(long, value_name = "UNIT", default_value = "m")]
+    unit: LengthUnit,
+}
+
 /// An object and the set it is from.
 struct Listed {
     set: String,
@@ -44,6 +63,12 @@ struct Listed {
 }
 
 pub fn objects(args: &Args) -> Result<()> {
+    if let Some(Action::Mesh(args)) = &args.action {
+        let place = args.file.display().to_string();
+        let mesh = read_mesh_file(&args.file, args.unit)?.into_mesh(&place)?;
+        println!("{}", MeshReport::new(&mesh));
+        return Ok(());
+    }
     let listed = args.build()?;
     let Some(path) = &args.out else {
         println!("{}", table(&listed));
@@ -57,11 +82,11 @@ pub fn objects(args: &Args) -> Result<()> {
         ));
     }
     let picture = match &listed[..] {
-        [one] => object_picture(&one.object.name, &one.object.spheres, PICTURE, PICTURE)?,
+        [one] => object_picture(&one.object.name, one.spheres(), PICTURE, PICTURE)?,
         many => {
             let tiles: Vec<_> = many
                 .iter()
-                .map(|l| (l.object.name.as_str(), &l.object.spheres))
+                .map(|l| (l.object.name.as_str(), l.spheres()))
                 .collect();
             contact_sheet(&tiles, COLUMNS.min(tiles.len()), TILE)?
         }
@@ -69,12 +94,19 @@ pub fn objects(args: &Args) -> Result<()> {
     write_bytes(path, &picture.png()?)
 }
 
+impl Listed {
+    fn spheres(&self) -> &SphereUnion {
+        let spheres = self.object.model.spheres();
+        spheres.expect("solids and vertices are listed as spheres")
+    }
+}
+
 impl Args {
     fn build(&self) -> Result<Vec<Listed>> {
         if let Some(path) = &self.mesh {
             return Ok(vec![Listed {
                 set: "mesh".to_owned(),
-                object: load_mesh(path)?,
+                object: load_mesh(path, LengthUnit::Metre, ModelSpec::VertexSpheres)?,
             }]);
         }
         let catalogue = Catalogue::builtin()?;
@@ -108,12 +140,12 @@ fn table(listed: &[Listed]) -> Table {
     table.load_preset(NOTHING);
     table.set_header(["set", "name", "parts", "spheres", "size (mm)"]);
     for Listed { set, object } in listed {
-        let size = object.spheres.bounds().size() * 1e3;
+        let size = object.model.bounds().size() * 1e3;
         table.add_row([
             set.clone(),
             object.name.clone(),
             object.n_parts.to_string(),
-            object.spheres.n_spheres().to_string(),
+            object.model.n_spheres().to_string(),
             format!("{:.0} × {:.0} × {:.0}", size.x, size.y, size.z),
         ]);
     }

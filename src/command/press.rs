@@ -3,12 +3,13 @@
 use super::output::terminal_width;
 use bubbletouch::contact::{Contact, Workspace, press_to_depth, press_to_travel};
 use bubbletouch::geometry::Pose;
-use bubbletouch::objects::{Catalogue, SphereUnion, read_spheres};
+use bubbletouch::mesh::LengthUnit;
+use bubbletouch::objects::{Catalogue, Model, read_spheres};
 use bubbletouch::report::frame_files::write_frame;
 use bubbletouch::report::pressure_map::pressure_text;
 use bubbletouch::report::terminal::Ink;
 use bubbletouch::signal::Quantity;
-use bubbletouch::study::load_mesh;
+use bubbletouch::study::{ModelSpec, load_mesh};
 use bubbletouch::world::{Grid, Patch, RestPose, RestPoses, Scene, Taxel, Touch};
 use bubbletouch::{Error, Result};
 use ndarray::Array2;
@@ -30,6 +31,12 @@ pub struct Args {
     depth_mm: Option<f64>,
     #[command(flatten)]
     place: Place,
+    /// What a mesh becomes: spheres around its vertices, or itself
+    #[arg(long, value_name = "MODEL", default_value = "vertex_spheres", value_parser = parse_model, requires = "mesh")]
+    model: ModelSpec,
+    /// Unit of the mesh file: m, cm, mm or in
+    #[arg(long, value_name = "UNIT", default_value = "m", requires = "mesh")]
+    unit: LengthUnit,
     /// How far the spheres of a built-in object may be from its surface
     #[arg(long, value_name = "MM", default_value_t = 0.25)]
     surface_error_mm: f64,
@@ -56,7 +63,7 @@ struct Source {
     /// A built-in object (bubbletouch objects lists them)
     #[arg(long, value_name = "NAME")]
     object: Option<String>,
-    /// A PLY mesh in metres, as one sphere a vertex
+    /// A PLY, OBJ or STL mesh
     #[arg(long, value_name = "FILE")]
     mesh: Option<PathBuf>,
     /// Spheres x,y,z,r in metres, in the patch frame: taxels rest in the plane z = 0, axes along +z
@@ -100,12 +107,20 @@ fn parse_taxels(text: &str) -> std::result::Result<(usize, usize), String> {
     }
 }
 
+fn parse_model(text: &str) -> std::result::Result<ModelSpec, String> {
+    match text {
+        "vertex_spheres" => Ok(ModelSpec::VertexSpheres),
+        "mesh" => Ok(ModelSpec::Mesh),
+        _ => Err("expected vertex_spheres or mesh".to_owned()),
+    }
+}
+
 pub fn press(args: &Args) -> Result<()> {
     let patch = args.patch()?;
-    let (spheres, pose) = args.placed_object()?;
+    let (model, pose) = args.placed_object()?;
     let scene = Scene {
         patch,
-        objects: vec![spheres],
+        objects: vec![model],
     };
     let mut workspace = Workspace::new();
     let contact = args.contact(&scene, pose, &mut workspace)?;
@@ -154,9 +169,9 @@ impl Args {
         )
     }
 
-    /// The spheres and `patch_from_object` before any travel.
-    fn placed_object(&self) -> Result<(SphereUnion, Pose)> {
-        let spheres = match (&self.source.spheres, &self.source.mesh, &self.source.object) {
+    /// The object and `patch_from_object` before any travel.
+    fn placed_object(&self) -> Result<(Model, Pose)> {
+        let model = match (&self.source.spheres, &self.source.mesh, &self.source.object) {
             (Some(path), _, _) => {
                 let place = path.display().to_string();
                 let file = File::open(path).map_err(|e| {
@@ -166,23 +181,23 @@ impl Args {
                         "a CSV of spheres",
                     )
                 })?;
-                return Ok((read_spheres(&place, file)?, Pose::IDENTITY));
+                return Ok((read_spheres(&place, file)?.into(), Pose::IDENTITY));
             }
-            (_, Some(path), _) => load_mesh(path)?.spheres,
+            (_, Some(path), _) => load_mesh(path, self.unit, self.model)?.model,
             (_, _, Some(name)) => self.build(name)?,
             (None, None, None) => unreachable!("the command line requires one source"),
         };
         let pose = self
             .place
             .touch()?
-            .patch_from_object(&self.place.rest(&spheres)?);
-        Ok((spheres, pose))
+            .patch_from_object(&self.place.rest(&model)?);
+        Ok((model, pose))
     }
 
-    fn build(&self, name: &str) -> Result<SphereUnion> {
+    fn build(&self, name: &str) -> Result<Model> {
         let catalogue = Catalogue::builtin()?;
         let surface_error = self.surface_error_mm * MM;
-        Ok(catalogue.object(name)?.build(surface_error)?.spheres)
+        Ok(catalogue.object(name)?.build(surface_error)?.model)
     }
 
     fn contact(&self, scene: &Scene, pose: Pose, workspace: &mut Workspace) -> Result<Contact> {
@@ -229,11 +244,11 @@ impl Place {
         })
     }
 
-    fn rest(&self, spheres: &SphereUnion) -> Result<RestPose> {
+    fn rest(&self, model: &Model) -> Result<RestPose> {
         let Some(number) = self.rest else {
-            return Ok(RestPoses::AsModelled.of(spheres).swap_remove(0));
+            return Ok(RestPoses::AsModelled.of(model).swap_remove(0));
         };
-        let mut poses = RestPoses::Stable.of(spheres);
+        let mut poses = RestPoses::Stable.of(model);
         if number >= poses.len() {
             return Err(Error::input(
                 "--rest",

@@ -5,6 +5,7 @@ use super::run_reconstruction::run_reconstruction;
 use super::study_args::{LoadedStudy, StudyArgs};
 use bubbletouch::Result;
 use bubbletouch::files::write_bytes;
+use bubbletouch::objects::Model;
 use bubbletouch::report::html::{Limit, ReportPage, Snapshots};
 use bubbletouch::report::{headlines, progress, results, terminal};
 use bubbletouch::study::{Outcome, run as run_study, sample_frames};
@@ -100,32 +101,35 @@ fn report_page(
 
 fn settings(loaded: &LoadedStudy) -> Vec<(String, String)> {
     let spec = &loaded.plan.spec;
-    let spheres: Vec<usize> = loaded
-        .touched
-        .iter()
-        .map(|t| t.object.spheres.n_spheres())
-        .collect();
     let names: Vec<&str> = loaded
         .touched
         .iter()
         .map(|t| t.object.name.as_str())
         .collect();
     let row = |name: &str, value: String| (name.to_owned(), value);
-    vec![
-        row("Objects", format!("{}: {}", names.len(), names.join(", "))),
-        row(
-            "Spheres an object",
-            format!(
-                "{} to {}",
-                spheres.iter().min().unwrap_or(&0),
-                spheres.iter().max().unwrap_or(&0)
-            ),
-        ),
+    let mut rows = vec![row(
+        "Objects",
+        format!("{}: {}", names.len(), names.join(", ")),
+    )];
+    let models = || loaded.touched.iter().map(|t| &t.object.model);
+    let spheres: Vec<usize> = models().map(Model::n_spheres).collect();
+    let triangles: Vec<usize> = models().map(Model::n_triangles).collect();
+    for (name, counts) in [
+        ("Spheres an object", spheres),
+        ("Triangles an object", triangles),
+    ] {
+        let counts = || counts.iter().filter(|&&n| n > 0);
+        if let (Some(least), Some(most)) = (counts().min(), counts().max()) {
+            rows.push(row(name, format!("{least} to {most}")));
+        }
+    }
+    rows.extend([
         row("Touches", loaded.sweep.labels.len().to_string()),
         row("Stroke", format!("{} mm", spec.skin.stroke_mm)),
         row("Trials", spec.trials.to_string()),
         row("Seed", spec.seed.to_string()),
-    ]
+    ]);
+    rows
 }
 
 fn limits(outcome: &Outcome) -> Vec<Limit> {

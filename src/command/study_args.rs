@@ -15,7 +15,7 @@ const QUICKSTART: &str = include_str!("../../experiments/quickstart.toml");
 pub struct StudyArgs {
     /// The study, a TOML file
     pub study: PathBuf,
-    /// A folder of PLY meshes in metres, one object a file; replaces the study's objects
+    /// A folder of PLY, OBJ or STL meshes, one object a file; replaces the study's objects
     #[arg(long, value_name = "FOLDER")]
     pub objects: Option<PathBuf>,
     /// Root of all randomness; replaces the study's

@@ -8,6 +8,9 @@
 //! ```
 //!
 //! A sphere whose centre is behind the substrate (`h < −s − ρ`) is on the far side of the skin and does not count.
+//! On a mesh the taxel stays on its substrate's side of every triangle swept by a ball of radius ρ: `swept_triangle` has the
+//! equations of its faces, edges and corners. A mesh that lies behind the substrate as a whole does not count.
+//!
 //! A taxel that would have to go further than its stroke s is saturated: counted in [`Contact`], never hidden.
 //!
 //! A **direct press** ([`press_to_depth`], [`press_to_travel`]) evaluates this once at the final pose. A **time loop**
@@ -15,10 +18,13 @@
 //! exactly, so a scene that has none needs no loop.
 
 mod damper;
+mod envelope;
 mod grid_lines;
 mod indentation;
 mod simulate;
+mod swept_triangle;
 
 pub use damper::{DamperState, relaxation_factor};
 pub use indentation::{Contact, Workspace, first_contact, press_to_depth, press_to_travel};
 pub use simulate::{Recording, simulate};
+pub use swept_triangle::stopping_height;

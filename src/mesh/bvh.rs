@@ -177,6 +177,28 @@ impl Bvh {
     /// from there on.
     pub fn search(
         &self,
+        limit: f64,
+        bound: impl Fn(&Aabb) -> f64,
+        mut visit: impl FnMut(usize, &Triangle, f64) -> f64,
+    ) {
+        self.search_places(limit, bound, |place, triangle, limit| {
+            visit(self.number(place), triangle, limit)
+        });
+    }
+
+    /// The number in the mesh of the triangle at a place in the tree's order, in which neighbours lie together.
+    pub fn number(&self, place: usize) -> usize {
+        self.numbers[place] as usize
+    }
+
+    /// The triangles in the tree's order.
+    pub fn triangles(&self) -> &[Triangle] {
+        &self.triangles
+    }
+
+    /// [`search`](Self::search) with places in the tree's order instead of numbers.
+    pub fn search_places(
+        &self,
         mut limit: f64,
         bound: impl Fn(&Aabb) -> f64,
         mut visit: impl FnMut(usize, &Triangle, f64) -> f64,
@@ -192,10 +214,10 @@ impl Bvh {
             }
             let node = &self.nodes[node as usize];
             if node.n_triangles > 0 {
-                let leaf = node.first as usize..(node.first + node.n_triangles) as usize;
-                let triangles = self.numbers[leaf.clone()].iter().zip(&self.triangles[leaf]);
-                for (&number, triangle) in triangles {
-                    limit = visit(number as usize, triangle, limit);
+                let first = node.first as usize;
+                let triangles = &self.triangles[first..first + node.n_triangles as usize];
+                for (place, triangle) in triangles.iter().enumerate() {
+                    limit = visit(first + place, triangle, limit);
                 }
                 continue;
             }

@@ -2,8 +2,9 @@
 //!
 //! | from | by | gives |
 //! |---|---|---|
-//! | a PLY file | [`read_ply`] | a [`MeshFile`]: corners and polygons as written, metres |
+//! | a PLY, OBJ or STL file | [`MeshFormat::read`] | a [`MeshFile`]: corners and polygons as written, in metres |
 //! | a [`MeshFile`] | [`MeshFile::into_mesh`] | a [`TriangleMesh`] |
+//! | a [`TriangleMesh`] | [`MeshReport::new`] | what is wrong with it: holes, flipped or degenerate faces |
 //! | a [`TriangleMesh`] | [`Surface::new`] | nearest points, signed distances, winding numbers |
 //!
 //! For a point x outside the mesh the signed distance is positive, inside it is negative:
@@ -18,9 +19,14 @@
 //! \[FWN\]. Nothing is repaired here.
 
 mod bvh;
+mod format;
+mod measures;
 mod mesh_file;
+mod obj;
 mod ply;
 mod pseudonormals;
+mod report;
+mod stl;
 mod surface;
 mod triangle;
 mod triangle_mesh;
@@ -28,8 +34,13 @@ mod welded;
 mod winding;
 
 pub use bvh::{Bvh, Closest, Hit};
+pub use format::{LengthUnit, MeshFormat};
 pub use mesh_file::MeshFile;
+pub use obj::read_obj;
 pub use ply::read_ply;
+pub use report::MeshReport;
+pub use stl::read_stl;
 pub use surface::Surface;
 pub use triangle::{Feature, Triangle};
 pub use triangle_mesh::TriangleMesh;
+pub use welded::{Side, Welded};

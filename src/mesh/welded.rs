@@ -5,7 +5,7 @@ use std::collections::HashMap;
 
 /// Triangles over welded corners, and all sides of all triangles sorted by edge.
 #[derive(Clone, Debug)]
-pub(super) struct Welded {
+pub struct Welded {
     /// For each triangle its corners; a corner is named by the first vertex at its place.
     pub corners: Vec<[u32; 3]>,
     /// Sides of the triangles with three different corners, sorted by edge; the sides of one edge lie together.
@@ -14,9 +14,10 @@ pub(super) struct Welded {
 
 /// One side of one triangle.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub(super) struct Side {
+pub struct Side {
     /// Its corners, the smaller first.
     pub edge: [u32; 2],
+    /// The triangle's number.
     pub triangle: u32,
     /// From this corner of the triangle (0, 1 or 2) to the next.
     pub side: u8,
@@ -25,6 +26,7 @@ pub(super) struct Side {
 }
 
 impl Welded {
+    /// Welds a mesh's corners and sorts its sides.
     pub fn new(mesh: &TriangleMesh) -> Self {
         let places = places(mesh);
         let corners: Vec<[u32; 3]> = mesh

@@ -59,7 +59,7 @@ impl Entry {
     pub fn build(&self, surface_error: f64) -> Result<Object> {
         Ok(Object {
             name: self.name.clone(),
-            spheres: pack(&self.solid, surface_error)?,
+            model: pack(&self.solid, surface_error)?.into(),
             n_parts: self.solid.parts().len(),
         })
     }

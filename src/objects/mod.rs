@@ -1,9 +1,10 @@
-//! Objects: a shape, a mesh, or spheres → [`SphereUnion`].
+//! Objects: a shape, a mesh, or spheres → a [`Model`]: a [`SphereUnion`] or a [`MeshModel`].
 //!
 //! | from | by | gives |
 //! |---|---|---|
 //! | a [`Catalogue`] of [`Solid`]s (TOML, mm) | [`pack`] | few spheres, surface within a stated error |
 //! | the vertices of a [mesh](crate::mesh) | [`vertex_spheres`] | one sphere a vertex, as the original \[BT\] |
+//! | a [`TriangleMesh`](crate::mesh::TriangleMesh) | [`MeshModel::new`] | the triangles themselves |
 //! | a CSV file | [`read_spheres`] | those spheres |
 //!
 //! [`surface_error`] measures how well spheres fit a solid.
@@ -11,6 +12,8 @@
 mod block;
 mod catalogue;
 mod lathe;
+mod mesh_model;
+mod model;
 mod outline;
 mod pack;
 mod prism;
@@ -25,6 +28,8 @@ mod torus;
 mod vertex_spheres;
 
 pub use catalogue::{Catalogue, Entry};
+pub use mesh_model::{Bend, ContactFace, MeshModel};
+pub use model::Model;
 pub use pack::{MAX_SPHERES, pack};
 pub use shape::Shape;
 pub use solid::{Part, Solid};
@@ -39,7 +44,7 @@ pub struct Object {
     /// Unique within its set: `mug`, `can_68x40`.
     pub name: String,
     /// Its shape in its own frame: z up, resting on z = 0, centred in x and y unless its source says otherwise.
-    pub spheres: SphereUnion,
+    pub model: Model,
     /// How many solids it is made of (1 for a mesh).
     pub n_parts: usize,
 }

@@ -1,4 +1,4 @@
-//! The one shape that the contact kernel knows: a union of rigid spheres.
+//! A union of rigid spheres.
 
 use crate::error::{Error, Result};
 use crate::geometry::{Aabb, Pose};

@@ -43,6 +43,8 @@ pub struct Estimate {
 
 /// Seconds to bring one sphere to the patch and decide whether it reaches the skin.
 const PLACE_SPHERE_S: f64 = 1.2e-8;
+/// The same for one triangle of a mesh: most are never looked at.
+const PLACE_TRIANGLE_S: f64 = 1.5e-8;
 /// Seconds to clear, count and store one taxel.
 const CLEAR_TAXEL_S: f64 = 2e-9;
 /// Seconds to draw noise for one taxel and to smooth it.
@@ -93,14 +95,18 @@ impl Estimate {
             };
             n_threads as f64 * (16.0 * (n_touches * g.frames) as f64 * largest(g) + matrix)
         });
-        let spheres: f64 = touched
+        let place_s: f64 = touched
             .iter()
-            .map(|t| (t.object.spheres.n_spheres() * t.touches.len()) as f64)
+            .map(|t| {
+                let model = &t.object.model;
+                let spheres_s = PLACE_SPHERE_S * model.n_spheres() as f64;
+                let triangles_s = PLACE_TRIANGLE_S * model.n_triangles() as f64;
+                (spheres_s + triangles_s) * t.touches.len() as f64
+            })
             .sum();
         let n_presses = plan.frames.iter().sum::<usize>() as f64;
-        let press_s = |patch: &Patch| {
-            PLACE_SPHERE_S * spheres + CLEAR_TAXEL_S * (n_touches * patch.grid.n_taxels()) as f64
-        };
+        let press_s =
+            |patch: &Patch| place_s + CLEAR_TAXEL_S * (n_touches * patch.grid.n_taxels()) as f64;
         let simulate_s = n_presses * plan.arrays.iter().map(press_s).sum::<f64>();
         let read_s = |g: &Group| {
             let n_frames = (n_touches * g.frames) as f64;

@@ -32,7 +32,7 @@ mod training;
 pub use axis::Axis;
 pub use estimate::Estimate;
 pub use feature_files::{FeatureSet, cell_features, read_features, write_features, write_npy};
-pub use object_files::{load_mesh, load_objects};
+pub use object_files::{load_mesh, load_objects, read_mesh_file};
 pub use plan::{Amount, Plan, SplitKind, SplitPlan, millimetres};
 pub use runner::{ArrayOutcome, Outcome, run};
 pub use samples::{Samples, sample_frames};

@@ -1,9 +1,9 @@
 //! Objects from where a study finds them: built-in sets, TOML files, folders of meshes.
 
-use super::spec::ObjectsSpec;
+use super::spec::{ModelSpec, ObjectsSpec};
 use crate::error::{Error, Result};
-use crate::mesh::read_ply;
-use crate::objects::{Catalogue, Entry, Object, vertex_spheres};
+use crate::mesh::{LengthUnit, MeshFile, MeshFormat};
+use crate::objects::{Catalogue, Entry, MeshModel, Object, vertex_spheres};
 use rayon::prelude::*;
 use std::collections::BTreeSet;
 use std::fs::File;
@@ -20,7 +20,7 @@ pub fn load_objects(spec: &ObjectsSpec) -> Result<Vec<Object>> {
         objects.extend(load_set(set, spec.names.as_deref(), tolerance)?);
     }
     if let Some(folder) = &spec.meshes {
-        objects.extend(load_meshes(folder, spec.names.as_deref())?);
+        objects.extend(load_meshes(folder, spec)?);
     }
     check_names(&objects, spec)?;
     Ok(objects)
@@ -37,12 +37,19 @@ fn entries(set: &str) -> Result<Vec<Entry>> {
     Ok(Catalogue::parse(set, set, &text)?.entries().to_vec())
 }
 
-/// One PLY mesh as one sphere a vertex; its name is the file's without the ending.
-pub fn load_mesh(path: &Path) -> Result<Object> {
+/// What a PLY, OBJ or STL file holds, in metres.
+pub fn read_mesh_file(path: &Path, unit: LengthUnit) -> Result<MeshFile> {
+    let format = MeshFormat::of(path)?;
     let place = path.display().to_string();
     let file = File::open(path)
-        .map_err(|e| Error::input(&place, format!("cannot be opened ({e})"), "a PLY mesh"))?;
-    let mesh = read_ply(&place, BufReader::new(file))?;
+        .map_err(|e| Error::input(&place, format!("cannot be opened ({e})"), "a mesh"))?;
+    format.read(&place, unit, BufReader::new(file))
+}
+
+/// A mesh file as an object; its name is the file's without the ending.
+pub fn load_mesh(path: &Path, unit: LengthUnit, model: ModelSpec) -> Result<Object> {
+    let place = path.display().to_string();
+    let mesh = read_mesh_file(path, unit)?;
     let name = path
         .file_stem()
         .unwrap_or_default()
@@ -50,7 +57,10 @@ pub fn load_mesh(path: &Path) -> Result<Object> {
         .into_owned();
     Ok(Object {
         name,
-        spheres: vertex_spheres(&place, mesh.vertices())?,
+        model: match model {
+            ModelSpec::VertexSpheres => vertex_spheres(&place, mesh.vertices())?.into(),
+            ModelSpec::Mesh => MeshModel::new(mesh.into_mesh(&place)?).into(),
+        },
         n_parts: 1,
     })
 }
@@ -63,22 +73,19 @@ fn load_set(set: &str, names: Option<&[String]>, tolerance: f64) -> Result<Vec<O
         .collect()
 }
 
-fn load_meshes(folder: &Path, names: Option<&[String]>) -> Result<Vec<Object>> {
+fn load_meshes(folder: &Path, spec: &ObjectsSpec) -> Result<Vec<Object>> {
     let listing = std::fs::read_dir(folder).map_err(|e| {
         Error::input(
             folder.display(),
             format!("cannot be read ({e})"),
-            "a folder of PLY meshes",
+            "a folder of meshes",
         )
     })?;
     let mut paths: Vec<PathBuf> = Vec::new();
     for entry in listing {
         let path = entry.map_err(|e| Error::io(folder, "read", e))?.path();
-        let is_ply = path
-            .extension()
-            .is_some_and(|e| e.eq_ignore_ascii_case("ply"));
         let stem = path.file_stem().unwrap_or_default().to_string_lossy();
-        if is_ply && is_wanted(&stem, names) {
+        if MeshFormat::of(&path).is_ok() && is_wanted(&stem, spec.names.as_deref()) {
             paths.push(path);
         }
     }
@@ -86,11 +93,18 @@ fn load_meshes(folder: &Path, names: Option<&[String]>) -> Result<Vec<Object>> {
         return Err(Error::input(
             folder.display(),
             "no meshes",
-            "at least two .ply files",
+            "at least two .ply, .obj or .stl files",
         ));
     }
     paths.sort();
-    paths.par_iter().map(|path| load_mesh(path)).collect()
+    let unit = spec
+        .mesh_unit
+        .map_or_else(LengthUnit::default, LengthUnit::from);
+    let model = spec.model.unwrap_or_default();
+    paths
+        .par_iter()
+        .map(|path| load_mesh(path, unit, model))
+        .collect()
 }
 
 fn is_wanted(name: &str, names: Option<&[String]>) -> bool {

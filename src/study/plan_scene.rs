@@ -21,6 +21,13 @@ impl Check<'_> {
             positive,
             "a positive number of millimetres",
         )?;
+        if objects.meshes.is_none() && (objects.model.is_some() || objects.mesh_unit.is_some()) {
+            return Err(self.error(
+                "objects",
+                "model or mesh_unit without meshes",
+                "them only beside meshes = \"FOLDER\": solids are spheres within surface_error_mm",
+            ));
+        }
         if objects.names.as_ref().is_some_and(Vec::is_empty) {
             return Err(self.error(
                 "objects.names",

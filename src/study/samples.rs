@@ -46,7 +46,7 @@ pub fn sample_frames(plan: &Plan, sweep: &Sweep, touched: &[TouchedObject]) -> R
         let touch = &object.touches[0];
         let scene = Scene {
             patch,
-            objects: vec![object.object.spheres.clone()],
+            objects: vec![object.object.model.clone()],
         };
         let pose = touch.patch_from_object(&object.rests[touch.rest]);
         press_to_depth(&scene, &[pose], touch.depth, &mut workspace);

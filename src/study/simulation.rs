@@ -48,7 +48,7 @@ pub fn draw_touches(
     objects
         .into_par_iter()
         .map(|object| {
-            let rests = placement.rest.of(&object.spheres);
+            let rests = placement.rest.of(&object.model);
             let touches = touches(placement, &rests, &touch_stream(seed, &object))?;
             Ok(TouchedObject {
                 object,
@@ -86,7 +86,7 @@ pub fn simulate_array(
     {
         let scene = Scene {
             patch: *patch,
-            objects: vec![object.spheres.clone()],
+            objects: vec![object.model.clone()],
         };
         let n_rows = touches.len() * n_frames;
         let mut frames = deflection.slice_mut(s![first..first + n_rows, ..]);

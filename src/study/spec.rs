@@ -4,6 +4,7 @@
 
 use super::axis::Axis;
 use crate::error::{Error, Result};
+use crate::mesh::LengthUnit;
 use crate::recognition::ClassifierKind;
 use crate::recognition::features::Features;
 use crate::recognition::scaling::Scaling;
@@ -80,9 +81,15 @@ pub struct ObjectsSpec {
     /// Only these objects of the sets and meshes; all when left out.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub names: Option<Vec<String>>,
-    /// A folder of PLY meshes, one object a file.
+    /// A folder of PLY, OBJ or STL meshes, one object a file.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub meshes: Option<PathBuf>,
+    /// What the meshes become; spheres around their vertices when left out.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub model: Option<ModelSpec>,
+    /// The unit of the meshes' files; metres when left out.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub mesh_unit: Option<UnitSpec>,
     /// How far the spheres of a solid may be from its surface, mm.
     #[serde(default = "default_surface_error_mm")]
     pub surface_error_mm: f64,
@@ -147,6 +154,45 @@ pub struct TouchesSpec {
     /// Approach speed at the moment of reading, mm/s: what the damper feels.
     #[serde(default)]
     pub speed_mm_per_s: f64,
+}
+
+/// What a mesh becomes.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum ModelSpec {
+    /// One sphere a vertex, as the original \[BT\].
+    #[default]
+    VertexSpheres,
+    /// The triangles themselves, touched exactly.
+    Mesh,
+}
+
+/// The unit of a mesh file's numbers.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub enum UnitSpec {
+    /// Metres.
+    #[serde(rename = "m")]
+    Metre,
+    /// Centimetres.
+    #[serde(rename = "cm")]
+    Centimetre,
+    /// Millimetres.
+    #[serde(rename = "mm")]
+    Millimetre,
+    /// Inches.
+    #[serde(rename = "in")]
+    Inch,
+}
+
+impl From<UnitSpec> for LengthUnit {
+    fn from(unit: UnitSpec) -> Self {
+        match unit {
+            UnitSpec::Metre => Self::Metre,
+            UnitSpec::Centimetre => Self::Centimetre,
+            UnitSpec::Millimetre => Self::Millimetre,
+            UnitSpec::Inch => Self::Inch,
+        }
+    }
 }
 
 /// How an object lies on the table.

@@ -7,7 +7,7 @@
 //! | `poses.npy` | n × 7, f64: the object in the patch frame when it is read: x, y, z in metres, quaternion x, y, z, w |
 //! | `depths.npy` | n, f64: metres past first contact |
 //! | `touches.csv` | one row a touch: object, resting pose, offset, yaw, tilts, depth, taxels touched and saturated |
-//! | `objects.csv` | one row an object: number, name, spheres, touches |
+//! | `objects.csv` | one row an object: number, name, spheres (0 of a mesh), touches |
 
 use super::progress::Progress;
 use super::runner::describe;
@@ -74,7 +74,7 @@ pub fn write_touches(
 ) -> Result<usize> {
     let rests: Vec<Vec<RestPose>> = objects
         .par_iter()
-        .map(|object| placement.rest.of(&object.spheres))
+        .map(|object| placement.rest.of(&object.model))
         .collect();
     let sources = objects
         .iter()
@@ -89,12 +89,12 @@ pub fn write_touches(
         table.row(ObjectRow {
             label,
             object: &object.name,
-            n_spheres: object.spheres.n_spheres(),
+            n_spheres: object.model.n_spheres(),
             n_touches: source.n_touches(),
         })?;
         let scene = Scene {
             patch: *patch,
-            objects: vec![object.spheres.clone()],
+            objects: vec![object.model.clone()],
         };
         for first in (0..source.n_touches()).step_by(BLOCK) {
             let numbers = first..source.n_touches().min(first + BLOCK);

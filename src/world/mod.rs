@@ -4,6 +4,7 @@
 //! In the **table frame** z points up and objects rest on z = 0.
 
 mod basins;
+mod body;
 mod mass;
 mod patch;
 mod placement;
@@ -14,6 +15,7 @@ mod support;
 mod touches;
 mod trajectory;
 
+pub use body::Body;
 pub use mass::center_of_mass;
 pub use patch::{Grid, Patch, Taxel};
 pub use placement::{Placement, RestPoses, Spread, Touch, TouchAxis};

@@ -8,10 +8,10 @@
 //!
 //! How far along its own axis the patch goes is left to the contact stage: to first contact, then `depth` further.
 
+use super::body::Body;
 use super::rest::{RestPose, as_modelled, stable_poses};
 use crate::error::{Error, Result};
 use crate::geometry::Pose;
-use crate::objects::SphereUnion;
 use glam::{DQuat, DVec3};
 
 /// Half a turn about x: the patch's z points down. Written out, so that it is exact.
@@ -42,10 +42,10 @@ pub enum RestPoses {
 
 impl RestPoses {
     /// The poses of one object.
-    pub fn of(self, spheres: &SphereUnion) -> Vec<RestPose> {
+    pub fn of(self, body: &impl Body) -> Vec<RestPose> {
         match self {
-            Self::AsModelled => vec![as_modelled(spheres)],
-            Self::Stable => stable_poses(spheres),
+            Self::AsModelled => vec![as_modelled(body)],
+            Self::Stable => stable_poses(body),
         }
     }
 }

@@ -1,7 +1,7 @@
 //! The immutable description of what presses on what.
 
 use super::Patch;
-use crate::objects::SphereUnion;
+use crate::objects::Model;
 
 /// A patch and the objects it can touch. Where they are is said at each press.
 #[derive(Clone, Debug)]
@@ -9,5 +9,5 @@ pub struct Scene {
     /// The patch; all deflections are its taxels'.
     pub patch: Patch,
     /// The objects, each in its own frame.
-    pub objects: Vec<SphereUnion>,
+    pub objects: Vec<Model>,
 }

@@ -197,7 +197,7 @@ mod tests {
             .map(|_| DVec3::new(random(), random(), random()))
             .collect();
         let union = SphereUnion::new(centers.into_iter().map(sphere).collect()).unwrap();
-        let support = Support::about(DVec3::ZERO, &union);
+        let support = Support::about(DVec3::ZERO, union.spheres());
         for start in support.directions.iter().step_by(101) {
             let end = settle(&support, *start);
             assert!(support.height(end) <= support.height(*start));

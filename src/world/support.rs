@@ -4,7 +4,7 @@
 //! triangle keeps only the spheres that can be the highest somewhere inside it, so h costs a few dot products
 //! and is still exact.
 
-use crate::objects::{Sphere, SphereUnion};
+use crate::objects::Sphere;
 use glam::DVec3;
 
 /// Subdivisions of the mesh of directions: 10,242 directions, 2.1° apart. One less halves the time and blurs basins under 8°
@@ -27,8 +27,8 @@ pub(super) struct Support {
 }
 
 impl Support {
-    /// The support function about a point in the union's frame, metres.
-    pub fn about(point: DVec3, union: &SphereUnion) -> Self {
+    /// The support function of spheres (radii zero or more) about a point in their frame, metres.
+    pub fn about(point: DVec3, spheres: &[Sphere]) -> Self {
         let relative = |s: &Sphere| Sphere {
             center: s.center - point,
             radius: s.radius,
@@ -36,7 +36,7 @@ impl Support {
         let (directions, mut levels) = subdivided_icosahedron();
         let triangles = levels.pop().unwrap_or_default();
         let mut support = Self {
-            spheres: union.spheres().iter().map(relative).collect(),
+            spheres: spheres.iter().map(relative).collect(),
             heights: vec![0.0; directions.len()],
             directions,
             triangles,
@@ -246,6 +246,7 @@ fn icosahedron_faces(corners: &[DVec3]) -> Vec<[usize; 3]> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::objects::SphereUnion;
     use crate::random::Seed;
     use rand::Rng;
 
@@ -260,7 +261,7 @@ mod tests {
             })
             .collect();
         let union = SphereUnion::new(spheres).unwrap();
-        let support = Support::about(DVec3::ZERO, &union);
+        let support = Support::about(DVec3::ZERO, union.spheres());
         for _ in 0..2000 {
             let down = DVec3::new(random(), random(), random()).normalize();
             let all = union

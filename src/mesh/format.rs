@@ -1,0 +1,93 @@
+//! Which kind of mesh file, and in which unit.
+
+use super::{MeshFile, read_obj, read_ply, read_stl};
+use crate::error::{Error, Result};
+use std::io::BufRead;
+use std::path::Path;
+
+/// The kinds of mesh files that can be read.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum MeshFormat {
+    /// Polygon file format, ascii or binary.
+    Ply,
+    /// Wavefront OBJ.
+    Obj,
+    /// Stereolithography, ascii or binary.
+    Stl,
+}
+
+/// The unit of a mesh file's numbers. No format that is read here says it.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum LengthUnit {
+    /// m
+    #[default]
+    Metre,
+    /// cm
+    Centimetre,
+    /// mm
+    Millimetre,
+    /// in
+    Inch,
+}
+
+impl MeshFormat {
+    /// By the ending of a file's name, in any case.
+    pub fn of(path: &Path) -> Result<Self> {
+        let ending = path.extension().unwrap_or_default().to_string_lossy();
+        match ending.to_ascii_lowercase().as_str() {
+            "ply" => Ok(Self::Ply),
+            "obj" => Ok(Self::Obj),
+            "stl" => Ok(Self::Stl),
+            _ => Err(Error::input(
+                path.display(),
+                "not a mesh by its name",
+                "a name that ends in .ply, .obj or .stl",
+            )),
+        }
+    }
+
+    /// What a file of this format and unit holds, in metres; errors begin with `place`, its name.
+    pub fn read(self, place: &str, unit: LengthUnit, source: impl BufRead) -> Result<MeshFile> {
+        let file = match self {
+            Self::Ply => read_ply(place, source),
+            Self::Obj => read_obj(place, source),
+            Self::Stl => read_stl(place, source),
+        }?;
+        match unit {
+            LengthUnit::Metre => Ok(file),
+            _ => file.scaled(place, unit.metres()),
+        }
+    }
+}
+
+impl LengthUnit {
+    /// The units by the names that people type.
+    pub const NAMES: [(&'static str, Self); 4] = [
+        ("m", Self::Metre),
+        ("cm", Self::Centimetre),
+        ("mm", Self::Millimetre),
+        ("in", Self::Inch),
+    ];
+
+    /// One of it in metres.
+    pub fn metres(self) -> f64 {
+        match self {
+            Self::Metre => 1.0,
+            Self::Centimetre => 1e-2,
+            Self::Millimetre => 1e-3,
+            Self::Inch => 25.4e-3,
+        }
+    }
+}
+
+impl std::str::FromStr for LengthUnit {
+    type Err = String;
+
+    fn from_str(text: &str) -> std::result::Result<Self, String> {
+        let named = Self::NAMES.iter().find(|(name, _)| *name == text);
+        named.map(|(_, unit)| *unit).ok_or_else(|| {
+            let names = Self::NAMES.map(|(name, _)| name);
+            format!("expected one of {}", names.join(", "))
+        })
+    }
+}

@@ -1,0 +1,53 @@
+//! Area, volume and centres of a mesh.
+
+use super::TriangleMesh;
+use glam::DVec3;
+
+impl TriangleMesh {
+    /// Sum of the triangles' areas, m².
+    pub fn area(&self) -> f64 {
+        (0..self.n_triangles())
+            .map(|t| self.triangle(t).area())
+            .sum()
+    }
+
+    /// The centre of the surface, metres: each triangle's middle, weighted by its area.
+    pub fn surface_centroid(&self) -> DVec3 {
+        let mut area = 0.0;
+        let mut moment = DVec3::ZERO;
+        for t in 0..self.n_triangles() {
+            let triangle = self.triangle(t);
+            let [a, b, c] = triangle.0;
+            area += triangle.area();
+            moment += triangle.area() * (a + b + c) / 3.0;
+        }
+        if area > 0.0 {
+            moment / area
+        } else {
+            self.bounds().center()
+        }
+    }
+
+    /// The volume inside, m³ (negative if the triangles face inwards), and its centre, metres.
+    ///
+    /// Sums of tetrahedra from the centre of the surface: exact for a closed mesh; a hole counts as if it were closed by a
+    /// cone to that centre.
+    pub fn volume_and_centroid(&self) -> (f64, DVec3) {
+        let apex = self.surface_centroid();
+        let (mut volume, mut moment) = (0.0, DVec3::ZERO);
+        for t in 0..self.n_triangles() {
+            let [a, b, c] = self.triangle(t).0.map(|corner| corner - apex);
+            let part = a.dot(b.cross(c)) / 6.0;
+            volume += part;
+            moment += part * 0.25 * (a + b + c);
+        }
+        (
+            volume,
+            if volume == 0.0 {
+                apex
+            } else {
+                apex + moment / volume
+            },
+        )
+    }
+}
