@@ -46,13 +46,12 @@ pub(super) struct Effort {
 impl Effort {
     /// All of it up to 2,000 spheres, then less for each, so that the time grows more slowly than their number.
     fn for_about(n_balls: f64) -> Self {
-        let share = (super::knob("FULL", 2000.0) / n_balls).clamp(0.03, 1.0);
-        use super::knob;
+        let share = (2000.0 / n_balls).clamp(0.03, 1.0);
         Self {
-            samples_a_ball: knob("SPB0", 20.0) + knob("SPB", 60.0) * share.sqrt(),
-            feet_a_ball: knob("FPB0", 5.0) + knob("FPB", 35.0) * share.sqrt(),
-            steps_a_ball: knob("STEPS", 200.0) * share,
-            moves_a_ball: knob("MOVES", 8.0) * share,
+            samples_a_ball: 20.0 + 60.0 * share.sqrt(),
+            feet_a_ball: 5.0 + 35.0 * share.sqrt(),
+            steps_a_ball: 200.0 * share,
+            moves_a_ball: 8.0 * share,
             n_passes: if share < 0.15 { 1 } else { 3 },
         }
     }
@@ -78,14 +77,16 @@ pub(super) fn sample(target: &Target) -> Sampling {
         },
     };
     // In the order of the tree, neighbours on the surface are neighbours in the list.
-    surface.bvh().each_in_box(&surface.bounds(), |number, triangle| {
-        if let Some(normal) = triangle.normal()
-            && !target.is_buried(triangle, normal)
-        {
-            sampler.sampling.outer.push(number);
-            sampler.visit(*triangle, normal);
-        }
-    });
+    surface
+        .bvh()
+        .each_in_box(&surface.bounds(), |number, triangle| {
+            if let Some(normal) = triangle.normal()
+                && !target.is_buried(triangle, normal)
+            {
+                sampler.sampling.outer.push(number);
+                sampler.visit(*triangle, normal);
+            }
+        });
     sampler.sampling
 }
 
@@ -167,7 +168,9 @@ impl Sampler<'_> {
             self.due_feet += balls * feet_a_ball;
             if self.due_feet >= 1.0 {
                 self.due_feet -= 1.0;
-                self.sampling.balls.push(self.sizes.target.ball_at(foot, normal));
+                self.sampling
+                    .balls
+                    .push(self.sizes.target.ball_at(foot, normal));
             }
         }
     }
@@ -184,7 +187,9 @@ impl Sizes<'_> {
         }
         let (slack, limit) = (2.0 * self.target.e, self.target.largest_radius());
         let ball = Ball::largest(self.target, foot, -normal, slack, limit);
-        let half_width = ball.unwrap_or(Ball::on_surface(foot)).half_width(self.target.e);
+        let half_width = ball
+            .unwrap_or(Ball::on_surface(foot))
+            .half_width(self.target.e);
         self.known = Some(Local {
             foot,
             normal,
