@@ -84,6 +84,12 @@ impl Aabb {
         self.max - self.min
     }
 
+    /// The square of the distance from a point to the box, zero inside; m².
+    pub fn distance_squared(&self, point: DVec3) -> f64 {
+        let beyond = (self.min - point).max(point - self.max).max(DVec3::ZERO);
+        beyond.length_squared()
+    }
+
     /// The middle.
     pub fn center(&self) -> DVec3 {
         0.5 * (self.min + self.max)

@@ -118,6 +118,7 @@ pub mod files;
 pub mod geometry;
 pub mod mesh;
 pub mod objects;
+pub mod packing;
 pub mod random;
 pub mod recognition;
 pub mod report;

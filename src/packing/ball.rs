@@ -1,0 +1,156 @@
+//! Balls inside a mesh, and the largest that a point of its surface allows.
+
+use super::target::{Body, Target};
+use crate::objects::Sphere;
+use glam::DVec3;
+
+/// A ball around a point inside a mesh. Inflated by the tolerance it is a sphere of the packing.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Ball {
+    /// Inside the mesh, or on it.
+    pub center: DVec3,
+    /// From there to the nearest point of the mesh, metres.
+    pub depth: f64,
+    /// A point of the surface for whose sake it is there.
+    pub foot: DVec3,
+}
+
+/// Queries after which a ball is given up; most take three to eight.
+const MAX_STEPS: usize = 60;
+
+impl Ball {
+    /// The ball of largest t with centre `foot + t·inward` and no surface nearer to its centre than t − `slack`.
+    ///
+    /// Without slack it is the largest ball inside the mesh that touches it at the foot \[MBC\]; with slack, surface may
+    /// reach that far into the ball of radius t, so bumps lower than the slack do not count. For a point q of the
+    /// surface, u inward and s the slack,
+    ///
+    /// ```text
+    /// |foot + t u − q| ≥ t − s   ⟺   t ≤ (|q − foot|² − s²) / (2 (u·(q − foot) − s))   if u·(q − foot) > s
+    /// ```
+    ///
+    /// so t shrinks from `limit` until no such q is left. `None` if the centre is beyond a wall
+    /// thinner than the slack, and for a sheet.
+    pub fn largest(
+        target: &Target,
+        foot: DVec3,
+        inward: DVec3,
+        slack: f64,
+        limit: f64,
+    ) -> Option<Self> {
+        if target.body == Body::Sheet {
+            return None;
+        }
+        let surface = target.surface;
+        // The ray inward meets a point q with u·(q − foot) = |q − foot|, which makes the bound (|q − foot| + s) / 2; from
+        // there on queries are cheap, since they are not far from the surface.
+        let beyond_foot = 1e-9 * limit..2.0 * limit;
+        let hit = surface.bvh().first_hit(foot, inward, beyond_foot);
+        let mut t = hit.map_or(limit, |hit| {
+            (0.5 * (hit.along + slack)).min(limit).max(slack)
+        });
+        for _ in 0..MAX_STEPS {
+            let center = foot + t * inward;
+            // The foot is no farther than t, so there is a nearest point.
+            let nearest = surface.closest(center, t * (1.0 + 1e-6))?;
+            let offset = nearest.point - foot;
+            let rise = inward.dot(offset) - slack;
+            let next = (offset.length_squared() - slack * slack) / (2.0 * rise);
+            // A hair of room, so that the foot itself does not count.
+            let is_clear = nearest.distance >= (t - slack) * (1.0 - 1e-9);
+            if is_clear || rise <= 0.0 || next >= t {
+                let ball = Self {
+                    center,
+                    depth: nearest.distance,
+                    foot,
+                };
+                // Nothing lies between the foot and the centre of a ball without slack.
+                let is_inside = slack == 0.0
+                    || (center - nearest.point).dot(surface.pseudonormal(&nearest)) < 0.0;
+                return is_inside.then_some(ball);
+            }
+            t = next.max(slack);
+        }
+        None
+    }
+
+    /// The last resort: around a point of the surface itself. It reaches 2e along it, whatever the surface is like.
+    pub fn on_surface(foot: DVec3) -> Self {
+        Self {
+            center: foot,
+            depth: 0.0,
+            foot,
+        }
+    }
+
+    /// The sphere that reaches `e` outside the mesh, no more.
+    pub fn sphere(&self, e: f64) -> Sphere {
+        Sphere {
+            center: self.center,
+            radius: self.depth + e,
+        }
+    }
+
+    /// How far from the centre a point of the surface may be for the sphere to come within `e` of it.
+    pub fn reach(&self, e: f64) -> f64 {
+        self.depth + 2.0 * e
+    }
+
+    /// Half the width of what it covers of a flat face at the distance of its depth.
+    pub fn half_width(&self, e: f64) -> f64 {
+        2.0 * (e * (self.depth + e)).sqrt()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::mesh::{Surface, TriangleMesh};
+
+    /// A box of half sizes 3, 2, 1 about the origin.
+    fn brick() -> Surface {
+        let corner = |i: u32| {
+            let sign = |bit: u32| if i & bit == 0 { -1.0 } else { 1.0 };
+            DVec3::new(3.0 * sign(1), 2.0 * sign(2), sign(4))
+        };
+        let quads = [
+            [0, 4, 6, 2],
+            [1, 3, 7, 5],
+            [0, 1, 5, 4],
+            [2, 6, 7, 3],
+            [0, 2, 3, 1],
+            [4, 5, 7, 6],
+        ];
+        let triangles = quads
+            .iter()
+            .flat_map(|&[a, b, c, d]| [[a, b, c], [a, c, d]]);
+        let corners = (0..8).map(corner).collect();
+        Surface::new(TriangleMesh::new("brick", corners, triangles.collect()).unwrap())
+    }
+
+    #[test]
+    fn the_largest_ball_in_a_box_is_as_deep_as_the_nearest_other_face_allows() {
+        let surface = brick();
+        let target = Target::new(&surface, Body::Solid, 0.1).unwrap();
+        for (x, y) in [(0.3, 0.2), (2.75, 0.1), (2.9, 1.5), (-1.0, -1.9)] {
+            let foot = DVec3::new(x, y, 1.0);
+            // Tangent to the top at the foot, and to the bottom or the nearest side.
+            let to_side = (3.0 - f64::abs(x)).min(2.0 - f64::abs(y));
+            let depth = f64::min(1.0, to_side);
+            let ball = Ball::largest(&target, foot, DVec3::NEG_Z, 0.0, 5.0).unwrap();
+            assert!((ball.depth - depth).abs() < 1e-7, "{ball:?} at {foot}");
+            assert!((ball.center - (foot + depth * DVec3::NEG_Z)).length() < 1e-7);
+        }
+    }
+
+    #[test]
+    fn slack_lets_the_centre_sink_as_far_as_other_faces_intrude_that_much() {
+        let surface = brick();
+        let target = Target::new(&surface, Body::Solid, 0.1).unwrap();
+        // 0.5 from a side: t − 0.2 = 0.5 where the side is the nearest.
+        let foot = DVec3::new(2.5, 0.0, 1.0);
+        let ball = Ball::largest(&target, foot, DVec3::NEG_Z, 0.2, 5.0).unwrap();
+        assert!((ball.center.z - 0.3).abs() < 1e-7, "{ball:?}");
+        assert!((ball.depth - 0.5).abs() < 1e-7, "{ball:?}");
+    }
+}

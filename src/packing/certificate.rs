@@ -1,0 +1,128 @@
+//! Proof that no point of the outer surface is farther than the tolerance from the spheres, or points that are.
+//!
+//! A ball holds a triangle if it holds its corners. So a triangle of the mesh is cut in halves until each piece lies
+//! within the reach of one ball (proved), the middle of a piece lies within the reach of none (disproved), or the piece is
+//! so small that the question is left.
+
+use super::ball::Ball;
+use super::sampling::Sample;
+use super::target::{Target, bisected, triangle_middle};
+use crate::mesh::Triangle;
+
+/// Pieces smaller than this share of the tolerance count as gaps if one ball alone does not hold them.
+const SMALLEST: f64 = 0.02;
+
+/// Where the outer surface is farther than `e` from the spheres of these balls, or not proved to be nearer; none at all if
+/// the promise holds.
+pub(super) fn gaps(target: &Target, outer: &[usize], balls: &[Ball]) -> Vec<Sample> {
+    let Target { surface, e, .. } = *target;
+    let mut balls_near = vec![Vec::new(); surface.mesh().n_triangles()];
+    for (index, ball) in balls.iter().enumerate() {
+        let reach2 = ball.reach(e).powi(2);
+        surface.bvh().search(
+            reach2,
+            |bounds| bounds.distance_squared(ball.center),
+            |number, triangle, limit| {
+                if touches(triangle, ball, e) {
+                    balls_near[number].push(index as u32);
+                }
+                limit
+            },
+        );
+    }
+    let mut gaps = Vec::new();
+    for &number in outer {
+        let near = std::mem::take(&mut balls_near[number]);
+        gaps_of(surface.mesh().triangle(number), near, balls, e, &mut gaps);
+    }
+    gaps
+}
+
+fn touches(triangle: &Triangle, ball: &Ball, e: f64) -> bool {
+    let nearest = triangle.closest(ball.center).0;
+    nearest.distance_squared(ball.center) < ball.reach(e).powi(2)
+}
+
+fn gaps_of(triangle: Triangle, near: Vec<u32>, balls: &[Ball], e: f64, gaps: &mut Vec<Sample>) {
+    let mut waiting = vec![(triangle, near)];
+    while let Some((piece, near)) = waiting.pop() {
+        let holds = |index: u32, point| {
+            let ball = &balls[index as usize];
+            ball.center.distance_squared(point) <= ball.reach(e).powi(2)
+        };
+        let holds_all = |&index: &u32| piece.0.iter().all(|&corner| holds(index, corner));
+        if near.iter().any(holds_all) {
+            continue;
+        }
+        let middle = triangle_middle(&piece);
+        let is_held = near.iter().any(|&index| holds(index, middle));
+        let is_small = piece.longest_edge_squared() < (SMALLEST * e).powi(2);
+        if !is_held || is_small {
+            gaps.push(Sample {
+                position: middle,
+                radius: 0.5 * piece.longest_edge_squared().sqrt(),
+            });
+            continue;
+        }
+        for half in bisected(&piece) {
+            let still_near = near.iter().copied();
+            let still_near = still_near.filter(|&i| touches(&half, &balls[i as usize], e));
+            waiting.push((half, still_near.collect()));
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::mesh::{Surface, TriangleMesh};
+    use crate::packing::Body;
+    use glam::DVec3;
+
+    /// A square of side 2 in the plane z = 0, as a sheet.
+    fn square() -> Surface {
+        let corner = |x, y| DVec3::new(x, y, 0.0);
+        let corners = [
+            corner(-1.0, -1.0),
+            corner(1.0, -1.0),
+            corner(1.0, 1.0),
+            corner(-1.0, 1.0),
+        ];
+        let triangles = vec![[0, 1, 2], [0, 2, 3]];
+        Surface::new(TriangleMesh::new("square", corners.to_vec(), triangles).unwrap())
+    }
+
+    fn gaps_with(balls: &[Ball], e: f64) -> Vec<Sample> {
+        let surface = square();
+        let target = Target {
+            surface: &surface,
+            body: Body::Sheet,
+            e,
+        };
+        gaps(&target, &[0, 1], balls)
+    }
+
+    #[test]
+    fn four_balls_hold_a_square_exactly_when_they_reach_its_middle_and_corners() {
+        let places = [(-0.5, -0.5), (0.5, -0.5), (0.5, 0.5), (-0.5, 0.5)];
+        let balls = places.map(|(x, y)| Ball::on_surface(DVec3::new(x, y, 0.0)));
+        // Each must reach √½ = 0.7071 = 2e.
+        assert!(gaps_with(&balls, 0.3536).is_empty());
+        let open = gaps_with(&balls, 0.3535);
+        assert!(!open.is_empty());
+        assert!(open.iter().all(|gap| gap.position.x.abs() < 0.02
+            || gap.position.y.abs() < 0.02
+            || gap.position.abs().min_element() < 0.02
+            || gap.position.abs().max_element() > 0.98));
+    }
+
+    #[test]
+    fn without_one_ball_there_is_a_gap_where_it_was() {
+        let places = [(-0.5, -0.5), (0.5, -0.5), (0.5, 0.5)];
+        let balls = places.map(|(x, y)| Ball::on_surface(DVec3::new(x, y, 0.0)));
+        let open = gaps_with(&balls, 0.36);
+        let missing = DVec3::new(-0.5, 0.5, 0.0);
+        assert!(open.iter().any(|gap| gap.position.distance(missing) < 0.5));
+        assert!(open.iter().all(|gap| gap.position.distance(missing) < 0.8));
+    }
+}

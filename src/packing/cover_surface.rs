@@ -1,0 +1,258 @@
+//! Few balls that cover the outer surface: cell by cell, then again with other cells, until no gap is left.
+
+use super::ball::Ball;
+use super::cells::Cells;
+use super::certificate::gaps;
+use super::sampling::{Sample, SampleTree, Sampling, sample};
+use super::set_cover::{Cover, Lists};
+use super::target::Target;
+use crate::random::Seed;
+use glam::DVec3;
+use rand::Rng;
+
+/// Samples in a cell. Larger: fewer seams between cells, but the search falls out of the processor's cache.
+const CELL: usize = 24_000;
+
+/// Share of the whole time that sampling takes, for those who watch.
+const SAMPLING_TIME: f64 = 0.2;
+
+/// How a pass over all cells works.
+struct Pass {
+    /// At which share of the points a cell is cut; another one moves the seams.
+    cut: f64,
+    /// Share of the whole effort for exchanges and shifted copies.
+    steps: f64,
+    moves: f64,
+}
+
+/// Passes that look for fewer balls; after each one gaps become samples.
+const PASSES: [Pass; 3] = [
+    Pass {
+        cut: 0.5,
+        steps: 1.0,
+        moves: 0.0,
+    },
+    Pass {
+        cut: 0.4,
+        steps: 0.5,
+        moves: 1.0,
+    },
+    Pass {
+        cut: 0.6,
+        steps: 0.5,
+        moves: 1.0,
+    },
+];
+
+/// Rounds in which balls are added where a gap is left. Each takes what the one before left, mostly nothing after three.
+const MAX_REPAIRS: usize = 40;
+
+/// Balls whose spheres come within `e` of every point of the outer surface, and how many gaps are left: none, unless
+/// [`MAX_REPAIRS`] was reached.
+pub(super) fn cover_surface(target: &Target, watch: &mut dyn FnMut(f64)) -> (Vec<Ball>, usize) {
+    let mut covering = Covering::new(target);
+    watch(SAMPLING_TIME);
+    let n_passes = covering.sampling.effort.n_passes;
+    for (number, pass) in PASSES.iter().take(n_passes).enumerate() {
+        covering.pass(pass, number as u64, &mut |share| {
+            let done = (number as f64 + share) / n_passes as f64;
+            watch(SAMPLING_TIME + (1.0 - SAMPLING_TIME) * done);
+        });
+        if number + 1 < n_passes {
+            let gaps = covering.gaps();
+            covering.sample_gaps(&gaps);
+        }
+    }
+    covering.chosen.retain(|ball| target.holds_center(ball));
+    let mut gaps = covering.gaps();
+    for _ in 0..MAX_REPAIRS {
+        if gaps.is_empty() {
+            break;
+        }
+        covering.fill(&gaps);
+        gaps = covering.gaps();
+    }
+    (covering.chosen, gaps.len())
+}
+
+struct Covering<'a> {
+    target: &'a Target<'a>,
+    sampling: Sampling,
+    tree: SampleTree,
+    chosen: Vec<Ball>,
+    /// How many chosen balls cover each sample.
+    counts: Vec<u32>,
+}
+
+impl<'a> Covering<'a> {
+    fn new(target: &'a Target<'a>) -> Self {
+        let sampling = sample(target);
+        Self {
+            target,
+            tree: SampleTree::new(&sampling.samples),
+            chosen: Vec::new(),
+            counts: vec![0; sampling.samples.len()],
+            sampling,
+        }
+    }
+
+    fn gaps(&self) -> Vec<Sample> {
+        gaps(self.target, &self.sampling.outer, &self.chosen)
+    }
+
+    /// Works on one cell after another.
+    fn pass(&mut self, pass: &Pass, number: u64, watch: &mut dyn FnMut(f64)) {
+        let positions: Vec<DVec3> = self.sampling.samples.iter().map(|s| s.position).collect();
+        let cells = Cells::new(&positions, CELL, pass.cut);
+        let mut samples_in = vec![Vec::new(); cells.n_cells()];
+        for (index, &position) in positions.iter().enumerate() {
+            samples_in[cells.cell_of(position)].push(index);
+        }
+        let mut balls_in = vec![Vec::new(); cells.n_cells()];
+        for ball in &self.sampling.balls {
+            balls_in[cells.cell_of(ball.foot)].push(*ball);
+        }
+        let mut freed_in = vec![Vec::new(); cells.n_cells()];
+        for ball in self.chosen.drain(..) {
+            freed_in[cells.cell_of(ball.foot)].push(ball);
+        }
+        let seed = Seed::new(number).named("packing");
+        for cell in 0..cells.n_cells() {
+            let mut rng = seed.numbered(cell as u64).rng();
+            let freed = std::mem::take(&mut freed_in[cell]);
+            let candidates = std::mem::take(&mut balls_in[cell]);
+            self.work_on(freed, candidates, &samples_in[cell], pass, &mut rng);
+            watch((cell + 1) as f64 / cells.n_cells() as f64);
+        }
+    }
+
+    /// Chooses anew in one cell: balls for its samples, and for all that its freed balls covered alone.
+    fn work_on(
+        &mut self,
+        freed: Vec<Ball>,
+        candidates: Vec<Ball>,
+        samples: &[usize],
+        pass: &Pass,
+        rng: &mut impl Rng,
+    ) {
+        let n_freed = freed.len();
+        let moved = self.moved(&freed, pass.moves * self.sampling.effort.moves_a_ball, rng);
+        let mut balls = freed;
+        balls.extend(candidates);
+        balls.extend(moved);
+        const NOT_HERE: u32 = u32::MAX;
+        let mut row_of = vec![NOT_HERE; self.counts.len()];
+        let mut n_rows = 0;
+        let mut needs = |sample: usize, counts: &[u32]| {
+            if counts[sample] == 0 && row_of[sample] == NOT_HERE {
+                row_of[sample] = n_rows;
+                n_rows += 1;
+            }
+        };
+        for ball in &balls[..n_freed] {
+            self.tree
+                .each_covered(&self.sampling.samples, ball, self.target.e, |s| {
+                    self.counts[s] -= 1
+                });
+        }
+        for ball in &balls[..n_freed] {
+            self.tree
+                .each_covered(&self.sampling.samples, ball, self.target.e, |s| {
+                    needs(s, &self.counts)
+                });
+        }
+        samples.iter().for_each(|&s| needs(s, &self.counts));
+        let mut rows_of = Lists::new();
+        let mut rows = Vec::new();
+        for ball in &balls {
+            rows.clear();
+            self.tree
+                .each_covered(&self.sampling.samples, ball, self.target.e, |s| {
+                    if row_of[s] != NOT_HERE {
+                        rows.push(row_of[s]);
+                    }
+                });
+            rows_of.push(rows.iter().copied());
+        }
+        let mut cover = Cover::new(&rows_of, n_rows as usize);
+        (0..n_freed).for_each(|set| cover.add(set));
+        cover.complete();
+        let steps_a_ball = pass.steps * self.sampling.effort.steps_a_ball;
+        cover.improve((steps_a_ball * cover.chosen().len() as f64) as usize, rng);
+        let mut chosen: Vec<u32> = cover.chosen().to_vec();
+        chosen.sort_unstable();
+        for set in chosen {
+            let ball = balls[set as usize];
+            self.tree
+                .each_covered(&self.sampling.samples, &ball, self.target.e, |s| {
+                    self.counts[s] += 1
+                });
+            self.chosen.push(ball);
+        }
+    }
+
+    /// Balls beside these, up to half of what they cover away; about `n_moves` for each.
+    fn moved(&self, balls: &[Ball], n_moves: f64, rng: &mut impl Rng) -> Vec<Ball> {
+        let n_moves = n_moves * balls.len() as f64;
+        let mut moved = Vec::new();
+        for number in 0..n_moves as usize {
+            let ball = &balls[number % balls.len()];
+            let shift = DVec3::from_array(std::array::from_fn(|_| rng.gen_range(-1.0..1.0)));
+            let shift = 0.5 * ball.half_width(self.target.e) * shift;
+            moved.extend(self.target.ball_beside(ball, shift));
+        }
+        moved
+    }
+
+    /// Balls that cover gaps, one for each.
+    fn balls_at(&self, gaps: &[Sample]) -> Vec<Ball> {
+        let ball = |gap: &Sample| {
+            let normal = self.target.normal_at(gap.position);
+            self.target.ball_at(gap.position, normal)
+        };
+        gaps.iter().map(ball).collect()
+    }
+
+    /// Makes samples of gaps, and candidates of the balls that cover them.
+    fn sample_gaps(&mut self, gaps: &[Sample]) {
+        self.sampling.balls.extend(self.balls_at(gaps));
+        self.sampling.samples.extend_from_slice(gaps);
+        self.tree = SampleTree::new(&self.sampling.samples);
+        self.counts = vec![0; self.sampling.samples.len()];
+        for ball in &self.chosen {
+            self.tree
+                .each_covered(&self.sampling.samples, ball, self.target.e, |s| {
+                    self.counts[s] += 1
+                });
+        }
+    }
+
+    /// Adds few balls that cover these gaps.
+    fn fill(&mut self, gaps: &[Sample]) {
+        // As points: a margin might leave a gap to no ball at all.
+        let point = |gap: &Sample| Sample {
+            radius: 0.0,
+            ..*gap
+        };
+        let gaps = &gaps.iter().map(point).collect::<Vec<_>>();
+        let tree = SampleTree::new(gaps);
+        let mut balls = self.balls_at(gaps);
+        for ball in &mut balls {
+            if !self.target.holds_center(ball) {
+                *ball = Ball::on_surface(ball.foot);
+            }
+        }
+        let mut rows_of = Lists::new();
+        for ball in &balls {
+            let mut rows = Vec::new();
+            tree.each_covered(gaps, ball, self.target.e, |s| rows.push(s as u32));
+            rows_of.push(rows);
+        }
+        let mut cover = Cover::new(&rows_of, gaps.len());
+        cover.complete();
+        let mut chosen = cover.chosen().to_vec();
+        chosen.sort_unstable();
+        self.chosen
+            .extend(chosen.into_iter().map(|set| balls[set as usize]));
+    }
+}

@@ -1,0 +1,177 @@
+//! How far spheres are from the mesh that they stand for: measured at points of its own choice, not promised.
+
+use super::target::Body;
+use crate::geometry::Aabb;
+use crate::mesh::{Bvh, Surface, Triangle, TriangleMesh};
+use crate::objects::{Sphere, SphereUnion};
+use crate::random::Seed;
+use glam::DVec3;
+use rand::Rng;
+
+/// Mean, 95th percentile and maximum of distances, metres.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Spread {
+    /// Over all points, zeros included.
+    pub mean: f64,
+    /// Not exceeded at 95 % of the points.
+    pub p95: f64,
+    /// At no point more.
+    pub max: f64,
+}
+
+/// How far the surfaces of a mesh and of spheres are apart, seen from points spread evenly over the mesh.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PackingError {
+    /// How far the spheres' surface lies outside the mesh, where the normal of the mesh meets it; 0 where it lies inside.
+    pub protrusion: Spread,
+    /// How far the mesh's surface lies outside the spheres; 0 where it lies inside.
+    pub gap: Spread,
+    /// Points of the outer surface that were tried.
+    pub n_points: usize,
+    /// Share of all points that are not outer surface: they lie inside other parts of the mesh.
+    pub buried_share: f64,
+}
+
+/// Measures both ways at `n_points` points of the mesh: one in each of as many equal shares of its area, at a random
+/// place in it that depends on the number of points alone.
+pub fn packing_error(
+    surface: &Surface,
+    body: Body,
+    spheres: &SphereUnion,
+    n_points: usize,
+) -> PackingError {
+    let tree = SphereTree::new(spheres);
+    let (mut protrusions, mut gaps) = (Vec::new(), Vec::new());
+    let points = surface_points(surface, n_points);
+    for &(point, normal) in &points {
+        let lift = 1e-9 * surface.bounds().size().length();
+        if body == Body::Solid && surface.contains(point + lift * normal) {
+            continue;
+        }
+        let gap = tree.distance(point);
+        gaps.push(gap);
+        protrusions.push(if gap > 0.0 {
+            0.0
+        } else {
+            protrusion(surface, &tree, point, normal)
+        });
+    }
+    PackingError {
+        n_points: gaps.len(),
+        buried_share: 1.0 - gaps.len() as f64 / points.len().max(1) as f64,
+        protrusion: spread(protrusions),
+        gap: spread(gaps),
+    }
+}
+
+/// From a point inside the spheres along the normal to where they end, and from there to the mesh.
+fn protrusion(surface: &Surface, tree: &SphereTree, point: DVec3, normal: DVec3) -> f64 {
+    let end = tree.end(point, normal);
+    match surface.closest(end, f64::INFINITY) {
+        Some(nearest) if surface.is_outside(end, &nearest) => nearest.distance,
+        // The spheres close a narrow cleft here: there is no surface to see.
+        _ => 0.0,
+    }
+}
+
+fn surface_points(surface: &Surface, n_points: usize) -> Vec<(DVec3, DVec3)> {
+    let mesh = surface.mesh();
+    let triangles = || (0..mesh.n_triangles()).map(|t| mesh.triangle(t));
+    let area: f64 = triangles().map(|t| t.area()).sum();
+    let mut rng = Seed::new(n_points as u64).named("packing error").rng();
+    let mut points = Vec::with_capacity(n_points);
+    let mut passed = 0.0;
+    let mut next = rng.r#gen::<f64>();
+    for triangle in triangles() {
+        passed += triangle.area() / area * n_points as f64;
+        while next < passed {
+            if let Some(normal) = triangle.normal() {
+                points.push((point_in(&triangle, &mut rng), normal));
+            }
+            next = next.floor() + 1.0 + rng.r#gen::<f64>();
+        }
+    }
+    points
+}
+
+fn point_in(triangle: &Triangle, rng: &mut impl Rng) -> DVec3 {
+    let [a, b, c] = triangle.0;
+    let (u, v): (f64, f64) = (rng.r#gen(), rng.r#gen());
+    let (u, v) = if u + v > 1.0 {
+        (1.0 - u, 1.0 - v)
+    } else {
+        (u, v)
+    };
+    a + u * (b - a) + v * (c - a)
+}
+
+fn spread(mut values: Vec<f64>) -> Spread {
+    if values.is_empty() {
+        return Spread::default();
+    }
+    values.sort_by(f64::total_cmp);
+    let n = values.len();
+    Spread {
+        mean: values.iter().sum::<f64>() / n as f64,
+        p95: values[((0.95 * n as f64).ceil() as usize).clamp(1, n) - 1],
+        max: values[n - 1],
+    }
+}
+
+/// A tree over spheres, each as a triangle with the same box.
+struct SphereTree<'a> {
+    spheres: &'a [Sphere],
+    bvh: Bvh,
+}
+
+impl<'a> SphereTree<'a> {
+    fn new(union: &'a SphereUnion) -> Self {
+        let spheres = union.spheres();
+        let ends = spheres.iter().flat_map(|s| {
+            let half = DVec3::splat(s.radius);
+            [s.center - half, s.center + half]
+        });
+        let triangles = (0..spheres.len() as u32).map(|i| [2 * i, 2 * i + 1, 2 * i + 1]);
+        let mesh = TriangleMesh::new("spheres", ends.collect(), triangles.collect());
+        Self {
+            spheres,
+            bvh: Bvh::new(&mesh.expect("a union has spheres, all finite")),
+        }
+    }
+
+    /// From a point to the spheres; 0 inside.
+    fn distance(&self, point: DVec3) -> f64 {
+        let mut least = f64::INFINITY;
+        let bound = |bounds: &Aabb| bounds.distance_squared(point).sqrt();
+        self.bvh.search(f64::INFINITY, bound, |number, _, _| {
+            let sphere = &self.spheres[number];
+            least = least.min((point.distance(sphere.center) - sphere.radius).max(0.0));
+            least
+        });
+        least
+    }
+
+    /// Where a ray from a point inside the spheres first leaves them all.
+    fn end(&self, start: DVec3, direction: DVec3) -> DVec3 {
+        let mut along = 0.0;
+        loop {
+            let point = start + along * direction;
+            let mut end = along;
+            let outside = |bounds: &Aabb| bounds.distance_squared(point);
+            self.bvh
+                .search(f64::MIN_POSITIVE, outside, |number, _, limit| {
+                    let Sphere { center, radius } = self.spheres[number];
+                    if point.distance_squared(center) <= radius * radius {
+                        let h = (center - start).dot(direction);
+                        let b2 = start.distance_squared(center) - h * h;
+                        end = f64::max(end, h + (radius * radius - b2).max(0.0).sqrt());
+                    }
+                    limit
+                });
+            if end <= along * (1.0 + 1e-12) {
+                return point;
+            }
+            along = end;
+        }
+    }
+}

@@ -1,0 +1,247 @@
+//! Points all over the outer surface, as dense as the balls there are small, and balls that touch it.
+
+use super::ball::Ball;
+use super::target::{Target, bisected, triangle_middle};
+use crate::mesh::{Bvh, Triangle, TriangleMesh};
+use glam::DVec3;
+
+/// A point that some ball must cover, standing for the surface around it.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Sample {
+    pub position: DVec3,
+    /// Of the surface that it stands for, metres.
+    pub radius: f64,
+}
+
+/// What is to be covered, and what with.
+pub(super) struct Sampling {
+    pub effort: Effort,
+    /// Triangles that are not buried inside the mesh.
+    pub outer: Vec<usize>,
+    pub samples: Vec<Sample>,
+    pub balls: Vec<Ball>,
+}
+
+/// Sizes are computed anew at this share of what a ball covers. Larger: edges and tips are sampled too thinly; smaller: slower.
+const NEAR: f64 = 0.3;
+/// Share of a plane's covering by discs of unit radius that each has to itself: 3·√3/2, a hexagon.
+const HEXAGON: f64 = 2.598_076_211_353_316;
+
+/// How much work a packing is worth; less for each sphere where there are many.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Effort {
+    /// Samples in the area that one ball has to itself in the best covering of a plane. More: fewer gaps to mend, slower;
+    /// fewer: the local search plans for gaps that it cannot see.
+    pub samples_a_ball: f64,
+    /// Places in that area at which a candidate ball touches. More: better coverings, slower.
+    pub feet_a_ball: f64,
+    /// Exchanges of the local search for each chosen ball.
+    pub steps_a_ball: f64,
+    /// Shifted copies of each chosen ball that the next search may take instead.
+    pub moves_a_ball: f64,
+    /// Searches over all cells.
+    pub n_passes: usize,
+}
+
+impl Effort {
+    /// All of it up to 2,000 spheres, then less for each, so that the time grows more slowly than their number.
+    fn for_about(n_balls: f64) -> Self {
+        let share = (2000.0 / n_balls).clamp(0.03, 1.0);
+        Self {
+            samples_a_ball: 20.0 + 60.0 * share.sqrt(),
+            feet_a_ball: 5.0 + 35.0 * share.sqrt(),
+            steps_a_ball: 200.0 * share,
+            moves_a_ball: 8.0 * share,
+            n_passes: match share {
+                share if share < 0.15 => 1,
+                share if share < 0.25 => 2,
+                _ => 3,
+            },
+        }
+    }
+}
+
+/// Samples the surface; the same mesh always gives the same samples.
+pub(super) fn sample(target: &Target) -> Sampling {
+    let surface = target.surface;
+    let effort = Effort::for_about(n_balls_about(target));
+    let mut sampler = Sampler {
+        sizes: Sizes {
+            target,
+            known: None,
+        },
+        effort,
+        due_samples: 1.0,
+        due_feet: 1.0,
+        sampling: Sampling {
+            effort,
+            outer: Vec::new(),
+            samples: Vec::new(),
+            balls: Vec::new(),
+        },
+    };
+    // In the order of the tree, neighbours on the surface are neighbours in the list.
+    surface
+        .bvh()
+        .each_in_box(&surface.bounds(), |number, triangle| {
+            if let Some(normal) = triangle.normal()
+                && !target.is_buried(triangle, normal)
+            {
+                sampler.sampling.outer.push(number);
+                sampler.visit(*triangle, normal);
+            }
+        });
+    sampler.sampling
+}
+
+/// About how many balls it takes, from every eighth triangle.
+fn n_balls_about(target: &Target) -> f64 {
+    const EVERY: usize = 8;
+    let mesh = target.surface.mesh();
+    let mut sizes = Sizes {
+        target,
+        known: None,
+    };
+    let (mut balls, mut tried, mut all) = (0.0, 0.0, 0.0);
+    for number in 0..mesh.n_triangles() {
+        let triangle = mesh.triangle(number);
+        let Some(normal) = triangle.normal() else {
+            continue;
+        };
+        all += triangle.area();
+        if number % EVERY == 0 {
+            tried += triangle.area();
+            balls += triangle.area() / sizes.share(triangle_middle(&triangle), normal);
+        }
+    }
+    balls * all / tried.max(f64::MIN_POSITIVE)
+}
+
+struct Sampler<'a> {
+    sizes: Sizes<'a>,
+    effort: Effort,
+    /// A sample is placed whenever this passes one: evenly, however the surface is cut into triangles.
+    due_samples: f64,
+    due_feet: f64,
+    sampling: Sampling,
+}
+
+/// How much of the surface a ball has to itself, here and there.
+struct Sizes<'a> {
+    target: &'a Target<'a>,
+    /// Where it was last computed.
+    known: Option<Local>,
+}
+
+/// How large balls are somewhere.
+#[derive(Clone, Copy)]
+struct Local {
+    foot: DVec3,
+    normal: DVec3,
+    /// Of what one ball covers, metres.
+    half_width: f64,
+}
+
+impl Sampler<'_> {
+    fn visit(&mut self, triangle: Triangle, normal: DVec3) {
+        let Effort {
+            samples_a_ball,
+            feet_a_ball,
+            ..
+        } = self.effort;
+        let mut waiting = vec![triangle];
+        while let Some(triangle) = waiting.pop() {
+            let foot = triangle_middle(&triangle);
+            let share = self.sizes.share(foot, normal);
+            let balls = triangle.area() / share;
+            // Compact pieces only: a long one reaches to places that its middle knows nothing of.
+            let is_long = triangle.longest_edge_squared() * samples_a_ball > 8.0 * share;
+            if balls * samples_a_ball > 1.0 || is_long {
+                let [first, second] = bisected(&triangle);
+                waiting.extend([second, first]);
+                continue;
+            }
+            self.due_samples += balls * samples_a_ball;
+            if self.due_samples >= 1.0 {
+                self.due_samples -= 1.0;
+                self.sampling.samples.push(Sample {
+                    position: foot,
+                    radius: (share / (HEXAGON * samples_a_ball)).sqrt(),
+                });
+            }
+            self.due_feet += balls * feet_a_ball;
+            if self.due_feet >= 1.0 {
+                self.due_feet -= 1.0;
+                self.sampling
+                    .balls
+                    .push(self.sizes.target.ball_at(foot, normal));
+            }
+        }
+    }
+}
+
+impl Sizes<'_> {
+    /// Of the largest ball that covers a point of the surface, m².
+    fn share(&mut self, foot: DVec3, normal: DVec3) -> f64 {
+        if let Some(known) = self.known
+            && foot.distance(known.foot) < NEAR * known.half_width
+            && normal.dot(known.normal) > 0.95
+        {
+            return HEXAGON * known.half_width.powi(2);
+        }
+        let (slack, limit) = (2.0 * self.target.e, self.target.largest_radius());
+        let ball = Ball::largest(self.target, foot, -normal, slack, limit);
+        let half_width = ball
+            .unwrap_or(Ball::on_surface(foot))
+            .half_width(self.target.e);
+        self.known = Some(Local {
+            foot,
+            normal,
+            half_width,
+        });
+        HEXAGON * half_width.powi(2)
+    }
+}
+
+/// A tree over samples, as triangles without size.
+pub(super) struct SampleTree {
+    bvh: Bvh,
+}
+
+/// How much of a sample's radius must be covered too, by the slope of the ball there. More: more spheres; less: more gaps
+/// to mend, which takes more spheres in the end.
+const MARGIN: f64 = 0.7;
+
+impl SampleTree {
+    pub fn new(samples: &[Sample]) -> Self {
+        let positions = samples.iter().map(|s| s.position).collect();
+        let points = (0..samples.len() as u32).map(|i| [i; 3]).collect();
+        let mesh = TriangleMesh::new("samples", positions, points);
+        Self {
+            bvh: Bvh::new(&mesh.expect("samples are finite, and there are some")),
+        }
+    }
+
+    /// Calls `visit` with the number of each sample that a ball covers.
+    pub fn each_covered(
+        &self,
+        samples: &[Sample],
+        ball: &Ball,
+        e: f64,
+        mut visit: impl FnMut(usize),
+    ) {
+        let reach = ball.reach(e);
+        let slope = MARGIN * ball.half_width(e) / reach;
+        self.bvh.search(
+            reach * reach,
+            |bounds| bounds.distance_squared(ball.center),
+            |number, _, limit| {
+                let Sample { position, radius } = samples[number];
+                if position.distance(ball.center) <= reach - slope * radius {
+                    visit(number);
+                }
+                limit
+            },
+        );
+    }
+}

@@ -1,0 +1,357 @@
+//! Few sets that cover all rows: greedy, then a local search with row weights \[RWLS\].
+//!
+//! The search takes a set away whenever all rows are covered, and then exchanges sets one for one until they are again:
+//! out goes the set whose loss uncovers least weight, in comes the set that covers most of it and holds a certain
+//! uncovered row. Rows that stay uncovered grow heavier, which leads the search away from where it is stuck.
+
+use rand::RngCore;
+use std::cmp::Reverse;
+use std::collections::{BinaryHeap, HashSet};
+
+/// Lists of numbers, one after another.
+pub(super) struct Lists {
+    starts: Vec<usize>,
+    items: Vec<u32>,
+}
+
+impl Lists {
+    pub fn new() -> Self {
+        Self {
+            starts: vec![0],
+            items: Vec::new(),
+        }
+    }
+
+    pub fn push(&mut self, list: impl IntoIterator<Item = u32>) {
+        self.items.extend(list);
+        self.starts.push(self.items.len());
+    }
+
+    pub fn len(&self) -> usize {
+        self.starts.len() - 1
+    }
+
+    pub fn of(&self, list: usize) -> &[u32] {
+        &self.items[self.starts[list]..self.starts[list + 1]]
+    }
+
+    /// For each of `n` numbers the lists that hold it, in ascending order.
+    pub fn transposed(&self, n: usize) -> Self {
+        let mut starts = vec![0; n + 1];
+        for &item in &self.items {
+            starts[item as usize + 1] += 1;
+        }
+        for item in 0..n {
+            starts[item + 1] += starts[item];
+        }
+        let mut next = starts.clone();
+        let mut items = vec![0; self.items.len()];
+        for list in 0..self.len() {
+            for &item in self.of(list) {
+                items[next[item as usize]] = list as u32;
+                next[item as usize] += 1;
+            }
+        }
+        Self { starts, items }
+    }
+}
+
+/// Numbers 0, 1, 2, … some of which are members; every operation takes constant time.
+struct Members {
+    members: Vec<u32>,
+    places: Vec<u32>,
+}
+
+const NOWHERE: u32 = u32::MAX;
+
+impl Members {
+    fn none_of(n: usize) -> Self {
+        Self {
+            members: Vec::new(),
+            places: vec![NOWHERE; n],
+        }
+    }
+
+    fn contains(&self, number: usize) -> bool {
+        self.places[number] != NOWHERE
+    }
+
+    fn insert(&mut self, number: usize) {
+        self.places[number] = self.members.len() as u32;
+        self.members.push(number as u32);
+    }
+
+    fn remove(&mut self, number: usize) {
+        let place = self.places[number] as usize;
+        self.members.swap_remove(place);
+        if let Some(&moved) = self.members.get(place) {
+            self.places[moved as usize] = place as u32;
+        }
+        self.places[number] = NOWHERE;
+    }
+}
+
+/// A choice of sets in the making.
+pub(super) struct Cover<'a> {
+    rows_of: &'a Lists,
+    sets_of: Lists,
+    chosen: Members,
+    uncovered: Members,
+    /// Of each row.
+    weights: Vec<i32>,
+    /// How many chosen sets hold a row.
+    counts: Vec<u32>,
+    /// Their numbers, combined by exclusive or: if it is one set, which.
+    holders: Vec<u32>,
+    /// Of a set that is not chosen: the weight that it would cover. Of a chosen one: less the weight that only it covers.
+    scores: Vec<i32>,
+    /// When a set was last put in or taken out.
+    moved_at: Vec<u32>,
+}
+
+/// Chosen sets that are looked at before one is taken out. More: greedier, slower.
+const TRIED: usize = 64;
+
+impl<'a> Cover<'a> {
+    /// Nothing chosen yet; `rows_of` are the rows of each set. Rows of no set are left out of it all.
+    pub fn new(rows_of: &'a Lists, n_rows: usize) -> Self {
+        let sets_of = rows_of.transposed(n_rows);
+        let mut uncovered = Members::none_of(n_rows);
+        for row in (0..n_rows).filter(|&row| !sets_of.of(row).is_empty()) {
+            uncovered.insert(row);
+        }
+        let n_sets = rows_of.len();
+        Self {
+            scores: (0..n_sets).map(|s| rows_of.of(s).len() as i32).collect(),
+            rows_of,
+            sets_of,
+            chosen: Members::none_of(n_sets),
+            uncovered,
+            weights: vec![1; n_rows],
+            counts: vec![0; n_rows],
+            holders: vec![0; n_rows],
+            moved_at: vec![0; n_sets],
+        }
+    }
+
+    /// The chosen sets, in no particular order.
+    pub fn chosen(&self) -> &[u32] {
+        &self.chosen.members
+    }
+
+    /// Chooses a set.
+    pub fn add(&mut self, set: usize) {
+        self.chosen.insert(set);
+        self.scores[set] = -self.scores[set];
+        for &row in self.rows_of.of(set) {
+            let row = row as usize;
+            match self.counts[row] {
+                0 => {
+                    self.uncovered.remove(row);
+                    self.raise_all_but(set, row, -self.weights[row]);
+                }
+                1 => self.scores[self.holders[row] as usize] += self.weights[row],
+                _ => {}
+            }
+            self.counts[row] += 1;
+            self.holders[row] ^= set as u32;
+        }
+    }
+
+    fn remove(&mut self, set: usize) {
+        self.chosen.remove(set);
+        self.scores[set] = -self.scores[set];
+        for &row in self.rows_of.of(set) {
+            let row = row as usize;
+            self.counts[row] -= 1;
+            self.holders[row] ^= set as u32;
+            match self.counts[row] {
+                0 => {
+                    self.uncovered.insert(row);
+                    self.raise_all_but(set, row, self.weights[row]);
+                }
+                1 => self.scores[self.holders[row] as usize] -= self.weights[row],
+                _ => {}
+            }
+        }
+    }
+
+    /// Changes the scores of the sets that hold a row.
+    fn raise_all_but(&mut self, set: usize, row: usize, by: i32) {
+        for &other in self.sets_of.of(row) {
+            if other as usize != set {
+                self.scores[other as usize] += by;
+            }
+        }
+    }
+
+    /// Chooses the set that covers most until all rows are covered, then drops those that became superfluous.
+    pub fn complete(&mut self) {
+        let candidates = (0..self.rows_of.len()).filter(|&set| !self.chosen.contains(set));
+        let entry = |set: usize, score: i32| (score, Reverse(set));
+        let mut heap: BinaryHeap<_> = candidates.map(|s| entry(s, self.scores[s])).collect();
+        while !self.uncovered.members.is_empty() {
+            let Some((score, Reverse(set))) = heap.pop() else {
+                break;
+            };
+            // Scores only fall, so one that still holds is the highest.
+            if self.scores[set] == score {
+                self.add(set);
+            } else {
+                heap.push(entry(set, self.scores[set]));
+            }
+        }
+        for set in self.chosen.members.clone() {
+            if self.scores[set as usize] == 0 {
+                self.remove(set as usize);
+            }
+        }
+    }
+
+    /// Looks for fewer sets in this many exchanges; all rows must be covered, and are again in the end.
+    pub fn improve(&mut self, n_steps: usize, rng: &mut impl RngCore) {
+        let mut best = self.chosen.members.clone();
+        let mut just_added = None;
+        for step in 1..=n_steps as u32 {
+            while self.uncovered.members.is_empty() {
+                best.clone_from(&self.chosen.members);
+                let all = self.chosen.members.iter().copied();
+                let Some(cheapest) = all.max_by_key(|&set| self.merit(set)) else {
+                    return;
+                };
+                self.remove(cheapest as usize);
+                self.moved_at[cheapest as usize] = step;
+            }
+            let Some(out) = self.cheapest_of_some(just_added, rng) else {
+                break;
+            };
+            self.remove(out as usize);
+            self.moved_at[out as usize] = step;
+            let row = self.uncovered.members[below(self.uncovered.members.len(), rng)];
+            let holders = self.sets_of.of(row as usize).iter().copied();
+            let others = holders.filter(|&set| set != out);
+            let into = others.max_by_key(|&set| self.merit(set)).unwrap_or(out);
+            self.add(into as usize);
+            self.moved_at[into as usize] = step;
+            just_added = Some(into);
+            self.raise_uncovered();
+        }
+        if !self.uncovered.members.is_empty() {
+            self.return_to(&best);
+        }
+    }
+
+    /// What is best to put in or take out: the highest score, then the one that has rested longest.
+    fn merit(&self, set: u32) -> (i32, Reverse<u32>, u32) {
+        let index = set as usize;
+        (self.scores[index], Reverse(self.moved_at[index]), set)
+    }
+
+    fn cheapest_of_some(&self, except: Option<u32>, rng: &mut impl RngCore) -> Option<u32> {
+        let chosen = &self.chosen.members;
+        let n = chosen.len();
+        let tried = (0..TRIED.min(n)).map(|_| chosen[below(n, rng)]);
+        tried
+            .filter(|&set| Some(set) != except)
+            .max_by_key(|&set| self.merit(set))
+            .or_else(|| chosen.iter().copied().find(|&set| Some(set) != except))
+    }
+
+    fn raise_uncovered(&mut self) {
+        for &row in &self.uncovered.members {
+            self.weights[row as usize] += 1;
+            for &set in self.sets_of.of(row as usize) {
+                self.scores[set as usize] += 1;
+            }
+        }
+    }
+
+    fn return_to(&mut self, sets: &[u32]) {
+        let kept: HashSet<u32> = sets.iter().copied().collect();
+        for set in self.chosen.members.clone() {
+            if !kept.contains(&set) {
+                self.remove(set as usize);
+            }
+        }
+        for &set in sets {
+            if !self.chosen.contains(set as usize) {
+                self.add(set as usize);
+            }
+        }
+    }
+}
+
+/// A number below n, as good as even.
+fn below(n: usize, rng: &mut impl RngCore) -> usize {
+    ((u64::from(rng.next_u32()) * n as u64) >> 32) as usize
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::random::Seed;
+    use rand::Rng;
+
+    /// Sets of random rows; every row is in at least one.
+    fn random_sets(n_sets: usize, n_rows: usize, case: u64) -> Lists {
+        let mut rng = Seed::new(case).named("sets").rng();
+        let mut rows_of = Lists::new();
+        for set in 0..n_sets {
+            let has = |row: &usize| row % n_sets == set || rng.gen_bool(0.25);
+            rows_of.push((0..n_rows).filter(has).map(|row| row as u32));
+        }
+        rows_of
+    }
+
+    fn covers(rows_of: &Lists, sets: &[u32], n_rows: usize) -> bool {
+        let holds = |row: u32| {
+            sets.iter()
+                .any(|&set| rows_of.of(set as usize).contains(&row))
+        };
+        (0..n_rows as u32).all(holds)
+    }
+
+    #[test]
+    fn the_search_finds_as_few_sets_as_trying_all_choices() {
+        for case in 0..30 {
+            let (n_sets, n_rows) = (10, 24);
+            let rows_of = random_sets(n_sets, n_rows, case);
+            let choices = 0..1_u32 << n_sets;
+            let sets_in =
+                |choice: u32| (0..n_sets as u32).filter(move |set| choice >> set & 1 == 1);
+            let fewest = choices
+                .filter(|&choice| covers(&rows_of, &sets_in(choice).collect::<Vec<_>>(), n_rows))
+                .map(u32::count_ones)
+                .min();
+            let mut cover = Cover::new(&rows_of, n_rows);
+            cover.complete();
+            assert!(covers(&rows_of, cover.chosen(), n_rows), "case {case}");
+            cover.improve(2_000, &mut Seed::new(case).rng());
+            assert!(covers(&rows_of, cover.chosen(), n_rows), "case {case}");
+            assert_eq!(Some(cover.chosen().len() as u32), fewest, "case {case}");
+        }
+    }
+
+    #[test]
+    fn a_set_that_became_superfluous_is_dropped() {
+        let mut rows_of = Lists::new();
+        // Greedy takes the middle first, then needs both ends, which hold the middle between them.
+        rows_of.push([1, 2, 3, 4]);
+        rows_of.push([0, 1, 2]);
+        rows_of.push([3, 4, 5]);
+        let mut cover = Cover::new(&rows_of, 6);
+        cover.complete();
+        let mut chosen = cover.chosen().to_vec();
+        chosen.sort_unstable();
+        assert_eq!(chosen, [1, 2]);
+    }
+
+    #[test]
+    fn a_row_of_no_set_is_left_out() {
+        let mut rows_of = Lists::new();
+        rows_of.push([0, 2]);
+        let mut cover = Cover::new(&rows_of, 3);
+        cover.complete();
+        assert_eq!(cover.chosen(), [0]);
+    }
+}
