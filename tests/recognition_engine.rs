@@ -223,6 +223,51 @@ fn each_model_of_a_path_is_that_of_training_its_c_alone_in_the_order_asked() {
     }
 }
 
+// Rows near the margin.
+
+#[test]
+fn wide_rows_that_few_support_are_solved_to_the_optimum_of_all_rows() {
+    // So many features that only rows near a margin are multiplied with each other; classes far apart, touching and mixed.
+    for (apart, counts) in [
+        (1.0, [90, 80, 70]),
+        (0.12, [90, 80, 70]),
+        (0.0, [150, 140, 160]),
+    ] {
+        let data = clouds(&counts, 130, apart, 11);
+        for tolerance in [1e-3, 1e-6] {
+            let path = [0.001, 0.1, 1.0];
+            let models = params(Kernel::Linear, 1.0, tolerance)
+                .train_path(&data, &path)
+                .unwrap();
+            for (model, &c) in models.iter().zip(&path) {
+                let params = params(Kernel::Linear, c, tolerance);
+                let name = format!("{apart} apart, C = {c}, tolerance {tolerance}");
+                for problem in model.problems() {
+                    let worth = Worth::of(params, &data, problem);
+                    let rounding = if is_single(model) { 1e-4 } else { 0.0 };
+                    assert!(
+                        worth.violation <= 1.01 * tolerance + rounding,
+                        "{name}: {worth:?}"
+                    );
+                    assert!(
+                        near(worth.dual, problem.solution.objective, 1e-5),
+                        "{name}: {worth:?}"
+                    );
+                }
+                // The products of all rows do not fit: pairs are solved one by one, on all their rows.
+                let memory_bytes = 400_000;
+                let slow = SvmParams {
+                    memory_bytes,
+                    ..params
+                }
+                .train(&data)
+                .unwrap();
+                assert_same_objectives(model, &slow, 10.0 * tolerance, &name);
+            }
+        }
+    }
+}
+
 // Precision.
 
 /// Four classes of 300 rows: f32 at the usual tolerance.

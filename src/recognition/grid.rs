@@ -1,10 +1,10 @@
 //! Cross-validation of a whole grid of C and kernels on one matrix of products.
 //!
 //! All folds and all candidates are parts of the same n × n products: a kernel is made of them once, each fold's problems
-//! are gathered from that, and along C each solution starts from the last. Validation rows meet all problems of a class
-//! and all C in one matrix product.
+//! are gathered from that, and along C each solution starts from the last. A problem's decision values are sums of its
+//! support vectors' rows over all validation rows at once, and are counted as votes right away.
 
-use ndarray::{Array2, ArrayView2, s};
+use ndarray::{Array2, ArrayView2, ArrayViewMut1};
 
 use crate::recognition::dataset::Dataset;
 use crate::recognition::kernel::KernelFunction;
@@ -13,11 +13,7 @@ use crate::recognition::smo::{Part, Room, Smo};
 use crate::recognition::split::Split;
 use crate::recognition::svm::Multiclass;
 use crate::recognition::training::{Goal, Sorted};
-use crate::recognition::voting::Voting;
-
-/// Validation rows whose decision values are summed at once: with 43 classes and six C they take 1.4 MB. Larger leaves the
-/// processor's cache, smaller makes the products inefficient.
-const BLOCK_ROWS: usize = 64;
+use crate::recognition::voting::Ballot;
 
 /// Training rows and their division into folds.
 pub(crate) struct Grid<'a, T> {
@@ -38,22 +34,6 @@ struct Fold {
     validation: Vec<usize>,
 }
 
-/// What a class's training rows weigh in the problems that it takes part in, for every C.
-struct Weights<T> {
-    /// rows × (C × problems of the class).
-    coefficients: Array2<T>,
-    /// Its problems, ascending.
-    problems: Vec<usize>,
-}
-
-/// All problems of a fold, solved.
-struct Solved<T> {
-    weights: Vec<Weights<T>>,
-    /// n_path × n_problems.
-    rho: Array2<f64>,
-    n_capped: usize,
-}
-
 impl<T: Scalar> Grid<'_, T> {
     /// Validation rows recognised, over all folds, per kernel and C (kernels.len() × path.len()), and solves stopped at the
     /// iteration cap.
@@ -65,25 +45,16 @@ impl<T: Scalar> Grid<'_, T> {
         let mut n_capped = 0;
         for (kernel, mut counts) in kernels.iter().zip(counts.rows_mut()) {
             let mut values = products.clone();
-            all.apply(&mut values, all, kernel);
+            all.apply(values.view_mut(), all, kernel);
             for fold in &folds {
-                let solved = self.solve(fold, values.view(), goal);
-                let correct = self.validate(fold, values.view(), &solved);
-                counts
-                    .iter_mut()
-                    .zip(correct)
-                    .for_each(|(sum, n)| *sum += n);
-                n_capped += solved.n_capped;
+                n_capped += self.validate(fold, values.view(), goal, counts.view_mut());
             }
         }
         (counts, n_capped)
     }
 
     fn fold(&self, split: &Split) -> Fold {
-        let mut place = vec![0; self.data.targets.len()];
-        for (at, &row) in self.sorted.order().iter().enumerate() {
-            place[row] = at;
-        }
+        let place = self.sorted.place();
         let mut is_training = vec![false; place.len()];
         split
             .train
@@ -96,108 +67,114 @@ impl<T: Scalar> Grid<'_, T> {
                 let rows: Vec<usize> = range.filter(|&row| is_training[row]).collect();
                 (!rows.is_empty()).then_some((class, rows))
             });
+        let mut validation: Vec<usize> = split.test.iter().map(|&row| place[row]).collect();
+        validation.sort_unstable();
         Fold {
             training: training.collect(),
-            validation: split.test.iter().map(|&row| place[row]).collect(),
+            validation,
         }
     }
 
-    fn solve(&self, fold: &Fold, kernel: ArrayView2<T>, goal: Goal) -> Solved<T> {
-        let problems = self.multiclass.problems(fold.training.len());
-        let n_path = goal.path.len();
-        let takes_part = |class: usize, &(positive, negative): &(usize, Option<usize>)| {
-            negative.is_none_or(|negative| class == positive || class == negative)
-        };
-        let weights = fold.training.iter().enumerate().map(|(class, (_, rows))| {
-            let own = (0..problems.len()).filter(|&at| takes_part(class, &problems[at]));
-            let problems: Vec<usize> = own.collect();
-            Weights {
-                coefficients: Array2::zeros((rows.len(), problems.len() * n_path)),
-                problems,
-            }
-        });
-        let mut solved = Solved {
-            weights: weights.collect(),
-            rho: Array2::zeros((n_path, problems.len())),
-            n_capped: 0,
-        };
-        let mut room = Room::new();
-        for (index, problem) in problems.iter().enumerate() {
-            let classes: Vec<usize> = (0..fold.training.len())
-                .filter(|&class| takes_part(class, problem))
-                .collect();
-            let rows_of = |&class: &usize| fold.training[class].1.as_slice();
-            let rows = classes.iter().map(rows_of).collect::<Vec<_>>().concat();
-            let is_positive: Vec<bool> = classes
-                .iter()
-                .flat_map(|class| std::iter::repeat_n(*class == problem.0, rows_of(class).len()))
-                .collect();
+    /// Solves a fold's problems for every C, and adds the validation rows recognised to the counts; how many solves stopped
+    /// at the iteration cap.
+    fn validate(
+        &self,
+        fold: &Fold,
+        kernel: ArrayView2<T>,
+        goal: Goal,
+        mut counts: ArrayViewMut1<usize>,
+    ) -> usize {
+        let n_classes = fold.training.len();
+        let n_rows = fold.validation.len();
+        let mut ballots = vec![Ballot::new(n_classes, n_rows, self.multiclass); goal.path.len()];
+        let trained: Vec<usize> = fold
+            .training
+            .iter()
+            .flat_map(|(_, rows)| rows.clone())
+            .collect();
+        let held_out = gather(kernel, &trained, &fold.validation);
+        let mut first = vec![0];
+        first.extend(fold.training.iter().scan(0, |sum, (_, rows)| {
+            *sum += rows.len();
+            Some(*sum)
+        }));
+        let (mut room, mut n_capped) = (Room::new(), 0);
+        let mut sums = vec![T::zero(); n_rows];
+        for problem in self.multiclass.problems(n_classes) {
+            let of_class = |class: usize| first[class]..first[class + 1];
+            // Positions among the training rows of the fold.
+            let positions: Vec<usize> = match problem.1 {
+                Some(negative) => of_class(problem.0).chain(of_class(negative)).collect(),
+                None => (0..trained.len()).collect(),
+            };
+            let rows: Vec<usize> = positions.iter().map(|&at| trained[at]).collect();
+            let own = of_class(problem.0);
+            let is_positive: Vec<bool> = positions.iter().map(|at| own.contains(at)).collect();
             let mut gram = Part::new(&kernel, &rows, &mut room);
             let mut smo = Smo::new(&mut gram, &is_positive);
-            for (at, &c) in goal.path.iter().enumerate() {
+            let mut last = Vec::new();
+            for (ballot, &c) in ballots.iter_mut().zip(goal.path) {
                 let solution = smo.solve(c, goal.tolerance);
-                solved.n_capped += usize::from(solution.is_capped);
-                solved.rho[[at, index]] = solution.rho;
-                let mut from = solution.coefficients.iter();
-                for &class in &classes {
-                    solved.weights[class].take(index, at, &mut from);
+                n_capped += usize::from(solution.is_capped);
+                // Where no coefficient changed, the values are those of the last C.
+                if solution.coefficients != last {
+                    weighted_sum(&mut sums, &held_out, &positions, &solution.coefficients);
+                    last = solution.coefficients;
                 }
+                ballot.take(problem, &sums, solution.rho);
             }
         }
-        solved
-    }
-
-    /// Validation rows recognised, per C.
-    fn validate(&self, fold: &Fold, kernel: ArrayView2<T>, solved: &Solved<T>) -> Vec<usize> {
-        let (n_path, n_problems) = solved.rho.dim();
-        let classes: Vec<usize> = fold.training.iter().map(|&(class, _)| class).collect();
-        let voting = Voting::new(&classes, self.multiclass);
-        let mut n_correct = vec![0; n_path];
-        let mut values = Vec::with_capacity(n_problems);
-        let mut votes = Vec::new();
-        for rows in fold.validation.chunks(BLOCK_ROWS) {
-            let sums = solved.sums(fold, kernel, rows);
-            for (&row, sums) in rows.iter().zip(sums.chunks_exact(n_path * n_problems)) {
-                let truth = self.data.targets[self.sorted.order()[row]];
-                let of_path = sums.chunks_exact(n_problems).zip(solved.rho.rows());
-                for (n_correct, (sums, rho)) in n_correct.iter_mut().zip(of_path) {
-                    values.clear();
-                    values.extend(sums.iter().zip(rho).map(|(sum, rho)| sum.wide() - rho));
-                    *n_correct += usize::from(voting.label(&values, &mut votes) == truth);
-                }
-            }
+        for (count, ballot) in counts.iter_mut().zip(&ballots) {
+            let is_right = |(winner, row): (usize, &usize)| {
+                fold.training[winner].0 == self.data.targets[self.sorted.order()[*row]]
+            };
+            let winners = ballot.winners().into_iter();
+            *count += winners
+                .zip(&fold.validation)
+                .filter(|&pair| is_right(pair))
+                .count();
         }
-        n_correct
+        n_capped
     }
 }
 
-impl<T: Scalar> Solved<T> {
-    /// Decision values before ρ: for each of these rows, C by C, those of all problems.
-    fn sums(&self, fold: &Fold, kernel: ArrayView2<T>, rows: &[usize]) -> Vec<T> {
-        let (n_path, n_problems) = self.rho.dim();
-        let mut sums = vec![T::zero(); rows.len() * n_path * n_problems];
-        for ((_, training), weights) in fold.training.iter().zip(&self.weights) {
-            let part = gather(kernel, rows, training).dot(&weights.coefficients);
-            let part = part.as_slice().expect("a product is stored row by row");
-            let parts = part.chunks_exact(weights.problems.len());
-            for (sums, part) in sums.chunks_exact_mut(n_problems).zip(parts) {
-                for (&problem, &value) in weights.problems.iter().zip(part) {
-                    sums[problem] += value;
-                }
-            }
-        }
-        sums
+/// `Σ β_i row_i` over the rows at these positions.
+fn weighted_sum<T: Scalar>(sums: &mut [T], rows: &Array2<T>, positions: &[usize], beta: &[f64]) {
+    sums.fill(T::zero());
+    let rows = |at: usize| {
+        rows.row(at)
+            .to_slice()
+            .expect("rows were gathered one by one")
+    };
+    let support = positions.iter().zip(beta).filter(|(_, beta)| **beta != 0.0);
+    let support: Vec<(&[T], T)> = support
+        .map(|(&at, &beta)| (rows(at), T::of(beta)))
+        .collect();
+    let (fours, rest) = support.as_chunks::<4>();
+    for four in fours {
+        add_four(sums, four);
+    }
+    for &(row, beta) in rest {
+        add_four(
+            sums,
+            &[
+                (row, beta),
+                (row, T::zero()),
+                (row, T::zero()),
+                (row, T::zero()),
+            ],
+        );
     }
 }
 
-impl<T: Scalar> Weights<T> {
-    /// Takes the class's coefficients in a problem, for one C of the path, from those of all its rows.
-    fn take<'a>(&mut self, problem: usize, at: usize, from: &mut impl Iterator<Item = &'a f64>) {
-        let n_problems = self.problems.len();
-        let column = at * n_problems + self.problems.partition_point(|&other| other < problem);
-        for (to, &beta) in self.coefficients.column_mut(column).iter_mut().zip(from) {
-            *to = T::of(beta);
-        }
+/// Four rows at once: the sums are read and written a quarter as often.
+#[multiversion::multiversion(targets("x86_64+avx2+fma"))]
+fn add_four<T: Scalar>(sums: &mut [T], rows: &[(&[T], T); 4]) {
+    let n = sums.len();
+    let [(a, p), (b, q), (c, r), (d, s)] = *rows;
+    let (a, b, c, d) = (&a[..n], &b[..n], &c[..n], &d[..n]);
+    for at in 0..n {
+        sums[at] += (p * a[at] + q * b[at]) + (r * c[at] + s * d[at]);
     }
 }
 
@@ -206,11 +183,15 @@ fn gather<T: Scalar>(whole: ArrayView2<T>, rows: &[usize], columns: &[usize]) ->
     let mut part = Array2::zeros((rows.len(), columns.len()));
     let runs: Vec<&[usize]> = columns.chunk_by(|a, b| a + 1 == *b).collect();
     for (&row, mut to) in rows.iter().zip(part.rows_mut()) {
-        let mut start = 0;
+        let from = whole
+            .row(row)
+            .to_slice()
+            .expect("a product is stored row by row");
+        let mut to = to.as_slice_mut().expect("a new array is contiguous");
         for run in &runs {
-            let from = whole.slice(s![row, run[0]..run[0] + run.len()]);
-            to.slice_mut(s![start..start + run.len()]).assign(&from);
-            start += run.len();
+            let (now, later) = to.split_at_mut(run.len());
+            now.copy_from_slice(&from[run[0]..run[0] + run.len()]);
+            to = later;
         }
     }
     part

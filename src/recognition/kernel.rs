@@ -91,8 +91,11 @@ impl Gamma {
                 "'scale' or a finite number above 0 is allowed",
             )),
             Self::Scale => {
-                let variance = features.var(0.0);
-                let scale = features.ncols() as f64 * variance;
+                // Two plain passes; ndarray's own variance divides at every value.
+                let n = features.len() as f64;
+                let mean = features.sum() / n;
+                let squares = features.fold(0.0, |sum, x| sum + (x - mean) * (x - mean));
+                let scale = features.ncols() as f64 * squares / n;
                 Ok(if scale > 0.0 { 1.0 / scale } else { 1.0 })
             }
         }

@@ -62,6 +62,7 @@ mod linfa_solver;
 pub mod logistic;
 pub mod metrics;
 pub mod naive_bayes;
+mod near_margin;
 mod points;
 pub mod random_forest;
 pub(crate) mod ranked;

@@ -2,7 +2,8 @@
 
 use std::ops::Range;
 
-use ndarray::{Array1, Array2, ArrayView1, ArrayView2, Axis, Zip, s};
+use ndarray::linalg::general_mat_mul;
+use ndarray::{Array1, Array2, ArrayView1, ArrayView2, ArrayViewMut2, Axis, Zip, s};
 
 use crate::recognition::kernel::KernelFunction;
 use crate::recognition::scalar::Scalar;
@@ -23,15 +24,21 @@ pub(crate) struct Points<T> {
 impl<T: Scalar> Points<T> {
     /// Features (n × m) less the centre (m).
     pub fn new(features: ArrayView2<f64>, centre: ArrayView1<f64>) -> Self {
-        let mut values = Array2::zeros(features.raw_dim());
-        Zip::from(values.rows_mut())
-            .and(features.rows())
-            .for_each(|to, from| {
-                Zip::from(to)
-                    .and(from)
-                    .and(centre)
-                    .for_each(|to, &from, &centre| *to = T::of(from - centre));
-            });
+        Self::of_rows(features.rows().into_iter(), centre)
+    }
+
+    /// Rows (m each) less the centre (m).
+    pub fn of_rows<'a>(
+        rows: impl ExactSizeIterator<Item = ArrayView1<'a, f64>>,
+        centre: ArrayView1<f64>,
+    ) -> Self {
+        let mut values = Array2::zeros((rows.len(), centre.len()));
+        for (to, from) in values.rows_mut().into_iter().zip(rows) {
+            Zip::from(to)
+                .and(from)
+                .and(centre)
+                .for_each(|to, &from, &centre| *to = T::of(from - centre));
+        }
         let norms = values.map_axis(Axis(1), |row| row.dot(&row));
         Self { values, norms }
     }
@@ -41,10 +48,21 @@ impl<T: Scalar> Points<T> {
         self.values.nrows()
     }
 
+    /// The values of some rows, by number.
+    pub fn rows(&self, rows: &[usize]) -> Array2<T> {
+        let n_features = self.values.ncols();
+        let all = self.values.as_slice().expect("rows are stored one by one");
+        let mut values = Vec::with_capacity(rows.len() * n_features);
+        for row in rows {
+            values.extend_from_slice(&all[row * n_features..][..n_features]);
+        }
+        Array2::from_shape_vec((rows.len(), n_features), values).expect("whole rows were copied")
+    }
+
     /// Some rows, by number.
     pub fn select(&self, rows: &[usize]) -> Self {
         Self {
-            values: self.values.select(Axis(0), rows),
+            values: self.rows(rows),
             norms: self.norms.select(Axis(0), rows),
         }
     }
@@ -72,6 +90,11 @@ pub(crate) struct PointsView<'a, T> {
 }
 
 impl<T: Scalar> PointsView<'_, T> {
+    /// n.
+    pub fn len(&self) -> usize {
+        self.values.nrows()
+    }
+
     /// `K(x, x)` per row.
     pub fn diagonal(&self, kernel: &KernelFunction) -> Vec<T> {
         self.norms
@@ -96,18 +119,40 @@ impl<T: Scalar> PointsView<'_, T> {
     /// `K(x_i, z_j)`: n × n of the others.
     pub fn kernel(&self, others: PointsView<T>, kernel: &KernelFunction) -> Array2<T> {
         let mut values = self.products(others);
-        self.apply(&mut values, others, kernel);
+        self.apply(values.view_mut(), others, kernel);
         values
     }
 
+    /// `K(x_i, z_j)` into n × n of the others, whose rows are contiguous.
+    pub fn kernel_into(
+        &self,
+        others: PointsView<T>,
+        kernel: &KernelFunction,
+        mut to: ArrayViewMut2<T>,
+    ) {
+        general_mat_mul(
+            T::one(),
+            &self.values,
+            &others.values.t(),
+            T::zero(),
+            &mut to,
+        );
+        self.apply(to, others, kernel);
+    }
+
     /// Turns products with the others into kernel values, in place.
-    pub fn apply(&self, products: &mut Array2<T>, others: PointsView<T>, kernel: &KernelFunction) {
+    pub fn apply(
+        &self,
+        mut products: ArrayViewMut2<T>,
+        others: PointsView<T>,
+        kernel: &KernelFunction,
+    ) {
         match *kernel {
             KernelFunction::Linear => {}
             KernelFunction::Rbf { gamma } => {
                 let norms = others.norms.to_vec();
                 for (mut row, &norm) in products.rows_mut().into_iter().zip(self.norms) {
-                    let row = row.as_slice_mut().expect("a product is stored row by row");
+                    let row = row.as_slice_mut().expect("rows of products are contiguous");
                     distances(row, norm, &norms);
                     T::exponentials(row, gamma);
                 }

@@ -5,12 +5,13 @@ use ndarray::{Array1, Array2, ArrayView1};
 use serde::{Deserialize, Serialize};
 
 use crate::recognition::dataset::{Dataset, check_features, check_labels, distinct};
+use crate::recognition::decision::DecisionFunctions;
 use crate::recognition::dual::DualSolution;
 use crate::recognition::kernel::{Kernel, KernelFunction};
 use crate::recognition::linfa_solver;
 use crate::recognition::scalar::Scalar;
-use crate::recognition::svm_model::SvmModel;
-use crate::recognition::training::{Goal, Sorted, centre};
+use crate::recognition::svm_model::{Decision, SvmModel};
+use crate::recognition::training::{Goal, Sorted, about, centre};
 use crate::{Error, Result};
 
 /// How binary classifiers make one for many classes.
@@ -174,10 +175,10 @@ impl SvmParams {
         let centre = centre(data.records.view(), &kernel);
         if self.wants_double(data, kernel, path, centre.view()) {
             let sorted = Sorted::<f64>::new(data, classes, kernel, centre.view());
-            self.solve_sorted(&sorted, data, classes, kernel, path)
+            self.solve_sorted(&sorted, path)
         } else {
             let sorted = Sorted::<f32>::new(data, classes, kernel, centre.view());
-            self.solve_sorted(&sorted, data, classes, kernel, path)
+            self.solve_sorted(&sorted, path)
         }
     }
 
@@ -190,8 +191,9 @@ impl SvmParams {
         path: &[f64],
         centre: ArrayView1<f64>,
     ) -> bool {
-        let norm = |row: ArrayView1<f64>| (&row - &centre).mapv(|x| x * x).sum();
-        let norms = data.records.rows().into_iter().map(norm);
+        let norms = about(data.records.rows().into_iter(), centre, |moved| {
+            moved.dot(moved)
+        });
         let farthest = norms.fold(0.0, f64::max);
         let largest = match kernel {
             KernelFunction::Polynomial { .. } => return true,
@@ -209,14 +211,10 @@ impl SvmParams {
             || largest > SINGLE_MOST
     }
 
-    fn solve_sorted<T: Scalar>(
-        &self,
-        sorted: &Sorted<T>,
-        data: &Dataset,
-        classes: &[usize],
-        kernel: KernelFunction,
-        path: &[f64],
-    ) -> Vec<SvmModel> {
+    fn solve_sorted<T: Scalar>(&self, sorted: &Sorted<T>, path: &[f64]) -> Vec<SvmModel>
+    where
+        Decision: From<DecisionFunctions<T>>,
+    {
         let goal = Goal {
             path,
             tolerance: self.tolerance,
@@ -228,7 +226,7 @@ impl SvmParams {
         };
         trained
             .into_iter()
-            .map(|problems| SvmModel::new::<T>(data, classes, kernel, self.multiclass, problems))
+            .map(|problems| SvmModel::new(sorted, self.multiclass, problems))
             .collect()
     }
 
@@ -239,6 +237,8 @@ impl SvmParams {
         kernel: KernelFunction,
         path: &[f64],
     ) -> Result<Vec<SvmModel>> {
+        let centre = centre(data.records.view(), &kernel);
+        let sorted = Sorted::<f64>::new(data, classes, kernel, centre.view());
         path.iter()
             .map(|&c| {
                 let problems = linfa_solver::solve_all(
@@ -248,10 +248,7 @@ impl SvmParams {
                     self.multiclass,
                     (c, self.tolerance),
                 )?;
-                let multiclass = self.multiclass;
-                Ok(SvmModel::new::<f64>(
-                    data, classes, kernel, multiclass, problems,
-                ))
+                Ok(SvmModel::new(&sorted, self.multiclass, problems))
             })
             .collect()
     }

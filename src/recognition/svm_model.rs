@@ -8,11 +8,11 @@ use linfa::traits::PredictInplace;
 use ndarray::{Array1, Array2, ArrayBase, ArrayView2, Data, Ix2};
 
 use crate::Result;
-use crate::recognition::dataset::{Dataset, check_width};
+use crate::recognition::dataset::check_width;
 use crate::recognition::decision::DecisionFunctions;
-use crate::recognition::kernel::KernelFunction;
 use crate::recognition::scalar::Scalar;
 use crate::recognition::svm::{BinaryProblem, Multiclass};
+use crate::recognition::training::Sorted;
 use crate::recognition::voting::Voting;
 
 /// A trained SVM. Implements linfa's [`PredictInplace`] and so its `Predict`.
@@ -26,30 +26,37 @@ pub struct SvmModel {
 
 /// The decision function of all problems at once, in the precision of training.
 #[derive(Clone, Debug)]
-enum Decision {
+pub(crate) enum Decision {
     Single(DecisionFunctions<f32>),
     Double(DecisionFunctions<f64>),
 }
 
+impl From<DecisionFunctions<f32>> for Decision {
+    fn from(functions: DecisionFunctions<f32>) -> Self {
+        Self::Single(functions)
+    }
+}
+
+impl From<DecisionFunctions<f64>> for Decision {
+    fn from(functions: DecisionFunctions<f64>) -> Self {
+        Self::Double(functions)
+    }
+}
+
 impl SvmModel {
     pub(crate) fn new<T: Scalar>(
-        data: &Dataset,
-        classes: &[usize],
-        kernel: KernelFunction,
+        sorted: &Sorted<T>,
         multiclass: Multiclass,
         problems: Vec<BinaryProblem>,
-    ) -> Self {
-        // T is one of two.
-        let decision = if size_of::<T>() == size_of::<f32>() {
-            Decision::Single(DecisionFunctions::new(data, classes, kernel, &problems))
-        } else {
-            Decision::Double(DecisionFunctions::new(data, classes, kernel, &problems))
-        };
+    ) -> Self
+    where
+        Decision: From<DecisionFunctions<T>>,
+    {
         Self {
-            n_features: data.records.ncols(),
-            voting: Voting::new(classes, multiclass),
+            n_features: sorted.centre().len(),
+            voting: Voting::new(sorted.classes(), multiclass),
+            decision: DecisionFunctions::new(sorted, &problems).into(),
             problems,
-            decision,
         }
     }
 
@@ -86,7 +93,16 @@ impl SvmModel {
     /// # Errors
     /// Another number of columns than in training, or a NaN or infinite feature.
     pub fn labels(&self, features: ArrayView2<f64>) -> Result<Array1<usize>> {
-        Ok(self.labels_of_values(self.decision_values(features)?.view()))
+        check_width(&features, self.n_features)?;
+        let between = (self.classes().len(), self.voting.multiclass());
+        let winners = match &self.decision {
+            Decision::Single(functions) => functions.winners(features, between),
+            Decision::Double(functions) => functions.winners(features, between),
+        };
+        Ok(winners
+            .into_iter()
+            .map(|winner| self.classes()[winner])
+            .collect())
     }
 
     /// The label that each row of decision values (n_rows × n_problems) speaks for. The rows may be sums over several

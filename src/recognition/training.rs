@@ -1,33 +1,40 @@
 //! Many binary problems from one set of rows: what they share is computed once.
 //!
 //! One-vs-one needs every block of kernel values between two classes exactly once, and every block within a class for all
-//! its pairs: rows are sorted by class, blocks within classes are kept, and one panel (a few classes against all later
-//! ones) is made at a time by a matrix product. So n rows of k classes take about n²/k values in memory, not n². One-vs-rest
-//! shares the whole matrix. All C of a path are solved while a problem's Gram matrix is at hand, each from the last.
+//! its pairs: rows are sorted by class, blocks within classes are kept, and the block between two classes is written by a
+//! matrix product to where the solver reads it. So n rows of k classes take about n²/k values in memory, not n².
+//! One-vs-rest shares the whole matrix. All C of a path are solved while a problem's Gram matrix is at hand, each from the last.
 
 use std::ops::Range;
 
-use ndarray::{Array1, Array2, ArrayView1, ArrayView2, Axis, s};
+use ndarray::{Array1, Array2, ArrayView1, ArrayView2, Axis, Zip};
 
 use crate::recognition::dataset::Dataset;
+use crate::recognition::dual::DualSolution;
 use crate::recognition::kernel::KernelFunction;
+use crate::recognition::near_margin::NearMargin;
 use crate::recognition::points::Points;
 use crate::recognition::scalar::Scalar;
-use crate::recognition::smo::{Cached, Dense, Gram, Smo};
+use crate::recognition::smo::{Cached, Dense, Gram, Smo, copy};
 use crate::recognition::svm::BinaryProblem;
 
-/// Rows of a panel, at least, while classes last: enough that a product's time goes into its multiplications.
-const PANEL_ROWS: usize = 512;
+/// Features from which on one-vs-one linear SVMs are solved on the rows near their margins.
+const SCREENING_FROM_FEATURES: usize = 128;
+/// Rows a class, on average, below which there is little to leave out.
+const SCREENING_FROM_ROWS: usize = 64;
 
 /// Training rows sorted by class, about their centre.
 pub(crate) struct Sorted<T> {
     points: Points<T>,
     /// The original number of each sorted row.
     order: Vec<usize>,
+    /// Where each original row is.
+    place: Vec<usize>,
     /// The sorted rows of each class.
     ranges: Vec<Range<usize>>,
     classes: Vec<usize>,
     kernel: KernelFunction,
+    centre: Array1<f64>,
     /// `(x − c)·c` per sorted row, for ρ about the origin with a linear kernel; empty for the others.
     centre_products: Vec<f64>,
 }
@@ -70,21 +77,24 @@ impl<T: Scalar> Sorted<T> {
             .iter()
             .map(|&class| start(class)..start(class + 1))
             .collect();
-        let sorted = data.records.select(Axis(0), &order);
+        let mut place = vec![0; order.len()];
+        for (at, &row) in order.iter().enumerate() {
+            place[row] = at;
+        }
+        let rows = || order.iter().map(|&row| data.records.row(row));
         let centre_products = match kernel {
             // Row by row: far from the origin, x·c − c·c would be two large numbers less each other.
-            KernelFunction::Linear => {
-                let product = |row: ArrayView1<f64>| (&row - &centre).dot(&centre);
-                sorted.rows().into_iter().map(product).collect()
-            }
+            KernelFunction::Linear => about(rows(), centre, |moved| moved.dot(&centre)).collect(),
             _ => Vec::new(),
         };
         Self {
-            points: Points::new(sorted.view(), centre),
+            points: Points::of_rows(rows(), centre),
             order,
+            place,
             ranges,
             classes: classes.to_vec(),
             kernel,
+            centre: centre.to_owned(),
             centre_products,
         }
     }
@@ -99,6 +109,45 @@ impl<T: Scalar> Sorted<T> {
         &self.order
     }
 
+    /// Where each original row is among the sorted ones.
+    pub fn place(&self) -> &[usize] {
+        &self.place
+    }
+
+    /// The kernel of all problems.
+    pub fn kernel(&self) -> KernelFunction {
+        self.kernel
+    }
+
+    /// What was subtracted from every row.
+    pub fn centre(&self) -> ArrayView1<'_, f64> {
+        self.centre.view()
+    }
+
+    /// ρ of a problem's decision function about the centre.
+    pub fn rho_about_centre(&self, problem: &BinaryProblem) -> f64 {
+        problem.solution.rho
+            - self.moved(
+                problem.rows.iter().map(|&row| self.place[row]),
+                &problem.solution.coefficients,
+            )
+    }
+
+    /// What the centre adds to ρ, for coefficients of these sorted rows; 0 for kernels other than the linear one.
+    fn moved(&self, rows: impl Iterator<Item = usize>, coefficients: &[f64]) -> f64 {
+        if self.centre_products.is_empty() {
+            return 0.0;
+        }
+        rows.zip(coefficients)
+            .map(|(row, beta)| beta * self.centre_products[row])
+            .sum()
+    }
+
+    /// The classes, ascending.
+    pub fn classes(&self) -> &[usize] {
+        &self.classes
+    }
+
     /// Each class with its sorted rows.
     pub fn classes_and_ranges(&self) -> impl Iterator<Item = (usize, Range<usize>)> + '_ {
         self.classes
@@ -110,25 +159,48 @@ impl<T: Scalar> Sorted<T> {
     /// Solves every pair of classes: for each C of the path, the problems (0, 1), (0, 2), …, (1, 2), ….
     pub fn one_vs_one(&self, goal: Goal) -> Vec<Vec<BinaryProblem>> {
         let mut problems = vec![Vec::new(); goal.path.len()];
-        if self.fits(goal.memory) {
-            self.pairs_from_panels(goal, &mut problems);
+        if self.is_worth_screening(goal.memory) {
+            self.pairs_near_margin(goal, &mut problems);
+        } else if self.fits(goal.memory) {
+            self.pairs_from_blocks(goal, &mut problems);
         } else {
             self.pairs_from_rows(goal, &mut problems);
         }
         problems
     }
 
-    /// Whether the blocks within classes, the largest panel and the largest pair fit.
+    /// Whether the blocks within classes and the largest pair fit.
     fn fits(&self, memory: usize) -> bool {
-        let n_rows = self.points.len();
         let sizes = || self.ranges.iter().map(Range::len);
         let largest = sizes().max().unwrap_or(0);
         let within: usize = sizes().map(|n| n * n).sum();
-        (within + (PANEL_ROWS + largest) * n_rows) * size_of::<T>() + Dense::<T>::bytes(2 * largest)
-            <= memory
+        within * size_of::<T>() + Dense::<T>::bytes(2 * largest) <= memory
     }
 
-    fn pairs_from_panels(&self, goal: Goal, problems: &mut [Vec<BinaryProblem>]) {
+    /// Whether products take so long that hyperplanes should say which are needed.
+    fn is_worth_screening(&self, memory: usize) -> bool {
+        let most = || NearMargin::most_bytes(&self.points, &self.ranges);
+        self.kernel == KernelFunction::Linear
+            && self.centre.len() >= SCREENING_FROM_FEATURES
+            && self.points.len() >= SCREENING_FROM_ROWS * self.ranges.len()
+            && most() <= memory
+    }
+
+    fn pairs_near_margin(&self, goal: Goal, problems: &mut [Vec<BinaryProblem>]) {
+        let mut pairs = NearMargin::new(&self.points, &self.ranges);
+        for (&c, problems) in goal.path.iter().zip(problems) {
+            let mut solutions = pairs.solve(c, goal.tolerance).into_iter();
+            for a in 0..self.ranges.len() {
+                for b in a + 1..self.ranges.len() {
+                    let sides = (self.classes[a], Some(self.classes[b]));
+                    let solution = solutions.next().expect("every pair is solved");
+                    problems.push(self.problem(&self.pair_rows(a, b), sides, solution));
+                }
+            }
+        }
+    }
+
+    fn pairs_from_blocks(&self, goal: Goal, problems: &mut [Vec<BinaryProblem>]) {
         let within: Vec<Array2<T>> = self
             .ranges
             .iter()
@@ -138,36 +210,20 @@ impl<T: Scalar> Sorted<T> {
             })
             .collect();
         let mut gram = Dense::default();
-        let mut next = 0;
-        while next < self.ranges.len() {
-            let group = self.group_from(next);
-            next = group.end;
-            let start = self.ranges[group.start].start;
-            let own = self.points.range(start..self.ranges[group.end - 1].end);
-            let later = self.points.range(start..self.points.len());
-            let panel = own.kernel(later, &self.kernel);
-            let within_panel = |range: &Range<usize>| range.start - start..range.end - start;
-            for a in group {
-                for b in a + 1..self.ranges.len() {
-                    let rows = within_panel(&self.ranges[a]);
-                    let columns = within_panel(&self.ranges[b]);
-                    let across = panel.slice(s![rows, columns]);
-                    gram.of_blocks(within[a].view(), across, within[b].view());
-                    self.solve_pair(&mut gram, (a, b), goal, problems);
-                }
+        for a in 0..self.ranges.len() {
+            for b in a + 1..self.ranges.len() {
+                let [first, second] =
+                    [a, b].map(|class| self.points.range(self.ranges[class].clone()));
+                gram.of_blocks(
+                    first.len(),
+                    second.len(),
+                    |i, row| copy(row, within[a].row(i)),
+                    |i, row| copy(row, within[b].row(i)),
+                    |across| first.kernel_into(second, &self.kernel, across),
+                );
+                self.solve_pair(&mut gram, (a, b), goal, problems);
             }
         }
-    }
-
-    /// The classes from this one on whose rows make one panel.
-    fn group_from(&self, first: usize) -> Range<usize> {
-        let start = self.ranges[first].start;
-        let is_short = |range: &Range<usize>| range.end - start < PANEL_ROWS;
-        let n_short = self.ranges[first..]
-            .iter()
-            .take_while(|range| is_short(range))
-            .count();
-        first..(first + n_short + 1).min(self.ranges.len())
     }
 
     fn pairs_from_rows(&self, goal: Goal, problems: &mut [Vec<BinaryProblem>]) {
@@ -250,29 +306,48 @@ impl<T: Scalar> Sorted<T> {
         &self,
         gram: &mut G,
         (is_positive, rows): (&[bool], &[usize]),
-        (positive, negative): (usize, Option<usize>),
+        sides: (usize, Option<usize>),
         goal: Goal,
         problems: &mut [Vec<BinaryProblem>],
     ) {
         let mut smo = Smo::new(gram, is_positive);
-        let original: Vec<usize> = rows.iter().map(|&row| self.order[row]).collect();
         for (&c, problems) in goal.path.iter().zip(problems) {
-            let mut solution = smo.solve(c, goal.tolerance);
-            if !self.centre_products.is_empty() {
-                let pairs = solution.coefficients.iter().zip(rows);
-                let moved: f64 = pairs
-                    .map(|(beta, &row)| beta * self.centre_products[row])
-                    .sum();
-                solution.rho += moved;
-            }
-            problems.push(BinaryProblem {
-                positive,
-                negative,
-                rows: original.clone(),
-                solution,
-            });
+            let solution = smo.solve(c, goal.tolerance);
+            problems.push(self.problem(rows, sides, solution));
         }
     }
+
+    /// A problem on these sorted rows, from its solution about the centre.
+    fn problem(
+        &self,
+        rows: &[usize],
+        (positive, negative): (usize, Option<usize>),
+        mut solution: DualSolution,
+    ) -> BinaryProblem {
+        solution.rho += self.moved(rows.iter().copied(), &solution.coefficients);
+        BinaryProblem {
+            positive,
+            negative,
+            rows: rows.iter().map(|&row| self.order[row]).collect(),
+            solution,
+        }
+    }
+}
+
+/// What a function gives for each row (m) less the centre (m).
+pub(crate) fn about<'a, V>(
+    rows: impl Iterator<Item = ArrayView1<'a, f64>>,
+    centre: ArrayView1<f64>,
+    value: impl Fn(&Array1<f64>) -> V,
+) -> impl Iterator<Item = V> {
+    let mut moved = Array1::zeros(centre.len());
+    rows.map(move |row| {
+        Zip::from(&mut moved)
+            .and(row)
+            .and(centre)
+            .for_each(|to, x, c| *to = x - c);
+        value(&moved)
+    })
 }
 
 /// Where kernels are taken about: the mean of the rows where that changes nothing but rounding, else the origin.

@@ -1,7 +1,8 @@
 //! From the decision values of binary problems to one class.
 
-use ndarray::{Array1, ArrayView2};
+use ndarray::{Array1, Array2, ArrayView2};
 
+use crate::recognition::scalar::Scalar;
 use crate::recognition::svm::Multiclass;
 
 /// Which class the decision values speak for: for one-vs-one those of all pairs (0, 1), (0, 2), …, (1, 2), … of the
@@ -26,6 +27,11 @@ impl Voting {
         &self.classes
     }
 
+    /// How binary problems make one of many classes.
+    pub fn multiclass(&self) -> Multiclass {
+        self.multiclass
+    }
+
     /// The label that each row of decision values (n_rows × n_problems) speaks for.
     pub fn labels(&self, values: ArrayView2<f64>) -> Array1<usize> {
         let values = values.as_standard_layout();
@@ -38,7 +44,7 @@ impl Voting {
     }
 
     /// The label that a row of decision values speaks for; `votes` is scratch.
-    pub fn label(&self, values: &[f64], votes: &mut Vec<u32>) -> usize {
+    fn label(&self, values: &[f64], votes: &mut Vec<u32>) -> usize {
         let winner = match self.multiclass {
             Multiclass::OneVsRest => first_maximum(values),
             _ => {
@@ -49,6 +55,69 @@ impl Voting {
             }
         };
         self.classes[winner]
+    }
+}
+
+/// The votes of many rows, taken problem by problem.
+#[derive(Clone, Debug)]
+pub(crate) enum Ballot {
+    /// One-vs-one: votes, n_classes × n_rows.
+    Counts(Array2<u16>),
+    /// One-vs-rest: of the problems so far the largest value, and whose it is; one a row.
+    Best(Vec<f64>, Vec<usize>),
+}
+
+impl Ballot {
+    /// No votes yet.
+    pub fn new(n_classes: usize, n_rows: usize, multiclass: Multiclass) -> Self {
+        match multiclass {
+            Multiclass::OneVsRest => Self::Best(vec![f64::NEG_INFINITY; n_rows], vec![0; n_rows]),
+            _ => Self::Counts(Array2::zeros((n_classes, n_rows))),
+        }
+    }
+
+    /// Takes the values of one problem, less ρ: those above 0 are for the positive class, of which, and of the negative one,
+    /// these are the positions. Problems come in the order of [`Multiclass::problems`].
+    pub fn take<T: Scalar>(
+        &mut self,
+        (positive, negative): (usize, Option<usize>),
+        values: &[T],
+        rho: f64,
+    ) {
+        match self {
+            Self::Counts(votes) => {
+                for (vote, &value) in votes.row_mut(positive).iter_mut().zip(values) {
+                    *vote += u16::from(value.wide() > rho);
+                }
+                for (vote, &value) in votes
+                    .row_mut(negative.unwrap_or(positive))
+                    .iter_mut()
+                    .zip(values)
+                {
+                    *vote += u16::from(value.wide() <= rho);
+                }
+            }
+            Self::Best(best, winners) => {
+                for ((best, winner), &value) in best.iter_mut().zip(winners).zip(values) {
+                    let value = value.wide() - rho;
+                    if value > *best {
+                        (*best, *winner) = (value, positive);
+                    }
+                }
+            }
+        }
+    }
+
+    /// The position of the class that each row's votes are for; of equals the first.
+    pub fn winners(&self) -> Vec<usize> {
+        match self {
+            Self::Best(_, winners) => winners.clone(),
+            Self::Counts(votes) => votes
+                .columns()
+                .into_iter()
+                .map(|votes| first_maximum(&votes.to_vec()))
+                .collect(),
+        }
     }
 }
 
@@ -93,5 +162,22 @@ mod tests {
         let voting = Voting::new(&[2, 5, 9], Multiclass::OneVsRest);
         let values = array![[0.5, 0.5, -1.0], [-3.0, -2.0, -2.0]];
         assert_eq!(voting.labels(values.view()), array![2, 5]);
+    }
+
+    #[test]
+    fn votes_taken_problem_by_problem_elect_whom_rows_of_values_elect() {
+        let value = |i: usize| (i as f64 * 1.7).sin().max(-0.2);
+        for multiclass in [Multiclass::OneVsOne, Multiclass::OneVsRest] {
+            let problems = multiclass.problems(5);
+            let values = Array2::from_shape_fn((70, problems.len()), |(i, j)| value(11 * i + j));
+            let mut ballot = Ballot::new(5, 70, multiclass);
+            for (&problem, column) in problems.iter().zip(values.columns()) {
+                ballot.take(problem, &column.mapv(|v| v + 0.3).to_vec(), 0.3);
+            }
+            let classes = [10, 11, 12, 13, 14];
+            let expected = Voting::new(&classes, multiclass).labels(values.view());
+            let winners: Vec<usize> = ballot.winners().iter().map(|at| classes[*at]).collect();
+            assert_eq!(winners, expected.to_vec(), "{multiclass:?}");
+        }
     }
 }

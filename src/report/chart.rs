@@ -336,6 +336,7 @@ fn named(axis: Axis, value: &AxisValue) -> String {
         Axis::Ensemble | Axis::Classifier => value.label.clone(),
         Axis::Features => format!("{} features", value.label),
         Axis::Frames if value.label == "1" => "1 frame a touch".to_owned(),
+        Axis::FusedTouches if value.label == "1" => "a touch alone".to_owned(),
         Axis::Frames | Axis::FusedTouches => format!("{} {}", value.label, axis.name()),
         _ => format!("{} {}", axis.name(), value.label),
     }

@@ -1,6 +1,6 @@
 //! Gram matrices as the solver reads them: two rows at a time, the diagonal, a weighted sum of rows, a part.
 
-use ndarray::{Array2, ArrayView1, ArrayView2, Axis};
+use ndarray::{Array2, ArrayView1, ArrayView2, ArrayViewMut2, Axis, s};
 
 use super::passes::padded;
 use crate::recognition::kernel::KernelFunction;
@@ -54,14 +54,15 @@ impl<T: Scalar> Dense<T> {
         n * padded(n) * size_of::<T>()
     }
 
-    /// Takes on a new matrix of n rows, in the memory of the old one; `fill` writes the n values of each row.
+    /// Takes on a new matrix of n rows, in the memory of the old one; `fill` writes the n values of each row, or leaves what
+    /// is written later.
     pub fn refill(&mut self, n: usize, mut fill: impl FnMut(usize, &mut [T])) {
         self.n = n;
         self.stride = padded(n);
-        self.values.clear();
         self.values.resize(n * self.stride, T::zero());
         for (i, row) in self.values.chunks_exact_mut(self.stride.max(1)).enumerate() {
             fill(i, &mut row[..n]);
+            row[n..].fill(T::zero());
         }
         self.diagonal.clear();
         self.diagonal
@@ -69,23 +70,30 @@ impl<T: Scalar> Dense<T> {
         self.diagonal.resize(self.stride, T::zero());
     }
 
-    /// K of two classes from its blocks: within the first, between them (first × second), within the second.
+    /// K of two classes of so many rows from its blocks, as they are written: row by row within the first and within the
+    /// second, and between them (first × second).
     pub fn of_blocks(
         &mut self,
-        first: ArrayView2<T>,
-        across: ArrayView2<T>,
-        second: ArrayView2<T>,
+        n_first: usize,
+        n_second: usize,
+        first: impl Fn(usize, &mut [T]),
+        second: impl Fn(usize, &mut [T]),
+        across: impl FnOnce(ArrayViewMut2<T>),
     ) {
-        let (n_first, n_second) = across.dim();
         self.refill(n_first + n_second, |i, row| {
             let (left, right) = row.split_at_mut(n_first);
-            if i < n_first {
-                copy(left, &first.row(i));
-                copy(right, &across.row(i));
-            } else {
-                copy(right, &second.row(i - n_first));
+            match i.checked_sub(n_first) {
+                None => first(i, left),
+                Some(i) => second(i, right),
             }
         });
+        let (n, stride) = (self.n, self.stride);
+        let rows =
+            ArrayViewMut2::from_shape((n_first, stride), &mut self.values[..n_first * stride]);
+        across(
+            rows.expect("rows fill the values")
+                .slice_mut(s![.., n_first..n]),
+        );
         self.mirror(n_first);
     }
 
@@ -107,7 +115,7 @@ impl<T: Scalar> Dense<T> {
 
     /// A whole matrix.
     pub fn of_whole(&mut self, whole: ArrayView2<T>) {
-        self.refill(whole.nrows(), |i, to| copy(to, &whole.row(i)));
+        self.refill(whole.nrows(), |i, to| copy(to, whole.row(i)));
     }
 
     fn at(&self, i: usize) -> &[T] {
@@ -115,7 +123,8 @@ impl<T: Scalar> Dense<T> {
     }
 }
 
-fn copy<T: Copy>(to: &mut [T], from: &ArrayView1<T>) {
+/// Copies a row.
+pub(crate) fn copy<T: Copy>(to: &mut [T], from: ArrayView1<T>) {
     match from.as_slice() {
         Some(from) => to.copy_from_slice(from),
         None => to.iter_mut().zip(from).for_each(|(to, &from)| *to = from),
@@ -164,8 +173,9 @@ fn gather<T: Copy>(to: &mut [T], from: &[T], columns: &[usize]) {
     }
 }
 
+/// Adds β times a row to sums in f64.
 #[multiversion::multiversion(targets("x86_64+avx2+fma"))]
-pub(super) fn add_row<T: Scalar>(sums: &mut [f64], row: &[T], beta: f64) {
+pub(crate) fn add_row<T: Scalar>(sums: &mut [f64], row: &[T], beta: f64) {
     for (sum, value) in sums.iter_mut().zip(row) {
         *sum += beta * value.wide();
     }

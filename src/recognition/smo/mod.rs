@@ -16,13 +16,14 @@ mod part;
 mod passes;
 mod variables;
 
-pub(crate) use gram::{Cached, Dense, Gram};
+pub(crate) use gram::{Cached, Dense, Gram, add_row, copy};
 pub(crate) use part::{Part, Room};
+pub(crate) use variables::extremes;
 
 use crate::recognition::dual::DualSolution;
 use crate::recognition::scalar::Scalar;
 use passes::{select_down, select_up, step_along};
-use variables::{Variables, extremes, rho};
+use variables::{Variables, rho};
 
 /// Iterations after which a problem counts as not solved, as in LIBSVM; or 100 a row, if that is more.
 const MOST_ITERATIONS: u64 = 10_000_000;
@@ -64,6 +65,36 @@ impl<'a, G> Smo<'a, G> {
         }
     }
 
+    /// A problem that goes on from β, which belongs to c; from nothing if c is 0.
+    pub fn resume<T: Scalar>(
+        gram: &'a mut G,
+        is_positive: &'a [bool],
+        beta: Vec<f64>,
+        c: f64,
+    ) -> Self
+    where
+        G: Gram<T>,
+    {
+        let mut smo = Self {
+            beta,
+            c,
+            ..Self::new(gram, is_positive)
+        };
+        smo.refresh();
+        smo
+    }
+
+    /// Sums f again in f64.
+    fn refresh<T: Scalar>(&mut self)
+    where
+        G: Gram<T>,
+    {
+        let products = self.gram.times(&self.beta);
+        for ((f, product), &is_positive) in self.f.iter_mut().zip(products).zip(self.is_positive) {
+            *f = sign(is_positive) - product;
+        }
+    }
+
     /// Solves for this C, starting from the solution of the last one, to a violation of the optimality conditions of at most
     /// `tolerance`.
     pub fn solve<T: Scalar>(&mut self, c: f64, tolerance: f64) -> DualSolution
@@ -91,7 +122,7 @@ impl<'a, G> Smo<'a, G> {
             linear += beta * sign(is_positive);
             quadratic += beta * (sign(is_positive) - f);
         }
-        if self.c > 0.0 && quadratic > 0.0 {
+        if self.c > 0.0 && self.c != c && quadratic > 0.0 {
             let most = c / self.c;
             let factor = (linear / quadratic).clamp(0.0, most);
             for (beta, &is_positive) in self.beta.iter_mut().zip(self.is_positive) {
@@ -149,12 +180,7 @@ impl<'a, G> Smo<'a, G> {
                 beta.into_iter()
                     .for_each(|(at, value)| self.beta[indices[at]] = value);
             }
-            let products = self.gram.times(&self.beta);
-            for ((f, product), &is_positive) in
-                self.f.iter_mut().zip(products).zip(self.is_positive)
-            {
-                *f = sign(is_positive) - product;
-            }
+            self.refresh();
             if self.violation() <= search.tolerance {
                 return true;
             }

@@ -111,7 +111,7 @@ impl<T: Scalar> Variables<T> {
 }
 
 /// `(max of f that can be raised, min of f that can be lowered)`, in f64, for any β within its bounds.
-pub(super) fn extremes(beta: &[f64], is_positive: &[bool], f: &[f64], c: f64) -> (f64, f64) {
+pub(crate) fn extremes(beta: &[f64], is_positive: &[bool], f: &[f64], c: f64) -> (f64, f64) {
     let mut highest = f64::NEG_INFINITY;
     let mut lowest = f64::INFINITY;
     for ((&beta, &is_positive), &f) in beta.iter().zip(is_positive).zip(f) {
