@@ -53,7 +53,14 @@ pub(super) fn cover_surface(target: &Target) -> (Vec<Ball>, usize) {
     for (number, pass) in PASSES.iter().take(n_passes).enumerate() {
         covering.pass(pass, number as u64);
         let gaps = covering.gaps();
-        if std::env::var("TALK").is_ok() { eprintln!("  pass {number}: {} balls, {} gaps, {:.1} s", covering.chosen.len(), gaps.len(), t.elapsed().as_secs_f64()); }
+        if std::env::var("TALK").is_ok() {
+            eprintln!(
+                "  pass {number}: {} balls, {} gaps, {:.1} s",
+                covering.chosen.len(),
+                gaps.len(),
+                t.elapsed().as_secs_f64()
+            );
+        }
         if number + 1 < n_passes {
             covering.sample_gaps(&gaps);
         }
@@ -65,7 +72,14 @@ pub(super) fn cover_surface(target: &Target) -> (Vec<Ball>, usize) {
         }
         covering.fill(&gaps);
         gaps = covering.gaps();
-        if std::env::var("TALK").is_ok() { eprintln!("  repair: {} balls, {} gaps, {:.1} s", covering.chosen.len(), gaps.len(), t.elapsed().as_secs_f64()); }
+        if std::env::var("TALK").is_ok() {
+            eprintln!(
+                "  repair: {} balls, {} gaps, {:.1} s",
+                covering.chosen.len(),
+                gaps.len(),
+                t.elapsed().as_secs_f64()
+            );
+        }
     }
     (covering.chosen, gaps.len())
 }
@@ -83,7 +97,14 @@ impl<'a> Covering<'a> {
     fn new(target: &'a Target<'a>) -> Self {
         let t = std::time::Instant::now();
         let sampling = sample(target);
-        if std::env::var("TALK").is_ok() { eprintln!("  {} samples, {} balls, {:.1} s", sampling.samples.len(), sampling.balls.len(), t.elapsed().as_secs_f64()); }
+        if std::env::var("TALK").is_ok() {
+            eprintln!(
+                "  {} samples, {} balls, {:.1} s",
+                sampling.samples.len(),
+                sampling.balls.len(),
+                t.elapsed().as_secs_f64()
+            );
+        }
         Self {
             target,
             tree: SampleTree::new(&sampling.samples),
@@ -146,21 +167,28 @@ impl<'a> Covering<'a> {
             }
         };
         for ball in &balls[..n_freed] {
-            self.tree.each_covered(&self.sampling.samples, ball, self.target.e, |s| self.counts[s] -= 1);
+            self.tree
+                .each_covered(&self.sampling.samples, ball, self.target.e, |s| {
+                    self.counts[s] -= 1
+                });
         }
         for ball in &balls[..n_freed] {
-            self.tree.each_covered(&self.sampling.samples, ball, self.target.e, |s| needs(s, &self.counts));
+            self.tree
+                .each_covered(&self.sampling.samples, ball, self.target.e, |s| {
+                    needs(s, &self.counts)
+                });
         }
         samples.iter().for_each(|&s| needs(s, &self.counts));
         let mut rows_of = Lists::new();
         let mut rows = Vec::new();
         for ball in &balls {
             rows.clear();
-            self.tree.each_covered(&self.sampling.samples, ball, self.target.e, |s| {
-                if row_of[s] != NOT_HERE {
-                    rows.push(row_of[s]);
-                }
-            });
+            self.tree
+                .each_covered(&self.sampling.samples, ball, self.target.e, |s| {
+                    if row_of[s] != NOT_HERE {
+                        rows.push(row_of[s]);
+                    }
+                });
             rows_of.push(rows.iter().copied());
         }
         let mut cover = Cover::new(&rows_of, n_rows as usize);
@@ -172,7 +200,10 @@ impl<'a> Covering<'a> {
         chosen.sort_unstable();
         for set in chosen {
             let ball = balls[set as usize];
-            self.tree.each_covered(&self.sampling.samples, &ball, self.target.e, |s| self.counts[s] += 1);
+            self.tree
+                .each_covered(&self.sampling.samples, &ball, self.target.e, |s| {
+                    self.counts[s] += 1
+                });
             self.chosen.push(ball);
         }
     }
@@ -206,7 +237,10 @@ impl<'a> Covering<'a> {
         self.tree = SampleTree::new(&self.sampling.samples);
         self.counts = vec![0; self.sampling.samples.len()];
         for ball in &self.chosen {
-            self.tree.each_covered(&self.sampling.samples, ball, self.target.e, |s| self.counts[s] += 1);
+            self.tree
+                .each_covered(&self.sampling.samples, ball, self.target.e, |s| {
+                    self.counts[s] += 1
+                });
         }
     }
 
@@ -224,6 +258,7 @@ impl<'a> Covering<'a> {
         cover.complete();
         let mut chosen = cover.chosen().to_vec();
         chosen.sort_unstable();
-        self.chosen.extend(chosen.into_iter().map(|set| balls[set as usize]));
+        self.chosen
+            .extend(chosen.into_iter().map(|set| balls[set as usize]));
     }
 }

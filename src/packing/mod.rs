@@ -14,4 +14,9 @@ pub use pack::{Packing, pack_mesh};
 pub use packing_error::{PackingError, Spread, packing_error};
 pub use target::Body;
 
-pub(crate) fn knob(name: &str, default: f64) -> f64 { std::env::var(name).ok().and_then(|v| v.parse().ok()).unwrap_or(default) }
+pub(crate) fn knob(name: &str, default: f64) -> f64 {
+    std::env::var(name)
+        .ok()
+        .and_then(|v| v.parse().ok())
+        .unwrap_or(default)
+}

@@ -50,7 +50,11 @@ pub fn packing_error(
         }
         let gap = tree.distance(point);
         gaps.push(gap);
-        protrusions.push(if gap > 0.0 { 0.0 } else { protrusion(surface, &tree, point, normal) });
+        protrusions.push(if gap > 0.0 {
+            0.0
+        } else {
+            protrusion(surface, &tree, point, normal)
+        });
     }
     PackingError {
         n_points: gaps.len(),
@@ -93,7 +97,11 @@ fn surface_points(surface: &Surface, n_points: usize) -> Vec<(DVec3, DVec3)> {
 fn point_in(triangle: &Triangle, rng: &mut impl Rng) -> DVec3 {
     let [a, b, c] = triangle.0;
     let (u, v): (f64, f64) = (rng.r#gen(), rng.r#gen());
-    let (u, v) = if u + v > 1.0 { (1.0 - u, 1.0 - v) } else { (u, v) };
+    let (u, v) = if u + v > 1.0 {
+        (1.0 - u, 1.0 - v)
+    } else {
+        (u, v)
+    };
     a + u * (b - a) + v * (c - a)
 }
 
@@ -150,15 +158,16 @@ impl<'a> SphereTree<'a> {
             let point = start + along * direction;
             let mut end = along;
             let outside = |bounds: &Aabb| bounds.distance_squared(point);
-            self.bvh.search(f64::MIN_POSITIVE, outside, |number, _, limit| {
-                let Sphere { center, radius } = self.spheres[number];
-                if point.distance_squared(center) <= radius * radius {
-                    let h = (center - start).dot(direction);
-                    let b2 = start.distance_squared(center) - h * h;
-                    end = f64::max(end, h + (radius * radius - b2).max(0.0).sqrt());
-                }
-                limit
-            });
+            self.bvh
+                .search(f64::MIN_POSITIVE, outside, |number, _, limit| {
+                    let Sphere { center, radius } = self.spheres[number];
+                    if point.distance_squared(center) <= radius * radius {
+                        let h = (center - start).dot(direction);
+                        let b2 = start.distance_squared(center) - h * h;
+                        end = f64::max(end, h + (radius * radius - b2).max(0.0).sqrt());
+                    }
+                    limit
+                });
             if end <= along * (1.0 + 1e-12) {
                 return point;
             }

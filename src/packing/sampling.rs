@@ -78,14 +78,16 @@ pub(super) fn sample(target: &Target) -> Sampling {
         },
     };
     // In the order of the tree, neighbours on the surface are neighbours in the list.
-    surface.bvh().each_in_box(&surface.bounds(), |number, triangle| {
-        if let Some(normal) = triangle.normal()
-            && !target.is_buried(triangle, normal)
-        {
-            sampler.sampling.outer.push(number);
-            sampler.visit(*triangle, normal);
-        }
-    });
+    surface
+        .bvh()
+        .each_in_box(&surface.bounds(), |number, triangle| {
+            if let Some(normal) = triangle.normal()
+                && !target.is_buried(triangle, normal)
+            {
+                sampler.sampling.outer.push(number);
+                sampler.visit(*triangle, normal);
+            }
+        });
     sampler.sampling
 }
 
@@ -167,7 +169,9 @@ impl Sampler<'_> {
             self.due_feet += balls * feet_a_ball;
             if self.due_feet >= 1.0 {
                 self.due_feet -= 1.0;
-                self.sampling.balls.push(self.sizes.target.ball_at(foot, normal));
+                self.sampling
+                    .balls
+                    .push(self.sizes.target.ball_at(foot, normal));
             }
         }
     }
@@ -184,7 +188,9 @@ impl Sizes<'_> {
         }
         let (slack, limit) = (2.0 * self.target.e, self.target.largest_radius());
         let ball = Ball::largest(self.target, foot, -normal, slack, limit);
-        let half_width = ball.unwrap_or(Ball::on_surface(foot)).half_width(self.target.e);
+        let half_width = ball
+            .unwrap_or(Ball::on_surface(foot))
+            .half_width(self.target.e);
         self.known = Some(Local {
             foot,
             normal,
