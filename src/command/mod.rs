@@ -3,6 +3,7 @@
 mod classify;
 mod features;
 mod objects;
+mod objects_pack;
 mod output;
 mod plan;
 mod press;

@@ -1,5 +1,6 @@
 //! `bubbletouch objects`: what there is to touch, as a list or as pictures.
 
+use super::objects_pack;
 use bubbletouch::files::write_bytes;
 use bubbletouch::mesh::{LengthUnit, MeshReport};
 use bubbletouch::objects::{Catalogue, Entry, Object, SphereUnion};
@@ -45,6 +46,8 @@ pub struct Args {
 enum Action {
     /// Say how large a mesh is, whether it is closed, and what is wrong with it
     Mesh(MeshArgs),
+    /// Pack a mesh or a built-in object with few spheres, to a surface error of your choice
+    Pack(objects_pack::Args),
 }
 
 #[derive(clap::Args)]
@@ -63,11 +66,10 @@ struct Listed {
 }
 
 pub fn objects(args: &Args) -> Result<()> {
-    if let Some(Action::Mesh(args)) = &args.action {
-        let place = args.file.display().to_string();
-        let mesh = read_mesh_file(&args.file, args.unit)?.into_mesh(&place)?;
-        println!("{}", MeshReport::new(&mesh));
-        return Ok(());
+    match &args.action {
+        Some(Action::Mesh(args)) => return report(args),
+        Some(Action::Pack(args)) => return objects_pack::pack(args),
+        None => {}
     }
     let listed = args.build()?;
     let Some(path) = &args.out else {
@@ -92,6 +94,13 @@ pub fn objects(args: &Args) -> Result<()> {
         }
     };
     write_bytes(path, &picture.png()?)
+}
+
+fn report(args: &MeshArgs) -> Result<()> {
+    let place = args.file.display().to_string();
+    let mesh = read_mesh_file(&args.file, args.unit)?.into_mesh(&place)?;
+    println!("{}", MeshReport::new(&mesh));
+    Ok(())
 }
 
 impl Listed {

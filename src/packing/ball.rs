@@ -46,7 +46,9 @@ impl Ball {
         // there on queries are cheap, since they are not far from the surface.
         let beyond_foot = 1e-9 * limit..2.0 * limit;
         let hit = surface.bvh().first_hit(foot, inward, beyond_foot);
-        let mut t = hit.map_or(limit, |hit| (0.5 * (hit.along + slack)).clamp(slack, limit));
+        let mut t = hit.map_or(limit, |hit| {
+            (0.5 * (hit.along + slack)).min(limit).max(slack)
+        });
         for _ in 0..MAX_STEPS {
             let center = foot + t * inward;
             // The foot is no farther than t, so there is a nearest point.

@@ -13,6 +13,9 @@ use rand::Rng;
 /// Samples in a cell. Larger: fewer seams between cells, but the search falls out of the processor's cache.
 const CELL: usize = 24_000;
 
+/// Share of the whole time that sampling takes, for those who watch.
+const SAMPLING_TIME: f64 = 0.2;
+
 /// How a pass over all cells works.
 struct Pass {
     /// At which share of the points a cell is cut; another one moves the seams.
@@ -46,21 +49,16 @@ const MAX_REPAIRS: usize = 40;
 
 /// Balls whose spheres come within `e` of every point of the outer surface, and how many gaps are left: none, unless
 /// [`MAX_REPAIRS`] was reached.
-pub(super) fn cover_surface(target: &Target) -> (Vec<Ball>, usize) {
+pub(super) fn cover_surface(target: &Target, watch: &mut dyn FnMut(f64)) -> (Vec<Ball>, usize) {
     let mut covering = Covering::new(target);
-    let t = std::time::Instant::now();
+    watch(SAMPLING_TIME);
     let n_passes = covering.sampling.effort.n_passes;
     for (number, pass) in PASSES.iter().take(n_passes).enumerate() {
-        covering.pass(pass, number as u64);
+        covering.pass(pass, number as u64, &mut |share| {
+            let done = (number as f64 + share) / n_passes as f64;
+            watch(SAMPLING_TIME + (1.0 - SAMPLING_TIME) * done);
+        });
         let gaps = covering.gaps();
-        if std::env::var("TALK").is_ok() {
-            eprintln!(
-                "  pass {number}: {} balls, {} gaps, {:.1} s",
-                covering.chosen.len(),
-                gaps.len(),
-                t.elapsed().as_secs_f64()
-            );
-        }
         if number + 1 < n_passes {
             covering.sample_gaps(&gaps);
         }
@@ -72,14 +70,6 @@ pub(super) fn cover_surface(target: &Target) -> (Vec<Ball>, usize) {
         }
         covering.fill(&gaps);
         gaps = covering.gaps();
-        if std::env::var("TALK").is_ok() {
-            eprintln!(
-                "  repair: {} balls, {} gaps, {:.1} s",
-                covering.chosen.len(),
-                gaps.len(),
-                t.elapsed().as_secs_f64()
-            );
-        }
     }
     (covering.chosen, gaps.len())
 }
@@ -95,16 +85,7 @@ struct Covering<'a> {
 
 impl<'a> Covering<'a> {
     fn new(target: &'a Target<'a>) -> Self {
-        let t = std::time::Instant::now();
         let sampling = sample(target);
-        if std::env::var("TALK").is_ok() {
-            eprintln!(
-                "  {} samples, {} balls, {:.1} s",
-                sampling.samples.len(),
-                sampling.balls.len(),
-                t.elapsed().as_secs_f64()
-            );
-        }
         Self {
             target,
             tree: SampleTree::new(&sampling.samples),
@@ -119,7 +100,7 @@ impl<'a> Covering<'a> {
     }
 
     /// Works on one cell after another.
-    fn pass(&mut self, pass: &Pass, number: u64) {
+    fn pass(&mut self, pass: &Pass, number: u64, watch: &mut dyn FnMut(f64)) {
         let positions: Vec<DVec3> = self.sampling.samples.iter().map(|s| s.position).collect();
         let cells = Cells::new(&positions, CELL, pass.cut);
         let mut samples_in = vec![Vec::new(); cells.n_cells()];
@@ -140,6 +121,7 @@ impl<'a> Covering<'a> {
             let freed = std::mem::take(&mut freed_in[cell]);
             let candidates = std::mem::take(&mut balls_in[cell]);
             self.work_on(freed, candidates, &samples_in[cell], pass, &mut rng);
+            watch((cell + 1) as f64 / cells.n_cells() as f64);
         }
     }
 

@@ -2,7 +2,7 @@
 
 use super::cover_surface::cover_surface;
 use super::target::{Body, Target};
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::mesh::Surface;
 use crate::objects::SphereUnion;
 
@@ -25,13 +25,21 @@ pub struct Packing {
 /// same spheres. An error for a tolerance that is not positive, and for a [`Body::Solid`] with holes, with faces that
 /// disagree about the outside, or inside out.
 pub fn pack_mesh(surface: &Surface, body: Body, tolerance: f64) -> Result<Packing> {
+    pack_mesh_watched(surface, body, tolerance, &mut |_| {})
+}
+
+/// [`pack_mesh`] that says now and then which share of its work is done, about, from 0 to 1.
+pub fn pack_mesh_watched(
+    surface: &Surface,
+    body: Body,
+    tolerance: f64,
+    watch: &mut dyn FnMut(f64),
+) -> Result<Packing> {
     let target = Target::new(surface, body, tolerance)?;
-    let (balls, n_unproved) = cover_surface(&target);
+    let (balls, n_unproved) = cover_surface(&target, watch);
     let spheres = balls.iter().map(|ball| ball.sphere(target.e)).collect();
-    let spheres = SphereUnion::new(spheres)
-        .map_err(|_| Error::input("mesh", "no face with an area", "at least one"))?;
     Ok(Packing {
-        spheres,
+        spheres: SphereUnion::new(spheres)?,
         tolerance,
         n_unproved,
     })

@@ -46,13 +46,12 @@ pub(super) struct Effort {
 impl Effort {
     /// All of it up to 2,000 spheres, then less for each, so that the time grows more slowly than their number.
     fn for_about(n_balls: f64) -> Self {
-        let share = (super::knob("FULL", 2000.0) / n_balls).clamp(0.03, 1.0);
-        use super::knob;
+        let share = (2000.0 / n_balls).clamp(0.03, 1.0);
         Self {
-            samples_a_ball: knob("SPB0", 20.0) + knob("SPB", 60.0) * share.sqrt(),
-            feet_a_ball: knob("FPB0", 5.0) + knob("FPB", 35.0) * share.sqrt(),
-            steps_a_ball: knob("STEPS", 200.0) * share,
-            moves_a_ball: knob("MOVES", 8.0) * share,
+            samples_a_ball: 20.0 + 60.0 * share.sqrt(),
+            feet_a_ball: 5.0 + 35.0 * share.sqrt(),
+            steps_a_ball: 200.0 * share,
+            moves_a_ball: 8.0 * share,
             n_passes: if share < 0.15 { 1 } else { 3 },
         }
     }

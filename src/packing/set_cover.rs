@@ -1,4 +1,4 @@
-//! Few sets that cover all rows: greedy, then a local search with row weights [RWLS].
+//! Few sets that cover all rows: greedy, then a local search with row weights \[RWLS\].
 //!
 //! The search takes a set away whenever all rows are covered, and then exchanges sets one for one until they are again:
 //! out goes the set whose loss uncovers least weight, in comes the set that covers most of it and holds a certain

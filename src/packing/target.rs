@@ -2,9 +2,8 @@
 
 use super::ball::Ball;
 use crate::error::{Error, Result};
-use crate::mesh::{Surface, Triangle, TriangleMesh};
+use crate::mesh::{Side, Surface, Triangle, TriangleMesh, Welded};
 use glam::DVec3;
-use std::collections::HashMap;
 
 /// What a mesh stands for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -32,6 +31,9 @@ impl<'a> Target<'a> {
                 format!("{tolerance} m"),
                 "a finite positive length",
             ));
+        }
+        if surface.mesh().area() <= 0.0 {
+            return Err(Error::input("mesh", "no face with an area", "at least one"));
         }
         if body == Body::Solid {
             check_enclosure(surface.mesh())?;
@@ -87,8 +89,17 @@ impl<'a> Target<'a> {
 }
 
 /// An error unless every edge is passed as often in one direction as in the other, and the enclosed volume is positive.
+///
+/// Weaker than two faces an edge: where four faces meet in one, inside and outside are still known everywhere.
 fn check_enclosure(mesh: &TriangleMesh) -> Result<()> {
-    let n_open = n_open_edges(mesh);
+    let welded = Welded::new(mesh);
+    let balance = |sides: &[Side]| -> i32 {
+        let signs = sides
+            .iter()
+            .map(|side| if side.is_forward { 1 } else { -1 });
+        signs.sum()
+    };
+    let n_open = welded.edges().filter(|sides| balance(sides) != 0).count();
     if n_open > 0 {
         return Err(Error::input(
             "mesh",
@@ -96,34 +107,15 @@ fn check_enclosure(mesh: &TriangleMesh) -> Result<()> {
             "a closed mesh, or its surface packed as a sheet",
         ));
     }
-    let corners = (0..mesh.n_triangles()).map(|t| mesh.triangle(t).0);
-    let volume: f64 = corners.map(|[a, b, c]| a.dot(b.cross(c)) / 6.0).sum();
+    let (volume, _) = mesh.volume_and_centroid();
     if volume <= 0.0 {
         return Err(Error::input(
             "mesh",
-            format!("an enclosed volume of {volume:.3e} m³"),
+            format!("an enclosed volume of {:.3} cm³", 1e6 * volume),
             "faces counter-clockwise seen from outside, around a positive volume",
         ));
     }
     Ok(())
-}
-
-fn n_open_edges(mesh: &TriangleMesh) -> usize {
-    // Vertices at the same place are one; adding zero makes −0 and 0 the same place.
-    let place = |v: DVec3| v.to_array().map(|x| (x + 0.0).to_bits());
-    let mut balance: HashMap<_, i64> = HashMap::new();
-    for triangle in 0..mesh.n_triangles() {
-        let corners = mesh.triangle(triangle).0.map(place);
-        for side in 0..3 {
-            let (from, to) = (corners[side], corners[(side + 1) % 3]);
-            if from < to {
-                *balance.entry((from, to)).or_default() += 1;
-            } else if to < from {
-                *balance.entry((to, from)).or_default() -= 1;
-            }
-        }
-    }
-    balance.values().filter(|&&passes| passes != 0).count()
 }
 
 /// The mean of the corners.

@@ -1,0 +1,72 @@
+//! One object in several levels of detail.
+
+use super::pack::{Packing, pack_mesh};
+use super::target::Body;
+use crate::error::{Error, Result};
+use crate::mesh::Surface;
+use rayon::prelude::*;
+
+/// Packings of one mesh, from coarse to fine.
+///
+/// Invariant: at least one; tolerances strictly descend.
+#[derive(Clone, Debug, PartialEq)]
+pub struct DetailChain {
+    packings: Vec<Packing>,
+}
+
+impl DetailChain {
+    /// Packs a mesh to each of these tolerances (metres, in any order, each once or more).
+    ///
+    /// An error for no tolerances, and for what [`pack_mesh`] does not pack.
+    pub fn pack(surface: &Surface, body: Body, tolerances: &[f64]) -> Result<Self> {
+        let mut tolerances = tolerances.to_vec();
+        tolerances.sort_by(|a, b| b.total_cmp(a));
+        tolerances.dedup();
+        let packings: Result<Vec<Packing>> = tolerances
+            .par_iter()
+            .map(|&tolerance| pack_mesh(surface, body, tolerance))
+            .collect();
+        Self::new(packings?)
+    }
+
+    /// Packings of one mesh at different tolerances, in any order; an error for none, or two at one tolerance.
+    pub fn new(mut packings: Vec<Packing>) -> Result<Self> {
+        packings.sort_by(|a, b| b.tolerance.total_cmp(&a.tolerance));
+        let is_twice = |pair: &[Packing]| pair[0].tolerance == pair[1].tolerance;
+        if packings.is_empty() || packings.windows(2).any(is_twice) {
+            let tolerances = packings.iter().map(|packing| packing.tolerance);
+            return Err(Error::input(
+                "levels of detail",
+                format!("tolerances {:?} m", tolerances.collect::<Vec<_>>()),
+                "at least one, each once",
+            ));
+        }
+        Ok(Self { packings })
+    }
+
+    /// From coarse to fine.
+    pub fn packings(&self) -> &[Packing] {
+        &self.packings
+    }
+
+    /// The packing with the largest tolerance that is at most this one (metres).
+    ///
+    /// An error if even the finest is coarser.
+    pub fn coarsest_within(&self, tolerance: f64) -> Result<&Packing> {
+        let fitting = self
+            .packings
+            .iter()
+            .find(|packing| packing.tolerance <= tolerance);
+        fitting.ok_or_else(|| {
+            let finest = self
+                .packings
+                .last()
+                .map_or(f64::NAN, |packing| packing.tolerance);
+            Error::input(
+                "tolerance",
+                format!("{tolerance} m"),
+                format!("at least {finest} m, the finest level of detail"),
+            )
+        })
+    }
+}

@@ -1,0 +1,89 @@
+//! Packings kept in a folder, by what they were made from.
+
+use super::pack::{Packing, pack_mesh_watched};
+use super::target::Body;
+use crate::error::{Error, Result};
+use crate::files::write_whole;
+use crate::mesh::{Surface, TriangleMesh};
+use crate::objects::{read_spheres, write_spheres};
+use sha2::{Digest, Sha256};
+use std::fs::File;
+use std::io::BufReader;
+use std::path::PathBuf;
+
+/// Changes whenever [`pack_mesh`](super::pack_mesh) gives other spheres for the same mesh.
+const METHOD: &str = "packing 1";
+
+/// A folder of packings, one CSV file each, named by the SHA-256 of mesh, body, tolerance and method.
+///
+/// This and the mesh readers are all that touches files before the stage `study`.
+#[derive(Clone, Debug)]
+pub struct PackingCache {
+    folder: PathBuf,
+}
+
+impl PackingCache {
+    /// A cache in a folder that exists, beside the results.
+    pub fn new(folder: impl Into<PathBuf>) -> Self {
+        Self {
+            folder: folder.into(),
+        }
+    }
+
+    /// Where the packing of a mesh is kept.
+    pub fn path(&self, mesh: &TriangleMesh, body: Body, tolerance: f64) -> PathBuf {
+        self.folder
+            .join(format!("{}.csv", key(mesh, body, tolerance)))
+    }
+
+    /// [`pack_mesh`](super::pack_mesh), or what it gave before for the same mesh.
+    ///
+    /// A packing is kept if all of it is proved. Errors also for a kept file that cannot be read, and a folder that cannot
+    /// be written.
+    pub fn pack_mesh(
+        &self,
+        surface: &Surface,
+        body: Body,
+        tolerance: f64,
+        watch: &mut dyn FnMut(f64),
+    ) -> Result<Packing> {
+        let path = self.path(surface.mesh(), body, tolerance);
+        match File::open(&path) {
+            Ok(file) => {
+                let place = path.display().to_string();
+                return Ok(Packing {
+                    spheres: read_spheres(&place, BufReader::new(file))?,
+                    tolerance,
+                    n_unproved: 0,
+                });
+            }
+            Err(error) if error.kind() != std::io::ErrorKind::NotFound => {
+                return Err(Error::io(&path, "read", error));
+            }
+            Err(_) => {}
+        }
+        let packing = pack_mesh_watched(surface, body, tolerance, watch)?;
+        if packing.n_unproved == 0 {
+            write_whole(&path, |sink| write_spheres(&packing.spheres, sink))?;
+        }
+        Ok(packing)
+    }
+}
+
+fn key(mesh: &TriangleMesh, body: Body, tolerance: f64) -> String {
+    let mut hash = Sha256::new();
+    hash.update(METHOD);
+    hash.update(format!("{body:?}"));
+    hash.update(tolerance.to_le_bytes());
+    hash.update((mesh.vertices().len() as u64).to_le_bytes());
+    for coordinate in mesh.vertices().iter().flat_map(|v| v.to_array()) {
+        hash.update(coordinate.to_le_bytes());
+    }
+    for corner in mesh.triangles().iter().flatten() {
+        hash.update(corner.to_le_bytes());
+    }
+    hash.finalize()
+        .iter()
+        .map(|byte| format!("{byte:02x}"))
+        .collect()
+}
