@@ -103,7 +103,7 @@ impl Bvh {
         let mut found = None;
         self.search(
             within * within,
-            |bounds| distance_squared(bounds, point),
+            |bounds| bounds.distance_squared(point),
             |number, triangle, limit| {
                 let (on, feature) = triangle.closest(point);
                 let distance2 = on.distance_squared(point);
@@ -236,14 +236,6 @@ impl Bvh {
             }
         }
     }
-}
-
-/// The square of the distance from a point to a box, zero inside.
-fn distance_squared(bounds: &Aabb, point: DVec3) -> f64 {
-    let beyond = (bounds.min - point)
-        .max(point - bounds.max)
-        .max(DVec3::ZERO);
-    beyond.length_squared()
 }
 
 /// How far along a line it enters a box, at least `from`; infinite if it passes by.

@@ -101,3 +101,56 @@ impl Ball {
         2.0 * (e * (self.depth + e)).sqrt()
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::mesh::{Surface, TriangleMesh};
+
+    /// A box of half sizes 3, 2, 1 about the origin.
+    fn brick() -> Surface {
+        let corner = |i: u32| {
+            let sign = |bit: u32| if i & bit == 0 { -1.0 } else { 1.0 };
+            DVec3::new(3.0 * sign(1), 2.0 * sign(2), sign(4))
+        };
+        let quads = [
+            [0, 4, 6, 2],
+            [1, 3, 7, 5],
+            [0, 1, 5, 4],
+            [2, 6, 7, 3],
+            [0, 2, 3, 1],
+            [4, 5, 7, 6],
+        ];
+        let triangles = quads
+            .iter()
+            .flat_map(|&[a, b, c, d]| [[a, b, c], [a, c, d]]);
+        let corners = (0..8).map(corner).collect();
+        Surface::new(TriangleMesh::new("brick", corners, triangles.collect()).unwrap())
+    }
+
+    #[test]
+    fn the_largest_ball_in_a_box_is_as_deep_as_the_nearest_other_face_allows() {
+        let surface = brick();
+        let target = Target::new(&surface, Body::Solid, 0.1).unwrap();
+        for (x, y) in [(0.3, 0.2), (2.75, 0.1), (2.9, 1.5), (-1.0, -1.9)] {
+            let foot = DVec3::new(x, y, 1.0);
+            // Tangent to the top at the foot, and to the bottom or the nearest side.
+            let to_side = (3.0 - f64::abs(x)).min(2.0 - f64::abs(y));
+            let depth = f64::min(1.0, to_side);
+            let ball = Ball::largest(&target, foot, DVec3::NEG_Z, 0.0, 5.0).unwrap();
+            assert!((ball.depth - depth).abs() < 1e-7, "{ball:?} at {foot}");
+            assert!((ball.center - (foot + depth * DVec3::NEG_Z)).length() < 1e-7);
+        }
+    }
+
+    #[test]
+    fn slack_lets_the_centre_sink_as_far_as_other_faces_intrude_that_much() {
+        let surface = brick();
+        let target = Target::new(&surface, Body::Solid, 0.1).unwrap();
+        // 0.5 from a side: t − 0.2 = 0.5 where the side is the nearest.
+        let foot = DVec3::new(2.5, 0.0, 1.0);
+        let ball = Ball::largest(&target, foot, DVec3::NEG_Z, 0.2, 5.0).unwrap();
+        assert!((ball.center.z - 0.3).abs() < 1e-7, "{ball:?}");
+        assert!((ball.depth - 0.5).abs() < 1e-7, "{ball:?}");
+    }
+}

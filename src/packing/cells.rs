@@ -71,3 +71,33 @@ impl Cells {
         self.cut(below + 1, upper, most, 1.0 - share);
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::random::Seed;
+    use rand::Rng;
+
+    #[test]
+    fn every_cell_holds_some_points_and_not_too_many() {
+        let mut rng = Seed::new(1).named("cells").rng();
+        // On a lattice many points share a coordinate.
+        let mut lattice = || f64::from(rng.gen_range(0..12));
+        let points: Vec<DVec3> = (0..3000)
+            .map(|_| DVec3::new(lattice(), lattice(), 0.1 * lattice()))
+            .collect();
+        for share in [0.5, 0.4, 0.6] {
+            let cells = Cells::new(&points, 100, share);
+            let mut counts = vec![0; cells.n_cells()];
+            points.iter().for_each(|&p| counts[cells.cell_of(p)] += 1);
+            assert!(counts.iter().all(|&n| n > 0 && n <= 100), "{counts:?}");
+        }
+    }
+
+    #[test]
+    fn points_at_one_place_are_one_cell() {
+        let cells = Cells::new(&[DVec3::ONE; 50], 10, 0.5);
+        assert_eq!(cells.n_cells(), 1);
+        assert_eq!(cells.cell_of(DVec3::ZERO), 0);
+    }
+}

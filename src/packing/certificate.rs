@@ -71,3 +71,58 @@ fn gaps_of(triangle: Triangle, near: Vec<u32>, balls: &[Ball], e: f64, gaps: &mu
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::mesh::{Surface, TriangleMesh};
+    use crate::packing::Body;
+    use glam::DVec3;
+
+    /// A square of side 2 in the plane z = 0, as a sheet.
+    fn square() -> Surface {
+        let corner = |x, y| DVec3::new(x, y, 0.0);
+        let corners = [
+            corner(-1.0, -1.0),
+            corner(1.0, -1.0),
+            corner(1.0, 1.0),
+            corner(-1.0, 1.0),
+        ];
+        let triangles = vec![[0, 1, 2], [0, 2, 3]];
+        Surface::new(TriangleMesh::new("square", corners.to_vec(), triangles).unwrap())
+    }
+
+    fn gaps_with(balls: &[Ball], e: f64) -> Vec<Sample> {
+        let surface = square();
+        let target = Target {
+            surface: &surface,
+            body: Body::Sheet,
+            e,
+        };
+        gaps(&target, &[0, 1], balls)
+    }
+
+    #[test]
+    fn four_balls_hold_a_square_exactly_when_they_reach_its_middle_and_corners() {
+        let places = [(-0.5, -0.5), (0.5, -0.5), (0.5, 0.5), (-0.5, 0.5)];
+        let balls = places.map(|(x, y)| Ball::on_surface(DVec3::new(x, y, 0.0)));
+        // Each must reach √½ = 0.7071 = 2e.
+        assert!(gaps_with(&balls, 0.3536).is_empty());
+        let open = gaps_with(&balls, 0.3535);
+        assert!(!open.is_empty());
+        assert!(open.iter().all(|gap| gap.position.x.abs() < 0.02
+            || gap.position.y.abs() < 0.02
+            || gap.position.abs().min_element() < 0.02
+            || gap.position.abs().max_element() > 0.98));
+    }
+
+    #[test]
+    fn without_one_ball_there_is_a_gap_where_it_was() {
+        let places = [(-0.5, -0.5), (0.5, -0.5), (0.5, 0.5)];
+        let balls = places.map(|(x, y)| Ball::on_surface(DVec3::new(x, y, 0.0)));
+        let open = gaps_with(&balls, 0.36);
+        let missing = DVec3::new(-0.5, 0.5, 0.0);
+        assert!(open.iter().any(|gap| gap.position.distance(missing) < 0.5));
+        assert!(open.iter().all(|gap| gap.position.distance(missing) < 0.8));
+    }
+}

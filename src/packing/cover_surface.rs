@@ -58,11 +58,12 @@ pub(super) fn cover_surface(target: &Target, watch: &mut dyn FnMut(f64)) -> (Vec
             let done = (number as f64 + share) / n_passes as f64;
             watch(SAMPLING_TIME + (1.0 - SAMPLING_TIME) * done);
         });
-        let gaps = covering.gaps();
         if number + 1 < n_passes {
+            let gaps = covering.gaps();
             covering.sample_gaps(&gaps);
         }
     }
+    covering.chosen.retain(|ball| target.holds_center(ball));
     let mut gaps = covering.gaps();
     for _ in 0..MAX_REPAIRS {
         if gaps.is_empty() {
@@ -228,8 +229,19 @@ impl<'a> Covering<'a> {
 
     /// Adds few balls that cover these gaps.
     fn fill(&mut self, gaps: &[Sample]) {
+        // As points: a margin might leave a gap to no ball at all.
+        let point = |gap: &Sample| Sample {
+            radius: 0.0,
+            ..*gap
+        };
+        let gaps = &gaps.iter().map(point).collect::<Vec<_>>();
         let tree = SampleTree::new(gaps);
-        let balls = self.balls_at(gaps);
+        let mut balls = self.balls_at(gaps);
+        for ball in &mut balls {
+            if !self.target.holds_center(ball) {
+                *ball = Ball::on_surface(ball.foot);
+            }
+        }
         let mut rows_of = Lists::new();
         for ball in &balls {
             let mut rows = Vec::new();

@@ -52,7 +52,11 @@ impl Effort {
             feet_a_ball: 5.0 + 35.0 * share.sqrt(),
             steps_a_ball: 200.0 * share,
             moves_a_ball: 8.0 * share,
-            n_passes: if share < 0.15 { 1 } else { 3 },
+            n_passes: match share {
+                share if share < 0.15 => 1,
+                share if share < 0.25 => 2,
+                _ => 3,
+            },
         }
     }
 }

@@ -285,3 +285,73 @@ impl<'a> Cover<'a> {
 fn below(n: usize, rng: &mut impl RngCore) -> usize {
     ((u64::from(rng.next_u32()) * n as u64) >> 32) as usize
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::random::Seed;
+    use rand::Rng;
+
+    /// Sets of random rows; every row is in at least one.
+    fn random_sets(n_sets: usize, n_rows: usize, case: u64) -> Lists {
+        let mut rng = Seed::new(case).named("sets").rng();
+        let mut rows_of = Lists::new();
+        for set in 0..n_sets {
+            let has = |row: &usize| row % n_sets == set || rng.gen_bool(0.25);
+            rows_of.push((0..n_rows).filter(has).map(|row| row as u32));
+        }
+        rows_of
+    }
+
+    fn covers(rows_of: &Lists, sets: &[u32], n_rows: usize) -> bool {
+        let holds = |row: u32| {
+            sets.iter()
+                .any(|&set| rows_of.of(set as usize).contains(&row))
+        };
+        (0..n_rows as u32).all(holds)
+    }
+
+    #[test]
+    fn the_search_finds_as_few_sets_as_trying_all_choices() {
+        for case in 0..30 {
+            let (n_sets, n_rows) = (10, 24);
+            let rows_of = random_sets(n_sets, n_rows, case);
+            let choices = 0..1_u32 << n_sets;
+            let sets_in =
+                |choice: u32| (0..n_sets as u32).filter(move |set| choice >> set & 1 == 1);
+            let fewest = choices
+                .filter(|&choice| covers(&rows_of, &sets_in(choice).collect::<Vec<_>>(), n_rows))
+                .map(u32::count_ones)
+                .min();
+            let mut cover = Cover::new(&rows_of, n_rows);
+            cover.complete();
+            assert!(covers(&rows_of, cover.chosen(), n_rows), "case {case}");
+            cover.improve(2_000, &mut Seed::new(case).rng());
+            assert!(covers(&rows_of, cover.chosen(), n_rows), "case {case}");
+            assert_eq!(Some(cover.chosen().len() as u32), fewest, "case {case}");
+        }
+    }
+
+    #[test]
+    fn a_set_that_became_superfluous_is_dropped() {
+        let mut rows_of = Lists::new();
+        // Greedy takes the middle first, then needs both ends, which hold the middle between them.
+        rows_of.push([1, 2, 3, 4]);
+        rows_of.push([0, 1, 2]);
+        rows_of.push([3, 4, 5]);
+        let mut cover = Cover::new(&rows_of, 6);
+        cover.complete();
+        let mut chosen = cover.chosen().to_vec();
+        chosen.sort_unstable();
+        assert_eq!(chosen, [1, 2]);
+    }
+
+    #[test]
+    fn a_row_of_no_set_is_left_out() {
+        let mut rows_of = Lists::new();
+        rows_of.push([0, 2]);
+        let mut cover = Cover::new(&rows_of, 3);
+        cover.complete();
+        assert_eq!(cover.chosen(), [0]);
+    }
+}

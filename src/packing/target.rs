@@ -70,6 +70,11 @@ impl<'a> Target<'a> {
         Ball::largest(self, nearest.point, inward, 0.0, self.largest_radius())
     }
 
+    /// Whether a ball's centre is inside a solid, or on the surface. Where a mesh cuts through itself, faces may look inwards.
+    pub fn holds_center(&self, ball: &Ball) -> bool {
+        self.body == Body::Sheet || ball.depth == 0.0 || self.surface.contains(ball.center)
+    }
+
     /// The outward unit normal near a point of the surface; zero where there is none.
     pub fn normal_at(&self, point: DVec3) -> DVec3 {
         let nearest = self.surface.closest(point, f64::INFINITY);
