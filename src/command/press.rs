@@ -31,12 +31,12 @@ pub struct Args {
     depth_mm: Option<f64>,
     #[command(flatten)]
     place: Place,
-    /// What a mesh becomes: spheres around its vertices, or itself
-    #[arg(long, value_name = "MODEL", default_value = "vertex_spheres", value_parser = parse_model, requires = "mesh")]
-    model: ModelSpec,
-    /// Unit of the mesh file: m, cm, mm or in
-    #[arg(long, value_name = "UNIT", default_value = "m", requires = "mesh")]
-    unit: LengthUnit,
+    /// What a mesh becomes: vertex_spheres, mesh (itself) or packed [default: vertex_spheres]
+    #[arg(long, value_name = "MODEL", value_parser = parse_model)]
+    model: Option<ModelSpec>,
+    /// Unit of the mesh file: m, cm, mm or in [default: m]
+    #[arg(long, value_name = "UNIT")]
+    unit: Option<LengthUnit>,
     /// How far the spheres of a built-in object, or of a packed mesh, may be from its surface
     #[arg(long, value_name = "MM", default_value_t = 0.25)]
     surface_error_mm: f64,
@@ -172,6 +172,13 @@ impl Args {
 
     /// The object and `patch_from_object` before any travel.
     fn placed_object(&self) -> Result<(Model, Pose)> {
+        if self.source.mesh.is_none() && (self.model.is_some() || self.unit.is_some()) {
+            return Err(Error::input(
+                "press",
+                "--model or --unit without --mesh",
+                "them only beside --mesh FILE",
+            ));
+        }
         let model = match (&self.source.spheres, &self.source.mesh, &self.source.object) {
             (Some(path), _, _) => {
                 let place = path.display().to_string();
@@ -197,8 +204,8 @@ impl Args {
 
     fn mesh_use(&self) -> MeshUse<'_> {
         MeshUse {
-            unit: self.unit,
-            model: self.model,
+            unit: self.unit.unwrap_or_default(),
+            model: self.model.unwrap_or_default(),
             surface_error: self.surface_error_mm * MM,
             packings: None,
         }

@@ -49,18 +49,18 @@ impl Lines {
     pub fn nearest(&self, coordinate: f64) -> f64 {
         let index = (coordinate - self.positions[0]) * self.density + 0.5;
         // The cast cuts off the fraction, and saturates beside the grid.
-        self.positions[(index as usize).min(self.positions.len() - 1)]
+        self.positions[(index as u32 as usize).min(self.positions.len() - 1)]
     }
 
     /// The lines within `half_width` of a coordinate, and those that are beyond by no more than rounding.
     ///
     /// Casts, which cut off the fraction and saturate beside the grid, instead of floor and ceil: those are function calls
-    /// on the oldest processors that this runs on.
+    /// on the oldest processors that this runs on; by way of 32 bits, which is fewer instructions than 64.
     pub fn within(&self, coordinate: f64, half_width: f64) -> Range<usize> {
         let index = (coordinate - self.positions[0]) * self.density;
         let spread = half_width * self.density + ROUNDING;
-        let start = (index - spread + 1.0) as usize;
-        let end = ((index + spread) as usize + 1).min(self.positions.len());
+        let start = (index - spread + 1.0) as u32 as usize;
+        let end = ((index + spread) as u32 as usize + 1).min(self.positions.len());
         start.min(end)..end
     }
 }

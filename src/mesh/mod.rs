@@ -19,6 +19,7 @@
 //! \[FWN\]. Nothing is repaired here.
 
 mod bvh;
+mod bvh_build;
 mod format;
 mod measures;
 mod mesh_file;

@@ -1,0 +1,73 @@
+//! Meshes from the command line: what is said about one, and pressing and studying one as it is.
+
+mod command;
+
+use command::Case;
+
+/// A cube of 40 mm in millimetres, standing on z = 0.
+fn cube() -> String {
+    let mut text = String::new();
+    for corner in 0..8 {
+        let at = |bit: u32| if corner & bit == 0 { -20 } else { 20 };
+        text += &format!("v {} {} {}\n", at(1), at(2), at(4) + 20);
+    }
+    for quad in [
+        "1 5 7 3", "2 4 8 6", "1 2 6 5", "3 7 8 4", "1 3 4 2", "5 6 8 7",
+    ] {
+        text += &format!("f {quad}\n");
+    }
+    text
+}
+
+#[test]
+fn a_mesh_is_described() {
+    let case = Case::new();
+    case.file("cube.obj", cube());
+    let (said, _) = case.succeeds(&["objects", "mesh", "cube.obj", "--unit", "mm"]);
+    assert!(
+        said.starts_with("size        40.0 × 40.0 × 40.0 mm\n"),
+        "{said}"
+    );
+    assert!(said.contains("\nvolume      64.00 cm³\n"), "{said}");
+    assert!(said.ends_with("\nfaults      none\n"), "{said}");
+}
+
+#[test]
+fn a_pressed_cube_is_flat_under_its_face_and_not_inflated() {
+    let case = Case::new();
+    case.file("cube.obj", cube());
+    let press =
+        "press --mesh cube.obj --unit mm --model mesh --taxels 32x32 --depth-mm 2 --out frame.csv";
+    let (_, error) = case.succeeds(&press.split(' ').collect::<Vec<_>>());
+    // 20 taxels at 2 mm pitch lie under 40 mm; the nearest beside them are 1 mm, one radius, away.
+    assert!(
+        error.starts_with("400 of 1024 taxels touched, 0 saturated; deepest 2.000 mm"),
+        "{error}"
+    );
+    let frame = std::fs::read_to_string(case.path("frame.csv")).unwrap();
+    let deflections: Vec<f64> = frame
+        .split([',', '\n'])
+        .filter_map(|n| n.parse().ok())
+        .collect();
+    let under = deflections.iter().filter(|&&d| (d - 2e-3).abs() < 1e-9);
+    assert_eq!(under.count(), 400);
+}
+
+#[test]
+fn words_that_no_mesh_has_are_refused() {
+    let case = Case::new();
+    case.file("cube.obj", cube());
+    case.file("cube.step", cube());
+    let refused = |arguments: &str| {
+        let output = case.run(&arguments.split(' ').collect::<Vec<_>>());
+        assert_eq!(output.status.code(), Some(2), "{arguments}");
+        String::from_utf8(output.stderr).unwrap()
+    };
+    assert!(refused("objects mesh cube.obj --unit ft").contains("expected one of m, cm, mm, in"));
+    assert!(refused("objects mesh cube.step").contains("a name that ends in .ply, .obj or .stl"));
+    assert!(refused("objects mesh none.stl").contains("none.stl: cannot be opened"));
+    assert!(
+        refused("press --mesh cube.obj --model cage").contains("expected vertex_spheres or mesh")
+    );
+    assert!(refused("press --object mug --model mesh").contains("--mesh"));
+}
