@@ -7,9 +7,10 @@ use crate::recognition::dataset::{Dataset, check_features, check_labels, distinc
 use crate::recognition::grid::Grid;
 use crate::recognition::kernel::{Gamma, Kernel, KernelFunction};
 use crate::recognition::scalar::Scalar;
+use crate::recognition::sorted::{Sorted, centre};
 use crate::recognition::split::Split;
 use crate::recognition::svm::{Solver, SvmParams};
-use crate::recognition::training::{Goal, Sorted, centre};
+use crate::recognition::training::Goal;
 use crate::{Error, Result};
 
 /// What may be chosen.

@@ -7,8 +7,8 @@ use ndarray::{Array1, Array2, ArrayView2, Axis, s};
 use crate::recognition::kernel::KernelFunction;
 use crate::recognition::points::Points;
 use crate::recognition::scalar::Scalar;
+use crate::recognition::sorted::Sorted;
 use crate::recognition::svm::{BinaryProblem, Multiclass};
-use crate::recognition::training::Sorted;
 use crate::recognition::voting::Ballot;
 
 /// Rows whose decision values are computed at once: with 5,000 support vectors their kernel values take 5 MB. Larger

@@ -10,9 +10,10 @@ use crate::recognition::dataset::Dataset;
 use crate::recognition::kernel::KernelFunction;
 use crate::recognition::scalar::Scalar;
 use crate::recognition::smo::{Part, Room, Smo};
+use crate::recognition::sorted::Sorted;
 use crate::recognition::split::Split;
 use crate::recognition::svm::Multiclass;
-use crate::recognition::training::{Goal, Sorted};
+use crate::recognition::training::Goal;
 use crate::recognition::voting::Ballot;
 
 /// Training rows and their division into folds.

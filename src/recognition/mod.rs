@@ -39,6 +39,7 @@
 
 use serde::{Deserialize, Serialize};
 
+mod between;
 pub mod choice;
 pub mod class_model;
 pub mod classifier;
@@ -69,6 +70,7 @@ pub(crate) mod ranked;
 mod scalar;
 pub mod scaling;
 mod smo;
+mod sorted;
 pub mod split;
 pub mod svm;
 pub mod svm_model;

@@ -90,11 +90,6 @@ pub(crate) struct PointsView<'a, T> {
 }
 
 impl<T: Scalar> PointsView<'_, T> {
-    /// n.
-    pub fn len(&self) -> usize {
-        self.values.nrows()
-    }
-
     /// `K(x, x)` per row.
     pub fn diagonal(&self, kernel: &KernelFunction) -> Vec<T> {
         self.norms

@@ -10,8 +10,9 @@ use crate::recognition::dual::DualSolution;
 use crate::recognition::kernel::{Kernel, KernelFunction};
 use crate::recognition::linfa_solver;
 use crate::recognition::scalar::Scalar;
+use crate::recognition::sorted::{Sorted, about, centre};
 use crate::recognition::svm_model::{Decision, SvmModel};
-use crate::recognition::training::{Goal, Sorted, about, centre};
+use crate::recognition::training::Goal;
 use crate::{Error, Result};
 
 /// How binary classifiers make one for many classes.

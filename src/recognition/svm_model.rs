@@ -11,8 +11,8 @@ use crate::Result;
 use crate::recognition::dataset::check_width;
 use crate::recognition::decision::DecisionFunctions;
 use crate::recognition::scalar::Scalar;
+use crate::recognition::sorted::Sorted;
 use crate::recognition::svm::{BinaryProblem, Multiclass};
-use crate::recognition::training::Sorted;
 use crate::recognition::voting::Voting;
 
 /// A trained SVM. Implements linfa's [`PredictInplace`] and so its `Predict`.

@@ -27,8 +27,8 @@ pub struct ChartPlan {
 const ALONG_X: [Axis; 13] = [
     Axis::Ratio,
     Axis::Measurements,
-    Axis::TrainTouches,
     Axis::FusedTouches,
+    Axis::TrainTouches,
     Axis::Noise,
     Axis::Smoothing,
     Axis::C,

@@ -1,0 +1,185 @@
+//! Training rows sorted by class, about their centre.
+
+use std::ops::Range;
+
+use ndarray::{Array1, ArrayView1, ArrayView2, ArrayViewMut2, Axis, Zip};
+
+use crate::recognition::dataset::Dataset;
+use crate::recognition::kernel::KernelFunction;
+use crate::recognition::points::Points;
+use crate::recognition::scalar::Scalar;
+use crate::recognition::svm::BinaryProblem;
+
+/// Training rows sorted by class, about their centre.
+pub(crate) struct Sorted<T> {
+    points: Points<T>,
+    /// The original number of each sorted row.
+    order: Vec<usize>,
+    /// Where each original row is.
+    place: Vec<usize>,
+    /// The sorted rows of each class.
+    ranges: Vec<Range<usize>>,
+    classes: Vec<usize>,
+    kernel: KernelFunction,
+    centre: Array1<f64>,
+    /// `(x − c)·c` per sorted row, for ρ about the origin with a linear kernel; empty for the others.
+    centre_products: Vec<f64>,
+}
+impl<T: Scalar> Sorted<T> {
+    /// Sorts rows by class; within a class they keep their order.
+    pub fn new(
+        data: &Dataset,
+        classes: &[usize],
+        kernel: KernelFunction,
+        centre: ArrayView1<f64>,
+    ) -> Self {
+        Self::within_classes(data, classes, kernel, centre, |_| 0)
+    }
+
+    /// Sorts rows by class, and within a class by a key.
+    pub fn within_classes(
+        data: &Dataset,
+        classes: &[usize],
+        kernel: KernelFunction,
+        centre: ArrayView1<f64>,
+        key: impl Fn(usize) -> usize,
+    ) -> Self {
+        let labels = data.targets.view();
+        let mut order: Vec<usize> = (0..labels.len()).collect();
+        order.sort_by_key(|&row| (labels[row], key(row)));
+        let start = |class: usize| order.partition_point(|&row| labels[row] < class);
+        let ranges = classes
+            .iter()
+            .map(|&class| start(class)..start(class + 1))
+            .collect();
+        let mut place = vec![0; order.len()];
+        for (at, &row) in order.iter().enumerate() {
+            place[row] = at;
+        }
+        let rows = || order.iter().map(|&row| data.records.row(row));
+        let centre_products = match kernel {
+            // Row by row: far from the origin, x·c − c·c would be two large numbers less each other.
+            KernelFunction::Linear => about(rows(), centre, |moved| moved.dot(&centre)).collect(),
+            _ => Vec::new(),
+        };
+        Self {
+            points: Points::of_rows(rows(), centre),
+            order,
+            place,
+            ranges,
+            classes: classes.to_vec(),
+            kernel,
+            centre: centre.to_owned(),
+            centre_products,
+        }
+    }
+
+    /// The rows, class by class.
+    pub fn points(&self) -> &Points<T> {
+        &self.points
+    }
+
+    /// The original number of each sorted row.
+    pub fn order(&self) -> &[usize] {
+        &self.order
+    }
+
+    /// Where each original row is among the sorted ones.
+    pub fn place(&self) -> &[usize] {
+        &self.place
+    }
+
+    /// The kernel of all problems.
+    pub fn kernel(&self) -> KernelFunction {
+        self.kernel
+    }
+
+    /// What was subtracted from every row.
+    pub fn centre(&self) -> ArrayView1<'_, f64> {
+        self.centre.view()
+    }
+
+    /// ρ of a problem's decision function about the centre.
+    pub fn rho_about_centre(&self, problem: &BinaryProblem) -> f64 {
+        problem.solution.rho
+            - self.moved(
+                problem.rows.iter().map(|&row| self.place[row]),
+                &problem.solution.coefficients,
+            )
+    }
+
+    /// What the centre adds to ρ, for coefficients of these sorted rows; 0 for kernels other than the linear one.
+    pub fn moved(&self, rows: impl Iterator<Item = usize>, coefficients: &[f64]) -> f64 {
+        if self.centre_products.is_empty() {
+            return 0.0;
+        }
+        rows.zip(coefficients)
+            .map(|(row, beta)| beta * self.centre_products[row])
+            .sum()
+    }
+
+    /// The classes, ascending.
+    pub fn classes(&self) -> &[usize] {
+        &self.classes
+    }
+
+    /// Each class with its sorted rows.
+    pub fn classes_and_ranges(&self) -> impl Iterator<Item = (usize, Range<usize>)> + '_ {
+        self.classes
+            .iter()
+            .copied()
+            .zip(self.ranges.iter().cloned())
+    }
+
+    /// The sorted rows of each class.
+    pub fn ranges(&self) -> &[Range<usize>] {
+        &self.ranges
+    }
+
+    /// The rows of neighbouring classes.
+    pub fn rows_of(&self, classes: &Range<usize>) -> Range<usize> {
+        self.ranges[classes.start].start..self.ranges[classes.end - 1].end
+    }
+
+    /// Sorted numbers of the rows of two classes.
+    pub fn pair_rows(&self, a: usize, b: usize) -> Vec<usize> {
+        self.ranges[a]
+            .clone()
+            .chain(self.ranges[b].clone())
+            .collect()
+    }
+
+    /// Kernel values of some rows with others, into rows.len() × columns.len().
+    pub fn kernel_into(&self, rows: Range<usize>, columns: Range<usize>, to: ArrayViewMut2<T>) {
+        let columns = self.points.range(columns);
+        self.points
+            .range(rows)
+            .kernel_into(columns, &self.kernel, to);
+    }
+}
+
+/// What a function gives for each row (m) less the centre (m).
+pub(crate) fn about<'a, V>(
+    rows: impl Iterator<Item = ArrayView1<'a, f64>>,
+    centre: ArrayView1<f64>,
+    value: impl Fn(&Array1<f64>) -> V,
+) -> impl Iterator<Item = V> {
+    let mut moved = Array1::zeros(centre.len());
+    rows.map(move |row| {
+        Zip::from(&mut moved)
+            .and(row)
+            .and(centre)
+            .for_each(|to, x, c| *to = x - c);
+        value(&moved)
+    })
+}
+
+/// Where kernels are taken about: the mean of the rows where that changes nothing but rounding, else the origin.
+pub(crate) fn centre(features: ArrayView2<f64>, kernel: &KernelFunction) -> Array1<f64> {
+    match kernel {
+        KernelFunction::Linear | KernelFunction::Rbf { .. } => {
+            features.sum_axis(Axis(0)) / features.nrows() as f64
+        }
+        KernelFunction::Polynomial { .. } => Array1::zeros(features.ncols()),
+    }
+}
