@@ -134,8 +134,8 @@ pub(super) fn method_name(method: DetailMethod) -> &'static str {
     match method {
         DetailMethod::Mesh => "exact mesh",
         DetailMethod::Packing => "packing",
-        DetailMethod::VertexSpheres => "a sphere a vertex",
-        DetailMethod::DecimatedVertexSpheres => "a sphere a vertex, as many as packed",
+        DetailMethod::VertexSpheres => "vertex spheres",
+        DetailMethod::DecimatedVertexSpheres => "decimated vertex spheres",
     }
 }
 

@@ -52,7 +52,7 @@ pub fn object_detail_summary(tables: &ObjectDetailTables, width: usize) -> Strin
         "surface mm",
         "error mm",
         "worst mm",
-        "after offset mm",
+        "− offset mm",
         "× packing",
         "µs a touch",
     ]);
@@ -79,7 +79,7 @@ pub fn object_detail_summary(tables: &ObjectDetailTables, width: usize) -> Strin
         }
     }
     format!(
-        "Medians over objects; error is the mean over touched taxels of |deflection − that of the exact mesh|, worst that of \
-        the worst object, after offset with the best constant depth added, × packing the ratio of that to the packing's.\n\n{table}\n"
+        "Medians over objects; error is the mean over touched taxels of |deflection − that of the exact mesh|, worst\n\
+        that of the worst object, − offset with the best constant depth taken off, × packing the ratio of that to the packing's.\n\n{table}\n"
     )
 }

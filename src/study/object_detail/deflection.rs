@@ -11,9 +11,9 @@ use std::time::Instant;
 /// How far a model's deflections are from the mesh's, metres.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct DeflectionError {
-    /// Σ |δ − δ*| over all taxels / taxels that the mesh touches.
+    /// |δ − δ*|, mean over taxels that either touches.
     pub mean: f64,
-    /// 95th percentile of |δ − δ*| over taxels that either touches.
+    /// 95th percentile over the same.
     pub p95: f64,
 }
 
@@ -81,18 +81,38 @@ impl Truth {
             errors.push(difference.abs());
         });
         DeflectionError {
-            mean: errors.iter().sum::<f64>() / self.n_touched.max(1) as f64,
+            mean: errors.iter().sum::<f64>() / errors.len().max(1) as f64,
             p95: quantile(&mut errors, 0.95),
         }
+    }
+
+    /// Mean error of a model that is touched as far past its own first contact as the mesh past its: what a study feels that
+    /// has no other model of the object. Metres.
+    pub(super) fn error_past_own_contact(&self, model: &Model) -> f64 {
+        let scene = scene(&self.patch, model);
+        let mut workspace = Workspace::new();
+        let (mut sum, mut count) = (0.0, 0_usize);
+        for reading in &self.readings {
+            let pose = [reading.patch_from_object];
+            press_to_depth(&scene, &pose, reading.depth, &mut workspace);
+            reading.each_difference(&workspace, &mut |difference| {
+                sum += difference.abs();
+                count += 1;
+            });
+        }
+        sum / count.max(1) as f64
     }
 
     /// The constant offset, metres, with which the error is least: 0 or better.
     pub(super) fn best_offset(&self, model: &Model) -> f64 {
         let scene = scene(&self.patch, model);
         let cost = |offset| {
-            let mut sum = 0.0;
-            self.each_difference(&scene, offset, |difference| sum += difference.abs());
-            sum
+            let (mut sum, mut count) = (0.0, 0_usize);
+            self.each_difference(&scene, offset, |difference| {
+                sum += difference.abs();
+                count += 1;
+            });
+            sum / count.max(1) as f64
         };
         let Some((low, high)) = self.offset_range(&scene) else {
             return 0.0;
@@ -131,11 +151,7 @@ impl Truth {
         for reading in &self.readings {
             let travel = reading.travel - offset;
             press_to_travel(scene, &[reading.patch_from_object], travel, &mut workspace);
-            for (model, mesh) in workspace.deflections().iter().zip(&reading.deflections) {
-                if *model > 0.0 || *mesh > 0.0 {
-                    visit(model - mesh);
-                }
-            }
+            reading.each_difference(&workspace, &mut visit);
         }
     }
 
@@ -151,6 +167,17 @@ impl Truth {
             ))
         });
         ahead.reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)))
+    }
+}
+
+impl Reading {
+    /// Calls `visit` with δ − δ* of each taxel that either touches.
+    fn each_difference(&self, workspace: &Workspace, visit: &mut impl FnMut(f64)) {
+        for (model, mesh) in workspace.deflections().iter().zip(&self.deflections) {
+            if *model > 0.0 || *mesh > 0.0 {
+                visit(model - mesh);
+            }
+        }
     }
 }
 

@@ -6,10 +6,10 @@
 //! Each mesh is touched exactly ([`MeshModel`](crate::objects::MeshModel)); then sphere models of it are read with the patch
 //! at the very same places:
 //!
-//! - **error**: Σ |δ − δ\*| over all taxels and touches / number of taxels that the mesh touches (δ\* of the mesh, δ of the
-//!   model). Touches where the mesh has none count in the sum and not in the number: nothing dilutes an error.
+//! - **error**: |δ − δ\*|, mean over the taxels of all touches that the mesh (δ\*) or the model (δ) touches.
 //! - **error after offset**: the same with the patch drawn back by the constant distance, one for all touches of a model, that
 //!   makes the error least. A model that is only inflated has none left.
+//! - **error past own contact**: each touch as far past the model's own first contact as the mesh past its.
 
 mod deflection;
 mod plan;

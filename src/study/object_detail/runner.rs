@@ -146,5 +146,6 @@ fn score(variant: &Variant, surface: &Surface, truth: &Truth, n_points: usize) -
         offset_mm: MM * offset,
         error_after_offset_mm: MM * after.mean,
         error_after_offset_p95_mm: MM * after.p95,
+        error_own_contact_mm: MM * truth.error_past_own_contact(model),
     }
 }

@@ -47,6 +47,7 @@ fn summary_row(
     let farthest = quartiles(&|(_, score)| score.protrusion_max_mm.max(score.gap_max_mm));
     let error = quartiles(&|(_, score)| score.error_mm);
     let after = quartiles(&|(_, score)| score.error_after_offset_mm);
+    let own = quartiles(&|(_, score)| score.error_own_contact_mm);
     let ratios = of_level.iter().filter_map(|(cell, score)| {
         let packing = rows.iter().find(|(other, _)| {
             other.object == cell.object
@@ -77,6 +78,8 @@ fn summary_row(
         error_after_offset_median_mm: after[1],
         error_after_offset_q3_mm: after[2],
         error_after_offset_worst_mm: after[3],
+        error_own_contact_median_mm: own[1],
+        error_own_contact_worst_mm: own[3],
         times_packing: (!ratios.is_empty()).then(|| quantile(&mut ratios, 0.5)),
     }
 }

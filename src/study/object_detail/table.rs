@@ -39,9 +39,9 @@ pub struct DetailScore {
     pub n_missed: usize,
     /// Taxels that the mesh touches, all touches.
     pub n_taxels: usize,
-    /// Σ |deflection − that of the mesh| over all taxels / `n_taxels`, mm.
+    /// |deflection − that of the mesh|, mean over taxels that either touches, mm.
     pub error_mm: f64,
-    /// 95th percentile over taxels that either touches, mm.
+    /// 95th percentile over the same, mm.
     pub error_p95_mm: f64,
     /// How far the patch is drawn back for `error_after_offset_mm`, mm; negative if it is pushed on.
     pub offset_mm: f64,
@@ -49,6 +49,8 @@ pub struct DetailScore {
     pub error_after_offset_mm: f64,
     /// `error_p95_mm` with the same offset.
     pub error_after_offset_p95_mm: f64,
+    /// `error_mm` where the model is touched as far past its own first contact as the mesh past its, as studies touch.
+    pub error_own_contact_mm: f64,
 }
 
 /// What a model costs (with the [`DetailCell`] before it: a row of `timing.csv`).
@@ -105,6 +107,10 @@ pub struct DetailSummary {
     pub error_after_offset_q3_mm: f64,
     /// The worst object's.
     pub error_after_offset_worst_mm: f64,
+    /// Median of [`DetailScore::error_own_contact_mm`].
+    pub error_own_contact_median_mm: f64,
+    /// The worst object's.
+    pub error_own_contact_worst_mm: f64,
     /// Median over objects of `error_after_offset_mm` / that of the packing of the same level, if there is one.
     pub times_packing: Option<f64>,
 }
