@@ -4,13 +4,12 @@ mod command;
 
 use bubbletouch::report::csv_tables::read_rows;
 use bubbletouch::sensing::{Basis, Ensemble, Solver};
+use bubbletouch::study::StudyKind;
 use bubbletouch::study::reconstruction::table::{
     EnsembleStatistics, ReconstructionCell, ReconstructionPareto, ReconstructionScore,
     ReconstructionTime,
 };
-use bubbletouch::study::reconstruction::{
-    ReconstructionPlan, ReconstructionStudySpec, is_reconstruction_study,
-};
+use bubbletouch::study::reconstruction::{ReconstructionPlan, ReconstructionStudySpec};
 use command::Case;
 use std::fs;
 
@@ -128,9 +127,9 @@ fn the_tables_are_the_same_bytes_at_any_number_of_threads_and_hold_every_cell() 
 
 #[test]
 fn a_study_says_which_kind_it_is_and_other_commands_say_what_they_take() {
-    assert!(is_reconstruction_study(SMALL));
-    assert!(!is_reconstruction_study("question = 1"));
-    assert!(!is_reconstruction_study("not TOML ["));
+    assert_eq!(StudyKind::of(SMALL), StudyKind::Reconstruction);
+    assert_eq!(StudyKind::of("question = 1"), StudyKind::Recognition);
+    assert_eq!(StudyKind::of("not TOML ["), StudyKind::Recognition);
     let case = Case::new();
     case.file("study.toml", SMALL);
     for command in ["plan", "touches"] {

@@ -1,10 +1,9 @@
 //! The experiments that come with the crate: they say what they ask, and they can run.
 
 use bubbletouch::random::Seed;
-use bubbletouch::study::reconstruction::{
-    ReconstructionPlan, ReconstructionStudySpec, is_reconstruction_study,
-};
-use bubbletouch::study::{Plan, StudySpec, Sweep, draw_touches, load_objects};
+use bubbletouch::study::object_detail::{ObjectDetailPlan, ObjectDetailStudySpec};
+use bubbletouch::study::reconstruction::{ReconstructionPlan, ReconstructionStudySpec};
+use bubbletouch::study::{Plan, StudyKind, StudySpec, Sweep, draw_touches, load_objects};
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -48,7 +47,14 @@ fn every_experiment_can_run() {
     for path in experiments() {
         let place = path.display().to_string();
         let text = fs::read_to_string(&path).unwrap();
-        if is_reconstruction_study(&text) {
+        if StudyKind::of(&text) == StudyKind::ObjectDetail {
+            let spec = ObjectDetailStudySpec::parse(&place, &text).unwrap();
+            assert!(!spec.question.is_empty() && !spec.expected.is_empty());
+            let plan = ObjectDetailPlan::new(&place, spec).unwrap();
+            assert!(plan.n_models() > 2, "{place} compares something");
+            continue;
+        }
+        if StudyKind::of(&text) == StudyKind::Reconstruction {
             let spec = ReconstructionStudySpec::parse(&place, &text).unwrap();
             assert!(!spec.question.is_empty() && !spec.expected.is_empty());
             let plan = ReconstructionPlan::new(&place, spec).unwrap();
@@ -65,7 +71,7 @@ fn every_experiment_can_run() {
             println!("{place}: planned; its meshes are not part of the crate");
             continue;
         }
-        let objects = load_objects(&plan.spec.objects).unwrap();
+        let objects = load_objects(&plan.spec.objects, None).unwrap();
         let seed = Seed::new(plan.spec.seed);
         let touched = draw_touches(objects, &plan.placement, &seed).unwrap();
         let sweep = Sweep::new(&plan, &touched).unwrap();

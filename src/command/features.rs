@@ -1,6 +1,6 @@
 //! `bubbletouch features`: what one cell of a study learns from.
 
-use super::output::output_folder;
+use super::output::{output_folder, packings_beside};
 use super::study_args::StudyArgs;
 use bubbletouch::Result;
 use bubbletouch::report::progress;
@@ -23,7 +23,7 @@ pub struct Args {
 }
 
 pub fn features(args: &Args) -> Result<()> {
-    let loaded = args.study.load()?;
+    let loaded = args.study.load(Some(&packings_beside(&args.out)))?;
     output_folder(&args.out)?;
     let progress = progress::to_stderr();
     let set = write_features(

@@ -8,6 +8,7 @@ mod output;
 mod plan;
 mod press;
 mod run;
+mod run_object_detail;
 mod run_reconstruction;
 mod study_args;
 mod touches;

@@ -5,7 +5,7 @@ use bubbletouch::files::write_bytes;
 use bubbletouch::mesh::{LengthUnit, MeshReport};
 use bubbletouch::objects::{Catalogue, Entry, Object, SphereUnion};
 use bubbletouch::report::object_picture::{contact_sheet, object_picture};
-use bubbletouch::study::{ModelSpec, load_mesh, read_mesh_file};
+use bubbletouch::study::{MeshUse, ModelSpec, load_mesh, read_mesh_file};
 use bubbletouch::{Error, Result};
 use comfy_table::{CellAlignment, Table, presets::NOTHING};
 use rayon::prelude::*;
@@ -113,9 +113,15 @@ impl Listed {
 impl Args {
     fn build(&self) -> Result<Vec<Listed>> {
         if let Some(path) = &self.mesh {
+            let wanted = MeshUse {
+                unit: LengthUnit::Metre,
+                model: ModelSpec::VertexSpheres,
+                surface_error: self.surface_error_mm * 1e-3,
+                packings: None,
+            };
             return Ok(vec![Listed {
                 set: "mesh".to_owned(),
-                object: load_mesh(path, LengthUnit::Metre, ModelSpec::VertexSpheres)?,
+                object: load_mesh(path, &wanted)?,
             }]);
         }
         let catalogue = Catalogue::builtin()?;

@@ -1,7 +1,7 @@
 //! Where results go.
 
 use bubbletouch::{Error, Result};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// Makes a folder to write to; the error says if a file stands there.
 pub fn output_folder(folder: &Path) -> Result<()> {
@@ -21,6 +21,11 @@ pub fn output_folder(folder: &Path) -> Result<()> {
         ),
         _ => Error::io(folder, "create folder", e),
     })
+}
+
+/// Where packed meshes are kept from run to run: beside a folder of results.
+pub fn packings_beside(folder: &Path) -> PathBuf {
+    folder.parent().unwrap_or(Path::new("")).join("packings")
 }
 
 /// Columns of the terminal, or of a page where there is none.

@@ -11,7 +11,7 @@ pub struct Args {
 }
 
 pub fn plan(args: &Args) -> Result<()> {
-    let loaded = args.study.load()?;
+    let loaded = args.study.load(None)?;
     let estimate = Estimate::new(&loaded.plan, &loaded.touched, &loaded.sweep);
     println!("{}: {}", loaded.name, loaded.plan.spec.question);
     println!("{estimate}");

@@ -9,7 +9,7 @@ use bubbletouch::report::frame_files::write_frame;
 use bubbletouch::report::pressure_map::pressure_text;
 use bubbletouch::report::terminal::Ink;
 use bubbletouch::signal::Quantity;
-use bubbletouch::study::{ModelSpec, load_mesh};
+use bubbletouch::study::{MeshUse, ModelSpec, load_mesh};
 use bubbletouch::world::{Grid, Patch, RestPose, RestPoses, Scene, Taxel, Touch};
 use bubbletouch::{Error, Result};
 use ndarray::Array2;
@@ -31,13 +31,13 @@ pub struct Args {
     depth_mm: Option<f64>,
     #[command(flatten)]
     place: Place,
-    /// What a mesh becomes: vertex_spheres or mesh, itself [default: vertex_spheres]
+    /// What a mesh becomes: vertex_spheres, mesh (itself) or packed [default: vertex_spheres]
     #[arg(long, value_name = "MODEL", value_parser = parse_model)]
     model: Option<ModelSpec>,
     /// Unit of the mesh file: m, cm, mm or in [default: m]
     #[arg(long, value_name = "UNIT")]
     unit: Option<LengthUnit>,
-    /// How far the spheres of a built-in object may be from its surface
+    /// How far the spheres of a built-in object, or of a packed mesh, may be from its surface
     #[arg(long, value_name = "MM", default_value_t = 0.25)]
     surface_error_mm: f64,
     /// Columns and rows of the array
@@ -111,7 +111,8 @@ fn parse_model(text: &str) -> std::result::Result<ModelSpec, String> {
     match text {
         "vertex_spheres" => Ok(ModelSpec::VertexSpheres),
         "mesh" => Ok(ModelSpec::Mesh),
-        _ => Err("expected vertex_spheres or mesh".to_owned()),
+        "packed" => Ok(ModelSpec::Packed),
+        _ => Err("expected vertex_spheres, mesh or packed".to_owned()),
     }
 }
 
@@ -190,10 +191,7 @@ impl Args {
                 })?;
                 return Ok((read_spheres(&place, file)?.into(), Pose::IDENTITY));
             }
-            (_, Some(path), _) => {
-                let unit = self.unit.unwrap_or_default();
-                load_mesh(path, unit, self.model.unwrap_or_default())?.model
-            }
+            (_, Some(path), _) => load_mesh(path, &self.mesh_use())?.model,
             (_, _, Some(name)) => self.build(name)?,
             (None, None, None) => unreachable!("the command line requires one source"),
         };
@@ -202,6 +200,15 @@ impl Args {
             .touch()?
             .patch_from_object(&self.place.rest(&model)?);
         Ok((model, pose))
+    }
+
+    fn mesh_use(&self) -> MeshUse<'_> {
+        MeshUse {
+            unit: self.unit.unwrap_or_default(),
+            model: self.model.unwrap_or_default(),
+            surface_error: self.surface_error_mm * MM,
+            packings: None,
+        }
     }
 
     fn build(&self, name: &str) -> Result<Model> {

@@ -1,6 +1,7 @@
 //! `bubbletouch run`: a study from its file to its folder of results.
 
-use super::output::{output_folder, terminal_width};
+use super::output::{output_folder, packings_beside, terminal_width};
+use super::run_object_detail::run_object_detail;
 use super::run_reconstruction::run_reconstruction;
 use super::study_args::{LoadedStudy, StudyArgs};
 use bubbletouch::Result;
@@ -8,7 +9,7 @@ use bubbletouch::files::write_bytes;
 use bubbletouch::objects::Model;
 use bubbletouch::report::html::{Limit, ReportPage, Snapshots};
 use bubbletouch::report::{headlines, progress, results, terminal};
-use bubbletouch::study::{Outcome, run as run_study, sample_frames};
+use bubbletouch::study::{Outcome, StudyKind, run as run_study, sample_frames};
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
@@ -37,11 +38,16 @@ pub fn run(args: &Args) -> Result<()> {
         Some(folder) => folder.clone(),
         None => Path::new("results").join(args.study.name()?),
     };
-    if args.study.is_reconstruction()? {
-        return run_reconstruction(&args.study, &folder);
+    match args.study.kind()? {
+        StudyKind::Recognition => run_recognition(args, &folder, start),
+        StudyKind::Reconstruction => run_reconstruction(&args.study, &folder),
+        StudyKind::ObjectDetail => run_object_detail(&args.study, &folder),
     }
-    let loaded = args.study.load()?;
-    output_folder(&folder)?;
+}
+
+fn run_recognition(args: &Args, folder: &Path, start: Instant) -> Result<()> {
+    let loaded = args.study.load(Some(&packings_beside(folder)))?;
+    output_folder(folder)?;
     let progress = progress::to_stderr();
     let outcome = run_study(
         &loaded.plan,
@@ -51,7 +57,7 @@ pub fn run(args: &Args) -> Result<()> {
     )?;
     progress.stage("report", 1);
     let page = report_page(&loaded, &outcome, args, start.elapsed().as_secs_f64())?;
-    results::write_all(&folder, &outcome.tables, &page)?;
+    results::write_all(folder, &outcome.tables, &page)?;
     write_bytes(
         &folder.join("study.toml"),
         loaded.plan.spec.to_toml().as_bytes(),

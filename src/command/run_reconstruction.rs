@@ -1,6 +1,6 @@
 //! `bubbletouch run` of a study that reconstructs frames.
 
-use super::output::{output_folder, terminal_width};
+use super::output::{output_folder, packings_beside, terminal_width};
 use super::study_args::StudyArgs;
 use bubbletouch::Result;
 use bubbletouch::files::write_bytes;
@@ -17,7 +17,7 @@ use std::time::Instant;
 pub fn run_reconstruction(args: &StudyArgs, folder: &Path) -> Result<()> {
     let start = Instant::now();
     let plan = args.reconstruction_plan()?;
-    let objects = load_objects(&plan.spec.objects)?;
+    let objects = load_objects(&plan.spec.objects, Some(&packings_beside(folder)))?;
     let touched = draw_touches(objects, &plan.placement, &Seed::new(plan.spec.seed))?;
     output_folder(folder)?;
     let progress = progress::to_stderr();

@@ -1,12 +1,13 @@
 //! What `run`, `plan` and `touches` have in common: a study file, and what overrides it.
 
 use bubbletouch::random::Seed;
-use bubbletouch::study::reconstruction::{
-    ReconstructionPlan, ReconstructionStudySpec, is_reconstruction_study,
+use bubbletouch::study::object_detail::{ObjectDetailPlan, ObjectDetailStudySpec};
+use bubbletouch::study::reconstruction::{ReconstructionPlan, ReconstructionStudySpec};
+use bubbletouch::study::{
+    ObjectsSpec, Plan, StudyKind, StudySpec, Sweep, TouchedObject, draw_touches, load_objects,
 };
-use bubbletouch::study::{Plan, StudySpec, Sweep, TouchedObject, draw_touches, load_objects};
 use bubbletouch::{Error, Result};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// The study that a bare `bubbletouch` runs; it is part of the command, so that it runs in any folder.
 const QUICKSTART: &str = include_str!("../../experiments/quickstart.toml");
@@ -55,27 +56,28 @@ impl StudyArgs {
     pub fn plan(&self) -> Result<Plan> {
         set_threads(self.threads)?;
         let place = self.study.display().to_string();
-        if self.is_reconstruction()? {
+        let kind = self.kind()?;
+        if kind != StudyKind::Recognition {
             return Err(Error::input(
                 place,
-                "a study that reconstructs frames",
-                "a study that recognises objects (bubbletouch run runs both kinds)",
+                kind.words(),
+                format!(
+                    "{} (bubbletouch run runs all kinds)",
+                    StudyKind::Recognition.words()
+                ),
             ));
         }
         let mut spec = StudySpec::parse(&place, &self.text()?)?;
         if let Some(seed) = self.seed {
             spec.seed = seed;
         }
-        if let Some(folder) = &self.objects {
-            spec.objects.meshes = Some(folder.clone());
-            spec.objects.sets.clear();
-        }
+        self.replace_objects(&mut spec.objects);
         Plan::new(&place, spec)
     }
 
-    /// Whether the study reconstructs frames rather than recognising objects.
-    pub fn is_reconstruction(&self) -> Result<bool> {
-        Ok(is_reconstruction_study(&self.text()?))
+    /// What the study asks about.
+    pub fn kind(&self) -> Result<StudyKind> {
+        Ok(StudyKind::of(&self.text()?))
     }
 
     /// Reads and checks a study that reconstructs frames.
@@ -84,17 +86,31 @@ impl StudyArgs {
         let place = self.study.display().to_string();
         let mut spec = ReconstructionStudySpec::parse(&place, &self.text()?)?;
         spec.seed = self.seed.unwrap_or(spec.seed);
-        if let Some(folder) = &self.objects {
-            spec.objects.meshes = Some(folder.clone());
-            spec.objects.sets.clear();
-        }
+        self.replace_objects(&mut spec.objects);
         ReconstructionPlan::new(&place, spec)
     }
 
-    /// Reads and checks the study, builds its objects, draws its touches and lays out its cells.
-    pub fn load(&self) -> Result<LoadedStudy> {
+    /// Reads and checks a study of how detailed objects are.
+    pub fn object_detail_plan(&self) -> Result<ObjectDetailPlan> {
+        set_threads(self.threads)?;
+        let place = self.study.display().to_string();
+        let mut spec = ObjectDetailStudySpec::parse(&place, &self.text()?)?;
+        spec.seed = self.seed.unwrap_or(spec.seed);
+        self.replace_objects(&mut spec.objects);
+        ObjectDetailPlan::new(&place, spec)
+    }
+
+    fn replace_objects(&self, objects: &mut ObjectsSpec) {
+        if let Some(folder) = &self.objects {
+            objects.meshes = Some(folder.clone());
+            objects.sets.clear();
+        }
+    }
+
+    /// Reads and checks the study, builds its objects (packed ones are kept in `packings`), draws its touches and lays out its cells.
+    pub fn load(&self, packings: Option<&Path>) -> Result<LoadedStudy> {
         let plan = self.plan()?;
-        let objects = load_objects(&plan.spec.objects)?;
+        let objects = load_objects(&plan.spec.objects, packings)?;
         let touched = draw_touches(objects, &plan.placement, &Seed::new(plan.spec.seed))?;
         let sweep = Sweep::new(&plan, &touched)?;
         Ok(LoadedStudy {

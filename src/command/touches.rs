@@ -1,6 +1,6 @@
 //! `bubbletouch touches`: just the data set.
 
-use super::output::output_folder;
+use super::output::{output_folder, packings_beside};
 use super::study_args::StudyArgs;
 use bubbletouch::Result;
 use bubbletouch::random::Seed;
@@ -20,7 +20,7 @@ pub struct Args {
 
 pub fn touches(args: &Args) -> Result<()> {
     let plan = args.study.plan()?;
-    let objects = load_objects(&plan.spec.objects)?;
+    let objects = load_objects(&plan.spec.objects, Some(&packings_beside(&args.out)))?;
     let seed = Seed::new(plan.spec.seed);
     let progress = progress::to_stderr();
     let mut n_touches = 0;

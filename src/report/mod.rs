@@ -22,6 +22,8 @@ pub mod html;
 mod html_tables;
 mod legend;
 mod log_scale;
+pub mod object_detail_charts;
+pub mod object_detail_results;
 pub mod object_picture;
 pub mod pareto_chart;
 pub mod pressure_map;

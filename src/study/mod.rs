@@ -11,8 +11,11 @@ mod check;
 mod estimate;
 mod evaluation;
 mod feature_files;
+mod kind;
 mod measurement;
+pub mod object_detail;
 mod object_files;
+mod packings;
 mod plan;
 mod plan_learning;
 mod plan_scene;
@@ -32,7 +35,10 @@ mod training;
 pub use axis::Axis;
 pub use estimate::Estimate;
 pub use feature_files::{FeatureSet, cell_features, read_features, write_features, write_npy};
-pub use object_files::{load_mesh, load_objects, read_mesh_file};
+pub use kind::StudyKind;
+pub use object_files::{
+    MeshUse, NamedMesh, load_mesh, load_named_meshes, load_objects, read_mesh_file,
+};
 pub use plan::{Amount, Plan, SplitKind, SplitPlan, millimetres};
 pub use runner::{ArrayOutcome, Outcome, run};
 pub use samples::{Samples, sample_frames};

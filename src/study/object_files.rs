@@ -1,8 +1,9 @@
 //! Objects from where a study finds them: built-in sets, TOML files, folders of meshes.
 
+use super::packings::pack_within;
 use super::spec::{ModelSpec, ObjectsSpec};
 use crate::error::{Error, Result};
-use crate::mesh::{LengthUnit, MeshFile, MeshFormat};
+use crate::mesh::{LengthUnit, MeshFile, MeshFormat, Surface, TriangleMesh};
 use crate::objects::{Catalogue, Entry, MeshModel, Object, vertex_spheres};
 use rayon::prelude::*;
 use std::collections::BTreeSet;
@@ -10,19 +11,45 @@ use std::fs::File;
 use std::io::BufReader;
 use std::path::{Path, PathBuf};
 
-/// Builds the objects of a study: sets first, in their order, then meshes by file name.
+/// What a mesh file becomes.
+#[derive(Clone, Copy, Debug)]
+pub struct MeshUse<'a> {
+    /// Of the file's numbers.
+    pub unit: LengthUnit,
+    /// Spheres or triangles.
+    pub model: ModelSpec,
+    /// How far packed spheres may be from the mesh, metres.
+    pub surface_error: f64,
+    /// Where packings are looked for and kept; nowhere if it is `None`.
+    pub packings: Option<&'a Path>,
+}
+
+/// A mesh of a study.
+#[derive(Clone, Debug)]
+pub struct NamedMesh {
+    /// Its file's name without the ending.
+    pub name: String,
+    /// Its file, for errors.
+    pub place: String,
+    /// The mesh, metres.
+    pub mesh: TriangleMesh,
+}
+
+/// Builds the objects of a study: sets first, in their order, then meshes by file name. Packed meshes are looked for and
+/// kept in the folder `packings`, if one is given.
 ///
-/// The error names a set, name or file that is not there, an object that two sources share, or an empty selection.
-pub fn load_objects(spec: &ObjectsSpec) -> Result<Vec<Object>> {
+/// The error names a set, name or file that is not there, an object that two sources share, a mesh that cannot be packed,
+/// or an empty selection.
+pub fn load_objects(spec: &ObjectsSpec, packings: Option<&Path>) -> Result<Vec<Object>> {
     let tolerance = spec.surface_error_mm * 1e-3;
     let mut objects = Vec::new();
     for set in &spec.sets {
         objects.extend(load_set(set, spec.names.as_deref(), tolerance)?);
     }
     if let Some(folder) = &spec.meshes {
-        objects.extend(load_meshes(folder, spec)?);
+        objects.extend(load_meshes(folder, spec, packings)?);
     }
-    check_names(&objects, spec)?;
+    check_names(objects.iter().map(|object| object.name.as_str()), spec)?;
     Ok(objects)
 }
 
@@ -47,22 +74,41 @@ pub fn read_mesh_file(path: &Path, unit: LengthUnit) -> Result<MeshFile> {
 }
 
 /// A mesh file as an object; its name is the file's without the ending.
-pub fn load_mesh(path: &Path, unit: LengthUnit, model: ModelSpec) -> Result<Object> {
+pub fn load_mesh(path: &Path, wanted: &MeshUse) -> Result<Object> {
     let place = path.display().to_string();
-    let mesh = read_mesh_file(path, unit)?;
-    let name = path
-        .file_stem()
-        .unwrap_or_default()
-        .to_string_lossy()
-        .into_owned();
+    let mesh = read_mesh_file(path, wanted.unit)?;
     Ok(Object {
-        name,
-        model: match model {
+        name: stem(path),
+        model: match wanted.model {
             ModelSpec::VertexSpheres => vertex_spheres(&place, mesh.vertices())?.into(),
             ModelSpec::Mesh => MeshModel::new(mesh.into_mesh(&place)?).into(),
+            ModelSpec::Packed => {
+                let surface = Surface::new(mesh.into_mesh(&place)?);
+                let tolerance = wanted.surface_error;
+                pack_within(&place, &surface, tolerance, wanted.packings)?
+                    .spheres
+                    .into()
+            }
         },
         n_parts: 1,
     })
+}
+
+/// The meshes of a study as triangles, by file name.
+pub fn load_named_meshes(folder: &Path, spec: &ObjectsSpec) -> Result<Vec<NamedMesh>> {
+    let paths = mesh_paths(folder, spec)?;
+    let meshes = paths.par_iter().map(|path| {
+        let place = path.display().to_string();
+        let mesh = read_mesh_file(path, unit(spec))?.into_mesh(&place)?;
+        Ok(NamedMesh {
+            name: stem(path),
+            place,
+            mesh,
+        })
+    });
+    let meshes = meshes.collect::<Result<Vec<_>>>()?;
+    check_names(meshes.iter().map(|mesh| mesh.name.as_str()), spec)?;
+    Ok(meshes)
 }
 
 fn load_set(set: &str, names: Option<&[String]>, tolerance: f64) -> Result<Vec<Object>> {
@@ -73,7 +119,31 @@ fn load_set(set: &str, names: Option<&[String]>, tolerance: f64) -> Result<Vec<O
         .collect()
 }
 
-fn load_meshes(folder: &Path, spec: &ObjectsSpec) -> Result<Vec<Object>> {
+fn load_meshes(folder: &Path, spec: &ObjectsSpec, packings: Option<&Path>) -> Result<Vec<Object>> {
+    let wanted = MeshUse {
+        unit: unit(spec),
+        model: spec.model.unwrap_or_default(),
+        surface_error: spec.surface_error_mm * 1e-3,
+        packings,
+    };
+    mesh_paths(folder, spec)?
+        .par_iter()
+        .map(|path| load_mesh(path, &wanted))
+        .collect()
+}
+
+fn unit(spec: &ObjectsSpec) -> LengthUnit {
+    spec.mesh_unit
+        .map_or_else(LengthUnit::default, LengthUnit::from)
+}
+
+fn stem(path: &Path) -> String {
+    let stem = path.file_stem().unwrap_or_default();
+    stem.to_string_lossy().into_owned()
+}
+
+/// The files of a folder that are meshes and wanted, by name.
+fn mesh_paths(folder: &Path, spec: &ObjectsSpec) -> Result<Vec<PathBuf>> {
     let listing = std::fs::read_dir(folder).map_err(|e| {
         Error::input(
             folder.display(),
@@ -84,8 +154,7 @@ fn load_meshes(folder: &Path, spec: &ObjectsSpec) -> Result<Vec<Object>> {
     let mut paths: Vec<PathBuf> = Vec::new();
     for entry in listing {
         let path = entry.map_err(|e| Error::io(folder, "read", e))?.path();
-        let stem = path.file_stem().unwrap_or_default().to_string_lossy();
-        if MeshFormat::of(&path).is_ok() && is_wanted(&stem, spec.names.as_deref()) {
+        if MeshFormat::of(&path).is_ok() && is_wanted(&stem(&path), spec.names.as_deref()) {
             paths.push(path);
         }
     }
@@ -97,27 +166,20 @@ fn load_meshes(folder: &Path, spec: &ObjectsSpec) -> Result<Vec<Object>> {
         ));
     }
     paths.sort();
-    let unit = spec
-        .mesh_unit
-        .map_or_else(LengthUnit::default, LengthUnit::from);
-    let model = spec.model.unwrap_or_default();
-    paths
-        .par_iter()
-        .map(|path| load_mesh(path, unit, model))
-        .collect()
+    Ok(paths)
 }
 
 fn is_wanted(name: &str, names: Option<&[String]>) -> bool {
     names.is_none_or(|names| names.iter().any(|wanted| wanted == name))
 }
 
-fn check_names(objects: &[Object], spec: &ObjectsSpec) -> Result<()> {
+fn check_names<'a>(names: impl Iterator<Item = &'a str>, spec: &ObjectsSpec) -> Result<()> {
     let mut seen = BTreeSet::new();
-    for object in objects {
-        if !seen.insert(object.name.as_str()) {
+    for name in names {
+        if !seen.insert(name) {
             return Err(Error::input(
                 "key objects",
-                format!("two objects named {}", object.name),
+                format!("two objects named {name}"),
                 "each name once over all sets and meshes",
             ));
         }
@@ -131,7 +193,7 @@ fn check_names(objects: &[Object], spec: &ObjectsSpec) -> Result<()> {
             ));
         }
     }
-    if objects.is_empty() {
+    if seen.is_empty() {
         return Err(Error::input("key objects", "no objects", "at least two"));
     }
     Ok(())

@@ -90,7 +90,7 @@ pub struct ObjectsSpec {
     /// The unit of the meshes' files; metres when left out.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub mesh_unit: Option<UnitSpec>,
-    /// How far the spheres of a solid may be from its surface, mm.
+    /// How far the spheres of a solid, or of a packed mesh, may be from its surface, mm.
     #[serde(default = "default_surface_error_mm")]
     pub surface_error_mm: f64,
 }
@@ -165,6 +165,8 @@ pub enum ModelSpec {
     VertexSpheres,
     /// The triangles themselves, touched exactly.
     Mesh,
+    /// Few spheres within `surface_error_mm` of the mesh, which must be closed.
+    Packed,
 }
 
 /// The unit of a mesh file's numbers.

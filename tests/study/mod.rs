@@ -20,7 +20,7 @@ impl Study {
     pub fn new(text: &str) -> Self {
         let spec = StudySpec::parse("study.toml", text).unwrap();
         let plan = Plan::new("study.toml", spec).unwrap();
-        let objects = load_objects(&plan.spec.objects).unwrap();
+        let objects = load_objects(&plan.spec.objects, None).unwrap();
         let touched = draw_touches(objects, &plan.placement, &Seed::new(plan.spec.seed)).unwrap();
         let sweep = Sweep::new(&plan, &touched).unwrap();
         Self {

@@ -15,5 +15,5 @@ mod touches;
 
 pub use plan::ReconstructionPlan;
 pub use runner::{ReconstructionOutcome, reconstruct};
-pub use spec::{ReconstructionSpec, ReconstructionStudySpec, is_reconstruction_study};
+pub use spec::{ReconstructionSpec, ReconstructionStudySpec};
 pub use touches::SampleFrames;

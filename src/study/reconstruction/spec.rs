@@ -91,12 +91,6 @@ impl ReconstructionSpec {
     }
 }
 
-/// Whether a study's text has a `[reconstruction]` table; false for text that is not TOML.
-pub fn is_reconstruction_study(text: &str) -> bool {
-    let table = text.parse::<toml::Table>();
-    table.is_ok_and(|table| table.contains_key("reconstruction"))
-}
-
 fn default_seed() -> u64 {
     2018
 }

@@ -1,0 +1,33 @@
+//! What a study asks about: recognition, reconstruction, or the objects themselves.
+
+/// The kinds of studies, told apart by a table that only one of them has.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum StudyKind {
+    /// Which object was touched? Every file that is none of the others.
+    Recognition,
+    /// How well does a frame come back? A file with a `[reconstruction]` table.
+    Reconstruction,
+    /// How detailed must an object be? A file with an `[object_detail]` table.
+    ObjectDetail,
+}
+
+impl StudyKind {
+    /// Of a study's text; text that is not TOML is told so by whoever reads the study.
+    pub fn of(text: &str) -> Self {
+        let table = text.parse::<toml::Table>().unwrap_or_default();
+        match () {
+            () if table.contains_key("reconstruction") => Self::Reconstruction,
+            () if table.contains_key("object_detail") => Self::ObjectDetail,
+            () => Self::Recognition,
+        }
+    }
+
+    /// In words: `a study that …`.
+    pub fn words(self) -> &'static str {
+        match self {
+            Self::Recognition => "a study that recognises objects",
+            Self::Reconstruction => "a study that reconstructs frames",
+            Self::ObjectDetail => "a study of how detailed objects are",
+        }
+    }
+}

@@ -1,0 +1,24 @@
+//! A third kind of study: how detailed must an object be, so that the skin feels no difference, and what does detail cost?
+//!
+//! A file with an `[object_detail]` table is such a study: [`ObjectDetailStudySpec`] (as written) → [`ObjectDetailPlan`]
+//! (checked, SI) → [`measure_detail`] → [`table::ObjectDetailTables`].
+//!
+//! Each mesh is touched exactly ([`MeshModel`](crate::objects::MeshModel)); then sphere models of it are read with the patch
+//! at the very same places:
+//!
+//! - **error**: |δ − δ\*|, mean over the taxels of all touches that the mesh (δ\*) or the model (δ) touches.
+//! - **error after offset**: the same with the patch drawn back by the constant distance, one for all touches of a model, that
+//!   makes the error least. A model that is only inflated has none left.
+//! - **error past own contact**: each touch as far past the model's own first contact as the mesh past its.
+
+mod deflection;
+mod plan;
+mod runner;
+mod spec;
+mod summary;
+pub mod table;
+mod variants;
+
+pub use plan::ObjectDetailPlan;
+pub use runner::measure_detail;
+pub use spec::{DetailMethod, ObjectDetailSpec, ObjectDetailStudySpec};

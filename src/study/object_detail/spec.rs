@@ -1,0 +1,74 @@
+//! A study of object detail as it is written.
+
+use crate::error::{Error, Result};
+use crate::study::spec::{ObjectsSpec, SkinSpec, TouchesSpec};
+use serde::{Deserialize, Serialize};
+
+/// The file.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ObjectDetailStudySpec {
+    /// What the study asks, in a sentence.
+    pub question: String,
+    /// What the author expected before it ran.
+    #[serde(default)]
+    pub expected: String,
+    /// Root of all randomness.
+    #[serde(default = "default_seed")]
+    pub seed: u64,
+    /// What is touched: meshes.
+    pub objects: ObjectsSpec,
+    /// What touches; one array.
+    pub skin: SkinSpec,
+    /// How it touches.
+    pub touches: TouchesSpec,
+    /// What the meshes become.
+    pub object_detail: ObjectDetailSpec,
+}
+
+/// `[object_detail]`
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ObjectDetailSpec {
+    /// How far packed spheres may be from the mesh, mm: one level each.
+    pub tolerances_mm: Vec<f64>,
+    /// What stands for the mesh.
+    pub methods: Vec<DetailMethod>,
+    /// Points of a mesh at which the distance to the spheres is measured.
+    #[serde(default = "default_surface_points")]
+    pub surface_points: usize,
+}
+
+/// What stands for a mesh.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum DetailMethod {
+    /// The mesh itself, touched exactly: what the others are compared with. Measured in any case.
+    Mesh,
+    /// Spheres within each tolerance.
+    Packing,
+    /// One sphere a vertex \[BT\].
+    VertexSpheres,
+    /// The same around so many of the vertices, spread evenly, as each packing has spheres (all vertices if it has more).
+    DecimatedVertexSpheres,
+}
+
+impl ObjectDetailStudySpec {
+    /// Reads a study; the error names the file, the line and the key.
+    pub fn parse(place: &str, text: &str) -> Result<Self> {
+        toml::from_str(text).map_err(|error| Error::toml(place, text, &error))
+    }
+
+    /// Writes the study with every default spelt out.
+    pub fn to_toml(&self) -> String {
+        toml::to_string(self).expect("every field of a study has a TOML form")
+    }
+}
+
+fn default_seed() -> u64 {
+    2018
+}
+
+fn default_surface_points() -> usize {
+    5000
+}

@@ -1,0 +1,98 @@
+//! Methods and levels over all objects.
+
+use super::spec::DetailMethod;
+use super::table::{DetailCell, DetailScore, DetailSummary};
+
+type Row = (DetailCell, DetailScore);
+
+/// The value that a part (0 to 1) of the values do not exceed, between neighbours by their distance; 0 of none. Sorts them.
+pub(super) fn quantile(values: &mut [f64], part: f64) -> f64 {
+    if values.is_empty() {
+        return 0.0;
+    }
+    values.sort_by(f64::total_cmp);
+    let place = part * (values.len() - 1) as f64;
+    let below = place.floor() as usize;
+    let above = (below + 1).min(values.len() - 1);
+    values[below] + (place - below as f64) * (values[above] - values[below])
+}
+
+/// One row a method and level, in the order of their first appearance.
+pub(super) fn summary(rows: &[Row]) -> Vec<DetailSummary> {
+    let level = |cell: &DetailCell| (cell.method, cell.tolerance_mm);
+    let mut levels = Vec::new();
+    for (cell, _) in rows {
+        if !levels.contains(&level(cell)) {
+            levels.push(level(cell));
+        }
+    }
+    let of_level = |wanted| rows.iter().filter(move |(cell, _)| level(cell) == wanted);
+    levels
+        .into_iter()
+        .map(|wanted| summary_row(wanted, &of_level(wanted).collect::<Vec<_>>(), rows))
+        .collect()
+}
+
+fn summary_row(
+    (method, tolerance_mm): (DetailMethod, Option<f64>),
+    of_level: &[&Row],
+    rows: &[Row],
+) -> DetailSummary {
+    let quartiles = |value: &dyn Fn(&Row) -> f64| {
+        let mut values: Vec<f64> = of_level.iter().map(|row| value(row)).collect();
+        [0.25, 0.5, 0.75, 1.0].map(|part| quantile(&mut values, part))
+    };
+    let spheres = quartiles(&|(cell, _)| cell.n_spheres as f64);
+    let surface = quartiles(&|(_, score)| score.surface_error_mm);
+    let farthest = quartiles(&|(_, score)| score.protrusion_max_mm.max(score.gap_max_mm));
+    let error = quartiles(&|(_, score)| score.error_mm);
+    let after = quartiles(&|(_, score)| score.error_after_offset_mm);
+    let own = quartiles(&|(_, score)| score.error_own_contact_mm);
+    let ratios = of_level.iter().filter_map(|(cell, score)| {
+        let packing = rows.iter().find(|(other, _)| {
+            other.object == cell.object
+                && other.method == DetailMethod::Packing
+                && other.tolerance_mm == cell.tolerance_mm
+        })?;
+        Some(score.error_after_offset_mm / packing.1.error_after_offset_mm)
+    });
+    let mut ratios: Vec<f64> = ratios.collect();
+    DetailSummary {
+        method,
+        tolerance_mm,
+        n_objects: of_level.len(),
+        n_spheres_q1: spheres[0],
+        n_spheres_median: spheres[1],
+        n_spheres_q3: spheres[2],
+        surface_error_q1_mm: surface[0],
+        surface_error_median_mm: surface[1],
+        surface_error_q3_mm: surface[2],
+        surface_error_max_q1_mm: farthest[0],
+        surface_error_max_median_mm: farthest[1],
+        surface_error_max_q3_mm: farthest[2],
+        error_q1_mm: error[0],
+        error_median_mm: error[1],
+        error_q3_mm: error[2],
+        error_worst_mm: error[3],
+        error_after_offset_q1_mm: after[0],
+        error_after_offset_median_mm: after[1],
+        error_after_offset_q3_mm: after[2],
+        error_after_offset_worst_mm: after[3],
+        error_own_contact_median_mm: own[1],
+        error_own_contact_worst_mm: own[3],
+        times_packing: (!ratios.is_empty()).then(|| quantile(&mut ratios, 0.5)),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn quantiles_are_values_or_between_them() {
+        assert_eq!(quantile(&mut [3.0, 1.0, 2.0], 0.5), 2.0);
+        assert_eq!(quantile(&mut [3.0, 1.0, 2.0], 1.0), 3.0);
+        assert_eq!(quantile(&mut [1.0, 2.0], 0.25), 1.25);
+        assert_eq!(quantile(&mut [], 0.5), 0.0);
+    }
+}

@@ -1,0 +1,59 @@
+//! Meshes as spheres within a tolerance, kept in a folder beside the results.
+
+use crate::error::{Error, Result};
+use crate::mesh::Surface;
+use crate::objects::SphereUnion;
+use crate::packing::{Body, PackingCache, pack_mesh};
+use std::path::Path;
+
+/// Spheres that stand for a mesh, and where they are from.
+pub(super) struct Packed {
+    pub spheres: SphereUnion,
+    /// Whether they were in the folder already.
+    pub was_kept: bool,
+}
+
+/// Packs a closed mesh within `tolerance` (metres), or finds what was packed before in `folder` (made if it is missing;
+/// nothing is kept without one).
+///
+/// The error begins with `place` and says what the mesh lacks, or that a part of it is not proved to be within the
+/// tolerance.
+pub(super) fn pack_within(
+    place: &str,
+    surface: &Surface,
+    tolerance: f64,
+    folder: Option<&Path>,
+) -> Result<Packed> {
+    let (packing, was_kept) = match folder {
+        None => (pack_mesh(surface, Body::Solid, tolerance), false),
+        Some(folder) => {
+            std::fs::create_dir_all(folder).map_err(|e| Error::io(folder, "create folder", e))?;
+            let cache = PackingCache::new(folder);
+            let was_kept = cache.path(surface.mesh(), Body::Solid, tolerance).exists();
+            let packing = cache.pack_mesh(surface, Body::Solid, tolerance, &mut |_| {});
+            (packing, was_kept)
+        }
+    };
+    let packing = packing.map_err(|error| match error {
+        Error::Input { given, allowed, .. } => Error::input(
+            place,
+            given,
+            format!("{allowed} (open meshes can be touched with model = \"mesh\")"),
+        ),
+        other => other,
+    })?;
+    if packing.n_unproved > 0 {
+        return Err(Error::input(
+            place,
+            format!(
+                "{} places that are not proved to be within {tolerance} m of the spheres",
+                packing.n_unproved
+            ),
+            "a larger tolerance, or model = \"mesh\"",
+        ));
+    }
+    Ok(Packed {
+        spheres: packing.spheres,
+        was_kept,
+    })
+}
