@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """Times scikit-learn and bubbletouch on the same touches, side by side: the same rows, the same split, one run.
 
-Both read the folders that `bubbletouch features` writes. Features are standardised on the training rows (population
-standard deviation, as both do it). A comparison alternates peer and ours and takes medians; predictions are compared row
+Both learn from the folders that `bubbletouch features` writes, standardised on the training rows beforehand (population
+standard deviation). A comparison alternates peer and ours and takes medians; predictions are compared row
 by row, and the dual objectives of the SVMs that solve the same problem. See README.md beside this file.
 """
 
@@ -11,6 +11,7 @@ import csv
 import datetime
 import json
 import os
+import shutil
 import statistics
 import subprocess
 import sys
@@ -70,6 +71,17 @@ class Folder:
         self.train_labels, self.test_labels = labels[train], labels[test]
         cell = (path / "cell.toml").read_text()
         self.settings = {key: toml_number(cell, key) for key in ["noise_std", "smoothing_mm", "measurements"]}
+        self.scaled = self.write_scaled(scaler.transform(features))
+
+    def write_scaled(self, features):
+        """The same folder with standardised features: neither side's time holds the scaling."""
+        scaled = self.path.parent / f"{self.path.name}_scaled"
+        scaled.mkdir(exist_ok=True)
+        for file in self.path.iterdir():
+            if file.is_file() and file.name != "features.npy":
+                shutil.copyfile(file, scaled / file.name)
+        np.save(scaled / "features.npy", features)
+        return scaled
 
 
 def toml_number(text, key):
@@ -88,7 +100,7 @@ class Ours:
         """What the command says and predicts; None where it does not know an option's value."""
         with tempfile.TemporaryDirectory() as scratch:
             predictions = Path(scratch) / "predictions.npy"
-            command = [self.binary, "classify", str(folder.path), *options, "--json", "--repeat", str(repeat)]
+            command = [self.binary, "classify", str(folder.scaled), "--scaling", "none", *options, "--json", "--repeat", str(repeat)]
             command += ["--train-rows", str(self.n_train), "--predictions", str(predictions)]
             done = subprocess.run(command, env=self.environment, capture_output=True, text=True)
             if done.returncode != 0:
@@ -188,9 +200,9 @@ def compare_with_linfa(folder, ours, threads):
 
 def compare_grid(folder, ours, threads, repeats):
     """Our 6 × 6 grid of C and γ with 5-fold cross-validation against three fits of SVC(rbf)."""
-    gamma = 1.0 / (folder.train.shape[1] * folder.train.var())
     penalties = ",".join(f"{10.0 ** k:g}" for k in range(-1, 5))
-    gammas = ",".join(f"{gamma * 4.0 ** k:.6g}" for k in range(-4, 2))
+    # As multiples of 'scale', 1 / (m · variance).
+    gammas = ",".join(f"{4.0 ** k:g}" for k in range(-4, 2))
     options = ["--classifier", "rbf_svm", *OVO, "--choose-c", penalties, "--choose-gamma", gammas, "--choose-folds", "5"]
     peer_times, our_times = [], []
     with threadpool_limits(threads):
