@@ -67,7 +67,8 @@ fn words_that_no_mesh_has_are_refused() {
     assert!(refused("objects mesh cube.step").contains("a name that ends in .ply, .obj or .stl"));
     assert!(refused("objects mesh none.stl").contains("none.stl: cannot be opened"));
     assert!(
-        refused("press --mesh cube.obj --model cage").contains("expected vertex_spheres or mesh")
+        refused("press --mesh cube.obj --model cage")
+            .contains("expected vertex_spheres, mesh or packed")
     );
     assert!(refused("press --object mug --model mesh").contains("--mesh"));
 }
