@@ -26,12 +26,10 @@ pub(crate) fn groups(ranges: &[Range<usize>]) -> Vec<Range<usize>> {
 
 /// Each pair of classes, the smaller first, of one group or across two.
 pub(crate) fn pairs(
-    own: &Range<usize>,
-    other: &Range<usize>,
+    own: Range<usize>,
+    other: Range<usize>,
 ) -> impl Iterator<Item = (usize, usize)> {
-    let other = other.clone();
-    own.clone()
-        .flat_map(move |a| other.clone().filter(move |&b| b > a).map(move |b| (a, b)))
+    own.flat_map(move |a| other.clone().filter(move |&b| b > a).map(move |b| (a, b)))
 }
 
 /// Kernel values between the rows of two groups of classes.

@@ -1,13 +1,13 @@
 //! The choice of C and γ by cross-validation on training rows; test rows are never seen.
 
-use ndarray::{Array1, Array2};
+use ndarray::{Array1, Array2, ArrayView1};
 use serde::{Deserialize, Serialize};
 
 use crate::recognition::dataset::{Dataset, check_features, check_labels, distinct, rows};
 use crate::recognition::grid::Grid;
 use crate::recognition::kernel::{Gamma, Kernel, KernelFunction};
 use crate::recognition::scalar::Scalar;
-use crate::recognition::sorted::{Sorted, centre};
+use crate::recognition::sorted::{Sorted, centre, farthest};
 use crate::recognition::split::Split;
 use crate::recognition::svm::{Solver, SvmParams};
 use crate::recognition::training::Goal;
@@ -216,9 +216,11 @@ fn on_one_matrix(
     path: &[f64],
 ) -> Result<(Array2<usize>, usize)> {
     let centre = centre(training.records.view(), &kernels[0]);
+    let n_rows = training.records.nrows();
+    let farthest = farthest(training.records.view(), centre.view());
     let is_double = kernels
         .iter()
-        .any(|&kernel| params.wants_double(training, kernel, path, centre.view()));
+        .any(|&kernel| params.wants_double(n_rows, kernel, path, farthest));
     let size = if is_double {
         size_of::<f64>()
     } else {
@@ -226,37 +228,35 @@ fn on_one_matrix(
     };
     // Three matrices at most: products, the kernel made of them, and the part that a fold trains on.
     let most = (params.memory_bytes / (3 * size)).isqrt();
-    if training.records.nrows() > most {
+    if n_rows > most {
         return Err(Error::input(
             "training rows",
-            format!("{} to choose C or gamma on", training.records.nrows()),
+            format!("{n_rows} to choose C or gamma on"),
             format!("at most {most} fit in memory; let fewer touches take part in the choice"),
         ));
     }
     Ok(if is_double {
-        grid::<f64>(params, training, folds, kernels, path)
+        grid::<f64>(params, (training, centre.view()), folds, kernels, path)
     } else {
-        grid::<f32>(params, training, folds, kernels, path)
+        grid::<f32>(params, (training, centre.view()), folds, kernels, path)
     })
 }
 
 fn grid<T: Scalar>(
     params: &SvmParams,
-    training: &Dataset,
+    (training, centre): (&Dataset, ArrayView1<f64>),
     folds: &[Split],
     kernels: &[KernelFunction],
     path: &[f64],
 ) -> (Array2<usize>, usize) {
     let classes = distinct(training.targets.view());
-    let centre = centre(training.records.view(), &kernels[0]);
     // By fold within a class: what a fold trains on then lies in few runs.
     let mut fold_of = vec![0; training.targets.len()];
     for (number, fold) in folds.iter().enumerate() {
         fold.test.iter().for_each(|&row| fold_of[row] = number);
     }
     let by_fold = |row: usize| fold_of[row];
-    let sorted =
-        Sorted::<T>::within_classes(training, &classes, kernels[0], centre.view(), by_fold);
+    let sorted = Sorted::<T>::within_classes(training, &classes, kernels[0], centre, by_fold);
     let goal = Goal {
         path,
         tolerance: params.tolerance,

@@ -4,12 +4,14 @@
 //! are gathered from that, and along C each solution starts from the last. A problem's decision values are sums of its
 //! support vectors' rows over all validation rows at once, and are counted as votes right away.
 
+use std::ops::Range;
+
 use ndarray::{Array2, ArrayView2, ArrayViewMut1};
 
 use crate::recognition::dataset::Dataset;
 use crate::recognition::kernel::KernelFunction;
 use crate::recognition::scalar::Scalar;
-use crate::recognition::smo::{Part, Room, Smo};
+use crate::recognition::smo::{Part, Room, Runs, Smo};
 use crate::recognition::sorted::Sorted;
 use crate::recognition::split::Split;
 use crate::recognition::svm::Multiclass;
@@ -30,9 +32,22 @@ pub(crate) struct Grid<'a, T> {
 
 /// A fold in terms of sorted rows.
 struct Fold {
-    /// Training rows of each class that has any, with the class.
-    training: Vec<(usize, Vec<usize>)>,
+    /// Training rows, class by class.
+    training: Vec<usize>,
+    /// Each class that has any, and which of them are its.
+    classes: Vec<(usize, Range<usize>)>,
     validation: Vec<usize>,
+}
+
+impl Fold {
+    /// The places among the training rows of those that take part in a problem.
+    fn places(&self, (positive, negative): (usize, Option<usize>)) -> Vec<usize> {
+        let of_class = |class: usize| self.classes[class].1.clone();
+        match negative {
+            Some(negative) => of_class(positive).chain(of_class(negative)).collect(),
+            None => (0..self.training.len()).collect(),
+        }
+    }
 }
 
 impl<T: Scalar> Grid<'_, T> {
@@ -61,17 +76,19 @@ impl<T: Scalar> Grid<'_, T> {
             .train
             .iter()
             .for_each(|&row| is_training[place[row]] = true);
-        let training = self
-            .sorted
-            .classes_and_ranges()
-            .filter_map(|(class, range)| {
-                let rows: Vec<usize> = range.filter(|&row| is_training[row]).collect();
-                (!rows.is_empty()).then_some((class, rows))
-            });
+        let (mut training, mut classes) = (Vec::new(), Vec::new());
+        for (class, range) in self.sorted.classes_and_ranges() {
+            let first = training.len();
+            training.extend(range.filter(|&row| is_training[row]));
+            if training.len() > first {
+                classes.push((class, first..training.len()));
+            }
+        }
         let mut validation: Vec<usize> = split.test.iter().map(|&row| place[row]).collect();
         validation.sort_unstable();
         Fold {
-            training: training.collect(),
+            training,
+            classes,
             validation,
         }
     }
@@ -85,32 +102,17 @@ impl<T: Scalar> Grid<'_, T> {
         goal: Goal,
         mut counts: ArrayViewMut1<usize>,
     ) -> usize {
-        let n_classes = fold.training.len();
+        let n_classes = fold.classes.len();
         let n_rows = fold.validation.len();
         let mut ballots = vec![Ballot::new(n_classes, n_rows, self.multiclass); goal.path.len()];
-        let trained: Vec<usize> = fold
-            .training
-            .iter()
-            .flat_map(|(_, rows)| rows.clone())
-            .collect();
-        let held_out = gather(kernel, &trained, &fold.validation);
-        let mut first = vec![0];
-        first.extend(fold.training.iter().scan(0, |sum, (_, rows)| {
-            *sum += rows.len();
-            Some(*sum)
-        }));
+        let held_out = gather_all(kernel, &fold.training, &fold.validation);
         let (mut room, mut n_capped) = (Room::new(), 0);
         let mut sums = vec![T::zero(); n_rows];
         for problem in self.multiclass.problems(n_classes) {
-            let of_class = |class: usize| first[class]..first[class + 1];
-            // Positions among the training rows of the fold.
-            let positions: Vec<usize> = match problem.1 {
-                Some(negative) => of_class(problem.0).chain(of_class(negative)).collect(),
-                None => (0..trained.len()).collect(),
-            };
-            let rows: Vec<usize> = positions.iter().map(|&at| trained[at]).collect();
-            let own = of_class(problem.0);
-            let is_positive: Vec<bool> = positions.iter().map(|at| own.contains(at)).collect();
+            let places = fold.places(problem);
+            let rows: Vec<usize> = places.iter().map(|&at| fold.training[at]).collect();
+            let own = &fold.classes[problem.0].1;
+            let is_positive: Vec<bool> = places.iter().map(|at| own.contains(at)).collect();
             let mut gram = Part::new(&kernel, &rows, &mut room);
             let mut smo = Smo::new(&mut gram, &is_positive);
             let mut last = Vec::new();
@@ -119,52 +121,43 @@ impl<T: Scalar> Grid<'_, T> {
                 n_capped += usize::from(solution.is_capped);
                 // Where no coefficient changed, the values are those of the last C.
                 if solution.coefficients != last {
-                    weighted_sum(&mut sums, &held_out, &positions, &solution.coefficients);
+                    weighted_sum(&mut sums, &held_out, &places, &solution.coefficients);
                     last = solution.coefficients;
                 }
                 ballot.take(problem, &sums, solution.rho);
             }
         }
         for (count, ballot) in counts.iter_mut().zip(&ballots) {
-            let is_right = |(winner, row): (usize, &usize)| {
-                fold.training[winner].0 == self.data.targets[self.sorted.order()[*row]]
-            };
-            let winners = ballot.winners().into_iter();
-            *count += winners
-                .zip(&fold.validation)
-                .filter(|&pair| is_right(pair))
-                .count();
+            *count += self.n_right(fold, ballot);
         }
         n_capped
     }
+
+    /// Validation rows whose votes are for their own class.
+    fn n_right(&self, fold: &Fold, ballot: &Ballot) -> usize {
+        let winners = ballot.winners().into_iter().zip(&fold.validation);
+        let is_right = |&(winner, &row): &(usize, &usize)| {
+            fold.classes[winner].0 == self.data.targets[self.sorted.order()[row]]
+        };
+        winners.filter(is_right).count()
+    }
 }
 
-/// `Σ β_i row_i` over the rows at these positions.
-fn weighted_sum<T: Scalar>(sums: &mut [T], rows: &Array2<T>, positions: &[usize], beta: &[f64]) {
+/// `Σ β_i row_i` over the rows at these places.
+fn weighted_sum<T: Scalar>(sums: &mut [T], rows: &Array2<T>, places: &[usize], beta: &[f64]) {
     sums.fill(T::zero());
-    let rows = |at: usize| {
+    let row = |at: usize| {
         rows.row(at)
             .to_slice()
             .expect("rows were gathered one by one")
     };
-    let support = positions.iter().zip(beta).filter(|(_, beta)| **beta != 0.0);
-    let support: Vec<(&[T], T)> = support
-        .map(|(&at, &beta)| (rows(at), T::of(beta)))
-        .collect();
-    let (fours, rest) = support.as_chunks::<4>();
-    for four in fours {
+    let support = places.iter().zip(beta).filter(|(_, beta)| **beta != 0.0);
+    let mut support: Vec<(&[T], T)> = support.map(|(&at, &beta)| (row(at), T::of(beta))).collect();
+    // Rows that weigh nothing fill up the last four.
+    let n_fours = support.len().div_ceil(4);
+    support.resize(4 * n_fours, (row(0), T::zero()));
+    for four in support.as_chunks::<4>().0 {
         add_four(sums, four);
-    }
-    for &(row, beta) in rest {
-        add_four(
-            sums,
-            &[
-                (row, beta),
-                (row, T::zero()),
-                (row, T::zero()),
-                (row, T::zero()),
-            ],
-        );
     }
 }
 
@@ -179,21 +172,16 @@ fn add_four<T: Scalar>(sums: &mut [T], rows: &[(&[T], T); 4]) {
     }
 }
 
-/// Rows and columns of a larger matrix; columns that follow each other are copied at once.
-fn gather<T: Scalar>(whole: ArrayView2<T>, rows: &[usize], columns: &[usize]) -> Array2<T> {
+/// Rows and columns of a larger matrix.
+fn gather_all<T: Scalar>(whole: ArrayView2<T>, rows: &[usize], columns: &[usize]) -> Array2<T> {
     let mut part = Array2::zeros((rows.len(), columns.len()));
-    let runs: Vec<&[usize]> = columns.chunk_by(|a, b| a + 1 == *b).collect();
+    let runs = Runs::new(columns);
     for (&row, mut to) in rows.iter().zip(part.rows_mut()) {
         let from = whole
             .row(row)
             .to_slice()
             .expect("a product is stored row by row");
-        let mut to = to.as_slice_mut().expect("a new array is contiguous");
-        for run in &runs {
-            let (now, later) = to.split_at_mut(run.len());
-            now.copy_from_slice(&from[run[0]..run[0] + run.len()]);
-            to = later;
-        }
+        runs.copy(from, to.as_slice_mut().expect("a new array is contiguous"));
     }
     part
 }

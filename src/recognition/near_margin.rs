@@ -10,12 +10,12 @@
 use std::ops::Range;
 
 use ndarray::linalg::general_mat_mul;
-use ndarray::{Array2, ArrayView1, Axis, s};
+use ndarray::{Array2, Axis, s};
 
 use crate::recognition::dual::DualSolution;
-use crate::recognition::points::Points;
 use crate::recognition::scalar::Scalar;
-use crate::recognition::smo::{Dense, Smo, add_row, extremes};
+use crate::recognition::smo::{Dense, Smo, add_row, extremes, gather};
+use crate::recognition::sorted::Sorted;
 
 /// Rows of each class that a pair starts with.
 const FIRST_ROWS: usize = 32;
@@ -24,10 +24,12 @@ const FEWEST_JOINING: usize = 24;
 /// The share of a pair's rows from which on all take part.
 const MOST_SHARE: f64 = 0.6;
 
+/// y of a pair's first class and of its second.
+const SIGNS: [f64; 2] = [1.0, -1.0];
+
 /// All pairs of classes, each with the rows it is solved on.
 pub(crate) struct NearMargin<'a, T> {
-    points: &'a Points<T>,
-    ranges: &'a [Range<usize>],
+    sorted: &'a Sorted<T>,
     /// Products within each class.
     within: Vec<Array2<T>>,
     pairs: Vec<Pair<T>>,
@@ -56,48 +58,45 @@ struct Round<T> {
     products: [Vec<T>; 2],
 }
 
+/// A row of a pair that does not take part.
+struct Outside {
+    /// By how much it exceeds what the optimality conditions allow; below 0: it does not.
+    excess: f64,
+    /// The place of its class in the pair.
+    side: usize,
+    /// Its number within the class.
+    row: usize,
+}
+
 impl<'a, T: Scalar> NearMargin<'a, T> {
-    /// All pairs of the classes whose rows these are, not solved yet.
-    pub fn new(points: &'a Points<T>, ranges: &'a [Range<usize>]) -> Self {
-        let of_class = |range: &Range<usize>| points.range(range.clone());
-        let within = ranges
-            .iter()
-            .map(|range| of_class(range).products(of_class(range)));
+    /// All pairs of the classes, not solved yet.
+    pub fn new(sorted: &'a Sorted<T>) -> Self {
+        let along = along_means(sorted);
+        let first = |own: usize, other: usize| {
+            let scores = along.slice(s![sorted.ranges()[own].clone(), ..]);
+            let scores = scores.rows().into_iter().map(|row| row[own] - row[other]);
+            smallest(&scores.collect::<Vec<T>>(), FIRST_ROWS)
+        };
         let mut all = Self {
-            points,
-            ranges,
-            within: within.collect(),
+            sorted,
+            within: sorted.within(),
             pairs: Vec::new(),
             gram: Dense::default(),
         };
-        let mut means = Array2::zeros((ranges.len(), points.all().values.ncols()));
-        for (range, mut mean) in ranges.iter().zip(means.rows_mut()) {
-            let n = T::of(range.len() as f64);
-            mean.assign(&(of_class(range).values.sum_axis(Axis(0)) / n));
-        }
-        let along = points.all().values.dot(&means.t());
-        for a in 0..ranges.len() {
-            for b in a + 1..ranges.len() {
-                let first = |own: usize, other: usize| {
-                    let scores = along.slice(s![ranges[own].clone(), ..]);
-                    let scores = scores.rows().into_iter().map(|row| row[own] - row[other]);
-                    smallest(&scores.collect::<Vec<T>>(), FIRST_ROWS)
-                };
-                all.pairs.push(Pair::new([a, b]));
-                all.join(all.pairs.len() - 1, [first(a, b), first(b, a)]);
-            }
+        for (a, b) in sorted.all_pairs() {
+            all.pairs.push(Pair::new([a, b]));
+            all.join(all.pairs.len() - 1, [first(a, b), first(b, a)]);
         }
         all
     }
 
     /// Bytes that the products take when all rows of all pairs take part, with the hyperplanes of a round.
-    pub fn most_bytes(points: &Points<T>, ranges: &[Range<usize>]) -> usize {
-        let n_pairs = ranges.len() * ranges.len().saturating_sub(1) / 2;
-        let sizes = || ranges.iter().map(Range::len);
+    pub fn most_bytes(sorted: &Sorted<T>) -> usize {
+        let sizes = || sorted.ranges().iter().map(Range::len);
         let within: usize = sizes().map(|n| n * n).sum();
-        let across = (points.len().pow(2) - within) / 2;
+        let across = (sorted.points().len().pow(2) - within) / 2;
         let largest = sizes().max().unwrap_or(0);
-        let normals = n_pairs * (points.all().values.ncols() + 2 * largest);
+        let normals = sorted.all_pairs().count() * (sorted.centre().len() + 2 * largest);
         (within + across + normals) * size_of::<T>() + Dense::<T>::bytes(2 * largest)
     }
 
@@ -111,7 +110,7 @@ impl<'a, T: Scalar> NearMargin<'a, T> {
             let mut still_open = Vec::new();
             for round in self.rounds(&open, c, tolerance) {
                 let outside = self.outside(&round, c, tolerance);
-                if outside.iter().all(|(excess, ..)| *excess <= 0.0) {
+                if outside.iter().all(|row| row.excess <= 0.0) {
                     let pair = round.pair;
                     solved[pair] = Some(self.of_all_rows(round));
                 } else {
@@ -127,14 +126,14 @@ impl<'a, T: Scalar> NearMargin<'a, T> {
 
     /// Solves some pairs on the rows that take part, and multiplies all their rows with the hyperplanes.
     fn rounds(&mut self, pairs: &[usize], c: f64, tolerance: f64) -> Vec<Round<T>> {
-        let n_features = self.points.all().values.ncols();
+        let n_features = self.sorted.centre().len();
         let mut normals = Array2::zeros((pairs.len(), n_features));
         let mut rounds = Vec::with_capacity(pairs.len());
         // In f64, since large coefficients may all but cancel.
         let mut sums = vec![0.0; n_features];
         for (&pair, mut normal) in pairs.iter().zip(normals.rows_mut()) {
             let solution = self.solve_pair(pair, c, tolerance);
-            let values = self.points.all().values;
+            let values = self.sorted.points().all().values;
             sums.fill(0.0);
             for (row, &beta) in self.rows_of(pair).zip(&solution.coefficients) {
                 if beta != 0.0 {
@@ -157,7 +156,7 @@ impl<'a, T: Scalar> NearMargin<'a, T> {
                 products,
             });
         }
-        for (class, range) in self.ranges.iter().enumerate() {
+        for (class, range) in self.sorted.ranges().iter().enumerate() {
             let side = |round: &Round<T>| {
                 self.pairs[round.pair]
                     .classes
@@ -167,7 +166,7 @@ impl<'a, T: Scalar> NearMargin<'a, T> {
             let own: Vec<usize> = (0..rounds.len())
                 .filter(|&at| side(&rounds[at]).is_some())
                 .collect();
-            let rows = self.points.range(range.clone()).values;
+            let rows = self.sorted.points().range(range.clone()).values;
             let products = normals.select(Axis(0), &own).dot(&rows.t());
             for (&at, products) in own.iter().zip(products.rows()) {
                 if let Some(side) = side(&rounds[at]) {
@@ -180,13 +179,15 @@ impl<'a, T: Scalar> NearMargin<'a, T> {
 
     /// The sorted rows of a pair that take part.
     fn rows_of(&self, pair: usize) -> impl Iterator<Item = usize> + '_ {
+        [0, 1]
+            .into_iter()
+            .flat_map(move |side| self.rows_of_side(pair, side))
+    }
+
+    fn rows_of_side(&self, pair: usize, side: usize) -> impl Iterator<Item = usize> + '_ {
         let Pair { classes, rows, .. } = &self.pairs[pair];
-        let of_side = |side: usize| {
-            rows[side]
-                .iter()
-                .map(move |row| self.ranges[classes[side]].start + row)
-        };
-        of_side(0).chain(of_side(1))
+        let start = self.sorted.ranges()[classes[side]].start;
+        rows[side].iter().map(move |row| start + row)
     }
 
     fn solve_pair(&mut self, pair: usize, c: f64, tolerance: f64) -> DualSolution {
@@ -196,8 +197,8 @@ impl<'a, T: Scalar> NearMargin<'a, T> {
         self.gram.of_blocks(
             first.len(),
             second.len(),
-            |i, row| gather(row, within_first.row(first[i]), first),
-            |i, row| gather(row, within_second.row(second[i]), second),
+            |i, row| gather(row, whole_row(within_first, first[i]), first),
+            |i, row| gather(row, whole_row(within_second, second[i]), second),
             |mut across| across.assign(&pair.across),
         );
         let is_positive: Vec<bool> = (0..pair.beta.len()).map(|i| i < first.len()).collect();
@@ -214,12 +215,11 @@ impl<'a, T: Scalar> NearMargin<'a, T> {
         solution
     }
 
-    /// The rows that do not take part: by how much each exceeds what the optimality conditions allow (below 0: it does not),
-    /// its class's place in the pair, and its number in the class.
+    /// The rows that do not take part.
     ///
     /// All rows hold within the tolerance when none of these is further than half of it beyond the middle of what the others
     /// leave open.
-    fn outside(&self, round: &Round<T>, c: f64, tolerance: f64) -> Vec<(f64, usize, usize)> {
+    fn outside(&self, round: &Round<T>, c: f64, tolerance: f64) -> Vec<Outside> {
         let pair = &self.pairs[round.pair];
         let f = |side: usize, row: usize| SIGNS[side] - round.products[side][row].wide();
         let sides = [0, 1].map(|side| pair.rows[side].iter().map(move |&row| (side, row)));
@@ -237,62 +237,51 @@ impl<'a, T: Scalar> NearMargin<'a, T> {
                 .iter()
                 .for_each(|&row| takes_part[row] = true);
             let rows = (0..takes_part.len()).filter(|&row| !takes_part[row]);
-            outside.extend(rows.map(|row| {
-                (
-                    SIGNS[side] * (f(side, row) - middle) - tolerance / 2.0,
-                    side,
-                    row,
-                )
+            outside.extend(rows.map(|row| Outside {
+                excess: SIGNS[side] * (f(side, row) - middle) - tolerance / 2.0,
+                side,
+                row,
             }));
         }
         outside
     }
 
     /// Those of the rows outside that are to join: the worst; all, once most take part.
-    fn joining(&self, pair: usize, mut outside: Vec<(f64, usize, usize)>) -> [Vec<usize>; 2] {
+    fn joining(&self, pair: usize, mut outside: Vec<Outside>) -> [Vec<usize>; 2] {
         let n_in = self.pairs[pair].beta.len();
-        let n_violating = outside.iter().filter(|(excess, ..)| *excess > 0.0).count();
+        let n_violating = outside.iter().filter(|row| row.excess > 0.0).count();
         let n_joining = n_violating.min(FEWEST_JOINING.max(n_violating / 2));
         let n_all = (n_in + outside.len()) as f64;
         if (n_in + n_joining) as f64 <= MOST_SHARE * n_all {
-            outside.retain(|(excess, ..)| *excess > 0.0);
-            outside.sort_by(|a, b| b.0.total_cmp(&a.0));
+            outside.retain(|row| row.excess > 0.0);
+            outside.sort_by(|a, b| b.excess.total_cmp(&a.excess));
             outside.truncate(n_joining);
         }
         [0, 1].map(|side| {
-            let own = outside.iter().filter(|&&(_, of, _)| of == side);
-            own.map(|&(_, _, row)| row).collect()
+            let own = outside.iter().filter(|outside| outside.side == side);
+            own.map(|outside| outside.row).collect()
         })
     }
 
     /// Lets rows of both classes take part.
     fn join(&mut self, pair: usize, joining: [Vec<usize>; 2]) {
-        let pair = &mut self.pairs[pair];
-        let before = pair.across.dim();
-        let mut beta = pair.beta.iter().copied();
-        let mut grown = Vec::new();
-        for (rows, joining) in pair.rows.iter_mut().zip(&joining) {
-            grown.extend(beta.by_ref().take(rows.len()));
-            grown.resize(grown.len() + joining.len(), 0.0);
-            rows.extend(joining);
-        }
-        pair.beta = grown;
+        let before = self.pairs[pair].across.dim();
+        self.pairs[pair].take_in(&joining);
         let [first, second] = [0, 1].map(|side| {
-            let start = self.ranges[pair.classes[side]].start;
-            let rows: Vec<usize> = pair.rows[side].iter().map(|row| start + row).collect();
-            self.points.rows(&rows)
+            let rows: Vec<usize> = self.rows_of_side(pair, side).collect();
+            self.sorted.points().rows(&rows)
         });
         let mut across = Array2::zeros((first.nrows(), second.nrows()));
         across
             .slice_mut(s![..before.0, ..before.1])
-            .assign(&pair.across);
+            .assign(&self.pairs[pair].across);
         let (old, new) = first.view().split_at(Axis(0), before.0);
         let (_, new_second) = second.view().split_at(Axis(0), before.1);
         let (mut above, mut below) = across.view_mut().split_at(Axis(0), before.0);
         let mut beside = above.slice_mut(s![.., before.1..]);
         general_mat_mul(T::one(), &old, &new_second.t(), T::zero(), &mut beside);
         general_mat_mul(T::one(), &new, &second.t(), T::zero(), &mut below);
-        pair.across = across;
+        self.pairs[pair].across = across;
     }
 
     /// The solution in terms of all rows of both classes.
@@ -313,9 +302,6 @@ impl<'a, T: Scalar> NearMargin<'a, T> {
     }
 }
 
-/// y of a pair's first class and of its second.
-const SIGNS: [f64; 2] = [1.0, -1.0];
-
 impl<T: Scalar> Pair<T> {
     fn new(classes: [usize; 2]) -> Self {
         Self {
@@ -327,6 +313,35 @@ impl<T: Scalar> Pair<T> {
             n_iterations: 0,
         }
     }
+
+    /// Lets rows of both classes take part, with coefficients of 0.
+    fn take_in(&mut self, joining: &[Vec<usize>; 2]) {
+        let mut beta = self.beta.iter().copied();
+        let mut grown = Vec::new();
+        for (rows, joining) in self.rows.iter_mut().zip(joining) {
+            grown.extend(beta.by_ref().take(rows.len()));
+            grown.resize(grown.len() + joining.len(), 0.0);
+            rows.extend(joining);
+        }
+        self.beta = grown;
+    }
+}
+
+/// Products of all rows with the means of the classes: n_rows × n_classes.
+fn along_means<T: Scalar>(sorted: &Sorted<T>) -> Array2<T> {
+    let mut means = Array2::zeros((sorted.ranges().len(), sorted.centre().len()));
+    for (range, mut mean) in sorted.ranges().iter().zip(means.rows_mut()) {
+        let n = T::of(range.len() as f64);
+        mean.assign(
+            &(sorted
+                .points()
+                .range(range.clone())
+                .values
+                .sum_axis(Axis(0))
+                / n),
+        );
+    }
+    sorted.points().all().values.dot(&means.t())
 }
 
 /// The positions of the n smallest values, ascending by value; of equals the first.
@@ -337,9 +352,9 @@ fn smallest<T: Scalar>(values: &[T], n: usize) -> Vec<usize> {
     order
 }
 
-fn gather<T: Scalar>(to: &mut [T], from: ArrayView1<T>, columns: &[usize]) {
-    let from = from.to_slice().expect("a product is stored row by row");
-    to.iter_mut()
-        .zip(columns)
-        .for_each(|(to, &column)| *to = from[column]);
+fn whole_row<T>(products: &Array2<T>, row: usize) -> &[T] {
+    products
+        .row(row)
+        .to_slice()
+        .expect("a product is stored row by row")
 }

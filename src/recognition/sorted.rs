@@ -2,8 +2,9 @@
 
 use std::ops::Range;
 
-use ndarray::{Array1, ArrayView1, ArrayView2, ArrayViewMut2, Axis, Zip};
+use ndarray::{Array1, Array2, ArrayView1, ArrayView2, ArrayViewMut2, Axis, Zip};
 
+use crate::recognition::between::pairs;
 use crate::recognition::dataset::Dataset;
 use crate::recognition::kernel::KernelFunction;
 use crate::recognition::points::Points;
@@ -25,6 +26,7 @@ pub(crate) struct Sorted<T> {
     /// `(x − c)·c` per sorted row, for ρ about the origin with a linear kernel; empty for the others.
     centre_products: Vec<f64>,
 }
+
 impl<T: Scalar> Sorted<T> {
     /// Sorts rows by class; within a class they keep their order.
     pub fn new(
@@ -141,12 +143,27 @@ impl<T: Scalar> Sorted<T> {
         self.ranges[classes.start].start..self.ranges[classes.end - 1].end
     }
 
+    /// All pairs of classes, by their positions: (0, 1), (0, 2), …, (1, 2), ….
+    pub fn all_pairs(&self) -> impl Iterator<Item = (usize, usize)> + use<T> {
+        let all = 0..self.classes.len();
+        pairs(all.clone(), all)
+    }
+
     /// Sorted numbers of the rows of two classes.
     pub fn pair_rows(&self, a: usize, b: usize) -> Vec<usize> {
         self.ranges[a]
             .clone()
             .chain(self.ranges[b].clone())
             .collect()
+    }
+
+    /// Kernel values within each class.
+    pub fn within(&self) -> Vec<Array2<T>> {
+        let within = |range: &Range<usize>| {
+            let own = self.points.range(range.clone());
+            own.kernel(own, &self.kernel)
+        };
+        self.ranges.iter().map(within).collect()
     }
 
     /// Kernel values of some rows with others, into rows.len() × columns.len().
@@ -159,7 +176,7 @@ impl<T: Scalar> Sorted<T> {
 }
 
 /// What a function gives for each row (m) less the centre (m).
-pub(crate) fn about<'a, V>(
+fn about<'a, V>(
     rows: impl Iterator<Item = ArrayView1<'a, f64>>,
     centre: ArrayView1<f64>,
     value: impl Fn(&Array1<f64>) -> V,
@@ -172,6 +189,14 @@ pub(crate) fn about<'a, V>(
             .for_each(|to, x, c| *to = x - c);
         value(&moved)
     })
+}
+
+/// The square of the largest distance of a row from the centre.
+pub(crate) fn farthest(features: ArrayView2<f64>, centre: ArrayView1<f64>) -> f64 {
+    let norms = about(features.rows().into_iter(), centre, |moved| {
+        moved.dot(moved)
+    });
+    norms.fold(0.0, f64::max)
 }
 
 /// Where kernels are taken about: the mean of the rows where that changes nothing but rounding, else the origin.

@@ -1,7 +1,7 @@
 //! Soft-margin support vector machines for many classes: parameters and training.
 
 use linfa::traits::Fit;
-use ndarray::{Array1, Array2, ArrayView1};
+use ndarray::{Array1, Array2};
 use serde::{Deserialize, Serialize};
 
 use crate::recognition::dataset::{Dataset, check_features, check_labels, distinct};
@@ -10,7 +10,7 @@ use crate::recognition::dual::DualSolution;
 use crate::recognition::kernel::{Kernel, KernelFunction};
 use crate::recognition::linfa_solver;
 use crate::recognition::scalar::Scalar;
-use crate::recognition::sorted::{Sorted, about, centre};
+use crate::recognition::sorted::{Sorted, centre, farthest};
 use crate::recognition::svm_model::{Decision, SvmModel};
 use crate::recognition::training::Goal;
 use crate::{Error, Result};
@@ -174,7 +174,8 @@ impl SvmParams {
         path: &[f64],
     ) -> Vec<SvmModel> {
         let centre = centre(data.records.view(), &kernel);
-        if self.wants_double(data, kernel, path, centre.view()) {
+        let farthest = farthest(data.records.view(), centre.view());
+        if self.wants_double(data.records.nrows(), kernel, path, farthest) {
             let sorted = Sorted::<f64>::new(data, classes, kernel, centre.view());
             self.solve_sorted(&sorted, path)
         } else {
@@ -183,19 +184,15 @@ impl SvmParams {
         }
     }
 
-    /// Whether f32 kernel values would not do: few rows (then f64 costs nothing), a tolerance near f32's rounding, or
+    /// Whether f32 kernel values would not do for rows of which the farthest is so far from the centre (squared): few rows (then f64 costs nothing), a tolerance near f32's rounding, or
     /// coefficients that multiply that rounding.
     pub(crate) fn wants_double(
         &self,
-        data: &Dataset,
+        n_rows: usize,
         kernel: KernelFunction,
         path: &[f64],
-        centre: ArrayView1<f64>,
+        farthest: f64,
     ) -> bool {
-        let norms = about(data.records.rows().into_iter(), centre, |moved| {
-            moved.dot(moved)
-        });
-        let farthest = norms.fold(0.0, f64::max);
         let largest = match kernel {
             KernelFunction::Polynomial { .. } => return true,
             // Where exponents are large, K is nearly the identity and coefficients are near 1, whatever C.
@@ -206,7 +203,7 @@ impl SvmParams {
             KernelFunction::Linear => farthest,
         };
         let c = path.iter().copied().fold(0.0, f64::max);
-        data.records.nrows() < SINGLE_FROM_ROWS
+        n_rows < SINGLE_FROM_ROWS
             || self.tolerance < SINGLE_TOLERANCE
             || c * largest > SINGLE_MOST
             || largest > SINGLE_MOST

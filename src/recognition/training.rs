@@ -7,8 +7,6 @@
 
 use std::ops::Range;
 
-use ndarray::Array2;
-
 use crate::recognition::between::{Between, GROUP_ROWS, groups, pairs};
 use crate::recognition::dual::DualSolution;
 use crate::recognition::kernel::KernelFunction;
@@ -33,6 +31,7 @@ pub(crate) struct Goal<'a> {
     /// Most bytes of kernel values held at once.
     pub memory: usize,
 }
+
 impl<T: Scalar> Sorted<T> {
     /// Solves every pair of classes: for each C of the path, the problems (0, 1), (0, 2), …, (1, 2), ….
     pub fn one_vs_one(&self, goal: Goal) -> Vec<Vec<BinaryProblem>> {
@@ -58,7 +57,7 @@ impl<T: Scalar> Sorted<T> {
 
     /// Whether products take so long that hyperplanes should say which are needed.
     fn is_worth_screening(&self, memory: usize) -> bool {
-        let most = || NearMargin::most_bytes(self.points(), self.ranges());
+        let most = || NearMargin::most_bytes(self);
         self.kernel() == KernelFunction::Linear
             && self.centre().len() >= SCREENING_FROM_FEATURES
             && self.points().len() >= SCREENING_FROM_ROWS * self.ranges().len()
@@ -66,28 +65,18 @@ impl<T: Scalar> Sorted<T> {
     }
 
     fn pairs_near_margin(&self, goal: Goal, problems: &mut [Vec<BinaryProblem>]) {
-        let mut pairs = NearMargin::new(self.points(), self.ranges());
+        let mut near_margin = NearMargin::new(self);
         for (&c, problems) in goal.path.iter().zip(problems) {
-            let mut solutions = pairs.solve(c, goal.tolerance).into_iter();
-            for a in 0..self.ranges().len() {
-                for b in a + 1..self.ranges().len() {
-                    let sides = (self.classes()[a], Some(self.classes()[b]));
-                    let solution = solutions.next().expect("every pair is solved");
-                    problems.push(self.problem(&self.pair_rows(a, b), sides, solution));
-                }
+            let solutions = near_margin.solve(c, goal.tolerance);
+            for ((a, b), solution) in self.all_pairs().zip(solutions) {
+                let sides = (self.classes()[a], Some(self.classes()[b]));
+                problems.push(self.problem(&self.pair_rows(a, b), sides, solution));
             }
         }
     }
 
     fn pairs_from_blocks(&self, goal: Goal, problems: &mut [Vec<BinaryProblem>]) {
-        let within: Vec<Array2<T>> = self
-            .ranges()
-            .iter()
-            .map(|range| {
-                let own = self.points().range(range.clone());
-                own.kernel(own, &self.kernel())
-            })
-            .collect();
+        let within = self.within();
         let groups = groups(self.ranges());
         let (mut gram, mut between) = (Dense::default(), Between::default());
         for (at, own) in groups.iter().enumerate() {
@@ -95,7 +84,7 @@ impl<T: Scalar> Sorted<T> {
                 if own != other {
                     between.compute(self, own, other);
                 }
-                for (a, b) in pairs(own, other) {
+                for (a, b) in pairs(own.clone(), other.clone()) {
                     let [first, second] = [a, b].map(|class| self.ranges()[class].clone());
                     gram.of_blocks(
                         first.len(),
@@ -117,12 +106,10 @@ impl<T: Scalar> Sorted<T> {
     }
 
     fn pairs_from_rows(&self, goal: Goal, problems: &mut [Vec<BinaryProblem>]) {
-        for a in 0..self.ranges().len() {
-            for b in a + 1..self.ranges().len() {
-                let points = self.points().select(&self.pair_rows(a, b));
-                let mut gram = Cached::new(&points, self.kernel(), goal.memory);
-                self.solve_pair(&mut gram, (a, b), goal, problems);
-            }
+        for (a, b) in self.all_pairs() {
+            let points = self.points().select(&self.pair_rows(a, b));
+            let mut gram = Cached::new(&points, self.kernel(), goal.memory);
+            self.solve_pair(&mut gram, (a, b), goal, problems);
         }
     }
 

@@ -167,7 +167,8 @@ impl<T: Scalar> Gram<T> for Dense<T> {
     }
 }
 
-fn gather<T: Copy>(to: &mut [T], from: &[T], columns: &[usize]) {
+/// Copies these columns of a row.
+pub(crate) fn gather<T: Copy>(to: &mut [T], from: &[T], columns: &[usize]) {
     for (to, &column) in to.iter_mut().zip(columns) {
         *to = from[column];
     }

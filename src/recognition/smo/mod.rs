@@ -14,10 +14,12 @@
 mod gram;
 mod part;
 mod passes;
+mod runs;
 mod variables;
 
-pub(crate) use gram::{Cached, Dense, Gram, add_row, copy};
+pub(crate) use gram::{Cached, Dense, Gram, add_row, copy, gather};
 pub(crate) use part::{Part, Room};
+pub(crate) use runs::Runs;
 pub(crate) use variables::extremes;
 
 use crate::recognition::dual::DualSolution;

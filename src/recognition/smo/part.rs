@@ -4,6 +4,7 @@ use ndarray::ArrayView2;
 
 use super::gram::{Dense, Gram, add_row};
 use super::passes::padded;
+use super::runs::Runs;
 use crate::recognition::scalar::Scalar;
 
 /// Room for the rows of parts, one part after another.
@@ -29,8 +30,7 @@ pub(crate) struct Part<'a, T> {
     whole: &'a [T],
     width: usize,
     rows: &'a [usize],
-    /// Rows that follow each other in the whole, by their first and how many: copied at once.
-    runs: Vec<(usize, usize)>,
+    runs: Runs,
     stride: usize,
     room: &'a mut Room<T>,
 }
@@ -53,12 +53,11 @@ impl<'a, T: Scalar> Part<'a, T> {
         room.diagonal
             .extend(rows.iter().map(|&row| whole[row * width + row]));
         room.diagonal.resize(stride, T::zero());
-        let runs = rows.chunk_by(|a, b| a + 1 == *b);
         Self {
             whole,
             width,
             rows,
-            runs: runs.map(|run| (run[0], run.len())).collect(),
+            runs: Runs::new(rows),
             stride,
             room,
         }
@@ -70,13 +69,8 @@ impl<'a, T: Scalar> Part<'a, T> {
         }
         self.room.is_here[i] = true;
         let from = &self.whole[self.rows[i] * self.width..][..self.width];
-        let mut to = &mut self.room.values[i * self.stride..][..self.stride];
-        for &(first, n) in &self.runs {
-            let (now, later) = to.split_at_mut(n);
-            now.copy_from_slice(&from[first..first + n]);
-            to = later;
-        }
-        to.fill(T::zero());
+        let to = &mut self.room.values[i * self.stride..][..self.stride];
+        self.runs.copy(from, to).fill(T::zero());
     }
 
     fn at(&self, i: usize) -> &[T] {
