@@ -54,6 +54,35 @@ fn a_pressed_cube_is_flat_under_its_face_and_not_inflated() {
 }
 
 #[test]
+fn packed_spheres_are_written_and_shown_beside_the_mesh() {
+    let case = Case::new();
+    case.file("cube.obj", cube());
+    let succeeds = |arguments: &str| case.succeeds(&arguments.split(' ').collect::<Vec<_>>());
+    let (said, _) = succeeds("objects pack cube.obj --unit mm --tolerance-mm 1 --out cube.csv");
+    let spheres = std::fs::read_to_string(case.path("cube.csv")).unwrap();
+    let n_spheres = spheres.lines().count() - 1;
+    assert!(
+        said.starts_with(&format!("spheres     {n_spheres}\n")),
+        "{said}"
+    );
+    succeeds("objects show cube.obj --unit mm --spheres cube.csv --panel-px 200 --out kept.png");
+    succeeds("objects show cube.obj --unit mm --tolerance-mm 1 --panel-px 200 --out made.png");
+    let [kept, made] = ["kept.png", "made.png"].map(|name| std::fs::read(case.path(name)).unwrap());
+    assert!(kept.starts_with(b"\x89PNG"));
+    assert_eq!(kept, made, "the same spheres, read or made");
+    succeeds("objects show mug --tolerance-mm 2 --panel-px 200 --out mug.png");
+    for wrong in [
+        "objects show mug --out mug.jpg",
+        "objects show mug --panel-px 10 --out other.png",
+        "objects show cube.obj --spheres none.csv --out other.png",
+    ] {
+        let output = case.run(&wrong.split(' ').collect::<Vec<_>>());
+        assert_eq!(output.status.code(), Some(2), "{wrong}");
+    }
+    assert!(!case.path("other.png").exists());
+}
+
+#[test]
 fn words_that_no_mesh_has_are_refused() {
     let case = Case::new();
     case.file("cube.obj", cube());

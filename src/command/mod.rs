@@ -4,6 +4,7 @@ mod classify;
 mod features;
 mod objects;
 mod objects_pack;
+mod objects_show;
 mod output;
 mod plan;
 mod press;
@@ -12,6 +13,7 @@ mod run_object_detail;
 mod run_reconstruction;
 mod study_args;
 mod touches;
+mod which_object;
 
 use bubbletouch::Result;
 use clap::{Parser, Subcommand};

@@ -1,12 +1,13 @@
 //! `bubbletouch objects`: what there is to touch, as a list or as pictures.
 
-use super::objects_pack;
+use super::output::check_ending;
+use super::{objects_pack, objects_show};
+use bubbletouch::Result;
 use bubbletouch::files::write_bytes;
 use bubbletouch::mesh::{LengthUnit, MeshReport};
 use bubbletouch::objects::{Catalogue, Entry, Object, SphereUnion};
 use bubbletouch::report::object_picture::{contact_sheet, object_picture};
 use bubbletouch::study::{MeshUse, ModelSpec, load_mesh, read_mesh_file};
-use bubbletouch::{Error, Result};
 use comfy_table::{CellAlignment, Table, presets::NOTHING};
 use rayon::prelude::*;
 use std::path::PathBuf;
@@ -48,6 +49,8 @@ enum Action {
     Mesh(MeshArgs),
     /// Pack a mesh or a built-in object with few spheres, to a surface error of your choice
     Pack(objects_pack::Args),
+    /// Draw an object, the spheres that stand for it, and the error between them
+    Show(objects_show::Args),
 }
 
 #[derive(clap::Args)]
@@ -69,6 +72,7 @@ pub fn objects(args: &Args) -> Result<()> {
     match &args.action {
         Some(Action::Mesh(args)) => return report(args),
         Some(Action::Pack(args)) => return objects_pack::pack(args),
+        Some(Action::Show(args)) => return objects_show::show(args),
         None => {}
     }
     let listed = args.build()?;
@@ -76,13 +80,7 @@ pub fn objects(args: &Args) -> Result<()> {
         println!("{}", table(&listed));
         return Ok(());
     };
-    if path.extension().is_none_or(|ending| ending != "png") {
-        return Err(Error::input(
-            path.display(),
-            "not a .png file",
-            "a name that ends in .png",
-        ));
-    }
+    check_ending(path, "png")?;
     let picture = match &listed[..] {
         [one] => object_picture(&one.object.name, one.spheres(), PICTURE, PICTURE)?,
         many => {

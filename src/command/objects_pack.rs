@@ -1,13 +1,12 @@
 //! `bubbletouch objects pack`: a mesh or a built-in object as few spheres, and how well they fit.
 
+use super::output::check_ending;
+use super::which_object::{Loaded, WhichObject};
+use bubbletouch::Result;
 use bubbletouch::files::write_whole;
-use bubbletouch::mesh::{LengthUnit, Surface};
-use bubbletouch::objects::{Catalogue, SphereUnion, surface_error, write_spheres};
-use bubbletouch::packing::{Body, PackingError, Spread, pack_mesh_watched, packing_error};
-use bubbletouch::report::progress::to_stderr;
-use bubbletouch::study::read_mesh_file;
-use bubbletouch::{Error, Result};
-use std::path::{Path, PathBuf};
+use bubbletouch::objects::{Solid, SphereUnion, surface_error, write_spheres};
+use bubbletouch::packing::{PackingError, Spread, packing_error};
+use std::path::PathBuf;
 
 const MM: f64 = 1e-3;
 /// Points of a mesh at which the error is measured.
@@ -15,91 +14,51 @@ const N_POINTS: usize = 100_000;
 
 /// Pack a mesh or a built-in object with few spheres.
 ///
-/// No sphere reaches more than the tolerance outside the object, and no point of its outer surface is farther than the
-/// tolerance from the spheres. Both are measured and reported.
+/// No sphere reaches more than the tolerance outside the object (of a mesh: half of it), and no point of its outer surface is
+/// farther than the tolerance from the spheres. Both are measured and reported.
 #[derive(clap::Args)]
 pub struct Args {
-    /// A PLY, OBJ or STL file, or the name of a built-in object
-    object: String,
+    #[command(flatten)]
+    object: WhichObject,
     /// How far the two surfaces may be apart
     #[arg(long, value_name = "MM")]
     tolerance_mm: f64,
     /// Where the spheres go: columns x, y, z, r in metres
     #[arg(long, value_name = "FILE.csv")]
     out: PathBuf,
-    /// Unit of a mesh file: m, cm, mm or in
-    #[arg(long, value_name = "UNIT", default_value = "m")]
-    unit: LengthUnit,
-    /// Pack a mesh's surface without thickness, holes and all, instead of the solid that it encloses
-    #[arg(long)]
-    as_sheet: bool,
 }
 
 pub fn pack(args: &Args) -> Result<()> {
-    if args.out.extension().is_none_or(|ending| ending != "csv") {
-        return Err(Error::input(
-            args.out.display(),
-            "not a .csv file",
-            "a name that ends in .csv",
-        ));
-    }
-    let catalogue = Catalogue::builtin()?;
-    let is_builtin = catalogue.object(&args.object).is_ok();
-    let (spheres, report) = if is_builtin && !Path::new(&args.object).exists() {
-        pack_builtin(&catalogue, args)?
-    } else {
-        pack_file(args)?
-    };
+    check_ending(&args.out, "csv")?;
+    let object = args.object.load()?;
+    let tolerance = args.tolerance_mm * MM;
+    let (spheres, n_unproved) = object.pack(tolerance)?;
     write_whole(&args.out, |sink| write_spheres(&spheres, sink))?;
     println!("spheres     {}", spheres.n_spheres());
-    println!("{report}");
+    match object {
+        Loaded::Solid(solid) => println!("{}", describe_solid(&solid, &spheres, tolerance)),
+        Loaded::Mesh { surface, body } => {
+            println!(
+                "{}",
+                describe(&packing_error(&surface, body, &spheres, N_POINTS))
+            );
+        }
+    }
+    if n_unproved > 0 {
+        println!("not proved at {n_unproved} places of the surface");
+    }
     Ok(())
 }
 
-fn pack_builtin(catalogue: &Catalogue, args: &Args) -> Result<(SphereUnion, String)> {
-    let tolerance = args.tolerance_mm * MM;
-    let solid = &catalogue.object(&args.object)?.solid;
-    let spheres = solid.pack(tolerance)?;
+fn describe_solid(solid: &Solid, spheres: &SphereUnion, tolerance: f64) -> String {
     let spacing = (solid.bounds().size().length() / 200.0).min(20.0 * tolerance);
-    let error = surface_error(solid, &spheres, spacing);
-    let report = format!(
+    let error = surface_error(solid, spheres, spacing);
+    format!(
         "gap         max {:.4} mm\nprotrusion  max {:.4} mm\nmeasured at {} points of the surface",
         error.gap / MM,
         error.protrusion / MM,
         error.n_surface_points
-    );
-    Ok((spheres, report))
-}
-
-fn pack_file(args: &Args) -> Result<(SphereUnion, String)> {
-    let body = if args.as_sheet {
-        Body::Sheet
-    } else {
-        Body::Solid
-    };
-    let mesh = read_mesh_file(Path::new(&args.object), args.unit)?.into_mesh(&args.object)?;
-    let surface = Surface::new(mesh);
-    const STEPS: u64 = 100;
-    let progress = to_stderr();
-    progress.stage("pack", STEPS);
-    let mut done = 0;
-    let packing = pack_mesh_watched(&surface, body, args.tolerance_mm * MM, &mut |share| {
-        let now = (share * STEPS as f64) as u64;
-        progress.advance(now.saturating_sub(done));
-        done = done.max(now);
-    })?;
-    progress.stage("measure", 1);
-    let error = packing_error(&surface, body, &packing.spheres, N_POINTS);
-    progress.advance(1);
-    progress.finish("");
-    let mut report = describe(&error);
-    if packing.n_unproved > 0 {
-        report += &format!(
-            "\nnot proved at {} places of the surface",
-            packing.n_unproved
-        );
-    }
-    Ok((packing.spheres, report))
+    )
 }
 
 fn describe(error: &PackingError) -> String {

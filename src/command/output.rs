@@ -23,6 +23,18 @@ pub fn output_folder(folder: &Path) -> Result<()> {
     })
 }
 
+/// An error unless a file's name has this ending.
+pub fn check_ending(path: &Path, ending: &str) -> Result<()> {
+    if path.extension().is_some_and(|given| given == ending) {
+        return Ok(());
+    }
+    Err(Error::input(
+        path.display(),
+        format!("not a .{ending} file"),
+        format!("a name that ends in .{ending}"),
+    ))
+}
+
 /// Where packed meshes are kept from run to run: beside a folder of results.
 pub fn packings_beside(folder: &Path) -> PathBuf {
     folder.parent().unwrap_or(Path::new("")).join("packings")

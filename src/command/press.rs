@@ -1,10 +1,11 @@
 //! `bubbletouch press`: one object, one patch, one reading.
 
 use super::output::terminal_width;
+use super::which_object::spheres_file;
 use bubbletouch::contact::{Contact, Workspace, press_to_depth, press_to_travel};
 use bubbletouch::geometry::Pose;
 use bubbletouch::mesh::LengthUnit;
-use bubbletouch::objects::{Catalogue, Model, read_spheres};
+use bubbletouch::objects::{Catalogue, Model};
 use bubbletouch::report::frame_files::write_frame;
 use bubbletouch::report::pressure_map::pressure_text;
 use bubbletouch::report::terminal::Ink;
@@ -13,7 +14,6 @@ use bubbletouch::study::{MeshUse, ModelSpec, load_mesh};
 use bubbletouch::world::{Grid, Patch, RestPose, RestPoses, Scene, Taxel, Touch};
 use bubbletouch::{Error, Result};
 use ndarray::Array2;
-use std::fs::File;
 use std::path::PathBuf;
 
 const MM: f64 = 1e-3;
@@ -181,15 +181,7 @@ impl Args {
         }
         let model = match (&self.source.spheres, &self.source.mesh, &self.source.object) {
             (Some(path), _, _) => {
-                let place = path.display().to_string();
-                let file = File::open(path).map_err(|e| {
-                    Error::input(
-                        &place,
-                        format!("cannot be opened ({e})"),
-                        "a CSV of spheres",
-                    )
-                })?;
-                return Ok((read_spheres(&place, file)?.into(), Pose::IDENTITY));
+                return Ok((spheres_file(path)?.into(), Pose::IDENTITY));
             }
             (_, Some(path), _) => load_mesh(path, &self.mesh_use())?.model,
             (_, _, Some(name)) => self.build(name)?,

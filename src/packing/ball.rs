@@ -4,7 +4,7 @@ use super::target::{Body, Target};
 use crate::objects::Sphere;
 use glam::DVec3;
 
-/// A ball around a point inside a mesh. Inflated by the tolerance it is a sphere of the packing.
+/// A ball around a point inside a mesh. Inflated by a part of the tolerance it is a sphere of the packing.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Ball {
     /// Inside the mesh, or on it.
@@ -17,6 +17,18 @@ pub(super) struct Ball {
 
 /// Queries after which a ball is given up; most take three to eight.
 const MAX_STEPS: usize = 60;
+
+/// The share of the tolerance that spheres reach outside the mesh; of what they leave open inside it all is used.
+///
+/// With 1 the spheres are fewest (a quarter fewer than with ½), but the middle of their rough surface lies half the tolerance
+/// outside the mesh, and a skin feels it: on eight scans the mean deflection error is 0.059 mm at a tolerance of 0.1 mm with 1,
+/// 0.033 with 0.6 and 0.027 with 0.45.
+const PROTRUSION: f64 = 0.5;
+
+/// How far apart the highest and the lowest places of the spheres' surface may be, when they are made for a tolerance `e`.
+pub(super) fn relief(e: f64) -> f64 {
+    (1.0 + PROTRUSION) * e
+}
 
 impl Ball {
     /// The ball of largest t with centre `foot + t·inward` and no surface nearer to its centre than t − `slack`.
@@ -74,7 +86,8 @@ impl Ball {
         None
     }
 
-    /// The last resort: around a point of the surface itself. It reaches 2e along it, whatever the surface is like.
+    /// The last resort: around a point of the surface itself. It covers what is within [`relief`] of it, whatever the
+    /// surface is like.
     pub fn on_surface(foot: DVec3) -> Self {
         Self {
             center: foot,
@@ -83,22 +96,23 @@ impl Ball {
         }
     }
 
-    /// The sphere that reaches `e` outside the mesh, no more.
+    /// The sphere that reaches [`PROTRUSION`] of `e` outside the mesh, no more.
     pub fn sphere(&self, e: f64) -> Sphere {
         Sphere {
             center: self.center,
-            radius: self.depth + e,
+            radius: self.depth + PROTRUSION * e,
         }
     }
 
     /// How far from the centre a point of the surface may be for the sphere to come within `e` of it.
     pub fn reach(&self, e: f64) -> f64 {
-        self.depth + 2.0 * e
+        self.depth + relief(e)
     }
 
     /// Half the width of what it covers of a flat face at the distance of its depth.
     pub fn half_width(&self, e: f64) -> f64 {
-        2.0 * (e * (self.depth + e)).sqrt()
+        let relief = relief(e);
+        (relief * (2.0 * self.depth + relief)).sqrt()
     }
 }
 

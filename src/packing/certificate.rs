@@ -106,9 +106,9 @@ mod tests {
     fn four_balls_hold_a_square_exactly_when_they_reach_its_middle_and_corners() {
         let places = [(-0.5, -0.5), (0.5, -0.5), (0.5, 0.5), (-0.5, 0.5)];
         let balls = places.map(|(x, y)| Ball::on_surface(DVec3::new(x, y, 0.0)));
-        // Each must reach √½ = 0.7071 = 2e.
-        assert!(gaps_with(&balls, 0.3536).is_empty());
-        let open = gaps_with(&balls, 0.3535);
+        // Each must reach √½ = 0.7071 = 3e/2.
+        assert!(gaps_with(&balls, 0.4715).is_empty());
+        let open = gaps_with(&balls, 0.4713);
         assert!(!open.is_empty());
         assert!(open.iter().all(|gap| gap.position.x.abs() < 0.02
             || gap.position.y.abs() < 0.02
@@ -120,7 +120,7 @@ mod tests {
     fn without_one_ball_there_is_a_gap_where_it_was() {
         let places = [(-0.5, -0.5), (0.5, -0.5), (0.5, 0.5)];
         let balls = places.map(|(x, y)| Ball::on_surface(DVec3::new(x, y, 0.0)));
-        let open = gaps_with(&balls, 0.36);
+        let open = gaps_with(&balls, 0.48);
         let missing = DVec3::new(-0.5, 0.5, 0.0);
         assert!(open.iter().any(|gap| gap.position.distance(missing) < 0.5));
         assert!(open.iter().all(|gap| gap.position.distance(missing) < 0.8));

@@ -9,15 +9,18 @@
 //!
 //! # The promise
 //!
-//! Let d(c) be the depth of a point c inside the mesh. The sphere (c, d + e) reaches at most e outside the mesh, and it is
-//! within e of exactly those points of the surface that are within **d + 2e** of c. So
+//! Let d(c) be the depth of a point c inside the mesh. The sphere (c, d + e/2) reaches at most e/2 outside the mesh, and it is
+//! within e of exactly those points of the surface that are within **d + 3e/2** of c. So
 //!
-//! - **protrusion**: no sphere reaches more than e outside, by construction, whatever spheres are chosen;
+//! - **protrusion**: no sphere reaches more than e/2 outside, by construction, whatever spheres are chosen;
 //! - **gap**: no point of the outer surface is more than e outside the spheres, by proof: a ball that holds the corners of
 //!   a triangle holds all of it, so triangles are halved until each piece is held by one ball (`certificate`).
 //!
 //! Faces that lie inside other parts of the mesh are not outer surface; nothing else is exempt. Thin walls, edges and tips
-//! need no care of their own: a ball around a point of the surface (d = 0) always holds what is within 2e of it.
+//! need no care of their own: a ball around a point of the surface (d = 0) always holds what is within 3e/2 of it.
+//!
+//! Spheres that reached all of e outside would be fewest, but the middle of their surface would lie e/2 outside the mesh; with
+//! half of it outside, their bumps and hollows about cancel, and the skin's error halves for a third more spheres (`ball`).
 //!
 //! # The method
 //!
@@ -31,10 +34,10 @@
 //!
 //! # How few?
 //!
-//! On a flat face a ball of depth d holds a disc of radius `a = 2·sqrt(e(d + e))`; in the best covering of the plane by
-//! discs each has `(3√3/2)·a² ≈ 10.4·e(d + e)` to itself, so a face needs its area over that. Along a sharp right-angled
-//! edge the best ball has d = 2e and holds 4√2·e of the edge, so an edge needs its length over 5.7·e. Walls thinner than
-//! the rest of the object have small balls on both sides at once and cost most.
+//! Let h = 3e/2. On a flat face a ball of depth d holds a disc of radius `a = sqrt(h(2d + h))`; in the best covering of the
+//! plane by discs each has `(3√3/2)·a² ≈ 2.6·h(2d + h)` to itself, so a face needs its area over that. Along a sharp
+//! right-angled edge the best ball has d = h and holds 2√2·h of the edge, so an edge needs its length over 2.8·h. Walls
+//! thinner than the rest of the object have small balls on both sides at once and cost most.
 //!
 //! # Sources
 //!

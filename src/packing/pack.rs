@@ -20,7 +20,7 @@ pub struct Packing {
 
 /// Packs a mesh with few spheres whose surface is within `tolerance` (metres, positive) of the mesh's outer surface.
 ///
-/// No sphere reaches more than the tolerance outside the mesh, and every point of the outer surface is within the
+/// No sphere reaches more than half the tolerance outside the mesh, and every point of the outer surface is within the
 /// tolerance of the spheres; faces that lie inside other parts of the mesh are not outer surface. The same mesh gives the
 /// same spheres. An error for a tolerance that is not positive, and for a [`Body::Solid`] with holes, with faces that
 /// disagree about the outside, or inside out.

@@ -12,7 +12,7 @@ use std::io::BufReader;
 use std::path::PathBuf;
 
 /// Changes whenever [`pack_mesh`](super::pack_mesh) gives other spheres for the same mesh.
-const METHOD: &str = "packing 2";
+const METHOD: &str = "packing 3";
 
 /// A folder of packings, one CSV file each, named by the SHA-256 of mesh, body, tolerance and method.
 ///

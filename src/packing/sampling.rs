@@ -1,6 +1,6 @@
 //! Points all over the outer surface, as dense as the balls there are small, and balls that touch it.
 
-use super::ball::Ball;
+use super::ball::{Ball, relief};
 use super::target::{Target, bisected, triangle_middle};
 use crate::mesh::{Bvh, Triangle, TriangleMesh};
 use glam::DVec3;
@@ -189,7 +189,7 @@ impl Sizes<'_> {
         {
             return HEXAGON * known.half_width.powi(2);
         }
-        let (slack, limit) = (2.0 * self.target.e, self.target.largest_radius());
+        let (slack, limit) = (relief(self.target.e), self.target.largest_radius());
         let ball = Ball::largest(self.target, foot, -normal, slack, limit);
         let half_width = ball
             .unwrap_or(Ball::on_surface(foot))

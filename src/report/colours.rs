@@ -46,12 +46,34 @@ pub fn share(value: f64) -> Rgb {
         [0x1f, 0x65, 0xae],
         [0x08, 0x30, 0x6b],
     ];
-    let place = value.clamp(0.0, 1.0) * (STOPS.len() - 1) as f64;
-    let below = (place.floor() as usize).min(STOPS.len() - 2);
+    between(&STOPS, value)
+}
+
+/// Colour of a value between −1 and 1 (others are clamped): dark blue, white at 0, dark red; the colour-blind tell them apart.
+pub fn diverging(value: f64) -> Rgb {
+    /// ColorBrewer's RdBu, reversed.
+    const STOPS: [Rgb; 9] = [
+        [0x05, 0x30, 0x61],
+        [0x21, 0x66, 0xac],
+        [0x43, 0x93, 0xc3],
+        [0x92, 0xc5, 0xde],
+        [0xf7, 0xf7, 0xf7],
+        [0xf4, 0xa5, 0x82],
+        [0xd6, 0x60, 0x4d],
+        [0xb2, 0x18, 0x2b],
+        [0x67, 0x00, 0x1f],
+    ];
+    between(&STOPS, 0.5 * (1.0 + value))
+}
+
+/// The colour at a place between 0, the first, and 1, the last.
+fn between(stops: &[Rgb], place: f64) -> Rgb {
+    let place = place.clamp(0.0, 1.0) * (stops.len() - 1) as f64;
+    let below = (place.floor() as usize).min(stops.len() - 2);
     let part = place - below as f64;
     std::array::from_fn(|channel| {
-        let low = f64::from(STOPS[below][channel]);
-        let high = f64::from(STOPS[below + 1][channel]);
+        let low = f64::from(stops[below][channel]);
+        let high = f64::from(stops[below + 1][channel]);
         (low + part * (high - low)).round() as u8
     })
 }
@@ -82,6 +104,16 @@ mod tests {
             assert!(luma(heat(low)) < luma(heat(high)), "{low}");
             assert!(luma(share(low)) > luma(share(high)), "{low}");
         }
+    }
+
+    #[test]
+    fn diverging_is_palest_at_zero_and_darkens_both_ways() {
+        for step in 0..16 {
+            let (near, far) = (f64::from(step) / 16.0, f64::from(step + 1) / 16.0);
+            assert!(luma(diverging(near)) > luma(diverging(far)), "{near}");
+            assert!(luma(diverging(-near)) > luma(diverging(-far)), "{near}");
+        }
+        assert!(diverging(1.0)[0] > diverging(1.0)[2] && diverging(-1.0)[2] > diverging(-1.0)[0]);
     }
 
     #[test]

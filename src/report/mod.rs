@@ -9,12 +9,14 @@
 
 pub mod answer;
 pub mod axis;
+mod canvas;
 pub mod chart;
 pub mod chart_plan;
 pub mod colours;
 pub mod confusion_picture;
 pub mod csv_tables;
 pub mod drawing;
+pub mod fit_picture;
 pub mod frame_files;
 pub mod headlines;
 pub mod heat_map;
@@ -26,6 +28,7 @@ pub mod object_detail_charts;
 pub mod object_detail_results;
 pub mod object_picture;
 pub mod pareto_chart;
+mod picture;
 pub mod pressure_map;
 pub mod progress;
 mod raster;

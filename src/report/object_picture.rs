@@ -1,22 +1,11 @@
 //! The picture of an object: its spheres seen from above and to the side, and a sheet of many such pictures.
 
-use super::shaded_view::{BACKGROUND, ShadedView};
+use super::picture::Label;
+pub use super::picture::Picture;
+use super::shaded_view::{Lighting, PAINT, Stage};
 use crate::error::{Error, Result};
 use crate::objects::SphereUnion;
 use glam::DVec2;
-use kuva::render::render::{Primitive, Scene, TextAnchor};
-use std::path::Path;
-
-/// An opaque picture, rows from the top, 3 bytes a pixel.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Picture {
-    /// Pixels.
-    pub width: usize,
-    /// Pixels.
-    pub height: usize,
-    /// Red, green, blue; length 3 × width × height.
-    pub rgb: Vec<u8>,
-}
 
 /// One object: orthographic, z up, light background, its name (or nothing for "") above and a bar of known length below.
 ///
@@ -68,90 +57,6 @@ pub fn contact_sheet(
     Ok(picture)
 }
 
-impl Picture {
-    /// The picture as a PNG file's bytes.
-    pub fn png(&self) -> Result<Vec<u8>> {
-        let mut bytes = Vec::new();
-        let write = |bytes: &mut Vec<u8>| -> std::result::Result<(), png::EncodingError> {
-            let mut encoder = png::Encoder::new(bytes, self.width as u32, self.height as u32);
-            encoder.set_color(png::ColorType::Rgb);
-            encoder.set_depth(png::BitDepth::Eight);
-            let mut writer = encoder.write_header()?;
-            writer.write_image_data(&self.rgb)?;
-            writer.finish()
-        };
-        match write(&mut bytes) {
-            Ok(()) => Ok(bytes),
-            Err(error) => Err(Error::io(
-                Path::new("picture"),
-                "encode",
-                std::io::Error::other(error),
-            )),
-        }
-    }
-
-    fn blank(width: usize, height: usize) -> Result<Self> {
-        // The largest side that a table of 100 × 100 tiles of 200 pixels needs.
-        let sides = 64..=20_000;
-        if !(sides.contains(&width) && sides.contains(&height)) {
-            return Err(Error::input(
-                "picture size",
-                format!("{width} × {height} pixels"),
-                "64 to 20000 pixels each way",
-            ));
-        }
-        let rgb = [BACKGROUND; 3].repeat(width * height);
-        Ok(Self { width, height, rgb })
-    }
-
-    /// Sets all labels at once, in the chart library's own type.
-    fn write_labels(&mut self, labels: &[Label]) -> Result<()> {
-        let mut scene = Scene::new(self.width as f64, self.height as f64);
-        for label in labels {
-            scene.add(Primitive::Text {
-                x: label.x,
-                y: label.y,
-                content: label.text.clone(),
-                size: label.size,
-                anchor: TextAnchor::Middle,
-                rotate: None,
-                bold: false,
-                color: None,
-            });
-        }
-        let failed = |e: String| {
-            Error::io(
-                Path::new("picture"),
-                "set type in",
-                std::io::Error::other(e),
-            )
-        };
-        let backend = kuva::RasterBackend::new().with_scale(1.0);
-        let page = backend.render_scene(&scene).map_err(failed)?;
-        let mut reader = png::Decoder::new(std::io::Cursor::new(page))
-            .read_info()
-            .map_err(|e| failed(e.to_string()))?;
-        let mut ink = vec![0; reader.output_buffer_size().unwrap_or(0)];
-        let info = reader
-            .next_frame(&mut ink)
-            .map_err(|e| failed(e.to_string()))?;
-        let samples = info.color_type.samples();
-        for (pixel, ink) in self.rgb.chunks_mut(3).zip(ink.chunks(samples)) {
-            for value in pixel {
-                *value = (u16::from(*value) * u16::from(ink[0]) / 255) as u8;
-            }
-        }
-        Ok(())
-    }
-}
-
-struct Label {
-    text: String,
-    x: f64,
-    y: f64,
-    size: u32,
-}
-
 fn draw_tile(
     picture: &mut Picture,
     [left, top, width, height]: [usize; 4],
@@ -162,44 +67,23 @@ fn draw_tile(
     let side = width.min(height) as f64;
     let margin = (0.10 * side).max(14.0);
     let room = DVec2::new(width as f64 - 1.6 * margin, height as f64 - 2.8 * margin);
-    let view = ShadedView::new(union.spheres(), [width, height], room);
-    for y in 0..height {
-        for x in 0..width {
-            let at = 3 * ((top + y) * picture.width + left + x);
-            picture.rgb[at..at + 3].copy_from_slice(&view.rgb(x, y));
-        }
-    }
+    let stage = Stage::new(union.spheres(), [width, height], room);
+    let hits = stage.canvas.hits(union.spheres());
+    let view = stage.view(&hits, Lighting::Smoothed, |_| PAINT);
+    picture.place(&view, [left, top], [width, height]);
     let middle = left as f64 + 0.5 * width as f64;
     let size = (0.045 * side).clamp(9.0, 18.0);
-    let mut label = |text: String, y: f64| {
-        let (x, y, size) = (middle, top as f64 + y, size as u32);
-        labels.push(Label { text, x, y, size });
-    };
     if !name.is_empty() {
-        label(name.to_string(), 0.55 * margin + 0.5 * size);
+        labels.push(Label {
+            text: name.to_string(),
+            x: middle,
+            y: top as f64 + 0.55 * margin + 0.5 * size,
+            size: size as u32,
+        });
     }
-    let millimetres = bar_length(0.22 * width as f64 / view.pixels_per_metre * 1e3);
-    let length = millimetres * 1e-3 * view.pixels_per_metre;
-    let below = height as f64 - 0.35 * margin;
-    label(format!("{millimetres} mm"), below - 5.0);
-    draw_bar(picture, middle - 0.5 * length, top as f64 + below, length);
-}
-
-/// The longest of 1, 2, 5, 10, … that fits.
-fn bar_length(largest: f64) -> f64 {
-    let power = 10f64.powf(largest.log10().floor());
-    let steps = [5.0, 2.0, 1.0].map(|step| step * power);
-    steps.into_iter().find(|&s| s <= largest).unwrap_or(power)
-}
-
-fn draw_bar(picture: &mut Picture, left: f64, top: f64, length: f64) {
-    let (first, last) = (left.round() as usize, (left + length).round() as usize);
-    for y in [top as usize, top as usize + 1] {
-        for x in first..last.min(picture.width) {
-            let at = 3 * (y * picture.width + x);
-            picture.rgb[at..at + 3].fill(60);
-        }
-    }
+    let below = top as f64 + height as f64 - 0.35 * margin;
+    let bar = [middle, below];
+    labels.push(picture.draw_scale(stage.pixels_per_metre, width as f64, bar, size as u32));
 }
 
 #[cfg(test)]
@@ -271,14 +155,5 @@ mod tests {
                 .exit_code(),
             2
         );
-    }
-
-    #[test]
-    fn bars_are_the_longest_round_number_that_fits() {
-        let lengths = [1.0, 1.99, 2.5, 7.0, 12.0, 49.0, 0.03].map(bar_length);
-        let expected = [1.0, 1.0, 2.0, 5.0, 10.0, 20.0, 0.02];
-        for (length, expected) in lengths.into_iter().zip(expected) {
-            assert!((length - expected).abs() < 1e-12, "{length}");
-        }
     }
 }

@@ -1,31 +1,49 @@
-//! Spheres drawn for the eye: orthographic, softly lit, with outlines and a shadow on the floor.
+//! Objects drawn for the eye: orthographic, softly lit, with outlines and a shadow on the floor.
 
+use super::canvas::{BACKGROUND, Canvas, Hit, View, extent};
 use crate::objects::Sphere;
 use glam::{DVec2, DVec3};
-
-/// Brightness of the floor and of blank paper, 0 to 255.
-pub(super) const BACKGROUND: u8 = 250;
+use rayon::prelude::*;
 
 /// Rays a pixel, each way.
 const SUPERSAMPLING: usize = 2;
 
-/// What a ray of the picture meets first.
-#[derive(Clone, Copy)]
-struct Hit {
-    /// Towards the eye, metres.
-    height: f64,
-    normal: DVec3,
+/// Slate blue, for objects without colours of their own.
+pub(super) const PAINT: [u8; 3] = [142, 178, 214];
+
+/// What light makes of a surface.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(super) enum Lighting {
+    /// Bumps are smoothed away, so that the eye sees the shape and not its spheres.
+    Smoothed,
+    /// Every sphere and every face shows.
+    Plain,
+    /// Paint as it is: colours mean values.
+    Unlit,
 }
 
-/// Spheres as they are seen and lit, pixel by pixel.
-pub(super) struct ShadedView {
-    canvas: Canvas,
-    shades: Vec<(f64, bool)>,
+/// Floor, lamp and eye set up around an object.
+pub(super) struct Stage {
+    pub canvas: Canvas,
+    shadow: Vec<f32>,
     /// Scale of the picture.
     pub pixels_per_metre: f64,
 }
 
-impl ShadedView {
+/// An object as it is seen and lit, pixel by pixel.
+pub(super) struct ShadedView {
+    /// Rays a row.
+    width: usize,
+    rays: Vec<Ray>,
+}
+
+/// What a ray brings back.
+struct Ray {
+    light: f64,
+    paint: [u8; 3],
+}
+
+impl Stage {
     /// The spheres in the middle of width × height pixels, as large as `room` (pixels each way) allows.
     pub fn new(spheres: &[Sphere], [width, height]: [usize; 2], room: DVec2) -> Self {
         let view = View::three_quarter();
@@ -38,152 +56,77 @@ impl ShadedView {
             middle: 0.5 * (low + high),
             view,
         };
-        let shades = canvas.shades(&canvas.hits(spheres), &canvas.shadow(spheres));
         Self {
+            shadow: canvas.shadow(spheres),
             canvas,
-            shades,
             pixels_per_metre,
         }
     }
 
-    /// Red, green, blue of a pixel, row 0 at the top.
-    pub fn rgb(&self, x: usize, y: usize) -> [u8; 3] {
-        self.canvas.pixel(&self.shades, x, y)
-    }
-}
-
-/// Axes of the picture in the object's frame.
-struct View {
-    right: DVec3,
-    up: DVec3,
-    towards_eye: DVec3,
-}
-
-impl View {
-    /// The eye stands before the object (−y), 30° to the right of it and 38° up.
-    fn three_quarter() -> Self {
-        let (azimuth, elevation) = (30f64.to_radians(), 38f64.to_radians());
-        let right = DVec3::new(azimuth.cos(), azimuth.sin(), 0.0);
-        let back = DVec3::new(azimuth.sin(), -azimuth.cos(), 0.0);
-        let towards_eye = elevation.cos() * back + elevation.sin() * DVec3::Z;
-        Self {
-            right,
-            up: towards_eye.cross(right),
-            towards_eye,
+    /// What the rays met, painted point by point (metres, frame of the object).
+    pub fn view(
+        &self,
+        hits: &[Option<Hit>],
+        lighting: Lighting,
+        paint: impl Fn(DVec3) -> [u8; 3] + Sync,
+    ) -> ShadedView {
+        let canvas = &self.canvas;
+        let normals = match lighting {
+            Lighting::Smoothed => canvas.smooth_normals(hits),
+            Lighting::Plain | Lighting::Unlit => normals_of(hits),
+        };
+        let ray = |index: usize| match &hits[index] {
+            None => Ray {
+                light: 1.0 - 0.20 * f64::from(self.shadow[index]),
+                paint: [BACKGROUND; 3],
+            },
+            Some(hit) => {
+                let light = match lighting {
+                    Lighting::Unlit => 1.0,
+                    Lighting::Smoothed | Lighting::Plain => lit(normals[index]),
+                };
+                Ray {
+                    light: light * (1.0 - 0.55 * canvas.step_down(hits, index, hit)),
+                    paint: paint(canvas.point(index, hit.height)),
+                }
+            }
+        };
+        ShadedView {
+            width: canvas.width,
+            rays: (0..hits.len()).into_par_iter().map(ray).collect(),
         }
     }
-
-    fn project(&self, point: DVec3) -> DVec2 {
-        DVec2::new(point.dot(self.right), point.dot(self.up))
-    }
 }
 
-fn extent(view: &View, spheres: &[Sphere]) -> (DVec2, DVec2) {
-    let mut low = DVec2::MAX;
-    let mut high = DVec2::MIN;
-    for sphere in spheres {
-        let center = view.project(sphere.center);
-        low = low.min(center - sphere.radius);
-        high = high.max(center + sphere.radius);
-    }
-    (low, high)
+/// Brightness under a lamp and a weaker one that fills the shades.
+fn lit(normal: DVec3) -> f64 {
+    let lamp = DVec3::new(-0.45, 0.65, 0.62).normalize();
+    let fill = DVec3::new(0.8, 0.1, 0.6).normalize();
+    0.30 + 0.62 * normal.dot(lamp).max(0.0) + 0.16 * normal.dot(fill).max(0.0)
 }
 
-/// The supersampled tile.
-struct Canvas {
-    width: usize,
-    height: usize,
-    /// Rays a metre.
-    scale: f64,
-    /// The point of the view's plane in the middle of the tile.
-    middle: DVec2,
-    view: View,
+fn normals_of(hits: &[Option<Hit>]) -> Vec<DVec3> {
+    let normal = |hit: &Option<Hit>| hit.map_or(DVec3::ZERO, |hit| hit.normal);
+    hits.iter().map(normal).collect()
 }
 
-impl Canvas {
-    fn column_row(&self, point: DVec2) -> DVec2 {
-        let offset = (point - self.middle) * self.scale;
-        DVec2::new(
-            0.5 * self.width as f64 + offset.x,
-            0.5 * self.height as f64 - offset.y,
-        )
-    }
-
-    /// Calls `visit(index, offset from the centre in radii)` for each ray inside an upright ellipse.
-    fn each_ray(&self, center: DVec2, radii: DVec2, mut visit: impl FnMut(usize, DVec2)) {
-        let middle = self.column_row(center);
-        let radii = radii * self.scale;
-        let range = |middle: f64, radius: f64, n: usize| {
-            let first = (middle - radius).floor().clamp(0.0, n as f64) as usize;
-            first..(middle + radius).ceil().clamp(0.0, n as f64) as usize
-        };
-        for row in range(middle.y, radii.y, self.height) {
-            for column in range(middle.x, radii.x, self.width) {
-                let at = DVec2::new(column as f64 + 0.5, row as f64 + 0.5);
-                let offset = (at - middle) / radii;
-                if offset.length_squared() <= 1.0 {
-                    visit(row * self.width + column, offset);
+impl ShadedView {
+    /// Red, green, blue of a pixel, row 0 at the top.
+    pub fn rgb(&self, x: usize, y: usize) -> [u8; 3] {
+        let mut sum = [0.0; 3];
+        for row in y * SUPERSAMPLING..(y + 1) * SUPERSAMPLING {
+            for column in x * SUPERSAMPLING..(x + 1) * SUPERSAMPLING {
+                let ray = &self.rays[row * self.width + column];
+                for (total, paint) in sum.iter_mut().zip(ray.paint) {
+                    *total += (f64::from(paint) * ray.light).min(255.0);
                 }
             }
         }
+        sum.map(|total| (total / (SUPERSAMPLING * SUPERSAMPLING) as f64).round() as u8)
     }
+}
 
-    fn hits(&self, spheres: &[Sphere]) -> Vec<Option<Hit>> {
-        let mut hits: Vec<Option<Hit>> = vec![None; self.width * self.height];
-        for sphere in spheres {
-            let height = sphere.center.dot(self.view.towards_eye);
-            let center = self.view.project(sphere.center);
-            self.each_ray(center, DVec2::splat(sphere.radius), |index, offset| {
-                let forward = (1.0 - offset.length_squared()).sqrt();
-                let height = height + sphere.radius * forward;
-                if hits[index].is_none_or(|hit| hit.height < height) {
-                    let normal = DVec3::new(offset.x, -offset.y, forward);
-                    hits[index] = Some(Hit { height, normal });
-                }
-            });
-        }
-        hits
-    }
-
-    /// Darkness of the floor z = lowest point, 0 to 1, under a wide lamp that stands left and above.
-    fn shadow(&self, spheres: &[Sphere]) -> Vec<f32> {
-        let lowest = spheres.iter().map(|s| s.center.z - s.radius);
-        let floor = lowest.fold(f64::INFINITY, f64::min);
-        let mut dark = vec![0f32; self.width * self.height];
-        let foreshortening = self.view.towards_eye.z;
-        for sphere in spheres {
-            let height = sphere.center.z - floor;
-            let slant = DVec3::new(0.22, 0.16, -1.0);
-            let center = self.view.project(sphere.center + height * slant);
-            let radii = sphere.radius * DVec2::new(1.0, foreshortening);
-            self.each_ray(center, radii, |index, _| dark[index] = 1.0);
-        }
-        let blur = (self.width.min(self.height) / 40).max(2);
-        for _ in 0..2 {
-            dark = box_blur(&dark, self.width, blur);
-        }
-        dark
-    }
-
-    /// Brightness of each ray and whether it met the object.
-    fn shades(&self, hits: &[Option<Hit>], shadow: &[f32]) -> Vec<(f64, bool)> {
-        let normals = self.smooth_normals(hits);
-        let lamp = DVec3::new(-0.45, 0.65, 0.62).normalize();
-        let fill = DVec3::new(0.8, 0.1, 0.6).normalize();
-        let indexed = hits.iter().zip(normals).enumerate();
-        indexed
-            .map(|(index, (hit, normal))| match hit {
-                None => (1.0 - 0.20 * f64::from(shadow[index]), false),
-                Some(hit) => {
-                    let light =
-                        0.30 + 0.62 * normal.dot(lamp).max(0.0) + 0.16 * normal.dot(fill).max(0.0);
-                    let outline = self.step_down(hits, index, hit);
-                    (light * (1.0 - 0.55 * outline), true)
-                }
-            })
-            .collect()
-    }
-
+impl Canvas {
     /// 1 where a neighbouring ray sees something far behind this one: the object's inner and outer outlines.
     fn step_down(&self, hits: &[Option<Hit>], index: usize, hit: &Hit) -> f64 {
         // A slope of 80° between rays is not yet a step.
@@ -203,10 +146,7 @@ impl Canvas {
     /// Normals averaged over neighbours at like depth, so that the eye sees the shape and not its spheres.
     fn smooth_normals(&self, hits: &[Option<Hit>]) -> Vec<DVec3> {
         let reach = (self.width.min(self.height) / 150).max(1) as isize;
-        let mut normals: Vec<DVec3> = hits
-            .iter()
-            .map(|hit| hit.map_or(DVec3::ZERO, |h| h.normal))
-            .collect();
+        let mut normals = normals_of(hits);
         for stride in [1, self.width as isize] {
             normals = (0..hits.len())
                 .map(|index| {
@@ -232,55 +172,4 @@ impl Canvas {
         }
         normals
     }
-
-    fn pixel(&self, shades: &[(f64, bool)], x: usize, y: usize) -> [u8; 3] {
-        // Slate blue paint on a near-white floor.
-        const PAINT: [f64; 3] = [142.0, 178.0, 214.0];
-        let mut sum = [0.0; 3];
-        for row in y * SUPERSAMPLING..(y + 1) * SUPERSAMPLING {
-            for column in x * SUPERSAMPLING..(x + 1) * SUPERSAMPLING {
-                let (light, object) = shades[row * self.width + column];
-                for (channel, total) in sum.iter_mut().enumerate() {
-                    let color = if object {
-                        PAINT[channel]
-                    } else {
-                        f64::from(BACKGROUND)
-                    };
-                    *total += (color * light).min(255.0);
-                }
-            }
-        }
-        sum.map(|total| (total / (SUPERSAMPLING * SUPERSAMPLING) as f64).round() as u8)
-    }
-}
-
-/// Mean over a square of side 2 · reach + 1; outside counts as 0.
-fn box_blur(values: &[f32], width: usize, reach: usize) -> Vec<f32> {
-    let height = values.len() / width;
-    let along = |values: &[f32], n: usize, stride: usize, start: usize| -> Vec<f32> {
-        let mut sums = Vec::with_capacity(n + 1);
-        let mut sum = 0.0;
-        sums.push(sum);
-        for i in 0..n {
-            sum += values[start + i * stride];
-            sums.push(sum);
-        }
-        (0..n)
-            .map(|i| {
-                let (first, last) = (i.saturating_sub(reach), (i + reach + 1).min(n));
-                (sums[last] - sums[first]) / (2 * reach + 1) as f32
-            })
-            .collect()
-    };
-    let mut rows = Vec::with_capacity(values.len());
-    for row in 0..height {
-        rows.extend(along(values, width, 1, row * width));
-    }
-    let mut blurred = vec![0.0; values.len()];
-    for column in 0..width {
-        for (row, value) in along(&rows, height, width, column).into_iter().enumerate() {
-            blurred[row * width + column] = value;
-        }
-    }
-    blurred
 }

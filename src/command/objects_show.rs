@@ -1,0 +1,46 @@
+//! `bubbletouch objects show`: an object, the spheres that stand for it, and the error between them, side by side.
+
+use super::output::check_ending;
+use super::which_object::{WhichObject, spheres_file};
+use bubbletouch::Result;
+use bubbletouch::files::write_bytes;
+use bubbletouch::report::fit_picture::fit_picture;
+use std::path::PathBuf;
+
+/// Draw an object, its spheres and the error map, side by side.
+///
+/// The spheres are a packing made now, or those of a file, for instance of `objects pack`. Colours of the error map: red
+/// where spheres reach outside the object, blue where they stay inside.
+#[derive(clap::Args)]
+pub struct Args {
+    #[command(flatten)]
+    object: WhichObject,
+    /// Pack to this surface error
+    #[arg(long, value_name = "MM", default_value_t = 0.5)]
+    tolerance_mm: f64,
+    /// Show these spheres instead: a CSV file with columns x, y, z, r in metres
+    #[arg(long, value_name = "FILE.csv", conflicts_with = "tolerance_mm")]
+    spheres: Option<PathBuf>,
+    /// Where the picture goes
+    #[arg(long, value_name = "FILE.png")]
+    out: PathBuf,
+    /// Pixels along a side of each of the three panels, 200 to 6000
+    #[arg(long, value_name = "PIXELS", default_value_t = 560)]
+    panel_px: usize,
+}
+
+pub fn show(args: &Args) -> Result<()> {
+    check_ending(&args.out, "png")?;
+    let object = args.object.load()?;
+    let spheres = match &args.spheres {
+        Some(path) => spheres_file(path)?,
+        None => object.pack(args.tolerance_mm * 1e-3)?.0,
+    };
+    let picture = fit_picture(
+        &args.object.name(),
+        object.original(),
+        &spheres,
+        args.panel_px,
+    )?;
+    write_bytes(&args.out, &picture.png()?)
+}
