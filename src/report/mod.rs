@@ -15,6 +15,7 @@ pub mod colours;
 pub mod confusion_picture;
 pub mod csv_tables;
 pub mod drawing;
+mod folder;
 pub mod frame_files;
 pub mod headlines;
 pub mod heat_map;
