@@ -4,8 +4,8 @@ use super::object_detail_charts::{draw_object_detail_charts, median_time_us, met
 use crate::error::Result;
 use crate::report::axis::short_number;
 use crate::report::folder::Folder;
+use crate::report::terminal::{align_right, plain_table};
 use crate::study::object_detail::table::ObjectDetailTables;
-use comfy_table::{CellAlignment, ContentArrangement, Table, presets};
 use std::path::{Path, PathBuf};
 
 /// Writes tables and charts into `dir` (created if missing); returns the paths, tables first.
@@ -24,11 +24,7 @@ pub fn write_object_detail(dir: &Path, tables: &ObjectDetailTables) -> Result<Ve
 
 /// A line a method and level: medians over objects. Lines are at most about `width` letters long.
 pub fn object_detail_summary(tables: &ObjectDetailTables, width: usize) -> String {
-    let mut table = Table::new();
-    table
-        .load_preset(presets::NOTHING)
-        .set_content_arrangement(ContentArrangement::Dynamic)
-        .set_width(width.min(usize::from(u16::MAX)) as u16);
+    let mut table = plain_table(width);
     table.set_header([
         "model",
         "within mm",
@@ -57,11 +53,7 @@ pub fn object_detail_summary(tables: &ObjectDetailTables, width: usize) -> Strin
             ),
         ]);
     }
-    for column in 1..9 {
-        if let Some(column) = table.column_mut(column) {
-            column.set_cell_alignment(CellAlignment::Right);
-        }
-    }
+    align_right(&mut table, 1..9);
     format!(
         "Medians over objects; error is the mean over touched taxels of |deflection − that of the exact mesh|, worst\n\
         that of the worst object, − offset with the best constant depth taken off, × packing the ratio of that to the packing's.\n\n{table}\n"
