@@ -76,6 +76,15 @@ impl Check<'_> {
         Ok(arrays)
     }
 
+    /// The array of a study that has no axis of arrays; `allowed` says so.
+    pub fn one_array(&self, skin: &SkinSpec, allowed: &str) -> Result<Patch> {
+        let arrays = self.arrays(skin)?;
+        match arrays[..] {
+            [patch] => Ok(patch),
+            _ => Err(self.error("skin", format!("{} arrays", arrays.len()), allowed)),
+        }
+    }
+
     fn taxels_a_side(&self, skin: &SkinSpec, pitch_mm: f64) -> Result<Vec<usize>> {
         match (&skin.size_mm, &skin.taxels) {
             (Some(sizes), None) => self

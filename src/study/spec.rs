@@ -388,7 +388,8 @@ impl Default for SignalSpec {
     }
 }
 
-fn default_seed() -> u64 {
+/// The seed of every kind of study that names none.
+pub(crate) fn default_seed() -> u64 {
     2018
 }
 

@@ -44,21 +44,14 @@ impl ReconstructionPlan {
     pub fn new(place: &str, spec: ReconstructionStudySpec) -> Result<Self> {
         let check = Check { place };
         check.objects(&spec.objects)?;
-        let arrays = check.arrays(&spec.skin)?;
-        let [patch] = arrays[..] else {
-            let given = format!("{} arrays", arrays.len());
-            return Err(check.error(
-                "skin",
-                given,
-                "one pitch and one size: a dictionary is of one array",
-            ));
-        };
+        let allowed = "one pitch and one size: a dictionary is of one array";
+        let patch = check.one_array(&spec.skin, allowed)?;
         let placement = check.placement(&spec.touches)?;
         let (noise_unit, noise) = check.noise(&spec.signal)?;
         check.steps(&spec.signal)?;
         check.noise_is_last(&spec.signal)?;
         let ensembles = check.list("sensing.ensemble", spec.sensing.ensemble.values())?;
-        let amounts = check.amounts(&spec.sensing, &arrays)?;
+        let amounts = check.amounts(&spec.sensing, &[patch])?;
         let wanted = &spec.reconstruction;
         let dictionaries = check.dictionaries(wanted, &patch.grid)?;
         let solvers = check.list("reconstruction.solver", wanted.solver.values())?;
