@@ -89,7 +89,7 @@ pub struct ObjectsSpec {
     pub model: Option<ModelSpec>,
     /// The unit of the meshes' files; metres when left out.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub mesh_unit: Option<UnitSpec>,
+    pub mesh_unit: Option<LengthUnit>,
     /// How far the spheres of a solid, or of a packed mesh, may be from its surface, mm.
     #[serde(default = "default_surface_error_mm")]
     pub surface_error_mm: f64,
@@ -167,34 +167,6 @@ pub enum ModelSpec {
     Mesh,
     /// Few spheres within `surface_error_mm` of the mesh, which must be closed.
     Packed,
-}
-
-/// The unit of a mesh file's numbers.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub enum UnitSpec {
-    /// Metres.
-    #[serde(rename = "m")]
-    Metre,
-    /// Centimetres.
-    #[serde(rename = "cm")]
-    Centimetre,
-    /// Millimetres.
-    #[serde(rename = "mm")]
-    Millimetre,
-    /// Inches.
-    #[serde(rename = "in")]
-    Inch,
-}
-
-impl From<UnitSpec> for LengthUnit {
-    fn from(unit: UnitSpec) -> Self {
-        match unit {
-            UnitSpec::Metre => Self::Metre,
-            UnitSpec::Centimetre => Self::Centimetre,
-            UnitSpec::Millimetre => Self::Millimetre,
-            UnitSpec::Inch => Self::Inch,
-        }
-    }
 }
 
 /// How an object lies on the table.
