@@ -15,6 +15,7 @@ mod kind;
 mod measurement;
 pub mod object_detail;
 mod object_files;
+mod packing_cache;
 mod packings;
 mod plan;
 mod plan_learning;
@@ -39,6 +40,7 @@ pub use kind::StudyKind;
 pub use object_files::{
     MeshUse, NamedMesh, load_mesh, load_named_meshes, load_objects, read_mesh_file,
 };
+pub use packing_cache::{CachedPacking, PackingCache};
 pub use plan::{Amount, Plan, SplitKind, SplitPlan, millimetres};
 pub use runner::{ArrayOutcome, Outcome, run};
 pub use samples::{Samples, sample_frames};
