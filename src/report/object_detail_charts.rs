@@ -6,8 +6,8 @@ use super::legend::{
 use super::log_scale::{LogScale, axis_titles, draw_axes};
 use crate::report::colours::{INK, MUTED};
 use crate::report::drawing::{Align, Area, Drawing, Point, Stroke, TextStyle};
-use crate::study::object_detail::DetailMethod;
 use crate::study::object_detail::table::{DetailCell, DetailSummary, ObjectDetailTables};
+use crate::study::object_detail::{DetailMethod, quantile};
 
 const PANEL: (f64, f64) = (360.0, 300.0);
 /// Room for a panel's tick labels.
@@ -148,8 +148,7 @@ pub(super) fn median_time_us(
     let is_it = |cell: &DetailCell| cell.method == method && cell.tolerance_mm == tolerance_mm;
     let of_level = tables.timing.iter().filter(|(cell, _)| is_it(cell));
     let mut times: Vec<f64> = of_level.map(|(_, time)| time.us_per_touch).collect();
-    times.sort_by(f64::total_cmp);
-    times.get(times.len() / 2).copied().unwrap_or(0.0)
+    quantile(&mut times, 0.5)
 }
 
 impl Chart<'_> {
