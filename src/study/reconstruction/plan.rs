@@ -5,8 +5,8 @@ use crate::error::Result;
 use crate::random::Seed;
 use crate::sensing::{Basis, Dictionary, Effort, Ensemble, Projection, Solver};
 use crate::signal::{Noise, NoiseUnit, Quantity, SignalStep};
-use crate::study::check::{Check, not_negative, positive};
-use crate::study::plan::{Amount, MM};
+use crate::study::check::{Check, positive};
+use crate::study::plan::Amount;
 use crate::study::spec::{SignalSpec, StepSpec};
 use crate::world::{Grid, Patch, Placement};
 
@@ -55,12 +55,7 @@ impl ReconstructionPlan {
         let wanted = &spec.reconstruction;
         let dictionaries = check.dictionaries(wanted, &patch.grid)?;
         let solvers = check.list("reconstruction.solver", wanted.solver.values())?;
-        let speed = check.value(
-            "touches.speed_mm_per_s",
-            spec.touches.speed_mm_per_s,
-            not_negative,
-            "zero or a positive number",
-        )?;
+        let speed = check.speed(&spec.touches)?;
         let effort = check.effort(wanted)?;
         check.value(
             "reconstruction.test_fraction",
@@ -72,7 +67,7 @@ impl ReconstructionPlan {
         Ok(Self {
             patch,
             placement,
-            speed: speed * MM,
+            speed,
             noise_unit,
             noise,
             ensembles,
