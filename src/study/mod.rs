@@ -27,6 +27,7 @@ mod runner;
 mod samples;
 mod simulation;
 mod spec;
+mod splits;
 mod summary;
 mod sweep;
 pub mod table;
