@@ -91,10 +91,7 @@ pub fn simulate_array(
         touches,
     } in touched
     {
-        let scene = Scene {
-            patch: *patch,
-            objects: vec![object.model.clone()],
-        };
+        let scene = Scene::of_one(patch, &object.model);
         let n_rows = touches.len() * n_frames;
         let mut frames = deflection.slice_mut(s![first..first + n_rows, ..]);
         let blocks: Vec<_> = frames
