@@ -17,6 +17,7 @@ pub mod object_detail;
 mod object_files;
 mod packing_cache;
 mod packings;
+mod pareto;
 mod plan;
 mod plan_learning;
 mod plan_scene;
