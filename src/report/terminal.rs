@@ -3,6 +3,7 @@
 use crate::report::answer::{Answer, accuracy_sentence};
 use crate::report::chart_plan::plan_charts;
 use crate::report::colours::Rgb;
+use crate::report::text_width::break_lines;
 use crate::report::varying::{Levels, Settings, unbroken_parts};
 use crate::study::table::{Cell, CellScore, Tables};
 use comfy_table::{
@@ -279,18 +280,7 @@ fn letters(text: &str) -> usize {
 
 /// Breaks a text at spaces (not at U+00A0) into lines of at most `width` letters.
 pub(super) fn wrap(text: &str, width: usize) -> Vec<String> {
-    let mut lines: Vec<String> = Vec::new();
-    for word in text.split(' ') {
-        match lines.last_mut() {
-            Some(line) if letters(line) + 1 + letters(word) <= width => {
-                line.push(' ');
-                line.push_str(word);
-            }
-            _ => lines.push(word.to_owned()),
-        }
-    }
-    let plain = lines.into_iter().map(|line| line.replace('\u{a0}', " "));
-    plain.collect()
+    break_lines(text, |line| letters(line) <= width)
 }
 
 /// The same as one text, a line end after each line.
