@@ -26,6 +26,7 @@ mod log_scale;
 pub mod object_detail_charts;
 pub mod object_detail_results;
 pub mod object_picture;
+mod panels;
 pub mod pareto_chart;
 pub mod pressure_map;
 pub mod progress;

@@ -5,8 +5,9 @@ use crate::report::chart::{draw_axes, draw_y_labels, n_classes, y_at};
 use crate::report::colours::{GRID, INK, Rgb};
 use crate::report::drawing::{Align, Area, Drawing, Point, Stroke, TextStyle};
 use crate::report::legend::{
-    CHANCE, FRONT, Heading, LEFT, LegendEntry, MARKER_RADIUS, Mark, RIGHT, line_colour,
+    CHANCE, FRONT, Heading, LegendEntry, MARKER_RADIUS, Mark, RIGHT, line_colour,
 };
+use crate::report::panels::Panels;
 use crate::report::text_width::text_width;
 use crate::report::varying::{Levels, Settings, unbroken_parts};
 use crate::report::x_scale::TICK_SIZE;
@@ -14,8 +15,6 @@ use crate::study::table::{Cell, Pareto, Tables};
 
 /// Classifiers from which on a study is about choosing one.
 const MANY_CLASSIFIERS: usize = 3;
-/// Pixels between panels.
-const GAP: f64 = 26.0;
 const LABEL: u32 = 13;
 /// Letters of the names on the front.
 const NAME: u32 = 11;
@@ -116,37 +115,24 @@ struct Chart<'a> {
 impl Chart<'_> {
     fn draw(&self, constants: &str) -> Drawing {
         let n_panels = self.panels.as_ref().map_or(1, |p| p.values.len());
-        let columns = n_panels.min(2);
-        let (panel_width, panel_height) = match columns {
-            1 => (660.0, 340.0),
-            _ => (385.0, 300.0),
-        };
-        let width = LEFT + columns as f64 * panel_width + (columns - 1) as f64 * GAP + RIGHT;
-        let heading = Heading::of(self.cost.title(), constants, self.legend(), width);
-        let panel_title = if n_panels > 1 { 24.0 } else { 6.0 };
-        let pitch_down = panel_title + panel_height + 26.0;
-        let n_rows = n_panels.div_ceil(columns);
-        let height = heading.height() + n_rows as f64 * pitch_down + 26.0;
-        let mut drawing = Drawing::new(width, height);
+        let above = if n_panels > 1 { 24.0 } else { 6.0 };
+        let panels = Panels::new(n_panels, n_panels.min(2), above, 26.0);
+        let heading = Heading::of(self.cost.title(), constants, self.legend(), panels.width());
+        let top = heading.height();
+        let mut drawing = Drawing::new(panels.width(), panels.bottom(top));
         heading.draw(&mut drawing);
         let scale = TimeScale::of(self.rows.iter().map(|(_, row)| self.cost.seconds(row)));
         for panel in 0..n_panels {
-            let (row, column) = (panel / columns, panel % columns);
-            let frame = Area {
-                x: LEFT + column as f64 * (panel_width + GAP),
-                y: heading.height() + row as f64 * pitch_down + panel_title,
-                width: panel_width,
-                height: panel_height,
-            };
+            let frame = panels.frame(panel, top);
             if let Some(levels) = &self.panels {
                 let text = format!("{} {}", levels.axis.name(), levels.values[panel].label);
                 drawing.bold_text((frame.x, frame.y - 8.0), &text, TextStyle::new(LABEL));
             }
             self.draw_panel(&mut drawing, panel, frame, &scale);
-            if column == 0 {
+            if panels.is_first_in_row(panel) {
                 draw_y_labels(&mut drawing, frame);
             }
-            if panel + columns >= n_panels {
+            if panels.is_last_in_column(panel) {
                 let below = (frame.x + frame.width / 2.0, frame.y + frame.height + 40.0);
                 let style = TextStyle::new(LABEL).align(Align::Middle);
                 drawing.text(below, self.cost.axis_title(), style);
