@@ -41,5 +41,6 @@ mod shaded_view;
 pub mod snapshots;
 pub mod terminal;
 pub mod text_width;
+mod time_scale;
 pub mod varying;
 mod x_scale;
