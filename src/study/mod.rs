@@ -28,6 +28,7 @@ mod runner;
 mod samples;
 mod simulation;
 mod spec;
+mod spec_scene;
 mod splits;
 mod summary;
 mod sweep;
