@@ -1,6 +1,7 @@
-//! Rigid motions and boxes.
+//! Rigid motions, boxes and places.
 
 use glam::{DQuat, DVec3};
+use std::collections::HashSet;
 
 /// A rigid motion: rotate, then translate. `a_from_b` maps points of frame b to frame a.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -94,4 +95,17 @@ impl Aabb {
     pub fn center(&self) -> DVec3 {
         0.5 * (self.min + self.max)
     }
+}
+
+/// The bits of a place: exactly the same places have the same.
+pub fn place_bits(point: DVec3) -> [u64; 3] {
+    // Adding zero makes −0 and 0 the same place.
+    (point + DVec3::ZERO).to_array().map(f64::to_bits)
+}
+
+/// Each place of `points` once, in the order of first occurrence.
+pub fn distinct_places(points: &[DVec3]) -> Vec<DVec3> {
+    let mut seen = HashSet::new();
+    let is_new = |point: &DVec3| seen.insert(place_bits(*point));
+    points.iter().copied().filter(is_new).collect()
 }

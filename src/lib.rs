@@ -87,6 +87,7 @@
 //! |---|---|
 //! | [`mesh`] | a file of triangles → a surface: distances, inside and outside |
 //! | [`objects`] | a shape, a mesh, or spheres → a model: spheres or triangles |
+//! | [`packing`] | a mesh and a tolerance → few spheres |
 //! | [`world`] | taxels, layouts, resting poses → touches |
 //! | [`contact`] | a scene and poses → deflections |
 //! | [`signal`] | deflections → frames |
@@ -95,7 +96,7 @@
 //! | [`study`] | TOML → plan → tables |
 //! | [`report`] | tables → files for people |
 //!
-//! The seven stages from `mesh` to `recognition` are pure: no files, clock, threads, printing or global state. Threads live
+//! The eight stages from `mesh` to `recognition` are pure: no files, clock, threads, printing or global state. Threads live
 //! in `study`; files in `study` and `report`.
 //!
 //! # Sources

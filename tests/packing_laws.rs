@@ -2,7 +2,8 @@
 
 use bubbletouch::geometry::Pose;
 use bubbletouch::mesh::{Surface, TriangleMesh, read_ply};
-use bubbletouch::packing::{Body, DetailChain, PackingCache, pack_mesh, packing_error};
+use bubbletouch::packing::{Body, DetailChain, pack_mesh, packing_error};
+use bubbletouch::study::PackingCache;
 use glam::{DQuat, DVec2, DVec3};
 use std::f64::consts::TAU;
 use std::io::Write;
@@ -254,6 +255,7 @@ fn the_cache_gives_back_what_was_packed_and_knows_what_from() {
         cache
             .pack_mesh(&surface, Body::Solid, tolerance, watch)
             .unwrap()
+            .packing
     };
     let first = pack(0.3 * MM);
     let again = pack(0.3 * MM);

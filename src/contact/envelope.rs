@@ -4,7 +4,7 @@ use super::grid_lines::GridLines;
 use super::swept_triangle::{SweptEdge, SweptFace, corner_height};
 use crate::geometry::{Aabb, Pose};
 use crate::mesh::Triangle;
-use crate::objects::{Bend, ContactFace, MeshModel};
+use crate::objects::{ContactFace, MeshModel};
 use glam::{DMat3, DVec2, DVec3, Vec3Swizzles};
 use std::cell::Cell;
 
@@ -119,7 +119,7 @@ impl Sweep<'_> {
             self.lower_under(swept.ground(), |at| swept.height(at));
         }
         for k in 0..3 {
-            if face.has_edge[k] && !self.is_valley(face, k) {
+            if face.has_edge[k] {
                 let (from, to) = (corners[k], corners[(k + 1) % 3]);
                 let across = self.view.rotation * face.across[k];
                 if let Some(swept) = SweptEdge::new(from, to, self.radius, [normal, across]) {
@@ -131,17 +131,6 @@ impl Sweep<'_> {
                 let ground = (corner.xy() - self.radius, corner.xy() + self.radius);
                 self.lower_under(ground, |at| corner_height(corner, self.radius, at));
             }
-        }
-    }
-
-    /// Whether both faces at a side are seen from the same side and bend towards it: the ball meets them, never the edge.
-    fn is_valley(&self, face: &ContactFace, side: usize) -> bool {
-        let up = self.view.up;
-        let (own, across) = (up.dot(face.normal), -up.dot(face.across[side]));
-        match face.bend[side] {
-            Bend::Ridge => own > 0.0 && across > 0.0,
-            Bend::Valley => own < 0.0 && across < 0.0,
-            Bend::Unknown => false,
         }
     }
 
@@ -196,8 +185,6 @@ impl Limit {
 struct MeshView {
     rotation: DMat3,
     translation: DVec3,
-    /// The patch's z axis in the mesh's frame.
-    up: DVec3,
     /// The positive and the negative parts of the rotation: their products with a box's corners are the turned box's.
     positive: DMat3,
     negative: DMat3,
@@ -219,7 +206,6 @@ impl MeshView {
         Self {
             rotation,
             translation: pose.translation,
-            up: rotation.row(2),
             positive: part(|column| column.max(DVec3::ZERO)),
             negative: part(|column| column.min(DVec3::ZERO)),
             half_size: DVec2::new(last(&lines.x.positions), last(&lines.y.positions)) + radius,

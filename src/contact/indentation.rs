@@ -3,7 +3,7 @@
 use super::envelope::{Envelope, Limit};
 use super::grid_lines::GridLines;
 use crate::geometry::Pose;
-use crate::objects::{MeshModel, Model, Sphere};
+use crate::objects::Sphere;
 use crate::world::{Patch, Scene};
 use glam::{DMat3, DVec3};
 
@@ -78,7 +78,9 @@ impl Workspace {
                     let near = spheres.iter().filter_map(|s| view.place(s, travel));
                     self.spheres.extend(near);
                 }
-                self.gather_meshes(scene, patch_from_objects, Limit::Travel(travel));
+                let limit = Limit::Travel(travel);
+                self.envelope
+                    .look(scene, patch_from_objects, &self.lines, limit);
                 return None;
             }
         };
@@ -99,67 +101,17 @@ impl Workspace {
             }
         }
         let limit = Limit::Past { depth, first };
-        if self.gather_meshes(scene, patch_from_objects, limit) {
+        if self
+            .envelope
+            .look(scene, patch_from_objects, &self.lines, limit)
+        {
             first = first.min(self.envelope.first);
         }
         let first = first.is_finite().then_some(first)?;
-        self.leave_out_passed(scene, patch_from_objects, first + depth);
+        self.envelope
+            .leave_out_passed(scene, patch_from_objects, &self.lines, first + depth);
         Some(first)
     }
-
-    /// Looks where meshes stop the taxels, up to a limit; whether there are any.
-    fn gather_meshes(&mut self, scene: &Scene, patch_from_objects: &[Pose], limit: Limit) -> bool {
-        let mut meshes = meshes(scene, patch_from_objects).peekable();
-        let has_meshes = meshes.peek().is_some();
-        let n_taxels = scene.patch.grid.n_taxels();
-        self.envelope.clear(if has_meshes { n_taxels } else { 0 });
-        let taxel = &scene.patch.taxel;
-        for (mesh, pose) in meshes {
-            let is_passed = match limit {
-                Limit::Travel(travel) => {
-                    is_behind(mesh, pose, travel - taxel.stroke - taxel.radius)
-                }
-                Limit::Past { .. } => false,
-            };
-            if !is_passed {
-                self.envelope
-                    .lower(mesh, pose, taxel.radius, &self.lines, limit);
-            }
-        }
-        has_meshes
-    }
-
-    /// Looks again without the meshes that a travel leaves behind the substrate, if there are any: a press far deeper than
-    /// the stroke through something thin.
-    fn leave_out_passed(&mut self, scene: &Scene, patch_from_objects: &[Pose], travel: f64) {
-        let behind = travel - scene.patch.taxel.stroke - scene.patch.taxel.radius;
-        if meshes(scene, patch_from_objects).any(|(mesh, pose)| is_behind(mesh, pose, behind)) {
-            self.gather_meshes(scene, patch_from_objects, Limit::Travel(travel));
-        }
-    }
-}
-
-/// The meshes of a scene, where they are.
-fn meshes<'a>(
-    scene: &'a Scene,
-    patch_from_objects: &'a [Pose],
-) -> impl Iterator<Item = (&'a MeshModel, &'a Pose)> {
-    let pairs = scene.objects.iter().zip(patch_from_objects);
-    pairs.filter_map(|(object, pose)| match object {
-        Model::Mesh(mesh) => Some((mesh, pose)),
-        Model::Spheres(_) => None,
-    })
-}
-
-/// Whether all of a mesh is below a height in the patch frame.
-fn is_behind(mesh: &MeshModel, pose: &Pose, height: f64) -> bool {
-    let up = pose.rotation.conjugate() * DVec3::Z;
-    let above = height - pose.translation.z;
-    // A mesh meets all six sides of its box, so its top is at least as high as the lowest point of the highest side.
-    let bounds = mesh.bounds();
-    let rise = 0.5 * bounds.size() * up.abs();
-    let top = up.dot(bounds.center()) + 2.0 * rise.max_element() - rise.element_sum();
-    top < above && mesh.corners().all(|corner| up.dot(corner) < above)
 }
 
 /// One sphere in so many is looked at to estimate first contact. Larger: a worse estimate, so more spheres are placed in

@@ -21,6 +21,7 @@ mod damper;
 mod envelope;
 mod grid_lines;
 mod indentation;
+mod scene_meshes;
 mod simulate;
 mod swept_triangle;
 

@@ -2,6 +2,7 @@
 
 use super::{MeshFile, read_obj, read_ply, read_stl};
 use crate::error::{Error, Result};
+use serde::{Deserialize, Serialize};
 use std::io::BufRead;
 use std::path::Path;
 
@@ -17,16 +18,20 @@ pub enum MeshFormat {
 }
 
 /// The unit of a mesh file's numbers. No format that is read here says it.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub enum LengthUnit {
     /// m
     #[default]
+    #[serde(rename = "m")]
     Metre,
     /// cm
+    #[serde(rename = "cm")]
     Centimetre,
     /// mm
+    #[serde(rename = "mm")]
     Millimetre,
     /// in
+    #[serde(rename = "in")]
     Inch,
 }
 

@@ -1,4 +1,4 @@
-//! One triangle: its nearest point, its box, its area.
+//! One triangle: its nearest point, its box, its middle, its area.
 
 use crate::geometry::Aabb;
 use glam::DVec3;
@@ -31,6 +31,12 @@ impl Triangle {
             min: a.min(b).min(c),
             max: a.max(b).max(c),
         }
+    }
+
+    /// The mean of the corners.
+    pub fn middle(&self) -> DVec3 {
+        let [a, b, c] = self.0;
+        (a + b + c) / 3.0
     }
 
     /// Twice the area, along the outward normal of a counter-clockwise triangle; m².

@@ -1,6 +1,7 @@
 //! Which triangles share which edges, whatever the file's indices say: vertices at exactly the same place are one.
 
 use super::TriangleMesh;
+use crate::geometry::place_bits;
 use std::collections::HashMap;
 
 /// Triangles over welded corners, and all sides of all triangles sorted by edge.
@@ -76,10 +77,6 @@ fn places(mesh: &TriangleMesh) -> Vec<u32> {
     let mut first = HashMap::new();
     let vertices = mesh.vertices().iter().enumerate();
     vertices
-        .map(|(index, vertex)| {
-            // Adding zero makes −0 and 0 the same place.
-            let place = vertex.to_array().map(|v| (v + 0.0).to_bits());
-            *first.entry(place).or_insert(index as u32)
-        })
+        .map(|(index, vertex)| *first.entry(place_bits(*vertex)).or_insert(index as u32))
         .collect()
 }

@@ -27,38 +27,10 @@ pub struct ContactFace {
     /// Across each side the neighbour's unit normal, as if it ran along the side in the same direction as this triangle (so
     /// about minus this triangle's where the surface is smooth); zero if there is not exactly one, or it is too thin.
     pub across: [DVec3; 3],
-    /// How the surface bends at each side.
-    pub bend: [Bend; 3],
     /// Whether the side from corner k to the next is this triangle's.
     pub has_edge: [bool; 3],
     /// Whether the corner is this triangle's.
     pub has_corner: [bool; 3],
-}
-
-/// How a surface bends at an edge, seen from where its triangles turn counter-clockwise.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Bend {
-    /// Away from the eye.
-    Ridge,
-    /// Towards the eye.
-    Valley,
-    /// Hardly, or there is not exactly one neighbour that has a normal.
-    Unknown,
-}
-
-/// The least sine of a bend. Smaller: rounding decides which way an edge bends; larger: more edges are looked at in vain.
-const FLAT: f64 = 1e-6;
-
-impl Bend {
-    /// Of a side along `along` between unit normals, as [`ContactFace`] has them.
-    fn new(normal: DVec3, across: DVec3, along: DVec3) -> Self {
-        let sine = across.cross(normal).dot(along.normalize_or_zero());
-        match () {
-            () if sine > FLAT => Self::Ridge,
-            () if sine < -FLAT => Self::Valley,
-            () => Self::Unknown,
-        }
-    }
 }
 
 impl MeshModel {
@@ -122,7 +94,6 @@ fn contact_faces(mesh: &TriangleMesh, welded: &Welded) -> Vec<ContactFace> {
         .map(|number| ContactFace {
             normal: mesh.triangle(number).normal().unwrap_or(DVec3::ZERO),
             across: [DVec3::ZERO; 3],
-            bend: [Bend::Unknown; 3],
             // Until shared below; the sides of a triangle with a corner twice are shared with nobody.
             has_edge: [true; 3],
             has_corner: welded.corners[number].map(&mut own_corner),
@@ -136,12 +107,8 @@ fn contact_faces(mesh: &TriangleMesh, welded: &Welded) -> Vec<ContactFace> {
         if let [neighbour] = others {
             let normal = faces[neighbour.triangle as usize].normal;
             let is_same_way = neighbour.is_forward == first.is_forward;
-            let across = if is_same_way { normal } else { -normal };
-            let k = usize::from(first.side);
-            let corners = mesh.triangle(first.triangle as usize).0;
-            let face = &mut faces[first.triangle as usize];
-            face.across[k] = across;
-            face.bend[k] = Bend::new(face.normal, across, corners[(k + 1) % 3] - corners[k]);
+            faces[first.triangle as usize].across[usize::from(first.side)] =
+                if is_same_way { normal } else { -normal };
         }
     }
     faces

@@ -28,7 +28,7 @@ mod torus;
 mod vertex_spheres;
 
 pub use catalogue::{Catalogue, Entry};
-pub use mesh_model::{Bend, ContactFace, MeshModel};
+pub use mesh_model::{ContactFace, MeshModel};
 pub use model::Model;
 pub use pack::{MAX_SPHERES, pack};
 pub use shape::Shape;

@@ -2,8 +2,8 @@
 
 use super::{Sphere, SphereUnion};
 use crate::error::{Error, Result};
+use crate::geometry::distinct_places;
 use glam::DVec3;
-use std::collections::HashSet;
 
 /// A sphere around each vertex, all of radius R = 2 × the mean distance from a vertex to its nearest neighbour \[BT\].
 ///
@@ -11,7 +11,7 @@ use std::collections::HashSet;
 /// be themselves, and R would shrink with how a file is written. Order: first occurrence. An error for fewer than two
 /// places; it begins with `place`.
 pub fn vertex_spheres(place: &str, vertices: &[DVec3]) -> Result<SphereUnion> {
-    let centers = distinct(vertices);
+    let centers = distinct_places(vertices);
     if centers.len() < 2 {
         return Err(Error::input(
             place,
@@ -23,16 +23,6 @@ pub fn vertex_spheres(place: &str, vertices: &[DVec3]) -> Result<SphereUnion> {
     let radius = 2.0 * distances.iter().sum::<f64>() / distances.len() as f64;
     let spheres = centers.into_iter().map(|center| Sphere { center, radius });
     SphereUnion::new(spheres.collect())
-}
-
-fn distinct(vertices: &[DVec3]) -> Vec<DVec3> {
-    let mut seen = HashSet::new();
-    let is_new = |v: &DVec3| {
-        // Adding zero makes −0 and 0 the same place.
-        seen.insert((*v + DVec3::ZERO).to_array().map(f64::to_bits))
-    };
-    let mut seen_first = is_new;
-    vertices.iter().copied().filter(|v| seen_first(v)).collect()
 }
 
 /// For each point the distance to the nearest other one. At least two points, no two at the same place.

@@ -5,7 +5,6 @@
 //! | a [`Surface`](crate::mesh::Surface) and a tolerance e | [`pack_mesh`] | a [`Packing`] |
 //! | several tolerances | [`DetailChain::pack`] | the same object, coarse to fine |
 //! | a mesh and spheres | [`packing_error`] | how far apart they are, both ways |
-//! | a folder | [`PackingCache`] | packings that were made before |
 //!
 //! # The promise
 //!
@@ -54,7 +53,6 @@ mod certificate;
 mod cover_surface;
 mod detail_chain;
 mod pack;
-mod packing_cache;
 mod packing_error;
 mod sampling;
 mod set_cover;
@@ -62,6 +60,5 @@ mod target;
 
 pub use detail_chain::DetailChain;
 pub use pack::{Packing, pack_mesh, pack_mesh_watched};
-pub use packing_cache::PackingCache;
 pub use packing_error::{PackingError, Spread, packing_error};
 pub use target::Body;

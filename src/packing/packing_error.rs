@@ -76,13 +76,12 @@ fn protrusion(surface: &Surface, tree: &SphereTree, point: DVec3, normal: DVec3)
 
 fn surface_points(surface: &Surface, n_points: usize) -> Vec<(DVec3, DVec3)> {
     let mesh = surface.mesh();
-    let triangles = || (0..mesh.n_triangles()).map(|t| mesh.triangle(t));
-    let area: f64 = triangles().map(|t| t.area()).sum();
+    let area = mesh.area();
     let mut rng = Seed::new(n_points as u64).named("packing error").rng();
     let mut points = Vec::with_capacity(n_points);
     let mut passed = 0.0;
     let mut next = rng.r#gen::<f64>();
-    for triangle in triangles() {
+    for triangle in (0..mesh.n_triangles()).map(|t| mesh.triangle(t)) {
         passed += triangle.area() / area * n_points as f64;
         while next < passed {
             if let Some(normal) = triangle.normal() {

@@ -85,7 +85,7 @@ impl<'a> Target<'a> {
     /// Whether a face of a solid lies inside other parts of the mesh: its middle and three points near its corners do,
     /// when they are lifted off it by a thousandth of the tolerance.
     pub fn is_buried(&self, triangle: &Triangle, normal: DVec3) -> bool {
-        let middle = triangle_middle(triangle);
+        let middle = triangle.middle();
         let near_corners = triangle.0.map(|corner| corner.lerp(middle, 0.2));
         let points = [middle, near_corners[0], near_corners[1], near_corners[2]];
         let lift = normal * (1e-3 * self.e);
@@ -125,8 +125,7 @@ fn check_enclosure(mesh: &TriangleMesh) -> Result<()> {
 
 /// The mean of the corners.
 pub(super) fn triangle_middle(triangle: &Triangle) -> DVec3 {
-    let [a, b, c] = triangle.0;
-    (a + b + c) / 3.0
+    triangle.middle()
 }
 
 /// Cut across the middle of the longest edge.

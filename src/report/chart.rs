@@ -5,14 +5,13 @@ use crate::report::chart_plan::ChartPlan;
 use crate::report::colours::{GRID, INK};
 use crate::report::drawing::{Align, Area, Drawing, Point, Stroke, TextStyle};
 use crate::report::legend::{
-    CHANCE, Heading, LEFT, LegendEntry, MARKER_RADIUS, Mark, RIGHT, line_colour, line_stroke,
+    CHANCE, Heading, LegendEntry, MARKER_RADIUS, Mark, line_colour, line_entries, line_stroke,
 };
+use crate::report::panels::Panels;
 use crate::report::varying::{Levels, Settings, unbroken_parts};
 use crate::report::x_scale::{TICK_SIZE, XScale};
 use crate::study::table::{Cell, CellScore, Tables};
 
-/// Pixels between panels.
-const GAP: f64 = 26.0;
 const LABEL: u32 = 13;
 /// Lines up to which bands do not hide each other; more lines get a whisker at each point.
 const MOST_BANDS: usize = 4;
@@ -77,54 +76,38 @@ impl Chart<'_> {
             4 => 2,
             _ => 3,
         };
-        let (panel_width, panel_height) = match columns {
-            1 => (660.0, 340.0),
-            2 => (385.0, 300.0),
-            _ => (272.0, 240.0),
+        let above = match self.plan.panels {
+            Some(_) => 24.0,
+            None => 6.0,
         };
-        let panel_rows = n_panels.div_ceil(columns);
-        let width = LEFT + columns as f64 * panel_width + (columns - 1) as f64 * GAP + RIGHT;
+        let mut panels = Panels::new(n_panels, columns, above, 26.0);
+        let any_panel = Area {
+            x: 0.0,
+            ..panels.frame(0, 0.0)
+        };
+        if XScale::of(&self.plan.x, any_panel).has_second_row() {
+            panels.below = 40.0;
+        }
         let heading = Heading::of(
             &chart_title(self.plan),
             &self.constants(),
             self.legend_entries(),
-            width,
+            panels.width(),
         );
-        let panel_title = if self.plan.panels.is_some() {
-            24.0
-        } else {
-            6.0
-        };
-        let any_panel = Area {
-            x: 0.0,
-            y: 0.0,
-            width: panel_width,
-            height: panel_height,
-        };
-        let has_second_row = XScale::of(&self.plan.x, any_panel).has_second_row();
-        let labels_height = if has_second_row { 40.0 } else { 26.0 };
-        let pitch_down = panel_title + panel_height + labels_height;
-        let height = heading.height() + panel_rows as f64 * pitch_down + 26.0;
-        let mut drawing = Drawing::new(width, height);
+        let top = heading.height();
+        let mut drawing = Drawing::new(panels.width(), panels.bottom(top));
         heading.draw(&mut drawing);
         for panel in 0..n_panels {
-            let (row, column) = (panel / columns, panel % columns);
-            let frame = Area {
-                x: LEFT + column as f64 * (panel_width + GAP),
-                y: heading.height() + row as f64 * pitch_down + panel_title,
-                width: panel_width,
-                height: panel_height,
-            };
-            let last_in_column = panel + columns >= n_panels;
+            let frame = panels.frame(panel, top);
             self.draw_panel(&mut drawing, panel, frame);
-            if column == 0 {
+            if panels.is_first_in_row(panel) {
                 draw_y_labels(&mut drawing, frame);
             }
-            if last_in_column {
+            if panels.is_last_in_column(panel) {
                 let title = self.rows.first().map(|row| self.plan.x.axis.title(&row.0));
                 let below = (
                     frame.x + frame.width / 2.0,
-                    frame.y + frame.height + labels_height + 14.0,
+                    frame.y + frame.height + panels.below + 14.0,
                 );
                 let style = TextStyle::new(LABEL).align(Align::Middle);
                 drawing.text(below, &title.unwrap_or_default(), style);
@@ -221,9 +204,7 @@ impl Chart<'_> {
         if let Some(lines) = &self.plan.lines {
             let name = format!("{}:", lines.heading());
             entries.push(LegendEntry::new(name, Mark::None));
-            for (line, value) in lines.values.iter().enumerate() {
-                entries.push(LegendEntry::new(value.label.clone(), Mark::Line(line)));
-            }
+            entries.extend(line_entries(lines.values.iter().map(|v| v.label.as_str())));
         }
         let interval = if self.has_bands() {
             Mark::Band

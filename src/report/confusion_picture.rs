@@ -3,6 +3,7 @@
 use crate::report::axis::AXES;
 use crate::report::colours::{GRID, INK, MUTED, PAPER, share, text_on};
 use crate::report::drawing::{Align, Area, Drawing, Stroke, TextStyle};
+use crate::report::heat_map::draw_colours;
 use crate::report::text_width::{shorten, text_width, wrap};
 use crate::report::varying::{Levels, unbroken_parts};
 use crate::study::table::{Confusion, Tables};
@@ -195,19 +196,8 @@ fn draw_names(drawing: &mut Drawing, names: &[String], area: Area, side: f64, fo
 }
 
 fn draw_bar(drawing: &mut Drawing, bar: Area) {
-    const STEPS: usize = 50;
     drawing.area(bar, PAPER);
-    let height = bar.height / STEPS as f64;
-    for step in 0..STEPS {
-        let piece = Area {
-            y: bar.y + bar.height - (step + 1) as f64 * height,
-            // A little overlap, so that no gap shines through between two steps.
-            height: height + if step == 0 { 0.0 } else { 0.5 },
-            ..bar
-        };
-        drawing.area(piece, share((step as f64 + 0.5) / STEPS as f64));
-    }
-    drawing.frame(bar, Stroke::new(INK, 1.0));
+    draw_colours(drawing, bar, 50, share);
     for (value, text) in [
         (0.0f64, "0"),
         (0.05, "0.05"),

@@ -4,7 +4,7 @@
 //! value is an empty field. A table without rows is an empty file.
 
 use crate::error::{Error, Result};
-use crate::files::write_bytes;
+use crate::report::folder::Folder;
 use crate::study::table::{
     Cell, CellScore, Comparison, Confused, Confusion, Pareto, Published, StageTime, Tables,
     TrialScore, TrialTime,
@@ -27,27 +27,35 @@ pub const TABLE_FILES: [&str; 9] = [
     "published.csv",
 ];
 
-/// Writes every table into `dir`, each as a whole file; returns their paths.
+/// Writes every table into `dir` (created if missing), each as a whole file; returns their paths.
 pub fn write_tables(dir: &Path, tables: &Tables) -> Result<Vec<PathBuf>> {
-    let contents = [
-        to_csv(&tables.accuracy),
-        to_csv(&tables.summary),
-        to_csv(&tables.confusion),
-        to_csv(&tables.comparison),
-        to_csv(&tables.timing),
-        to_csv(&tables.pareto),
-        to_csv(&tables.stages),
-        to_csv(&tables.confused),
-        to_csv(&tables.published),
-    ];
-    let mut paths = Vec::new();
-    for (name, bytes) in TABLE_FILES.into_iter().zip(contents) {
-        let path = dir.join(name);
-        let bytes = bytes.map_err(|e| Error::io(&path, "write", std::io::Error::other(e)))?;
-        write_bytes(&path, &bytes)?;
-        paths.push(path);
-    }
-    Ok(paths)
+    let mut folder = Folder::new(dir);
+    add_tables(&mut folder, tables)?;
+    folder.write()
+}
+
+/// Adds every table to what is written into a folder.
+pub(super) fn add_tables(folder: &mut Folder, tables: &Tables) -> Result<()> {
+    let [
+        accuracy,
+        summary,
+        confusion,
+        comparison,
+        timing,
+        pareto,
+        stages,
+        confused,
+        published,
+    ] = TABLE_FILES;
+    folder.add_table(accuracy, &tables.accuracy)?;
+    folder.add_table(summary, &tables.summary)?;
+    folder.add_table(confusion, &tables.confusion)?;
+    folder.add_table(comparison, &tables.comparison)?;
+    folder.add_table(timing, &tables.timing)?;
+    folder.add_table(pareto, &tables.pareto)?;
+    folder.add_table(stages, &tables.stages)?;
+    folder.add_table(confused, &tables.confused)?;
+    folder.add_table(published, &tables.published)
 }
 
 /// Reads the tables that [`write_tables`] wrote.

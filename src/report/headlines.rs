@@ -4,7 +4,7 @@
 use crate::report::answer::Answer;
 use crate::report::axis::short_number;
 use crate::report::drawing::escape;
-use crate::report::terminal::{empty_table, finish, wrap};
+use crate::report::terminal::{finish, ruled_table, wrap};
 use crate::study::table::Tables;
 use comfy_table::{CellAlignment, ColumnConstraint};
 use std::fmt::Write;
@@ -95,7 +95,7 @@ pub fn text(tables: &Tables, width: usize) -> String {
 impl TextTable {
     /// For the terminal: the title and the note, the table, an empty line.
     pub fn text(&self, width: usize) -> String {
-        let mut table = empty_table(width);
+        let mut table = ruled_table(width);
         table.set_header(self.heads.iter().map(|(head, _)| *head));
         for row in &self.rows {
             table.add_row(row);

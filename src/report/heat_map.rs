@@ -2,7 +2,7 @@
 
 use crate::error::{Error, Result};
 use crate::report::axis::short_number;
-use crate::report::colours::{INK, heat};
+use crate::report::colours::{INK, Rgb, heat};
 use crate::report::drawing::{Align, Area, Drawing, Stroke, TextStyle};
 use crate::signal::Quantity;
 use ndarray::{Array2, ArrayView2};
@@ -132,20 +132,29 @@ pub fn draw_y_axis(drawing: &mut Drawing, area: Area, height_mm: f64) {
     drawing.text(beside, "y (mm)", style.align(Align::Middle).angle(-90.0));
 }
 
-/// A colour bar to the right of what it explains, `area` wide and high.
-pub fn draw_colour_bar(drawing: &mut Drawing, scale: ColourScale, title: &str, area: Area) {
-    const STEPS: usize = 64;
-    let height = area.height / STEPS as f64;
-    for step in 0..STEPS {
+/// Colours from 0 (below) to 1 (above) in so many steps, framed.
+pub(super) fn draw_colours(
+    drawing: &mut Drawing,
+    area: Area,
+    n_steps: usize,
+    colour: fn(f64) -> Rgb,
+) {
+    let height = area.height / n_steps as f64;
+    for step in 0..n_steps {
         let piece = Area {
             y: area.y + area.height - (step + 1) as f64 * height,
             // A little overlap, so that no gap shines through between two steps.
             height: height + if step == 0 { 0.0 } else { 0.5 },
             ..area
         };
-        drawing.area(piece, heat((step as f64 + 0.5) / STEPS as f64));
+        drawing.area(piece, colour((step as f64 + 0.5) / n_steps as f64));
     }
     drawing.frame(area, Stroke::new(INK, 1.0));
+}
+
+/// A colour bar to the right of what it explains, `area` wide and high.
+pub fn draw_colour_bar(drawing: &mut Drawing, scale: ColourScale, title: &str, area: Area) {
+    draw_colours(drawing, area, 64, heat);
     let step = tick_step(scale.high - scale.low);
     let first = (scale.low / step).ceil() as i64;
     let last = (scale.high / step).floor() as i64;

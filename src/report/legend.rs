@@ -11,11 +11,7 @@ pub(super) const RIGHT: f64 = 18.0;
 /// Radius of a marker, pixels.
 pub(super) const MARKER_RADIUS: f64 = 4.2;
 /// The line of chance.
-pub(super) const CHANCE: Stroke = Stroke {
-    colour: MUTED,
-    width: 1.2,
-    dash: Some((5, 4)),
-};
+pub(super) const CHANCE: Stroke = dashes(1.2);
 /// The line of a Pareto front.
 pub(super) const FRONT: Stroke = Stroke {
     colour: INK,
@@ -25,6 +21,15 @@ pub(super) const FRONT: Stroke = Stroke {
 const TITLE: u32 = 16;
 const SMALL: u32 = 12;
 const LINE_WIDTH: f64 = 2.0;
+
+/// A dashed line of a width in pixels: something to compare data with.
+pub(super) const fn dashes(width: f64) -> Stroke {
+    Stroke {
+        colour: MUTED,
+        width,
+        dash: Some((5, 4)),
+    }
+}
 
 /// Title, fixed settings and legend, above the panels, so that nothing covers data.
 pub(super) struct Heading {
@@ -99,6 +104,14 @@ impl Heading {
             }
         }
     }
+}
+
+/// An entry for each line of data by its name, in their order.
+pub(super) fn line_entries<'a>(names: impl IntoIterator<Item = &'a str>) -> Vec<LegendEntry> {
+    let lines = names.into_iter().enumerate();
+    lines
+        .map(|(line, name)| LegendEntry::new(name.to_owned(), Mark::Line(line)))
+        .collect()
 }
 
 impl LegendEntry {

@@ -1,13 +1,14 @@
 //! Charts of a study of object detail: what spheres buy, and what they cost.
 
 use super::legend::{
-    Heading, LEFT, LegendEntry, MARKER_RADIUS, Mark, RIGHT, line_colour, line_stroke,
+    Heading, LEFT, LegendEntry, MARKER_RADIUS, Mark, RIGHT, dashes, line_colour, line_entries,
+    line_stroke,
 };
 use super::log_scale::{LogScale, axis_titles, draw_axes};
-use crate::report::colours::{INK, MUTED};
+use crate::report::colours::INK;
 use crate::report::drawing::{Align, Area, Drawing, Point, Stroke, TextStyle};
-use crate::study::object_detail::DetailMethod;
 use crate::study::object_detail::table::{DetailCell, DetailSummary, ObjectDetailTables};
+use crate::study::object_detail::{DetailMethod, quantile};
 
 const PANEL: (f64, f64) = (360.0, 300.0);
 /// Room for a panel's tick labels.
@@ -148,8 +149,7 @@ pub(super) fn median_time_us(
     let is_it = |cell: &DetailCell| cell.method == method && cell.tolerance_mm == tolerance_mm;
     let of_level = tables.timing.iter().filter(|(cell, _)| is_it(cell));
     let mut times: Vec<f64> = of_level.map(|(_, time)| time.us_per_touch).collect();
-    times.sort_by(f64::total_cmp);
-    times.get(times.len() / 2).copied().unwrap_or(0.0)
+    quantile(&mut times, 0.5)
 }
 
 impl Chart<'_> {
@@ -212,12 +212,7 @@ impl Chart<'_> {
     }
 
     fn legend(&self, methods: &[DetailMethod]) -> Vec<LegendEntry> {
-        let lines = methods.iter().enumerate();
-        let mut entries: Vec<LegendEntry> = lines
-            .map(|(line, &method)| {
-                LegendEntry::new(method_name(method).to_owned(), Mark::Line(line))
-            })
-            .collect();
+        let mut entries = line_entries(methods.iter().map(|&method| method_name(method)));
         entries.push(LegendEntry::new("quartiles".to_owned(), Mark::Band));
         if self.mesh.is_some() {
             let text = "exact mesh: no error".to_owned();
@@ -243,11 +238,7 @@ fn settings(rows: &[&DetailSummary]) -> String {
 /// The exact mesh: somewhere along x, below everything that a logarithmic axis can show.
 fn draw_mesh(drawing: &mut Drawing, x: f64, area: Area) {
     let bottom = area.y + area.height;
-    let dashes = Stroke {
-        dash: Some((5, 4)),
-        ..Stroke::new(MUTED, 1.2)
-    };
-    drawing.line((x, area.y), (x, bottom), dashes);
+    drawing.line((x, area.y), (x, bottom), dashes(1.2));
     drawing.marker(6, (x, bottom), MARKER_RADIUS, INK);
 }
 

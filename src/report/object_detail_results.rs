@@ -1,50 +1,30 @@
 //! The folder of a study of object detail, and what it prints at its end.
 
 use super::object_detail_charts::{draw_object_detail_charts, median_time_us, method_name};
-use crate::error::{Error, Result};
-use crate::files::write_bytes;
+use crate::error::Result;
 use crate::report::axis::short_number;
-use crate::report::csv_tables::to_csv;
-use crate::report::results::make_folder;
+use crate::report::folder::Folder;
+use crate::report::terminal::{align_right, plain_table};
 use crate::study::object_detail::table::ObjectDetailTables;
-use comfy_table::{CellAlignment, ContentArrangement, Table, presets};
 use std::path::{Path, PathBuf};
 
 /// Writes tables and charts into `dir` (created if missing); returns the paths, tables first.
 ///
 /// Everything is drawn before the first file is written, and each file is whole or not there.
 pub fn write_object_detail(dir: &Path, tables: &ObjectDetailTables) -> Result<Vec<PathBuf>> {
-    let mut files = Vec::new();
-    for (name, bytes) in [
-        ("object_detail.csv", to_csv(&tables.detail)),
-        ("object_detail_summary.csv", to_csv(&tables.summary)),
-        ("timing.csv", to_csv(&tables.timing)),
-    ] {
-        let bytes =
-            bytes.map_err(|e| Error::io(dir.join(name), "write", std::io::Error::other(e)))?;
-        files.push((name.to_owned(), bytes));
-    }
+    let mut folder = Folder::new(dir);
+    folder.add_table("object_detail.csv", &tables.detail)?;
+    folder.add_table("object_detail_summary.csv", &tables.summary)?;
+    folder.add_table("timing.csv", &tables.timing)?;
     for (name, title, drawing) in draw_object_detail_charts(tables) {
-        files.push((format!("{name}.png"), drawing.png()?));
-        files.push((format!("{name}.svg"), drawing.svg(&title).into_bytes()));
+        folder.add_chart(&name, &title, &drawing)?;
     }
-    make_folder(dir)?;
-    let mut paths = Vec::new();
-    for (name, bytes) in files {
-        let path = dir.join(name);
-        write_bytes(&path, &bytes)?;
-        paths.push(path);
-    }
-    Ok(paths)
+    folder.write()
 }
 
 /// A line a method and level: medians over objects. Lines are at most about `width` letters long.
 pub fn object_detail_summary(tables: &ObjectDetailTables, width: usize) -> String {
-    let mut table = Table::new();
-    table
-        .load_preset(presets::NOTHING)
-        .set_content_arrangement(ContentArrangement::Dynamic)
-        .set_width(width.min(usize::from(u16::MAX)) as u16);
+    let mut table = plain_table(width);
     table.set_header([
         "model",
         "within mm",
@@ -73,11 +53,7 @@ pub fn object_detail_summary(tables: &ObjectDetailTables, width: usize) -> Strin
             ),
         ]);
     }
-    for column in 1..9 {
-        if let Some(column) = table.column_mut(column) {
-            column.set_cell_alignment(CellAlignment::Right);
-        }
-    }
+    align_right(&mut table, 1..9);
     format!(
         "Medians over objects; error is the mean over touched taxels of |deflection − that of the exact mesh|, worst\n\
         that of the worst object, − offset with the best constant depth taken off, × packing the ratio of that to the packing's.\n\n{table}\n"

@@ -5,17 +5,17 @@ use crate::report::chart::{draw_axes, draw_y_labels, n_classes, y_at};
 use crate::report::colours::{GRID, INK, Rgb};
 use crate::report::drawing::{Align, Area, Drawing, Point, Stroke, TextStyle};
 use crate::report::legend::{
-    CHANCE, FRONT, Heading, LEFT, LegendEntry, MARKER_RADIUS, Mark, RIGHT, line_colour,
+    CHANCE, FRONT, Heading, LegendEntry, MARKER_RADIUS, Mark, RIGHT, line_colour,
 };
+use crate::report::panels::Panels;
 use crate::report::text_width::text_width;
+use crate::report::time_scale::{TimeScale, time_label};
 use crate::report::varying::{Levels, Settings, unbroken_parts};
 use crate::report::x_scale::TICK_SIZE;
 use crate::study::table::{Cell, Pareto, Tables};
 
 /// Classifiers from which on a study is about choosing one.
 const MANY_CLASSIFIERS: usize = 3;
-/// Pixels between panels.
-const GAP: f64 = 26.0;
 const LABEL: u32 = 13;
 /// Letters of the names on the front.
 const NAME: u32 = 11;
@@ -116,37 +116,24 @@ struct Chart<'a> {
 impl Chart<'_> {
     fn draw(&self, constants: &str) -> Drawing {
         let n_panels = self.panels.as_ref().map_or(1, |p| p.values.len());
-        let columns = n_panels.min(2);
-        let (panel_width, panel_height) = match columns {
-            1 => (660.0, 340.0),
-            _ => (385.0, 300.0),
-        };
-        let width = LEFT + columns as f64 * panel_width + (columns - 1) as f64 * GAP + RIGHT;
-        let heading = Heading::of(self.cost.title(), constants, self.legend(), width);
-        let panel_title = if n_panels > 1 { 24.0 } else { 6.0 };
-        let pitch_down = panel_title + panel_height + 26.0;
-        let n_rows = n_panels.div_ceil(columns);
-        let height = heading.height() + n_rows as f64 * pitch_down + 26.0;
-        let mut drawing = Drawing::new(width, height);
+        let above = if n_panels > 1 { 24.0 } else { 6.0 };
+        let panels = Panels::new(n_panels, n_panels.min(2), above, 26.0);
+        let heading = Heading::of(self.cost.title(), constants, self.legend(), panels.width());
+        let top = heading.height();
+        let mut drawing = Drawing::new(panels.width(), panels.bottom(top));
         heading.draw(&mut drawing);
         let scale = TimeScale::of(self.rows.iter().map(|(_, row)| self.cost.seconds(row)));
         for panel in 0..n_panels {
-            let (row, column) = (panel / columns, panel % columns);
-            let frame = Area {
-                x: LEFT + column as f64 * (panel_width + GAP),
-                y: heading.height() + row as f64 * pitch_down + panel_title,
-                width: panel_width,
-                height: panel_height,
-            };
+            let frame = panels.frame(panel, top);
             if let Some(levels) = &self.panels {
                 let text = format!("{} {}", levels.axis.name(), levels.values[panel].label);
                 drawing.bold_text((frame.x, frame.y - 8.0), &text, TextStyle::new(LABEL));
             }
             self.draw_panel(&mut drawing, panel, frame, &scale);
-            if column == 0 {
+            if panels.is_first_in_row(panel) {
                 draw_y_labels(&mut drawing, frame);
             }
-            if panel + columns >= n_panels {
+            if panels.is_last_in_column(panel) {
                 let below = (frame.x + frame.width / 2.0, frame.y + frame.height + 40.0);
                 let style = TextStyle::new(LABEL).align(Align::Middle);
                 drawing.text(below, self.cost.axis_title(), style);
@@ -293,88 +280,9 @@ fn paler(colour: Rgb) -> Rgb {
     colour.map(|channel| channel + ((255 - channel) as f64 * 0.45) as u8)
 }
 
-/// A logarithmic axis of time.
-struct TimeScale {
-    low: f64,
-    high: f64,
-}
-
-impl TimeScale {
-    /// From the shortest to the longest time (seconds), and a little further.
-    fn of(seconds: impl Iterator<Item = f64> + Clone) -> Self {
-        let low = seconds.clone().fold(f64::INFINITY, f64::min);
-        let high = seconds.fold(0.0, f64::max);
-        Self {
-            low: 0.7 * low,
-            high: 1.4 * high,
-        }
-    }
-
-    fn x(&self, seconds: f64, frame: Area) -> f64 {
-        let share = (seconds / self.low).ln() / (self.high / self.low).ln();
-        frame.x + share * frame.width
-    }
-
-    /// 1, 2 and 5 of every decade within the axis (all digits of a decade that fills it), and whether there is room for each
-    /// one's label.
-    fn ticks(&self, frame: Area) -> Vec<(f64, bool)> {
-        let first = self.low.log10().floor() as i32;
-        let last = self.high.log10().ceil() as i32;
-        let decade = (self.x(10.0, frame) - self.x(1.0, frame)).abs();
-        let is_labelled = |digit: i32| match digit {
-            1 => true,
-            _ => decade > 190.0,
-        };
-        let digits: &[i32] = match decade > 0.8 * frame.width {
-            true => &[1, 2, 3, 4, 5, 6, 7, 8, 9],
-            false => &[1, 2, 5],
-        };
-        (first..=last)
-            .flat_map(|power| digits.iter().map(move |&digit| (digit, power)))
-            .map(|(digit, power)| (power_of_ten(digit, power), is_labelled(digit)))
-            .filter(|(seconds, _)| (self.low..=self.high).contains(seconds))
-            .collect()
-    }
-}
-
-/// `digit · 10^power` as the nearest number, which a product with a rounded power is not.
-fn power_of_ten(digit: i32, power: i32) -> f64 {
-    match power {
-        0.. => f64::from(digit) * 10_f64.powi(power),
-        _ => f64::from(digit) / 10_f64.powi(-power),
-    }
-}
-
-/// `20 µs`, `5 ms`, `100 s`.
-fn time_label(seconds: f64) -> String {
-    let (number, unit) = match seconds {
-        s if s < 0.999e-6 => (s * 1e9, "ns"),
-        s if s < 0.999e-3 => (s * 1e6, "µs"),
-        s if s < 0.999 => (s * 1e3, "ms"),
-        s => (s, "s"),
-    };
-    format!("{number:.0} {unit}")
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn times_are_labelled_in_the_unit_that_suits_them() {
-        for (seconds, label) in [
-            (1e-9, "1 ns"),
-            (5e-7, "500 ns"),
-            (1e-6, "1 µs"),
-            (2e-4, "200 µs"),
-            (1e-3, "1 ms"),
-            (0.5, "500 ms"),
-            (1.0, "1 s"),
-            (200.0, "200 s"),
-        ] {
-            assert_eq!(time_label(seconds), label);
-        }
-    }
 
     #[test]
     fn names_on_a_front_never_lie_on_each_other_and_the_most_accurate_cell_has_one() {
@@ -402,25 +310,6 @@ mod tests {
                 let beside = x + width < *other_x || other_x + other_width < *x;
                 assert!(beside || (y - other_y).abs() >= f64::from(NAME));
             }
-        }
-    }
-
-    #[test]
-    fn every_time_stands_within_the_frame_and_ticks_ascend() {
-        let frame = Area {
-            x: 10.0,
-            y: 0.0,
-            width: 400.0,
-            height: 1.0,
-        };
-        for times in [vec![3e-6], vec![2e-9, 7e3], vec![1.0, 1.1, 1.2]] {
-            let scale = TimeScale::of(times.iter().copied());
-            for &seconds in &times {
-                let x = scale.x(seconds, frame);
-                assert!(x > frame.x && x < frame.x + frame.width, "{times:?}");
-            }
-            let ticks: Vec<f64> = scale.ticks(frame).iter().map(|(s, _)| *s).collect();
-            assert!(ticks.is_sorted() && !ticks.is_empty(), "{ticks:?}");
         }
     }
 }

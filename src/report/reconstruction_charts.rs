@@ -1,12 +1,12 @@
 //! Charts of a reconstruction study: error against measurements here, error against rate in `reconstruction_rates`.
 
 use super::legend::{
-    Heading, LEFT, LegendEntry, MARKER_RADIUS, Mark, RIGHT, line_colour, line_stroke,
+    Heading, LEFT, LegendEntry, MARKER_RADIUS, Mark, RIGHT, dashes, line_colour, line_entries,
+    line_stroke,
 };
 use super::log_scale::{LogScale, axis_titles, draw_axes};
 use super::reconstruction_rates::{RATE_TITLE, draw_rates};
 use crate::report::axis::{basis_name, ensemble_name, short_number, solver_name};
-use crate::report::colours::MUTED;
 use crate::report::drawing::{Align, Area, Drawing, Stroke, TextStyle};
 use crate::sensing::{Basis, Ensemble, Solver};
 use crate::signal::NoiseUnit;
@@ -107,11 +107,7 @@ fn draw_errors(ensemble: Ensemble, noise: String, rows: &[Scored]) -> Drawing {
     let full = rows
         .first()
         .map_or(0.0, |(_, score)| score.full_sampling_error);
-    let mut entries: Vec<LegendEntry> = solvers
-        .iter()
-        .enumerate()
-        .map(|(line, solver)| LegendEntry::new(solver_name(*solver).to_owned(), Mark::Line(line)))
-        .collect();
+    let mut entries = line_entries(solvers.iter().map(|&solver| solver_name(solver)));
     entries.push(LegendEntry::new(
         "95 % interval over touches".to_owned(),
         Mark::Whisker,
@@ -158,15 +154,8 @@ fn draw_errors(ensemble: Ensemble, noise: String, rows: &[Scored]) -> Drawing {
             (number % columns == 0).then_some("error"),
         );
         if full > 0.0 {
-            let dashes = Stroke {
-                dash: Some((5, 4)),
-                ..Stroke::new(MUTED, 1.4)
-            };
-            drawing.line(
-                (area.x, y.place(full)),
-                (area.x + area.width, y.place(full)),
-                dashes,
-            );
+            let (left, right) = (area.x, area.x + area.width);
+            drawing.line((left, y.place(full)), (right, y.place(full)), dashes(1.4));
         }
         for (line, &solver) in solvers.iter().enumerate() {
             draw_error_line(&mut drawing, rows, (basis, solver, line), (x, y));

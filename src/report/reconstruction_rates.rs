@@ -1,11 +1,12 @@
 //! The chart of error against frames a second, its Pareto front marked.
 
-use super::legend::{Heading, LEFT, LegendEntry, MARKER_RADIUS, Mark, RIGHT, line_colour};
+use super::legend::{
+    Heading, LEFT, LegendEntry, MARKER_RADIUS, Mark, RIGHT, dashes, line_colour, line_entries,
+};
 use super::log_scale::{LogScale, axis_titles, draw_axes};
 use super::reconstruction_charts::{cell_words, values_of};
 use crate::report::axis::{short_number, solver_name};
-use crate::report::colours::MUTED;
-use crate::report::drawing::{Align, Area, Drawing, Stroke, TextStyle};
+use crate::report::drawing::{Align, Area, Drawing, TextStyle};
 use crate::study::reconstruction::table::{ReconstructionCell, ReconstructionPareto};
 
 /// The chart's title.
@@ -17,11 +18,7 @@ pub(super) fn draw_rates(
     rows: &[&(ReconstructionCell, ReconstructionPareto)],
 ) -> Drawing {
     let solvers = values_of(rows.iter().map(|(cell, _)| cell), |c| c.solver);
-    let mut entries: Vec<LegendEntry> = solvers
-        .iter()
-        .enumerate()
-        .map(|(line, solver)| LegendEntry::new(solver_name(*solver).to_owned(), Mark::Line(line)))
-        .collect();
+    let mut entries = line_entries(solvers.iter().map(|&solver| solver_name(solver)));
     entries.push(LegendEntry::new("Pareto front".to_owned(), Mark::Dashes));
     let mut front: Vec<_> = rows.iter().filter(|(_, p)| p.on_front).collect();
     front.sort_by(|a, b| a.1.error.total_cmp(&b.1.error));
@@ -58,11 +55,7 @@ pub(super) fn draw_rates(
     let place = |p: &ReconstructionPareto| (x.place(p.frames_per_s_per_core), y.place(p.error));
     let joined: Vec<_> = front.iter().map(|(_, p)| place(p)).collect();
     if joined.len() > 1 {
-        let dashes = Stroke {
-            dash: Some((5, 4)),
-            ..Stroke::new(MUTED, 1.2)
-        };
-        drawing.polyline(&joined, dashes);
+        drawing.polyline(&joined, dashes(1.2));
     }
     for (cell, point) in rows {
         let line = solvers.iter().position(|s| *s == cell.solver).unwrap_or(0);

@@ -2,10 +2,10 @@
 
 use super::reconstruction_charts::{cell_words, noise_words, values_of};
 use crate::report::axis::{basis_name, ensemble_name, short_number, solver_name};
+use crate::report::terminal::{align_right, plain_table};
 use crate::study::reconstruction::table::{
     ReconstructionCell, ReconstructionScore, ReconstructionTables, ReconstructionTime,
 };
-use comfy_table::{CellAlignment, ContentArrangement, Table, presets};
 
 type Row<'a> = (
     &'a ReconstructionCell,
@@ -25,11 +25,7 @@ pub fn reconstruction_summary(tables: &ReconstructionTables, width: usize) -> St
     if rows.is_empty() {
         return "No cell has been computed.\n".to_owned();
     }
-    let mut table = Table::new();
-    table
-        .load_preset(presets::NOTHING)
-        .set_content_arrangement(ContentArrangement::Dynamic)
-        .set_width(width.min(usize::from(u16::MAX)) as u16);
+    let mut table = plain_table(width);
     table.set_header([
         "noise",
         "m",
@@ -56,11 +52,7 @@ pub fn reconstruction_summary(tables: &ReconstructionTables, width: usize) -> St
             format!("{:.0}", time.frames_per_s_per_core),
         ]);
     }
-    for column in [0, 1, 6, 7] {
-        if let Some(column) = table.column_mut(column) {
-            column.set_cell_alignment(CellAlignment::Right);
-        }
-    }
+    align_right(&mut table, [0, 1, 6, 7]);
     let mut text = "The best dictionary and ensemble of each solver; error is relative to the clean frames, full is that of \
         the noisy frame itself.\n\n"
         .to_owned();

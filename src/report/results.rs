@@ -1,18 +1,17 @@
 //! A study's folder: everything that people open after a run.
 
-use crate::error::{Error, Result};
-use crate::files::write_bytes;
+use crate::error::Result;
 use crate::report::answer::Answer;
 use crate::report::chart::{chart_title, draw_chart};
 use crate::report::chart_plan::plan_charts;
 use crate::report::confusion_picture::confusion_picture;
-use crate::report::csv_tables::write_tables;
+use crate::report::csv_tables::add_tables;
 use crate::report::drawing::Drawing;
+use crate::report::folder::Folder;
 use crate::report::html::{Picture, Pictures, ReportPage, page};
 use crate::report::pareto_chart::{Cost, draw_pareto, is_wanted};
 use crate::report::snapshots::snapshots;
 use crate::study::table::{Cell, Tables};
-use std::fs;
 use std::path::{Path, PathBuf};
 
 /// Charts in the page and as PNG, at most; all are written as SVG. A thousand would make the page too heavy for a phone.
@@ -24,31 +23,28 @@ const MOST_IN_PAGE: usize = 24;
 /// Everything is drawn before the first file is written, and each file is whole or not there. Files of other names in the
 /// folder are left alone.
 pub fn write_all(dir: &Path, tables: &Tables, about: &ReportPage) -> Result<Vec<PathBuf>> {
-    let mut files: Vec<(String, Vec<u8>)> = Vec::new();
+    let mut folder = Folder::new(dir);
+    add_tables(&mut folder, tables)?;
     let mut pictures = Pictures::default();
     for (name, title, drawing) in draw_pareto_charts(tables, about.pareto) {
         pictures.times.push(Picture::of(&drawing, &title));
-        files.push((format!("{name}.png"), drawing.png()?));
-        files.push((format!("{name}.svg"), drawing.svg(&title).into_bytes()));
+        folder.add_chart(&name, &title, &drawing)?;
     }
     for (name, title, drawing) in draw_charts(tables) {
         if pictures.charts.len() < MOST_IN_PAGE {
             pictures.charts.push(Picture::of(&drawing, &title));
-            files.push((format!("{name}.png"), drawing.png()?));
+            folder.add_chart(&name, &title, &drawing)?;
         } else {
             pictures.n_more_charts += 1;
+            folder.add(format!("{name}.svg"), drawing.svg(&title));
         }
-        files.push((format!("{name}.svg"), drawing.svg(&title).into_bytes()));
     }
     if let Some(answer) = Answer::of(tables)
         && let Some(drawing) = confusion_picture(tables, answer.best.0.cell)
     {
         let picture = Picture::of(&drawing, "Confusion matrix of the best cell");
-        files.push(("confusion.png".to_owned(), drawing.png()?));
-        files.push((
-            "confusion.svg".to_owned(),
-            picture.element.clone().into_bytes(),
-        ));
+        folder.add("confusion.png", drawing.png()?);
+        folder.add("confusion.svg", picture.element.clone());
         pictures.confusion = Some(picture);
     }
     if let Some(set) = &about.snapshots {
@@ -56,19 +52,10 @@ pub fn write_all(dir: &Path, tables: &Tables, about: &ReportPage) -> Result<Vec<
         // As SVG, ten thousand noisy taxels would be a megabyte.
         let png = drawing.png()?;
         pictures.touches = Some(Picture::raster(&drawing, &png, &set.caption));
-        files.push(("snapshots.png".to_owned(), png));
+        folder.add("snapshots.png", png);
     }
-    let html = page(about, tables, &pictures);
-    files.push(("report.html".to_owned(), html.into_bytes()));
-
-    make_folder(dir)?;
-    let mut paths = write_tables(dir, tables)?;
-    for (name, bytes) in files {
-        let path = dir.join(name);
-        write_bytes(&path, &bytes)?;
-        paths.push(path);
-    }
-    Ok(paths)
+    folder.add("report.html", page(about, tables, &pictures));
+    folder.write()
 }
 
 /// Every chart of a study: file name without ending, title, drawing.
@@ -97,16 +84,4 @@ pub fn draw_pareto_charts(tables: &Tables, asked: Option<bool>) -> Vec<(String, 
         (cost.name().to_owned(), cost.title().to_owned(), drawing)
     };
     [Cost::Training, Cost::Prediction].map(draw).into()
-}
-
-/// Creates a folder and those above it; the error says if a file is in the way.
-pub fn make_folder(dir: &Path) -> Result<()> {
-    if fs::metadata(dir).is_ok_and(|meta| !meta.is_dir()) {
-        return Err(Error::input(
-            dir.display(),
-            "is not a folder",
-            "a folder, or a name that is free",
-        ));
-    }
-    fs::create_dir_all(dir).map_err(|e| Error::io(dir, "create folder", e))
 }

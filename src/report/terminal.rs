@@ -3,6 +3,7 @@
 use crate::report::answer::{Answer, accuracy_sentence};
 use crate::report::chart_plan::plan_charts;
 use crate::report::colours::Rgb;
+use crate::report::text_width::break_lines;
 use crate::report::varying::{Levels, Settings, unbroken_parts};
 use crate::study::table::{Cell, CellScore, Tables};
 use comfy_table::{
@@ -89,10 +90,7 @@ pub fn summary_table(tables: &Tables, width: usize, full_table: &str) -> String 
     let mut text = String::new();
     let fixed: Vec<String> = settings.fixed.iter().map(Levels::sentence).collect();
     let fixed = format!("All cells: {}", unbroken_parts(&fixed));
-    for line in wrap(&fixed, width) {
-        text += &line;
-        text.push('\n');
-    }
+    text += &paragraph(&fixed, width);
     text.push('\n');
     text += &if cells.len() <= MOST_LISTED {
         list(tables, &settings, width)
@@ -108,10 +106,7 @@ pub fn summary_table(tables: &Tables, width: usize, full_table: &str) -> String 
     }
     text.push('\n');
     for sentence in Answer::of(tables).iter().flat_map(Answer::sentences) {
-        for line in wrap(&sentence, width) {
-            text += &line;
-            text.push('\n');
-        }
+        text += &paragraph(&sentence, width);
     }
     text
 }
@@ -120,7 +115,7 @@ pub fn summary_table(tables: &Tables, width: usize, full_table: &str) -> String 
 fn list(tables: &Tables, settings: &Settings, width: usize) -> String {
     let axes = settings.shown();
     let best = Answer::of(tables).filter(|_| tables.summary.len() > 1);
-    let mut table = empty_table(width);
+    let mut table = ruled_table(width);
     let names = axes.iter().map(|levels| levels.axis.name().to_owned());
     let scores = ["accuracy [95 %]", "macro-F1", ""].map(str::to_owned);
     table.set_header(names.chain(scores));
@@ -176,7 +171,7 @@ fn pivot(tables: &Tables, settings: &Settings, width: usize, full_table: &str) -
         used += column_wide(n_columns);
         n_columns += 1;
     }
-    let mut table = empty_table(width);
+    let mut table = ruled_table(width);
     let names = down.iter().map(|levels| levels.axis.name().to_owned());
     let ticks = across.values[..n_columns]
         .iter()
@@ -204,11 +199,7 @@ fn pivot(tables: &Tables, settings: &Settings, width: usize, full_table: &str) -
              all {n_cells} cells are in {full_table}"
         ),
     };
-    for line in wrap(&remark, width) {
-        text += &line;
-        text.push('\n');
-    }
-    text
+    text + &paragraph(&remark, width)
 }
 
 struct PivotLine {
@@ -238,15 +229,31 @@ fn pivot_lines(tables: &Tables, across: &Levels, down: &[&Levels]) -> Vec<PivotL
     lines
 }
 
-pub(super) fn empty_table(width: usize) -> Table {
+/// A table without lines that breaks its texts to fit a width, letters.
+pub(super) fn plain_table(width: usize) -> Table {
     let mut table = Table::new();
     table.load_preset(presets::NOTHING);
+    table.set_content_arrangement(ContentArrangement::Dynamic);
+    table.set_width(width.min(usize::from(u16::MAX)) as u16);
+    table
+}
+
+/// The same with a line below its header, at least 20 letters wide.
+pub(super) fn ruled_table(width: usize) -> Table {
+    let mut table = plain_table(width.max(20));
     table.remove_style(TableComponent::VerticalLines);
     table.set_style(TableComponent::HeaderLines, '-');
     table.set_style(TableComponent::MiddleHeaderIntersections, '-');
-    table.set_content_arrangement(ContentArrangement::Dynamic);
-    table.set_width(width.clamp(20, usize::from(u16::MAX)) as u16);
     table
+}
+
+/// Columns of numbers, by their indices.
+pub(super) fn align_right(table: &mut Table, columns: impl IntoIterator<Item = usize>) {
+    for column in columns {
+        if let Some(column) = table.column_mut(column) {
+            column.set_cell_alignment(CellAlignment::Right);
+        }
+    }
 }
 
 /// Numbers right, words left.
@@ -273,16 +280,10 @@ fn letters(text: &str) -> usize {
 
 /// Breaks a text at spaces (not at U+00A0) into lines of at most `width` letters.
 pub(super) fn wrap(text: &str, width: usize) -> Vec<String> {
-    let mut lines: Vec<String> = Vec::new();
-    for word in text.split(' ') {
-        match lines.last_mut() {
-            Some(line) if letters(line) + 1 + letters(word) <= width => {
-                line.push(' ');
-                line.push_str(word);
-            }
-            _ => lines.push(word.to_owned()),
-        }
-    }
-    let plain = lines.into_iter().map(|line| line.replace('\u{a0}', " "));
-    plain.collect()
+    break_lines(text, |line| letters(line) <= width)
+}
+
+/// The same as one text, a line end after each line.
+fn paragraph(text: &str, width: usize) -> String {
+    wrap(text, width).join("\n") + "\n"
 }

@@ -33,19 +33,23 @@ pub fn bold_width(text: &str, size: f64) -> f64 {
 
 /// Breaks a text at spaces (not at U+00A0) into lines no wider than `width`; a longer word stands alone.
 pub fn wrap(text: &str, size: f64, width: f64) -> Vec<String> {
+    break_lines(text, |line| text_width(line, size) <= width)
+}
+
+/// Breaks a text at spaces (not at U+00A0) into lines that fit; a word that does not stands alone.
+pub(super) fn break_lines(text: &str, fits: impl Fn(&str) -> bool) -> Vec<String> {
     let mut lines: Vec<String> = Vec::new();
-    let text_width = |line: &str| text_width(&line.replace('\u{a0}', " "), size);
     for word in text.split(' ').filter(|word| !word.is_empty()) {
+        let word = word.replace('\u{a0}', " ");
         match lines.last_mut() {
-            Some(line) if text_width(&format!("{line} {word}")) <= width => {
+            Some(line) if fits(&format!("{line} {word}")) => {
                 line.push(' ');
-                line.push_str(word);
+                line.push_str(&word);
             }
-            _ => lines.push(word.to_owned()),
+            _ => lines.push(word),
         }
     }
-    let plain = lines.into_iter().map(|line| line.replace('\u{a0}', " "));
-    plain.collect()
+    lines
 }
 
 /// The text, or as much of it as fits with an ellipsis.

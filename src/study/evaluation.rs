@@ -54,7 +54,7 @@ struct ScoredTouches<'a> {
 impl Trial<'_> {
     /// Fits and scores the cells of a [family](super::sweep::Group::families) on their leading measurements, in their order.
     pub fn evaluate(&self, family: &[Cell]) -> Result<Vec<Evaluation>> {
-        let split = self.split(&family[0])?;
+        let split = self.sweep.split(self.plan, &family[0], self.number)?;
         let training = self.training(&family[0], &split)?;
         let test = self.rows(&family[0], &split.test)?;
         let same_fit: Vec<&[Cell]> = family.chunk_by(|a, b| a.c == b.c).collect();
@@ -120,15 +120,6 @@ impl Trial<'_> {
                 .map(|((object, predicted), &count)| (object, predicted, count))
                 .collect(),
         })
-    }
-
-    /// The trial's split, with no more training touches an object than the cell allows.
-    fn split(&self, cell: &Cell) -> Result<Split> {
-        let split = &self.sweep.splits[self.number];
-        match self.plan.spec.recognition.train_touches {
-            None => Ok(split.clone()),
-            Some(_) => split.at_most(self.sweep.labels.view(), cell.train_touches),
-        }
     }
 
     fn training(&self, cell: &Cell, split: &Split) -> Result<Training<'_>> {

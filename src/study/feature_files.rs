@@ -67,7 +67,7 @@ pub fn cell_features(
     progress: &dyn Progress,
 ) -> Result<FeatureSet> {
     let (group, cell) = find(sweep, cell)?;
-    let split = split(plan, sweep, cell, trial)?;
+    let split = sweep.split(plan, cell, trial)?;
     let patch = &plan.arrays[group.array];
     progress.stage(
         &format!("touch {}", describe(patch)),
@@ -288,15 +288,4 @@ fn find(sweep: &Sweep, number: usize) -> Result<(&Group, &Cell)> {
                 format!("0 to {}, the cells of the study", sweep.n_cells() - 1),
             )
         })
-}
-
-fn split(plan: &Plan, sweep: &Sweep, cell: &Cell, trial: usize) -> Result<Split> {
-    let split = sweep.splits.get(trial).ok_or_else(|| {
-        let last = sweep.splits.len() - 1;
-        Error::input("trial", trial, format!("0 to {last}, the study's trials"))
-    })?;
-    match plan.spec.recognition.train_touches {
-        None => Ok(split.clone()),
-        Some(_) => split.at_most(sweep.labels.view(), cell.train_touches),
-    }
 }

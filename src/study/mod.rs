@@ -15,7 +15,9 @@ mod kind;
 mod measurement;
 pub mod object_detail;
 mod object_files;
+mod packing_cache;
 mod packings;
+mod pareto;
 mod plan;
 mod plan_learning;
 mod plan_scene;
@@ -26,6 +28,8 @@ mod runner;
 mod samples;
 mod simulation;
 mod spec;
+mod spec_scene;
+mod splits;
 mod summary;
 mod sweep;
 pub mod table;
@@ -39,6 +43,7 @@ pub use kind::StudyKind;
 pub use object_files::{
     MeshUse, NamedMesh, load_mesh, load_named_meshes, load_objects, read_mesh_file,
 };
+pub use packing_cache::{CachedPacking, PackingCache};
 pub use plan::{Amount, Plan, SplitKind, SplitPlan, millimetres};
 pub use runner::{ArrayOutcome, Outcome, run};
 pub use samples::{Samples, sample_frames};

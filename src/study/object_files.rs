@@ -99,7 +99,7 @@ pub fn load_named_meshes(folder: &Path, spec: &ObjectsSpec) -> Result<Vec<NamedM
     let paths = mesh_paths(folder, spec)?;
     let meshes = paths.par_iter().map(|path| {
         let place = path.display().to_string();
-        let mesh = read_mesh_file(path, unit(spec))?.into_mesh(&place)?;
+        let mesh = read_mesh_file(path, spec.mesh_unit.unwrap_or_default())?.into_mesh(&place)?;
         Ok(NamedMesh {
             name: stem(path),
             place,
@@ -121,7 +121,7 @@ fn load_set(set: &str, names: Option<&[String]>, tolerance: f64) -> Result<Vec<O
 
 fn load_meshes(folder: &Path, spec: &ObjectsSpec, packings: Option<&Path>) -> Result<Vec<Object>> {
     let wanted = MeshUse {
-        unit: unit(spec),
+        unit: spec.mesh_unit.unwrap_or_default(),
         model: spec.model.unwrap_or_default(),
         surface_error: spec.surface_error_mm * 1e-3,
         packings,
@@ -130,11 +130,6 @@ fn load_meshes(folder: &Path, spec: &ObjectsSpec, packings: Option<&Path>) -> Re
         .par_iter()
         .map(|path| load_mesh(path, &wanted))
         .collect()
-}
-
-fn unit(spec: &ObjectsSpec) -> LengthUnit {
-    spec.mesh_unit
-        .map_or_else(LengthUnit::default, LengthUnit::from)
 }
 
 fn stem(path: &Path) -> String {

@@ -1,9 +1,10 @@
 //! Meshes as spheres within a tolerance, kept in a folder beside the results.
 
+use super::packing_cache::{CachedPacking, PackingCache};
 use crate::error::{Error, Result};
 use crate::mesh::Surface;
 use crate::objects::SphereUnion;
-use crate::packing::{Body, PackingCache, pack_mesh};
+use crate::packing::{Body, pack_mesh};
 use std::path::Path;
 
 /// Spheres that stand for a mesh, and where they are from.
@@ -24,17 +25,17 @@ pub(super) fn pack_within(
     tolerance: f64,
     folder: Option<&Path>,
 ) -> Result<Packed> {
-    let (packing, was_kept) = match folder {
-        None => (pack_mesh(surface, Body::Solid, tolerance), false),
+    let cached = match folder {
+        None => pack_mesh(surface, Body::Solid, tolerance).map(|packing| CachedPacking {
+            packing,
+            was_kept: false,
+        }),
         Some(folder) => {
             std::fs::create_dir_all(folder).map_err(|e| Error::io(folder, "create folder", e))?;
-            let cache = PackingCache::new(folder);
-            let was_kept = cache.path(surface.mesh(), Body::Solid, tolerance).exists();
-            let packing = cache.pack_mesh(surface, Body::Solid, tolerance, &mut |_| {});
-            (packing, was_kept)
+            PackingCache::new(folder).pack_mesh(surface, Body::Solid, tolerance, &mut |_| {})
         }
     };
-    let packing = packing.map_err(|error| match error {
+    let CachedPacking { packing, was_kept } = cached.map_err(|error| match error {
         Error::Input { given, allowed, .. } => Error::input(
             place,
             given,

@@ -131,16 +131,11 @@ impl Plan {
             check.counts("recognition.fused_touches", &spec.recognition.fused_touches)?;
         let train_touches = check.train_touches(&spec)?;
         let split = check.split(&spec)?;
-        let speed = check.value(
-            "touches.speed_mm_per_s",
-            spec.touches.speed_mm_per_s,
-            not_negative,
-            "zero or a positive number",
-        )?;
+        let speed = check.speed(&spec.touches)?;
         Ok(Self {
             arrays,
             placement,
-            speed: speed * MM,
+            speed,
             steps: spec.signal.steps.clone(),
             noise_unit,
             noise,

@@ -76,6 +76,26 @@ impl Check<'_> {
         Ok(arrays)
     }
 
+    /// Approach speed at the moment of reading, m/s.
+    pub fn speed(&self, touches: &TouchesSpec) -> Result<f64> {
+        let speed = self.value(
+            "touches.speed_mm_per_s",
+            touches.speed_mm_per_s,
+            not_negative,
+            "zero or a positive number",
+        )?;
+        Ok(speed * MM)
+    }
+
+    /// The array of a study that has no axis of arrays; `allowed` says so.
+    pub fn one_array(&self, skin: &SkinSpec, allowed: &str) -> Result<Patch> {
+        let arrays = self.arrays(skin)?;
+        match arrays[..] {
+            [patch] => Ok(patch),
+            _ => Err(self.error("skin", format!("{} arrays", arrays.len()), allowed)),
+        }
+    }
+
     fn taxels_a_side(&self, skin: &SkinSpec, pitch_mm: f64) -> Result<Vec<usize>> {
         match (&skin.size_mm, &skin.taxels) {
             (Some(sizes), None) => self

@@ -44,10 +44,7 @@ pub fn sample_frames(plan: &Plan, sweep: &Sweep, touched: &[TouchedObject]) -> R
     let (mut frames, mut rates) = (Vec::new(), Vec::new());
     for object in chosen(plan, touched)? {
         let touch = &object.touches[0];
-        let scene = Scene {
-            patch,
-            objects: vec![object.object.model.clone()],
-        };
+        let scene = Scene::of_one(&patch, &object.object.model);
         let pose = touch.patch_from_object(&object.rests[touch.rest]);
         press_to_depth(&scene, &[pose], touch.depth, &mut workspace);
         let mut frame = workspace.deflections().to_vec();

@@ -6,7 +6,7 @@ use crate::error::Result;
 use crate::objects::Object;
 use crate::random::Seed;
 use crate::world::{Patch, Placement, RestPose, Scene, Touch, touches};
-use ndarray::{Array2, ArrayViewMut2, Axis, s};
+use ndarray::{Array1, Array2, ArrayViewMut2, Axis, s};
 use rayon::prelude::*;
 use std::time::Instant;
 
@@ -59,6 +59,13 @@ pub fn draw_touches(
         .collect()
 }
 
+/// The object of every touch, by its number.
+pub fn touch_labels(touched: &[TouchedObject]) -> Array1<usize> {
+    let objects = touched.iter().enumerate();
+    let labels = objects.flat_map(|(label, t)| std::iter::repeat_n(label, t.touches.len()));
+    labels.collect()
+}
+
 /// What an object's touches are drawn from.
 pub fn touch_stream(seed: &Seed, object: &Object) -> Seed {
     seed.named("touches").named(&object.name)
@@ -84,10 +91,7 @@ pub fn simulate_array(
         touches,
     } in touched
     {
-        let scene = Scene {
-            patch: *patch,
-            objects: vec![object.model.clone()],
-        };
+        let scene = Scene::of_one(patch, &object.model);
         let n_rows = touches.len() * n_frames;
         let mut frames = deflection.slice_mut(s![first..first + n_rows, ..]);
         let blocks: Vec<_> = frames

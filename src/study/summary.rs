@@ -1,6 +1,7 @@
 //! Trials → cells: means, intervals, and every cell against the best one.
 
 use super::evaluation::CONFIDENCE;
+use super::pareto::{Choice, unbeaten};
 use super::table::{
     Cell, CellScore, Comparison, Confused, Confusion, Pareto, TrialScore, TrialTime,
 };
@@ -150,15 +151,11 @@ pub fn pareto(rows: &[Row], times: &[(Cell, TrialTime)]) -> Vec<(Cell, Pareto)> 
 
 /// For each cell, whether no cell with the same noise beats it.
 fn on_front(table: &[(Cell, Pareto)], cost: fn(&Pareto) -> f64) -> Vec<bool> {
-    let beats = |other: &Pareto, row: &Pareto| {
-        let no_worse = other.accuracy >= row.accuracy && cost(other) <= cost(row);
-        no_worse && (other.accuracy > row.accuracy || cost(other) < cost(row))
-    };
-    let is_on = |(cell, row): &(Cell, Pareto)| {
-        let mut rivals = table.iter().filter(|(c, _)| c.noise_std == cell.noise_std);
-        !rivals.any(|(_, other)| beats(other, row))
-    };
-    table.iter().map(is_on).collect()
+    let choices = table.iter().map(|(cell, row)| Choice {
+        level: cell.noise_std,
+        costs: [-row.accuracy, cost(row)],
+    });
+    unbeaten(&choices.collect::<Vec<_>>())
 }
 
 #[cfg(test)]

@@ -8,20 +8,16 @@
 //!                  └─ fused touches (a cell) ── decide
 //! ```
 
-use super::plan::{Plan, SplitKind, millimetres};
+use super::plan::{Plan, millimetres};
 use super::published::check_published;
-use super::simulation::TouchedObject;
-use super::spec::GroupSpec;
+use super::simulation::{TouchedObject, touch_labels};
+use super::splits::{check_folds, check_fused_touches, draw_split, group_keys, train_touches};
 use super::table::Cell;
 use crate::error::{Error, Result};
-use crate::random::Seed;
-use crate::recognition::split::{
-    Split, group_hold_out, group_k_fold, stratified_hold_out, stratified_k_fold,
-};
+use crate::recognition::split::Split;
 use crate::sensing::Ensemble;
-use crate::world::{Patch, TouchAxis};
+use crate::world::Patch;
 use ndarray::Array1;
-use std::collections::BTreeMap;
 
 /// Everything that is decided before the first touch is simulated.
 #[derive(Clone, Debug)]
@@ -86,18 +82,14 @@ impl Sweep {
                 "at least two, since recognition tells objects apart",
             ));
         }
-        let labels = touched
-            .iter()
-            .enumerate()
-            .flat_map(|(label, t)| std::iter::repeat_n(label, t.touches.len()))
-            .collect();
+        let labels = touch_labels(touched);
         let keys = plan
             .split
             .keep_together
             .map(|kind| group_keys(touched, kind))
             .transpose()?;
         let splits = (0..plan.spec.trials)
-            .map(|trial| split(plan, &labels, keys.as_ref(), trial))
+            .map(|trial| draw_split(plan, &labels, keys.as_ref(), trial))
             .collect::<Result<Vec<_>>>()?;
         let train_touches = train_touches(plan, &splits, &labels)?;
         check_fused_touches(plan, &splits, &labels)?;
@@ -116,6 +108,19 @@ impl Sweep {
         let cells: Vec<&Cell> = sweep.cells().collect();
         check_published(&plan.spec.report.published, &cells)?;
         Ok(sweep)
+    }
+
+    /// A trial's split, with no more training touches an object than the cell allows; an error for a trial that the study
+    /// does not have.
+    pub fn split(&self, plan: &Plan, cell: &Cell, trial: usize) -> Result<Split> {
+        let split = self.splits.get(trial).ok_or_else(|| {
+            let last = self.splits.len() - 1;
+            Error::input("trial", trial, format!("0 to {last}, the study's trials"))
+        })?;
+        match plan.spec.recognition.train_touches {
+            None => Ok(split.clone()),
+            Some(_) => split.at_most(self.labels.view(), cell.train_touches),
+        }
     }
 
     fn add_groups(&mut self, plan: &Plan, (array, frames): (usize, usize), train: &[usize]) {
@@ -225,116 +230,4 @@ fn group_cell(plan: &Plan, group: &Group, measurements: usize) -> Cell {
         train_touches: 0,
         fused_touches: plan.fused_touches[0],
     }
-}
-
-fn split(
-    plan: &Plan,
-    labels: &Array1<usize>,
-    keys: Option<&Array1<usize>>,
-    trial: usize,
-) -> Result<Split> {
-    let seed = Seed::new(plan.spec.seed).named("split");
-    match plan.split.kind {
-        SplitKind::HoldOut(fraction) => {
-            let seed = seed.numbered(trial as u64);
-            match keys {
-                None => stratified_hold_out(labels.view(), fraction, &seed),
-                Some(keys) => group_hold_out(labels.view(), keys.view(), fraction, &seed),
-            }
-        }
-        SplitKind::Folds(k) => {
-            let seed = seed.numbered((trial / k) as u64);
-            let mut folds = match keys {
-                None => stratified_k_fold(labels.view(), k, &seed)?,
-                Some(keys) => group_k_fold(labels.view(), keys.view(), k, &seed)?,
-            };
-            Ok(folds.swap_remove(trial % k))
-        }
-    }
-}
-
-/// The training-touches axis: what is asked for, or all that the smallest training split has for every object.
-fn train_touches(plan: &Plan, splits: &[Split], labels: &Array1<usize>) -> Result<Vec<usize>> {
-    let n_objects = labels.iter().max().map_or(0, |last| last + 1);
-    let fewest = splits
-        .iter()
-        .map(|split| fewest_per_object(&split.train, labels, n_objects))
-        .min()
-        .unwrap_or(0);
-    plan.train_touches
-        .iter()
-        .map(|asked| match *asked {
-            None => Ok(fewest),
-            Some(count) if count <= fewest => Ok(count),
-            Some(count) => Err(Error::input(
-                "key recognition.train_touches",
-                count,
-                format!("at most {fewest}, the training touches of every object in every trial"),
-            )),
-        })
-        .collect()
-}
-
-/// Every object has test touches for at least one group in every trial.
-fn check_fused_touches(plan: &Plan, splits: &[Split], labels: &Array1<usize>) -> Result<()> {
-    let n_objects = labels.iter().max().map_or(0, |last| last + 1);
-    let fewest = splits
-        .iter()
-        .map(|split| fewest_per_object(&split.test, labels, n_objects))
-        .min()
-        .unwrap_or(0);
-    match plan.fused_touches.iter().find(|&&k| k > fewest) {
-        None => Ok(()),
-        Some(k) => Err(Error::input(
-            "key recognition.fused_touches",
-            k,
-            format!("at most {fewest}, the test touches of every object in every trial"),
-        )),
-    }
-}
-
-/// Where C or γ is chosen, every object has a training touch for each fold.
-fn check_folds(plan: &Plan, train_touches: &[usize]) -> Result<()> {
-    let choice = &plan.choice;
-    let fewest = train_touches.iter().min().copied().unwrap_or(0);
-    let fewest = choice.touches.map_or(fewest, |most| fewest.min(most));
-    let is_open = !(choice.c.is_empty() && choice.gamma_multiples.is_empty());
-    if is_open && choice.folds > fewest {
-        return Err(Error::input(
-            "key recognition.choose_folds",
-            choice.folds,
-            format!("at most {fewest}, the training touches of every object that take part"),
-        ));
-    }
-    Ok(())
-}
-
-fn fewest_per_object(rows: &[usize], labels: &Array1<usize>, n_objects: usize) -> usize {
-    let mut counts = vec![0; n_objects];
-    for &row in rows {
-        counts[labels[row]] += 1;
-    }
-    counts.into_iter().min().unwrap_or(0)
-}
-
-/// One group number a touch: touches with the same values on the grouping axes share it, whatever their object.
-fn group_keys(touched: &[TouchedObject], kind: GroupSpec) -> Result<Array1<usize>> {
-    use TouchAxis::{Depth, OffsetX, OffsetY, Rest, TiltX, TiltY, Yaw};
-    let axes: &[TouchAxis] = match kind {
-        GroupSpec::Pose => &[Rest, OffsetX, OffsetY, Yaw, TiltX, TiltY],
-        GroupSpec::Offset => &[OffsetX, OffsetY],
-        GroupSpec::Yaw => &[Yaw],
-        GroupSpec::Tilt => &[TiltX, TiltY],
-        GroupSpec::Rest => &[Rest],
-        GroupSpec::Depth => &[Depth],
-    };
-    let mut numbers = BTreeMap::new();
-    touched
-        .iter()
-        .flat_map(|t| &t.touches)
-        .map(|touch| {
-            let next = numbers.len();
-            Ok(*numbers.entry(touch.group(axes)?).or_insert(next))
-        })
-        .collect()
 }

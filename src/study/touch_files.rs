@@ -92,10 +92,7 @@ pub fn write_touches(
             n_spheres: object.model.n_spheres(),
             n_touches: source.n_touches(),
         })?;
-        let scene = Scene {
-            patch: *patch,
-            objects: vec![object.model.clone()],
-        };
+        let scene = Scene::of_one(patch, &object.model);
         for first in (0..source.n_touches()).step_by(BLOCK) {
             let numbers = first..source.n_touches().min(first + BLOCK);
             let n_block = numbers.len() as u64;

@@ -11,3 +11,13 @@ pub struct Scene {
     /// The objects, each in its own frame.
     pub objects: Vec<Model>,
 }
+
+impl Scene {
+    /// A patch and one object.
+    pub fn of_one(patch: &Patch, object: &Model) -> Self {
+        Self {
+            patch: *patch,
+            objects: vec![object.clone()],
+        }
+    }
+}

@@ -44,7 +44,7 @@ const N_REPEATS: usize = 3;
 impl Truth {
     /// Touches a mesh exactly.
     pub(super) fn new(touched: &TouchedObject, patch: &Patch) -> Self {
-        let scene = scene(patch, &touched.object.model);
+        let scene = Scene::of_one(patch, &touched.object.model);
         let mut workspace = Workspace::new();
         let (mut readings, mut n_missed, mut n_touched) = (Vec::new(), 0, 0);
         for touch in &touched.touches {
@@ -77,7 +77,7 @@ impl Truth {
     /// Of a model read where the mesh was, the patch drawn back by `offset` metres.
     pub(super) fn error(&self, model: &Model, offset: f64) -> DeflectionError {
         let mut errors = Vec::new();
-        self.each_difference(&scene(&self.patch, model), offset, |difference| {
+        self.each_difference(&Scene::of_one(&self.patch, model), offset, |difference| {
             errors.push(difference.abs());
         });
         DeflectionError {
@@ -89,7 +89,7 @@ impl Truth {
     /// Mean error of a model that is touched as far past its own first contact as the mesh past its: what a study feels that
     /// has no other model of the object. Metres.
     pub(super) fn error_past_own_contact(&self, model: &Model) -> f64 {
-        let scene = scene(&self.patch, model);
+        let scene = Scene::of_one(&self.patch, model);
         let mut workspace = Workspace::new();
         let (mut sum, mut count) = (0.0, 0_usize);
         for reading in &self.readings {
@@ -105,7 +105,7 @@ impl Truth {
 
     /// The constant offset, metres, with which the error is least: 0 or better.
     pub(super) fn best_offset(&self, model: &Model) -> f64 {
-        let scene = scene(&self.patch, model);
+        let scene = Scene::of_one(&self.patch, model);
         let cost = |offset| {
             let (mut sum, mut count) = (0.0, 0_usize);
             self.each_difference(&scene, offset, |difference| {
@@ -128,7 +128,7 @@ impl Truth {
 
     /// Median time of a touch to its depth on one thread, seconds; 0 if nothing was met.
     pub(super) fn seconds_per_touch(&self, model: &Model) -> f64 {
-        let scene = scene(&self.patch, model);
+        let scene = Scene::of_one(&self.patch, model);
         let mut workspace = Workspace::new();
         let mut press = |reading: &Reading| {
             let start = Instant::now();
@@ -178,13 +178,6 @@ impl Reading {
                 visit(model - mesh);
             }
         }
-    }
-}
-
-fn scene(patch: &Patch, model: &Model) -> Scene {
-    Scene {
-        patch: *patch,
-        objects: vec![model.clone()],
     }
 }
 

@@ -22,3 +22,4 @@ mod variants;
 pub use plan::ObjectDetailPlan;
 pub use runner::measure_detail;
 pub use spec::{DetailMethod, ObjectDetailSpec, ObjectDetailStudySpec};
+pub(crate) use summary::quantile;

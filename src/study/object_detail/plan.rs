@@ -37,11 +37,7 @@ impl ObjectDetailPlan {
             let allowed = "no such key: object_detail.methods says what the meshes become";
             return Err(check.error("objects.model", "a model", allowed));
         }
-        let arrays = check.arrays(&spec.skin)?;
-        let [patch] = arrays[..] else {
-            let given = format!("{} arrays", arrays.len());
-            return Err(check.error("skin", given, "one pitch and one size"));
-        };
+        let patch = check.one_array(&spec.skin, "one pitch and one size")?;
         let placement = check.placement(&spec.touches)?;
         let wanted = &spec.object_detail;
         let key = "object_detail.tolerances_mm";

@@ -7,8 +7,8 @@ use super::summary::summary;
 use super::table::{DetailCell, DetailScore, DetailTime, ObjectDetailTables};
 use super::variants::{Variant, variants};
 use crate::error::Result;
-use crate::mesh::{Surface, TriangleMesh};
-use crate::objects::{MeshModel, Object};
+use crate::mesh::Surface;
+use crate::objects::{Model, Object};
 use crate::packing::{Body, PackingError, packing_error};
 use crate::random::Seed;
 use crate::study::object_files::NamedMesh;
@@ -67,9 +67,10 @@ impl Measured {
         packings: Option<&Path>,
         progress: &dyn Progress,
     ) -> Result<Self> {
-        let truth = truth(plan, &name, &mesh)?;
         let surface = Surface::new(mesh);
         let variants = variants(plan, &place, &surface, packings)?;
+        // The first of them is the mesh itself.
+        let truth = truth(plan, &name, &variants[0].model)?;
         let n_points = plan.spec.object_detail.surface_points;
         let scores = variants.iter().map(|variant| {
             let score = score(variant, &surface, &truth, n_points);
@@ -86,10 +87,10 @@ impl Measured {
 }
 
 /// The touches that every study would draw for an object of this name, felt exactly.
-fn truth(plan: &ObjectDetailPlan, name: &str, mesh: &TriangleMesh) -> Result<Truth> {
+fn truth(plan: &ObjectDetailPlan, name: &str, mesh: &Model) -> Result<Truth> {
     let object = Object {
         name: name.to_owned(),
-        model: MeshModel::new(mesh.clone()).into(),
+        model: mesh.clone(),
         n_parts: 1,
     };
     let seed = Seed::new(plan.spec.seed);

@@ -1,7 +1,7 @@
 //! A study of object detail as it is written.
 
 use crate::error::{Error, Result};
-use crate::study::spec::{ObjectsSpec, SkinSpec, TouchesSpec};
+use crate::study::spec::{ObjectsSpec, SkinSpec, TouchesSpec, default_seed};
 use serde::{Deserialize, Serialize};
 
 /// The file.
@@ -63,10 +63,6 @@ impl ObjectDetailStudySpec {
     pub fn to_toml(&self) -> String {
         toml::to_string(self).expect("every field of a study has a TOML form")
     }
-}
-
-fn default_seed() -> u64 {
-    2018
 }
 
 fn default_surface_points() -> usize {

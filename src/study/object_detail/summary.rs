@@ -6,7 +6,7 @@ use super::table::{DetailCell, DetailScore, DetailSummary};
 type Row = (DetailCell, DetailScore);
 
 /// The value that a part (0 to 1) of the values do not exceed, between neighbours by their distance; 0 of none. Sorts them.
-pub(super) fn quantile(values: &mut [f64], part: f64) -> f64 {
+pub(crate) fn quantile(values: &mut [f64], part: f64) -> f64 {
     if values.is_empty() {
         return 0.0;
     }

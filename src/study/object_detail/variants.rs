@@ -3,11 +3,11 @@
 use super::plan::ObjectDetailPlan;
 use super::spec::DetailMethod;
 use crate::error::Result;
+use crate::geometry::distinct_places;
 use crate::mesh::Surface;
 use crate::objects::{MeshModel, Model, vertex_spheres};
 use crate::study::packings::pack_within;
 use glam::DVec3;
-use std::collections::HashSet;
 use std::path::Path;
 use std::time::Instant;
 
@@ -81,10 +81,7 @@ pub(super) fn variants(
 /// `n` of the places of `vertices` (all, if there are fewer; never fewer than two), each the farthest from those before it,
 /// from the first vertex on.
 fn evenly_chosen(vertices: &[DVec3], n: usize) -> Vec<DVec3> {
-    let mut seen = HashSet::new();
-    // Adding zero makes −0 and 0 the same place.
-    let is_new = |v: &&DVec3| seen.insert((**v + DVec3::ZERO).to_array().map(f64::to_bits));
-    let places: Vec<DVec3> = vertices.iter().filter(is_new).copied().collect();
+    let places = distinct_places(vertices);
     if n >= places.len() {
         return places;
     }

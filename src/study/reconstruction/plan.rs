@@ -5,8 +5,8 @@ use crate::error::Result;
 use crate::random::Seed;
 use crate::sensing::{Basis, Dictionary, Effort, Ensemble, Projection, Solver};
 use crate::signal::{Noise, NoiseUnit, Quantity, SignalStep};
-use crate::study::check::{Check, not_negative, positive};
-use crate::study::plan::{Amount, MM};
+use crate::study::check::{Check, positive};
+use crate::study::plan::Amount;
 use crate::study::spec::{SignalSpec, StepSpec};
 use crate::world::{Grid, Patch, Placement};
 
@@ -44,30 +44,18 @@ impl ReconstructionPlan {
     pub fn new(place: &str, spec: ReconstructionStudySpec) -> Result<Self> {
         let check = Check { place };
         check.objects(&spec.objects)?;
-        let arrays = check.arrays(&spec.skin)?;
-        let [patch] = arrays[..] else {
-            let given = format!("{} arrays", arrays.len());
-            return Err(check.error(
-                "skin",
-                given,
-                "one pitch and one size: a dictionary is of one array",
-            ));
-        };
+        let allowed = "one pitch and one size: a dictionary is of one array";
+        let patch = check.one_array(&spec.skin, allowed)?;
         let placement = check.placement(&spec.touches)?;
         let (noise_unit, noise) = check.noise(&spec.signal)?;
         check.steps(&spec.signal)?;
         check.noise_is_last(&spec.signal)?;
         let ensembles = check.list("sensing.ensemble", spec.sensing.ensemble.values())?;
-        let amounts = check.amounts(&spec.sensing, &arrays)?;
+        let amounts = check.amounts(&spec.sensing, &[patch])?;
         let wanted = &spec.reconstruction;
         let dictionaries = check.dictionaries(wanted, &patch.grid)?;
         let solvers = check.list("reconstruction.solver", wanted.solver.values())?;
-        let speed = check.value(
-            "touches.speed_mm_per_s",
-            spec.touches.speed_mm_per_s,
-            not_negative,
-            "zero or a positive number",
-        )?;
+        let speed = check.speed(&spec.touches)?;
         let effort = check.effort(wanted)?;
         check.value(
             "reconstruction.test_fraction",
@@ -79,7 +67,7 @@ impl ReconstructionPlan {
         Ok(Self {
             patch,
             placement,
-            speed: speed * MM,
+            speed,
             noise_unit,
             noise,
             ensembles,

@@ -3,6 +3,7 @@
 use super::table::{
     ReconstructionCell, ReconstructionPareto, ReconstructionScore, ReconstructionTime,
 };
+use crate::study::pareto::{Choice, unbeaten};
 use ndarray::{Array2, ArrayView2};
 
 /// 95 % of a normal distribution lies within so many standard deviations.
@@ -80,24 +81,23 @@ pub(super) fn pareto(
     scores: &[(ReconstructionCell, ReconstructionScore)],
     times: &[(ReconstructionCell, ReconstructionTime)],
 ) -> Vec<(ReconstructionCell, ReconstructionPareto)> {
-    let points: Vec<(f64, f64, f64)> = scores
-        .iter()
-        .zip(times)
-        .map(|((cell, score), (_, time))| (cell.noise_std, score.error, time.frames_per_s_per_core))
-        .collect();
-    let beats = |a: &(f64, f64, f64), b: &(f64, f64, f64)| {
-        a.0 == b.0 && a.1 <= b.1 && a.2 >= b.2 && (a.1 < b.1 || a.2 > b.2)
-    };
-    let rows = scores.iter().zip(&points);
-    rows.map(|((cell, _), point)| {
-        let row = ReconstructionPareto {
-            error: point.1,
-            frames_per_s_per_core: point.2,
-            on_front: !points.iter().any(|other| beats(other, point)),
-        };
-        (cell.clone(), row)
-    })
-    .collect()
+    let rows = || scores.iter().zip(times);
+    let choices = rows().map(|((cell, score), (_, time))| Choice {
+        level: cell.noise_std,
+        costs: [score.error, -time.frames_per_s_per_core],
+    });
+    let front = unbeaten(&choices.collect::<Vec<_>>());
+    rows()
+        .zip(front)
+        .map(|(((cell, score), (_, time)), on_front)| {
+            let row = ReconstructionPareto {
+                error: score.error,
+                frames_per_s_per_core: time.frames_per_s_per_core,
+                on_front,
+            };
+            (cell.clone(), row)
+        })
+        .collect()
 }
 
 #[cfg(test)]

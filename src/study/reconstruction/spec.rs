@@ -3,7 +3,9 @@
 use crate::error::{Error, Result};
 use crate::sensing::{Basis, Effort, Solver};
 use crate::study::Axis;
-use crate::study::spec::{ObjectsSpec, SensingSpec, SignalSpec, SkinSpec, TouchesSpec};
+use crate::study::spec::{
+    ObjectsSpec, SensingSpec, SignalSpec, SkinSpec, TouchesSpec, default_seed,
+};
 use serde::{Deserialize, Serialize};
 
 /// The file.
@@ -89,10 +91,6 @@ impl ReconstructionSpec {
             most_steps: self.most_steps,
         }
     }
-}
-
-fn default_seed() -> u64 {
-    2018
 }
 
 fn default_most_atoms() -> usize {

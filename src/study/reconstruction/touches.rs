@@ -9,7 +9,7 @@ use crate::sensing::{Dictionary, Ensemble};
 use crate::signal::{Chain, Noise, NoiseUnit};
 use crate::study::measurement::{Reading, frame_seeds, measure};
 use crate::study::progress::Progress;
-use crate::study::simulation::{Frames, TouchedObject, simulate_array};
+use crate::study::simulation::{Frames, TouchedObject, simulate_array, touch_labels};
 use ndarray::{Array1, Array2, Axis};
 use rayon::prelude::*;
 
@@ -57,15 +57,10 @@ impl Touches {
         touched: &[TouchedObject],
         progress: &dyn Progress,
     ) -> Result<Self> {
-        let n_touches: usize = touched.iter().map(|t| t.touches.len()).sum();
-        progress.stage("touch", n_touches as u64);
+        let labels = touch_labels(touched);
+        progress.stage("touch", labels.len() as u64);
         let frames = simulate_array(touched, &plan.patch, 1, progress);
         let seed = Seed::new(plan.spec.seed);
-        let labels = touched
-            .iter()
-            .enumerate()
-            .flat_map(|(label, t)| std::iter::repeat_n(label, t.touches.len()))
-            .collect::<Array1<usize>>();
         let fraction = plan.spec.reconstruction.test_fraction;
         let split = stratified_hold_out(labels.view(), fraction, &seed.named("split").numbered(0))?;
         let seeds = frame_seeds(touched, 1, &seed.named("signal").numbered(0));
