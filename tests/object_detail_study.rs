@@ -5,11 +5,11 @@ mod mesh_shapes;
 
 use bubbletouch::mesh::TriangleMesh;
 use bubbletouch::report::csv_tables::read_rows;
-use bubbletouch::study::StudyKind;
 use bubbletouch::study::object_detail::table::{
-    DetailCell, DetailScore, DetailSummary, DetailTime,
+    DetailCell, DetailRecognition, DetailScore, DetailSummary, DetailTime,
 };
 use bubbletouch::study::object_detail::{DetailMethod, ObjectDetailPlan, ObjectDetailStudySpec};
+use bubbletouch::study::{Plan, StudyKind, StudySpec};
 use command::Case;
 use glam::DVec3;
 use mesh_shapes::{cuboid, icosphere};
@@ -36,8 +36,14 @@ depth_mm = 3.0
 
 [object_detail]
 tolerances_mm = [2.0, 1.0, 0.5]
-methods = ["packing", "vertex_spheres", "decimated_vertex_spheres"]
+methods = ["packing", "vertex_spheres", "decimated_vertex_spheres", "medial_spheres"]
 surface_points = 1000
+
+[object_detail.recognition]
+training_touches = 12
+test_touches = 8
+measurements = 32
+classifiers = ["linear_svm", "k_nearest"]
 "#;
 
 const RECOGNITION: &str = r#"
@@ -146,6 +152,42 @@ fn a_study_of_packed_meshes_is_the_same_bytes_at_any_number_of_threads_and_packs
 }
 
 #[test]
+fn packed_meshes_are_as_fine_as_a_tenth_of_the_finest_pitch_unless_a_study_says() {
+    let settled = |text: &str| {
+        let spec = StudySpec::parse("study.toml", text).unwrap();
+        Plan::new("study.toml", spec)
+            .unwrap()
+            .spec
+            .objects
+            .surface_error_mm
+    };
+    assert_eq!(settled(RECOGNITION), Some(1.0));
+    let left_out = RECOGNITION.replace("surface_error_mm = 1.0\n", "");
+    assert_eq!(settled(&left_out), Some(0.4));
+    let sweep = left_out.replace("pitch_mm = 4.0", "pitch_mm = [4.0, 2.0]");
+    assert_eq!(settled(&sweep), Some(0.2));
+    let vertices = left_out.replace("model = \"packed\"\n", "");
+    assert_eq!(settled(&vertices), Some(0.25));
+}
+
+#[test]
+fn a_kept_packing_that_is_broken_is_named_by_its_own_file() {
+    let case = case(RECOGNITION);
+    case.succeeds(&["run", "study.toml", "--out", "1"]);
+    let kept = fs::read_dir(case.path("packings")).unwrap().next();
+    let kept = kept.unwrap().unwrap().path();
+    fs::write(&kept, "x,y,z,r\n0,0,zero,1\n").unwrap();
+    let output = case.run(&["run", "study.toml", "--out", "1"]);
+    assert_eq!(output.status.code(), Some(2));
+    let said = String::from_utf8(output.stderr).unwrap();
+    let name = kept.file_name().unwrap().to_str().unwrap();
+    assert!(
+        said.contains(name) && !said.contains("open meshes"),
+        "{said}"
+    );
+}
+
+#[test]
 fn a_mesh_that_cannot_be_packed_is_named_with_what_it_lacks() {
     for study in [RECOGNITION, DETAIL] {
         let case = case(study);
@@ -173,6 +215,7 @@ fn detail_tables_are_the_same_bytes_at_any_number_of_threads_and_obey_their_laws
     for name in [
         "object_detail.csv",
         "object_detail_summary.csv",
+        "object_detail_recognition.csv",
         "study.toml",
     ] {
         assert!(!read("1", name).is_empty());
@@ -180,7 +223,7 @@ fn detail_tables_are_the_same_bytes_at_any_number_of_threads_and_obey_their_laws
     }
     let cells: Vec<DetailCell> = read_rows(&case.path("1/object_detail.csv")).unwrap();
     let scores: Vec<DetailScore> = read_rows(&case.path("1/object_detail.csv")).unwrap();
-    assert_eq!(cells.len(), 2 * (1 + 1 + 3 + 3));
+    assert_eq!(cells.len(), 2 * (1 + 1 + 3 + 3 + 3));
     for (cell, score) in cells.iter().zip(&scores) {
         assert!(
             score.n_touches == 8 && score.n_missed == 0 && score.n_taxels > 100,
@@ -230,6 +273,35 @@ fn detail_tables_are_the_same_bytes_at_any_number_of_threads_and_obey_their_laws
 }
 
 #[test]
+fn classifiers_that_learned_from_models_are_tested_on_the_meshes() {
+    let case = case(DETAIL);
+    let (said, _) = case.succeeds(&["run", "study.toml", "--out", "1"]);
+    assert!(said.contains("accuracy on meshes"), "{said}");
+    let path = case.path("1/object_detail_recognition.csv");
+    let rows: Vec<DetailRecognition> = read_rows(&path).unwrap();
+    assert_eq!(
+        rows.len(),
+        (1 + 1 + 3 + 3 + 3) * 2,
+        "levels and classifiers"
+    );
+    for row in &rows {
+        assert_eq!((row.n_objects, row.n_training, row.n_test), (2, 24, 16));
+        assert!(row.accuracy_on_mesh_low <= row.accuracy_on_mesh);
+        assert!(row.accuracy_on_mesh <= row.accuracy_on_mesh_high);
+        // A ball and a box feel different however coarse they are, to whoever has learned from the same.
+        assert!(row.accuracy_on_itself >= 0.9, "{row:?}");
+        if row.method == DetailMethod::Mesh {
+            assert_eq!(row.accuracy_on_mesh, row.accuracy_on_itself);
+        }
+    }
+    let svg = fs::read_to_string(case.path("1/recognition_by_deflection_error.svg")).unwrap();
+    assert!(svg.contains("median deflection error of the models, mm"));
+    fs::remove_file(case.path("meshes/box.ply")).unwrap();
+    let output = case.run(&["run", "study.toml", "--out", "2"]);
+    assert_eq!(output.status.code(), Some(2), "nothing to tell apart");
+}
+
+#[test]
 fn keys_of_a_detail_study_that_are_out_of_range_are_named() {
     assert_eq!(StudyKind::of(DETAIL), StudyKind::ObjectDetail);
     for (old, new, said) in [
@@ -250,6 +322,21 @@ fn keys_of_a_detail_study_that_are_out_of_range_are_named() {
             "key object_detail.methods: mesh",
         ),
         ("\"packing\", \"vertex", "\"magic\", \"vertex", "magic"),
+        (
+            "measurements = 32",
+            "measurements = 100000",
+            "key object_detail.recognition.measurements: 100000",
+        ),
+        (
+            "test_touches = 8",
+            "test_touches = 0",
+            "key object_detail.recognition.test_touches: 0",
+        ),
+        (
+            "meshes = \"meshes\"",
+            "meshes = \"meshes\"\nsurface_error_mm = 1.0",
+            "key objects.surface_error_mm",
+        ),
         (
             "points = 1000",
             "points = 0",

@@ -37,9 +37,10 @@ pub struct Args {
     /// Unit of the mesh file: m, cm, mm or in [default: m]
     #[arg(long, value_name = "UNIT")]
     unit: Option<LengthUnit>,
-    /// How far the spheres of a built-in object, or of a packed mesh, may be from its surface
-    #[arg(long, value_name = "MM", default_value_t = 0.25)]
-    surface_error_mm: f64,
+    /// How far the spheres of a built-in object, or of a packed mesh, may be from its surface [default: 0.25; of a packed mesh a
+    /// tenth of the pitch]
+    #[arg(long, value_name = "MM")]
+    surface_error_mm: Option<f64>,
     /// Columns and rows of the array
     #[arg(long, value_name = "NXxNY", default_value = "64x64", value_parser = parse_taxels)]
     taxels: (usize, usize),
@@ -198,15 +199,21 @@ impl Args {
         MeshUse {
             unit: self.unit.unwrap_or_default(),
             model: self.model.unwrap_or_default(),
-            surface_error: self.surface_error_mm * MM,
+            surface_error: self.surface_error(),
             packings: None,
         }
     }
 
     fn build(&self, name: &str) -> Result<Model> {
         let catalogue = Catalogue::builtin()?;
-        let surface_error = self.surface_error_mm * MM;
-        Ok(catalogue.object(name)?.build(surface_error)?.model)
+        Ok(catalogue.object(name)?.build(self.surface_error())?.model)
+    }
+
+    /// Metres.
+    fn surface_error(&self) -> f64 {
+        let model = self.model.unwrap_or_default();
+        let default = || model.default_surface_error_mm(self.pitch_mm);
+        MM * self.surface_error_mm.unwrap_or_else(default)
     }
 
     fn contact(&self, scene: &Scene, pose: Pose, workspace: &mut Workspace) -> Result<Contact> {

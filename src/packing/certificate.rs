@@ -6,7 +6,7 @@
 
 use super::ball::Ball;
 use super::sampling::Sample;
-use super::target::{Target, bisected, triangle_middle};
+use super::target::{Target, bisected};
 use crate::mesh::Triangle;
 
 /// Pieces smaller than this share of the tolerance count as gaps if one ball alone does not hold them.
@@ -54,7 +54,7 @@ fn gaps_of(triangle: Triangle, near: Vec<u32>, balls: &[Ball], e: f64, gaps: &mu
         if near.iter().any(holds_all) {
             continue;
         }
-        let middle = triangle_middle(&piece);
+        let middle = piece.middle();
         let is_held = near.iter().any(|&index| holds(index, middle));
         let is_small = piece.longest_edge_squared() < (SMALLEST * e).powi(2);
         if !is_held || is_small {

@@ -4,6 +4,7 @@
 //! |---|---|---|
 //! | a [`Surface`](crate::mesh::Surface) and a tolerance e | [`pack_mesh`] | a [`Packing`] |
 //! | several tolerances | [`DetailChain::pack`] | the same object, coarse to fine |
+//! | a mesh and a number | [`medial_spheres`] | the largest inside spheres that touch it at so many points: to compare with |
 //! | a mesh and spheres | [`packing_error`] | how far apart they are, both ways |
 //!
 //! # The promise
@@ -52,6 +53,7 @@ mod cells;
 mod certificate;
 mod cover_surface;
 mod detail_chain;
+mod medial_spheres;
 mod pack;
 mod packing_error;
 mod sampling;
@@ -59,6 +61,7 @@ mod set_cover;
 mod target;
 
 pub use detail_chain::DetailChain;
+pub use medial_spheres::medial_spheres;
 pub use pack::{Packing, pack_mesh, pack_mesh_watched};
 pub use packing_error::{PackingError, Spread, packing_error};
 pub use target::Body;

@@ -74,7 +74,8 @@ fn protrusion(surface: &Surface, tree: &SphereTree, point: DVec3, normal: DVec3)
     }
 }
 
-fn surface_points(surface: &Surface, n_points: usize) -> Vec<(DVec3, DVec3)> {
+/// One point in each of as many equal shares of the mesh's area, and the outward normal there.
+pub(super) fn surface_points(surface: &Surface, n_points: usize) -> Vec<(DVec3, DVec3)> {
     let mesh = surface.mesh();
     let area = mesh.area();
     let mut rng = Seed::new(n_points as u64).named("packing error").rng();

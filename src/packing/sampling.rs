@@ -1,7 +1,7 @@
 //! Points all over the outer surface, as dense as the balls there are small, and balls that touch it.
 
 use super::ball::{Ball, relief};
-use super::target::{Target, bisected, triangle_middle};
+use super::target::{Target, bisected};
 use crate::mesh::{Bvh, Triangle, TriangleMesh};
 use glam::DVec3;
 
@@ -111,7 +111,7 @@ fn n_balls_about(target: &Target) -> f64 {
         all += triangle.area();
         if number % EVERY == 0 {
             tried += triangle.area();
-            balls += triangle.area() / sizes.share(triangle_middle(&triangle), normal);
+            balls += triangle.area() / sizes.share(triangle.middle(), normal);
         }
     }
     balls * all / tried.max(f64::MIN_POSITIVE)
@@ -151,7 +151,7 @@ impl Sampler<'_> {
         } = self.effort;
         let mut waiting = vec![triangle];
         while let Some(triangle) = waiting.pop() {
-            let foot = triangle_middle(&triangle);
+            let foot = triangle.middle();
             let share = self.sizes.share(foot, normal);
             let balls = triangle.area() / share;
             // Compact pieces only: a long one reaches to places that its middle knows nothing of.

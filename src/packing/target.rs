@@ -123,11 +123,6 @@ fn check_enclosure(mesh: &TriangleMesh) -> Result<()> {
     Ok(())
 }
 
-/// The mean of the corners.
-pub(super) fn triangle_middle(triangle: &Triangle) -> DVec3 {
-    triangle.middle()
-}
-
 /// Cut across the middle of the longest edge.
 pub(super) fn bisected(triangle: &Triangle) -> [Triangle; 2] {
     let [a, b, c] = triangle.0;

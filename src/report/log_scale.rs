@@ -69,22 +69,16 @@ impl LogScale {
     }
 }
 
-/// Both axes of a panel with their ticks and grid; of x labels that would touch, the later are left out.
-pub(super) fn draw_axes(
-    drawing: &mut Drawing,
-    area: Area,
-    (x, x_ticks): (LogScale, &[f64]),
-    (y, y_ticks): (LogScale, &[f64]),
-) {
-    let (right, bottom) = (area.x + area.width, area.y + area.height);
-    let ink = Stroke::new(INK, 1.0);
+/// Ticks, labels and grid lines of an axis along x; of labels that would touch, the later are left out.
+pub(super) fn draw_x_ticks(drawing: &mut Drawing, area: Area, x: LogScale, ticks: &[f64]) {
+    let bottom = area.y + area.height;
     let mut free_from = f64::NEG_INFINITY;
-    let mut ticks = x_ticks.to_vec();
+    let mut ticks = ticks.to_vec();
     ticks.sort_by(f64::total_cmp);
     for tick in ticks {
         let at = x.place(tick);
         drawing.line((at, area.y), (at, bottom), Stroke::new(GRID, 1.0));
-        drawing.line((at, bottom), (at, bottom + 5.0), ink);
+        drawing.line((at, bottom), (at, bottom + 5.0), Stroke::new(INK, 1.0));
         let text = short_number(tick);
         let half = text_width(&text, 12.0) / 2.0;
         if at - half > free_from {
@@ -96,6 +90,18 @@ pub(super) fn draw_axes(
             free_from = at + half + 5.0;
         }
     }
+}
+
+/// Both axes of a panel with their ticks and grid.
+pub(super) fn draw_axes(
+    drawing: &mut Drawing,
+    area: Area,
+    (x, x_ticks): (LogScale, &[f64]),
+    (y, y_ticks): (LogScale, &[f64]),
+) {
+    let (right, bottom) = (area.x + area.width, area.y + area.height);
+    let ink = Stroke::new(INK, 1.0);
+    draw_x_ticks(drawing, area, x, x_ticks);
     for &tick in y_ticks {
         let at = y.place(tick);
         drawing.line((area.x, at), (right, at), Stroke::new(GRID, 1.0));

@@ -26,6 +26,7 @@ mod html_tables;
 mod legend;
 mod log_scale;
 pub mod object_detail_charts;
+mod object_detail_recognition;
 pub mod object_detail_results;
 pub mod object_picture;
 mod panels;

@@ -5,6 +5,7 @@ use super::legend::{
     line_stroke,
 };
 use super::log_scale::{LogScale, axis_titles, draw_axes};
+use super::object_detail_recognition::draw_recognition;
 use crate::report::colours::INK;
 use crate::report::drawing::{Align, Area, Drawing, Point, Stroke, TextStyle};
 use crate::study::object_detail::table::{DetailCell, DetailSummary, ObjectDetailTables};
@@ -127,7 +128,20 @@ pub fn draw_object_detail_charts(tables: &ObjectDetailTables) -> Vec<(String, St
         let drawing = chart.draw(&tables.summary);
         (name.to_owned(), chart.title.to_owned(), drawing)
     })
+    .chain(draw_recognition(tables))
     .collect()
+}
+
+/// The sphere models among these, each once; packing first, whatever their order: its colour is the same in every chart.
+pub(super) fn methods(found: impl IntoIterator<Item = DetailMethod>) -> Vec<DetailMethod> {
+    let mut methods: Vec<DetailMethod> = Vec::new();
+    for method in found {
+        if method != DetailMethod::Mesh && !methods.contains(&method) {
+            methods.push(method);
+        }
+    }
+    methods.sort_by_key(|method| *method != DetailMethod::Packing);
+    methods
 }
 
 /// A method in words.
@@ -137,6 +151,7 @@ pub(super) fn method_name(method: DetailMethod) -> &'static str {
         DetailMethod::Packing => "packing",
         DetailMethod::VertexSpheres => "vertex spheres",
         DetailMethod::DecimatedVertexSpheres => "decimated vertex spheres",
+        DetailMethod::MedialSpheres => "medial spheres",
     }
 }
 
@@ -158,14 +173,7 @@ impl Chart<'_> {
             .iter()
             .filter(|row| row.method != DetailMethod::Mesh)
             .collect();
-        let mut methods: Vec<DetailMethod> = Vec::new();
-        for row in &rows {
-            if !methods.contains(&row.method) {
-                methods.push(row.method);
-            }
-        }
-        // Packing first, whatever the table's order: its colour is the same in every chart.
-        methods.sort_by_key(|method| *method != DetailMethod::Packing);
+        let methods = methods(rows.iter().map(|row| row.method));
         let width = LEFT + 2.0 * PANEL.0 + GAP + RIGHT;
         let heading = Heading::of(self.title, &settings(&rows), self.legend(&methods), width);
         let mut drawing = Drawing::new(width, heading.height() + 24.0 + PANEL.1 + 58.0);

@@ -41,7 +41,7 @@ pub struct NamedMesh {
 /// The error names a set, name or file that is not there, an object that two sources share, a mesh that cannot be packed,
 /// or an empty selection.
 pub fn load_objects(spec: &ObjectsSpec, packings: Option<&Path>) -> Result<Vec<Object>> {
-    let tolerance = spec.surface_error_mm * 1e-3;
+    let tolerance = spec.surface_error();
     let mut objects = Vec::new();
     for set in &spec.sets {
         objects.extend(load_set(set, spec.names.as_deref(), tolerance)?);
@@ -123,7 +123,7 @@ fn load_meshes(folder: &Path, spec: &ObjectsSpec, packings: Option<&Path>) -> Re
     let wanted = MeshUse {
         unit: spec.mesh_unit.unwrap_or_default(),
         model: spec.model.unwrap_or_default(),
-        surface_error: spec.surface_error_mm * 1e-3,
+        surface_error: spec.surface_error(),
         packings,
     };
     mesh_paths(folder, spec)?

@@ -36,7 +36,12 @@ pub(super) fn pack_within(
         }
     };
     let CachedPacking { packing, was_kept } = cached.map_err(|error| match error {
-        Error::Input { given, allowed, .. } => Error::input(
+        // Of the mesh; a kept packing that cannot be read is named by its own file.
+        Error::Input {
+            place: what,
+            given,
+            allowed,
+        } if what == "mesh" => Error::input(
             place,
             given,
             format!("{allowed} (open meshes can be touched with model = \"mesh\")"),

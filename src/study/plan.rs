@@ -100,11 +100,12 @@ impl Amount {
 
 impl Plan {
     /// Checks a study; the error names `place` (the file) and the first key that is out of its range.
-    pub fn new(place: &str, spec: StudySpec) -> Result<Self> {
+    pub fn new(place: &str, mut spec: StudySpec) -> Result<Self> {
         let check = Check { place };
         check.positive_count("trials", spec.trials)?;
         check.objects(&spec.objects)?;
         let arrays = check.arrays(&spec.skin)?;
+        spec.objects.settle_surface_error(&arrays);
         let placement = check.placement(&spec.touches)?;
         let (noise_unit, noise) = check.noise(&spec.signal)?;
         let smoothing = match &spec.signal.smoothing_mm {

@@ -2,9 +2,38 @@
 
 use super::check::{Check, not_negative, positive};
 use super::plan::MM;
-use super::spec::{ObjectsSpec, RangeSpec, RestSpec, SkinSpec, SpreadSpec, TouchesSpec};
+use super::spec::{ModelSpec, ObjectsSpec, RangeSpec, RestSpec, SkinSpec, SpreadSpec, TouchesSpec};
 use crate::error::Result;
 use crate::world::{Grid, Patch, Placement, RestPoses, Spread, Taxel};
+
+/// How far spheres may be from a solid's surface, unless a study says: mm.
+const SURFACE_ERROR_MM: f64 = 0.25;
+
+impl ModelSpec {
+    /// How far spheres may be from the surface when nobody says, mm: 0.25, or of a packed mesh a tenth of the pitch (mm).
+    pub fn default_surface_error_mm(self, pitch_mm: f64) -> f64 {
+        match self {
+            Self::Packed => 0.1 * pitch_mm,
+            Self::VertexSpheres | Self::Mesh => SURFACE_ERROR_MM,
+        }
+    }
+}
+
+impl ObjectsSpec {
+    /// Says how far spheres may be from surfaces, where the study leaves it to the arrays.
+    pub(super) fn settle_surface_error(&mut self, arrays: &[Patch]) {
+        let pitches = arrays.iter().map(|patch| patch.grid.pitch / MM);
+        let finest = pitches.fold(f64::INFINITY, f64::min);
+        let model = self.model.unwrap_or_default();
+        let default = || model.default_surface_error_mm(finest);
+        self.surface_error_mm = Some(self.surface_error_mm.unwrap_or_else(default));
+    }
+
+    /// How far spheres may be from a surface, metres.
+    pub(super) fn surface_error(&self) -> f64 {
+        self.surface_error_mm.unwrap_or(SURFACE_ERROR_MM) * MM
+    }
+}
 
 impl Check<'_> {
     pub fn objects(&self, objects: &ObjectsSpec) -> Result<()> {
@@ -15,12 +44,10 @@ impl Check<'_> {
                 "sets = [...] or meshes = \"FOLDER\" (or --objects FOLDER)",
             ));
         }
-        self.value(
-            "objects.surface_error_mm",
-            objects.surface_error_mm,
-            positive,
-            "a positive number of millimetres",
-        )?;
+        if let Some(error) = objects.surface_error_mm {
+            let allowed = "a positive number of millimetres";
+            self.value("objects.surface_error_mm", error, positive, allowed)?;
+        }
         if objects.meshes.is_none() && (objects.model.is_some() || objects.mesh_unit.is_some()) {
             return Err(self.error(
                 "objects",

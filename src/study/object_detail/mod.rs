@@ -10,16 +10,20 @@
 //! - **error after offset**: the same with the patch drawn back by the constant distance, one for all touches of a model, that
 //!   makes the error least. A model that is only inflated has none left.
 //! - **error past own contact**: each touch as far past the model's own first contact as the mesh past its.
+//!
+//! With an `[object_detail.recognition]` table classifiers learn from each level of models, and are tested on other touches of
+//! the meshes themselves: what a coarse object costs a skin that meets the real one.
 
 mod deflection;
 mod plan;
+mod recognition;
 mod runner;
 mod spec;
 mod summary;
 pub mod table;
 mod variants;
 
-pub use plan::ObjectDetailPlan;
+pub use plan::{ObjectDetailPlan, RecognitionPlan};
 pub use runner::measure_detail;
-pub use spec::{DetailMethod, ObjectDetailSpec, ObjectDetailStudySpec};
+pub use spec::{DetailMethod, DetailRecognitionSpec, ObjectDetailSpec, ObjectDetailStudySpec};
 pub(crate) use summary::quantile;

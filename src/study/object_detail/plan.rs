@@ -1,7 +1,9 @@
 //! A study of object detail that can run: every key checked, every unit SI.
 
-use super::spec::{DetailMethod, ObjectDetailStudySpec};
+use super::spec::{DetailMethod, DetailRecognitionSpec, ObjectDetailStudySpec};
 use crate::error::Result;
+use crate::recognition::ClassifierKind;
+use crate::sensing::Ensemble;
 use crate::study::check::{Check, positive};
 use crate::study::plan::MM;
 use crate::world::{Patch, Placement};
@@ -19,6 +21,23 @@ pub struct ObjectDetailPlan {
     pub placement: Placement,
     /// How far packed spheres may be from a mesh, metres, as they were written.
     pub tolerances: Vec<f64>,
+    /// What learns from the models, if anything does.
+    pub recognition: Option<RecognitionPlan>,
+}
+
+/// Classifiers that learn from models of the meshes.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RecognitionPlan {
+    /// Touches of each object that train, at least 1.
+    pub n_training: usize,
+    /// Touches of each object that test, at least 1.
+    pub n_test: usize,
+    /// How frames are compressed.
+    pub ensemble: Ensemble,
+    /// Measurements a touch, at most one a taxel.
+    pub n_measurements: usize,
+    /// What learns.
+    pub classifiers: Vec<ClassifierKind>,
 }
 
 impl ObjectDetailPlan {
@@ -38,6 +57,10 @@ impl ObjectDetailPlan {
             return Err(check.error("objects.model", "a model", allowed));
         }
         let patch = check.one_array(&spec.skin, "one pitch and one size")?;
+        if spec.objects.surface_error_mm.is_some() {
+            let allowed = "no such key: object_detail.tolerances_mm says how far spheres may be from the meshes";
+            return Err(check.error("objects.surface_error_mm", "a surface error", allowed));
+        }
         let placement = check.placement(&spec.touches)?;
         let wanted = &spec.object_detail;
         let key = "object_detail.tolerances_mm";
@@ -49,15 +72,18 @@ impl ObjectDetailPlan {
         let key = "object_detail.methods";
         check.list(key, wanted.methods.clone())?;
         if wanted.methods.contains(&DetailMethod::Mesh) {
-            let allowed = "packing, vertex_spheres, decimated_vertex_spheres: the mesh is what they are compared with";
+            let allowed = "packing, vertex_spheres, decimated_vertex_spheres, medial_spheres: the mesh is what they are compared with";
             return Err(check.error(key, "mesh", allowed));
         }
         check.positive_count("object_detail.surface_points", wanted.surface_points)?;
+        let recognition = wanted.recognition.as_ref();
+        let recognition = recognition.map(|wanted| check_recognition(&check, wanted, &patch));
         Ok(Self {
             meshes,
             patch,
             placement,
             tolerances: tolerances.iter().map(|mm| mm * MM).collect(),
+            recognition: recognition.transpose()?,
             spec,
         })
     }
@@ -71,9 +97,33 @@ impl ObjectDetailPlan {
     pub fn n_models(&self) -> usize {
         let levels = |method: &DetailMethod| match method {
             DetailMethod::Mesh | DetailMethod::VertexSpheres => 1,
-            DetailMethod::Packing | DetailMethod::DecimatedVertexSpheres => self.tolerances.len(),
+            DetailMethod::Packing
+            | DetailMethod::DecimatedVertexSpheres
+            | DetailMethod::MedialSpheres => self.tolerances.len(),
         };
         let methods = &self.spec.object_detail.methods;
         1 + methods.iter().map(levels).sum::<usize>()
     }
+}
+
+fn check_recognition(
+    check: &Check,
+    wanted: &DetailRecognitionSpec,
+    patch: &Patch,
+) -> Result<RecognitionPlan> {
+    let key = |name: &str| format!("object_detail.recognition.{name}");
+    let count = |name: &str, count| check.positive_count(&key(name), count);
+    let n_measurements = count("measurements", wanted.measurements)?;
+    let n_taxels = patch.grid.n_taxels();
+    if n_measurements > n_taxels {
+        let allowed = format!("at most {n_taxels}, the taxels of the array");
+        return Err(check.error(&key("measurements"), n_measurements, allowed));
+    }
+    Ok(RecognitionPlan {
+        n_training: count("training_touches", wanted.training_touches)?,
+        n_test: count("test_touches", wanted.test_touches)?,
+        ensemble: wanted.ensemble,
+        n_measurements,
+        classifiers: check.list(&key("classifiers"), wanted.classifiers.clone())?,
+    })
 }

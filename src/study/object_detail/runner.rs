@@ -2,11 +2,12 @@
 
 use super::deflection::Truth;
 use super::plan::ObjectDetailPlan;
+use super::recognition::Sensor;
 use super::spec::DetailMethod;
 use super::summary::summary;
 use super::table::{DetailCell, DetailScore, DetailTime, ObjectDetailTables};
 use super::variants::{Variant, variants};
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::mesh::Surface;
 use crate::objects::{Model, Object};
 use crate::packing::{Body, PackingError, packing_error};
@@ -14,6 +15,7 @@ use crate::random::Seed;
 use crate::study::object_files::NamedMesh;
 use crate::study::progress::Progress;
 use crate::study::simulation::draw_touches;
+use ndarray::Array2;
 use rayon::prelude::*;
 use std::path::Path;
 
@@ -28,10 +30,18 @@ pub fn measure_detail(
     packings: Option<&Path>,
     progress: &dyn Progress,
 ) -> Result<ObjectDetailTables> {
+    let sensor = Sensor::of(plan)?;
+    if sensor.is_some() && meshes.len() < 2 {
+        return Err(Error::input(
+            "object_detail.recognition",
+            format!("{} meshes", meshes.len()),
+            "at least 2 objects to tell apart",
+        ));
+    }
     progress.stage("models", (meshes.len() * plan.n_models()) as u64);
     let measured = meshes
         .into_par_iter()
-        .map(|named| Measured::new(plan, named, packings, progress))
+        .map(|named| Measured::new(plan, named, packings, sensor.as_ref(), progress))
         .collect::<Result<Vec<_>>>()?;
     let mut tables = ObjectDetailTables::default();
     progress.stage("time touches", measured.len() as u64);
@@ -49,6 +59,12 @@ pub fn measure_detail(
         progress.advance(1);
     }
     tables.summary = summary(&tables.detail);
+    if let Some(sensor) = sensor {
+        progress.stage("recognise", 1);
+        let objects = measured.into_iter().map(|object| object.felt);
+        tables.recognition = sensor.recognise(&tables.detail, &objects.collect::<Vec<_>>())?;
+        progress.advance(1);
+    }
     Ok(tables)
 }
 
@@ -58,6 +74,8 @@ struct Measured {
     truth: Truth,
     variants: Vec<Variant>,
     scores: Vec<DetailScore>,
+    /// Measurements of each variant, for learning; none if nothing learns.
+    felt: Vec<Array2<f64>>,
 }
 
 impl Measured {
@@ -65,6 +83,7 @@ impl Measured {
         plan: &ObjectDetailPlan,
         NamedMesh { name, place, mesh }: NamedMesh,
         packings: Option<&Path>,
+        sensor: Option<&Sensor>,
         progress: &dyn Progress,
     ) -> Result<Self> {
         let surface = Surface::new(mesh);
@@ -77,8 +96,11 @@ impl Measured {
             progress.advance(1);
             score
         });
+        let scores = scores.collect();
+        let felt = sensor.map(|sensor| sensor.measure(&name, &variants));
         Ok(Self {
-            scores: scores.collect(),
+            scores,
+            felt: felt.transpose()?.unwrap_or_default(),
             name,
             truth,
             variants,

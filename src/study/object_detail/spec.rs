@@ -1,6 +1,8 @@
 //! A study of object detail as it is written.
 
 use crate::error::{Error, Result};
+use crate::recognition::ClassifierKind;
+use crate::sensing::Ensemble;
 use crate::study::spec::{ObjectsSpec, SkinSpec, TouchesSpec, default_seed};
 use serde::{Deserialize, Serialize};
 
@@ -37,6 +39,26 @@ pub struct ObjectDetailSpec {
     /// Points of a mesh at which the distance to the spheres is measured.
     #[serde(default = "default_surface_points")]
     pub surface_points: usize,
+    /// Classifiers that learn from the models and are tested on the meshes; none when left out.
+    #[serde(default)]
+    pub recognition: Option<DetailRecognitionSpec>,
+}
+
+/// `[object_detail.recognition]`
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct DetailRecognitionSpec {
+    /// Touches of each object that train, drawn as the study's touches are.
+    pub training_touches: usize,
+    /// Further touches of each object that test.
+    pub test_touches: usize,
+    /// How frames are compressed.
+    #[serde(default = "default_ensemble")]
+    pub ensemble: Ensemble,
+    /// To how many measurements.
+    pub measurements: usize,
+    /// What learns; with the parameters of [`Classifier::new`](crate::recognition::classifier::Classifier::new).
+    pub classifiers: Vec<ClassifierKind>,
 }
 
 /// What stands for a mesh.
@@ -51,6 +73,9 @@ pub enum DetailMethod {
     VertexSpheres,
     /// The same around so many of the vertices, spread evenly, as each packing has spheres (all vertices if it has more).
     DecimatedVertexSpheres,
+    /// The largest spheres inside the mesh that touch it at as many points as each packing has spheres
+    /// ([`medial_spheres`](crate::packing::medial_spheres)).
+    MedialSpheres,
 }
 
 impl ObjectDetailStudySpec {
@@ -67,4 +92,8 @@ impl ObjectDetailStudySpec {
 
 fn default_surface_points() -> usize {
     5000
+}
+
+fn default_ensemble() -> Ensemble {
+    Ensemble::Sbhe
 }

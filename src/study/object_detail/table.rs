@@ -1,6 +1,7 @@
 //! The result tables of a study of object detail: one plain struct a row, one field a column.
 
 use super::spec::DetailMethod;
+use crate::recognition::ClassifierKind;
 use serde::{Deserialize, Serialize};
 
 /// A model of an object: a row of `object_detail.csv` begins with it, and one of `timing.csv`.
@@ -115,6 +116,41 @@ pub struct DetailSummary {
     pub times_packing: Option<f64>,
 }
 
+/// A classifier that learned from one level of models: a row of `object_detail_recognition.csv`.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct DetailRecognition {
+    /// What stood for the meshes in training.
+    pub method: DetailMethod,
+    /// The level, mm; none for methods without levels.
+    pub tolerance_mm: Option<f64>,
+    /// What learned.
+    pub classifier: ClassifierKind,
+    /// Objects to tell apart.
+    pub n_objects: usize,
+    /// Training rows, all objects.
+    pub n_training: usize,
+    /// Test rows, all objects.
+    pub n_test: usize,
+    /// Measurements a row.
+    pub n_measurements: usize,
+    /// Median over objects of [`DetailScore::error_mm`].
+    pub error_median_mm: f64,
+    /// Share of right answers to touches of the meshes themselves, 0 to 1.
+    pub accuracy_on_mesh: f64,
+    /// Lower end of its 95 % Wilson interval.
+    pub accuracy_on_mesh_low: f64,
+    /// Upper end.
+    pub accuracy_on_mesh_high: f64,
+    /// Share of right answers to the same touches of the models that it learned from, 0 to 1.
+    pub accuracy_on_itself: f64,
+    /// Lower end of its 95 % Wilson interval.
+    pub accuracy_on_itself_low: f64,
+    /// Upper end.
+    pub accuracy_on_itself_high: f64,
+    /// Optimisation problems that stopped at the solver's iteration cap.
+    pub n_capped: usize,
+}
+
 /// All result tables of a study of object detail.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ObjectDetailTables {
@@ -124,4 +160,6 @@ pub struct ObjectDetailTables {
     pub summary: Vec<DetailSummary>,
     /// One row an object and model, in the same order.
     pub timing: Vec<(DetailCell, DetailTime)>,
+    /// One row a method, level and classifier, in the same order; none if nothing was to be learned.
+    pub recognition: Vec<DetailRecognition>,
 }

@@ -6,6 +6,7 @@ use crate::error::Result;
 use crate::geometry::distinct_places;
 use crate::mesh::Surface;
 use crate::objects::{MeshModel, Model, vertex_spheres};
+use crate::packing::medial_spheres;
 use crate::study::packings::pack_within;
 use glam::DVec3;
 use std::path::Path;
@@ -55,8 +56,14 @@ pub(super) fn variants(
             Ok((vertex_spheres(place, mesh.vertices())?.into(), false))
         })?);
     }
-    let (packing, decimated) = (DetailMethod::Packing, DetailMethod::DecimatedVertexSpheres);
-    if !is_wanted(packing) && !is_wanted(decimated) {
+    let packing = DetailMethod::Packing;
+    let as_many = [
+        DetailMethod::DecimatedVertexSpheres,
+        DetailMethod::MedialSpheres,
+    ];
+    let as_many = as_many.map(|method| is_wanted(method).then_some(method));
+    let as_many: Vec<DetailMethod> = as_many.into_iter().flatten().collect();
+    if !is_wanted(packing) && as_many.is_empty() {
         return Ok(found);
     }
     for (&tolerance, &mm) in plan.tolerances.iter().zip(&wanted.tolerances_mm) {
@@ -68,10 +75,13 @@ pub(super) fn variants(
         if is_wanted(packing) {
             found.push(packed);
         }
-        if is_wanted(decimated) {
-            found.push(timed(decimated, Some(mm), &|| {
-                let chosen = evenly_chosen(mesh.vertices(), n);
-                Ok((vertex_spheres(place, &chosen)?.into(), false))
+        for &method in &as_many {
+            found.push(timed(method, Some(mm), &|| {
+                let spheres = match method {
+                    DetailMethod::MedialSpheres => medial_spheres(surface, n)?,
+                    _ => vertex_spheres(place, &evenly_chosen(mesh.vertices(), n))?,
+                };
+                Ok((spheres.into(), false))
             })?);
         }
     }

@@ -41,11 +41,12 @@ pub struct ReconstructionPlan {
 
 impl ReconstructionPlan {
     /// Checks a study; the error names `place` (the file) and the first key that is out of its range.
-    pub fn new(place: &str, spec: ReconstructionStudySpec) -> Result<Self> {
+    pub fn new(place: &str, mut spec: ReconstructionStudySpec) -> Result<Self> {
         let check = Check { place };
         check.objects(&spec.objects)?;
         let allowed = "one pitch and one size: a dictionary is of one array";
         let patch = check.one_array(&spec.skin, allowed)?;
+        spec.objects.settle_surface_error(&[patch]);
         let placement = check.placement(&spec.touches)?;
         let (noise_unit, noise) = check.noise(&spec.signal)?;
         check.steps(&spec.signal)?;

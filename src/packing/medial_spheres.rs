@@ -1,0 +1,77 @@
+//! Medial spheres: what sphere models were before packings with a stated error.
+
+use super::ball::Ball;
+use super::packing_error::surface_points;
+use super::target::{Body, Target};
+use crate::error::Result;
+use crate::mesh::Surface;
+use crate::objects::{Sphere, SphereUnion};
+
+/// Thinner spheres, as parts of the mesh's size, are left out: at sharp edges nothing but a point fits.
+const THINNEST: f64 = 1e-6;
+
+/// The largest spheres inside a closed mesh that touch it at `n` points spread evenly over its area, as Ma, Bae and Choi (2012)
+/// find them; points where none fits are left out.
+///
+/// The spheres lie inside the mesh and touch it; what is between the points is as far outside them as it happens to be.
+/// Stolpner, Kry and Siddiqi (2011) approximate shapes by such spheres. Errors as for
+/// [`pack_mesh`](super::pack_mesh), and if no sphere is left.
+pub fn medial_spheres(surface: &Surface, n: usize) -> Result<SphereUnion> {
+    let size = surface.bounds().size().length();
+    let target = Target::new(surface, Body::Solid, THINNEST * size)?;
+    let spheres = surface_points(surface, n).into_iter();
+    let spheres = spheres.filter_map(|(place, normal)| {
+        let ball = Ball::largest(&target, place, -normal, 0.0, target.largest_radius())?;
+        (ball.depth > THINNEST * size).then_some(Sphere {
+            center: ball.center,
+            radius: ball.depth,
+        })
+    });
+    SphereUnion::new(spheres.collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::mesh::TriangleMesh;
+    use glam::DVec3;
+
+    /// A box of half sizes 3, 2, 1 about the origin.
+    fn brick() -> Surface {
+        let corner = |i: u32| {
+            let sign = |bit: u32| if i & bit == 0 { -1.0 } else { 1.0 };
+            DVec3::new(3.0 * sign(1), 2.0 * sign(2), sign(4))
+        };
+        let quads = [
+            [0, 4, 6, 2],
+            [1, 3, 7, 5],
+            [0, 1, 5, 4],
+            [2, 6, 7, 3],
+            [0, 2, 3, 1],
+            [4, 5, 7, 6],
+        ];
+        let triangles = quads
+            .iter()
+            .flat_map(|&[a, b, c, d]| [[a, b, c], [a, c, d]]);
+        let corners = (0..8).map(corner).collect();
+        Surface::new(TriangleMesh::new("brick", corners, triangles.collect()).unwrap())
+    }
+
+    #[test]
+    fn medial_spheres_of_a_box_touch_it_and_none_is_wider_than_the_box() {
+        let surface = brick();
+        let spheres = medial_spheres(&surface, 200).unwrap();
+        assert_eq!(spheres.n_spheres(), 200);
+        for sphere in spheres.spheres() {
+            let depth = -surface.signed_distance(sphere.center);
+            assert!((sphere.radius - depth).abs() < 1e-9, "{sphere:?}");
+            assert!(sphere.radius <= 1.0 + 1e-9);
+            // It touches a second face: its centre is on the medial axis.
+            let to_faces = (DVec3::new(3.0, 2.0, 1.0) - sphere.center.abs()).to_array();
+            let mut to_faces = [to_faces[0], to_faces[1], to_faces[2], 2.0 - to_faces[2]];
+            to_faces.sort_by(f64::total_cmp);
+            assert!((to_faces[1] - sphere.radius).abs() < 1e-6, "{sphere:?}");
+        }
+        assert!(medial_spheres(&surface, 0).is_err());
+    }
+}
