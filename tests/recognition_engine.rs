@@ -268,6 +268,34 @@ fn wide_rows_that_few_support_are_solved_to_the_optimum_of_all_rows() {
     }
 }
 
+#[test]
+fn wide_classes_that_overlap_in_few_dimensions_are_parted_in_all_of_them() {
+    // Two classes have 170 rows in 130 features, so some hyperplane parts them whatever they are, but none in 64 dimensions.
+    let data = clouds(&[90, 80, 70], 130, 0.12, 11);
+    let params = params(Kernel::Linear, 1e4, 1e-3);
+    let model = optimal(params, &data);
+    // The products of all rows do not fit: pairs are solved one by one, on all their rows.
+    let slow = SvmParams {
+        memory_bytes: 400_000,
+        ..params
+    };
+    assert_same_objectives(&model, &slow.train(&data).unwrap(), 1e-2, "apart");
+}
+
+#[test]
+fn wide_rows_that_span_no_dimension_are_solved_too() {
+    let equal = dataset(
+        Array2::from_elem((140, 130), 0.3),
+        (0..140).map(|row| row % 2).collect(),
+    );
+    let model = params(Kernel::Linear, 0.5, 1e-3)
+        .train(&equal.unwrap())
+        .unwrap();
+    // Nothing parts them: every row is left on the wrong side at the full cost.
+    assert_eq!(model.problems()[0].solution.objective, 140.0 * 0.5);
+    assert_eq!(model.n_capped(), 0);
+}
+
 // Precision.
 
 /// Four classes of 300 rows: f32 at the usual tolerance.

@@ -194,14 +194,15 @@ impl<V: Scalar> ClassWeights<V> {
 }
 
 impl ClassWeights<f64> {
-    /// Adds `Σ y_i a_i x_i` of the class's rows to the normals of its problems (n_problems × m), by one matrix product; in
-    /// f64, since large coefficients may all but cancel.
+    /// Adds `Σ y_i a_i x_i` of the class's rows to the normals of its problems (n_problems × m).
     fn add_to<T: Scalar>(&self, normals: &mut Array2<f64>, sorted: &Sorted<T>) {
-        let vectors = sorted.points().range(self.vectors.clone());
-        let part = self.coefficients.t().dot(&vectors.values.mapv(T::wide));
-        for (part, &problem) in part.rows().into_iter().zip(&self.problems) {
+        let points = sorted.points().in_place();
+        for (column, &problem) in self.coefficients.columns().into_iter().zip(&self.problems) {
             let mut normal = normals.row_mut(problem);
-            normal += &part;
+            let normal = normal
+                .as_slice_mut()
+                .expect("normals are stored one by one");
+            points.add_weighted(normal, self.vectors.clone().zip(column.iter().copied()));
         }
     }
 }

@@ -6,6 +6,7 @@ use ndarray::linalg::general_mat_mul;
 use ndarray::{Array1, Array2, ArrayView1, ArrayView2, ArrayViewMut2, Axis, Zip, s};
 
 use crate::recognition::kernel::KernelFunction;
+use crate::recognition::row_products::Rows;
 use crate::recognition::scalar::Scalar;
 
 /// Rows (n × m) moved to a centre, with their squared norms.
@@ -32,15 +33,33 @@ impl<T: Scalar> Points<T> {
         rows: impl ExactSizeIterator<Item = ArrayView1<'a, f64>>,
         centre: ArrayView1<f64>,
     ) -> Self {
-        let mut values = Array2::zeros((rows.len(), centre.len()));
-        for (to, from) in values.rows_mut().into_iter().zip(rows) {
-            Zip::from(to)
+        let n_rows = rows.len();
+        let mut values = Array2::zeros((n_rows, centre.len()));
+        let mut norms = Vec::with_capacity(n_rows);
+        for (mut to, from) in values.rows_mut().into_iter().zip(rows) {
+            Zip::from(&mut to)
                 .and(from)
                 .and(centre)
                 .for_each(|to, &from, &centre| *to = T::of(from - centre));
+            norms.push(to.dot(&to));
         }
+        let norms = norms.into();
+        Self { values, norms }
+    }
+
+    /// Their coordinates along some directions (k × m): n × k.
+    pub fn along(&self, directions: ArrayView2<T>) -> Self {
+        let values = self.values.dot(&directions.t());
         let norms = values.map_axis(Axis(1), |row| row.dot(&row));
         Self { values, norms }
+    }
+
+    /// The rows where they lie.
+    pub fn in_place(&self) -> Rows<'_, T> {
+        Rows {
+            values: self.values.as_slice().expect("rows are stored one by one"),
+            n_features: self.values.ncols(),
+        }
     }
 
     /// n.
@@ -48,8 +67,7 @@ impl<T: Scalar> Points<T> {
         self.values.nrows()
     }
 
-    /// The values of some rows, by number.
-    pub fn rows(&self, rows: &[usize]) -> Array2<T> {
+    fn rows(&self, rows: &[usize]) -> Array2<T> {
         let n_features = self.values.ncols();
         let all = self.values.as_slice().expect("rows are stored one by one");
         let mut values = Vec::with_capacity(rows.len() * n_features);

@@ -76,6 +76,20 @@ impl<T: Scalar> Sorted<T> {
         }
     }
 
+    /// The same rows by their coordinates along some directions (k × m).
+    pub fn along(&self, directions: ArrayView2<T>) -> Self {
+        Self {
+            points: self.points.along(directions),
+            order: self.order.clone(),
+            place: self.place.clone(),
+            ranges: self.ranges.clone(),
+            classes: self.classes.clone(),
+            kernel: self.kernel,
+            centre: Array1::zeros(directions.nrows()),
+            centre_products: Vec::new(),
+        }
+    }
+
     /// The rows, class by class.
     pub fn points(&self) -> &Points<T> {
         &self.points

@@ -65,7 +65,7 @@ impl<T: Scalar> Sorted<T> {
     }
 
     fn pairs_near_margin(&self, goal: Goal, problems: &mut [Vec<BinaryProblem>]) {
-        let mut near_margin = NearMargin::new(self);
+        let mut near_margin = NearMargin::new(self, goal.path[0]);
         for (&c, problems) in goal.path.iter().zip(problems) {
             let solutions = near_margin.solve(c, goal.tolerance);
             for ((a, b), solution) in self.all_pairs().zip(solutions) {

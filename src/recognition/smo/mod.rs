@@ -17,7 +17,7 @@ mod passes;
 mod runs;
 mod variables;
 
-pub(crate) use gram::{Cached, Dense, Gram, add_row, copy, gather};
+pub(crate) use gram::{Cached, Dense, Gram, copy, gather};
 pub(crate) use part::{Part, Room};
 pub(crate) use runs::Runs;
 pub(crate) use variables::extremes;
@@ -50,6 +50,8 @@ pub(crate) struct Smo<'a, G> {
     f: Vec<f64>,
     /// The C that β belongs to; 0 before the first.
     c: f64,
+    /// Iterations after which it counts as not solved.
+    most_iterations: u64,
 }
 
 impl<'a, G> Smo<'a, G> {
@@ -64,6 +66,15 @@ impl<'a, G> Smo<'a, G> {
                 .collect(),
             is_positive,
             c: 0.0,
+            most_iterations: MOST_ITERATIONS.max(100 * is_positive.len() as u64),
+        }
+    }
+
+    /// The same problem, to be left unsolved after so many iterations.
+    pub fn of_at_most(self, most_iterations: u64) -> Self {
+        Self {
+            most_iterations,
+            ..self
         }
     }
 
@@ -104,7 +115,7 @@ impl<'a, G> Smo<'a, G> {
         G: Gram<T>,
     {
         self.stretch(c);
-        let mut search = Search::new(self.beta.len(), tolerance);
+        let mut search = Search::new(self.most_iterations, tolerance);
         // Where no multiplier was at its bound, a larger C changes nothing.
         let is_solved = self.violation() <= tolerance || self.search(&mut search);
         DualSolution {
@@ -225,10 +236,10 @@ struct Search {
 }
 
 impl Search {
-    fn new(n: usize, tolerance: f64) -> Self {
+    fn new(most_iterations: u64, tolerance: f64) -> Self {
         Self {
             tolerance,
-            most_iterations: MOST_ITERATIONS.max(100 * n as u64),
+            most_iterations,
             n_iterations: 0,
         }
     }

@@ -1,0 +1,224 @@
+//! Two classes, solved on the rows that take part.
+
+use ndarray::{Array2, s};
+
+use crate::recognition::dual::DualSolution;
+use crate::recognition::row_products::Rows;
+use crate::recognition::scalar::Scalar;
+use crate::recognition::smo::{Dense, Smo, extremes, gather};
+
+/// Rows that join in a round, at least, while rows violate.
+const FEWEST_JOINING: usize = 24;
+/// The share of a pair's rows from which on all take part.
+const MOST_SHARE: f64 = 0.6;
+
+/// y of a pair's first class and of its second.
+const SIGNS: [f64; 2] = [1.0, -1.0];
+
+/// Rows of a pair's first class and of its second, by their number within the class.
+pub(crate) type Sides = [Vec<usize>; 2];
+
+/// What to solve a pair for.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct PairGoal {
+    /// C.
+    pub c: f64,
+    /// The largest violation of the optimality conditions, in units of the decision value.
+    pub tolerance: f64,
+    /// Iterations after which a solve is left as it is; `None`: after those that count as unsolvable.
+    pub most_iterations: Option<u64>,
+}
+
+/// Two classes, the first of them positive.
+pub(crate) struct MarginPair<T> {
+    classes: [usize; 2],
+    /// Of each class the rows that take part, in the order in which they joined.
+    rows: Sides,
+    /// Whether each row of each class takes part.
+    takes_part: [Vec<bool>; 2],
+    /// Products of the first's rows with the second's.
+    across: Array2<T>,
+    /// Coefficients of the first's rows, then of the second's.
+    beta: Vec<f64>,
+    /// The C that they belong to; 0 before the first.
+    c: f64,
+    n_iterations: u64,
+}
+
+impl<T: Scalar> MarginPair<T> {
+    /// Two classes of so many rows, of which none takes part.
+    pub fn new(classes: [usize; 2], sizes: [usize; 2]) -> Self {
+        Self {
+            classes,
+            rows: [Vec::new(), Vec::new()],
+            takes_part: sizes.map(|n| vec![false; n]),
+            across: Array2::zeros((0, 0)),
+            beta: Vec::new(),
+            c: 0.0,
+            n_iterations: 0,
+        }
+    }
+
+    /// The positions of the two classes.
+    pub fn classes(&self) -> [usize; 2] {
+        self.classes
+    }
+
+    /// Lets rows of both classes take part, with coefficients of 0. The rows of a class lie among all from `starts` on.
+    pub fn join(&mut self, joining: &Sides, all: Rows<T>, starts: [usize; 2]) {
+        let before = self.across.dim();
+        self.take_in(joining);
+        let [first, second]: Sides = [0, 1].map(|side| {
+            let rows = self.rows[side].iter();
+            rows.map(|row| starts[side] + row).collect()
+        });
+        let mut across = Array2::zeros((first.len(), second.len()));
+        across
+            .slice_mut(s![..before.0, ..before.1])
+            .assign(&self.across);
+        let (old, new) = first.split_at(before.0);
+        all.products(old, &second[before.1..], |i, j, product| {
+            across[[i, before.1 + j]] = product;
+        });
+        all.products(new, &second, |i, j, product| {
+            across[[before.0 + i, j]] = product;
+        });
+        self.across = across;
+    }
+
+    fn take_in(&mut self, joining: &Sides) {
+        let mut beta = self.beta.iter().copied();
+        let mut grown = Vec::new();
+        for (side, joining) in joining.iter().enumerate() {
+            grown.extend(beta.by_ref().take(self.rows[side].len()));
+            grown.resize(grown.len() + joining.len(), 0.0);
+            self.rows[side].extend(joining);
+            for &row in joining {
+                self.takes_part[side][row] = true;
+            }
+        }
+        self.beta = grown;
+    }
+
+    /// Solves on the rows that take part, from the last solution. `within` holds the products within each class; the Gram
+    /// matrix is written into the memory of the last one.
+    pub fn solve(
+        &mut self,
+        within: &[Array2<T>],
+        gram: &mut Dense<T>,
+        goal: PairGoal,
+    ) -> DualSolution {
+        let [first, second] = &self.rows;
+        let [within_first, within_second] = self.classes.map(|class| &within[class]);
+        gram.of_blocks(
+            first.len(),
+            second.len(),
+            |i, row| gather(row, whole_row(within_first, first[i]), first),
+            |i, row| gather(row, whole_row(within_second, second[i]), second),
+            |mut across| across.assign(&self.across),
+        );
+        let is_positive = self.is_positive();
+        let beta = std::mem::take(&mut self.beta);
+        let mut smo = Smo::resume(gram, &is_positive, beta, self.c);
+        if let Some(most_iterations) = goal.most_iterations {
+            smo = smo.of_at_most(most_iterations);
+        }
+        let solution = smo.solve(goal.c, goal.tolerance);
+        self.beta.clone_from(&solution.coefficients);
+        self.c = goal.c;
+        self.n_iterations += solution.n_iterations.unwrap_or(0);
+        solution
+    }
+
+    fn is_positive(&self) -> Vec<bool> {
+        let n_first = self.rows[0].len();
+        (0..self.beta.len()).map(|i| i < n_first).collect()
+    }
+
+    /// The rows that weigh in the solution, by the place of their class and their number within it, with their coefficients.
+    pub fn weighing(&self) -> impl Iterator<Item = (usize, usize, f64)> + '_ {
+        let of_side = |side: usize| self.rows[side].iter().map(move |&row| (side, row));
+        let rows = of_side(0).chain(of_side(1)).zip(&self.beta);
+        rows.map(|((side, row), &beta)| (side, row, beta))
+    }
+
+    /// The rows that are to join, when `w·x` of all rows of both classes are these: the worst of those that violate the
+    /// optimality conditions; all, once most take part; `None` when none violates them.
+    ///
+    /// All rows hold within the tolerance when none that does not take part is further than half of it beyond the middle of
+    /// what the others leave open.
+    pub fn joining(&self, products: &[Vec<T>; 2], goal: PairGoal) -> Option<Sides> {
+        let f = |side: usize, row: usize| SIGNS[side] - products[side][row].wide();
+        let own: Vec<f64> = self.weighing().map(|(side, row, _)| f(side, row)).collect();
+        let (highest, lowest) = extremes(&self.beta, &self.is_positive(), &own, goal.c);
+        let middle = (highest + lowest) / 2.0;
+        // By how much a row is beyond, least first.
+        let mut violating: Vec<(f64, (usize, usize))> = Vec::new();
+        for side in [0, 1] {
+            for row in self.outside(side) {
+                let excess = SIGNS[side] * (f(side, row) - middle) - goal.tolerance / 2.0;
+                if excess > 0.0 {
+                    violating.push((-excess, (side, row)));
+                }
+            }
+        }
+        if violating.is_empty() {
+            return None;
+        }
+        let n_joining = violating.len().min(FEWEST_JOINING.max(violating.len() / 2));
+        let n_all = (products[0].len() + products[1].len()) as f64;
+        if (self.beta.len() + n_joining) as f64 > MOST_SHARE * n_all {
+            return Some([0, 1].map(|side| self.outside(side).collect()));
+        }
+        let mut joining = [Vec::new(), Vec::new()];
+        for (side, row) in smallest(violating, n_joining) {
+            joining[side].push(row);
+        }
+        Some(joining)
+    }
+
+    /// The rows of a class that do not take part.
+    fn outside(&self, side: usize) -> impl Iterator<Item = usize> + '_ {
+        let takes_part = &self.takes_part[side];
+        (0..takes_part.len()).filter(|&row| !takes_part[row])
+    }
+
+    /// The solution in terms of all rows of both classes.
+    pub fn of_all_rows(&mut self, solution: DualSolution) -> DualSolution {
+        let n_first = self.takes_part[0].len();
+        let mut coefficients = vec![0.0; n_first + self.takes_part[1].len()];
+        for (side, row, beta) in self.weighing() {
+            coefficients[side * n_first + row] = beta;
+        }
+        DualSolution {
+            coefficients,
+            n_iterations: Some(std::mem::take(&mut self.n_iterations)),
+            ..solution
+        }
+    }
+}
+
+/// The n rows of either class that are nearest to the other when `w·x` of all rows of both are these.
+pub(crate) fn nearest<T: Scalar>(products: &[Vec<T>; 2], n: usize) -> Sides {
+    [0, 1].map(|side| {
+        let products = products[side].iter().enumerate();
+        let distances = products.map(|(row, product)| (SIGNS[side] * product.wide(), row));
+        smallest(distances.collect(), n)
+    })
+}
+
+/// What belongs to the n smallest values, in no order; of equal values the first.
+fn smallest<K: Ord + Copy>(mut values: Vec<(f64, K)>, n: usize) -> Vec<K> {
+    if n < values.len() {
+        values.select_nth_unstable_by(n, |a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+        values.truncate(n);
+    }
+    values.into_iter().map(|(_, of)| of).collect()
+}
+
+fn whole_row<T>(products: &Array2<T>, row: usize) -> &[T] {
+    products
+        .row(row)
+        .to_slice()
+        .expect("a product is stored row by row")
+}
