@@ -295,7 +295,7 @@ fn classifiers_that_learned_from_models_are_tested_on_the_meshes() {
         }
     }
     let svg = fs::read_to_string(case.path("1/recognition_by_deflection_error.svg")).unwrap();
-    assert!(svg.contains("median deflection error of the models, mm"));
+    assert!(svg.contains("median deflection error past own contact, mm"));
     fs::remove_file(case.path("meshes/box.ply")).unwrap();
     let output = case.run(&["run", "study.toml", "--out", "2"]);
     assert_eq!(output.status.code(), Some(2), "nothing to tell apart");

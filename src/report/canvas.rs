@@ -139,17 +139,13 @@ impl Canvas {
             .collect()
     }
 
-    /// A value of each point that was met, in the order of the rays.
-    pub fn each_point(
-        &self,
-        hits: &[Option<Hit>],
-        value: impl Fn(DVec3) -> f64 + Sync,
-    ) -> Vec<f64> {
-        let met = |(index, hit): (usize, &Option<Hit>)| {
-            let height = hit.as_ref()?.height;
-            Some(value(self.point(index, height)))
+    /// A value of the point that each ray met (metres, frame of the object); 0 where it met nothing.
+    pub fn values(&self, hits: &[Option<Hit>], value: impl Fn(DVec3) -> f64 + Sync) -> Vec<f64> {
+        let of_ray = |(index, hit): (usize, &Option<Hit>)| {
+            let point = hit.as_ref().map(|hit| self.point(index, hit.height));
+            point.map_or(0.0, &value)
         };
-        hits.par_iter().enumerate().filter_map(met).collect()
+        hits.par_iter().enumerate().map(of_ray).collect()
     }
 
     /// The point of a ray at a height towards the eye, in the frame of the object.

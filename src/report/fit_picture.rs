@@ -49,7 +49,8 @@ pub fn fit_picture(
         labels.push(Label { text, x, y, size });
     };
     let seen = stage.canvas.hits(spheres.spheres());
-    let scale = Scale::of(&stage, &original, &seen);
+    let distances = stage.canvas.values(&seen, |point| original.distance(point));
+    let scale = Scale::of(&seen, &distances);
     let bounds = spheres.bounds();
     let (middle, radius) = (bounds.center(), bounds.size().length());
     let whole = stage.canvas.cast(
@@ -60,8 +61,8 @@ pub fn fit_picture(
     let views = [
         stage.view(&whole, Lighting::Plain, |_| PAINT),
         stage.view(&seen, Lighting::Plain, |_| PAINT),
-        stage.view(&seen, Lighting::Unlit, |point| {
-            diverging(original.distance(point) / scale.end)
+        stage.view(&seen, Lighting::Unlit, |ray| {
+            diverging(distances[ray] / scale.end)
         }),
     ];
     for (panel, view) in views.iter().enumerate() {
@@ -152,9 +153,9 @@ struct Scale {
 
 impl Scale {
     /// Covers all distances that are seen but for the extreme hundredth, which would leave the others pale.
-    fn of(stage: &Stage, original: &Original, seen: &[Option<Hit>]) -> Self {
-        let distance = |point| original.distance(point);
-        let mut distances = stage.canvas.each_point(seen, distance);
+    fn of(seen: &[Option<Hit>], distances: &[f64]) -> Self {
+        let of_hit = |(hit, &distance): (&Option<Hit>, &f64)| hit.is_some().then_some(distance);
+        let mut distances: Vec<f64> = seen.iter().zip(distances).filter_map(of_hit).collect();
         distances.sort_by(f64::total_cmp);
         let of_part = |part: f64| {
             let last = distances.len().saturating_sub(1);

@@ -60,7 +60,7 @@ pub(super) fn draw_recognition(tables: &ObjectDetailTables) -> Option<(String, S
         if panels.is_last_in_column(panel) {
             let below = (frame.x + frame.width / 2.0, frame.y + frame.height + 40.0);
             let style = TextStyle::new(13).align(Align::Middle);
-            drawing.text(below, "median deflection error of the models, mm", style);
+            drawing.text(below, "median deflection error past own contact, mm", style);
         }
     }
     Some((
@@ -83,7 +83,7 @@ fn draw_panel(
         TextStyle::new(13),
     );
     draw_axes(drawing, frame);
-    let errors = rows.iter().map(|row| row.error_median_mm);
+    let errors = rows.iter().map(|row| row.error_own_contact_median_mm);
     let scale = LogScale::over(errors, frame.x, frame.x + frame.width);
     draw_x_ticks(drawing, frame, scale, &scale.ticks());
     if let Some(exact) = rows.iter().find(|row| row.method == DetailMethod::Mesh) {
@@ -92,8 +92,11 @@ fn draw_panel(
     }
     for (line, &method) in methods.iter().enumerate() {
         let mut of_method: Vec<_> = rows.iter().filter(|row| row.method == method).collect();
-        of_method.sort_by(|a, b| a.error_median_mm.total_cmp(&b.error_median_mm));
-        let x = |row: &DetailRecognition| scale.place(row.error_median_mm);
+        of_method.sort_by(|a, b| {
+            a.error_own_contact_median_mm
+                .total_cmp(&b.error_own_contact_median_mm)
+        });
+        let x = |row: &DetailRecognition| scale.place(row.error_own_contact_median_mm);
         let at = |value: fn(&DetailRecognition) -> f64| -> Vec<Point> {
             let points = of_method
                 .iter()

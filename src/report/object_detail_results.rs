@@ -83,7 +83,7 @@ fn recognition_text(rows: &[DetailRecognition], width: usize) -> String {
             classifier_name(row.classifier).to_owned(),
             method_name(row.method).to_owned(),
             row.tolerance_mm.map_or(String::new(), short_number),
-            short_number(row.error_median_mm),
+            short_number(row.error_own_contact_median_mm),
             format!(
                 "{:.3} [{:.3}, {:.3}]",
                 row.accuracy_on_mesh, row.accuracy_on_mesh_low, row.accuracy_on_mesh_high

@@ -63,12 +63,12 @@ impl Stage {
         }
     }
 
-    /// What the rays met, painted point by point (metres, frame of the object).
+    /// What the rays met, painted ray by ray.
     pub fn view(
         &self,
         hits: &[Option<Hit>],
         lighting: Lighting,
-        paint: impl Fn(DVec3) -> [u8; 3] + Sync,
+        paint: impl Fn(usize) -> [u8; 3] + Sync,
     ) -> ShadedView {
         let canvas = &self.canvas;
         let normals = match lighting {
@@ -87,7 +87,7 @@ impl Stage {
                 };
                 Ray {
                     light: light * (1.0 - 0.55 * canvas.step_down(hits, index, hit)),
-                    paint: paint(canvas.point(index, hit.height)),
+                    paint: paint(index),
                 }
             }
         };

@@ -36,7 +36,7 @@ pub(super) struct Sensor<'a> {
 /// One level of all objects.
 struct Level<'a> {
     cell: &'a DetailCell,
-    /// Mean deflection error of each object, mm.
+    /// Mean deflection error of each object past its own contact, mm.
     errors: Vec<f64>,
     /// Measurements of each object.
     objects: Vec<&'a Array2<f64>>,
@@ -91,7 +91,9 @@ impl<'a> Sensor<'a> {
         let of_level = |level: usize| rows.iter().skip(level).step_by(n_levels);
         let levels = (0..n_levels).map(|level| Level {
             cell: &rows[level].0,
-            errors: of_level(level).map(|(_, score)| score.error_mm).collect(),
+            errors: of_level(level)
+                .map(|(_, score)| score.error_own_contact_mm)
+                .collect(),
             objects: objects.iter().map(|felt| &felt[level]).collect(),
         });
         let levels: Vec<Level> = levels.collect();
@@ -136,7 +138,7 @@ impl<'a> Sensor<'a> {
             n_training: n_rows,
             n_test,
             n_measurements: self.projection.n_measurements(),
-            error_median_mm: quantile(&mut errors, 0.5),
+            error_own_contact_median_mm: quantile(&mut errors, 0.5),
             accuracy_on_mesh: on_mesh as f64 / n_test as f64,
             accuracy_on_mesh_low: on_mesh_interval.low,
             accuracy_on_mesh_high: on_mesh_interval.high,

@@ -133,8 +133,8 @@ pub struct DetailRecognition {
     pub n_test: usize,
     /// Measurements a row.
     pub n_measurements: usize,
-    /// Median over objects of [`DetailScore::error_mm`].
-    pub error_median_mm: f64,
+    /// Median over objects of [`DetailScore::error_own_contact_mm`]: what is learned is felt past the models' own contact.
+    pub error_own_contact_median_mm: f64,
     /// Share of right answers to touches of the meshes themselves, 0 to 1.
     pub accuracy_on_mesh: f64,
     /// Lower end of its 95 % Wilson interval.
