@@ -366,6 +366,34 @@ fn keys_of_a_choice_are_checked_and_none_is_silently_ignored() {
 }
 
 #[test]
+fn keys_of_single_classifiers_are_checked_and_belong_to_one_of_the_study() {
+    let refuses = |classifier: &str, line: &str, words: &[&str]| {
+        let new = format!("classifier = \"{classifier}\"\n{line}");
+        Case::new().refuses("classifier = \"linear_svm\"", &new, words);
+    };
+    refuses(
+        "linear_svm",
+        "n_trees = 10",
+        &["recognition.n_trees", "no classifier", "random_forest"],
+    );
+    refuses(
+        "k_nearest",
+        "max_depth = 3",
+        &["recognition.max_depth", "decision_tree"],
+    );
+    refuses(
+        "k_nearest",
+        "n_neighbours = 0",
+        &["recognition.n_neighbours", "at least 1"],
+    );
+    refuses(
+        "polynomial_svm",
+        "degree = 21",
+        &["recognition.degree", "from 1 to 20"],
+    );
+}
+
+#[test]
 fn a_published_accuracy_about_no_cell_is_refused_before_the_study_runs() {
     let case = Case::new();
     let with = |keys: &str| {

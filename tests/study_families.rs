@@ -324,3 +324,23 @@ fn frames_take_memory_and_time_in_proportion() {
     let frames = 4.0 * 6.0 * 32.0 * 256.0;
     assert!(four.memory_bytes - one.memory_bytes >= 3.0 * frames);
 }
+
+#[test]
+fn keys_of_trees_and_neighbours_reach_them() {
+    let accuracy = |classifier: &str, keys: &str| {
+        let new = format!("classifier = \"{classifier}\"\n{keys}");
+        let quiet = STUDY.replace("noise_std_full_scale = 0.2", "noise_std_full_scale = 0.0");
+        let study = Study::new(&quiet.replace("classifier = \"linear_svm\"", &new));
+        let rows = study.run().tables.accuracy;
+        let shares = rows.iter().map(|(_, score)| score.accuracy);
+        shares.sum::<f64>() / rows.len() as f64
+    };
+    // One split parts the six objects in two: no more than two of them are ever named.
+    assert!(accuracy("decision_tree", "max_depth = 1") <= 2.0 / 6.0);
+    assert!(accuracy("decision_tree", "") > 2.0 / 6.0);
+    assert!(accuracy("random_forest", "n_trees = 1") < accuracy("random_forest", "n_trees = 50"));
+    // All rows vote: every touch gets the same label.
+    let all = accuracy("k_nearest", "n_neighbours = 120");
+    assert!((all - 1.0 / 6.0).abs() < 1e-12, "{all}");
+    assert!(accuracy("k_nearest", "") > 2.0 / 6.0);
+}

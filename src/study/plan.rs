@@ -121,6 +121,7 @@ impl Plan {
         let ensembles = check.list("sensing.ensemble", spec.sensing.ensemble.values())?;
         let amounts = check.amounts(&spec.sensing, &arrays)?;
         let frames = check.counts("touches.frames", &spec.touches.frames)?;
+        check.kinds(&spec)?;
         let features = check.list("recognition.features", spec.recognition.features.values())?;
         let classifiers = check.list(
             "recognition.classifier",

@@ -240,6 +240,57 @@ impl Check<'_> {
         ))
     }
 
+    /// Keys that belong to some kinds of classifiers: each in its range, and none that no classifier of the study has.
+    pub fn kinds(&self, spec: &StudySpec) -> Result<()> {
+        let recognition = &spec.recognition;
+        type Has = fn(ClassifierKind) -> bool;
+        let has_neighbours: Has = |kind| kind == ClassifierKind::KNearest;
+        let has_trees: Has = |kind| kind == ClassifierKind::RandomForest;
+        let has_depth: Has = |kind| {
+            matches!(
+                kind,
+                ClassifierKind::DecisionTree | ClassifierKind::RandomForest
+            )
+        };
+        for (key, given, has_it, what) in [
+            (
+                "recognition.n_neighbours",
+                recognition.n_neighbours,
+                has_neighbours,
+                "neighbours (k_nearest)",
+            ),
+            (
+                "recognition.n_trees",
+                recognition.n_trees,
+                has_trees,
+                "trees (random_forest)",
+            ),
+            (
+                "recognition.max_depth",
+                recognition.max_depth,
+                has_depth,
+                "a depth (decision_tree or random_forest)",
+            ),
+        ] {
+            self.is_of_use(key, given.is_some(), spec, has_it, what)?;
+            if let Some(count) = given {
+                self.positive_count(key, count)?;
+            }
+        }
+        if !(1..=20).contains(&recognition.degree) {
+            let given = recognition.degree;
+            return Err(self.error("recognition.degree", given, "from 1 to 20"));
+        }
+        let allowed = "zero or a positive number";
+        self.value(
+            "recognition.coef0",
+            recognition.coef0,
+            not_negative,
+            allowed,
+        )?;
+        Ok(())
+    }
+
     pub fn train_touches(&self, spec: &StudySpec) -> Result<Vec<Option<usize>>> {
         let Some(axis) = &spec.recognition.train_touches else {
             return Ok(vec![None]);

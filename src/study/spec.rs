@@ -135,6 +135,15 @@ pub struct RecognitionSpec {
     /// c₀ of the polynomial kernel.
     #[serde(default = "default_coef0")]
     pub coef0: f64,
+    /// k of the k nearest neighbours; 5 when left out.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub n_neighbours: Option<usize>,
+    /// Trees of a random forest; 100 when left out.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub n_trees: Option<usize>,
+    /// Splits below each other in a tree or in a forest's trees; until leaves are pure when left out.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub max_depth: Option<usize>,
     /// Axis: training touches an object, at most; all of the training split when left out.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub train_touches: Option<Axis<usize>>,

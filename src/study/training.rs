@@ -152,6 +152,7 @@ impl Training<'_> {
 
     fn classifier(&self) -> Classifier {
         let recognition = self.recognition;
+        let usual = Classifier::new(self.kind);
         Classifier {
             scaling: recognition.scaling,
             multiclass: recognition.multiclass,
@@ -159,7 +160,10 @@ impl Training<'_> {
             gamma: recognition.gamma.map_or(Gamma::Scale, Gamma::Value),
             coef0: recognition.coef0,
             degree: recognition.degree,
-            ..Classifier::new(self.kind)
+            n_neighbours: recognition.n_neighbours.unwrap_or(usual.n_neighbours),
+            n_trees: recognition.n_trees.unwrap_or(usual.n_trees),
+            max_depth: recognition.max_depth,
+            ..usual
         }
     }
 }
