@@ -44,12 +44,14 @@ pub(super) struct Effort {
 }
 
 impl Effort {
-    /// All of it up to 2,000 spheres, then less for each, so that the time grows more slowly than their number.
+    /// All of it up to 2,000 spheres, then less for each, so that the time grows more slowly than their number; from 40,000
+    /// on, fewer balls to choose from too.
     fn for_about(n_balls: f64) -> Self {
         let share = (2000.0 / n_balls).clamp(0.03, 1.0);
+        let feet_share = (40_000.0 / n_balls).clamp(0.5, 1.0);
         Self {
             samples_a_ball: 20.0 + 60.0 * share.sqrt(),
-            feet_a_ball: 5.0 + 35.0 * share.sqrt(),
+            feet_a_ball: feet_share * (5.0 + 35.0 * share.sqrt()),
             steps_a_ball: 200.0 * share,
             moves_a_ball: 8.0 * share,
             n_passes: match share {
