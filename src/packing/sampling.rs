@@ -45,10 +45,13 @@ pub(super) struct Effort {
 
 impl Effort {
     /// All of it up to 2,000 spheres, then less for each, so that the time grows more slowly than their number; from 40,000
-    /// on, fewer balls to choose from too.
-    fn for_about(n_balls: f64) -> Self {
-        let share = (2000.0 / n_balls).clamp(0.03, 1.0);
-        let feet_share = (40_000.0 / n_balls).clamp(0.5, 1.0);
+    /// on, fewer balls to choose from too; and fewer where a ball covers many times what it would of a plane, as on a sphere,
+    /// whose middle is equally far from all of it: there a ball takes longest to find.
+    fn for_about(demand: &Demand) -> Self {
+        let share = (2000.0 / demand.flat).clamp(0.03, 1.0);
+        let many = (40_000.0 / demand.flat).clamp(0.5, 1.0);
+        let round = (8.0 * demand.bent / demand.flat).clamp(0.1, 1.0);
+        let feet_share = many * round;
         Self {
             samples_a_ball: 20.0 + 60.0 * share.sqrt(),
             feet_a_ball: feet_share * (5.0 + 35.0 * share.sqrt()),
@@ -66,12 +69,9 @@ impl Effort {
 /// Samples the surface; the same mesh always gives the same samples.
 pub(super) fn sample(target: &Target) -> Sampling {
     let surface = target.surface;
-    let effort = Effort::for_about(n_balls_about(target));
+    let effort = Effort::for_about(&Demand::of(target));
     let mut sampler = Sampler {
-        sizes: Sizes {
-            target,
-            known: None,
-        },
+        sizes: Sizes::new(target),
         effort,
         due_samples: 1.0,
         due_feet: 1.0,
@@ -96,27 +96,48 @@ pub(super) fn sample(target: &Target) -> Sampling {
     sampler.sampling
 }
 
-/// About how many balls it takes, from every eighth triangle.
-fn n_balls_about(target: &Target) -> f64 {
-    const EVERY: usize = 8;
-    let mesh = target.surface.mesh();
-    let mut sizes = Sizes {
-        target,
-        known: None,
-    };
-    let (mut balls, mut tried, mut all) = (0.0, 0.0, 0.0);
-    for number in 0..mesh.n_triangles() {
-        let triangle = mesh.triangle(number);
-        let Some(normal) = triangle.normal() else {
-            continue;
-        };
-        all += triangle.area();
-        if number % EVERY == 0 {
-            tried += triangle.area();
-            balls += triangle.area() / sizes.share(triangle.middle(), normal);
+/// About how many balls it takes to cover a surface.
+struct Demand {
+    /// If each covered no more than it does of a plane.
+    flat: f64,
+    /// By what each covers in truth: fewer where the surface bends like the balls.
+    bent: f64,
+}
+
+impl Demand {
+    /// From every eighth triangle; of many triangles from some 4,000.
+    fn of(target: &Target) -> Self {
+        let mesh = target.surface.mesh();
+        let every = (mesh.n_triangles() / 4096).max(8);
+        let mut sizes = Sizes::new(target);
+        let (mut tried, mut all) = (Vec::new(), 0.0);
+        for number in 0..mesh.n_triangles() {
+            let triangle = mesh.triangle(number);
+            let Some(normal) = triangle.normal() else {
+                continue;
+            };
+            all += triangle.area();
+            if number % every == 0 {
+                let share = sizes.share(triangle.middle(), normal);
+                let reach2 = sizes.ball.reach(target.e).powi(2);
+                tried.push((triangle, share, sizes.ball.center, reach2));
+            }
+        }
+        let area: f64 = tried.iter().map(|(triangle, ..)| triangle.area()).sum();
+        let scale = all / area.max(f64::MIN_POSITIVE);
+        let flat = tried.iter().map(|(t, share, ..)| t.area() / share);
+        let bent = tried.iter().map(|(triangle, share, center, reach2)| {
+            let covered = tried
+                .iter()
+                .filter(|(other, ..)| other.middle().distance_squared(*center) <= *reach2);
+            let covered: f64 = covered.map(|(other, ..)| scale * other.area()).sum();
+            triangle.area() / covered.max(*share)
+        });
+        Self {
+            flat: scale * flat.sum::<f64>(),
+            bent: scale * bent.sum::<f64>(),
         }
     }
-    balls * all / tried.max(f64::MIN_POSITIVE)
 }
 
 struct Sampler<'a> {
@@ -133,6 +154,8 @@ struct Sizes<'a> {
     target: &'a Target<'a>,
     /// Where it was last computed.
     known: Option<Local>,
+    /// What was found there.
+    ball: Ball,
 }
 
 /// How large balls are somewhere.
@@ -182,7 +205,15 @@ impl Sampler<'_> {
     }
 }
 
-impl Sizes<'_> {
+impl<'a> Sizes<'a> {
+    fn new(target: &'a Target<'a>) -> Self {
+        Self {
+            target,
+            known: None,
+            ball: Ball::on_surface(DVec3::ZERO),
+        }
+    }
+
     /// Of the largest ball that covers a point of the surface, m².
     fn share(&mut self, foot: DVec3, normal: DVec3) -> f64 {
         if let Some(known) = self.known
@@ -193,9 +224,8 @@ impl Sizes<'_> {
         }
         let (slack, limit) = (relief(self.target.e), self.target.largest_radius());
         let ball = Ball::largest(self.target, foot, -normal, slack, limit);
-        let half_width = ball
-            .unwrap_or(Ball::on_surface(foot))
-            .half_width(self.target.e);
+        self.ball = ball.unwrap_or(Ball::on_surface(foot));
+        let half_width = self.ball.half_width(self.target.e);
         self.known = Some(Local {
             foot,
             normal,
