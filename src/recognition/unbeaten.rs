@@ -141,7 +141,7 @@ mod tests {
                 problems: (0..pairs.len()).filter(own).collect(),
                 coefficients: Array2::from_shape_fn((N_CLASSES - 1, N_VECTORS), |(i, j)| {
                     let at = 31 * class + 7 * i + j;
-                    if at % 3 == 0 {
+                    if at.is_multiple_of(3) {
                         (at as f64 * 2.3).sin()
                     } else {
                         0.0
