@@ -1,14 +1,15 @@
 //! The decision functions of all binary problems, by matrix products.
 
-use std::ops::Range;
-
+use ndarray::linalg::general_mat_mul;
 use ndarray::{Array1, Array2, ArrayView2, Axis, s};
 
+use crate::recognition::class_weights::ClassWeights;
 use crate::recognition::kernel::KernelFunction;
 use crate::recognition::points::Points;
 use crate::recognition::scalar::Scalar;
 use crate::recognition::sorted::Sorted;
 use crate::recognition::svm::{BinaryProblem, Multiclass};
+use crate::recognition::unbeaten::Pairs;
 use crate::recognition::voting::Ballot;
 
 /// Rows whose decision values are computed at once: with 5,000 support vectors their kernel values take 5 MB. Larger
@@ -30,19 +31,18 @@ pub(crate) struct DecisionFunctions<T> {
 enum Sums<T> {
     /// The hyperplanes' normals, n_problems × m.
     Hyperplanes(Array2<T>),
-    /// Support vectors, class by class, and what they weigh.
-    SupportVectors(KernelFunction, Points<T>, Vec<ClassWeights<T>>),
+    /// Kernel values, weighted.
+    Support(Support<T>),
 }
 
-/// The coefficients of one class's support vectors in the problems that the class takes part in.
+/// Support vectors, class by class.
 #[derive(Clone, Debug)]
-struct ClassWeights<T> {
-    /// Which support vectors.
-    vectors: Range<usize>,
-    /// The problems, ascending.
-    problems: Vec<usize>,
-    /// vectors.len() × problems.len().
-    coefficients: Array2<T>,
+struct Support<T> {
+    kernel: KernelFunction,
+    vectors: Points<T>,
+    weights: Vec<ClassWeights<T>>,
+    /// For one-vs-one.
+    pairs: Option<Pairs<T>>,
 }
 
 impl<T: Scalar> DecisionFunctions<T> {
@@ -66,10 +66,18 @@ impl<T: Scalar> DecisionFunctions<T> {
                 let weights = classes().map(|(class, rows)| {
                     ClassWeights::new(sorted, class, rows, problems).of_support(&mut support)
                 });
-                let weights = weights.collect();
+                let weights: Vec<_> = weights.collect();
                 let vectors = sorted.points().select(&support);
                 let rho = problems.iter().map(|p| p.solution.rho).collect();
-                (rho, Sums::SupportVectors(kernel, vectors, weights))
+                let are_pairs = problems.iter().all(|p| p.negative.is_some());
+                let pairs = are_pairs.then(|| Pairs::new(&weights, &rho));
+                let support = Support {
+                    kernel,
+                    vectors,
+                    weights,
+                    pairs,
+                };
+                (rho, Sums::Support(support))
             }
         };
         let centre = sorted.centre().to_owned();
@@ -79,8 +87,10 @@ impl<T: Scalar> DecisionFunctions<T> {
     /// Decision values of rows (n × m): n × n_problems.
     pub fn values(&self, features: ArrayView2<f64>) -> Array2<f64> {
         let mut values = Array2::zeros((features.nrows(), self.rho.len()));
+        let mut scratch = self.scratch(features.nrows());
         let blocks = values.axis_chunks_iter_mut(Axis(0), BLOCK_ROWS);
-        for (mut values, sums) in blocks.zip(self.sums(&features)) {
+        for (mut values, points) in blocks.zip(self.blocks(&features)) {
+            let sums = self.sums_of(&points, &mut scratch);
             values.zip_mut_with(&sums.t(), |to, from| *to = from.wide());
             values -= &self.rho;
         }
@@ -94,7 +104,7 @@ impl<T: Scalar> DecisionFunctions<T> {
         (n_classes, multiclass): (usize, Multiclass),
     ) -> Vec<usize> {
         let problems = multiclass.problems(n_classes);
-        let of_block = |sums: Array2<T>| {
+        let elect = |sums: Array2<T>| {
             let mut ballot = Ballot::new(n_classes, sums.ncols(), multiclass);
             for ((&problem, sums), &rho) in problems.iter().zip(sums.rows()).zip(&self.rho) {
                 let sums = sums.to_slice().expect("sums are stored problem by problem");
@@ -102,107 +112,92 @@ impl<T: Scalar> DecisionFunctions<T> {
             }
             ballot.winners()
         };
-        self.sums(&features).flat_map(of_block).collect()
+        let mut scratch = self.scratch(features.nrows());
+        let of_block = |points| match &self.sums {
+            Sums::Support(
+                support @ Support {
+                    pairs: Some(pairs), ..
+                },
+            ) => {
+                let values = support.kernel_values(&points, &mut scratch);
+                let mut winners = pairs.unbeaten(values);
+                let open: Vec<usize> = (0..winners.len())
+                    .filter(|row| winners[*row].is_none())
+                    .collect();
+                let values = values.select(Axis(0), &open);
+                let elected = elect(support.sums(values.view(), problems.len()));
+                for (row, winner) in open.into_iter().zip(elected) {
+                    winners[row] = Some(winner);
+                }
+                winners.into_iter().flatten().collect()
+            }
+            _ => elect(self.sums_of(&points, &mut scratch)),
+        };
+        self.blocks(&features).flat_map(of_block).collect()
     }
 
-    /// `Σ y a K(x_i, x)` of blocks of rows: n_problems × rows, so that all rows of a problem lie side by side.
-    fn sums<'a>(&'a self, features: &'a ArrayView2<f64>) -> impl Iterator<Item = Array2<T>> + 'a {
-        let n_blocks = features.nrows().div_ceil(BLOCK_ROWS);
-        // Kernel values of a block: written over and over, so that their memory is asked for once.
-        let mut scratch = Array2::zeros((self.n_vectors(), BLOCK_ROWS.min(features.nrows())));
-        (0..n_blocks).map(move |block| {
-            let end = features.nrows().min((block + 1) * BLOCK_ROWS);
-            let rows = features.slice(s![block * BLOCK_ROWS..end, ..]);
-            self.sums_of(&Points::new(rows, self.centre.view()), &mut scratch)
-        })
+    fn blocks<'a>(&'a self, features: &'a ArrayView2<f64>) -> impl Iterator<Item = Points<T>> + 'a {
+        features
+            .axis_chunks_iter(Axis(0), BLOCK_ROWS)
+            .map(|rows| Points::new(rows, self.centre.view()))
     }
 
-    fn n_vectors(&self) -> usize {
-        match &self.sums {
+    /// Room for the kernel values of a block: written over and over, so that its memory is asked for once.
+    fn scratch(&self, n_rows: usize) -> Array2<T> {
+        let n_vectors = match &self.sums {
             Sums::Hyperplanes(_) => 0,
-            Sums::SupportVectors(_, vectors, _) => vectors.len(),
-        }
+            Sums::Support(support) => support.vectors.len(),
+        };
+        Array2::zeros((BLOCK_ROWS.min(n_rows), n_vectors))
     }
 
+    /// `Σ y a K(x_i, x)` of some rows: n_problems × rows, so that all rows of a problem lie side by side.
     fn sums_of(&self, points: &Points<T>, scratch: &mut Array2<T>) -> Array2<T> {
         match &self.sums {
             Sums::Hyperplanes(normals) => normals.dot(&points.all().values.t()),
-            Sums::SupportVectors(kernel, vectors, weights) => {
-                let mut values = scratch.slice_mut(s![.., ..points.len()]);
-                vectors
-                    .all()
-                    .kernel_into(points.all(), kernel, values.view_mut());
-                let mut sums = Array2::zeros((self.rho.len(), points.len()));
-                for class in weights {
-                    let own = values.slice(s![class.vectors.clone(), ..]);
-                    let part = class.coefficients.t().dot(&own);
-                    for (part, &problem) in part.rows().into_iter().zip(&class.problems) {
-                        let mut sum = sums.row_mut(problem);
-                        sum += &part;
-                    }
-                }
-                sums
+            Sums::Support(support) => {
+                support.sums(support.kernel_values(points, scratch), self.rho.len())
             }
         }
     }
 }
 
-impl<V: Scalar> ClassWeights<V> {
-    /// Of all rows of a class.
-    fn new<T: Scalar>(
-        sorted: &Sorted<T>,
-        class: usize,
-        vectors: Range<usize>,
-        problems: &[BinaryProblem],
-    ) -> Self {
-        let takes_part = |problem: &BinaryProblem| match problem.negative {
-            Some(negative) => problem.positive == class || negative == class,
-            None => true,
-        };
-        let own: Vec<usize> = (0..problems.len())
-            .filter(|&problem| takes_part(&problems[problem]))
-            .collect();
-        let mut coefficients = Array2::zeros((vectors.len(), own.len()));
-        for (&problem, mut column) in own.iter().zip(coefficients.columns_mut()) {
-            let BinaryProblem { rows, solution, .. } = &problems[problem];
-            for (&row, &coefficient) in rows.iter().zip(&solution.coefficients) {
-                let at = sorted.place()[row];
-                if vectors.contains(&at) {
-                    column[at - vectors.start] = V::of(coefficient);
-                }
+impl<T: Scalar> Support<T> {
+    /// `K(x, x_i)`: rows × vectors.
+    fn kernel_values<'a>(
+        &self,
+        points: &Points<T>,
+        scratch: &'a mut Array2<T>,
+    ) -> ArrayView2<'a, T> {
+        let n = points.len();
+        let mut values = scratch.slice_mut(s![..n, ..]);
+        let vectors = self.vectors.all();
+        let points = points.all();
+        // Transposed, so that the values of many vectors with one row are written side by side.
+        let (zero, one) = (T::zero(), T::one());
+        let mut products = values.view_mut().reversed_axes();
+        general_mat_mul(
+            one,
+            &vectors.values,
+            &points.values.t(),
+            zero,
+            &mut products,
+        );
+        points.apply(values, vectors, &self.kernel);
+        scratch.slice(s![..n, ..])
+    }
+
+    /// `Σ y a K(x_i, x)` from kernel values (rows × vectors): n_problems × rows.
+    fn sums(&self, kernel_values: ArrayView2<T>, n_problems: usize) -> Array2<T> {
+        let mut sums = Array2::zeros((n_problems, kernel_values.nrows()));
+        for class in &self.weights {
+            let own = kernel_values.slice(s![.., class.vectors.clone()]);
+            let part = class.coefficients.dot(&own.t());
+            for (part, &problem) in part.rows().into_iter().zip(&class.problems) {
+                let mut sum = sums.row_mut(problem);
+                sum += &part;
             }
         }
-        Self {
-            vectors,
-            problems: own,
-            coefficients,
-        }
-    }
-
-    /// Only of the rows that support some problem, appended to those of the classes before.
-    fn of_support(self, support: &mut Vec<usize>) -> Self {
-        let is_support = |at: &usize| self.coefficients.row(*at).iter().any(|x| *x != V::zero());
-        let kept: Vec<usize> = (0..self.vectors.len()).filter(is_support).collect();
-        let first = support.len();
-        support.extend(kept.iter().map(|at| self.vectors.start + at));
-        Self {
-            vectors: first..support.len(),
-            coefficients: self.coefficients.select(Axis(0), &kept),
-            ..self
-        }
-    }
-}
-
-impl ClassWeights<f64> {
-    /// Adds `Σ y_i a_i x_i` of the class's rows to the normals of its problems (n_problems × m).
-    fn add_to<T: Scalar>(&self, normals: &mut Array2<f64>, sorted: &Sorted<T>) {
-        let points = sorted.points().in_place();
-        for (column, &problem) in self.coefficients.columns().into_iter().zip(&self.problems) {
-            let mut normal = normals.row_mut(problem);
-            let normal = normal
-                .as_slice_mut()
-                .expect("normals are stored one by one");
-            points.add_weighted(normal, self.vectors.clone().zip(column.iter().copied()));
-        }
+        sums
     }
 }

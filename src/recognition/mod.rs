@@ -42,6 +42,7 @@ use serde::{Deserialize, Serialize};
 mod between;
 pub mod choice;
 pub mod class_model;
+mod class_weights;
 pub mod classifier;
 pub mod comparison;
 pub(crate) mod coordinate_descent;
@@ -79,6 +80,7 @@ pub mod svm;
 pub mod svm_model;
 pub mod trained_classifier;
 mod training;
+mod unbeaten;
 mod voting;
 
 /// A classifier that a study can sweep.
