@@ -53,6 +53,7 @@ pub mod decision_tree;
 pub mod dual;
 pub mod features;
 mod few_dimensions;
+mod followed_sums;
 pub mod fusion;
 mod grid;
 pub mod interval;
