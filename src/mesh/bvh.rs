@@ -13,6 +13,8 @@ pub struct Bvh {
     nodes: Vec<Node>,
     /// The triangles, leaf by leaf.
     triangles: Vec<Triangle>,
+    /// Their planes.
+    planes: Vec<Plane>,
     /// Their numbers in the mesh.
     numbers: Vec<u32>,
 }
@@ -47,8 +49,10 @@ impl Bvh {
     pub fn new(mesh: &TriangleMesh) -> Self {
         let (nodes, numbers) = build(mesh);
         let triangles = numbers.iter().map(|&t| mesh.triangle(t as usize));
+        let triangles: Vec<Triangle> = triangles.collect();
         Self {
-            triangles: triangles.collect(),
+            planes: triangles.iter().map(Plane::of).collect(),
+            triangles,
             nodes,
             numbers,
         }
@@ -83,10 +87,13 @@ impl Bvh {
     /// The nearest point of the mesh that is closer than `within` metres (infinity: the nearest of all).
     pub fn closest(&self, point: DVec3, within: f64) -> Option<Closest> {
         let mut found = None;
-        self.search(
+        self.search_places(
             within * within,
             |bounds| bounds.distance_squared(point),
-            |number, triangle, limit| {
+            |place, triangle, limit| {
+                if self.planes[place].is_beyond(point, limit) {
+                    return limit;
+                }
                 let (on, feature) = triangle.closest(point);
                 let distance2 = on.distance_squared(point);
                 if distance2 >= limit {
@@ -95,7 +102,7 @@ impl Bvh {
                 found = Some(Closest {
                     distance: distance2.sqrt(),
                     point: on,
-                    triangle: number,
+                    triangle: self.number(place),
                     feature,
                 });
                 distance2
@@ -217,6 +224,38 @@ impl Bvh {
                 }
             }
         }
+    }
+}
+
+/// The plane of a triangle: no point of the triangle is nearer than it. Where a whole mesh is about equally far, as from the
+/// middle of a ball, boxes rule out little, and planes nearly all.
+#[derive(Clone, Debug)]
+struct Plane {
+    /// Of length one; zero where a triangle is too thin to have one.
+    normal: DVec3,
+    /// Along it.
+    offset: f64,
+}
+
+impl Plane {
+    fn of(triangle: &Triangle) -> Self {
+        /// Triangles that are thinner, as a share of their length, have planes that rounding turns too far.
+        const THINNEST: f64 = 1e-4;
+        let is_thin = 2.0 * triangle.area() <= THINNEST * triangle.longest_edge_squared();
+        let normal = match triangle.normal() {
+            Some(normal) if !is_thin => normal,
+            _ => DVec3::ZERO,
+        };
+        Self {
+            normal,
+            offset: normal.dot(triangle.0[0]),
+        }
+    }
+
+    /// Whether it is certainly farther from a point than the square root of `limit`.
+    fn is_beyond(&self, point: DVec3, limit: f64) -> bool {
+        let height = self.normal.dot(point) - self.offset;
+        height * height > limit * (1.0 + 1e-6)
     }
 }
 

@@ -44,12 +44,12 @@ pub(super) struct Effort {
 }
 
 impl Effort {
-    /// All of it up to 2,000 spheres, then less for each, so that the time grows more slowly than their number; from 40,000
+    /// All of it up to 2,000 spheres, then less for each, so that the time grows more slowly than their number; from 30,000
     /// on, fewer balls to choose from too; and fewer where a ball covers many times what it would of a plane, as on a sphere,
     /// whose middle is equally far from all of it: there a ball takes longest to find.
     fn for_about(demand: &Demand) -> Self {
         let share = (2000.0 / demand.flat).clamp(0.03, 1.0);
-        let many = (40_000.0 / demand.flat).clamp(0.5, 1.0);
+        let many = (30_000.0 / demand.flat).clamp(0.3, 1.0);
         let round = (8.0 * demand.bent / demand.flat).clamp(0.1, 1.0);
         let feet_share = many * round;
         Self {
