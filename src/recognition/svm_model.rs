@@ -2,7 +2,8 @@
 //!
 //! A block of rows meets all support vectors of a class in one matrix product, and their coefficients for all binary
 //! problems in a second one; a linear SVM is one product with its hyperplanes. Both run in the precision that the model was
-//! trained in.
+//! trained in. Labels of one-vs-one SVMs with a kernel need the second product only where no class wins all its pairs
+//! (`unbeaten`).
 
 use linfa::traits::PredictInplace;
 use ndarray::{Array1, Array2, ArrayBase, ArrayView2, Data, Ix2};
