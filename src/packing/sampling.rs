@@ -45,16 +45,17 @@ pub(super) struct Effort {
 
 impl Effort {
     /// All of it up to 2,000 spheres, then less for each, so that the time grows more slowly than their number; from 30,000
-    /// on, fewer balls to choose from too; and fewer where a ball covers many times what it would of a plane, as on a sphere,
-    /// whose middle is equally far from all of it: there a ball takes longest to find.
+    /// on, fewer balls to choose from too; and fewer, but some 1,000, where a ball covers many times what it would of a plane,
+    /// as on a sphere, whose middle is equally far from all of it: there a ball takes longest to find.
     fn for_about(demand: &Demand) -> Self {
         let share = (2000.0 / demand.flat).clamp(0.03, 1.0);
+        let feet_a_ball = 5.0 + 35.0 * share.sqrt();
         let many = (30_000.0 / demand.flat).clamp(0.3, 1.0);
-        let round = (8.0 * demand.bent / demand.flat).clamp(0.1, 1.0);
-        let feet_share = many * round;
+        let fewest = (1000.0 / (feet_a_ball * demand.flat)).clamp(0.1, 1.0);
+        let round = (8.0 * demand.bent / demand.flat).clamp(fewest, 1.0);
         Self {
             samples_a_ball: 20.0 + 60.0 * share.sqrt(),
-            feet_a_ball: feet_share * (5.0 + 35.0 * share.sqrt()),
+            feet_a_ball: many * round * feet_a_ball,
             steps_a_ball: 200.0 * share,
             moves_a_ball: 8.0 * share,
             n_passes: match share {
