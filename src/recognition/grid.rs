@@ -188,7 +188,7 @@ fn path<T: Scalar>(
     let rows: Vec<usize> = places.iter().map(|&at| fold.training[at]).collect();
     let is_positive = fold.is_positive(problem);
     let mut gram = Part::new(&kernel, &rows, room);
-    let mut smo = Smo::new(&mut gram, &is_positive).started_at_bounds(goal.path[0]);
+    let mut smo = Smo::new(&mut gram, &is_positive).from_bounds(goal.path[0]);
     let mut last = Vec::new();
     let solved = goal.path.iter().map(|&c| {
         let solution = smo.solve(c, goal.tolerance);

@@ -8,7 +8,7 @@ impl<G> Smo<'_, G> {
     /// The same problem, not solved yet, to start from all multipliers at C, as the solution for a small one has them: all
     /// but the surplus of the larger class, where these rows are farthest on their side. From nothing where the objective
     /// is highest before C when all multipliers grow together.
-    pub fn started_at_bounds<T: Scalar>(mut self, c: f64) -> Self
+    pub fn from_bounds<T: Scalar>(mut self, c: f64) -> Self
     where
         G: Gram<T>,
     {
@@ -56,7 +56,7 @@ mod tests {
     #[test]
     fn the_start_is_allowed_and_f_is_its_gradient() {
         let (mut gram, is_positive) = problem(0.01);
-        let smo = Smo::new(&mut gram, &is_positive).started_at_bounds(0.1);
+        let smo = Smo::new(&mut gram, &is_positive).from_bounds(0.1);
         assert_eq!(smo.beta.iter().filter(|beta| **beta == 0.0).count(), 5);
         assert!(smo.beta.iter().sum::<f64>().abs() < 1e-12);
         let (beta, f) = (smo.beta.clone(), smo.f.clone());
@@ -71,7 +71,7 @@ mod tests {
         for (gamma, c) in [(0.01, 0.1), (1.0, 0.1), (1.0, 1.0), (30.0, 10.0)] {
             let (mut gram, is_positive) = problem(gamma);
             let expected = Smo::new(&mut gram, &is_positive).solve(c, 1e-9);
-            let mut smo = Smo::new(&mut gram, &is_positive).started_at_bounds(c);
+            let mut smo = Smo::new(&mut gram, &is_positive).from_bounds(c);
             let found = smo.solve(c, 1e-9);
             assert!(
                 (found.objective - expected.objective).abs() < 1e-8,
@@ -84,7 +84,7 @@ mod tests {
     #[test]
     fn a_large_c_starts_from_nothing() {
         let (mut gram, is_positive) = problem(30.0);
-        let smo = Smo::new(&mut gram, &is_positive).started_at_bounds(1e4);
+        let smo = Smo::new(&mut gram, &is_positive).from_bounds(1e4);
         assert!(smo.c == 0.0 && smo.beta.iter().all(|beta| *beta == 0.0));
     }
 }
