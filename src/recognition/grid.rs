@@ -1,16 +1,14 @@
 //! Cross-validation of a whole grid of C and kernels on one matrix of products.
 //!
 //! All folds and all candidates are parts of the same n × n products: a kernel is made of them once, each fold's problems
-//! are gathered from that, and along C each solution starts from the last, the first from all multipliers at their bounds.
-//! A problem's decision values are sums of its support vectors' rows over all validation rows at once; from one C to the
-//! next they are [followed](crate::recognition::followed_sums), and counted as votes right away.
+//! are gathered from that, and along C each solution starts from the last. A problem's decision values are sums of its
+//! support vectors' rows over all validation rows at once, and are counted as votes right away.
 
 use std::ops::Range;
 
 use ndarray::{Array2, ArrayView2, ArrayViewMut1};
 
 use crate::recognition::dataset::Dataset;
-use crate::recognition::followed_sums::{Sums, class_sums};
 use crate::recognition::kernel::KernelFunction;
 use crate::recognition::scalar::Scalar;
 use crate::recognition::smo::{Part, Room, Runs, Smo};
@@ -32,9 +30,6 @@ pub(crate) struct Grid<'a, T> {
     pub multiclass: Multiclass,
 }
 
-/// Folds whose solutions are held at once: as many as are usual, so that many take no more memory.
-const FOLDS_AT_ONCE: usize = 8;
-
 /// A fold in terms of sorted rows.
 struct Fold {
     /// Training rows, class by class.
@@ -53,25 +48,6 @@ impl Fold {
             None => (0..self.training.len()).collect(),
         }
     }
-
-    /// Whether each of these is positive.
-    fn is_positive(&self, problem: (usize, Option<usize>)) -> Vec<bool> {
-        let own = &self.classes[problem.0].1;
-        let places = self.places(problem);
-        places.iter().map(|at| own.contains(at)).collect()
-    }
-}
-
-/// The solutions of one problem, by C.
-type Path = Vec<Solved>;
-
-/// What validation needs of a solution.
-struct Solved {
-    c: f64,
-    /// `None` where they are those of the last C.
-    coefficients: Option<Vec<f64>>,
-    rho: f64,
-    is_capped: bool,
 }
 
 impl<T: Scalar> Grid<'_, T> {
@@ -83,15 +59,11 @@ impl<T: Scalar> Grid<'_, T> {
         let folds: Vec<Fold> = self.folds.iter().map(|split| self.fold(split)).collect();
         let mut counts = Array2::zeros((kernels.len(), goal.path.len()));
         let mut n_capped = 0;
-        let mut values = products.clone();
         for (kernel, mut counts) in kernels.iter().zip(counts.rows_mut()) {
-            values.assign(&products);
+            let mut values = products.clone();
             all.apply(values.view_mut(), all, kernel);
-            for folds in folds.chunks(FOLDS_AT_ONCE) {
-                for (fold, paths) in folds.iter().zip(self.solve(folds, values.view(), goal)) {
-                    n_capped += paths.iter().flatten().filter(|at| at.is_capped).count();
-                    self.validate(fold, values.view(), &paths, counts.view_mut());
-                }
+            for fold in &folds {
+                n_capped += self.validate(fold, values.view(), goal, counts.view_mut());
             }
         }
         (counts, n_capped)
@@ -121,49 +93,44 @@ impl<T: Scalar> Grid<'_, T> {
         }
     }
 
-    /// The solutions of each fold's problems along C. A problem is solved for all folds in turn: they share most of its rows.
-    fn solve(&self, folds: &[Fold], kernel: ArrayView2<T>, goal: Goal) -> Vec<Vec<Path>> {
-        let problems = |fold: &Fold| self.multiclass.problems(fold.classes.len());
-        let problems: Vec<Vec<_>> = folds.iter().map(problems).collect();
-        let n_problems = problems.iter().map(Vec::len).max().unwrap_or(0);
-        let mut paths: Vec<Vec<Path>> = folds.iter().map(|_| Vec::new()).collect();
-        let mut room = Room::new();
-        for number in 0..n_problems {
-            for ((fold, problems), paths) in folds.iter().zip(&problems).zip(&mut paths) {
-                if let Some(&problem) = problems.get(number) {
-                    paths.push(path(fold, problem, kernel, goal, &mut room));
-                }
-            }
-        }
-        paths
-    }
-
-    /// Adds a fold's validation rows recognised to the counts, by C.
+    /// Solves a fold's problems for every C, and adds the validation rows recognised to the counts; how many solves stopped
+    /// at the iteration cap.
     fn validate(
         &self,
         fold: &Fold,
         kernel: ArrayView2<T>,
-        paths: &[Path],
+        goal: Goal,
         mut counts: ArrayViewMut1<usize>,
-    ) {
+    ) -> usize {
         let n_classes = fold.classes.len();
         let n_rows = fold.validation.len();
-        let mut ballots = vec![Ballot::new(n_classes, n_rows, self.multiclass); counts.len()];
+        let mut ballots = vec![Ballot::new(n_classes, n_rows, self.multiclass); goal.path.len()];
         let held_out = gather_all(kernel, &fold.training, &fold.validation);
-        let of_classes = class_sums(fold.classes.iter().map(|(_, range)| range), &held_out);
-        for (problem, path) in self.multiclass.problems(n_classes).into_iter().zip(paths) {
+        let (mut room, mut n_capped) = (Room::new(), 0);
+        let mut sums = vec![T::zero(); n_rows];
+        for problem in self.multiclass.problems(n_classes) {
             let places = fold.places(problem);
-            let mut sums = Sums::of_bounds(&of_classes, problem, &fold.is_positive(problem));
-            for (ballot, at) in ballots.iter_mut().zip(path) {
-                if let Some(beta) = &at.coefficients {
-                    sums.follow(&held_out, &places, (beta, at.c));
+            let rows: Vec<usize> = places.iter().map(|&at| fold.training[at]).collect();
+            let own = &fold.classes[problem.0].1;
+            let is_positive: Vec<bool> = places.iter().map(|at| own.contains(at)).collect();
+            let mut gram = Part::new(&kernel, &rows, &mut room);
+            let mut smo = Smo::new(&mut gram, &is_positive);
+            let mut last = Vec::new();
+            for (ballot, &c) in ballots.iter_mut().zip(goal.path) {
+                let solution = smo.solve(c, goal.tolerance);
+                n_capped += usize::from(solution.is_capped);
+                // Where no coefficient changed, the values are those of the last C.
+                if solution.coefficients != last {
+                    weighted_sum(&mut sums, &held_out, &places, &solution.coefficients);
+                    last = solution.coefficients;
                 }
-                ballot.take(problem, sums.values(), at.rho);
+                ballot.take(problem, &sums, solution.rho);
             }
         }
         for (count, ballot) in counts.iter_mut().zip(&ballots) {
             *count += self.n_right(fold, ballot);
         }
+        n_capped
     }
 
     /// Validation rows whose votes are for their own class.
@@ -176,32 +143,33 @@ impl<T: Scalar> Grid<'_, T> {
     }
 }
 
-/// Solves one problem of a fold for every C.
-fn path<T: Scalar>(
-    fold: &Fold,
-    problem: (usize, Option<usize>),
-    kernel: ArrayView2<T>,
-    goal: Goal,
-    room: &mut Room<T>,
-) -> Path {
-    let places = fold.places(problem);
-    let rows: Vec<usize> = places.iter().map(|&at| fold.training[at]).collect();
-    let is_positive = fold.is_positive(problem);
-    let mut gram = Part::new(&kernel, &rows, room);
-    let mut smo = Smo::new(&mut gram, &is_positive).from_bounds(goal.path[0]);
-    let mut last = Vec::new();
-    let solved = goal.path.iter().map(|&c| {
-        let solution = smo.solve(c, goal.tolerance);
-        let is_new = solution.coefficients != last;
-        last.clone_from(&solution.coefficients);
-        Solved {
-            c,
-            coefficients: is_new.then_some(solution.coefficients),
-            rho: solution.rho,
-            is_capped: solution.is_capped,
-        }
-    });
-    solved.collect()
+/// `Σ β_i row_i` over the rows at these places.
+fn weighted_sum<T: Scalar>(sums: &mut [T], rows: &Array2<T>, places: &[usize], beta: &[f64]) {
+    sums.fill(T::zero());
+    let row = |at: usize| {
+        rows.row(at)
+            .to_slice()
+            .expect("rows were gathered one by one")
+    };
+    let support = places.iter().zip(beta).filter(|(_, beta)| **beta != 0.0);
+    let mut support: Vec<(&[T], T)> = support.map(|(&at, &beta)| (row(at), T::of(beta))).collect();
+    // Rows that weigh nothing fill up the last four.
+    let n_fours = support.len().div_ceil(4);
+    support.resize(4 * n_fours, (row(0), T::zero()));
+    for four in support.as_chunks::<4>().0 {
+        add_four(sums, four);
+    }
+}
+
+/// Four rows at once: the sums are read and written a quarter as often.
+#[multiversion::multiversion(targets("x86_64+avx2+fma"))]
+fn add_four<T: Scalar>(sums: &mut [T], rows: &[(&[T], T); 4]) {
+    let n = sums.len();
+    let [(a, p), (b, q), (c, r), (d, s)] = *rows;
+    let (a, b, c, d) = (&a[..n], &b[..n], &c[..n], &d[..n]);
+    for at in 0..n {
+        sums[at] += (p * a[at] + q * b[at]) + (r * c[at] + s * d[at]);
+    }
 }
 
 /// Rows and columns of a larger matrix.

@@ -53,7 +53,6 @@ pub mod decision_tree;
 pub mod dual;
 pub mod features;
 mod few_dimensions;
-mod followed_sums;
 pub mod fusion;
 mod grid;
 pub mod interval;

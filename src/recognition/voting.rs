@@ -1,6 +1,6 @@
 //! From the decision values of binary problems to one class.
 
-use ndarray::{Array1, Array2, ArrayView2, s};
+use ndarray::{Array1, Array2, ArrayView2};
 
 use crate::recognition::scalar::Scalar;
 use crate::recognition::svm::Multiclass;
@@ -86,15 +86,16 @@ impl Ballot {
     ) {
         match self {
             Self::Counts(votes) => {
-                let negative = negative.unwrap_or(positive);
-                let (mut own, mut other) =
-                    votes.multi_slice_mut((s![positive, ..], s![negative, ..]));
-                tally(
-                    own.as_slice_mut().unwrap_or_default(),
-                    other.as_slice_mut().unwrap_or_default(),
-                    values,
-                    rho,
-                );
+                for (vote, &value) in votes.row_mut(positive).iter_mut().zip(values) {
+                    *vote += u16::from(value.wide() > rho);
+                }
+                for (vote, &value) in votes
+                    .row_mut(negative.unwrap_or(positive))
+                    .iter_mut()
+                    .zip(values)
+                {
+                    *vote += u16::from(value.wide() <= rho);
+                }
             }
             Self::Best(best, winners) => {
                 for ((best, winner), &value) in best.iter_mut().zip(winners).zip(values) {
@@ -117,18 +118,6 @@ impl Ballot {
                 .map(|votes| first_maximum(&votes.to_vec()))
                 .collect(),
         }
-    }
-}
-
-/// Adds the votes of one problem to those for its positive class and those for the other.
-#[multiversion::multiversion(targets("x86_64+avx2+fma"))]
-fn tally<T: Scalar>(own: &mut [u16], other: &mut [u16], values: &[T], rho: f64) {
-    let n = values.len();
-    let (own, other) = (&mut own[..n], &mut other[..n]);
-    for at in 0..n {
-        let is_own = u16::from(values[at].wide() > rho);
-        own[at] += is_own;
-        other[at] += 1 - is_own;
     }
 }
 

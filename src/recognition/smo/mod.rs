@@ -15,7 +15,6 @@ mod gram;
 mod part;
 mod passes;
 mod runs;
-mod start;
 mod variables;
 
 pub(crate) use gram::{Cached, Dense, Gram, copy, gather};
@@ -115,18 +114,15 @@ impl<'a, G> Smo<'a, G> {
     where
         G: Gram<T>,
     {
+        self.stretch(c);
         let mut search = Search::new(self.most_iterations, tolerance);
-        // Where no multiplier was kept down by its bound, a larger C changes nothing: β stays as it is.
-        let is_solved = (self.c <= c && self.violation(c) <= tolerance) || {
-            self.stretch(c);
-            self.violation(c) <= tolerance || self.search(c, &mut search)
-        };
-        self.c = c;
+        // Where no multiplier was at its bound, a larger C changes nothing.
+        let is_solved = self.violation() <= tolerance || self.search(&mut search);
         DualSolution {
             rho: rho(&self.beta, self.is_positive, &self.f, c),
             is_capped: !is_solved,
             objective: self.objective(),
-            violation: Some(self.violation(c).max(0.0)),
+            violation: Some(self.violation().max(0.0)),
             n_iterations: Some(search.n_iterations),
             coefficients: self.beta.clone(),
         }
@@ -154,6 +150,7 @@ impl<'a, G> Smo<'a, G> {
                 *f = sign(is_positive) - factor * (sign(is_positive) - *f);
             }
         }
+        self.c = c;
     }
 
     /// `Σ y β − ½ β K β`.
@@ -164,23 +161,23 @@ impl<'a, G> Smo<'a, G> {
             .sum()
     }
 
-    /// How far the optimality conditions for a C are violated; below 0 when they hold with room to spare, infinite when
-    /// kernel values have left nothing to go by.
-    fn violation(&self, c: f64) -> f64 {
+    /// How far the optimality conditions are violated; below 0 when they hold with room to spare, infinite when kernel values
+    /// have left nothing to go by.
+    fn violation(&self) -> f64 {
         if self.f.iter().any(|f| !f.is_finite()) {
             return f64::INFINITY;
         }
-        let (highest, lowest) = extremes(&self.beta, self.is_positive, &self.f, c);
+        let (highest, lowest) = extremes(&self.beta, self.is_positive, &self.f, self.c);
         highest - lowest
     }
 
     /// Whether it ended within the tolerance.
-    fn search<T: Scalar>(&mut self, c: f64, search: &mut Search) -> bool
+    fn search<T: Scalar>(&mut self, search: &mut Search) -> bool
     where
         G: Gram<T>,
     {
         for round in 0..MOST_REFRESHES {
-            let mut all = Variables::<T>::new(&self.beta, self.is_positive, &self.f, c);
+            let mut all = Variables::<T>::new(&self.beta, self.is_positive, &self.f, self.c);
             let first_look = if round == 0 { SHRINK_PERIOD } else { 0 };
             let stop = run(self.gram, &mut all, search, first_look);
             self.beta = all.beta.clone();
@@ -197,7 +194,7 @@ impl<'a, G> Smo<'a, G> {
                     .for_each(|(at, value)| self.beta[indices[at]] = value);
             }
             self.refresh();
-            if self.violation(c) <= search.tolerance {
+            if self.violation() <= search.tolerance {
                 return true;
             }
             if search.n_iterations >= search.most_iterations {
