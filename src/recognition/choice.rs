@@ -226,8 +226,7 @@ fn on_one_matrix(
     } else {
         size_of::<f32>()
     };
-    // Three matrices at most: products, the kernel made of them, and the part that a fold trains on. Beside them stand the
-    // solutions of the folds, (n_classes − 1) · n_rows · n_folds · path.len() numbers: a twentieth of it for 43 classes.
+    // Three matrices at most: products, the kernel made of them, and the part that a fold trains on.
     let most = (params.memory_bytes / (3 * size)).isqrt();
     if n_rows > most {
         return Err(Error::input(
