@@ -2,7 +2,8 @@
 
 use super::ball::{Ball, relief};
 use super::target::{Target, bisected};
-use crate::mesh::{Bvh, Triangle, TriangleMesh};
+use crate::geometry::Aabb;
+use crate::mesh::{BoxTree, Triangle};
 use glam::DVec3;
 
 /// A point that some ball must cover, standing for the surface around it.
@@ -236,9 +237,9 @@ impl<'a> Sizes<'a> {
     }
 }
 
-/// A tree over samples, as triangles without size.
+/// A tree over samples.
 pub(super) struct SampleTree {
-    bvh: Bvh,
+    tree: BoxTree,
 }
 
 /// How much of a sample's radius must be covered too, by the slope of the ball there. More: more spheres; less: more gaps
@@ -246,12 +247,14 @@ pub(super) struct SampleTree {
 const MARGIN: f64 = 0.7;
 
 impl SampleTree {
+    /// There must be some.
     pub fn new(samples: &[Sample]) -> Self {
-        let positions = samples.iter().map(|s| s.position).collect();
-        let points = (0..samples.len() as u32).map(|i| [i; 3]).collect();
-        let mesh = TriangleMesh::new("samples", positions, points);
+        let boxes = samples.iter().map(|sample| Aabb {
+            min: sample.position,
+            max: sample.position,
+        });
         Self {
-            bvh: Bvh::new(&mesh.expect("samples are finite, and there are some")),
+            tree: BoxTree::new(boxes.collect()).expect("there are samples"),
         }
     }
 
@@ -265,13 +268,15 @@ impl SampleTree {
     ) {
         let reach = ball.reach(e);
         let slope = MARGIN * ball.half_width(e) / reach;
-        self.bvh.search(
+        self.tree.search(
             reach * reach,
             |bounds| bounds.distance_squared(ball.center),
-            |number, _, limit| {
-                let Sample { position, radius } = samples[number];
-                if position.distance(ball.center) <= reach - slope * radius {
-                    visit(number);
+            |places, limit| {
+                for &number in &self.tree.order()[places] {
+                    let Sample { position, radius } = samples[number as usize];
+                    if position.distance(ball.center) <= reach - slope * radius {
+                        visit(number as usize);
+                    }
                 }
                 limit
             },
