@@ -38,6 +38,7 @@ mod training;
 
 pub use axis::Axis;
 pub use estimate::Estimate;
+pub use evaluation::CONFIDENCE;
 pub use feature_files::{FeatureSet, cell_features, read_features, write_features, write_npy};
 pub use kind::StudyKind;
 pub use object_files::{
