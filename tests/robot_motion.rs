@@ -1,11 +1,16 @@
 //! Robots and bodies in time: smooth between way-points, and within limits at all times.
 
+mod counting;
+
 use bubbletouch::geometry::Pose;
+use bubbletouch::random::Seed;
 use bubbletouch::world::{
     Interpolation, JointTrajectory, Motion, Phase, PoseTrajectory, Robot, VelocityPlan,
 };
+use counting::allocations;
 use glam::{DQuat, DVec3};
 use ndarray::{Array2, array};
+use rand::Rng;
 
 const INTERPOLATIONS: [Interpolation; 3] = [
     Interpolation::Linear,
@@ -139,20 +144,24 @@ fn a_joint_that_mimics_keeps_its_own_limits() {
     );
 }
 
+#[test]
+fn a_quarter_turn_is_within_a_limit_of_six_digits_and_no_more_is() {
+    let robot = robot(r#"lower="-1.570796" upper="1.570796" velocity="9""#);
+    let quarter = 90_f64.to_radians();
+    for kind in INTERPOLATIONS {
+        hinge(&robot, &[-quarter, quarter], kind).expect("3e-7 rad beyond");
+        hinge(&robot, &[-quarter, quarter + 1e-6], kind).expect_err("1.3e-6 rad beyond");
+    }
+}
+
 /// The closed form against a search at 10,000 times a second, on curves of all kinds.
 #[test]
 fn a_trajectory_is_refused_exactly_when_a_fine_search_finds_it_beyond() {
-    let mut state = 1_u64;
-    let mut random = || {
-        state = state
-            .wrapping_mul(6_364_136_223_846_793_005)
-            .wrapping_add(1);
-        (state >> 11) as f64 / (1_u64 << 53) as f64
-    };
+    let mut rng = Seed::new(2018).named("trajectories").rng();
     let (mut n_legal, mut n_beyond) = (0, 0);
     for case in 0..120 {
         let kind = INTERPOLATIONS[case % 3];
-        let values: Vec<f64> = (0..4).map(|_| 2.0 * random() - 1.0).collect();
+        let values: Vec<f64> = (0..4).map(|_| rng.gen_range(-1.0..1.0)).collect();
         let trajectory = hinge(&free(), &values, kind).unwrap();
         let times = (0..30_000).map(|i| 1e-4 * f64::from(i));
         let most = |of: &dyn Fn(f64) -> f64| times.clone().map(of).fold(0.0, f64::max);
@@ -407,4 +416,55 @@ fn every_motion_says_where_it_is() {
         assert_eq!((motion.pose_at(9.0), motion.end()), (far, 2.0));
     }
     assert_eq!(Motion::Fixed(start).pose_at(7.0), start);
+}
+
+#[test]
+fn following_a_trajectory_allocates_nothing() {
+    let arm = Robot::from_urdf("arm.urdf", include_str!("../objects/robots/arm.urdf")).unwrap();
+    let there = Array2::from_shape_fn((3, 7), |(i, k)| 0.2 * i as f64 - 0.05 * k as f64);
+    let times = vec![0.0, 1.0, 2.0];
+    let trajectory = JointTrajectory::new(&arm, times, there, Interpolation::Cubic).unwrap();
+    let mut positions = vec![0.0; arm.n_positions()];
+    let mut world_from_link = vec![Pose::IDENTITY; arm.links().len()];
+    let mut follow = |steps: std::ops::Range<u32>| {
+        for step in steps {
+            trajectory.positions_into(1e-3 * f64::from(step), &mut positions);
+            arm.forward_into(&Pose::IDENTITY, &positions, &mut world_from_link)
+                .unwrap();
+        }
+    };
+    assert!(allocations(|| drop(trajectory.positions_at(0.0))) > 0);
+    assert_eq!(allocations(|| follow(0..2500)), 0);
+}
+
+#[test]
+fn a_mutilated_csv_is_a_trajectory_or_bad_input_and_never_a_panic() {
+    let mut rng = Seed::new(2018).named("mutilated trajectories").rng();
+    let robot = free();
+    let (mut n_sound, mut n_refused) = (0, 0);
+    for _ in 0..2000 {
+        let mut bytes = CSV.as_bytes().to_vec();
+        for _ in 0..rng.gen_range(1..3) {
+            let at = rng.gen_range(0..bytes.len());
+            match rng.gen_range(0..3) {
+                0 => drop(bytes.remove(at)),
+                1 => bytes[at] = b"0123456789.,-e\n\"_\xff"[rng.gen_range(0..18)],
+                _ => bytes.insert(at, b"0123456789.,-e\n\"_\xff"[rng.gen_range(0..18)]),
+            }
+        }
+        match JointTrajectory::read_csv(&robot, "t.csv", &bytes[..], Interpolation::Cubic) {
+            Ok(trajectory) => {
+                let is_finite =
+                    |time: f64| trajectory.positions_at(time).iter().all(|x| x.is_finite());
+                assert!([0.0, 0.7, 1.5, 1.9, 9.0].into_iter().all(is_finite));
+                n_sound += 1;
+            }
+            Err(error) => {
+                assert!(error.to_string().starts_with("t.csv"), "{error}");
+                assert_eq!(error.exit_code(), 2);
+                n_refused += 1;
+            }
+        }
+    }
+    assert!(n_sound > 200 && n_refused > 200, "{n_sound}, {n_refused}");
 }

@@ -361,6 +361,69 @@ fn names_that_are_not_there_are_met_with_those_that_resemble_them() {
     );
 }
 
+/// A robot of one link with one shape.
+fn one_shape(inside: &str) -> Result<Robot> {
+    let text = format!("<robot name='r'><link name='l'><visual>{inside}</visual></link></robot>");
+    Robot::from_urdf("r.urdf", &text)
+}
+
+#[test]
+fn a_quaternion_is_read_where_roll_pitch_and_yaw_are() {
+    let ball = "<geometry><sphere radius='1'/></geometry>";
+    let shape = |origin: &str| {
+        let robot = one_shape(&format!("<origin xyz='1 2 3' {origin}/>{ball}"));
+        robot.map(|robot| robot.links()[0].shapes[0].origin)
+    };
+    let angles = shape("rpy='0 0 1.5707963267948966'").unwrap();
+    let quaternion = shape("quat_xyzw='0 0 0.7071 0.7071'").unwrap();
+    assert!(angles.rotation.dot(quaternion.rotation).abs() > 1.0 - 1e-15);
+    assert_eq!(angles.translation, quaternion.translation);
+    let error = shape("quat_xyzw='0 0 1 1'").unwrap_err().to_string();
+    assert_eq!(
+        error,
+        "r.urdf, line 1: a quaternion of length 1.4142135623730951; length 1"
+    );
+    let error = shape("rpy='0 0 0' quat_xyzw='0 0 0 1'")
+        .unwrap_err()
+        .to_string();
+    assert_eq!(
+        error,
+        "r.urdf, line 1: both `rpy` and `quat_xyzw`; one of them"
+    );
+}
+
+#[test]
+fn every_form_is_read_and_no_other() {
+    let (radius, length) = (0.5, 2.0);
+    for (form, expected) in [
+        (
+            "<box size='1 2 3'/>",
+            LinkGeometry::Box {
+                size: DVec3::new(1.0, 2.0, 3.0),
+            },
+        ),
+        (
+            "<cylinder radius='0.5' length='2'/>",
+            LinkGeometry::Cylinder { radius, length },
+        ),
+        (
+            "<capsule radius='0.5' length='2'/>",
+            LinkGeometry::Capsule { radius, length },
+        ),
+        ("<sphere radius='0.5'/>", LinkGeometry::Sphere { radius }),
+    ] {
+        let robot = one_shape(&format!("<geometry>{form}</geometry>")).unwrap();
+        assert_eq!(robot.links()[0].shapes[0].geometry, expected);
+    }
+    let error = one_shape("<geometry><cone/></geometry>")
+        .unwrap_err()
+        .to_string();
+    assert_eq!(
+        error,
+        "r.urdf, line 1: <geometry> with 0 forms; exactly one of box, cylinder, capsule, sphere, mesh"
+    );
+}
+
 #[test]
 fn other_tools_elements_are_passed_over() {
     let with_more = SIX_AXIS.replacen(
@@ -370,6 +433,8 @@ fn other_tools_elements_are_passed_over() {
            <transmission name="t"><joint name="pan"><hardwareInterface>x</hardwareInterface></joint></transmission>"#,
         1,
     );
+    // A namespace for all, as some tools write it.
+    let with_more = with_more.replacen("<robot ", r#"<robot xmlns="http://example.org/urdf" "#, 1);
     let (with_more, plain) = (robot(&with_more), robot(SIX_AXIS));
     let positions = [0.3; 6];
     assert_eq!(

@@ -6,8 +6,9 @@ use crate::error::{Error, Result};
 use crate::world::Robot;
 use crate::world::robot::{Dimension, Limits};
 
-/// How far a limit may be passed by, rad, m or those a second: rounding, such as that of degrees, is below it.
-const SLACK: f64 = 1e-9;
+/// How far a limit may be passed by, rad, m or those a second. Files write limits to six digits, so a quarter turn may be 3e-7
+/// beyond 1.570796; more slack would hide what can be seen in a message.
+const SLACK: f64 = 1e-6;
 
 /// Checks every joint of one coordinate that has limits. `curves` are those of the robot's positions.
 ///
@@ -26,7 +27,7 @@ pub(super) fn check_limits(robot: &Robot, curves: &[Curve], way_points: &WayPoin
                 format!("{}: joint `{}`", way_points.origin.place(), joint.name),
                 format!(
                     "{} at {}",
-                    bound.quantity(taken.value, unit),
+                    bound.given(taken.value, unit),
                     when(&taken, way_points)
                 ),
                 bound.allowed(unit),
@@ -44,7 +45,7 @@ enum Bound {
 }
 
 impl Bound {
-    fn quantity(&self, value: f64, unit: Dimension) -> String {
+    fn given(&self, value: f64, unit: Dimension) -> String {
         match self {
             Self::Lower(_) | Self::Upper(_) => position(value, unit),
             Self::Velocity(_) => format!("velocity {}", velocity(value, unit)),

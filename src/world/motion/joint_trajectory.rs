@@ -12,7 +12,8 @@ use std::io::Read;
 
 /// The positions of a robot through way-points in time; outside their range the ends hold.
 ///
-/// Invariant: at no time does a joint leave its limits of position and velocity, those that mimic included.
+/// Invariant: at no time does a joint leave its limits of position and velocity by more than 1e-6 rad, m or those a second,
+/// joints that mimic included.
 #[derive(Clone, Debug, PartialEq)]
 pub struct JointTrajectory {
     times: Vec<f64>,
