@@ -83,6 +83,33 @@ impl SkinWorkspace {
 /// of the mesh there: so what a forearm rests on does not press on its other side. A single part decides each touched
 /// taxel; where two need the same, the object that comes first, and of a union the first of its spheres.
 ///
+/// ```
+/// use bubbletouch::contact::{SkinWorkspace, press_skin, spring_load};
+/// use bubbletouch::geometry::Pose;
+/// use bubbletouch::objects::{Sphere, SphereUnion};
+/// use bubbletouch::world::{Layout, SkinPatch, Taxel, Taxels};
+/// use glam::DVec3;
+///
+/// // A fingertip: half a ball of 8 mm with a taxel every 1.5 mm.
+/// let layout = Layout::sphere_cap(8e-3, std::f64::consts::FRAC_PI_2, 1.5e-3)?;
+/// let taxel = Taxel { radius: 0.5e-3, stiffness: 100.0, damping: 0.0, stroke: 2e-3 };
+/// let fingertip = SkinPatch::new("fingertip", layout, Taxels::Equal(taxel))?;
+///
+/// // A marble comes half a millimetre too near, from the side.
+/// let marble = Sphere { center: DVec3::ZERO, radius: 8e-3 };
+/// let objects = [SphereUnion::new(vec![marble])?.into()];
+/// let pose = Pose::from_translation(16e-3 * DVec3::new(0.6, 0.0, 0.8));
+/// let mut workspace = SkinWorkspace::new();
+/// let counts = press_skin(&fingertip, &objects, &[pose], &mut workspace);
+/// assert!(counts.n_touched > 3 && counts.n_saturated == 0);
+///
+/// // The marble is pushed back the way it came.
+/// let load = spring_load(&fingertip, workspace.contacts());
+/// let force = load.on_object.force;
+/// assert!(force.normalize().dot(DVec3::new(0.6, 0.0, 0.8)) > 0.95);
+/// # Ok::<(), bubbletouch::Error>(())
+/// ```
+///
 /// # Panics
 /// If there are not as many poses as objects.
 pub fn press_skin(

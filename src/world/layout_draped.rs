@@ -6,7 +6,7 @@ use crate::error::{Error, Result};
 use crate::mesh::{Triangle, TriangleMesh};
 use crate::random::Seed;
 use glam::DVec3;
-use rand::Rng;
+use rand::seq::SliceRandom;
 use std::collections::{BTreeMap, HashMap};
 
 /// The least distance between taxels, in pitches. Places taken at random until none is left that far from all others hold
@@ -50,7 +50,9 @@ impl Layout {
             ));
         }
         let mut taxels = Taken::new(LEAST * pitch);
-        for index in shuffled(pieces.len(), seed) {
+        let mut order: Vec<usize> = (0..pieces.len()).collect();
+        order.shuffle(&mut seed.named("draped layout").rng());
+        for index in order {
             let piece = &pieces[index];
             let is_same_side = |other: usize| pieces[other].normal.dot(piece.normal) > OPPOSED;
             if !taxels.near(piece.middle, LEAST * pitch).any(is_same_side) {
@@ -107,16 +109,6 @@ fn pieces(mesh: &TriangleMesh, longest_edge: f64) -> Option<Vec<Piece>> {
         }
     }
     Some(pieces)
-}
-
-/// The numbers below n in random order (Fisher–Yates).
-fn shuffled(n: usize, seed: &Seed) -> Vec<usize> {
-    let mut rng = seed.named("draped layout").rng();
-    let mut order: Vec<usize> = (0..n).collect();
-    for last in (1..n).rev() {
-        order.swap(last, rng.gen_range(0..=last));
-    }
-    order
 }
 
 /// The mean normal of the surface around each taxel, of length one, in the order of their pieces. What faces away from the
