@@ -213,10 +213,6 @@ fn curved(c: &mut Criterion) {
         group.bench_function(id, |b| {
             b.iter(|| press_skin(black_box(skin), &scene.objects, &[*pose], &mut workspace));
         });
-        eprintln!(
-            "{name}: {:?}",
-            press_skin(skin, &scene.objects, &[*pose], &mut workspace)
-        );
     }
     let mut workspace = Workspace::new();
     group.bench_function("grid_kernel_4096_taxels_1000_spheres", |b| {
