@@ -1,13 +1,13 @@
 //! One press: the kernel beside every sphere against every taxel.
 
-use bubbletouch::contact::{Workspace, press_to_depth};
+use bubbletouch::contact::{SkinWorkspace, Workspace, press_skin, press_to_depth, press_to_travel};
 use bubbletouch::geometry::Pose;
 use bubbletouch::mesh::TriangleMesh;
 use bubbletouch::objects::{Catalogue, MeshModel, Model, Sphere, SphereUnion, vertex_spheres};
 use bubbletouch::random::Seed;
-use bubbletouch::world::{Grid, Patch, RestPoses, Scene, Taxel, Touch};
+use bubbletouch::world::{Grid, Layout, Patch, RestPoses, Scene, SkinPatch, Taxel, Taxels, Touch};
 use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
-use glam::DVec3;
+use glam::{DQuat, DVec3};
 use rand::Rng;
 use std::hint::black_box;
 
@@ -178,5 +178,48 @@ fn mesh(c: &mut Criterion) {
     group.finish();
 }
 
-criterion_group!(benches, press, catalogue, mesh);
+/// A forearm's skin of 64 × 64 taxels pressed on the object, beside as many in a plane, by both kernels.
+fn curved(c: &mut Criterion) {
+    let mut group = c.benchmark_group("curved_press");
+    let radius = 64.0 * 4e-3 / std::f64::consts::TAU;
+    let cylinder = Layout::cylinder(radius, 63.0 * 4e-3, std::f64::consts::TAU, 4e-3);
+    let flat = patch(64);
+    let cylinder = SkinPatch::new(
+        "forearm",
+        cylinder.expect("lengths are positive"),
+        Taxels::Equal(flat.taxel),
+    )
+    .expect("the taxel is a good one");
+    let scene = Scene {
+        patch: flat,
+        objects: vec![egg(1_000).into()],
+    };
+    let pose = zero_touch(&scene.objects[0]);
+    let travel = press_to_depth(&scene, &[pose], DEPTH, &mut Workspace::new())
+        .map_or(0.0, |contact| contact.travel);
+    let down = Pose::from_translation(-travel * DVec3::Z).compose(&pose);
+    // The egg's broad side on the cylinder.
+    let beside = Pose::new(
+        DQuat::from_rotation_y(std::f64::consts::FRAC_PI_2),
+        DVec3::X * (radius + 0.03 + 2e-3 + 1e-3 - DEPTH),
+    );
+    let mut workspace = SkinWorkspace::new();
+    let skins = [
+        ("cylinder", cylinder, beside),
+        ("plane", SkinPatch::from(flat), down),
+    ];
+    for (name, skin, pose) in &skins {
+        let id = format!("{name}_4096_taxels_1000_spheres");
+        group.bench_function(id, |b| {
+            b.iter(|| press_skin(black_box(skin), &scene.objects, &[*pose], &mut workspace));
+        });
+    }
+    let mut workspace = Workspace::new();
+    group.bench_function("grid_kernel_4096_taxels_1000_spheres", |b| {
+        b.iter(|| press_to_travel(black_box(&scene), &[down], 0.0, &mut workspace));
+    });
+    group.finish();
+}
+
+criterion_group!(benches, press, catalogue, mesh, curved);
 criterion_main!(benches);

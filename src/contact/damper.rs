@@ -11,7 +11,7 @@
 //! which is zero exactly where the taxel relaxes freely and positive where it is pushed: the complementarity
 //! 0 ≤ f ⟂ gap ≥ 0 of \[PT\] in closed form. It tends to `k δ + c δ̇` for Δt → 0 and is `k δ` for c = 0 or at rest.
 
-use crate::world::Taxel;
+use crate::world::{Taxel, Taxels};
 
 /// φ = e^(−k Δt / c): what is left of a free taxel's deflection after `dt` seconds; 0 without a damper.
 pub fn relaxation_factor(taxel: &Taxel, dt: f64) -> f64 {
@@ -42,23 +42,57 @@ impl DamperState {
     /// One step of `dt` seconds (positive) to the contact deflections δ* at its end (n_taxels, metres).
     ///
     /// # Panics
-    /// If `contact` is not as long as the state.
-    pub fn step(&mut self, taxel: &Taxel, dt: f64, contact: &[f64]) {
+    /// If `contact`, or taxels that are given one each, are not as many as the state's.
+    pub fn step(&mut self, taxels: &Taxels, dt: f64, contact: &[f64]) {
         assert_eq!(contact.len(), self.deflection.len());
-        let left = relaxation_factor(taxel, dt);
+        let states = self.deflection.iter_mut().zip(&mut self.force).zip(contact);
+        match taxels {
+            Taxels::Equal(taxel) => {
+                let relaxation = Relaxation::of(taxel, dt);
+                for ((deflection, force), &pushed) in states {
+                    *force = relaxation.advance(deflection, pushed);
+                }
+            }
+            Taxels::Each(each) => {
+                assert_eq!(each.len(), contact.len());
+                for (((deflection, force), &pushed), taxel) in states.zip(each) {
+                    *force = Relaxation::of(taxel, dt).advance(deflection, pushed);
+                }
+            }
+        }
+    }
+}
+
+/// What a step of one length does to taxels of one kind.
+struct Relaxation {
+    stiffness: f64,
+    /// φ.
+    left: f64,
+    /// 1 − φ.
+    gone: f64,
+}
+
+impl Relaxation {
+    fn of(taxel: &Taxel, dt: f64) -> Self {
         // 1 − φ without cancellation for steps much shorter than c / k.
         let gone = if taxel.damping == 0.0 {
             1.0
         } else {
             -(-taxel.stiffness * dt / taxel.damping).exp_m1()
         };
-        for ((deflection, force), &pushed) in
-            self.deflection.iter_mut().zip(&mut self.force).zip(contact)
-        {
-            let relaxed = *deflection * left;
-            *deflection = relaxed.max(pushed);
-            *force = taxel.stiffness * (*deflection - relaxed) / gone;
+        Self {
+            stiffness: taxel.stiffness,
+            left: relaxation_factor(taxel, dt),
+            gone,
         }
+    }
+
+    /// Takes a taxel to the end of the step and returns its force.
+    #[inline]
+    fn advance(&self, deflection: &mut f64, pushed: f64) -> f64 {
+        let relaxed = *deflection * self.left;
+        *deflection = relaxed.max(pushed);
+        self.stiffness * (*deflection - relaxed) / self.gone
     }
 }
 
@@ -66,13 +100,13 @@ impl DamperState {
 mod tests {
     use super::*;
 
-    fn taxel(damping: f64) -> Taxel {
-        Taxel {
+    fn taxel(damping: f64) -> Taxels {
+        Taxels::Equal(Taxel {
             radius: 1e-3,
             stiffness: 100.0,
             damping,
             stroke: 5e-3,
-        }
+        })
     }
 
     #[test]
@@ -134,5 +168,37 @@ mod tests {
             assert!((1e-3..=4e-3).contains(&state.deflection[0]), "{dt}");
             assert!(state.force[0].is_finite());
         }
+    }
+
+    #[test]
+    fn equal_taxels_one_each_move_exactly_as_one_for_all() {
+        let Taxels::Equal(soft) = taxel(0.5) else {
+            panic!("one for all")
+        };
+        let stiff = Taxel {
+            stiffness: 400.0,
+            ..soft
+        };
+        let dry = Taxel {
+            damping: 0.0,
+            ..soft
+        };
+        let pushed = |step: usize| 1e-3 * (0.3 * step as f64).sin().max(0.0);
+        let mut mixed = DamperState::at_rest(3);
+        let mut alone = [
+            DamperState::at_rest(1),
+            DamperState::at_rest(1),
+            DamperState::at_rest(1),
+        ];
+        for step in 0..100 {
+            let each = vec![soft, stiff, dry];
+            mixed.step(&Taxels::Each(each.clone()), 1e-3, &[pushed(step); 3]);
+            for (k, state) in alone.iter_mut().enumerate() {
+                state.step(&Taxels::Equal(each[k]), 1e-3, &[pushed(step)]);
+                assert_eq!(mixed.deflection[k], state.deflection[0]);
+                assert_eq!(mixed.force[k], state.force[0]);
+            }
+        }
+        assert!(mixed.deflection[0] != mixed.deflection[1]);
     }
 }

@@ -271,11 +271,15 @@ fn raise(lines: &GridLines, sphere: &PlacedSphere, height: f64, deflections: &mu
     }
 }
 
+/// How far a taxel of this stroke may be pushed without being saturated: a press to a depth of exactly the stroke saturates
+/// nothing, and rounding (1e-12 of the stroke) does not count.
+pub(super) fn saturation_limit(stroke: f64) -> f64 {
+    stroke * (1.0 + 1e-12)
+}
+
 /// Counts touched and saturated taxels and stops the latter at their stroke.
-///
-/// A press to a depth of exactly the stroke saturates nothing: rounding (1e-12 of the stroke) does not count.
 fn stop_at_stroke(deflections: &mut [f64], stroke: f64) -> (usize, usize) {
-    let limit = stroke * (1.0 + 1e-12);
+    let limit = saturation_limit(stroke);
     let (mut n_touched, mut n_saturated) = (0, 0);
     for deflection in deflections {
         n_touched += usize::from(*deflection > 0.0);

@@ -9,13 +9,18 @@
 //!
 //! A sphere whose centre is behind the substrate (`h < −s − ρ`) is on the far side of the skin and does not count.
 //! On a mesh the taxel stays on its substrate's side of every triangle swept by a ball of radius ρ: `swept_triangle` has the
-//! equations of its faces, edges and corners. A mesh that lies behind the substrate as a whole does not count.
+//! equations of its faces, edges and corners. A mesh that lies behind the substrate as a whole does not count; of one around a
+//! curved skin, that goes for its parts ([`press_skin`]).
 //!
 //! A taxel that would have to go further than its stroke s is saturated: counted in [`Contact`], never hidden.
 //!
 //! A **direct press** ([`press_to_depth`], [`press_to_travel`]) evaluates this once at the final pose. A **time loop**
 //! ([`DamperState`]) adds the damper: a taxel that nothing pushes relaxes, `k δ + c δ̇ = 0`. Without a damper both agree
 //! exactly, so a scene that has none needs no loop.
+//!
+//! A [`Patch`](crate::world::Patch) is a flat grid, and its kernel goes along rows. A [`SkinPatch`](crate::world::SkinPatch)
+//! has any layout: [`press_skin`] finds the taxels near each sphere in a tree, and also says which part of which object
+//! decides each taxel ([`TaxelContact`]); [`spring_load`] adds up what the springs carry.
 
 mod damper;
 mod envelope;
@@ -23,9 +28,16 @@ mod grid_lines;
 mod indentation;
 mod scene_meshes;
 mod simulate;
+mod skin_mesh;
+mod skin_press;
+mod spring_load;
 mod swept_triangle;
+mod taxel_contact;
 
 pub use damper::{DamperState, relaxation_factor};
 pub use indentation::{Contact, Workspace, first_contact, press_to_depth, press_to_travel};
 pub use simulate::{Recording, simulate};
+pub use skin_press::{SkinContact, SkinWorkspace, press_skin};
+pub use spring_load::{SpringLoad, Wrench, spring_load};
 pub use swept_triangle::stopping_height;
+pub use taxel_contact::{GRAZING, TaxelContact};

@@ -3,7 +3,7 @@
 use super::{DamperState, Workspace, press_to_travel};
 use crate::error::{Error, Result};
 use crate::geometry::Pose;
-use crate::world::{Scene, VelocityPlan};
+use crate::world::{Scene, Taxels, VelocityPlan};
 use ndarray::{Array1, Array2};
 
 /// Frames over time.
@@ -56,6 +56,7 @@ pub fn simulate(
         force: Array2::zeros((n_frames, n_taxels)),
         n_saturated: 0,
     };
+    let taxels = Taxels::Equal(scene.patch.taxel);
     let mut state = DamperState::at_rest(n_taxels);
     let mut workspace = Workspace::new();
     let mut poses: Vec<Pose> = Vec::with_capacity(scene.objects.len());
@@ -69,7 +70,7 @@ pub fn simulate(
                 .map(|plan| patch_from_world.compose(&plan.pose_at(time))),
         );
         let contact = press_to_travel(scene, &poses, 0.0, &mut workspace);
-        state.step(&scene.patch.taxel, dt, workspace.deflections());
+        state.step(&taxels, dt, workspace.deflections());
         recording.n_saturated += contact.n_saturated;
         copy_into(&mut recording.deflection, frame, &state.deflection);
         copy_into(&mut recording.force, frame, &state.force);

@@ -64,6 +64,25 @@ impl Triangle {
         ab.max(b.distance_squared(c)).max(c.distance_squared(a))
     }
 
+    /// Cut across the middle of the longest edge.
+    pub fn bisected(&self) -> [Self; 2] {
+        let [a, b, c] = self.0;
+        let (ab, bc, ca) = (
+            a.distance_squared(b),
+            b.distance_squared(c),
+            c.distance_squared(a),
+        );
+        let (from, to, apex) = if ab >= bc && ab >= ca {
+            (a, b, c)
+        } else if bc >= ca {
+            (b, c, a)
+        } else {
+            (c, a, b)
+        };
+        let middle = 0.5 * (from + to);
+        [Self([from, middle, apex]), Self([middle, to, apex])]
+    }
+
     /// The nearest point to `point`, and what it lies on.
     pub fn closest(&self, point: DVec3) -> (DVec3, Feature) {
         let [a, b, c] = self.0;

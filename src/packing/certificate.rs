@@ -6,7 +6,7 @@
 
 use super::ball::Ball;
 use super::sampling::Sample;
-use super::target::{Target, bisected};
+use super::target::Target;
 use crate::mesh::{Bvh, Triangle};
 use glam::DVec3;
 
@@ -90,7 +90,7 @@ fn gaps_of(triangle: Triangle, near: Vec<u32>, balls: &[Ball], e: f64, gaps: &mu
             });
             continue;
         }
-        for half in bisected(&piece) {
+        for half in piece.bisected() {
             let still_near = near.iter().copied();
             let still_near = still_near.filter(|&i| touches(&half, &balls[i as usize], e));
             waiting.push((half, still_near.collect()));

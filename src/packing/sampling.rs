@@ -1,7 +1,7 @@
 //! Points all over the outer surface, as dense as the balls there are small, and balls that touch it.
 
 use super::ball::{Ball, relief};
-use super::target::{Target, bisected};
+use super::target::Target;
 use crate::geometry::Aabb;
 use crate::mesh::{BoxTree, Triangle};
 use glam::DVec3;
@@ -173,7 +173,7 @@ impl Sampler<'_> {
             // Compact pieces only: a long one reaches to places that its middle knows nothing of.
             let is_long = triangle.longest_edge_squared() * samples_a_ball > 8.0 * share;
             if balls * samples_a_ball > 1.0 || is_long {
-                let [first, second] = bisected(&triangle);
+                let [first, second] = triangle.bisected();
                 waiting.extend([second, first]);
                 continue;
             }

@@ -122,22 +122,3 @@ fn check_enclosure(mesh: &TriangleMesh) -> Result<()> {
     }
     Ok(())
 }
-
-/// Cut across the middle of the longest edge.
-pub(super) fn bisected(triangle: &Triangle) -> [Triangle; 2] {
-    let [a, b, c] = triangle.0;
-    let (ab, bc, ca) = (
-        a.distance_squared(b),
-        b.distance_squared(c),
-        c.distance_squared(a),
-    );
-    let (from, to, apex) = if ab >= bc && ab >= ca {
-        (a, b, c)
-    } else if bc >= ca {
-        (b, c, a)
-    } else {
-        (c, a, b)
-    };
-    let middle = 0.5 * (from + to);
-    [Triangle([from, middle, apex]), Triangle([middle, to, apex])]
-}

@@ -1,23 +1,32 @@
 //! World: taxels, layouts, touches and robots → what presses where.
 //!
 //! Frames: in the **patch frame** the taxels rest in the plane z = 0 with their axes along +z, away from the substrate.
+//! On a [`SkinPatch`] of another [`Layout`] each taxel has its own place and axis.
 //! In the **table frame** z points up and objects rest on z = 0.
 
 mod basins;
 mod body;
+mod layout;
+mod layout_curved;
+mod layout_draped;
+mod layout_flat;
 mod mass;
 mod motion;
 mod patch;
 mod placement;
 mod rest;
+mod ring;
 mod robot;
 mod scene;
 mod settle;
+mod skin_patch;
 mod support;
+mod taxel_tree;
 mod touches;
 mod trajectory;
 
 pub use body::Body;
+pub use layout::{Layout, MOST_TAXELS};
 pub use mass::center_of_mass;
 pub use motion::{Interpolation, JointTrajectory, Motion, PoseTrajectory};
 pub use patch::{Grid, Patch, Taxel};
@@ -28,5 +37,7 @@ pub use robot::{
     ShapeRole,
 };
 pub use scene::Scene;
+pub use skin_patch::{SkinPatch, Taxels};
+pub(crate) use taxel_tree::PlacedTaxel;
 pub use touches::{TouchSource, touches};
 pub use trajectory::{Phase, VelocityPlan};

@@ -90,7 +90,7 @@ impl Patch {
     }
 }
 
-fn check_positive(place: &str, value: f64, unit: &str) -> Result<()> {
+pub(super) fn check_positive(place: &str, value: f64, unit: &str) -> Result<()> {
     if value.is_finite() && value > 0.0 {
         return Ok(());
     }

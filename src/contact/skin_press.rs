@@ -1,0 +1,246 @@
+//! The indentation kernel of a skin patch of any layout: each taxel along its own axis, only those that a sphere reaches.
+
+use super::skin_mesh::MeshAt;
+use super::taxel_contact::TaxelContact;
+use crate::geometry::Pose;
+use crate::mesh::Triangle;
+use crate::objects::{MeshModel, Model, Sphere};
+use crate::world::{PlacedTaxel, SkinPatch};
+use glam::{DMat3, DVec3};
+
+/// What a press did, beside its deflections and contacts in the [`SkinWorkspace`].
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct SkinContact {
+    /// Taxels with a deflection above zero.
+    pub n_touched: usize,
+    /// Taxels at their stroke that an object would push further.
+    pub n_saturated: usize,
+    /// Taxels whose contact is grazing: see [`GRAZING`](super::GRAZING).
+    pub n_grazing: usize,
+}
+
+/// Scratch of one thread; it is reused, so a press allocates nothing once the largest patch has been seen.
+#[derive(Clone, Debug, Default)]
+pub struct SkinWorkspace {
+    /// n_taxels, metres.
+    deflections: Vec<f64>,
+    /// n_taxels: object and part; of untouched taxels whatever was there.
+    deciding: Vec<[u32; 2]>,
+    /// The touched taxels, ascending at the end of a press.
+    touched: Vec<u32>,
+    /// Of the touched taxels, in the same order.
+    contacts: Vec<TaxelContact>,
+}
+
+impl SkinWorkspace {
+    /// An empty workspace.
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// Deflections of the last press: n_taxels, metres, in the order of the layout.
+    pub fn deflections(&self) -> &[f64] {
+        &self.deflections
+    }
+
+    /// The touched taxels of the last press, ascending.
+    pub fn contacts(&self) -> &[TaxelContact] {
+        &self.contacts
+    }
+
+    /// Makes room for a patch; only what the last press touched is wiped.
+    fn clear(&mut self, n_taxels: usize) {
+        for &taxel in &self.touched {
+            self.deflections[taxel as usize] = 0.0;
+        }
+        self.touched.clear();
+        self.touched.reserve(n_taxels);
+        self.contacts.clear();
+        self.contacts.reserve(n_taxels);
+        self.deflections.resize(n_taxels, 0.0);
+        self.deciding.resize(n_taxels, [0; 2]);
+    }
+
+    /// Pushes a taxel as far as a part of an object needs; of parts that need the same the first counts.
+    #[inline]
+    fn push(&mut self, taxel: &PlacedTaxel, needed: f64, deciding: [u32; 2]) {
+        let number = taxel.number as usize;
+        let deflection = &mut self.deflections[number];
+        if needed > *deflection {
+            if *deflection == 0.0 {
+                self.touched.push(taxel.number);
+            }
+            *deflection = needed;
+            self.deciding[number] = deciding;
+        }
+    }
+}
+
+/// Presses a patch on objects, right where they are: poses are `patch_from_object`, one an object.
+///
+/// Each sphere counts as the contact stage's title page says, for each taxel by itself. A mesh counts with all triangles but
+/// those that touch the taxel only behind its substrate (lower than −s − ρ along its axis), unless the substrate is inside
+/// of the mesh there: so what a forearm rests on does not press on its other side. A single part decides each touched
+/// taxel; where two need the same, the object that comes first, and of a union the first of its spheres.
+///
+/// ```
+/// use bubbletouch::contact::{SkinWorkspace, press_skin, spring_load};
+/// use bubbletouch::geometry::Pose;
+/// use bubbletouch::objects::{Sphere, SphereUnion};
+/// use bubbletouch::world::{Layout, SkinPatch, Taxel, Taxels};
+/// use glam::DVec3;
+///
+/// // A fingertip: half a ball of 8 mm with a taxel every 1.5 mm.
+/// let layout = Layout::sphere_cap(8e-3, std::f64::consts::FRAC_PI_2, 1.5e-3)?;
+/// let taxel = Taxel { radius: 0.5e-3, stiffness: 100.0, damping: 0.0, stroke: 2e-3 };
+/// let fingertip = SkinPatch::new("fingertip", layout, Taxels::Equal(taxel))?;
+///
+/// // A marble comes half a millimetre too near, from the side.
+/// let marble = Sphere { center: DVec3::ZERO, radius: 8e-3 };
+/// let objects = [SphereUnion::new(vec![marble])?.into()];
+/// let pose = Pose::from_translation(16e-3 * DVec3::new(0.6, 0.0, 0.8));
+/// let mut workspace = SkinWorkspace::new();
+/// let counts = press_skin(&fingertip, &objects, &[pose], &mut workspace);
+/// assert!(counts.n_touched > 3 && counts.n_saturated == 0);
+///
+/// // The marble is pushed back the way it came.
+/// let load = spring_load(&fingertip, workspace.contacts());
+/// let force = load.on_object.force;
+/// assert!(force.normalize().dot(DVec3::new(0.6, 0.0, 0.8)) > 0.95);
+/// # Ok::<(), bubbletouch::Error>(())
+/// ```
+///
+/// # Panics
+/// If there are not as many poses as objects.
+pub fn press_skin(
+    patch: &SkinPatch,
+    objects: &[Model],
+    patch_from_objects: &[Pose],
+    workspace: &mut SkinWorkspace,
+) -> SkinContact {
+    assert_eq!(
+        objects.len(),
+        patch_from_objects.len(),
+        "one pose an object"
+    );
+    workspace.clear(patch.n_taxels());
+    for (number, (object, pose)) in objects.iter().zip(patch_from_objects).enumerate() {
+        match object {
+            Model::Spheres(union) => {
+                push_by_spheres(patch, number, union.spheres(), pose, workspace);
+            }
+            Model::Mesh(mesh) => push_by_mesh(patch, number, mesh, pose, workspace),
+        }
+    }
+    finish(patch, objects, patch_from_objects, workspace)
+}
+
+fn push_by_spheres(
+    patch: &SkinPatch,
+    object: usize,
+    spheres: &[Sphere],
+    pose: &Pose,
+    workspace: &mut SkinWorkspace,
+) {
+    let rotation = DMat3::from_quat(pose.rotation);
+    for (number, sphere) in spheres.iter().enumerate() {
+        let center = rotation * sphere.center + pose.translation;
+        let deciding = [object as u32, number as u32];
+        patch.tree().each_near(center, sphere.radius, |taxel| {
+            workspace.push(taxel, needed(taxel, center, sphere.radius), deciding);
+        });
+    }
+}
+
+/// How far a sphere (in the patch frame) pushes a taxel, metres; zero or less if it does not.
+///
+/// The order of the operations is that of the grid kernel, so that both agree to the last bit on a grid.
+#[inline]
+fn needed(taxel: &PlacedTaxel, center: DVec3, radius: f64) -> f64 {
+    let from = taxel.center - center;
+    let height = -from.dot(taxel.axis);
+    let [dx, dy] = taxel.across.map(|across| from.dot(across));
+    let reach = taxel.radius + radius;
+    let q = reach * reach - dy * dy - dx * dx;
+    if q > 0.0 && height >= taxel.behind {
+        q.sqrt() - height
+    } else {
+        0.0
+    }
+}
+
+fn push_by_mesh(
+    patch: &SkinPatch,
+    object: usize,
+    mesh: &MeshModel,
+    pose: &Pose,
+    workspace: &mut SkinWorkspace,
+) {
+    let mesh = MeshAt::new(mesh, pose);
+    let (center, radius) = mesh.ball();
+    patch.tree().each_near(center, radius, |taxel| {
+        if let Some(stop) = mesh.stop(taxel) {
+            let deciding = [object as u32, stop.triangle as u32];
+            workspace.push(taxel, -stop.height, deciding);
+        }
+    });
+}
+
+/// Stops the touched taxels at their strokes, and says what each of them touches.
+fn finish(
+    patch: &SkinPatch,
+    objects: &[Model],
+    patch_from_objects: &[Pose],
+    workspace: &mut SkinWorkspace,
+) -> SkinContact {
+    workspace.touched.sort_unstable();
+    let mut counts = SkinContact::default();
+    for &number in &workspace.touched {
+        let taxel = number as usize;
+        let [object, part] = workspace.deciding[taxel].map(|number| number as usize);
+        let (center, axis) = (
+            patch.layout().centers()[taxel],
+            patch.layout().axes()[taxel],
+        );
+        let properties = patch.taxels().at(taxel);
+        let needed = workspace.deflections[taxel];
+        let pushed = center - needed * axis;
+        let pose = &patch_from_objects[object];
+        let (point, normal) = nearest_point(&objects[object], part, pose, pushed);
+        let normal = normal.normalize_or(-axis);
+        let contact = TaxelContact {
+            taxel,
+            object,
+            part,
+            deflection: needed.min(properties.stroke),
+            needed,
+            normal,
+            cosine: (-normal.dot(axis)).max(0.0),
+            point,
+        };
+        workspace.deflections[taxel] = contact.deflection;
+        counts.n_touched += 1;
+        counts.n_saturated += usize::from(contact.is_saturated(properties));
+        counts.n_grazing += usize::from(contact.is_grazing());
+        workspace.contacts.push(contact);
+    }
+    counts
+}
+
+/// The point of an object's part that is nearest to a place, and the direction from there to the place; in the patch frame.
+fn nearest_point(object: &Model, part: usize, pose: &Pose, place: DVec3) -> (DVec3, DVec3) {
+    match object {
+        Model::Spheres(union) => {
+            let Sphere { center, radius } = union.spheres()[part];
+            let center = pose.transform_point(center);
+            let away = place - center;
+            (center + radius * away.normalize_or_zero(), away)
+        }
+        Model::Mesh(mesh) => {
+            let corners = mesh.mesh().triangle(part).0;
+            let triangle = Triangle(corners.map(|corner| pose.transform_point(corner)));
+            let (point, _) = triangle.closest(place);
+            (point, place - point)
+        }
+    }
+}

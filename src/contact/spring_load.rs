@@ -1,0 +1,98 @@
+//! What the springs of a skin patch carry: forces, torques, and where.
+
+use super::taxel_contact::TaxelContact;
+use crate::world::SkinPatch;
+use glam::DVec3;
+use std::ops::{Add, Neg};
+
+/// A force and its torque about the origin of the patch frame, in the patch frame.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Wrench {
+    /// N.
+    pub force: DVec3,
+    /// N·m.
+    pub torque: DVec3,
+}
+
+impl Wrench {
+    /// Of a force (N) at a point (m, in the patch frame).
+    pub fn at(point: DVec3, force: DVec3) -> Self {
+        Self {
+            force,
+            torque: point.cross(force),
+        }
+    }
+}
+
+impl Add for Wrench {
+    type Output = Self;
+
+    fn add(self, other: Self) -> Self {
+        Self {
+            force: self.force + other.force,
+            torque: self.torque + other.torque,
+        }
+    }
+}
+
+impl Neg for Wrench {
+    type Output = Self;
+
+    fn neg(self) -> Self {
+        Self {
+            force: -self.force,
+            torque: -self.torque,
+        }
+    }
+}
+
+/// What the springs of some contacts carry together.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SpringLoad {
+    /// On the objects: Σ k δ n_c / (n_c·n) at the points where they touch, without friction.
+    pub on_object: Wrench,
+    /// Σ k δ, N: what the taxels read together.
+    pub spring_force: f64,
+    /// The mean rest centre of the touched taxels, weighted by k δ; metres, in the patch frame. `None` if none is touched.
+    pub center_of_pressure: Option<DVec3>,
+    /// The share of the spring force that saturated taxels carry, 0 to 1. Their stops carry more, which is not counted.
+    pub saturated_share: f64,
+}
+
+impl SpringLoad {
+    /// On the patch: exactly the opposite of what is on the objects.
+    pub fn on_patch(&self) -> Wrench {
+        -self.on_object
+    }
+}
+
+/// Adds up the springs of contacts from a press of this patch: of all, or of those with one object.
+///
+/// The force on an object is −∇ Σ ½ k δ² for its motion in the patch frame, but for saturated taxels (whose energy is at its
+/// end) and grazing ones (whose gradient is bounded). \[BT\]
+///
+/// # Panics
+/// If a contact has a taxel that the patch does not have.
+pub fn spring_load<'a>(
+    patch: &SkinPatch,
+    contacts: impl IntoIterator<Item = &'a TaxelContact>,
+) -> SpringLoad {
+    let mut on_object = Wrench::default();
+    let (mut all, mut saturated, mut moment) = (0.0, 0.0, DVec3::ZERO);
+    for contact in contacts {
+        let taxel = patch.taxels().at(contact.taxel);
+        let force = taxel.stiffness * contact.deflection;
+        on_object = on_object + Wrench::at(contact.point, -force * contact.gradient());
+        all += force;
+        moment += force * patch.layout().centers()[contact.taxel];
+        if contact.is_saturated(taxel) {
+            saturated += force;
+        }
+    }
+    SpringLoad {
+        on_object,
+        spring_force: all,
+        center_of_pressure: (all > 0.0).then(|| moment / all),
+        saturated_share: if all > 0.0 { saturated / all } else { 0.0 },
+    }
+}

@@ -1,0 +1,179 @@
+//! Where the taxels of a skin rest, and which way they point.
+
+use super::Grid;
+use crate::error::{Error, Result};
+use glam::DVec3;
+
+/// Taxels of one layout, at most: more is a pitch in the wrong unit, and a hundred bytes each.
+pub const MOST_TAXELS: usize = 1 << 22;
+
+/// Rest centres and axes of taxels, in the patch frame.
+///
+/// Invariant: as many axes as centres; all finite; axes of length one.
+///
+/// | family | shape | taxels |
+/// |---|---|---|
+/// | [`grid`](Self::grid) | rectangle, square cells | nx · ny |
+/// | [`hexagonal`](Self::hexagonal) | rectangle, rows staggered | nx · ny |
+/// | [`disc`](Self::disc) | round | about 2π r² / (√3 pitch²) |
+/// | [`annulus`](Self::annulus) | ring | about its area / pitch² |
+/// | [`cylinder`](Self::cylinder) | forearm, finger | about arc · radius · length / pitch² |
+/// | [`sphere_cap`](Self::sphere_cap) | fingertip, elbow | about its area / pitch² |
+/// | [`draped`](Self::draped) | any triangle mesh | about its area / pitch² |
+#[derive(Clone, Debug, PartialEq)]
+pub struct Layout {
+    centers: Vec<DVec3>,
+    axes: Vec<DVec3>,
+    grid: Option<Grid>,
+}
+
+impl Layout {
+    /// Any places (metres) with any axes (unit, away from the substrate).
+    ///
+    /// The error names the first taxel (from 1) whose place or axis cannot be used, or the lengths if they differ.
+    pub fn new(centers: Vec<DVec3>, axes: Vec<DVec3>) -> Result<Self> {
+        if centers.len() != axes.len() {
+            return Err(Error::input(
+                "layout",
+                format!("{} places with {} axes", centers.len(), axes.len()),
+                "one axis a taxel",
+            ));
+        }
+        check_count("layout", centers.len() as f64)?;
+        for (index, (center, axis)) in centers.iter().zip(&axes).enumerate() {
+            let place = || format!("layout, taxel {}", index + 1);
+            if !center.is_finite() {
+                return Err(Error::input(
+                    place(),
+                    format!("centre {center}"),
+                    "finite coordinates in metres",
+                ));
+            }
+            // A nearby length is rounding; of another one nobody knows what was meant.
+            if !(axis.is_finite() && (axis.length() - 1.0).abs() < 1e-9) {
+                return Err(Error::input(
+                    place(),
+                    format!("axis {axis}"),
+                    "a vector of length one",
+                ));
+            }
+        }
+        Ok(Self {
+            centers,
+            axes,
+            grid: None,
+        })
+    }
+
+    /// A grid in the plane z = 0, row (patch y, ascending) by row; the layout remembers that it is one.
+    ///
+    /// The error names what is out of its range: see [`Grid::check`].
+    pub fn grid(grid: &Grid) -> Result<Self> {
+        grid.check()?;
+        check_count("taxel grid", grid.nx as f64 * grid.ny as f64)?;
+        Ok(Self::from(grid))
+    }
+
+    /// How many taxels.
+    pub fn n_taxels(&self) -> usize {
+        self.centers.len()
+    }
+
+    /// n_taxels rest centres, metres.
+    pub fn centers(&self) -> &[DVec3] {
+        &self.centers
+    }
+
+    /// n_taxels axes, unit, pointing away from the substrate.
+    pub fn axes(&self) -> &[DVec3] {
+        &self.axes
+    }
+
+    /// The grid that it was made from, if it was.
+    pub fn as_grid(&self) -> Option<&Grid> {
+        self.grid.as_ref()
+    }
+
+    /// What a family has made: taxels whose axes are all of length one.
+    pub(super) fn of_taxels(taxels: impl IntoIterator<Item = (DVec3, DVec3)>) -> Self {
+        let (centers, axes) = taxels.into_iter().unzip();
+        Self {
+            centers,
+            axes,
+            grid: None,
+        }
+    }
+}
+
+/// Of a grid that has been checked.
+impl From<&Grid> for Layout {
+    fn from(grid: &Grid) -> Self {
+        let rows = (0..grid.ny).map(|row| grid.y(row));
+        let taxels = rows.flat_map(|y| {
+            (0..grid.nx).map(move |column| (DVec3::new(grid.x(column), y, 0.0), DVec3::Z))
+        });
+        Self {
+            grid: Some(*grid),
+            ..Self::of_taxels(taxels)
+        }
+    }
+}
+
+/// Refuses layouts without taxels, and those with more than [`MOST_TAXELS`]; `about`: how many there will be.
+pub(super) fn check_count(place: &str, about: f64) -> Result<()> {
+    if about >= 1.0 && about <= MOST_TAXELS as f64 {
+        return Ok(());
+    }
+    Err(Error::input(
+        place,
+        format!("{about:.0} taxels"),
+        format!("1 to {MOST_TAXELS}"),
+    ))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_grid_lies_as_the_grid_says_and_remembers_it() {
+        let grid = Grid {
+            nx: 3,
+            ny: 2,
+            pitch: 2e-3,
+        };
+        let layout = Layout::grid(&grid).unwrap();
+        assert_eq!(layout.as_grid(), Some(&grid));
+        assert_eq!(layout.centers()[5], DVec3::new(2e-3, 1e-3, 0.0));
+        assert!(layout.axes().iter().all(|&axis| axis == DVec3::Z));
+    }
+
+    #[test]
+    fn what_cannot_be_a_layout_is_refused_with_its_taxel() {
+        let message = |centers: &[DVec3], axes: &[DVec3]| {
+            let layout = Layout::new(centers.to_vec(), axes.to_vec());
+            layout.unwrap_err().to_string()
+        };
+        assert_eq!(
+            message(&[DVec3::ZERO], &[]),
+            "layout: 1 places with 0 axes; one axis a taxel"
+        );
+        assert_eq!(message(&[], &[]), "layout: 0 taxels; 1 to 4194304");
+        assert_eq!(
+            message(&[DVec3::ZERO; 2], &[DVec3::Z, DVec3::new(0.0, 0.0, 2.0)]),
+            "layout, taxel 2: axis [0, 0, 2]; a vector of length one"
+        );
+        let nowhere = DVec3::new(f64::NAN, 0.0, 0.0);
+        assert_eq!(
+            message(&[nowhere], &[DVec3::Z]),
+            "layout, taxel 1: centre [NaN, 0, 0]; finite coordinates in metres"
+        );
+        let grid = Grid {
+            nx: 1 << 12,
+            ny: 1 << 12,
+            pitch: 1e-3,
+        };
+        let message = Layout::grid(&grid).unwrap_err().to_string();
+        assert_eq!(message, "taxel grid: 16777216 taxels; 1 to 4194304");
+    }
+}
