@@ -5,6 +5,7 @@ use crate::recognition::features::Features;
 use crate::sensing::{Basis, Ensemble, Solver};
 use crate::signal::NoiseUnit;
 use crate::study::table::Cell;
+use crate::study::{IMPERFECTIONS, Imperfection};
 
 /// A setting that a study can sweep.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -35,14 +36,26 @@ pub enum Axis {
     TrainTouches,
     /// Test touches decided on together.
     FusedTouches,
+    /// What a skin and its reader do to the signal.
+    Imperfection(Imperfection),
+    /// All that happens to the signal, in words: where only one thing at a time does.
+    Signal,
 }
 
-/// Every axis, in the order in which tables show them.
-pub const AXES: [Axis; 13] = [
+/// Every axis but [`Signal`](Axis::Signal), which stands for several, in the order in which tables show them.
+pub const AXES: [Axis; 21] = [
     Axis::Pitch,
     Axis::Size,
     Axis::Noise,
     Axis::Smoothing,
+    Axis::Imperfection(IMPERFECTIONS[0]),
+    Axis::Imperfection(IMPERFECTIONS[1]),
+    Axis::Imperfection(IMPERFECTIONS[2]),
+    Axis::Imperfection(IMPERFECTIONS[3]),
+    Axis::Imperfection(IMPERFECTIONS[4]),
+    Axis::Imperfection(IMPERFECTIONS[5]),
+    Axis::Imperfection(IMPERFECTIONS[6]),
+    Axis::Imperfection(IMPERFECTIONS[7]),
     Axis::Frames,
     Axis::Ensemble,
     Axis::Features,
@@ -82,6 +95,8 @@ impl Axis {
             Self::C => "c",
             Self::TrainTouches => "train_touches",
             Self::FusedTouches => "fused_touches",
+            Self::Imperfection(kind) => kind.key(),
+            Self::Signal => "signal",
         }
     }
 
@@ -101,6 +116,8 @@ impl Axis {
             Self::C => "C",
             Self::TrainTouches => "training touches",
             Self::FusedTouches => "touches fused",
+            Self::Imperfection(kind) => kind.name(),
+            Self::Signal => "signal",
         }
     }
 
@@ -127,6 +144,8 @@ impl Axis {
             Self::C => "soft-margin penalty C",
             Self::TrainTouches => "training touches an object",
             Self::FusedTouches => "touches decided on together",
+            Self::Imperfection(kind) => imperfection_title(kind),
+            Self::Signal => "signal",
         };
         title.to_owned()
     }
@@ -151,6 +170,8 @@ impl Axis {
             },
             Self::TrainTouches => with_suffix(cell.train_touches as f64, "", ""),
             Self::FusedTouches => with_suffix(cell.fused_touches as f64, "", ""),
+            Self::Imperfection(kind) => imperfection(kind, cell),
+            Self::Signal => word(&signal_words(cell)),
         }
     }
 }
@@ -163,6 +184,10 @@ impl Axis {
             Self::Measurements | Self::C | Self::Frames | Self::FusedTouches => {
                 format!("{} = {label}", self.name())
             }
+            Self::Signal => match &label[..] {
+                IDEAL => "an ideal signal".to_owned(),
+                _ => label,
+            },
             _ => format!("{} {label}", self.name()),
         }
     }
@@ -284,6 +309,63 @@ fn noise(cell: &Cell) -> AxisValue {
         }
         NoiseUnit::Mm => with_suffix(cell.noise_std, "", " mm"),
         NoiseUnit::N => with_suffix(cell.noise_std, "", " N"),
+    }
+}
+
+/// A signal that nothing happens to.
+const IDEAL: &str = "ideal";
+
+/// The place on a chart's axis of no converter: left of 24 bits, as if it had 32.
+const NO_CONVERTER: f64 = -5.0;
+
+fn imperfection_title(kind: Imperfection) -> &'static str {
+    match kind {
+        Imperfection::Hysteresis => "width of the hysteresis loop (% of full scale)",
+        Imperfection::Crosstalk => "crosstalk: what leaks to four neighbours (%)",
+        Imperfection::Gain => "gain mismatch: standard deviation (%)",
+        Imperfection::Drift => "drift: standard deviation at the end (% of full scale)",
+        Imperfection::Dead => "dead taxels (%)",
+        Imperfection::Stuck => "stuck taxels (%)",
+        Imperfection::Scan => "time to scan the array (ms)",
+        Imperfection::Quantisation => "resolution of the converter (bits)",
+    }
+}
+
+/// Strengths rise along an axis; bits fall along theirs, on a logarithmic scale.
+fn imperfection(kind: Imperfection, cell: &Cell) -> AxisValue {
+    let strength = cell.strengths().of(kind).unwrap_or(0.0);
+    let label = kind.describe(strength);
+    let (number, tick) = match kind {
+        Imperfection::Quantisation if strength == 0.0 => (NO_CONVERTER, label.clone()),
+        Imperfection::Quantisation => (-strength.log2(), short_number(strength)),
+        Imperfection::Scan => (strength, short_number(strength)),
+        _ => {
+            let percent = (strength * 1e8).round() / 1e6;
+            (percent, short_number(percent))
+        }
+    };
+    AxisValue {
+        number: Some(number),
+        tick,
+        label,
+    }
+}
+
+fn signal_words(cell: &Cell) -> String {
+    let noise = (cell.noise_std != 0.0).then(|| Axis::Noise.phrase(cell));
+    let smoothing = (cell.smoothing_mm != 0.0).then(|| Axis::Smoothing.phrase(cell));
+    let strengths = cell.strengths();
+    let imperfections = strengths
+        .present()
+        .map(|(kind, strength)| format!("{} {}", kind.name(), kind.describe(strength)));
+    let all: Vec<String> = noise
+        .into_iter()
+        .chain(smoothing)
+        .chain(imperfections)
+        .collect();
+    match all.is_empty() {
+        true => IDEAL.to_owned(),
+        false => all.join(", "),
     }
 }
 

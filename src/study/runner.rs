@@ -1,6 +1,7 @@
 //! Runs a plan: simulate each array once, measure each group once a trial, evaluate every cell.
 
 use super::evaluation::{Evaluation, Trial};
+use super::imperfection::skin;
 use super::measurement::measure_group;
 use super::plan::{Plan, millimetres};
 use super::progress::Progress;
@@ -11,6 +12,7 @@ use super::summary::{compare_with_best, most_confused, pareto, summarise};
 use super::sweep::{Group, Sweep};
 use super::table::{Cell, Confusion, StageTime, Tables};
 use crate::error::Result;
+use crate::random::Seed;
 use crate::signal::{Noise, SignalStep};
 use crate::world::Patch;
 use rayon::prelude::*;
@@ -183,21 +185,22 @@ impl Job<'_> {
     }
 }
 
-/// The study's steps with this group's levels.
+/// The study's steps in this group's condition.
 pub fn signal_steps(plan: &Plan, group: &Group) -> Vec<SignalStep> {
-    plan.steps
-        .iter()
-        .map(|step| match step {
-            StepSpec::Force => SignalStep::Force,
-            StepSpec::Noise => SignalStep::Noise(Noise {
-                std: group.noise,
-                unit: plan.noise_unit,
-            }),
-            StepSpec::Smoothing => SignalStep::Smoothing {
-                width: group.smoothing,
-            },
-        })
-        .collect()
+    let condition = &group.condition;
+    let skin = skin(&Seed::new(plan.spec.seed), &plan.arrays[group.array].grid);
+    let step = |&step: &StepSpec| match step {
+        StepSpec::Force => Some(SignalStep::Force),
+        StepSpec::Noise => Some(SignalStep::Noise(Noise {
+            std: condition.noise,
+            unit: plan.noise_unit,
+        })),
+        StepSpec::Smoothing => Some(SignalStep::Smoothing {
+            width: condition.smoothing,
+        }),
+        imperfection => condition.strengths.signal_step(imperfection, &skin),
+    };
+    plan.steps.iter().filter_map(step).collect()
 }
 
 /// An array in words: `64×64 at 2 mm`.

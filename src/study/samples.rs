@@ -1,9 +1,11 @@
 //! Sample touches for the eye: what the array feels of a few objects, noise included.
 
+use super::imperfection::Imperfection;
 use super::measurement::rates_of;
 use super::plan::{Plan, millimetres};
 use super::runner::signal_steps;
 use super::simulation::TouchedObject;
+use super::spec::CombineSpec;
 use super::sweep::{Group, Sweep};
 use crate::contact::{Workspace, press_to_depth};
 use crate::error::{Error, Result};
@@ -29,52 +31,107 @@ pub struct Samples {
 }
 
 /// The first touch of the objects that the study names for its picture (else of four spread over its list), read with its
-/// finest array at its highest noise, before smoothing.
+/// finest array at its highest noise, before smoothing; in a study of one imperfection at a time, the first touch of the first
+/// of them, read with each imperfection at its last value.
 pub fn sample_frames(plan: &Plan, sweep: &Sweep, touched: &[TouchedObject]) -> Result<Samples> {
     let group = loudest_group(plan, sweep)
         .ok_or_else(|| Error::input("study", "no cells", "at least one value an axis"))?;
-    let patch = plan.arrays[group.array];
-    let steps: Vec<SignalStep> = signal_steps(plan, group)
-        .into_iter()
-        .filter(|step| !matches!(step, SignalStep::Smoothing { .. }))
-        .collect();
-    let chain = Chain::new(&steps, &patch)?;
-    let seed = Seed::new(plan.spec.seed).named("signal").numbered(0);
-    let (mut workspace, mut scratch) = (Workspace::new(), Scratch::default());
-    let (mut frames, mut rates) = (Vec::new(), Vec::new());
-    for object in chosen(plan, touched)? {
-        let touch = &object.touches[0];
-        let scene = Scene::of_one(&patch, &object.object.model);
-        let pose = touch.patch_from_object(&object.rests[touch.rest]);
-        press_to_depth(&scene, &[pose], touch.depth, &mut workspace);
-        let mut frame = workspace.deflections().to_vec();
-        let touch_seed = seed.named(&object.object.name).numbered(0);
-        let rate = rates_of(&frame, &patch.taxel, plan.speed, &mut rates);
-        chain.apply(&mut frame, rate, &touch_seed, &mut scratch);
-        let frame = Array2::from_shape_vec((patch.grid.ny, patch.grid.nx), frame)
-            .expect("one value a taxel");
-        frames.push((object.object.name.replace('_', " "), frame));
-    }
-    let pitch_mm = millimetres(patch.grid.pitch);
-    let noise = match group.noise {
-        0.0 => "no noise".to_owned(),
-        level => format!("noise of {}", plan.describe_noise(level)),
+    let patch = &plan.arrays[group.array];
+    let objects = chosen(plan, touched)?;
+    let grid = &patch.grid;
+    let pitch_mm = millimetres(grid.pitch);
+    let array = format!("{} × {} taxels at {pitch_mm} mm", grid.nx, grid.ny);
+    let name = |object: &TouchedObject| object.object.name.replace('_', " ");
+    let mut frames = Vec::new();
+    let caption = match imperfect_groups(plan, sweep, group.array) {
+        groups if groups.is_empty() => {
+            for object in objects {
+                frames.push((name(object), read(plan, group, object)?));
+            }
+            let noise = match group.condition.noise {
+                0.0 => "no noise".to_owned(),
+                level => format!("noise of {}", plan.describe_noise(level)),
+            };
+            format!("One touch each on {array}, {noise}")
+        }
+        groups => {
+            for (words, group) in groups {
+                frames.push((words, read(plan, group, objects[0])?));
+            }
+            format!(
+                "A touch of the {} on {array}, one imperfection at a time",
+                name(objects[0])
+            )
+        }
     };
     Ok(Samples {
         frames,
         pitch_mm,
-        quantity: chain.quantity(),
-        caption: format!(
-            "One touch each on {} × {} taxels at {pitch_mm} mm, {noise}",
-            patch.grid.nx, patch.grid.ny
-        ),
+        quantity: Chain::new(&steps(plan, group), patch)?.quantity(),
+        caption,
     })
+}
+
+/// What an array of a group reads of an object's first touch, ny × nx.
+fn read(plan: &Plan, group: &Group, object: &TouchedObject) -> Result<Array2<f64>> {
+    let patch = plan.arrays[group.array];
+    let chain = Chain::new(&steps(plan, group), &patch)?;
+    let touch = &object.touches[0];
+    let scene = Scene::of_one(&patch, &object.object.model);
+    let pose = touch.patch_from_object(&object.rests[touch.rest]);
+    let mut workspace = Workspace::new();
+    press_to_depth(&scene, &[pose], touch.depth, &mut workspace);
+    let mut frame = workspace.deflections().to_vec();
+    let seed = Seed::new(plan.spec.seed).named("signal").numbered(0);
+    let seed = seed.named(&object.object.name).numbered(0);
+    let mut rates = Vec::new();
+    let rate = rates_of(&frame, &patch.taxel, plan.speed, &mut rates);
+    chain.apply(&mut frame, rate, &seed, &mut Scratch::default());
+    let frame =
+        Array2::from_shape_vec((patch.grid.ny, patch.grid.nx), frame).expect("one value a taxel");
+    Ok(frame)
+}
+
+/// The signal's steps but for smoothing, which hides what it is there to hide.
+fn steps(plan: &Plan, group: &Group) -> Vec<SignalStep> {
+    let mut steps = signal_steps(plan, group);
+    steps.retain(|step| !matches!(step, SignalStep::Smoothing { .. }));
+    steps
+}
+
+/// In a study of one imperfection at a time: the first group of an array, then for each imperfection the group that has it at
+/// its last value, with what to call them. A scan is left out: it does not change a touch that is read once.
+fn imperfect_groups<'a>(plan: &Plan, sweep: &'a Sweep, array: usize) -> Vec<(String, &'a Group)> {
+    if plan.combine != CombineSpec::OneAtATime {
+        return Vec::new();
+    }
+    let groups = || sweep.groups.iter().filter(|group| group.array == array);
+    let mut chosen = Vec::new();
+    for (kind, values) in &plan.imperfections {
+        let last = *values.last().unwrap_or(&0.0);
+        let has_it = |group: &&Group| group.condition.strengths.of(*kind) == Some(last);
+        if let Some(group) = groups().find(has_it)
+            && values.len() > 1
+            && *kind != Imperfection::Scan
+        {
+            chosen.push((format!("{} {}", kind.name(), kind.describe(last)), group));
+        }
+    }
+    if let (Some(first), false) = (groups().next(), chosen.is_empty()) {
+        chosen.insert(0, ("ideal".to_owned(), first));
+    }
+    chosen
 }
 
 /// The group with the most taxels and, among those, the most noise.
 fn loudest_group<'a>(plan: &Plan, sweep: &'a Sweep) -> Option<&'a Group> {
     sweep.groups.iter().max_by(|a, b| {
-        let key = |g: &Group| (plan.arrays[g.array].grid.n_taxels() as f64, g.noise);
+        let key = |g: &Group| {
+            (
+                plan.arrays[g.array].grid.n_taxels() as f64,
+                g.condition.noise,
+            )
+        };
         key(a)
             .partial_cmp(&key(b))
             .unwrap_or(std::cmp::Ordering::Equal)

@@ -2,13 +2,15 @@
 //!
 //! ```text
 //! array × frames a touch ── touches simulated once
-//!   └─ noise × smoothing × ensemble (a group), and trial ── frames read and projected once, at the largest m
+//!   └─ condition of the signal (noise × smoothing × …) × ensemble (a group), and trial ── frames read and projected once, at the largest m
 //!        └─ m × features × classifier × training touches (a family) ── rows made once
 //!             └─ C ── fit, score test touches
 //!                  └─ fused touches (a cell) ── decide
 //! ```
 
+use super::imperfection::Imperfection;
 use super::plan::{Plan, millimetres};
+use super::plan_signal::Condition;
 use super::published::check_published;
 use super::simulation::{TouchedObject, touch_labels};
 use super::splits::{check_folds, check_fused_touches, draw_split, group_keys, train_touches};
@@ -39,10 +41,8 @@ pub struct Group {
     pub array: usize,
     /// Frames a touch.
     pub frames: usize,
-    /// Noise standard deviation, in the plan's unit.
-    pub noise: f64,
-    /// Standard deviation of the smoothing, metres.
-    pub smoothing: f64,
+    /// What happens to the signal.
+    pub condition: Condition,
     /// How measurements are made.
     pub ensemble: Ensemble,
     /// Its cells, family by family.
@@ -124,19 +124,16 @@ impl Sweep {
     }
 
     fn add_groups(&mut self, plan: &Plan, (array, frames): (usize, usize), train: &[usize]) {
-        for &noise in &plan.noise {
-            for &smoothing in &plan.smoothing {
-                for &ensemble in &plan.ensembles {
-                    let group = Group {
-                        array,
-                        frames,
-                        noise,
-                        smoothing,
-                        ensemble,
-                        cells: Vec::new(),
-                    };
-                    self.add_group(plan, group, train);
-                }
+        for condition in plan.conditions() {
+            for &ensemble in &plan.ensembles {
+                let group = Group {
+                    array,
+                    frames,
+                    condition,
+                    ensemble,
+                    cells: Vec::new(),
+                };
+                self.add_group(plan, group, train);
             }
         }
     }
@@ -211,15 +208,30 @@ fn family_cells(plan: &Plan, family: &Cell) -> Vec<Cell> {
 /// A cell of a group, with m and with the first value of each axis that the group leaves open.
 fn group_cell(plan: &Plan, group: &Group, measurements: usize) -> Cell {
     let grid = &plan.arrays[group.array].grid;
+    let Condition {
+        noise,
+        smoothing,
+        strengths,
+    } = group.condition;
     Cell {
         cell: 0,
         pitch_mm: millimetres(grid.pitch),
         nx: grid.nx,
         ny: grid.ny,
         size_mm: millimetres(grid.pitch * grid.nx as f64),
-        noise_std: group.noise,
+        noise_std: noise,
         noise_unit: plan.noise_unit,
-        smoothing_mm: millimetres(group.smoothing),
+        smoothing_mm: millimetres(smoothing),
+        hysteresis_full_scale: strengths.of(Imperfection::Hysteresis),
+        crosstalk: strengths.of(Imperfection::Crosstalk),
+        gain_std: strengths.of(Imperfection::Gain),
+        drift_std_full_scale: strengths.of(Imperfection::Drift),
+        dead_fraction: strengths.of(Imperfection::Dead),
+        stuck_fraction: strengths.of(Imperfection::Stuck),
+        scan_time_ms: strengths.of(Imperfection::Scan),
+        adc_bits: strengths
+            .of(Imperfection::Quantisation)
+            .map(|bits| bits as u32),
         ensemble: group.ensemble,
         measurements,
         ratio: grid.n_taxels() as f64 / measurements as f64,
