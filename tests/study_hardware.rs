@@ -119,6 +119,51 @@ fn a_skin_without_strength_scores_as_one_without_the_keys_and_only_used_keys_are
 }
 
 #[test]
+fn another_skin_reads_test_touches_and_nothing_else() {
+    let signal =
+        "steps = [\"gain\"]\ngain_std = 0.5\ntested_on = [\"same_skin\", \"another_skin\"]";
+    let study = Study::new(&with_signal(signal));
+    let read = |cell, trial| {
+        cell_features(
+            &study.plan,
+            &study.sweep,
+            &study.touched,
+            (cell, trial),
+            &Silent,
+        )
+        .unwrap()
+    };
+    let (same, other) = (read(0, 0), read(1, 0));
+    assert_eq!(same.split, other.split);
+    let rows = |touches: &[usize], set: &bubbletouch::study::FeatureSet| {
+        set.data.records.select(ndarray::Axis(0), touches)
+    };
+    let (train, test) = (&same.split.train, &same.split.test);
+    assert_eq!(rows(train, &same), rows(train, &other));
+    // Where the gains of one skin are g and those of another h, the same press reads g x and h x.
+    let (one, another) = (rows(test, &same), rows(test, &other));
+    let mut ratios = vec![None; one.ncols()];
+    for ((place, a), b) in one.indexed_iter().zip(&another) {
+        assert_eq!(*a == 0.0, *b == 0.0);
+        if *a != 0.0 {
+            let ratio = *ratios[place.1].get_or_insert(b / a);
+            assert!((b / a / ratio - 1.0).abs() < 1e-12);
+        }
+    }
+    let known: Vec<f64> = ratios.into_iter().flatten().collect();
+    assert!(known.len() > 100 && known.iter().all(|&ratio| (ratio - 1.0).abs() > 1e-6));
+    // Each trial has a skin of its own to test on.
+    let (a, b) = (&other.data.records, &read(1, 1).data.records);
+    let both = other
+        .split
+        .test
+        .iter()
+        .find(|t| read(1, 1).split.test.contains(t));
+    let touch = *both.expect("a touch that two trials test");
+    assert_ne!(a.row(touch), b.row(touch));
+}
+
+#[test]
 fn a_touch_is_read_as_a_press_that_goes_on_after_another_touch() {
     let signal =
         "steps = [\"hysteresis\", \"scan\"]\nhysteresis_full_scale = 0.2\nscan_time_ms = 30.0";
@@ -258,6 +303,10 @@ fn keys_that_make_no_sense_are_refused_with_what_does() {
         (
             "steps = [\"faults\"]\ndead_fraction = 0.6\nstuck_fraction = [0.1, 0.5]",
             "signal.stuck_fraction: up to 0.5, with up to 0.6 of the taxels dead; at most 1",
+        ),
+        (
+            "steps = [\"crosstalk\"]\ncrosstalk = 0.1\ntested_on = \"another_skin\"",
+            "signal.tested_on: given for skins without a difference; gain, drift or faults",
         ),
         (
             "steps = [\"gain\", \"gain\"]\ngain_std = 0.1",

@@ -1,11 +1,12 @@
 //! The axes of a study: each setting's name, its value in a cell, and how both are written for people.
 
+use super::signal_axis;
 use crate::recognition::ClassifierKind;
 use crate::recognition::features::Features;
 use crate::sensing::{Basis, Ensemble, Solver};
 use crate::signal::NoiseUnit;
 use crate::study::table::Cell;
-use crate::study::{IMPERFECTIONS, Imperfection};
+use crate::study::{IMPERFECTIONS, Imperfection, TestedOn};
 
 /// A setting that a study can sweep.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -38,12 +39,14 @@ pub enum Axis {
     FusedTouches,
     /// What a skin and its reader do to the signal.
     Imperfection(Imperfection),
+    /// The skin that test touches are made with.
+    TestedOn,
     /// All that happens to the signal, in words: where only one thing at a time does.
     Signal,
 }
 
 /// Every axis but [`Signal`](Axis::Signal), which stands for several, in the order in which tables show them.
-pub const AXES: [Axis; 21] = [
+pub const AXES: [Axis; 22] = [
     Axis::Pitch,
     Axis::Size,
     Axis::Noise,
@@ -56,6 +59,7 @@ pub const AXES: [Axis; 21] = [
     Axis::Imperfection(IMPERFECTIONS[5]),
     Axis::Imperfection(IMPERFECTIONS[6]),
     Axis::Imperfection(IMPERFECTIONS[7]),
+    Axis::TestedOn,
     Axis::Frames,
     Axis::Ensemble,
     Axis::Features,
@@ -96,6 +100,7 @@ impl Axis {
             Self::TrainTouches => "train_touches",
             Self::FusedTouches => "fused_touches",
             Self::Imperfection(kind) => kind.key(),
+            Self::TestedOn => "tested_on",
             Self::Signal => "signal",
         }
     }
@@ -117,6 +122,7 @@ impl Axis {
             Self::TrainTouches => "training touches",
             Self::FusedTouches => "touches fused",
             Self::Imperfection(kind) => kind.name(),
+            Self::TestedOn => "test skin",
             Self::Signal => "signal",
         }
     }
@@ -144,7 +150,8 @@ impl Axis {
             Self::C => "soft-margin penalty C",
             Self::TrainTouches => "training touches an object",
             Self::FusedTouches => "touches decided on together",
-            Self::Imperfection(kind) => imperfection_title(kind),
+            Self::Imperfection(kind) => signal_axis::title(kind),
+            Self::TestedOn => "test skin",
             Self::Signal => "signal",
         };
         title.to_owned()
@@ -170,8 +177,12 @@ impl Axis {
             },
             Self::TrainTouches => with_suffix(cell.train_touches as f64, "", ""),
             Self::FusedTouches => with_suffix(cell.fused_touches as f64, "", ""),
-            Self::Imperfection(kind) => imperfection(kind, cell),
-            Self::Signal => word(&signal_words(cell)),
+            Self::Imperfection(kind) => signal_axis::value(kind, cell),
+            Self::TestedOn => word(match cell.tested_on.unwrap_or_default() {
+                TestedOn::SameSkin => "the same skin",
+                TestedOn::AnotherSkin => "another skin",
+            }),
+            Self::Signal => word(&signal_axis::words(cell)),
         }
     }
 }
@@ -184,8 +195,9 @@ impl Axis {
             Self::Measurements | Self::C | Self::Frames | Self::FusedTouches => {
                 format!("{} = {label}", self.name())
             }
+            Self::TestedOn => format!("tested on {label}"),
             Self::Signal => match &label[..] {
-                IDEAL => "an ideal signal".to_owned(),
+                signal_axis::IDEAL => "an ideal signal".to_owned(),
                 _ => label,
             },
             _ => format!("{} {label}", self.name()),
@@ -309,63 +321,6 @@ fn noise(cell: &Cell) -> AxisValue {
         }
         NoiseUnit::Mm => with_suffix(cell.noise_std, "", " mm"),
         NoiseUnit::N => with_suffix(cell.noise_std, "", " N"),
-    }
-}
-
-/// A signal that nothing happens to.
-const IDEAL: &str = "ideal";
-
-/// The place on a chart's axis of no converter: left of 24 bits, as if it had 32.
-const NO_CONVERTER: f64 = -5.0;
-
-fn imperfection_title(kind: Imperfection) -> &'static str {
-    match kind {
-        Imperfection::Hysteresis => "width of the hysteresis loop (% of full scale)",
-        Imperfection::Crosstalk => "crosstalk: what leaks to four neighbours (%)",
-        Imperfection::Gain => "gain mismatch: standard deviation (%)",
-        Imperfection::Drift => "drift: standard deviation at the end (% of full scale)",
-        Imperfection::Dead => "dead taxels (%)",
-        Imperfection::Stuck => "stuck taxels (%)",
-        Imperfection::Scan => "time to scan the array (ms)",
-        Imperfection::Quantisation => "resolution of the converter (bits)",
-    }
-}
-
-/// Strengths rise along an axis; bits fall along theirs, on a logarithmic scale.
-fn imperfection(kind: Imperfection, cell: &Cell) -> AxisValue {
-    let strength = cell.strengths().of(kind).unwrap_or(0.0);
-    let label = kind.describe(strength);
-    let (number, tick) = match kind {
-        Imperfection::Quantisation if strength == 0.0 => (NO_CONVERTER, label.clone()),
-        Imperfection::Quantisation => (-strength.log2(), short_number(strength)),
-        Imperfection::Scan => (strength, short_number(strength)),
-        _ => {
-            let percent = (strength * 1e8).round() / 1e6;
-            (percent, short_number(percent))
-        }
-    };
-    AxisValue {
-        number: Some(number),
-        tick,
-        label,
-    }
-}
-
-fn signal_words(cell: &Cell) -> String {
-    let noise = (cell.noise_std != 0.0).then(|| Axis::Noise.phrase(cell));
-    let smoothing = (cell.smoothing_mm != 0.0).then(|| Axis::Smoothing.phrase(cell));
-    let strengths = cell.strengths();
-    let imperfections = strengths
-        .present()
-        .map(|(kind, strength)| format!("{} {}", kind.name(), kind.describe(strength)));
-    let all: Vec<String> = noise
-        .into_iter()
-        .chain(smoothing)
-        .chain(imperfections)
-        .collect();
-    match all.is_empty() {
-        true => IDEAL.to_owned(),
-        false => all.join(", "),
     }
 }
 

@@ -324,6 +324,7 @@ fn named(axis: Axis, value: &AxisValue) -> String {
         Axis::Frames if value.label == "1" => "1 frame a touch".to_owned(),
         Axis::FusedTouches if value.label == "1" => "a touch alone".to_owned(),
         Axis::Frames | Axis::FusedTouches => format!("{} {}", value.label, axis.name()),
+        Axis::TestedOn => format!("tested on {}", value.label),
         _ => format!("{} {}", axis.name(), value.label),
     }
 }

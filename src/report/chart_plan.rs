@@ -27,7 +27,7 @@ pub struct ChartPlan {
 }
 
 /// First choice first: what a reader looks for along x.
-const ALONG_X: [Axis; 13] = [
+const ALONG_X: [Axis; 14] = [
     Axis::Ratio,
     Axis::Measurements,
     Axis::FusedTouches,
@@ -41,10 +41,12 @@ const ALONG_X: [Axis; 13] = [
     Axis::Features,
     Axis::Ensemble,
     Axis::Classifier,
+    Axis::TestedOn,
 ];
 
 /// What makes good lines: resolution first, then ways of treating the signal.
-const AS_LINES: [Axis; 13] = [
+const AS_LINES: [Axis; 14] = [
+    Axis::TestedOn,
     Axis::Pitch,
     Axis::Ensemble,
     Axis::Features,
@@ -61,7 +63,8 @@ const AS_LINES: [Axis; 13] = [
 ];
 
 /// What makes good panels.
-const AS_PANELS: [Axis; 13] = [
+const AS_PANELS: [Axis; 14] = [
+    Axis::TestedOn,
     Axis::Size,
     Axis::Frames,
     Axis::Classifier,

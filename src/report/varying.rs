@@ -84,6 +84,7 @@ impl Levels {
             Axis::Imperfection(Imperfection::Quantisation) => "none",
             Axis::Imperfection(Imperfection::Scan) => "0 ms",
             Axis::Imperfection(_) => "0 %",
+            Axis::TestedOn => "the same skin",
             _ => return false,
         };
         self.values.iter().all(|value| value.label == usual)
@@ -122,6 +123,7 @@ impl Settings {
         ]
         .into_iter()
         .chain(IMPERFECTIONS.map(Axis::Imperfection))
+        .chain([Axis::TestedOn])
         {
             let others: Vec<Axis> = varying
                 .iter()

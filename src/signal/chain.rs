@@ -5,7 +5,7 @@ use super::{
     Crosstalk, Drift, Faults, GainMismatch, Hysteresis, Noise, Quantisation, Quantity, Scan,
     SignalStep, Smoothing,
 };
-use super::{faults, force, gain, noise};
+use super::{drift, faults, force, gain, noise};
 use crate::error::{Error, Result};
 use crate::random::Seed;
 use crate::world::{Grid, Patch, Taxel};
@@ -191,8 +191,9 @@ impl Chain {
             }
             Prepared::Gain(gains) => each(frames, &mut |frame| gain::multiply(frame, gains)),
             Prepared::Drift(zeros) => {
-                let time = time_of(touch);
-                each(frames, &mut |frame| zeros.add(frame, time));
+                let now = &mut scratch[..n_taxels];
+                zeros.at(time_of(touch), now);
+                each(frames, &mut |frame| drift::add(frame, now));
             }
             Prepared::Faults(taxels) => each(frames, &mut |frame| faults::replace(frame, taxels)),
             Prepared::Scan(scan) => {
@@ -237,7 +238,10 @@ impl Chain {
                 Prepared::Crosstalk(Crosstalk::new(*leak, &self.grid)?)
             }
             SignalStep::Gain(mismatch) => Prepared::Gain(mismatch.gains(n_taxels)?),
-            SignalStep::Drift(drift) => Prepared::Drift(drift.zeros(n_taxels, full_scale)?),
+            SignalStep::Drift(drift) => {
+                self.scratch_len = self.scratch_len.max(n_taxels);
+                Prepared::Drift(drift.zeros(n_taxels, full_scale)?)
+            }
             SignalStep::Faults(faults) => Prepared::Faults(faults.taxels(n_taxels, full_scale)?),
             SignalStep::Scan { seconds } => Prepared::Scan(Scan::new(*seconds)?),
             SignalStep::Quantisation { bits } => {

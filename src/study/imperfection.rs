@@ -5,6 +5,7 @@ use super::spec::{SignalSpec, StepSpec};
 use crate::random::Seed;
 use crate::signal::{Drift, Faults, GainMismatch, SignalStep};
 use crate::world::Grid;
+use serde::{Deserialize, Serialize};
 
 /// Seconds in a millisecond.
 const MS: f64 = 1e-3;
@@ -41,6 +42,17 @@ pub const IMPERFECTIONS: [Imperfection; 8] = [
     Imperfection::Scan,
     Imperfection::Quantisation,
 ];
+
+/// The skin that tells whether a classifier has learned.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum TestedOn {
+    /// The skin that trained it: what is peculiar to the skin may be learned.
+    #[default]
+    SameSkin,
+    /// Another of the same make, each trial a new one: gains, drift and faults are drawn anew.
+    AnotherSkin,
+}
 
 /// A strength for each imperfection, in the unit of its key; `None` for those that a study does not have.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -199,7 +211,7 @@ impl Strengths {
     }
 }
 
-/// The skin of a study's array: the same in each touch and trial, and in training and test touches.
+/// The skin of a study's array: the same in each touch and trial.
 pub(super) fn skin(study: &Seed, grid: &Grid) -> Seed {
     let sides = [grid.nx as u64, grid.ny as u64];
     let named = sides

@@ -1,5 +1,6 @@
 //! Frames → signal → measurements, for one condition of the signal, ensemble and trial.
 
+use super::imperfection::{TestedOn, skin};
 use super::plan::Plan;
 use super::runner::signal_steps;
 use super::simulation::{Frames, TouchedObject};
@@ -7,6 +8,7 @@ use super::sweep::Group;
 use super::table::Cell;
 use crate::error::Result;
 use crate::random::Seed;
+use crate::recognition::split::Split;
 use crate::sensing::Projection;
 use crate::signal::{Chain, Recording, Scratch};
 use crate::world::Taxel;
@@ -34,8 +36,8 @@ pub struct Measurements {
 /// What a reading is made with, the same for all frames.
 #[derive(Clone, Copy)]
 pub struct Reading<'a> {
-    /// Signal steps.
-    pub chain: &'a Chain,
+    /// Signal steps, of each skin that touches are made with.
+    pub chains: &'a [Chain],
     /// The ensemble's matrix.
     pub projection: &'a Projection,
     /// The taxels that were pressed.
@@ -71,6 +73,8 @@ pub struct TouchToRead {
     pub interval: Option<f64>,
     /// The number of the touch that came before it; `None` for a fresh skin.
     pub before: Option<usize>,
+    /// The number of its skin among the reading's chains.
+    pub skin: usize,
 }
 
 /// All touches, named by their object and their number within it; each at rest while it is read, on a fresh skin.
@@ -81,6 +85,7 @@ pub fn touches_to_read(touched: &[TouchedObject], seed: &Seed) -> Vec<TouchToRea
             seed: object.numbered(touch),
             interval: None,
             before: None,
+            skin: 0,
         })
     };
     touched.iter().flat_map(of_object).collect()
@@ -112,7 +117,7 @@ pub fn measure_group(
     plan: &Plan,
     group: &Group,
     (touched, frames): (&[TouchedObject], &Frames),
-    trial: usize,
+    (trial, split): (usize, &Split),
     n_measurements: usize,
 ) -> Result<Measurements> {
     let patch = &plan.arrays[group.array];
@@ -124,17 +129,25 @@ pub fn measure_group(
         n_measurements,
         &seed.named("projection").numbered(trial),
     )?;
+    let skins = skins(plan, group, trial);
+    let chains: Vec<Chain> = skins
+        .iter()
+        .map(|skin| Chain::new(&signal_steps(plan, group, skin), patch))
+        .collect::<Result<_>>()?;
     let reading = Reading {
-        chain: &Chain::new(&signal_steps(plan, group), patch)?,
+        chains: &chains,
         projection: &projection,
         taxel: patch.taxel,
         speed: plan.speed,
     };
-    let touches = touches_of_study(
+    let mut touches = touches_of_study(
         plan,
         (touched, frames.n_frames),
         &seed.named("signal").numbered(trial),
     );
+    for &touch in &split.test {
+        touches[touch].skin = skins.len() - 1;
+    }
     let (values, cpu_s) = measure(reading, frames.deflection.view(), &touches);
     let ones = Array2::ones((1, patch.grid.n_taxels()));
     Ok(Measurements {
@@ -143,6 +156,16 @@ pub fn measure_group(
         of_ones: projection.measure(ones.view()).row(0).to_owned(),
         cpu_s,
     })
+}
+
+/// The skin of training touches, and that of test touches if it is another.
+fn skins(plan: &Plan, group: &Group, trial: u64) -> Vec<Seed> {
+    let grid = &plan.arrays[group.array].grid;
+    let first = skin(&Seed::new(plan.spec.seed), grid);
+    match group.tested_on {
+        TestedOn::SameSkin => vec![first],
+        TestedOn::AnotherSkin => vec![first, first.named("another").numbered(trial)],
+    }
 }
 
 /// Reads every touch of (n_touches · F) × n_taxels metres of deflection. With the measurements (n_touches · F) × m come
@@ -192,7 +215,9 @@ fn measure_block(
         .iter()
         .zip(all.chunks_exact_mut(n_frames * n_taxels))
     {
-        let before = touch.before.filter(|_| reading.chain.remembers());
+        let before = touch
+            .before
+            .filter(|_| reading.chains[touch.skin].remembers());
         let Some(before) = before else {
             reading.read(touch, (frames, 0), &mut rates, scratch);
             continue;
@@ -225,7 +250,8 @@ impl Reading<'_> {
             n_before,
             interval: touch.interval,
         };
-        self.chain.apply_recording(recording, &touch.seed, scratch);
+        let chain = &self.chains[touch.skin];
+        chain.apply_recording(recording, &touch.seed, scratch);
     }
 }
 

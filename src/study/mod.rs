@@ -31,6 +31,7 @@ mod samples;
 mod simulation;
 mod spec;
 mod spec_scene;
+mod spec_signal;
 mod splits;
 mod summary;
 mod sweep;
@@ -41,7 +42,7 @@ mod training;
 pub use axis::Axis;
 pub use estimate::Estimate;
 pub use feature_files::{FeatureSet, cell_features, read_features, write_features, write_npy};
-pub use imperfection::{IMPERFECTIONS, Imperfection, Strengths};
+pub use imperfection::{IMPERFECTIONS, Imperfection, Strengths, TestedOn};
 pub use kind::StudyKind;
 pub use object_files::{
     MeshUse, NamedMesh, load_mesh, load_named_meshes, load_objects, read_mesh_file,

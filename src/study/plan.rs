@@ -3,7 +3,7 @@
 //! This is the only place where millimetres, degrees and fractions become metres, radians and absolute values.
 
 use super::check::Check;
-use super::imperfection::Imperfection;
+use super::imperfection::{Imperfection, TestedOn};
 use super::spec::{CombineSpec, GroupSpec, StepSpec, StudySpec};
 use super::training::ChoicePlan;
 use crate::error::Result;
@@ -44,6 +44,8 @@ pub struct Plan {
     pub imperfections: Vec<(Imperfection, Vec<f64>)>,
     /// How the axes of the signal are combined.
     pub combine: CombineSpec,
+    /// The axis of skins that test touches are made with.
+    pub tested_on: Vec<TestedOn>,
     /// The ensemble axis.
     pub ensembles: Vec<Ensemble>,
     /// The axis of measurements.
@@ -116,6 +118,7 @@ impl Plan {
         let smoothing = check.smoothing(&spec.signal)?;
         let imperfections = check.imperfections(&spec.signal, &spec.touches)?;
         check.steps(&spec.signal)?;
+        let tested_on = check.tested_on(&spec.signal)?;
         let ensembles = check.list("sensing.ensemble", spec.sensing.ensemble.values())?;
         let amounts = check.amounts(&spec.sensing, &arrays)?;
         let frames = check.counts("touches.frames", &spec.touches.frames)?;
@@ -142,6 +145,7 @@ impl Plan {
             smoothing,
             imperfections,
             combine: spec.signal.combine,
+            tested_on,
             ensembles,
             amounts,
             frames,

@@ -1,7 +1,7 @@
 //! The checks of `[signal]`, and the conditions that its axes make.
 
 use super::check::{Check, not_negative};
-use super::imperfection::{IMPERFECTIONS, Imperfection, Strengths};
+use super::imperfection::{IMPERFECTIONS, Imperfection, Strengths, TestedOn};
 use super::plan::{MM, Plan};
 use super::spec::{CombineSpec, SignalSpec, StepSpec, TouchesSpec};
 use crate::error::Result;
@@ -122,6 +122,23 @@ impl Check<'_> {
             return Err(self.error(&key, given, "a touches.speed_mm_per_s above 0 beside it"));
         }
         Ok(())
+    }
+
+    /// The axis of test skins; another one shows only if something belongs to a skin.
+    pub fn tested_on(&self, signal: &SignalSpec) -> Result<Vec<TestedOn>> {
+        let Some(axis) = &signal.tested_on else {
+            return Ok(vec![TestedOn::SameSkin]);
+        };
+        let of_skin = [StepSpec::Gain, StepSpec::Drift, StepSpec::Faults];
+        if !signal.steps.iter().any(|step| of_skin.contains(step)) {
+            let allowed = "gain, drift or faults among signal.steps beside it";
+            return Err(self.error(
+                "signal.tested_on",
+                "given for skins without a difference",
+                allowed,
+            ));
+        }
+        self.list("signal.tested_on", axis.values())
     }
 
     /// Each step at most once, and none whose axis is set but which is not listed, nor the other way round if it does

@@ -1,7 +1,6 @@
 //! Runs a plan: simulate each array once, measure each group once a trial, evaluate every cell.
 
 use super::evaluation::{Evaluation, Trial};
-use super::imperfection::skin;
 use super::measurement::measure_group;
 use super::plan::{Plan, millimetres};
 use super::progress::Progress;
@@ -151,7 +150,8 @@ impl Job<'_> {
         let mut measure_s = 0.0;
         for n_measurements in self.group.projected() {
             let touches = (self.study.touched, self.frames);
-            let measured = measure_group(plan, self.group, touches, self.trial, n_measurements)?;
+            let trial = (self.trial, &sweep.splits[self.trial]);
+            let measured = measure_group(plan, self.group, touches, trial, n_measurements)?;
             measure_s += measured.cpu_s;
             // A group of prefixes is projected once and serves all cells; else each m serves its own.
             let nested = self.group.ensemble.is_prefix_nested();
@@ -185,10 +185,9 @@ impl Job<'_> {
     }
 }
 
-/// The study's steps in this group's condition.
-pub fn signal_steps(plan: &Plan, group: &Group) -> Vec<SignalStep> {
+/// The study's steps in this group's condition, on a skin.
+pub fn signal_steps(plan: &Plan, group: &Group, skin: &Seed) -> Vec<SignalStep> {
     let condition = &group.condition;
-    let skin = skin(&Seed::new(plan.spec.seed), &plan.arrays[group.array].grid);
     let step = |&step: &StepSpec| match step {
         StepSpec::Force => Some(SignalStep::Force),
         StepSpec::Noise => Some(SignalStep::Noise(Noise {
@@ -198,7 +197,7 @@ pub fn signal_steps(plan: &Plan, group: &Group) -> Vec<SignalStep> {
         StepSpec::Smoothing => Some(SignalStep::Smoothing {
             width: condition.smoothing,
         }),
-        imperfection => condition.strengths.signal_step(imperfection, &skin),
+        imperfection => condition.strengths.signal_step(imperfection, skin),
     };
     plan.steps.iter().filter_map(step).collect()
 }

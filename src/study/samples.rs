@@ -1,6 +1,6 @@
 //! Sample touches for the eye: what the array feels of a few objects, noise included.
 
-use super::imperfection::Imperfection;
+use super::imperfection::{Imperfection, skin};
 use super::measurement::rates_of;
 use super::plan::{Plan, millimetres};
 use super::runner::signal_steps;
@@ -42,6 +42,7 @@ pub fn sample_frames(plan: &Plan, sweep: &Sweep, touched: &[TouchedObject]) -> R
     let pitch_mm = millimetres(grid.pitch);
     let array = format!("{} × {} taxels at {pitch_mm} mm", grid.nx, grid.ny);
     let name = |object: &TouchedObject| object.object.name.replace('_', " ");
+    let quantity = Chain::new(&steps(plan, group), patch)?.quantity();
     let mut frames = Vec::new();
     let caption = match imperfect_groups(plan, sweep, group.array) {
         groups if groups.is_empty() => {
@@ -55,11 +56,15 @@ pub fn sample_frames(plan: &Plan, sweep: &Sweep, touched: &[TouchedObject]) -> R
             format!("One touch each on {array}, {noise}")
         }
         groups => {
+            // One taxel of a large gain would take the colours of all others.
+            let full_scale = quantity.full_scale(&patch.taxel);
             for (words, group) in groups {
-                frames.push((words, read(plan, group, objects[0])?));
+                let mut frame = read(plan, group, objects[0])?;
+                frame.mapv_inplace(|value| value.min(full_scale));
+                frames.push((words, frame));
             }
             format!(
-                "A touch of the {} on {array}, one imperfection at a time",
+                "A touch of the {} on {array}, one imperfection at a time; colours end at the full scale",
                 name(objects[0])
             )
         }
@@ -67,7 +72,7 @@ pub fn sample_frames(plan: &Plan, sweep: &Sweep, touched: &[TouchedObject]) -> R
     Ok(Samples {
         frames,
         pitch_mm,
-        quantity: Chain::new(&steps(plan, group), patch)?.quantity(),
+        quantity,
         caption,
     })
 }
@@ -94,7 +99,8 @@ fn read(plan: &Plan, group: &Group, object: &TouchedObject) -> Result<Array2<f64
 
 /// The signal's steps but for smoothing, which hides what it is there to hide.
 fn steps(plan: &Plan, group: &Group) -> Vec<SignalStep> {
-    let mut steps = signal_steps(plan, group);
+    let skin = skin(&Seed::new(plan.spec.seed), &plan.arrays[group.array].grid);
+    let mut steps = signal_steps(plan, group, &skin);
     steps.retain(|step| !matches!(step, SignalStep::Smoothing { .. }));
     steps
 }

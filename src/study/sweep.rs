@@ -2,13 +2,13 @@
 //!
 //! ```text
 //! array × frames a touch ── touches simulated once
-//!   └─ condition of the signal (noise × smoothing × …) × ensemble (a group), and trial ── frames read and projected once, at the largest m
+//!   └─ condition of the signal × test skin × ensemble (a group), and trial ── frames read and projected once, at the largest m
 //!        └─ m × features × classifier × training touches (a family) ── rows made once
 //!             └─ C ── fit, score test touches
 //!                  └─ fused touches (a cell) ── decide
 //! ```
 
-use super::imperfection::Imperfection;
+use super::imperfection::{Imperfection, TestedOn};
 use super::plan::{Plan, millimetres};
 use super::plan_signal::Condition;
 use super::published::check_published;
@@ -43,6 +43,8 @@ pub struct Group {
     pub frames: usize,
     /// What happens to the signal.
     pub condition: Condition,
+    /// The skin that test touches are made with.
+    pub tested_on: TestedOn,
     /// How measurements are made.
     pub ensemble: Ensemble,
     /// Its cells, family by family.
@@ -125,15 +127,18 @@ impl Sweep {
 
     fn add_groups(&mut self, plan: &Plan, (array, frames): (usize, usize), train: &[usize]) {
         for condition in plan.conditions() {
-            for &ensemble in &plan.ensembles {
-                let group = Group {
-                    array,
-                    frames,
-                    condition,
-                    ensemble,
-                    cells: Vec::new(),
-                };
-                self.add_group(plan, group, train);
+            for &tested_on in &plan.tested_on {
+                for &ensemble in &plan.ensembles {
+                    let group = Group {
+                        array,
+                        frames,
+                        condition,
+                        tested_on,
+                        ensemble,
+                        cells: Vec::new(),
+                    };
+                    self.add_group(plan, group, train);
+                }
             }
         }
     }
@@ -232,6 +237,7 @@ fn group_cell(plan: &Plan, group: &Group, measurements: usize) -> Cell {
         adc_bits: strengths
             .of(Imperfection::Quantisation)
             .map(|bits| bits as u32),
+        tested_on: plan.spec.signal.tested_on.as_ref().map(|_| group.tested_on),
         ensemble: group.ensemble,
         measurements,
         ratio: grid.n_taxels() as f64 / measurements as f64,

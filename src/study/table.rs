@@ -2,7 +2,7 @@
 //!
 //! A row of `accuracy.csv` is a [`Cell`] followed by a [`TrialScore`]; the other tables are built the same way.
 
-use super::imperfection::{IMPERFECTIONS, Imperfection, Strengths};
+use super::imperfection::{IMPERFECTIONS, Imperfection, Strengths, TestedOn};
 use crate::recognition::ClassifierKind;
 use crate::recognition::features::Features;
 use crate::sensing::Ensemble;
@@ -53,6 +53,9 @@ pub struct Cell {
     /// Bits of the converter; 0 for none.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub adc_bits: Option<u32>,
+    /// The skin that test touches are made with; only if the study has the key.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub tested_on: Option<TestedOn>,
     /// How measurements are made.
     pub ensemble: Ensemble,
     /// Measurements a frame, m.
@@ -315,6 +318,7 @@ pub(crate) mod tests {
             stuck_fraction: None,
             scan_time_ms: None,
             adc_bits: None,
+            tested_on: None,
             ensemble: Ensemble::Gaussian,
             measurements: 64,
             ratio: 16.0,

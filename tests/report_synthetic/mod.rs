@@ -60,6 +60,7 @@ pub fn cell() -> Cell {
         stuck_fraction: None,
         scan_time_ms: None,
         adc_bits: None,
+        tested_on: None,
         ensemble: Ensemble::Gaussian,
         measurements: 256,
         ratio: 16.0,

@@ -136,10 +136,10 @@ fn read(
     rows: &[usize],
     noise: Option<f64>,
 ) -> Result<Array2<f64>> {
-    let chain = Chain::new(&plan.signal_steps(noise), &plan.patch)?;
+    let chains = [Chain::new(&plan.signal_steps(noise), &plan.patch)?];
     let projection = plan.projection(Ensemble::Identity, 1)?;
     let reading = Reading {
-        chain: &chain,
+        chains: &chains,
         projection: &projection,
         taxel: plan.patch.taxel,
         speed: plan.speed,
