@@ -221,7 +221,7 @@ fn a_touch_is_read_as_a_press_that_goes_on_after_another_touch() {
 #[test]
 fn the_tables_are_the_same_bytes_at_any_number_of_threads() {
     let case = Case::new();
-    case.file("study.toml", &with_signal(ALL));
+    case.file("study.toml", with_signal(ALL));
     for threads in ["1", "3"] {
         case.succeeds(&["run", "study.toml", "--threads", threads, "--out", threads]);
     }

@@ -13,13 +13,19 @@ const NO_CONVERTER: f64 = -5.0;
 /// The title of a chart's axis, with unit.
 pub(super) fn title(kind: Imperfection) -> &'static str {
     match kind {
-        Imperfection::Hysteresis => "width of the hysteresis loop (% of full scale)",
-        Imperfection::Crosstalk => "crosstalk: what leaks to four neighbours (%)",
-        Imperfection::Gain => "gain mismatch: standard deviation (%)",
-        Imperfection::Drift => "drift: standard deviation at the end (% of full scale)",
-        Imperfection::Dead => "dead taxels (%)",
-        Imperfection::Stuck => "stuck taxels (%)",
-        Imperfection::Scan => "time to scan the array (ms)",
+        Imperfection::Hysteresis => {
+            "width of the hysteresis loop (% of full scale, square-root scale)"
+        }
+        Imperfection::Crosstalk => {
+            "crosstalk: what leaks to four neighbours (%, square-root scale)"
+        }
+        Imperfection::Gain => "gain mismatch: standard deviation (%, square-root scale)",
+        Imperfection::Drift => {
+            "drift: standard deviation at the end (% of full scale, square-root scale)"
+        }
+        Imperfection::Dead => "dead taxels (%, square-root scale)",
+        Imperfection::Stuck => "stuck taxels (%, square-root scale)",
+        Imperfection::Scan => "time to scan the array (ms, square-root scale)",
         Imperfection::Quantisation => "resolution of the converter (bits)",
     }
 }

@@ -36,7 +36,7 @@ pub struct Zeros {
     /// ξ, mode after mode, one for each taxel.
     coefficients: Vec<f64>,
     /// The amplitude of each mode, in the frame's unit.
-    amplitudes: [f64; N_MODES],
+    amplitudes: Vec<f64>,
 }
 
 impl Drift {
@@ -46,7 +46,7 @@ impl Drift {
     /// A negative or non-finite `std`.
     pub fn zeros(&self, n_taxels: usize, full_scale: f64) -> Result<Zeros> {
         not_negative("drift std", self.std)?;
-        let usual: [f64; N_MODES] = std::array::from_fn(|mode| SQRT_2 / frequency(mode));
+        let usual: Vec<f64> = (0..N_MODES).map(|mode| SQRT_2 / frequency(mode)).collect();
         let at_end = usual.iter().map(|a| a * a).sum::<f64>().sqrt();
         let mut rng = self.skin.named("drift").rng();
         Ok(Zeros {
@@ -54,7 +54,10 @@ impl Drift {
             coefficients: (0..N_MODES * n_taxels)
                 .map(|_| rng.sample(StandardNormal))
                 .collect(),
-            amplitudes: usual.map(|a| self.std * full_scale * a / at_end),
+            amplitudes: usual
+                .iter()
+                .map(|a| self.std * full_scale * a / at_end)
+                .collect(),
         })
     }
 }

@@ -10,8 +10,8 @@ use super::sweep::{Group, Sweep};
 use crate::contact::{Workspace, press_to_depth};
 use crate::error::{Error, Result};
 use crate::random::Seed;
-use crate::signal::{Chain, Quantity, Scratch, SignalStep};
-use crate::world::Scene;
+use crate::signal::{Chain, Quantity, Recording, Scratch, SignalStep};
+use crate::world::{Patch, Scene};
 use ndarray::Array2;
 
 /// How many objects a picture of samples shows when the study names none.
@@ -32,12 +32,13 @@ pub struct Samples {
 
 /// The first touch of the objects that the study names for its picture (else of four spread over its list), read with its
 /// finest array at its highest noise, before smoothing; in a study of one imperfection at a time, the first touch of the first
-/// of them, read with each imperfection at its last value.
+/// of them, read with each imperfection at its last value. A skin that remembers was touched by the last of them before.
 pub fn sample_frames(plan: &Plan, sweep: &Sweep, touched: &[TouchedObject]) -> Result<Samples> {
     let group = loudest_group(plan, sweep)
         .ok_or_else(|| Error::input("study", "no cells", "at least one value an axis"))?;
     let patch = &plan.arrays[group.array];
     let objects = chosen(plan, touched)?;
+    let before = objects.last().copied().unwrap_or(&touched[0]);
     let grid = &patch.grid;
     let pitch_mm = millimetres(grid.pitch);
     let array = format!("{} × {} taxels at {pitch_mm} mm", grid.nx, grid.ny);
@@ -47,7 +48,7 @@ pub fn sample_frames(plan: &Plan, sweep: &Sweep, touched: &[TouchedObject]) -> R
     let caption = match imperfect_groups(plan, sweep, group.array) {
         groups if groups.is_empty() => {
             for object in objects {
-                frames.push((name(object), read(plan, group, object)?));
+                frames.push((name(object), read(plan, group, object, before)?));
             }
             let noise = match group.condition.noise {
                 0.0 => "no noise".to_owned(),
@@ -59,13 +60,14 @@ pub fn sample_frames(plan: &Plan, sweep: &Sweep, touched: &[TouchedObject]) -> R
             // One taxel of a large gain would take the colours of all others.
             let full_scale = quantity.full_scale(&patch.taxel);
             for (words, group) in groups {
-                let mut frame = read(plan, group, objects[0])?;
+                let mut frame = read(plan, group, objects[0], before)?;
                 frame.mapv_inplace(|value| value.min(full_scale));
                 frames.push((words, frame));
             }
             format!(
-                "A touch of the {} on {array}, one imperfection at a time; colours end at the full scale",
-                name(objects[0])
+                "A touch of the {} after one of the {}, on {array}; colours end at the full scale",
+                name(objects[0]),
+                name(before)
             )
         }
     };
@@ -77,24 +79,48 @@ pub fn sample_frames(plan: &Plan, sweep: &Sweep, touched: &[TouchedObject]) -> R
     })
 }
 
-/// What an array of a group reads of an object's first touch, ny × nx.
-fn read(plan: &Plan, group: &Group, object: &TouchedObject) -> Result<Array2<f64>> {
+/// What an array of a group reads of an object's first touch, ny × nx; a skin that remembers was touched by another before.
+fn read(
+    plan: &Plan,
+    group: &Group,
+    object: &TouchedObject,
+    before: &TouchedObject,
+) -> Result<Array2<f64>> {
     let patch = plan.arrays[group.array];
     let chain = Chain::new(&steps(plan, group), &patch)?;
-    let touch = &object.touches[0];
-    let scene = Scene::of_one(&patch, &object.object.model);
-    let pose = touch.patch_from_object(&object.rests[touch.rest]);
-    let mut workspace = Workspace::new();
-    press_to_depth(&scene, &[pose], touch.depth, &mut workspace);
-    let mut frame = workspace.deflections().to_vec();
+    let n_taxels = patch.grid.n_taxels();
+    let mut frames = Vec::new();
+    if chain.remembers() {
+        frames.extend(press(&patch, before));
+        frames.resize(2 * n_taxels, 0.0);
+    }
+    let n_before = frames.len() / n_taxels;
+    frames.extend(press(&patch, object));
     let seed = Seed::new(plan.spec.seed).named("signal").numbered(0);
     let seed = seed.named(&object.object.name).numbered(0);
     let mut rates = Vec::new();
-    let rate = rates_of(&frame, &patch.taxel, plan.speed, &mut rates);
-    chain.apply(&mut frame, rate, &seed, &mut Scratch::default());
+    let rates = rates_of(&frames, &patch.taxel, plan.speed, &mut rates);
+    let recording = Recording {
+        frames: &mut frames,
+        rates,
+        n_before,
+        interval: None,
+    };
+    chain.apply_recording(recording, &seed, &mut Scratch::default());
+    let frame = frames.split_off(n_before * n_taxels);
     let frame =
         Array2::from_shape_vec((patch.grid.ny, patch.grid.nx), frame).expect("one value a taxel");
     Ok(frame)
+}
+
+/// The deflections of an object's first touch.
+fn press(patch: &Patch, object: &TouchedObject) -> Vec<f64> {
+    let touch = &object.touches[0];
+    let scene = Scene::of_one(patch, &object.object.model);
+    let pose = touch.patch_from_object(&object.rests[touch.rest]);
+    let mut workspace = Workspace::new();
+    press_to_depth(&scene, &[pose], touch.depth, &mut workspace);
+    workspace.deflections().to_vec()
 }
 
 /// The signal's steps but for smoothing, which hides what it is there to hide.
