@@ -45,8 +45,23 @@ pub fn sample_frames(plan: &Plan, sweep: &Sweep, touched: &[TouchedObject]) -> R
     let name = |object: &TouchedObject| object.object.name.replace('_', " ");
     let quantity = Chain::new(&steps(plan, group), patch)?.quantity();
     let mut frames = Vec::new();
-    let caption = match imperfect_groups(plan, sweep, group.array) {
-        groups if groups.is_empty() => {
+    let groups = imperfect_groups(plan, sweep, group.array);
+    let caption = match objects.first() {
+        Some(first) if !groups.is_empty() => {
+            // One taxel of a large gain would take the colours of all others.
+            let full_scale = quantity.full_scale(&patch.taxel);
+            for (words, group) in groups {
+                let mut frame = read(plan, group, first, before)?;
+                frame.mapv_inplace(|value| value.min(full_scale));
+                frames.push((words, frame));
+            }
+            format!(
+                "A touch of the {} after one of the {}, on {array}; colours end at the full scale",
+                name(first),
+                name(before)
+            )
+        }
+        _ => {
             for object in objects {
                 frames.push((name(object), read(plan, group, object, before)?));
             }
@@ -55,20 +70,6 @@ pub fn sample_frames(plan: &Plan, sweep: &Sweep, touched: &[TouchedObject]) -> R
                 level => format!("noise of {}", plan.describe_noise(level)),
             };
             format!("One touch each on {array}, {noise}")
-        }
-        groups => {
-            // One taxel of a large gain would take the colours of all others.
-            let full_scale = quantity.full_scale(&patch.taxel);
-            for (words, group) in groups {
-                let mut frame = read(plan, group, objects[0], before)?;
-                frame.mapv_inplace(|value| value.min(full_scale));
-                frames.push((words, frame));
-            }
-            format!(
-                "A touch of the {} after one of the {}, on {array}; colours end at the full scale",
-                name(objects[0]),
-                name(before)
-            )
         }
     };
     Ok(Samples {
@@ -150,7 +151,10 @@ fn imperfect_groups<'a>(plan: &Plan, sweep: &'a Sweep, array: usize) -> Vec<(Str
         }
     }
     if let (Some(first), false) = (groups().next(), chosen.is_empty()) {
-        chosen.insert(0, ("ideal".to_owned(), first));
+        let condition = &first.condition;
+        let is_ideal = condition.noise == 0.0 && condition.strengths.present().count() == 0;
+        let words = if is_ideal { "ideal" } else { "first values" };
+        chosen.insert(0, (words.to_owned(), first));
     }
     chosen
 }
