@@ -1,6 +1,6 @@
 //! Rigid motions, boxes and places.
 
-use glam::{DQuat, DVec3};
+use glam::{DQuat, DVec3, EulerRot};
 use std::collections::HashSet;
 
 /// A rigid motion: rotate, then translate. `a_from_b` maps points of frame b to frame a.
@@ -60,6 +60,19 @@ impl Pose {
     pub fn transform_vector(&self, vector: DVec3) -> DVec3 {
         self.rotation * vector
     }
+}
+
+/// Turns about the fixed axes x, y, z in turn, radians (URDF's roll, pitch, yaw): `Rz(yaw) Ry(pitch) Rx(roll)`.
+pub fn rotation_from_rpy(rpy: DVec3) -> DQuat {
+    // Fixed axes x, y, z in turn are moving axes z, y, x.
+    DQuat::from_euler(EulerRot::ZYX, rpy.z, rpy.y, rpy.x)
+}
+
+/// A quaternion as a person writes it, made exactly a rotation; `None` if its length is not 1 within 0.001, which holds four
+/// written digits.
+pub fn written_rotation(quaternion: DQuat) -> Option<DQuat> {
+    let is_near = (quaternion.length() - 1.0).abs() <= 1e-3;
+    is_near.then(|| quaternion.normalize())
 }
 
 /// An axis-aligned box, metres.

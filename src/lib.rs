@@ -88,7 +88,7 @@
 //! | [`mesh`] | a file of triangles → a surface: distances, inside and outside |
 //! | [`objects`] | a shape, a mesh, or spheres → a model: spheres or triangles |
 //! | [`packing`] | a mesh and a tolerance → few spheres |
-//! | [`world`] | taxels, layouts, resting poses → touches |
+//! | [`world`] | taxels, layouts, resting poses → touches; robots and their motion → poses |
 //! | [`contact`] | a scene and poses → deflections |
 //! | [`signal`] | deflections → frames |
 //! | [`sensing`] | frames → measurements, and back |
@@ -96,8 +96,8 @@
 //! | [`study`] | TOML → plan → tables |
 //! | [`report`] | tables → files for people |
 //!
-//! The eight stages from `mesh` to `recognition` are pure: no files, clock, threads, printing or global state. Threads live
-//! in `study`; files in `study` and `report`.
+//! The eight stages from `mesh` to `recognition` are pure: no files (but a robot's, if it is asked for by its path), clock,
+//! threads, printing or global state. Threads live in `study`; files in `study` and `report`.
 //!
 //! # Sources
 //!
@@ -114,6 +114,11 @@
 //! - `[BA]` Bærentzen, Aanæs, *Signed distance computation using the angle weighted pseudonormal*, TVCG 2005.
 //! - `[GWN]` Jacobson, Kavan, Sorkine-Hornung, *Robust inside-outside segmentation using generalized winding numbers*, 2013.
 //! - `[FWN]` Barill et al., *Fast winding numbers for soups and clouds*, 2018.
+//! - `[URDF]` The Unified Robot Description Format, XML specification, <https://wiki.ros.org/urdf/XML>.
+//! - `[FC]` Fritsch, Carlson, *Monotone piecewise cubic interpolation*, SIAM J. Numer. Anal. 1980; the slopes are those of
+//!   Fritsch, Butland, *A method for constructing local monotone piecewise cubic interpolants*, SISSC 1984.
+//! - `[KKS]` Kim, Kim, Shin, *A general construction scheme for unit quaternion curves with simple high order derivatives*,
+//!   SIGGRAPH 1995.
 //! - `[SBHE]` Gan, Do, Tran, *Fast compressive imaging using scrambled block Hadamard ensemble*, 2008.
 #![warn(missing_docs)]
 

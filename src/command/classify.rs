@@ -11,7 +11,7 @@ use bubbletouch::recognition::kernel::Gamma;
 use bubbletouch::recognition::scaling::Scaling;
 use bubbletouch::recognition::split::{Split, stratified_k_fold};
 use bubbletouch::recognition::svm::{Multiclass, Solver};
-use bubbletouch::study::{FeatureSet, read_features, write_npy};
+use bubbletouch::study::{CONFIDENCE, FeatureSet, read_features, write_npy};
 use bubbletouch::{Error, Result};
 use ndarray::Array1;
 use serde::de::IntoDeserializer;
@@ -19,9 +19,6 @@ use serde::{Deserialize, Serialize};
 use std::collections::BTreeSet;
 use std::path::PathBuf;
 use std::time::Instant;
-
-/// Confidence of the interval around the accuracy.
-const CONFIDENCE: f64 = 0.95;
 
 #[derive(clap::Args)]
 pub struct Args {

@@ -1,22 +1,21 @@
-//! A bounding volume hierarchy: a tree of boxes over triangles, so that a search looks at few of them.
+//! A tree of boxes over triangles: what is nearest to a point, what a line meets.
 
-use super::bvh_build::{DEEPEST, Node, build};
-use super::{Feature, Triangle, TriangleMesh};
+use super::slab::{Slab, slabs};
+use super::{BoxTree, Feature, Triangle, TriangleMesh};
 use crate::geometry::Aabb;
 use glam::DVec3;
 use std::ops::Range;
 
-/// A tree of boxes in one flat array; the same mesh always gives the same tree.
+/// Triangles in a tree of boxes; the same triangles always give the same tree.
 #[derive(Clone, Debug)]
 pub struct Bvh {
-    /// The root first; the two children of a node lie side by side.
-    nodes: Vec<Node>,
-    /// The triangles, leaf by leaf.
+    tree: BoxTree,
+    /// In the tree's order.
     triangles: Vec<Triangle>,
     /// Their planes.
     planes: Vec<Plane>,
-    /// Their numbers in the mesh.
-    numbers: Vec<u32>,
+    /// Around the triangles of each node.
+    slabs: Vec<Slab>,
 }
 
 /// The nearest point of a mesh.
@@ -41,72 +40,66 @@ pub struct Hit {
     pub triangle: usize,
 }
 
-/// Nodes that a search may have to come back to: at most one a level.
-const STACK: usize = DEEPEST + 1;
-
 impl Bvh {
     /// The tree of a mesh's triangles.
     pub fn new(mesh: &TriangleMesh) -> Self {
-        let (nodes, numbers) = build(mesh);
-        let triangles = numbers.iter().map(|&t| mesh.triangle(t as usize));
-        let triangles: Vec<Triangle> = triangles.collect();
-        Self {
+        let triangles = (0..mesh.n_triangles()).map(|t| mesh.triangle(t));
+        Self::of(triangles.collect()).expect("a mesh has triangles")
+    }
+
+    /// The tree of some triangles, numbered as they come; `None` of none.
+    pub fn of(triangles: Vec<Triangle>) -> Option<Self> {
+        let tree = BoxTree::new(triangles.iter().map(Triangle::bounds).collect())?;
+        let in_order = tree.order().iter().map(|&t| triangles[t as usize]);
+        let triangles: Vec<Triangle> = in_order.collect();
+        Some(Self {
             planes: triangles.iter().map(Plane::of).collect(),
+            slabs: slabs(&tree, &triangles),
             triangles,
-            nodes,
-            numbers,
-        }
+            tree,
+        })
+    }
+
+    /// The tree itself.
+    pub(super) fn tree(&self) -> &BoxTree {
+        &self.tree
     }
 
     /// The box around all triangles.
     pub fn bounds(&self) -> Aabb {
-        self.nodes[0].bounds
-    }
-
-    /// How many nodes; node 0 is the root, children come after their parents.
-    pub(super) fn n_nodes(&self) -> usize {
-        self.nodes.len()
-    }
-
-    pub(super) fn node_bounds(&self, node: usize) -> &Aabb {
-        &self.nodes[node].bounds
-    }
-
-    /// The two children of a node; `None` of a leaf.
-    pub(super) fn children(&self, node: usize) -> Option<[usize; 2]> {
-        let node = &self.nodes[node];
-        (node.n_triangles == 0).then_some([node.first as usize, node.first as usize + 1])
+        self.tree.bounds()
     }
 
     /// The triangles of a leaf; of another node none.
     pub(super) fn leaf(&self, node: usize) -> &[Triangle] {
-        let node = &self.nodes[node];
-        &self.triangles[node.first as usize..][..node.n_triangles as usize]
+        &self.triangles[self.tree.leaf(node)]
     }
 
     /// The nearest point of the mesh that is closer than `within` metres (infinity: the nearest of all).
     pub fn closest(&self, point: DVec3, within: f64) -> Option<Closest> {
         let mut found = None;
-        self.search_places(
+        let mut visit = |place: usize, limit| {
+            if self.planes[place].is_beyond(point, limit) {
+                return limit;
+            }
+            let (on, feature) = self.triangles[place].closest(point);
+            let distance2 = on.distance_squared(point);
+            if distance2 >= limit {
+                return limit;
+            }
+            found = Some(Closest {
+                distance: distance2.sqrt(),
+                point: on,
+                triangle: self.number(place),
+                feature,
+            });
+            distance2
+        };
+        self.tree.search_unless(
             within * within,
             |bounds| bounds.distance_squared(point),
-            |place, triangle, limit| {
-                if self.planes[place].is_beyond(point, limit) {
-                    return limit;
-                }
-                let (on, feature) = triangle.closest(point);
-                let distance2 = on.distance_squared(point);
-                if distance2 >= limit {
-                    return limit;
-                }
-                found = Some(Closest {
-                    distance: distance2.sqrt(),
-                    point: on,
-                    triangle: self.number(place),
-                    feature,
-                });
-                distance2
-            },
+            |node, limit| self.slabs[node].is_beyond(point, limit),
+            |places, limit| places.fold(limit, |limit, place| visit(place, limit)),
         );
         found
     }
@@ -177,7 +170,7 @@ impl Bvh {
 
     /// The number in the mesh of the triangle at a place in the tree's order, in which neighbours lie together.
     pub fn number(&self, place: usize) -> usize {
-        self.numbers[place] as usize
+        self.tree.order()[place] as usize
     }
 
     /// The triangles in the tree's order.
@@ -188,42 +181,17 @@ impl Bvh {
     /// [`search`](Self::search) with places in the tree's order instead of numbers.
     pub fn search_places(
         &self,
-        mut limit: f64,
+        limit: f64,
         bound: impl Fn(&Aabb) -> f64,
         mut visit: impl FnMut(usize, &Triangle, f64) -> f64,
     ) {
-        let mut waiting = [(0.0, 0_u32); STACK];
-        waiting[0] = (bound(&self.nodes[0].bounds), 0);
-        let mut n_waiting = 1;
-        while n_waiting > 0 {
-            n_waiting -= 1;
-            let (lowest, node) = waiting[n_waiting];
-            if lowest >= limit {
-                continue;
+        self.tree.search(limit, bound, |places, mut limit| {
+            let triangles = &self.triangles[places.clone()];
+            for (place, triangle) in places.zip(triangles) {
+                limit = visit(place, triangle, limit);
             }
-            let node = &self.nodes[node as usize];
-            if node.n_triangles > 0 {
-                let first = node.first as usize;
-                let triangles = &self.triangles[first..first + node.n_triangles as usize];
-                for (place, triangle) in triangles.iter().enumerate() {
-                    limit = visit(first + place, triangle, limit);
-                }
-                continue;
-            }
-            let child = |number: u32| (bound(&self.nodes[number as usize].bounds), number);
-            let (first, second) = (child(node.first), child(node.first + 1));
-            let (near, far) = if second.0 < first.0 {
-                (second, first)
-            } else {
-                (first, second)
-            };
-            for (bound, number) in [far, near] {
-                if bound < limit {
-                    waiting[n_waiting] = (bound, number);
-                    n_waiting += 1;
-                }
-            }
-        }
+            limit
+        });
     }
 }
 

@@ -18,8 +18,9 @@
 //! the generalised winding number exceeds one half \[GWN\], summed over a tree of dipoles
 //! \[FWN\]. Nothing is repaired here.
 
+mod box_tree;
+mod box_tree_build;
 mod bvh;
-mod bvh_build;
 mod format;
 mod measures;
 mod mesh_file;
@@ -27,6 +28,7 @@ mod obj;
 mod ply;
 mod pseudonormals;
 mod report;
+mod slab;
 mod stl;
 mod surface;
 mod triangle;
@@ -34,6 +36,7 @@ mod triangle_mesh;
 mod welded;
 mod winding;
 
+pub use box_tree::BoxTree;
 pub use bvh::{Bvh, Closest, Hit};
 pub use format::{LengthUnit, MeshFormat};
 pub use mesh_file::MeshFile;

@@ -30,10 +30,11 @@ struct Dipole {
 
 impl WindingTree {
     pub fn new(bvh: &Bvh) -> Self {
-        let mut moments = vec![Moments::default(); bvh.n_nodes()];
+        let tree = bvh.tree();
+        let mut moments = vec![Moments::default(); tree.n_nodes()];
         // Children come after their parents.
-        for node in (0..bvh.n_nodes()).rev() {
-            moments[node] = match bvh.children(node) {
+        for node in (0..tree.n_nodes()).rev() {
+            moments[node] = match tree.children(node) {
                 Some([a, b]) => moments[a].plus(moments[b]),
                 None => bvh
                     .leaf(node)
@@ -43,7 +44,7 @@ impl WindingTree {
             };
         }
         let dipole = |(node, m): (usize, &Moments)| {
-            let bounds = bvh.node_bounds(node);
+            let bounds = tree.node_bounds(node);
             let center = match m.area > 0.0 {
                 true => m.first / m.area,
                 false => bounds.center(),
@@ -72,7 +73,7 @@ impl WindingTree {
         if distance2 > dipole.far2 {
             return dipole.area.dot(away) / (distance2 * distance2.sqrt());
         }
-        match bvh.children(node) {
+        match bvh.tree().children(node) {
             Some(children) => children
                 .map(|child| self.solid_angle(bvh, child, point))
                 .into_iter()

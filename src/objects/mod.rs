@@ -48,3 +48,14 @@ pub struct Object {
     /// How many solids it is made of (1 for a mesh).
     pub n_parts: usize,
 }
+
+impl Object {
+    /// An object that is one thing, such as a mesh.
+    pub fn of_one_part(name: impl Into<String>, model: Model) -> Self {
+        Self {
+            name: name.into(),
+            model,
+            n_parts: 1,
+        }
+    }
+}

@@ -2,8 +2,8 @@
 
 use super::{Part, Shape};
 use crate::error::{Error, Result};
-use crate::geometry::Pose;
-use glam::{DQuat, DVec2, DVec3, EulerRot};
+use crate::geometry::{Pose, rotation_from_rpy};
+use glam::{DVec2, DVec3};
 use serde::Deserialize;
 
 /// One `[[object.part]]`: a shape's name, where it is, and the lengths that this shape has and no others.
@@ -62,9 +62,7 @@ impl WrittenPart {
                 "only the lengths that the shape has",
             ));
         }
-        let [x, y, z] = self.rotation_deg.map(f64::to_radians);
-        // Fixed axes x, y, z in turn are moving axes z, y, x.
-        let rotation = DQuat::from_euler(EulerRot::ZYX, z, y, x);
+        let rotation = rotation_from_rpy(self.rotation_deg.map(f64::to_radians).into());
         Part::new(shape, Pose::new(rotation, metres3(self.position_mm)))
     }
 

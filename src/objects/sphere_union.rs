@@ -13,6 +13,16 @@ pub struct Sphere {
     pub radius: f64,
 }
 
+impl Sphere {
+    /// The box around it, metres.
+    pub fn bounds(&self) -> Aabb {
+        Aabb {
+            min: self.center - DVec3::splat(self.radius),
+            max: self.center + DVec3::splat(self.radius),
+        }
+    }
+}
+
 /// A union of rigid spheres in the object's frame.
 ///
 /// Invariant: at least one sphere, every centre finite, every radius finite and positive.
@@ -63,11 +73,8 @@ impl SphereUnion {
 
     /// The box around all spheres, metres.
     pub fn bounds(&self) -> Aabb {
-        let boxes = self.spheres.iter().map(|s| Aabb {
-            min: s.center - DVec3::splat(s.radius),
-            max: s.center + DVec3::splat(s.radius),
-        });
-        Aabb::around(boxes).expect("a union has at least one sphere")
+        Aabb::around(self.spheres.iter().map(Sphere::bounds))
+            .expect("a union has at least one sphere")
     }
 
     /// The same union after a rigid motion.

@@ -7,19 +7,34 @@
 use super::ball::Ball;
 use super::sampling::Sample;
 use super::target::{Target, bisected};
-use crate::mesh::Triangle;
+use crate::mesh::{Bvh, Triangle};
+use glam::DVec3;
 
 /// Pieces smaller than this share of the tolerance count as gaps if one ball alone does not hold them.
 const SMALLEST: f64 = 0.02;
 
-/// Where the outer surface is farther than `e` from the spheres of these balls, or not proved to be nearer; none at all if
-/// the promise holds.
-pub(super) fn gaps(target: &Target, outer: &[usize], balls: &[Ball]) -> Vec<Sample> {
+/// Where the surface is farther than `e` from the spheres, or not proved to be nearer.
+#[derive(Debug, Default)]
+pub(super) struct Gaps {
+    /// Places there, and how large the pieces around them are; none at all if the promise holds.
+    pub places: Vec<Sample>,
+    /// Triangles that hold them.
+    pub triangles: Vec<usize>,
+}
+
+/// The gaps that these balls leave in these triangles. A triangle without gaps stays without when balls are added.
+pub(super) fn gaps(target: &Target, triangles: &[usize], balls: &[Ball]) -> Gaps {
     let Target { surface, e, .. } = *target;
-    let mut balls_near = vec![Vec::new(); surface.mesh().n_triangles()];
+    let mut balls_near = vec![Vec::new(); triangles.len()];
+    let looked_at = triangles
+        .iter()
+        .map(|&number| surface.mesh().triangle(number));
+    let Some(tree) = Bvh::of(looked_at.collect()) else {
+        return Gaps::default();
+    };
     for (index, ball) in balls.iter().enumerate() {
         let reach2 = ball.reach(e).powi(2);
-        surface.bvh().search(
+        tree.search(
             reach2,
             |bounds| bounds.distance_squared(ball.center),
             |number, triangle, limit| {
@@ -30,17 +45,28 @@ pub(super) fn gaps(target: &Target, outer: &[usize], balls: &[Ball]) -> Vec<Samp
             },
         );
     }
-    let mut gaps = Vec::new();
-    for &number in outer {
-        let near = std::mem::take(&mut balls_near[number]);
-        gaps_of(surface.mesh().triangle(number), near, balls, e, &mut gaps);
+    let mut gaps = Gaps::default();
+    for (&number, near) in triangles.iter().zip(balls_near) {
+        let n_before = gaps.places.len();
+        gaps_of(
+            surface.mesh().triangle(number),
+            near,
+            balls,
+            e,
+            &mut gaps.places,
+        );
+        if gaps.places.len() > n_before {
+            gaps.triangles.push(number);
+        }
     }
     gaps
 }
 
 fn touches(triangle: &Triangle, ball: &Ball, e: f64) -> bool {
-    let nearest = triangle.closest(ball.center).0;
-    nearest.distance_squared(ball.center) < ball.reach(e).powi(2)
+    let reach2 = ball.reach(e).powi(2);
+    let is_inside = |point: DVec3| point.distance_squared(ball.center) < reach2;
+    // Most that touch at all have a corner inside.
+    triangle.0.into_iter().any(is_inside) || is_inside(triangle.closest(ball.center).0)
 }
 
 fn gaps_of(triangle: Triangle, near: Vec<u32>, balls: &[Ball], e: f64, gaps: &mut Vec<Sample>) {
@@ -77,7 +103,6 @@ mod tests {
     use super::*;
     use crate::mesh::{Surface, TriangleMesh};
     use crate::packing::Body;
-    use glam::DVec3;
 
     /// A square of side 2 in the plane z = 0, as a sheet.
     fn square() -> Surface {
@@ -99,7 +124,7 @@ mod tests {
             body: Body::Sheet,
             e,
         };
-        gaps(&target, &[0, 1], balls)
+        gaps(&target, &[0, 1], balls).places
     }
 
     #[test]

@@ -2,7 +2,7 @@
 
 use super::ball::Ball;
 use super::cells::Cells;
-use super::certificate::gaps;
+use super::certificate::{Gaps, gaps};
 use super::sampling::{Sample, SampleTree, Sampling, sample};
 use super::set_cover::{Cover, Lists};
 use super::target::Target;
@@ -60,19 +60,19 @@ pub(super) fn cover_surface(target: &Target, watch: &mut dyn FnMut(f64)) -> (Vec
         });
         if number + 1 < n_passes {
             let gaps = covering.gaps();
-            covering.sample_gaps(&gaps);
+            covering.sample_gaps(&gaps.places);
         }
     }
     covering.chosen.retain(|ball| target.holds_center(ball));
     let mut gaps = covering.gaps();
     for _ in 0..MAX_REPAIRS {
-        if gaps.is_empty() {
+        if gaps.places.is_empty() {
             break;
         }
-        covering.fill(&gaps);
-        gaps = covering.gaps();
+        covering.fill(&gaps.places);
+        gaps = covering.gaps_in(&gaps.triangles);
     }
-    (covering.chosen, gaps.len())
+    (covering.chosen, gaps.places.len())
 }
 
 struct Covering<'a> {
@@ -82,7 +82,12 @@ struct Covering<'a> {
     chosen: Vec<Ball>,
     /// How many chosen balls cover each sample.
     counts: Vec<u32>,
+    /// Scratch: each sample's row in the cell that is worked on; [`NOT_HERE`] for those of no concern to it.
+    row_of: Vec<u32>,
 }
+
+/// In place of a row's number.
+const NOT_HERE: u32 = u32::MAX;
 
 impl<'a> Covering<'a> {
     fn new(target: &'a Target<'a>) -> Self {
@@ -92,12 +97,17 @@ impl<'a> Covering<'a> {
             tree: SampleTree::new(&sampling.samples),
             chosen: Vec::new(),
             counts: vec![0; sampling.samples.len()],
+            row_of: vec![NOT_HERE; sampling.samples.len()],
             sampling,
         }
     }
 
-    fn gaps(&self) -> Vec<Sample> {
-        gaps(self.target, &self.sampling.outer, &self.chosen)
+    fn gaps(&self) -> Gaps {
+        self.gaps_in(&self.sampling.outer)
+    }
+
+    fn gaps_in(&self, triangles: &[usize]) -> Gaps {
+        gaps(self.target, triangles, &self.chosen)
     }
 
     /// Works on one cell after another.
@@ -140,13 +150,12 @@ impl<'a> Covering<'a> {
         let mut balls = freed;
         balls.extend(candidates);
         balls.extend(moved);
-        const NOT_HERE: u32 = u32::MAX;
-        let mut row_of = vec![NOT_HERE; self.counts.len()];
-        let mut n_rows = 0;
+        let row_of = &mut self.row_of;
+        let mut sample_of = Vec::new();
         let mut needs = |sample: usize, counts: &[u32]| {
             if counts[sample] == 0 && row_of[sample] == NOT_HERE {
-                row_of[sample] = n_rows;
-                n_rows += 1;
+                row_of[sample] = sample_of.len() as u32;
+                sample_of.push(sample);
             }
         };
         for ball in &balls[..n_freed] {
@@ -174,7 +183,8 @@ impl<'a> Covering<'a> {
                 });
             rows_of.push(rows.iter().copied());
         }
-        let mut cover = Cover::new(&rows_of, n_rows as usize);
+        sample_of.iter().for_each(|&s| row_of[s] = NOT_HERE);
+        let mut cover = Cover::new(&rows_of, sample_of.len());
         (0..n_freed).for_each(|set| cover.add(set));
         cover.complete();
         let steps_a_ball = pass.steps * self.sampling.effort.steps_a_ball;
@@ -219,6 +229,7 @@ impl<'a> Covering<'a> {
         self.sampling.samples.extend_from_slice(gaps);
         self.tree = SampleTree::new(&self.sampling.samples);
         self.counts = vec![0; self.sampling.samples.len()];
+        self.row_of = vec![NOT_HERE; self.sampling.samples.len()];
         for ball in &self.chosen {
             self.tree
                 .each_covered(&self.sampling.samples, ball, self.target.e, |s| {

@@ -49,6 +49,8 @@
 //!   approximation*, 2011. They give an error for a number of spheres; here the error is given.
 
 mod ball;
+#[cfg(test)]
+mod brick;
 mod cells;
 mod certificate;
 mod cover_surface;

@@ -2,7 +2,7 @@
 
 use super::target::Body;
 use crate::geometry::Aabb;
-use crate::mesh::{Bvh, Surface, Triangle, TriangleMesh};
+use crate::mesh::{BoxTree, Surface, Triangle};
 use crate::objects::{Sphere, SphereUnion};
 use crate::random::Seed;
 use glam::DVec3;
@@ -118,24 +118,21 @@ fn spread(mut values: Vec<f64>) -> Spread {
     }
 }
 
-/// A tree over spheres, each as a triangle with the same box.
-struct SphereTree<'a> {
-    spheres: &'a [Sphere],
-    bvh: Bvh,
+/// A tree over spheres.
+struct SphereTree {
+    tree: BoxTree,
+    /// In the tree's order.
+    spheres: Vec<Sphere>,
 }
 
-impl<'a> SphereTree<'a> {
-    fn new(union: &'a SphereUnion) -> Self {
-        let spheres = union.spheres();
-        let ends = spheres.iter().flat_map(|s| {
-            let half = DVec3::splat(s.radius);
-            [s.center - half, s.center + half]
-        });
-        let triangles = (0..spheres.len() as u32).map(|i| [2 * i, 2 * i + 1, 2 * i + 1]);
-        let mesh = TriangleMesh::new("spheres", ends.collect(), triangles.collect());
+impl SphereTree {
+    fn new(union: &SphereUnion) -> Self {
+        let boxes = union.spheres().iter().map(Sphere::bounds).collect();
+        let tree = BoxTree::new(boxes).expect("a union has spheres");
+        let in_order = tree.order().iter().map(|&s| union.spheres()[s as usize]);
         Self {
-            spheres,
-            bvh: Bvh::new(&mesh.expect("a union has spheres, all finite")),
+            spheres: in_order.collect(),
+            tree,
         }
     }
 
@@ -143,9 +140,10 @@ impl<'a> SphereTree<'a> {
     fn distance(&self, point: DVec3) -> f64 {
         let mut least = f64::INFINITY;
         let bound = |bounds: &Aabb| bounds.distance_squared(point).sqrt();
-        self.bvh.search(f64::INFINITY, bound, |number, _, _| {
-            let sphere = &self.spheres[number];
-            least = least.min((point.distance(sphere.center) - sphere.radius).max(0.0));
+        self.tree.search(f64::INFINITY, bound, |places, _| {
+            for sphere in &self.spheres[places] {
+                least = least.min((point.distance(sphere.center) - sphere.radius).max(0.0));
+            }
             least
         });
         least
@@ -158,13 +156,14 @@ impl<'a> SphereTree<'a> {
             let point = start + along * direction;
             let mut end = along;
             let outside = |bounds: &Aabb| bounds.distance_squared(point);
-            self.bvh
-                .search(f64::MIN_POSITIVE, outside, |number, _, limit| {
-                    let Sphere { center, radius } = self.spheres[number];
-                    if point.distance_squared(center) <= radius * radius {
-                        let h = (center - start).dot(direction);
-                        let b2 = start.distance_squared(center) - h * h;
-                        end = f64::max(end, h + (radius * radius - b2).max(0.0).sqrt());
+            self.tree
+                .search(f64::MIN_POSITIVE, outside, |places, limit| {
+                    for &Sphere { center, radius } in &self.spheres[places] {
+                        if point.distance_squared(center) <= radius * radius {
+                            let h = (center - start).dot(direction);
+                            let b2 = start.distance_squared(center) - h * h;
+                            end = f64::max(end, h + (radius * radius - b2).max(0.0).sqrt());
+                        }
                     }
                     limit
                 });

@@ -2,7 +2,8 @@
 
 use super::ball::{Ball, relief};
 use super::target::{Target, bisected};
-use crate::mesh::{Bvh, Triangle, TriangleMesh};
+use crate::geometry::Aabb;
+use crate::mesh::{BoxTree, Triangle};
 use glam::DVec3;
 
 /// A point that some ball must cover, standing for the surface around it.
@@ -120,8 +121,8 @@ impl Demand {
             all += triangle.area();
             if number % every == 0 {
                 let share = sizes.share(triangle.middle(), normal);
-                let reach2 = sizes.ball.reach(target.e).powi(2);
-                tried.push((triangle, share, sizes.ball.center, reach2));
+                let ball = sizes.ball(triangle.middle(), normal);
+                tried.push((triangle, share, ball.center, ball.reach(target.e).powi(2)));
             }
         }
         let area: f64 = tried.iter().map(|(triangle, ..)| triangle.area()).sum();
@@ -153,19 +154,8 @@ struct Sampler<'a> {
 /// How much of the surface a ball has to itself, here and there.
 struct Sizes<'a> {
     target: &'a Target<'a>,
-    /// Where it was last computed.
-    known: Option<Local>,
-    /// What was found there.
-    ball: Ball,
-}
-
-/// How large balls are somewhere.
-#[derive(Clone, Copy)]
-struct Local {
-    foot: DVec3,
-    normal: DVec3,
-    /// Of what one ball covers, metres.
-    half_width: f64,
+    /// Where they were last computed: the normal, and the largest ball that covers the place, its foot.
+    known: Option<(DVec3, Ball)>,
 }
 
 impl Sampler<'_> {
@@ -211,34 +201,34 @@ impl<'a> Sizes<'a> {
         Self {
             target,
             known: None,
-            ball: Ball::on_surface(DVec3::ZERO),
         }
     }
 
-    /// Of the largest ball that covers a point of the surface, m².
+    /// What the ball of a point of the surface has to itself, m².
     fn share(&mut self, foot: DVec3, normal: DVec3) -> f64 {
-        if let Some(known) = self.known
-            && foot.distance(known.foot) < NEAR * known.half_width
-            && normal.dot(known.normal) > 0.95
+        HEXAGON * self.ball(foot, normal).half_width(self.target.e).powi(2)
+    }
+
+    /// The largest ball that covers a point of the surface, or a point nearby.
+    fn ball(&mut self, foot: DVec3, normal: DVec3) -> Ball {
+        let e = self.target.e;
+        if let Some((known_normal, ball)) = &self.known
+            && foot.distance(ball.foot) < NEAR * ball.half_width(e)
+            && normal.dot(*known_normal) > 0.95
         {
-            return HEXAGON * known.half_width.powi(2);
+            return *ball;
         }
-        let (slack, limit) = (relief(self.target.e), self.target.largest_radius());
-        let ball = Ball::largest(self.target, foot, -normal, slack, limit);
-        self.ball = ball.unwrap_or(Ball::on_surface(foot));
-        let half_width = self.ball.half_width(self.target.e);
-        self.known = Some(Local {
-            foot,
-            normal,
-            half_width,
-        });
-        HEXAGON * half_width.powi(2)
+        let limit = self.target.largest_radius();
+        let ball = Ball::largest(self.target, foot, -normal, relief(e), limit);
+        let ball = ball.unwrap_or(Ball::on_surface(foot));
+        self.known = Some((normal, ball));
+        ball
     }
 }
 
-/// A tree over samples, as triangles without size.
+/// A tree over samples.
 pub(super) struct SampleTree {
-    bvh: Bvh,
+    tree: BoxTree,
 }
 
 /// How much of a sample's radius must be covered too, by the slope of the ball there. More: more spheres; less: more gaps
@@ -246,12 +236,14 @@ pub(super) struct SampleTree {
 const MARGIN: f64 = 0.7;
 
 impl SampleTree {
+    /// There must be some.
     pub fn new(samples: &[Sample]) -> Self {
-        let positions = samples.iter().map(|s| s.position).collect();
-        let points = (0..samples.len() as u32).map(|i| [i; 3]).collect();
-        let mesh = TriangleMesh::new("samples", positions, points);
+        let boxes = samples.iter().map(|sample| Aabb {
+            min: sample.position,
+            max: sample.position,
+        });
         Self {
-            bvh: Bvh::new(&mesh.expect("samples are finite, and there are some")),
+            tree: BoxTree::new(boxes.collect()).expect("there are samples"),
         }
     }
 
@@ -265,13 +257,15 @@ impl SampleTree {
     ) {
         let reach = ball.reach(e);
         let slope = MARGIN * ball.half_width(e) / reach;
-        self.bvh.search(
+        self.tree.search(
             reach * reach,
             |bounds| bounds.distance_squared(ball.center),
-            |number, _, limit| {
-                let Sample { position, radius } = samples[number];
-                if position.distance(ball.center) <= reach - slope * radius {
-                    visit(number);
+            |places, limit| {
+                for &number in &self.tree.order()[places] {
+                    let Sample { position, radius } = samples[number as usize];
+                    if position.distance(ball.center) <= reach - slope * radius {
+                        visit(number as usize);
+                    }
                 }
                 limit
             },

@@ -41,6 +41,7 @@ mod training;
 
 pub use axis::Axis;
 pub use estimate::Estimate;
+pub use evaluation::CONFIDENCE;
 pub use feature_files::{FeatureSet, cell_features, read_features, write_features, write_npy};
 pub use imperfection::{IMPERFECTIONS, Imperfection, Strengths, TestedOn};
 pub use kind::StudyKind;

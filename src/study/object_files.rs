@@ -77,21 +77,18 @@ pub fn read_mesh_file(path: &Path, unit: LengthUnit) -> Result<MeshFile> {
 pub fn load_mesh(path: &Path, wanted: &MeshUse) -> Result<Object> {
     let place = path.display().to_string();
     let mesh = read_mesh_file(path, wanted.unit)?;
-    Ok(Object {
-        name: stem(path),
-        model: match wanted.model {
-            ModelSpec::VertexSpheres => vertex_spheres(&place, mesh.vertices())?.into(),
-            ModelSpec::Mesh => MeshModel::new(mesh.into_mesh(&place)?).into(),
-            ModelSpec::Packed => {
-                let surface = Surface::new(mesh.into_mesh(&place)?);
-                let tolerance = wanted.surface_error;
-                pack_within(&place, &surface, tolerance, wanted.packings)?
-                    .spheres
-                    .into()
-            }
-        },
-        n_parts: 1,
-    })
+    let model = match wanted.model {
+        ModelSpec::VertexSpheres => vertex_spheres(&place, mesh.vertices())?.into(),
+        ModelSpec::Mesh => MeshModel::new(mesh.into_mesh(&place)?).into(),
+        ModelSpec::Packed => {
+            let surface = Surface::new(mesh.into_mesh(&place)?);
+            let tolerance = wanted.surface_error;
+            pack_within(&place, &surface, tolerance, wanted.packings)?
+                .spheres
+                .into()
+        }
+    };
+    Ok(Object::of_one_part(stem(path), model))
 }
 
 /// The meshes of a study as triangles, by file name.

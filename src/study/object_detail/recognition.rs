@@ -15,14 +15,12 @@ use crate::recognition::classifier::Classifier;
 use crate::recognition::dataset::dataset;
 use crate::recognition::interval::Interval;
 use crate::sensing::Projection;
+use crate::study::CONFIDENCE;
 use crate::study::progress::Silent;
 use crate::study::simulation::{draw_touches, simulate_array};
 use crate::world::{Patch, Placement};
 use ndarray::{Array1, Array2, Axis, concatenate, s};
 use rayon::prelude::*;
-
-/// The coverage of the intervals around accuracies.
-const CONFIDENCE: f64 = 0.95;
 
 /// Makes measurements of models, for learning.
 pub(super) struct Sensor<'a> {
@@ -66,11 +64,7 @@ impl<'a> Sensor<'a> {
     /// Measurements of each model of an object (n_touches × m), in their order; the first is the mesh itself, and all are
     /// touched in the same places of its rest poses.
     pub(super) fn measure(&self, name: &str, variants: &[Variant]) -> Result<Vec<Array2<f64>>> {
-        let object = |variant: &Variant| Object {
-            name: name.to_owned(),
-            model: variant.model.clone(),
-            n_parts: 1,
-        };
+        let object = |variant: &Variant| Object::of_one_part(name, variant.model.clone());
         let mut touched = draw_touches(vec![object(&variants[0])], &self.placement, &self.seed)?;
         let measured = variants.iter().map(|variant| {
             touched[0].object = object(variant);

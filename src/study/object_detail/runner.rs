@@ -110,11 +110,7 @@ impl Measured {
 
 /// The touches that every study would draw for an object of this name, felt exactly.
 fn truth(plan: &ObjectDetailPlan, name: &str, mesh: &Model) -> Result<Truth> {
-    let object = Object {
-        name: name.to_owned(),
-        model: mesh.clone(),
-        n_parts: 1,
-    };
+    let object = Object::of_one_part(name, mesh.clone());
     let seed = Seed::new(plan.spec.seed);
     let touched = draw_touches(vec![object], &plan.placement, &seed)?;
     Ok(Truth::new(&touched[0], &plan.patch))

@@ -1,0 +1,50 @@
+//! The space between two parallel planes that holds all triangles below a node of a tree.
+//!
+//! Where a surface bends little it is much thinner than the box around it, above all across the axes. Where a whole mesh is
+//! about equally far, as from the middle of a ball, boxes rule out little, and slabs nearly all.
+
+use super::{BoxTree, Triangle};
+use glam::DVec3;
+use std::ops::Range;
+
+/// Points x with `normal · x` in a range.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Slab {
+    /// The mean normal, of length one; zero where the triangles have none.
+    normal: DVec3,
+    low: f64,
+    high: f64,
+}
+
+/// The slab of each node of a tree; `triangles` in the tree's order.
+pub(super) fn slabs(tree: &BoxTree, triangles: &[Triangle]) -> Vec<Slab> {
+    let mut places: Vec<Range<usize>> = vec![0..0; tree.n_nodes()];
+    // Children come after their parents, and their places lie side by side.
+    for node in (0..tree.n_nodes()).rev() {
+        places[node] = match tree.children(node) {
+            Some([left, right]) => places[left].start..places[right].end,
+            None => tree.leaf(node),
+        };
+    }
+    let slab = |places| Slab::around(&triangles[places]);
+    places.into_iter().map(slab).collect()
+}
+
+impl Slab {
+    fn around(triangles: &[Triangle]) -> Self {
+        let area: DVec3 = triangles.iter().map(Triangle::double_area).sum();
+        let normal = area.normalize_or_zero();
+        let heights = triangles.iter().flat_map(|t| t.0).map(|p| normal.dot(p));
+        let (low, high) = heights.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), z| {
+            (low.min(z), high.max(z))
+        });
+        Self { normal, low, high }
+    }
+
+    /// Whether it is certainly farther from a point than the square root of `limit`.
+    pub fn is_beyond(&self, point: DVec3, limit: f64) -> bool {
+        let height = self.normal.dot(point);
+        let away = (self.low - height).max(height - self.high).max(0.0);
+        away * away > limit * (1.0 + 1e-6)
+    }
+}

@@ -1,0 +1,291 @@
+//! One number over time: a cubic between each two way-points.
+
+use super::slopes::{clamped_spline, monotone};
+use serde::{Deserialize, Serialize};
+
+/// What happens between way-points.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Interpolation {
+    /// Straight: constant velocity, with a jump of it at each way-point.
+    Linear,
+    /// The cubic spline with continuous acceleration and no velocity at both ends; it may swing beyond its way-points.
+    #[default]
+    Cubic,
+    /// Cubics with continuous velocity that never leave the range of their two way-points; still at both ends and where they
+    /// turn back.
+    Monotone,
+}
+
+/// One number over time. The times of the way-points are kept by its owner: several curves share them.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Curve {
+    /// c of each piece: `x = c₀ + c₁ s + c₂ s² + c₃ s³`, s seconds after the piece's first way-point.
+    pieces: Vec<[f64; 4]>,
+    /// The value at the last way-point.
+    last: f64,
+}
+
+/// A value that is taken somewhere on a curve.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Taken {
+    pub value: f64,
+    /// Seconds, on the scale of the way-points.
+    pub time: f64,
+    /// Index of the way-point before.
+    pub piece: usize,
+}
+
+/// The extremes of a curve over its whole time.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Extremes {
+    pub lowest: Taken,
+    pub highest: Taken,
+    /// The velocity of largest size, with its sign.
+    pub fastest: Taken,
+}
+
+impl Curve {
+    /// Through `values` at `times`, at least one each, times ascending. `None` if the way-points are so far apart in value or
+    /// so close in time that a coefficient is not finite.
+    pub fn through(times: &[f64], values: &[f64], interpolation: Interpolation) -> Option<Self> {
+        let steps: Vec<f64> = times.windows(2).map(|t| t[1] - t[0]).collect();
+        let rises = values.windows(2).map(|x| x[1] - x[0]);
+        let secants: Vec<f64> = rises.zip(&steps).map(|(dx, dt)| dx / dt).collect();
+        let slopes = match interpolation {
+            Interpolation::Linear => None,
+            Interpolation::Cubic => Some(clamped_spline(&steps, &secants)),
+            Interpolation::Monotone => Some(monotone(&steps, &secants)),
+        };
+        let piece = |i: usize| match &slopes {
+            None => [values[i], secants[i], 0.0, 0.0],
+            Some(slopes) => {
+                let (m0, m1, d, h) = (slopes[i], slopes[i + 1], secants[i], steps[i]);
+                let c2 = (3.0 * d - 2.0 * m0 - m1) / h;
+                [values[i], m0, c2, (m0 + m1 - 2.0 * d) / h / h]
+            }
+        };
+        let pieces: Vec<[f64; 4]> = (0..steps.len()).map(piece).collect();
+        let is_finite = pieces.iter().flatten().all(|c| c.is_finite());
+        is_finite.then_some(Self {
+            pieces,
+            last: values[values.len() - 1],
+        })
+    }
+
+    /// Where it is.
+    pub fn value(&self, at: Moment) -> f64 {
+        match at {
+            Moment::In { piece, elapsed } => value(&self.pieces[piece], elapsed),
+            Moment::Before => self.pieces.first().map_or(self.last, |c| c[0]),
+            Moment::After => self.last,
+        }
+    }
+
+    /// How fast it goes, per second; 0 outside the way-points.
+    pub fn velocity(&self, at: Moment) -> f64 {
+        match at {
+            Moment::In { piece, elapsed } => velocity(&self.pieces[piece], elapsed),
+            Moment::Before | Moment::After => 0.0,
+        }
+    }
+
+    /// Its extremes in closed form: at way-points, where the velocity is zero, and, for the velocity, where the acceleration
+    /// is.
+    pub fn extremes(&self, times: &[f64]) -> Extremes {
+        let end = Taken {
+            value: self.last,
+            time: times[times.len() - 1],
+            piece: times.len() - 1,
+        };
+        let mut found = Extremes {
+            lowest: end,
+            highest: end,
+            fastest: Taken { value: 0.0, ..end },
+        };
+        for (piece, c) in self.pieces.iter().enumerate() {
+            let h = times[piece + 1] - times[piece];
+            let taken = |value, s| Taken {
+                value,
+                time: times[piece] + s,
+                piece,
+            };
+            let turns = quadratic_roots(3.0 * c[3], 2.0 * c[2], c[1]);
+            for s in turns
+                .into_iter()
+                .filter(|s| (0.0..h).contains(s))
+                .chain([0.0])
+            {
+                found.keep_position(taken(value(c, s), s));
+            }
+            let bend = -c[2] / (3.0 * c[3]);
+            for s in [bend]
+                .into_iter()
+                .filter(|s| (0.0..h).contains(s))
+                .chain([0.0, h])
+            {
+                found.keep_velocity(taken(velocity(c, s), s));
+            }
+        }
+        found
+    }
+}
+
+impl Extremes {
+    fn keep_position(&mut self, at: Taken) {
+        if at.value < self.lowest.value {
+            self.lowest = at;
+        }
+        if at.value > self.highest.value {
+            self.highest = at;
+        }
+    }
+
+    fn keep_velocity(&mut self, at: Taken) {
+        if at.value.abs() > self.fastest.value.abs() {
+            self.fastest = at;
+        }
+    }
+}
+
+/// A time among way-points.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Moment {
+    /// Before the first.
+    Before,
+    /// Between two, seconds after the first of them.
+    In { piece: usize, elapsed: f64 },
+    /// At or after the last.
+    After,
+}
+
+impl Moment {
+    /// Of a time in seconds; a time that is no number is before all.
+    pub fn of(time: f64, times: &[f64]) -> Self {
+        let passed = times.partition_point(|&way_point| way_point <= time);
+        match passed {
+            0 => Self::Before,
+            n if n == times.len() => Self::After,
+            n => Self::In {
+                piece: n - 1,
+                elapsed: time - times[n - 1],
+            },
+        }
+    }
+}
+
+fn value(c: &[f64; 4], s: f64) -> f64 {
+    c[0] + s * (c[1] + s * (c[2] + s * c[3]))
+}
+
+fn velocity(c: &[f64; 4], s: f64) -> f64 {
+    c[1] + s * (2.0 * c[2] + s * 3.0 * c[3])
+}
+
+/// Real roots of `a s² + b s + c`, without cancellation; what is no number where there is none.
+fn quadratic_roots(a: f64, b: f64, c: f64) -> [f64; 2] {
+    let q = -0.5 * (b + (b * b - 4.0 * a * c).sqrt().copysign(b));
+    [q / a, c / q]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const TIMES: [f64; 5] = [0.0, 0.5, 1.7, 2.0, 4.0];
+    const VALUES: [f64; 5] = [0.0, 1.0, 1.2, -0.7, -0.7];
+    const KINDS: [Interpolation; 3] = [
+        Interpolation::Linear,
+        Interpolation::Cubic,
+        Interpolation::Monotone,
+    ];
+
+    fn curve(interpolation: Interpolation) -> Curve {
+        Curve::through(&TIMES, &VALUES, interpolation).expect("tame numbers")
+    }
+
+    /// Value, velocity and acceleration on both sides of each inner way-point.
+    fn sides(curve: &Curve, piece: usize) -> [[f64; 3]; 2] {
+        let h = TIMES[piece + 1] - TIMES[piece];
+        [(piece, h), (piece + 1, 0.0)].map(|(piece, s)| {
+            let c = &curve.pieces[piece];
+            [value(c, s), velocity(c, s), 2.0 * c[2] + 6.0 * c[3] * s]
+        })
+    }
+
+    #[test]
+    fn each_interpolation_is_as_smooth_as_it_says() {
+        for (kind, n_continuous) in KINDS.into_iter().zip([1, 3, 2]) {
+            let curve = curve(kind);
+            for piece in 0..3 {
+                let [before, after] = sides(&curve, piece);
+                for k in 0..n_continuous {
+                    assert!(
+                        (before[k] - after[k]).abs() < 1e-12,
+                        "{kind:?}, {piece}, {k}"
+                    );
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_cubic_is_still_at_both_ends_and_passes_all_way_points() {
+        for kind in KINDS {
+            let curve = curve(kind);
+            for (&time, &value) in TIMES.iter().zip(&VALUES) {
+                assert_eq!(curve.value(Moment::of(time, &TIMES)), value, "{kind:?}");
+            }
+            assert_eq!(curve.value(Moment::of(-1.0, &TIMES)), VALUES[0]);
+            assert_eq!(curve.value(Moment::of(9.0, &TIMES)), VALUES[4]);
+            if kind != Interpolation::Linear {
+                assert_eq!(curve.velocity(Moment::of(0.0, &TIMES)), 0.0);
+                assert!(curve.velocity(Moment::of(4.0 - 1e-12, &TIMES)).abs() < 1e-10);
+            }
+        }
+    }
+
+    #[test]
+    fn extremes_are_those_of_a_fine_search() {
+        for kind in KINDS {
+            let curve = curve(kind);
+            let found = curve.extremes(&TIMES);
+            let samples: Vec<Moment> = (0..400_000)
+                .map(|i| Moment::of(1e-5 * f64::from(i), &TIMES))
+                .collect();
+            let values = samples.iter().map(|&at| curve.value(at));
+            let lowest = values.clone().fold(f64::INFINITY, f64::min);
+            let highest = values.fold(f64::NEG_INFINITY, f64::max);
+            let speeds = samples.iter().map(|&at| curve.velocity(at).abs());
+            let fastest = speeds.fold(0.0, f64::max);
+            assert!(
+                (found.lowest.value - lowest).abs() < 1e-8,
+                "{kind:?}: {found:?}, {lowest}"
+            );
+            assert!(
+                (found.highest.value - highest).abs() < 1e-8,
+                "{kind:?}: {found:?}, {highest}"
+            );
+            assert!(
+                (found.fastest.value.abs() - fastest).abs() < 1e-4,
+                "{kind:?}: {found:?}"
+            );
+            let at = Moment::of(found.highest.time, &TIMES);
+            assert!((curve.value(at) - found.highest.value).abs() < 1e-12);
+        }
+    }
+
+    #[test]
+    fn a_cubic_swings_beyond_its_way_points_and_a_monotone_one_does_not() {
+        assert!(curve(Interpolation::Cubic).extremes(&TIMES).highest.value > 1.3);
+        let monotone = curve(Interpolation::Monotone).extremes(&TIMES);
+        assert!(monotone.highest.value <= 1.2 + 1e-15 && monotone.lowest.value >= -0.7 - 1e-15);
+    }
+
+    #[test]
+    fn way_points_that_are_too_steep_make_no_curve() {
+        for kind in KINDS {
+            assert_eq!(Curve::through(&[0.0, 1e-300], &[0.0, 1e10], kind), None);
+        }
+    }
+}

@@ -1,0 +1,127 @@
+//! Whether joints stay within what they can do, at all times.
+
+use super::curve::{Curve, Extremes, Taken};
+use super::way_points::WayPoints;
+use crate::error::{Error, Result};
+use crate::world::Robot;
+use crate::world::robot::{Dimension, Limits};
+
+/// How far a limit may be passed by, rad, m or those a second. Files write limits to six digits, so a quarter turn may be 3e-7
+/// beyond 1.570796; more slack would hide what can be seen in a message.
+const SLACK: f64 = 1e-6;
+
+/// Checks every joint of one coordinate that has limits. `curves` are those of the robot's positions.
+///
+/// The error is the first joint, in the robot's order, and the point where it is farthest beyond its limit.
+pub(super) fn check_limits(robot: &Robot, curves: &[Curve], way_points: &WayPoints) -> Result<()> {
+    for (index, joint) in robot.joints().iter().enumerate() {
+        let (Some(limits), Some(drive)) = (joint.limits, robot.drive_of(index)) else {
+            continue;
+        };
+        let (position, multiplier, offset) = drive;
+        let extremes = curves[position].extremes(&way_points.times);
+        let moved = extremes.driven(multiplier, offset);
+        if let Some((taken, bound)) = first_beyond(&moved, &limits) {
+            let unit = joint.kind.coordinates()[0].1;
+            return Err(Error::input(
+                format!("{}: joint `{}`", way_points.origin.place(), joint.name),
+                format!(
+                    "{} at {}",
+                    bound.given(taken.value, unit),
+                    when(&taken, way_points)
+                ),
+                bound.allowed(unit),
+            ));
+        }
+    }
+    Ok(())
+}
+
+/// A limit that is passed.
+enum Bound {
+    Lower(f64),
+    Upper(f64),
+    Velocity(f64),
+}
+
+impl Bound {
+    fn given(&self, value: f64, unit: Dimension) -> String {
+        match self {
+            Self::Lower(_) | Self::Upper(_) => position(value, unit),
+            Self::Velocity(_) => format!("velocity {}", velocity(value, unit)),
+        }
+    }
+
+    fn allowed(&self, unit: Dimension) -> String {
+        match *self {
+            Self::Lower(bound) => format!("at least {}", position(bound, unit)),
+            Self::Upper(bound) => format!("at most {}", position(bound, unit)),
+            Self::Velocity(bound) => format!("at most {}", velocity(bound, unit)),
+        }
+    }
+}
+
+fn first_beyond(extremes: &Extremes, limits: &Limits) -> Option<(Taken, Bound)> {
+    let Extremes {
+        lowest,
+        highest,
+        fastest,
+    } = *extremes;
+    if lowest.value < limits.lower - SLACK {
+        return Some((lowest, Bound::Lower(limits.lower)));
+    }
+    if highest.value > limits.upper + SLACK {
+        return Some((highest, Bound::Upper(limits.upper)));
+    }
+    let is_fast = fastest.value.abs() > limits.velocity + SLACK;
+    is_fast.then_some((fastest, Bound::Velocity(limits.velocity)))
+}
+
+impl Extremes {
+    /// Those of a joint at `multiplier · x + offset`.
+    fn driven(self, multiplier: f64, offset: f64) -> Self {
+        let moved = |taken: Taken| Taken {
+            value: multiplier * taken.value + offset,
+            ..taken
+        };
+        let (lowest, highest) = match multiplier < 0.0 {
+            true => (self.highest, self.lowest),
+            false => (self.lowest, self.highest),
+        };
+        Self {
+            lowest: moved(lowest),
+            highest: moved(highest),
+            fastest: Taken {
+                value: multiplier * self.fastest.value,
+                ..self.fastest
+            },
+        }
+    }
+}
+
+/// The time, and between which way-points it is.
+fn when(taken: &Taken, way_points: &WayPoints) -> String {
+    let (times, origin) = (&way_points.times, &way_points.origin);
+    let time = format!("{:.4} s", taken.time);
+    match times.iter().position(|&time| time == taken.time) {
+        Some(at) => format!("{time} ({})", origin.way_point(at)),
+        None => {
+            let (before, after) = (
+                origin.way_point(taken.piece),
+                origin.way_point(taken.piece + 1),
+            );
+            format!("{time} (between {before} and {after})")
+        }
+    }
+}
+
+fn position(value: f64, unit: Dimension) -> String {
+    match unit {
+        Dimension::Angle => format!("{value:.6} rad ({:.2}°)", value.to_degrees()),
+        Dimension::Length => format!("{value:.6} m"),
+    }
+}
+
+fn velocity(value: f64, unit: Dimension) -> String {
+    format!("{value:.6} {}/s", unit.unit())
+}

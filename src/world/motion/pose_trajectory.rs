@@ -1,0 +1,141 @@
+//! A free body's pose over time.
+
+use super::Interpolation;
+use super::curve::{Curve, Moment};
+use super::rotation_curve::RotationCurve;
+use super::way_point_csv::{ANGLE, Column, LENGTH, NUMBER, Table, Units};
+use super::way_points::{Origin, WayPoints};
+use crate::error::{Error, Result};
+use crate::geometry::{Pose, rotation_from_rpy, written_rotation};
+use glam::{DQuat, DVec3};
+use ndarray::Array2;
+use std::io::Read;
+
+const POSITION: [&str; 3] = ["x", "y", "z"];
+const QUATERNION: [&str; 4] = ["qx", "qy", "qz", "qw"];
+const RPY: [&str; 3] = ["roll", "pitch", "yaw"];
+
+/// The pose of a body through way-points in time; outside their range the ends hold.
+///
+/// The position's three numbers are interpolated as a [`JointTrajectory`](super::JointTrajectory)'s. Rotations go the shorter
+/// way between neighbours: by slerp if linear, else by Hermite curves of quaternions \[KKS\], whose angular velocity is
+/// continuous and zero at both ends (squad's is so only for even times).
+#[derive(Clone, Debug, PartialEq)]
+pub struct PoseTrajectory {
+    times: Vec<f64>,
+    position: [Curve; 3],
+    rotation: RotationCurve,
+}
+
+impl PoseTrajectory {
+    /// Through `poses` (`world_from_body`, one a time) at `times` (seconds, strictly ascending). The error names the way-point
+    /// that is not finite, not in time, or whose quaternion has not length 1 (within 0.001).
+    pub fn new(times: Vec<f64>, poses: &[Pose], interpolation: Interpolation) -> Result<Self> {
+        let numbers = poses.iter().flat_map(|pose| {
+            let [x, y, z] = pose.translation.to_array();
+            let [qx, qy, qz, qw] = pose.rotation.to_array();
+            [x, y, z, qx, qy, qz, qw]
+        });
+        let values = Array2::from_shape_vec((poses.len(), 7), numbers.collect());
+        let way_points = WayPoints {
+            times,
+            values: values.expect("seven numbers a pose"),
+            origin: Origin::Argument("pose trajectory"),
+        };
+        Self::through(&way_points.checked()?, interpolation)
+    }
+
+    /// From CSV: columns `time_s`; `x`, `y`, `z` in metres (`_m`) or with `_mm`; and either `qx`, `qy`, `qz`, `qw` or `roll`,
+    /// `pitch`, `yaw` in radians (`_rad`) or with `_deg`: turns about the fixed axes x, y, z in turn. Errors begin with
+    /// `place`, the file's name, and give the line.
+    pub fn read_csv(place: &str, source: impl Read, interpolation: Interpolation) -> Result<Self> {
+        let mut table = Table::read(place, source)?;
+        let mut columns = claim_all(&mut table, &POSITION, LENGTH)?;
+        if columns.is_empty() {
+            return Err(table.refuse_header("no column x", "x, y, z in metres or x_mm, y_mm, z_mm"));
+        }
+        let quaternion = claim_all(&mut table, &QUATERNION, NUMBER)?;
+        let rpy = claim_all(&mut table, &RPY, ANGLE)?;
+        if quaternion.is_empty() == rpy.is_empty() {
+            let both = if rpy.is_empty() {
+                "no rotation"
+            } else {
+                "two rotations"
+            };
+            let allowed = "qx, qy, qz, qw, or roll, pitch, yaw, or roll_deg, pitch_deg, yaw_deg";
+            return Err(table.refuse_header(both, allowed));
+        }
+        columns.extend(quaternion.iter().chain(&rpy));
+        let known = POSITION.into_iter().chain(QUATERNION).chain(RPY);
+        Self::through(&table.way_points(&columns, known)?, interpolation)
+    }
+
+    /// From rows of x, y, z and qx, qy, qz, qw, or x, y, z and roll, pitch, yaw.
+    fn through(way_points: &WayPoints, interpolation: Interpolation) -> Result<Self> {
+        let times = &way_points.times;
+        let rotations = rotations(way_points)?;
+        let curve = |k| Curve::through(times, &way_points.values.column(k).to_vec(), interpolation);
+        let curves = (curve(0), curve(1), curve(2));
+        let rotation = RotationCurve::through(times, &rotations, interpolation);
+        let ((Some(x), Some(y), Some(z)), Some(rotation)) = (curves, rotation) else {
+            return Err(Error::input(
+                way_points.origin.place(),
+                "an endless velocity",
+                "way-points farther apart in time",
+            ));
+        };
+        Ok(Self {
+            times: times.clone(),
+            position: [x, y, z],
+            rotation,
+        })
+    }
+
+    /// `world_from_body` at a time in seconds.
+    pub fn pose_at(&self, time: f64) -> Pose {
+        let at = Moment::of(time, &self.times);
+        let [x, y, z] = &self.position;
+        let translation = DVec3::new(x.value(at), y.value(at), z.value(at));
+        Pose::new(self.rotation.rotation(at), translation)
+    }
+
+    /// The time of the last way-point, seconds.
+    pub fn end(&self) -> f64 {
+        self.times[self.times.len() - 1]
+    }
+}
+
+/// All of these columns or none of them.
+fn claim_all(table: &mut Table, names: &[&str], units: Units) -> Result<Vec<Column>> {
+    let mut columns = Vec::new();
+    let mut missing = None;
+    for name in names {
+        match table.claim(name, units, |_| false)? {
+            Some(column) => columns.push(column),
+            None => missing = Some(name),
+        }
+    }
+    match missing {
+        Some(name) if !columns.is_empty() => {
+            let given = format!("no column {name}");
+            Err(table.refuse_header(given, format!("all of {}", names.join(", "))))
+        }
+        _ => Ok(columns),
+    }
+}
+
+/// The unit quaternion of each way-point.
+fn rotations(way_points: &WayPoints) -> Result<Vec<DQuat>> {
+    let rows = way_points.values.rows().into_iter().enumerate();
+    rows.map(|(index, row)| {
+        if row.len() == 6 {
+            return Ok(rotation_from_rpy(DVec3::new(row[3], row[4], row[5])));
+        }
+        let quaternion = DQuat::from_xyzw(row[3], row[4], row[5], row[6]);
+        written_rotation(quaternion).ok_or_else(|| {
+            let given = format!("a quaternion of length {}", quaternion.length());
+            Error::input(way_points.at(index), given, "length 1")
+        })
+    })
+    .collect()
+}

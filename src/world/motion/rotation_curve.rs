@@ -1,0 +1,171 @@
+//! A rotation over time, through way-points.
+
+use super::curve::{Interpolation, Moment};
+use glam::{DQuat, DVec3};
+
+/// A rotation over time. Between two way-points, with s from 0 to 1,
+///
+/// `R(s) = R₀ exp(ω₁ b₁(s)) exp(ω₂ b₂(s)) exp(ω₃ b₃(s))`, `b = (1 − (1−s)³, 3s² − 2s³, s³)`
+///
+/// \[KKS\]: a cubic for rotations, whose angular velocity is 3 ω₁ / h at the start and 3 ω₃ / h at the end. With three equal ω
+/// it is slerp.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct RotationCurve {
+    pieces: Vec<Piece>,
+    last: DQuat,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Piece {
+    start: DQuat,
+    /// ω₁, ω₂, ω₃: rotation vectors in the body's frame, radians.
+    turns: [DVec3; 3],
+    /// h, seconds.
+    duration: f64,
+}
+
+impl RotationCurve {
+    /// Through unit quaternions at ascending times, at least one; the shorter way between neighbours. `None` if times are
+    /// so close that a velocity is not finite.
+    pub fn through(times: &[f64], at: &[DQuat], interpolation: Interpolation) -> Option<Self> {
+        let steps: Vec<f64> = times.windows(2).map(|t| t[1] - t[0]).collect();
+        let turns = at
+            .windows(2)
+            .map(|q| rotation_vector(q[0].conjugate() * q[1]));
+        let turns: Vec<DVec3> = turns.collect();
+        let velocities = body_velocities(&steps, &turns);
+        let piece = |i: usize| {
+            let h = steps[i];
+            let turns = match interpolation {
+                Interpolation::Linear => [turns[i] / 3.0; 3],
+                Interpolation::Cubic | Interpolation::Monotone => {
+                    let first = velocities[i] * h / 3.0;
+                    let third = velocities[i + 1] * h / 3.0;
+                    let whole = at[i].conjugate() * at[i + 1];
+                    let undone = DQuat::from_scaled_axis(-first) * whole;
+                    let middle = rotation_vector(undone * DQuat::from_scaled_axis(-third));
+                    [first, middle, third]
+                }
+            };
+            Piece {
+                start: at[i],
+                turns,
+                duration: h,
+            }
+        };
+        let pieces: Vec<Piece> = (0..steps.len()).map(piece).collect();
+        let is_finite = pieces.iter().flat_map(|p| p.turns).all(DVec3::is_finite);
+        is_finite.then_some(Self {
+            pieces,
+            last: at[at.len() - 1],
+        })
+    }
+
+    /// The unit quaternion at a moment.
+    pub fn rotation(&self, at: Moment) -> DQuat {
+        match at {
+            Moment::Before => self.pieces.first().map_or(self.last, |piece| piece.start),
+            Moment::After => self.last,
+            Moment::In { piece, elapsed } => {
+                let Piece {
+                    start,
+                    turns,
+                    duration,
+                } = self.pieces[piece];
+                let s = elapsed / duration;
+                let left = 1.0 - s;
+                let shares = [1.0 - left * left * left, s * s * (3.0 - 2.0 * s), s * s * s];
+                let parts = turns.into_iter().zip(shares);
+                let turned = parts.fold(start, |q, (w, b)| q * DQuat::from_scaled_axis(w * b));
+                turned.normalize()
+            }
+        }
+    }
+}
+
+/// Angular velocity at each way-point in the body's frame, rad/s: zero at the ends; between, the parabola's through three
+/// way-points, so that a steady turn stays steady.
+fn body_velocities(steps: &[f64], turns: &[DVec3]) -> Vec<DVec3> {
+    let mut velocities = vec![DVec3::ZERO; steps.len() + 1];
+    for i in 1..steps.len() {
+        let (before, after) = (steps[i - 1], steps[i]);
+        let mean = turns[i - 1] / before * after + turns[i] / after * before;
+        velocities[i] = mean / (before + after);
+    }
+    velocities
+}
+
+/// The shorter turn of a unit quaternion, radians along its axis.
+fn rotation_vector(q: DQuat) -> DVec3 {
+    let q = if q.w < 0.0 { -q } else { q };
+    let sine = q.xyz().length();
+    if sine == 0.0 {
+        return DVec3::ZERO;
+    }
+    q.xyz() * (2.0 * sine.atan2(q.w) / sine)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const TIMES: [f64; 4] = [0.0, 0.7, 1.0, 2.5];
+
+    fn way_points() -> [DQuat; 4] {
+        let turns = [
+            (0.1, 0.2, 0.3),
+            (1.0, -0.4, 0.2),
+            (1.1, 0.9, -0.8),
+            (-0.5, 0.3, 2.0),
+        ];
+        turns.map(|(x, y, z)| DQuat::from_scaled_axis(DVec3::new(x, y, z)))
+    }
+
+    fn angular_velocity(curve: &RotationCurve, time: f64, dt: f64) -> DVec3 {
+        let at = |time| curve.rotation(Moment::of(time, &TIMES));
+        rotation_vector(at(time).conjugate() * at(time + dt)) / dt
+    }
+
+    #[test]
+    fn linear_is_slerp() {
+        let at = way_points();
+        let curve = RotationCurve::through(&TIMES, &at, Interpolation::Linear).unwrap();
+        for share in [0.1, 0.5, 0.9] {
+            let found = curve.rotation(Moment::of(0.7 + 0.3 * share, &TIMES));
+            assert!(
+                found.angle_between(at[1].slerp(at[2], share)) < 1e-7,
+                "{share}"
+            );
+        }
+    }
+
+    #[test]
+    fn the_angular_velocity_of_a_cubic_is_continuous_and_zero_at_the_ends() {
+        let curve = RotationCurve::through(&TIMES, &way_points(), Interpolation::Cubic).unwrap();
+        let dt = 1e-6;
+        for time in [0.7, 1.0] {
+            let before = angular_velocity(&curve, time - dt, dt);
+            let after = angular_velocity(&curve, time, dt);
+            assert!(before.length() > 0.3, "it passes, it does not stop");
+            assert!(
+                (before - after).length() < 1e-4,
+                "{time}: {before}, {after}"
+            );
+        }
+        assert!(angular_velocity(&curve, 0.0, dt).length() < 1e-4);
+        assert!(angular_velocity(&curve, 2.5 - dt, dt).length() < 1e-4);
+    }
+
+    #[test]
+    fn every_way_point_is_passed() {
+        for kind in [Interpolation::Linear, Interpolation::Cubic] {
+            let curve = RotationCurve::through(&TIMES, &way_points(), kind).unwrap();
+            for (&time, q) in TIMES.iter().zip(way_points()) {
+                for time in [time, time - 1e-13] {
+                    let found = curve.rotation(Moment::of(time, &TIMES));
+                    assert!((1.0 - found.dot(q).abs()).abs() < 1e-14, "{kind:?} {time}");
+                }
+            }
+        }
+    }
+}

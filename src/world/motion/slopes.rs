@@ -1,0 +1,39 @@
+//! Velocities at way-points, which make cubics between them smooth.
+
+/// Velocities of the C² cubic spline with velocity zero at both ends. `steps` are the n − 1 durations and `secants` the mean
+/// velocities between n values; returns n.
+///
+/// Between pieces the accelerations agree:
+/// `m₋/h₋ + 2 (1/h₋ + 1/h₊) m + m₊/h₊ = 3 (d₋/h₋ + d₊/h₊)`, with h the duration and d the secant before and after; a
+/// tridiagonal system with a dominant diagonal, solved by elimination.
+pub(super) fn clamped_spline(steps: &[f64], secants: &[f64]) -> Vec<f64> {
+    let n = steps.len() + 1;
+    let mut slopes = vec![0.0; n];
+    // After elimination: slope = right − above · next slope.
+    let mut above = vec![0.0; n];
+    for i in 1..n - 1 {
+        let (before, after) = (1.0 / steps[i - 1], 1.0 / steps[i]);
+        let pivot = 2.0 * (before + after) - before * above[i - 1];
+        let right = 3.0 * (secants[i - 1] * before + secants[i] * after);
+        above[i] = after / pivot;
+        slopes[i] = (right - before * slopes[i - 1]) / pivot;
+    }
+    for i in (1..n - 1).rev() {
+        slopes[i] -= above[i] * slopes[i + 1];
+    }
+    slopes
+}
+
+/// Velocities with which no cubic leaves the range of its two values \[FC\]: zero at the ends and wherever the direction
+/// turns, else the weighted harmonic mean of the secants on both sides (Fritsch and Butland's choice).
+pub(super) fn monotone(steps: &[f64], secants: &[f64]) -> Vec<f64> {
+    let mut slopes = vec![0.0; steps.len() + 1];
+    for i in 1..steps.len() {
+        let (d0, d1) = (secants[i - 1], secants[i]);
+        if d0 * d1 > 0.0 {
+            let (w0, w1) = (2.0 * steps[i] + steps[i - 1], steps[i] + 2.0 * steps[i - 1]);
+            slopes[i] = (w0 + w1) / (w0 / d0 + w1 / d1);
+        }
+    }
+    slopes
+}

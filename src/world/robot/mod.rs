@@ -1,0 +1,32 @@
+//! Robots: links and joints, read from URDF \[URDF\] or one floating link → where every link is.
+//!
+//! A robot is a tree of rigid links. Joint j joins its parent link to its child link:
+//!
+//! `parent_from_child = origin_j · motion_j(q_j)`, with q_j the joint's coordinates:
+//!
+//! | joint | coordinates | motion |
+//! |---|---|---|
+//! | fixed | none | none |
+//! | revolute, continuous | angle, rad | turn about the axis |
+//! | prismatic | travel, m | shift along the axis |
+//! | planar | x, y, m; theta, rad | shift in the plane across the axis, then turn about it |
+//! | floating | x, y, z, m; roll, pitch, yaw, rad | shift, then turn: `Rz(yaw) Ry(pitch) Rx(roll)` |
+//!
+//! The **positions** of a robot are the coordinates of its joints in the order of its file, without fixed joints and without
+//! those that mimic another.
+
+mod coordinate;
+mod joint;
+mod link;
+mod mimic;
+mod model;
+mod spelling;
+mod tree;
+mod urdf;
+mod xml;
+
+pub use coordinate::{Coordinate, Dimension};
+pub use joint::{Joint, JointKind, Limits, Mimic};
+pub use link::{Link, LinkGeometry, LinkShape, ShapeRole};
+pub use model::Robot;
+pub(super) use spelling::nearest_names;

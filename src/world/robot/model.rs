@@ -1,0 +1,275 @@
+//! A robot as links and joints, and where its links are.
+
+use super::mimic::Drive;
+use super::tree::Tree;
+use super::urdf::read_urdf;
+use super::{Coordinate, Joint, Link, nearest_names};
+use crate::error::{Error, Result};
+use crate::geometry::Pose;
+use std::collections::HashSet;
+use std::path::Path;
+
+/// A rigid multi-link body. Invariant: its joints make one tree of its links.
+///
+/// ```
+/// use bubbletouch::geometry::Pose;
+/// use bubbletouch::world::Robot;
+///
+/// let door = Robot::from_urdf("door.urdf", r#"
+/// <robot name="door">
+///   <link name="frame"/>
+///   <link name="leaf"/>
+///   <joint name="hinge" type="revolute">
+///     <parent link="frame"/>
+///     <child link="leaf"/>
+///     <origin xyz="0.5 0 0"/>
+///     <axis xyz="0 0 1"/>
+///     <limit lower="0" upper="1.6" velocity="1" effort="10"/>
+///   </joint>
+/// </robot>"#)?;
+/// let world_from_link = door.forward(&Pose::IDENTITY, &[1.2])?;
+/// assert_eq!(world_from_link[door.link("leaf")?].translation.x, 0.5);
+/// # Ok::<(), bubbletouch::Error>(())
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+pub struct Robot {
+    name: String,
+    place: String,
+    links: Vec<Link>,
+    joints: Vec<Joint>,
+    tree: Tree,
+    /// One a joint.
+    drives: Vec<Drive>,
+    coordinates: Vec<Coordinate>,
+}
+
+impl Robot {
+    /// A robot from the text of a URDF file; errors begin with `place`, the file's name, and give the line.
+    pub fn from_urdf(place: &str, text: &str) -> Result<Self> {
+        read_urdf(place, text)
+    }
+
+    /// A robot from a URDF file. Mesh files that it names are not opened: see [`check_meshes`](Self::check_meshes).
+    pub fn read_urdf(path: &Path) -> Result<Self> {
+        let place = path.display().to_string();
+        let text = std::fs::read_to_string(path)
+            .map_err(|e| Error::input(&place, format!("cannot be read ({e})"), "a URDF file"))?;
+        read_urdf(&place, &text)
+    }
+
+    /// A robot of one link without joints: its base is moved, and nothing else.
+    pub fn floating(name: &str) -> Self {
+        let link = Link {
+            name: name.to_owned(),
+            shapes: Vec::new(),
+        };
+        Self {
+            name: name.to_owned(),
+            place: name.to_owned(),
+            links: vec![link],
+            joints: Vec::new(),
+            tree: Tree {
+                root: 0,
+                outward: Vec::new(),
+            },
+            drives: Vec::new(),
+            coordinates: Vec::new(),
+        }
+    }
+
+    /// From parts that were checked. The error is two coordinates of one name.
+    pub(super) fn assembled(
+        name: String,
+        place: &str,
+        links: Vec<Link>,
+        joints: Vec<Joint>,
+        tree: Tree,
+        drives: Vec<Drive>,
+    ) -> Result<Self> {
+        let mut coordinates = Vec::new();
+        for (index, joint) in joints.iter().enumerate() {
+            let own = joint.kind.coordinates().iter();
+            let coordinate = |&(suffix, dimension): &(&str, _)| Coordinate {
+                name: format!("{}{suffix}", joint.name),
+                joint: index,
+                dimension,
+            };
+            if joint.mimic.is_none() {
+                coordinates.extend(own.map(coordinate));
+            }
+        }
+        let mut names = HashSet::new();
+        if let Some(second) = coordinates.iter().find(|c| !names.insert(c.name.as_str())) {
+            let given = format!("two coordinates called `{}`", second.name);
+            return Err(Error::input(place, given, "joints of other names"));
+        }
+        Ok(Self {
+            name,
+            place: place.to_owned(),
+            links,
+            joints,
+            tree,
+            drives,
+            coordinates,
+        })
+    }
+
+    /// Its name.
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// In the order of the file.
+    pub fn links(&self) -> &[Link] {
+        &self.links
+    }
+
+    /// In the order of the file.
+    pub fn joints(&self) -> &[Joint] {
+        &self.joints
+    }
+
+    /// Index of the link that no joint moves: the base.
+    pub fn base(&self) -> usize {
+        self.tree.root
+    }
+
+    /// What each of its positions is, in their order.
+    pub fn coordinates(&self) -> &[Coordinate] {
+        &self.coordinates
+    }
+
+    /// How many positions it has.
+    pub fn n_positions(&self) -> usize {
+        self.coordinates.len()
+    }
+
+    /// Index of a link by its name; the error offers names that resemble it.
+    pub fn link(&self, name: &str) -> Result<usize> {
+        self.find(
+            "link",
+            name,
+            self.links.iter().map(|link| link.name.as_str()),
+        )
+    }
+
+    /// Index of a joint by its name; the error offers names that resemble it.
+    pub fn joint(&self, name: &str) -> Result<usize> {
+        self.find(
+            "joint",
+            name,
+            self.joints.iter().map(|joint| joint.name.as_str()),
+        )
+    }
+
+    fn find<'a>(
+        &self,
+        what: &str,
+        name: &str,
+        mut names: impl Iterator<Item = &'a str> + Clone,
+    ) -> Result<usize> {
+        let all = names.clone();
+        names.position(|known| known == name).ok_or_else(|| {
+            let place = format!("{what} of robot `{}`", self.name);
+            Error::input(place, format!("`{name}`"), nearest_names(name, all))
+        })
+    }
+
+    /// `world_from_link` of every link, in their order; `world_from_base` is where the base is. See
+    /// [`forward_into`](Self::forward_into).
+    pub fn forward(&self, world_from_base: &Pose, positions: &[f64]) -> Result<Vec<Pose>> {
+        let mut world_from_link = vec![Pose::IDENTITY; self.links.len()];
+        self.forward_into(world_from_base, positions, &mut world_from_link)?;
+        Ok(world_from_link)
+    }
+
+    /// The same into a slice of one pose a link, without allocation.
+    ///
+    /// Limits are not checked here: see [`JointTrajectory`](crate::world::JointTrajectory). The error is a slice of another
+    /// length than the robot has positions or links, or a position that is not finite.
+    pub fn forward_into(
+        &self,
+        world_from_base: &Pose,
+        positions: &[f64],
+        world_from_link: &mut [Pose],
+    ) -> Result<()> {
+        self.check_positions(positions)?;
+        if world_from_link.len() != self.links.len() {
+            return Err(self.wrong_length("link poses", world_from_link.len(), self.links.len()));
+        }
+        world_from_link[self.tree.root] = *world_from_base;
+        for &index in &self.tree.outward {
+            let joint = &self.joints[index];
+            let parent_from_child = match self.drives[index] {
+                Drive::Own { first } => {
+                    let n = joint.kind.coordinates().len();
+                    joint.pose(&positions[first..first + n])
+                }
+                Drive::Follows {
+                    position,
+                    multiplier,
+                    offset,
+                } => joint.pose(&[multiplier * positions[position] + offset]),
+            };
+            world_from_link[joint.child] =
+                world_from_link[joint.parent].compose(&parent_from_child);
+        }
+        Ok(())
+    }
+
+    /// Which position moves a joint of one coordinate, and how: `(position, multiplier, offset)`; `None` for the others.
+    /// A joint that mimics none has multiplier 1 and offset 0.
+    pub fn drive_of(&self, joint: usize) -> Option<(usize, f64, f64)> {
+        match self.drives[joint] {
+            Drive::Own { first } => {
+                let is_one = self.joints[joint].kind.has_one_coordinate();
+                is_one.then_some((first, 1.0, 0.0))
+            }
+            Drive::Follows {
+                position,
+                multiplier,
+                offset,
+            } => Some((position, multiplier, offset)),
+        }
+    }
+
+    /// Checks that every mesh file of its links is there, for a URDF that lies in `folder`. The error gives the line.
+    pub fn check_meshes(&self, folder: &Path) -> Result<()> {
+        for link in &self.links {
+            for shape in &link.shapes {
+                if let Some(path) = shape.geometry.mesh_path(folder)
+                    && !path.is_file()
+                {
+                    return Err(Error::input(
+                        format!("{}, line {}, link `{}`", self.place, shape.line, link.name),
+                        format!("mesh {}, which is not there", path.display()),
+                        "a mesh file",
+                    ));
+                }
+            }
+        }
+        Ok(())
+    }
+
+    fn check_positions(&self, positions: &[f64]) -> Result<()> {
+        if positions.len() != self.n_positions() {
+            return Err(self.wrong_length("positions", positions.len(), self.n_positions()));
+        }
+        match positions.iter().position(|position| !position.is_finite()) {
+            Some(wrong) => Err(Error::input(
+                format!(
+                    "position `{}` of robot `{}`",
+                    self.coordinates[wrong].name, self.name
+                ),
+                positions[wrong],
+                "a finite number",
+            )),
+            None => Ok(()),
+        }
+    }
+
+    fn wrong_length(&self, what: &str, given: usize, allowed: usize) -> Error {
+        let place = format!("{what} of robot `{}`", self.name);
+        Error::input(place, given, format!("{allowed} of them"))
+    }
+}

@@ -1,0 +1,74 @@
+//! Names that were perhaps meant.
+
+/// At most this many are offered: more is a list that nobody reads.
+const OFFERED: usize = 8;
+
+/// The error's last part for a name that is not among `names`: those it resembles, else the first few there are.
+pub(in crate::world) fn nearest_names<'a>(
+    name: &str,
+    names: impl IntoIterator<Item = &'a str>,
+) -> String {
+    let all: Vec<&str> = names.into_iter().collect();
+    let mut near: Vec<(usize, &str)> = all
+        .iter()
+        .map(|known| (distance(name, known), *known))
+        .filter(|(far, known)| far * 3 <= known.chars().count().max(6))
+        .collect();
+    near.sort();
+    if near.is_empty() {
+        let more = if all.len() > OFFERED { ", …" } else { "" };
+        return match all.len() {
+            0 => "there is none".to_owned(),
+            _ => format!("one of {}{more}", quoted(&all[..all.len().min(OFFERED)])),
+        };
+    }
+    near.truncate(OFFERED);
+    let near: Vec<&str> = near.into_iter().map(|(_, known)| known).collect();
+    format!("perhaps {}", quoted(&near))
+}
+
+/// The known word that an unknown one is a slip of, if it is: at most two letters off and no more than a third of it.
+pub(super) fn slip_of<'a>(word: &str, known: &[&'a str]) -> Option<&'a str> {
+    let near = |known: &&&str| {
+        let far = distance(word, known);
+        far <= 2 && far * 3 <= known.chars().count()
+    };
+    known.iter().find(near).copied()
+}
+
+/// Letters to insert, delete, replace or swap; capitals count as small ones.
+fn distance(a: &str, b: &str) -> usize {
+    strsim::damerau_levenshtein(&a.to_lowercase(), &b.to_lowercase())
+}
+
+fn quoted(names: &[&str]) -> String {
+    let names: Vec<String> = names.iter().map(|name| format!("`{name}`")).collect();
+    names.join(", ")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_slip_is_offered_what_was_meant_and_a_stranger_the_list() {
+        let names = ["elbow", "wrist", "shoulder_pan"];
+        assert_eq!(nearest_names("elbwo", names), "perhaps `elbow`");
+        assert_eq!(
+            nearest_names("Shoulder_Pan", names),
+            "perhaps `shoulder_pan`"
+        );
+        assert_eq!(
+            nearest_names("knee", ["hip"; 9]).matches("hip").count(),
+            OFFERED
+        );
+        assert_eq!(nearest_names("knee", []), "there is none");
+    }
+
+    #[test]
+    fn a_tag_of_another_tool_is_no_slip() {
+        assert_eq!(slip_of("orgin", &["origin", "axis"]), Some("origin"));
+        assert_eq!(slip_of("sensor", &["origin", "axis"]), None);
+        assert_eq!(slip_of("xyz", &["rpy"]), None);
+    }
+}

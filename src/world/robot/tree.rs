@@ -1,0 +1,112 @@
+//! Links and joints as a tree: one root, every other link moved by exactly one joint.
+
+use super::xml::Element;
+use super::{Joint, Link};
+use crate::error::{Error, Result};
+
+/// The order in which poses are known.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Tree {
+    /// Index of the link that no joint moves.
+    pub root: usize,
+    /// Indices of all joints, each after the one that moves its parent link.
+    pub outward: Vec<usize>,
+}
+
+impl Tree {
+    /// Checks that the joints make one tree of the links. `robot` and `elements` (one a joint) say where an error is.
+    pub fn of(
+        links: &[Link],
+        joints: &[Joint],
+        robot: Element,
+        elements: &[Element],
+    ) -> Result<Self> {
+        let moved_by = moved_by(links, joints, elements)?;
+        let is_root = |link: &usize| moved_by[*link].is_none();
+        let roots: Vec<usize> = (0..links.len()).filter(is_root).collect();
+        let root = match roots.as_slice() {
+            [] => return Err(circle(0, links, joints, &moved_by, elements)),
+            &[root] => root,
+            &[first, second, ..] => {
+                let names = format!("`{}`, `{}`", links[first].name, links[second].name);
+                let more = if roots.len() > 2 { ", …" } else { "" };
+                return Err(robot.refuse(
+                    format!("{} links that no joint moves: {names}{more}", roots.len()),
+                    "one root: join the others to it (a fixed joint will do)",
+                ));
+            }
+        };
+        let outward = outward(root, links.len(), joints);
+        let mut is_reached = vec![false; links.len()];
+        is_reached[root] = true;
+        for &joint in &outward {
+            is_reached[joints[joint].child] = true;
+        }
+        match is_reached.iter().position(|reached| !reached) {
+            // It is moved by something that is not reached either, and so on: it goes round.
+            Some(link) => Err(circle(link, links, joints, &moved_by, elements)),
+            None => Ok(Self { root, outward }),
+        }
+    }
+}
+
+/// The joint that moves each link, if one does; the error is a second one.
+fn moved_by(links: &[Link], joints: &[Joint], elements: &[Element]) -> Result<Vec<Option<usize>>> {
+    let mut moved_by: Vec<Option<usize>> = vec![None; links.len()];
+    for (index, joint) in joints.iter().enumerate() {
+        if let Some(first) = moved_by[joint.child].replace(index) {
+            let (link, first) = (&links[joint.child].name, &joints[first].name);
+            return Err(elements[index].refuse(
+                format!(
+                    "link `{link}` is the child of `{first}` and of `{}`",
+                    joint.name
+                ),
+                "one joint that moves a link: a tree",
+            ));
+        }
+    }
+    Ok(moved_by)
+}
+
+/// Joints reached from the root, parents first; among the children of a link, the order of the file.
+fn outward(root: usize, n_links: usize, joints: &[Joint]) -> Vec<usize> {
+    let mut carried: Vec<Vec<usize>> = vec![Vec::new(); n_links];
+    for (index, joint) in joints.iter().enumerate() {
+        carried[joint.parent].push(index);
+    }
+    let mut order: Vec<usize> = carried[root].clone();
+    let mut next = 0;
+    while let Some(&joint) = order.get(next) {
+        order.extend_from_slice(&carried[joints[joint].child]);
+        next += 1;
+    }
+    order
+}
+
+/// The error for links that are moved in a circle, from one that leads into it.
+fn circle(
+    start: usize,
+    links: &[Link],
+    joints: &[Joint],
+    moved_by: &[Option<usize>],
+    elements: &[Element],
+) -> Error {
+    let inward = |link: usize| moved_by[link].map_or(link, |joint| joints[joint].parent);
+    // As many steps as there are links end inside the circle.
+    let inside = (0..links.len()).fold(start, |link, _| inward(link));
+    let mut round = vec![inside];
+    while inward(round[round.len() - 1]) != inside {
+        round.push(inward(round[round.len() - 1]));
+    }
+    round.push(inside);
+    let names: Vec<String> = round
+        .iter()
+        .rev()
+        .map(|&link| format!("`{}`", links[link].name))
+        .collect();
+    let joint = moved_by[inside].unwrap_or(0);
+    elements[joint].refuse(
+        format!("links in a circle: {}", names.join(" → ")),
+        "a tree: no link carries itself",
+    )
+}

@@ -1,0 +1,199 @@
+//! XML elements that know where they stand: what is read from them, or the sentence that says why not.
+
+use super::spelling::slip_of;
+use crate::error::{Error, Result};
+use crate::geometry::{Pose, rotation_from_rpy, written_rotation};
+use glam::{DQuat, DVec3};
+use roxmltree::Node;
+use std::str::FromStr;
+
+/// Where the lines of a file begin.
+pub(super) struct Lines<'a> {
+    place: &'a str,
+    starts: Vec<usize>,
+}
+
+impl<'a> Lines<'a> {
+    /// `place` is the file's name.
+    pub fn new(place: &'a str, text: &str) -> Self {
+        let ends = text.match_indices('\n').map(|(end, _)| end + 1);
+        Self {
+            place,
+            starts: std::iter::once(0).chain(ends).collect(),
+        }
+    }
+
+    fn line(&self, offset: usize) -> usize {
+        self.starts.partition_point(|&start| start <= offset)
+    }
+}
+
+/// An element of a file.
+#[derive(Clone, Copy)]
+pub(super) struct Element<'a> {
+    pub node: Node<'a, 'a>,
+    pub lines: &'a Lines<'a>,
+}
+
+impl<'a> Element<'a> {
+    /// From 1.
+    pub fn line(&self) -> usize {
+        self.lines.line(self.node.range().start)
+    }
+
+    /// An error at this element's line.
+    pub fn refuse(&self, given: impl ToString, allowed: impl ToString) -> Error {
+        let place = format!("{}, line {}", self.lines.place, self.line());
+        Error::input(place, given, allowed)
+    }
+
+    /// The elements below of this tag.
+    pub fn children(self, tag: &'a str) -> impl Iterator<Item = Self> {
+        let is_it = move |node: &Node| is_own(node) && node.tag_name().name() == tag;
+        let children = self.node.children().filter(is_it);
+        children.map(move |node| Self { node, ..self })
+    }
+
+    /// The only element below of this tag, if there is one.
+    pub fn child(self, tag: &'a str) -> Result<Option<Self>> {
+        let mut all = self.children(tag);
+        let first = all.next();
+        match all.next() {
+            Some(second) => Err(second.refuse(format!("a second <{tag}>"), "at most one here")),
+            None => Ok(first),
+        }
+    }
+
+    /// The only element below of this tag.
+    pub fn needed_child(self, tag: &'a str) -> Result<Self> {
+        self.child(tag)?
+            .ok_or_else(|| self.refuse(format!("{} without <{tag}>", self.called()), "exactly one"))
+    }
+
+    /// An attribute that must be there.
+    pub fn text(&self, attribute: &str) -> Result<&'a str> {
+        self.node.attribute(attribute).ok_or_else(|| {
+            let given = format!("{} without `{attribute}`", self.called());
+            self.refuse(given, format!("the attribute `{attribute}`"))
+        })
+    }
+
+    /// The attribute `name`, not empty.
+    pub fn name(&self) -> Result<&'a str> {
+        let name = self.text("name")?;
+        if name.trim().is_empty() {
+            return Err(self.refuse(format!("{} with an empty name", self.called()), "a name"));
+        }
+        Ok(name)
+    }
+
+    /// The N finite numbers of an attribute, if it is there.
+    pub fn numbers<const N: usize>(&self, attribute: &str) -> Result<Option<[f64; N]>> {
+        let Some(text) = self.node.attribute(attribute) else {
+            return Ok(None);
+        };
+        let numbers: Option<Vec<f64>> = text.split_whitespace().map(finite).collect();
+        let numbers = numbers.and_then(|numbers| <[f64; N]>::try_from(numbers).ok());
+        let allowed = || match N {
+            1 => "a finite number".to_owned(),
+            _ => format!("{N} finite numbers with spaces between"),
+        };
+        match numbers {
+            Some(numbers) => Ok(Some(numbers)),
+            None => Err(self.refuse(format!("`{attribute}` \"{}\"", shortened(text)), allowed())),
+        }
+    }
+
+    /// The N finite numbers of an attribute that must be there.
+    pub fn needed_numbers<const N: usize>(&self, attribute: &str) -> Result<[f64; N]> {
+        self.text(attribute)?;
+        Ok(self.numbers(attribute)?.expect("the attribute is there"))
+    }
+
+    /// One finite number of an attribute, if it is there.
+    pub fn number(&self, attribute: &str) -> Result<Option<f64>> {
+        Ok(self.numbers::<1>(attribute)?.map(|[number]| number))
+    }
+
+    /// The pose of the `<origin>` below; none is no motion. `rpy` turns about the fixed axes x, y, z in turn; `quat_xyzw`
+    /// (URDF 1.1) is read instead of it.
+    pub fn origin(self) -> Result<Pose> {
+        let Some(origin) = self.child("origin")? else {
+            return Ok(Pose::IDENTITY);
+        };
+        origin.check_attributes(&["xyz", "rpy", "quat_xyzw"])?;
+        let xyz = origin.numbers("xyz")?.unwrap_or([0.0; 3]);
+        let rotation = match (origin.numbers("rpy")?, origin.numbers("quat_xyzw")?) {
+            (Some(_), Some(_)) => {
+                return Err(origin.refuse("both `rpy` and `quat_xyzw`", "one of them"));
+            }
+            (None, Some(xyzw)) => {
+                let quaternion = DQuat::from_array(xyzw);
+                written_rotation(quaternion).ok_or_else(|| {
+                    let given = format!("a quaternion of length {}", quaternion.length());
+                    origin.refuse(given, "length 1")
+                })?
+            }
+            (rpy, None) => rotation_from_rpy(DVec3::from(rpy.unwrap_or([0.0; 3]))),
+        };
+        Ok(Pose::new(rotation, DVec3::from(xyz)))
+    }
+
+    /// Refuses elements below that are slips of known ones. Strange ones are left alone: every simulator adds its own.
+    pub fn check_tags(&self, known: &[&str]) -> Result<()> {
+        for node in self.node.children().filter(is_own) {
+            let tag = node.tag_name().name();
+            if !known.contains(&tag)
+                && let Some(meant) = slip_of(tag, known)
+            {
+                let child = Self { node, ..*self };
+                return Err(child.refuse(format!("<{tag}>"), format!("perhaps <{meant}>")));
+            }
+        }
+        Ok(())
+    }
+
+    /// Refuses attributes that are slips of known ones.
+    pub fn check_attributes(&self, known: &[&str]) -> Result<()> {
+        for attribute in self.node.attributes() {
+            let name = attribute.name();
+            if !known.contains(&name)
+                && let Some(meant) = slip_of(name, known)
+            {
+                let given = format!("`{name}` in {}", self.called());
+                return Err(self.refuse(given, format!("perhaps `{meant}`")));
+            }
+        }
+        Ok(())
+    }
+
+    /// The tag, with the name if it has one.
+    pub fn called(&self) -> String {
+        let tag = self.node.tag_name().name();
+        match self.node.attribute("name") {
+            Some(name) => format!("<{tag}> `{name}`"),
+            None => format!("<{tag}>"),
+        }
+    }
+}
+
+/// Whether a node is an element of URDF: those of another namespace than the root's are other tools'.
+fn is_own(node: &Node) -> bool {
+    let root = node.document().root_element();
+    node.is_element() && node.tag_name().namespace() == root.tag_name().namespace()
+}
+
+fn finite(word: &str) -> Option<f64> {
+    let number = f64::from_str(word).ok()?;
+    number.is_finite().then_some(number)
+}
+
+/// The first letters of a text that may be long.
+fn shortened(text: &str) -> String {
+    const LETTERS: usize = 60;
+    let mut short: String = text.chars().take(LETTERS).collect();
+    if text.chars().count() > LETTERS {
+        short.push('…');
+    }
+    short
+}
