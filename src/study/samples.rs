@@ -55,11 +55,13 @@ pub fn sample_frames(plan: &Plan, sweep: &Sweep, touched: &[TouchedObject]) -> R
                 frame.mapv_inplace(|value| value.min(full_scale));
                 frames.push((words, frame));
             }
-            format!(
-                "A touch of the {} after one of the {}, on {array}; colours end at the full scale",
-                name(first),
-                name(before)
-            )
+            let remembers = |kind: &Imperfection| *kind == Imperfection::Hysteresis;
+            let after = match plan.imperfections.iter().any(|(kind, _)| remembers(kind)) {
+                true => format!(", after one of the {},", name(before)),
+                false => String::new(),
+            };
+            let first = name(first);
+            format!("A touch of the {first}{after} on {array}; colours end at the full scale")
         }
         _ => {
             for object in objects {
