@@ -105,6 +105,10 @@
 //! - `[CL]` Hollis, Patterson, Trinkle, *Compressed learning for tactile object recognition*, RA-L 2018 (arXiv 1609.07542,
 //!   1705.05247).
 //! - `[PT]` Pang, Trinkle, Lo, *A complementarity approach to a quasistatic multi-rigid-body contact problem*, COAP 1996.
+//! - `[SD]` Sánchez-Durán et al., *Influence of errors in tactile sensors on some high level parameters used for manipulation
+//!   with robotic hands*, Sensors 2015.
+//! - `[GPI]` Sánchez-Durán et al., *Hysteresis correction of tactile sensor response with a generalized Prandtl–Ishlinskii
+//!   model*, Microsystem Technologies 2012.
 //! - `[MT]` Möller, Trumbore, *Fast, minimum storage ray/triangle intersection*, J. Graphics Tools 1997.
 //! - `[VS]` van Oosterom, Strackee, *The solid angle of a plane triangle*, IEEE Trans. Biomed. Eng. 1983.
 //! - `[BA]` Bærentzen, Aanæs, *Signed distance computation using the angle weighted pseudonormal*, TVCG 2005.

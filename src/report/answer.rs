@@ -150,9 +150,9 @@ pub fn accuracy_sentence(score: &CellScore) -> String {
 }
 
 fn effects(rows: &[(Cell, CellScore)], settings: &Settings) -> Vec<Effect> {
-    let all: Vec<Axis> = settings.varying.iter().map(|levels| levels.axis).collect();
+    let all: Vec<Axis> = settings.single().map(|levels| levels.axis).collect();
     let mut effects = Vec::new();
-    for levels in &settings.varying {
+    for levels in settings.single() {
         let mut groups: HashMap<Vec<String>, Vec<Option<f64>>> = HashMap::new();
         for (cell, score) in rows {
             let others = all.iter().filter(|axis| **axis != levels.axis);

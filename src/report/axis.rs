@@ -1,10 +1,12 @@
 //! The axes of a study: each setting's name, its value in a cell, and how both are written for people.
 
+use super::signal_axis;
 use crate::recognition::ClassifierKind;
 use crate::recognition::features::Features;
 use crate::sensing::{Basis, Ensemble, Solver};
 use crate::signal::NoiseUnit;
 use crate::study::table::Cell;
+use crate::study::{IMPERFECTIONS, Imperfection, TestedOn};
 
 /// A setting that a study can sweep.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -35,14 +37,29 @@ pub enum Axis {
     TrainTouches,
     /// Test touches decided on together.
     FusedTouches,
+    /// What a skin and its reader do to the signal.
+    Imperfection(Imperfection),
+    /// The skin that test touches are made with.
+    TestedOn,
+    /// All that happens to the signal, in words: where only one thing at a time does.
+    Signal,
 }
 
-/// Every axis, in the order in which tables show them.
-pub const AXES: [Axis; 13] = [
+/// Every axis but [`Signal`](Axis::Signal), which stands for several, in the order in which tables show them.
+pub const AXES: [Axis; 22] = [
     Axis::Pitch,
     Axis::Size,
     Axis::Noise,
     Axis::Smoothing,
+    Axis::Imperfection(IMPERFECTIONS[0]),
+    Axis::Imperfection(IMPERFECTIONS[1]),
+    Axis::Imperfection(IMPERFECTIONS[2]),
+    Axis::Imperfection(IMPERFECTIONS[3]),
+    Axis::Imperfection(IMPERFECTIONS[4]),
+    Axis::Imperfection(IMPERFECTIONS[5]),
+    Axis::Imperfection(IMPERFECTIONS[6]),
+    Axis::Imperfection(IMPERFECTIONS[7]),
+    Axis::TestedOn,
     Axis::Frames,
     Axis::Ensemble,
     Axis::Features,
@@ -82,6 +99,9 @@ impl Axis {
             Self::C => "c",
             Self::TrainTouches => "train_touches",
             Self::FusedTouches => "fused_touches",
+            Self::Imperfection(kind) => kind.key(),
+            Self::TestedOn => "tested_on",
+            Self::Signal => "signal",
         }
     }
 
@@ -101,6 +121,9 @@ impl Axis {
             Self::C => "C",
             Self::TrainTouches => "training touches",
             Self::FusedTouches => "touches fused",
+            Self::Imperfection(kind) => kind.name(),
+            Self::TestedOn => "test skin",
+            Self::Signal => "signal",
         }
     }
 
@@ -127,6 +150,9 @@ impl Axis {
             Self::C => "soft-margin penalty C",
             Self::TrainTouches => "training touches an object",
             Self::FusedTouches => "touches decided on together",
+            Self::Imperfection(kind) => signal_axis::title(kind),
+            Self::TestedOn => "test skin",
+            Self::Signal => "signal",
         };
         title.to_owned()
     }
@@ -151,6 +177,12 @@ impl Axis {
             },
             Self::TrainTouches => with_suffix(cell.train_touches as f64, "", ""),
             Self::FusedTouches => with_suffix(cell.fused_touches as f64, "", ""),
+            Self::Imperfection(kind) => signal_axis::value(kind, cell),
+            Self::TestedOn => word(match cell.tested_on.unwrap_or_default() {
+                TestedOn::SameSkin => "the same skin",
+                TestedOn::AnotherSkin => "another skin",
+            }),
+            Self::Signal => word(&signal_axis::words(cell)),
         }
     }
 }
@@ -163,6 +195,11 @@ impl Axis {
             Self::Measurements | Self::C | Self::Frames | Self::FusedTouches => {
                 format!("{} = {label}", self.name())
             }
+            Self::TestedOn => format!("tested on {label}"),
+            Self::Signal => match &label[..] {
+                signal_axis::IDEAL => "an ideal signal".to_owned(),
+                _ => label,
+            },
             _ => format!("{} {label}", self.name()),
         }
     }

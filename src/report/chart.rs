@@ -10,6 +10,7 @@ use crate::report::legend::{
 use crate::report::panels::Panels;
 use crate::report::varying::{Levels, Settings, unbroken_parts};
 use crate::report::x_scale::{TICK_SIZE, XScale};
+use crate::study::Imperfection;
 use crate::study::table::{Cell, CellScore, Tables};
 
 const LABEL: u32 = 13;
@@ -42,7 +43,11 @@ pub fn draw_chart(plan: &ChartPlan, tables: &Tables) -> Drawing {
 
 /// What a chart is read as: `accuracy by compression, by pitch and array size (noise 10 % of full scale)`.
 pub fn chart_title(plan: &ChartPlan) -> String {
-    let mut title = format!("Accuracy by {}", plan.x.axis.name());
+    let along = match plan.x.axis {
+        Axis::Imperfection(Imperfection::Quantisation) => "bits of the converter",
+        axis => axis.name(),
+    };
+    let mut title = format!("Accuracy by {along}");
     let others: Vec<&str> = [&plan.lines, &plan.panels]
         .into_iter()
         .flatten()
@@ -319,6 +324,7 @@ fn named(axis: Axis, value: &AxisValue) -> String {
         Axis::Frames if value.label == "1" => "1 frame a touch".to_owned(),
         Axis::FusedTouches if value.label == "1" => "a touch alone".to_owned(),
         Axis::Frames | Axis::FusedTouches => format!("{} {}", value.label, axis.name()),
+        Axis::TestedOn => format!("tested on {}", value.label),
         _ => format!("{} {}", axis.name(), value.label),
     }
 }

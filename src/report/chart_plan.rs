@@ -6,6 +6,7 @@
 
 use crate::report::axis::{Axis, AxisValue};
 use crate::report::varying::{Levels, Settings};
+use crate::study::IMPERFECTIONS;
 use crate::study::table::Cell;
 
 /// What a chart shows where.
@@ -21,10 +22,12 @@ pub struct ChartPlan {
     pub panels: Option<Levels>,
     /// Axes that vary in the study and stay in this chart.
     pub fixed: Vec<(Axis, AxisValue)>,
+    /// Axes of the signal that other charts are about, at the values that they keep in this one.
+    pub base: Vec<(Axis, AxisValue)>,
 }
 
 /// First choice first: what a reader looks for along x.
-const ALONG_X: [Axis; 13] = [
+const ALONG_X: [Axis; 14] = [
     Axis::Ratio,
     Axis::Measurements,
     Axis::FusedTouches,
@@ -38,10 +41,12 @@ const ALONG_X: [Axis; 13] = [
     Axis::Features,
     Axis::Ensemble,
     Axis::Classifier,
+    Axis::TestedOn,
 ];
 
 /// What makes good lines: resolution first, then ways of treating the signal.
-const AS_LINES: [Axis; 13] = [
+const AS_LINES: [Axis; 14] = [
+    Axis::TestedOn,
     Axis::Pitch,
     Axis::Ensemble,
     Axis::Features,
@@ -58,7 +63,8 @@ const AS_LINES: [Axis; 13] = [
 ];
 
 /// What makes good panels.
-const AS_PANELS: [Axis; 13] = [
+const AS_PANELS: [Axis; 14] = [
+    Axis::TestedOn,
     Axis::Size,
     Axis::Frames,
     Axis::Classifier,
@@ -77,15 +83,41 @@ const AS_PANELS: [Axis; 13] = [
 /// The charts of accuracy that show every cell.
 ///
 /// Where lines and panels are in use and no axis is left over, the chart comes a second time with the two exchanged, so that
-/// both effects can be read off lines that lie in one panel.
+/// both effects can be read off lines that lie in one panel. Axes of the signal that leave their first values one at a time
+/// get charts of their own, along x.
 pub fn plan_charts(cells: &[&Cell]) -> Vec<ChartPlan> {
-    let mut free = Settings::of(cells).varying;
+    let settings = Settings::of(cells);
     if cells.is_empty() {
         return Vec::new();
     }
+    if settings.one_at_a_time.is_empty() {
+        return charts_along(None, settings.varying, cells);
+    }
+    let signal = &settings.one_at_a_time;
+    let charts_of = |levels: &Levels| {
+        let others = signal.iter().filter(|other| other.axis != levels.axis);
+        let base: Vec<(Axis, AxisValue)> = others
+            .map(|other| (other.axis, other.axis.value(cells[0])))
+            .collect();
+        let at_base = |cell: &&&Cell| base.iter().all(|(axis, value)| axis.value(cell) == *value);
+        let cells: Vec<&Cell> = cells.iter().filter(at_base).copied().collect();
+        let free = Settings::of(&cells).varying;
+        let mut plans = charts_along(Some(levels.axis), free, &cells);
+        for plan in &mut plans {
+            plan.base = base.clone();
+        }
+        plans
+    };
+    signal.iter().flat_map(charts_of).collect()
+}
+
+/// The charts of cells whose axes in `free` vary, along a given one or along the first that suits.
+fn charts_along(x: Option<Axis>, mut free: Vec<Levels>, cells: &[&Cell]) -> Vec<ChartPlan> {
     // Words stand along x only if no number varies.
     let words_last = |levels: &Levels| levels.numbers().is_some();
-    let x = take(&mut free, &ALONG_X, words_last)
+    let given: Vec<Axis> = x.into_iter().collect();
+    let x = take(&mut free, &given, |_| true)
+        .or_else(|| take(&mut free, &ALONG_X, words_last))
         .or_else(|| take(&mut free, &ALONG_X, |_| true))
         .unwrap_or_else(|| Levels::of(Axis::Ratio, cells));
     let lines = take(&mut free, &AS_LINES, |_| true);
@@ -99,6 +131,7 @@ pub fn plan_charts(cells: &[&Cell]) -> Vec<ChartPlan> {
             lines: lines.clone(),
             panels: panels.clone(),
             fixed: fixed.clone(),
+            base: Vec::new(),
         };
         plans.push(plan.clone());
         if let (Some(lines), Some(panels), true) = (&lines, &panels, fixed.is_empty()) {
@@ -117,15 +150,19 @@ pub fn plan_charts(cells: &[&Cell]) -> Vec<ChartPlan> {
 impl ChartPlan {
     /// Whether a cell is in this chart.
     pub fn shows(&self, cell: &Cell) -> bool {
-        self.fixed
-            .iter()
+        let stated = self.fixed.iter().chain(&self.base);
+        stated
+            .into_iter()
             .all(|(axis, value)| axis.value(cell) == *value)
     }
 }
 
 fn take(free: &mut Vec<Levels>, order: &[Axis], suits: impl Fn(&Levels) -> bool) -> Option<Levels> {
+    // What a skin does to a signal comes after what people choose.
+    let imperfections = IMPERFECTIONS.map(Axis::Imperfection);
+    let order = order.iter().chain(&imperfections);
     let chosen = order
-        .iter()
+        .into_iter()
         .find_map(|axis| free.iter().position(|l| l.axis == *axis && suits(l)))?;
     Some(free.remove(chosen))
 }
@@ -260,5 +297,33 @@ mod tests {
             roles(&plan_charts(&[all[0], all[2]])[0]),
             (Axis::Ensemble, None, None)
         );
+    }
+    #[test]
+    fn what_changes_alone_gets_a_chart_of_its_own_from_the_same_first_cells() {
+        let mut cells = Vec::new();
+        for classifier in [ClassifierKind::LinearSvm, ClassifierKind::RbfSvm] {
+            let at = |noise_std, crosstalk| Cell {
+                noise_std,
+                crosstalk: Some(crosstalk),
+                classifier,
+                ..cell()
+            };
+            cells.extend([at(0.05, 0.0), at(0.2, 0.0), at(0.05, 0.1), at(0.05, 0.4)]);
+        }
+        let all: Vec<&Cell> = cells.iter().collect();
+        let plans = plan_charts(&all);
+        let crosstalk = Axis::Imperfection(IMPERFECTIONS[1]);
+        let lines = Some(Axis::Classifier);
+        assert_eq!(plans.len(), 2);
+        assert_eq!(roles(&plans[0]), (Axis::Noise, lines, None));
+        assert_eq!(roles(&plans[1]), (crosstalk, lines, None));
+        assert_eq!(plans[1].name, "accuracy_by_crosstalk");
+        for (plan, shown) in plans
+            .iter()
+            .zip([[0, 1, 4, 5].to_vec(), [0, 2, 3, 4, 6, 7].to_vec()])
+        {
+            let found: Vec<usize> = (0..8).filter(|&i| plan.shows(all[i])).collect();
+            assert_eq!(found, shown);
+        }
     }
 }

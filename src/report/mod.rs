@@ -42,6 +42,7 @@ pub mod reconstruction_results;
 pub mod reconstruction_text;
 pub mod results;
 mod shaded_view;
+mod signal_axis;
 pub mod snapshots;
 pub mod terminal;
 pub mod text_width;

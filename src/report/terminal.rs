@@ -1,6 +1,7 @@
 //! What a run prints at its end: the summary table, at the width of the terminal.
 
 use crate::report::answer::{Answer, accuracy_sentence};
+use crate::report::axis::Axis;
 use crate::report::chart_plan::plan_charts;
 use crate::report::colours::Rgb;
 use crate::report::text_width::break_lines;
@@ -144,9 +145,17 @@ fn list(tables: &Tables, settings: &Settings, width: usize) -> String {
 /// One axis across, the others down; only the accuracy.
 fn pivot(tables: &Tables, settings: &Settings, width: usize, full_table: &str) -> String {
     let cells: Vec<&Cell> = tables.summary.iter().map(|(cell, _)| cell).collect();
-    let across = match plan_charts(&cells).into_iter().next() {
-        Some(plan) => plan.x,
-        None => return String::new(),
+    let first_chart = plan_charts(&cells).into_iter().next();
+    let across = match settings.one_at_a_time.is_empty() {
+        true => first_chart.map(|plan| plan.x),
+        // Down run the words for the signal.
+        false => {
+            let mut varying = settings.varying.iter();
+            varying.find(|levels| levels.axis != Axis::Signal).cloned()
+        }
+    };
+    let Some(across) = across else {
+        return list(tables, settings, width);
     };
     let down: Vec<&Levels> = settings
         .varying

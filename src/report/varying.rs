@@ -1,10 +1,12 @@
 //! Which settings vary over the cells of a study, and which stay.
 //!
 //! Charts and terminal tables show the axes that vary and state the others once. An axis whose value is known from the
-//! other varying axes (the ratio, when only m and the array are chosen) follows them and gets no place of its own.
+//! other varying axes (the ratio, when only m and the array are chosen) follows them and gets no place of its own. Axes of the
+//! signal that leave their first values one at a time share one place: their cells are told by what happens to the signal.
 
 use crate::report::axis::{AXES, Axis, AxisValue};
 use crate::study::table::Cell;
+use crate::study::{IMPERFECTIONS, Imperfection};
 use std::collections::HashMap;
 
 /// An axis and the values it takes, ascending (numbers) or in order of appearance (words).
@@ -23,6 +25,8 @@ pub struct Settings {
     pub varying: Vec<Levels>,
     /// Axes that vary only because others do.
     pub following: Vec<Levels>,
+    /// Axes of the signal of which at most one leaves its first value in any cell; [`Axis::Signal`] is in `varying` for them.
+    pub one_at_a_time: Vec<Levels>,
     /// Axes with one value, but for those that [go without saying](Levels::go_without_saying).
     pub fixed: Vec<Levels>,
 }
@@ -71,11 +75,16 @@ impl Levels {
         format!("{}{note}", self.axis.name())
     }
 
-    /// Whether all cells do what nobody expects otherwise: read a touch once, raw, and decide on it alone.
+    /// Whether all cells do what nobody expects otherwise: read a touch once, raw, with an ideal skin, and decide on it alone.
     pub fn go_without_saying(&self) -> bool {
         let usual = match self.axis {
             Axis::Frames | Axis::FusedTouches => "1",
             Axis::Features => "raw",
+            // A reader expects an ideal skin.
+            Axis::Imperfection(Imperfection::Quantisation) => "none",
+            Axis::Imperfection(Imperfection::Scan) => "0 ms",
+            Axis::Imperfection(_) => "0 %",
+            Axis::TestedOn => "the same skin",
             _ => return false,
         };
         self.values.iter().all(|value| value.label == usual)
@@ -111,7 +120,11 @@ impl Settings {
             Axis::Features,
             Axis::Ensemble,
             Axis::Classifier,
-        ] {
+        ]
+        .into_iter()
+        .chain(IMPERFECTIONS.map(Axis::Imperfection))
+        .chain([Axis::TestedOn])
+        {
             let others: Vec<Axis> = varying
                 .iter()
                 .map(|l| l.axis)
@@ -121,11 +134,26 @@ impl Settings {
                 following.extend(varying.extract_if(.., |levels| levels.axis == axis));
             }
         }
+        let one_at_a_time = one_at_a_time(&varying, cells);
+        if let [first, ..] = &one_at_a_time[..] {
+            let place = varying.iter().position(|levels| levels == first);
+            varying.insert(place.unwrap_or(0), Levels::of(Axis::Signal, cells));
+            varying.retain(|levels| !one_at_a_time.contains(levels));
+        }
         Self {
             varying,
             following,
+            one_at_a_time,
             fixed,
         }
+    }
+
+    /// The axes whose numbers a chart can run along, or a sentence: those that vary by themselves, each by its own.
+    pub fn single(&self) -> impl Iterator<Item = &Levels> {
+        let varying = self.varying.iter();
+        varying
+            .filter(|levels| levels.axis != Axis::Signal)
+            .chain(&self.one_at_a_time)
     }
 
     /// The axes that vary, by themselves or with others, in the order of [`AXES`].
@@ -140,6 +168,24 @@ impl Settings {
 pub fn unbroken_parts(parts: &[String]) -> String {
     let parts: Vec<String> = parts.iter().map(|p| p.replace(' ', "\u{a0}")).collect();
     parts.join("\u{a0}· ")
+}
+
+/// The axes of the signal, if several vary but in no cell more than one of them differs from the first cell.
+fn one_at_a_time(varying: &[Levels], cells: &[&Cell]) -> Vec<Levels> {
+    let of_signal = varying.iter().filter(|levels| {
+        let axis = levels.axis;
+        matches!(axis, Axis::Noise | Axis::Smoothing | Axis::Imperfection(_))
+    });
+    let of_signal: Vec<Levels> = of_signal.cloned().collect();
+    let differs = |cell: &Cell, axis: Axis| axis.value(cell) != axis.value(cells[0]);
+    let is_alone = |cell: &&Cell| {
+        let axes = of_signal.iter().map(|levels| levels.axis);
+        axes.filter(|&axis| differs(cell, axis)).count() < 2
+    };
+    match of_signal.len() > 1 && cells.iter().all(is_alone) {
+        true => of_signal,
+        false => Vec::new(),
+    }
 }
 
 /// Whether equal values on the other axes always come with equal values on this one.
@@ -222,5 +268,58 @@ mod tests {
             }
         }
         assert_eq!(varying(&cells), [Axis::Pitch, Axis::Size, Axis::Ratio]);
+    }
+    /// Without and with 10 % noise, and with gain mismatch of 20 and 50 %.
+    fn one_imperfection_at_a_time() -> Vec<Cell> {
+        let at = |noise_std, gain| Cell {
+            noise_std,
+            gain_std: Some(gain),
+            ..cell(2.0, 32, 64)
+        };
+        vec![at(0.0, 0.0), at(0.1, 0.0), at(0.0, 0.2), at(0.0, 0.5)]
+    }
+
+    #[test]
+    fn a_signal_of_which_one_thing_changes_at_a_time_is_told_in_words() {
+        let mut cells = one_imperfection_at_a_time();
+        assert_eq!(varying(&cells), [Axis::Signal]);
+        let all: Vec<&Cell> = cells.iter().collect();
+        let settings = Settings::of(&all);
+        let single: Vec<Axis> = settings.single().map(|levels| levels.axis).collect();
+        let gain = Axis::Imperfection(Imperfection::Gain);
+        assert_eq!(single, [Axis::Noise, gain]);
+        let words: Vec<String> = settings.varying[0]
+            .values
+            .iter()
+            .map(|v| v.label.clone())
+            .collect();
+        let expected = [
+            "ideal",
+            "noise 10 %",
+            "gain mismatch 20 %",
+            "gain mismatch 50 %",
+        ];
+        assert_eq!(words, expected);
+        // Both at once, and each has a place of its own again.
+        cells.push(Cell {
+            noise_std: 0.1,
+            ..cells[3].clone()
+        });
+        assert_eq!(varying(&cells), [Axis::Noise, gain]);
+    }
+
+    #[test]
+    fn an_ideal_skin_goes_without_saying_and_any_other_does_not() {
+        let told = |gain_std| {
+            let cell = Cell {
+                gain_std,
+                ..cell(2.0, 32, 64)
+            };
+            let settings = Settings::of(&[&cell]);
+            let sentences = settings.fixed.iter().map(Levels::sentence);
+            sentences.filter(|s| s.contains("gain")).collect::<Vec<_>>()
+        };
+        assert!(told(None).is_empty() && told(Some(0.0)).is_empty());
+        assert_eq!(told(Some(0.25)), ["gain mismatch 25 %"]);
     }
 }

@@ -17,11 +17,15 @@ pub(super) struct XScale {
 }
 
 impl XScale {
-    /// Numbers stand on a logarithmic axis where ratios are what matters, words at equal distances.
+    /// Numbers stand on a logarithmic axis where ratios are what matters, strengths that start at zero and grow manifold on a
+    /// square-root axis, words at equal distances.
     pub(super) fn of(levels: &Levels, frame: Area) -> Self {
         let places: Vec<f64> = match levels.numbers() {
             Some(numbers) if is_logarithmic(levels.axis, &numbers) => {
                 numbers.iter().map(|number| number.ln()).collect()
+            }
+            Some(numbers) if is_of_roots(levels.axis, &numbers) => {
+                numbers.iter().map(|number| number.sqrt()).collect()
             }
             Some(numbers) => numbers,
             None => (0..levels.values.len()).map(|i| i as f64).collect(),
@@ -76,4 +80,41 @@ fn is_logarithmic(axis: Axis, numbers: &[f64]) -> bool {
             | Axis::Frames
     );
     by_nature && numbers.iter().all(|&number| number > 0.0)
+}
+
+fn is_of_roots(axis: Axis, numbers: &[f64]) -> bool {
+    let is_strength = matches!(axis, Axis::Imperfection(_));
+    is_strength && numbers.iter().all(|&number| number >= 0.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::study::IMPERFECTIONS;
+    use crate::study::table::Cell;
+
+    #[test]
+    fn strengths_from_nothing_to_absurd_all_find_room_for_their_labels() {
+        let strengths = [0.0, 0.001, 0.005, 0.02, 0.1, 0.3];
+        let cells = strengths.map(|strength| Cell {
+            stuck_fraction: Some(strength),
+            ..crate::study::table::tests::cell()
+        });
+        let cells: Vec<&Cell> = cells.iter().collect();
+        let frame = Area {
+            x: 0.0,
+            y: 0.0,
+            width: 400.0,
+            height: 300.0,
+        };
+        let scale = XScale::of(
+            &Levels::of(Axis::Imperfection(IMPERFECTIONS[5]), &cells),
+            frame,
+        );
+        assert!(scale.label_rows.iter().all(Option::is_some));
+        let places: Vec<f64> = scale.ticks.iter().map(|(_, x)| *x).collect();
+        // 0.3 is three times as far from zero as 0.1 is in the square.
+        let (zero, near, far) = (places[0], places[4], places[5]);
+        assert!(((far - zero).powi(2) / (near - zero).powi(2) - 3.0).abs() < 1e-9);
+    }
 }

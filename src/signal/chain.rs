@@ -1,23 +1,14 @@
 //! Signal steps in the order in which the study lists them.
 
-use super::{Noise, Quantity, Smoothing, force, noise};
+use super::drift::{Zeros, time_of};
+use super::{
+    Crosstalk, Drift, Faults, GainMismatch, Hysteresis, Noise, Quantisation, Quantity, Scan,
+    SignalStep, Smoothing,
+};
+use super::{drift, faults, force, gain, noise};
 use crate::error::{Error, Result};
 use crate::random::Seed;
 use crate::world::{Grid, Patch, Taxel};
-
-/// One step from deflections to frames, as a study names it.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum SignalStep {
-    /// Deflections become forces.
-    Force,
-    /// Gaussian noise is added.
-    Noise(Noise),
-    /// The frame is smoothed.
-    Smoothing {
-        /// σ of the Gaussian, metres, zero or positive.
-        width: f64,
-    },
-}
 
 /// Checked signal steps, prepared for one patch. The empty chain leaves deflections as they are.
 ///
@@ -39,10 +30,26 @@ pub enum SignalStep {
 #[derive(Clone, Debug)]
 pub struct Chain {
     steps: Vec<Prepared>,
+    /// Leading steps that a touch's history passes through, the last of them one that remembers it; 0 if none does.
+    n_remembering: usize,
+    grid: Grid,
     taxel: Taxel,
     quantity: Quantity,
-    n_taxels: usize,
     scratch_len: usize,
+}
+
+/// What a patch feels during a touch, and what of it the chain can know.
+#[derive(Debug)]
+pub struct Recording<'a> {
+    /// Deflections (metres), frame after frame in the order of time, ny × nx each; they become what is read.
+    pub frames: &'a mut [f64],
+    /// δ̇ in m/s, one for each deflection; `None` when the patch is at rest. Only force reads it.
+    pub rates: Option<&'a [f64]>,
+    /// Leading frames that came before the touch: they are remembered (if the chain [remembers](Chain::remembers)), but
+    /// not read, and hold nothing of meaning afterwards.
+    pub n_before: usize,
+    /// Seconds between frames; `None` when the press waits at each frame until it is read.
+    pub interval: Option<f64>,
 }
 
 /// Working memory of [`Chain::apply`]: one per thread, any chain; it grows to the largest frame it has seen.
@@ -55,6 +62,13 @@ enum Prepared {
     Force,
     Noise { std: f64, place: u64 },
     Smoothing(Smoothing),
+    Hysteresis(Hysteresis),
+    Crosstalk(Crosstalk),
+    Gain(Vec<f64>),
+    Drift(Zeros),
+    Faults(Vec<(usize, f64)>),
+    Scan(Scan),
+    Quantisation(Quantisation),
 }
 
 impl Chain {
@@ -62,26 +76,24 @@ impl Chain {
     ///
     /// # Errors
     /// Force listed twice; a noise level or unit that the frame does not have by then (see [`Noise::std_of`]); a
-    /// smoothing width out of range (see [`Smoothing::new`]).
+    /// strength out of its step's range (see each step's own type).
     pub fn new(steps: &[SignalStep], patch: &Patch) -> Result<Self> {
         let mut chain = Self {
             steps: Vec::with_capacity(steps.len()),
+            n_remembering: 0,
+            grid: patch.grid,
             taxel: patch.taxel,
             quantity: Quantity::Deflection,
-            n_taxels: patch.grid.n_taxels(),
             scratch_len: 0,
         };
         let mut n_noises = 0;
         for step in steps {
-            let prepared = match step {
-                SignalStep::Force => chain.prepare_force()?,
-                SignalStep::Noise(noise) => {
-                    n_noises += 1;
-                    chain.prepare_noise(noise, n_noises)?
-                }
-                SignalStep::Smoothing { width } => chain.prepare_smoothing(*width, &patch.grid)?,
-            };
-            chain.steps.push(prepared);
+            n_noises += u64::from(matches!(step, SignalStep::Noise(_)));
+            let prepared = chain.prepare(step, n_noises)?;
+            chain.steps.extend(prepared);
+            if let Some(Prepared::Hysteresis(_)) = chain.steps.last() {
+                chain.n_remembering = chain.steps.len();
+            }
         }
         Ok(chain)
     }
@@ -91,33 +103,152 @@ impl Chain {
         self.quantity
     }
 
-    /// Turns a touch's deflections (metres, ny × nx, row after row) into its frame, in place.
+    /// Whether what came before a touch changes what is read of it.
+    pub fn remembers(&self) -> bool {
+        self.n_remembering > 0
+    }
+
+    /// Turns the deflections of a touch that is read once, at rest or at one moment, into its frame, in place.
     ///
-    /// `rate` is δ̇ in m/s for each taxel, `None` when the patch is at rest; only force reads it. `touch` names the
-    /// touch's own streams. Nothing is allocated once `scratch` has seen a frame of this size.
+    /// As [`apply_recording`](Self::apply_recording) of the one frame (metres, ny × nx, row after row), with nothing before it.
     ///
     /// # Panics
     /// When the frame or the rates do not have one number for each taxel.
     pub fn apply(
         &self,
         frame: &mut [f64],
-        rate: Option<&[f64]>,
+        rates: Option<&[f64]>,
         touch: &Seed,
         scratch: &mut Scratch,
     ) {
-        assert_eq!(frame.len(), self.n_taxels, "one value for each taxel");
+        assert_eq!(frame.len(), self.n_taxels(), "one value for each taxel");
+        let recording = Recording {
+            frames: frame,
+            rates,
+            n_before: 0,
+            interval: None,
+        };
+        self.apply_recording(recording, touch, scratch);
+    }
+
+    /// Turns the deflections of a touch into its frames, in place.
+    ///
+    /// `touch` names the touch's own streams: its last frame has its name, and those before it have names of their own, so
+    /// the last reading's noise is the same however many come before. Nothing is allocated once `scratch` has seen a
+    /// frame of this size.
+    ///
+    /// # Panics
+    /// When the frames are not whole, or none is left after those that came before, or there is not one rate for each value.
+    pub fn apply_recording(&self, recording: Recording, touch: &Seed, scratch: &mut Scratch) {
+        let Recording { frames, rates, .. } = recording;
+        let first = recording.n_before * self.n_taxels();
+        assert!(
+            frames.len() > first && frames.len().is_multiple_of(self.n_taxels()),
+            "one value for each taxel"
+        );
         if scratch.0.len() < self.scratch_len {
             scratch.0.resize(self.scratch_len, 0.0);
         }
-        for step in &self.steps {
-            match step {
-                Prepared::Force => force(frame, rate, &self.taxel),
-                Prepared::Noise { std, place } => {
-                    noise::add_normal(frame, *std, &touch.named("noise").numbered(*place));
-                }
-                Prepared::Smoothing(smoothing) => smoothing.apply(frame, &mut scratch.0),
-            }
+        for (place, step) in self.steps.iter().enumerate() {
+            // Nobody remembers the history after the last step that does.
+            let from = if place < self.n_remembering { 0 } else { first };
+            let rates = rates.map(|rates| &rates[from..]);
+            let n_before = (first - from) / self.n_taxels();
+            let recording = Recording {
+                frames: &mut frames[from..],
+                rates,
+                n_before,
+                ..recording
+            };
+            self.apply_step(step, recording, touch, &mut scratch.0);
         }
+    }
+
+    fn apply_step(&self, step: &Prepared, recording: Recording, touch: &Seed, scratch: &mut [f64]) {
+        let n_taxels = self.n_taxels();
+        let Recording {
+            frames, interval, ..
+        } = recording;
+        let each = |frames: &mut [f64], act: &mut dyn FnMut(&mut [f64])| {
+            frames.chunks_exact_mut(n_taxels).for_each(act);
+        };
+        match step {
+            Prepared::Force => force(frames, recording.rates, &self.taxel),
+            Prepared::Noise { std, place } => {
+                let frames = &mut frames[recording.n_before * n_taxels..];
+                let n_frames = frames.len() / n_taxels;
+                for (frame, values) in frames.chunks_exact_mut(n_taxels).enumerate() {
+                    let seed = frame_seed(touch, frame, n_frames);
+                    noise::add_normal(values, *std, &seed.named("noise").numbered(*place));
+                }
+            }
+            Prepared::Smoothing(smoothing) => {
+                each(frames, &mut |frame| smoothing.apply(frame, scratch));
+            }
+            Prepared::Hysteresis(hysteresis) => hysteresis.apply(frames, n_taxels),
+            Prepared::Crosstalk(crosstalk) => {
+                each(frames, &mut |frame| crosstalk.apply(frame, scratch));
+            }
+            Prepared::Gain(gains) => each(frames, &mut |frame| gain::multiply(frame, gains)),
+            Prepared::Drift(zeros) => {
+                let now = &mut scratch[..n_taxels];
+                zeros.at(time_of(touch), now);
+                each(frames, &mut |frame| drift::add(frame, now));
+            }
+            Prepared::Faults(taxels) => each(frames, &mut |frame| faults::replace(frame, taxels)),
+            Prepared::Scan(scan) => {
+                if let Some(interval) = interval {
+                    scan.apply(frames, n_taxels, interval);
+                }
+            }
+            Prepared::Quantisation(quantisation) => quantisation.apply(frames),
+        }
+    }
+
+    fn n_taxels(&self) -> usize {
+        self.grid.n_taxels()
+    }
+
+    /// The step for frames as they are by now; none if it has no strength.
+    fn prepare(&mut self, step: &SignalStep, n_noises: u64) -> Result<Option<Prepared>> {
+        let full_scale = self.quantity.full_scale(&self.taxel);
+        let n_taxels = self.n_taxels();
+        let has_strength = match *step {
+            SignalStep::Force | SignalStep::Noise(_) | SignalStep::Smoothing { .. } => true,
+            SignalStep::Hysteresis { width: strength }
+            | SignalStep::Crosstalk { leak: strength }
+            | SignalStep::Gain(GainMismatch { std: strength, .. })
+            | SignalStep::Drift(Drift { std: strength, .. })
+            | SignalStep::Scan { seconds: strength } => strength != 0.0,
+            SignalStep::Faults(Faults { dead, stuck, .. }) => dead != 0.0 || stuck != 0.0,
+            SignalStep::Quantisation { bits } => bits != 0,
+        };
+        if !has_strength {
+            return Ok(None);
+        }
+        let prepared = match step {
+            SignalStep::Force => self.prepare_force()?,
+            SignalStep::Noise(noise) => self.prepare_noise(noise, n_noises)?,
+            SignalStep::Smoothing { width } => self.prepare_smoothing(*width)?,
+            SignalStep::Hysteresis { width } => {
+                Prepared::Hysteresis(Hysteresis::new(*width, full_scale)?)
+            }
+            SignalStep::Crosstalk { leak } => {
+                self.scratch_len = self.scratch_len.max(n_taxels);
+                Prepared::Crosstalk(Crosstalk::new(*leak, &self.grid)?)
+            }
+            SignalStep::Gain(mismatch) => Prepared::Gain(mismatch.gains(n_taxels)?),
+            SignalStep::Drift(drift) => {
+                self.scratch_len = self.scratch_len.max(n_taxels);
+                Prepared::Drift(drift.zeros(n_taxels, full_scale)?)
+            }
+            SignalStep::Faults(faults) => Prepared::Faults(faults.taxels(n_taxels, full_scale)?),
+            SignalStep::Scan { seconds } => Prepared::Scan(Scan::new(*seconds)?),
+            SignalStep::Quantisation { bits } => {
+                Prepared::Quantisation(Quantisation::new(*bits, full_scale)?)
+            }
+        };
+        Ok(Some(prepared))
     }
 
     fn prepare_force(&mut self) -> Result<Prepared> {
@@ -137,9 +268,17 @@ impl Chain {
         Ok(Prepared::Noise { std, place })
     }
 
-    fn prepare_smoothing(&mut self, width: f64, grid: &Grid) -> Result<Prepared> {
-        let smoothing = Smoothing::new(width, grid)?;
+    fn prepare_smoothing(&mut self, width: f64) -> Result<Prepared> {
+        let smoothing = Smoothing::new(width, &self.grid)?;
         self.scratch_len = self.scratch_len.max(smoothing.scratch_len());
         Ok(Prepared::Smoothing(smoothing))
+    }
+}
+
+/// What a frame of a touch is named: the last one as the touch.
+fn frame_seed(touch: &Seed, frame: usize, n_frames: usize) -> Seed {
+    match frame + 1 == n_frames {
+        true => *touch,
+        false => touch.named("frame").numbered(frame as u64 + 1),
     }
 }

@@ -8,27 +8,58 @@
 //! | [`Force`](SignalStep::Force) | fᵢ = max(0, k δᵢ + c δ̇ᵢ) where δᵢ > 0, else 0 \[BT\] | k N/m, c N·s/m, δ m, δ̇ m/s |
 //! | [`Noise`](SignalStep::Noise) | xᵢ ← xᵢ + σ zᵢ, zᵢ ~ N(0, 1), independent | σ in the frame's unit |
 //! | [`Smoothing`](SignalStep::Smoothing) | x ← G_w ∗ x along y, then along x | w metres |
+//! | [`Hysteresis`](SignalStep::Hysteresis) | x ← (1 − 4w) x + w Σⱼ Pⱼ\[x\], Pⱼ play operators over time | w of the full scale |
+//! | [`Crosstalk`](SignalStep::Crosstalk) | xᵢ ← (1 − κ) xᵢ + κ/4 Σ xⱼ over four neighbours | κ a fraction |
+//! | [`Scan`](SignalStep::Scan) | xᵢ(t) ← xᵢ(t + T i/n), n taxels read one after another | T seconds |
+//! | [`Gain`](SignalStep::Gain) | xᵢ ← gᵢ xᵢ, g log-normal of mean 1 | std of g |
+//! | [`Drift`](SignalStep::Drift) | xᵢ ← xᵢ + σ Wᵢ(t), W a Wiener process, t the touch's time | σ of the full scale |
+//! | [`Faults`](SignalStep::Faults) | xᵢ ← 0 (dead) or a level of its own (stuck) | fractions of taxels |
+//! | [`Quantisation`](SignalStep::Quantisation) | x ← q round(x / q), clipped to the full scale | b bits |
+//!
+//! The last seven are what real skins do to a signal: what \[SD\] calls mismatching, drift, hysteresis and crosstalk, and
+//! what readers add. A step of no strength is exactly as if it were not listed. A chain that follows the signal's way
+//! lists them as above, noise after drift: the material first, then what each taxel is read at, the converter last.
 //!
 //! **Units.** A chain starts from deflections in metres. `Force` turns them into newtons, once. [`Noise`] turns its
-//! standard deviation into whichever unit the frame has by then.
+//! standard deviation into whichever unit the frame has by then; so does each step with a fraction of the full scale.
 //!
 //! **Randomness.** The draws z belong to a touch (a [`Seed`](crate::random::Seed)) and to the place among the chain's noise steps, never to
 //! the level σ: two chains that differ in σ alone add the same pattern, louder or quieter, so a sweep over noise
-//! compares like with like.
+//! compares like with like. What belongs to one piece of hardware and is the same in each touch (gains, the drift's walk,
+//! faults) has the `skin`'s name and is drawn in [`Chain::new`]; what changes from touch to touch is drawn in
+//! [`Chain::apply`]. There too, strengths share their pattern.
 //!
-//! **A further hardware model** (gain mismatch, drift, crosstalk, quantisation …) is one more file with one more variant.
-//! What belongs to one piece of hardware and is the same on each touch is drawn in [`Chain::new`]; what changes from
-//! touch to touch is drawn in [`Chain::apply`].
+//! **Time.** A touch is a [`Recording`]: frames in the order of time, which hysteresis and scan order connect. A frame alone is a
+//! recording of one: read at rest, by a skin that nothing has touched before.
 
 mod chain;
+mod crosstalk;
+mod drift;
+mod faults;
 mod force;
+mod gain;
+mod hysteresis;
 mod noise;
+mod quantisation;
+mod scan;
 mod smoothing;
+mod step;
+mod strength;
 
-pub use chain::{Chain, Scratch, SignalStep};
+pub use chain::{Chain, Recording, Scratch};
+pub use crosstalk::Crosstalk;
+pub use drift::{Drift, Zeros};
+pub use faults::Faults;
 pub use force::force;
+pub use gain::GainMismatch;
+pub use hysteresis::Hysteresis;
 pub use noise::{Noise, NoiseUnit};
+pub use quantisation::Quantisation;
+pub use scan::Scan;
 pub use smoothing::Smoothing;
+pub use step::SignalStep;
+
+use crate::world::Taxel;
 
 /// What the numbers of a frame are.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -45,6 +76,14 @@ impl Quantity {
         match self {
             Self::Deflection => 1e3,
             Self::Force => 1.0,
+        }
+    }
+
+    /// The value of a taxel at its stroke: metres or newtons.
+    pub fn full_scale(self, taxel: &Taxel) -> f64 {
+        match self {
+            Self::Deflection => taxel.stroke,
+            Self::Force => taxel.stroke * taxel.stiffness,
         }
     }
 

@@ -1,6 +1,7 @@
 //! Additive Gaussian noise.
 
 use super::Quantity;
+use super::strength::not_negative;
 use crate::error::{Error, Result};
 use crate::random::Seed;
 use crate::world::Taxel;
@@ -35,13 +36,7 @@ impl Noise {
     /// # Errors
     /// A negative or non-finite `std`; millimetres asked of forces; newtons asked of deflections.
     pub fn std_of(&self, quantity: Quantity, taxel: &Taxel) -> Result<f64> {
-        if !(self.std.is_finite() && self.std >= 0.0) {
-            return Err(Error::input(
-                "noise std",
-                self.std,
-                "zero or a positive number",
-            ));
-        }
+        not_negative("noise std", self.std)?;
         match (self.unit, quantity) {
             (NoiseUnit::FullScale, Quantity::Deflection) => Ok(self.std * taxel.stroke),
             (NoiseUnit::FullScale, Quantity::Force) => {

@@ -80,7 +80,8 @@ pub fn cell_features(
         .into_iter()
         .find(|&m| group.ensemble.is_prefix_nested() || m == cell.measurements)
         .unwrap_or(cell.measurements);
-    let measured = measure_group(plan, group, (touched, &frames), trial, n_projected)?;
+    let touches = (touched, &frames);
+    let measured = measure_group(plan, group, touches, (trial, &split), n_projected)?;
     let all: Vec<usize> = (0..sweep.labels.len()).collect();
     let features = measured.features(cell, &all);
     Ok(FeatureSet {

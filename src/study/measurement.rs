@@ -1,5 +1,6 @@
-//! Frames → signal → measurements, for one setting of noise, smoothing, ensemble and trial.
+//! Frames → signal → measurements, for one condition of the signal, ensemble and trial.
 
+use super::imperfection::{TestedOn, skin};
 use super::plan::Plan;
 use super::runner::signal_steps;
 use super::simulation::{Frames, TouchedObject};
@@ -7,10 +8,12 @@ use super::sweep::Group;
 use super::table::Cell;
 use crate::error::Result;
 use crate::random::Seed;
+use crate::recognition::split::Split;
 use crate::sensing::Projection;
-use crate::signal::{Chain, Scratch};
+use crate::signal::{Chain, Recording, Scratch};
 use crate::world::Taxel;
 use ndarray::{Array1, Array2, ArrayView2, ArrayViewMut2, Axis, s};
+use rand::Rng;
 use rayon::prelude::*;
 use std::time::Instant;
 
@@ -33,8 +36,8 @@ pub struct Measurements {
 /// What a reading is made with, the same for all frames.
 #[derive(Clone, Copy)]
 pub struct Reading<'a> {
-    /// Signal steps.
-    pub chain: &'a Chain,
+    /// Signal steps, of each skin that touches are made with.
+    pub chains: &'a [Chain],
     /// The ensemble's matrix.
     pub projection: &'a Projection,
     /// The taxels that were pressed.
@@ -61,22 +64,48 @@ impl Measurements {
     }
 }
 
-/// One name a frame, by object, number of the touch within it, and number of the frame: what its noise is drawn from.
-///
-/// The last frame has the name of the touch, so a touch's deepest reading is the same whatever came before it.
-pub fn frame_seeds(touched: &[TouchedObject], n_frames: usize, seed: &Seed) -> Vec<Seed> {
-    touched
-        .iter()
-        .flat_map(|t| {
-            let object = seed.named(&t.object.name);
-            (0..t.touches.len() as u64).map(move |touch| object.numbered(touch))
+/// A touch to read.
+#[derive(Clone, Copy, Debug)]
+pub struct TouchToRead {
+    /// Its name: what its own randomness is drawn from.
+    pub seed: Seed,
+    /// Seconds between its frames; `None` when the press waits at each.
+    pub interval: Option<f64>,
+    /// The number of the touch that came before it; `None` for a fresh skin.
+    pub before: Option<usize>,
+    /// The number of its skin among the reading's chains.
+    pub skin: usize,
+}
+
+/// All touches, named by their object and their number within it; each at rest while it is read, on a fresh skin.
+pub fn touches_to_read(touched: &[TouchedObject], seed: &Seed) -> Vec<TouchToRead> {
+    let of_object = |t: &TouchedObject| {
+        let object = seed.named(&t.object.name);
+        (0..t.touches.len() as u64).map(move |touch| TouchToRead {
+            seed: object.numbered(touch),
+            interval: None,
+            before: None,
+            skin: 0,
         })
-        .flat_map(|touch| {
-            let before = touch.named("frame");
-            let earlier = (1..n_frames as u64).map(move |frame| before.numbered(frame));
-            earlier.chain([touch])
-        })
-        .collect()
+    };
+    touched.iter().flat_map(of_object).collect()
+}
+
+/// The same as they follow each other in a study: pressed at its speed, each after another one that is drawn at random.
+fn touches_of_study(
+    plan: &Plan,
+    (touched, n_frames): (&[TouchedObject], usize),
+    seed: &Seed,
+) -> Vec<TouchToRead> {
+    let mut touches = touches_to_read(touched, seed);
+    let n_touches = touches.len();
+    let depths = touched.iter().flat_map(|t| &t.touches).map(|t| t.depth);
+    for (touch, depth) in touches.iter_mut().zip(depths) {
+        touch.interval = (plan.speed > 0.0).then(|| depth / (n_frames as f64 * plan.speed));
+        let mut rng = touch.seed.named("before").rng();
+        touch.before = Some(rng.gen_range(0..n_touches));
+    }
+    touches
 }
 
 /// Reads and projects all frames of a group in one trial, to a number of measurements among
@@ -88,7 +117,7 @@ pub fn measure_group(
     plan: &Plan,
     group: &Group,
     (touched, frames): (&[TouchedObject], &Frames),
-    trial: usize,
+    (trial, split): (usize, &Split),
     n_measurements: usize,
 ) -> Result<Measurements> {
     let patch = &plan.arrays[group.array];
@@ -100,18 +129,26 @@ pub fn measure_group(
         n_measurements,
         &seed.named("projection").numbered(trial),
     )?;
+    let skins = skins(plan, group, trial);
+    let chains: Vec<Chain> = skins
+        .iter()
+        .map(|skin| Chain::new(&signal_steps(plan, group, skin), patch))
+        .collect::<Result<_>>()?;
     let reading = Reading {
-        chain: &Chain::new(&signal_steps(plan, group), patch)?,
+        chains: &chains,
         projection: &projection,
         taxel: patch.taxel,
         speed: plan.speed,
     };
-    let seeds = frame_seeds(
-        touched,
-        frames.n_frames,
+    let mut touches = touches_of_study(
+        plan,
+        (touched, frames.n_frames),
         &seed.named("signal").numbered(trial),
     );
-    let (values, cpu_s) = measure(reading, frames.deflection.view(), &seeds);
+    for &touch in &split.test {
+        touches[touch].skin = skins.len() - 1;
+    }
+    let (values, cpu_s) = measure(reading, frames.deflection.view(), &touches);
     let ones = Array2::ones((1, patch.grid.n_taxels()));
     Ok(Measurements {
         values,
@@ -121,23 +158,36 @@ pub fn measure_group(
     })
 }
 
-/// Reads every frame (n_frames × n_taxels, metres of deflection); `seeds` has one name a frame. With the measurements
-/// (n_frames × m) come processor-seconds.
+/// The skin of training touches, and that of test touches if it is another.
+fn skins(plan: &Plan, group: &Group, trial: u64) -> Vec<Seed> {
+    let grid = &plan.arrays[group.array].grid;
+    let first = skin(&Seed::new(plan.spec.seed), grid);
+    match group.tested_on {
+        TestedOn::SameSkin => vec![first],
+        TestedOn::AnotherSkin => vec![first, first.named("another").numbered(trial)],
+    }
+}
+
+/// Reads every touch of (n_touches · F) × n_taxels metres of deflection. With the measurements (n_touches · F) × m come
+/// processor-seconds.
 pub fn measure(
     reading: Reading,
     deflection: ArrayView2<f32>,
-    seeds: &[Seed],
+    touches: &[TouchToRead],
 ) -> (Array2<f64>, f64) {
+    let n_frames = deflection.nrows() / touches.len().max(1);
+    let block = (BLOCK / n_frames.max(1)).max(1);
     let n_measurements = reading.projection.n_measurements();
     let mut values = Array2::zeros((deflection.nrows(), n_measurements));
     let cpu_s = values
-        .axis_chunks_iter_mut(Axis(0), BLOCK)
+        .axis_chunks_iter_mut(Axis(0), block * n_frames.max(1))
         .into_par_iter()
-        .zip(deflection.axis_chunks_iter(Axis(0), BLOCK))
-        .zip(seeds.par_chunks(BLOCK))
-        .map_init(Scratch::default, |scratch, ((out, frames), seeds)| {
+        .zip(touches.par_chunks(block).enumerate())
+        .map_init(Scratch::default, |scratch, (out, (number, touches))| {
             let start = Instant::now();
-            measure_block(reading, frames, seeds, scratch, out);
+            let first = number * block * n_frames;
+            let touches = (touches, first, n_frames);
+            measure_block(reading, deflection, touches, scratch, out);
             start.elapsed().as_secs_f64()
         })
         .collect::<Vec<_>>()
@@ -146,23 +196,63 @@ pub fn measure(
     (values, cpu_s)
 }
 
+/// Reads touches whose frames follow each other from a row on, F each.
 fn measure_block(
     reading: Reading,
     deflection: ArrayView2<f32>,
-    seeds: &[Seed],
+    (touches, first, n_frames): (&[TouchToRead], usize, usize),
     scratch: &mut Scratch,
     out: ArrayViewMut2<f64>,
 ) {
-    let mut frames = deflection.mapv(f64::from);
-    let mut rates = Vec::new();
-    for (mut frame, seed) in frames.outer_iter_mut().zip(seeds) {
-        let frame = frame
-            .as_slice_mut()
-            .expect("rows of a new array are contiguous");
-        let rate = rates_of(frame, &reading.taxel, reading.speed, &mut rates);
-        reading.chain.apply(frame, rate, seed, scratch);
+    let n_taxels = deflection.ncols();
+    let rows = s![first..first + touches.len() * n_frames, ..];
+    let mut frames = deflection.slice(rows).mapv(f64::from);
+    let all = frames
+        .as_slice_mut()
+        .expect("rows of a new array are contiguous");
+    let (mut rates, mut with_history) = (Vec::new(), Vec::new());
+    for (touch, frames) in touches
+        .iter()
+        .zip(all.chunks_exact_mut(n_frames * n_taxels))
+    {
+        let before = touch
+            .before
+            .filter(|_| reading.chains[touch.skin].remembers());
+        let Some(before) = before else {
+            reading.read(touch, (frames, 0), &mut rates, scratch);
+            continue;
+        };
+        // The deepest frame of the touch before, and the skin let go.
+        let deepest = deflection.row((before + 1) * n_frames - 1);
+        with_history.clear();
+        with_history.extend(deepest.iter().map(|&value| f64::from(value)));
+        with_history.resize(2 * n_taxels, 0.0);
+        with_history.extend_from_slice(frames);
+        reading.read(touch, (&mut with_history, 2), &mut rates, scratch);
+        frames.copy_from_slice(&with_history[2 * n_taxels..]);
     }
     reading.projection.measure_into(frames.view(), out);
+}
+
+impl Reading<'_> {
+    /// Reads a touch in place; the leading frames came before it.
+    fn read(
+        &self,
+        touch: &TouchToRead,
+        (frames, n_before): (&mut [f64], usize),
+        rates: &mut Vec<f64>,
+        scratch: &mut Scratch,
+    ) {
+        let rates = rates_of(frames, &self.taxel, self.speed, rates);
+        let recording = Recording {
+            frames,
+            rates,
+            n_before,
+            interval: touch.interval,
+        };
+        let chain = &self.chains[touch.skin];
+        chain.apply_recording(recording, &touch.seed, scratch);
+    }
 }
 
 /// δ̇ of every taxel: the approach speed (m/s) where the object pushes a taxel that can still move; `None` at rest.

@@ -2,8 +2,9 @@
 //!
 //! This is the only place where millimetres, degrees and fractions become metres, radians and absolute values.
 
-use super::check::{Check, not_negative};
-use super::spec::{GroupSpec, StepSpec, StudySpec};
+use super::check::Check;
+use super::imperfection::{Imperfection, TestedOn};
+use super::spec::{CombineSpec, GroupSpec, StepSpec, StudySpec};
 use super::training::ChoicePlan;
 use crate::error::Result;
 use crate::recognition::ClassifierKind;
@@ -39,6 +40,12 @@ pub struct Plan {
     pub noise: Vec<f64>,
     /// The smoothing axis, metres.
     pub smoothing: Vec<f64>,
+    /// The axes of what skins and readers do to the signal, in the units of their keys.
+    pub imperfections: Vec<(Imperfection, Vec<f64>)>,
+    /// How the axes of the signal are combined.
+    pub combine: CombineSpec,
+    /// The axis of skins that test touches are made with.
+    pub tested_on: Vec<TestedOn>,
     /// The ensemble axis.
     pub ensembles: Vec<Ensemble>,
     /// The axis of measurements.
@@ -108,16 +115,10 @@ impl Plan {
         spec.objects.settle_surface_error(&arrays);
         let placement = check.placement(&spec.touches)?;
         let (noise_unit, noise) = check.noise(&spec.signal)?;
-        let smoothing = match &spec.signal.smoothing_mm {
-            Some(axis) => check.axis(
-                "signal.smoothing_mm",
-                axis,
-                not_negative,
-                "zero or a positive number of millimetres",
-            )?,
-            None => vec![0.0],
-        };
+        let smoothing = check.smoothing(&spec.signal)?;
+        let imperfections = check.imperfections(&spec.signal, &spec.touches)?;
         check.steps(&spec.signal)?;
+        let tested_on = check.tested_on(&spec.signal)?;
         let ensembles = check.list("sensing.ensemble", spec.sensing.ensemble.values())?;
         let amounts = check.amounts(&spec.sensing, &arrays)?;
         let frames = check.counts("touches.frames", &spec.touches.frames)?;
@@ -141,7 +142,10 @@ impl Plan {
             steps: spec.signal.steps.clone(),
             noise_unit,
             noise,
-            smoothing: smoothing.iter().map(|s| s * MM).collect(),
+            smoothing,
+            imperfections,
+            combine: spec.signal.combine,
+            tested_on,
             ensembles,
             amounts,
             frames,

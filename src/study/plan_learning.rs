@@ -1,97 +1,15 @@
-//! From frames to objects: the checks of `[signal]`, `[sensing]` and `[recognition]`.
+//! From frames to objects: the checks of `[sensing]` and `[recognition]`.
 
 use super::axis::Axis;
 use super::check::{Check, not_negative, positive};
 use super::plan::{Amount, SplitKind, SplitPlan};
-use super::spec::{SensingSpec, SignalSpec, StepSpec, StudySpec};
+use super::spec::{SensingSpec, StudySpec};
 use super::training::{ChoicePlan, DEFAULT_FOLDS};
 use crate::error::Result;
 use crate::recognition::ClassifierKind;
-use crate::signal::NoiseUnit;
 use crate::world::Patch;
 
 impl Check<'_> {
-    pub fn noise(&self, signal: &SignalSpec) -> Result<(NoiseUnit, Vec<f64>)> {
-        let given: Vec<_> = [
-            (
-                "signal.noise_std_full_scale",
-                &signal.noise_std_full_scale,
-                NoiseUnit::FullScale,
-            ),
-            ("signal.noise_std_mm", &signal.noise_std_mm, NoiseUnit::Mm),
-            ("signal.noise_std_n", &signal.noise_std_n, NoiseUnit::N),
-        ]
-        .into_iter()
-        .filter_map(|(key, axis, unit)| axis.as_ref().map(|axis| (key, axis, unit)))
-        .collect();
-        let (key, axis, unit) = match given[..] {
-            [] => return Ok((NoiseUnit::FullScale, vec![0.0])),
-            [one] => one,
-            [(first, ..), (second, ..), ..] => {
-                return Err(self.error(
-                    second,
-                    format!("given beside {first}"),
-                    "one unit of noise a study",
-                ));
-            }
-        };
-        let force = signal.steps.iter().position(|s| *s == StepSpec::Force);
-        let noise = signal.steps.iter().position(|s| *s == StepSpec::Noise);
-        let of_force = force.is_some() && force < noise;
-        match unit {
-            NoiseUnit::Mm if of_force => {
-                return Err(self.error(
-                    key,
-                    "millimetres of noise on a force",
-                    "noise_std_n or noise_std_full_scale, or noise before force in signal.steps",
-                ));
-            }
-            NoiseUnit::N if !of_force => {
-                return Err(self.error(
-                    key,
-                    "newtons of noise on a deflection",
-                    "noise_std_mm or noise_std_full_scale, or force before noise in signal.steps",
-                ));
-            }
-            _ => {}
-        }
-        let values = self.axis(key, axis, not_negative, "zero or a positive number")?;
-        Ok((unit, values))
-    }
-
-    /// Each step at most once, and none whose axis is set but which is not listed: it would be silently ignored.
-    pub fn steps(&self, signal: &SignalSpec) -> Result<()> {
-        for (index, step) in signal.steps.iter().enumerate() {
-            if signal.steps[..index].contains(step) {
-                return Err(self.error(
-                    "signal.steps",
-                    format!("{step:?} twice"),
-                    "each step at most once",
-                ));
-            }
-        }
-        let has_noise = signal.noise_std_full_scale.is_some()
-            || signal.noise_std_mm.is_some()
-            || signal.noise_std_n.is_some();
-        for (is_set, step, word) in [
-            (has_noise, StepSpec::Noise, "noise"),
-            (
-                signal.smoothing_mm.is_some(),
-                StepSpec::Smoothing,
-                "smoothing",
-            ),
-        ] {
-            if is_set && !signal.steps.contains(&step) {
-                return Err(self.error(
-                    "signal.steps",
-                    format!("no \"{word}\""),
-                    format!("\"{word}\" among the steps, since its axis is set"),
-                ));
-            }
-        }
-        Ok(())
-    }
-
     pub fn amounts(&self, sensing: &SensingSpec, arrays: &[Patch]) -> Result<Vec<Amount>> {
         let smallest = arrays.iter().map(|a| a.grid.n_taxels()).min().unwrap_or(0);
         match (&sensing.ratio, &sensing.measurements) {

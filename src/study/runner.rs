@@ -11,6 +11,7 @@ use super::summary::{compare_with_best, most_confused, pareto, summarise};
 use super::sweep::{Group, Sweep};
 use super::table::{Cell, Confusion, StageTime, Tables};
 use crate::error::Result;
+use crate::random::Seed;
 use crate::signal::{Noise, SignalStep};
 use crate::world::Patch;
 use rayon::prelude::*;
@@ -149,7 +150,8 @@ impl Job<'_> {
         let mut measure_s = 0.0;
         for n_measurements in self.group.projected() {
             let touches = (self.study.touched, self.frames);
-            let measured = measure_group(plan, self.group, touches, self.trial, n_measurements)?;
+            let trial = (self.trial, &sweep.splits[self.trial]);
+            let measured = measure_group(plan, self.group, touches, trial, n_measurements)?;
             measure_s += measured.cpu_s;
             // A group of prefixes is projected once and serves all cells; else each m serves its own.
             let nested = self.group.ensemble.is_prefix_nested();
@@ -183,21 +185,21 @@ impl Job<'_> {
     }
 }
 
-/// The study's steps with this group's levels.
-pub fn signal_steps(plan: &Plan, group: &Group) -> Vec<SignalStep> {
-    plan.steps
-        .iter()
-        .map(|step| match step {
-            StepSpec::Force => SignalStep::Force,
-            StepSpec::Noise => SignalStep::Noise(Noise {
-                std: group.noise,
-                unit: plan.noise_unit,
-            }),
-            StepSpec::Smoothing => SignalStep::Smoothing {
-                width: group.smoothing,
-            },
-        })
-        .collect()
+/// The study's steps in this group's condition, on a skin.
+pub fn signal_steps(plan: &Plan, group: &Group, skin: &Seed) -> Vec<SignalStep> {
+    let condition = &group.condition;
+    let step = |&step: &StepSpec| match step {
+        StepSpec::Force => Some(SignalStep::Force),
+        StepSpec::Noise => Some(SignalStep::Noise(Noise {
+            std: condition.noise,
+            unit: plan.noise_unit,
+        })),
+        StepSpec::Smoothing => Some(SignalStep::Smoothing {
+            width: condition.smoothing,
+        }),
+        imperfection => condition.strengths.signal_step(imperfection, skin),
+    };
+    plan.steps.iter().filter_map(step).collect()
 }
 
 /// An array in words: `64×64 at 2 mm`.

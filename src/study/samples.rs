@@ -1,15 +1,17 @@
 //! Sample touches for the eye: what the array feels of a few objects, noise included.
 
+use super::imperfection::{Imperfection, skin};
 use super::measurement::rates_of;
 use super::plan::{Plan, millimetres};
 use super::runner::signal_steps;
 use super::simulation::TouchedObject;
+use super::spec::CombineSpec;
 use super::sweep::{Group, Sweep};
 use crate::contact::{Workspace, press_to_depth};
 use crate::error::{Error, Result};
 use crate::random::Seed;
-use crate::signal::{Chain, Quantity, Scratch, SignalStep};
-use crate::world::Scene;
+use crate::signal::{Chain, Quantity, Recording, Scratch, SignalStep};
+use crate::world::{Patch, Scene};
 use ndarray::Array2;
 
 /// How many objects a picture of samples shows when the study names none.
@@ -29,52 +31,145 @@ pub struct Samples {
 }
 
 /// The first touch of the objects that the study names for its picture (else of four spread over its list), read with its
-/// finest array at its highest noise, before smoothing.
+/// finest array at its highest noise, before smoothing; in a study of one imperfection at a time, the first touch of the first
+/// of them, read with each imperfection at its last value. A skin that remembers was touched by the last of them before.
 pub fn sample_frames(plan: &Plan, sweep: &Sweep, touched: &[TouchedObject]) -> Result<Samples> {
     let group = loudest_group(plan, sweep)
         .ok_or_else(|| Error::input("study", "no cells", "at least one value an axis"))?;
-    let patch = plan.arrays[group.array];
-    let steps: Vec<SignalStep> = signal_steps(plan, group)
-        .into_iter()
-        .filter(|step| !matches!(step, SignalStep::Smoothing { .. }))
-        .collect();
-    let chain = Chain::new(&steps, &patch)?;
-    let seed = Seed::new(plan.spec.seed).named("signal").numbered(0);
-    let (mut workspace, mut scratch) = (Workspace::new(), Scratch::default());
-    let (mut frames, mut rates) = (Vec::new(), Vec::new());
-    for object in chosen(plan, touched)? {
-        let touch = &object.touches[0];
-        let scene = Scene::of_one(&patch, &object.object.model);
-        let pose = touch.patch_from_object(&object.rests[touch.rest]);
-        press_to_depth(&scene, &[pose], touch.depth, &mut workspace);
-        let mut frame = workspace.deflections().to_vec();
-        let touch_seed = seed.named(&object.object.name).numbered(0);
-        let rate = rates_of(&frame, &patch.taxel, plan.speed, &mut rates);
-        chain.apply(&mut frame, rate, &touch_seed, &mut scratch);
-        let frame = Array2::from_shape_vec((patch.grid.ny, patch.grid.nx), frame)
-            .expect("one value a taxel");
-        frames.push((object.object.name.replace('_', " "), frame));
-    }
-    let pitch_mm = millimetres(patch.grid.pitch);
-    let noise = match group.noise {
-        0.0 => "no noise".to_owned(),
-        level => format!("noise of {}", plan.describe_noise(level)),
+    let patch = &plan.arrays[group.array];
+    let objects = chosen(plan, touched)?;
+    let before = objects.last().copied().unwrap_or(&touched[0]);
+    let grid = &patch.grid;
+    let pitch_mm = millimetres(grid.pitch);
+    let array = format!("{} × {} taxels at {pitch_mm} mm", grid.nx, grid.ny);
+    let name = |object: &TouchedObject| object.object.name.replace('_', " ");
+    let quantity = Chain::new(&steps(plan, group), patch)?.quantity();
+    let mut frames = Vec::new();
+    let groups = imperfect_groups(plan, sweep, group.array);
+    let caption = match objects.first() {
+        Some(first) if !groups.is_empty() => {
+            // One taxel of a large gain would take the colours of all others.
+            let full_scale = quantity.full_scale(&patch.taxel);
+            for (words, group) in groups {
+                let mut frame = read(plan, group, first, before)?;
+                frame.mapv_inplace(|value| value.min(full_scale));
+                frames.push((words, frame));
+            }
+            let remembers = |kind: &Imperfection| *kind == Imperfection::Hysteresis;
+            let after = match plan.imperfections.iter().any(|(kind, _)| remembers(kind)) {
+                true => format!(", after one of the {},", name(before)),
+                false => String::new(),
+            };
+            let first = name(first);
+            format!("A touch of the {first}{after} on {array}; colours end at the full scale")
+        }
+        _ => {
+            for object in objects {
+                frames.push((name(object), read(plan, group, object, before)?));
+            }
+            let noise = match group.condition.noise {
+                0.0 => "no noise".to_owned(),
+                level => format!("noise of {}", plan.describe_noise(level)),
+            };
+            format!("One touch each on {array}, {noise}")
+        }
     };
     Ok(Samples {
         frames,
         pitch_mm,
-        quantity: chain.quantity(),
-        caption: format!(
-            "One touch each on {} × {} taxels at {pitch_mm} mm, {noise}",
-            patch.grid.nx, patch.grid.ny
-        ),
+        quantity,
+        caption,
     })
+}
+
+/// What an array of a group reads of an object's first touch, ny × nx; a skin that remembers was touched by another before.
+fn read(
+    plan: &Plan,
+    group: &Group,
+    object: &TouchedObject,
+    before: &TouchedObject,
+) -> Result<Array2<f64>> {
+    let patch = plan.arrays[group.array];
+    let chain = Chain::new(&steps(plan, group), &patch)?;
+    let n_taxels = patch.grid.n_taxels();
+    let mut frames = Vec::new();
+    if chain.remembers() {
+        frames.extend(press(&patch, before));
+        frames.resize(2 * n_taxels, 0.0);
+    }
+    let n_before = frames.len() / n_taxels;
+    frames.extend(press(&patch, object));
+    let seed = Seed::new(plan.spec.seed).named("signal").numbered(0);
+    let seed = seed.named(&object.object.name).numbered(0);
+    let mut rates = Vec::new();
+    let rates = rates_of(&frames, &patch.taxel, plan.speed, &mut rates);
+    let recording = Recording {
+        frames: &mut frames,
+        rates,
+        n_before,
+        interval: None,
+    };
+    chain.apply_recording(recording, &seed, &mut Scratch::default());
+    let frame = frames.split_off(n_before * n_taxels);
+    let frame =
+        Array2::from_shape_vec((patch.grid.ny, patch.grid.nx), frame).expect("one value a taxel");
+    Ok(frame)
+}
+
+/// The deflections of an object's first touch.
+fn press(patch: &Patch, object: &TouchedObject) -> Vec<f64> {
+    let touch = &object.touches[0];
+    let scene = Scene::of_one(patch, &object.object.model);
+    let pose = touch.patch_from_object(&object.rests[touch.rest]);
+    let mut workspace = Workspace::new();
+    press_to_depth(&scene, &[pose], touch.depth, &mut workspace);
+    workspace.deflections().to_vec()
+}
+
+/// The signal's steps but for smoothing, which hides what it is there to hide.
+fn steps(plan: &Plan, group: &Group) -> Vec<SignalStep> {
+    let skin = skin(&Seed::new(plan.spec.seed), &plan.arrays[group.array].grid);
+    let mut steps = signal_steps(plan, group, &skin);
+    steps.retain(|step| !matches!(step, SignalStep::Smoothing { .. }));
+    steps
+}
+
+/// In a study of one imperfection at a time: the first group of an array, then for each imperfection the group that has it at
+/// its last value, with what to call them. A scan is left out: it does not change a touch that is read once.
+fn imperfect_groups<'a>(plan: &Plan, sweep: &'a Sweep, array: usize) -> Vec<(String, &'a Group)> {
+    if plan.combine != CombineSpec::OneAtATime {
+        return Vec::new();
+    }
+    let groups = || sweep.groups.iter().filter(|group| group.array == array);
+    let mut chosen = Vec::new();
+    for (kind, values) in &plan.imperfections {
+        let last = *values.last().unwrap_or(&0.0);
+        let has_it = |group: &&Group| group.condition.strengths.of(*kind) == Some(last);
+        if let Some(group) = groups().find(has_it)
+            && values.len() > 1
+            && *kind != Imperfection::Scan
+        {
+            chosen.push((format!("{} {}", kind.name(), kind.describe(last)), group));
+        }
+    }
+    if let (Some(first), false) = (groups().next(), chosen.is_empty()) {
+        let condition = &first.condition;
+        let is_ideal = condition.noise == 0.0 && condition.strengths.present().count() == 0;
+        let words = if is_ideal { "ideal" } else { "first values" };
+        chosen.insert(0, (words.to_owned(), first));
+    }
+    chosen
 }
 
 /// The group with the most taxels and, among those, the most noise.
 fn loudest_group<'a>(plan: &Plan, sweep: &'a Sweep) -> Option<&'a Group> {
     sweep.groups.iter().max_by(|a, b| {
-        let key = |g: &Group| (plan.arrays[g.array].grid.n_taxels() as f64, g.noise);
+        let key = |g: &Group| {
+            (
+                plan.arrays[g.array].grid.n_taxels() as f64,
+                g.condition.noise,
+            )
+        };
         key(a)
             .partial_cmp(&key(b))
             .unwrap_or(std::cmp::Ordering::Equal)

@@ -4,6 +4,7 @@
 
 use super::axis::Axis;
 pub use super::spec_scene::*;
+pub use super::spec_signal::*;
 use crate::error::{Error, Result};
 use crate::recognition::ClassifierKind;
 use crate::recognition::features::Features;
@@ -43,38 +44,6 @@ pub struct StudySpec {
     /// What the report shows.
     #[serde(default)]
     pub report: ReportSpec,
-}
-
-/// `[signal]`
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields, default)]
-pub struct SignalSpec {
-    /// What is done to a frame of deflections, in this order; each step at most once.
-    pub steps: Vec<StepSpec>,
-    /// Axis: noise standard deviation as a fraction of the full scale.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub noise_std_full_scale: Option<Axis<f64>>,
-    /// Axis, instead: the same in millimetres (of deflection).
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub noise_std_mm: Option<Axis<f64>>,
-    /// Axis, instead: the same in newtons (of force).
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub noise_std_n: Option<Axis<f64>>,
-    /// Axis: standard deviation of the Gaussian that smooths, mm.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub smoothing_mm: Option<Axis<f64>>,
-}
-
-/// A step of the signal stage.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum StepSpec {
-    /// Deflection → force, newtons.
-    Force,
-    /// Additive zero-mean Gaussian noise.
-    Noise,
-    /// Gaussian smoothing over the array.
-    Smoothing,
 }
 
 /// `[sensing]`
@@ -219,18 +188,6 @@ impl StudySpec {
     /// Writes the study with every default spelt out.
     pub fn to_toml(&self) -> String {
         toml::to_string(self).expect("every field of a study has a TOML form")
-    }
-}
-
-impl Default for SignalSpec {
-    fn default() -> Self {
-        Self {
-            steps: vec![StepSpec::Noise, StepSpec::Smoothing],
-            noise_std_full_scale: None,
-            noise_std_mm: None,
-            noise_std_n: None,
-            smoothing_mm: None,
-        }
     }
 }
 

@@ -149,13 +149,25 @@ pub fn pareto(rows: &[Row], times: &[(Cell, TrialTime)]) -> Vec<(Cell, Pareto)> 
     table
 }
 
-/// For each cell, whether no cell with the same noise beats it.
+/// For each cell, whether no cell with the same noise and the same imperfections beats it.
 fn on_front(table: &[(Cell, Pareto)], cost: fn(&Pareto) -> f64) -> Vec<bool> {
-    let choices = table.iter().map(|(cell, row)| Choice {
-        level: cell.noise_std,
-        costs: [-row.accuracy, cost(row)],
-    });
-    unbeaten(&choices.collect::<Vec<_>>())
+    let mut worlds = Vec::new();
+    let choices: Vec<Choice> = table
+        .iter()
+        .map(|(cell, row)| {
+            let world = (cell.noise_std, cell.strengths());
+            let known = worlds.iter().position(|known| *known == world);
+            let level = known.unwrap_or(worlds.len());
+            if known.is_none() {
+                worlds.push(world);
+            }
+            Choice {
+                level: level as f64,
+                costs: [-row.accuracy, cost(row)],
+            }
+        })
+        .collect();
+    unbeaten(&choices)
 }
 
 #[cfg(test)]

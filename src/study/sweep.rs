@@ -2,13 +2,15 @@
 //!
 //! ```text
 //! array × frames a touch ── touches simulated once
-//!   └─ noise × smoothing × ensemble (a group), and trial ── frames read and projected once, at the largest m
+//!   └─ condition of the signal × test skin × ensemble (a group), and trial ── frames read and projected once, at the largest m
 //!        └─ m × features × classifier × training touches (a family) ── rows made once
 //!             └─ C ── fit, score test touches
 //!                  └─ fused touches (a cell) ── decide
 //! ```
 
+use super::imperfection::{Imperfection, TestedOn};
 use super::plan::{Plan, millimetres};
+use super::plan_signal::Condition;
 use super::published::check_published;
 use super::simulation::{TouchedObject, touch_labels};
 use super::splits::{check_folds, check_fused_touches, draw_split, group_keys, train_touches};
@@ -39,10 +41,10 @@ pub struct Group {
     pub array: usize,
     /// Frames a touch.
     pub frames: usize,
-    /// Noise standard deviation, in the plan's unit.
-    pub noise: f64,
-    /// Standard deviation of the smoothing, metres.
-    pub smoothing: f64,
+    /// What happens to the signal.
+    pub condition: Condition,
+    /// The skin that test touches are made with.
+    pub tested_on: TestedOn,
     /// How measurements are made.
     pub ensemble: Ensemble,
     /// Its cells, family by family.
@@ -124,14 +126,14 @@ impl Sweep {
     }
 
     fn add_groups(&mut self, plan: &Plan, (array, frames): (usize, usize), train: &[usize]) {
-        for &noise in &plan.noise {
-            for &smoothing in &plan.smoothing {
+        for condition in plan.conditions() {
+            for &tested_on in &plan.tested_on {
                 for &ensemble in &plan.ensembles {
                     let group = Group {
                         array,
                         frames,
-                        noise,
-                        smoothing,
+                        condition,
+                        tested_on,
                         ensemble,
                         cells: Vec::new(),
                     };
@@ -211,15 +213,31 @@ fn family_cells(plan: &Plan, family: &Cell) -> Vec<Cell> {
 /// A cell of a group, with m and with the first value of each axis that the group leaves open.
 fn group_cell(plan: &Plan, group: &Group, measurements: usize) -> Cell {
     let grid = &plan.arrays[group.array].grid;
+    let Condition {
+        noise,
+        smoothing,
+        strengths,
+    } = group.condition;
     Cell {
         cell: 0,
         pitch_mm: millimetres(grid.pitch),
         nx: grid.nx,
         ny: grid.ny,
         size_mm: millimetres(grid.pitch * grid.nx as f64),
-        noise_std: group.noise,
+        noise_std: noise,
         noise_unit: plan.noise_unit,
-        smoothing_mm: millimetres(group.smoothing),
+        smoothing_mm: millimetres(smoothing),
+        hysteresis_full_scale: strengths.of(Imperfection::Hysteresis),
+        crosstalk: strengths.of(Imperfection::Crosstalk),
+        gain_std: strengths.of(Imperfection::Gain),
+        drift_std_full_scale: strengths.of(Imperfection::Drift),
+        dead_fraction: strengths.of(Imperfection::Dead),
+        stuck_fraction: strengths.of(Imperfection::Stuck),
+        scan_time_ms: strengths.of(Imperfection::Scan),
+        adc_bits: strengths
+            .of(Imperfection::Quantisation)
+            .map(|bits| bits as u32),
+        tested_on: plan.spec.signal.tested_on.as_ref().map(|_| group.tested_on),
         ensemble: group.ensemble,
         measurements,
         ratio: grid.n_taxels() as f64 / measurements as f64,

@@ -2,6 +2,7 @@
 //!
 //! A row of `accuracy.csv` is a [`Cell`] followed by a [`TrialScore`]; the other tables are built the same way.
 
+use super::imperfection::{IMPERFECTIONS, Imperfection, Strengths, TestedOn};
 use crate::recognition::ClassifierKind;
 use crate::recognition::features::Features;
 use crate::sensing::Ensemble;
@@ -27,6 +28,34 @@ pub struct Cell {
     pub noise_unit: NoiseUnit,
     /// Standard deviation of the Gaussian smoothing, millimetres; 0 for none.
     pub smoothing_mm: f64,
+    /// Width of the hysteresis loop, as a fraction of the full scale. This column and the seven after it are there only if
+    /// the study has a key of the same name.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub hysteresis_full_scale: Option<f64>,
+    /// Fraction of a taxel's value that leaks to its four neighbours.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub crosstalk: Option<f64>,
+    /// Standard deviation of the taxels' gains, whose mean is 1.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub gain_std: Option<f64>,
+    /// Standard deviation of the taxels' zeros at the end of the session, as a fraction of the full scale.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub drift_std_full_scale: Option<f64>,
+    /// Fraction of the taxels that read 0.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub dead_fraction: Option<f64>,
+    /// Fraction of the taxels that read a level of their own.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub stuck_fraction: Option<f64>,
+    /// Milliseconds to read the array, taxel after taxel.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub scan_time_ms: Option<f64>,
+    /// Bits of the converter; 0 for none.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub adc_bits: Option<u32>,
+    /// The skin that test touches are made with; only if the study has the key.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub tested_on: Option<TestedOn>,
     /// How measurements are made.
     pub ensemble: Ensemble,
     /// Measurements a frame, m.
@@ -45,6 +74,27 @@ pub struct Cell {
     pub train_touches: usize,
     /// Test touches of an object that are decided on together, by the sum of their scores.
     pub fused_touches: usize,
+}
+
+impl Cell {
+    /// What the skin and its reader do to the signal.
+    pub fn strengths(&self) -> Strengths {
+        let strength = |imperfection| match imperfection {
+            Imperfection::Hysteresis => self.hysteresis_full_scale,
+            Imperfection::Crosstalk => self.crosstalk,
+            Imperfection::Gain => self.gain_std,
+            Imperfection::Drift => self.drift_std_full_scale,
+            Imperfection::Dead => self.dead_fraction,
+            Imperfection::Stuck => self.stuck_fraction,
+            Imperfection::Scan => self.scan_time_ms,
+            Imperfection::Quantisation => self.adc_bits.map(f64::from),
+        };
+        IMPERFECTIONS
+            .into_iter()
+            .fold(Strengths::default(), |strengths, imperfection| {
+                strengths.with(imperfection, strength(imperfection))
+            })
+    }
 }
 
 /// How one trial of a cell went (with the [`Cell`] before it: a row of `accuracy.csv`).
@@ -185,8 +235,8 @@ pub struct TrialTime {
 
 /// What a cell's accuracy costs (with the [`Cell`] before it: a row of `pareto.csv`).
 ///
-/// A cell is on a front if no cell with the same noise is at least as accurate in at most the same time and better in one
-/// of the two. Noise is the world's doing; all other settings are choices.
+/// A cell is on a front if no cell with the same noise and imperfections is at least as accurate in at most the same time and
+/// better in one of the two. These are the world's doing; all other settings are choices.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Pareto {
     /// Mean accuracy over trials.
@@ -260,6 +310,15 @@ pub(crate) mod tests {
             noise_std: 0.1,
             noise_unit: NoiseUnit::FullScale,
             smoothing_mm: 0.0,
+            hysteresis_full_scale: None,
+            crosstalk: None,
+            gain_std: None,
+            drift_std_full_scale: None,
+            dead_fraction: None,
+            stuck_fraction: None,
+            scan_time_ms: None,
+            adc_bits: None,
+            tested_on: None,
             ensemble: Ensemble::Gaussian,
             measurements: 64,
             ratio: 16.0,

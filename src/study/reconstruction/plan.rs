@@ -89,7 +89,8 @@ impl ReconstructionPlan {
             .filter_map(|step| match step {
                 StepSpec::Force => Some(SignalStep::Force),
                 StepSpec::Noise => noise.map(|std| SignalStep::Noise(Noise { std, unit })),
-                StepSpec::Smoothing => None,
+                // Steps that a reconstruction has no place for are refused.
+                _ => None,
             })
             .collect()
     }
@@ -140,6 +141,13 @@ impl Check<'_> {
                 "signal.smoothing_mm",
                 "smoothing before reconstruction",
                 "no smoothing: solvers take the noise of taxels to be independent",
+            ));
+        }
+        if let Some(step) = signal.steps.iter().find(|step| step.is_imperfection()) {
+            return Err(self.error(
+                "signal.steps",
+                format!("\"{}\" before reconstruction", step.word()),
+                "force and noise: solvers take taxels to differ from the truth by independent noise alone",
             ));
         }
         let place = |step| signal.steps.iter().position(|s| *s == step);

@@ -7,7 +7,7 @@ use crate::random::Seed;
 use crate::recognition::split::{Split, stratified_hold_out};
 use crate::sensing::{Dictionary, Ensemble};
 use crate::signal::{Chain, Noise, NoiseUnit};
-use crate::study::measurement::{Reading, frame_seeds, measure};
+use crate::study::measurement::{Reading, TouchToRead, measure, touches_to_read};
 use crate::study::progress::Progress;
 use crate::study::simulation::{Frames, TouchedObject, simulate_array, touch_labels};
 use ndarray::{Array1, Array2, Axis};
@@ -63,8 +63,8 @@ impl Touches {
         let seed = Seed::new(plan.spec.seed);
         let fraction = plan.spec.reconstruction.test_fraction;
         let split = stratified_hold_out(labels.view(), fraction, &seed.named("split").numbered(0))?;
-        let seeds = frame_seeds(touched, 1, &seed.named("signal").numbered(0));
-        let read = |rows: &[usize], noise| read(plan, &frames, &seeds, rows, noise);
+        let touches = touches_to_read(touched, &seed.named("signal").numbered(0));
+        let read = |rows: &[usize], noise| read(plan, &frames, &touches, rows, noise);
         let test = read(&split.test, None)?;
         let noisy = plan.noise.iter().map(|&level| {
             let frames = read(&split.test, Some(level))?;
@@ -132,21 +132,21 @@ impl Touches {
 fn read(
     plan: &ReconstructionPlan,
     frames: &Frames,
-    seeds: &[Seed],
+    touches: &[TouchToRead],
     rows: &[usize],
     noise: Option<f64>,
 ) -> Result<Array2<f64>> {
-    let chain = Chain::new(&plan.signal_steps(noise), &plan.patch)?;
+    let chains = [Chain::new(&plan.signal_steps(noise), &plan.patch)?];
     let projection = plan.projection(Ensemble::Identity, 1)?;
     let reading = Reading {
-        chain: &chain,
+        chains: &chains,
         projection: &projection,
         taxel: plan.patch.taxel,
         speed: plan.speed,
     };
     let deflection = frames.deflection.select(Axis(0), rows);
-    let seeds: Vec<Seed> = rows.iter().map(|&row| seeds[row]).collect();
-    Ok(measure(reading, deflection.view(), &seeds).0)
+    let touches: Vec<TouchToRead> = rows.iter().map(|&row| touches[row]).collect();
+    Ok(measure(reading, deflection.view(), &touches).0)
 }
 
 /// The first test touch of a few objects spread over the list.

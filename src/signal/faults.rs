@@ -1,0 +1,113 @@
+//! Faults: taxels that are dead (they read 0) and taxels that are stuck (they read one level whatever they feel).
+//!
+//! Which taxels, and at which levels, belongs to the skin. Taxels fail in one random order of the skin, the dead from its
+//! front and the stuck from its back: a skin with more faults has all those of a skin with fewer.
+
+use super::strength::fraction;
+use crate::error::{Error, Result};
+use crate::random::Seed;
+use rand::Rng;
+use rand::seq::SliceRandom;
+
+/// How much of a skin is at fault.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Faults {
+    /// Fraction of the taxels that read 0; rounded to whole taxels.
+    pub dead: f64,
+    /// Fraction of the taxels that read a level of their own, drawn evenly from 0 to the full scale.
+    pub stuck: f64,
+    /// The skin that they belong to.
+    pub skin: Seed,
+}
+
+impl Faults {
+    /// The taxels at fault, each with what it reads: first the dead, then the stuck.
+    ///
+    /// # Errors
+    /// A fraction that is not from 0 to 1; fractions whose sum is above 1.
+    pub fn taxels(&self, n_taxels: usize, full_scale: f64) -> Result<Vec<(usize, f64)>> {
+        let dead = fraction("dead fraction", self.dead)?;
+        let stuck = fraction("stuck fraction", self.stuck)?;
+        if dead + stuck > 1.0 {
+            return Err(Error::input(
+                "dead and stuck fractions",
+                format!("{dead} and {stuck}"),
+                "at most 1 together",
+            ));
+        }
+        let mut rng = self.skin.named("faults").rng();
+        let levels: Vec<f64> = (0..n_taxels)
+            .map(|_| full_scale * rng.r#gen::<f64>())
+            .collect();
+        let mut order: Vec<usize> = (0..n_taxels).collect();
+        order.shuffle(&mut rng);
+        let count = |fraction: f64| (fraction * n_taxels as f64).round() as usize;
+        let n_dead = count(dead);
+        let n_stuck = count(stuck).min(n_taxels - n_dead);
+        let dead = order.iter().take(n_dead).map(|&taxel| (taxel, 0.0));
+        let stuck = order.iter().rev().take(n_stuck);
+        Ok(dead
+            .chain(stuck.map(|&taxel| (taxel, levels[taxel])))
+            .collect())
+    }
+}
+
+/// What each taxel at fault reads takes the place of what it feels.
+pub(super) fn replace(frame: &mut [f64], faults: &[(usize, f64)]) {
+    for &(taxel, level) in faults {
+        frame[taxel] = level;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn taxels(dead: f64, stuck: f64) -> Result<Vec<(usize, f64)>> {
+        let skin = Seed::new(11);
+        Faults { dead, stuck, skin }.taxels(1000, 5e-3)
+    }
+
+    #[test]
+    fn as_many_taxels_fail_as_asked_and_none_twice() {
+        for (dead, stuck) in [(0.0, 0.0), (0.1, 0.0), (0.0, 0.25), (0.3, 0.2), (0.4, 0.6)] {
+            let faults = taxels(dead, stuck).unwrap();
+            let n_dead = faults.iter().filter(|fault| fault.1 == 0.0).count();
+            assert_eq!(n_dead as f64, 1000.0 * dead);
+            assert_eq!((faults.len() - n_dead) as f64, 1000.0 * stuck);
+            let mut failed: Vec<usize> = faults.iter().map(|fault| fault.0).collect();
+            failed.sort_unstable();
+            failed.dedup();
+            assert_eq!(failed.len(), faults.len());
+        }
+    }
+
+    #[test]
+    fn stuck_levels_are_spread_evenly_over_the_full_scale() {
+        let mut levels: Vec<f64> = taxels(0.0, 1.0).unwrap().iter().map(|f| f.1).collect();
+        levels.sort_by(f64::total_cmp);
+        for (rank, level) in levels.iter().enumerate() {
+            // The Kolmogorov–Smirnov distance of so many: below 0.062 in 999 of 1000 skins.
+            assert!((level / 5e-3 - rank as f64 / 1000.0).abs() < 0.062);
+        }
+    }
+
+    #[test]
+    fn a_skin_with_more_faults_has_those_of_a_skin_with_fewer() {
+        let (few, many) = (taxels(0.05, 0.1).unwrap(), taxels(0.2, 0.4).unwrap());
+        assert!(few.iter().all(|fault| many.contains(fault)));
+    }
+
+    #[test]
+    fn fractions_that_make_no_skin_are_refused() {
+        for (dead, stuck, place) in [
+            (-0.1, 0.0, "dead fraction"),
+            (0.0, 1.1, "stuck fraction"),
+            (f64::NAN, 0.0, "dead fraction"),
+            (0.6, 0.5, "dead and stuck fractions"),
+        ] {
+            let error = taxels(dead, stuck).unwrap_err();
+            assert!(error.to_string().starts_with(place), "{error}");
+        }
+    }
+}

@@ -1,0 +1,86 @@
+//! Gain mismatch: each taxel its own sensitivity.
+//!
+//! xᵢ ← gᵢ xᵢ with gᵢ = exp(s zᵢ − s²/2), zᵢ ~ N(0, 1), s² = ln(1 + std²): log-normal gains of mean 1 and standard
+//! deviation `std`, above zero at any strength. Imaging calls this fixed-pattern noise, \[SD\] mismatching.
+
+use super::strength::not_negative;
+use crate::error::Result;
+use crate::random::Seed;
+use rand::Rng;
+use rand_distr::StandardNormal;
+
+/// How unlike the gains of a skin's taxels are.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct GainMismatch {
+    /// Standard deviation of the gains, whose mean is 1; zero or positive.
+    pub std: f64,
+    /// The skin whose gains these are: the same in every touch. Skins that differ in `std` alone share the pattern.
+    pub skin: Seed,
+}
+
+impl GainMismatch {
+    /// One gain for each taxel.
+    ///
+    /// # Errors
+    /// A negative or non-finite `std`.
+    pub fn gains(&self, n_taxels: usize) -> Result<Vec<f64>> {
+        not_negative("gain std", self.std)?;
+        let variance = self.std.powi(2).ln_1p();
+        let mut rng = self.skin.named("gain").rng();
+        let gain = |z: f64| (variance.sqrt() * z - 0.5 * variance).exp();
+        Ok((0..n_taxels)
+            .map(|_| gain(rng.sample(StandardNormal)))
+            .collect())
+    }
+}
+
+/// Multiplies each value by its taxel's gain.
+pub(super) fn multiply(frame: &mut [f64], gains: &[f64]) {
+    for (value, gain) in frame.iter_mut().zip(gains) {
+        *value *= gain;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn gains(std: f64, n_taxels: usize) -> Vec<f64> {
+        let skin = Seed::new(7).named("skin");
+        GainMismatch { std, skin }.gains(n_taxels).unwrap()
+    }
+
+    #[test]
+    fn gains_have_mean_one_the_asked_spread_and_are_above_zero() {
+        for std in [0.05, 0.3, 1.0] {
+            let gains = gains(std, 200_000);
+            let n = gains.len() as f64;
+            let mean = gains.iter().sum::<f64>() / n;
+            let variance = gains.iter().map(|g| (g - mean).powi(2)).sum::<f64>() / n;
+            assert!(gains.iter().all(|&g| g > 0.0));
+            assert!((mean - 1.0).abs() < 4.0 * std / n.sqrt(), "{std}: {mean}");
+            // A log-normal's tails make its spread an uncertain estimate: 3 % at std = 1.
+            assert!((variance.sqrt() / std - 1.0).abs() < 0.03, "{std}");
+        }
+    }
+
+    #[test]
+    fn a_stronger_mismatch_is_the_same_pattern_exaggerated() {
+        let (weak, strong) = (gains(0.1, 64), gains(0.4, 64));
+        let mut order: Vec<usize> = (0..64).collect();
+        order.sort_by(|&a, &b| weak[a].total_cmp(&weak[b]));
+        assert!(order.windows(2).all(|w| strong[w[0]] < strong[w[1]]));
+        // A larger array of the same skin continues the pattern.
+        assert_eq!(gains(0.1, 80)[..64], weak[..]);
+    }
+
+    #[test]
+    fn no_mismatch_is_gain_one_exactly() {
+        assert_eq!(gains(0.0, 9), [1.0; 9]);
+        for std in [-0.1, f64::NAN, f64::INFINITY] {
+            let skin = Seed::new(7);
+            let error = GainMismatch { std, skin }.gains(4).unwrap_err();
+            assert!(error.to_string().starts_with("gain std"), "{error}");
+        }
+    }
+}

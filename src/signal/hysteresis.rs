@@ -1,0 +1,164 @@
+//! Hysteresis: a taxel that is let go reads more than one that is pressed to the same depth.
+//!
+//! A Prandtl–Ishlinskii model, as fitted to tactile sensors \[GPI\]: y = (1 − 4w) x + w Σⱼ Pⱼ[x], the sum over eight play
+//! operators of thresholds rⱼ = (j − ½) X/8, X the full scale. A play follows its input at a distance of at most r,
+//! Pⱼ ← max(x − rⱼ, min(x + rⱼ, Pⱼ)), and rests at 0. It does not know how fast the input moves, only where it turned.
+//!
+//! - A fresh taxel that is pressed in follows y = (1 − 4w) x + w Σ max(0, x − rⱼ), from 0 to X at the full scale: what a
+//!   direct press of a fresh skin reads, a fixed curve without any history.
+//! - Between 0 and X it goes around a closed loop: w X wide in its middle, of area 11/16 w X².
+//! - A taxel that was pressed and let go does not return to 0: it keeps 2 w X after a full press and a quarter of that
+//!   after one of half the depth, until it is pressed deeper. So what a touch reads depends on the touches before it. (Skins that
+//!   recover with time lie between this and a fresh skin.)
+
+use crate::error::{Error, Result};
+
+/// Play operators. Fewer make a cornered loop; more cost time.
+const N_PLAYS: usize = 8;
+/// The widest loop that leaves every weight positive: beyond it, reading would fall while the load grows.
+const MAX_WIDTH: f64 = 0.25;
+
+/// A hysteresis of one width, prepared for frames of one full scale.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Hysteresis {
+    /// w.
+    width: f64,
+    /// rⱼ, in the frame's unit.
+    thresholds: [f64; N_PLAYS],
+}
+
+impl Hysteresis {
+    /// Prepares a loop of a width (fraction of the full scale, 0 to 0.25), for frames of this full scale in their own unit.
+    ///
+    /// # Errors
+    /// A width that is not from 0 to 0.25.
+    pub fn new(width: f64, full_scale: f64) -> Result<Self> {
+        if !(0.0..=MAX_WIDTH).contains(&width) {
+            let allowed = format!("a fraction of the full scale, 0 to {MAX_WIDTH}");
+            return Err(Error::input("hysteresis width", width, allowed));
+        }
+        let threshold = |j: usize| (j as f64 + 0.5) * full_scale / N_PLAYS as f64;
+        Ok(Self {
+            width,
+            thresholds: std::array::from_fn(threshold),
+        })
+    }
+
+    /// Replaces what fresh taxels feel, frame after frame of n_taxels values in the order of time, by what they read.
+    ///
+    /// # Panics
+    /// When `n_taxels` is zero or the frames are not whole.
+    pub fn apply(&self, frames: &mut [f64], n_taxels: usize) {
+        assert!(
+            frames.len().is_multiple_of(n_taxels),
+            "one value for each taxel"
+        );
+        let direct = 1.0 - self.width * N_PLAYS as f64 / 2.0;
+        for taxel in 0..n_taxels {
+            let mut plays = [0.0f64; N_PLAYS];
+            for value in frames[taxel..].iter_mut().step_by(n_taxels) {
+                let mut sum = 0.0;
+                for (play, r) in plays.iter_mut().zip(self.thresholds) {
+                    *play = (*value - r).max(play.min(*value + r));
+                    sum += *play;
+                }
+                *value = direct * *value + self.width * sum;
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const FULL_SCALE: f64 = 5e-3;
+
+    /// One taxel that is led through these deflections.
+    fn read(width: f64, felt: &[f64]) -> Vec<f64> {
+        let mut frames = felt.to_vec();
+        let hysteresis = Hysteresis::new(width, FULL_SCALE).unwrap();
+        hysteresis.apply(&mut frames, 1);
+        frames
+    }
+
+    /// From a to b in equal steps, both included.
+    fn ramp(a: f64, b: f64, steps: usize) -> Vec<f64> {
+        (0..=steps)
+            .map(|i| a + (b - a) * i as f64 / steps as f64)
+            .collect()
+    }
+
+    #[test]
+    fn a_cycle_between_zero_and_full_scale_is_a_closed_loop_of_the_asked_width_and_area() {
+        let steps = 1600;
+        let (up, down) = (ramp(0.0, FULL_SCALE, steps), ramp(FULL_SCALE, 0.0, steps));
+        let felt = [up.clone(), down.clone(), up.clone(), down.clone()].concat();
+        for width in [0.01, 0.1, 0.25] {
+            let out = read(width, &felt);
+            let branches: Vec<&[f64]> = out.chunks_exact(steps + 1).collect();
+            let (unloading, loading, again) = (branches[1], branches[2], branches[3]);
+            // The second cycle ends where the first did: the loop is closed.
+            assert_eq!(unloading.last(), loading.first());
+            for (first, second) in unloading.iter().zip(again) {
+                assert!((first - second).abs() < 1e-15);
+            }
+            let gap: Vec<f64> = loading
+                .iter()
+                .zip(unloading.iter().rev())
+                .map(|(loading, unloading)| unloading - loading)
+                .collect();
+            assert!(gap.iter().all(|&g| g > -1e-15));
+            assert!((gap[steps / 2] - width * FULL_SCALE).abs() < 1e-15);
+            let widest = gap.iter().copied().fold(0.0, f64::max);
+            assert!((widest - width * FULL_SCALE).abs() < 1e-15);
+            let area = gap.iter().sum::<f64>() * FULL_SCALE / steps as f64;
+            let expected = 11.0 / 16.0 * width * FULL_SCALE.powi(2);
+            assert!((area / expected - 1.0).abs() < 1e-4, "{area} {expected}");
+        }
+    }
+
+    #[test]
+    fn a_fresh_skin_reads_zero_at_zero_the_full_scale_at_full_scale_and_more_when_pressed_more() {
+        for width in [0.0, 0.1, 0.25] {
+            let felt = ramp(0.0, FULL_SCALE, 100);
+            let out = read(width, &felt);
+            assert_eq!(out[0], 0.0);
+            assert!((out[100] - FULL_SCALE).abs() < 1e-17);
+            assert!(out.windows(2).all(|w| w[1] >= w[0]));
+            // A direct press is the last moment of a slow one: only where the load turned counts.
+            for (deflection, slow) in felt.iter().zip(&out) {
+                assert!((read(width, &[*deflection])[0] - slow).abs() < 1e-17);
+            }
+        }
+    }
+
+    #[test]
+    fn a_small_load_before_a_larger_one_is_forgotten() {
+        let out = read(0.2, &[2e-3, 0.0, 4e-3]);
+        assert!((out[2] - read(0.2, &[4e-3])[0]).abs() < 1e-18);
+        // A larger one is remembered, at zero and under a smaller load.
+        let after = read(0.2, &[FULL_SCALE, 0.0, 2e-3]);
+        assert!((after[1] - 2.0 * 0.2 * FULL_SCALE).abs() < 1e-15);
+        assert!(after[2] > read(0.2, &[2e-3])[0] + 0.05e-3);
+    }
+
+    #[test]
+    fn each_taxel_has_a_history_of_its_own() {
+        let hysteresis = Hysteresis::new(0.1, FULL_SCALE).unwrap();
+        let mut frames = [4e-3, 1e-3, 0.0, 3e-3, 2e-3, 0.0];
+        hysteresis.apply(&mut frames, 2);
+        let first = read(0.1, &[4e-3, 0.0, 2e-3]);
+        let second = read(0.1, &[1e-3, 3e-3, 0.0]);
+        assert_eq!([frames[0], frames[2], frames[4]], first[..]);
+        assert_eq!([frames[1], frames[3], frames[5]], second[..]);
+    }
+
+    #[test]
+    fn a_width_that_no_loop_has_is_refused() {
+        for width in [-0.01, 0.26, f64::NAN] {
+            let error = Hysteresis::new(width, 1.0).unwrap_err();
+            assert!(error.to_string().starts_with("hysteresis width"), "{error}");
+        }
+    }
+}

@@ -1,0 +1,86 @@
+//! Quantisation: an analogue-to-digital converter of so many bits over the full scale.
+//!
+//! x ← q round(min(max(x, 0), X) / q), q = X / (2ᵇ − 1): 2ᵇ codes from 0 to the full scale X, both included. What is outside
+//! reads as the nearest end: a converter clips as well as it rounds.
+
+use crate::error::{Error, Result};
+
+/// The most bits. A finer step is below anything that a touch could change.
+const MAX_BITS: u32 = 24;
+
+/// A converter, prepared for frames of one full scale.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Quantisation {
+    full_scale: f64,
+    /// The last code, 2ᵇ − 1.
+    last: f64,
+}
+
+impl Quantisation {
+    /// A converter of 1 to 24 bits for frames of this full scale, in their own unit.
+    ///
+    /// # Errors
+    /// Another number of bits.
+    pub fn new(bits: u32, full_scale: f64) -> Result<Self> {
+        if !(1..=MAX_BITS).contains(&bits) {
+            let allowed = format!("1 to {MAX_BITS}, or 0 for no converter");
+            return Err(Error::input("converter bits", bits, allowed));
+        }
+        let last = f64::from((1u32 << bits) - 1);
+        Ok(Self { full_scale, last })
+    }
+
+    /// Clips and rounds each value.
+    pub fn apply(&self, frame: &mut [f64]) {
+        for value in frame {
+            let code = ((*value / self.full_scale).clamp(0.0, 1.0) * self.last).round();
+            *value = code / self.last * self.full_scale;
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn converted(bits: u32, frame: &[f64]) -> Vec<f64> {
+        let mut out = frame.to_vec();
+        Quantisation::new(bits, 5e-3).unwrap().apply(&mut out);
+        out
+    }
+
+    #[test]
+    fn values_are_at_most_half_a_step_off_and_clipped_to_the_range() {
+        let frame: Vec<f64> = (-200..=1200).map(|i| f64::from(i) * 5e-6).collect();
+        for bits in [1, 2, 4, 8, 12, 24] {
+            let half = 0.5 * 5e-3 / (f64::from(bits).exp2() - 1.0);
+            for (out, value) in converted(bits, &frame).iter().zip(&frame) {
+                let inside = value.clamp(0.0, 5e-3);
+                assert!((out - inside).abs() <= half * (1.0 + 1e-9), "{bits} bits");
+                assert!((0.0..=5e-3).contains(out));
+            }
+        }
+    }
+
+    #[test]
+    fn a_converter_of_so_many_bits_has_all_its_codes_and_no_more() {
+        let frame: Vec<f64> = (0..=1000).map(|i| f64::from(i) * 5e-6).collect();
+        for bits in [1, 2, 3, 6] {
+            let mut codes = converted(bits, &frame);
+            // Converted again, nothing changes; and codes rise with the value.
+            assert_eq!(converted(bits, &codes), codes);
+            assert!(codes.windows(2).all(|w| w[1] >= w[0]));
+            codes.dedup();
+            assert_eq!(codes.len(), 1 << bits);
+            assert_eq!((codes[0], codes[codes.len() - 1]), (0.0, 5e-3));
+        }
+    }
+
+    #[test]
+    fn no_bits_and_too_many_are_refused() {
+        for bits in [0, 25, u32::MAX] {
+            let error = Quantisation::new(bits, 1.0).unwrap_err();
+            assert!(error.to_string().starts_with("converter bits"), "{error}");
+        }
+    }
+}

@@ -1,0 +1,109 @@
+//! Scan order: taxels are read one after another while the press goes on.
+//!
+//! Row after row and in a row taxel after taxel, taxel i of n is read τᵢ = T i/n after the first one, T the scan time of the
+//! array. A frame that begins at time t therefore holds xᵢ(t + τᵢ): the later a taxel is read, the deeper it is pressed.
+//! Between the frames of a touch the press is interpolated linearly; after the last one it rests. So a touch of one frame,
+//! and the last frame of any touch, is read at rest and not changed; nor is a touch that waits at each depth.
+
+use super::strength::not_negative;
+use crate::error::Result;
+
+/// A scan of one duration.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Scan {
+    seconds: f64,
+}
+
+impl Scan {
+    /// A scan that takes so many seconds, zero or more.
+    ///
+    /// # Errors
+    /// A negative or non-finite time.
+    pub fn new(seconds: f64) -> Result<Self> {
+        not_negative("scan time", seconds)?;
+        Ok(Self { seconds })
+    }
+
+    /// Reads the frames (n_taxels values each, `interval` seconds apart) as a scan does, in place.
+    ///
+    /// # Panics
+    /// When `n_taxels` is zero or the frames are not whole.
+    pub fn apply(&self, frames: &mut [f64], n_taxels: usize, interval: f64) {
+        assert!(
+            frames.len().is_multiple_of(n_taxels),
+            "one value for each taxel"
+        );
+        let last = frames.len() / n_taxels - 1;
+        for taxel in 0..n_taxels {
+            let late = self.seconds / interval * taxel as f64 / n_taxels as f64;
+            // Each frame needs itself and later ones, which still hold what was felt.
+            for frame in 0..last {
+                let time = (frame as f64 + late).min(last as f64);
+                let before = (time as usize).min(last - 1);
+                let part = time - before as f64;
+                let felt = |frame: usize| frames[frame * n_taxels + taxel];
+                let (a, b) = (felt(before), felt(before + 1));
+                frames[frame * n_taxels + taxel] = a + part * (b - a);
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn scanned(frames: &[f64], n_taxels: usize, seconds: f64, interval: f64) -> Vec<f64> {
+        let mut out = frames.to_vec();
+        Scan::new(seconds)
+            .unwrap()
+            .apply(&mut out, n_taxels, interval);
+        out
+    }
+
+    #[test]
+    fn a_taxel_that_is_read_later_sees_a_steady_press_deeper() {
+        let n = 10;
+        let frames: Vec<f64> = (0..4 * n).map(|i| (i / n) as f64).collect();
+        let out = scanned(&frames, n, 0.02, 0.05);
+        for (place, value) in out.iter().enumerate() {
+            let (frame, taxel) = (place / n, place % n);
+            // The press moves one unit in 50 ms; taxel i is read 2 i ms late, and the press rests from frame 3 on.
+            let expected = frame as f64 + if frame < 3 { 0.04 * taxel as f64 } else { 0.0 };
+            assert!(
+                (value - expected).abs() < 1e-14,
+                "{frame}, {taxel}: {value}"
+            );
+        }
+    }
+
+    #[test]
+    fn a_scan_slower_than_the_press_sees_frames_that_are_still_to_come_and_then_the_press_at_rest()
+    {
+        let frames = [0.0, 0.0, 1.0, 1.0, 4.0, 4.0];
+        // The second of two taxels is read 1.5 intervals late.
+        let out = scanned(&frames, 2, 3.0, 1.0);
+        assert_eq!(out, [0.0, 2.5, 1.0, 4.0, 4.0, 4.0]);
+    }
+
+    #[test]
+    fn one_frame_a_press_at_rest_and_a_scan_of_no_time_stay_as_they_are() {
+        let frame = [0.3, 0.1, 0.7];
+        assert_eq!(scanned(&frame, 3, 10.0, 1.0), frame);
+        assert_eq!(
+            scanned(&[frame, frame].concat(), 3, 0.4, 1.0),
+            [frame, frame].concat()
+        );
+        let moving = [frame, [0.9, 0.8, 0.7]].concat();
+        assert_eq!(scanned(&moving, 3, 0.0, 1.0), moving);
+        assert_eq!(scanned(&moving, 3, 10.0, f64::INFINITY), moving);
+    }
+
+    #[test]
+    fn a_negative_or_undefined_time_is_refused() {
+        for seconds in [-1e-3, f64::NAN, f64::INFINITY] {
+            let error = Scan::new(seconds).unwrap_err();
+            assert!(error.to_string().starts_with("scan time"), "{error}");
+        }
+    }
+}

@@ -1,0 +1,241 @@
+//! The checks of `[signal]`, and the conditions that its axes make.
+
+use super::check::{Check, not_negative};
+use super::imperfection::{IMPERFECTIONS, Imperfection, Strengths, TestedOn};
+use super::plan::{MM, Plan};
+use super::spec::{CombineSpec, SignalSpec, StepSpec, TouchesSpec};
+use crate::error::Result;
+use crate::signal::NoiseUnit;
+
+/// One value for each axis of the signal.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Condition {
+    /// Noise standard deviation, in the plan's unit.
+    pub noise: f64,
+    /// Standard deviation of the smoothing, metres.
+    pub smoothing: f64,
+    /// What the skin and its reader do.
+    pub strengths: Strengths,
+}
+
+impl Check<'_> {
+    /// The noise axis and its unit.
+    pub fn noise(&self, signal: &SignalSpec) -> Result<(NoiseUnit, Vec<f64>)> {
+        let given: Vec<_> = [
+            (
+                "signal.noise_std_full_scale",
+                &signal.noise_std_full_scale,
+                NoiseUnit::FullScale,
+            ),
+            ("signal.noise_std_mm", &signal.noise_std_mm, NoiseUnit::Mm),
+            ("signal.noise_std_n", &signal.noise_std_n, NoiseUnit::N),
+        ]
+        .into_iter()
+        .filter_map(|(key, axis, unit)| axis.as_ref().map(|axis| (key, axis, unit)))
+        .collect();
+        let (key, axis, unit) = match given[..] {
+            [] => return Ok((NoiseUnit::FullScale, vec![0.0])),
+            [one] => one,
+            [(first, ..), (second, ..), ..] => {
+                return Err(self.error(
+                    second,
+                    format!("given beside {first}"),
+                    "one unit of noise a study",
+                ));
+            }
+        };
+        let force = signal.steps.iter().position(|s| *s == StepSpec::Force);
+        let noise = signal.steps.iter().position(|s| *s == StepSpec::Noise);
+        let of_force = force.is_some() && force < noise;
+        match unit {
+            NoiseUnit::Mm if of_force => {
+                return Err(self.error(
+                    key,
+                    "millimetres of noise on a force",
+                    "noise_std_n or noise_std_full_scale, or noise before force in signal.steps",
+                ));
+            }
+            NoiseUnit::N if !of_force => {
+                return Err(self.error(
+                    key,
+                    "newtons of noise on a deflection",
+                    "noise_std_mm or noise_std_full_scale, or force before noise in signal.steps",
+                ));
+            }
+            _ => {}
+        }
+        let values = self.axis(key, axis, not_negative, "zero or a positive number")?;
+        Ok((unit, values))
+    }
+
+    /// The smoothing axis, metres.
+    pub fn smoothing(&self, signal: &SignalSpec) -> Result<Vec<f64>> {
+        let Some(axis) = &signal.smoothing_mm else {
+            return Ok(vec![0.0]);
+        };
+        let allowed = "zero or a positive number of millimetres";
+        let widths = self.axis("signal.smoothing_mm", axis, not_negative, allowed)?;
+        Ok(widths.iter().map(|width| width * MM).collect())
+    }
+
+    /// The axes of the imperfections that a study has, in the units of their keys.
+    pub fn imperfections(
+        &self,
+        signal: &SignalSpec,
+        touches: &TouchesSpec,
+    ) -> Result<Vec<(Imperfection, Vec<f64>)>> {
+        let mut axes = Vec::new();
+        for imperfection in IMPERFECTIONS {
+            if let Some(axis) = imperfection.axis(signal) {
+                let key = key(imperfection);
+                let (is_allowed, allowed) = imperfection.range();
+                axes.push((imperfection, self.axis(&key, axis, is_allowed, allowed)?));
+            }
+        }
+        let largest = |wanted| {
+            let axis = axes
+                .iter()
+                .find(|(imperfection, _)| *imperfection == wanted);
+            let values = axis.map_or(&[][..], |(_, values)| values);
+            values.iter().copied().fold(0.0, f64::max)
+        };
+        let (dead, stuck) = (largest(Imperfection::Dead), largest(Imperfection::Stuck));
+        if dead + stuck > 1.0 {
+            let given = format!("up to {stuck}, with up to {dead} of the taxels dead");
+            return Err(self.error(&key(Imperfection::Stuck), given, "at most 1 together"));
+        }
+        if largest(Imperfection::Scan) > 0.0 {
+            self.scan_is_of_use(touches)?;
+        }
+        Ok(axes)
+    }
+
+    /// A scan shows only in frames that the press moves through.
+    fn scan_is_of_use(&self, touches: &TouchesSpec) -> Result<()> {
+        let key = key(Imperfection::Scan);
+        if touches.frames.values().iter().all(|&frames| frames < 2) {
+            let given = "given, but every touch is read once, at rest";
+            return Err(self.error(&key, given, "touches.frames of 2 or more beside it"));
+        }
+        if touches.speed_mm_per_s == 0.0 {
+            let given = "given, but the press waits while it is read";
+            return Err(self.error(&key, given, "a touches.speed_mm_per_s above 0 beside it"));
+        }
+        Ok(())
+    }
+
+    /// The axis of test skins; another one shows only if something belongs to a skin.
+    pub fn tested_on(&self, signal: &SignalSpec) -> Result<Vec<TestedOn>> {
+        let Some(axis) = &signal.tested_on else {
+            return Ok(vec![TestedOn::SameSkin]);
+        };
+        let of_skin = [StepSpec::Gain, StepSpec::Drift, StepSpec::Faults];
+        if !signal.steps.iter().any(|step| of_skin.contains(step)) {
+            let allowed = "gain, drift or faults among signal.steps beside it";
+            return Err(self.error(
+                "signal.tested_on",
+                "given for skins without a difference",
+                allowed,
+            ));
+        }
+        self.list("signal.tested_on", axis.values())
+    }
+
+    /// Each step at most once, and none whose axis is set but which is not listed, nor the other way round if it does
+    /// nothing without: it would be silently ignored.
+    pub fn steps(&self, signal: &SignalSpec) -> Result<()> {
+        for (index, step) in signal.steps.iter().enumerate() {
+            if signal.steps[..index].contains(step) {
+                return Err(self.error(
+                    "signal.steps",
+                    format!("{step:?} twice"),
+                    "each step at most once",
+                ));
+            }
+        }
+        let has_noise = signal.noise_std_full_scale.is_some()
+            || signal.noise_std_mm.is_some()
+            || signal.noise_std_n.is_some();
+        let mut set = vec![
+            (has_noise, StepSpec::Noise),
+            (signal.smoothing_mm.is_some(), StepSpec::Smoothing),
+        ];
+        let of_imperfection = |i: Imperfection| (i.axis(signal).is_some(), i.step());
+        set.extend(IMPERFECTIONS.map(of_imperfection));
+        for &(is_set, step) in &set {
+            let word = step.word();
+            if is_set && !signal.steps.contains(&step) {
+                return Err(self.error(
+                    "signal.steps",
+                    format!("no \"{word}\""),
+                    format!("\"{word}\" among the steps, since its axis is set"),
+                ));
+            }
+        }
+        for step in signal.steps.iter().filter(|step| step.is_imperfection()) {
+            if !set.contains(&(true, *step)) {
+                let of_step = IMPERFECTIONS.into_iter().filter(|i| i.step() == *step);
+                let keys: Vec<String> = of_step.map(key).collect();
+                let given = format!("\"{}\" without a strength", step.word());
+                let allowed = format!("{} beside it", keys.join(" or "));
+                return Err(self.error("signal.steps", given, allowed));
+            }
+        }
+        Ok(())
+    }
+}
+
+fn key(imperfection: Imperfection) -> String {
+    format!("signal.{}", imperfection.key())
+}
+
+impl Plan {
+    /// Every condition of the signal that the study asks for: all combinations of its axes, or each axis alone.
+    pub fn conditions(&self) -> Vec<Condition> {
+        let first = Condition {
+            noise: self.noise[0],
+            smoothing: self.smoothing[0],
+            strengths: self
+                .imperfections
+                .iter()
+                .fold(Strengths::default(), |strengths, (kind, values)| {
+                    strengths.with(*kind, Some(values[0]))
+                }),
+        };
+        let mut conditions = vec![first];
+        for axis in 0..2 + self.imperfections.len() {
+            let n_values = match axis {
+                0 => self.noise.len(),
+                1 => self.smoothing.len(),
+                _ => self.imperfections[axis - 2].1.len(),
+            };
+            match self.combine {
+                CombineSpec::OneAtATime => {
+                    conditions.extend((1..n_values).map(|value| self.at(first, axis, value)));
+                }
+                // The first axis changes slowest.
+                CombineSpec::All => {
+                    let all = conditions.iter();
+                    let longer = all.flat_map(|&condition| {
+                        (0..n_values).map(move |value| self.at(condition, axis, value))
+                    });
+                    conditions = longer.collect();
+                }
+            }
+        }
+        conditions
+    }
+
+    /// A condition with another value on one axis: noise, smoothing, imperfection after imperfection.
+    fn at(&self, mut condition: Condition, axis: usize, value: usize) -> Condition {
+        match axis {
+            0 => condition.noise = self.noise[value],
+            1 => condition.smoothing = self.smoothing[value],
+            _ => {
+                let (kind, values) = &self.imperfections[axis - 2];
+                condition.strengths = condition.strengths.with(*kind, Some(values[value]));
+            }
+        }
+        condition
+    }
+}

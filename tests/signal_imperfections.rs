@@ -1,0 +1,256 @@
+//! What real skins do to a signal, in chains: strengths, order, history, time, units.
+
+use bubbletouch::random::Seed;
+use bubbletouch::signal::{
+    Chain, Drift, Faults, GainMismatch, Noise, NoiseUnit, Recording, Scratch, SignalStep,
+};
+use bubbletouch::world::{Grid, Patch, Taxel};
+
+const N: usize = 48;
+const NOISE: SignalStep = SignalStep::Noise(Noise {
+    std: 0.02,
+    unit: NoiseUnit::FullScale,
+});
+
+fn patch() -> Patch {
+    let grid = Grid {
+        nx: 8,
+        ny: 6,
+        pitch: 2e-3,
+    };
+    let taxel = Taxel {
+        radius: 1e-3,
+        stiffness: 200.0,
+        damping: 0.0,
+        stroke: 5e-3,
+    };
+    Patch::new(grid, taxel).unwrap()
+}
+
+fn skin() -> Seed {
+    Seed::new(1).named("skin")
+}
+
+/// Every imperfection at a multiple of some strength.
+fn imperfections(times: f64) -> Vec<SignalStep> {
+    let skin = skin();
+    vec![
+        SignalStep::Hysteresis { width: 0.1 * times },
+        SignalStep::Crosstalk { leak: 0.2 * times },
+        SignalStep::Scan {
+            seconds: 0.05 * times,
+        },
+        SignalStep::Gain(GainMismatch {
+            std: 0.3 * times,
+            skin,
+        }),
+        SignalStep::Drift(Drift {
+            std: 0.1 * times,
+            skin,
+        }),
+        SignalStep::Faults(Faults {
+            dead: 0.1 * times,
+            stuck: 0.1 * times,
+            skin,
+        }),
+        SignalStep::Quantisation {
+            bits: (6.0 * times) as u32,
+        },
+    ]
+}
+
+/// A press through so many frames, deeper and deeper, 2 mm at most.
+fn press(n_frames: usize) -> Vec<f64> {
+    let value = |frame: usize, taxel: usize| {
+        let depth = 2e-3 * (frame + 1) as f64 / n_frames as f64;
+        (depth - 1e-4 * (taxel as f64 - 20.0).abs()).max(0.0)
+    };
+    (0..n_frames * N).map(|i| value(i / N, i % N)).collect()
+}
+
+/// What a chain reads of frames of which some came before the touch.
+fn read(steps: &[SignalStep], frames: &[f64], n_before: usize, touch: u64) -> Vec<f64> {
+    let mut frames = frames.to_vec();
+    let recording = Recording {
+        frames: &mut frames,
+        rates: None,
+        n_before,
+        interval: Some(0.04),
+    };
+    let chain = Chain::new(steps, &patch()).unwrap();
+    let touch = Seed::new(2018).numbered(touch);
+    chain.apply_recording(recording, &touch, &mut Scratch::default());
+    frames.split_off(n_before * N)
+}
+
+#[test]
+fn an_imperfection_of_no_strength_is_as_if_it_were_not_listed() {
+    let others = [
+        SignalStep::Force,
+        NOISE,
+        SignalStep::Smoothing { width: 3e-3 },
+    ];
+    for step in imperfections(0.0) {
+        for place in 0..=others.len() {
+            let mut steps = others.to_vec();
+            steps.insert(place, step);
+            for n_before in [0, 1] {
+                let expected = read(&others, &press(3), n_before, 4);
+                assert_eq!(read(&steps, &press(3), n_before, 4), expected, "{step:?}");
+            }
+        }
+    }
+}
+
+#[test]
+fn every_imperfection_changes_a_press_and_the_same_names_change_it_in_the_same_way() {
+    let frames = press(3);
+    for step in imperfections(1.0) {
+        let once = read(&[step], &frames, 0, 4);
+        assert_ne!(once, frames, "{step:?}");
+        assert_eq!(read(&[step], &frames, 0, 4), once, "{step:?}");
+    }
+}
+
+#[test]
+fn gains_and_faults_stay_with_the_skin_and_zeros_wander_from_touch_to_touch() {
+    let frames = press(2);
+    for step in imperfections(1.0) {
+        let is_same = read(&[step], &frames, 0, 4) == read(&[step], &frames, 0, 5);
+        let wanders = matches!(step, SignalStep::Drift(_));
+        assert_eq!(is_same, !wanders, "{step:?}");
+    }
+    let drift = imperfections(1.0)[4];
+    let zeros = read(&[drift], &[0.0; 3 * N], 0, 4);
+    // A zero does not wander within a touch.
+    assert_eq!(zeros[..N], zeros[N..2 * N]);
+    assert_eq!(zeros[..N], zeros[2 * N..]);
+    let of = |skin| {
+        let std = 0.3;
+        read(
+            &[SignalStep::Gain(GainMismatch { std, skin })],
+            &frames,
+            0,
+            4,
+        )
+    };
+    assert_ne!(of(skin()), of(Seed::new(2).named("skin")));
+}
+
+#[test]
+fn steps_act_in_the_order_of_the_list() {
+    let frames = press(1);
+    let [_, crosstalk, _, gain, _, faults, converter] = imperfections(1.0)[..] else {
+        panic!("seven steps");
+    };
+    for (first, second) in [(crosstalk, gain), (faults, crosstalk), (converter, NOISE)] {
+        let one_way = read(&[first, second], &frames, 0, 4);
+        assert_ne!(one_way, read(&[second, first], &frames, 0, 4));
+        // The second step acts on what the first one made.
+        if second != NOISE {
+            let by_hand = read(&[second], &read(&[first], &frames, 0, 4), 0, 4);
+            assert_eq!(one_way, by_hand);
+        }
+    }
+}
+
+#[test]
+fn frames_of_a_chain_without_time_are_read_as_if_each_were_alone() {
+    let mut steps = imperfections(1.0);
+    steps.retain(|step| {
+        !matches!(
+            step,
+            SignalStep::Hysteresis { .. } | SignalStep::Scan { .. }
+        )
+    });
+    steps.retain(|step| !matches!(step, SignalStep::Drift(_)));
+    steps.insert(2, NOISE);
+    let frames = press(3);
+    let together = read(&steps, &frames, 0, 4);
+    let chain = Chain::new(&steps, &patch()).unwrap();
+    assert!(!chain.remembers());
+    let touch = Seed::new(2018).numbered(4);
+    let names = [
+        touch.named("frame").numbered(1),
+        touch.named("frame").numbered(2),
+        touch,
+    ];
+    for (frame, name) in names.iter().enumerate() {
+        let mut alone = frames[frame * N..(frame + 1) * N].to_vec();
+        chain.apply(&mut alone, None, name, &mut Scratch::default());
+        assert_eq!(together[frame * N..(frame + 1) * N], alone);
+    }
+    // What came before such a chain's touch is nothing to it.
+    assert_eq!(read(&steps, &[press(1), frames].concat(), 1, 4), together);
+}
+
+#[test]
+fn a_skin_that_was_pressed_deeper_and_let_go_reads_a_touch_differently_and_no_touch_as_one() {
+    let hysteresis = SignalStep::Hysteresis { width: 0.1 };
+    let chain = Chain::new(&[NOISE, hysteresis], &patch()).unwrap();
+    assert!(chain.remembers());
+    let deep = vec![4e-3; N];
+    let history = |before: &[f64], touch: &[f64]| {
+        read(&[hysteresis], &[before, &[0.0; N], touch].concat(), 2, 4)
+    };
+    let fresh = read(&[hysteresis], &press(2), 0, 4);
+    assert_eq!(history(&[0.0; N], &press(2)), fresh);
+    let after = history(&deep, &press(2));
+    assert!(after.iter().zip(&fresh).all(|(after, fresh)| after > fresh));
+    // What is left is below twice the width of the loop.
+    let left = history(&deep, &[0.0; N]);
+    let most = 2.0 * 0.1 * 5e-3;
+    assert!(left.iter().all(|&value| value > 0.0 && value < most));
+    // A shallower press before a deeper one is forgotten.
+    let shallow = history(&[1e-3; N], &[3e-3; N]);
+    assert_eq!(shallow, read(&[hysteresis], &[3e-3; N], 0, 4));
+}
+
+#[test]
+fn a_fraction_of_the_full_scale_means_the_same_before_and_after_force() {
+    // Neither at zero, where force ends, nor near the full scale, where a converter does.
+    let frames: Vec<f64> = press(2).iter().map(|d| d + 1.5e-3).collect();
+    for step in imperfections(0.5) {
+        let before = read(&[step, SignalStep::Force], &frames, 0, 4);
+        let after = read(&[SignalStep::Force, step], &frames, 0, 4);
+        for (before, after) in before.iter().zip(after) {
+            assert!((before - after).abs() < 1e-12, "{step:?}");
+        }
+    }
+}
+
+#[test]
+fn a_strength_that_no_skin_has_is_refused_by_name() {
+    let skin = skin();
+    for (step, place) in [
+        (
+            SignalStep::Hysteresis { width: 0.3 },
+            "hysteresis width: 0.3;",
+        ),
+        (SignalStep::Crosstalk { leak: -0.1 }, "crosstalk: -0.1;"),
+        (SignalStep::Scan { seconds: f64::NAN }, "scan time: NaN;"),
+        (
+            SignalStep::Gain(GainMismatch { std: -1.0, skin }),
+            "gain std: -1;",
+        ),
+        (
+            SignalStep::Drift(Drift {
+                std: f64::INFINITY,
+                skin,
+            }),
+            "drift std: inf;",
+        ),
+        (
+            SignalStep::Faults(Faults {
+                dead: 0.7,
+                stuck: 0.7,
+                skin,
+            }),
+            "dead and stuck fractions: 0.7 and 0.7;",
+        ),
+        (SignalStep::Quantisation { bits: 25 }, "converter bits: 25;"),
+    ] {
+        let error = Chain::new(&[step], &patch()).unwrap_err();
+        assert!(error.to_string().starts_with(place), "{error}");
+    }
+}
