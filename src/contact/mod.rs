@@ -21,7 +21,10 @@
 //! A [`Patch`](crate::world::Patch) is a flat grid, and its kernel goes along rows. A [`SkinPatch`](crate::world::SkinPatch)
 //! has any layout: [`press_skin`] finds the taxels near each sphere in a tree, and also says which part of which object
 //! decides each taxel ([`TaxelContact`]); [`spring_load`] adds up what the springs carry.
+//!
+//! A free object rests where its weight and the forces of the taxels balance: [`balance`].
 
+pub mod balance;
 mod damper;
 mod envelope;
 mod grid_lines;

@@ -35,6 +35,14 @@ impl Taxels {
             Self::Each(each) => &each[taxel],
         }
     }
+
+    /// Each kind that there is: one, or as many as taxels.
+    pub fn all(&self) -> &[Taxel] {
+        match self {
+            Self::Equal(equal) => std::slice::from_ref(equal),
+            Self::Each(each) => each,
+        }
+    }
 }
 
 impl SkinPatch {

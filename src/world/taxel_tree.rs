@@ -20,6 +20,8 @@ pub(crate) struct TaxelTree {
     /// Each before all that are below it.
     nodes: Vec<Node>,
     taxels: Vec<PlacedTaxel>,
+    /// The largest s + ρ, metres.
+    depth: f64,
 }
 
 /// A taxel with what its contact needs.
@@ -67,14 +69,31 @@ impl TaxelTree {
                 behind: -taxel.stroke - taxel.radius,
             }
         };
+        let all: Vec<PlacedTaxel> = (0..layout.n_taxels()).map(place).collect();
         let mut tree = Self {
             nodes: Vec::new(),
-            taxels: (0..layout.n_taxels()).map(place).collect(),
+            depth: all.iter().map(|taxel| -taxel.behind).fold(0.0, f64::max),
+            taxels: all,
         };
         if !tree.taxels.is_empty() {
             tree.split(0..tree.taxels.len());
         }
         tree
+    }
+
+    /// The box around the stretches of all taxels, metres; `None` if there are none.
+    pub fn bounds(&self) -> Option<&Aabb> {
+        self.nodes.first().map(|root| &root.bounds)
+    }
+
+    /// The largest ρ, metres.
+    pub fn largest_radius(&self) -> f64 {
+        self.nodes.first().map_or(0.0, |root| root.radius)
+    }
+
+    /// The largest s + ρ, metres.
+    pub fn depth(&self) -> f64 {
+        self.depth
     }
 
     /// Calls `visit` with each taxel that a ball can push, and with some others; metres, in the patch frame.

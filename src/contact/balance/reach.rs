@@ -1,0 +1,189 @@
+//! How far one sphere pushes one taxel, with its derivatives for a motion of the sphere.
+
+use super::super::taxel_contact::GRAZING;
+use crate::world::PlacedTaxel;
+use glam::{DMat3, DVec3};
+
+/// δ of a sphere and a taxel, and what it depends on; all in the patch frame.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Reach {
+    /// δ, metres.
+    pub deflection: f64,
+    /// The sphere's centre beside the taxel's axis, metres.
+    beside: DVec3,
+    /// n.
+    axis: DVec3,
+    /// S = ρ + R.
+    reach: f64,
+}
+
+/// δ and its first two derivatives by the sphere's centre.
+pub(super) struct Derivatives {
+    /// ∂δ/∂c.
+    pub gradient: DVec3,
+    /// ∂²δ/∂c², 1/m.
+    pub curvature: DMat3,
+    pub is_grazing: bool,
+}
+
+impl Reach {
+    /// Of a sphere (in the patch frame) and a taxel, `None` if it does not push the taxel and will not after a motion of
+    /// `motion` metres; as if there were no substrate.
+    ///
+    /// `δ = √(S² − b²) − h` for `√(S² − b²) ≥ γS` with γ = [`GRAZING`]. Where the sphere's flank is steeper it goes on along
+    /// the tangent, so that a sphere that comes from the side climbs a slope of 1/γ, not a cliff: that is the bound on the
+    /// gradient that forces have.
+    pub fn new(center: DVec3, radius: f64, taxel: &PlacedTaxel, motion: f64) -> Option<Self> {
+        let (axis, reach) = (taxel.axis, taxel.radius + radius);
+        let from_rest = center - taxel.center;
+        let height = from_rest.dot(axis);
+        if height >= reach + motion {
+            return None;
+        }
+        let beside = from_rest - height * axis;
+        let b2 = beside.length_squared();
+        let q = reach * reach - b2;
+        let least = GRAZING * reach;
+        let (up, slope) = if q >= least * least {
+            (q.sqrt(), b2.sqrt() / q.sqrt())
+        } else {
+            let slope = (1.0 - GRAZING * GRAZING).sqrt() / GRAZING;
+            let edge = reach * (1.0 - GRAZING * GRAZING).sqrt();
+            (least - (b2.sqrt() - edge) * slope, slope)
+        };
+        let deflection = up - height;
+        (deflection + motion * (1.0 + slope) > 0.0).then_some(Self {
+            deflection,
+            beside,
+            axis,
+            reach,
+        })
+    }
+
+    /// Whether the sphere is on the far side of the substrate, which is `taxel.behind` along the axis.
+    pub fn is_behind(&self, taxel: &PlacedTaxel, center: DVec3) -> bool {
+        (center - taxel.center).dot(self.axis) < taxel.behind
+    }
+
+    pub fn derivatives(&self) -> Derivatives {
+        let Self {
+            beside,
+            axis,
+            reach,
+            ..
+        } = *self;
+        let b2 = beside.length_squared();
+        let across = DMat3::IDENTITY - outer(axis, axis);
+        let least = GRAZING * reach;
+        let q = reach * reach - b2;
+        if q >= least * least {
+            let up = q.sqrt();
+            return Derivatives {
+                gradient: -beside / up - axis,
+                curvature: (across + outer(beside, beside) * (1.0 / q)) * (-1.0 / up),
+                is_grazing: false,
+            };
+        }
+        let slope = (1.0 - GRAZING * GRAZING).sqrt() / GRAZING;
+        let b = b2.sqrt();
+        let outward = beside / b;
+        Derivatives {
+            gradient: -slope * outward - axis,
+            curvature: (across - outer(outward, outward)) * (-slope / b),
+            is_grazing: true,
+        }
+    }
+}
+
+fn outer(a: DVec3, b: DVec3) -> DMat3 {
+    DMat3::from_cols(a * b.x, a * b.y, a * b.z)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// At the origin, ρ = 1 mm, s = 5 mm.
+    fn taxel(axis: DVec3) -> PlacedTaxel {
+        let (x, y) = axis.any_orthonormal_pair();
+        PlacedTaxel {
+            number: 0,
+            center: DVec3::ZERO,
+            across: [x, y],
+            axis,
+            radius: 1e-3,
+            behind: -6e-3,
+        }
+    }
+
+    #[test]
+    fn derivatives_are_those_of_the_deflection() {
+        let axis = DVec3::new(0.2, -0.3, 0.9).normalize();
+        let taxel = taxel(axis);
+        let at = |c: DVec3| Reach::new(c, 4e-3, &taxel, 0.0).unwrap();
+        let side = axis.any_orthonormal_vector();
+        // The last is on the slope beside the sphere.
+        for (beside, height) in [
+            (1e-3, 2e-3),
+            (3e-3, -1e-3),
+            (4.9e-3, -2e-3),
+            (4.9999e-3, -3e-3),
+        ] {
+            let c = beside * side + height * axis;
+            let found = at(c).derivatives();
+            assert_eq!(found.is_grazing, beside > 4.99e-3);
+            let step = 1e-8;
+            for k in 0..3 {
+                let e = step * DVec3::AXES[k];
+                let slope = (at(c + e).deflection - at(c - e).deflection) / (2.0 * step);
+                let error = (slope - found.gradient[k]).abs();
+                assert!(
+                    error < 1e-4 * found.gradient.length(),
+                    "{slope} {}",
+                    found.gradient
+                );
+                let gradient = |c| at(c).derivatives().gradient;
+                let bend = (gradient(c + e) - gradient(c - e)) / (2.0 * step);
+                let error = (bend - found.curvature.col(k)).length();
+                assert!(
+                    error < 1e-3 * found.curvature.col(k).length() + 1.0,
+                    "{bend}"
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn away_from_the_flank_it_is_the_formula() {
+        let c = DVec3::new(1e-3, 2e-3, 3e-3);
+        let found = Reach::new(c, 4e-3, &taxel(DVec3::Z), 0.0).unwrap();
+        let needed = (25e-6 - 5e-6_f64).sqrt() - 3e-3;
+        assert!((found.deflection - needed).abs() < 1e-18);
+        let behind = c - 10e-3 * DVec3::Z;
+        let found = Reach::new(behind, 4e-3, &taxel(DVec3::Z), 0.0).unwrap();
+        assert!(found.is_behind(&taxel(DVec3::Z), behind));
+    }
+
+    #[test]
+    fn what_a_motion_could_bring_into_contact_is_not_left_out() {
+        let taxel = taxel(DVec3::Z);
+        let mut n_near = 0;
+        for k in 0..2000 {
+            let turn = 0.01 * f64::from(k);
+            let c = DVec3::new(
+                5.05e-3 * turn.sin(),
+                0.0,
+                5.05e-3 * turn.cos() * (turn * 0.1).cos(),
+            );
+            let moved = c + 1e-4 * DVec3::new((7.0 * turn).sin(), 0.0, (7.0 * turn).cos());
+            if Reach::new(moved, 4e-3, &taxel, 0.0).is_some() && c.z > -5.9e-3 {
+                n_near += usize::from(Reach::new(c, 4e-3, &taxel, 0.0).is_none());
+                assert!(
+                    Reach::new(c, 4e-3, &taxel, 1.01e-4).is_some(),
+                    "{c} {moved}"
+                );
+            }
+        }
+        assert!(n_near > 20, "{n_near}");
+    }
+}

@@ -1,0 +1,381 @@
+//! Laws of free objects: they rest where all forces balance, wherever the world is, or they are said to leave.
+
+use bubbletouch::contact::balance::{Balance, Balancer, FreeObject, Outcome, PlacedSkin};
+use bubbletouch::contact::{SkinWorkspace, press_skin, spring_load};
+use bubbletouch::geometry::Pose;
+use bubbletouch::objects::{Model, Sphere, SphereUnion};
+use bubbletouch::random::Seed;
+use bubbletouch::world::{Grid, Layout, Patch, SkinPatch, Taxel, Taxels, center_of_mass};
+use glam::{DQuat, DVec3};
+use rand::Rng;
+use rayon::prelude::*;
+
+const G: f64 = 9.81;
+const DOWN: DVec3 = DVec3::new(0.0, 0.0, -G);
+
+fn taxel(stiffness: f64) -> Taxel {
+    Taxel {
+        radius: 1e-3,
+        stiffness,
+        damping: 0.0,
+        stroke: 5e-3,
+    }
+}
+
+/// n × n taxels, 2 mm apart.
+fn bed(n: usize, stiffness: f64) -> SkinPatch {
+    let grid = Grid {
+        nx: n,
+        ny: n,
+        pitch: 2e-3,
+    };
+    SkinPatch::from(Patch::new(grid, taxel(stiffness)).unwrap())
+}
+
+fn placed(patch: &SkinPatch, world_from_patch: Pose) -> PlacedSkin<'_> {
+    PlacedSkin {
+        patch,
+        world_from_patch,
+        pushed: &[],
+    }
+}
+
+fn ball(radius: f64) -> SphereUnion {
+    let center = DVec3::ZERO;
+    SphereUnion::new(vec![Sphere { center, radius }]).unwrap()
+}
+
+fn settle(object: &FreeObject, skins: &[PlacedSkin], start: &Pose) -> Balance {
+    Balancer::new().settle(object, skins, DOWN, start).unwrap()
+}
+
+fn at(x: f64, y: f64, z: f64) -> Pose {
+    Pose::from_translation(DVec3::new(x, y, z))
+}
+
+#[test]
+fn a_ball_rests_as_deep_as_its_weight_asks() {
+    let (radius, mass, stiffness) = (0.03, 0.05, 100.0);
+    let patch = bed(32, stiffness);
+    let union = ball(radius);
+    let object = FreeObject::new(&union, mass, DVec3::ZERO).unwrap();
+    let rest = settle(
+        &object,
+        &[placed(&patch, Pose::IDENTITY)],
+        &at(1e-3, 1e-3, 0.05),
+    );
+    assert_eq!(rest.outcome, Outcome::Settled);
+    // The lift at a height, taxel by taxel, where the ball is.
+    let place = rest.pose.translation;
+    let lift = |height: f64| -> f64 {
+        let reach = radius + 1e-3;
+        let of_taxel = |center: &DVec3| {
+            let q = reach * reach - (center.truncate() - place.truncate()).length_squared();
+            let deflection = if q > 0.0 { q.sqrt() - height } else { 0.0 };
+            stiffness * deflection.max(0.0)
+        };
+        patch.layout().centers().iter().map(of_taxel).sum()
+    };
+    let (mut low, mut high) = (0.02, 0.04);
+    for _ in 0..100 {
+        let middle = 0.5 * (low + high);
+        if lift(middle) > mass * G {
+            low = middle
+        } else {
+            high = middle
+        }
+    }
+    assert!((place.z - low).abs() < 1e-9, "{} {low}", place.z);
+}
+
+#[test]
+fn forces_balance_for_every_weight_and_stiffness() {
+    let union = ball(0.03);
+    for mass in [1e-3, 1e-2, 1.0, 100.0, 1000.0] {
+        for stiffness in [1.0, 1e2, 1e4, 1e6] {
+            let object = FreeObject::new(&union, mass, DVec3::new(2e-3, 0.0, -5e-3)).unwrap();
+            let patch = bed(64, stiffness);
+            let skins = [placed(&patch, Pose::IDENTITY)];
+            let rest = settle(&object, &skins, &at(0.3e-3, 0.2e-3, 0.04));
+            let case = format!("{mass} kg on {stiffness} N/m: {rest:?}");
+            assert_eq!(rest.outcome, Outcome::Settled, "{case}");
+            assert!(rest.imbalance <= 1e-6, "{case}");
+            assert!((rest.force.z / (mass * G) - 1.0).abs() <= 1e-6, "{case}");
+        }
+    }
+}
+
+/// What the press kernel and the springs say of the pose that was found.
+#[test]
+fn the_skin_feels_the_weight_that_rests_on_it() {
+    let patch = bed(48, 150.0);
+    let mut rng = Seed::new(3).named("weight").rng();
+    let mut random = || DVec3::from_array(std::array::from_fn(|_| rng.gen_range(-1.0..1.0)));
+    let spheres = (0..30).map(|_| Sphere {
+        center: 0.015 * random(),
+        radius: 8e-3,
+    });
+    let union = SphereUnion::new(spheres.collect()).unwrap();
+    let mass = 0.08;
+    let object = FreeObject::new(&union, mass, center_of_mass(&union)).unwrap();
+    let rest = settle(
+        &object,
+        &[placed(&patch, Pose::IDENTITY)],
+        &at(0.0, 0.0, 0.06),
+    );
+    assert_eq!(rest.outcome, Outcome::Settled);
+    let objects = [Model::from(union.clone())];
+    let mut workspace = SkinWorkspace::new();
+    press_skin(&patch, &objects, &[rest.pose], &mut workspace);
+    let load = spring_load(&patch, workspace.contacts());
+    // Taxels between two spheres: one of them is said to decide, so the sides may differ a little.
+    assert!(
+        (load.spring_force / (mass * G) - 1.0).abs() < 1e-6,
+        "{load:?}"
+    );
+    assert_eq!(workspace.contacts().len(), rest.n_touched);
+}
+
+#[test]
+fn moving_the_whole_world_moves_the_rest() {
+    let patch = bed(32, 80.0);
+    let union = SphereUnion::new(vec![
+        Sphere {
+            center: DVec3::new(-0.01, 0.0, 0.0),
+            radius: 0.012,
+        },
+        Sphere {
+            center: DVec3::new(0.012, 0.003, 0.0),
+            radius: 0.01,
+        },
+        Sphere {
+            center: DVec3::new(0.0, -0.012, 0.004),
+            radius: 0.011,
+        },
+    ])
+    .unwrap();
+    let object = FreeObject::new(&union, 0.06, DVec3::new(0.0, -2e-3, 1e-3)).unwrap();
+    let start = at(1.3e-3, -0.7e-3, 0.03);
+    let here = settle(&object, &[placed(&patch, Pose::IDENTITY)], &start);
+    assert_eq!(here.outcome, Outcome::Settled);
+    let world = Pose::new(
+        DQuat::from_euler(glam::EulerRot::XYZ, 0.7, -1.1, 2.0),
+        DVec3::new(3.0, -2.0, 1.0),
+    );
+    let skins = [placed(&patch, world)];
+    let moved = world.compose(&start);
+    let there = Balancer::new()
+        .settle(&object, &skins, world.transform_vector(DOWN), &moved)
+        .unwrap();
+    assert_eq!(there.outcome, Outcome::Settled);
+    let back = world.inverse().compose(&there.pose);
+    assert!(
+        (back.translation - here.pose.translation).length() < 1e-8,
+        "{back:?} {here:?}"
+    );
+    assert!(back.rotation.angle_between(here.pose.rotation) < 1e-6);
+}
+
+#[test]
+fn two_skins_in_a_v_carry_a_ball_together() {
+    let patch = bed(32, 100.0);
+    let slope = std::f64::consts::FRAC_PI_4;
+    let side = |sign: f64| {
+        let rotation = DQuat::from_rotation_y(-sign * slope);
+        Pose::new(
+            rotation,
+            rotation * DVec3::new(0.0, 0.0, 0.0) + DVec3::new(sign * 0.025, 0.0, 0.025),
+        )
+    };
+    let skins = [placed(&patch, side(1.0)), placed(&patch, side(-1.0))];
+    let union = ball(0.02);
+    let mass = 0.1;
+    let object = FreeObject::new(&union, mass, DVec3::ZERO).unwrap();
+    let rest = settle(&object, &skins, &at(0.0, 1e-3, 0.08));
+    assert_eq!(rest.outcome, Outcome::Settled);
+    assert!(rest.imbalance < 1e-6);
+    assert!(rest.pose.translation.x.abs() < 1.1e-3, "{rest:?}");
+    let sum: f64 = skins
+        .iter()
+        .map(|skin| {
+            let pose = skin.world_from_patch.inverse().compose(&rest.pose);
+            let mut workspace = SkinWorkspace::new();
+            press_skin(
+                &patch,
+                &[Model::from(union.clone())],
+                &[pose],
+                &mut workspace,
+            );
+            let force = spring_load(&patch, workspace.contacts()).on_object.force;
+            (skin.world_from_patch.rotation * force).z
+        })
+        .sum();
+    assert!((sum / (mass * G) - 1.0).abs() < 1e-6, "{sum}");
+}
+
+#[test]
+fn a_ball_on_a_slope_rolls_off_downhill() {
+    let patch = bed(24, 500.0);
+    for (tilt, turn) in [(0.6, 0.0), (0.5, 1.0), (0.7, 2.5)] {
+        let rotation = DQuat::from_rotation_z(turn) * DQuat::from_rotation_y(tilt);
+        let skins = [placed(&patch, Pose::from_rotation(rotation))];
+        let union = ball(0.03);
+        let object = FreeObject::new(&union, 0.05, DVec3::ZERO).unwrap();
+        let rest = settle(&object, &skins, &at(0.0, 0.0, 0.06));
+        let downhill = (rotation * DVec3::X).with_z(0.0).normalize();
+        let Outcome::Escaped { direction } = rest.outcome else {
+            panic!("{rest:?}");
+        };
+        assert!(direction.dot(downhill) > 0.9, "{direction} for {downhill}");
+        assert_eq!(rest.n_touched, 0);
+    }
+}
+
+#[test]
+fn what_misses_the_skin_falls_and_says_so() {
+    let patch = bed(8, 100.0);
+    let union = ball(0.01);
+    let object = FreeObject::new(&union, 0.01, DVec3::ZERO).unwrap();
+    let rest = settle(
+        &object,
+        &[placed(&patch, Pose::IDENTITY)],
+        &at(0.5, 0.0, 0.1),
+    );
+    assert_eq!(
+        rest.outcome,
+        Outcome::Escaped {
+            direction: -DVec3::Z
+        }
+    );
+    let nothing = settle(&object, &[], &at(0.0, 0.0, 0.1));
+    assert_eq!(
+        nothing.outcome,
+        Outcome::Escaped {
+            direction: -DVec3::Z
+        }
+    );
+}
+
+#[test]
+fn a_ball_on_the_point_of_a_single_taxel_does_not_stay_there() {
+    let layout = Layout::new(vec![DVec3::ZERO], vec![DVec3::Z]).unwrap();
+    let patch = SkinPatch::new("pin", layout, Taxels::Equal(taxel(100.0))).unwrap();
+    let union = ball(0.02);
+    let object = FreeObject::new(&union, 0.01, DVec3::ZERO).unwrap();
+    // Exactly above it every force balances at some height; a saddle of the energy.
+    let rest = settle(
+        &object,
+        &[placed(&patch, Pose::IDENTITY)],
+        &at(0.0, 0.0, 0.05),
+    );
+    assert!(matches!(rest.outcome, Outcome::Escaped { .. }), "{rest:?}");
+}
+
+#[test]
+fn at_rest_it_stays_and_nearby_it_returns() {
+    let patch = bed(32, 100.0);
+    let skins = [placed(&patch, Pose::IDENTITY)];
+    let union = ball(0.03);
+    let object = FreeObject::new(&union, 0.3, DVec3::new(0.0, 0.0, -0.01)).unwrap();
+    let mut balancer = Balancer::new();
+    let first = balancer
+        .settle(&object, &skins, DOWN, &at(0.4e-3, 0.1e-3, 0.04))
+        .unwrap();
+    let again = balancer.settle(&object, &skins, DOWN, &first.pose).unwrap();
+    assert!((again.pose.translation - first.pose.translation).length() < 1e-9);
+    assert!(again.n_steps <= 6, "{again:?}");
+    let lifted = Pose::new(
+        first.pose.rotation,
+        first.pose.translation + 1e-3 * DVec3::Z,
+    );
+    let back = balancer.settle(&object, &skins, DOWN, &lifted).unwrap();
+    assert!((back.pose.translation.z - first.pose.translation.z).abs() < 1e-6);
+}
+
+#[test]
+fn others_that_push_the_taxels_take_their_part() {
+    let patch = bed(32, 100.0);
+    let union = ball(0.03);
+    let object = FreeObject::new(&union, 0.05, DVec3::ZERO).unwrap();
+    let alone = settle(
+        &object,
+        &[placed(&patch, Pose::IDENTITY)],
+        &at(0.0, 0.0, 0.05),
+    );
+    // All taxels held down by a millimetre: it rests that much lower, to the deflections that carry it.
+    let held = vec![1e-3; patch.n_taxels()];
+    let skins = [PlacedSkin {
+        pushed: &held,
+        ..placed(&patch, Pose::IDENTITY)
+    }];
+    let lower = settle(&object, &skins, &at(0.0, 0.0, 0.05));
+    assert_eq!(lower.outcome, Outcome::Settled);
+    assert!(lower.imbalance < 1e-6);
+    assert!(
+        lower.pose.translation.z < alone.pose.translation.z - 0.3e-3,
+        "{lower:?} {alone:?}"
+    );
+}
+
+#[test]
+fn a_thousand_objects_settle_or_leave() {
+    let settled: Vec<bool> = (0..1000_u64)
+        .into_par_iter()
+        .map(|case| {
+            let mut rng = Seed::new(case).named("free objects").rng();
+            let size = 10f64.powf(rng.gen_range(-2.3..-1.3));
+            let mut random = |a: f64, b: f64| rng.gen_range(a..b);
+            let n_spheres = random(1.0, 40.0) as usize;
+            let spheres = (0..n_spheres).map(|_| Sphere {
+                center: size * DVec3::new(random(-1.0, 1.0), random(-1.0, 1.0), random(-1.0, 1.0)),
+                radius: size * random(0.05, 0.6),
+            });
+            let union = SphereUnion::new(spheres.collect()).unwrap();
+            let mass = 10f64.powf(random(-3.0, 1.0));
+            let patch = bed(32, 10f64.powf(random(1.0, 4.0)));
+            let object = FreeObject::new(&union, mass, center_of_mass(&union)).unwrap();
+            let turn = DQuat::from_xyzw(
+                random(-1.0, 1.0),
+                random(-1.0, 1.0),
+                random(-1.0, 1.0),
+                random(-1.0, 1.0),
+            );
+            let start = Pose::new(
+                turn.normalize(),
+                DVec3::new(random(-0.03, 0.03), random(-0.03, 0.03), 0.2),
+            );
+            let rest = settle(&object, &[placed(&patch, Pose::IDENTITY)], &start);
+            assert!(rest.pose.translation.is_finite() && rest.pose.rotation.is_finite());
+            match rest.outcome {
+                Outcome::Settled => assert!(rest.imbalance <= 1e-6, "case {case}: {rest:?}"),
+                Outcome::Escaped { direction } => assert!((direction.length() - 1.0).abs() < 1e-9),
+                Outcome::Unsettled => panic!("case {case}: {rest:?}"),
+            }
+            rest.outcome == Outcome::Settled
+        })
+        .collect();
+    let n_settled = settled.iter().filter(|&&s| s).count();
+    assert!((300..980).contains(&n_settled), "{n_settled}");
+}
+
+#[test]
+fn bad_input_is_named() {
+    let union = ball(0.01);
+    for mass in [0.0, -1.0, f64::NAN, f64::INFINITY] {
+        let error = FreeObject::new(&union, mass, DVec3::ZERO).unwrap_err();
+        assert!(error.to_string().starts_with("object mass"), "{error}");
+    }
+    let nowhere = DVec3::new(f64::NAN, 0.0, 0.0);
+    let error = FreeObject::new(&union, 1.0, nowhere).unwrap_err();
+    assert!(error.to_string().starts_with("centre of mass"), "{error}");
+    let object = FreeObject::new(&union, 1.0, DVec3::ZERO).unwrap();
+    let mut balancer = Balancer::new();
+    let error = balancer
+        .settle(&object, &[], DVec3::ZERO, &Pose::IDENTITY)
+        .unwrap_err();
+    assert!(error.to_string().starts_with("gravity"), "{error}");
+    let error = balancer
+        .settle(&object, &[], DOWN, &Pose::from_translation(nowhere))
+        .unwrap_err();
+    assert!(error.to_string().starts_with("object pose"), "{error}");
+}
