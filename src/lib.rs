@@ -94,10 +94,12 @@
 //! | [`sensing`] | frames → measurements, and back |
 //! | [`recognition`] | labelled measurements → classifier, scores |
 //! | [`study`] | TOML → plan → tables |
-//! | [`report`] | tables → files for people |
+//! | [`scene`] | TOML → robots, skin and objects that move → frames over time |
+//! | [`report`] | tables and frames → files for people |
 //!
 //! The eight stages from `mesh` to `recognition` are pure: no files (but a robot's, if it is asked for by its path), clock,
-//! threads, printing or global state. Threads live in `study`; files in `study` and `report`.
+//! threads, printing or global state. Threads live in `study`; files in `study`, `scene` (what a scene names) and
+//! `report`.
 //!
 //! # Sources
 //!
@@ -132,6 +134,7 @@ pub mod packing;
 pub mod random;
 pub mod recognition;
 pub mod report;
+pub mod scene;
 pub mod sensing;
 pub mod signal;
 pub mod study;

@@ -12,6 +12,7 @@ mod recording;
 mod run;
 mod run_object_detail;
 mod run_reconstruction;
+mod simulate;
 mod study_args;
 mod touches;
 mod which_object;
@@ -41,6 +42,8 @@ enum Command {
     Features(features::Args),
     /// Train and test one classifier on such a folder, and time it
     Classify(classify::Args),
+    /// Simulate a scene: robots, skin and objects that move, from one TOML file
+    Simulate(simulate::Args),
     /// Press one object on one array and write or draw the deflections
     Press(press::Args),
     /// Say what is in a recording, or draw it, still or moving
@@ -58,6 +61,7 @@ pub fn dispatch() -> Result<()> {
         Some(Command::Touches(args)) => touches::touches(&args),
         Some(Command::Features(args)) => features::features(&args),
         Some(Command::Classify(args)) => classify::classify(&args),
+        Some(Command::Simulate(args)) => simulate::simulate(&args),
         Some(Command::Press(args)) => press::press(&args),
         Some(Command::Recording(args)) => recording::recording(&args),
         Some(Command::Objects(args)) => objects::objects(&args),

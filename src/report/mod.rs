@@ -43,6 +43,8 @@ pub mod reconstruction_results;
 pub mod reconstruction_text;
 pub mod recording;
 pub mod results;
+pub mod scene_files;
+pub mod scene_summary;
 mod shaded_view;
 mod signal_axis;
 pub mod snapshots;

@@ -40,6 +40,7 @@ mod touch_files;
 mod training;
 
 pub use axis::Axis;
+pub(crate) use check::{Check, not_negative, positive};
 pub use estimate::Estimate;
 pub use evaluation::CONFIDENCE;
 pub use feature_files::{FeatureSet, cell_features, read_features, write_features, write_npy};

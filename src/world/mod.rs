@@ -32,6 +32,7 @@ pub use motion::{Interpolation, JointTrajectory, Motion, PoseTrajectory};
 pub use patch::{Grid, Patch, Taxel};
 pub use placement::{Placement, RestPoses, Spread, Touch, TouchAxis};
 pub use rest::{RestPose, as_modelled, stable_poses, stable_poses_about};
+pub(crate) use robot::nearest_names;
 pub use robot::{
     Coordinate, Dimension, Joint, JointKind, Limits, Link, LinkGeometry, LinkShape, Mimic, Robot,
     ShapeRole,

@@ -29,4 +29,4 @@ pub use coordinate::{Coordinate, Dimension};
 pub use joint::{Joint, JointKind, Limits, Mimic};
 pub use link::{Link, LinkGeometry, LinkShape, ShapeRole};
 pub use model::Robot;
-pub(super) use spelling::nearest_names;
+pub(crate) use spelling::nearest_names;

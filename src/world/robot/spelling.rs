@@ -4,10 +4,7 @@
 const OFFERED: usize = 8;
 
 /// The error's last part for a name that is not among `names`: those it resembles, else the first few there are.
-pub(in crate::world) fn nearest_names<'a>(
-    name: &str,
-    names: impl IntoIterator<Item = &'a str>,
-) -> String {
+pub(crate) fn nearest_names<'a>(name: &str, names: impl IntoIterator<Item = &'a str>) -> String {
     let all: Vec<&str> = names.into_iter().collect();
     let mut near: Vec<(usize, &str)> = all
         .iter()

@@ -1,0 +1,67 @@
+//! `bubbletouch simulate`: a scene from its file to its folder of results.
+
+use super::output::output_folder;
+use bubbletouch::Result;
+use bubbletouch::report::progress::to_stderr;
+use bubbletouch::report::scene_files::SceneFiles;
+use bubbletouch::report::scene_summary::scene_table;
+use bubbletouch::scene::{FrameSink, ScenePlan, Simulation, Stepping, Summary};
+use bubbletouch::study::progress::{Progress, Silent};
+use std::path::PathBuf;
+use std::time::Instant;
+
+/// Simulate a scene: robots, skin and objects that move.
+///
+/// Writes recording.npz (deflections, forces and poses over time; see `bubbletouch recording`), wrenches.csv (what each patch feels
+/// as a whole, in its frame) and scene.toml (the scene with its defaults).
+#[derive(clap::Args)]
+pub struct Args {
+    /// The scene, a TOML file; experiments/scenes/ has some
+    scene: PathBuf,
+    /// Where to write
+    #[arg(long, value_name = "FOLDER")]
+    out: PathBuf,
+    /// End it early
+    #[arg(long, value_name = "SECONDS", allow_negative_numbers = true)]
+    until_s: Option<f64>,
+    /// Say nothing but errors
+    #[arg(long)]
+    quiet: bool,
+}
+
+pub fn simulate(args: &Args) -> Result<()> {
+    let mut plan = ScenePlan::read(&args.scene)?;
+    if let Some(until) = args.until_s {
+        plan.cut("--until-s", until)?;
+    }
+    output_folder(&args.out)?;
+    let mut files = SceneFiles::create(&args.out, &plan)?;
+    let mut summary = Summary::default();
+    let progress: Box<dyn Progress> = if args.quiet {
+        Box::new(Silent)
+    } else {
+        to_stderr()
+    };
+    progress.stage("simulate", plan.n_frames as u64);
+    let start = Instant::now();
+    let mut simulation = Simulation::new(&plan, Stepping::AsNeeded);
+    while let Some(frame) = simulation.next_frame()? {
+        summary.frame(frame)?;
+        files.frame(frame)?;
+        progress.advance(1);
+    }
+    let seconds = start.elapsed().as_secs_f64();
+    files.finish()?;
+    let n_steps = simulation.n_steps();
+    let each_us = 1e6 * seconds / n_steps as f64;
+    progress.finish(&format!("{n_steps} steps, {each_us:.0} µs each"));
+    if !args.quiet {
+        print!("{}", scene_table(&plan, &summary));
+        if simulation.n_unfinished() > 0 {
+            let n = simulation.n_unfinished();
+            println!("\nFree objects were not at rest together in {n} of {n_steps} steps.");
+        }
+        println!("\nResults in {}", args.out.display());
+    }
+    Ok(())
+}

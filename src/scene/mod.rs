@@ -1,0 +1,71 @@
+//! Scene: a TOML file → robots, skin and objects that move → frames over time.
+//!
+//! [`SceneSpec`] (as written) → [`ScenePlan`] (checked, SI, files read) → [`Simulation`] (steps) → [`Frame`]s, each handed to
+//! [`FrameSink`]s as it is made. Nothing is kept but the current state.
+//!
+//! At each step, in this order:
+//!
+//! 1. robots and imposed objects go where their motions say; patches go with their links;
+//! 2. free objects go to rest on the skin that is there, each from where it was ([`balance`](crate::contact::balance)); several of them
+//!    in turn, until none moves;
+//! 3. each patch is pressed, unless no object is within its reach: what nothing pushes relaxes
+//!    ([`DamperState`](crate::contact::DamperState)).
+//!
+//! A scene begins as if it had stood as it does at t = 0 for long. One without dampers and free objects remembers nothing,
+//! so it is evaluated at its frames only, with the same result.
+//!
+//! What is not modelled: objects do not touch each other, only skin; free objects neither swing nor bounce (\[BT\] is
+//! quasi-static); an object that has escaped touches nothing any more.
+//!
+//! ```
+//! use bubbletouch::scene::{ScenePlan, SceneSpec, Simulation, Stepping};
+//!
+//! let spec = SceneSpec::parse("ball.toml", r#"
+//! title = "A tennis ball comes down on a palm and goes again"
+//! output_hz = 10.0
+//!
+//! [[patches]]
+//! name = "palm"
+//! layout = { grid = { nx = 16, ny = 16, pitch_mm = 4.0 } }
+//! stroke_mm = 5.0
+//!
+//! [[objects]]
+//! name = "ball"
+//! object = "tennis"
+//! at = { position_mm = [0.0, 0.0, 2.0] }
+//! motion = { phases = [
+//!     { duration_s = 1.0, linear_mm_per_s = [0.0, 0.0, -4.0] },
+//!     { duration_s = 1.0, linear_mm_per_s = [0.0, 0.0, 4.0] },
+//! ] }
+//! "#)?;
+//! let plan = ScenePlan::new("ball.toml", std::path::Path::new(""), spec)?;
+//! let mut frames = Vec::new();
+//! Simulation::new(&plan, Stepping::AsNeeded).run(&mut [&mut frames])?;
+//! assert_eq!(frames.len(), 21);
+//! let [first, middle, last] = [0, 10, 20].map(|k| frames[k].patches[0].n_touched);
+//! assert!(first == 0 && middle > 20 && last == 0);
+//! # Ok::<(), bubbletouch::Error>(())
+//! ```
+
+mod frame;
+mod free_objects;
+mod plan;
+mod plan_object;
+mod plan_patch;
+mod plan_robot;
+mod reader;
+mod robot_state;
+mod simulation;
+mod skin_state;
+mod spec;
+mod summary;
+
+pub use frame::{Frame, FrameSink, Held, ObjectReading, PatchReading};
+pub use free_objects::{MOST_ROUNDS, ROUND_TOLERANCE};
+pub use plan::ScenePlan;
+pub use plan_object::{Movement, PlannedObject};
+pub use plan_patch::{Mount, PlannedPatch};
+pub use plan_robot::PlannedRobot;
+pub use simulation::{Simulation, Stepping};
+pub use spec::*;
+pub use summary::{PatchPeaks, Summary};

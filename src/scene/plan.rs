@@ -1,0 +1,202 @@
+//! A scene that can run: every key of its [`SceneSpec`] checked, every unit SI, every file read.
+
+use super::plan_object::{Movement, PlannedObject};
+use super::plan_patch::PlannedPatch;
+use super::plan_robot::PlannedRobot;
+use super::reader::{MM, Reader};
+use super::spec::SceneSpec;
+use crate::error::{Error, Result};
+use crate::objects::Model;
+use crate::random::Seed;
+use crate::study::{Check, not_negative, positive};
+use glam::DVec3;
+use std::collections::BTreeSet;
+use std::path::Path;
+
+/// Steps of one scene, at most: more is a step in the wrong unit.
+const MOST_STEPS: f64 = 1e9;
+
+/// Robots, skin and objects, and when they are looked at.
+#[derive(Clone, Debug)]
+pub struct ScenePlan {
+    /// As it was written, with its duration, and with paths that hold from any folder.
+    pub spec: SceneSpec,
+    /// Frames a second.
+    pub output_rate: f64,
+    /// Frame k is at k / output_rate seconds; at least one.
+    pub n_frames: usize,
+    /// Equal steps from one frame to the next, where steps are needed.
+    pub n_substeps: usize,
+    /// m/s², in the world.
+    pub gravity: DVec3,
+    /// What moves skin.
+    pub robots: Vec<PlannedRobot>,
+    /// Skin.
+    pub patches: Vec<PlannedPatch>,
+    /// What is touched.
+    pub objects: Vec<PlannedObject>,
+    /// What each object is made of.
+    pub models: Vec<Model>,
+}
+
+impl ScenePlan {
+    /// Reads a scene from its file.
+    pub fn read(path: &Path) -> Result<Self> {
+        let place = path.display().to_string();
+        let text = std::fs::read_to_string(path).map_err(|e| {
+            Error::input(&place, format!("cannot be read ({e})"), "a scene in TOML")
+        })?;
+        let folder = path.parent().unwrap_or(Path::new(""));
+        Self::new(&place, folder, SceneSpec::parse(&place, &text)?)
+    }
+
+    /// Checks a scene; paths in it are relative to `folder`, and errors begin with `place`, its file's name, and the key.
+    pub fn new(place: &str, folder: &Path, mut spec: SceneSpec) -> Result<Self> {
+        let check = Check { place };
+        let reader = Reader { check, folder };
+        check_names(&reader.check, &spec)?;
+        let robots = spec.robots.iter().map(|robot| reader.robot(robot));
+        let robots = robots.collect::<Result<Vec<_>>>()?;
+        let seed = Seed::new(spec.seed);
+        let patches = spec
+            .patches
+            .iter()
+            .map(|patch| reader.patch(patch, &robots, &seed));
+        let patches = patches.collect::<Result<Vec<_>>>()?;
+        let pitches = spec.patches.iter().map(|patch| patch.layout.pitch_mm());
+        let finest_mm = pitches.fold(f64::INFINITY, f64::min);
+        let objects = spec
+            .objects
+            .iter()
+            .map(|object| reader.object(object, finest_mm));
+        let (objects, models): (Vec<_>, Vec<_>) =
+            objects.collect::<Result<Vec<_>>>()?.into_iter().unzip();
+        let gravity = reader.vector("gravity_m_per_s2", spec.gravity_m_per_s2, 1.0)?;
+        let is_free = |object: &PlannedObject| matches!(object.movement, Movement::Free { .. });
+        if gravity == DVec3::ZERO && objects.iter().any(is_free) {
+            let allowed = "not zero in a scene with a free object";
+            return Err(reader.check.error("gravity_m_per_s2", gravity, allowed));
+        }
+        let duration = *spec
+            .duration_s
+            .get_or_insert_with(|| end(&robots, &objects));
+        let clock = Clock::checked(&reader.check, &spec, duration)?;
+        for path in spec.paths_mut() {
+            *path = std::path::absolute(folder.join(&path))
+                .map_err(|e| Error::io(folder.join(&path), "read", e))?;
+        }
+        Ok(Self {
+            output_rate: spec.output_hz,
+            spec,
+            n_frames: clock.n_frames,
+            n_substeps: clock.n_substeps,
+            gravity,
+            robots,
+            patches,
+            objects,
+            models,
+        })
+    }
+
+    /// Ends it early, seconds; a scene that is shorter stays as it is. The error is a time that is negative or not finite.
+    pub fn cut(&mut self, place: &str, until: f64) -> Result<()> {
+        if !not_negative(until) {
+            let allowed = "zero or a positive number of seconds";
+            return Err(Error::input(place, until, allowed));
+        }
+        let frames = Clock::frames(until, self.output_rate);
+        if frames < self.n_frames {
+            self.n_frames = frames;
+            self.spec.duration_s = Some(until);
+        }
+        Ok(())
+    }
+
+    /// The time of a frame, seconds.
+    pub fn time(&self, frame: usize) -> f64 {
+        frame as f64 / self.output_rate
+    }
+
+    /// Whether what is between frames decides what they are: dampers and free objects remember.
+    pub fn needs_steps(&self) -> bool {
+        let has_damper = self.patches.iter().any(|patch| patch.taxel.damping > 0.0);
+        let is_free = |object: &PlannedObject| matches!(object.movement, Movement::Free { .. });
+        has_damper || self.objects.iter().any(is_free)
+    }
+}
+
+/// How often a scene is looked at.
+struct Clock {
+    n_frames: usize,
+    n_substeps: usize,
+}
+
+impl Clock {
+    fn checked(check: &Check, spec: &SceneSpec, duration: f64) -> Result<Self> {
+        let above_zero = "a positive number";
+        let dt = check.value("dt_ms", spec.dt_ms, positive, above_zero)? * MM;
+        let rate = check.value("output_hz", spec.output_hz, positive, above_zero)?;
+        let allowed = "zero or a positive number of seconds";
+        let duration = check.value("duration_s", duration, not_negative, allowed)?;
+        if duration * rate.max(1.0 / dt) > MOST_STEPS {
+            return Err(check.error(
+                "duration_s",
+                format!(
+                    "{duration} s with dt_ms = {} and output_hz = {rate}",
+                    spec.dt_ms
+                ),
+                format!("at most {MOST_STEPS} steps"),
+            ));
+        }
+        // A whole number of steps in other units is a whole number of steps.
+        let substeps = (1.0 / (rate * dt) - 1e-9).ceil().max(1.0);
+        if substeps > MOST_STEPS {
+            let given = format!("{} beside output_hz = {rate}", spec.dt_ms);
+            return Err(check.error(
+                "dt_ms",
+                given,
+                format!("at most {MOST_STEPS} steps a frame"),
+            ));
+        }
+        Ok(Self {
+            n_frames: Self::frames(duration, rate),
+            n_substeps: substeps as usize,
+        })
+    }
+
+    /// Those of this many seconds.
+    fn frames(duration: f64, rate: f64) -> usize {
+        (duration * rate + 1e-9).floor() as usize + 1
+    }
+}
+
+fn check_names(check: &Check, spec: &SceneSpec) -> Result<()> {
+    if spec.patches.is_empty() {
+        return Err(check.error("patches", "none", "at least one"));
+    }
+    let robots = spec.robots.iter().map(|robot| ("robots", &robot.name));
+    let patches = spec.patches.iter().map(|patch| ("patches", &patch.name));
+    let objects = spec.objects.iter().map(|object| ("objects", &object.name));
+    let mut seen = BTreeSet::new();
+    for (key, name) in robots.chain(patches).chain(objects) {
+        if name.trim().is_empty() {
+            return Err(check.error(key, "an empty name", "a name"));
+        }
+        if !seen.insert(name) {
+            let given = format!("a second thing called `{name}`");
+            let allowed = "each name once over robots, patches and objects";
+            return Err(check.error(key, given, allowed));
+        }
+    }
+    Ok(())
+}
+
+/// When the last imposed motion ends, seconds.
+fn end(robots: &[PlannedRobot], objects: &[PlannedObject]) -> f64 {
+    let objects = objects.iter().map(|object| match &object.movement {
+        Movement::Imposed(motion) => motion.end(),
+        Movement::Free { .. } => 0.0,
+    });
+    let robots = robots.iter().map(PlannedRobot::end);
+    robots.chain(objects).fold(0.0, f64::max)
+}

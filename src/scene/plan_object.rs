@@ -1,0 +1,153 @@
+//! Objects of a scene: what they are made of, and how they move.
+
+use super::reader::{MM, Reader};
+use super::spec::{FreeSpec, ObjectSpec};
+use crate::error::Result;
+use crate::geometry::Pose;
+use crate::objects::{Catalogue, Model, read_spheres};
+use crate::study::{MeshUse, load_mesh, positive};
+use crate::world::{Body, Motion};
+use glam::DVec3;
+
+/// An object whose motion is known, or what it needs to find its own.
+#[derive(Clone, Debug)]
+pub struct PlannedObject {
+    /// Its name in the scene.
+    pub name: String,
+    /// What decides where it is.
+    pub movement: Movement,
+    /// A ball around it, in its own frame, metres.
+    pub(super) ball: (DVec3, f64),
+}
+
+/// What decides where an object is.
+#[derive(Clone, Debug)]
+pub enum Movement {
+    /// It goes where it is told, whatever it meets.
+    Imposed(Motion),
+    /// Gravity and the skins.
+    Free {
+        /// `world_from_object` before it comes to rest.
+        start: Pose,
+        /// Kilograms.
+        mass: f64,
+        /// In its own frame, metres.
+        center_of_mass: DVec3,
+    },
+}
+
+impl Reader<'_> {
+    pub fn object(&self, spec: &ObjectSpec, finest_mm: f64) -> Result<(PlannedObject, Model)> {
+        let key = &format!("objects.{}", spec.name);
+        let model = self.model(key, spec, finest_mm)?;
+        let movement = match (&spec.free, &spec.motion) {
+            (None, motion) => Movement::Imposed(self.motion(key, &spec.at, motion.as_ref())?),
+            (Some(_), Some(_)) => {
+                let allowed = "free or motion, not both";
+                return Err(self
+                    .check
+                    .error(key, "a free object with a motion", allowed));
+            }
+            (Some(free), None) => self.free(key, spec, free, &model)?,
+        };
+        let object = PlannedObject {
+            name: spec.name.clone(),
+            movement,
+            ball: ball(&model),
+        };
+        Ok((object, model))
+    }
+
+    fn model(&self, key: &str, spec: &ObjectSpec, finest_mm: f64) -> Result<Model> {
+        if spec.mesh.is_none() && (spec.model.is_some() || spec.mesh_unit.is_some()) {
+            let given = "model or mesh_unit without mesh";
+            return Err(self
+                .check
+                .error(key, given, "them only beside mesh = \"FILE\""));
+        }
+        let default = || {
+            spec.model
+                .unwrap_or_default()
+                .default_surface_error_mm(finest_mm)
+        };
+        let error_mm = spec.surface_error_mm.unwrap_or_else(default);
+        let error_key = format!("{key}.surface_error_mm");
+        let allowed = "a positive number of millimetres";
+        let surface_error = MM * self.check.value(&error_key, error_mm, positive, allowed)?;
+        match (&spec.object, &spec.spheres, &spec.mesh) {
+            (Some(name), None, None) => {
+                let catalogue = Catalogue::builtin()?;
+                let entry = self.under(&format!("{key}.object"), catalogue.object(name))?;
+                Ok(entry.build(surface_error)?.model)
+            }
+            (None, Some(path), None) => {
+                let key = &format!("{key}.spheres");
+                let (place, file) = self.open(key, path)?;
+                Ok(self.under(key, read_spheres(&place, file))?.into())
+            }
+            (None, None, Some(path)) => {
+                let key = &format!("{key}.mesh");
+                self.open(key, path)?;
+                let wanted = MeshUse {
+                    unit: spec.mesh_unit.unwrap_or_default(),
+                    model: spec.model.unwrap_or_default(),
+                    surface_error,
+                    packings: None,
+                };
+                Ok(self.under(key, load_mesh(&self.path(path), &wanted))?.model)
+            }
+            _ => Err(self.check.error(
+                key,
+                "none, or several, of object, spheres and mesh",
+                "one of them",
+            )),
+        }
+    }
+
+    fn free(
+        &self,
+        key: &str,
+        spec: &ObjectSpec,
+        free: &FreeSpec,
+        model: &Model,
+    ) -> Result<Movement> {
+        if model.spheres().is_none() {
+            let given = "a free object of triangles";
+            let allowed = "model = \"packed\" or \"vertex_spheres\" for a free object";
+            return Err(self.check.error(&format!("{key}.model"), given, allowed));
+        }
+        let mass_key = format!("{key}.free.mass_kg");
+        let Some(mass) = free.mass_kg else {
+            let given = "a free object without mass";
+            return Err(self.check.error(&mass_key, given, "a positive number"));
+        };
+        let center_key = format!("{key}.free.center_of_mass_mm");
+        Ok(Movement::Free {
+            start: self.pose(&format!("{key}.at"), &spec.at)?,
+            mass: self
+                .check
+                .value(&mass_key, mass, positive, "a positive number")?,
+            center_of_mass: match free.center_of_mass_mm {
+                Some(center) => self.vector(&center_key, center, MM)?,
+                None => model.center_of_mass(),
+            },
+        })
+    }
+}
+
+/// A ball around a model: about the middle of its box.
+fn ball(model: &Model) -> (DVec3, f64) {
+    let bounds = model.bounds();
+    let center = bounds.center();
+    let radius = match model {
+        Model::Spheres(union) => {
+            let reach = union
+                .spheres()
+                .iter()
+                .map(|s| s.center.distance(center) + s.radius);
+            reach.fold(0.0, f64::max)
+        }
+        Model::Mesh(_) => 0.5 * bounds.size().length(),
+    };
+    (center, radius)
+}

@@ -1,0 +1,165 @@
+//! Skin of a scene: layouts and taxels, and what carries them.
+
+use super::plan_robot::PlannedRobot;
+use super::reader::{MM, Reader};
+use super::spec::{LayoutSpec, PatchSpec};
+use crate::error::Result;
+use crate::geometry::Pose;
+use crate::random::Seed;
+use crate::study::{not_negative, positive, read_mesh_file};
+use crate::world::{Grid, Layout, Patch, SkinPatch, Taxel, Taxels, nearest_names};
+
+/// A patch and where it is mounted.
+#[derive(Clone, Debug)]
+pub struct PlannedPatch {
+    /// The patch; all its taxels are equal.
+    pub skin: SkinPatch,
+    /// What carries it.
+    pub mount: Mount,
+    /// What each of its taxels is.
+    pub taxel: Taxel,
+}
+
+/// What carries a patch.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Mount {
+    /// Nothing: it stays where it is, `world_from_patch`.
+    World(Pose),
+    /// A robot's link.
+    Link {
+        /// The robot's number.
+        robot: usize,
+        /// The link's number in the robot.
+        link: usize,
+        /// Where it is on the link.
+        link_from_patch: Pose,
+    },
+}
+
+impl PlannedPatch {
+    /// As a grid, if it is a flat one.
+    pub fn grid(&self) -> Option<Patch> {
+        let grid = *self.skin.layout().as_grid()?;
+        Some(Patch {
+            grid,
+            taxel: self.taxel,
+        })
+    }
+}
+
+impl LayoutSpec {
+    /// Between neighbours, mm.
+    pub fn pitch_mm(&self) -> f64 {
+        match *self {
+            Self::Grid { pitch_mm, .. }
+            | Self::Hexagonal { pitch_mm, .. }
+            | Self::Disc { pitch_mm, .. }
+            | Self::Annulus { pitch_mm, .. }
+            | Self::Cylinder { pitch_mm, .. }
+            | Self::SphereCap { pitch_mm, .. }
+            | Self::Draped { pitch_mm, .. } => pitch_mm,
+        }
+    }
+}
+
+impl Reader<'_> {
+    pub fn patch(
+        &self,
+        spec: &PatchSpec,
+        robots: &[PlannedRobot],
+        seed: &Seed,
+    ) -> Result<PlannedPatch> {
+        let key = &format!("patches.{}", spec.name);
+        let above_zero = |name: &str, value: f64| {
+            let key = format!("{key}.{name}");
+            self.check.value(&key, value, positive, "a positive number")
+        };
+        let pitch_mm = above_zero("layout.pitch_mm", spec.layout.pitch_mm())?;
+        let radius_mm = spec.taxel_radius_mm.unwrap_or(0.5 * pitch_mm);
+        let damping = self.check.value(
+            &format!("{key}.damping_n_s_per_m"),
+            spec.damping_n_s_per_m,
+            not_negative,
+            "zero or a positive number",
+        )?;
+        let taxel = Taxel {
+            radius: above_zero("taxel_radius_mm", radius_mm)? * MM,
+            stiffness: above_zero("stiffness_n_per_m", spec.stiffness_n_per_m)?,
+            damping,
+            stroke: above_zero("stroke_mm", spec.stroke_mm)? * MM,
+        };
+        let layout_key = &format!("{key}.layout");
+        let layout = self.layout(layout_key, &spec.layout, &seed.named(&spec.name))?;
+        let skin = SkinPatch::new(&spec.name, layout, Taxels::Equal(taxel));
+        Ok(PlannedPatch {
+            skin: self.under(key, skin)?,
+            mount: self.mount(key, spec, robots)?,
+            taxel,
+        })
+    }
+
+    fn layout(&self, key: &str, spec: &LayoutSpec, seed: &Seed) -> Result<Layout> {
+        let pitch = spec.pitch_mm() * MM;
+        let layout = match *spec {
+            LayoutSpec::Grid { nx, ny, .. } => Layout::grid(&Grid { nx, ny, pitch }),
+            LayoutSpec::Hexagonal { nx, ny, .. } => Layout::hexagonal(nx, ny, pitch),
+            LayoutSpec::Disc { radius_mm, .. } => Layout::disc(radius_mm * MM, pitch),
+            LayoutSpec::Annulus {
+                inner_mm, outer_mm, ..
+            } => Layout::annulus(inner_mm * MM, outer_mm * MM, pitch),
+            LayoutSpec::Cylinder {
+                radius_mm,
+                length_mm,
+                arc_deg,
+                ..
+            } => Layout::cylinder(radius_mm * MM, length_mm * MM, arc_deg.to_radians(), pitch),
+            LayoutSpec::SphereCap {
+                radius_mm,
+                half_angle_deg,
+                ..
+            } => Layout::sphere_cap(radius_mm * MM, half_angle_deg.to_radians(), pitch),
+            LayoutSpec::Draped {
+                ref mesh,
+                mesh_unit,
+                ..
+            } => {
+                let (place, _) = self.open(&format!("{key}.mesh"), mesh)?;
+                let mesh = read_mesh_file(&self.path(mesh), mesh_unit);
+                let mesh = mesh.and_then(|mesh| mesh.into_mesh(&place));
+                Layout::draped(&self.under(key, mesh)?, pitch, seed)
+            }
+        };
+        self.under(key, layout)
+    }
+
+    fn mount(&self, key: &str, spec: &PatchSpec, robots: &[PlannedRobot]) -> Result<Mount> {
+        let at = self.pose(&format!("{key}.at"), &spec.at)?;
+        let Some(name) = &spec.robot else {
+            return match &spec.link {
+                None => Ok(Mount::World(at)),
+                Some(link) => Err(self.check.error(
+                    &format!("{key}.link"),
+                    format!("`{link}` without a robot"),
+                    "robot = \"NAME\" beside it",
+                )),
+            };
+        };
+        let names = robots.iter().map(|robot| robot.name.as_str());
+        let Some(robot) = names.clone().position(|known| known == name) else {
+            let key = format!("{key}.robot");
+            return Err(self
+                .check
+                .error(&key, format!("`{name}`"), nearest_names(name, names)));
+        };
+        let carrier = &robots[robot].robot;
+        let link = match &spec.link {
+            Some(link) => self.under(&format!("{key}.link"), carrier.link(link))?,
+            None => carrier.base(),
+        };
+        Ok(Mount::Link {
+            robot,
+            link,
+            link_from_patch: at,
+        })
+    }
+}

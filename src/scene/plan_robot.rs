@@ -1,0 +1,148 @@
+//! Robots of a scene, their motions checked.
+
+use super::reader::{MM, Reader};
+use super::spec::{JointsSpec, RobotSpec};
+use crate::error::Result;
+use crate::world::{Dimension, JointTrajectory, Motion, Robot, nearest_names};
+use ndarray::Array2;
+
+/// A robot whose motion is known.
+#[derive(Clone, Debug)]
+pub struct PlannedRobot {
+    /// Its name in the scene.
+    pub name: String,
+    /// Its links and joints.
+    pub robot: Robot,
+    /// Where its base is.
+    pub base: Motion,
+    /// Where its joints are; `None` if none of them moves.
+    pub joints: Option<JointTrajectory>,
+}
+
+impl PlannedRobot {
+    /// When it is where it stays, seconds.
+    pub fn end(&self) -> f64 {
+        let joints = self.joints.as_ref().map_or(0.0, JointTrajectory::end);
+        self.base.end().max(joints)
+    }
+}
+
+impl Reader<'_> {
+    pub fn robot(&self, spec: &RobotSpec) -> Result<PlannedRobot> {
+        let key = &format!("robots.{}", spec.name);
+        let robot = match (&spec.urdf, spec.floating) {
+            (None, true) => Robot::floating(&spec.name),
+            (Some(path), false) => {
+                let key = &format!("{key}.urdf");
+                self.open(key, path)?;
+                self.under(key, Robot::read_urdf(&self.path(path)))?
+            }
+            _ => {
+                let allowed = "either urdf = \"FILE\" or floating = true";
+                return Err(self.check.error(key, "both or neither", allowed));
+            }
+        };
+        Ok(PlannedRobot {
+            name: spec.name.clone(),
+            base: self.motion(key, &spec.at, spec.motion.as_ref())?,
+            joints: self.joints(&format!("{key}.joints"), spec.joints.as_ref(), &robot)?,
+            robot,
+        })
+    }
+
+    fn joints(
+        &self,
+        key: &str,
+        joints: Option<&JointsSpec>,
+        robot: &Robot,
+    ) -> Result<Option<JointTrajectory>> {
+        let coordinates = robot.coordinates();
+        let joints = match (joints, coordinates.first()) {
+            (None, None) => return Ok(None),
+            (None, Some(first)) => {
+                let given = format!("nothing, and joint `{}` moves", first.name);
+                let allowed = "a trajectory of every joint that moves";
+                return Err(self.check.error(key, given, allowed));
+            }
+            (Some(_), None) => {
+                let given = "a trajectory of a robot whose joints do not move";
+                return Err(self.check.error(key, given, "no such key"));
+            }
+            (Some(joints), Some(_)) => joints,
+        };
+        let interpolation = joints.interpolation.unwrap_or_default();
+        let is_here = !(joints.time_s.is_empty() && joints.positions.is_empty());
+        let trajectory = match &joints.csv {
+            Some(_) if is_here => {
+                let allowed = "either csv, or time_s and positions";
+                return Err(self.check.error(key, "both", allowed));
+            }
+            Some(path) => {
+                let (place, file) = self.open(&format!("{key}.csv"), path)?;
+                JointTrajectory::read_csv(robot, &place, file, interpolation)
+            }
+            None => {
+                let positions = self.positions(key, joints, robot)?;
+                JointTrajectory::new(robot, joints.time_s.clone(), positions, interpolation)
+            }
+        };
+        self.under(key, trajectory).map(Some)
+    }
+
+    /// A row a way-point, a column a position of the robot; rad and m.
+    fn positions(&self, key: &str, joints: &JointsSpec, robot: &Robot) -> Result<Array2<f64>> {
+        let key = &format!("{key}.positions");
+        let n_times = joints.time_s.len();
+        let mut positions = Array2::zeros((n_times, robot.n_positions()));
+        let mut found = vec![false; robot.n_positions()];
+        for (given, values) in &joints.positions {
+            let names = robot.coordinates().iter().map(|c| c.name.as_str());
+            let place = robot
+                .coordinates()
+                .iter()
+                .enumerate()
+                .find_map(|(column, c)| {
+                    let suffix = given.strip_prefix(&c.name)?;
+                    let mut units = units(c.dimension).into_iter();
+                    let (_, scale) = units.find(|(unit, _)| *unit == suffix)?;
+                    Some((column, scale))
+                });
+            let Some((column, scale)) = place else {
+                let bare = given
+                    .rsplit_once('_')
+                    .map_or(given.as_str(), |(bare, _)| bare);
+                let unit = "with _deg, _rad, _mm or _m";
+                let allowed = format!("{} {unit}", nearest_names(bare, names));
+                return Err(self.check.error(key, format!("`{given}`"), allowed));
+            };
+            if std::mem::replace(&mut found[column], true) {
+                let given = format!("`{given}`, in a second unit");
+                return Err(self.check.error(key, given, "one list a joint"));
+            }
+            if values.len() != n_times {
+                let given = format!("`{given}` with {} numbers", values.len());
+                let allowed = format!("{n_times}, one a time of time_s");
+                return Err(self.check.error(key, given, allowed));
+            }
+            for (row, value) in values.iter().enumerate() {
+                positions[(row, column)] = scale * value;
+            }
+        }
+        match found.iter().position(|found| !found) {
+            Some(missing) => {
+                let given = format!("nothing for `{}`", robot.coordinates()[missing].name);
+                let allowed = "every joint that moves and mimics none";
+                Err(self.check.error(key, given, allowed))
+            }
+            None => Ok(positions),
+        }
+    }
+}
+
+/// What the name of a coordinate ends in, and the size of that unit.
+fn units(dimension: Dimension) -> [(&'static str, f64); 2] {
+    match dimension {
+        Dimension::Angle => [("_rad", 1.0), ("_deg", std::f64::consts::PI / 180.0)],
+        Dimension::Length => [("_m", 1.0), ("_mm", MM)],
+    }
+}

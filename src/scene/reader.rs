@@ -1,0 +1,144 @@
+//! What all parts of a plan need: errors with file and key, poses, motions, files beside the scene's.
+
+use super::spec::{MotionSpec, PoseSpec};
+use crate::error::{Error, Result};
+use crate::geometry::{Pose, rotation_from_rpy};
+use crate::study::{Check, not_negative};
+use crate::world::{Motion, Phase, PoseTrajectory, VelocityPlan};
+use glam::DVec3;
+use std::fs::File;
+use std::io::BufReader;
+use std::path::{Path, PathBuf};
+
+/// Metres in a millimetre.
+pub(super) const MM: f64 = 1e-3;
+
+/// The file that a scene is read from.
+pub(super) struct Reader<'a> {
+    pub check: Check<'a>,
+    /// What its paths are relative to.
+    pub folder: &'a Path,
+}
+
+impl Reader<'_> {
+    /// The same, its error with the file and the key before what it says.
+    pub fn under<T>(&self, key: &str, result: Result<T>) -> Result<T> {
+        result.map_err(|error| match error {
+            Error::Input {
+                place,
+                given,
+                allowed,
+            } => {
+                let place = format!("{}, key {key}: {place}", self.check.place);
+                Error::input(place, given, allowed)
+            }
+            other => other,
+        })
+    }
+
+    /// Where a file of the scene is.
+    pub fn path(&self, path: &Path) -> PathBuf {
+        self.folder.join(path)
+    }
+
+    /// Opens a file of the scene; also its name for errors.
+    pub fn open(&self, key: &str, path: &Path) -> Result<(String, BufReader<File>)> {
+        let path = self.path(path);
+        let place = path.display().to_string();
+        match File::open(&path) {
+            Ok(file) => Ok((place, BufReader::new(file))),
+            Err(error) => {
+                let given = format!("{place}, which cannot be opened ({error})");
+                Err(self
+                    .check
+                    .error(key, given, "a file, its path relative to the scene's"))
+            }
+        }
+    }
+
+    /// Finite numbers in a unit.
+    pub fn vector(&self, key: &str, numbers: [f64; 3], unit: f64) -> Result<DVec3> {
+        for number in numbers {
+            self.check
+                .value(key, number, f64::is_finite, "finite numbers")?;
+        }
+        Ok(unit * DVec3::from_array(numbers))
+    }
+
+    pub fn pose(&self, key: &str, pose: &PoseSpec) -> Result<Pose> {
+        let position = self.vector(&format!("{key}.position_mm"), pose.position_mm, MM)?;
+        let degree = 1f64.to_radians();
+        let rpy = self.vector(&format!("{key}.rpy_deg"), pose.rpy_deg, degree)?;
+        Ok(Pose::new(rotation_from_rpy(rpy), position))
+    }
+
+    /// How what is under `key` moves.
+    pub fn motion(&self, key: &str, at: &PoseSpec, motion: Option<&MotionSpec>) -> Result<Motion> {
+        let start = self.pose(&format!("{key}.at"), at)?;
+        let Some(motion) = motion else {
+            return Ok(Motion::Fixed(start));
+        };
+        let key = &format!("{key}.motion");
+        let has_phases = !motion.phases.is_empty();
+        let has_way_points = !motion.way_points.is_empty();
+        if [has_phases, has_way_points, motion.csv.is_some()]
+            .map(usize::from)
+            .iter()
+            .sum::<usize>()
+            != 1
+        {
+            let allowed = "exactly one of phases, way_points and csv";
+            return Err(self.check.error(key, "none of them, or several", allowed));
+        }
+        if has_phases {
+            if motion.interpolation.is_some() {
+                let given = "interpolation beside phases";
+                return Err(self.check.error(key, given, "it only beside way-points"));
+            }
+            return self.phases(key, start, motion);
+        }
+        if *at != PoseSpec::default() {
+            let given = "way-points beside `at`";
+            let allowed = "one of them: way-points are in the world";
+            return Err(self.check.error(key, given, allowed));
+        }
+        let interpolation = motion.interpolation.unwrap_or_default();
+        let trajectory = match &motion.csv {
+            Some(path) => {
+                let (place, file) = self.open(&format!("{key}.csv"), path)?;
+                PoseTrajectory::read_csv(&place, file, interpolation)
+            }
+            None => {
+                let (mut times, mut poses) = (Vec::new(), Vec::new());
+                for point in &motion.way_points {
+                    times.push(point.time_s);
+                    let pose = PoseSpec {
+                        position_mm: point.position_mm,
+                        rpy_deg: point.rpy_deg,
+                    };
+                    poses.push(self.pose(&format!("{key}.way_points"), &pose)?);
+                }
+                PoseTrajectory::new(times, &poses, interpolation)
+            }
+        };
+        Ok(Motion::WayPoints(self.under(key, trajectory)?))
+    }
+
+    fn phases(&self, key: &str, start: Pose, motion: &MotionSpec) -> Result<Motion> {
+        let key = &format!("{key}.phases");
+        let mut phases = Vec::new();
+        for phase in &motion.phases {
+            let allowed = "zero or a positive number of seconds";
+            phases.push(Phase {
+                duration: self
+                    .check
+                    .value(key, phase.duration_s, not_negative, allowed)?,
+                linear: self.vector(key, phase.linear_mm_per_s, MM)?,
+                angular: self.vector(key, phase.angular_deg_per_s, 1f64.to_radians())?,
+            });
+        }
+        Ok(Motion::Plan(
+            self.under(key, VelocityPlan::new(start, phases))?,
+        ))
+    }
+}

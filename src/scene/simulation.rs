@@ -1,0 +1,177 @@
+//! The loop: one frame after the other, each handed on as soon as it is made.
+
+use super::frame::{Frame, FrameSink, Held, ObjectReading, PatchReading};
+use super::free_objects::FreeObjects;
+use super::plan::ScenePlan;
+use super::plan_object::Movement;
+use super::robot_state::RobotState;
+use super::skin_state::{PlacedObjects, SkinState};
+use crate::contact::Wrench;
+use crate::error::Result;
+use crate::geometry::Pose;
+
+/// Whether to step where nothing is remembered from step to step.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Stepping {
+    /// Frames alone, if no damper and no free object needs the steps between; then, only of patches with dampers.
+    AsNeeded,
+    /// All patches at all steps: the same frames, slower. For tests.
+    Always,
+}
+
+/// A scene on its way.
+#[derive(Clone, Debug)]
+pub struct Simulation<'p> {
+    plan: &'p ScenePlan,
+    stepping: Stepping,
+    robots: Vec<RobotState>,
+    skins: Vec<SkinState>,
+    objects: PlacedObjects,
+    free: FreeObjects,
+    frame: Frame,
+    next_frame: usize,
+    n_steps: usize,
+}
+
+impl<'p> Simulation<'p> {
+    /// A scene before its first frame.
+    pub fn new(plan: &'p ScenePlan, stepping: Stepping) -> Self {
+        let skins = plan.patches.iter();
+        let imposed = ObjectReading {
+            pose: Pose::IDENTITY,
+            held: Held::Imposed,
+        };
+        let frame = Frame {
+            time: 0.0,
+            patches: skins
+                .clone()
+                .map(|patch| untouched(patch.skin.n_taxels()))
+                .collect(),
+            objects: vec![imposed; plan.objects.len()],
+        };
+        Self {
+            stepping,
+            robots: plan.robots.iter().map(RobotState::of).collect(),
+            skins: skins
+                .map(|patch| SkinState::of(patch, &plan.models))
+                .collect(),
+            objects: PlacedObjects {
+                poses: vec![Pose::IDENTITY; plan.objects.len()],
+                balls: plan.objects.iter().map(|object| object.ball).collect(),
+            },
+            free: FreeObjects::of(plan),
+            frame,
+            next_frame: 0,
+            n_steps: 0,
+            plan,
+        }
+    }
+
+    /// Makes all frames that are left, and hands each to all sinks. The error is one of theirs, or of
+    /// [`next_frame`](Self::next_frame).
+    pub fn run(&mut self, sinks: &mut [&mut dyn FrameSink]) -> Result<()> {
+        while let Some(frame) = self.next_frame()? {
+            for sink in sinks.iter_mut() {
+                sink.frame(frame)?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Goes to the next frame; `None` after the last. The error is a pose beyond all numbers.
+    pub fn next_frame(&mut self) -> Result<Option<&Frame>> {
+        let plan = self.plan;
+        if self.next_frame == plan.n_frames {
+            return Ok(None);
+        }
+        let time = plan.time(self.next_frame);
+        if self.next_frame == 0 {
+            // It has stood like this for long.
+            self.go_to(time)?;
+            self.read(f64::INFINITY);
+        } else {
+            let before = plan.time(self.next_frame - 1);
+            let n_steps = self.n_substeps();
+            let dt = 1.0 / (plan.output_rate * n_steps as f64);
+            for step in 1..n_steps {
+                let share = step as f64 / n_steps as f64;
+                self.go_to(before + share * (time - before))?;
+                self.step(dt);
+            }
+            self.go_to(time)?;
+            self.read(dt);
+        }
+        self.next_frame += 1;
+        self.frame.time = time;
+        Ok(Some(&self.frame))
+    }
+
+    /// Steps that were made, frames included.
+    pub fn n_steps(&self) -> usize {
+        self.n_steps
+    }
+
+    /// Steps in which several free objects were not at rest together after [`MOST_ROUNDS`](super::MOST_ROUNDS) rounds.
+    pub fn n_unfinished(&self) -> usize {
+        self.free.n_unfinished
+    }
+
+    fn n_substeps(&self) -> usize {
+        let are_needed = self.stepping == Stepping::Always || self.plan.needs_steps();
+        if are_needed { self.plan.n_substeps } else { 1 }
+    }
+
+    /// Everything goes to where it is at a time.
+    fn go_to(&mut self, time: f64) -> Result<()> {
+        let plan = self.plan;
+        self.n_steps += 1;
+        for (state, robot) in self.robots.iter_mut().zip(&plan.robots) {
+            state.place(robot, time)?;
+        }
+        for (skin, patch) in self.skins.iter_mut().zip(&plan.patches) {
+            skin.place(patch, &self.robots);
+        }
+        for (pose, object) in self.objects.poses.iter_mut().zip(&plan.objects) {
+            if let Movement::Imposed(motion) = &object.movement {
+                *pose = motion.pose_at(time);
+            }
+        }
+        self.free.settle(plan, &self.skins, &mut self.objects, time)
+    }
+
+    /// Patches feel a step of which nobody is told.
+    fn step(&mut self, dt: f64) {
+        let plan = self.plan;
+        for (skin, patch) in self.skins.iter_mut().zip(&plan.patches) {
+            if patch.taxel.damping > 0.0 || self.stepping == Stepping::Always {
+                skin.step(patch, &plan.models, &self.objects, dt);
+            }
+        }
+    }
+
+    /// Patches feel a step, and the frame is made.
+    fn read(&mut self, dt: f64) {
+        let plan = self.plan;
+        let patches = self.skins.iter_mut().zip(&plan.patches);
+        for ((skin, patch), reading) in patches.zip(&mut self.frame.patches) {
+            skin.step_and_read(patch, &plan.models, &self.objects, dt, reading);
+        }
+        for (reading, &pose) in self.frame.objects.iter_mut().zip(&self.objects.poses) {
+            reading.pose = pose;
+        }
+        self.free.read(&mut self.frame.objects);
+    }
+}
+
+fn untouched(n_taxels: usize) -> PatchReading {
+    PatchReading {
+        pose: Pose::IDENTITY,
+        deflection: vec![0.0; n_taxels],
+        force: vec![0.0; n_taxels],
+        n_touched: 0,
+        n_saturated: 0,
+        n_grazing: 0,
+        wrench: Wrench::default(),
+        center_of_pressure: None,
+    }
+}

@@ -1,0 +1,338 @@
+//! A scene as it is written: the keys of its TOML file, in the units of its keys.
+//!
+//! Nothing is checked here beyond names and types; [`ScenePlan`](super::ScenePlan) does that.
+
+use crate::error::{Error, Result};
+use crate::mesh::LengthUnit;
+use crate::study::ModelSpec;
+use crate::world::Interpolation;
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+use std::path::PathBuf;
+
+/// The file. Paths in it are relative to its folder.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct SceneSpec {
+    /// What happens, in a sentence.
+    pub title: String,
+    /// The longest step, ms. The time between two frames is cut into equal steps of at most this; any length is stable.
+    #[serde(default = "one")]
+    pub dt_ms: f64,
+    /// Frames a second of the scene.
+    #[serde(default = "hundred")]
+    pub output_hz: f64,
+    /// How long it lasts; until the last imposed motion ends when left out.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub duration_s: Option<f64>,
+    /// What pulls free objects, in the world.
+    #[serde(default = "earth")]
+    pub gravity_m_per_s2: [f64; 3],
+    /// Root of all randomness: where draped taxels begin.
+    #[serde(default = "seed")]
+    pub seed: u64,
+    /// `[[robots]]`
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub robots: Vec<RobotSpec>,
+    /// `[[patches]]`
+    pub patches: Vec<PatchSpec>,
+    /// `[[objects]]`
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub objects: Vec<ObjectSpec>,
+}
+
+/// `[[robots]]`: what carries patches.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct RobotSpec {
+    /// Its name in this scene.
+    pub name: String,
+    /// Its URDF file.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub urdf: Option<PathBuf>,
+    /// Instead of `urdf`: one link without joints.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub floating: bool,
+    /// Where its base is, or starts.
+    #[serde(default)]
+    pub at: PoseSpec,
+    /// How its base moves; not at all when left out.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub motion: Option<MotionSpec>,
+    /// Where its joints are; needed if it has any that move.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub joints: Option<JointsSpec>,
+}
+
+/// `at = { position_mm = [0.0, 0.0, 50.0], rpy_deg = [180.0, 0.0, 0.0] }`
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct PoseSpec {
+    /// Of the origin.
+    #[serde(default)]
+    pub position_mm: [f64; 3],
+    /// Turns about the fixed axes x, y, z in turn.
+    #[serde(default)]
+    pub rpy_deg: [f64; 3],
+}
+
+/// How a base or an object moves, in one of three ways: phases of constant velocity, way-points, or way-points in a CSV file.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct MotionSpec {
+    /// One after the other, from `at`.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub phases: Vec<PhaseSpec>,
+    /// Poses in the world; `at` is then not given.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub way_points: Vec<WayPointSpec>,
+    /// A file of way-points: see [`PoseTrajectory::read_csv`](crate::world::PoseTrajectory::read_csv).
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub csv: Option<PathBuf>,
+    /// Between way-points.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub interpolation: Option<Interpolation>,
+}
+
+/// `{ duration_s = 1.0, linear_mm_per_s = [0.0, 0.0, -5.0] }`
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct PhaseSpec {
+    /// How long.
+    pub duration_s: f64,
+    /// Of the origin, in the world.
+    #[serde(default)]
+    pub linear_mm_per_s: [f64; 3],
+    /// In the world, about the origin.
+    #[serde(default)]
+    pub angular_deg_per_s: [f64; 3],
+}
+
+/// `{ time_s = 0.5, position_mm = [0.0, 0.0, 20.0] }`
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct WayPointSpec {
+    /// When.
+    pub time_s: f64,
+    /// Of the origin, in the world.
+    #[serde(default)]
+    pub position_mm: [f64; 3],
+    /// Turns about the fixed axes x, y, z in turn.
+    #[serde(default)]
+    pub rpy_deg: [f64; 3],
+}
+
+/// Way-points of a robot's joints, here or in a CSV file.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct JointsSpec {
+    /// A file of way-points: see [`JointTrajectory::read_csv`](crate::world::JointTrajectory::read_csv).
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub csv: Option<PathBuf>,
+    /// Between way-points.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub interpolation: Option<Interpolation>,
+    /// Times of the way-points.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub time_s: Vec<f64>,
+    /// One number a time for each joint that moves and mimics none, under its name and its unit: `elbow_deg`, `elbow_rad`,
+    /// `slide_mm` or `slide_m`.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub positions: BTreeMap<String, Vec<f64>>,
+}
+
+/// `[[patches]]`: skin.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct PatchSpec {
+    /// Its name in this scene.
+    pub name: String,
+    /// The robot that carries it; the world when left out.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub robot: Option<String>,
+    /// The robot's link that carries it; its base when left out.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub link: Option<String>,
+    /// Where it is on the link, or in the world.
+    #[serde(default)]
+    pub at: PoseSpec,
+    /// Where its taxels are.
+    pub layout: LayoutSpec,
+    /// ρ; half the pitch when left out.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub taxel_radius_mm: Option<f64>,
+    /// s.
+    pub stroke_mm: f64,
+    /// k.
+    #[serde(default = "hundred")]
+    pub stiffness_n_per_m: f64,
+    /// c.
+    #[serde(default)]
+    pub damping_n_s_per_m: f64,
+}
+
+/// `layout = { grid = { nx = 64, ny = 64, pitch_mm = 2.0 } }`: see [`Layout`](crate::world::Layout).
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case", deny_unknown_fields)]
+pub enum LayoutSpec {
+    /// A rectangle of square cells.
+    Grid {
+        /// Columns, along patch x.
+        nx: usize,
+        /// Rows, along patch y.
+        ny: usize,
+        /// Between neighbours.
+        pitch_mm: f64,
+    },
+    /// A rectangle of staggered rows.
+    Hexagonal {
+        /// Taxels a row, along patch x.
+        nx: usize,
+        /// Rows, along patch y.
+        ny: usize,
+        /// Between neighbours.
+        pitch_mm: f64,
+    },
+    /// Round.
+    Disc {
+        /// Of the disc.
+        radius_mm: f64,
+        /// Between neighbours.
+        pitch_mm: f64,
+    },
+    /// A ring.
+    Annulus {
+        /// Inner radius.
+        inner_mm: f64,
+        /// Outer radius.
+        outer_mm: f64,
+        /// Between neighbours.
+        pitch_mm: f64,
+    },
+    /// Around a forearm or finger.
+    Cylinder {
+        /// Of the cylinder.
+        radius_mm: f64,
+        /// Along its axis.
+        length_mm: f64,
+        /// How far around.
+        arc_deg: f64,
+        /// Between neighbours.
+        pitch_mm: f64,
+    },
+    /// On a fingertip.
+    SphereCap {
+        /// Of the sphere.
+        radius_mm: f64,
+        /// From the pole to the rim.
+        half_angle_deg: f64,
+        /// Between neighbours.
+        pitch_mm: f64,
+    },
+    /// Over a triangle mesh.
+    Draped {
+        /// Its file.
+        mesh: PathBuf,
+        /// Unit of the file's numbers; metres when left out.
+        #[serde(default)]
+        mesh_unit: LengthUnit,
+        /// Between neighbours.
+        pitch_mm: f64,
+    },
+}
+
+/// `[[objects]]`: what is touched.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ObjectSpec {
+    /// Its name in this scene.
+    pub name: String,
+    /// A built-in object (`bubbletouch objects` lists them).
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub object: Option<String>,
+    /// Instead: a CSV file of spheres, columns x, y, z, r in metres.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub spheres: Option<PathBuf>,
+    /// Instead: a PLY, OBJ or STL file.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub mesh: Option<PathBuf>,
+    /// What a mesh becomes; spheres around its vertices when left out.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub model: Option<ModelSpec>,
+    /// Unit of a mesh's numbers; metres when left out.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub mesh_unit: Option<LengthUnit>,
+    /// How far spheres may be from a solid's or packed mesh's surface; 0.25, or packed a tenth of the finest pitch, when left out.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub surface_error_mm: Option<f64>,
+    /// Where it is, or starts.
+    #[serde(default)]
+    pub at: PoseSpec,
+    /// How it moves, whatever touches it; not at all when left out.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub motion: Option<MotionSpec>,
+    /// Instead of `motion`: only gravity and skins hold it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub free: Option<FreeSpec>,
+}
+
+/// `free = { mass_kg = 0.2 }`
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct FreeSpec {
+    /// What it weighs.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub mass_kg: Option<f64>,
+    /// In its own frame; that of a homogeneous solid when left out.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub center_of_mass_mm: Option<[f64; 3]>,
+}
+
+impl SceneSpec {
+    /// Reads a scene; the error names the file, the line and the key.
+    pub fn parse(place: &str, text: &str) -> Result<Self> {
+        toml::from_str(text).map_err(|error| Error::toml(place, text, &error))
+    }
+
+    /// Writes the scene with its defaults spelt out.
+    pub fn to_toml(&self) -> String {
+        toml::to_string(self).expect("every field of a scene has a TOML form")
+    }
+
+    /// Every path in it, to be rewritten.
+    pub(super) fn paths_mut(&mut self) -> impl Iterator<Item = &mut PathBuf> {
+        let robots = self.robots.iter_mut().flat_map(|robot| {
+            let motion = robot.motion.as_mut().and_then(|m| m.csv.as_mut());
+            let joints = robot.joints.as_mut().and_then(|j| j.csv.as_mut());
+            [robot.urdf.as_mut(), motion, joints]
+        });
+        let patches = self
+            .patches
+            .iter_mut()
+            .map(|patch| match &mut patch.layout {
+                LayoutSpec::Draped { mesh, .. } => Some(mesh),
+                _ => None,
+            });
+        let objects = self.objects.iter_mut().flat_map(|object| {
+            let motion = object.motion.as_mut().and_then(|m| m.csv.as_mut());
+            [object.spheres.as_mut(), object.mesh.as_mut(), motion]
+        });
+        robots.chain(patches).chain(objects).flatten()
+    }
+}
+
+fn one() -> f64 {
+    1.0
+}
+
+fn hundred() -> f64 {
+    100.0
+}
+
+fn earth() -> [f64; 3] {
+    [0.0, 0.0, -9.81]
+}
+
+fn seed() -> u64 {
+    2018
+}

@@ -1,0 +1,56 @@
+//! What came of a scene: its largest numbers, frame by frame.
+
+use super::frame::{Frame, FrameSink, Held};
+use crate::error::Result;
+
+/// The most that a patch felt in any frame.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct PatchPeaks {
+    /// Metres.
+    pub deflection: f64,
+    /// Along the axes, of all taxels together, newtons.
+    pub force: f64,
+    /// Taxels with a force.
+    pub n_touched: usize,
+    /// Taxels at their stroke.
+    pub n_saturated: usize,
+    /// Taxels in grazing contact.
+    pub n_grazing: usize,
+}
+
+/// Peaks so far; a sink that keeps no frames.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Summary {
+    /// Frames seen.
+    pub n_frames: usize,
+    /// One a patch, in the plan's order.
+    pub patches: Vec<PatchPeaks>,
+    /// What holds each object in the last frame, in the plan's order.
+    pub objects: Vec<Held>,
+    /// Frames in which each object was unsettled.
+    pub n_unsettled: Vec<usize>,
+}
+
+impl FrameSink for Summary {
+    fn frame(&mut self, frame: &Frame) -> Result<()> {
+        self.n_frames += 1;
+        self.patches
+            .resize(frame.patches.len(), PatchPeaks::default());
+        for (peaks, patch) in self.patches.iter_mut().zip(&frame.patches) {
+            let deepest = patch.deflection.iter().copied().fold(0.0, f64::max);
+            peaks.deflection = peaks.deflection.max(deepest);
+            peaks.force = peaks.force.max(patch.force.iter().sum());
+            peaks.n_touched = peaks.n_touched.max(patch.n_touched);
+            peaks.n_saturated = peaks.n_saturated.max(patch.n_saturated);
+            peaks.n_grazing = peaks.n_grazing.max(patch.n_grazing);
+        }
+        self.objects.clear();
+        self.objects
+            .extend(frame.objects.iter().map(|object| object.held));
+        self.n_unsettled.resize(frame.objects.len(), 0);
+        for (count, object) in self.n_unsettled.iter_mut().zip(&frame.objects) {
+            *count += usize::from(object.held == Held::Unsettled);
+        }
+        Ok(())
+    }
+}
