@@ -289,32 +289,41 @@ fn a_mug_on_a_bed_is_where_the_balance_of_one_object_puts_it_and_rises_with_the_
     assert!((rise - 0.02).abs() < 1e-6, "{rise}");
 }
 
-#[test]
-fn two_free_balls_that_share_taxels_are_carried_together() {
-    let plan = parse(
+/// A tennis ball at x = ±`apart` on a bed, each with a line of its own.
+fn two_balls(apart: f64, one: &str, other: &str) -> ScenePlan {
+    parse(&format!(
         r#"
-        title = "Two balls nearly touch on a bed"
+        title = "Two balls on a bed"
         duration_s = 0.0
 
         [[patches]]
         name = "bed"
-        layout = { grid = { nx = 40, ny = 20, pitch_mm = 4.0 } }
-        taxel_radius_mm = 6.0
+        layout = {{ grid = {{ nx = 40, ny = 20, pitch_mm = 4.0 }} }}
         stroke_mm = 8.0
         stiffness_n_per_m = 20.0
 
         [[objects]]
         name = "one"
         object = "tennis"
-        at = { position_mm = [-21.0, 0.0, 1.0] }
-        free = { mass_kg = 0.058 }
+        at = {{ position_mm = [{}, 0.0, -3.0] }}
+        {one}
 
         [[objects]]
         name = "other"
         object = "tennis"
-        at = { position_mm = [21.0, 0.0, 1.0] }
-        free = { mass_kg = 0.2 }
+        at = {{ position_mm = [{apart}, 0.0, -3.0] }}
+        {other}
         "#,
+        -apart
+    ))
+}
+
+#[test]
+fn two_free_balls_are_carried_side_by_side() {
+    let plan = two_balls(
+        40.0,
+        "free = { mass_kg = 0.058 }",
+        "free = { mass_kg = 0.2 }",
     );
     let mut simulation = Simulation::new(&plan, Stepping::AsNeeded);
     let frame = simulation.next_frame().unwrap().unwrap().clone();
@@ -327,6 +336,43 @@ fn two_free_balls_that_share_taxels_are_carried_together() {
     let force = frame.patches[0].wrench.force.z;
     assert!((force + 0.258 * 9.81).abs() < 1e-4, "{force} N");
     assert_eq!(simulation.n_unfinished(), 0);
+}
+
+#[test]
+fn a_free_ball_comes_to_rest_in_the_hollow_that_an_imposed_one_makes() {
+    let plan = two_balls(10.0, "", "free = { mass_kg = 0.058 }");
+    let mut simulation = Simulation::new(&plan, Stepping::AsNeeded);
+    let frame = simulation.next_frame().unwrap().unwrap().clone();
+    let Movement::Free {
+        start,
+        mass,
+        center_of_mass,
+    } = plan.objects[1].movement
+    else {
+        panic!("the other ball is free")
+    };
+    let skin = &plan.patches[0].skin;
+    let mut workspace = SkinWorkspace::new();
+    press_skin(
+        skin,
+        &plan.models[..1],
+        &[frame.objects[0].pose],
+        &mut workspace,
+    );
+    let ball = plan.models[1].spheres().unwrap();
+    let ball = FreeObject::new(ball, mass, center_of_mass).unwrap();
+    let settled = |pushed| {
+        let skin = PlacedSkin {
+            patch: skin,
+            world_from_patch: Pose::IDENTITY,
+            pushed,
+        };
+        let balance = Balancer::new().settle(&ball, &[skin], plan.gravity, &start);
+        balance.unwrap().pose
+    };
+    assert_eq!(frame.objects[1].pose, settled(workspace.deflections()));
+    let alone = settled(&[]).translation;
+    assert!(frame.objects[1].pose.translation.distance(alone) > 1e-3);
 }
 
 #[test]

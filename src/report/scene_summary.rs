@@ -1,7 +1,8 @@
 //! What came of a scene, as tables for people.
 
 use super::axis::short_number;
-use crate::scene::{Held, ScenePlan, Summary};
+use crate::scene::{Held, Movement, ScenePlan, Summary};
+use crate::world::Motion;
 use comfy_table::{CellAlignment, Table, presets::NOTHING};
 
 /// One table of patches with their peaks over all frames, one of objects with what holds them at the end.
@@ -46,10 +47,11 @@ fn objects(plan: &ScenePlan, summary: &Summary) -> Table {
     let ends = summary.objects.iter().zip(&summary.n_unsettled);
     for ((object, model), (held, n_unsettled)) in all.zip(ends) {
         let parts = match model.spheres() {
+            Some(union) if union.n_spheres() == 1 => "1 sphere".to_owned(),
             Some(union) => format!("{} spheres", union.n_spheres()),
             None => format!("{} triangles", model.n_triangles()),
         };
-        let mut end = ending(held);
+        let mut end = ending(&object.movement, held);
         if *n_unsettled > 0 {
             end += &format!("; not at rest in {n_unsettled} frames");
         }
@@ -59,9 +61,12 @@ fn objects(plan: &ScenePlan, summary: &Summary) -> Table {
 }
 
 /// What holds an object, in words.
-fn ending(held: &Held) -> String {
+fn ending(movement: &Movement, held: &Held) -> String {
     match held {
-        Held::Imposed => "where its motion says".to_owned(),
+        Held::Imposed => match movement {
+            Movement::Imposed(Motion::Fixed(_)) => "fixed".to_owned(),
+            _ => "where its motion says".to_owned(),
+        },
         Held::AtRest => "at rest".to_owned(),
         Held::Unsettled => "not at rest".to_owned(),
         Held::Escaped { time, direction } => {

@@ -14,8 +14,9 @@
 //! A scene begins as if it had stood as it does at t = 0 for long. One without dampers and free objects remembers nothing,
 //! so it is evaluated at its frames only, with the same result.
 //!
-//! What is not modelled: objects do not touch each other, only skin; free objects neither swing nor bounce (\[BT\] is
-//! quasi-static); an object that has escaped touches nothing any more.
+//! What is not modelled: objects do not touch each other, only skin (two free ones that share taxels slide into one another,
+//! and what they share is then not carried for both); free objects neither swing nor bounce (\[BT\] is quasi-static); an
+//! object that has escaped touches nothing any more.
 //!
 //! ```
 //! use bubbletouch::scene::{ScenePlan, SceneSpec, Simulation, Stepping};

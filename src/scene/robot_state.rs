@@ -3,7 +3,6 @@
 use super::plan_robot::PlannedRobot;
 use crate::error::Result;
 use crate::geometry::Pose;
-use crate::world::JointTrajectory;
 
 /// The links of a robot at one time.
 #[derive(Clone, Debug)]
@@ -23,8 +22,7 @@ impl RobotState {
 
     /// Goes to where it is at a time.
     pub fn place(&mut self, robot: &PlannedRobot, time: f64) -> Result<()> {
-        let joints: Option<&JointTrajectory> = robot.joints.as_ref();
-        if let Some(joints) = joints {
+        if let Some(joints) = &robot.joints {
             joints.positions_into(time, &mut self.positions);
         }
         let base = robot.base.pose_at(time);

@@ -139,9 +139,10 @@ impl SkinState {
             .count();
         reading.n_saturated = self.counts.n_saturated;
         reading.n_grazing = self.counts.n_grazing;
-        let contacts = match self.is_idle || self.counts.n_touched == 0 {
-            true => &[],
-            false => self.workspace.contacts(),
+        // Out of reach, the workspace still has what touched it last.
+        let contacts = match self.counts.n_touched {
+            0 => &[],
+            _ => self.workspace.contacts(),
         };
         let (wrench, center) = load(&patch.skin, contacts, &self.damper.force);
         reading.wrench = wrench;
