@@ -59,6 +59,7 @@ mod robot_state;
 mod simulation;
 mod skin_state;
 mod spec;
+mod spec_patch;
 mod summary;
 
 pub use frame::{Frame, FrameSink, Held, ObjectReading, PatchReading};
