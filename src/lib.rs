@@ -89,7 +89,7 @@
 //! | [`objects`] | a shape, a mesh, or spheres → a model: spheres or triangles |
 //! | [`packing`] | a mesh and a tolerance → few spheres |
 //! | [`world`] | taxels, layouts, resting poses → touches; robots and their motion → poses |
-//! | [`contact`] | a scene and poses → deflections |
+//! | [`contact`] | a scene and poses → deflections; free objects → poses at rest |
 //! | [`signal`] | deflections → frames |
 //! | [`sensing`] | frames → measurements, and back |
 //! | [`recognition`] | labelled measurements → classifier, scores |
