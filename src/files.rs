@@ -1,6 +1,7 @@
 //! Files that are whole or not there: written beside their name, then renamed.
 
 use crate::error::{Error, Result};
+use serde::Serialize;
 use std::fs::{self, File};
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
@@ -69,6 +70,41 @@ impl Drop for WholeFile {
             // It is ours alone; that it cannot be removed changes nothing in what is reported.
             let _ = fs::remove_file(partial);
         }
+    }
+}
+
+/// A CSV file that grows row by row, in bounded memory; the header is that of the first row's fields.
+#[derive(Debug)]
+pub struct CsvFile {
+    file: WholeFile,
+    has_header: bool,
+}
+
+impl CsvFile {
+    /// Starts a table that will stand at `path`.
+    pub fn create(path: &Path) -> Result<Self> {
+        Ok(Self {
+            file: WholeFile::create(path)?,
+            has_header: false,
+        })
+    }
+
+    /// Adds a row: a struct with one field a column.
+    pub fn row(&mut self, row: impl Serialize) -> Result<()> {
+        let is_first = !std::mem::replace(&mut self.has_header, true);
+        // Through a buffer of its own: flushing the CSV writer would flush the file with every row.
+        let mut csv = csv::WriterBuilder::new()
+            .has_headers(is_first)
+            .from_writer(Vec::new());
+        self.file.write(|writer| {
+            csv.serialize(row).map_err(io::Error::other)?;
+            writer.write_all(&csv.into_inner().map_err(|e| e.into_error())?)
+        })
+    }
+
+    /// Makes it durable and puts it in place.
+    pub fn commit(self) -> Result<()> {
+        self.file.commit()
     }
 }
 

@@ -8,6 +8,7 @@ mod objects_show;
 mod output;
 mod plan;
 mod press;
+mod recording;
 mod run;
 mod run_object_detail;
 mod run_reconstruction;
@@ -42,6 +43,8 @@ enum Command {
     Classify(classify::Args),
     /// Press one object on one array and write or draw the deflections
     Press(press::Args),
+    /// Say what is in a recording, or draw it, still or moving
+    Recording(recording::Args),
     /// List the built-in objects, or draw one
     Objects(objects::Args),
 }
@@ -56,6 +59,7 @@ pub fn dispatch() -> Result<()> {
         Some(Command::Features(args)) => features::features(&args),
         Some(Command::Classify(args)) => classify::classify(&args),
         Some(Command::Press(args)) => press::press(&args),
+        Some(Command::Recording(args)) => recording::recording(&args),
         Some(Command::Objects(args)) => objects::objects(&args),
     }
 }

@@ -6,6 +6,7 @@
 
 use crate::error::Result;
 use crate::report::colours::{INK, PAPER, Rgb};
+use crate::report::picture::Picture;
 use crate::report::raster::rasterise;
 use kuva::backend::svg::SvgBackend;
 use kuva::render::color::Color;
@@ -256,6 +257,11 @@ impl Drawing {
 
     /// The drawing as a PNG file with two picture elements a pixel.
     pub fn png(&self) -> Result<Vec<u8>> {
+        self.picture()?.png()
+    }
+
+    /// The drawing as pixels, two a pixel of its own each way.
+    pub fn picture(&self) -> Result<Picture> {
         rasterise(&self.scene)
     }
 }

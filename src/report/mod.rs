@@ -5,7 +5,8 @@
 //! one self-contained HTML page. Equal input gives equal bytes; every file is whole or not there.
 //!
 //! [`results::write_all`] writes a study's folder; [`terminal::summary_table`] is what a run prints at its end;
-//! [`frame_files::write_frame`] and [`pressure_map`] show a single frame.
+//! [`frame_files::write_frame`] and [`pressure_map`] show a single frame; [`recording`] streams frames over time to a file and
+//! draws them, also moving.
 
 pub mod answer;
 pub mod axis;
@@ -40,6 +41,7 @@ pub mod reconstruction_frames;
 mod reconstruction_rates;
 pub mod reconstruction_results;
 pub mod reconstruction_text;
+pub mod recording;
 pub mod results;
 mod shaded_view;
 mod signal_axis;

@@ -145,7 +145,7 @@ impl Picture {
 }
 
 /// The longest of 1, 2, 5, 10, … that fits.
-fn bar_length(largest: f64) -> f64 {
+pub(super) fn bar_length(largest: f64) -> f64 {
     let power = 10f64.powf(largest.log10().floor());
     let steps = [5.0, 2.0, 1.0].map(|step| step * power);
     steps.into_iter().find(|&s| s <= largest).unwrap_or(power)

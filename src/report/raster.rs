@@ -1,5 +1,6 @@
-//! A scene as a PNG file.
+//! A scene as pixels.
 
+use super::picture::Picture;
 use crate::error::{Error, Result};
 use kuva::render::render::{Primitive, Scene};
 
@@ -7,7 +8,7 @@ use kuva::render::render::{Primitive, Scene};
 ///
 /// kuva draws turned text and slanted lines jagged, so it draws at twice that size and each element becomes the mean of
 /// four.
-pub(super) fn rasterise(scene: &Scene) -> Result<Vec<u8>> {
+pub(super) fn rasterise(scene: &Scene) -> Result<Picture> {
     const SCALE: u32 = 4;
     let mut large = Scene::new(scene.width, scene.height);
     let elements = scene.elements.iter().cloned();
@@ -45,8 +46,8 @@ fn unfit(said: &dyn std::fmt::Display) -> Error {
     Error::input("picture", said, "a size that fits into a PNG file")
 }
 
-/// A PNG of half the size (rounded down), each element the mean of four; opaque.
-fn halve_png(large: &[u8]) -> std::result::Result<Vec<u8>, Box<dyn std::error::Error>> {
+/// A PNG's picture at half the size (rounded down), each element the mean of four; opaque.
+fn halve_png(large: &[u8]) -> std::result::Result<Picture, Box<dyn std::error::Error>> {
     let mut reader = png::Decoder::new(std::io::Cursor::new(large)).read_info()?;
     let mut elements = vec![0; reader.output_buffer_size().ok_or("too large a picture")?];
     let info = reader.next_frame(&mut elements)?;
@@ -66,9 +67,9 @@ fn halve_png(large: &[u8]) -> std::result::Result<Vec<u8>, Box<dyn std::error::E
             }
         }
     }
-    let mut bytes = Vec::new();
-    let mut encoder = png::Encoder::new(&mut bytes, width as u32, height as u32);
-    encoder.set_color(png::ColorType::Rgb);
-    encoder.write_header()?.write_image_data(&small)?;
-    Ok(bytes)
+    Ok(Picture {
+        width,
+        height,
+        rgb: small,
+    })
 }

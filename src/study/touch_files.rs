@@ -14,7 +14,7 @@ use super::runner::describe;
 use super::simulation::touch_stream;
 use crate::contact::{Workspace, press_to_depth};
 use crate::error::Result;
-use crate::files::WholeFile;
+use crate::files::{CsvFile, WholeFile};
 use crate::objects::Object;
 use crate::random::Seed;
 use crate::world::{Patch, Placement, RestPose, Scene, Touch, TouchSource};
@@ -84,7 +84,7 @@ pub fn write_touches(
     let n_touches = sources.iter().map(TouchSource::n_touches).sum();
     progress.stage(&format!("touch {}", describe(patch)), n_touches as u64);
     let mut files = TouchFiles::create(folder, n_touches, patch)?;
-    let mut table = Table::create(&folder.join("objects.csv"))?;
+    let mut table = CsvFile::create(&folder.join("objects.csv"))?;
     for (label, ((object, rests), source)) in objects.iter().zip(&rests).zip(&sources).enumerate() {
         table.row(ObjectRow {
             label,
@@ -134,7 +134,7 @@ struct TouchFiles {
     labels: WholeFile,
     poses: WholeFile,
     depths: WholeFile,
-    table: Table,
+    table: CsvFile,
     n_written: usize,
 }
 
@@ -146,7 +146,7 @@ impl TouchFiles {
             labels: start_npy::<i64>(&folder.join("labels.npy"), &[n])?,
             poses: start_npy::<f64>(&folder.join("poses.npy"), &[n, 7])?,
             depths: start_npy::<f64>(&folder.join("depths.npy"), &[n])?,
-            table: Table::create(&folder.join("touches.csv"))?,
+            table: CsvFile::create(&folder.join("touches.csv"))?,
             n_written: 0,
         })
     }
@@ -197,35 +197,4 @@ fn start_npy<A: WritableElement>(path: &Path, shape: &[usize]) -> Result<WholeFi
         writer.seek(SeekFrom::End(-(n_bytes as i64))).map(|_| ())
     })?;
     Ok(file)
-}
-
-/// A CSV file that grows row by row.
-struct Table {
-    file: WholeFile,
-    has_header: bool,
-}
-
-impl Table {
-    fn create(path: &Path) -> Result<Self> {
-        Ok(Self {
-            file: WholeFile::create(path)?,
-            has_header: false,
-        })
-    }
-
-    fn row(&mut self, row: impl Serialize) -> Result<()> {
-        let is_first = !std::mem::replace(&mut self.has_header, true);
-        // Through a buffer of its own: flushing the CSV writer would flush the file with every row.
-        let mut csv = csv::WriterBuilder::new()
-            .has_headers(is_first)
-            .from_writer(Vec::new());
-        self.file.write(|writer| {
-            csv.serialize(row).map_err(io::Error::other)?;
-            writer.write_all(&csv.into_inner().map_err(|e| e.into_error())?)
-        })
-    }
-
-    fn commit(self) -> Result<()> {
-        self.file.commit()
-    }
 }

@@ -1,4 +1,6 @@
-//! Counts this thread's allocations: the test harness's own threads do not count.
+//! Counts this thread's allocations and bytes: the test harness's own threads do not count.
+// Each test file uses its part of this.
+#![allow(dead_code)]
 
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
@@ -7,15 +9,24 @@ struct Counting;
 
 thread_local! {
     static COUNT: Cell<usize> = const { Cell::new(0) };
+    static LIVE: Cell<usize> = const { Cell::new(0) };
+    static PEAK: Cell<usize> = const { Cell::new(0) };
 }
 
 unsafe impl GlobalAlloc for Counting {
     unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
         COUNT.with(|count| count.set(count.get() + 1));
+        // What another thread gave may be freed here, and the other way round: the number wraps, the difference is right.
+        let live = LIVE.with(|live| {
+            live.set(live.get().wrapping_add(layout.size()));
+            live.get()
+        });
+        PEAK.with(|peak| peak.set(peak.get().max(live)));
         unsafe { System.alloc(layout) }
     }
 
     unsafe fn dealloc(&self, pointer: *mut u8, layout: Layout) {
+        LIVE.with(|live| live.set(live.get().wrapping_sub(layout.size())));
         unsafe { System.dealloc(pointer, layout) }
     }
 }
@@ -28,4 +39,12 @@ pub fn allocations(work: impl FnOnce()) -> usize {
     let before = COUNT.with(Cell::get);
     work();
     COUNT.with(Cell::get) - before
+}
+
+/// How many bytes more than before `work` holds at once, at most.
+pub fn peak_bytes(work: impl FnOnce()) -> usize {
+    let before = LIVE.with(Cell::get);
+    PEAK.with(|peak| peak.set(before));
+    work();
+    PEAK.with(Cell::get).wrapping_sub(before)
 }

@@ -1,0 +1,136 @@
+//! `bubbletouch recording`: what a file of frames over time holds, as a table, a picture or an animation.
+
+use super::output::{check_ending, terminal_width};
+use bubbletouch::files::write_bytes;
+use bubbletouch::report::heat_map::ColourScale;
+use bubbletouch::report::pressure_map::pressure_text;
+use bubbletouch::report::recording::animation::{Playback, frame_note, write_animation};
+use bubbletouch::report::recording::skin_picture::SkinPicture;
+use bubbletouch::report::recording::{RecordingFile, recording_table};
+use bubbletouch::report::terminal::Ink;
+use bubbletouch::signal::Quantity;
+use bubbletouch::{Error, Result};
+use ndarray::Array2;
+use std::path::{Path, PathBuf};
+
+/// Show a recording (.npz).
+///
+/// Without options: its frames, patches and objects, and what each patch felt at most.
+#[derive(clap::Args)]
+pub struct Args {
+    /// A recording as bubbletouch writes it
+    file: PathBuf,
+    /// Which patch to draw; needed if there are several
+    #[arg(long, value_name = "NAME")]
+    patch: Option<String>,
+    /// What to draw: deflection or force
+    #[arg(long, value_name = "WHAT", default_value = "deflection", value_parser = parse_quantity)]
+    quantity: Quantity,
+    /// Draw this frame, counted from 0: to --out, or here if the patch is a grid
+    #[arg(long, value_name = "K", conflicts_with = "animate")]
+    frame: Option<usize>,
+    /// Where to write the picture of --frame
+    #[arg(long, value_name = "FILE.png", requires = "frame")]
+    out: Option<PathBuf>,
+    /// Write an animated PNG, which browsers play; at most 600 of its frames, evenly in time
+    #[arg(long, value_name = "FILE.png")]
+    animate: Option<PathBuf>,
+    /// Pictures in a second of the animation, at most (up to 50)
+    #[arg(long, value_name = "N", default_value_t = Playback::default().fps, requires = "animate")]
+    fps: f64,
+    /// Seconds of the recording in a second of the animation: 0.1 is ten times slower than it was
+    #[arg(long, value_name = "X", default_value_t = Playback::default().speed, requires = "animate")]
+    speed: f64,
+}
+
+fn parse_quantity(text: &str) -> std::result::Result<Quantity, String> {
+    match text {
+        "deflection" => Ok(Quantity::Deflection),
+        "force" => Ok(Quantity::Force),
+        _ => Err("expected deflection or force".to_owned()),
+    }
+}
+
+pub fn recording(args: &Args) -> Result<()> {
+    let pictures = [&args.out, &args.animate];
+    for path in pictures.into_iter().flatten() {
+        check_ending(path, "png")?;
+    }
+    let mut file = RecordingFile::open(&args.file)?;
+    match (args.frame, &args.animate) {
+        (Some(frame), _) => draw_frame(args, &mut file, frame),
+        (None, Some(path)) => animate(args, &mut file, path),
+        (None, None) => {
+            print!("{}", recording_table(&mut file)?);
+            Ok(())
+        }
+    }
+}
+
+/// The number of the patch to draw.
+fn chosen_patch(args: &Args, file: &RecordingFile) -> Result<usize> {
+    let patches = &file.header().patches;
+    match &args.patch {
+        Some(name) => file.patch(name),
+        None if patches.len() == 1 => Ok(0),
+        None => {
+            let names: Vec<&str> = patches.iter().map(|patch| &patch.name[..]).collect();
+            Err(Error::input(
+                args.file.display(),
+                format!("{} patches", patches.len()),
+                format!("--patch NAME, one of {}", names.join(", ")),
+            ))
+        }
+    }
+}
+
+fn draw_frame(args: &Args, file: &mut RecordingFile, frame: usize) -> Result<()> {
+    let number = chosen_patch(args, file)?;
+    let values = file.frame(number, args.quantity, frame)?;
+    let patch = &file.header().patches[number];
+    let note = frame_note(file.time(), frame);
+    match (&args.out, patch.grid) {
+        (Some(path), _) => {
+            let scale = ColourScale::over_values(&values, args.quantity);
+            let skin = SkinPicture::new(patch, args.quantity, scale)?;
+            write_bytes(path, &skin.frame(&values, &note)?.png()?)?;
+        }
+        (None, Some(grid)) => {
+            let frame = Array2::from_shape_vec((grid.ny, grid.nx), values)
+                .expect("a grid has one value a taxel");
+            let (pitch_mm, ink) = (grid.pitch * 1e3, Ink::of_stdout());
+            let text = pressure_text(&frame, pitch_mm, args.quantity, ink, terminal_width())?;
+            print!("{text}");
+        }
+        (None, None) => {
+            return Err(Error::input(
+                "--frame",
+                format!(
+                    "patch {} is no grid, which the terminal could show",
+                    patch.name
+                ),
+                "--out FILE.png beside it",
+            ));
+        }
+    }
+    eprintln!("{}: {note}", patch.name);
+    Ok(())
+}
+
+fn animate(args: &Args, file: &mut RecordingFile, path: &Path) -> Result<()> {
+    let patch = chosen_patch(args, file)?;
+    let playback = Playback {
+        speed: args.speed,
+        fps: args.fps,
+    };
+    let shown = write_animation(path, file, patch, args.quantity, &playback)?;
+    let milliseconds: u64 = shown.iter().map(|frame| frame.milliseconds).sum();
+    eprintln!(
+        "{} of {} frames in {:.1} s, at {} × the speed of the recording",
+        shown.len(),
+        file.time().len(),
+        milliseconds as f64 * 1e-3,
+        args.speed
+    );
+    Ok(())
+}

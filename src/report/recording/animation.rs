@@ -1,0 +1,318 @@
+//! A recording that moves: an animated PNG, which browsers and image viewers play, in the colours of all other pictures.
+//!
+//! GIF is not written: it would need one more crate to hold fewer colours in larger files.
+
+use super::reader::RecordingFile;
+use super::skin_picture::{Picture, SkinPicture};
+use crate::error::{Error, Result};
+use crate::files::write_bytes;
+use crate::report::heat_map::ColourScale;
+use crate::signal::Quantity;
+use png::{BitDepth, BlendOp, ColorType, Encoder, EncodingError};
+use std::path::Path;
+
+/// Frames that an animation shows at most; of longer recordings it shows fewer a second. Larger files tire browsers.
+pub const MOST_SHOWN: usize = 600;
+
+/// How a recording is played.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Playback {
+    /// Seconds of the recording in a second of the animation, positive: 0.1 is ten times slower than it was.
+    pub speed: f64,
+    /// Pictures in a second of the animation, at most; above 0, up to 50, which is all that browsers show.
+    pub fps: f64,
+}
+
+impl Default for Playback {
+    fn default() -> Self {
+        Self {
+            speed: 1.0,
+            fps: 25.0,
+        }
+    }
+}
+
+/// A frame and how long it stands.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ShownFrame {
+    /// Its number in the recording.
+    pub frame: usize,
+    /// Milliseconds of the animation.
+    pub milliseconds: u64,
+}
+
+/// Which frames an animation shows, and for how long: what was the newest frame at each tick of the playback, each once.
+///
+/// The first and the last frame are among them; if there would be more than [`MOST_SHOWN`], ticks are further apart. A frame
+/// stands until the next was recorded, the last as long as the one before it (alone, one second). `time` in seconds,
+/// increasing. Errors: a playback out of its range; no frames.
+pub fn shown_frames(time: &[f64], playback: &Playback) -> Result<Vec<ShownFrame>> {
+    let Playback { speed, fps } = *playback;
+    if !(speed.is_finite() && speed > 0.0 && fps > 0.0 && fps <= 50.0) {
+        return Err(Error::input(
+            "animation",
+            format!("speed {speed}, {fps} pictures a second"),
+            "a positive speed, and above 0 to 50 pictures a second",
+        ));
+    }
+    let (Some(first), Some(last)) = (time.first(), time.last()) else {
+        return Err(Error::input("animation", "no frames", "at least one"));
+    };
+    let frames = newest_at_ticks(
+        time,
+        (speed / fps).max((last - first) / (MOST_SHOWN - 2) as f64),
+    );
+    let at = |frame: usize| ((time[frame] - first) / speed * 1e3).round() as u64;
+    let mut shown: Vec<ShownFrame> = frames
+        .windows(2)
+        .map(|pair| ShownFrame {
+            frame: pair[0],
+            milliseconds: at(pair[1]) - at(pair[0]),
+        })
+        .collect();
+    shown.push(ShownFrame {
+        frame: time.len() - 1,
+        milliseconds: shown.last().map_or(1000, |before| before.milliseconds),
+    });
+    Ok(shown)
+}
+
+/// The last frame that is not after each tick, each once, and the last of all.
+fn newest_at_ticks(time: &[f64], tick: f64) -> Vec<usize> {
+    // Times are sums of steps: a frame that is due at a tick may be off by their rounding.
+    let slack = 1e-6 * tick;
+    let mut frames = vec![0];
+    let mut n_ticks = 1.0;
+    for (frame, now) in time.iter().enumerate().skip(1) {
+        let due = time[0] + n_ticks * tick;
+        if *now + slack < due {
+            continue;
+        }
+        // The newest frame at that tick was the one before, unless this one is just on it.
+        let newest = if *now <= due + slack {
+            frame
+        } else {
+            frame - 1
+        };
+        if frames.last() != Some(&newest) {
+            frames.push(newest);
+        }
+        n_ticks = ((now - time[0] + slack) / tick).floor() + 1.0;
+    }
+    if frames.last() != Some(&(time.len() - 1)) {
+        frames.push(time.len() - 1);
+    }
+    frames
+}
+
+/// Writes a patch of a recording as an animated PNG that loops, all frames on one scale; returns what it shows.
+///
+/// Memory: a picture and the file. Errors: those of [`shown_frames`] and of the recording; a file that cannot be written.
+pub fn write_animation(
+    path: &Path,
+    recording: &mut RecordingFile,
+    patch: usize,
+    quantity: Quantity,
+    playback: &Playback,
+) -> Result<Vec<ShownFrame>> {
+    let shown = shown_frames(recording.time(), playback)?;
+    let mut range = [0.0_f64; 2];
+    recording.each_frame(patch, quantity, |_, values| {
+        for &value in values {
+            range = [range[0].min(value), range[1].max(value)];
+        }
+    })?;
+    let scale = ColourScale::over_values(&range, quantity);
+    let skin = SkinPicture::new(&recording.header().patches[patch], quantity, scale)?;
+    let mut bytes = Vec::new();
+    let picture = |frame: usize| {
+        let values = recording.frame(patch, quantity, frame)?;
+        skin.frame(&values, &frame_note(recording.time(), frame))
+    };
+    film(&mut bytes, path, &shown, picture)?;
+    write_bytes(path, &bytes)?;
+    Ok(shown)
+}
+
+fn film(
+    bytes: &mut Vec<u8>,
+    path: &Path,
+    shown: &[ShownFrame],
+    mut picture: impl FnMut(usize) -> Result<Picture>,
+) -> Result<()> {
+    let failed = |error| {
+        Error::io(
+            path,
+            "encode",
+            std::io::Error::other::<EncodingError>(error),
+        )
+    };
+    let mut before = picture(shown[0].frame)?;
+    let mut writer = start(bytes, &before, shown.len(), &shown[0]).map_err(failed)?;
+    for one in &shown[1..] {
+        let now = picture(one.frame)?;
+        add(&mut writer, &before, &now, one).map_err(failed)?;
+        before = now;
+    }
+    writer.finish().map_err(failed)
+}
+
+/// The line above a frame: its time, with as many digits as the recording's steps need, and its number.
+pub fn frame_note(time: &[f64], frame: usize) -> String {
+    let n = time.len();
+    let step = (time[n - 1] - time[0]) / n.saturating_sub(1).max(1) as f64;
+    let digits = match step > 0.0 {
+        true => (-step.log10()).ceil().clamp(1.0, 6.0) as usize,
+        false => 3,
+    };
+    format!(
+        "t = {:.digits$} s, frame {frame} of 0–{}",
+        time[frame],
+        n - 1
+    )
+}
+
+fn start<'a>(
+    out: &'a mut Vec<u8>,
+    picture: &Picture,
+    n_shown: usize,
+    shown: &ShownFrame,
+) -> std::result::Result<png::Writer<&'a mut Vec<u8>>, EncodingError> {
+    let mut encoder = Encoder::new(out, picture.width as u32, picture.height as u32);
+    encoder.set_color(ColorType::Rgba);
+    encoder.set_depth(BitDepth::Eight);
+    encoder.set_animated(n_shown as u32, 0)?;
+    let (numerator, denominator) = delay(shown.milliseconds);
+    encoder.set_frame_delay(numerator, denominator)?;
+    encoder.set_blend_op(BlendOp::Over)?;
+    let mut writer = encoder.write_header()?;
+    let pixels = picture.rgb.as_chunks().0.iter();
+    let opaque: Vec<u8> = pixels.flat_map(|&[r, g, b]| [r, g, b, 255]).collect();
+    writer.write_image_data(&opaque)?;
+    Ok(writer)
+}
+
+/// Draws only the rows that change, transparent where they do not: a tenth of the bytes.
+fn add(
+    film: &mut png::Writer<&mut Vec<u8>>,
+    before: &Picture,
+    now: &Picture,
+    shown: &ShownFrame,
+) -> std::result::Result<(), EncodingError> {
+    let n_row = 3 * now.width;
+    let changed = |row: &usize| {
+        let bytes = row * n_row..(row + 1) * n_row;
+        before.rgb[bytes.clone()] != now.rgb[bytes]
+    };
+    // A frame has at least one row.
+    let first = (0..now.height).find(changed).unwrap_or(0);
+    let last = (first..now.height).rfind(changed).unwrap_or(first);
+    let bytes = first * n_row..(last + 1) * n_row;
+    let old = before.rgb[bytes.clone()].as_chunks::<3>().0;
+    let new = now.rgb[bytes].as_chunks::<3>().0;
+    let pixels = old.iter().zip(new).flat_map(|(old, new)| match old == new {
+        true => [0; 4],
+        false => [new[0], new[1], new[2], 255],
+    });
+    let part: Vec<u8> = pixels.collect();
+    let (numerator, denominator) = delay(shown.milliseconds);
+    film.set_frame_delay(numerator, denominator)?;
+    // First back to the top: the rows must fit from wherever the last ones were.
+    film.set_frame_position(0, 0)?;
+    film.set_frame_dimension(now.width as u32, (last + 1 - first) as u32)?;
+    film.set_frame_position(0, first as u32)?;
+    film.write_image_data(&part)
+}
+
+/// A delay as APNG writes it: a fraction of seconds with 16 bits above and below.
+fn delay(milliseconds: u64) -> (u16, u16) {
+    match u16::try_from(milliseconds) {
+        Ok(milliseconds) => (milliseconds, 1000),
+        Err(_) => (u16::try_from(milliseconds / 1000).unwrap_or(u16::MAX), 1),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn total(shown: &[ShownFrame]) -> u64 {
+        shown[..shown.len() - 1]
+            .iter()
+            .map(|s| s.milliseconds)
+            .sum()
+    }
+
+    fn play(time: &[f64], speed: f64, fps: f64) -> Vec<ShownFrame> {
+        shown_frames(time, &Playback { speed, fps }).unwrap()
+    }
+
+    #[test]
+    fn playing_takes_as_long_as_it_took_whatever_the_frames() {
+        let even: Vec<f64> = (0..1001).map(|k| 0.002 * f64::from(k)).collect();
+        let uneven: Vec<f64> = (0..200).map(|k| 0.5 + 1e-4 * f64::from(k * k)).collect();
+        for time in [&even, &uneven] {
+            let span = time[time.len() - 1] - time[0];
+            for (speed, fps) in [(1.0, 25.0), (0.1, 50.0), (3.0, 10.0), (1e-3, 30.0)] {
+                let shown = play(time, speed, fps);
+                let expected = (span / speed * 1e3).round() as u64;
+                assert_eq!(total(&shown), expected, "{speed} {fps}");
+                assert_eq!(
+                    (shown[0].frame, shown[shown.len() - 1].frame),
+                    (0, time.len() - 1)
+                );
+                assert!(shown.windows(2).all(|pair| pair[0].frame < pair[1].frame));
+                assert!(shown.len() <= MOST_SHOWN);
+            }
+        }
+    }
+
+    #[test]
+    fn even_frames_are_thinned_evenly() {
+        let time: Vec<f64> = (0..1001).map(|k| 0.002 * f64::from(k)).collect();
+        let shown = play(&time, 1.0, 25.0);
+        let frames: Vec<usize> = shown.iter().map(|s| s.frame).collect();
+        assert_eq!(frames, (0..=1000).step_by(20).collect::<Vec<_>>());
+        assert!(shown.iter().all(|s| s.milliseconds == 40));
+    }
+
+    #[test]
+    fn frames_that_are_slower_than_the_playback_are_all_shown() {
+        let shown = play(&[0.0, 0.5, 0.7, 2.0], 1.0, 25.0);
+        let expected = [(0, 500), (1, 200), (2, 1300), (3, 1300)];
+        assert_eq!(shown.len(), 4);
+        for (shown, (frame, milliseconds)) in shown.iter().zip(expected) {
+            assert_eq!(
+                *shown,
+                ShownFrame {
+                    frame,
+                    milliseconds
+                }
+            );
+        }
+    }
+
+    #[test]
+    fn what_cannot_be_played_is_an_error() {
+        for (speed, fps) in [
+            (0.0, 25.0),
+            (f64::NAN, 25.0),
+            (1.0, 0.0),
+            (1.0, 60.0),
+            (-1.0, 5.0),
+        ] {
+            assert!(shown_frames(&[0.0, 1.0], &Playback { speed, fps }).is_err());
+        }
+        assert!(shown_frames(&[], &Playback::default()).is_err());
+        assert_eq!(play(&[3.0], 1.0, 25.0).len(), 1);
+    }
+
+    #[test]
+    fn notes_have_the_digits_of_the_steps() {
+        assert_eq!(
+            frame_note(&[0.0, 0.002, 0.004], 1),
+            "t = 0.002 s, frame 1 of 0–2"
+        );
+        assert_eq!(frame_note(&[2.0], 0), "t = 2.000 s, frame 0 of 0–0");
+    }
+}

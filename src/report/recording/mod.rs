@@ -1,0 +1,43 @@
+//! Recordings as files: what a skin felt over time, streamed to an `.npz` that NumPy opens.
+//!
+//! In: one [`PatchFrame`] a patch and one pose an object, frame by frame ([`RecordingWriter`]). Out: a zip of `.npy`
+//! members, stored without compression, ZIP64 where it is needed; `np.load(path)` opens it without pickle. Nothing but a block
+//! of rows is held in memory. [`RecordingFile`] reads it back row by row, [`read_recording`] at once.
+//!
+//! | member | shape | holds |
+//! |---|---|---|
+//! | `meta` | () | JSON text: `json.loads(archive["meta"].item())` |
+//! | `time` | n_frames | f64, seconds, increasing |
+//! | `PATCH/centers` | n_taxels × 3 | f64, metres, patch frame: where the taxels rest |
+//! | `PATCH/axes` | n_taxels × 3 | f64, unit vectors, patch frame: away from the substrate |
+//! | `PATCH/deflection` | n_frames × n_taxels | f32 or f64, metres |
+//! | `PATCH/force` | n_frames × n_taxels (normal) or n_frames × n_taxels × 3 (vectors, patch frame) | f32 or f64, newtons |
+//! | `PATCH/pose` | n_frames × 7 | f64, world from patch: x, y, z in metres, unit quaternion x, y, z, w |
+//! | `OBJECT/pose` | n_frames × 7 | f64, world from object, the same |
+//!
+//! `meta` is an object with `format` ("bubbletouch recording"), `version` (1), `patches` (each with `name`, `n_taxels`, `force`
+//! ("normal" or "vector") and, where the taxels are a grid, `grid` with `nx`, `ny`, `pitch_m`: taxel = row · nx + column),
+//! `objects` (names), and `about`: whatever the writer had to say.
+//!
+//! [`contact_table`] writes wrenches and centres of pressure as CSV; [`skin_picture`] and [`animation`] draw.
+
+pub mod animation;
+pub mod contact_table;
+mod dots;
+mod header;
+mod npy;
+mod pixels;
+mod reader;
+mod rows;
+pub mod skin_picture;
+mod spool;
+mod stored;
+mod summary;
+mod unrolled;
+mod writer;
+
+pub use header::{ForceKind, Precision, RecordedPatch, RecordingHeader};
+pub use reader::RecordingFile;
+pub use stored::{StoredPatch, StoredRecording, read_recording};
+pub use summary::{PatchSummary, recording_table, summarise};
+pub use writer::{Forces, PatchFrame, RecordingWriter};

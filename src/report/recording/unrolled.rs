@@ -1,0 +1,350 @@
+//! A skin laid flat: where each taxel is drawn.
+//!
+//! Flat skins are seen from above. Cylinders are unrolled, parts of spheres flattened about their middle with true
+//! distances from it (azimuthal equidistant); both are recognised by p = c + R n, which their places and axes obey (without the
+//! part along the cylinder's axis). All else is seen from the side that shows most, and from behind if some taxels face away.
+
+use crate::report::axis::short_number;
+use glam::{DVec2, DVec3};
+
+/// Cosine of the angle between axes up to which a skin is flat: 10°, which shortens nothing by more than 1.5 %.
+const FLAT: f64 = 0.985;
+/// How far places may be from p = c + R n, in parts of R. Larger calls an ellipsoid a sphere; smaller refuses a printed shape.
+const FIT: f64 = 0.05;
+/// Radians from the middle up to which a sphere is flattened: beyond, the rim is drawn more than twice as long as it is.
+const WIDEST_CAP: f64 = 1.9;
+
+/// Taxels in a plane, in one view or two.
+pub(super) struct Unrolled {
+    /// Each taxel is in exactly one.
+    pub views: Vec<View>,
+    /// How it was laid flat, for people.
+    pub sentence: String,
+}
+
+/// One view.
+pub(super) struct View {
+    /// Empty if it is the only one.
+    pub name: &'static str,
+    /// Taxels and where they are: metres to the right and up.
+    pub places: Vec<(usize, DVec2)>,
+}
+
+/// Right and up for an eye that looks against `towards_eye`.
+struct Eye {
+    towards_eye: DVec3,
+    right: DVec3,
+    up: DVec3,
+}
+
+impl Eye {
+    /// y is up where the eye looks along z, as in a heat map; else z is.
+    fn at(towards_eye: DVec3) -> Self {
+        let up = if towards_eye.z.abs() > 0.7 {
+            DVec3::Y
+        } else {
+            DVec3::Z
+        };
+        Self::upright(towards_eye, up)
+    }
+
+    /// `up` is not along the line of sight.
+    fn upright(towards_eye: DVec3, up: DVec3) -> Self {
+        let right = up.cross(towards_eye).normalize();
+        Self {
+            towards_eye,
+            right,
+            up: towards_eye.cross(right),
+        }
+    }
+
+    fn project(&self, vector: DVec3) -> DVec2 {
+        DVec2::new(vector.dot(self.right), vector.dot(self.up))
+    }
+}
+
+/// Lays a skin flat; `axes` are unit vectors, one a place (metres).
+pub(super) fn unroll(centers: &[DVec3], axes: &[DVec3]) -> Unrolled {
+    let mean = mean(axes);
+    let middle = mean.try_normalize();
+    if let Some(middle) = middle
+        && axes.iter().all(|axis| axis.dot(middle) > FLAT)
+    {
+        let eye = Eye::at(middle);
+        let sentence = format!("seen from {}", direction(middle));
+        let places = centers.iter().map(|&center| eye.project(center));
+        return single(places, sentence);
+    }
+    cylinder(centers, axes)
+        .or_else(|| cap(centers, axes))
+        .unwrap_or_else(|| sides(centers, axes, mean))
+}
+
+fn single(places: impl Iterator<Item = DVec2>, sentence: String) -> Unrolled {
+    let places = places.enumerate().collect();
+    let views = vec![View { name: "", places }];
+    Unrolled { views, sentence }
+}
+
+fn mean(vectors: &[DVec3]) -> DVec3 {
+    vectors.iter().sum::<DVec3>() / vectors.len() as f64
+}
+
+/// c and R of p = c + R n (R negative: hollow), if the places obey it.
+fn round_fit(places: &[DVec3], axes: &[DVec3]) -> Option<(DVec3, f64)> {
+    let (mean_place, mean_axis) = (mean(places), mean(axes));
+    let pairs = || places.iter().zip(axes);
+    let spread: f64 = axes.iter().map(|n| (n - mean_axis).length_squared()).sum();
+    let along: f64 = pairs()
+        .map(|(p, n)| (p - mean_place).dot(n - mean_axis))
+        .sum();
+    let radius = along / spread;
+    let center = mean_place - radius * mean_axis;
+    let fits = |(p, n): (&DVec3, &DVec3)| (p - center - radius * n).length() < FIT * radius.abs();
+    (spread > 0.0 && pairs().all(fits)).then_some((center, radius))
+}
+
+fn cylinder(centers: &[DVec3], axes: &[DVec3]) -> Option<Unrolled> {
+    let crosses = axes.iter().map(|axis| axes[0].cross(*axis));
+    let widest = crosses.max_by(|a, b| a.length_squared().total_cmp(&b.length_squared()))?;
+    let along = widest.try_normalize()?;
+    // The end that points along an axis of the patch is up.
+    let sign = along.to_array().into_iter().fold(0.0, larger).signum();
+    let along = sign * along;
+    if axes.iter().any(|axis| axis.dot(along).abs() > 0.1) {
+        return None;
+    }
+    let flat = |v: &DVec3| v.reject_from_normalized(along);
+    let rings: Vec<DVec3> = centers.iter().map(flat).collect();
+    let spokes: Vec<DVec3> = axes.iter().map(|n| flat(n).normalize()).collect();
+    let (_, radius) = round_fit(&rings, &spokes)?;
+    let front = mean(&spokes);
+    let front = if front.length() > 0.1 {
+        flat(&front).normalize()
+    } else {
+        // All around: the cut is behind, seen from where the eye would stand.
+        flat(&Eye::at(along).right).normalize()
+    };
+    let eye = Eye::upright(front, along);
+    let places = centers.iter().zip(&spokes).map(|(center, spoke)| {
+        let angle = spoke.dot(eye.right).atan2(spoke.dot(front));
+        // Which side of the cut a taxel on it is on, rounding shall not decide.
+        let angle = if angle > std::f64::consts::PI - 1e-9 {
+            -std::f64::consts::PI
+        } else {
+            angle
+        };
+        DVec2::new(radius * angle, center.dot(along))
+    });
+    let sentence = format!(
+        "unrolled from {} cylinder of radius {} mm; up: {}, middle: {}",
+        hollow(radius),
+        short_number(radius.abs() * 1e3),
+        direction(along),
+        direction(front)
+    );
+    Some(single(places, sentence))
+}
+
+fn cap(centers: &[DVec3], axes: &[DVec3]) -> Option<Unrolled> {
+    let (_, radius) = round_fit(centers, axes)?;
+    let eye = Eye::at(mean(axes).try_normalize()?);
+    let polar = |axis: &DVec3| axis.dot(eye.towards_eye).clamp(-1.0, 1.0).acos();
+    if axes.iter().any(|axis| polar(axis) > WIDEST_CAP) {
+        return None;
+    }
+    let places = axes.iter().map(|axis| {
+        let heading = eye.project(*axis).normalize_or_zero();
+        radius * polar(axis) * heading
+    });
+    let sentence = format!(
+        "flattened from {} sphere of radius {} mm; middle: {}",
+        hollow(radius),
+        short_number(radius.abs() * 1e3),
+        direction(eye.towards_eye)
+    );
+    Some(single(places, sentence))
+}
+
+/// The side to which the axes point on the whole, or that of the two broad sides which is along +x, +y or +z.
+fn sides(centers: &[DVec3], axes: &[DVec3], mean: DVec3) -> Unrolled {
+    let towards_eye = if mean.length() > 0.1 {
+        mean.normalize()
+    } else {
+        let low = centers.iter().fold(DVec3::INFINITY, |a, &b| a.min(b));
+        let high = centers.iter().fold(DVec3::NEG_INFINITY, |a, &b| a.max(b));
+        let thinnest = (high - low).min_position();
+        DVec3::AXES[thinnest]
+    };
+    let front = Eye::at(towards_eye);
+    let back = Eye {
+        towards_eye: -towards_eye,
+        right: -front.right,
+        up: front.up,
+    };
+    let faces_front = |taxel: &usize| axes[*taxel].dot(towards_eye) >= 0.0;
+    let (seen, hidden): (Vec<usize>, Vec<usize>) = (0..centers.len()).partition(faces_front);
+    let project = |eye: &Eye, taxels: Vec<usize>| -> Vec<(usize, DVec2)> {
+        let place = |taxel| (taxel, eye.project(centers[taxel]));
+        taxels.into_iter().map(place).collect()
+    };
+    let sentence = format!("seen from {}", direction(towards_eye));
+    if hidden.is_empty() {
+        let places = project(&front, seen);
+        return Unrolled {
+            views: vec![View { name: "", places }],
+            sentence,
+        };
+    }
+    Unrolled {
+        views: vec![
+            View {
+                name: "front",
+                places: project(&front, seen),
+            },
+            View {
+                name: "back",
+                places: project(&back, hidden),
+            },
+        ],
+        sentence: sentence + ", and the taxels that face away from behind",
+    }
+}
+
+fn larger(a: f64, b: f64) -> f64 {
+    if b.abs() > a.abs() { b } else { a }
+}
+
+fn hollow(radius: f64) -> &'static str {
+    if radius < 0.0 { "the inside of a" } else { "a" }
+}
+
+/// `+z` within half a degree, or three components.
+fn direction(vector: DVec3) -> String {
+    for (axis, name) in DVec3::AXES.into_iter().zip(["x", "y", "z"]) {
+        let along = vector.dot(axis);
+        if along.abs() > 1.0 - 4e-5 {
+            return format!("{}{name}", if along > 0.0 { '+' } else { '−' });
+        }
+    }
+    // Adding zero makes −0 plain.
+    let parts = vector.to_array().map(|c| (100.0 * c).round() / 100.0 + 0.0);
+    let parts = parts.map(|c| format!("{c:.2}").replace('-', "−"));
+    format!("({})", parts.join(", "))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn around(radius: f64, angles: impl Iterator<Item = f64> + Clone) -> (Vec<DVec3>, Vec<DVec3>) {
+        let heights = [-0.02, 0.0, 0.02];
+        let pairs = heights.into_iter().flat_map(|y| {
+            angles.clone().map(move |angle| {
+                let axis = DVec3::new(angle.sin(), 0.0, angle.cos());
+                (DVec3::new(0.01, y, 0.5) + radius * axis, axis)
+            })
+        });
+        pairs.unzip()
+    }
+
+    fn distances_are_kept(unrolled: &Unrolled, expected: &[DVec2]) {
+        let places = &unrolled.views[0].places;
+        assert_eq!((unrolled.views.len(), places.len()), (1, expected.len()));
+        for pair in places.windows(2).zip(expected.windows(2)) {
+            let (a, b) = (pair.0[1].1 - pair.0[0].1, pair.1[1] - pair.1[0]);
+            assert!((a - b).length() < 1e-9, "{a}, {b}");
+        }
+    }
+
+    #[test]
+    fn a_grid_is_seen_as_a_heat_map_shows_it() {
+        let centers = [DVec3::ZERO, DVec3::new(0.1, 0.02, 0.0)];
+        let unrolled = unroll(&centers, &[DVec3::Z; 2]);
+        assert_eq!(unrolled.sentence, "seen from +z");
+        assert_eq!(unrolled.views[0].places[1], (1, DVec2::new(0.1, 0.02)));
+    }
+
+    #[test]
+    fn a_cylinder_is_unrolled_with_the_distances_on_it() {
+        let angles = (-10..=10).map(|i| 0.25 * f64::from(i));
+        let (centers, axes) = around(0.04, angles.clone());
+        let unrolled = unroll(&centers, &axes);
+        let said = "unrolled from a cylinder of radius 40 mm; up: +y, middle: +z";
+        assert_eq!(unrolled.sentence, said);
+        let expected: Vec<DVec2> = [-0.02, 0.0, 0.02]
+            .into_iter()
+            .flat_map(|y| angles.clone().map(move |a| DVec2::new(0.04 * a, y)))
+            .collect();
+        distances_are_kept(&unrolled, &expected);
+    }
+
+    #[test]
+    fn a_pipe_is_seen_from_inside() {
+        let angles = (-5..=5).map(|i| 0.25 * f64::from(i));
+        let (centers, axes) = around(0.04, angles.clone());
+        let inwards: Vec<DVec3> = axes.iter().map(|&axis| -axis).collect();
+        let unrolled = unroll(&centers, &inwards);
+        assert!(unrolled.sentence.contains("the inside of a cylinder"));
+        // The eye is in the middle and looks along +z, y up: +x, where the angles grow, is to its left.
+        let expected: Vec<DVec2> = [-0.02, 0.0, 0.02]
+            .into_iter()
+            .flat_map(|y| angles.clone().map(move |a| DVec2::new(-0.04 * a, y)))
+            .collect();
+        distances_are_kept(&unrolled, &expected);
+    }
+
+    #[test]
+    fn a_cap_keeps_distances_from_its_middle() {
+        let axes: Vec<DVec3> = (0..40)
+            .map(|i| {
+                let (polar, azimuth) = (0.03 * f64::from(i), 2.4 * f64::from(i));
+                DVec3::new(
+                    polar.sin() * azimuth.cos(),
+                    polar.sin() * azimuth.sin(),
+                    polar.cos(),
+                )
+            })
+            .collect();
+        let centers: Vec<DVec3> = axes.iter().map(|&axis| 0.05 * axis).collect();
+        let unrolled = unroll(&centers, &axes);
+        assert!(
+            unrolled
+                .sentence
+                .starts_with("flattened from a sphere of radius 50 mm")
+        );
+        let middle = mean(&axes).normalize();
+        for &(taxel, place) in &unrolled.views[0].places {
+            let expected = 0.05 * axes[taxel].dot(middle).acos();
+            assert!((place.length() - expected).abs() < 1e-9);
+        }
+    }
+
+    #[test]
+    fn a_closed_skin_is_seen_from_both_sides_and_each_taxel_once() {
+        let axes: Vec<DVec3> = (0..200)
+            .map(|i| {
+                let z = -1.0 + (f64::from(i) + 0.5) / 100.0;
+                let azimuth = 2.4 * f64::from(i);
+                let ring = (1.0 - z * z).sqrt();
+                DVec3::new(ring * azimuth.cos(), ring * azimuth.sin(), z)
+            })
+            .collect();
+        let scale = DVec3::new(0.08, 0.05, 0.02);
+        let centers: Vec<DVec3> = axes.iter().map(|&axis| axis * scale).collect();
+        let unrolled = unroll(&centers, &axes);
+        let names: Vec<&str> = unrolled.views.iter().map(|view| view.name).collect();
+        assert_eq!(names, ["front", "back"]);
+        let mut taxels: Vec<usize> = unrolled
+            .views
+            .iter()
+            .flat_map(|view| view.places.iter().map(|place| place.0))
+            .collect();
+        taxels.sort_unstable();
+        assert_eq!(taxels, (0..200).collect::<Vec<_>>());
+        // Seen from behind, right is left.
+        for &(taxel, place) in &unrolled.views[1].places {
+            assert!(axes[taxel].z < 0.0 && (place.x + centers[taxel].x).abs() < 1e-12);
+        }
+    }
+}

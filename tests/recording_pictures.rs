@@ -1,0 +1,192 @@
+//! Recordings as pictures: every taxel is drawn once, in its colour and at its place, still and moving.
+
+use bubbletouch::geometry::Pose;
+use bubbletouch::report::colours::heat;
+use bubbletouch::report::heat_map::ColourScale;
+use bubbletouch::report::recording::animation::{Playback, frame_note, write_animation};
+use bubbletouch::report::recording::skin_picture::{Picture, SkinPicture};
+use bubbletouch::report::recording::{
+    ForceKind, Forces, PatchFrame, RecordedPatch, RecordingFile, RecordingHeader, RecordingWriter,
+};
+use bubbletouch::signal::Quantity;
+use bubbletouch::world::Grid;
+use glam::DVec3;
+use std::fs::File;
+use std::io::BufReader;
+use std::path::Path;
+
+const SCALE: ColourScale = ColourScale {
+    low: 0.0,
+    high: 2.0,
+};
+
+fn grid() -> RecordedPatch {
+    let grid = Grid {
+        nx: 10,
+        ny: 6,
+        pitch: 2e-3,
+    };
+    RecordedPatch::of_grid("palm", grid, ForceKind::Normal)
+}
+
+/// A third of a tube, 8 × 12 taxels.
+fn tube() -> RecordedPatch {
+    let taxels = (0..96).map(|taxel| {
+        let angle = 0.2 * f64::from(taxel % 12);
+        let axis = DVec3::new(angle.cos(), angle.sin(), 0.0);
+        (0.03 * axis + 6e-3 * f64::from(taxel / 12) * DVec3::Z, axis)
+    });
+    let (centers, axes) = taxels.unzip();
+    RecordedPatch {
+        name: "forearm".to_owned(),
+        centers,
+        axes,
+        grid: None,
+        force: ForceKind::Normal,
+    }
+}
+
+/// Where the pixels of a colour are on the whole, and how many.
+fn blob(picture: &Picture, colour: [u8; 3]) -> ([f64; 2], usize) {
+    let (mut sum, mut n) = ([0.0; 2], 0);
+    for (index, pixel) in picture.rgb.as_chunks::<3>().0.iter().enumerate() {
+        // Left of the colour bar, which has all colours.
+        if *pixel == colour && index % picture.width < 920 {
+            sum[0] += (index % picture.width) as f64;
+            sum[1] += (index / picture.width) as f64;
+            n += 1;
+        }
+    }
+    (sum.map(|s| s / n as f64), n)
+}
+
+#[test]
+fn a_touched_taxel_is_one_spot_of_its_colour_and_neighbours_stand_side_by_side() {
+    for patch in [grid(), tube()] {
+        let skin = SkinPicture::new(&patch, Quantity::Deflection, SCALE).unwrap();
+        let spot = |taxel: usize| {
+            let mut values = vec![0.0; patch.n_taxels()];
+            values[taxel] = 1.5e-3;
+            blob(&skin.frame(&values, "t").unwrap(), heat(0.75))
+        };
+        let across = if patch.grid.is_some() { 10 } else { 12 };
+        let (first, n_first) = spot(0);
+        let (right, n_right) = spot(1);
+        let (above, n_above) = spot(across);
+        assert!(n_first > 100 && n_first.abs_diff(n_right) < 9 && n_first.abs_diff(n_above) < 9);
+        // The distance of neighbours in pixels: 2 mm each way on the grid, an arc and a step of 6 mm on the tube.
+        let (dx, dy) = (right[0] - first[0], first[1] - above[1]);
+        assert!((right[1] - first[1]).abs() < 0.6 && (above[0] - first[0]).abs() < 0.6);
+        assert!(
+            dx > 10.0 && (dx / dy - 1.0).abs() < 0.06,
+            "{}: {dx}, {dy}",
+            patch.name
+        );
+    }
+}
+
+#[test]
+fn values_that_cannot_be_drawn_are_errors() {
+    let skin = SkinPicture::new(&tube(), Quantity::Force, SCALE).unwrap();
+    let said = skin.frame(&[0.0; 5], "").unwrap_err().to_string();
+    assert_eq!(said, "frame: 5 values; 96, one a taxel");
+    let mut values = [0.0; 96];
+    values[7] = f64::NAN;
+    let said = skin.frame(&values, "").unwrap_err().to_string();
+    assert_eq!(said, "frame, taxel 7: NaN; a finite number");
+}
+
+/// 40 frames of a spot that walks and deepens.
+fn write(path: &Path) {
+    let patches = vec![grid(), tube()];
+    let header = RecordingHeader {
+        patches: patches.clone(),
+        ..RecordingHeader::default()
+    };
+    let mut writer = RecordingWriter::create(path, header).unwrap();
+    for k in 0..40 {
+        let values: Vec<Vec<f64>> = patches
+            .iter()
+            .map(|patch| {
+                let spot = |taxel: usize| if taxel == k { 5e-5 * k as f64 } else { 0.0 };
+                (0..patch.n_taxels()).map(spot).collect()
+            })
+            .collect();
+        let frames: Vec<PatchFrame> = values
+            .iter()
+            .map(|values| PatchFrame {
+                deflection: values,
+                force: Forces::Normal(values),
+                pose: Pose::IDENTITY,
+            })
+            .collect();
+        writer.push(0.01 * k as f64, &frames, &[]).unwrap();
+    }
+    writer.finish().unwrap();
+}
+
+/// The frames of an APNG as a viewer shows them, and the sum of their delays in seconds.
+fn played(path: &Path) -> (Vec<Vec<u8>>, f64) {
+    let mut reader = png::Decoder::new(BufReader::new(File::open(path).unwrap()))
+        .read_info()
+        .unwrap();
+    let n_frames = reader.info().animation_control().unwrap().num_frames;
+    let width = reader.info().width as usize;
+    let mut canvas: Vec<u8> = Vec::new();
+    let (mut shown, mut seconds) = (Vec::new(), 0.0);
+    for _ in 0..n_frames {
+        let mut bytes = vec![0; reader.output_buffer_size().unwrap()];
+        reader.next_frame(&mut bytes).unwrap();
+        let control = *reader.info().frame_control().unwrap();
+        seconds += f64::from(control.delay_num) / f64::from(control.delay_den);
+        assert_eq!((control.x_offset, control.width as usize), (0, width));
+        if canvas.is_empty() {
+            canvas = vec![0; 3 * width * control.height as usize];
+        }
+        let first = width * control.y_offset as usize;
+        let pixels = bytes.as_chunks::<4>().0.iter();
+        for (index, pixel) in pixels.take(width * control.height as usize).enumerate() {
+            if pixel[3] == 255 {
+                canvas[3 * (first + index)..][..3].copy_from_slice(&pixel[..3]);
+            }
+        }
+        shown.push(canvas.clone());
+    }
+    (shown, seconds)
+}
+
+#[test]
+fn an_animation_shows_the_pictures_of_its_frames_on_one_scale() {
+    let folder = tempfile::tempdir().unwrap();
+    let [path, out] = ["touch.npz", "touch.png"].map(|name| folder.path().join(name));
+    write(&path);
+    let mut file = RecordingFile::open(&path).unwrap();
+    for patch in [0, 1] {
+        let playback = Playback {
+            speed: 0.5,
+            fps: 10.0,
+        };
+        let shown =
+            write_animation(&out, &mut file, patch, Quantity::Deflection, &playback).unwrap();
+        let frames: Vec<usize> = shown.iter().map(|shown| shown.frame).collect();
+        assert_eq!(frames, [0, 5, 10, 15, 20, 25, 30, 35, 39]);
+        let (pictures, seconds) = played(&out);
+        // 0.39 s at half the speed, and the last stands as long as the one before it.
+        assert!((seconds - 0.78 - 0.08).abs() < 1e-9, "{seconds}");
+        let scale = ColourScale {
+            low: 0.0,
+            high: f64::from(1.95e-3_f32) * 1e3,
+        };
+        let skin = &file.header().patches[patch].clone();
+        let skin = SkinPicture::new(skin, Quantity::Deflection, scale).unwrap();
+        assert_eq!(pictures.len(), frames.len());
+        for (picture, &frame) in pictures.iter().zip(&frames) {
+            let values = file.frame(patch, Quantity::Deflection, frame).unwrap();
+            let note = frame_note(file.time(), frame);
+            assert!(
+                *picture == skin.frame(&values, &note).unwrap().rgb,
+                "frame {frame}"
+            );
+        }
+    }
+}
