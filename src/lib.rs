@@ -119,6 +119,7 @@
 //!   Fritsch, Butland, *A method for constructing local monotone piecewise cubic interpolants*, SISSC 1984.
 //! - `[KKS]` Kim, Kim, Shin, *A general construction scheme for unit quaternion curves with simple high order derivatives*,
 //!   SIGGRAPH 1995.
+//! - `[BK]` Buryanov, Kotiuk, *Proportions of hand segments*, International Journal of Morphology 2010.
 //! - `[SBHE]` Gan, Do, Tran, *Fast compressive imaging using scrambled block Hadamard ensemble*, 2008.
 #![warn(missing_docs)]
 
