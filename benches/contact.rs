@@ -1,5 +1,6 @@
 //! One press: the kernel beside every sphere against every taxel.
 
+use bubbletouch::contact::balance::{Balancer, FreeObject, PlacedSkin};
 use bubbletouch::contact::{SkinWorkspace, Workspace, press_skin, press_to_depth, press_to_travel};
 use bubbletouch::geometry::Pose;
 use bubbletouch::mesh::TriangleMesh;
@@ -221,5 +222,33 @@ fn curved(c: &mut Criterion) {
     group.finish();
 }
 
-criterion_group!(benches, press, catalogue, mesh, curved);
+/// An egg of 1,000 spheres on 64 × 64 taxels: put to rest after each tenth of a millimetre that the skin is lifted, from where
+/// it was and with what was known of its forces.
+fn rest(c: &mut Criterion) {
+    let mut group = c.benchmark_group("balance");
+    let skin = SkinPatch::from(patch(64));
+    let egg = egg(1_000);
+    let object = FreeObject::new(&egg, 0.3, DVec3::ZERO).expect("the mass is positive");
+    let mut balancer = Balancer::new();
+    let mut settle = |height: f64, start: &Pose| {
+        let skins = [PlacedSkin {
+            patch: &skin,
+            world_from_patch: Pose::from_translation(height * DVec3::Z),
+            pushed: &[],
+        }];
+        let balance = balancer.settle(&object, &skins, -9.81 * DVec3::Z, start);
+        balance.expect("the start is finite")
+    };
+    let mut height = 0.0;
+    let mut pose = settle(height, &Pose::from_translation(0.1 * DVec3::Z)).pose;
+    group.bench_function("settled_step_4096_taxels_1000_spheres", |b| {
+        b.iter(|| {
+            height += 1e-4;
+            pose = settle(black_box(height), &pose).pose;
+        });
+    });
+    group.finish();
+}
+
+criterion_group!(benches, press, catalogue, mesh, curved, rest);
 criterion_main!(benches);

@@ -89,7 +89,7 @@
 //! | [`objects`] | a shape, a mesh, or spheres → a model: spheres or triangles |
 //! | [`packing`] | a mesh and a tolerance → few spheres |
 //! | [`world`] | taxels, layouts, resting poses → touches; robots and their motion → poses |
-//! | [`contact`] | a scene and poses → deflections |
+//! | [`contact`] | a scene and poses → deflections; free objects → poses at rest |
 //! | [`signal`] | deflections → frames |
 //! | [`sensing`] | frames → measurements, and back |
 //! | [`recognition`] | labelled measurements → classifier, scores |
@@ -121,6 +121,7 @@
 //!   Fritsch, Butland, *A method for constructing local monotone piecewise cubic interpolants*, SISSC 1984.
 //! - `[KKS]` Kim, Kim, Shin, *A general construction scheme for unit quaternion curves with simple high order derivatives*,
 //!   SIGGRAPH 1995.
+//! - `[BK]` Buryanov, Kotiuk, *Proportions of hand segments*, International Journal of Morphology 2010.
 //! - `[SBHE]` Gan, Do, Tran, *Fast compressive imaging using scrambled block Hadamard ensemble*, 2008.
 #![warn(missing_docs)]
 

@@ -251,3 +251,27 @@ fn the_likeliest_rest_of_a_box_shows_its_largest_face() {
         assert!((ratio - 1.0).abs() < tolerance, "{ratio} of {face} mm²");
     }
 }
+
+#[test]
+fn a_press_to_a_force_carries_it_and_is_not_beside_a_depth() {
+    for (force, stiffness) in [(5.0, 100.0), (0.02, 16.37)] {
+        let frame = pressed(&format!(
+            "--object mug --force {force} --stiffness-n-per-m {stiffness}"
+        ));
+        assert!((stiffness * frame.sum() - force).abs() < 1e-12 * force);
+    }
+    let case = Case::new();
+    let (_, said) = case.succeeds(&["press", "--object", "mug", "--force-n", "5"]);
+    assert!(said.ends_with("; 5.000 N together\n"), "{said}");
+    let refused = |words: &str| {
+        let output = case.run(&words.split(' ').collect::<Vec<_>>());
+        assert_eq!(output.status.code(), Some(2), "{words}");
+        String::from_utf8(output.stderr).unwrap()
+    };
+    let both = refused("press --object mug --force 5 --depth-mm 3");
+    assert!(both.contains("--depth-mm"), "{both}");
+    let much = refused("press --object golf --force 1e6");
+    assert!(much.contains("touch force: 1000000 N; up to "), "{much}");
+    let none = refused("press --object golf --force 0");
+    assert!(none.contains("touch force: 0 N; a finite"), "{none}");
+}

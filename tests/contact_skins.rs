@@ -1,5 +1,7 @@
 //! Laws of contact on skins of any shape, against a search along each taxel's axis, the grid kernel, and energy.
 
+mod counting;
+
 use bubbletouch::contact::{
     GRAZING, SkinWorkspace, Workspace, press_skin, press_to_travel, spring_load,
 };
@@ -7,10 +9,9 @@ use bubbletouch::geometry::Pose;
 use bubbletouch::objects::{Model, Sphere, SphereUnion};
 use bubbletouch::random::Seed;
 use bubbletouch::world::{Grid, Layout, Patch, Scene, SkinPatch, Taxel, Taxels};
+use counting::allocations;
 use glam::{DQuat, DVec3};
 use rand::Rng;
-use std::alloc::{GlobalAlloc, System};
-use std::cell::Cell;
 
 const TAXEL: Taxel = Taxel {
     radius: 1e-3,
@@ -535,27 +536,6 @@ fn grazing_contact_is_counted_and_its_gradient_is_bounded() {
     assert!((contact.gradient().length() - 0.5 / GRAZING).abs() < 1e-6);
 }
 
-/// Counts this thread's allocations, so that the test harness's own threads do not count.
-struct Counting;
-
-thread_local! {
-    static COUNT: Cell<usize> = const { Cell::new(0) };
-}
-
-unsafe impl GlobalAlloc for Counting {
-    unsafe fn alloc(&self, layout: std::alloc::Layout) -> *mut u8 {
-        COUNT.with(|count| count.set(count.get() + 1));
-        unsafe { System.alloc(layout) }
-    }
-
-    unsafe fn dealloc(&self, pointer: *mut u8, layout: std::alloc::Layout) {
-        unsafe { System.dealloc(pointer, layout) }
-    }
-}
-
-#[global_allocator]
-static COUNTING: Counting = Counting;
-
 #[test]
 fn presses_after_the_first_allocate_nothing() {
     let (skin, objects, pose) = energy_scene(3);
@@ -563,12 +543,12 @@ fn presses_after_the_first_allocate_nothing() {
     let mut n_touched = Vec::with_capacity(50);
     let mut press = |step: u32| {
         let motion = Pose::from_translation(1e-3 * f64::from(step) * DVec3::X);
-        let before = COUNT.with(Cell::get);
-        let counts = press_skin(&skin, &objects, &[motion.compose(&pose)], &mut workspace);
-        let load = spring_load(&skin, workspace.contacts());
-        n_touched.push(counts.n_touched);
-        assert!(load.spring_force.is_finite());
-        COUNT.with(Cell::get) - before
+        allocations(|| {
+            let counts = press_skin(&skin, &objects, &[motion.compose(&pose)], &mut workspace);
+            let load = spring_load(&skin, workspace.contacts());
+            n_touched.push(counts.n_touched);
+            assert!(load.spring_force.is_finite());
+        })
     };
     assert!(press(0) > 0);
     assert_eq!((1..50).map(press).sum::<usize>(), 0);

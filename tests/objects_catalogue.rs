@@ -9,7 +9,10 @@ const MM: f64 = 1e-3;
 #[test]
 fn the_sets_hold_the_published_numbers_of_objects() {
     let catalogue = Catalogue::builtin().unwrap();
-    assert_eq!(catalogue.sets(), ["balls", "boxes", "cans", "household"]);
+    assert_eq!(
+        catalogue.sets(),
+        ["balls", "boxes", "cans", "household", "hands"]
+    );
     let n = |set| catalogue.set(set).unwrap().len();
     assert_eq!([n("balls"), n("boxes"), n("cans")], [16, 16, 9]);
     assert!(n("household") >= 24);
@@ -239,7 +242,7 @@ fn an_unknown_name_is_answered_with_names_that_resemble_it() {
     let error = catalogue.set("bottles").unwrap_err().to_string();
     assert_eq!(
         error,
-        "object set: `bottles`; one of balls, boxes, cans, household"
+        "object set: `bottles`; one of balls, boxes, cans, household, hands"
     );
 }
 

@@ -5,35 +5,10 @@ use bubbletouch::signal::{
     Chain, Drift, Faults, GainMismatch, Noise, NoiseUnit, Recording, Scratch, SignalStep,
 };
 use bubbletouch::world::{Grid, Patch, Taxel};
-use std::alloc::{GlobalAlloc, Layout, System};
-use std::cell::Cell;
 
-/// Counts this thread's allocations, so that the test harness's own threads do not count.
-struct Counting;
+mod counting;
 
-thread_local! {
-    static COUNT: Cell<usize> = const { Cell::new(0) };
-}
-
-unsafe impl GlobalAlloc for Counting {
-    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
-        COUNT.with(|count| count.set(count.get() + 1));
-        unsafe { System.alloc(layout) }
-    }
-
-    unsafe fn dealloc(&self, pointer: *mut u8, layout: Layout) {
-        unsafe { System.dealloc(pointer, layout) }
-    }
-}
-
-#[global_allocator]
-static COUNTING: Counting = Counting;
-
-fn allocations(work: impl FnOnce()) -> usize {
-    let before = COUNT.with(Cell::get);
-    work();
-    COUNT.with(Cell::get) - before
-}
+use counting::allocations;
 
 #[test]
 fn touches_after_the_first_allocate_nothing() {

@@ -2,7 +2,7 @@
 
 use super::output::terminal_width;
 use super::which_object::spheres_file;
-use bubbletouch::contact::{Contact, Workspace, press_to_depth, press_to_travel};
+use bubbletouch::contact::{Contact, Workspace, press_to_depth, press_to_force, press_to_travel};
 use bubbletouch::geometry::Pose;
 use bubbletouch::mesh::LengthUnit;
 use bubbletouch::objects::{Catalogue, Model};
@@ -21,7 +21,7 @@ const MM: f64 = 1e-3;
 /// Press one object on one array.
 ///
 /// The object lies on a table and the patch comes from above, along its own axis, to first contact and then further by
-/// the depth.
+/// the depth, or until it feels the force.
 #[derive(clap::Args)]
 pub struct Args {
     #[command(flatten)]
@@ -29,6 +29,14 @@ pub struct Args {
     /// How far past first contact [default: 3 for objects and meshes; spheres are read where they are]
     #[arg(long, value_name = "MM")]
     depth_mm: Option<f64>,
+    /// Instead of a depth: until all springs together carry so many newtons
+    #[arg(
+        long,
+        visible_alias = "force",
+        value_name = "N",
+        conflicts_with = "depth_mm"
+    )]
+    force_n: Option<f64>,
     #[command(flatten)]
     place: Place,
     /// What a mesh becomes: vertex_spheres, mesh (itself) or packed [default: vertex_spheres]
@@ -53,6 +61,9 @@ pub struct Args {
     /// How far a taxel can be pushed in
     #[arg(long, value_name = "MM", default_value_t = 5.0)]
     stroke_mm: f64,
+    /// How stiff a taxel's spring is
+    #[arg(long, value_name = "N/M", default_value_t = 100.0)]
+    stiffness_n_per_m: f64,
     /// Write ny × nx deflections in metres to a .csv, .npz or .png file instead of drawing them here
     #[arg(long, value_name = "FILE")]
     out: Option<PathBuf>,
@@ -143,8 +154,12 @@ pub fn press(args: &Args) -> Result<()> {
         ),
     }
     let deepest = frame.iter().fold(0.0_f64, |a, &b| a.max(b));
+    let force = args.force_n.map_or(String::new(), |_| {
+        let force = patch.taxel.stiffness * frame.sum();
+        format!("; {force:.3} N together")
+    });
     eprintln!(
-        "{} of {} taxels touched, {} saturated; deepest {:.3} mm",
+        "{} of {} taxels touched, {} saturated; deepest {:.3} mm{force}",
         contact.n_touched,
         frame.len(),
         contact.n_saturated,
@@ -164,7 +179,7 @@ impl Args {
             },
             Taxel {
                 radius: self.taxel_radius_mm.unwrap_or(0.5 * self.pitch_mm) * MM,
-                stiffness: 1.0,
+                stiffness: self.stiffness_n_per_m,
                 damping: 0.0,
                 stroke: self.stroke_mm * MM,
             },
@@ -217,6 +232,10 @@ impl Args {
     }
 
     fn contact(&self, scene: &Scene, pose: Pose, workspace: &mut Workspace) -> Result<Contact> {
+        if let Some(force) = self.force_n {
+            let pressed = press_to_force(scene, &[pose], force, workspace)?;
+            return pressed.ok_or_else(not_over);
+        }
         let depth_mm = match (self.depth_mm, &self.source.spheres) {
             (None, Some(_)) => return Ok(press_to_travel(scene, &[pose], 0.0, workspace)),
             (depth_mm, _) => depth_mm.unwrap_or(3.0),
@@ -228,14 +247,16 @@ impl Args {
                 "a positive number of millimetres",
             ));
         }
-        press_to_depth(scene, &[pose], depth_mm * MM, workspace).ok_or_else(|| {
-            Error::input(
-                "press",
-                "the object is not over the array",
-                "an offset that brings some of it over a taxel",
-            )
-        })
+        press_to_depth(scene, &[pose], depth_mm * MM, workspace).ok_or_else(not_over)
     }
+}
+
+fn not_over() -> Error {
+    Error::input(
+        "press",
+        "the object is not over the array",
+        "an offset that brings some of it over a taxel",
+    )
 }
 
 impl Place {

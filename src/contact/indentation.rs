@@ -29,6 +29,8 @@ pub struct Workspace {
     envelope: Envelope,
     /// n_taxels deflections, metres, row by row.
     deflections: Vec<f64>,
+    /// Of the last press to a force: see [`starts`](Self::starts).
+    starts: Vec<f64>,
 }
 
 /// A sphere in the patch frame, its radius grown by the taxel's: the taxel is then a point.
@@ -56,7 +58,12 @@ impl Workspace {
     /// Most spheres of an object are on its far side. They cost one row of the rotation and one comparison: a sphere
     /// presses nothing before its lowest point meets the plane of the taxels. For a depth, a few spheres are looked at
     /// beforehand, so that the comparison is with a travel close to the final one from the start.
-    fn gather(&mut self, scene: &Scene, patch_from_objects: &[Pose], goal: Goal) -> Option<f64> {
+    pub(super) fn gather(
+        &mut self,
+        scene: &Scene,
+        patch_from_objects: &[Pose],
+        goal: Goal,
+    ) -> Option<f64> {
         assert_eq!(
             scene.objects.len(),
             patch_from_objects.len(),
@@ -107,10 +114,56 @@ impl Workspace {
         {
             first = first.min(self.envelope.first);
         }
-        let first = first.is_finite().then_some(first)?;
+        first.is_finite().then_some(first)
+    }
+
+    /// Indents the patch at a travel, after a depth of at least as much has been gathered for.
+    pub(super) fn indent_past_first(
+        &mut self,
+        scene: &Scene,
+        patch_from_objects: &[Pose],
+        travel: f64,
+    ) -> Contact {
         self.envelope
-            .leave_out_passed(scene, patch_from_objects, &self.lines, first + depth);
-        Some(first)
+            .leave_out_passed(scene, patch_from_objects, &self.lines, travel);
+        indent(&scene.patch, travel, self)
+    }
+
+    /// For each taxel that what has been gathered reaches up to `travel`, the travel at which it begins to move, metres;
+    /// nothing counts as behind the substrate.
+    pub(super) fn starts(&mut self, patch: &Patch, travel: f64) -> &[f64] {
+        self.push(patch, travel, f64::NEG_INFINITY);
+        self.starts.clear();
+        self.starts.reserve(self.deflections.len());
+        let touched = self.deflections.iter().filter(|&&needed| needed > 0.0);
+        self.starts.extend(touched.map(|needed| travel - needed));
+        &self.starts
+    }
+
+    /// What [`starts`](Self::starts) said last.
+    pub(super) fn last_starts(&self) -> &[f64] {
+        &self.starts
+    }
+
+    /// Leaves all taxels of a patch at rest.
+    pub(super) fn touch_nothing(&mut self, patch: &Patch) {
+        self.deflections.clear();
+        self.deflections.resize(patch.grid.n_taxels(), 0.0);
+    }
+
+    /// Sets the deflections to what the taxels need at a travel, without a stop; spheres whose centres are lower than `behind` do
+    /// not count.
+    fn push(&mut self, patch: &Patch, travel: f64, behind: f64) {
+        self.touch_nothing(patch);
+        for sphere in &self.spheres {
+            let height = sphere.center.z - travel;
+            if height < sphere.reach && height >= behind {
+                raise(&self.lines, sphere, height, &mut self.deflections);
+            }
+        }
+        for (deflection, height) in self.deflections.iter_mut().zip(&self.envelope.heights) {
+            *deflection = deflection.max(travel - height);
+        }
     }
 }
 
@@ -159,7 +212,7 @@ impl View {
 
 /// How far a press goes.
 #[derive(Clone, Copy)]
-enum Goal {
+pub(super) enum Goal {
     /// To this travel, metres.
     Travel(f64),
     /// To first contact and this far past it, metres.
@@ -201,9 +254,11 @@ pub fn press_to_depth(
     depth: f64,
     workspace: &mut Workspace,
 ) -> Option<Contact> {
-    let first = workspace.gather(scene, patch_from_objects, Goal::Depth(depth));
-    let contact = indent(&scene.patch, first.unwrap_or(0.0) + depth, workspace);
-    first.map(|_| contact)
+    let Some(first) = workspace.gather(scene, patch_from_objects, Goal::Depth(depth)) else {
+        workspace.touch_nothing(&scene.patch);
+        return None;
+    };
+    Some(workspace.indent_past_first(scene, patch_from_objects, first + depth))
 }
 
 /// Presses until the patch has moved `travel` metres along its axis from the pose given (0: right there).
@@ -221,25 +276,9 @@ pub fn press_to_travel(
 }
 
 fn indent(patch: &Patch, travel: f64, workspace: &mut Workspace) -> Contact {
-    let Workspace {
-        lines,
-        spheres,
-        envelope,
-        deflections,
-    } = workspace;
-    deflections.clear();
-    deflections.resize(patch.grid.n_taxels(), 0.0);
-    let behind = -patch.taxel.stroke - patch.taxel.radius;
-    for sphere in spheres.iter() {
-        let height = sphere.center.z - travel;
-        if height < sphere.reach && height >= behind {
-            raise(lines, sphere, height, deflections);
-        }
-    }
-    for (deflection, height) in deflections.iter_mut().zip(&envelope.heights) {
-        *deflection = deflection.max(travel - height);
-    }
-    let (n_touched, n_saturated) = stop_at_stroke(deflections, patch.taxel.stroke);
+    let taxel = &patch.taxel;
+    workspace.push(patch, travel, -taxel.stroke - taxel.radius);
+    let (n_touched, n_saturated) = stop_at_stroke(&mut workspace.deflections, taxel.stroke);
     Contact {
         travel,
         n_touched,

@@ -23,14 +23,26 @@
 //! decides each taxel ([`TaxelContact`]); [`spring_load`] adds up what the springs carry.
 //!
 //! A free object rests where its weight and the forces of the taxels balance: [`balance`].
+//!
+//! A **touch to a force** ([`press_to_force`], [`press_skin_to_force`]) goes on until the springs carry Σ k δ = F together:
+//! exactly the press at the travel that it finds.
+//!
+//! **Friction** is an option beside a `SkinPatch`: with [`Shear`](crate::world::Shear) springs the tips of its taxels are dragged along
+//! and slip, and each taxel feels a force in three dimensions ([`FrictionState`], which has the equations). Without it, and with μ = 0 to
+//! the bit, the forces are those of `spring_load`.
 
 pub mod balance;
+mod coulomb;
+mod crossing;
 mod damper;
 mod envelope;
+mod friction;
 mod grid_lines;
 mod indentation;
+mod press_force;
 mod scene_meshes;
 mod simulate;
+mod skin_force;
 mod skin_mesh;
 mod skin_press;
 mod spring_load;
@@ -38,8 +50,11 @@ mod swept_triangle;
 mod taxel_contact;
 
 pub use damper::{DamperState, relaxation_factor};
+pub use friction::{FrictionLoad, FrictionState, Grip, GripCounts, NormalForce};
 pub use indentation::{Contact, Workspace, first_contact, press_to_depth, press_to_travel};
+pub use press_force::press_to_force;
 pub use simulate::{Recording, simulate};
+pub use skin_force::{SkinPress, press_skin_to_force};
 pub use skin_press::{SkinContact, SkinWorkspace, press_skin};
 pub use spring_load::{SpringLoad, Wrench, spring_load};
 pub use swept_triangle::stopping_height;

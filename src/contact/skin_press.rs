@@ -30,6 +30,8 @@ pub struct SkinWorkspace {
     touched: Vec<u32>,
     /// Of the touched taxels, in the same order.
     contacts: Vec<TaxelContact>,
+    /// Of the objects on the way to a force.
+    pub(super) poses: Vec<Pose>,
 }
 
 impl SkinWorkspace {

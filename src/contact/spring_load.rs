@@ -82,7 +82,7 @@ pub fn spring_load<'a>(
     for contact in contacts {
         let taxel = patch.taxels().at(contact.taxel);
         let force = taxel.stiffness * contact.deflection;
-        on_object = on_object + Wrench::at(contact.point, -force * contact.gradient());
+        on_object = on_object + contact.push(force);
         all += force;
         moment += force * patch.layout().centers()[contact.taxel];
         if contact.is_saturated(taxel) {

@@ -1,5 +1,6 @@
 //! One taxel on one object: how far it is pushed, and along which way the object feels it.
 
+use super::Wrench;
 use super::indentation::saturation_limit;
 use crate::world::Taxel;
 use glam::DVec3;
@@ -37,6 +38,12 @@ impl TaxelContact {
     /// taxel it is the gradient of the deflection it would need.
     pub fn gradient(&self) -> DVec3 {
         self.normal / self.cosine.max(GRAZING)
+    }
+
+    /// What a force (N) of the taxel along its axis is on the object without friction: at the point where they touch, against
+    /// the [gradient](Self::gradient).
+    pub fn push(&self, force: f64) -> Wrench {
+        Wrench::at(self.point, -force * self.gradient())
     }
 
     /// Whether its taxel (that of the press) would go further than its stroke.

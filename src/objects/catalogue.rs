@@ -21,8 +21,10 @@
 //! written.
 
 use super::solid_toml::WrittenPart;
-use super::{Object, Solid, pack};
+use super::{Hand, Object, Solid, pack};
 use crate::error::{Error, Result};
+use crate::geometry::Pose;
+use glam::DQuat;
 use serde::Deserialize;
 use std::collections::BTreeSet;
 use std::ops::Range;
@@ -66,12 +68,13 @@ impl Entry {
 }
 
 impl Catalogue {
-    /// The objects that come with the crate: 16 balls, 16 boxes, 9 cans, and a household.
+    /// The objects that come with the crate: 16 balls, 16 boxes, 9 cans, a household, and hands.
     pub fn builtin() -> Result<Self> {
         let mut entries = Vec::new();
         for (set, text) in BUILTIN {
             entries.extend(Self::parse(set, &format!("objects/{set}.toml"), text)?.entries);
         }
+        entries.extend(hands()?);
         Ok(Self { entries })
     }
 
@@ -139,6 +142,27 @@ impl Catalogue {
         };
         Err(Error::input("object", format!("`{name}`"), allowed))
     }
+}
+
+/// Right hands of an average man in five poses; palm up, so that a patch from above feels the palm.
+fn hands() -> Result<Vec<Entry>> {
+    let palm_up = Pose::from_rotation(DQuat::from_rotation_y(std::f64::consts::PI));
+    let poses = [
+        ("hand_flat", Hand::flat()),
+        ("hand_spread", Hand::spread()),
+        ("hand_relaxed", Hand::curled(0.25)),
+        ("hand_pointing", Hand::pointing()),
+        ("hand_fist", Hand::curled(1.0)),
+    ];
+    let entry = |(name, hand): (&str, Hand)| {
+        Ok(Entry {
+            set: "hands".to_owned(),
+            name: name.to_owned(),
+            source: "bones: Buryanov, Kotiuk 2010; breadths: our choice".to_owned(),
+            solid: hand.solid()?.moved(&palm_up).resting(),
+        })
+    };
+    poses.into_iter().map(entry).collect()
 }
 
 #[derive(Deserialize)]

@@ -3,6 +3,7 @@
 //! | from | by | gives |
 //! |---|---|---|
 //! | a [`Catalogue`] of [`Solid`]s (TOML, mm) | [`pack`] | few spheres, surface within a stated error |
+//! | a [`Hand`] with posed fingers | [`pack`] | the same |
 //! | the vertices of a [mesh](crate::mesh) | [`vertex_spheres`] | one sphere a vertex, as the original \[BT\] |
 //! | a [`TriangleMesh`](crate::mesh::TriangleMesh) | [`MeshModel::new`] | the triangles themselves |
 //! | a CSV file | [`read_spheres`] | those spheres |
@@ -11,6 +12,7 @@
 
 mod block;
 mod catalogue;
+mod hand;
 mod lathe;
 mod mesh_model;
 mod model;
@@ -28,6 +30,7 @@ mod torus;
 mod vertex_spheres;
 
 pub use catalogue::{Catalogue, Entry};
+pub use hand::{FingerPose, Hand};
 pub use mesh_model::{ContactFace, MeshModel};
 pub use model::Model;
 pub use pack::{MAX_SPHERES, pack};

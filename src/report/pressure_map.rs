@@ -9,11 +9,16 @@ use crate::report::heat_map::{
     largest_of_blocks,
 };
 use crate::report::terminal::Ink;
+use crate::report::text_width::wrap;
 use crate::signal::Quantity;
 use ndarray::Array2;
 
 /// Taxels that a picture shows each way, at most; longer arrays are shown by the largest value of blocks.
 const MOST_CELLS: usize = 512;
+
+/// Size of the text below the title, and from one of its lines to the next.
+const SMALL: u32 = 11;
+const LINE: f64 = 16.0;
 
 /// Darkness for the plain terminal, from nothing to the peak.
 const RAMP: &[u8] = b" .:-=+*#%@";
@@ -29,17 +34,21 @@ pub fn pressure_picture(frame: &Array2<f64>, pitch_mm: f64, quantity: Quantity) 
     let (rows, columns) = shown.dim();
     // Whole pixels a taxel: no seams between neighbours.
     let side = (400.0 / rows.max(columns) as f64).floor().max(1.0);
+    let left = 70.0;
+    let width = (left + side * columns as f64 + 110.0).max(330.0);
+    let mut below = peak_sentence(frame, pitch_mm, quantity);
+    if block > 1 {
+        below += &format!("; each cell is the largest of {block} × {block}");
+    }
+    let below = wrap(&below, f64::from(SMALL), width - left - 8.0);
     let area = Area {
-        x: 70.0,
-        y: 56.0,
+        x: left,
+        y: 40.0 + LINE * below.len() as f64,
         width: side * columns as f64,
         height: side * rows as f64,
     };
     let bar_height = area.height.max(90.0);
-    let mut drawing = Drawing::new(
-        (area.x + area.width + 110.0).max(330.0),
-        area.y + bar_height + 50.0,
-    );
+    let mut drawing = Drawing::new(width, area.y + bar_height + 50.0);
     let scale = ColourScale::over([frame], quantity);
     let title = format!(
         "{} × {} taxels, pitch {} mm",
@@ -48,11 +57,10 @@ pub fn pressure_picture(frame: &Array2<f64>, pitch_mm: f64, quantity: Quantity) 
         short_number(pitch_mm)
     );
     drawing.text((area.x, 22.0), &title, TextStyle::new(13).colour(INK));
-    let mut below = peak_sentence(frame, pitch_mm, quantity);
-    if block > 1 {
-        below += &format!("; each cell is the largest of {block} × {block}");
+    for (number, line) in below.iter().enumerate() {
+        let y = 40.0 + LINE * number as f64;
+        drawing.text((area.x, y), line, TextStyle::new(SMALL).colour(MUTED));
     }
-    drawing.text((area.x, 40.0), &below, TextStyle::new(11).colour(MUTED));
     draw_map(&mut drawing, &shown, quantity, scale, area);
     draw_x_axis(&mut drawing, area, nx as f64 * pitch_mm);
     draw_y_axis(&mut drawing, area, ny as f64 * pitch_mm);

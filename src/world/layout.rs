@@ -2,7 +2,7 @@
 
 use super::Grid;
 use crate::error::{Error, Result};
-use glam::DVec3;
+use glam::{DMat3, DVec3};
 
 /// Taxels of one layout, at most: more is a pitch in the wrong unit, and a hundred bytes each.
 pub const MOST_TAXELS: usize = 1 << 22;
@@ -89,6 +89,21 @@ impl Layout {
         &self.axes
     }
 
+    /// The frame of one taxel: columns x, y (across its axis) and z (its axis) in the patch frame, a rotation.
+    ///
+    /// x and y are those of the patch, turned by the least rotation that takes the patch's z to the axis; of an axis that
+    /// points below the patch's xy plane, x and −y by the least rotation that takes −z there. So the taxels of a flat skin have
+    /// the patch's x and y, and those of a dome differ no more than their axes do; the frames jump only where the axes
+    /// cross the xy plane.
+    ///
+    /// # Panics
+    /// If there are not that many.
+    pub fn frame(&self, taxel: usize) -> DMat3 {
+        let axis = self.axes[taxel];
+        let (x, y) = axis.any_orthonormal_pair();
+        DMat3::from_cols(x, y, axis)
+    }
+
     /// The grid that it was made from, if it was.
     pub fn as_grid(&self) -> Option<&Grid> {
         self.grid.as_ref()
@@ -134,6 +149,9 @@ pub(super) fn check_count(place: &str, about: f64) -> Result<()> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::random::Seed;
+    use glam::DQuat;
+    use rand::Rng;
 
     #[test]
     fn a_grid_lies_as_the_grid_says_and_remembers_it() {
@@ -146,6 +164,27 @@ mod tests {
         assert_eq!(layout.as_grid(), Some(&grid));
         assert_eq!(layout.centers()[5], DVec3::new(2e-3, 1e-3, 0.0));
         assert!(layout.axes().iter().all(|&axis| axis == DVec3::Z));
+    }
+
+    #[test]
+    fn frames_are_the_patchs_turned_the_least() {
+        let mut rng = Seed::new(3).named("frames").rng();
+        let mut axis = || {
+            let mut random = || rng.gen_range(-1.0..1.0);
+            DVec3::new(random(), random(), random()).normalize_or(DVec3::X)
+        };
+        let axes: Vec<DVec3> = (0..200).map(|_| axis()).collect();
+        let layout = Layout::new(vec![DVec3::ZERO; 200], axes.clone()).unwrap();
+        for (taxel, &axis) in axes.iter().enumerate() {
+            let (pole, x, y) = match axis.z > 0.0 {
+                true => (DVec3::Z, DVec3::X, DVec3::Y),
+                false => (-DVec3::Z, DVec3::X, -DVec3::Y),
+            };
+            let least = DQuat::from_rotation_arc(pole, axis);
+            let expected = DMat3::from_cols(least * x, least * y, axis);
+            assert!(layout.frame(taxel).abs_diff_eq(expected, 1e-12), "{axis}");
+            assert!((layout.frame(taxel).determinant() - 1.0).abs() < 1e-14);
+        }
     }
 
     #[test]

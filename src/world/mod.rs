@@ -19,6 +19,7 @@ mod ring;
 mod robot;
 mod scene;
 mod settle;
+mod shear;
 mod skin_patch;
 mod support;
 mod taxel_tree;
@@ -38,6 +39,7 @@ pub use robot::{
     ShapeRole,
 };
 pub use scene::Scene;
+pub use shear::{Shear, Shears};
 pub use skin_patch::{SkinPatch, Taxels};
 pub(crate) use taxel_tree::PlacedTaxel;
 pub use touches::{TouchSource, touches};

@@ -57,14 +57,13 @@ struct Node {
 impl TaxelTree {
     pub fn new(layout: &Layout, taxels: &Taxels) -> Self {
         let place = |number: usize| {
-            let axis = layout.axes()[number];
-            let (x, y) = axis.any_orthonormal_pair();
+            let frame = layout.frame(number);
             let taxel = taxels.at(number);
             PlacedTaxel {
                 number: number as u32,
                 center: layout.centers()[number],
-                across: [x, y],
-                axis,
+                across: [frame.x_axis, frame.y_axis],
+                axis: frame.z_axis,
                 radius: taxel.radius,
                 behind: -taxel.stroke - taxel.radius,
             }

@@ -31,7 +31,7 @@ pub(super) fn eigen(matrix: &SixBySix) -> (Six, SixBySix) {
     /// Sweeps at most; six to eight are usual.
     const MAX_SWEEPS: usize = 50;
     let mut m = *matrix;
-    let mut vectors: SixBySix = std::array::from_fn(|i| unit(i));
+    let mut vectors: SixBySix = std::array::from_fn(unit);
     let size: f64 = m.iter().flatten().map(|x| x * x).sum();
     for _ in 0..MAX_SWEEPS {
         let off: f64 = (0..6)
@@ -67,9 +67,9 @@ fn rotate(m: &mut SixBySix, vectors: &mut SixBySix, p: usize, q: usize) {
         (row[p], row[q]) = (cos * row[p] - sin * row[q], sin * row[p] + cos * row[q]);
     }
     let turned = |rows: &mut SixBySix| {
-        for k in 0..6 {
-            let (a, b) = (rows[p][k], rows[q][k]);
-            (rows[p][k], rows[q][k]) = (cos * a - sin * b, sin * a + cos * b);
+        let (head, tail) = rows.split_at_mut(q);
+        for (a, b) in head[p].iter_mut().zip(&mut tail[0]) {
+            (*a, *b) = (cos * *a - sin * *b, sin * *a + cos * *b);
         }
     };
     turned(m);
@@ -141,13 +141,10 @@ mod tests {
 
     fn random_case(seed: u64) -> (Six, SixBySix) {
         let mut rng = Seed::new(seed).named("six").rng();
-        let mut m = [[0.0; 6]; 6];
-        for i in 0..6 {
-            for j in 0..=i {
-                m[i][j] = rng.gen_range(-1.0..1.0) * 10f64.powi(rng.gen_range(-2..3));
-                m[j][i] = m[i][j];
-            }
-        }
+        let half: SixBySix = std::array::from_fn(|_| {
+            std::array::from_fn(|_| rng.gen_range(-1.0..1.0) * 10f64.powi(rng.gen_range(-2..3)))
+        });
+        let m = std::array::from_fn(|i| std::array::from_fn(|j| half[i][j] + half[j][i]));
         (std::array::from_fn(|_| rng.gen_range(-1.0..1.0)), m)
     }
 

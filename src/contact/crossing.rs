@@ -1,0 +1,97 @@
+//! Where a function crosses zero from below: Newton's steps inside of a bracket.
+
+/// A function at one place.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Sample {
+    pub value: f64,
+    /// Its derivative, as far as it is known: a wrong one costs steps, not truth.
+    pub slope: f64,
+}
+
+/// Every so many steps the bracket is halved, whatever Newton says. More: a function with kinks may creep; fewer: a smooth one is
+/// found later.
+const HALVED_EACH: usize = 3;
+
+/// Where a function crosses zero on its way from a value below zero at `low` to one of zero or more at `high`: to `tolerance` of
+/// its value, or to the last bit of the place.
+///
+/// A function that jumps upwards past zero crosses it there: the upper side of the jump is named.
+pub(super) fn crossing(
+    mut low: f64,
+    mut high: f64,
+    tolerance: f64,
+    mut sample: impl FnMut(f64) -> Sample,
+) -> f64 {
+    let mut at = high;
+    for step in 1.. {
+        let Sample { value, slope } = sample(at);
+        if value.abs() <= tolerance {
+            break;
+        }
+        if value < 0.0 {
+            low = at;
+        } else {
+            high = at;
+        }
+        let middle = 0.5 * low + 0.5 * high;
+        if middle <= low || middle >= high {
+            return high;
+        }
+        let newton = match at - value / slope {
+            // Less than the last bit: the neighbour closes the bracket.
+            same if same == at && value < 0.0 => at.next_up(),
+            same if same == at => at.next_down(),
+            other => other,
+        };
+        let is_inside = newton > low && newton < high;
+        at = if is_inside && step % HALVED_EACH != 0 {
+            newton
+        } else {
+            middle
+        };
+    }
+    at
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn kinks_and_flats_are_crossed_to_the_last_bit() {
+        for root in [1e-9, 0.1, 0.3, 0.5, 0.77] {
+            let f = |x: f64| (x - 0.2).max(0.0) + 3.0 * (x - 0.4).max(0.0) + (x.min(0.1) - 0.1);
+            let slope = |x: f64| f64::from(x > 0.2) + 3.0 * f64::from(x > 0.4) + f64::from(x < 0.1);
+            let found = crossing(0.0, 1.0, 0.0, |x| Sample {
+                value: f(x) - f(root),
+                slope: slope(x),
+            });
+            assert!((f(found) - f(root)).abs() < 1e-15, "{root}: {found}");
+        }
+    }
+
+    #[test]
+    fn a_wrong_slope_finds_the_same() {
+        let mut n_samples = 0;
+        for slope in [0.0, -1.0, f64::NAN, 1e9, 1e-9] {
+            let found = crossing(0.0, 3.0, 0.0, |x| {
+                n_samples += 1;
+                Sample {
+                    value: x * x - 2.0,
+                    slope,
+                }
+            });
+            assert!((found - 2f64.sqrt()).abs() < 1e-15, "{slope}: {found}");
+        }
+        assert!(n_samples < 5 * 200, "{n_samples}");
+    }
+
+    #[test]
+    fn a_jump_is_crossed_at_its_upper_side() {
+        let step = |x: f64| Sample {
+            value: if x < 0.25 { -1.0 } else { 2.0 },
+            slope: 0.0,
+        };
+        assert_eq!(crossing(0.0, 1.0, 1e-12, step), 0.25);
+    }
+}

@@ -1,0 +1,307 @@
+//! A human hand with posed fingers: palm and fingers as balls of changing size swept along the bones.
+//!
+//! The hand is a right one, palm down, on the plane z = 0: fingers along +y, the thumb towards −x, the wrist's middle at the
+//! origin. A flat hand touches the plane with palm, fingers and thumb; fingers bend downwards, through the plane.
+//!
+//! Lengths of bones are mean lengths of adults \[BK\]; breadths are our choice, those of an average man's fingers to half a
+//! millimetre or so. Skin is rigid here, as every object is.
+
+use super::{Part, Shape, Solid};
+use crate::error::{Error, Result};
+use crate::geometry::Pose;
+use glam::{DQuat, DVec3};
+
+/// How a finger is bent, radians; 0 is straight.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct FingerPose {
+    /// Towards the little finger, −0.5 to 0.5.
+    pub spread: f64,
+    /// Of the knuckle (the thumb's metacarpophalangeal joint), −0.5 to 1.7.
+    pub knuckle: f64,
+    /// Of the middle joint (the thumb's last), −0.1 to 2.0.
+    pub middle: f64,
+    /// Of the last joint (the thumb has none), −0.1 to 1.5.
+    pub end: f64,
+}
+
+/// A hand's size and pose.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Hand {
+    /// From wrist to middle fingertip when it is straight, metres; adults have 0.16 to 0.21.
+    pub length: f64,
+    /// Index, middle, ring and little finger.
+    pub fingers: [FingerPose; 4],
+    /// Its joints.
+    pub thumb: FingerPose,
+    /// How far the thumb's metacarpal is turned under the palm, 0 (beside it) to 1.2 radians.
+    pub opposition: f64,
+}
+
+/// One digit: lengths of its bones and diameters at its joints, mm, for a hand of [`MODEL_LENGTH`].
+struct Digit {
+    /// Where its metacarpal begins.
+    base: [f64; 2],
+    /// How far the metacarpal points away from +y, towards +x, radians.
+    angle: f64,
+    /// Metacarpal, then phalanges; the last one with its pulp.
+    bones: [f64; 4],
+    /// At the beginning of the metacarpal, and at the end of each bone.
+    diameters: [f64; 5],
+}
+
+/// Index, middle, ring, little finger.
+const FINGERS: [Digit; 4] = [
+    Digit {
+        base: [-14.0, 20.0],
+        angle: -0.19,
+        bones: [68.1, 39.8, 22.4, 17.3],
+        diameters: [26.0, 25.0, 18.0, 16.0, 13.0],
+    },
+    Digit {
+        base: [-4.5, 22.0],
+        angle: -0.03,
+        bones: [64.6, 44.6, 26.3, 18.9],
+        diameters: [26.0, 25.5, 18.5, 16.5, 13.5],
+    },
+    Digit {
+        base: [5.0, 21.0],
+        angle: 0.12,
+        bones: [58.0, 41.4, 25.7, 18.8],
+        diameters: [26.0, 24.5, 17.5, 15.5, 12.5],
+    },
+    Digit {
+        base: [14.0, 19.0],
+        angle: 0.27,
+        bones: [53.7, 32.7, 18.1, 17.5],
+        diameters: [26.0, 23.0, 15.5, 14.0, 11.5],
+    },
+];
+
+/// Its third phalanx is none.
+const THUMB: Digit = Digit {
+    base: [-17.0, 12.0],
+    angle: -0.75,
+    bones: [46.2, 31.6, 23.2, 0.0],
+    diameters: [28.0, 25.0, 20.5, 15.0, 15.0],
+};
+
+/// From the origin to the middle fingertip of the digits above, mm.
+const MODEL_LENGTH: f64 = 183.1;
+
+impl Hand {
+    /// All fingers straight.
+    pub fn flat() -> Self {
+        Self {
+            length: 0.189,
+            fingers: [FingerPose::default(); 4],
+            thumb: FingerPose::default(),
+            opposition: 0.0,
+        }
+    }
+
+    /// Bent as to hold something round: 0 is flat, 1 a fist.
+    pub fn curled(share: f64) -> Self {
+        let finger = FingerPose {
+            spread: 0.0,
+            knuckle: 1.45 * share,
+            middle: 1.75 * share,
+            end: 1.1 * share,
+        };
+        Self {
+            fingers: [finger; 4],
+            thumb: FingerPose {
+                spread: 0.0,
+                knuckle: 0.6 * share,
+                middle: 0.9 * share,
+                end: 0.0,
+            },
+            opposition: 0.9 * share,
+            ..Self::flat()
+        }
+    }
+
+    /// A fist with the index finger straight.
+    pub fn pointing() -> Self {
+        let mut hand = Self::curled(1.0);
+        hand.fingers[0] = FingerPose::default();
+        hand
+    }
+
+    /// Fingers and thumb spread apart.
+    pub fn spread() -> Self {
+        let mut hand = Self::flat();
+        for (finger, spread) in hand.fingers.iter_mut().zip([-0.22, -0.05, 0.12, 0.3]) {
+            finger.spread = spread;
+        }
+        hand.thumb.spread = -0.25;
+        hand
+    }
+
+    /// The hand as a union of strands. The error names the joint and the range that it is out of.
+    pub fn solid(&self) -> Result<Solid> {
+        self.check()?;
+        // What the model's millimetres are in this hand.
+        let scale = self.length / MODEL_LENGTH;
+        let mut parts = Vec::new();
+        let mut add = |points: Vec<DVec3>, diameters: Vec<f64>| -> Result<()> {
+            let shape = Shape::Strand {
+                points: points.iter().map(|p| scale * *p).collect(),
+                diameters: diameters.iter().map(|d| scale * d).collect(),
+            };
+            parts.push(Part::new(shape, Pose::IDENTITY)?);
+            Ok(())
+        };
+        let digits = FINGERS.iter().zip(&self.fingers);
+        let joints: Vec<_> = digits
+            .map(|(digit, pose)| digit.joints(pose, 0.0))
+            .collect();
+        for (digit, joints) in FINGERS.iter().zip(&joints) {
+            add(joints.to_vec(), digit.diameters.to_vec())?;
+        }
+        // The palm between metacarpals.
+        for (pair, joints) in FINGERS.windows(2).zip(joints.windows(2)) {
+            let middle = |k: usize| 0.5 * (joints[0][k] + joints[1][k]);
+            let width = |k: usize| 0.5 * (pair[0].diameters[k] + pair[1].diameters[k]);
+            add(vec![middle(0), middle(1)], vec![width(0), width(1)])?;
+        }
+        let thumb = THUMB.joints(&self.thumb, self.opposition);
+        add(thumb[..4].to_vec(), THUMB.diameters[..4].to_vec())?;
+        // The ball of the thumb, towards the middle of the palm.
+        let palm = 0.5 * (joints[1][0] + joints[1][1]);
+        add(vec![thumb[0], 0.5 * (thumb[1] + palm)], vec![28.0, 24.0])?;
+        Solid::new(parts)
+    }
+
+    fn check(&self) -> Result<()> {
+        within("hand length", self.length, 0.05..=0.5, "m")?;
+        within("thumb opposition", self.opposition, 0.0..=1.2, "rad")?;
+        let names = [
+            "index finger",
+            "middle finger",
+            "ring finger",
+            "little finger",
+        ];
+        for (name, finger) in names.into_iter().zip(&self.fingers) {
+            finger.check(name)?;
+        }
+        self.thumb.check("thumb")
+    }
+}
+
+impl FingerPose {
+    fn check(&self, finger: &str) -> Result<()> {
+        let place = |joint: &str| format!("{finger}, {joint}");
+        within(&place("spread"), self.spread, -0.5..=0.5, "rad")?;
+        within(&place("knuckle"), self.knuckle, -0.5..=1.7, "rad")?;
+        within(&place("middle joint"), self.middle, -0.1..=2.0, "rad")?;
+        within(&place("last joint"), self.end, -0.1..=1.5, "rad")
+    }
+}
+
+impl Digit {
+    /// Its five joints, mm: each bone turned down from the one before; a straight one has its underside on z = 0.
+    fn joints(&self, pose: &FingerPose, opposition: f64) -> [DVec3; 5] {
+        let [base_x, base_y] = self.base;
+        let mut joints = [DVec3::new(base_x, base_y, 0.5 * self.diameters[0]); 5];
+        let sideways = |angle: f64| DVec3::new(angle.sin(), angle.cos(), 0.0);
+        // A metacarpal that is turned under the palm points down as much.
+        let mut forward = sideways(self.angle) * opposition.cos() - DVec3::Z * opposition.sin();
+        let bends = [0.0, pose.knuckle, pose.middle, pose.end];
+        for (bone, bend) in bends.into_iter().enumerate() {
+            if bone == 1 {
+                forward = DQuat::from_rotation_z(-pose.spread) * forward;
+            }
+            let hinge = sideways(self.angle + pose.spread)
+                .cross(DVec3::Z)
+                .normalize();
+            forward = DQuat::from_axis_angle(hinge, -bend) * forward;
+            // Straight digits get thinner to the end, and their joints so much lower.
+            let sinks = 0.5 * (self.diameters[bone] - self.diameters[bone + 1]);
+            let length = self.bones[bone];
+            let up = forward.cross(hinge).normalize();
+            let level = (length * length - sinks * sinks).max(0.0).sqrt();
+            joints[bone + 1] = joints[bone] + level * forward + sinks * up;
+        }
+        joints
+    }
+}
+
+fn within(place: &str, value: f64, range: std::ops::RangeInclusive<f64>, unit: &str) -> Result<()> {
+    if range.contains(&value) {
+        return Ok(());
+    }
+    Err(Error::input(
+        place,
+        format!("{value} {unit}"),
+        format!("{} to {} {unit}", range.start(), range.end()),
+    ))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn digits() -> impl Iterator<Item = &'static Digit> {
+        FINGERS.iter().chain([&THUMB])
+    }
+
+    #[test]
+    fn a_flat_hand_is_as_long_as_it_says_and_lies_on_the_plane() {
+        let solid = Hand::flat().solid().unwrap();
+        let bounds = solid.bounds();
+        assert!((bounds.max.y - 0.189).abs() < 1e-3, "{bounds:?}");
+        assert!(bounds.min.z.abs() < 1e-9, "{bounds:?}");
+        for digit in digits() {
+            for (joint, diameter) in digit
+                .joints(&FingerPose::default(), 0.0)
+                .iter()
+                .zip(digit.diameters)
+            {
+                assert!((joint.z - 0.5 * diameter).abs() < 1e-9, "{joint}");
+            }
+        }
+    }
+
+    #[test]
+    fn bones_keep_their_lengths_in_every_pose() {
+        for digit in digits() {
+            for share in [0.0, 0.3, 0.7, 1.0] {
+                let mut pose = Hand::curled(share).fingers[0];
+                pose.spread = 0.3 * share;
+                let joints = digit.joints(&pose, share);
+                for (bone, length) in digit.bones.into_iter().enumerate() {
+                    let found = joints[bone].distance(joints[bone + 1]);
+                    assert!((found - length).abs() < 1e-9, "{found} for {length}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn fingers_bend_downwards_and_a_fist_is_short() {
+        let flat = Hand::flat().solid().unwrap().bounds();
+        let fist = Hand::curled(1.0).solid().unwrap().bounds();
+        assert!(fist.min.z < -0.02, "{fist:?}");
+        assert!(fist.max.y < 0.7 * flat.max.y, "{fist:?}");
+        let pointing = Hand::pointing().solid().unwrap().bounds();
+        assert!(pointing.max.y > 0.16, "{pointing:?}");
+    }
+
+    #[test]
+    fn a_joint_that_no_hand_has_is_refused() {
+        let mut hand = Hand::flat();
+        hand.fingers[2].middle = 2.5;
+        assert_eq!(
+            hand.solid().unwrap_err().to_string(),
+            "ring finger, middle joint: 2.5 rad; -0.1 to 2 rad"
+        );
+        let mut hand = Hand::flat();
+        hand.length = f64::NAN;
+        assert!(
+            hand.solid()
+                .unwrap_err()
+                .to_string()
+                .starts_with("hand length")
+        );
+    }
+}

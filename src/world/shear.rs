@@ -1,0 +1,91 @@
+//! What a taxel's tip does sideways: a shear spring, and how well it grips.
+
+use super::SkinPatch;
+use super::patch::check_positive;
+use crate::error::{Error, Result};
+
+/// A taxel's shear spring and its friction; an option beside a [`SkinPatch`], whose taxels slide along their axes without it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Shear {
+    /// k_t, N/m, positive: how stiff the tip is across its axis.
+    pub stiffness: f64,
+    /// μ, zero or positive: what the tip can carry across its axis, as a share of what presses it in.
+    pub friction: f64,
+}
+
+impl Shear {
+    /// How far the tip of a taxel that `force` newtons press in can be displaced before it slips, metres: μ f / k_t.
+    pub fn reach(&self, force: f64) -> f64 {
+        self.friction * force / self.stiffness
+    }
+
+    /// The error names the first property that is out of its range.
+    pub fn check(&self) -> Result<()> {
+        check_positive("shear stiffness", self.stiffness, "N/m")?;
+        if self.friction.is_finite() && self.friction >= 0.0 {
+            return Ok(());
+        }
+        Err(Error::input(
+            "friction coefficient",
+            self.friction,
+            "zero or a positive number",
+        ))
+    }
+}
+
+/// The shear springs of a patch.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Shears {
+    /// All the same.
+    Equal(Shear),
+    /// One a taxel, in the order of the layout.
+    Each(Vec<Shear>),
+}
+
+impl Shears {
+    /// That of one taxel.
+    ///
+    /// # Panics
+    /// If there are not that many.
+    pub fn at(&self, taxel: usize) -> &Shear {
+        match self {
+            Self::Equal(equal) => equal,
+            Self::Each(each) => &each[taxel],
+        }
+    }
+
+    /// Whether they fit a patch. The error names a property out of its range and its taxel (from 1), or the numbers of shear
+    /// springs and taxels if they differ.
+    pub fn check(&self, patch: &SkinPatch) -> Result<()> {
+        match self {
+            Self::Equal(equal) => equal.check(),
+            Self::Each(each) if each.len() != patch.n_taxels() => Err(Error::input(
+                format!("skin patch {}", patch.name()),
+                format!(
+                    "{} shear springs for {} taxels",
+                    each.len(),
+                    patch.n_taxels()
+                ),
+                "one a taxel, or one for all",
+            )),
+            Self::Each(each) => {
+                for (index, shear) in each.iter().enumerate() {
+                    shear.check().map_err(|error| of_taxel(index, error))?;
+                }
+                Ok(())
+            }
+        }
+    }
+}
+
+/// The same error, with the taxel before what it says.
+fn of_taxel(index: usize, error: Error) -> Error {
+    match error {
+        Error::Input {
+            place,
+            given,
+            allowed,
+        } => Error::input(format!("taxel {}, {place}", index + 1), given, allowed),
+        other => other,
+    }
+}
