@@ -33,10 +33,10 @@
 //! [[objects]]
 //! name = "ball"
 //! object = "tennis"
-//! at = { position_mm = [0.0, 0.0, 2.0] }
+//! at = { position_mm = [0.0, 0.0, 3.0] }
 //! motion = { phases = [
-//!     { duration_s = 1.0, linear_mm_per_s = [0.0, 0.0, -4.0] },
-//!     { duration_s = 1.0, linear_mm_per_s = [0.0, 0.0, 4.0] },
+//!     { duration_s = 1.0, linear_mm_per_s = [0.0, 0.0, -5.0] },
+//!     { duration_s = 1.0, linear_mm_per_s = [0.0, 0.0, 5.0] },
 //! ] }
 //! "#)?;
 //! let plan = ScenePlan::new("ball.toml", std::path::Path::new(""), spec)?;
