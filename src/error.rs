@@ -1,5 +1,6 @@
 //! What can go wrong, in two kinds: the input is bad, or the world failed.
 
+use std::fmt::Display;
 use std::path::{Path, PathBuf};
 
 /// The result of everything that can fail here.
@@ -39,6 +40,18 @@ impl Error {
             place: place.to_string(),
             given: given.to_string(),
             allowed: allowed.to_string(),
+        }
+    }
+
+    /// The same, with `outer` before the place of bad input; `outer` ends in what parts the two (`: ` or `, `).
+    pub fn under(self, outer: impl Display) -> Self {
+        match self {
+            Self::Input {
+                place,
+                given,
+                allowed,
+            } => Self::input(format!("{outer}{place}"), given, allowed),
+            io @ Self::Io { .. } => io,
         }
     }
 

@@ -138,6 +138,7 @@ pub mod report;
 pub mod scene;
 pub mod sensing;
 pub mod signal;
+mod spelling;
 pub mod study;
 pub mod world;
 

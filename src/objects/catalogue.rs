@@ -189,27 +189,15 @@ impl WrittenObject {
         let mut parts = Vec::new();
         for (index, part) in self.part.into_iter().enumerate() {
             let place = format!("{place}, part {} ({})", index + 1, part.name());
-            parts.push(part.part().map_err(|e| at(&place, e))?);
+            parts.push(part.part().map_err(|e| e.under(format!("{place}: ")))?);
         }
-        let solid = Solid::new(parts).map_err(|e| at(&place, e))?;
+        let solid = Solid::new(parts).map_err(|e| e.under(format!("{place}: ")))?;
         Ok(Entry {
             set: set.to_string(),
             name: self.name,
             source: self.source,
             solid: solid.resting(),
         })
-    }
-}
-
-/// The same error with a longer place.
-fn at(outer: &str, error: Error) -> Error {
-    match error {
-        Error::Input {
-            place,
-            given,
-            allowed,
-        } => Error::input(format!("{outer}: {place}"), given, allowed),
-        other => other,
     }
 }
 

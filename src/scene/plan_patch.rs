@@ -6,8 +6,9 @@ use super::spec::{LayoutSpec, PatchSpec};
 use crate::error::Result;
 use crate::geometry::Pose;
 use crate::random::Seed;
+use crate::spelling::nearest_names;
 use crate::study::{not_negative, positive, read_mesh_file};
-use crate::world::{Grid, Layout, Patch, SkinPatch, Taxel, Taxels, nearest_names};
+use crate::world::{Grid, Layout, Patch, SkinPatch, Taxel, Taxels};
 
 /// A patch and where it is mounted.
 #[derive(Clone, Debug)]

@@ -3,7 +3,8 @@
 use super::reader::{MM, Reader};
 use super::spec::{JointsSpec, RobotSpec};
 use crate::error::Result;
-use crate::world::{Dimension, JointTrajectory, Motion, Robot, nearest_names};
+use crate::spelling::nearest_names;
+use crate::world::{Dimension, JointTrajectory, Motion, Robot};
 use ndarray::Array2;
 
 /// A robot whose motion is known.

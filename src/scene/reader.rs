@@ -1,7 +1,7 @@
 //! What all parts of a plan need: errors with file and key, poses, motions, files beside the scene's.
 
 use super::spec::{MotionSpec, PoseSpec};
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::geometry::{Pose, rotation_from_rpy};
 use crate::study::{Check, not_negative};
 use crate::world::{Motion, Phase, PoseTrajectory, VelocityPlan};
@@ -23,17 +23,7 @@ pub(super) struct Reader<'a> {
 impl Reader<'_> {
     /// The same, its error with the file and the key before what it says.
     pub fn under<T>(&self, key: &str, result: Result<T>) -> Result<T> {
-        result.map_err(|error| match error {
-            Error::Input {
-                place,
-                given,
-                allowed,
-            } => {
-                let place = format!("{}, key {key}: {place}", self.check.place);
-                Error::input(place, given, allowed)
-            }
-            other => other,
-        })
+        result.map_err(|error| error.under(format!("{}, key {key}: ", self.check.place)))
     }
 
     /// Where a file of the scene is.

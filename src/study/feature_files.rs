@@ -155,7 +155,7 @@ pub fn read_features(folder: &Path) -> Result<FeatureSet> {
         features.as_standard_layout().into_owned(),
         Array1::from(labels),
     )
-    .map_err(|error| within(folder, error))?;
+    .map_err(|error| error.under(format!("{}: ", folder.display())))?;
     Ok(FeatureSet { data, split })
 }
 
@@ -262,18 +262,6 @@ fn check_split(folder: &Path, split: &Split, n_rows: usize) -> Result<()> {
         }
     }
     Ok(())
-}
-
-/// An error of the data, with the folder that they come from.
-fn within(folder: &Path, error: Error) -> Error {
-    match error {
-        Error::Input {
-            place,
-            given,
-            allowed,
-        } => Error::input(format!("{}: {place}", folder.display()), given, allowed),
-        other => other,
-    }
 }
 
 fn find(sweep: &Sweep, number: usize) -> Result<(&Group, &Cell)> {

@@ -13,6 +13,7 @@ mod layout_flat;
 mod mass;
 mod motion;
 mod patch;
+mod per_taxel;
 mod placement;
 mod rest;
 mod ring;
@@ -31,9 +32,9 @@ pub use layout::{Layout, MOST_TAXELS};
 pub use mass::center_of_mass;
 pub use motion::{Interpolation, JointTrajectory, Motion, PoseTrajectory};
 pub use patch::{Grid, Patch, Taxel};
+pub use per_taxel::PerTaxel;
 pub use placement::{Placement, RestPoses, Spread, Touch, TouchAxis};
 pub use rest::{RestPose, as_modelled, stable_poses, stable_poses_about};
-pub(crate) use robot::nearest_names;
 pub use robot::{
     Coordinate, Dimension, Joint, JointKind, Limits, Link, LinkGeometry, LinkShape, Mimic, Robot,
     ShapeRole,

@@ -1,7 +1,7 @@
 //! What a taxel's tip does sideways: a shear spring, and how well it grips.
 
-use super::SkinPatch;
 use super::patch::check_positive;
+use super::{PerTaxel, SkinPatch};
 use crate::error::{Error, Result};
 
 /// A taxel's shear spring and its friction; an option beside a [`SkinPatch`], whose taxels slide along their axes without it.
@@ -34,26 +34,9 @@ impl Shear {
 }
 
 /// The shear springs of a patch.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Shears {
-    /// All the same.
-    Equal(Shear),
-    /// One a taxel, in the order of the layout.
-    Each(Vec<Shear>),
-}
+pub type Shears = PerTaxel<Shear>;
 
 impl Shears {
-    /// That of one taxel.
-    ///
-    /// # Panics
-    /// If there are not that many.
-    pub fn at(&self, taxel: usize) -> &Shear {
-        match self {
-            Self::Equal(equal) => equal,
-            Self::Each(each) => &each[taxel],
-        }
-    }
-
     /// Whether they fit a patch. The error names a property out of its range and its taxel (from 1), or the numbers of shear
     /// springs and taxels if they differ.
     pub fn check(&self, patch: &SkinPatch) -> Result<()> {
@@ -70,22 +53,11 @@ impl Shears {
             )),
             Self::Each(each) => {
                 for (index, shear) in each.iter().enumerate() {
-                    shear.check().map_err(|error| of_taxel(index, error))?;
+                    let place = || format!("taxel {}, ", index + 1);
+                    shear.check().map_err(|error| error.under(place()))?;
                 }
                 Ok(())
             }
         }
-    }
-}
-
-/// The same error, with the taxel before what it says.
-fn of_taxel(index: usize, error: Error) -> Error {
-    match error {
-        Error::Input {
-            place,
-            given,
-            allowed,
-        } => Error::input(format!("taxel {}, {place}", index + 1), given, allowed),
-        other => other,
     }
 }

@@ -1,7 +1,7 @@
 //! A patch of skin of any shape.
 
 use super::taxel_tree::TaxelTree;
-use super::{Layout, Patch, Taxel};
+use super::{Layout, Patch, PerTaxel, Taxel};
 use crate::error::{Error, Result};
 
 /// A rigid substrate with taxels of any layout, equal or not.
@@ -16,34 +16,7 @@ pub struct SkinPatch {
 }
 
 /// What the taxels of a patch are.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Taxels {
-    /// All the same.
-    Equal(Taxel),
-    /// One each, in the order of the layout.
-    Each(Vec<Taxel>),
-}
-
-impl Taxels {
-    /// What one of them is.
-    ///
-    /// # Panics
-    /// If there are not that many.
-    pub fn at(&self, taxel: usize) -> &Taxel {
-        match self {
-            Self::Equal(equal) => equal,
-            Self::Each(each) => &each[taxel],
-        }
-    }
-
-    /// Each kind that there is: one, or as many as taxels.
-    pub fn all(&self) -> &[Taxel] {
-        match self {
-            Self::Equal(equal) => std::slice::from_ref(equal),
-            Self::Each(each) => each,
-        }
-    }
-}
+pub type Taxels = PerTaxel<Taxel>;
 
 impl SkinPatch {
     /// Checks the taxels and prepares the patch; about a microsecond a taxel.
@@ -53,7 +26,9 @@ impl SkinPatch {
     pub fn new(name: impl Into<String>, layout: Layout, taxels: Taxels) -> Result<Self> {
         let name = name.into();
         match &taxels {
-            Taxels::Equal(taxel) => taxel.check().map_err(|error| at(&name, error))?,
+            Taxels::Equal(taxel) => taxel
+                .check()
+                .map_err(|error| error.under(format!("skin patch {name}, ")))?,
             Taxels::Each(each) => check_each(&name, each, layout.n_taxels())?,
         }
         Ok(Self::of_checked(name, layout, taxels))
@@ -114,22 +89,10 @@ fn check_each(name: &str, taxels: &[Taxel], n_places: usize) -> Result<()> {
         ));
     }
     for (index, taxel) in taxels.iter().enumerate() {
-        let place = || format!("{name}, taxel {}", index + 1);
-        taxel.check().map_err(|error| at(&place(), error))?;
+        let place = || format!("skin patch {name}, taxel {}, ", index + 1);
+        taxel.check().map_err(|error| error.under(place()))?;
     }
     Ok(())
-}
-
-/// The same error, with the patch before what it says of one taxel.
-fn at(patch: &str, error: Error) -> Error {
-    match error {
-        Error::Input {
-            place,
-            given,
-            allowed,
-        } => Error::input(format!("skin patch {patch}, {place}"), given, allowed),
-        other => other,
-    }
 }
 
 #[cfg(test)]

@@ -2,7 +2,7 @@
 
 use super::way_points::{Origin, WayPoints};
 use crate::error::{Error, Result};
-use crate::world::robot::nearest_names;
+use crate::spelling::nearest_names;
 use ndarray::Array2;
 use std::f64::consts::PI;
 use std::io::{self, Read};

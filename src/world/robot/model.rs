@@ -3,9 +3,10 @@
 use super::mimic::Drive;
 use super::tree::Tree;
 use super::urdf::read_urdf;
-use super::{Coordinate, Joint, Link, nearest_names};
+use super::{Coordinate, Joint, Link};
 use crate::error::{Error, Result};
 use crate::geometry::Pose;
+use crate::spelling::nearest_names;
 use std::collections::HashSet;
 use std::path::Path;
 

@@ -1,8 +1,8 @@
 //! XML elements that know where they stand: what is read from them, or the sentence that says why not.
 
-use super::spelling::slip_of;
 use crate::error::{Error, Result};
 use crate::geometry::{Pose, rotation_from_rpy, written_rotation};
+use crate::spelling::slip_of;
 use glam::{DQuat, DVec3};
 use roxmltree::Node;
 use std::str::FromStr;

@@ -25,7 +25,7 @@ pub(crate) fn nearest_names<'a>(name: &str, names: impl IntoIterator<Item = &'a 
 }
 
 /// The known word that an unknown one is a slip of, if it is: at most two letters off and no more than a third of it.
-pub(super) fn slip_of<'a>(word: &str, known: &[&'a str]) -> Option<&'a str> {
+pub(crate) fn slip_of<'a>(word: &str, known: &[&'a str]) -> Option<&'a str> {
     let near = |known: &&&str| {
         let far = distance(word, known);
         far <= 2 && far * 3 <= known.chars().count()
