@@ -130,6 +130,7 @@ pub mod error;
 pub mod files;
 pub mod geometry;
 pub mod mesh;
+mod numbers_csv;
 pub mod objects;
 pub mod packing;
 pub mod random;
