@@ -37,6 +37,30 @@ fn bits(values: ArrayView2<f64>) -> Vec<u64> {
 }
 
 #[test]
+fn measuring_what_is_touched_is_measuring_the_frame() {
+    for ensemble in ENSEMBLES {
+        for (grid, m) in [((1, 1), 1), ((3, 5), 4), ((12, 9), 50), ((64, 64), 256)] {
+            let projection = projection(ensemble, grid, m);
+            let columns = projection.columns();
+            let n = grid.0 * grid.1;
+            assert_eq!(columns.n_taxels(), n);
+            let mut frames = frames(3, n);
+            frames.mapv_inplace(|value| if value > 0.6 { value } else { 0.0 });
+            let whole = projection.measure(frames.view());
+            let mut measurements = vec![f64::NAN; columns.n_measurements()];
+            for (frame, expected) in frames.outer_iter().zip(whole.outer_iter()) {
+                let touched = frame.iter().copied().enumerate();
+                columns
+                    .measure_touched(touched.filter(|&(_, value)| value > 0.0), &mut measurements);
+                for (fast, slow) in measurements.iter().zip(expected) {
+                    assert!((fast - slow).abs() < 1e-12, "{ensemble:?} {fast} {slow}");
+                }
+            }
+        }
+    }
+}
+
+#[test]
 fn measuring_is_multiplying_by_the_matrix() {
     for ensemble in ENSEMBLES {
         for (grid, m) in [((1, 1), 1), ((3, 5), 4), ((12, 9), 50), ((8, 8), 64)] {

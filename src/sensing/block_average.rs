@@ -96,9 +96,26 @@ pub(super) fn row_squares(blocks: &[Block]) -> Array1<f64> {
         .collect()
 }
 
+/// Measurement, taxel and value of each entry that is not zero.
+pub(super) fn each_entry(blocks: &[Block], mut visit: impl FnMut(usize, usize, f64)) {
+    let nx = width(blocks);
+    for (measurement, block) in blocks.iter().enumerate() {
+        for line in block.rows.clone() {
+            for column in block.columns.clone() {
+                visit(measurement, line * nx + column, 1.0 / block.area() as f64);
+            }
+        }
+    }
+}
+
+/// nx of the array that they cover.
+fn width(blocks: &[Block]) -> usize {
+    blocks.iter().map(|b| b.columns.end).max().unwrap_or(1)
+}
+
 /// The mean of each block of each frame.
 pub(super) fn measure(blocks: &[Block], frames: ArrayView2<f64>, mut out: ArrayViewMut2<f64>) {
-    let nx = blocks.iter().map(|b| b.columns.end).max().unwrap_or(1);
+    let nx = width(blocks);
     for (frame, mut row) in frames.outer_iter().zip(out.outer_iter_mut()) {
         for (y, block) in row.iter_mut().zip(blocks) {
             let mut sum = 0.0;

@@ -65,6 +65,23 @@ impl ScrambledHadamard {
         }
     }
 
+    /// Measurement, taxel and value of each entry.
+    pub(super) fn each_entry(&self, mut visit: impl FnMut(usize, usize, f64)) {
+        let scale = 1.0 / (self.block as f64).sqrt();
+        for &(coefficient, measurement) in &self.picks {
+            let (block, i) = (coefficient / self.block, coefficient % self.block);
+            for (j, &taxel) in self.taxels[block * self.block..][..self.block]
+                .iter()
+                .enumerate()
+            {
+                if taxel < self.n_taxels {
+                    let is_minus = (i & j).count_ones() % 2 == 1;
+                    visit(measurement, taxel, if is_minus { -scale } else { scale });
+                }
+            }
+        }
+    }
+
     /// Below 1 where zeros were scattered among the taxels.
     pub(super) fn row_norm(&self) -> f64 {
         let in_block = |coefficient: usize| {
@@ -117,21 +134,7 @@ mod tests {
     /// Φ from its definition, entry by entry.
     fn dense(hadamard: &ScrambledHadamard) -> Array2<f64> {
         let mut matrix = Array2::zeros((hadamard.picks.len(), hadamard.n_taxels));
-        let scale = 1.0 / (hadamard.block as f64).sqrt();
-        for &(coefficient, measurement) in &hadamard.picks {
-            let (block, i) = (coefficient / hadamard.block, coefficient % hadamard.block);
-            for j in 0..hadamard.block {
-                let taxel = hadamard.taxels[block * hadamard.block + j];
-                let sign = if (i & j).count_ones() % 2 == 0 {
-                    1.0
-                } else {
-                    -1.0
-                };
-                if taxel < hadamard.n_taxels {
-                    matrix[[measurement, taxel]] = sign * scale;
-                }
-            }
-        }
+        hadamard.each_entry(|measurement, taxel, value| matrix[[measurement, taxel]] = value);
         matrix
     }
 

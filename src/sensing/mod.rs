@@ -43,6 +43,7 @@
 mod block_average;
 mod cholesky;
 mod coherence;
+mod columns;
 mod cosine;
 mod dense;
 mod dictionary;
@@ -60,6 +61,7 @@ mod symmetric_eigen;
 mod wavelet;
 
 pub use coherence::{Coherence, Extremes};
+pub use columns::Columns;
 pub use dictionary::{Basis, Dictionary, Energy};
 pub use lasso::Lasso;
 pub use lmmse::Lmmse;

@@ -127,6 +127,24 @@ impl Projection {
         }
     }
 
+    /// Calls `visit` with measurement, taxel and value of each entry of Φ that may not be zero; the same order every time.
+    pub(super) fn each_entry(&self, mut visit: impl FnMut(usize, usize, f64)) {
+        match &self.operator {
+            Operator::Dense(matrix) => {
+                let entries = matrix.indexed_iter();
+                entries.for_each(|((measurement, taxel), &value)| visit(measurement, taxel, value));
+            }
+            Operator::Sparse(sparse) => sparse.each_entry(visit),
+            Operator::Hadamard(hadamard) => hadamard.each_entry(visit),
+            Operator::Blocks(blocks) => block_average::each_entry(blocks, visit),
+            Operator::Taxels(taxels) => {
+                let picked = taxels.iter().enumerate();
+                picked.for_each(|(measurement, &taxel)| visit(measurement, taxel, 1.0));
+            }
+            Operator::Identity => (0..self.n_taxels).for_each(|taxel| visit(taxel, taxel, 1.0)),
+        }
+    }
+
     /// Root mean square norm of a row of Φ: how much louder noise on a taxel is in a measurement.
     pub fn row_norm(&self) -> f64 {
         match &self.operator {

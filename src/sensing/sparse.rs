@@ -48,6 +48,16 @@ impl VerySparse {
         self.scale * (n_entries as f64 / self.rows.len() as f64).sqrt()
     }
 
+    /// Measurement, taxel and value of each entry that is not zero.
+    pub(super) fn each_entry(&self, mut visit: impl FnMut(usize, usize, f64)) {
+        for (measurement, row) in self.rows.iter().enumerate() {
+            let plus = row.plus.iter().map(|&taxel| (taxel, self.scale));
+            let minus = row.minus.iter().map(|&taxel| (taxel, -self.scale));
+            plus.chain(minus)
+                .for_each(|(taxel, value)| visit(measurement, taxel, value));
+        }
+    }
+
     pub(super) fn measure(&self, frames: ArrayView2<f64>, mut out: ArrayViewMut2<f64>) {
         let mut values = vec![[0.0; LANES]; self.n_taxels];
         let groups = frames.axis_chunks_iter(ndarray::Axis(0), LANES);
