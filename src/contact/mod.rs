@@ -39,6 +39,7 @@ mod envelope;
 mod friction;
 mod grid_lines;
 mod indentation;
+mod placed_sphere;
 mod press_force;
 mod scene_meshes;
 mod simulate;

@@ -42,6 +42,7 @@ pub use robot::{
 pub use scene::Scene;
 pub use shear::{Shear, Shears};
 pub use skin_patch::{SkinPatch, Taxels};
+pub(crate) use skin_patch::EvenGrid;
 pub(crate) use taxel_tree::PlacedTaxel;
 pub use touches::{TouchSource, touches};
 pub use trajectory::{Phase, VelocityPlan};
