@@ -66,7 +66,10 @@ impl Workspace {
             let pairs = scene.objects.iter().zip(patch_from_objects);
             pairs.filter_map(|(object, pose)| {
                 let spheres = object.spheres()?.spheres();
-                Some((spheres, View::new(scene.patch.taxel.radius, &self.lines, pose)))
+                Some((
+                    spheres,
+                    View::new(scene.patch.taxel.radius, &self.lines, pose),
+                ))
             })
         };
         let depth = match goal {

@@ -94,7 +94,9 @@ impl PlacedSphere {
     ) {
         let height = self.center.z;
         self.each_row(lines, height, |taxels, places, row_reach2| {
-            let taxels = deflections[taxels.clone()].iter_mut().zip(&mut marks[taxels]);
+            let taxels = deflections[taxels.clone()]
+                .iter_mut()
+                .zip(&mut marks[taxels]);
             for ((deflection, marked), x) in taxels.zip(places) {
                 let dx = x - self.center.x;
                 let q = row_reach2 - dx * dx;

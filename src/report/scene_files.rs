@@ -48,7 +48,11 @@ impl SceneFiles {
             folder: folder.to_owned(),
             names: names.collect(),
             scene: plan.spec.to_toml(),
-            recording: RecordingWriter::create(&folder.join("recording.npz"), header)?,
+            recording: RecordingWriter::create_for(
+                &folder.join("recording.npz"),
+                header,
+                plan.n_frames,
+            )?,
             wrenches: ContactTable::create(&folder.join("wrenches.csv"))?,
         })
     }
