@@ -57,6 +57,6 @@ pub use press_force::press_to_force;
 pub use simulate::{Recording, simulate};
 pub use skin_force::{SkinPress, press_skin_to_force};
 pub use skin_press::{SkinContact, SkinWorkspace, press_skin};
-pub use spring_load::{SpringLoad, Wrench, spring_load};
+pub use spring_load::{AxialLoad, SpringLoad, Wrench, axial_load, spring_load};
 pub use swept_triangle::stopping_height;
 pub use taxel_contact::{GRAZING, TaxelContact};
