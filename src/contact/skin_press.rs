@@ -124,6 +124,35 @@ pub fn press_skin(
     patch_from_objects: &[Pose],
     workspace: &mut SkinWorkspace,
 ) -> SkinContact {
+    push(patch, objects, patch_from_objects, workspace);
+    finish(patch, objects, patch_from_objects, workspace)
+}
+
+/// The deflections of [`press_skin`] alone, for steps of which nobody wants to know what touches what: the workspace then has no
+/// contacts.
+///
+/// # Panics
+/// If there are not as many poses as objects.
+pub fn deflect_skin(
+    patch: &SkinPatch,
+    objects: &[Model],
+    patch_from_objects: &[Pose],
+    workspace: &mut SkinWorkspace,
+) {
+    push(patch, objects, patch_from_objects, workspace);
+    for &taxel in &workspace.touched {
+        let deflection = &mut workspace.deflections[taxel as usize];
+        *deflection = deflection.min(patch.taxels().at(taxel as usize).stroke);
+    }
+}
+
+/// Pushes each taxel as far as an object needs, without a stop.
+fn push(
+    patch: &SkinPatch,
+    objects: &[Model],
+    patch_from_objects: &[Pose],
+    workspace: &mut SkinWorkspace,
+) {
     assert_eq!(
         objects.len(),
         patch_from_objects.len(),
@@ -139,7 +168,6 @@ pub fn press_skin(
             Model::Mesh(mesh) => push_by_mesh(patch, number, mesh, pose, workspace),
         }
     }
-    finish(patch, objects, patch_from_objects, workspace)
 }
 
 /// The same as [`push_by_spheres`] to the bit, for taxels in rows: no search, and no look at spheres that are above all of them.
