@@ -583,8 +583,8 @@ fn contact_rows_have_empty_centres_without_contact_and_the_digits_to_come_back()
     table.commit().unwrap();
     assert_eq!(
         fs::read_to_string(&path).unwrap(),
-        "time_s,patch,n_touched,n_saturated,fx_n,fy_n,fz_n,tx_nm,ty_nm,tz_nm,cop_x_m,cop_y_m,cop_z_m\n\
-         0.30000000000000004,palm,2,1,0.0,0.0,3.0,0.0,-0.6,0.0,0.19999999999999998,0.0,0.0\n\
-         0.30000000000000004,\"finger, left\",0,0,0.0,0.0,0.0,0.0,0.0,0.0,,,\n"
+        "time_s,patch,n_touched,n_saturated,fx_n,fy_n,fz_n,tx_nm,ty_nm,tz_nm,cop_x_m,cop_y_m,cop_z_m,n_sticking,n_slipping\n\
+         0.30000000000000004,palm,2,1,0.0,0.0,3.0,0.0,-0.6,0.0,0.19999999999999998,0.0,0.0,,\n\
+         0.30000000000000004,\"finger, left\",0,0,0.0,0.0,0.0,0.0,0.0,0.0,,,,,\n"
     );
 }

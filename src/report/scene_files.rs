@@ -4,6 +4,7 @@ use super::recording::contact_table::{ContactTable, PatchContact};
 use super::recording::{
     ForceKind, Forces, PatchFrame, Precision, RecordedPatch, RecordingHeader, RecordingWriter,
 };
+use crate::contact::GripCounts;
 use crate::error::Result;
 use crate::files::write_bytes;
 use crate::geometry::Pose;
@@ -69,7 +70,10 @@ impl FrameSink for SceneFiles {
     fn frame(&mut self, frame: &Frame) -> Result<()> {
         let patches = frame.patches.iter().map(|patch| PatchFrame {
             deflection: &patch.deflection,
-            force: Forces::Normal(&patch.force),
+            force: match &patch.friction {
+                Some(friction) => Forces::Vector(&friction.force3),
+                None => Forces::Normal(&patch.force),
+            },
             pose: patch.pose,
         });
         let patches: Vec<PatchFrame> = patches.collect();
@@ -83,6 +87,10 @@ impl FrameSink for SceneFiles {
                 force: patch.wrench.force,
                 torque: patch.wrench.torque,
                 center_of_pressure: patch.center_of_pressure,
+                grips: patch.friction.as_ref().map(|friction| GripCounts {
+                    n_sticking: friction.n_sticking,
+                    n_slipping: friction.n_slipping,
+                }),
             };
             self.wrenches.row(frame.time, &contact)?;
         }
@@ -97,6 +105,9 @@ fn recorded(patch: &PlannedPatch) -> RecordedPatch {
         centers: layout.centers().to_vec(),
         axes: layout.axes().to_vec(),
         grid: layout.as_grid().copied(),
-        force: ForceKind::Normal,
+        force: match patch.shears {
+            Some(_) => ForceKind::Vector,
+            None => ForceKind::Normal,
+        },
     }
 }
