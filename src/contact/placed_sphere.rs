@@ -21,6 +21,10 @@ const ROUNDING: f64 = 1.0 + 1e-9;
 /// ends of short rows are computed in vain.
 const SQUARE: usize = 10;
 
+/// What is needed is compared before its root is taken: a square that is less than this share of the least that counts has a root
+/// that does not, however both are rounded. Larger: rounding decides; smaller: roots in vain.
+const ALMOST: f64 = 1.0 - 1e-12;
+
 /// An object's frame seen from the patch.
 pub(super) struct View {
     /// Rows of the rotation.
@@ -100,7 +104,8 @@ impl PlacedSphere {
             for ((deflection, marked), x) in taxels.zip(places) {
                 let dx = x - self.center.x;
                 let q = row_reach2 - dx * dx;
-                if q > 0.0 {
+                let bar = (height + *deflection).max(0.0);
+                if q > bar * bar * ALMOST {
                     let needed = q.sqrt() - height;
                     if needed > *deflection {
                         *deflection = needed;

@@ -1,9 +1,10 @@
 //! Rows of many arrays in memory, until there are enough to be written.
 
-/// Bytes of a block. Smaller: more and shorter reads and writes; larger: more memory.
-const BLOCK: usize = 8 << 20;
+/// Bytes of a block. Smaller: more and shorter reads and writes; larger: the processor has forgotten it when it is written, which then
+/// takes half as long again.
+const BLOCK: usize = 2 << 20;
 
-/// Some megabytes of rows, those of each array together.
+/// A few megabytes of rows, those of each array together.
 ///
 /// Invariant: each column holds the rows since the last whole block, `row_bytes` each.
 #[derive(Clone, Debug)]

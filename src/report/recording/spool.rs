@@ -77,7 +77,7 @@ mod tests {
     fn columns_come_back_whole_over_many_blocks_and_a_short_last_one() {
         let folder = tempfile::tempdir().unwrap();
         let target = folder.path().join("target");
-        // Two thirds of a megabyte a row: twelve rows a block.
+        // Two thirds of a megabyte a row: two rows a block.
         let row_bytes = vec![5, 700_000, 0, 8];
         for n_rows in [0, 1, 11, 12, 25] {
             let mut spool = Spool::create(&target).unwrap();

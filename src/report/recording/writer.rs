@@ -35,7 +35,7 @@ pub struct PatchFrame<'a> {
 
 /// An `.npz` in the making. [`finish`](Self::finish) puts it in place; dropped before, it leaves nothing behind.
 ///
-/// It holds about 8 MiB of rows in memory, whatever the number of frames (a frame, if that is larger). Where that number is known
+/// It holds about 2 MiB of rows in memory, whatever the number of frames (a frame, if that is larger). Where that number is known
 /// beforehand ([`create_for`](Self::create_for)), they are written once; else they need as much disk as the recording beside
 /// the target until it is finished, twice that while it finishes. The file is the same.
 pub struct RecordingWriter {
