@@ -4,8 +4,11 @@ use bubbletouch::contact::balance::{Balancer, FreeObject, PlacedSkin};
 use bubbletouch::contact::{SkinWorkspace, Workspace, press_skin, press_to_depth, press_to_travel};
 use bubbletouch::geometry::Pose;
 use bubbletouch::mesh::TriangleMesh;
-use bubbletouch::objects::{Catalogue, MeshModel, Model, Sphere, SphereUnion, vertex_spheres};
+use bubbletouch::objects::{
+    Catalogue, MeshModel, Model, Sphere, SphereUnion, vertex_spheres, write_spheres,
+};
 use bubbletouch::random::Seed;
+use bubbletouch::scene::{ScenePlan, SceneSpec, Simulation, Stepping};
 use bubbletouch::world::{Grid, Layout, Patch, RestPoses, Scene, SkinPatch, Taxel, Taxels, Touch};
 use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
 use glam::{DQuat, DVec3};
@@ -250,5 +253,48 @@ fn rest(c: &mut Criterion) {
     group.finish();
 }
 
-criterion_group!(benches, press, catalogue, mesh, curved, rest);
+/// A frame of a scene: an egg rocks on 64 × 64 taxels, and each frame says what touches what; without and with dampers and
+/// friction (a step a frame).
+fn frame(c: &mut Criterion) {
+    let folder = tempfile::tempdir().expect("a folder for the egg");
+    let egg = egg(8_000);
+    let file = std::fs::File::create(folder.path().join("egg.csv")).expect("a new file");
+    write_spheres(&egg, file).expect("room for the egg");
+    let text = |kind: &str| {
+        format!(
+            r#"
+            title = "An egg rocks"
+            output_hz = 1000.0
+            duration_s = 1e5
+            [[patches]]
+            name = "array"
+            layout = {{ grid = {{ nx = 64, ny = 64, pitch_mm = 2.0 }} }}
+            stroke_mm = 5.0
+            {kind}
+            [[objects]]
+            name = "egg"
+            spheres = "egg.csv"
+            at = {{ position_mm = [0.0, 0.0, 30.0] }}
+            motion = {{ phases = [{{ duration_s = 1e5, angular_deg_per_s = [0.0, 0.0, 20.0] }}] }}
+            "#
+        )
+    };
+    let mut group = c.benchmark_group("scene_frame");
+    for (name, kind) in [
+        ("plain", ""),
+        ("damped", "damping_n_s_per_m = 0.5"),
+        ("friction", "friction = 0.6"),
+    ] {
+        let spec = SceneSpec::parse("egg.toml", &text(kind)).expect("a scene");
+        let plan = ScenePlan::new("egg.toml", folder.path(), spec).expect("a good scene");
+        let mut simulation = Simulation::new(&plan, Stepping::AsNeeded);
+        let id = BenchmarkId::new(name, "4096_taxels_8000_spheres");
+        group.bench_function(id, |b| {
+            b.iter(|| simulation.next_frame().expect("a frame").map(|f| f.time));
+        });
+    }
+    group.finish();
+}
+
+criterion_group!(benches, press, catalogue, mesh, curved, rest, frame);
 criterion_main!(benches);

@@ -254,6 +254,72 @@ fn a_flat_grid_is_pressed_exactly_as_by_the_grid_kernel() {
 }
 
 #[test]
+fn the_contacts_of_a_grid_are_those_of_the_same_taxels_one_by_one() {
+    let (mut by_rows, mut one_by_one) = (SkinWorkspace::new(), SkinWorkspace::new());
+    let (mut n_touched, mut n_tied) = (0, 0);
+    for case in 0..300 {
+        let mut rng = rng("rows", case);
+        let grid = Grid {
+            nx: rng.gen_range(1..30),
+            ny: rng.gen_range(1..30),
+            pitch: 10f64.powf(rng.gen_range(-3.5..-2.0)),
+        };
+        let layout = Layout::grid(&grid).unwrap();
+        let stiffness = |taxel: usize| 100.0 + taxel as f64;
+        let taxels = match case % 2 {
+            0 => Taxels::Equal(TAXEL),
+            _ => Taxels::Each(
+                (0..grid.n_taxels())
+                    .map(|taxel| Taxel {
+                        stiffness: stiffness(taxel),
+                        ..TAXEL
+                    })
+                    .collect(),
+            ),
+        };
+        let loose = Layout::new(layout.centers().to_vec(), layout.axes().to_vec()).unwrap();
+        let loose = SkinPatch::new("skin", loose, taxels.clone()).unwrap();
+        let skin = SkinPatch::new("skin", layout, taxels).unwrap();
+        let mut objects = random_objects(&mut rng, &skin);
+        // Twice the same: at each taxel two parts need the same, and the first of them counts.
+        let twice = objects[0].spheres().unwrap().spheres().repeat(2);
+        objects[0] = SphereUnion::new(twice).unwrap().into();
+        objects.push(objects[0].clone());
+        let poses = vec![random_pose(&mut rng, 0.3); objects.len()];
+        let objects: Vec<Model> = objects
+            .iter()
+            .map(|object| moved(object, &poses[0].inverse()))
+            .collect();
+        let counts = press_skin(&skin, &objects, &poses, &mut by_rows);
+        assert_eq!(
+            counts,
+            press_skin(&loose, &objects, &poses, &mut one_by_one)
+        );
+        assert_eq!(
+            by_rows.contacts(),
+            one_by_one.contacts(),
+            "case {case}: taxels, parts, normals and points"
+        );
+        assert_eq!(by_rows.deflections(), one_by_one.deflections());
+        let tied = by_rows.contacts().iter().filter(|c| c.object == 0);
+        n_tied += tied.clone().count();
+        assert!(
+            tied.clone().all(|contact| contact.part < 12),
+            "the first of two equal spheres"
+        );
+        n_touched += counts.n_touched;
+        assert!(
+            by_rows
+                .contacts()
+                .iter()
+                .all(|contact| contact.object < objects.len() - 1),
+            "the first of two equal objects"
+        );
+    }
+    assert!(n_touched > 5_000 && n_tied > 1_000, "{n_touched} {n_tied}");
+}
+
+#[test]
 fn a_rigid_motion_of_the_skin_and_the_world_changes_nothing() {
     let (mut here, mut there) = (SkinWorkspace::new(), SkinWorkspace::new());
     let mut n_flanks = 0;

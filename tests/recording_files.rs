@@ -256,6 +256,60 @@ fn equal_recordings_are_equal_bytes() {
 }
 
 #[test]
+fn a_recording_of_a_known_number_of_frames_is_the_same_written_once() {
+    let folder = tempfile::tempdir().unwrap();
+    let [beside, placed] = ["beside.npz", "placed.npz"].map(|name| folder.path().join(name));
+    for n_frames in [0, 1, 30, 301] {
+        for precision in [Precision::Single, Precision::Double] {
+            let frames = pushed(n_frames);
+            write(&beside, precision, &frames);
+            let begun = RecordingWriter::create_for(&placed, header(precision), n_frames);
+            let mut writer = begun.unwrap();
+            for frame in &frames {
+                push(&mut writer, frame).unwrap();
+            }
+            assert_eq!(names(folder.path()).len(), 2, "nothing waits beside it");
+            assert_eq!(writer.finish().unwrap(), n_frames);
+            let read = |path| read_recording(path).unwrap();
+            assert_eq!(read(&beside), read(&placed));
+            assert!(fs::read(&beside).unwrap() == fs::read(&placed).unwrap());
+            fs::remove_file(&placed).unwrap();
+        }
+    }
+    // Over many blocks, too.
+    stream(RecordingWriter::create(&beside, array()).unwrap(), 700);
+    stream(
+        RecordingWriter::create_for(&placed, array(), 700).unwrap(),
+        700,
+    );
+    assert!(fs::read(&beside).unwrap() == fs::read(&placed).unwrap());
+}
+
+#[test]
+fn another_number_of_frames_than_was_said_is_an_error_and_no_file() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("touch.npz");
+    let frames = pushed(4);
+    let start = |n_frames| {
+        let mut writer =
+            RecordingWriter::create_for(&path, header(Precision::Single), n_frames).unwrap();
+        let pushes = frames.iter().map(|frame| push(&mut writer, frame));
+        let pushed: Vec<_> = pushes.collect();
+        (writer, pushed)
+    };
+    let (writer, pushed) = start(3);
+    let error = pushed[3].as_ref().unwrap_err().to_string();
+    assert_eq!(error, "recording: 4 frames; 3");
+    assert_eq!(writer.finish().unwrap(), 3);
+    fs::remove_file(&path).unwrap();
+    let (writer, pushed) = start(5);
+    assert!(pushed.iter().all(Result::is_ok));
+    let error = writer.finish().unwrap_err().to_string();
+    assert_eq!(error, "recording: 4 frames; 5");
+    assert_eq!(names(folder.path()).len(), 0);
+}
+
+#[test]
 fn a_writer_dropped_half_way_leaves_what_was_there_before() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("touch.npz");
@@ -421,18 +475,21 @@ fn a_changed_byte_is_an_error_or_changes_nothing() {
     }
 }
 
-/// Streams frames of a 64 × 64 patch, writing the same two buffers.
-fn stream(path: &Path, n_frames: usize) {
+/// Of a 64 × 64 patch.
+fn array() -> RecordingHeader {
     let grid = Grid {
         nx: 64,
         ny: 64,
         pitch: 2e-3,
     };
-    let header = RecordingHeader {
+    RecordingHeader {
         patches: vec![RecordedPatch::of_grid("palm", grid, ForceKind::Normal)],
         ..RecordingHeader::default()
-    };
-    let mut writer = RecordingWriter::create(path, header).unwrap();
+    }
+}
+
+/// Streams frames of a 64 × 64 patch, writing the same two buffers.
+fn stream(mut writer: RecordingWriter, n_frames: usize) {
     let mut deflection = vec![1e-3; 4096];
     let force = vec![0.1; 4096];
     for frame in 0..n_frames {
@@ -451,10 +508,14 @@ fn stream(path: &Path, n_frames: usize) {
 fn two_thousand_frames_stream_in_the_memory_of_five_hundred() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("touch.npz");
-    let few = counting::peak_bytes(|| stream(&path, 500));
-    let many = counting::peak_bytes(|| stream(&path, 2000));
-    println!("{few} bytes for 500 frames, {many} for 2,000");
-    assert!(many < few + 4096 && many < 10 << 20, "{few}, {many}");
+    let beside = |n| stream(RecordingWriter::create(&path, array()).unwrap(), n);
+    let placed = |n| stream(RecordingWriter::create_for(&path, array(), n).unwrap(), n);
+    for write in [&beside as &dyn Fn(usize), &placed] {
+        let few = counting::peak_bytes(|| write(500));
+        let many = counting::peak_bytes(|| write(2000));
+        println!("{few} bytes for 500 frames, {many} for 2,000");
+        assert!(many < few + 4096 && many < 10 << 20, "{few}, {many}");
+    }
     let read = counting::peak_bytes(|| {
         let mut file = RecordingFile::open(&path).unwrap();
         let mut sum = 0.0;
@@ -472,7 +533,8 @@ fn fifty_thousand_frames_of_4096_taxels() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("touch.npz");
     let start = Instant::now();
-    let peak = counting::peak_bytes(|| stream(&path, 50_000));
+    let writer = RecordingWriter::create_for(&path, array(), 50_000).unwrap();
+    let peak = counting::peak_bytes(|| stream(writer, 50_000));
     let seconds = start.elapsed().as_secs_f64();
     let bytes = fs::metadata(&path).unwrap().len();
     println!(
@@ -521,8 +583,8 @@ fn contact_rows_have_empty_centres_without_contact_and_the_digits_to_come_back()
     table.commit().unwrap();
     assert_eq!(
         fs::read_to_string(&path).unwrap(),
-        "time_s,patch,n_touched,n_saturated,fx_n,fy_n,fz_n,tx_nm,ty_nm,tz_nm,cop_x_m,cop_y_m,cop_z_m\n\
-         0.30000000000000004,palm,2,1,0.0,0.0,3.0,0.0,-0.6,0.0,0.19999999999999998,0.0,0.0\n\
-         0.30000000000000004,\"finger, left\",0,0,0.0,0.0,0.0,0.0,0.0,0.0,,,\n"
+        "time_s,patch,n_touched,n_saturated,fx_n,fy_n,fz_n,tx_nm,ty_nm,tz_nm,cop_x_m,cop_y_m,cop_z_m,n_sticking,n_slipping\n\
+         0.30000000000000004,palm,2,1,0.0,0.0,3.0,0.0,-0.6,0.0,0.19999999999999998,0.0,0.0,,\n\
+         0.30000000000000004,\"finger, left\",0,0,0.0,0.0,0.0,0.0,0.0,0.0,,,,,\n"
     );
 }

@@ -56,6 +56,11 @@ impl DamperState {
             Taxels::Each(each) => {
                 assert_eq!(each.len(), contact.len());
                 for (((deflection, force), &pushed), taxel) in states.zip(each) {
+                    // Most taxels are out and stay out: no exponential for them.
+                    if *deflection == 0.0 && pushed == 0.0 {
+                        *force = 0.0;
+                        continue;
+                    }
                     *force = Relaxation::of(taxel, dt).advance(deflection, pushed);
                 }
             }

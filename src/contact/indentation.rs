@@ -2,10 +2,9 @@
 
 use super::envelope::{Envelope, Limit};
 use super::grid_lines::GridLines;
+use super::placed_sphere::{PlacedSphere, View};
 use crate::geometry::Pose;
-use crate::objects::Sphere;
 use crate::world::{Patch, Scene};
-use glam::{DMat3, DVec3};
 
 /// What a press did, beside its deflections in [`Workspace::deflections`].
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -31,14 +30,6 @@ pub struct Workspace {
     deflections: Vec<f64>,
     /// Of the last press to a force: see [`starts`](Self::starts).
     starts: Vec<f64>,
-}
-
-/// A sphere in the patch frame, its radius grown by the taxel's: the taxel is then a point.
-#[derive(Clone, Copy, Debug)]
-struct PlacedSphere {
-    center: DVec3,
-    /// S = ρ + R.
-    reach: f64,
 }
 
 impl Workspace {
@@ -75,7 +66,10 @@ impl Workspace {
             let pairs = scene.objects.iter().zip(patch_from_objects);
             pairs.filter_map(|(object, pose)| {
                 let spheres = object.spheres()?.spheres();
-                Some((spheres, View::new(&scene.patch, pose)))
+                Some((
+                    spheres,
+                    View::new(scene.patch.taxel.radius, &self.lines, pose),
+                ))
             })
         };
         let depth = match goal {
@@ -158,7 +152,7 @@ impl Workspace {
         for sphere in &self.spheres {
             let height = sphere.center.z - travel;
             if height < sphere.reach && height >= behind {
-                raise(&self.lines, sphere, height, &mut self.deflections);
+                sphere.raise(&self.lines, height, &mut self.deflections);
             }
         }
         for (deflection, height) in self.deflections.iter_mut().zip(&self.envelope.heights) {
@@ -171,45 +165,6 @@ impl Workspace {
 /// vain; smaller: more spheres are looked at twice.
 const PREVIEW_STRIDE: usize = 16;
 
-/// An object's frame seen from the patch.
-struct View {
-    /// Rows of the rotation.
-    rows: DMat3,
-    translation: DVec3,
-    /// ρ.
-    taxel_radius: f64,
-    /// The outermost taxels' |x| and |y|.
-    half_size: [f64; 2],
-}
-
-impl View {
-    fn new(patch: &Patch, pose: &Pose) -> Self {
-        let grid = &patch.grid;
-        Self {
-            rows: DMat3::from_quat(pose.rotation).transpose(),
-            translation: pose.translation,
-            taxel_radius: patch.taxel.radius,
-            half_size: [grid.x(grid.nx - 1), grid.y(grid.ny - 1)],
-        }
-    }
-
-    /// The sphere in the patch frame; `None` if it meets no taxel before `travel` or its shadow misses the patch.
-    fn place(&self, sphere: &Sphere, travel: f64) -> Option<PlacedSphere> {
-        let reach = self.taxel_radius + sphere.radius;
-        let z = self.rows.z_axis.dot(sphere.center) + self.translation.z;
-        if z - reach >= travel {
-            return None;
-        }
-        let x = self.rows.x_axis.dot(sphere.center) + self.translation.x;
-        let y = self.rows.y_axis.dot(sphere.center) + self.translation.y;
-        let [half_x, half_y] = self.half_size;
-        (x.abs() < half_x + reach && y.abs() < half_y + reach).then_some(PlacedSphere {
-            center: DVec3::new(x, y, z),
-            reach,
-        })
-    }
-}
-
 /// How far a press goes.
 #[derive(Clone, Copy)]
 pub(super) enum Goal {
@@ -217,16 +172,6 @@ pub(super) enum Goal {
     Travel(f64),
     /// To first contact and this far past it, metres.
     Depth(f64),
-}
-
-impl PlacedSphere {
-    /// The travel at which the sphere meets the taxel nearest to its axis, its first; infinite if it passes between all.
-    fn first_touch(&self, lines: &GridLines) -> f64 {
-        let DVec3 { x, y, z } = self.center;
-        let (dx, dy) = (x - lines.x.nearest(x), y - lines.y.nearest(y));
-        let q = self.reach * self.reach - (dx * dx + dy * dy);
-        if q > 0.0 { z - q.sqrt() } else { f64::INFINITY }
-    }
 }
 
 /// How far the patch must travel along its axis until the first taxel is touched, metres (negative: it already is);
@@ -283,30 +228,6 @@ fn indent(patch: &Patch, travel: f64, workspace: &mut Workspace) -> Contact {
         travel,
         n_touched,
         n_saturated,
-    }
-}
-
-/// Raises the deflections under one sphere to what it needs, row by row of its footprint.
-///
-/// The footprint is where the sphere needs more than zero: `b² < S² − max(h, 0)²`. Ranges are rounded outwards; the
-/// comparison with S in the innermost loop is what decides.
-fn raise(lines: &GridLines, sphere: &PlacedSphere, height: f64, deflections: &mut [f64]) {
-    let reach2 = sphere.reach * sphere.reach;
-    let lift = height.max(0.0);
-    let footprint = (reach2 - lift * lift).max(0.0);
-    let n_columns = lines.x.positions.len();
-    for row in lines.y.within(sphere.center.y, footprint.sqrt()) {
-        let dy = lines.y.positions[row] - sphere.center.y;
-        let half_width = (footprint - dy * dy).max(0.0).sqrt();
-        let columns = lines.x.within(sphere.center.x, half_width);
-        let row_reach2 = reach2 - dy * dy;
-        let taxels = &mut deflections[row * n_columns..][columns.clone()];
-        for (deflection, x) in taxels.iter_mut().zip(&lines.x.positions[columns]) {
-            let dx = x - sphere.center.x;
-            let q = row_reach2 - dx * dx;
-            let needed = if q > 0.0 { q.sqrt() - height } else { 0.0 };
-            *deflection = deflection.max(needed);
-        }
     }
 }
 

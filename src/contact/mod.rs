@@ -25,7 +25,7 @@
 //! A free object rests where its weight and the forces of the taxels balance: [`balance`].
 //!
 //! A **touch to a force** ([`press_to_force`], [`press_skin_to_force`]) goes on until the springs carry Σ k δ = F together:
-//! exactly the press at the travel that it finds.
+//! exactly the press at the travel that it finds. [`MovedObject`] holds a force by one object among others.
 //!
 //! **Friction** is an option beside a `SkinPatch`: with [`Shear`](crate::world::Shear) springs the tips of its taxels are dragged along
 //! and slip, and each taxel feels a force in three dimensions ([`FrictionState`], which has the equations). Without it, and with μ = 0 to
@@ -38,7 +38,9 @@ mod damper;
 mod envelope;
 mod friction;
 mod grid_lines;
+mod hold_force;
 mod indentation;
+mod placed_sphere;
 mod press_force;
 mod scene_meshes;
 mod simulate;
@@ -52,12 +54,13 @@ mod taxel_contact;
 pub use damper::{DamperState, relaxation_factor};
 pub use friction::{FrictionLoad, FrictionState, Grip, GripCounts, NormalForce};
 pub(crate) use grid_lines::Lines;
+pub use hold_force::{HeldForce, MovedObject};
 pub(crate) use indentation::saturation_limit;
 pub use indentation::{Contact, Workspace, first_contact, press_to_depth, press_to_travel};
 pub use press_force::press_to_force;
 pub use simulate::{Recording, simulate};
 pub use skin_force::{SkinPress, press_skin_to_force};
-pub use skin_press::{SkinContact, SkinWorkspace, press_skin};
-pub use spring_load::{SpringLoad, Wrench, spring_load};
+pub use skin_press::{SkinContact, SkinWorkspace, deflect_skin, press_skin};
+pub use spring_load::{AxialLoad, SpringLoad, Wrench, axial_load, spring_load};
 pub use swept_triangle::stopping_height;
 pub use taxel_contact::{GRAZING, TaxelContact};

@@ -1,11 +1,13 @@
 //! The indentation kernel of a skin patch of any layout: each taxel along its own axis, only those that a sphere reaches.
 
+use super::grid_lines::GridLines;
+use super::placed_sphere::View;
 use super::skin_mesh::MeshAt;
 use super::taxel_contact::TaxelContact;
 use crate::geometry::Pose;
 use crate::mesh::Triangle;
 use crate::objects::{MeshModel, Model, Sphere};
-use crate::world::{PlacedTaxel, SkinPatch};
+use crate::world::{EvenGrid, PlacedTaxel, SkinPatch};
 use glam::{DMat3, DVec3};
 
 /// What a press did, beside its deflections and contacts in the [`SkinWorkspace`].
@@ -28,6 +30,8 @@ pub struct SkinWorkspace {
     deciding: Vec<[u32; 2]>,
     /// The touched taxels, ascending at the end of a press.
     touched: Vec<u32>,
+    /// Of the last even grid.
+    lines: GridLines,
     /// Of the touched taxels, in the same order.
     contacts: Vec<TaxelContact>,
     /// Of the objects on the way to a force.
@@ -120,6 +124,35 @@ pub fn press_skin(
     patch_from_objects: &[Pose],
     workspace: &mut SkinWorkspace,
 ) -> SkinContact {
+    push(patch, objects, patch_from_objects, workspace);
+    finish(patch, objects, patch_from_objects, workspace)
+}
+
+/// The deflections of [`press_skin`] alone, for steps of which nobody wants to know what touches what: the workspace then has no
+/// contacts.
+///
+/// # Panics
+/// If there are not as many poses as objects.
+pub fn deflect_skin(
+    patch: &SkinPatch,
+    objects: &[Model],
+    patch_from_objects: &[Pose],
+    workspace: &mut SkinWorkspace,
+) {
+    push(patch, objects, patch_from_objects, workspace);
+    for &taxel in &workspace.touched {
+        let deflection = &mut workspace.deflections[taxel as usize];
+        *deflection = deflection.min(patch.taxels().at(taxel as usize).stroke);
+    }
+}
+
+/// Pushes each taxel as far as an object needs, without a stop.
+fn push(
+    patch: &SkinPatch,
+    objects: &[Model],
+    patch_from_objects: &[Pose],
+    workspace: &mut SkinWorkspace,
+) {
     assert_eq!(
         objects.len(),
         patch_from_objects.len(),
@@ -128,13 +161,50 @@ pub fn press_skin(
     workspace.clear(patch.n_taxels());
     for (number, (object, pose)) in objects.iter().zip(patch_from_objects).enumerate() {
         match object {
-            Model::Spheres(union) => {
-                push_by_spheres(patch, number, union.spheres(), pose, workspace);
-            }
+            Model::Spheres(union) => match patch.even_grid() {
+                Some(grid) => push_along_rows(grid, number, union.spheres(), pose, workspace),
+                None => push_by_spheres(patch, number, union.spheres(), pose, workspace),
+            },
             Model::Mesh(mesh) => push_by_mesh(patch, number, mesh, pose, workspace),
         }
     }
-    finish(patch, objects, patch_from_objects, workspace)
+}
+
+/// The same as [`push_by_spheres`] to the bit, for taxels in rows: no search, and no look at spheres that are above all of them.
+fn push_along_rows(
+    grid: &EvenGrid,
+    object: usize,
+    spheres: &[Sphere],
+    pose: &Pose,
+    workspace: &mut SkinWorkspace,
+) {
+    let SkinWorkspace {
+        deflections,
+        deciding,
+        touched,
+        lines,
+        ..
+    } = workspace;
+    lines.lay(&grid.grid);
+    let view = View::new(grid.radius, lines, pose);
+    let mut is_near = false;
+    for (number, sphere) in spheres.iter().enumerate() {
+        let Some(placed) = view.place(sphere, 0.0) else {
+            continue;
+        };
+        if placed.center.z < grid.behind {
+            continue;
+        }
+        is_near = true;
+        let mark = [object as u32, number as u32];
+        placed.raise_and_mark(lines, deflections, mark, deciding);
+    }
+    if !is_near {
+        return;
+    }
+    touched.clear();
+    let numbers = deflections.iter().enumerate();
+    touched.extend(numbers.filter_map(|(number, &d)| (d > 0.0).then_some(number as u32)));
 }
 
 fn push_by_spheres(

@@ -66,6 +66,41 @@ impl SpringLoad {
     }
 }
 
+/// What forces along the axes of some contacts are together.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct AxialLoad {
+    /// On the objects, without friction: Σ f n_c / (n_c·n) at the points where they touch.
+    pub on_object: Wrench,
+    /// Σ f, N.
+    pub force: f64,
+    /// The mean rest centre of the touched taxels, weighted by f; metres, in the patch frame. `None` if there is no force.
+    pub center_of_pressure: Option<DVec3>,
+}
+
+/// Adds up forces along the axes (newtons, `force_of` each contact) from a press of this patch.
+///
+/// # Panics
+/// If a contact has a taxel that the patch does not have.
+pub fn axial_load<'a>(
+    patch: &SkinPatch,
+    contacts: impl IntoIterator<Item = &'a TaxelContact>,
+    mut force_of: impl FnMut(&TaxelContact) -> f64,
+) -> AxialLoad {
+    let mut on_object = Wrench::default();
+    let (mut all, mut moment) = (0.0, DVec3::ZERO);
+    for contact in contacts {
+        let force = force_of(contact);
+        on_object = on_object + contact.push(force);
+        all += force;
+        moment += force * patch.layout().centers()[contact.taxel];
+    }
+    AxialLoad {
+        on_object,
+        force: all,
+        center_of_pressure: (all > 0.0).then(|| moment / all),
+    }
+}
+
 /// Adds up the springs of contacts from a press of this patch: of all, or of those with one object.
 ///
 /// The force on an object is −∇ Σ ½ k δ² for its motion in the patch frame, but for saturated taxels (whose energy is at its
@@ -77,22 +112,23 @@ pub fn spring_load<'a>(
     patch: &SkinPatch,
     contacts: impl IntoIterator<Item = &'a TaxelContact>,
 ) -> SpringLoad {
-    let mut on_object = Wrench::default();
-    let (mut all, mut saturated, mut moment) = (0.0, 0.0, DVec3::ZERO);
-    for contact in contacts {
+    let mut saturated = 0.0;
+    let load = axial_load(patch, contacts, |contact| {
         let taxel = patch.taxels().at(contact.taxel);
         let force = taxel.stiffness * contact.deflection;
-        on_object = on_object + contact.push(force);
-        all += force;
-        moment += force * patch.layout().centers()[contact.taxel];
         if contact.is_saturated(taxel) {
             saturated += force;
         }
-    }
+        force
+    });
     SpringLoad {
-        on_object,
-        spring_force: all,
-        center_of_pressure: (all > 0.0).then(|| moment / all),
-        saturated_share: if all > 0.0 { saturated / all } else { 0.0 },
+        on_object: load.on_object,
+        spring_force: load.force,
+        center_of_pressure: load.center_of_pressure,
+        saturated_share: if load.force > 0.0 {
+            saturated / load.force
+        } else {
+            0.0
+        },
     }
 }

@@ -77,6 +77,12 @@ impl SphereUnion {
             .expect("a union has at least one sphere")
     }
 
+    /// From a point to the farthest point of a sphere, metres: the radius of a ball about the point around them all.
+    pub fn reach_from(&self, point: DVec3) -> f64 {
+        let reach = |sphere: &Sphere| sphere.center.distance(point) + sphere.radius;
+        self.spheres.iter().map(reach).fold(0.0, f64::max)
+    }
+
     /// The same union after a rigid motion.
     pub fn moved(&self, pose: &Pose) -> Self {
         let spheres = self

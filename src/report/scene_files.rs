@@ -4,6 +4,7 @@ use super::recording::contact_table::{ContactTable, PatchContact};
 use super::recording::{
     ForceKind, Forces, PatchFrame, Precision, RecordedPatch, RecordingHeader, RecordingWriter,
 };
+use crate::contact::GripCounts;
 use crate::error::Result;
 use crate::files::write_bytes;
 use crate::geometry::Pose;
@@ -48,7 +49,11 @@ impl SceneFiles {
             folder: folder.to_owned(),
             names: names.collect(),
             scene: plan.spec.to_toml(),
-            recording: RecordingWriter::create(&folder.join("recording.npz"), header)?,
+            recording: RecordingWriter::create_for(
+                &folder.join("recording.npz"),
+                header,
+                plan.n_frames,
+            )?,
             wrenches: ContactTable::create(&folder.join("wrenches.csv"))?,
         })
     }
@@ -65,7 +70,10 @@ impl FrameSink for SceneFiles {
     fn frame(&mut self, frame: &Frame) -> Result<()> {
         let patches = frame.patches.iter().map(|patch| PatchFrame {
             deflection: &patch.deflection,
-            force: Forces::Normal(&patch.force),
+            force: match &patch.friction {
+                Some(friction) => Forces::Vector(&friction.force3),
+                None => Forces::Normal(&patch.force),
+            },
             pose: patch.pose,
         });
         let patches: Vec<PatchFrame> = patches.collect();
@@ -79,6 +87,10 @@ impl FrameSink for SceneFiles {
                 force: patch.wrench.force,
                 torque: patch.wrench.torque,
                 center_of_pressure: patch.center_of_pressure,
+                grips: patch.friction.as_ref().map(|friction| GripCounts {
+                    n_sticking: friction.n_sticking,
+                    n_slipping: friction.n_slipping,
+                }),
             };
             self.wrenches.row(frame.time, &contact)?;
         }
@@ -93,6 +105,9 @@ fn recorded(patch: &PlannedPatch) -> RecordedPatch {
         centers: layout.centers().to_vec(),
         axes: layout.axes().to_vec(),
         grid: layout.as_grid().copied(),
-        force: ForceKind::Normal,
+        force: match patch.shears {
+            Some(_) => ForceKind::Vector,
+            None => ForceKind::Normal,
+        },
     }
 }

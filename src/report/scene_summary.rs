@@ -15,7 +15,9 @@ pub fn scene_table(plan: &ScenePlan, summary: &Summary) -> String {
 }
 
 fn patches(plan: &ScenePlan, summary: &Summary) -> Table {
-    let mut table = table([
+    let has_friction = plan.patches.iter().any(|patch| patch.shears.is_some());
+    let of_friction = ["most friction (N)", "most sticking", "most slipping"];
+    let header = [
         "patch",
         "taxels",
         "deepest (mm)",
@@ -23,9 +25,11 @@ fn patches(plan: &ScenePlan, summary: &Summary) -> Table {
         "most touched",
         "saturated",
         "grazing",
-    ]);
+    ];
+    let shown = if has_friction { &of_friction[..] } else { &[] };
+    let mut table = table(header.iter().chain(shown));
     for (patch, peaks) in plan.patches.iter().zip(&summary.patches) {
-        table.add_row([
+        let mut row = vec![
             patch.skin.name().to_owned(),
             patch.skin.n_taxels().to_string(),
             short_number(1e3 * peaks.deflection),
@@ -33,7 +37,13 @@ fn patches(plan: &ScenePlan, summary: &Summary) -> Table {
             peaks.n_touched.to_string(),
             peaks.n_saturated.to_string(),
             peaks.n_grazing.to_string(),
-        ]);
+        ];
+        if patch.shears.is_some() {
+            row.push(short_number(peaks.shear));
+            row.push(peaks.n_sticking.to_string());
+            row.push(peaks.n_slipping.to_string());
+        }
+        table.add_row(row);
     }
     for column in table.column_iter_mut().skip(1) {
         column.set_cell_alignment(CellAlignment::Right);
@@ -42,10 +52,11 @@ fn patches(plan: &ScenePlan, summary: &Summary) -> Table {
 }
 
 fn objects(plan: &ScenePlan, summary: &Summary) -> Table {
-    let mut table = table(["object", "parts", "at the end"]);
+    let mut table = table(["object", "parts", "at the end"].iter());
     let all = plan.objects.iter().zip(&plan.models);
-    let ends = summary.objects.iter().zip(&summary.n_unsettled);
-    for ((object, model), (held, n_unsettled)) in all.zip(ends) {
+    let counts = summary.n_unsettled.iter().zip(&summary.n_off);
+    let ends = summary.objects.iter().zip(counts);
+    for ((object, model), (held, (n_unsettled, n_off))) in all.zip(ends) {
         let parts = match model.spheres() {
             Some(union) if union.n_spheres() == 1 => "1 sphere".to_owned(),
             Some(union) => format!("{} spheres", union.n_spheres()),
@@ -54,6 +65,9 @@ fn objects(plan: &ScenePlan, summary: &Summary) -> Table {
         let mut end = ending(&object.movement, held);
         if *n_unsettled > 0 {
             end += &format!("; not at rest in {n_unsettled} frames");
+        }
+        if *n_off > 0 {
+            end += &format!("; not with the force wanted in {n_off} frames");
         }
         table.add_row([object.name.clone(), parts, end]);
     }
@@ -67,6 +81,16 @@ fn ending(movement: &Movement, held: &Held) -> String {
             Movement::Imposed(Motion::Fixed(_)) => "fixed".to_owned(),
             _ => "where its motion says".to_owned(),
         },
+        Held::Pressed {
+            travel,
+            force,
+            wanted,
+        } => format!(
+            "pressed {} mm, with {} of {} N",
+            short_number(1e3 * travel),
+            short_number(*force),
+            short_number(*wanted)
+        ),
         Held::AtRest => "at rest".to_owned(),
         Held::Unsettled => "not at rest".to_owned(),
         Held::Escaped { time, direction } => {
@@ -79,7 +103,7 @@ fn ending(movement: &Movement, held: &Held) -> String {
     }
 }
 
-fn table<const N: usize>(header: [&str; N]) -> Table {
+fn table<'a>(header: impl Iterator<Item = &'a &'a str>) -> Table {
     let mut table = Table::new();
     table.load_preset(NOTHING);
     table.set_header(header);

@@ -31,10 +31,26 @@ pub struct PatchReading {
     pub n_saturated: usize,
     /// Taxels whose contact is grazing: see [`GRAZING`](crate::contact::GRAZING).
     pub n_grazing: usize,
-    /// What the objects put on the patch, in its frame, without friction and without what stops carry.
+    /// What the objects put on the patch, in its frame, without what stops carry; friction with it.
     pub wrench: Wrench,
+    /// Of a patch with friction.
+    pub friction: Option<FrictionReading>,
     /// The mean rest centre of the taxels, weighted by their forces; metres, in the patch frame. `None` if none is touched.
     pub center_of_pressure: Option<DVec3>,
+}
+
+/// What friction does to a patch.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct FrictionReading {
+    /// n_taxels forces of the objects on the tips, newtons, patch frame: friction across the axes, what inclined contacts push
+    /// aside, and what presses the taxels in. Together they are the force of the wrench.
+    pub force3: Vec<DVec3>,
+    /// The part of the wrench's force that is friction.
+    pub shear: DVec3,
+    /// Taxels whose tips go with the object.
+    pub n_sticking: usize,
+    /// Taxels whose tips have slipped since the step before.
+    pub n_slipping: usize,
 }
 
 /// Where an object is.
@@ -51,6 +67,15 @@ pub struct ObjectReading {
 pub enum Held {
     /// Its motion.
     Imposed,
+    /// Its motion, and a force that a patch is to feel.
+    Pressed {
+        /// How far it is from where its motion says, metres.
+        travel: f64,
+        /// Σ k δ of the patch, N.
+        force: f64,
+        /// What it is to be, N.
+        wanted: f64,
+    },
     /// Skin: it is at rest.
     AtRest,
     /// Skin, but no rest was found within the largest number of steps.
@@ -62,6 +87,21 @@ pub enum Held {
         /// Where to: unit, in the world.
         direction: DVec3,
     },
+}
+
+/// How near a force is to what is wanted when it is reached, N. Smaller: rounding in stiff skins counts as a miss.
+const REACHED: f64 = 1e-9;
+
+impl Held {
+    /// Whether it is pressed, and with another force than is wanted.
+    pub fn is_off(&self) -> bool {
+        match self {
+            Self::Pressed { force, wanted, .. } => {
+                (force - wanted).abs() > REACHED * wanted.max(1.0)
+            }
+            _ => false,
+        }
+    }
 }
 
 /// Who is handed each frame as soon as it is made.

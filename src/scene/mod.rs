@@ -6,15 +6,21 @@
 //! At each step, in this order:
 //!
 //! 1. robots and imposed objects go where their motions say; patches go with their links;
-//! 2. free objects go to rest on the skin that is there, each from where it was ([`balance`](crate::contact::balance)); several of them
+//! 2. objects that are pushed for a force ([`PressSpec`]) go on along their lines until their patches feel it, as far as their
+//!    speed lets them in a step ([`MovedObject`](crate::contact::MovedObject)): the springs together, Σ k δ. So without dampers the force
+//!    that is recorded is the one that is wanted; with them it is more while taxels go in, less while they come out, and
+//!    the same when all rest. A force that is not reached is no error: the object waits at the end of its travel, and each frame
+//!    says what it carries;
+//! 3. free objects go to rest on the skin that is there, each from where it was ([`balance`](crate::contact::balance)); several of them
 //!    in turn, until none moves;
-//! 3. each patch is pressed, unless no object is within its reach: what nothing pushes relaxes
-//!    ([`DamperState`](crate::contact::DamperState)).
+//! 4. each patch is pressed, unless no object is within its reach: what nothing pushes relaxes
+//!    ([`DamperState`](crate::contact::DamperState)), and the tips of a patch with friction are dragged along
+//!    ([`FrictionState`](crate::contact::FrictionState)), whatever moves, patch or object.
 //!
-//! A scene begins as if it had stood as it does at t = 0 for long. One without dampers and free objects remembers nothing,
-//! so it is evaluated at its frames only, with the same result.
+//! A scene begins as if it had stood as it does at t = 0 for long. One without dampers, friction, free and pushed objects remembers
+//! nothing, so it is evaluated at its frames only, with the same result.
 //!
-//! What is not modelled: objects do not touch each other, only skin (two free ones that share taxels slide into one another,
+//! What is not modelled: free objects on a skin with friction are refused, since their balance holds no shear forces; objects do not touch each other, only skin (two free ones that share taxels slide into one another,
 //! and what they share is then not carried for both); free objects neither swing nor bounce (\[BT\] is quasi-static); an
 //! object that has escaped touches nothing any more.
 //!
@@ -50,23 +56,29 @@
 
 mod frame;
 mod free_objects;
+mod numbers;
 mod plan;
 mod plan_object;
 mod plan_patch;
+mod plan_press;
 mod plan_robot;
+mod plan_taxels;
+mod pressed_objects;
 mod reader;
 mod robot_state;
 mod simulation;
 mod skin_state;
 mod spec;
+mod spec_object;
 mod spec_patch;
 mod summary;
 
-pub use frame::{Frame, FrameSink, Held, ObjectReading, PatchReading};
+pub use frame::{Frame, FrameSink, FrictionReading, Held, ObjectReading, PatchReading};
 pub use free_objects::{MOST_ROUNDS, ROUND_TOLERANCE};
 pub use plan::ScenePlan;
 pub use plan_object::{Movement, PlannedObject};
 pub use plan_patch::{Mount, PlannedPatch};
+pub use plan_press::PlannedPress;
 pub use plan_robot::PlannedRobot;
 pub use simulation::{Simulation, Stepping};
 pub use spec::*;

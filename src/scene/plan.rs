@@ -2,6 +2,7 @@
 
 use super::plan_object::{Movement, PlannedObject};
 use super::plan_patch::PlannedPatch;
+use super::plan_press::PlannedPress;
 use super::plan_robot::PlannedRobot;
 use super::reader::{MM, Reader};
 use super::spec::SceneSpec;
@@ -10,7 +11,7 @@ use crate::objects::Model;
 use crate::random::Seed;
 use crate::study::{Check, not_negative, positive};
 use glam::DVec3;
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
 /// Steps of one scene, at most: more is a step in the wrong unit.
@@ -60,7 +61,7 @@ impl ScenePlan {
         let seed = Seed::new(spec.seed);
         let patches = spec
             .patches
-            .iter()
+            .iter_mut()
             .map(|patch| reader.patch(patch, &robots, &seed));
         let patches = patches.collect::<Result<Vec<_>>>()?;
         let pitches = spec.patches.iter().map(|patch| patch.layout.pitch_mm());
@@ -68,9 +69,10 @@ impl ScenePlan {
         let objects = spec
             .objects
             .iter()
-            .map(|object| reader.object(object, finest_mm));
+            .map(|object| reader.object(object, &patches, finest_mm));
         let (objects, models): (Vec<_>, Vec<_>) =
             objects.collect::<Result<Vec<_>>>()?.into_iter().unzip();
+        check_presses(&reader.check, &spec)?;
         let gravity = reader.vector("gravity_m_per_s2", spec.gravity_m_per_s2, 1.0)?;
         let is_free = |object: &PlannedObject| matches!(object.movement, Movement::Free { .. });
         if gravity == DVec3::ZERO && objects.iter().any(is_free) {
@@ -117,11 +119,12 @@ impl ScenePlan {
         frame as f64 / self.output_rate
     }
 
-    /// Whether what is between frames decides what they are: dampers and free objects remember.
+    /// Whether what is between frames decides what they are: dampers, friction, free and pushed objects remember.
     pub fn needs_steps(&self) -> bool {
-        let has_damper = self.patches.iter().any(|patch| patch.taxel.damping > 0.0);
-        let is_free = |object: &PlannedObject| matches!(object.movement, Movement::Free { .. });
-        has_damper || self.objects.iter().any(is_free)
+        let remembers = |object: &PlannedObject| {
+            matches!(object.movement, Movement::Free { .. }) || object.press.is_some()
+        };
+        self.patches.iter().any(PlannedPatch::remembers) || self.objects.iter().any(remembers)
     }
 }
 
@@ -191,11 +194,36 @@ fn check_names(check: &Check, spec: &SceneSpec) -> Result<()> {
     Ok(())
 }
 
-/// When the last imposed motion ends, seconds.
+/// A force of a patch is held by one object, and where it is does not depend on free ones.
+fn check_presses(check: &Check, spec: &SceneSpec) -> Result<()> {
+    let free = spec.objects.iter().find(|object| object.free.is_some());
+    let mut seen: BTreeMap<&str, &str> = BTreeMap::new();
+    for object in &spec.objects {
+        let Some(press) = &object.press else { continue };
+        let key = format!("objects.{}.press", object.name);
+        if let Some(free) = free {
+            let given = format!(
+                "an object that is pushed beside the free object `{}`",
+                free.name
+            );
+            return Err(check.error(&key, given, "no free objects in the scene"));
+        }
+        if let Some(other) = seen.insert(&press.patch, &object.name) {
+            let given = format!("patch `{}`, which `{other}` is pushed onto", press.patch);
+            return Err(check.error(&format!("{key}.patch"), given, "one object a patch"));
+        }
+    }
+    Ok(())
+}
+
+/// When the last imposed motion and the last change of a wanted force end, seconds.
 fn end(robots: &[PlannedRobot], objects: &[PlannedObject]) -> f64 {
-    let objects = objects.iter().map(|object| match &object.movement {
-        Movement::Imposed(motion) => motion.end(),
-        Movement::Free { .. } => 0.0,
+    let objects = objects.iter().map(|object| {
+        let press = object.press.as_ref().map_or(0.0, PlannedPress::end);
+        match &object.movement {
+            Movement::Imposed(motion) => motion.end().max(press),
+            Movement::Free { .. } => 0.0,
+        }
     });
     let robots = robots.iter().map(PlannedRobot::end);
     robots.chain(objects).fold(0.0, f64::max)

@@ -1,5 +1,7 @@
 //! Objects of a scene: what they are made of, and how they move.
 
+use super::plan_patch::PlannedPatch;
+use super::plan_press::PlannedPress;
 use super::reader::{MM, Reader};
 use super::spec::{FreeSpec, ObjectSpec};
 use crate::error::Result;
@@ -16,6 +18,8 @@ pub struct PlannedObject {
     pub name: String,
     /// What decides where it is.
     pub movement: Movement,
+    /// What it is pushed for besides, if its motion is imposed.
+    pub press: Option<PlannedPress>,
     /// A ball around it, in its own frame, metres.
     pub(super) ball: (DVec3, f64),
 }
@@ -37,7 +41,12 @@ pub enum Movement {
 }
 
 impl Reader<'_> {
-    pub fn object(&self, spec: &ObjectSpec, finest_mm: f64) -> Result<(PlannedObject, Model)> {
+    pub fn object(
+        &self,
+        spec: &ObjectSpec,
+        patches: &[PlannedPatch],
+        finest_mm: f64,
+    ) -> Result<(PlannedObject, Model)> {
         let key = &format!("objects.{}", spec.name);
         let model = self.model(key, spec, finest_mm)?;
         let movement = match (&spec.free, &spec.motion) {
@@ -48,11 +57,14 @@ impl Reader<'_> {
                     .check
                     .error(key, "a free object with a motion", allowed));
             }
-            (Some(free), None) => self.free(key, spec, free, &model)?,
+            (Some(free), None) => self.free(key, spec, free, patches, &model)?,
         };
+        let press = spec.press.as_ref();
+        let press = press.map(|press| self.press(key, press, patches));
         let object = PlannedObject {
             name: spec.name.clone(),
             movement,
+            press: press.transpose()?,
             ball: ball(&model),
         };
         Ok((object, model))
@@ -109,8 +121,23 @@ impl Reader<'_> {
         key: &str,
         spec: &ObjectSpec,
         free: &FreeSpec,
+        patches: &[PlannedPatch],
         model: &Model,
     ) -> Result<Movement> {
+        if spec.press.is_some() {
+            let given = "a free object that is pushed";
+            let allowed = "free, or press beside a motion";
+            return Err(self.check.error(&format!("{key}.press"), given, allowed));
+        }
+        if let Some(patch) = patches.iter().find(|patch| patch.has_friction()) {
+            let given = format!(
+                "a free object beside friction on patch `{}`",
+                patch.skin.name()
+            );
+            let allowed =
+                "patches without friction: the balance of a free object holds no shear forces";
+            return Err(self.check.error(&format!("{key}.free"), given, allowed));
+        }
         if model.spheres().is_none() {
             let given = "a free object of triangles";
             let allowed = "model = \"packed\" or \"vertex_spheres\" for a free object";
@@ -140,13 +167,7 @@ fn ball(model: &Model) -> (DVec3, f64) {
     let bounds = model.bounds();
     let center = bounds.center();
     let radius = match model {
-        Model::Spheres(union) => {
-            let reach = union
-                .spheres()
-                .iter()
-                .map(|s| s.center.distance(center) + s.radius);
-            reach.fold(0.0, f64::max)
-        }
+        Model::Spheres(union) => union.reach_from(center),
         Model::Mesh(_) => 0.5 * bounds.size().length(),
     };
     (center, radius)

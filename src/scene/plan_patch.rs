@@ -7,18 +7,18 @@ use crate::error::Result;
 use crate::geometry::Pose;
 use crate::random::Seed;
 use crate::spelling::nearest_names;
-use crate::study::{not_negative, positive, read_mesh_file};
-use crate::world::{Grid, Layout, Patch, SkinPatch, Taxel, Taxels};
+use crate::study::{positive, read_mesh_file};
+use crate::world::{Grid, Layout, Patch, Shears, SkinPatch, Taxels};
 
 /// A patch and where it is mounted.
 #[derive(Clone, Debug)]
 pub struct PlannedPatch {
-    /// The patch; all its taxels are equal.
+    /// The patch.
     pub skin: SkinPatch,
     /// What carries it.
     pub mount: Mount,
-    /// What each of its taxels is.
-    pub taxel: Taxel,
+    /// The shear springs of its taxels, if it has friction.
+    pub shears: Option<Shears>,
 }
 
 /// What carries a patch.
@@ -38,13 +38,25 @@ pub enum Mount {
 }
 
 impl PlannedPatch {
-    /// As a grid, if it is a flat one.
+    /// As a grid, if it is a flat one of equal taxels.
     pub fn grid(&self) -> Option<Patch> {
         let grid = *self.skin.layout().as_grid()?;
-        Some(Patch {
-            grid,
-            taxel: self.taxel,
-        })
+        match *self.skin.taxels() {
+            Taxels::Equal(taxel) => Some(Patch { grid, taxel }),
+            Taxels::Each(_) => None,
+        }
+    }
+
+    /// Whether what was before decides what it feels: dampers and friction remember.
+    pub fn remembers(&self) -> bool {
+        let mut taxels = self.skin.taxels().all().iter();
+        self.shears.is_some() || taxels.any(|taxel| taxel.damping > 0.0)
+    }
+
+    /// Whether objects can drag it sideways.
+    pub fn has_friction(&self) -> bool {
+        let shears = self.shears.iter().flat_map(|shears| shears.all());
+        shears.into_iter().any(|shear| shear.friction > 0.0)
     }
 }
 
@@ -66,36 +78,26 @@ impl LayoutSpec {
 impl Reader<'_> {
     pub fn patch(
         &self,
-        spec: &PatchSpec,
+        spec: &mut PatchSpec,
         robots: &[PlannedRobot],
         seed: &Seed,
     ) -> Result<PlannedPatch> {
         let key = &format!("patches.{}", spec.name);
-        let above_zero = |name: &str, value: f64| {
-            let key = format!("{key}.{name}");
-            self.check.value(&key, value, positive, "a positive number")
-        };
-        let pitch_mm = above_zero("layout.pitch_mm", spec.layout.pitch_mm())?;
-        let radius_mm = spec.taxel_radius_mm.unwrap_or(0.5 * pitch_mm);
-        let damping = self.check.value(
-            &format!("{key}.damping_n_s_per_m"),
-            spec.damping_n_s_per_m,
-            not_negative,
-            "zero or a positive number",
-        )?;
-        let taxel = Taxel {
-            radius: above_zero("taxel_radius_mm", radius_mm)? * MM,
-            stiffness: above_zero("stiffness_n_per_m", spec.stiffness_n_per_m)?,
-            damping,
-            stroke: above_zero("stroke_mm", spec.stroke_mm)? * MM,
-        };
+        let pitch_key = format!("{key}.layout.pitch_mm");
+        let pitch_mm = spec.layout.pitch_mm();
+        self.check
+            .value(&pitch_key, pitch_mm, positive, "a positive number")?;
         let layout_key = &format!("{key}.layout");
         let layout = self.layout(layout_key, &spec.layout, &seed.named(&spec.name))?;
-        let skin = SkinPatch::new(&spec.name, layout, Taxels::Equal(taxel));
+        let (taxels, shears) = self.taxels(key, spec, layout.n_taxels())?;
+        let skin = self.under(key, SkinPatch::new(&spec.name, layout, taxels))?;
+        if let Some(shears) = &shears {
+            self.under(key, shears.check(&skin))?;
+        }
         Ok(PlannedPatch {
-            skin: self.under(key, skin)?,
+            skin,
             mount: self.mount(key, spec, robots)?,
-            taxel,
+            shears,
         })
     }
 

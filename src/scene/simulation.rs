@@ -1,9 +1,11 @@
 //! The loop: one frame after the other, each handed on as soon as it is made.
 
-use super::frame::{Frame, FrameSink, Held, ObjectReading, PatchReading};
+use super::frame::{Frame, FrameSink, FrictionReading, Held, ObjectReading, PatchReading};
 use super::free_objects::FreeObjects;
 use super::plan::ScenePlan;
 use super::plan_object::Movement;
+use super::plan_patch::PlannedPatch;
+use super::pressed_objects::PressedObjects;
 use super::robot_state::RobotState;
 use super::skin_state::{PlacedObjects, SkinState};
 use crate::contact::Wrench;
@@ -27,6 +29,7 @@ pub struct Simulation<'p> {
     robots: Vec<RobotState>,
     skins: Vec<SkinState>,
     objects: PlacedObjects,
+    pressed: PressedObjects,
     free: FreeObjects,
     frame: Frame,
     next_frame: usize,
@@ -43,22 +46,18 @@ impl<'p> Simulation<'p> {
         };
         let frame = Frame {
             time: 0.0,
-            patches: skins
-                .clone()
-                .map(|patch| untouched(patch.skin.n_taxels()))
-                .collect(),
+            patches: skins.clone().map(untouched).collect(),
             objects: vec![imposed; plan.objects.len()],
         };
         Self {
             stepping,
             robots: plan.robots.iter().map(RobotState::of).collect(),
-            skins: skins
-                .map(|patch| SkinState::of(patch, &plan.models))
-                .collect(),
+            skins: skins.map(SkinState::of).collect(),
             objects: PlacedObjects {
                 poses: vec![Pose::IDENTITY; plan.objects.len()],
                 balls: plan.objects.iter().map(|object| object.ball).collect(),
             },
+            pressed: PressedObjects::of(plan),
             free: FreeObjects::of(plan),
             frame,
             next_frame: 0,
@@ -87,7 +86,7 @@ impl<'p> Simulation<'p> {
         let time = plan.time(self.next_frame);
         if self.next_frame == 0 {
             // It has stood like this for long.
-            self.go_to(time)?;
+            self.go_to(time, f64::INFINITY)?;
             self.read(f64::INFINITY);
         } else {
             let before = plan.time(self.next_frame - 1);
@@ -95,10 +94,10 @@ impl<'p> Simulation<'p> {
             let dt = 1.0 / (plan.output_rate * n_steps as f64);
             for step in 1..n_steps {
                 let share = step as f64 / n_steps as f64;
-                self.go_to(before + share * (time - before))?;
+                self.go_to(before + share * (time - before), dt)?;
                 self.step(dt);
             }
-            self.go_to(time)?;
+            self.go_to(time, dt)?;
             self.read(dt);
         }
         self.next_frame += 1;
@@ -121,8 +120,8 @@ impl<'p> Simulation<'p> {
         if are_needed { self.plan.n_substeps } else { 1 }
     }
 
-    /// Everything goes to where it is at a time.
-    fn go_to(&mut self, time: f64) -> Result<()> {
+    /// Everything goes to where it is at a time, `dt` seconds after the last one.
+    fn go_to(&mut self, time: f64, dt: f64) -> Result<()> {
         let plan = self.plan;
         self.n_steps += 1;
         for (state, robot) in self.robots.iter_mut().zip(&plan.robots) {
@@ -136,6 +135,8 @@ impl<'p> Simulation<'p> {
                 *pose = motion.pose_at(time);
             }
         }
+        let objects = &mut self.objects;
+        self.pressed.push(plan, &self.skins, objects, [time, dt]);
         self.free.settle(plan, &self.skins, &mut self.objects, time)
     }
 
@@ -143,7 +144,7 @@ impl<'p> Simulation<'p> {
     fn step(&mut self, dt: f64) {
         let plan = self.plan;
         for (skin, patch) in self.skins.iter_mut().zip(&plan.patches) {
-            if patch.taxel.damping > 0.0 || self.stepping == Stepping::Always {
+            if patch.remembers() || self.stepping == Stepping::Always {
                 skin.step(patch, &plan.models, &self.objects, dt);
             }
         }
@@ -159,11 +160,13 @@ impl<'p> Simulation<'p> {
         for (reading, &pose) in self.frame.objects.iter_mut().zip(&self.objects.poses) {
             reading.pose = pose;
         }
+        self.pressed.read(&mut self.frame.objects);
         self.free.read(&mut self.frame.objects);
     }
 }
 
-fn untouched(n_taxels: usize) -> PatchReading {
+fn untouched(patch: &PlannedPatch) -> PatchReading {
+    let n_taxels = patch.skin.n_taxels();
     PatchReading {
         pose: Pose::IDENTITY,
         deflection: vec![0.0; n_taxels],
@@ -172,6 +175,7 @@ fn untouched(n_taxels: usize) -> PatchReading {
         n_saturated: 0,
         n_grazing: 0,
         wrench: Wrench::default(),
+        friction: patch.shears.as_ref().map(|_| FrictionReading::default()),
         center_of_pressure: None,
     }
 }

@@ -4,12 +4,12 @@ use super::frame::PatchReading;
 use super::plan_patch::{Mount, PlannedPatch};
 use super::robot_state::RobotState;
 use crate::contact::{
-    DamperState, SkinContact, SkinWorkspace, TaxelContact, Workspace, Wrench, press_skin,
-    press_to_travel,
+    DamperState, FrictionState, GripCounts, NormalForce, SkinContact, SkinWorkspace, Wrench,
+    axial_load, deflect_skin, press_skin,
 };
 use crate::geometry::Pose;
 use crate::objects::Model;
-use crate::world::{Patch, Scene, SkinPatch};
+use crate::world::SkinPatch;
 use glam::DVec3;
 
 /// Where all objects are.
@@ -46,13 +46,6 @@ impl PlacedObjects {
     }
 }
 
-/// The fast kernel of flat grids, for steps of which nobody wants to know what touches what.
-#[derive(Clone, Debug)]
-struct GridKernel {
-    scene: Scene,
-    workspace: Workspace,
-}
-
 /// A patch at one time.
 #[derive(Clone, Debug)]
 pub(super) struct SkinState {
@@ -62,7 +55,9 @@ pub(super) struct SkinState {
     /// Nothing pushes it, and all its taxels are out.
     is_idle: bool,
     workspace: SkinWorkspace,
-    grid: Option<Box<GridKernel>>,
+    /// Of a patch with friction.
+    friction: Option<FrictionState>,
+    grips: GripCounts,
     /// `patch_from_object`, one an object.
     poses: Vec<Pose>,
     /// One a taxel: what nothing pushes.
@@ -71,25 +66,22 @@ pub(super) struct SkinState {
 }
 
 impl SkinState {
-    /// Taxels that stand out. The grid kernel is for damped grids among spheres, where it agrees to the bit with the other.
-    pub fn of(patch: &PlannedPatch, models: &[Model]) -> Self {
+    /// Taxels that stand out.
+    pub fn of(patch: &PlannedPatch) -> Self {
         let n_taxels = patch.skin.n_taxels();
-        let are_spheres = models.iter().all(|model| model.spheres().is_some());
-        let is_stepped = patch.taxel.damping > 0.0 && are_spheres;
-        let kernel = |patch: Patch| {
-            let objects = models.to_vec();
-            Box::new(GridKernel {
-                scene: Scene { patch, objects },
-                workspace: Workspace::new(),
-            })
+        let friction = patch.shears.clone();
+        let at_rest = |shears| {
+            let state = FrictionState::at_rest(&patch.skin, shears);
+            state.expect("the plan has checked that they fit")
         };
         Self {
             pose: Pose::IDENTITY,
             damper: DamperState::at_rest(n_taxels),
             is_idle: true,
             workspace: SkinWorkspace::new(),
-            grid: patch.grid().filter(|_| is_stepped).map(kernel),
-            poses: Vec::with_capacity(models.len()),
+            friction: friction.map(at_rest),
+            grips: GripCounts::default(),
+            poses: Vec::new(),
             untouched: vec![0.0; n_taxels],
             counts: SkinContact::default(),
         }
@@ -144,9 +136,24 @@ impl SkinState {
             0 => &[],
             _ => self.workspace.contacts(),
         };
-        let (wrench, center) = load(&patch.skin, contacts, &self.damper.force);
-        reading.wrench = wrench;
-        reading.center_of_pressure = center;
+        let forces = &self.damper.force;
+        let load = axial_load(&patch.skin, contacts, |contact| forces[contact.taxel]);
+        reading.wrench = on_patch(load.on_object);
+        reading.center_of_pressure = load.center_of_pressure;
+        if let (Some(state), Some(friction)) = (&self.friction, &mut reading.friction) {
+            let load = state.load(&patch.skin, contacts);
+            reading.wrench = on_patch(load.on_object);
+            friction.shear = on_patch(load.friction).force;
+            friction.n_sticking = self.grips.n_sticking;
+            friction.n_slipping = self.grips.n_slipping;
+            friction.force3.clear();
+            friction.force3.resize(forces.len(), DVec3::ZERO);
+            for contact in contacts {
+                let DVec3 { x, y, z } = state.force3()[contact.taxel];
+                let frame = patch.skin.layout().frame(contact.taxel);
+                friction.force3[contact.taxel] = frame * DVec3::new(x, y, -z);
+            }
+        }
     }
 
     fn feel(
@@ -161,6 +168,7 @@ impl SkinState {
             self.counts = SkinContact::default();
             if !self.is_idle {
                 self.damper.step(patch.skin.taxels(), dt, &self.untouched);
+                self.grip(patch, &Pressed::Nowhere);
                 self.is_idle = self
                     .damper
                     .deflection
@@ -177,18 +185,34 @@ impl SkinState {
             .map(|pose| patch_from_world.compose(pose));
         self.poses.clear();
         self.poses.extend(seen);
-        let pushed = match (&mut self.grid, detail) {
-            (Some(grid), Detail::Deflections) => {
-                press_to_travel(&grid.scene, &self.poses, 0.0, &mut grid.workspace);
-                grid.workspace.deflections()
-            }
-            _ => {
-                self.counts = press_skin(&patch.skin, models, &self.poses, &mut self.workspace);
-                self.workspace.deflections()
-            }
-        };
+        let workspace = &mut self.workspace;
+        if self.friction.is_some() || detail == Detail::Contacts {
+            self.counts = press_skin(&patch.skin, models, &self.poses, workspace);
+        } else {
+            deflect_skin(&patch.skin, models, &self.poses, workspace);
+        }
+        let pushed = self.workspace.deflections();
         self.damper.step(patch.skin.taxels(), dt, pushed);
+        self.grip(patch, &Pressed::ByContacts);
     }
+
+    /// Drags the tips along with what touches them.
+    fn grip(&mut self, patch: &PlannedPatch, pressed: &Pressed) {
+        let contacts = match pressed {
+            Pressed::ByContacts => self.workspace.contacts(),
+            Pressed::Nowhere => &[],
+        };
+        if let Some(friction) = &mut self.friction {
+            let normal = NormalForce::Dampers(&self.damper);
+            self.grips = friction.step(&patch.skin, contacts, &self.poses, normal);
+        }
+    }
+}
+
+/// What presses a patch in a step.
+enum Pressed {
+    Nowhere,
+    ByContacts,
 }
 
 /// What is asked of a step.
@@ -199,15 +223,7 @@ enum Detail {
     Contacts,
 }
 
-/// What forces along the axes (n_taxels, newtons) at contacts put on a patch, and where they press.
-fn load(patch: &SkinPatch, contacts: &[TaxelContact], forces: &[f64]) -> (Wrench, Option<DVec3>) {
-    let mut wrench = Wrench::default();
-    let (mut all, mut moment) = (0.0, DVec3::ZERO);
-    for contact in contacts {
-        let force = forces[contact.taxel];
-        wrench = wrench + Wrench::at(contact.point, force * contact.gradient());
-        all += force;
-        moment += force * patch.layout().centers()[contact.taxel];
-    }
-    (wrench, (all > 0.0).then(|| moment / all))
+/// What an object feels, felt by the patch; nothing has no sign.
+fn on_patch(on_object: Wrench) -> Wrench {
+    Wrench::default() + -on_object
 }

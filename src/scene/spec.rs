@@ -2,10 +2,10 @@
 //!
 //! Nothing is checked here beyond names and types; [`ScenePlan`](super::ScenePlan) does that.
 
+pub use super::numbers::Numbers;
+pub use super::spec_object::*;
 pub use super::spec_patch::*;
 use crate::error::{Error, Result};
-use crate::mesh::LengthUnit;
-use crate::study::ModelSpec;
 use crate::world::Interpolation;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -142,53 +142,6 @@ pub struct JointsSpec {
     pub positions: BTreeMap<String, Vec<f64>>,
 }
 
-/// `[[objects]]`: what is touched.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct ObjectSpec {
-    /// Its name in this scene.
-    pub name: String,
-    /// A built-in object (`bubbletouch objects` lists them).
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub object: Option<String>,
-    /// Instead: a CSV file of spheres, columns x, y, z, r in metres.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub spheres: Option<PathBuf>,
-    /// Instead: a PLY, OBJ or STL file.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub mesh: Option<PathBuf>,
-    /// What a mesh becomes; spheres around its vertices when left out.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub model: Option<ModelSpec>,
-    /// Unit of a mesh's numbers; metres when left out.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub mesh_unit: Option<LengthUnit>,
-    /// How far spheres may be from a solid's or packed mesh's surface; 0.25, or packed a tenth of the finest pitch, when left out.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub surface_error_mm: Option<f64>,
-    /// Where it is, or starts.
-    #[serde(default)]
-    pub at: PoseSpec,
-    /// How it moves, whatever touches it; not at all when left out.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub motion: Option<MotionSpec>,
-    /// Instead of `motion`: only gravity and skins hold it.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub free: Option<FreeSpec>,
-}
-
-/// `free = { mass_kg = 0.2 }`
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct FreeSpec {
-    /// What it weighs.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub mass_kg: Option<f64>,
-    /// In its own frame; that of a homogeneous solid when left out.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub center_of_mass_mm: Option<[f64; 3]>,
-}
-
 impl SceneSpec {
     /// Reads a scene; the error names the file, the line and the key.
     pub fn parse(place: &str, text: &str) -> Result<Self> {
@@ -207,13 +160,13 @@ impl SceneSpec {
             let joints = robot.joints.as_mut().and_then(|j| j.csv.as_mut());
             [robot.urdf.as_mut(), motion, joints]
         });
-        let patches = self
-            .patches
-            .iter_mut()
-            .map(|patch| match &mut patch.layout {
+        let patches = self.patches.iter_mut().flat_map(|patch| {
+            let mesh = match &mut patch.layout {
                 LayoutSpec::Draped { mesh, .. } => Some(mesh),
                 _ => None,
-            });
+            };
+            [mesh, patch.taxels_csv.as_mut()]
+        });
         let objects = self.objects.iter_mut().flat_map(|object| {
             let motion = object.motion.as_mut().and_then(|m| m.csv.as_mut());
             [object.spheres.as_mut(), object.mesh.as_mut(), motion]
@@ -226,7 +179,7 @@ fn one() -> f64 {
     1.0
 }
 
-pub(super) fn hundred() -> f64 {
+fn hundred() -> f64 {
     100.0
 }
 

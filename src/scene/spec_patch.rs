@@ -1,6 +1,7 @@
 //! Skin as it is written: `[[patches]]`.
 
-use super::spec::{PoseSpec, hundred};
+use super::numbers::Numbers;
+use super::spec::PoseSpec;
 use crate::mesh::LengthUnit;
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
@@ -22,17 +23,28 @@ pub struct PatchSpec {
     pub at: PoseSpec,
     /// Where its taxels are.
     pub layout: LayoutSpec,
-    /// ρ; half the pitch when left out.
+    /// ρ; half the pitch when left out. This and what follows: one for all taxels, a list of one each in the order of the layout (a
+    /// grid's: row by row), or a column of `taxels_csv`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub taxel_radius_mm: Option<f64>,
-    /// s.
-    pub stroke_mm: f64,
-    /// k.
-    #[serde(default = "hundred")]
-    pub stiffness_n_per_m: f64,
-    /// c.
-    #[serde(default)]
-    pub damping_n_s_per_m: f64,
+    pub taxel_radius_mm: Option<Numbers>,
+    /// s; needed.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub stroke_mm: Option<Numbers>,
+    /// k; 100 when left out.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub stiffness_n_per_m: Option<Numbers>,
+    /// c; none when left out.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub damping_n_s_per_m: Option<Numbers>,
+    /// μ: with it the tips of the taxels are dragged along and slip; without it they slide along their axes alone.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub friction: Option<Numbers>,
+    /// k_t, beside `friction`; that of the spring along the axis when left out.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub shear_stiffness_n_per_m: Option<Numbers>,
+    /// A file with a row a taxel: columns under the names of the keys above, those that differ.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub taxels_csv: Option<PathBuf>,
 }
 
 /// `layout = { grid = { nx = 64, ny = 64, pitch_mm = 2.0 } }`: see [`Layout`](crate::world::Layout).

@@ -16,6 +16,12 @@ pub struct PatchPeaks {
     pub n_saturated: usize,
     /// Taxels in grazing contact.
     pub n_grazing: usize,
+    /// Friction of all taxels together, newtons.
+    pub shear: f64,
+    /// Taxels whose tips go with the object.
+    pub n_sticking: usize,
+    /// Taxels whose tips have slipped.
+    pub n_slipping: usize,
 }
 
 /// Peaks so far; a sink that keeps no frames.
@@ -29,6 +35,8 @@ pub struct Summary {
     pub objects: Vec<Held>,
     /// Frames in which each object was unsettled.
     pub n_unsettled: Vec<usize>,
+    /// Frames in which each object was pressed with another force than was wanted.
+    pub n_off: Vec<usize>,
 }
 
 impl FrameSink for Summary {
@@ -43,6 +51,11 @@ impl FrameSink for Summary {
             peaks.n_touched = peaks.n_touched.max(patch.n_touched);
             peaks.n_saturated = peaks.n_saturated.max(patch.n_saturated);
             peaks.n_grazing = peaks.n_grazing.max(patch.n_grazing);
+            if let Some(friction) = &patch.friction {
+                peaks.shear = peaks.shear.max(friction.shear.length());
+                peaks.n_sticking = peaks.n_sticking.max(friction.n_sticking);
+                peaks.n_slipping = peaks.n_slipping.max(friction.n_slipping);
+            }
         }
         self.objects.clear();
         self.objects
@@ -50,6 +63,10 @@ impl FrameSink for Summary {
         self.n_unsettled.resize(frame.objects.len(), 0);
         for (count, object) in self.n_unsettled.iter_mut().zip(&frame.objects) {
             *count += usize::from(object.held == Held::Unsettled);
+        }
+        self.n_off.resize(frame.objects.len(), 0);
+        for (count, object) in self.n_off.iter_mut().zip(&frame.objects) {
+            *count += usize::from(object.held.is_off());
         }
         Ok(())
     }

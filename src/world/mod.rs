@@ -43,6 +43,7 @@ pub use robot::{
 };
 pub use scene::Scene;
 pub use shear::{Shear, Shears};
+pub(crate) use skin_patch::EvenGrid;
 pub use skin_patch::{SkinPatch, Taxels};
 pub(crate) use taxel_tree::PlacedTaxel;
 pub use touches::{TouchSource, touches};

@@ -1,7 +1,7 @@
 //! A patch of skin of any shape.
 
 use super::taxel_tree::TaxelTree;
-use super::{Layout, Patch, PerTaxel, Taxel};
+use super::{Grid, Layout, Patch, PerTaxel, Taxel};
 use crate::error::{Error, Result};
 
 /// A rigid substrate with taxels of any layout, equal or not.
@@ -13,6 +13,17 @@ pub struct SkinPatch {
     layout: Layout,
     taxels: Taxels,
     tree: TaxelTree,
+    even_grid: Option<EvenGrid>,
+}
+
+/// A flat grid of taxels that objects push alike.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct EvenGrid {
+    pub grid: Grid,
+    /// ρ of all, metres.
+    pub radius: f64,
+    /// −s − ρ of all, metres: what is lower is behind the substrate.
+    pub behind: f64,
 }
 
 /// What the taxels of a patch are.
@@ -37,6 +48,7 @@ impl SkinPatch {
     fn of_checked(name: String, layout: Layout, taxels: Taxels) -> Self {
         Self {
             tree: TaxelTree::new(&layout, &taxels),
+            even_grid: EvenGrid::of(&layout, &taxels),
             name,
             layout,
             taxels,
@@ -66,6 +78,24 @@ impl SkinPatch {
     /// Its taxels, so that those near a ball are found.
     pub(crate) fn tree(&self) -> &TaxelTree {
         &self.tree
+    }
+
+    /// The grid that it is, if all its taxels are as large and go as deep.
+    pub(crate) fn even_grid(&self) -> Option<&EvenGrid> {
+        self.even_grid.as_ref()
+    }
+}
+
+impl EvenGrid {
+    fn of(layout: &Layout, taxels: &Taxels) -> Option<Self> {
+        let grid = *layout.as_grid()?;
+        let (first, others) = taxels.all().split_first()?;
+        let is_alike = |t: &Taxel| (t.radius, t.stroke) == (first.radius, first.stroke);
+        others.iter().all(is_alike).then_some(Self {
+            grid,
+            radius: first.radius,
+            behind: -first.stroke - first.radius,
+        })
     }
 }
 
@@ -98,7 +128,6 @@ fn check_each(name: &str, taxels: &[Taxel], n_places: usize) -> Result<()> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::world::Grid;
     use glam::DVec3;
 
     const TAXEL: Taxel = Taxel {

@@ -35,13 +35,11 @@ impl<'a> FreeObject<'a> {
                 "finite coordinates in metres",
             ));
         }
-        let spheres = spheres.spheres();
-        let reach = |s: &Sphere| s.center.distance(center_of_mass) + s.radius;
         Ok(Self {
-            spheres,
+            spheres: spheres.spheres(),
             mass,
             center_of_mass,
-            radius: spheres.iter().map(reach).fold(0.0, f64::max),
+            radius: spheres.reach_from(center_of_mass),
         })
     }
 }

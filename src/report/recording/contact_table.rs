@@ -1,9 +1,10 @@
 //! Wrench and centre of pressure of each patch in each frame, as a streamed CSV table.
 //!
-//! Columns: `time_s, patch, n_touched, n_saturated, fx_n, fy_n, fz_n, tx_nm, ty_nm, tz_nm, cop_x_m, cop_y_m, cop_z_m`. Numbers
-//! have as many digits as bring the same bits back. The centre of pressure is empty where there is no contact; the wrench is
-//! then zero, and says so.
+//! Columns: `time_s, patch, n_touched, n_saturated, fx_n, fy_n, fz_n, tx_nm, ty_nm, tz_nm, cop_x_m, cop_y_m, cop_z_m,
+//! n_sticking, n_slipping`. Numbers have as many digits as bring the same bits back. The centre of pressure is empty where there is
+//! no contact; the wrench is then zero, and says so. The last two are empty for a patch without friction.
 
+use crate::contact::GripCounts;
 use crate::error::{Error, Result};
 use crate::files::CsvFile;
 use glam::DVec3;
@@ -26,6 +27,8 @@ pub struct PatchContact<'a> {
     pub torque: DVec3,
     /// Mean place of the taxels in contact, weighted by their normal forces, metres; `None` where there is no contact.
     pub center_of_pressure: Option<DVec3>,
+    /// What the taxels of a patch with friction did since the step before.
+    pub grips: Option<GripCounts>,
 }
 
 impl<'a> PatchContact<'a> {
@@ -50,6 +53,7 @@ impl<'a> PatchContact<'a> {
             force: DVec3::ZERO,
             torque: DVec3::ZERO,
             center_of_pressure: None,
+            grips: None,
         };
         let (mut weight, mut weighted) = (0.0, DVec3::ZERO);
         for (&place, &force) in places.iter().zip(forces) {
@@ -89,6 +93,8 @@ struct Row<'a> {
     cop_x_m: Option<f64>,
     cop_y_m: Option<f64>,
     cop_z_m: Option<f64>,
+    n_sticking: Option<usize>,
+    n_slipping: Option<usize>,
 }
 
 impl ContactTable {
@@ -125,6 +131,8 @@ impl ContactTable {
             cop_x_m: center.map(|c| c.x),
             cop_y_m: center.map(|c| c.y),
             cop_z_m: center.map(|c| c.z),
+            n_sticking: contact.grips.map(|grips| grips.n_sticking),
+            n_slipping: contact.grips.map(|grips| grips.n_slipping),
         })
     }
 

@@ -22,9 +22,12 @@
 //! [`contact_table`] writes wrenches and centres of pressure as CSV; [`skin_picture`] and [`animation`] draw.
 
 pub mod animation;
+mod archive;
+mod block;
 pub mod contact_table;
 mod dots;
 mod header;
+mod members;
 mod npy;
 mod pixels;
 mod reader;

@@ -1,17 +1,17 @@
 //! The writer: frames in as they come, an `.npz` out at the end.
 
+use super::archive::Archive;
+use super::block::Block;
 use super::header::{ForceKind, RecordedPatch, RecordingHeader, Stream};
-use super::npy::{Element, NpyHeader};
+use super::members::{begin, first_stream, put};
+use super::npy::Element;
 use super::spool::Spool;
 use crate::error::{Error, Result};
 use crate::files::WholeFile;
 use crate::geometry::Pose;
 use glam::DVec3;
-use std::fs::File;
-use std::io::{self, BufWriter, Write};
-use std::path::Path;
-use zip::write::SimpleFileOptions;
-use zip::{CompressionMethod, DateTime, ZipWriter};
+use std::io::{self, Write};
+use std::path::{Path, PathBuf};
 
 /// Forces on the taxels of a patch, newtons.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -35,74 +35,111 @@ pub struct PatchFrame<'a> {
 
 /// An `.npz` in the making. [`finish`](Self::finish) puts it in place; dropped before, it leaves nothing behind.
 ///
-/// It holds about 8 MiB of rows in memory, whatever the number of frames (a frame, if that is larger), and as much disk as
-/// the recording beside the target until it is finished, twice that while it finishes.
+/// It holds about 2 MiB of rows in memory, whatever the number of frames (a frame, if that is larger). Where that number is known
+/// beforehand ([`create_for`](Self::create_for)), they are written once; else they need as much disk as the recording beside
+/// the target until it is finished, twice that while it finishes. The file is the same.
 pub struct RecordingWriter {
     header: RecordingHeader,
     streams: Vec<Stream>,
     target: WholeFile,
-    spool: Spool,
+    block: Block,
+    room: Room,
+    /// A block was written in part: what is behind it is not known.
+    is_broken: bool,
     last_time: f64,
 }
 
+/// Where blocks of rows go.
+enum Room {
+    /// Beside the target: it is not known how many will come.
+    Beside(PathBuf, Spool),
+    /// To their places in the target.
+    Placed { archive: Archive, n_frames: usize },
+}
+
 impl RecordingWriter {
-    /// Starts a recording that will stand at `path`.
+    /// Starts a recording of any number of frames that will stand at `path`.
     ///
     /// The error says what [`RecordingHeader::check`] does, or why nothing can be written there.
     pub fn create(path: &Path, header: RecordingHeader) -> Result<Self> {
         header.check()?;
-        let streams = header.streams();
         let target = WholeFile::create(path)?;
-        let spool = Spool::create(path, streams.iter().map(Stream::row_bytes).collect())?;
-        Ok(Self {
+        let room = Room::Beside(path.to_owned(), Spool::create(path)?);
+        Ok(Self::of(header, target, room))
+    }
+
+    /// Starts a recording of so many frames. Errors as those of [`create`](Self::create).
+    pub fn create_for(path: &Path, header: RecordingHeader, n_frames: usize) -> Result<Self> {
+        header.check()?;
+        let mut target = WholeFile::create(path)?;
+        let mut archive = Archive::default();
+        target.write(|file| begin(&header, n_frames, &mut archive, file))?;
+        let room = Room::Placed { archive, n_frames };
+        Ok(Self::of(header, target, room))
+    }
+
+    fn of(header: RecordingHeader, target: WholeFile, room: Room) -> Self {
+        let streams = header.streams();
+        Self {
+            block: Block::new(streams.iter().map(Stream::row_bytes).collect()),
             header,
             streams,
             target,
-            spool,
+            room,
+            is_broken: false,
             last_time: f64::NEG_INFINITY,
-        })
+        }
     }
 
     /// Adds a frame: `time` in seconds, then each patch and each object (world from object) in the header's order.
     ///
     /// The error names a time that does not increase, or a number of patches, objects, deflections or forces that is not the
-    /// header's; the frame is then not in the recording.
+    /// header's, or a frame beyond those that it was started for; the frame is then not in the recording.
     pub fn push(&mut self, time: f64, patches: &[PatchFrame], objects: &[Pose]) -> Result<()> {
         self.check(time, patches, objects)?;
         self.last_time = time;
         let element = self.header.precision.element();
-        let spool = &mut self.spool;
-        put(spool.row(0), Element::Double, [time]);
+        let block = &mut self.block;
+        put(block.row(0), Element::Double, [time]);
         let mut column = 1;
         for patch in patches {
-            put(spool.row(column), element, patch.deflection.iter().copied());
+            put(block.row(column), element, patch.deflection.iter().copied());
             match patch.force {
                 Forces::Normal(force) => {
-                    put(spool.row(column + 1), element, force.iter().copied());
+                    put(block.row(column + 1), element, force.iter().copied());
                 }
                 Forces::Vector(force) => {
                     let numbers = force.iter().flat_map(|f| f.to_array());
-                    put(spool.row(column + 1), element, numbers);
+                    put(block.row(column + 1), element, numbers);
                 }
             }
-            put(spool.row(column + 2), Element::Double, seven(&patch.pose));
+            put(block.row(column + 2), Element::Double, seven(&patch.pose));
             column += 3;
         }
         for pose in objects {
-            put(spool.row(column), Element::Double, seven(pose));
+            put(block.row(column), Element::Double, seven(pose));
             column += 1;
         }
-        spool.end_row()
+        if block.end_row() {
+            return self.end_block();
+        }
+        Ok(())
     }
 
     fn check(&self, time: f64, patches: &[PatchFrame], objects: &[Pose]) -> Result<()> {
         if !(time.is_finite() && time > self.last_time) {
-            let (frame, last) = (self.spool.n_rows(), self.last_time);
+            let (frame, last) = (self.block.n_rows(), self.last_time);
             return Err(Error::input(
                 format!("recording, frame {frame}"),
                 format!("{time} s after {last} s"),
                 "finite times that increase",
             ));
+        }
+        match self.room {
+            Room::Placed { n_frames, .. } if n_frames == self.block.n_rows() => {
+                return Err(self.other_count(n_frames + 1, n_frames));
+            }
+            _ => {}
         }
         let expected = (self.header.patches.len(), self.header.objects.len());
         if (patches.len(), objects.len()) != expected {
@@ -116,18 +153,73 @@ impl RecordingWriter {
         pairs.try_for_each(|(patch, frame)| check_frame(patch, frame))
     }
 
+    fn other_count(&self, given: usize, n_frames: usize) -> Error {
+        Error::input("recording", format!("{given} frames"), n_frames)
+    }
+
+    /// Writes what waits in memory. After an error, always an error.
+    fn end_block(&mut self) -> Result<()> {
+        let was_broken = std::mem::replace(&mut self.is_broken, true);
+        let first = first_stream(&self.header);
+        let block = &self.block;
+        let lost = || io::Error::other("rows were lost when writing failed before");
+        match &mut self.room {
+            Room::Beside(path, spool) => {
+                let put = if was_broken {
+                    Err(lost())
+                } else {
+                    spool.put(block)
+                };
+                put.map_err(|e| Error::io(&*path, "write", e))?;
+            }
+            Room::Placed { archive, .. } => self.target.write(|file| {
+                if was_broken {
+                    return Err(lost());
+                }
+                let mut columns = block.columns().iter().enumerate();
+                columns.try_for_each(|(column, rows)| archive.append(file, first + column, rows))
+            })?,
+        }
+        self.block.clear();
+        self.is_broken = false;
+        Ok(())
+    }
+
     /// Puts the recording together and in its place; returns how many frames it has.
+    ///
+    /// The error is why it cannot be written, or a number of frames that is not the one that it was started for.
     pub fn finish(mut self) -> Result<usize> {
-        self.spool.end_block()?;
+        let n_frames = self.block.n_rows();
+        match self.room {
+            Room::Placed { n_frames: n, .. } if n != n_frames => {
+                return Err(self.other_count(n_frames, n));
+            }
+            _ => self.end_block()?,
+        }
         let Self {
             header,
             streams,
             target,
-            spool,
+            block,
+            room,
             ..
         } = &mut self;
-        target.write(|file| assemble(header, streams, spool, file))?;
-        let n_frames = self.spool.n_rows();
+        target.write(|file| {
+            match room {
+                Room::Placed { archive, .. } => archive.finish(file),
+                Room::Beside(_, spool) => {
+                    let mut archive = Archive::default();
+                    begin(header, n_frames, &mut archive, file)?;
+                    for column in 0..streams.len() {
+                        let member = first_stream(header) + column;
+                        spool
+                            .each_part(block, column, |part| archive.append(file, member, part))?;
+                    }
+                    archive.finish(file)
+                }
+            }?;
+            file.flush()
+        })?;
         self.target.commit()?;
         Ok(n_frames)
     }
@@ -153,91 +245,4 @@ fn check_frame(patch: &RecordedPatch, frame: &PatchFrame) -> Result<()> {
 fn seven(pose: &Pose) -> [f64; 7] {
     let (t, q) = (pose.translation, pose.rotation);
     [t.x, t.y, t.z, q.x, q.y, q.z, q.w]
-}
-
-/// Fills a row.
-fn put(row: &mut [u8], element: Element, values: impl IntoIterator<Item = f64>) {
-    if element == Element::Single {
-        let places = row.as_chunks_mut().0.iter_mut();
-        places
-            .zip(values)
-            .for_each(|(to, value)| *to = (value as f32).to_le_bytes());
-    } else {
-        let places = row.as_chunks_mut().0.iter_mut();
-        places
-            .zip(values)
-            .for_each(|(to, value)| *to = value.to_le_bytes());
-    }
-}
-
-fn assemble(
-    header: &RecordingHeader,
-    streams: &[Stream],
-    spool: &mut Spool,
-    file: &mut BufWriter<File>,
-) -> io::Result<()> {
-    let mut archive = ZipWriter::new(file);
-    if let Err(error) = write_members(header, streams, spool, &mut archive) {
-        // Dropped, it would try to finish the archive and say on standard error that it cannot.
-        std::mem::forget(archive);
-        return Err(error);
-    }
-    archive.finish()?.flush()
-}
-
-fn write_members(
-    header: &RecordingHeader,
-    streams: &[Stream],
-    spool: &mut Spool,
-    archive: &mut ZipWriter<&mut BufWriter<File>>,
-) -> io::Result<()> {
-    let code_points: Vec<u8> = header
-        .meta()
-        .chars()
-        .flat_map(|c| u32::from(c).to_le_bytes())
-        .collect();
-    let meta = NpyHeader {
-        element: Element::Text(code_points.len() / 4),
-        shape: vec![],
-    };
-    start(archive, "meta", &meta)?;
-    archive.write_all(&code_points)?;
-    for patch in &header.patches {
-        for (name, vectors) in [("centers", &patch.centers), ("axes", &patch.axes)] {
-            let array = NpyHeader {
-                element: Element::Double,
-                shape: vec![vectors.len(), 3],
-            };
-            start(archive, &format!("{}/{name}", patch.name), &array)?;
-            let mut bytes = vec![0; 24 * vectors.len()];
-            let numbers = vectors.iter().flat_map(|v| v.to_array());
-            put(&mut bytes, Element::Double, numbers);
-            archive.write_all(&bytes)?;
-        }
-    }
-    for (column, stream) in streams.iter().enumerate() {
-        let array = NpyHeader {
-            element: stream.element,
-            shape: stream.shape(spool.n_rows()),
-        };
-        start(archive, &stream.name, &array)?;
-        spool.copy_column(column, archive)?;
-    }
-    archive.flush()
-}
-
-/// Starts a member; its time stamp is always the same, so that equal recordings are equal bytes.
-fn start(
-    archive: &mut ZipWriter<&mut BufWriter<File>>,
-    name: &str,
-    array: &NpyHeader,
-) -> io::Result<()> {
-    let header = array.bytes();
-    let n_bytes = array.n_bytes().unwrap_or(usize::MAX);
-    let options = SimpleFileOptions::default()
-        .compression_method(CompressionMethod::Stored)
-        .last_modified_time(DateTime::default())
-        .large_file(n_bytes as u64 + header.len() as u64 >= u64::from(u32::MAX));
-    archive.start_file(format!("{name}.npy"), options)?;
-    archive.write_all(&header)
 }

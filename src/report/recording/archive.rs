@@ -1,0 +1,259 @@
+//! A zip of stored members whose sizes are known before their bytes: each has its place, so they can grow side by side.
+//!
+//! A member is a local header, its name, and its bytes; behind all of them the directory says where each begins. Only the
+//! checksums come with the bytes: they are put into the local headers at the end. What is 4 GiB or more is written as ZIP64 has it
+//! (PKWARE's APPNOTE 6.3.10, §4.3 and §4.5.3).
+
+use crc32fast::Hasher;
+use std::io::{self, Seek, SeekFrom, Write};
+
+/// What a field of four bytes cannot say.
+const LARGE: u64 = u32::MAX as u64;
+/// What a field of two bytes cannot say.
+const MANY: usize = u16::MAX as usize;
+/// 1980-01-01, 00:00: equal recordings are equal bytes.
+const DATE: u16 = 1 << 5 | 1;
+/// Made on Unix: a file that all may read and its owner may write.
+const UNIX: u16 = 3 << 8;
+const PERMISSIONS: u32 = 0o100_644 << 16;
+
+/// A member of stored bytes.
+#[derive(Clone, Debug)]
+struct Member {
+    name: String,
+    /// All its bytes.
+    size: u64,
+    /// Where its local header is.
+    start: u64,
+    /// How many bytes it has.
+    n_written: u64,
+    hasher: Hasher,
+}
+
+/// Members that are being filled.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Archive {
+    members: Vec<Member>,
+    /// Where the next member or the directory begins.
+    end: u64,
+}
+
+impl Archive {
+    /// Gives a member with so many bytes its place behind the others; returns its number.
+    pub fn add(&mut self, name: &str, size: u64) -> usize {
+        let member = Member {
+            name: name.to_owned(),
+            size,
+            start: self.end,
+            n_written: 0,
+            hasher: Hasher::new(),
+        };
+        self.end = member.data() + size;
+        self.members.push(member);
+        self.members.len() - 1
+    }
+
+    /// Writes the next bytes of a member.
+    pub fn append(
+        &mut self,
+        file: &mut (impl Write + Seek),
+        member: usize,
+        bytes: &[u8],
+    ) -> io::Result<()> {
+        let member = &mut self.members[member];
+        let at = member.data() + member.n_written;
+        member.n_written += bytes.len() as u64;
+        member.hasher.update(bytes);
+        file.seek(SeekFrom::Start(at))?;
+        file.write_all(bytes)
+    }
+
+    /// Writes headers and directory; the error is a member that has not got all its bytes.
+    pub fn finish(&self, file: &mut (impl Write + Seek)) -> io::Result<()> {
+        for member in &self.members {
+            if member.n_written != member.size {
+                let Member {
+                    name,
+                    size,
+                    n_written,
+                    ..
+                } = member;
+                let said = format!("member {name} has {n_written} of its {size} bytes");
+                return Err(io::Error::other(said));
+            }
+            file.seek(SeekFrom::Start(member.start))?;
+            file.write_all(&member.local_header())?;
+        }
+        file.seek(SeekFrom::Start(self.end))?;
+        file.write_all(&self.directory())
+    }
+
+    fn directory(&self) -> Vec<u8> {
+        let mut bytes: Vec<u8> = self.members.iter().flat_map(Member::entry).collect();
+        let (n, size) = (self.members.len(), bytes.len() as u64);
+        if n > MANY || size.max(self.end) > LARGE {
+            let record = self.end + size;
+            bytes.extend(b"PK\x06\x06");
+            bytes.extend(44_u64.to_le_bytes());
+            bytes.extend([45; 2].into_iter().flat_map(u16::to_le_bytes));
+            bytes.extend([0; 2].into_iter().flat_map(u32::to_le_bytes));
+            let numbers = [n as u64, n as u64, size, self.end];
+            bytes.extend(numbers.into_iter().flat_map(u64::to_le_bytes));
+            bytes.extend(b"PK\x06\x07");
+            bytes.extend(0_u32.to_le_bytes());
+            bytes.extend(record.to_le_bytes());
+            bytes.extend(1_u32.to_le_bytes());
+        }
+        bytes.extend(b"PK\x05\x06");
+        let n = n.min(MANY) as u16;
+        bytes.extend([0, 0, n, n].into_iter().flat_map(u16::to_le_bytes));
+        bytes.extend([size, self.end].into_iter().flat_map(short));
+        bytes.extend(0_u16.to_le_bytes());
+        bytes
+    }
+}
+
+impl Member {
+    /// Where its bytes begin.
+    fn data(&self) -> u64 {
+        self.start + 30 + self.name.len() as u64 + self.sizes().len() as u64
+    }
+
+    fn local_header(&self) -> Vec<u8> {
+        let sizes = self.sizes();
+        let mut bytes = b"PK\x03\x04".to_vec();
+        self.common(&mut bytes, sizes.len());
+        bytes.extend(self.name.as_bytes());
+        bytes.extend(sizes);
+        bytes
+    }
+
+    /// In the directory.
+    fn entry(&self) -> Vec<u8> {
+        let mut extra = self.sizes();
+        if self.start >= LARGE {
+            // The place comes behind the sizes in the same field, which may not be there yet.
+            if extra.is_empty() {
+                extra.extend([1, 0, 0, 0]);
+            }
+            extra.extend(self.start.to_le_bytes());
+            extra[2] = extra.len() as u8 - 4;
+        }
+        let mut bytes = b"PK\x01\x02".to_vec();
+        bytes.extend((UNIX | self.version(!extra.is_empty())).to_le_bytes());
+        self.common(&mut bytes, extra.len());
+        // No comment, the first disk, nothing known of the bytes.
+        bytes.extend([0; 3].into_iter().flat_map(u16::to_le_bytes));
+        bytes.extend(PERMISSIONS.to_le_bytes());
+        bytes.extend(short(self.start));
+        bytes.extend(self.name.as_bytes());
+        bytes.extend(extra);
+        bytes
+    }
+
+    /// What both headers have, from the version to the lengths of name and extra field.
+    fn common(&self, bytes: &mut Vec<u8>, n_extra: usize) {
+        // A name beyond ASCII is UTF-8.
+        let flags = u16::from(!self.name.is_ascii()) << 11;
+        let stored = 0;
+        let numbers = [self.version(n_extra > 0), flags, stored, 0, DATE];
+        bytes.extend(numbers.into_iter().flat_map(u16::to_le_bytes));
+        bytes.extend(self.hasher.clone().finalize().to_le_bytes());
+        bytes.extend([self.size; 2].into_iter().flat_map(short));
+        let lengths = [self.name.len() as u16, n_extra as u16];
+        bytes.extend(lengths.into_iter().flat_map(u16::to_le_bytes));
+    }
+
+    fn version(&self, is_zip64: bool) -> u16 {
+        if is_zip64 { 45 } else { 10 }
+    }
+
+    /// ZIP64's extra field of a member that is too large for four bytes.
+    fn sizes(&self) -> Vec<u8> {
+        if self.size < LARGE {
+            return Vec::new();
+        }
+        let mut field = vec![1, 0, 16, 0];
+        field.extend(self.size.to_le_bytes());
+        field.extend(self.size.to_le_bytes());
+        field
+    }
+}
+
+/// A number of four bytes; of a larger one, that it is elsewhere.
+fn short(number: u64) -> [u8; 4] {
+    (number.min(LARGE) as u32).to_le_bytes()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::io::{Read, Write};
+    use zip::ZipArchive;
+
+    #[test]
+    fn members_that_grow_side_by_side_are_read_as_they_were_written() {
+        let mut archive = Archive::default();
+        let members = ["meta.npy", "Füße/pose.npy", "empty.npy"].map(|name| {
+            let size = if name == "empty.npy" { 0 } else { 30 };
+            archive.add(name, size)
+        });
+        let mut file = io::Cursor::new(Vec::new());
+        for part in 0..3_u8 {
+            for &member in &members[..2] {
+                let bytes = [part + 10 * member as u8; 10];
+                archive.append(&mut file, member, &bytes).unwrap();
+            }
+        }
+        archive.finish(&mut file).unwrap();
+        let mut read = ZipArchive::new(file).unwrap();
+        for member in 0..2 {
+            let mut bytes = Vec::new();
+            read.by_index(member)
+                .unwrap()
+                .read_to_end(&mut bytes)
+                .unwrap();
+            let expected = [0, 1, 2].map(|part| [part + 10 * member as u8; 10]);
+            assert_eq!(bytes, expected.concat());
+        }
+        assert_eq!(read.by_name("Füße/pose.npy").unwrap().size(), 30);
+        assert_eq!(read.by_name("empty.npy").unwrap().size(), 0);
+    }
+
+    #[test]
+    fn a_member_without_all_its_bytes_is_an_error() {
+        let mut archive = Archive::default();
+        let member = archive.add("half.npy", 4);
+        let mut file = io::Cursor::new(Vec::new());
+        archive.append(&mut file, member, &[1, 2]).unwrap();
+        let error = archive.finish(&mut file).unwrap_err().to_string();
+        assert_eq!(error, "member half.npy has 2 of its 4 bytes");
+    }
+
+    #[test]
+    fn what_is_beyond_four_gibibytes_is_found_again() {
+        // A file with a hole: only the headers are on the disk.
+        let mut archive = Archive::default();
+        let sizes = [10, (5 << 30) + 7, 3];
+        for (number, size) in sizes.into_iter().enumerate() {
+            let member = archive.add(&format!("{number}.npy"), size);
+            archive.members[member].n_written = size;
+        }
+        let mut file = tempfile::tempfile().unwrap();
+        archive.finish(&mut file).unwrap();
+        file.flush().unwrap();
+        let mut read = ZipArchive::new(file).unwrap();
+        for (number, size) in sizes.into_iter().enumerate() {
+            let entry = read.by_index_raw(number).unwrap();
+            let member = &archive.members[number];
+            assert_eq!(
+                (entry.name(), entry.size()),
+                (&*format!("{number}.npy"), size)
+            );
+            assert_eq!(
+                (entry.header_start(), entry.data_start()),
+                (member.start, member.data())
+            );
+        }
+    }
+}

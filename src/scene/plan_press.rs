@@ -1,0 +1,120 @@
+//! Objects that are pushed onto a patch until it feels a force: their wishes, checked.
+
+use super::numbers::Numbers;
+use super::plan_patch::PlannedPatch;
+use super::reader::{MM, Reader};
+use super::spec::PressSpec;
+use crate::error::Result;
+use crate::spelling::nearest_names;
+use crate::study::{not_negative, positive};
+use glam::DVec3;
+
+/// What an object is pushed for.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PlannedPress {
+    /// The number of the patch that is to feel the force.
+    pub patch: usize,
+    /// Where to: unit, in the world.
+    pub direction: DVec3,
+    /// When forces are wanted, seconds, ascending; at least one.
+    pub times: Vec<f64>,
+    /// Σ k δ at these times, N, not negative; straight lines between them, the first and last beyond.
+    pub forces: Vec<f64>,
+    /// Along the direction, m/s, positive.
+    pub speed: f64,
+    /// Metres from where the motion says, at most; positive.
+    pub travel: f64,
+}
+
+impl PlannedPress {
+    /// The force that is wanted at a time, N.
+    pub fn force_at(&self, time: f64) -> f64 {
+        let after = self.times.partition_point(|&t| t <= time);
+        match (after.checked_sub(1), self.forces.get(after)) {
+            (Some(before), Some(next)) => {
+                let share = (time - self.times[before]) / (self.times[after] - self.times[before]);
+                self.forces[before] + share * (next - self.forces[before])
+            }
+            (Some(last), None) => self.forces[last],
+            (None, _) => self.forces[0],
+        }
+    }
+
+    /// When the force is what it stays, seconds.
+    pub fn end(&self) -> f64 {
+        self.times.last().copied().unwrap_or(0.0)
+    }
+}
+
+impl Reader<'_> {
+    pub fn press(
+        &self,
+        key: &str,
+        spec: &PressSpec,
+        patches: &[PlannedPatch],
+    ) -> Result<PlannedPress> {
+        let key = &format!("{key}.press");
+        let names = patches.iter().map(|patch| patch.skin.name());
+        let Some(patch) = names.clone().position(|known| known == spec.patch) else {
+            let given = format!("`{}`", spec.patch);
+            let allowed = nearest_names(&spec.patch, names);
+            return Err(self.check.error(&format!("{key}.patch"), given, allowed));
+        };
+        let direction_key = format!("{key}.direction");
+        let direction = self.vector(&direction_key, spec.direction, 1.0)?;
+        if direction == DVec3::ZERO {
+            let allowed = "a vector that is not zero";
+            return Err(self.check.error(&direction_key, direction, allowed));
+        }
+        let (times, forces) = self.forces(key, spec)?;
+        let above_zero = |name: &str, value: f64| {
+            let key = format!("{key}.{name}");
+            self.check.value(&key, value, positive, "a positive number")
+        };
+        Ok(PlannedPress {
+            patch,
+            direction: direction.normalize(),
+            times,
+            forces,
+            speed: above_zero("speed_mm_per_s", spec.speed_mm_per_s)? * MM,
+            travel: above_zero("travel_mm", spec.travel_mm)? * MM,
+        })
+    }
+
+    fn forces(&self, key: &str, spec: &PressSpec) -> Result<(Vec<f64>, Vec<f64>)> {
+        let (time_key, force_key) = (format!("{key}.time_s"), format!("{key}.force_n"));
+        let forces = match &spec.force_n {
+            Numbers::One(force) if spec.time_s.is_empty() => vec![*force],
+            Numbers::One(_) => {
+                let given = "one force beside time_s";
+                let allowed = "a list, one a time; or no time_s";
+                return Err(self.check.error(&force_key, given, allowed));
+            }
+            Numbers::Each(forces) => forces.clone(),
+        };
+        let times = match spec.force_n {
+            Numbers::One(_) => vec![0.0],
+            Numbers::Each(_) => spec.time_s.clone(),
+        };
+        if forces.is_empty() || forces.len() != times.len() {
+            let given = format!("{} forces", forces.len());
+            let allowed = format!("{}, one a time of time_s, and at least one", times.len());
+            return Err(self.check.error(&force_key, given, allowed));
+        }
+        for &force in &forces {
+            let allowed = "zero or a positive number of newtons";
+            self.check.value(&force_key, force, not_negative, allowed)?;
+        }
+        for &time in &times {
+            self.check
+                .value(&time_key, time, f64::is_finite, "finite numbers")?;
+        }
+        if let Some(pair) = times.windows(2).find(|pair| pair[0] >= pair[1]) {
+            let given = format!("{} s after {} s", pair[1], pair[0]);
+            return Err(self
+                .check
+                .error(&time_key, given, "strictly ascending times"));
+        }
+        Ok((times, forces))
+    }
+}

@@ -1,0 +1,246 @@
+//! What the taxels of a scene's patch are: numbers for all, lists, or columns of a CSV file.
+
+use super::numbers::Numbers;
+use super::reader::{MM, Reader};
+use super::spec::PatchSpec;
+use crate::error::{Error, Result};
+use crate::spelling::nearest_names;
+use crate::study::{not_negative, positive};
+use crate::world::{PerTaxel, Shear, Shears, Taxel, Taxels};
+use std::collections::BTreeMap;
+
+/// Stiffness of taxels of which nothing is said, N/m.
+const STIFFNESS: f64 = 100.0;
+
+const RADIUS: &str = "taxel_radius_mm";
+const STROKE: &str = "stroke_mm";
+const STIFF: &str = "stiffness_n_per_m";
+const DAMPING: &str = "damping_n_s_per_m";
+const FRICTION: &str = "friction";
+const SHEAR: &str = "shear_stiffness_n_per_m";
+const NAMES: [&str; 6] = [RADIUS, STROKE, STIFF, DAMPING, FRICTION, SHEAR];
+
+/// A file with a row a taxel.
+#[derive(Debug, Default)]
+struct TaxelTable {
+    place: String,
+    /// Of each row.
+    lines: Vec<u64>,
+    columns: BTreeMap<&'static str, Vec<f64>>,
+}
+
+/// Where the numbers of one patch are looked up.
+struct Lookup<'a> {
+    reader: &'a Reader<'a>,
+    /// Of the patch.
+    key: &'a str,
+    table: TaxelTable,
+    n_taxels: usize,
+}
+
+impl Reader<'_> {
+    /// The taxels of a patch and, if it has friction, their shear springs; defaults go into the spec.
+    pub fn taxels(
+        &self,
+        key: &str,
+        spec: &mut PatchSpec,
+        n_taxels: usize,
+    ) -> Result<(Taxels, Option<Shears>)> {
+        let table = match &spec.taxels_csv {
+            Some(path) => {
+                let (place, file) = self.open(&format!("{key}.taxels_csv"), path)?;
+                read_table(place, file)?
+            }
+            None => TaxelTable::default(),
+        };
+        let has = |name| table.columns.contains_key(name);
+        let (has_stiffness, has_damping) = (has(STIFF), has(DAMPING));
+        let default = |given: &mut Option<Numbers>, has_column: bool, value| {
+            if given.is_none() && !has_column {
+                *given = Some(Numbers::One(value));
+            }
+        };
+        default(&mut spec.stiffness_n_per_m, has_stiffness, STIFFNESS);
+        default(&mut spec.damping_n_s_per_m, has_damping, 0.0);
+        let lookup = Lookup {
+            reader: self,
+            key,
+            table,
+            n_taxels,
+        };
+        let (above, from) = ("a positive number", "zero or a positive number");
+        let radius = lookup.find(RADIUS, spec.taxel_radius_mm.as_ref(), positive, above)?;
+        let half_pitch = PerTaxel::Equal(0.5 * spec.layout.pitch_mm());
+        let radius = radius.unwrap_or(half_pitch);
+        let stroke = lookup.needed(STROKE, spec.stroke_mm.as_ref(), positive, above)?;
+        let stiffness = lookup.needed(STIFF, spec.stiffness_n_per_m.as_ref(), positive, above)?;
+        let damping = spec.damping_n_s_per_m.as_ref();
+        let damping = lookup.needed(DAMPING, damping, not_negative, from)?;
+        let taxels = lookup.each([&radius, &stroke, &stiffness, &damping], |taxel| Taxel {
+            radius: radius.at(taxel) * MM,
+            stiffness: *stiffness.at(taxel),
+            damping: *damping.at(taxel),
+            stroke: stroke.at(taxel) * MM,
+        });
+        let friction = lookup.find(FRICTION, spec.friction.as_ref(), not_negative, from)?;
+        let shear = spec.shear_stiffness_n_per_m.as_ref();
+        let shear = lookup.find(SHEAR, shear, positive, above)?;
+        let shears = match (friction, shear) {
+            (None, None) => None,
+            (None, Some(_)) => {
+                let given = "given without friction";
+                let allowed = "friction = μ beside it";
+                return Err(self.check.error(&format!("{key}.{SHEAR}"), given, allowed));
+            }
+            (Some(friction), shear) => {
+                let shear = shear.unwrap_or(stiffness);
+                Some(lookup.each([&friction, &shear], |taxel| Shear {
+                    stiffness: *shear.at(taxel),
+                    friction: *friction.at(taxel),
+                }))
+            }
+        };
+        Ok((taxels, shears))
+    }
+}
+
+impl Lookup<'_> {
+    /// A property that there must be.
+    fn needed(
+        &self,
+        name: &'static str,
+        given: Option<&Numbers>,
+        is_allowed: fn(f64) -> bool,
+        allowed: &str,
+    ) -> Result<PerTaxel<f64>> {
+        let found = self.find(name, given, is_allowed, allowed)?;
+        found.ok_or_else(|| {
+            let allowed = "a number, a list, or a column of taxels_csv";
+            self.error(name, "nothing", allowed)
+        })
+    }
+
+    /// A property as it was written, each number checked.
+    fn find(
+        &self,
+        name: &'static str,
+        given: Option<&Numbers>,
+        is_allowed: fn(f64) -> bool,
+        allowed: &str,
+    ) -> Result<Option<PerTaxel<f64>>> {
+        let check = &self.reader.check;
+        let key = format!("{}.{name}", self.key);
+        match (given, self.table.columns.get(name)) {
+            (None, None) => Ok(None),
+            (Some(_), Some(_)) => {
+                let given = format!("here and as a column of {}", self.table.place);
+                Err(check.error(&key, given, "one of them"))
+            }
+            (Some(Numbers::One(number)), None) => {
+                let number = check.value(&key, *number, is_allowed, allowed)?;
+                Ok(Some(PerTaxel::Equal(number)))
+            }
+            (Some(Numbers::Each(numbers)), None) => {
+                self.check_count(numbers.len(), "numbers", |given, allowed| {
+                    check.error(&key, given, allowed)
+                })?;
+                for (index, &number) in numbers.iter().enumerate() {
+                    let key = format!("{key}, taxel {}", index + 1);
+                    check.value(&key, number, is_allowed, allowed)?;
+                }
+                Ok(Some(PerTaxel::Each(numbers.clone())))
+            }
+            (None, Some(column)) => {
+                let place = &self.table.place;
+                self.check_count(column.len(), "rows", |given, allowed| {
+                    Error::input(place, given, allowed)
+                })?;
+                for (line, &number) in self.table.lines.iter().zip(column) {
+                    if !is_allowed(number) {
+                        let place = format!("{place}, line {line}, column {name}");
+                        return Err(Error::input(place, number, allowed));
+                    }
+                }
+                Ok(Some(PerTaxel::Each(column.clone())))
+            }
+        }
+    }
+
+    fn check_count(
+        &self,
+        n: usize,
+        what: &str,
+        error: impl Fn(String, String) -> Error,
+    ) -> Result<()> {
+        if n == self.n_taxels {
+            return Ok(());
+        }
+        let allowed = format!("{}, one a taxel", self.n_taxels);
+        Err(error(format!("{n} {what}"), allowed))
+    }
+
+    fn error(&self, name: &str, given: &str, allowed: &str) -> Error {
+        let key = format!("{}.{name}", self.key);
+        self.reader.check.error(&key, given, allowed)
+    }
+
+    /// One for all if all that it is made of is.
+    fn each<T, const N: usize>(
+        &self,
+        of: [&PerTaxel<f64>; N],
+        make: impl Fn(usize) -> T,
+    ) -> PerTaxel<T> {
+        let are_equal = |numbers: &&PerTaxel<f64>| matches!(numbers, PerTaxel::Equal(_));
+        match of.iter().all(are_equal) {
+            true => PerTaxel::Equal(make(0)),
+            false => PerTaxel::Each((0..self.n_taxels).map(make).collect()),
+        }
+    }
+}
+
+/// Reads a header of names and a number in every cell; the error gives line and column.
+fn read_table(place: String, source: impl std::io::Read) -> Result<TaxelTable> {
+    let mut reader = csv::ReaderBuilder::new()
+        .trim(csv::Trim::All)
+        .from_reader(source);
+    let unreadable = |error: csv::Error| {
+        let allowed = "a header and one row a taxel, of as many numbers";
+        Error::input(&place, error, allowed)
+    };
+    let mut names: Vec<&'static str> = Vec::new();
+    for given in reader.headers().map_err(unreadable)? {
+        let Some(name) = NAMES.into_iter().find(|name| *name == given) else {
+            let place = format!("{place}, line 1");
+            let allowed = nearest_names(given, NAMES);
+            return Err(Error::input(place, format!("column `{given}`"), allowed));
+        };
+        if names.contains(&name) {
+            let place = format!("{place}, line 1");
+            return Err(Error::input(
+                place,
+                format!("column `{name}` twice"),
+                "each once",
+            ));
+        }
+        names.push(name);
+    }
+    let mut lines = Vec::new();
+    let mut columns = vec![Vec::new(); names.len()];
+    for record in reader.records() {
+        let record = record.map_err(unreadable)?;
+        let line = record.position().map_or(0, |position| position.line());
+        for ((cell, name), column) in record.iter().zip(&names).zip(&mut columns) {
+            let number: f64 = cell.parse().map_err(|_| {
+                let place = format!("{place}, line {line}, column {name}");
+                Error::input(place, format!("`{cell}`"), "a number")
+            })?;
+            column.push(number);
+        }
+        lines.push(line);
+    }
+    Ok(TaxelTable {
+        place,
+        lines,
+        columns: names.into_iter().zip(columns).collect(),
+    })
+}

@@ -1,0 +1,117 @@
+//! Objects that are pushed onto a patch until it feels a force: how far each of them is.
+
+use super::frame::{Held, ObjectReading};
+use super::plan::ScenePlan;
+use super::skin_state::{PlacedObjects, SkinState};
+use crate::contact::{HeldForce, MovedObject, SkinWorkspace};
+use crate::geometry::Pose;
+
+/// The way of a step is looked at in parts of at most this share of the shortest stroke. Larger: a short peak of the force may be
+/// jumped over; smaller: more presses in vain.
+const PART: f64 = 0.5;
+
+/// At most so many parts a step.
+const MOST_PARTS: f64 = 4096.0;
+
+/// All objects of a scene that are pushed for a force.
+#[derive(Clone, Debug)]
+pub(super) struct PressedObjects {
+    all: Vec<Pressed>,
+    /// `patch_from_object`, one an object.
+    poses: Vec<Pose>,
+    workspace: SkinWorkspace,
+}
+
+/// One of them.
+#[derive(Clone, Copy, Debug)]
+struct Pressed {
+    object: usize,
+    now: HeldForce,
+    /// N.
+    wanted: f64,
+}
+
+impl PressedObjects {
+    pub fn of(plan: &ScenePlan) -> Self {
+        let objects = plan.objects.iter().enumerate();
+        let pressed = objects.filter(|(_, planned)| planned.press.is_some());
+        let at_start = |(object, _)| Pressed {
+            object,
+            now: HeldForce::default(),
+            wanted: 0.0,
+        };
+        Self {
+            all: pressed.map(at_start).collect(),
+            poses: Vec::new(),
+            workspace: SkinWorkspace::new(),
+        }
+    }
+
+    /// Pushes each, in the order of the scene, from where its motion says that it is; `dt` seconds after the last time, endless at
+    /// the start.
+    pub fn push(
+        &mut self,
+        plan: &ScenePlan,
+        skins: &[SkinState],
+        objects: &mut PlacedObjects,
+        [time, dt]: [f64; 2],
+    ) {
+        let Self {
+            all,
+            poses,
+            workspace,
+        } = self;
+        for pressed in all {
+            let planned = plan.objects[pressed.object].press.as_ref();
+            let press = planned.expect("only those that are pressed are here");
+            let patch = &plan.patches[press.patch].skin;
+            let skin = &skins[press.patch];
+            let patch_from_world = skin.pose.inverse();
+            poses.clear();
+            let seen = objects.poses.iter();
+            poses.extend(seen.map(|pose| patch_from_world.compose(pose)));
+            let moved = MovedObject {
+                patch,
+                objects: &plan.models,
+                moving: pressed.object,
+                direction: patch_from_world.rotation * press.direction,
+            };
+            let start = poses[pressed.object];
+            let strokes = patch.taxels().all().iter().map(|taxel| taxel.stroke);
+            let part = PART * strokes.fold(f64::INFINITY, f64::min);
+            let way = (press.speed * dt).min(press.travel);
+            let n_parts = (way / part).ceil().clamp(1.0, MOST_PARTS);
+            let step = way / n_parts;
+            pressed.wanted = press.force_at(time);
+            let is_let_go = pressed.wanted == 0.0;
+            for _ in 0..n_parts as usize {
+                let here = pressed.now.travel;
+                let back = (here - step).max(0.0);
+                // Without a force it goes back whether it touches anything or not.
+                let travels = match is_let_go {
+                    true => [back; 3],
+                    false => [back, here, (here + step).min(press.travel)],
+                };
+                poses[pressed.object] = start;
+                pressed.now = moved.hold(poses, travels, pressed.wanted, workspace);
+                let is_at_end = [travels[0], travels[2]].contains(&pressed.now.travel);
+                if !is_at_end || pressed.now.travel == here {
+                    break;
+                }
+            }
+            let pose = &mut objects.poses[pressed.object];
+            pose.translation += pressed.now.travel * press.direction;
+        }
+    }
+
+    /// Reports how they are held.
+    pub fn read(&self, readings: &mut [ObjectReading]) {
+        for pressed in &self.all {
+            readings[pressed.object].held = Held::Pressed {
+                travel: pressed.now.travel,
+                force: pressed.now.force,
+                wanted: pressed.wanted,
+            };
+        }
+    }
+}

@@ -1,0 +1,81 @@
+//! Objects as they are written: `[[objects]]`.
+
+use super::numbers::Numbers;
+use super::spec::{MotionSpec, PoseSpec};
+use crate::mesh::LengthUnit;
+use crate::study::ModelSpec;
+use serde::{Deserialize, Serialize};
+use std::path::PathBuf;
+
+/// `[[objects]]`: what is touched.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ObjectSpec {
+    /// Its name in this scene.
+    pub name: String,
+    /// A built-in object (`bubbletouch objects` lists them).
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub object: Option<String>,
+    /// Instead: a CSV file of spheres, columns x, y, z, r in metres.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub spheres: Option<PathBuf>,
+    /// Instead: a PLY, OBJ or STL file.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub mesh: Option<PathBuf>,
+    /// What a mesh becomes; spheres around its vertices when left out.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub model: Option<ModelSpec>,
+    /// Unit of a mesh's numbers; metres when left out.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub mesh_unit: Option<LengthUnit>,
+    /// How far spheres may be from a solid's or packed mesh's surface; 0.25, or packed a tenth of the finest pitch, when left out.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub surface_error_mm: Option<f64>,
+    /// Where it is, or starts.
+    #[serde(default)]
+    pub at: PoseSpec,
+    /// How it moves, whatever touches it; not at all when left out.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub motion: Option<MotionSpec>,
+    /// Beside `motion`: it is also pushed along a line so that a patch feels a force.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub press: Option<PressSpec>,
+    /// Instead of `motion`: only gravity and skins hold it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub free: Option<FreeSpec>,
+}
+
+/// `free = { mass_kg = 0.2 }`
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct FreeSpec {
+    /// What it weighs.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub mass_kg: Option<f64>,
+    /// In its own frame; that of a homogeneous solid when left out.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub center_of_mass_mm: Option<[f64; 3]>,
+}
+
+/// `press = { patch = "palm", direction = [0.0, 0.0, -1.0], force_n = 2.0, speed_mm_per_s = 20.0, travel_mm = 10.0 }`
+///
+/// From where `at` and `motion` say that it is, the object goes along the direction until the patch feels the force; from step to step
+/// no faster than the speed, never beyond the travel, and back if the force is too much. With a force of zero it goes back to
+/// where its motion says.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct PressSpec {
+    /// The patch that is to feel the force.
+    pub patch: String,
+    /// Where to, in the world; of any length.
+    pub direction: [f64; 3],
+    /// Σ k δ of the patch, whatever touches it: one force for all times, or one a time of `time_s`.
+    pub force_n: Numbers,
+    /// When the forces are wanted; straight lines between them, and the first and last beyond.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub time_s: Vec<f64>,
+    /// Along the direction, at most.
+    pub speed_mm_per_s: f64,
+    /// From where the motion says, at most.
+    pub travel_mm: f64,
+}

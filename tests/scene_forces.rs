@@ -1,0 +1,575 @@
+//! Laws of scenes with friction, with taxels that differ, and with objects that are pushed for a force.
+
+use bubbletouch::contact::{FrictionState, NormalForce, SkinWorkspace, press_skin};
+use bubbletouch::geometry::Pose;
+use bubbletouch::report::recording::read_recording;
+use bubbletouch::report::scene_files::SceneFiles;
+use bubbletouch::scene::{
+    Frame, FrameSink, Held, PatchReading, ScenePlan, SceneSpec, Simulation, Stepping, Summary,
+};
+use glam::DVec3;
+use std::fs;
+use std::path::Path;
+
+fn try_plan(text: &str, folder: &Path) -> bubbletouch::Result<ScenePlan> {
+    ScenePlan::new("s.toml", folder, SceneSpec::parse("s.toml", text)?)
+}
+
+fn plan(text: &str) -> ScenePlan {
+    try_plan(text, Path::new("")).unwrap()
+}
+
+fn frames(plan: &ScenePlan) -> Vec<Frame> {
+    let mut frames = Vec::new();
+    let mut simulation = Simulation::new(plan, Stepping::AsNeeded);
+    simulation.run(&mut [&mut frames]).unwrap();
+    frames
+}
+
+/// A pear that is pressed into a palm, drawn along and turned; `palm`: more keys of the patch.
+fn drawn(palm: &str) -> String {
+    format!(
+        r#"
+        title = "A pear is drawn over a palm"
+        output_hz = 100.0
+        [[patches]]
+        name = "palm"
+        layout = {{ grid = {{ nx = 20, ny = 14, pitch_mm = 3.0 }} }}
+        stroke_mm = 6.0
+        {palm}
+        [[objects]]
+        name = "pear"
+        object = "pear"
+        at = {{ position_mm = [-10.0, 3.0, 3.0] }}
+        motion = {{ phases = [
+            {{ duration_s = 0.25, linear_mm_per_s = [0.0, 0.0, -20.0] }},
+            {{ duration_s = 0.2, linear_mm_per_s = [40.0, 5.0, 0.0], angular_deg_per_s = [0.0, 0.0, 50.0] }},
+            {{ duration_s = 0.2, linear_mm_per_s = [-40.0, 0.0, 0.0] }},
+            {{ duration_s = 0.1, linear_mm_per_s = [0.0, 0.0, 200.0] }},
+        ] }}
+        "#
+    )
+}
+
+const ROUGH: &str = "friction = 0.7\nshear_stiffness_n_per_m = 150.0";
+
+#[test]
+fn no_friction_is_the_same_as_a_coefficient_of_zero_to_the_bit() {
+    for damping in ["", "damping_n_s_per_m = 1.5\n"] {
+        let without = frames(&plan(&drawn(damping)));
+        let zero = frames(&plan(&drawn(&format!("{damping}friction = 0.0"))));
+        assert!(without.iter().any(|frame| frame.patches[0].n_touched > 30));
+        for (zero, without) in zero.into_iter().zip(&without) {
+            let reading = &zero.patches[0];
+            let friction = reading.friction.as_ref().unwrap();
+            assert_eq!(friction.shear, DVec3::ZERO);
+            let bare = PatchReading {
+                friction: None,
+                ..reading.clone()
+            };
+            assert_eq!(bare, without.patches[0]);
+        }
+    }
+}
+
+#[test]
+fn a_scene_without_friction_takes_no_steps_for_it() {
+    assert!(!plan(&drawn("")).needs_steps());
+    assert!(plan(&drawn(ROUGH)).needs_steps());
+    assert!(frames(&plan(&drawn("")))[3].patches[0].friction.is_none());
+}
+
+#[test]
+fn tips_are_dragged_from_step_to_step_as_by_hand() {
+    let plan = plan(&drawn(ROUGH));
+    let patch = &plan.patches[0];
+    let mut state = FrictionState::at_rest(&patch.skin, patch.shears.clone().unwrap()).unwrap();
+    let mut workspace = SkinWorkspace::new();
+    let bubbletouch::scene::Movement::Imposed(motion) = &plan.objects[0].movement else {
+        panic!("the pear goes where it is told")
+    };
+    let (mut n_sticking, mut n_slipping) = (0, 0);
+    for (number, frame) in frames(&plan).iter().enumerate() {
+        // Ten steps a frame; the first frame is one.
+        let before = plan.time(number.saturating_sub(1));
+        let n_steps = if number == 0 { 1 } else { plan.n_substeps };
+        let mut counts = Default::default();
+        for step in 1..=n_steps {
+            let share = step as f64 / n_steps as f64;
+            let time = match step == n_steps {
+                true => frame.time,
+                false => before + share * (frame.time - before),
+            };
+            let pose = Pose::IDENTITY.inverse().compose(&motion.pose_at(time));
+            press_skin(&patch.skin, &plan.models, &[pose], &mut workspace);
+            let contacts = workspace.contacts();
+            counts = state.step(&patch.skin, contacts, &[pose], NormalForce::Springs);
+        }
+        let reading = &frame.patches[0];
+        let friction = reading.friction.as_ref().unwrap();
+        let load = state.load(&patch.skin, workspace.contacts());
+        assert_eq!(reading.wrench.force, -load.on_object.force);
+        assert_eq!(reading.wrench.torque, -load.on_object.torque);
+        assert_eq!(friction.shear, -load.friction.force);
+        assert_eq!(friction.n_sticking, counts.n_sticking);
+        assert_eq!(friction.n_slipping, counts.n_slipping);
+        n_sticking = n_sticking.max(counts.n_sticking);
+        n_slipping = n_slipping.max(counts.n_slipping);
+    }
+    assert!(
+        n_sticking > 20 && n_slipping > 20,
+        "{n_sticking} {n_slipping}"
+    );
+}
+
+#[test]
+fn forces_of_the_tips_are_the_wrench_and_stay_in_their_cones() {
+    let frames = frames(&plan(&drawn(&format!("{ROUGH}\ndamping_n_s_per_m = 1.5"))));
+    let mut most: f64 = 0.0;
+    for frame in &frames {
+        let reading = &frame.patches[0];
+        let friction = reading.friction.as_ref().unwrap();
+        let sum: DVec3 = friction.force3.iter().sum();
+        let off = (sum - reading.wrench.force).length();
+        assert!(off < 1e-12 * (1.0 + sum.length()), "{off}");
+        for (force3, force) in friction.force3.iter().zip(&reading.force) {
+            assert_eq!(-force3.z, *force, "what presses a flat taxel in");
+        }
+        let pressed: f64 = reading.force.iter().sum();
+        assert!(friction.shear.length() <= 0.7 * pressed * (1.0 + 1e-12));
+        assert_eq!(
+            friction.n_sticking + friction.n_slipping,
+            reading.n_touched,
+            "each tip that is pressed sticks or slips"
+        );
+        most = most.max(friction.shear.length() / pressed.max(1e-9));
+    }
+    assert!(most > 0.4, "{most}");
+    let last = frames.last().unwrap().patches[0].friction.as_ref().unwrap();
+    assert_eq!((last.n_sticking, last.shear), (0, DVec3::ZERO), "let go");
+}
+
+#[test]
+fn a_drawn_object_and_a_patch_drawn_the_other_way_feel_the_same_friction() {
+    let object = plan(&drawn(ROUGH));
+    let motion = r#"motion = { phases = [
+            { duration_s = 0.25, linear_mm_per_s = [0.0, 0.0, 20.0] },
+            { duration_s = 0.2, linear_mm_per_s = [-40.0, 0.0, 0.0] },
+        ] }"#;
+    let patch = plan(&format!(
+        r#"
+        title = "A palm is drawn under a pear"
+        [[robots]]
+        name = "gripper"
+        floating = true
+        {motion}
+        [[patches]]
+        name = "palm"
+        robot = "gripper"
+        layout = {{ grid = {{ nx = 20, ny = 14, pitch_mm = 3.0 }} }}
+        stroke_mm = 6.0
+        {ROUGH}
+        [[objects]]
+        name = "pear"
+        object = "pear"
+        at = {{ position_mm = [-10.0, 3.0, 3.0] }}
+        "#
+    ));
+    let text = drawn(ROUGH).replace(
+        "[40.0, 5.0, 0.0], angular_deg_per_s = [0.0, 0.0, 50.0]",
+        "[40.0, 0.0, 0.0]",
+    );
+    assert!(text != drawn(ROUGH) && object.n_frames > 40);
+    let object = frames(&plan(&text));
+    for (a, b) in frames(&patch).iter().zip(&object) {
+        let [a, b] = [a, b].map(|frame| frame.patches[0].friction.as_ref().unwrap());
+        assert!(
+            (a.shear - b.shear).length() < 1e-9,
+            "{} {}",
+            a.shear,
+            b.shear
+        );
+    }
+    let held = object[44].patches[0].friction.as_ref().unwrap();
+    assert!(held.shear.x > 1.0, "drawn along x: {}", held.shear);
+}
+
+#[test]
+fn a_recording_of_a_patch_with_friction_has_forces_in_three_dimensions() {
+    let plan = plan(&drawn(ROUGH));
+    let folder = tempfile::tempdir().unwrap();
+    let mut files = SceneFiles::create(folder.path(), &plan).unwrap();
+    let all = frames(&plan);
+    for frame in &all {
+        files.frame(frame).unwrap();
+    }
+    files.finish().unwrap();
+    let recording = read_recording(&folder.path().join("recording.npz")).unwrap();
+    let stored = &recording.patches[0].force;
+    assert_eq!(stored.dim(), (all.len(), 280, 3));
+    for (number, frame) in all.iter().enumerate() {
+        let friction = frame.patches[0].friction.as_ref().unwrap();
+        for (taxel, force) in friction.force3.iter().enumerate() {
+            for (axis, number_n) in force.to_array().into_iter().enumerate() {
+                assert_eq!(stored[[number, taxel, axis]] as f32, number_n as f32);
+            }
+        }
+    }
+    let table = fs::read_to_string(folder.path().join("wrenches.csv")).unwrap();
+    let slipping = table.lines().skip(1).map(|line| {
+        let last = line.rsplit(',').next().unwrap();
+        last.parse::<usize>().unwrap()
+    });
+    let expected = all.iter().map(|frame| &frame.patches[0].friction);
+    let expected = expected.map(|friction| friction.as_ref().unwrap().n_slipping);
+    assert!(slipping.eq(expected));
+}
+
+#[test]
+fn a_free_object_on_a_skin_with_friction_is_refused_with_the_reason() {
+    let text = |friction| {
+        format!(
+            r#"
+            title = "A ball on a bed"
+            [[patches]]
+            name = "bed"
+            layout = {{ grid = {{ nx = 10, ny = 10, pitch_mm = 4.0 }} }}
+            stroke_mm = 8.0
+            friction = {friction}
+            [[objects]]
+            name = "ball"
+            object = "tennis"
+            free = {{ mass_kg = 0.058 }}
+            "#
+        )
+    };
+    let error = try_plan(&text("0.5"), Path::new("")).unwrap_err();
+    assert_eq!(
+        error.to_string(),
+        "s.toml, key objects.ball.free: a free object beside friction on patch `bed`; patches without friction: the balance of a \
+         free object holds no shear forces"
+    );
+    assert!(try_plan(&text("0.0"), Path::new("")).is_ok());
+}
+
+#[test]
+fn taxels_that_differ_are_the_same_from_a_list_from_a_file_and_alone() {
+    let folder = tempfile::tempdir().unwrap();
+    let n = 280;
+    let stiffness = |taxel: usize| 80.0 + taxel as f64;
+    let damping = |taxel: usize| if taxel.is_multiple_of(3) { 0.0 } else { 1.5 };
+    let rows = (0..n).map(|t| format!("{},{}\n", damping(t), stiffness(t)));
+    let table = format!(
+        "damping_n_s_per_m, stiffness_n_per_m\n{}",
+        rows.collect::<String>()
+    );
+    fs::write(folder.path().join("taxels.csv"), table).unwrap();
+    let list =
+        |value: &dyn Fn(usize) -> f64| format!("{:?}", (0..n).map(value).collect::<Vec<_>>());
+    let listed = format!(
+        "stiffness_n_per_m = {}\ndamping_n_s_per_m = {}",
+        list(&stiffness),
+        list(&damping)
+    );
+    let from_list = frames(&plan(&drawn(&listed)));
+    let text = drawn("taxels_csv = \"taxels.csv\"");
+    let from_file = try_plan(&text, folder.path()).unwrap();
+    assert_eq!(frames(&from_file), from_list);
+    // What was resolved says the same from any folder.
+    let resolved = SceneSpec::parse("r.toml", &from_file.spec.to_toml()).unwrap();
+    let resolved = ScenePlan::new("r.toml", Path::new("/"), resolved).unwrap();
+    assert_eq!(frames(&resolved), from_list);
+    // Each as in a patch of its kind.
+    for (taxel, damped) in [(147, "0.0"), (148, "1.5")] {
+        let alone = format!(
+            "stiffness_n_per_m = {}\ndamping_n_s_per_m = {damped}",
+            stiffness(taxel)
+        );
+        assert_eq!(damping(taxel) > 0.0, damped == "1.5");
+        let alone = frames(&plan(&drawn(&alone)));
+        let mut felt: f64 = 0.0;
+        for (mixed, alone) in from_list.iter().zip(&alone) {
+            let [mixed, alone] = [mixed, alone].map(|frame| &frame.patches[0]);
+            // An undamped patch has no steps, and is at rest at its frames: only it may differ, by rounding of times.
+            assert!((mixed.deflection[taxel] - alone.deflection[taxel]).abs() < 1e-12);
+            felt = felt.max(mixed.force[taxel]);
+        }
+        assert!(felt > 0.1, "{felt}");
+    }
+}
+
+#[test]
+fn a_list_of_equal_numbers_is_the_number() {
+    let each = format!("stiffness_n_per_m = {:?}\n{ROUGH}", vec![130.0; 280]);
+    let one = format!("stiffness_n_per_m = 130\n{ROUGH}");
+    assert_eq!(frames(&plan(&drawn(&each))), frames(&plan(&drawn(&one))));
+    let each = format!(
+        "friction = {:?}\nshear_stiffness_n_per_m = 150.0",
+        vec![0.7; 280]
+    );
+    assert_eq!(frames(&plan(&drawn(&each))), frames(&plan(&drawn(ROUGH))));
+}
+
+#[test]
+fn bad_numbers_of_taxels_are_refused_with_key_file_line_and_column() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("t.csv");
+    let said = |palm: &str| {
+        let error = try_plan(&drawn(palm), folder.path()).unwrap_err();
+        assert_eq!(error.exit_code(), 2);
+        error.to_string().replace(path.to_str().unwrap(), "t.csv")
+    };
+    assert_eq!(
+        said("stiffness_n_per_m = [1.0, 2.0]"),
+        "s.toml, key patches.palm.stiffness_n_per_m: 2 numbers; 280, one a taxel"
+    );
+    let mut numbers = vec![0.0; 280];
+    numbers[6] = -1.0;
+    assert_eq!(
+        said(&format!("friction = {numbers:?}")),
+        "s.toml, key patches.palm.friction, taxel 7: -1; zero or a positive number"
+    );
+    assert_eq!(
+        said("shear_stiffness_n_per_m = 10.0"),
+        "s.toml, key patches.palm.shear_stiffness_n_per_m: given without friction; friction = μ beside it"
+    );
+    assert!(said("friction = \"high\"").contains("a number, or a list of numbers"));
+    let stroke = drawn("").replace("stroke_mm = 6.0", "");
+    assert_eq!(
+        try_plan(&stroke, folder.path()).unwrap_err().to_string(),
+        "s.toml, key patches.palm.stroke_mm: nothing; a number, a list, or a column of taxels_csv"
+    );
+    let table = "taxels_csv = \"t.csv\"";
+    assert!(said(table).contains("key patches.palm.taxels_csv: t.csv, which cannot be opened"));
+    for (text, expected) in [
+        (
+            "friction\n0.5\n",
+            "t.csv: 1 rows; 280, one a taxel".to_owned(),
+        ),
+        (
+            "fricton\n",
+            "t.csv, line 1: column `fricton`; perhaps `friction`".to_owned(),
+        ),
+        (
+            "friction,friction\n",
+            "t.csv, line 1: column `friction` twice; each once".to_owned(),
+        ),
+        (
+            "friction\n0.5\nhigh\n",
+            "t.csv, line 3, column friction: `high`; a number".to_owned(),
+        ),
+        (
+            &format!("friction\n0.5\n-2\n{}", "0.5\n".repeat(278)),
+            "t.csv, line 3, column friction: -2; zero or a positive number".to_owned(),
+        ),
+        (
+            &format!("stroke_mm\n{}", "2\n".repeat(280)),
+            "s.toml, key patches.palm.stroke_mm: here and as a column of t.csv; one of them"
+                .to_owned(),
+        ),
+    ] {
+        fs::write(&path, text).unwrap();
+        assert_eq!(said(table), expected);
+    }
+    fs::write(&path, "friction,stroke_mm\n0.5\n").unwrap();
+    assert!(said(table).contains("one row a taxel, of as many numbers"));
+}
+
+/// A ball over a palm that moves aside; `press`: its wish, `palm`: more keys of the patch.
+fn pushed(press: &str, palm: &str) -> String {
+    format!(
+        r#"
+        title = "A ball is pushed onto a palm"
+        output_hz = 100.0
+        [[patches]]
+        name = "palm"
+        layout = {{ grid = {{ nx = 24, ny = 16, pitch_mm = 3.0 }} }}
+        stroke_mm = 6.0
+        {palm}
+        [[objects]]
+        name = "ball"
+        object = "tennis"
+        at = {{ position_mm = [-10.0, 0.0, 4.3] }}
+        motion = {{ phases = [
+            {{ duration_s = 0.5 }},
+            {{ duration_s = 0.5, linear_mm_per_s = [30.0, 0.0, 2.0] }},
+        ] }}
+        press = {{ patch = "palm", direction = [0.1, 0.0, -2.0], {press} }}
+        "#
+    )
+}
+
+fn total(reading: &PatchReading) -> f64 {
+    reading.force.iter().sum()
+}
+
+const CURVE: &str = "time_s = [0.1, 0.3, 0.8, 1.0], force_n = [0.0, 3.0, 3.0, 1.0]";
+
+#[test]
+fn the_force_that_is_recorded_is_the_one_that_is_wanted() {
+    let text = pushed(
+        &format!("{CURVE}, speed_mm_per_s = 200.0, travel_mm = 20.0"),
+        ROUGH,
+    );
+    let plan = plan(&text);
+    assert_eq!(plan.spec.duration_s, Some(1.0));
+    let press = plan.objects[0].press.clone().unwrap();
+    let (mut summary, mut n_held) = (Summary::default(), 0);
+    for frame in frames(&plan) {
+        summary.frame(&frame).unwrap();
+        let Held::Pressed {
+            travel,
+            force,
+            wanted,
+        } = frame.objects[0].held
+        else {
+            panic!("the ball is pressed")
+        };
+        assert_eq!(wanted, press.force_at(frame.time));
+        assert!((force - total(&frame.patches[0])).abs() < 1e-9);
+        // Two millimetres above the palm it takes some hundredths of a second to get there.
+        if frame.time > 0.15 {
+            assert!((force - wanted).abs() < 1e-9, "{force} of {wanted}");
+            assert!(travel > 2e-3 && travel < 20e-3);
+            n_held += 1;
+        }
+    }
+    assert!(n_held > 80);
+    assert!(summary.n_off[0] <= 5, "{:?}", summary.n_off);
+    assert!((press.force_at(0.2) - 1.5).abs() < 1e-12);
+    assert_eq!([0.0, 5.0].map(|time| press.force_at(time)), [0.0, 1.0]);
+}
+
+#[test]
+fn a_damped_skin_feels_more_on_the_way_in_and_the_force_at_rest() {
+    let curve = "time_s = [0.0, 0.2, 2.0], force_n = [0.0, 3.0, 3.0], speed_mm_per_s = 200.0, travel_mm = 20.0";
+    let text =
+        pushed(curve, "damping_n_s_per_m = 2.0").replace("[30.0, 0.0, 2.0]", "[0.0, 0.0, 0.0]");
+    let frames = frames(&plan(&text));
+    let at = |time: f64| {
+        let frame = &frames[(100.0 * time) as usize];
+        let Held::Pressed { force, .. } = frame.objects[0].held else {
+            panic!("the ball is pressed")
+        };
+        (force, total(&frame.patches[0]))
+    };
+    let (springs, all) = at(0.15);
+    assert!(all > 1.02 * springs, "{springs} {all}");
+    let (springs, all) = at(1.9);
+    assert!(
+        (springs - 3.0).abs() < 1e-9 && (all - 3.0).abs() < 1e-9,
+        "{springs} {all}"
+    );
+}
+
+#[test]
+fn a_pushed_object_keeps_to_its_speed_and_its_travel_and_says_what_it_reached() {
+    let text = pushed("force_n = 50.0, speed_mm_per_s = 20.0, travel_mm = 6.0", "");
+    // As if it had stood so for long: all the way at the start.
+    let Held::Pressed { travel, force, .. } = frames(&plan(&text))[0].objects[0].held else {
+        panic!("the ball is pressed")
+    };
+    assert_eq!(travel, 6e-3);
+    assert!(force > 0.5 && force < 50.0, "{force}");
+    let text = pushed(
+        "time_s = [0.0, 0.001], force_n = [0.0, 50.0], speed_mm_per_s = 20.0, travel_mm = 6.0",
+        "",
+    );
+    let (frames, mut before) = (frames(&plan(&text)), 0.0);
+    let mut summary = Summary::default();
+    for frame in &frames {
+        summary.frame(frame).unwrap();
+        let Held::Pressed { travel, .. } = frame.objects[0].held else {
+            panic!("the ball is pressed")
+        };
+        assert!(travel >= before && travel - before <= 0.02 * 0.01 + 1e-12);
+        before = travel;
+    }
+    assert_eq!(before, 6e-3);
+    assert_eq!(summary.n_off, [frames.len() - 1], "all but the first frame");
+}
+
+#[test]
+fn a_force_is_held_by_one_object_among_those_that_stand_there() {
+    let text = pushed(
+        &format!("{CURVE}, speed_mm_per_s = 200.0, travel_mm = 20.0"),
+        "",
+    );
+    let text = format!(
+        "{text}\n[[objects]]\nname = \"other\"\nobject = \"golf\"\nat = {{ position_mm = [25.0, 5.0, 0.7] }}"
+    );
+    let frames = frames(&plan(&text));
+    let alone = total(&frames[0].patches[0]);
+    assert!(alone > 0.1 && alone < 1.0, "{alone}");
+    for frame in &frames[20..] {
+        let Held::Pressed { wanted, .. } = frame.objects[0].held else {
+            panic!("the ball is pressed")
+        };
+        assert!((total(&frame.patches[0]) - wanted).abs() < 1e-9);
+    }
+}
+
+#[test]
+fn what_cannot_be_pushed_is_refused_with_its_key() {
+    let said = |press: &str| {
+        let error = try_plan(&pushed(press, ""), Path::new("")).unwrap_err();
+        assert_eq!(error.exit_code(), 2);
+        error.to_string()
+    };
+    let good = "speed_mm_per_s = 20.0, travel_mm = 20.0";
+    let key = "s.toml, key objects.ball.press";
+    assert_eq!(
+        said(&format!("force_n = -1.0, {good}")),
+        format!("{key}.force_n: -1; zero or a positive number of newtons")
+    );
+    assert_eq!(
+        said(&format!("force_n = [1.0, 2.0], {good}")),
+        format!("{key}.force_n: 2 forces; 0, one a time of time_s, and at least one")
+    );
+    assert_eq!(
+        said(&format!("time_s = [1.0], force_n = 2.0, {good}")),
+        format!("{key}.force_n: one force beside time_s; a list, one a time; or no time_s")
+    );
+    assert_eq!(
+        said(&format!(
+            "time_s = [1.0, 1.0], force_n = [2.0, 3.0], {good}"
+        )),
+        format!("{key}.time_s: 1 s after 1 s; strictly ascending times")
+    );
+    assert_eq!(
+        said("force_n = 1.0, speed_mm_per_s = 0.0, travel_mm = 1.0"),
+        format!("{key}.speed_mm_per_s: 0; a positive number")
+    );
+    let text = pushed(&format!("force_n = 1.0, {good}"), "");
+    let said = |from: &str, to: &str| {
+        assert!(text.contains(from));
+        let error = try_plan(&text.replace(from, to), Path::new("")).unwrap_err();
+        error.to_string()
+    };
+    assert_eq!(
+        said("patch = \"palm\"", "patch = \"plam\""),
+        format!("{key}.patch: `plam`; perhaps `palm`")
+    );
+    assert_eq!(
+        said("[0.1, 0.0, -2.0]", "[0.0, 0.0, 0.0]"),
+        format!("{key}.direction: [0, 0, 0]; a vector that is not zero")
+    );
+    let second = text
+        .split("[[objects]]")
+        .nth(1)
+        .unwrap()
+        .replace("\"ball\"", "\"second\"");
+    let error = try_plan(&format!("{text}[[objects]]{second}"), Path::new("")).unwrap_err();
+    assert_eq!(
+        error.to_string(),
+        "s.toml, key objects.second.press.patch: patch `palm`, which `ball` is pushed onto; one object a patch"
+    );
+    let free = "[[objects]]\nname = \"free\"\nobject = \"golf\"\nfree = { mass_kg = 0.1 }";
+    let error = try_plan(&format!("{text}{free}"), Path::new("")).unwrap_err();
+    assert_eq!(
+        error.to_string(),
+        format!(
+            "{key}: an object that is pushed beside the free object `free`; no free objects in the scene"
+        )
+    );
+}
