@@ -356,7 +356,7 @@ fn bad_numbers_of_taxels_are_refused_with_key_file_line_and_column() {
         ),
         (
             "friction\n0.5\nhigh\n",
-            "t.csv, line 3, column friction: `high`; a number".to_owned(),
+            "t.csv, line 3, column friction: `high`; a finite number".to_owned(),
         ),
         (
             &format!("friction\n0.5\n-2\n{}", "0.5\n".repeat(278)),

@@ -4,6 +4,7 @@ use super::numbers::Numbers;
 use super::reader::{MM, Reader};
 use super::spec::PatchSpec;
 use crate::error::{Error, Result};
+use crate::numbers_csv::{check_width, finite, line_of, rows_of, unreadable};
 use crate::spelling::nearest_names;
 use crate::study::{not_negative, positive};
 use crate::world::{PerTaxel, Shear, Shears, Taxel, Taxels};
@@ -200,47 +201,48 @@ impl Lookup<'_> {
 
 /// Reads a header of names and a number in every cell; the error gives line and column.
 fn read_table(place: String, source: impl std::io::Read) -> Result<TaxelTable> {
-    let mut reader = csv::ReaderBuilder::new()
-        .trim(csv::Trim::All)
-        .from_reader(source);
-    let unreadable = |error: csv::Error| {
-        let allowed = "a header and one row a taxel, of as many numbers";
-        Error::input(&place, error, allowed)
+    let rows = "a header and one row a taxel, of as many numbers";
+    let not_text = |error| unreadable(&place, error, rows);
+    let mut reader = rows_of(source);
+    let mut records = reader.records();
+    let header = records.next().transpose().map_err(not_text)?;
+    let Some(header) = header else {
+        return Err(Error::input(place, "an empty file", rows));
     };
-    let mut names: Vec<&'static str> = Vec::new();
-    for given in reader.headers().map_err(unreadable)? {
-        let Some(name) = NAMES.into_iter().find(|name| *name == given) else {
-            let place = format!("{place}, line 1");
-            let allowed = nearest_names(given, NAMES);
-            return Err(Error::input(place, format!("column `{given}`"), allowed));
-        };
-        if names.contains(&name) {
-            let place = format!("{place}, line 1");
-            return Err(Error::input(
-                place,
-                format!("column `{name}` twice"),
-                "each once",
-            ));
-        }
-        names.push(name);
-    }
+    let names = names(&place, &header)?;
     let mut lines = Vec::new();
     let mut columns = vec![Vec::new(); names.len()];
-    for record in reader.records() {
-        let record = record.map_err(unreadable)?;
-        let line = record.position().map_or(0, |position| position.line());
+    for record in records {
+        let record = record.map_err(not_text)?;
+        let place = format!("{place}, line {}", line_of(&record));
+        check_width(&place, &record, names.len())?;
         for ((cell, name), column) in record.iter().zip(&names).zip(&mut columns) {
-            let number: f64 = cell.parse().map_err(|_| {
-                let place = format!("{place}, line {line}, column {name}");
-                Error::input(place, format!("`{cell}`"), "a number")
-            })?;
-            column.push(number);
+            column.push(finite(&place, name, cell, "a finite number")?);
         }
-        lines.push(line);
+        lines.push(line_of(&record));
     }
     Ok(TaxelTable {
         place,
         lines,
         columns: names.into_iter().zip(columns).collect(),
     })
+}
+
+/// The properties that the columns are; the error is a name that is none, or is there twice.
+fn names(place: &str, header: &csv::StringRecord) -> Result<Vec<&'static str>> {
+    let mut names = Vec::new();
+    let refuse = |given: String, allowed: &str| {
+        let place = format!("{place}, line {}", line_of(header));
+        Err(Error::input(place, given, allowed))
+    };
+    for given in header {
+        let Some(name) = NAMES.into_iter().find(|name| *name == given) else {
+            return refuse(format!("column `{given}`"), &nearest_names(given, NAMES));
+        };
+        if names.contains(&name) {
+            return refuse(format!("column `{name}` twice"), "each once");
+        }
+        names.push(name);
+    }
+    Ok(names)
 }
