@@ -2,8 +2,9 @@
 
 use ndarray::ArrayView2;
 
-use super::gram::{Dense, Gram, weighted_sum};
+use super::gram::{Dense, Gram};
 use super::passes::padded;
+use super::row_sums::weighted_sum;
 use super::runs::Runs;
 use crate::recognition::scalar::Scalar;
 

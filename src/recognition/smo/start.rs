@@ -1,6 +1,7 @@
 //! Where the search for a solution may start.
 
-use super::gram::{Gram, add_row};
+use super::gram::Gram;
+use super::row_sums::add_row;
 use super::{Smo, sign};
 use crate::recognition::scalar::Scalar;
 
@@ -33,6 +34,46 @@ impl<G> Smo<'_, G> {
         }
         self.c = c;
         self
+    }
+
+    /// Takes β to another C: multiplied by what is best for the objective, as far as the new bounds allow.
+    pub(super) fn stretch(&mut self, c: f64) {
+        let (mut linear, mut quadratic) = (0.0, 0.0);
+        for ((&beta, &f), &is_positive) in self.beta.iter().zip(&self.f).zip(self.is_positive) {
+            linear += beta * sign(is_positive);
+            quadratic += beta * (sign(is_positive) - f);
+        }
+        if self.c > 0.0 && self.c != c && quadratic > 0.0 {
+            let most = c / self.c;
+            let factor = (linear / quadratic).clamp(0.0, most);
+            for (beta, &is_positive) in self.beta.iter_mut().zip(self.is_positive) {
+                let is_at_bound = *beta == self.c * sign(is_positive);
+                *beta = if is_at_bound && factor == most {
+                    c * sign(is_positive)
+                } else {
+                    (factor * *beta).clamp(-c, c)
+                };
+            }
+            for (f, &is_positive) in self.f.iter_mut().zip(self.is_positive) {
+                *f = sign(is_positive) - factor * (sign(is_positive) - *f);
+            }
+        }
+    }
+
+    /// Goes on from another β if the objective is higher there.
+    pub(super) fn prefer<T: Scalar>(&mut self, beta: Vec<f64>)
+    where
+        G: Gram<T>,
+    {
+        let objective = self.objective();
+        let beta = std::mem::replace(&mut self.beta, beta);
+        let f = self.f.clone();
+        self.refresh();
+        // Not either where kernel values have left nothing to compare.
+        let is_higher = self.objective() > objective;
+        if !is_higher {
+            (self.beta, self.f) = (beta, f);
+        }
     }
 }
 
