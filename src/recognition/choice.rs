@@ -264,7 +264,6 @@ fn grid<T: Scalar>(
     };
     let grid = Grid {
         sorted: &sorted,
-        data: training,
         folds,
         multiclass: params.multiclass,
     };

@@ -1,29 +1,31 @@
 //! Cross-validation of a whole grid of C and kernels on one matrix of products.
 //!
-//! All folds and all candidates are parts of the same n × n products: a kernel is made of them once, each fold's problems
-//! are gathered from that, and along C each solution starts from the last. A problem's decision values are sums of its
-//! support vectors' rows over all validation rows at once, and are counted as votes right away.
+//! All folds and all candidates are parts of the same n × n products: a kernel is made of them once, and a pair's part of
+//! it is brought together once for all folds. Along C each solution starts from the last, that of a pair at the first C from
+//! all multipliers at their bounds and, from the second fold on, [from that of the fold before](crate::recognition::seed) where that is nearer. Validation rows are
+//! [judged](crate::recognition::judgement) by their own class's problems first.
 
 use std::ops::Range;
 
-use ndarray::{Array2, ArrayView2, ArrayViewMut1};
+use ndarray::{Array2, ArrayView2, s};
 
-use crate::recognition::dataset::Dataset;
+use crate::recognition::judgement::{Judgement, Solved};
 use crate::recognition::kernel::KernelFunction;
 use crate::recognition::scalar::Scalar;
+use crate::recognition::seed::moved;
 use crate::recognition::smo::{Part, Room, Runs, Smo};
 use crate::recognition::sorted::Sorted;
 use crate::recognition::split::Split;
 use crate::recognition::svm::Multiclass;
 use crate::recognition::training::Goal;
-use crate::recognition::voting::Ballot;
+
+/// Folds whose solutions are held at once: as many as are usual, so that many take no more memory.
+const FOLDS_AT_ONCE: usize = 8;
 
 /// Training rows and their division into folds.
 pub(crate) struct Grid<'a, T> {
     /// The rows, by class.
     pub sorted: &'a Sorted<T>,
-    /// The same rows, in their own order.
-    pub data: &'a Dataset,
     /// How they are divided, by their own numbers; a row counts once in a fold.
     pub folds: &'a [Split],
     /// One-vs-one or one-vs-rest.
@@ -32,22 +34,23 @@ pub(crate) struct Grid<'a, T> {
 
 /// A fold in terms of sorted rows.
 struct Fold {
-    /// Training rows, class by class.
-    training: Vec<usize>,
-    /// Each class that has any, and which of them are its.
-    classes: Vec<(usize, Range<usize>)>,
+    /// Whether each row is trained on.
+    is_training: Vec<bool>,
+    /// Whether any row of each class is.
+    is_class: Vec<bool>,
     validation: Vec<usize>,
 }
 
-impl Fold {
-    /// The places among the training rows of those that take part in a problem.
-    fn places(&self, (positive, negative): (usize, Option<usize>)) -> Vec<usize> {
-        let of_class = |class: usize| self.classes[class].1.clone();
-        match negative {
-            Some(negative) => of_class(positive).chain(of_class(negative)).collect(),
-            None => (0..self.training.len()).collect(),
-        }
-    }
+/// A binary problem's part of the kernel, of all folds' rows.
+struct Block<'a, T> {
+    /// The positive class, and the negative one (`None`: all others), by position.
+    problem: (usize, Option<usize>),
+    /// The sorted rows.
+    rows: Vec<usize>,
+    /// Which of them are positive.
+    positive: Range<usize>,
+    /// Their kernel values.
+    kernel: ArrayView2<'a, T>,
 }
 
 impl<T: Scalar> Grid<'_, T> {
@@ -59,11 +62,25 @@ impl<T: Scalar> Grid<'_, T> {
         let folds: Vec<Fold> = self.folds.iter().map(|split| self.fold(split)).collect();
         let mut counts = Array2::zeros((kernels.len(), goal.path.len()));
         let mut n_capped = 0;
+        let mut values = Array2::zeros(products.dim());
         for (kernel, mut counts) in kernels.iter().zip(counts.rows_mut()) {
-            let mut values = products.clone();
-            all.apply(values.view_mut(), all, kernel);
-            for fold in &folds {
-                n_capped += self.validate(fold, values.view(), goal, counts.view_mut());
+            // Class by class, so that rows are still in the cache.
+            for range in self.sorted.ranges() {
+                let mut values = values.slice_mut(s![range.clone(), ..]);
+                values.assign(&products.slice(s![range.clone(), ..]));
+                let own = self.sorted.points().range(range.clone());
+                own.apply(values, all, kernel);
+            }
+            for folds in folds.chunks(FOLDS_AT_ONCE) {
+                for judgement in self.judge(folds, values.view(), goal) {
+                    n_capped += judgement.n_capped();
+                    for (count, n_right) in counts
+                        .iter_mut()
+                        .zip(judgement.n_right(values.view(), goal.path))
+                    {
+                        *count += n_right;
+                    }
+                }
             }
         }
         (counts, n_capped)
@@ -76,112 +93,152 @@ impl<T: Scalar> Grid<'_, T> {
             .train
             .iter()
             .for_each(|&row| is_training[place[row]] = true);
-        let (mut training, mut classes) = (Vec::new(), Vec::new());
-        for (class, range) in self.sorted.classes_and_ranges() {
-            let first = training.len();
-            training.extend(range.filter(|&row| is_training[row]));
-            if training.len() > first {
-                classes.push((class, first..training.len()));
-            }
-        }
+        let ranges = self.sorted.ranges().iter();
         let mut validation: Vec<usize> = split.test.iter().map(|&row| place[row]).collect();
         validation.sort_unstable();
         Fold {
-            training,
-            classes,
+            is_class: ranges
+                .map(|range| is_training[range.clone()].contains(&true))
+                .collect(),
+            is_training,
             validation,
         }
     }
 
-    /// Solves a fold's problems for every C, and adds the validation rows recognised to the counts; how many solves stopped
-    /// at the iteration cap.
-    fn validate(
-        &self,
-        fold: &Fold,
+    /// Solves all problems of some folds, and judges their validation rows.
+    fn judge<'f>(
+        &'f self,
+        folds: &'f [Fold],
         kernel: ArrayView2<T>,
         goal: Goal,
-        mut counts: ArrayViewMut1<usize>,
-    ) -> usize {
-        let n_classes = fold.classes.len();
-        let n_rows = fold.validation.len();
-        let mut ballots = vec![Ballot::new(n_classes, n_rows, self.multiclass); goal.path.len()];
-        let held_out = gather_all(kernel, &fold.training, &fold.validation);
-        let (mut room, mut n_capped) = (Room::new(), 0);
-        let mut sums = vec![T::zero(); n_rows];
-        for problem in self.multiclass.problems(n_classes) {
-            let places = fold.places(problem);
-            let rows: Vec<usize> = places.iter().map(|&at| fold.training[at]).collect();
-            let own = &fold.classes[problem.0].1;
-            let is_positive: Vec<bool> = places.iter().map(|at| own.contains(at)).collect();
-            let mut gram = Part::new(&kernel, &rows, &mut room);
-            let mut smo = Smo::new(&mut gram, &is_positive);
-            let mut last = Vec::new();
-            for (ballot, &c) in ballots.iter_mut().zip(goal.path) {
-                let solution = smo.solve(c, goal.tolerance);
-                n_capped += usize::from(solution.is_capped);
-                // Where no coefficient changed, the values are those of the last C.
-                if solution.coefficients != last {
-                    weighted_sum(&mut sums, &held_out, &places, &solution.coefficients);
-                    last = solution.coefficients;
+    ) -> Vec<Judgement<'f>> {
+        let ranges = self.sorted.ranges();
+        let judgement = |fold: &'f Fold| {
+            let of_class = |row: &usize| ranges.partition_point(|range| range.end <= *row);
+            let rows = fold.validation.iter().map(|row| (*row, of_class(row)));
+            let known = rows.filter(|(_, class)| fold.is_class[*class]).collect();
+            Judgement::new(
+                known,
+                ranges,
+                &fold.is_training,
+                self.multiclass,
+                goal.path.len(),
+            )
+        };
+        let mut judgements: Vec<Judgement<'_>> = folds.iter().map(judgement).collect();
+        let mut room = Room::new();
+        let mut values = Vec::new();
+        for problem in self.multiclass.problems(ranges.len()) {
+            let block = self.block(problem, kernel.reborrow(), &mut values);
+            // The fold before, and its solutions.
+            let mut last: Option<(&Fold, Vec<Vec<f64>>)> = None;
+            for (fold, judgement) in folds.iter().zip(&mut judgements) {
+                let (positive, negative) = problem;
+                let takes_part = |class: usize| fold.is_class[class];
+                if !takes_part(positive) || !negative.is_none_or(takes_part) {
+                    continue;
                 }
-                ballot.take(problem, &sums, solution.rho);
+                let (path, solutions) = solve(&block, fold, last.as_ref(), goal, &mut room);
+                judgement.take(block.problem, &block.rows, block.kernel, path);
+                last = Some((fold, solutions));
             }
         }
-        for (count, ballot) in counts.iter_mut().zip(&ballots) {
-            *count += self.n_right(fold, ballot);
-        }
-        n_capped
+        judgements
     }
 
-    /// Validation rows whose votes are for their own class.
-    fn n_right(&self, fold: &Fold, ballot: &Ballot) -> usize {
-        let winners = ballot.winners().into_iter().zip(&fold.validation);
-        let is_right = |&(winner, &row): &(usize, &usize)| {
-            fold.classes[winner].0 == self.data.targets[self.sorted.order()[row]]
+    /// The rows of a problem, and their part of the kernel; `values` is room for it.
+    fn block<'v>(
+        &self,
+        problem: (usize, Option<usize>),
+        kernel: ArrayView2<'v, T>,
+        values: &'v mut Vec<T>,
+    ) -> Block<'v, T> {
+        let own = self.sorted.ranges()[problem.0].clone();
+        let Some(negative) = problem.1 else {
+            return Block {
+                problem,
+                rows: (0..kernel.nrows()).collect(),
+                positive: own,
+                kernel,
+            };
         };
-        winners.filter(is_right).count()
+        let rows = self.sorted.pair_rows(problem.0, negative);
+        Block {
+            problem,
+            positive: 0..own.len(),
+            kernel: gather_square(kernel, &rows, values),
+            rows,
+        }
     }
 }
 
-/// `Σ β_i row_i` over the rows at these places.
-fn weighted_sum<T: Scalar>(sums: &mut [T], rows: &Array2<T>, places: &[usize], beta: &[f64]) {
-    sums.fill(T::zero());
-    let row = |at: usize| {
-        rows.row(at)
-            .to_slice()
-            .expect("rows were gathered one by one")
-    };
-    let support = places.iter().zip(beta).filter(|(_, beta)| **beta != 0.0);
-    let mut support: Vec<(&[T], T)> = support.map(|(&at, &beta)| (row(at), T::of(beta))).collect();
-    // Rows that weigh nothing fill up the last four.
-    let n_fours = support.len().div_ceil(4);
-    support.resize(4 * n_fours, (row(0), T::zero()));
-    for four in support.as_chunks::<4>().0 {
-        add_four(sums, four);
+/// Solves a fold's problem for every C: what is needed of the solutions, and β of all rows of the block (0 where a row is not
+/// trained on).
+fn solve<T: Scalar>(
+    block: &Block<T>,
+    fold: &Fold,
+    last: Option<&(&Fold, Vec<Vec<f64>>)>,
+    goal: Goal,
+    room: &mut Room<T>,
+) -> (Vec<Solved>, Vec<Vec<f64>>) {
+    let places: Vec<usize> = (0..block.rows.len())
+        .filter(|&at| fold.is_training[block.rows[at]])
+        .collect();
+    let is_positive: Vec<bool> = places
+        .iter()
+        .map(|at| block.positive.contains(at))
+        .collect();
+    let mut gram = Part::new(&block.kernel, &places, room);
+    let mut smo = Smo::new(&mut gram, &is_positive);
+    // Classes that no hyperplane parts from the rest have values that are equal within the tolerance, and the largest wins:
+    // there the start decides. So one-vs-rest starts from nothing, as training does.
+    let is_pair = block.problem.1.is_some();
+    if is_pair && last.is_none() {
+        smo = smo.at_bounds(goal.path[0]);
     }
+    let mut path: Vec<Solved> = Vec::new();
+    let mut solutions: Vec<Vec<f64>> = Vec::new();
+    for (number, &c) in goal.path.iter().enumerate() {
+        let seed = || {
+            let (before, solutions) = last.filter(|_| is_pair)?;
+            let is_training = |at: usize| fold.is_training[block.rows[at]];
+            let was_training = |at: usize| before.is_training[block.rows[at]];
+            let seed = moved(
+                &solutions[number],
+                (was_training, is_training),
+                &block.positive,
+                block.kernel,
+            )?;
+            Some(places.iter().map(|&at| seed[at]).collect())
+        };
+        let solution = smo.solve_or_from(c, goal.tolerance, seed);
+        let mut beta = vec![0.0; block.rows.len()];
+        for (&at, &value) in places.iter().zip(&solution.coefficients) {
+            beta[at] = value;
+        }
+        let is_new = solutions.last() != Some(&beta);
+        path.push(Solved {
+            beta: is_new.then(|| beta.clone()),
+            rho: solution.rho,
+            is_capped: solution.is_capped,
+        });
+        solutions.push(beta);
+    }
+    (path, solutions)
 }
 
-/// Four rows at once: the sums are read and written a quarter as often.
-#[multiversion::multiversion(targets("x86_64+avx2+fma"))]
-fn add_four<T: Scalar>(sums: &mut [T], rows: &[(&[T], T); 4]) {
-    let n = sums.len();
-    let [(a, p), (b, q), (c, r), (d, s)] = *rows;
-    let (a, b, c, d) = (&a[..n], &b[..n], &c[..n], &d[..n]);
-    for at in 0..n {
-        sums[at] += (p * a[at] + q * b[at]) + (r * c[at] + s * d[at]);
+/// The same rows and columns of a larger matrix, written into `to`.
+fn gather_square<'v, T: Scalar>(
+    whole: ArrayView2<T>,
+    rows: &[usize],
+    to: &'v mut Vec<T>,
+) -> ArrayView2<'v, T> {
+    let n = rows.len();
+    to.resize(n * n, T::zero());
+    let runs = Runs::new(rows);
+    for (&row, to) in rows.iter().zip(to.chunks_exact_mut(n.max(1))) {
+        let from = whole.row(row).to_slice();
+        runs.copy(from.expect("a kernel is stored row by row"), to);
     }
-}
-
-/// Rows and columns of a larger matrix.
-fn gather_all<T: Scalar>(whole: ArrayView2<T>, rows: &[usize], columns: &[usize]) -> Array2<T> {
-    let mut part = Array2::zeros((rows.len(), columns.len()));
-    let runs = Runs::new(columns);
-    for (&row, mut to) in rows.iter().zip(part.rows_mut()) {
-        let from = whole
-            .row(row)
-            .to_slice()
-            .expect("a product is stored row by row");
-        runs.copy(from, to.as_slice_mut().expect("a new array is contiguous"));
-    }
-    part
+    ArrayView2::from_shape((n, n), to).expect("rows fill the values")
 }

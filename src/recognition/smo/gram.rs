@@ -3,6 +3,7 @@
 use ndarray::{Array2, ArrayView1, ArrayView2, ArrayViewMut2, Axis, s};
 
 use super::passes::padded;
+use super::row_sums::weighted_sum;
 use crate::recognition::kernel::KernelFunction;
 use crate::recognition::points::Points;
 use crate::recognition::scalar::Scalar;
@@ -147,11 +148,7 @@ impl<T: Scalar> Gram<T> for Dense<T> {
     }
 
     fn times(&mut self, beta: &[f64]) -> Vec<f64> {
-        let mut sums = vec![0.0; self.n];
-        for (j, &beta) in beta.iter().enumerate().filter(|(_, beta)| **beta != 0.0) {
-            add_row(&mut sums, self.at(j), beta);
-        }
-        sums
+        weighted_sum(self.n, beta, |j| self.at(j))
     }
 
     fn fits(&self, _: usize) -> bool {
@@ -171,14 +168,6 @@ impl<T: Scalar> Gram<T> for Dense<T> {
 pub(crate) fn gather<T: Copy>(to: &mut [T], from: &[T], columns: &[usize]) {
     for (to, &column) in to.iter_mut().zip(columns) {
         *to = from[column];
-    }
-}
-
-/// Adds β times a row to sums in f64.
-#[multiversion::multiversion(targets("x86_64+avx2+fma"))]
-pub(crate) fn add_row<T: Scalar>(sums: &mut [f64], row: &[T], beta: f64) {
-    for (sum, value) in sums.iter_mut().zip(row) {
-        *sum += beta * value.wide();
     }
 }
 

@@ -14,7 +14,9 @@
 mod gram;
 mod part;
 mod passes;
+mod row_sums;
 mod runs;
+mod start;
 mod variables;
 
 pub(crate) use gram::{Cached, Dense, Gram, copy, gather};
@@ -114,43 +116,38 @@ impl<'a, G> Smo<'a, G> {
     where
         G: Gram<T>,
     {
-        self.stretch(c);
+        self.solve_or_from(c, tolerance, || None)
+    }
+
+    /// [`solve`](Self::solve), or from β of another start that C allows, if the objective is higher there.
+    pub fn solve_or_from<T: Scalar>(
+        &mut self,
+        c: f64,
+        tolerance: f64,
+        other: impl FnOnce() -> Option<Vec<f64>>,
+    ) -> DualSolution
+    where
+        G: Gram<T>,
+    {
         let mut search = Search::new(self.most_iterations, tolerance);
-        // Where no multiplier was at its bound, a larger C changes nothing.
-        let is_solved = self.violation() <= tolerance || self.search(&mut search);
+        // Where no multiplier was kept down by its bound, a larger C changes nothing: β stays as it is.
+        let stays = self.c <= c && self.violation(c) <= tolerance;
+        if !stays {
+            self.stretch(c);
+            if let Some(other) = other() {
+                self.prefer(other);
+            }
+        }
+        let is_solved = stays || self.violation(c) <= tolerance || self.search(c, &mut search);
+        self.c = c;
         DualSolution {
             rho: rho(&self.beta, self.is_positive, &self.f, c),
             is_capped: !is_solved,
             objective: self.objective(),
-            violation: Some(self.violation().max(0.0)),
+            violation: Some(self.violation(c).max(0.0)),
             n_iterations: Some(search.n_iterations),
             coefficients: self.beta.clone(),
         }
-    }
-
-    /// Takes β to another C: multiplied by what is best for the objective, as far as the new bounds allow.
-    fn stretch(&mut self, c: f64) {
-        let (mut linear, mut quadratic) = (0.0, 0.0);
-        for ((&beta, &f), &is_positive) in self.beta.iter().zip(&self.f).zip(self.is_positive) {
-            linear += beta * sign(is_positive);
-            quadratic += beta * (sign(is_positive) - f);
-        }
-        if self.c > 0.0 && self.c != c && quadratic > 0.0 {
-            let most = c / self.c;
-            let factor = (linear / quadratic).clamp(0.0, most);
-            for (beta, &is_positive) in self.beta.iter_mut().zip(self.is_positive) {
-                let is_at_bound = *beta == self.c * sign(is_positive);
-                *beta = if is_at_bound && factor == most {
-                    c * sign(is_positive)
-                } else {
-                    (factor * *beta).clamp(-c, c)
-                };
-            }
-            for (f, &is_positive) in self.f.iter_mut().zip(self.is_positive) {
-                *f = sign(is_positive) - factor * (sign(is_positive) - *f);
-            }
-        }
-        self.c = c;
     }
 
     /// `Σ y β − ½ β K β`.
@@ -161,23 +158,24 @@ impl<'a, G> Smo<'a, G> {
             .sum()
     }
 
-    /// How far the optimality conditions are violated; below 0 when they hold with room to spare, infinite when kernel values
-    /// have left nothing to go by.
-    fn violation(&self) -> f64 {
-        if self.f.iter().any(|f| !f.is_finite()) {
+    /// How far the optimality conditions for a C are violated; below 0 when they hold with room to spare, infinite when
+    /// kernel values have left nothing to go by.
+    fn violation(&self, c: f64) -> f64 {
+        let is_finite = self.f.iter().fold(true, |all, f| all & f.is_finite());
+        if !is_finite {
             return f64::INFINITY;
         }
-        let (highest, lowest) = extremes(&self.beta, self.is_positive, &self.f, self.c);
+        let (highest, lowest) = extremes(&self.beta, self.is_positive, &self.f, c);
         highest - lowest
     }
 
     /// Whether it ended within the tolerance.
-    fn search<T: Scalar>(&mut self, search: &mut Search) -> bool
+    fn search<T: Scalar>(&mut self, c: f64, search: &mut Search) -> bool
     where
         G: Gram<T>,
     {
         for round in 0..MOST_REFRESHES {
-            let mut all = Variables::<T>::new(&self.beta, self.is_positive, &self.f, self.c);
+            let mut all = Variables::<T>::new(&self.beta, self.is_positive, &self.f, c);
             let first_look = if round == 0 { SHRINK_PERIOD } else { 0 };
             let stop = run(self.gram, &mut all, search, first_look);
             self.beta = all.beta.clone();
@@ -194,7 +192,7 @@ impl<'a, G> Smo<'a, G> {
                     .for_each(|(at, value)| self.beta[indices[at]] = value);
             }
             self.refresh();
-            if self.violation() <= search.tolerance {
+            if self.violation(c) <= search.tolerance {
                 return true;
             }
             if search.n_iterations >= search.most_iterations {

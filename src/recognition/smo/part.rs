@@ -2,8 +2,9 @@
 
 use ndarray::ArrayView2;
 
-use super::gram::{Dense, Gram, add_row};
+use super::gram::{Dense, Gram};
 use super::passes::padded;
+use super::row_sums::weighted_sum;
 use super::runs::Runs;
 use crate::recognition::scalar::Scalar;
 
@@ -95,12 +96,10 @@ impl<T: Scalar> Gram<T> for Part<'_, T> {
     }
 
     fn times(&mut self, beta: &[f64]) -> Vec<f64> {
-        let mut sums = vec![0.0; self.rows.len()];
-        for (j, &beta) in beta.iter().enumerate().filter(|(_, beta)| **beta != 0.0) {
-            self.bring(j);
-            add_row(&mut sums, self.at(j), beta);
-        }
-        sums
+        (0..beta.len())
+            .filter(|&j| beta[j] != 0.0)
+            .for_each(|j| self.bring(j));
+        weighted_sum(self.rows.len(), beta, |j| self.at(j))
     }
 
     fn fits(&self, _: usize) -> bool {

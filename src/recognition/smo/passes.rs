@@ -77,7 +77,11 @@ fn first(n: usize, is: impl Fn(usize) -> bool) -> usize {
 pub(super) fn select_up<T: Scalar>(f: &[T], up: &[T]) -> Option<usize> {
     let up = &up[..f.len()];
     let highest = largest_sum(f, up);
-    (highest > T::neg_infinity()).then(|| first(f.len(), |at| f[at] + up[at] == highest))
+    if highest > T::neg_infinity() {
+        Some(first(f.len(), |at| f[at] + up[at] == highest))
+    } else {
+        None
+    }
 }
 
 /// `f − step (row_i − row_j)` in place.
@@ -130,7 +134,11 @@ pub(super) fn select_down<T: Scalar>(
     let best = largest(gains);
     let gains = &*gains;
     Down {
-        j: (best > T::zero()).then(|| first(n, |at| gains[at] == best)),
+        j: if best > T::zero() {
+            Some(first(n, |at| gains[at] == best))
+        } else {
+            None
+        },
         violation: violation(f, low, highest),
     }
 }

@@ -3,6 +3,9 @@
 use super::passes::padded;
 use crate::recognition::scalar::Scalar;
 
+/// Variables looked at side by side.
+const LANES: usize = 4;
+
 /// Where a variable may be: between 0 and C for a positive row, between −C and 0 for a negative one.
 fn bounds(is_positive: bool, c: f64) -> (f64, f64) {
     if is_positive { (0.0, c) } else { (-c, 0.0) }
@@ -112,18 +115,41 @@ impl<T: Scalar> Variables<T> {
 
 /// `(max of f that can be raised, min of f that can be lowered)`, in f64, for any β within its bounds.
 pub(crate) fn extremes(beta: &[f64], is_positive: &[bool], f: &[f64], c: f64) -> (f64, f64) {
-    let mut highest = f64::NEG_INFINITY;
-    let mut lowest = f64::INFINITY;
-    for ((&beta, &is_positive), &f) in beta.iter().zip(is_positive).zip(f) {
+    let (beta, last_beta) = beta.as_chunks::<LANES>();
+    let (is_positive, last_is_positive) = is_positive.as_chunks::<LANES>();
+    let (f, last_f) = f.as_chunks::<LANES>();
+    // Each lane keeps its own; they meet at the end.
+    let (mut highest, mut lowest) = ([f64::NEG_INFINITY; LANES], [f64::INFINITY; LANES]);
+    let mut meet = |lane: usize, beta: f64, is_positive: bool, f: f64| {
         let (low, high) = bounds(is_positive, c);
-        if beta < high {
-            highest = highest.max(f);
-        }
-        if beta > low {
-            lowest = lowest.min(f);
+        let raised = if beta < high { f } else { f64::NEG_INFINITY };
+        let lowered = if beta > low { f } else { f64::INFINITY };
+        highest[lane] = if raised > highest[lane] {
+            raised
+        } else {
+            highest[lane]
+        };
+        lowest[lane] = if lowered < lowest[lane] {
+            lowered
+        } else {
+            lowest[lane]
+        };
+    };
+    for ((beta, is_positive), f) in beta.iter().zip(is_positive).zip(f) {
+        for lane in 0..LANES {
+            meet(lane, beta[lane], is_positive[lane], f[lane]);
         }
     }
-    (highest, lowest)
+    for (lane, ((&beta, &is_positive), &f)) in last_beta
+        .iter()
+        .zip(last_is_positive)
+        .zip(last_f)
+        .enumerate()
+    {
+        meet(lane, beta, is_positive, f);
+    }
+    let highest = highest.into_iter().fold(f64::NEG_INFINITY, f64::max);
+    (highest, lowest.into_iter().fold(f64::INFINITY, f64::min))
 }
 
 /// ρ: the mean of −f over the variables between their bounds, or the middle of what the others allow (LIBSVM's rule).

@@ -1,0 +1,79 @@
+//! A start for one fold from the solution of another.
+//!
+//! Two folds of k share all but 2/k of their rows. The multipliers of rows that one fold trains on and the other does not go
+//! to the most similar rows that it gains [DeCoste, Wagstaff 2000; Wen et al. 2017], so that `Σβ = 0` and the bounds hold as
+//! before.
+
+use std::ops::Range;
+
+use ndarray::ArrayView2;
+
+use crate::recognition::scalar::Scalar;
+
+/// β (of all rows of a problem) for a fold that trains on other rows; `None` where a multiplier finds no row of its class
+/// that has none.
+pub(crate) fn moved<T: Scalar>(
+    beta: &[f64],
+    (was_training, is_training): (impl Fn(usize) -> bool, impl Fn(usize) -> bool),
+    positive: &Range<usize>,
+    kernel: ArrayView2<T>,
+) -> Option<Vec<f64>> {
+    let mut moved = beta.to_vec();
+    let gained = (0..beta.len()).filter(|&at| is_training(at) && !was_training(at));
+    let (mut own, mut others): (Vec<usize>, Vec<usize>) =
+        gained.partition(|at| positive.contains(at));
+    for lost in (0..beta.len()).filter(|&at| beta[at] != 0.0 && !is_training(at)) {
+        let row = kernel.row(lost);
+        let similar = row.to_slice().expect("kernel values lie row by row");
+        let gained = if positive.contains(&lost) {
+            &mut own
+        } else {
+            &mut others
+        };
+        let mut nearest = (T::neg_infinity(), None);
+        for (number, &at) in gained.iter().enumerate() {
+            if similar[at] > nearest.0 {
+                nearest = (similar[at], Some(number));
+            }
+        }
+        moved[gained.swap_remove(nearest.1?)] = beta[lost];
+        moved[lost] = 0.0;
+    }
+    Some(moved)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use ndarray::Array2;
+
+    /// Rows on a line, the first four positive; similarity falls with distance.
+    const AT: [f64; 8] = [0.0, 1.0, 2.0, 3.0, 0.4, 1.4, 2.4, 3.4];
+
+    fn seed(beta: &[f64], was: &[usize], is: &[usize]) -> Option<Vec<f64>> {
+        let kernel = Array2::from_shape_fn((8, 8), |(i, j)| -(AT[i] - AT[j]).abs());
+        let fold = (|at: usize| was.contains(&at), |at: usize| is.contains(&at));
+        moved(beta, fold, &(0..4), kernel.view())
+    }
+
+    #[test]
+    fn multipliers_of_lost_rows_go_to_the_most_similar_gained_rows_of_their_class() {
+        let beta = [0.5, 0.0, 0.0, 1.0, -0.7, 0.0, -0.8, 0.0];
+        // Rows 3 and 4 are lost; 1, 2, 5 and 7 are gained.
+        let found = seed(&beta, &[0, 3, 4, 6], &[0, 1, 2, 5, 6, 7]);
+        assert_eq!(found.unwrap(), [0.5, 0.0, 1.0, 0.0, 0.0, -0.7, -0.8, 0.0]);
+    }
+
+    #[test]
+    fn rows_without_multipliers_are_lost_for_nothing() {
+        let beta = [0.5, 0.0, 0.0, 0.0, -0.5, 0.0, 0.0, 0.0];
+        let found = seed(&beta, &[0, 1, 4, 5], &[0, 4]);
+        assert_eq!(found.unwrap(), beta);
+    }
+
+    #[test]
+    fn a_multiplier_that_finds_no_row_of_its_class_makes_no_start() {
+        let beta = [0.5, 0.0, 0.0, 0.0, -0.5, 0.0, 0.0, 0.0];
+        assert_eq!(seed(&beta, &[0, 1, 4, 5], &[1, 4, 5, 6]), None);
+    }
+}
