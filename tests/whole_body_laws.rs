@@ -9,6 +9,7 @@ use bubbletouch::whole_body::{
 use bubbletouch::world::{Extrusion, Grid, Layout, Robot, SkinPatch, Taxel, Taxels};
 use glam::DVec3;
 use rand::Rng;
+use std::f64::consts::TAU;
 use std::path::Path;
 
 mod counting;
@@ -29,7 +30,7 @@ fn random_extrusion(rng: &mut impl Rng) -> Extrusion {
         })
     } else {
         let (radius, length) = (rng.gen_range(5e-3..0.05), rng.gen_range(0.0..0.08));
-        Extrusion::cylinder(radius, length, rng.gen_range(0.1..6.28), pitch)
+        Extrusion::cylinder(radius, length, rng.gen_range(0.1..TAU), pitch)
     };
     extrusion.unwrap()
 }
