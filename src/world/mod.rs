@@ -6,6 +6,7 @@
 
 mod basins;
 mod body;
+mod human_touch;
 mod layout;
 mod layout_curved;
 mod layout_draped;
@@ -28,6 +29,7 @@ mod touches;
 mod trajectory;
 
 pub use body::Body;
+pub use human_touch::{HandState, HumanTouch, TOUCH_KINDS, TouchKind, TouchRanges};
 pub use layout::{Layout, MOST_TAXELS};
 pub use mass::center_of_mass;
 pub use motion::{Interpolation, JointTrajectory, Motion, PoseTrajectory};
