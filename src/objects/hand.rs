@@ -174,7 +174,8 @@ impl Hand {
         // The palm between metacarpals.
         let palm = |k: usize| {
             let middle = |end: usize| 0.5 * (joints[k][end] + joints[k + 1][end]);
-            let width = |end: usize| 0.5 * (FINGERS[k].diameters[end] + FINGERS[k + 1].diameters[end]);
+            let width =
+                |end: usize| 0.5 * (FINGERS[k].diameters[end] + FINGERS[k + 1].diameters[end]);
             strand(&[middle(0), middle(1)], &[width(0), width(1)])
         };
         let thumb = THUMB.joints(&self.thumb, self.opposition);

@@ -11,6 +11,10 @@ use std::f64::consts::FRAC_PI_2;
 /// costs more (of 100 spheres it takes 10 to 30 µs).
 const SURFACE_ERROR: f64 = 0.5e-3;
 
+/// How far a hand may be out of level, radians. Larger, and a flat hand, which does not give way, touches with the ball of the thumb or
+/// a finger alone.
+const LEVEL: f64 = 0.03;
+
 /// The fingers of a fist, as a share of [`Hand::curled`].
 const FIST: f64 = 0.85;
 
@@ -41,7 +45,7 @@ impl Posture {
         };
         open.length = length;
         // Fingertips first: the wrist is higher.
-        let mut pitch = rng.gen_range(-0.08..=0.08);
+        let mut pitch = rng.gen_range(-LEVEL..=LEVEL);
         if !is_flat {
             pitch = -rng.gen_range(0.35..=0.8);
             let straight = FingerPose {
@@ -52,7 +56,7 @@ impl Posture {
             };
             open.fingers[..fingers].fill(straight);
         }
-        let roll = rng.gen_range(-0.08..=0.08);
+        let roll = rng.gen_range(-LEVEL..=LEVEL);
         let place_from_hand = DQuat::from_rotation_z(yaw)
             * DQuat::from_rotation_x(pitch)
             * DQuat::from_rotation_y(roll);
@@ -175,7 +179,13 @@ fn anchor(hand: &Hand, fingers: usize) -> DVec3 {
     let strands = hand.strands();
     match fingers {
         5 => strands[1][0].center.lerp(strands[1][1].center, 0.75),
-        n => strands[..n].iter().map(|finger| finger[4].center).sum::<DVec3>() / n as f64,
+        n => {
+            strands[..n]
+                .iter()
+                .map(|finger| finger[4].center)
+                .sum::<DVec3>()
+                / n as f64
+        }
     }
 }
 

@@ -49,7 +49,7 @@ impl TouchRanges {
         let tap = Self {
             hand_length: 0.165..=0.205,
             fingers: vec![1, 2, 3, 4, 5, 5],
-            along: -0.03..=0.03,
+            along: -0.025..=0.025,
             around: -1.0..=1.0,
             yaw: -0.6..=0.6,
             clearance: 0.015..=0.025,
@@ -73,15 +73,15 @@ impl TouchRanges {
             // People stroke each other at 1 to 10 cm/s, rounded up so that a touch ends in time.
             TouchKind::Stroke => Self {
                 along: -0.01..=0.01,
-                travel: 0.03..=0.1,
-                speed: 0.05..=0.15,
+                travel: 0.03..=0.09,
+                speed: 0.06..=0.15,
                 direction: -0.35..=0.35,
                 hold: 0.0..=0.1,
                 ..tap
             },
             TouchKind::Shove => Self {
                 depth: 1.5e-3..=4.5e-3,
-                rise: 0.06..=0.2,
+                rise: 0.05..=0.12,
                 hold: 0.1..=0.5,
                 travel: 0.01..=0.04,
                 speed: 0.04..=0.12,
@@ -93,14 +93,14 @@ impl TouchRanges {
                 rise: 0.03..=0.07,
                 hold: 0.0..=0.1,
                 contacts: 2..=4,
-                lift: 4e-3..=8e-3,
+                lift: 3e-3..=6e-3,
                 ..tap
             },
             TouchKind::Grab => Self {
                 yaw: -0.3..=0.3,
                 depth: 0.5e-3..=2e-3,
-                hold: 0.2..=1.2,
-                closing: 0.25..=0.5,
+                hold: 0.2..=1.0,
+                closing: 0.2..=0.45,
                 grip: 1e-3..=4e-3,
                 ..tap
             },
@@ -137,17 +137,29 @@ impl TouchRanges {
         let (fewest, most) = (*self.contacts.start(), *self.contacts.end());
         if !(1 <= fewest && fewest <= most && most <= 100) {
             let given = format!("{fewest} to {most}");
-            return Err(Error::input("range of contacts", given, "1 to 100, the fewer first"));
+            return Err(Error::input(
+                "range of contacts",
+                given,
+                "1 to 100, the fewer first",
+            ));
         }
         if most > 1 && *self.lift.start() <= 0.0 {
             let given = format!("{} m between contacts", self.lift.start());
-            return Err(Error::input("range of lift", given, "more than 0 where contacts repeat"));
+            return Err(Error::input(
+                "range of lift",
+                given,
+                "more than 0 where contacts repeat",
+            ));
         }
         let wrong = self.fingers.iter().find(|&&n| !(1..=5).contains(&n));
         match (wrong, self.fingers.is_empty()) {
             (None, false) => Ok(()),
             (Some(n), _) => Err(Error::input("fingers", n, "1 to 4, or 5 for the flat hand")),
-            (None, true) => Err(Error::input("fingers", "none", "at least one number, 1 to 5")),
+            (None, true) => Err(Error::input(
+                "fingers",
+                "none",
+                "at least one number, 1 to 5",
+            )),
         }
     }
 }

@@ -97,7 +97,11 @@ impl HumanTouch {
         let is_flat = matches!(kind, TouchKind::Shove | TouchKind::Grab);
         let chosen = ranges.fingers[rng.gen_range(0..ranges.fingers.len())];
         let fingers = if is_flat { 5 } else { chosen };
-        let shape = (any(&ranges.hand_length, rng), fingers, any(&ranges.yaw, rng));
+        let shape = (
+            any(&ranges.hand_length, rng),
+            fingers,
+            any(&ranges.yaw, rng),
+        );
         let mut posture = Posture::draw(kind, shape, rng);
         let (along, around) = (any(&ranges.along, rng), any(&ranges.around, rng));
         let depth = any(&ranges.depth, rng);
