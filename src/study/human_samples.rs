@@ -12,8 +12,11 @@ use ndarray::{Array1, Array2};
 /// Frames of a strip: a row of the picture.
 const N_FRAMES: usize = 4;
 
-/// Of the kinds that the study names for its picture (else of all), the first touch, at four instants evenly between those when its first
-/// and its last taxel are touched; on its finest array, without noise.
+/// Touches of which the firmest is shown: the flat hand rather than a fingertip.
+const N_LOOKED_AT: usize = 10;
+
+/// Of the kinds that the study names for its picture (else of all), the firmest of the first touches, at four instants evenly between
+/// those when its first and its last taxel are touched; on the study's finest array, without noise.
 pub fn human_samples(plan: &Plan, sweep: &Sweep, touches: &HumanTouches) -> Result<Samples> {
     let group = sweep.groups.iter().max_by_key(|group| {
         // The first of several.
@@ -31,9 +34,13 @@ pub fn human_samples(plan: &Plan, sweep: &Sweep, touches: &HumanTouches) -> Resu
     let mut workspace = SkinWorkspace::new();
     let mut frames = Vec::new();
     for label in chosen(plan, touches)? {
-        let mut rows = Array2::zeros((touches.plan.n_frames, grid.n_taxels()));
-        let touch = &touches.of(label)[0];
-        record_touch(&skin, touch, interval, rows.view_mut(), &mut workspace);
+        let recorded = touches.of(label).iter().take(N_LOOKED_AT).map(|touch| {
+            let mut rows = Array2::zeros((touches.plan.n_frames, grid.n_taxels()));
+            record_touch(&skin, touch, interval, rows.view_mut(), &mut workspace);
+            rows
+        });
+        let firmest = recorded.max_by(|a, b| a.sum().total_cmp(&b.sum()));
+        let Some(rows) = firmest else { continue };
         let is_touched = |frame: &usize| rows.row(*frame).iter().any(|&d| d > 0.0);
         let touched: Vec<usize> = (0..rows.nrows()).filter(is_touched).collect();
         let (Some(&first), Some(&last)) = (touched.first(), touched.last()) else {

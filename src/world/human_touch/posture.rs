@@ -56,6 +56,10 @@ impl Posture {
             };
             open.fingers[..fingers].fill(straight);
         }
+        if is_flat {
+            // Else it would be the thumb that a flat hand lies on.
+            open.thumb.knuckle = -0.3;
+        }
         let roll = rng.gen_range(-LEVEL..=LEVEL);
         let place_from_hand = DQuat::from_rotation_z(yaw)
             * DQuat::from_rotation_x(pitch)

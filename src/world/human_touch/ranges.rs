@@ -6,7 +6,7 @@ use std::ops::RangeInclusive;
 
 /// Ranges of the parameters of one kind of touch, drawn uniformly; those that a kind has no use for are not drawn.
 ///
-/// The usual ones are our choice, but for the speed of a stroke and the length of the hand.
+/// The usual ones are our choice, but for the length of the hand.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TouchRanges {
     /// Length of the hand, metres; adults have 0.16 to 0.21 \[BK\].
@@ -70,7 +70,7 @@ impl TouchRanges {
                 hold: 0.25..=1.6,
                 ..tap
             },
-            // People stroke each other at 1 to 10 cm/s, rounded up so that a touch ends in time.
+            // Faster than the few cm/s that are felt as most pleasant, so that a touch ends in time.
             TouchKind::Stroke => Self {
                 along: -0.01..=0.01,
                 travel: 0.03..=0.09,
