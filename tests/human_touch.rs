@@ -393,10 +393,10 @@ fn time_tells_kinds_apart_that_one_frame_does_not() {
 fn touches_are_balanced_and_alone_the_same() {
     let (plan, touches, sweep) = laid_out(&STUDY.replace("KINDS", "")).unwrap();
     assert_eq!(touches.class_names(), TOUCH_KINDS.map(TouchKind::name));
-    for label in 0..6 {
+    for (label, kind) in TOUCH_KINDS.into_iter().enumerate() {
         assert_eq!(sweep.labels.iter().filter(|&&l| l == label).count(), 40);
         let of_kind = touches.of(label).iter();
-        assert!(of_kind.clone().all(|t| t.touch.kind == TOUCH_KINDS[label]));
+        assert!(of_kind.clone().all(|t| t.touch.kind == kind));
         let fits = |t: &bubbletouch::study::RecordedTouch| {
             t.onset >= 0.0 && t.onset + t.touch.duration() <= 3.2 + 1e-9
         };
