@@ -104,6 +104,38 @@ impl Aabb {
         beyond.length_squared()
     }
 
+    /// The box that is wider by `margin` (metres, not negative) on every side.
+    pub fn widened(&self, margin: f64) -> Self {
+        Self {
+            min: self.min - margin,
+            max: self.max + margin,
+        }
+    }
+
+    /// How far along a line (in lengths of `direction`) it enters the box, at least `from`; infinite if it passes by.
+    pub fn entry(&self, origin: DVec3, direction: DVec3, from: f64) -> f64 {
+        let (mut start, mut end) = (from, f64::INFINITY);
+        for axis in 0..3 {
+            let low = self.min[axis] - origin[axis];
+            let high = self.max[axis] - origin[axis];
+            if direction[axis] == 0.0 {
+                if low > 0.0 || high < 0.0 {
+                    return f64::INFINITY;
+                }
+                continue;
+            }
+            let (a, b) = (low / direction[axis], high / direction[axis]);
+            start = start.max(a.min(b));
+            end = end.min(a.max(b));
+        }
+        // Rounding must not let a line slip between two boxes that touch.
+        if start <= end + 1e-12 * end.abs() {
+            start
+        } else {
+            f64::INFINITY
+        }
+    }
+
     /// The middle.
     pub fn center(&self) -> DVec3 {
         0.5 * (self.min + self.max)

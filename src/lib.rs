@@ -90,6 +90,7 @@
 //! | [`packing`] | a mesh and a tolerance → few spheres |
 //! | [`world`] | taxels, layouts, resting poses → touches; robots and hands and their motion → poses |
 //! | [`contact`] | a scene and poses → deflections; free objects → poses at rest |
+//! | [`whole_body`] | millions of taxels, objects and poses → the taxels that are touched |
 //! | [`signal`] | deflections → frames |
 //! | [`sensing`] | frames → measurements, and back |
 //! | [`recognition`] | labelled measurements → classifier, scores |
@@ -97,9 +98,9 @@
 //! | [`scene`] | TOML → robots, skin and objects that move → frames over time |
 //! | [`report`] | tables and frames → files for people |
 //!
-//! The eight stages from `mesh` to `recognition` are pure: no files (but a robot's, if it is asked for by its path), clock,
-//! threads, printing or global state. Threads live in `study`; files in `study`, `scene` (what a scene names) and
-//! `report`.
+//! The nine stages from `mesh` to `recognition` are pure: no files (but a robot's, if it is asked for by its path), clock,
+//! threads, printing or global state. Threads live in `study`, and in `whole_body` for large touches; files in `study`, `scene`
+//! (what a scene names) and `report`.
 //!
 //! # Sources
 //!
@@ -132,6 +133,7 @@ pub mod error;
 pub mod files;
 pub mod geometry;
 pub mod mesh;
+mod numbers_csv;
 pub mod objects;
 pub mod packing;
 pub mod random;
@@ -142,6 +144,7 @@ pub mod sensing;
 pub mod signal;
 mod spelling;
 pub mod study;
+pub mod whole_body;
 pub mod world;
 
 pub use error::{Error, Result};

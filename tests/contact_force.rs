@@ -6,31 +6,16 @@ use bubbletouch::contact::{
 };
 use bubbletouch::geometry::Pose;
 use bubbletouch::objects::{MeshModel, Model, Sphere, SphereUnion};
-use bubbletouch::random::Seed;
 use bubbletouch::world::{Grid, Layout, Patch, Scene, SkinPatch, Taxel, Taxels};
 use glam::{DQuat, DVec3};
 use rand::Rng;
 
 mod counting;
 mod mesh_shapes;
+mod random_scenes;
 use counting::allocations;
 use mesh_shapes::{cuboid, icosphere};
-
-const TAXEL: Taxel = Taxel {
-    radius: 1e-3,
-    stiffness: 100.0,
-    damping: 0.0,
-    stroke: 5e-3,
-};
-
-fn rng(name: &str, case: u64) -> impl Rng {
-    Seed::new(11).named(name).numbered(case).rng()
-}
-
-fn direction(rng: &mut impl Rng) -> DVec3 {
-    let mut random = || rng.gen_range(-1.0..1.0);
-    DVec3::new(random(), random(), random()).normalize_or(DVec3::X)
-}
+use random_scenes::{TAXEL, direction, rng};
 
 /// Spheres a few times as large as the stroke, or a mesh, turned at random somewhere over or beside a grid.
 fn random_scene(name: &str, case: u64) -> (Scene, Vec<Pose>) {

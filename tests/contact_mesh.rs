@@ -6,34 +6,14 @@ use bubbletouch::contact::{
 use bubbletouch::geometry::Pose;
 use bubbletouch::mesh::{Triangle, TriangleMesh};
 use bubbletouch::objects::{MeshModel, Model, Sphere, SphereUnion};
-use bubbletouch::random::Seed;
 use bubbletouch::world::{Body, Grid, Patch, RestPoses, Scene, Taxel};
 use glam::{DQuat, DVec2, DVec3};
 use rand::Rng;
 
 mod mesh_shapes;
+mod random_scenes;
 use mesh_shapes::{cuboid, icosphere};
-
-const TAXEL: Taxel = Taxel {
-    radius: 1e-3,
-    stiffness: 100.0,
-    damping: 0.0,
-    stroke: 5e-3,
-};
-
-fn rng(name: &str, case: u64) -> impl Rng {
-    Seed::new(5).named(name).numbered(case).rng()
-}
-
-fn direction(rng: &mut impl Rng) -> DVec3 {
-    let mut random = || rng.r#gen::<f64>() - 0.5;
-    DVec3::new(random(), random(), random()).normalize_or(DVec3::X)
-}
-
-fn random_pose(rng: &mut impl Rng, distance: f64) -> Pose {
-    let turn = rng.gen_range(0.0..6.0) * direction(rng);
-    Pose::new(DQuat::from_scaled_axis(turn), distance * direction(rng))
-}
+use random_scenes::{TAXEL, direction, random_pose, rng};
 
 /// Size 1: of any shape, or thin, or in line, or a point, or upright, or flat, or with an upright edge.
 fn odd_triangle(rng: &mut impl Rng, kind: u64) -> Triangle {

@@ -6,30 +6,15 @@ use bubbletouch::contact::{
 use bubbletouch::geometry::Pose;
 use bubbletouch::mesh::{Surface, Triangle, TriangleMesh};
 use bubbletouch::objects::{MeshModel, Model};
-use bubbletouch::random::Seed;
 use bubbletouch::world::{Grid, Layout, Patch, Scene, SkinPatch, Taxel, Taxels};
 use glam::{DQuat, DVec2, DVec3};
 use rand::Rng;
 use std::f64::consts::TAU;
 
 mod mesh_shapes;
+mod random_scenes;
 use mesh_shapes::{cuboid, icosphere};
-
-const TAXEL: Taxel = Taxel {
-    radius: 1e-3,
-    stiffness: 100.0,
-    damping: 0.0,
-    stroke: 5e-3,
-};
-
-fn rng(name: &str, case: u64) -> impl Rng {
-    Seed::new(8).named(name).numbered(case).rng()
-}
-
-fn direction(rng: &mut impl Rng) -> DVec3 {
-    let mut random = || rng.gen_range(-1.0..1.0);
-    DVec3::new(random(), random(), random()).normalize_or(DVec3::X)
-}
+use random_scenes::{TAXEL, direction, rng};
 
 fn random_turn(rng: &mut impl Rng) -> DQuat {
     DQuat::from_scaled_axis(rng.gen_range(0.0..3.0) * direction(rng))

@@ -1,38 +1,18 @@
 //! Laws of contact on skins of any shape, against a search along each taxel's axis, the grid kernel, and energy.
 
 mod counting;
+mod random_scenes;
 
 use bubbletouch::contact::{
     GRAZING, SkinWorkspace, Workspace, press_skin, press_to_travel, spring_load,
 };
 use bubbletouch::geometry::Pose;
 use bubbletouch::objects::{Model, Sphere, SphereUnion};
-use bubbletouch::random::Seed;
 use bubbletouch::world::{Grid, Layout, Patch, Scene, SkinPatch, Taxel, Taxels};
 use counting::allocations;
 use glam::{DQuat, DVec3};
 use rand::Rng;
-
-const TAXEL: Taxel = Taxel {
-    radius: 1e-3,
-    stiffness: 100.0,
-    damping: 0.0,
-    stroke: 5e-3,
-};
-
-fn rng(name: &str, case: u64) -> impl Rng {
-    Seed::new(7).named(name).numbered(case).rng()
-}
-
-fn direction(rng: &mut impl Rng) -> DVec3 {
-    let mut random = || rng.gen_range(-1.0..1.0);
-    DVec3::new(random(), random(), random()).normalize_or(DVec3::X)
-}
-
-fn random_pose(rng: &mut impl Rng, distance: f64) -> Pose {
-    let turn = rng.gen_range(0.0..6.0) * direction(rng);
-    Pose::new(DQuat::from_scaled_axis(turn), distance * direction(rng))
-}
+use random_scenes::{TAXEL, direction, random_pose, rng};
 
 /// A layout of each family in turn, some 5 cm large.
 fn random_layout(rng: &mut impl Rng, kind: u64) -> Layout {

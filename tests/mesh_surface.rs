@@ -2,21 +2,13 @@
 
 use bubbletouch::geometry::Pose;
 use bubbletouch::mesh::{Bvh, Feature, Surface, Triangle, TriangleMesh};
-use bubbletouch::random::Seed;
 use glam::{DQuat, DVec3};
 use rand::Rng;
 
 mod mesh_shapes;
+mod random_scenes;
 use mesh_shapes::{cuboid, icosphere};
-
-fn rng(name: &str, case: u64) -> impl Rng {
-    Seed::new(4).named(name).numbered(case).rng()
-}
-
-fn direction(rng: &mut impl Rng) -> DVec3 {
-    let mut random = || rng.r#gen::<f64>() - 0.5;
-    DVec3::new(random(), random(), random()).normalize_or(DVec3::X)
-}
+use random_scenes::{direction, rng};
 
 /// Triangles of all sizes and shapes: slivers, points, some sharing corners.
 fn soup(rng: &mut impl Rng, n: usize) -> TriangleMesh {

@@ -39,6 +39,18 @@ impl GridLines {
 }
 
 impl Lines {
+    /// Lines at these places, metres, ascending and equally far apart.
+    pub fn at(positions: &[f64]) -> Self {
+        let steps = positions.len().saturating_sub(1).max(1) as f64;
+        let length =
+            positions.last().copied().unwrap_or(0.0) - positions.first().copied().unwrap_or(0.0);
+        Self {
+            positions: positions.to_vec(),
+            // Of a single line any density will do.
+            density: if length > 0.0 { steps / length } else { 1.0 },
+        }
+    }
+
     fn lay(&mut self, positions: impl Iterator<Item = f64>, pitch: f64) {
         self.positions.clear();
         self.positions.extend(positions);

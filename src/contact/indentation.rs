@@ -312,7 +312,7 @@ fn raise(lines: &GridLines, sphere: &PlacedSphere, height: f64, deflections: &mu
 
 /// How far a taxel of this stroke may be pushed without being saturated: a press to a depth of exactly the stroke saturates
 /// nothing, and rounding (1e-12 of the stroke) does not count.
-pub(super) fn saturation_limit(stroke: f64) -> f64 {
+pub(crate) fn saturation_limit(stroke: f64) -> f64 {
     stroke * (1.0 + 1e-12)
 }
 

@@ -51,6 +51,8 @@ mod taxel_contact;
 
 pub use damper::{DamperState, relaxation_factor};
 pub use friction::{FrictionLoad, FrictionState, Grip, GripCounts, NormalForce};
+pub(crate) use grid_lines::Lines;
+pub(crate) use indentation::saturation_limit;
 pub use indentation::{Contact, Workspace, first_contact, press_to_depth, press_to_travel};
 pub use press_force::press_to_force;
 pub use simulate::{Recording, simulate};

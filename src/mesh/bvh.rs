@@ -121,7 +121,7 @@ impl Bvh {
         let mut found = None;
         self.search(
             range.end,
-            |bounds| enters(bounds, origin, direction, range.start),
+            |bounds| bounds.entry(origin, direction, range.start),
             |triangle_number, triangle, limit| match triangle.crossed_at(origin, direction) {
                 Some(along) if along >= range.start && along < limit => {
                     found = Some(Hit {
@@ -141,7 +141,7 @@ impl Bvh {
     pub fn each_hit(&self, origin: DVec3, direction: DVec3, mut visit: impl FnMut(Hit)) {
         self.search(
             f64::INFINITY,
-            |bounds| enters(bounds, origin, direction, f64::NEG_INFINITY),
+            |bounds| bounds.entry(origin, direction, f64::NEG_INFINITY),
             |triangle_number, triangle, limit| {
                 if let Some(along) = triangle.crossed_at(origin, direction) {
                     visit(Hit {
@@ -224,31 +224,5 @@ impl Plane {
     fn is_beyond(&self, point: DVec3, limit: f64) -> bool {
         let height = self.normal.dot(point) - self.offset;
         height * height > limit * (1.0 + 1e-6)
-    }
-}
-
-/// How far along a line it enters a box, at least `from`; infinite if it passes by.
-fn enters(bounds: &Aabb, origin: DVec3, direction: DVec3, from: f64) -> f64 {
-    let (mut start, mut end) = (from, f64::INFINITY);
-    for axis in 0..3 {
-        let (low, high) = (
-            bounds.min[axis] - origin[axis],
-            bounds.max[axis] - origin[axis],
-        );
-        if direction[axis] == 0.0 {
-            if low > 0.0 || high < 0.0 {
-                return f64::INFINITY;
-            }
-            continue;
-        }
-        let (a, b) = (low / direction[axis], high / direction[axis]);
-        start = start.max(a.min(b));
-        end = end.min(a.max(b));
-    }
-    // Rounding must not let a line slip between two boxes that touch.
-    if start <= end + 1e-12 * end.abs() {
-        start
-    } else {
-        f64::INFINITY
     }
 }

@@ -2,6 +2,7 @@
 
 use super::{Sphere, SphereUnion};
 use crate::error::{Error, Result};
+use crate::numbers_csv::{check_width, finite, line_of, rows_of, unreadable};
 use glam::DVec3;
 use std::io::{self, Read, Write};
 
@@ -11,18 +12,13 @@ const COLUMNS: [&str; 4] = ["x", "y", "z", "r"];
 /// Spheres from `x,y,z,r` in metres, with a header (columns in any order, others ignored) or without one (exactly four
 /// columns). Errors begin with `place`, the file's name, and give line and column.
 pub fn read_spheres(place: &str, source: impl Read) -> Result<SphereUnion> {
-    let mut reader = csv::ReaderBuilder::new()
-        .has_headers(false)
-        .flexible(true)
-        .trim(csv::Trim::All)
-        .from_reader(source);
+    let mut reader = rows_of(source);
     let mut layout = None;
     let mut spheres = Vec::new();
     for record in reader.records() {
-        let record = record.map_err(|e| unreadable(place, e))?;
-        let line = record.position().map_or(0, |position| position.line());
+        let record = record.map_err(|e| unreadable(place, e, "text rows of x,y,z,r in metres"))?;
         let row = Row {
-            place: format!("{place}, line {line}"),
+            place: format!("{place}, line {}", line_of(&record)),
             record: &record,
         };
         match &layout {
@@ -91,13 +87,7 @@ impl Row<'_> {
     }
 
     fn sphere(&self, columns: &[usize; 4], n_columns: usize) -> Result<Sphere> {
-        if self.record.len() != n_columns {
-            return Err(Error::input(
-                &self.place,
-                format!("{} columns", self.record.len()),
-                format!("{n_columns} columns in every row"),
-            ));
-        }
+        check_width(&self.place, self.record, n_columns)?;
         let [x, y, z, radius] = [0, 1, 2, 3].map(|k| self.number(columns[k], COLUMNS[k]));
         let (center, radius) = (DVec3::new(x?, y?, z?), radius?);
         if radius <= 0.0 {
@@ -111,24 +101,7 @@ impl Row<'_> {
     }
 
     fn number(&self, column: usize, name: &str) -> Result<f64> {
-        let field = &self.record[column];
-        match field.parse::<f64>() {
-            Ok(value) if value.is_finite() => Ok(value),
-            _ => Err(Error::input(
-                format!("{}, column {name}", self.place),
-                format!("`{field}`"),
-                "a finite number of metres",
-            )),
-        }
-    }
-}
-
-fn unreadable(place: &str, error: csv::Error) -> Error {
-    let text = error.to_string();
-    match error.into_kind() {
-        csv::ErrorKind::Io(source) if source.kind() != io::ErrorKind::InvalidData => {
-            Error::io(place, "read", source)
-        }
-        _ => Error::input(place, text, "text rows of x,y,z,r in metres"),
+        let allowed = "a finite number of metres";
+        finite(&self.place, name, &self.record[column], allowed)
     }
 }

@@ -7,6 +7,19 @@ use crate::report::drawing::{Align, Area, Drawing, Stroke, TextStyle};
 use crate::signal::Quantity;
 use ndarray::{Array2, ArrayView2};
 
+/// How many taxels a grid has and how far apart they are: `64 × 64 taxels, pitch 3.5 mm`.
+pub(crate) fn grid_sentence((nx, ny): (usize, usize), pitch_mm: f64) -> String {
+    format!("{nx} × {ny} taxels, pitch {} mm", short_number(pitch_mm))
+}
+
+/// What is said of cells that stand for `block` × `block` taxels, behind another sentence; nothing of those that do not.
+pub(crate) fn block_sentence(block: usize) -> String {
+    match block {
+        1 => String::new(),
+        _ => format!("; each cell is the largest of {block} × {block}"),
+    }
+}
+
 /// The lowest and the highest shown value that colours stand for.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ColourScale {

@@ -5,8 +5,8 @@ use crate::report::axis::short_number;
 use crate::report::colours::{INK, MUTED, heat};
 use crate::report::drawing::{Area, Drawing, TextStyle};
 use crate::report::heat_map::{
-    ColourScale, check_frame, draw_colour_bar, draw_map, draw_x_axis, draw_y_axis,
-    largest_of_blocks,
+    ColourScale, block_sentence, check_frame, draw_colour_bar, draw_map, draw_x_axis, draw_y_axis,
+    grid_sentence, largest_of_blocks,
 };
 use crate::report::terminal::Ink;
 use crate::report::text_width::wrap;
@@ -36,10 +36,7 @@ pub fn pressure_picture(frame: &Array2<f64>, pitch_mm: f64, quantity: Quantity) 
     let side = (400.0 / rows.max(columns) as f64).floor().max(1.0);
     let left = 70.0;
     let width = (left + side * columns as f64 + 110.0).max(330.0);
-    let mut below = peak_sentence(frame, pitch_mm, quantity);
-    if block > 1 {
-        below += &format!("; each cell is the largest of {block} × {block}");
-    }
+    let below = peak_sentence(frame, pitch_mm, quantity) + &block_sentence(block);
     let below = wrap(&below, f64::from(SMALL), width - left - 8.0);
     let area = Area {
         x: left,
@@ -50,12 +47,7 @@ pub fn pressure_picture(frame: &Array2<f64>, pitch_mm: f64, quantity: Quantity) 
     let bar_height = area.height.max(90.0);
     let mut drawing = Drawing::new(width, area.y + bar_height + 50.0);
     let scale = ColourScale::over([frame], quantity);
-    let title = format!(
-        "{} × {} taxels, pitch {} mm",
-        nx,
-        ny,
-        short_number(pitch_mm)
-    );
+    let title = grid_sentence((nx, ny), pitch_mm);
     drawing.text((area.x, 22.0), &title, TextStyle::new(13).colour(INK));
     for (number, line) in below.iter().enumerate() {
         let y = 40.0 + LINE * number as f64;
@@ -118,8 +110,8 @@ pub fn pressure_text(
     }
     text += &border;
     text += &format!(
-        "{nx} × {ny} taxels, pitch {} mm; {}\n",
-        short_number(pitch_mm),
+        "{}; {}\n",
+        grid_sentence((nx, ny), pitch_mm),
         peak_sentence(frame, pitch_mm, quantity)
     );
     text += &scale_sentence(scale, quantity, ink);

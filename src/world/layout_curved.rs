@@ -1,9 +1,11 @@
 //! Layouts around the z axis of the patch frame, as on forearms, fingers and elbows.
 
+use super::Extrusion;
+use super::extrusion::check_angle;
 use super::layout::{Layout, check_count};
 use super::patch::check_positive;
-use super::ring::{Ring, ends_of_steps, n_steps};
-use crate::error::{Error, Result};
+use super::ring::{Ring, n_steps};
+use crate::error::Result;
 use glam::DVec3;
 use std::f64::consts::{PI, TAU};
 
@@ -20,39 +22,9 @@ impl Layout {
     ///
     /// The error names an argument out of its range, or a layout of more than [`MOST_TAXELS`](super::MOST_TAXELS).
     pub fn cylinder(radius: f64, length: f64, arc: f64, pitch: f64) -> Result<Self> {
-        check_positive("taxel pitch", pitch, "m")?;
-        check_positive("cylinder radius", radius, "m")?;
-        if !(length.is_finite() && length >= 0.0) {
-            return Err(Error::input(
-                "cylinder length",
-                format!("{length} m"),
-                "zero or a positive number",
-            ));
-        }
-        check_angle("cylinder arc", arc, TAU)?;
-        let (around, along) = (arc * radius / pitch, length / pitch);
-        check_count("cylinder layout", (around + 1.0) * (along + 1.0))?;
-        let is_closed = (TAU - arc) * radius < 0.5 * pitch;
-        let angles: Vec<f64> = if is_closed {
-            let n = n_steps(TAU * radius, pitch).max(1);
-            (0..n).map(|k| (k as f64 / n as f64 - 0.5) * TAU).collect()
-        } else {
-            let ends = ends_of_steps(n_steps(arc * radius, pitch));
-            ends.map(|end| end * arc).collect()
-        };
-        let unit = Ring {
-            radius: 1.0,
-            height: 0.0,
-        };
-        let rings = ends_of_steps(n_steps(length, pitch)).map(|end| Ring {
-            radius,
-            height: end * length,
-        });
-        let taxels = rings.flat_map(|ring| {
-            let places = angles.iter();
-            places.map(move |&angle| (ring.place(angle), unit.place(angle)))
-        });
-        Ok(Self::of_taxels(taxels.map(normalized)))
+        Ok(Self::from(&Extrusion::cylinder(
+            radius, length, arc, pitch,
+        )?))
     }
 
     /// Rings of taxels on a sphere around the origin, from its pole at +z outwards; axes point away from the centre.
@@ -87,17 +59,6 @@ impl Layout {
 
 fn normalized((place, axis): (DVec3, DVec3)) -> (DVec3, DVec3) {
     (place, axis.normalize())
-}
-
-fn check_angle(place: &str, angle: f64, largest: f64) -> Result<()> {
-    if angle > 0.0 && angle <= largest {
-        return Ok(());
-    }
-    Err(Error::input(
-        place,
-        format!("{angle} rad"),
-        format!("above 0 to {largest}"),
-    ))
 }
 
 #[cfg(test)]

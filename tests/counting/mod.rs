@@ -9,16 +9,16 @@ struct Counting;
 
 thread_local! {
     static COUNT: Cell<usize> = const { Cell::new(0) };
-    static LIVE: Cell<usize> = const { Cell::new(0) };
-    static PEAK: Cell<usize> = const { Cell::new(0) };
+    static LIVE: Cell<isize> = const { Cell::new(0) };
+    static PEAK: Cell<isize> = const { Cell::new(0) };
 }
 
 unsafe impl GlobalAlloc for Counting {
     unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
         COUNT.with(|count| count.set(count.get() + 1));
-        // What another thread gave may be freed here, and the other way round: the number wraps, the difference is right.
+        // What another thread gave may be freed here, and the other way round: so it may be below zero.
         let live = LIVE.with(|live| {
-            live.set(live.get().wrapping_add(layout.size()));
+            live.set(live.get() + layout.size() as isize);
             live.get()
         });
         PEAK.with(|peak| peak.set(peak.get().max(live)));
@@ -26,7 +26,7 @@ unsafe impl GlobalAlloc for Counting {
     }
 
     unsafe fn dealloc(&self, pointer: *mut u8, layout: Layout) {
-        LIVE.with(|live| live.set(live.get().wrapping_sub(layout.size())));
+        LIVE.with(|live| live.set(live.get() - layout.size() as isize));
         unsafe { System.dealloc(pointer, layout) }
     }
 }
@@ -46,5 +46,5 @@ pub fn peak_bytes(work: impl FnOnce()) -> usize {
     let before = LIVE.with(Cell::get);
     PEAK.with(|peak| peak.set(before));
     work();
-    PEAK.with(Cell::get).wrapping_sub(before)
+    (PEAK.with(Cell::get) - before) as usize
 }

@@ -6,7 +6,7 @@ use super::loads::{Multipliers, Smoothness};
 use super::model::{Scene, Step};
 use super::pairs::Key;
 use super::settle::{Balance, Balancer, Outcome};
-use super::six::{eigen, norm};
+use super::six::{Six, SixBySix, eigen, norm};
 use crate::geometry::Pose;
 use glam::{DQuat, DVec3};
 
@@ -171,19 +171,30 @@ impl<'a> Descent<'a> {
 
     /// The length of the energy's gradient, N, and the best step; `None` at a stationary point that is no saddle.
     fn best(&mut self) -> Option<(f64, Step)> {
-        let mut model = std::mem::take(&mut self.balancer.model);
-        let (scene, now) = (self.scene(), &self.balancer.now);
-        model.lay(&scene, &now.pairs.all, &now.loads);
-        let (gradient, hessian) = model.at_pose(&scene, &now.pairs.all);
+        let (gradient, hessian) = self.derivatives();
         let parts = eigen(&hessian);
         let lowest = parts.0.iter().copied().fold(f64::INFINITY, f64::min);
         let largest = parts.0.iter().map(|v| v.abs()).fold(0.0, f64::max);
         let slope = norm(&gradient);
         let is_rest = slope <= 0.1 * AT_REST * self.weight.length() && lowest >= -1e-9 * largest;
-        let step =
-            (!is_rest).then(|| model.best(&scene, &now.pairs.all, (&gradient, &parts), self.reach));
+        if is_rest {
+            return None;
+        }
+        let mut model = std::mem::take(&mut self.balancer.model);
+        let (scene, now) = (self.scene(), &self.balancer.now);
+        let step = model.best(&scene, &now.pairs.all, (&gradient, &parts), self.reach);
         self.balancer.model = model;
-        step.map(|step| (slope, step))
+        Some((slope, step))
+    }
+
+    /// Lays the model at the pose that was looked at last; gradient (N) and Hessian (N/m) there.
+    fn derivatives(&mut self) -> (Six, SixBySix) {
+        let mut model = std::mem::take(&mut self.balancer.model);
+        let (scene, now) = (self.scene(), &self.balancer.now);
+        model.lay(&scene, &now.pairs.all, &now.loads);
+        let found = model.at_pose(&scene, &now.pairs.all);
+        self.balancer.model = model;
+        found
     }
 
     /// Goes a step if it leads down; how much of the promised gain it brought, `None` if it was not gone.
@@ -207,7 +218,7 @@ impl<'a> Descent<'a> {
         let noise = 1e-14 * (before.abs() + after.abs() + self.weight.dot(shift).abs());
         let is_noise = step.gain <= 100.0 * noise;
         let is_better = match is_noise {
-            true => self.slope() < slope,
+            true => norm(&self.derivatives().0) < slope,
             false => gain >= 1e-4 * step.gain,
         };
         if is_better {
@@ -216,16 +227,6 @@ impl<'a> Descent<'a> {
         std::mem::swap(&mut self.balancer.now, &mut self.balancer.next);
         (self.center, self.rotation) = (center, rotation);
         None
-    }
-
-    /// The length of the energy's gradient, N.
-    fn slope(&mut self) -> f64 {
-        let mut model = std::mem::take(&mut self.balancer.model);
-        let (scene, now) = (self.scene(), &self.balancer.now);
-        model.lay(&scene, &now.pairs.all, &now.loads);
-        let (gradient, _) = model.at_pose(&scene, &now.pairs.all);
-        self.balancer.model = model;
-        norm(&gradient)
     }
 
     /// Falls towards the next skin, not deeper into it than to where it is no worse off; whether there is one.

@@ -1,7 +1,6 @@
 //! An object in the air: how far it certainly falls before it meets a skin.
 
 use super::free_object::{FreeObject, PlacedSkin};
-use crate::geometry::Aabb;
 use glam::DVec3;
 
 /// What is below an object.
@@ -32,7 +31,7 @@ pub(super) fn fall(object: &FreeObject, skins: &[PlacedSkin], center: DVec3, dow
         if gap <= 0.0 {
             return Fall::Near;
         }
-        if meets(bounds, reach, center, down) {
+        if bounds.widened(reach).entry(center, down, 0.0).is_finite() {
             way = way.min(gap);
         }
     }
@@ -41,23 +40,4 @@ pub(super) fn fall(object: &FreeObject, skins: &[PlacedSkin], center: DVec3, dow
     } else {
         Fall::Endless
     }
-}
-
-/// Whether a ray enters a box that is wider by `margin` on every side.
-fn meets(bounds: &Aabb, margin: f64, origin: DVec3, direction: DVec3) -> bool {
-    let (mut start, mut end) = (0.0_f64, f64::INFINITY);
-    for axis in 0..3 {
-        let low = bounds.min[axis] - margin - origin[axis];
-        let high = bounds.max[axis] + margin - origin[axis];
-        if direction[axis] == 0.0 {
-            if low > 0.0 || high < 0.0 {
-                return false;
-            }
-            continue;
-        }
-        let (a, b) = (low / direction[axis], high / direction[axis]);
-        start = start.max(a.min(b));
-        end = end.min(a.max(b));
-    }
-    start <= end
 }

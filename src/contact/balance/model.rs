@@ -20,6 +20,8 @@ pub(super) struct Model {
     deflections: Vec<f64>,
     loads: Loads,
     curvature: SixBySix,
+    /// Energy at the pose, joules.
+    energy: f64,
 }
 
 /// A step, and how much lower the model is there, joules.
@@ -135,7 +137,7 @@ impl Model {
 
     /// Gradient and Hessian of the energy itself, at the pose.
     pub fn at_pose(&mut self, scene: &Scene, pairs: &[Pair]) -> (Six, SixBySix) {
-        self.energy_after(scene, pairs, &[0.0; 6]);
+        self.energy = self.energy_after(scene, pairs, &[0.0; 6]);
         self.derivatives(scene, &[0.0; 6])
     }
 
@@ -148,7 +150,7 @@ impl Model {
         (gradient, parts): (&Six, &(Six, SixBySix)),
         reach: f64,
     ) -> Step {
-        let start = self.energy_after(scene, pairs, &[0.0; 6]);
+        let start = self.energy;
         let enough = 0.03 * norm(gradient);
         let (mut motion, mut energy) = ([0.0; 6], start);
         let (mut gradient, mut parts) = (*gradient, *parts);

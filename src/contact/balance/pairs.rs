@@ -115,8 +115,7 @@ impl Pairs {
                 }
             });
         }
-        for (taxel, deepest) in deepest.iter_mut().enumerate() {
-            let others = skin.pushed.get(taxel).copied().unwrap_or(0.0);
+        for (taxel, (deepest, &others)) in deepest.iter_mut().zip(skin.pushed).enumerate() {
             if *deepest > 0.0 && others > 0.0 {
                 *deepest = deepest.max(others);
                 pairs.push(Pair {

@@ -5,11 +5,11 @@ use super::header::RecordedPatch;
 use super::pixels::Painter;
 use super::unrolled::unroll;
 use crate::error::{Error, Result};
-use crate::report::axis::short_number;
 use crate::report::colours::{GRID, INK, MUTED, Rgb, heat};
 use crate::report::drawing::{Align, Area, Drawing, Stroke, TextStyle};
 use crate::report::heat_map::{
-    ColourScale, draw_colour_bar, draw_x_axis, draw_y_axis, largest_of_blocks,
+    ColourScale, block_sentence, draw_colour_bar, draw_x_axis, draw_y_axis, grid_sentence,
+    largest_of_blocks,
 };
 pub use crate::report::picture::Picture;
 use crate::report::text_width::text_width;
@@ -106,15 +106,7 @@ impl SkinPicture {
             height: side * rows as f64,
         };
         let pitch_mm = grid.pitch * 1e3;
-        let mut below = format!(
-            "{} × {} taxels, pitch {} mm",
-            grid.nx,
-            grid.ny,
-            short_number(pitch_mm)
-        );
-        if block > 1 {
-            below += &format!("; each cell is the largest of {block} × {block}");
-        }
+        let below = grid_sentence((grid.nx, grid.ny), pitch_mm) + &block_sentence(block);
         let mut drawing = paper(patch, &below, area, quantity, scale);
         // Cells at the far edges may stand for less than a block.
         draw_x_axis(&mut drawing, area, (columns * block) as f64 * pitch_mm);

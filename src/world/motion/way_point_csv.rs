@@ -2,10 +2,11 @@
 
 use super::way_points::{Origin, WayPoints};
 use crate::error::{Error, Result};
+use crate::numbers_csv::{check_width, finite, line_of, rows_of, unreadable};
 use crate::spelling::nearest_names;
 use ndarray::Array2;
 use std::f64::consts::PI;
-use std::io::{self, Read};
+use std::io::Read;
 
 /// The column of times.
 const TIME: &str = "time_s";
@@ -41,22 +42,19 @@ pub(super) const NUMBER: Units = &[("", 1.0)];
 impl Table {
     /// Reads all; errors begin with `place`, the file's name, and give the line.
     pub fn read(place: &str, source: impl Read) -> Result<Self> {
-        let mut reader = csv::ReaderBuilder::new()
-            .has_headers(false)
-            .flexible(true)
-            .trim(csv::Trim::All)
-            .from_reader(source);
+        let mut reader = rows_of(source);
         let mut records = reader.records();
+        let not_text = |error| unreadable(place, error, format!("text rows of {TIME} and numbers"));
         let Some(header) = records.next() else {
             let allowed = format!("a header with {TIME}, then way-points");
             return Err(Error::input(place, "an empty file", allowed));
         };
-        let header = header.map_err(|e| unreadable(place, e))?;
+        let header = header.map_err(not_text)?;
         let names: Vec<String> = header.iter().map(str::to_owned).collect();
         let mut numbers = Vec::new();
         let mut lines = Vec::new();
         for record in records {
-            let record = record.map_err(|e| unreadable(place, e))?;
+            let record = record.map_err(not_text)?;
             let line = line_of(&record);
             numbers.extend(row(place, line, &names, &record)?);
             lines.push(line);
@@ -145,34 +143,7 @@ impl Table {
 /// The numbers of one row.
 fn row(place: &str, line: u64, names: &[String], record: &csv::StringRecord) -> Result<Vec<f64>> {
     let place = format!("{place}, line {line}");
-    if record.len() != names.len() {
-        return Err(Error::input(
-            place,
-            format!("{} columns", record.len()),
-            format!("{} columns in every row", names.len()),
-        ));
-    }
-    let number = |(field, name): (&str, &String)| match field.parse::<f64>() {
-        Ok(value) if value.is_finite() => Ok(value),
-        _ => Err(Error::input(
-            format!("{place}, column {name}"),
-            format!("`{field}`"),
-            "a finite number",
-        )),
-    };
+    check_width(&place, record, names.len())?;
+    let number = |(field, name): (&str, &String)| finite(&place, name, field, "a finite number");
     record.iter().zip(names).map(number).collect()
-}
-
-fn line_of(record: &csv::StringRecord) -> u64 {
-    record.position().map_or(0, |position| position.line())
-}
-
-fn unreadable(place: &str, error: csv::Error) -> Error {
-    let text = error.to_string();
-    match error.into_kind() {
-        csv::ErrorKind::Io(source) if source.kind() != io::ErrorKind::InvalidData => {
-            Error::io(place, "read", source)
-        }
-        _ => Error::input(place, text, format!("text rows of {TIME} and numbers")),
-    }
 }

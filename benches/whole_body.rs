@@ -1,0 +1,139 @@
+//! A step of a body of skin: how it grows with the skin, with what touches it, and with the object's spheres.
+
+use bubbletouch::geometry::Pose;
+use bubbletouch::objects::{Sphere, SphereUnion};
+use bubbletouch::whole_body::{BodyPatch, BodyState, SphereClusters, WholeBody};
+use bubbletouch::world::{Extrusion, Taxel};
+use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
+use glam::DVec3;
+use std::f64::consts::PI;
+
+const TAXEL: Taxel = Taxel {
+    radius: 0.5e-3,
+    stiffness: 100.0,
+    damping: 0.0,
+    stroke: 2e-3,
+};
+const PITCH: f64 = 1e-3;
+
+/// At least `n_taxels` in patches of 10,000 at 1 mm: quarters of cylinders of 13 cm across, half a metre apart but for the first
+/// four, which are one trunk.
+fn body(n_taxels: usize) -> (WholeBody, Vec<Pose>) {
+    let sleeve = Extrusion::cylinder(0.065, 0.1, 0.5 * PI, PITCH).expect("lengths are positive");
+    let n = n_taxels.div_ceil(sleeve.n_taxels());
+    let patches = (0..n).map(|k| {
+        let patch = BodyPatch::new(format!("patch {k}"), sleeve.clone(), TAXEL);
+        patch.expect("the taxel is a good one")
+    });
+    let pose = |k: usize| {
+        let turn = glam::DQuat::from_rotation_z(0.5 * PI * (k % 4) as f64);
+        let (row, column) = ((k / 4 / 20) as f64, (k / 4 % 20) as f64);
+        Pose::new(turn, 0.5 * DVec3::new(row, column, 0.0))
+    };
+    let body = WholeBody::new(patches.collect()).expect("every patch has its name");
+    (body, (0..n).map(pose).collect())
+}
+
+/// A ball of `radius` metres as n equal spheres on its surface.
+fn ball(n: usize, radius: f64) -> SphereClusters {
+    let golden = PI * (3.0 - 5f64.sqrt());
+    let each = 2.0 * radius / (n as f64).sqrt();
+    let spheres = (0..n).map(|k| {
+        let z = 1.0 - (2.0 * k as f64 + 1.0) / n as f64;
+        let (sin, cos) = (golden * k as f64).sin_cos();
+        let across = (1.0 - z * z).sqrt();
+        Sphere {
+            center: (radius - each) * DVec3::new(across * cos, across * sin, z),
+            radius: each,
+        }
+    });
+    SphereClusters::new(&SphereUnion::new(spheres.collect()).expect("radii are positive"))
+}
+
+/// A body with an object that moves over its trunk, about its middle and so deep.
+struct Bench {
+    body: WholeBody,
+    state: BodyState,
+    object: [SphereClusters; 1],
+    /// From the trunk's middle to the object's, metres.
+    away: f64,
+    step: u32,
+}
+
+impl Bench {
+    fn new(n_taxels: usize, n_spheres: usize, away: f64) -> Self {
+        let (body, poses) = body(n_taxels);
+        let mut state = BodyState::at_rest(&body);
+        state.place(&body, &poses);
+        Self {
+            body,
+            state,
+            object: [ball(n_spheres, 0.1)],
+            away,
+            step: 0,
+        }
+    }
+
+    /// Goes on by a millisecond; how many taxels are touched.
+    fn step(&mut self) -> usize {
+        self.step += 1;
+        let time = 1e-3 * f64::from(self.step);
+        let angle = 0.8 + 0.2 * (3.0 * time).sin();
+        let center = DVec3::new(angle.cos(), angle.sin(), 0.0) * self.away;
+        let pose = Pose::new(glam::DQuat::from_rotation_y(time), center);
+        let contact = self.state.press(&self.body, &self.object, &[pose], 1e-3);
+        contact.n_touched
+    }
+
+    /// How deep so many taxels are touched.
+    fn touching(n_taxels: usize, n_spheres: usize, n_touched: usize) -> Self {
+        let (mut deep, mut high) = (0.065, 0.165);
+        for _ in 0..30 {
+            let away = 0.5 * (deep + high);
+            match Self::new(40_000, n_spheres, away).step() < n_touched {
+                true => high = away,
+                false => deep = away,
+            }
+        }
+        Self::new(n_taxels, n_spheres, deep)
+    }
+}
+
+fn skin(c: &mut Criterion) {
+    let mut group = c.benchmark_group("body_skin_10000_touched_1000_spheres");
+    for n_taxels in [100_000, 230_000, 2_000_000, 10_000_000] {
+        let mut bench = Bench::touching(n_taxels, 1_000, 10_000);
+        group.bench_function(BenchmarkId::from_parameter(n_taxels), |b| {
+            b.iter(|| bench.step());
+        });
+    }
+    group.finish();
+}
+
+fn touch(c: &mut Criterion) {
+    let mut group = c.benchmark_group("body_touch_2000000_taxels_1000_spheres");
+    for n_touched in [100, 1_000, 10_000, 20_000] {
+        let mut bench = Bench::touching(2_000_000, 1_000, n_touched);
+        group.bench_function(BenchmarkId::from_parameter(n_touched), |b| {
+            b.iter(|| bench.step());
+        });
+    }
+    let mut bench = Bench::new(2_000_000, 1_000, 1.0);
+    assert_eq!(bench.step(), 0);
+    group.bench_function("0", |b| b.iter(|| bench.step()));
+    group.finish();
+}
+
+fn spheres(c: &mut Criterion) {
+    let mut group = c.benchmark_group("body_object_2000000_taxels_10000_touched");
+    for n_spheres in [1, 100, 1_000, 10_000] {
+        let mut bench = Bench::touching(2_000_000, n_spheres, 10_000);
+        group.bench_function(BenchmarkId::from_parameter(n_spheres), |b| {
+            b.iter(|| bench.step());
+        });
+    }
+    group.finish();
+}
+
+criterion_group!(benches, skin, touch, spheres);
+criterion_main!(benches);
