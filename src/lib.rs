@@ -88,7 +88,7 @@
 //! | [`mesh`] | a file of triangles → a surface: distances, inside and outside |
 //! | [`objects`] | a shape, a mesh, or spheres → a model: spheres or triangles |
 //! | [`packing`] | a mesh and a tolerance → few spheres |
-//! | [`world`] | taxels, layouts, resting poses → touches; robots and their motion → poses |
+//! | [`world`] | taxels, layouts, resting poses → touches; robots and hands and their motion → poses |
 //! | [`contact`] | a scene and poses → deflections; free objects → poses at rest |
 //! | [`whole_body`] | millions of taxels, objects and poses → the taxels that are touched |
 //! | [`signal`] | deflections → frames |
@@ -123,6 +123,8 @@
 //! - `[KKS]` Kim, Kim, Shin, *A general construction scheme for unit quaternion curves with simple high order derivatives*,
 //!   SIGGRAPH 1995.
 //! - `[BK]` Buryanov, Kotiuk, *Proportions of hand segments*, International Journal of Morphology 2010.
+//! - `[CoST]` Jung, Poppe, Poel, Heylen, *Touching the void: introducing CoST, corpus of social touch*, ICMI 2014.
+//! - `[FH]` Flash, Hogan, *The coordination of arm movements: an experimentally confirmed mathematical model*, J. Neuroscience 1985.
 //! - `[SBHE]` Gan, Do, Tran, *Fast compressive imaging using scrambled block Hadamard ensemble*, 2008.
 #![warn(missing_docs)]
 

@@ -3,7 +3,9 @@
 use bubbletouch::random::Seed;
 use bubbletouch::study::object_detail::{ObjectDetailPlan, ObjectDetailStudySpec};
 use bubbletouch::study::reconstruction::{ReconstructionPlan, ReconstructionStudySpec};
-use bubbletouch::study::{Plan, StudyKind, StudySpec, Sweep, draw_touches, load_objects};
+use bubbletouch::study::{
+    HumanTouches, Plan, StudyKind, StudySpec, Sweep, draw_touches, load_objects,
+};
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -71,8 +73,14 @@ fn every_experiment_can_run() {
             println!("{place}: planned; its meshes are not part of the crate");
             continue;
         }
-        let objects = load_objects(&plan.spec.objects, None).unwrap();
         let seed = Seed::new(plan.spec.seed);
+        if let Some(human) = &plan.human_touch {
+            let touches = HumanTouches::draw(human, &seed).unwrap();
+            let sweep = Sweep::new(&plan, &touches).unwrap();
+            assert!(sweep.n_cells() > 1, "{place} compares something");
+            continue;
+        }
+        let objects = load_objects(&plan.spec.objects, None).unwrap();
         let touched = draw_touches(objects, &plan.placement, &seed).unwrap();
         let sweep = Sweep::new(&plan, &touched).unwrap();
         assert!(sweep.n_cells() > 1, "{place} compares something");

@@ -30,7 +30,7 @@ pub fn features(args: &Args) -> Result<()> {
         &args.out,
         &loaded.plan,
         &loaded.sweep,
-        &loaded.touched,
+        loaded.touched.as_ref(),
         (args.cell, args.trial),
         progress.as_ref(),
     )?;

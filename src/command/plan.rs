@@ -12,7 +12,7 @@ pub struct Args {
 
 pub fn plan(args: &Args) -> Result<()> {
     let loaded = args.study.load(None)?;
-    let estimate = Estimate::new(&loaded.plan, &loaded.touched, &loaded.sweep);
+    let estimate = Estimate::new(&loaded.plan, loaded.touched.as_ref(), &loaded.sweep);
     println!("{}: {}", loaded.name, loaded.plan.spec.question);
     println!("{estimate}");
     Ok(())

@@ -6,10 +6,9 @@ use super::run_reconstruction::run_reconstruction;
 use super::study_args::{LoadedStudy, StudyArgs};
 use bubbletouch::Result;
 use bubbletouch::files::write_bytes;
-use bubbletouch::objects::Model;
 use bubbletouch::report::html::{Limit, ReportPage, Snapshots};
 use bubbletouch::report::{headlines, progress, results, terminal};
-use bubbletouch::study::{Outcome, StudyKind, run as run_study, sample_frames};
+use bubbletouch::study::{Outcome, StudyKind, run as run_study};
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
@@ -52,7 +51,7 @@ fn run_recognition(args: &Args, folder: &Path, start: Instant) -> Result<()> {
     let outcome = run_study(
         &loaded.plan,
         &loaded.sweep,
-        &loaded.touched,
+        loaded.touched.as_ref(),
         progress.as_ref(),
     )?;
     progress.stage("report", 1);
@@ -85,13 +84,13 @@ fn report_page(
     wall_s: f64,
 ) -> Result<ReportPage> {
     let spec = &loaded.plan.spec;
-    let sample = sample_frames(&loaded.plan, &loaded.sweep, &loaded.touched)?;
+    let sample = loaded.touched.samples(&loaded.plan, &loaded.sweep)?;
     Ok(ReportPage {
         name: loaded.name.clone(),
         question: spec.question.clone(),
         expected: spec.expected.clone(),
         settings: settings(loaded),
-        limits: limits(outcome),
+        limits: limits(loaded, outcome),
         snapshots: Some(Snapshots {
             frames: sample.frames,
             pitch_mm: sample.pitch_mm,
@@ -107,28 +106,8 @@ fn report_page(
 
 fn settings(loaded: &LoadedStudy) -> Vec<(String, String)> {
     let spec = &loaded.plan.spec;
-    let names: Vec<&str> = loaded
-        .touched
-        .iter()
-        .map(|t| t.object.name.as_str())
-        .collect();
     let row = |name: &str, value: String| (name.to_owned(), value);
-    let mut rows = vec![row(
-        "Objects",
-        format!("{}: {}", names.len(), names.join(", ")),
-    )];
-    let models = || loaded.touched.iter().map(|t| &t.object.model);
-    let spheres: Vec<usize> = models().map(Model::n_spheres).collect();
-    let triangles: Vec<usize> = models().map(Model::n_triangles).collect();
-    for (name, counts) in [
-        ("Spheres an object", spheres),
-        ("Triangles an object", triangles),
-    ] {
-        let counts = || counts.iter().filter(|&&n| n > 0);
-        if let (Some(least), Some(most)) = (counts().min(), counts().max()) {
-            rows.push(row(name, format!("{least} to {most}")));
-        }
-    }
+    let mut rows = loaded.touched.settings();
     rows.extend([
         row("Touches", loaded.sweep.labels.len().to_string()),
         row("Stroke", format!("{} mm", spec.skin.stroke_mm)),
@@ -138,7 +117,7 @@ fn settings(loaded: &LoadedStudy) -> Vec<(String, String)> {
     rows
 }
 
-fn limits(outcome: &Outcome) -> Vec<Limit> {
+fn limits(loaded: &LoadedStudy, outcome: &Outcome) -> Vec<Limit> {
     let sum = |count: fn(&bubbletouch::study::ArrayOutcome) -> usize| -> u64 {
         outcome.arrays.iter().map(|array| count(array) as u64).sum()
     };
@@ -160,7 +139,12 @@ fn limits(outcome: &Outcome) -> Vec<Limit> {
             "touches that met nothing",
             sum(|a| a.n_missed),
             n_touches,
-            "no part of the object was over the array; their frames hold no contact",
+            match loaded.plan.human_touch {
+                Some(_) => {
+                    "the hand was beyond the array or between its taxels; their frames hold no contact"
+                }
+                None => "no part of the object was over the array; their frames hold no contact",
+            },
         ),
         limit(
             "touches with a saturated taxel",

@@ -4,7 +4,8 @@ use bubbletouch::random::Seed;
 use bubbletouch::study::object_detail::{ObjectDetailPlan, ObjectDetailStudySpec};
 use bubbletouch::study::reconstruction::{ReconstructionPlan, ReconstructionStudySpec};
 use bubbletouch::study::{
-    ObjectsSpec, Plan, StudyKind, StudySpec, Sweep, TouchedObject, draw_touches, load_objects,
+    HumanTouches, ObjectsSpec, Plan, StudyKind, StudySpec, Sweep, TouchSet, draw_touches,
+    load_objects,
 };
 use bubbletouch::{Error, Result};
 use std::path::{Path, PathBuf};
@@ -31,7 +32,7 @@ pub struct StudyArgs {
 pub struct LoadedStudy {
     pub name: String,
     pub plan: Plan,
-    pub touched: Vec<TouchedObject>,
+    pub touched: Box<dyn TouchSet>,
     pub sweep: Sweep,
 }
 
@@ -110,9 +111,15 @@ impl StudyArgs {
     /// Reads and checks the study, builds its objects (packed ones are kept in `packings`), draws its touches and lays out its cells.
     pub fn load(&self, packings: Option<&Path>) -> Result<LoadedStudy> {
         let plan = self.plan()?;
-        let objects = load_objects(&plan.spec.objects, packings)?;
-        let touched = draw_touches(objects, &plan.placement, &Seed::new(plan.spec.seed))?;
-        let sweep = Sweep::new(&plan, &touched)?;
+        let seed = Seed::new(plan.spec.seed);
+        let touched: Box<dyn TouchSet> = match &plan.human_touch {
+            Some(human) => Box::new(HumanTouches::draw(human, &seed)?),
+            None => {
+                let objects = load_objects(&plan.spec.objects, packings)?;
+                Box::new(draw_touches(objects, &plan.placement, &seed)?)
+            }
+        };
+        let sweep = Sweep::new(&plan, touched.as_ref())?;
         Ok(LoadedStudy {
             name: self.name()?,
             plan,

@@ -2,10 +2,10 @@
 
 use super::output::{output_folder, packings_beside};
 use super::study_args::StudyArgs;
-use bubbletouch::Result;
 use bubbletouch::random::Seed;
 use bubbletouch::report::progress;
 use bubbletouch::study::{load_objects, millimetres, write_touches};
+use bubbletouch::{Error, Result};
 use std::path::PathBuf;
 
 #[derive(clap::Args)]
@@ -20,6 +20,12 @@ pub struct Args {
 
 pub fn touches(args: &Args) -> Result<()> {
     let plan = args.study.plan()?;
+    if plan.human_touch.is_some() {
+        let place = args.study.study.display();
+        let allowed =
+            "a study that presses objects (bubbletouch features writes what others learn from)";
+        return Err(Error::input(place, "a study of human touches", allowed));
+    }
     let objects = load_objects(&plan.spec.objects, Some(&packings_beside(&args.out)))?;
     let seed = Seed::new(plan.spec.seed);
     let progress = progress::to_stderr();

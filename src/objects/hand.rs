@@ -6,7 +6,7 @@
 //! Lengths of bones are mean lengths of adults \[BK\]; breadths are our choice, those of an average man's fingers to half a
 //! millimetre or so. Skin is rigid here, as every object is.
 
-use super::{Part, Shape, Solid};
+use super::{Part, Shape, Solid, Sphere};
 use crate::error::{Error, Result};
 use crate::geometry::Pose;
 use glam::{DQuat, DVec3};
@@ -89,6 +89,9 @@ const THUMB: Digit = Digit {
 const MODEL_LENGTH: f64 = 183.1;
 
 impl Hand {
+    /// Which of its [`strands`](Self::strands) is the thumb.
+    pub const THUMB: usize = 7;
+
     /// All fingers straight.
     pub fn flat() -> Self {
         Self {
@@ -140,36 +143,56 @@ impl Hand {
     /// The hand as a union of strands. The error names the joint and the range that it is out of.
     pub fn solid(&self) -> Result<Solid> {
         self.check()?;
+        let parts = self.strands().into_iter().map(|balls| {
+            let shape = Shape::Strand {
+                points: balls.iter().map(|ball| ball.center).collect(),
+                diameters: balls.iter().map(|ball| 2.0 * ball.radius).collect(),
+            };
+            Part::new(shape, Pose::IDENTITY)
+        });
+        Solid::new(parts.collect::<Result<_>>()?)
+    }
+
+    /// The balls at its joints, metres: the hand is the hulls of each two that follow each other. First the index, middle, ring and
+    /// little finger (from the wrist: metacarpal's beginning, then the end of each bone), then the palm between their metacarpals, then
+    /// [the thumb](Self::THUMB), and the ball of the thumb.
+    pub fn strands(&self) -> [Vec<Sphere>; 9] {
         // What the model's millimetres are in this hand.
         let scale = self.length / MODEL_LENGTH;
-        let mut parts = Vec::new();
-        let mut add = |points: Vec<DVec3>, diameters: Vec<f64>| -> Result<()> {
-            let shape = Shape::Strand {
-                points: points.iter().map(|p| scale * *p).collect(),
-                diameters: diameters.iter().map(|d| scale * d).collect(),
-            };
-            parts.push(Part::new(shape, Pose::IDENTITY)?);
-            Ok(())
+        let strand = |points: &[DVec3], diameters: &[f64]| -> Vec<Sphere> {
+            let balls = points.iter().zip(diameters);
+            balls
+                .map(|(point, diameter)| Sphere {
+                    center: scale * *point,
+                    radius: 0.5 * (scale * diameter),
+                })
+                .collect()
         };
-        let digits = FINGERS.iter().zip(&self.fingers);
-        let joints: Vec<_> = digits
-            .map(|(digit, pose)| digit.joints(pose, 0.0))
-            .collect();
-        for (digit, joints) in FINGERS.iter().zip(&joints) {
-            add(joints.to_vec(), digit.diameters.to_vec())?;
-        }
+        let joints: [[DVec3; 5]; 4] =
+            std::array::from_fn(|finger| FINGERS[finger].joints(&self.fingers[finger], 0.0));
+        let finger = |k: usize| strand(&joints[k], &FINGERS[k].diameters);
         // The palm between metacarpals.
-        for (pair, joints) in FINGERS.windows(2).zip(joints.windows(2)) {
-            let middle = |k: usize| 0.5 * (joints[0][k] + joints[1][k]);
-            let width = |k: usize| 0.5 * (pair[0].diameters[k] + pair[1].diameters[k]);
-            add(vec![middle(0), middle(1)], vec![width(0), width(1)])?;
-        }
+        let palm = |k: usize| {
+            let middle = |end: usize| 0.5 * (joints[k][end] + joints[k + 1][end]);
+            let width =
+                |end: usize| 0.5 * (FINGERS[k].diameters[end] + FINGERS[k + 1].diameters[end]);
+            strand(&[middle(0), middle(1)], &[width(0), width(1)])
+        };
         let thumb = THUMB.joints(&self.thumb, self.opposition);
-        add(thumb[..4].to_vec(), THUMB.diameters[..4].to_vec())?;
         // The ball of the thumb, towards the middle of the palm.
-        let palm = 0.5 * (joints[1][0] + joints[1][1]);
-        add(vec![thumb[0], 0.5 * (thumb[1] + palm)], vec![28.0, 24.0])?;
-        Solid::new(parts)
+        let middle = 0.5 * (joints[1][0] + joints[1][1]);
+        let ball = [thumb[0], 0.5 * (thumb[1] + middle)];
+        [
+            finger(0),
+            finger(1),
+            finger(2),
+            finger(3),
+            palm(0),
+            palm(1),
+            palm(2),
+            strand(&thumb[..4], &THUMB.diameters[..4]),
+            strand(&ball, &[28.0, 24.0]),
+        ]
     }
 
     fn check(&self) -> Result<()> {

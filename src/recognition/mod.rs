@@ -69,6 +69,7 @@ mod margin_pair;
 pub mod metrics;
 pub mod naive_bayes;
 mod near_margin;
+pub mod over_time;
 mod points;
 pub mod random_forest;
 pub(crate) mod ranked;

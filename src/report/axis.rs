@@ -3,6 +3,7 @@
 use super::signal_axis;
 use crate::recognition::ClassifierKind;
 use crate::recognition::features::Features;
+use crate::recognition::over_time::OverTime;
 use crate::sensing::{Basis, Ensemble, Solver};
 use crate::signal::NoiseUnit;
 use crate::study::table::Cell;
@@ -17,6 +18,8 @@ pub enum Axis {
     Measurements,
     /// Frames a touch.
     Frames,
+    /// What is made of the frames of a touch.
+    OverTime,
     /// What is made of measurements.
     Features,
     /// Millimetres between taxels.
@@ -46,7 +49,7 @@ pub enum Axis {
 }
 
 /// Every axis but [`Signal`](Axis::Signal), which stands for several, in the order in which tables show them.
-pub const AXES: [Axis; 22] = [
+pub const AXES: [Axis; 23] = [
     Axis::Pitch,
     Axis::Size,
     Axis::Noise,
@@ -61,6 +64,7 @@ pub const AXES: [Axis; 22] = [
     Axis::Imperfection(IMPERFECTIONS[7]),
     Axis::TestedOn,
     Axis::Frames,
+    Axis::OverTime,
     Axis::Ensemble,
     Axis::Features,
     Axis::Classifier,
@@ -89,6 +93,7 @@ impl Axis {
             Self::Ratio => "ratio",
             Self::Measurements => "measurements",
             Self::Frames => "frames",
+            Self::OverTime => "over_time",
             Self::Features => "features",
             Self::Pitch => "pitch",
             Self::Size => "size",
@@ -111,6 +116,7 @@ impl Axis {
             Self::Ratio => "compression",
             Self::Measurements => "m",
             Self::Frames => "frames a touch",
+            Self::OverTime => "over time",
             Self::Features => "features",
             Self::Pitch => "pitch",
             Self::Size => "array size",
@@ -136,6 +142,7 @@ impl Axis {
                 _ => "measurements a frame, m",
             },
             Self::Frames => "frames a touch",
+            Self::OverTime => "what is learned of the frames",
             Self::Features => "features",
             Self::Pitch => "taxel pitch (mm)",
             Self::Size => "side length of the array (mm)",
@@ -163,6 +170,7 @@ impl Axis {
             Self::Ratio => with_suffix(cell.ratio, ":1", ":1"),
             Self::Measurements => with_suffix(cell.measurements as f64, "", ""),
             Self::Frames => with_suffix(cell.frames as f64, "", ""),
+            Self::OverTime => word(&over_time_name(cell.over_time)),
             Self::Features => word(features_name(cell.features)),
             Self::Pitch => with_suffix(cell.pitch_mm, "", " mm"),
             Self::Size => size(cell),
@@ -195,6 +203,7 @@ impl Axis {
             Self::Measurements | Self::C | Self::Frames | Self::FusedTouches => {
                 format!("{} = {label}", self.name())
             }
+            Self::OverTime => label,
             Self::TestedOn => format!("tested on {label}"),
             Self::Signal => match &label[..] {
                 signal_axis::IDEAL => "an ideal signal".to_owned(),
@@ -246,6 +255,18 @@ pub fn features_name(features: Features) -> &'static str {
         Features::Centred => "centred",
         Features::UnitNorm => "unit norm",
         Features::CentredUnitNorm => "centred, unit norm",
+    }
+}
+
+/// What is made of the frames of a touch, in words.
+pub fn over_time_name(over_time: Option<OverTime>) -> String {
+    match over_time {
+        None => "all frames".to_owned(),
+        Some(OverTime::Deepest) => "deepest frame".to_owned(),
+        Some(OverTime::Stacked(k)) => format!("{k} frames"),
+        Some(OverTime::Moments) => "moments".to_owned(),
+        Some(OverTime::Course) => "course".to_owned(),
+        Some(OverTime::Summarised) => "moments and course".to_owned(),
     }
 }
 

@@ -54,6 +54,7 @@ pub fn chart_title(plan: &ChartPlan) -> String {
         .map(|levels| match levels.axis {
             Axis::Features => "kind of features",
             Axis::Frames => "number of frames",
+            Axis::OverTime => "kind of features over time",
             axis => axis.name(),
         })
         .collect();
@@ -319,7 +320,7 @@ fn draw_markers(drawing: &mut Drawing, points: &[(f64, &CellScore)], frame: Area
 
 fn named(axis: Axis, value: &AxisValue) -> String {
     match axis {
-        Axis::Ensemble | Axis::Classifier => value.label.clone(),
+        Axis::Ensemble | Axis::Classifier | Axis::OverTime => value.label.clone(),
         Axis::Features => format!("{} features", value.label),
         Axis::Frames if value.label == "1" => "1 frame a touch".to_owned(),
         Axis::FusedTouches if value.label == "1" => "a touch alone".to_owned(),

@@ -27,7 +27,7 @@ pub struct ChartPlan {
 }
 
 /// First choice first: what a reader looks for along x.
-const ALONG_X: [Axis; 14] = [
+const ALONG_X: [Axis; 15] = [
     Axis::Ratio,
     Axis::Measurements,
     Axis::FusedTouches,
@@ -38,6 +38,7 @@ const ALONG_X: [Axis; 14] = [
     Axis::Pitch,
     Axis::Size,
     Axis::Frames,
+    Axis::OverTime,
     Axis::Features,
     Axis::Ensemble,
     Axis::Classifier,
@@ -45,8 +46,9 @@ const ALONG_X: [Axis; 14] = [
 ];
 
 /// What makes good lines: resolution first, then ways of treating the signal.
-const AS_LINES: [Axis; 14] = [
+const AS_LINES: [Axis; 15] = [
     Axis::TestedOn,
+    Axis::OverTime,
     Axis::Pitch,
     Axis::Ensemble,
     Axis::Features,
@@ -63,8 +65,9 @@ const AS_LINES: [Axis; 14] = [
 ];
 
 /// What makes good panels.
-const AS_PANELS: [Axis; 14] = [
+const AS_PANELS: [Axis; 15] = [
     Axis::TestedOn,
+    Axis::OverTime,
     Axis::Size,
     Axis::Frames,
     Axis::Classifier,

@@ -7,6 +7,7 @@ use crate::report::heat_map::draw_colours;
 use crate::report::text_width::{shorten, text_width, wrap};
 use crate::report::varying::{Levels, unbroken_parts};
 use crate::study::table::{Confusion, Tables};
+use crate::world::TouchKind;
 use ndarray::Array2;
 
 /// Pixels that a name gets, at most.
@@ -58,8 +59,13 @@ pub fn confusion_picture(tables: &Tables, cell: usize) -> Option<Drawing> {
     let (settings, score) = tables.summary.iter().find(|(c, _)| c.cell == cell)?;
     tables.confusion.iter().find(|row| row.cell == cell)?;
     let matrix = ConfusionMatrix::of(&tables.confusion, cell);
+    let is_kind = |name: &String| TouchKind::named(name).is_ok();
+    let what = match matrix.names.iter().all(is_kind) {
+        true => "kind of touch",
+        false => "object",
+    };
     let title = format!(
-        "What each object was taken for: accuracy {:.2} [{:.2}, {:.2}]",
+        "What each {what} was taken for: accuracy {:.2} [{:.2}, {:.2}]",
         score.accuracy, score.accuracy_low, score.accuracy_high
     );
     let mut parts: Vec<String> = AXES

@@ -199,7 +199,7 @@ impl Chart<'_> {
     /// `RBF SVM, 64:1`, `RBF SVM, m = 64`.
     fn name(&self, cell: &Cell) -> String {
         let words = self.named_by.iter().map(|axis| match axis {
-            Axis::Ratio | Axis::Classifier | Axis::Ensemble | Axis::Features => {
+            Axis::Ratio | Axis::Classifier | Axis::Ensemble | Axis::OverTime | Axis::Features => {
                 axis.value(cell).label
             }
             _ => axis.phrase(cell),

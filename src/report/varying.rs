@@ -79,6 +79,7 @@ impl Levels {
     pub fn go_without_saying(&self) -> bool {
         let usual = match self.axis {
             Axis::Frames | Axis::FusedTouches => "1",
+            Axis::OverTime => "all frames",
             Axis::Features => "raw",
             // A reader expects an ideal skin.
             Axis::Imperfection(Imperfection::Quantisation) => "none",
@@ -117,6 +118,7 @@ impl Settings {
             Axis::Smoothing,
             Axis::Noise,
             Axis::Frames,
+            Axis::OverTime,
             Axis::Features,
             Axis::Ensemble,
             Axis::Classifier,

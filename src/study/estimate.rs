@@ -1,9 +1,9 @@
 //! What a study will take: cells, touches, memory and time, told before it runs.
 
 use super::plan::Plan;
-use super::simulation::TouchedObject;
 use super::sweep::{Group, Sweep};
 use super::table::Cell;
+use super::touch_set::TouchSet;
 use crate::recognition::ClassifierKind;
 use crate::recognition::svm::{Multiclass, Solver};
 use crate::sensing::Ensemble;
@@ -42,9 +42,9 @@ pub struct Estimate {
 }
 
 /// Seconds to bring one sphere to the patch and decide whether it reaches the skin.
-const PLACE_SPHERE_S: f64 = 1.2e-8;
+pub(super) const PLACE_SPHERE_S: f64 = 1.2e-8;
 /// The same for one triangle of a mesh: most are never looked at.
-const PLACE_TRIANGLE_S: f64 = 1.5e-8;
+pub(super) const PLACE_TRIANGLE_S: f64 = 1.5e-8;
 /// Seconds to clear, count and store one taxel.
 const CLEAR_TAXEL_S: f64 = 2e-9;
 /// Seconds to draw noise for one taxel and to smooth it.
@@ -76,7 +76,7 @@ const PREDICT_S: f64 = 2.5e-11;
 
 impl Estimate {
     /// Estimates a study that is laid out.
-    pub fn new(plan: &Plan, touched: &[TouchedObject], sweep: &Sweep) -> Self {
+    pub fn new(plan: &Plan, touched: &dyn TouchSet, sweep: &Sweep) -> Self {
         let n_touches = sweep.labels.len();
         let n_threads = rayon::current_num_threads();
         let n_trials = plan.spec.trials;
@@ -95,15 +95,7 @@ impl Estimate {
             };
             n_threads as f64 * (16.0 * (n_touches * g.frames) as f64 * largest(g) + matrix)
         });
-        let place_s: f64 = touched
-            .iter()
-            .map(|t| {
-                let model = &t.object.model;
-                let spheres_s = PLACE_SPHERE_S * model.n_spheres() as f64;
-                let triangles_s = PLACE_TRIANGLE_S * model.n_triangles() as f64;
-                (spheres_s + triangles_s) * t.touches.len() as f64
-            })
-            .sum();
+        let place_s = touched.place_s();
         let n_presses = plan.frames.iter().sum::<usize>() as f64;
         let press_s =
             |patch: &Patch| place_s + CLEAR_TAXEL_S * (n_touches * patch.grid.n_taxels()) as f64;
@@ -117,7 +109,7 @@ impl Estimate {
             let families = sweep.groups.iter().flat_map(Group::families);
             families.flat_map(|family| family.chunk_by(|a, b| a.c == b.c).map(|cells| &cells[0]))
         };
-        let n_objects = touched.len();
+        let n_objects = touched.class_names().len();
         Self {
             n_objects,
             n_touches,
@@ -144,7 +136,7 @@ impl Estimate {
 
 /// The fits of a family with one C in one trial, and the prediction of every test touch.
 fn recognise_s(plan: &Plan, cell: &Cell, n_objects: usize, n_touches: usize) -> f64 {
-    let m = (cell.frames * cell.measurements) as f64;
+    let m = cell.n_features() as f64;
     let n_train = (cell.train_touches * n_objects) as f64;
     let n_test = (n_touches as f64 - n_train).max(0.0);
     let n_pairs = (n_objects * (n_objects - 1) / 2) as f64;
@@ -181,7 +173,7 @@ fn recognise_s(plan: &Plan, cell: &Cell, n_objects: usize, n_touches: usize) -> 
 
 /// One fit with so many training touches an object.
 fn fit_s(plan: &Plan, cell: &Cell, n_objects: usize, touches: f64) -> f64 {
-    let m = (cell.frames * cell.measurements) as f64;
+    let m = cell.n_features() as f64;
     let n_objects = n_objects as f64;
     let n_train = touches * n_objects;
     match cell.classifier {

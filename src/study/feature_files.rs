@@ -13,10 +13,10 @@ use super::measurement::measure_group;
 use super::plan::Plan;
 use super::progress::Progress;
 use super::runner::describe;
-use super::simulation::{TouchedObject, simulate_array};
 use super::spec::RecognitionSpec;
 use super::sweep::{Group, Sweep};
 use super::table::Cell;
+use super::touch_set::TouchSet;
 use crate::error::{Error, Result};
 use crate::files::{write_bytes, write_whole};
 use crate::recognition::dataset::{Dataset, dataset, rows};
@@ -62,7 +62,7 @@ struct Settings<'a> {
 pub fn cell_features(
     plan: &Plan,
     sweep: &Sweep,
-    touched: &[TouchedObject],
+    touched: &dyn TouchSet,
     (cell, trial): (usize, usize),
     progress: &dyn Progress,
 ) -> Result<FeatureSet> {
@@ -73,7 +73,7 @@ pub fn cell_features(
         &format!("touch {}", describe(patch)),
         sweep.labels.len() as u64,
     );
-    let frames = simulate_array(touched, patch, group.frames, progress);
+    let frames = touched.simulate(patch, group.frames, progress);
     // As the run does it: nested measurements are the leading ones of the largest m.
     let n_projected = group
         .projected()
@@ -98,7 +98,7 @@ pub fn write_features(
     folder: &Path,
     plan: &Plan,
     sweep: &Sweep,
-    touched: &[TouchedObject],
+    touched: &dyn TouchSet,
     (cell, trial): (usize, usize),
     progress: &dyn Progress,
 ) -> Result<FeatureSet> {
@@ -113,8 +113,7 @@ pub fn write_features(
     write_npy(&folder.join("test.npy"), &whole_numbers(test))?;
     write_whole(&folder.join("objects.csv"), |writer| {
         let mut csv = csv::Writer::from_writer(writer);
-        for (label, touched) in touched.iter().enumerate() {
-            let object = touched.object.name.as_str();
+        for (label, object) in touched.class_names().into_iter().enumerate() {
             csv.serialize(ObjectRow { label, object })
                 .map_err(io::Error::other)?;
         }

@@ -6,6 +6,7 @@ use super::runner::signal_steps;
 use super::simulation::{Frames, TouchedObject};
 use super::sweep::Group;
 use super::table::Cell;
+use super::touch_set::TouchSet;
 use crate::error::Result;
 use crate::random::Seed;
 use crate::recognition::split::Split;
@@ -48,10 +49,27 @@ pub struct Reading<'a> {
 
 impl Measurements {
     /// What a cell learns from these touches (by number): n × F·m, the leading m measurements of each frame, made into
-    /// the cell's features.
+    /// the cell's features; or what the cell makes of them over time.
     pub fn features(&self, cell: &Cell, touches: &[usize]) -> Array2<f64> {
+        let mut rows = Array2::zeros((touches.len(), cell.n_features()));
+        let Some(over_time) = cell.over_time else {
+            self.read_into(cell, touches, rows.view_mut());
+            return rows;
+        };
+        // One touch at a time, since all frames of all touches may be many.
         let m = cell.measurements;
-        let mut rows = Array2::zeros((touches.len(), self.n_frames * m));
+        let mut frames = Array2::zeros((1, self.n_frames * m));
+        for (row, touch) in rows.outer_iter_mut().zip(touches) {
+            self.read_into(cell, &[*touch], frames.view_mut());
+            let frames = frames.view().into_shape_with_order((self.n_frames, m));
+            over_time.write(frames.expect("F frames of m"), row);
+        }
+        rows
+    }
+
+    /// All frames of some touches one after the other, as the cell's kind of features: n × F·m.
+    fn read_into(&self, cell: &Cell, touches: &[usize], mut rows: ArrayViewMut2<f64>) {
+        let m = cell.measurements;
         for (mut row, touch) in rows.outer_iter_mut().zip(touches) {
             for (frame, mut part) in row.exact_chunks_mut(m).into_iter().enumerate() {
                 let place = touch * self.n_frames + frame;
@@ -59,8 +77,7 @@ impl Measurements {
             }
         }
         let of_ones = self.of_ones.slice(s![..m]);
-        cell.features.apply(rows.view_mut(), of_ones);
-        rows
+        cell.features.apply(rows, of_ones);
     }
 }
 
@@ -92,7 +109,7 @@ pub fn touches_to_read(touched: &[TouchedObject], seed: &Seed) -> Vec<TouchToRea
 }
 
 /// The same as they follow each other in a study: pressed at its speed, each after another one that is drawn at random.
-fn touches_of_study(
+pub fn touches_of_study(
     plan: &Plan,
     (touched, n_frames): (&[TouchedObject], usize),
     seed: &Seed,
@@ -116,7 +133,7 @@ fn touches_of_study(
 pub fn measure_group(
     plan: &Plan,
     group: &Group,
-    (touched, frames): (&[TouchedObject], &Frames),
+    (touched, frames): (&dyn TouchSet, &Frames),
     (trial, split): (usize, &Split),
     n_measurements: usize,
 ) -> Result<Measurements> {
@@ -140,11 +157,8 @@ pub fn measure_group(
         taxel: patch.taxel,
         speed: plan.speed,
     };
-    let mut touches = touches_of_study(
-        plan,
-        (touched, frames.n_frames),
-        &seed.named("signal").numbered(trial),
-    );
+    let signal = seed.named("signal").numbered(trial);
+    let mut touches = touched.to_read(plan, frames.n_frames, &signal);
     for &touch in &split.test {
         touches[touch].skin = skins.len() - 1;
     }

@@ -4,11 +4,13 @@
 
 use super::check::Check;
 use super::imperfection::{Imperfection, TestedOn};
+use super::plan_human::{HumanTouchPlan, no_placement};
 use super::spec::{CombineSpec, GroupSpec, StepSpec, StudySpec};
 use super::training::ChoicePlan;
 use crate::error::Result;
 use crate::recognition::ClassifierKind;
 use crate::recognition::features::Features;
+use crate::recognition::over_time::OverTime;
 use crate::sensing::Ensemble;
 use crate::signal::NoiseUnit;
 use crate::world::{Patch, Placement};
@@ -28,8 +30,10 @@ pub struct Plan {
     pub spec: StudySpec,
     /// One patch per value of the resolution axis and the size axis.
     pub arrays: Vec<Patch>,
-    /// How touches are drawn.
+    /// How touches are drawn; of nothing in a study of human touches.
     pub placement: Placement,
+    /// Human touches in place of objects.
+    pub human_touch: Option<HumanTouchPlan>,
     /// Approach speed at the moment of reading, m/s.
     pub speed: f64,
     /// Steps of the signal, in order.
@@ -52,6 +56,8 @@ pub struct Plan {
     pub amounts: Vec<Amount>,
     /// The axis of frames a touch.
     pub frames: Vec<usize>,
+    /// The axis of what is made of the frames of a touch; `None` is all of them.
+    pub over_time: Vec<Option<OverTime>>,
     /// The axis of features.
     pub features: Vec<Features>,
     /// The axis of classifiers.
@@ -110,10 +116,18 @@ impl Plan {
     pub fn new(place: &str, mut spec: StudySpec) -> Result<Self> {
         let check = Check { place };
         check.positive_count("trials", spec.trials)?;
-        check.objects(&spec.objects)?;
+        if spec.human_touch.is_none() {
+            check.objects(&spec.objects)?;
+        }
         let arrays = check.arrays(&spec.skin)?;
-        spec.objects.settle_surface_error(&arrays);
-        let placement = check.placement(&spec.touches)?;
+        let human_touch = check.human_touch(&spec, &arrays)?;
+        let placement = match human_touch {
+            Some(_) => no_placement(),
+            None => {
+                spec.objects.settle_surface_error(&arrays);
+                check.placement(&spec.touches)?
+            }
+        };
         let (noise_unit, noise) = check.noise(&spec.signal)?;
         let smoothing = check.smoothing(&spec.signal)?;
         let imperfections = check.imperfections(&spec.signal, &spec.touches)?;
@@ -121,7 +135,11 @@ impl Plan {
         let tested_on = check.tested_on(&spec.signal)?;
         let ensembles = check.list("sensing.ensemble", spec.sensing.ensemble.values())?;
         let amounts = check.amounts(&spec.sensing, &arrays)?;
-        let frames = check.counts("touches.frames", &spec.touches.frames)?;
+        let frames = match &human_touch {
+            Some(human) => vec![human.n_frames],
+            None => check.counts("touches.frames", &spec.touches.frames)?,
+        };
+        let over_time = check.over_time(&spec.recognition, &frames)?;
         check.kinds(&spec)?;
         let features = check.list("recognition.features", spec.recognition.features.values())?;
         let classifiers = check.list(
@@ -138,6 +156,7 @@ impl Plan {
         Ok(Self {
             arrays,
             placement,
+            human_touch,
             speed,
             steps: spec.signal.steps.clone(),
             noise_unit,
@@ -149,6 +168,7 @@ impl Plan {
             ensembles,
             amounts,
             frames,
+            over_time,
             features,
             classifiers,
             penalties,

@@ -3,10 +3,11 @@
 use super::axis::Axis;
 use super::check::{Check, not_negative, positive};
 use super::plan::{Amount, SplitKind, SplitPlan};
-use super::spec::{SensingSpec, StudySpec};
+use super::spec::{RecognitionSpec, SensingSpec, StudySpec};
 use super::training::{ChoicePlan, DEFAULT_FOLDS};
 use crate::error::Result;
 use crate::recognition::ClassifierKind;
+use crate::recognition::over_time::OverTime;
 use crate::world::Patch;
 
 impl Check<'_> {
@@ -207,6 +208,28 @@ impl Check<'_> {
             allowed,
         )?;
         Ok(())
+    }
+
+    /// What is made of a touch's frames: no more of them than there are.
+    pub fn over_time(
+        &self,
+        spec: &RecognitionSpec,
+        frames: &[usize],
+    ) -> Result<Vec<Option<OverTime>>> {
+        let Some(axis) = &spec.over_time else {
+            return Ok(vec![None]);
+        };
+        let values = self.list("recognition.over_time", axis.values())?;
+        let fewest = frames.iter().copied().min().unwrap_or(0);
+        for &value in &values {
+            if let OverTime::Stacked(k) = value
+                && k > fewest
+            {
+                let allowed = format!("at most {fewest}, the frames of a touch");
+                return Err(self.error("recognition.over_time", String::from(value), allowed));
+            }
+        }
+        Ok(values.into_iter().map(Some).collect())
     }
 
     pub fn train_touches(&self, spec: &StudySpec) -> Result<Vec<Option<usize>>> {

@@ -5,11 +5,12 @@ use super::measurement::measure_group;
 use super::plan::{Plan, millimetres};
 use super::progress::Progress;
 use super::published::compare_with_published;
-use super::simulation::{Frames, TouchedObject, simulate_array};
+use super::simulation::Frames;
 use super::spec::StepSpec;
 use super::summary::{compare_with_best, most_confused, pareto, summarise};
 use super::sweep::{Group, Sweep};
 use super::table::{Cell, Confusion, StageTime, Tables};
+use super::touch_set::TouchSet;
 use crate::error::Result;
 use crate::random::Seed;
 use crate::signal::{Noise, SignalStep};
@@ -52,7 +53,7 @@ struct Scored {
 pub fn run(
     plan: &Plan,
     sweep: &Sweep,
-    touched: &[TouchedObject],
+    touched: &dyn TouchSet,
     progress: &dyn Progress,
 ) -> Result<Outcome> {
     let mut tables = Tables::default();
@@ -63,7 +64,7 @@ pub fn run(
         for (place, &n_frames) in plan.frames.iter().enumerate() {
             let stage = in_frames(&format!("touch {}", describe(patch)), n_frames);
             progress.stage(&stage, n_touches as u64);
-            let frames = simulate_array(touched, patch, n_frames, progress);
+            let frames = touched.simulate(patch, n_frames, progress);
             let stage = in_frames("simulate", n_frames);
             let simulate = stage_time(&stage, patch, n_touches, frames.cpu_s);
             // The deepest frame is the same however many come before it.
@@ -86,7 +87,7 @@ pub fn run(
             tables.stages.extend([simulate, measure]);
         }
     }
-    fill(&mut tables, scored, touched)?;
+    fill(&mut tables, scored, &touched.class_names())?;
     let published = &plan.spec.report.published;
     tables.published = compare_with_published(published, &tables.summary);
     Ok(Outcome { tables, arrays })
@@ -97,7 +98,7 @@ pub fn run(
 struct Study<'a> {
     plan: &'a Plan,
     sweep: &'a Sweep,
-    touched: &'a [TouchedObject],
+    touched: &'a dyn TouchSet,
     progress: &'a dyn Progress,
 }
 
@@ -229,7 +230,7 @@ fn stage_time(stage: &str, patch: &Patch, n_touches: usize, cpu_s: f64) -> Stage
 }
 
 /// Sorts results into the tables: by cell, then by trial.
-fn fill(tables: &mut Tables, mut scored: Vec<Scored>, touched: &[TouchedObject]) -> Result<()> {
+fn fill(tables: &mut Tables, mut scored: Vec<Scored>, names: &[&str]) -> Result<()> {
     scored.sort_by_key(|s| (s.cell.cell, s.evaluation.score.trial));
     let mut confusions: BTreeMap<(usize, usize, usize), usize> = BTreeMap::new();
     for Scored { cell, evaluation } in scored {
@@ -241,7 +242,7 @@ fn fill(tables: &mut Tables, mut scored: Vec<Scored>, touched: &[TouchedObject])
         tables.accuracy.push((cell.clone(), evaluation.score));
         tables.timing.push((cell, evaluation.time));
     }
-    let name = |label: usize| touched[label].object.name.clone();
+    let name = |label: usize| names[label].to_owned();
     tables.confusion = confusions
         .into_iter()
         .map(|((cell, object, predicted), count)| Confusion {

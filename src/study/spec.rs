@@ -3,11 +3,13 @@
 //! Nothing is checked here beyond names and types; [`Plan`](super::Plan) does that. An axis takes one value or a list.
 
 use super::axis::Axis;
+pub use super::spec_human::*;
 pub use super::spec_scene::*;
 pub use super::spec_signal::*;
 use crate::error::{Error, Result};
 use crate::recognition::ClassifierKind;
 use crate::recognition::features::Features;
+use crate::recognition::over_time::OverTime;
 use crate::recognition::scaling::Scaling;
 use crate::recognition::svm::{Multiclass, Solver};
 use crate::sensing::Ensemble;
@@ -29,11 +31,16 @@ pub struct StudySpec {
     #[serde(default = "one")]
     pub trials: usize,
     /// What is touched.
+    #[serde(default, skip_serializing_if = "is_default")]
     pub objects: ObjectsSpec,
     /// What touches.
     pub skin: SkinSpec,
     /// How it touches.
+    #[serde(default, skip_serializing_if = "is_default")]
     pub touches: TouchesSpec,
+    /// Instead of objects and how they are touched: which kind of touch is it?
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub human_touch: Option<HumanTouchSpec>,
     /// What happens to a frame before it is sensed.
     #[serde(default)]
     pub signal: SignalSpec,
@@ -69,6 +76,10 @@ pub struct RecognitionSpec {
     /// `signal.steps`.)
     #[serde(default = "default_features")]
     pub features: Axis<Features>,
+    /// Axis: what is made of the frames of a touch; all of them one after the other when left out. `deepest` frame, `stacked_8` evenly
+    /// in time (or another number), `moments` of each measurement, `course` of the touch, or `summarised`: moments and course.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub over_time: Option<Axis<OverTime>>,
     /// Axis: which classifier.
     pub classifier: Axis<ClassifierKind>,
     /// How two-class SVMs make a many-class one.
@@ -194,6 +205,10 @@ impl StudySpec {
 /// The seed of every kind of study that names none.
 pub(crate) fn default_seed() -> u64 {
     2018
+}
+
+fn is_default<T: Default + PartialEq>(value: &T) -> bool {
+    *value == T::default()
 }
 
 fn one() -> usize {

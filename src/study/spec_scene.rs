@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
 
 /// `[objects]`
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ObjectsSpec {
     /// Sets of solids: built-in names (`household`, `balls`, `boxes`, `cans`) or TOML files.
@@ -90,6 +90,24 @@ pub struct TouchesSpec {
     /// Approach speed at the moment of reading, mm/s: what the damper feels.
     #[serde(default)]
     pub speed_mm_per_s: f64,
+}
+
+/// No touches: those of a study that does not press objects.
+impl Default for TouchesSpec {
+    fn default() -> Self {
+        Self {
+            rest: RestSpec::default(),
+            per_object: None,
+            offset_x_mm: zero(),
+            offset_y_mm: zero(),
+            yaw_deg: zero(),
+            tilt_x_deg: zero(),
+            tilt_y_deg: zero(),
+            depth_mm: SpreadSpec::List(Vec::new()),
+            frames: one_value(),
+            speed_mm_per_s: 0.0,
+        }
+    }
 }
 
 /// What a mesh becomes.

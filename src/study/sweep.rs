@@ -3,7 +3,7 @@
 //! ```text
 //! array × frames a touch ── touches simulated once
 //!   └─ condition of the signal × test skin × ensemble (a group), and trial ── frames read and projected once, at the largest m
-//!        └─ m × features × classifier × training touches (a family) ── rows made once
+//!        └─ m × over time × features × classifier × training touches (a family) ── rows made once
 //!             └─ C ── fit, score test touches
 //!                  └─ fused touches (a cell) ── decide
 //! ```
@@ -12,9 +12,9 @@ use super::imperfection::{Imperfection, TestedOn};
 use super::plan::{Plan, millimetres};
 use super::plan_signal::Condition;
 use super::published::check_published;
-use super::simulation::{TouchedObject, touch_labels};
-use super::splits::{check_folds, check_fused_touches, draw_split, group_keys, train_touches};
+use super::splits::{check_folds, check_fused_touches, draw_split, train_touches};
 use super::table::Cell;
+use super::touch_set::TouchSet;
 use crate::error::{Error, Result};
 use crate::recognition::split::Split;
 use crate::sensing::Ensemble;
@@ -57,7 +57,8 @@ impl Group {
     pub fn families(&self) -> impl Iterator<Item = &[Cell]> {
         let family = |cell: &Cell| {
             let (m, kind) = (cell.measurements, cell.classifier);
-            (m, cell.features, kind, cell.train_touches)
+            let rows = (cell.over_time, cell.features);
+            (m, rows, kind, cell.train_touches)
         };
         self.cells.chunk_by(move |a, b| family(a) == family(b))
     }
@@ -76,19 +77,24 @@ impl Group {
 
 impl Sweep {
     /// Lays out splits and cells; the error says which objects or touches are too few.
-    pub fn new(plan: &Plan, touched: &[TouchedObject]) -> Result<Self> {
-        if touched.len() < 2 {
+    pub fn new(plan: &Plan, touched: &dyn TouchSet) -> Result<Self> {
+        let n_classes = touched.class_names().len();
+        if n_classes < 2 {
+            let (place, given, allowed) = match plan.human_touch {
+                Some(_) => ("key human_touch.kinds", "kind", "kinds"),
+                None => ("objects", "object", "objects"),
+            };
             return Err(Error::input(
-                "objects",
-                format!("{} object", touched.len()),
-                "at least two, since recognition tells objects apart",
+                place,
+                format!("{n_classes} {given}"),
+                format!("at least two, since recognition tells {allowed} apart"),
             ));
         }
-        let labels = touch_labels(touched);
+        let labels = touched.labels();
         let keys = plan
             .split
             .keep_together
-            .map(|kind| group_keys(touched, kind))
+            .map(|kind| touched.group_keys(kind))
             .transpose()?;
         let splits = (0..plan.spec.trials)
             .map(|trial| draw_split(plan, &labels, keys.as_ref(), trial))
@@ -157,18 +163,8 @@ impl Sweep {
         let patch = &plan.arrays[group.array];
         let first = self.n_cells();
         for measurements in measurement_counts(plan, patch, group.ensemble) {
-            for &features in &plan.features {
-                for &classifier in &plan.classifiers {
-                    for &train_touches in train_touches {
-                        let family = Cell {
-                            features,
-                            classifier,
-                            train_touches,
-                            ..group_cell(plan, &group, measurements)
-                        };
-                        group.cells.extend(family_cells(plan, &family));
-                    }
-                }
+            for family in families(plan, &group_cell(plan, &group, measurements), train_touches) {
+                group.cells.extend(family_cells(plan, &family));
             }
         }
         for (number, cell) in group.cells.iter_mut().enumerate() {
@@ -192,6 +188,25 @@ fn measurement_counts(plan: &Plan, patch: &Patch, ensemble: Ensemble) -> Vec<usi
         }
     }
     counts
+}
+
+/// Over time × features × classifier × training touches: the first cell of each family with a number of measurements.
+fn families(plan: &Plan, first: &Cell, train_touches: &[usize]) -> Vec<Cell> {
+    let mut families = Vec::new();
+    for &over_time in &plan.over_time {
+        for &features in &plan.features {
+            for &classifier in &plan.classifiers {
+                families.extend(train_touches.iter().map(|&train_touches| Cell {
+                    over_time,
+                    features,
+                    classifier,
+                    train_touches,
+                    ..first.clone()
+                }));
+            }
+        }
+    }
+    families
 }
 
 /// The cells of a family: every C that its classifier has a use for, with every number of fused touches.
@@ -242,6 +257,7 @@ fn group_cell(plan: &Plan, group: &Group, measurements: usize) -> Cell {
         measurements,
         ratio: grid.n_taxels() as f64 / measurements as f64,
         frames: group.frames,
+        over_time: plan.over_time[0],
         features: plan.features[0],
         classifier: plan.classifiers[0],
         c: None,

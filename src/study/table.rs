@@ -5,6 +5,7 @@
 use super::imperfection::{IMPERFECTIONS, Imperfection, Strengths, TestedOn};
 use crate::recognition::ClassifierKind;
 use crate::recognition::features::Features;
+use crate::recognition::over_time::OverTime;
 use crate::sensing::Ensemble;
 use crate::signal::NoiseUnit;
 use serde::{Deserialize, Serialize};
@@ -64,6 +65,9 @@ pub struct Cell {
     pub ratio: f64,
     /// Frames a touch, F: a row of features has F · m values.
     pub frames: usize,
+    /// What is made of the frames, if not all of them one after the other; only if the study has the key.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub over_time: Option<OverTime>,
     /// What is made of the measurements.
     pub features: Features,
     /// Which classifier.
@@ -77,6 +81,14 @@ pub struct Cell {
 }
 
 impl Cell {
+    /// Numbers that a touch is told by.
+    pub fn n_features(&self) -> usize {
+        let (n_frames, m) = (self.frames, self.measurements);
+        let all = n_frames * m;
+        self.over_time
+            .map_or(all, |kind| kind.n_features(n_frames, m))
+    }
+
     /// What the skin and its reader do to the signal.
     pub fn strengths(&self) -> Strengths {
         let strength = |imperfection| match imperfection {
@@ -323,6 +335,7 @@ pub(crate) mod tests {
             measurements: 64,
             ratio: 16.0,
             frames: 1,
+            over_time: None,
             features: Features::Raw,
             classifier: ClassifierKind::LinearSvm,
             c: Some(1.0),

@@ -7,6 +7,7 @@
 mod basins;
 mod body;
 mod extrusion;
+mod human_touch;
 mod layout;
 mod layout_curved;
 mod layout_draped;
@@ -30,6 +31,7 @@ mod trajectory;
 
 pub use body::Body;
 pub use extrusion::Extrusion;
+pub use human_touch::{HandState, HumanTouch, TOUCH_KINDS, TouchKind, TouchRanges};
 pub use layout::{Layout, MOST_TAXELS};
 pub use mass::center_of_mass;
 pub use motion::{Interpolation, JointTrajectory, Motion, PoseTrajectory};

@@ -65,6 +65,7 @@ pub fn cell() -> Cell {
         measurements: 256,
         ratio: 16.0,
         frames: 1,
+        over_time: None,
         features: Features::Raw,
         classifier: ClassifierKind::LinearSvm,
         c: Some(1.0),

@@ -1,0 +1,87 @@
+//! Sample touches for the eye: human touches as film strips.
+
+use super::human_touches::{HumanTouches, record_touch};
+use super::plan::{Plan, millimetres};
+use super::samples::Samples;
+use super::sweep::Sweep;
+use crate::contact::SkinWorkspace;
+use crate::error::{Error, Result};
+use crate::signal::Quantity;
+use ndarray::{Array1, Array2};
+
+/// Frames of a strip: a row of the picture.
+const N_FRAMES: usize = 4;
+
+/// Touches of which the firmest is shown: the flat hand rather than a fingertip.
+const N_LOOKED_AT: usize = 10;
+
+/// Of the kinds that the study names for its picture (else of all), the firmest of the first touches, at four instants evenly between
+/// those when its first and its last taxel are touched; on the study's finest array, without noise.
+pub fn human_samples(plan: &Plan, sweep: &Sweep, touches: &HumanTouches) -> Result<Samples> {
+    let group = sweep.groups.iter().max_by_key(|group| {
+        // The first of several.
+        (
+            plan.arrays[group.array].grid.n_taxels(),
+            std::cmp::Reverse(group.array),
+        )
+    });
+    let group =
+        group.ok_or_else(|| Error::input("study", "no cells", "at least one value an axis"))?;
+    let patch = plan.arrays[group.array];
+    let grid = patch.grid;
+    let skin = touches.plan.skin(&patch)?;
+    let interval = touches.plan.interval;
+    let mut workspace = SkinWorkspace::new();
+    let mut frames = Vec::new();
+    for label in chosen(plan, touches)? {
+        let recorded = touches.of(label).iter().take(N_LOOKED_AT).map(|touch| {
+            let mut rows = Array2::zeros((touches.plan.n_frames, grid.n_taxels()));
+            record_touch(&skin, touch, interval, rows.view_mut(), &mut workspace);
+            rows
+        });
+        let firmest = recorded.max_by(|a, b| a.sum().total_cmp(&b.sum()));
+        let Some(rows) = firmest else { continue };
+        let is_touched = |frame: &usize| rows.row(*frame).iter().any(|&d| d > 0.0);
+        let touched: Vec<usize> = (0..rows.nrows()).filter(is_touched).collect();
+        let (Some(&first), Some(&last)) = (touched.first(), touched.last()) else {
+            continue;
+        };
+        for part in 0..N_FRAMES {
+            let frame = first + (part * (last - first) + N_FRAMES / 2) / (N_FRAMES - 1);
+            let name = format!(
+                "{} {:.2} s",
+                touches.plan.kinds[label].name(),
+                (frame - first) as f64 * interval
+            );
+            let values: Array1<f64> = rows.row(frame).mapv(f64::from);
+            let shape = (grid.ny, grid.nx);
+            let frame = values
+                .into_shape_with_order(shape)
+                .expect("one value a taxel");
+            frames.push((name, frame));
+        }
+    }
+    let pitch_mm = millimetres(grid.pitch);
+    Ok(Samples {
+        frames,
+        pitch_mm,
+        quantity: Quantity::Deflection,
+        caption: format!(
+            "One touch of each kind by a hand on {} × {} taxels at {pitch_mm} mm around a forearm (x around it, y along it), no noise",
+            grid.nx, grid.ny
+        ),
+    })
+}
+
+/// Labels of the kinds to show.
+fn chosen(plan: &Plan, touches: &HumanTouches) -> Result<Vec<usize>> {
+    let kinds = &touches.plan.kinds;
+    let Some(names) = &plan.spec.report.samples else {
+        return Ok((0..kinds.len()).collect());
+    };
+    let label = |name: &String| {
+        let found = kinds.iter().position(|kind| kind.name() == name);
+        found.ok_or_else(|| Error::input("key report.samples", name, "names of the study's kinds"))
+    };
+    names.iter().map(label).collect()
+}

@@ -1,0 +1,203 @@
+//! Human touches of a study: drawn once, recorded on each array.
+
+use super::human_samples::human_samples;
+use super::measurement::TouchToRead;
+use super::plan::Plan;
+use super::plan_human::HumanTouchPlan;
+use super::progress::Progress;
+use super::samples::Samples;
+use super::simulation::Frames;
+use super::spec::GroupSpec;
+use super::sweep::Sweep;
+use super::touch_set::TouchSet;
+use crate::contact::{SkinWorkspace, press_skin};
+use crate::error::{Error, Result};
+use crate::objects::{Hand, Model};
+use crate::random::Seed;
+use crate::world::{HumanTouch, Patch, SkinPatch, TouchRanges};
+use ndarray::{Array1, Array2, ArrayViewMut2, Axis};
+use rand::Rng;
+use rayon::prelude::*;
+use std::time::Instant;
+
+/// Touches recorded by one thread at a time.
+const BLOCK: usize = 8;
+
+/// Seconds to bring a hand to the skin once, and of a moving one to make its spheres.
+const PLACE_HAND_S: f64 = 6e-5;
+
+/// Human touches, kind by kind.
+#[derive(Clone, Debug)]
+pub struct HumanTouches {
+    /// What they are and how they are recorded.
+    pub plan: HumanTouchPlan,
+    /// As many a kind.
+    pub touches: Vec<RecordedTouch>,
+}
+
+/// A touch and when it is recorded.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RecordedTouch {
+    /// The touch.
+    pub touch: HumanTouch,
+    /// When the hand begins to move, seconds after the first frame.
+    pub onset: f64,
+}
+
+impl HumanTouches {
+    /// Draws every touch of a plan from a stream of its own.
+    ///
+    /// # Errors
+    /// A touch that is longer than a recording.
+    pub fn draw(plan: &HumanTouchPlan, seed: &Seed) -> Result<Self> {
+        let seed = seed.named("human touches");
+        let kinds = plan.kinds.iter();
+        let all = kinds.flat_map(|&kind| (0..plan.per_kind as u64).map(move |k| (kind, k)));
+        let all: Vec<_> = all.collect();
+        let touches = all
+            .into_par_iter()
+            .map(|(kind, number)| {
+                let seed = seed.named(kind.name()).numbered(number);
+                let ranges = TouchRanges::usual(kind);
+                let touch = HumanTouch::draw(kind, &ranges, plan.surface, &seed)?;
+                let spare = plan.duration() - touch.duration();
+                if spare < 0.0 {
+                    let given = format!("{} s", plan.duration());
+                    let allowed = format!("more: a {} of {:.2} s", kind.name(), touch.duration());
+                    return Err(Error::input("key human_touch.duration_s", given, allowed));
+                }
+                let onset = seed.named("onset").rng().gen_range(0.0..=spare);
+                Ok(RecordedTouch { touch, onset })
+            })
+            .collect::<Result<_>>()?;
+        Ok(Self {
+            plan: plan.clone(),
+            touches,
+        })
+    }
+
+    /// The touches of a kind, by its label.
+    pub fn of(&self, label: usize) -> &[RecordedTouch] {
+        &self.touches[label * self.plan.per_kind..][..self.plan.per_kind]
+    }
+}
+
+/// Records a touch into its frames, n_frames × n_taxels metres: whether it met nothing, and whether it saturated a taxel.
+pub fn record_touch(
+    skin: &SkinPatch,
+    touch: &RecordedTouch,
+    interval: f64,
+    mut rows: ArrayViewMut2<f32>,
+    workspace: &mut SkinWorkspace,
+) -> (bool, bool) {
+    let (mut n_touched, mut n_saturated) = (0, 0);
+    // Most hands only move, and keep their spheres.
+    let mut shape: Option<(Hand, [Model; 1])> = None;
+    for (frame, row) in rows.outer_iter_mut().enumerate() {
+        let state = touch.touch.at(frame as f64 * interval - touch.onset);
+        let known = shape.take().filter(|(hand, _)| *hand == state.hand);
+        let (_, hand) =
+            shape.insert(known.unwrap_or_else(|| (state.hand, [state.spheres().into()])));
+        let contact = press_skin(skin, hand, &[state.patch_from_hand], workspace);
+        n_touched += contact.n_touched;
+        n_saturated += contact.n_saturated;
+        for (to, &from) in row.into_iter().zip(workspace.deflections()) {
+            *to = from as f32;
+        }
+    }
+    (n_touched == 0, n_saturated > 0)
+}
+
+impl TouchSet for HumanTouches {
+    fn class_names(&self) -> Vec<&str> {
+        self.plan.kinds.iter().map(|kind| kind.name()).collect()
+    }
+
+    fn labels(&self) -> Array1<usize> {
+        let labels = 0..self.plan.kinds.len();
+        let labels = labels.flat_map(|label| std::iter::repeat_n(label, self.plan.per_kind));
+        labels.collect()
+    }
+
+    fn group_keys(&self, _kind: GroupSpec) -> Result<Array1<usize>> {
+        let allowed = "no such key: human touches have no groups";
+        Err(Error::input(
+            "key recognition.keep_together",
+            "given",
+            allowed,
+        ))
+    }
+
+    fn simulate(&self, patch: &Patch, n_frames: usize, progress: &dyn Progress) -> Frames {
+        let skin = self
+            .plan
+            .skin(patch)
+            .expect("the plan has checked that it fits");
+        let n_rows = self.touches.len() * n_frames;
+        let mut deflection = Array2::zeros((n_rows, patch.grid.n_taxels()));
+        let counts: Vec<(usize, usize, f64)> = deflection
+            .axis_chunks_iter_mut(Axis(0), BLOCK * n_frames)
+            .into_par_iter()
+            .zip(self.touches.par_chunks(BLOCK))
+            .map_init(SkinWorkspace::new, |workspace, (mut rows, touches)| {
+                let start = Instant::now();
+                let (mut n_missed, mut n_saturated) = (0, 0);
+                let rows = rows.axis_chunks_iter_mut(Axis(0), n_frames);
+                for (rows, touch) in rows.zip(touches) {
+                    let (missed, saturated) =
+                        record_touch(&skin, touch, self.plan.interval, rows, workspace);
+                    n_missed += usize::from(missed);
+                    n_saturated += usize::from(saturated);
+                }
+                progress.advance(touches.len() as u64);
+                (n_missed, n_saturated, start.elapsed().as_secs_f64())
+            })
+            .collect();
+        Frames {
+            deflection,
+            n_frames,
+            n_missed: counts.iter().map(|count| count.0).sum(),
+            n_saturated: counts.iter().map(|count| count.1).sum(),
+            cpu_s: counts.iter().map(|count| count.2).sum(),
+        }
+    }
+
+    fn to_read(&self, _plan: &Plan, _n_frames: usize, seed: &Seed) -> Vec<TouchToRead> {
+        let of_kind = |name: &'static str| {
+            let kind = seed.named(name);
+            (0..self.plan.per_kind as u64).map(move |touch| TouchToRead {
+                seed: kind.numbered(touch),
+                interval: Some(self.plan.interval),
+                before: None,
+                skin: 0,
+            })
+        };
+        let kinds = self.plan.kinds.iter();
+        kinds.flat_map(|kind| of_kind(kind.name())).collect()
+    }
+
+    fn samples(&self, plan: &Plan, sweep: &Sweep) -> Result<Samples> {
+        human_samples(plan, sweep, self)
+    }
+
+    fn place_s(&self) -> f64 {
+        PLACE_HAND_S * self.touches.len() as f64
+    }
+
+    fn settings(&self) -> Vec<(String, String)> {
+        let row = |name: &str, value: String| (name.to_owned(), value);
+        let names = self.class_names();
+        let hz = 1.0 / self.plan.interval;
+        vec![
+            row(
+                "Kinds of touch",
+                format!("{}: {}", names.len(), names.join(", ")),
+            ),
+            row(
+                "Frames a touch",
+                format!("{} at {hz:.0} Hz", self.plan.n_frames),
+            ),
+            row("Arm", format!("{:.0} mm across", 2e3 * self.plan.surface)),
+        ]
+    }
+}

@@ -1,0 +1,136 @@
+//! Which kind of touch: the checks of `[human_touch]`.
+
+use super::check::{Check, positive};
+use super::plan::MM;
+use super::spec::{ObjectsSpec, StudySpec, TouchesSpec};
+use crate::error::Result;
+use crate::world::{Layout, Patch, Placement, RestPoses, SkinPatch, Spread, Taxels, TouchKind};
+
+/// Human touches of a study.
+#[derive(Clone, Debug, PartialEq)]
+pub struct HumanTouchPlan {
+    /// What to tell apart; the label is the place in this list.
+    pub kinds: Vec<TouchKind>,
+    /// Touches a kind.
+    pub per_kind: usize,
+    /// From the axis of the arm to the outside of its skin, metres.
+    pub surface: f64,
+    /// Seconds between frames.
+    pub interval: f64,
+    /// F, frames a touch.
+    pub n_frames: usize,
+}
+
+/// Frames a touch, at most: more is a rate in the wrong unit.
+const MOST_FRAMES: f64 = 10_000.0;
+
+impl HumanTouchPlan {
+    /// An array bent around the arm: rows are rings, columns run along it, the middle is at +x.
+    ///
+    /// # Errors
+    /// An array that does not fit around the arm.
+    pub fn skin(&self, patch: &Patch) -> Result<SkinPatch> {
+        let grid = &patch.grid;
+        let radius = self.surface - patch.taxel.radius;
+        let side = |n: usize| (n - 1) as f64 * grid.pitch;
+        let arc = side(grid.nx) / radius;
+        let layout = Layout::cylinder(radius, side(grid.ny), arc.max(1e-9), grid.pitch)?;
+        SkinPatch::new("forearm", layout, Taxels::Equal(patch.taxel))
+    }
+
+    /// Seconds from the first frame to the last.
+    pub fn duration(&self) -> f64 {
+        (self.n_frames - 1) as f64 * self.interval
+    }
+}
+
+impl Check<'_> {
+    /// What a study has instead of objects, if it has; and nothing that only objects have.
+    pub fn human_touch(
+        &self,
+        spec: &StudySpec,
+        arrays: &[Patch],
+    ) -> Result<Option<HumanTouchPlan>> {
+        let Some(human) = &spec.human_touch else {
+            if spec.touches == TouchesSpec::default() {
+                let allowed = "a table [touches]: how the objects are touched";
+                return Err(self.error("touches", "no such table", allowed));
+            }
+            return Ok(None);
+        };
+        if spec.objects != ObjectsSpec::default() || spec.touches != TouchesSpec::default() {
+            let given = "beside [objects] or [touches]";
+            return Err(self.error(
+                "human_touch",
+                given,
+                "it alone: it is what touches, and how",
+            ));
+        }
+        if spec.recognition.keep_together.is_some() {
+            let allowed = "no such key: human touches have no groups";
+            return Err(self.error("recognition.keep_together", "given", allowed));
+        }
+        if spec.skin.damping_n_s_per_m != 0.0 {
+            let allowed = "0: the skin of human touches has no damper";
+            let given = spec.skin.damping_n_s_per_m;
+            return Err(self.error("skin.damping_n_s_per_m", given, allowed));
+        }
+        let key = |name: &str| format!("human_touch.{name}");
+        let number =
+            |name: &str, value: f64| self.value(&key(name), value, positive, "a positive number");
+        let frames_hz = number("frames_hz", human.frames_hz)?;
+        let n_frames = (number("duration_s", human.duration_s)? * frames_hz).round() + 1.0;
+        if !(2.0..=MOST_FRAMES).contains(&n_frames) {
+            let allowed = format!("2 to {MOST_FRAMES} frames in duration_s at frames_hz");
+            return Err(self.error("human_touch", format!("{n_frames} frames a touch"), allowed));
+        }
+        let plan = HumanTouchPlan {
+            kinds: self.list(&key("kinds"), human.kinds.clone())?,
+            per_kind: self.positive_count(&key("per_kind"), human.per_kind)?,
+            surface: number("arm_radius_mm", human.arm_radius_mm)? * MM,
+            interval: 1.0 / frames_hz,
+            n_frames: n_frames as usize,
+        };
+        for patch in arrays {
+            self.fits_around(&plan, patch)?;
+        }
+        Ok(Some(plan))
+    }
+
+    /// An array leaves a gap of a pitch at least on the arm's other side, and no layout rounds its rows and columns.
+    fn fits_around(&self, plan: &HumanTouchPlan, patch: &Patch) -> Result<()> {
+        let grid = &patch.grid;
+        let radius = plan.surface - patch.taxel.radius;
+        let around = std::f64::consts::TAU * radius;
+        let width = grid.nx as f64 * grid.pitch;
+        if radius > 0.0 && width <= around && plan.skin(patch)?.n_taxels() == grid.n_taxels() {
+            return Ok(());
+        }
+        let given = format!(
+            "{} columns at {} mm, {:.1} mm together",
+            grid.nx,
+            super::millimetres(grid.pitch),
+            width / MM
+        );
+        let allowed = format!(
+            "at most {:.1} mm, once around the taxels' rest centres",
+            around.max(0.0) / MM
+        );
+        Err(self.error("skin", given, allowed))
+    }
+}
+
+/// Where objects would be: a study of human touches places none.
+pub(super) fn no_placement() -> Placement {
+    let none = || Spread::Values(vec![0.0]);
+    Placement {
+        rest: RestPoses::AsModelled,
+        offset_x: none(),
+        offset_y: none(),
+        yaw: none(),
+        tilt_x: none(),
+        tilt_y: none(),
+        depth: none(),
+        per_object: Some(0),
+    }
+}

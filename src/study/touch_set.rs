@@ -1,0 +1,102 @@
+//! What a recognition study asks of its touches: of pressed objects, or of human touches.
+
+use super::estimate::{PLACE_SPHERE_S, PLACE_TRIANGLE_S};
+use super::measurement::{TouchToRead, touches_of_study};
+use super::plan::Plan;
+use super::progress::Progress;
+use super::samples::{Samples, sample_frames};
+use super::simulation::{Frames, TouchedObject, simulate_array, touch_labels};
+use super::spec::GroupSpec;
+use super::splits::group_keys;
+use super::sweep::Sweep;
+use crate::error::Result;
+use crate::objects::Model;
+use crate::random::Seed;
+use crate::world::Patch;
+use ndarray::Array1;
+
+/// Touches of several classes: objects, or kinds of touch. They follow each other class by class.
+pub trait TouchSet: Sync {
+    /// Name of every class, by its label.
+    fn class_names(&self) -> Vec<&str>;
+
+    /// Label of every touch.
+    fn labels(&self) -> Array1<usize>;
+
+    /// Group of every touch, for splits that keep groups together; the error says that these touches have no such groups.
+    fn group_keys(&self, kind: GroupSpec) -> Result<Array1<usize>>;
+
+    /// Makes all touches on an array, F frames each; the same bytes at any number of threads.
+    fn simulate(&self, patch: &Patch, n_frames: usize, progress: &dyn Progress) -> Frames;
+
+    /// How each touch is read in a trial, F frames each, whose randomness is drawn from `seed`.
+    fn to_read(&self, plan: &Plan, n_frames: usize, seed: &Seed) -> Vec<TouchToRead>;
+
+    /// A few touches for the eye.
+    fn samples(&self, plan: &Plan, sweep: &Sweep) -> Result<Samples>;
+
+    /// About how long one core takes to bring what touches to an array, once each touch; seconds.
+    fn place_s(&self) -> f64;
+
+    /// What a report says about them: name and value.
+    fn settings(&self) -> Vec<(String, String)>;
+}
+
+impl TouchSet for Vec<TouchedObject> {
+    fn class_names(&self) -> Vec<&str> {
+        self.iter().map(|t| t.object.name.as_str()).collect()
+    }
+
+    fn labels(&self) -> Array1<usize> {
+        touch_labels(self)
+    }
+
+    fn group_keys(&self, kind: GroupSpec) -> Result<Array1<usize>> {
+        group_keys(self, kind)
+    }
+
+    fn simulate(&self, patch: &Patch, n_frames: usize, progress: &dyn Progress) -> Frames {
+        simulate_array(self, patch, n_frames, progress)
+    }
+
+    fn to_read(&self, plan: &Plan, n_frames: usize, seed: &Seed) -> Vec<TouchToRead> {
+        touches_of_study(plan, (self, n_frames), seed)
+    }
+
+    fn samples(&self, plan: &Plan, sweep: &Sweep) -> Result<Samples> {
+        sample_frames(plan, sweep, self)
+    }
+
+    fn place_s(&self) -> f64 {
+        self.iter()
+            .map(|t| {
+                let model = &t.object.model;
+                let spheres_s = PLACE_SPHERE_S * model.n_spheres() as f64;
+                let triangles_s = PLACE_TRIANGLE_S * model.n_triangles() as f64;
+                (spheres_s + triangles_s) * t.touches.len() as f64
+            })
+            .sum()
+    }
+
+    fn settings(&self) -> Vec<(String, String)> {
+        let names = self.class_names();
+        let row = |name: &str, value: String| (name.to_owned(), value);
+        let mut rows = vec![row(
+            "Objects",
+            format!("{}: {}", names.len(), names.join(", ")),
+        )];
+        let models = || self.iter().map(|t| &t.object.model);
+        let spheres: Vec<usize> = models().map(Model::n_spheres).collect();
+        let triangles: Vec<usize> = models().map(Model::n_triangles).collect();
+        for (name, counts) in [
+            ("Spheres an object", spheres),
+            ("Triangles an object", triangles),
+        ] {
+            let counts = || counts.iter().filter(|&&n| n > 0);
+            if let (Some(least), Some(most)) = (counts().min(), counts().max()) {
+                rows.push(row(name, format!("{least} to {most}")));
+            }
+        }
+        rows
+    }
+}

@@ -1,0 +1,211 @@
+//! How a hand is held: which part of it comes first, and how its fingers are bent.
+
+use super::TouchKind;
+use crate::geometry::Pose;
+use crate::objects::{FingerPose, Hand, Sphere, SphereUnion};
+use glam::{DQuat, DVec3};
+use rand::Rng;
+use std::f64::consts::FRAC_PI_2;
+
+/// How far the spheres of a hand may be from its surface, metres: larger, and a finger is felt as a row of balls; smaller, and a frame
+/// costs more (of 100 spheres it takes 10 to 30 µs).
+const SURFACE_ERROR: f64 = 0.5e-3;
+
+/// How far a hand may be out of level, radians. Larger, and a flat hand, which does not give way, touches with the ball of the thumb or
+/// a finger alone.
+const LEVEL: f64 = 0.03;
+
+/// The fingers of a fist, as a share of [`Hand::curled`].
+const FIST: f64 = 0.85;
+
+/// A hand that does not move yet.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Posture {
+    /// Its fingers when it is open.
+    pub open: Hand,
+    /// The same when it is closed; only a grip closes.
+    pub closed: Hand,
+    /// Rotation from the hand's frame to that of the place that it touches: x back along the arm, y around it, z away from it.
+    pub place_from_hand: DQuat,
+    /// What is above that place, metres in the hand's frame.
+    pub anchor: DVec3,
+}
+
+impl Posture {
+    /// Draws one: `fingers` fingertips (1 to 4), the flat hand (5), or a grip.
+    pub fn draw(
+        kind: TouchKind,
+        (length, fingers, yaw): (f64, usize, f64),
+        rng: &mut impl Rng,
+    ) -> Self {
+        let is_flat = fingers == 5 || matches!(kind, TouchKind::Shove | TouchKind::Grab);
+        let mut open = match is_flat {
+            true => Hand::curled(rng.gen_range(0.0..=0.1)),
+            false => Hand::curled(FIST),
+        };
+        open.length = length;
+        // Fingertips first: the wrist is higher.
+        let mut pitch = rng.gen_range(-LEVEL..=LEVEL);
+        if !is_flat {
+            pitch = -rng.gen_range(0.35..=0.8);
+            let straight = FingerPose {
+                spread: 0.0,
+                knuckle: rng.gen_range(0.05..=0.25),
+                middle: rng.gen_range(0.05..=0.25),
+                end: rng.gen_range(0.0..=0.15),
+            };
+            open.fingers[..fingers].fill(straight);
+        }
+        if is_flat {
+            // Else it would be the thumb that a flat hand lies on.
+            open.thumb.knuckle = -0.3;
+        }
+        let roll = rng.gen_range(-LEVEL..=LEVEL);
+        let place_from_hand = DQuat::from_rotation_z(yaw)
+            * DQuat::from_rotation_x(pitch)
+            * DQuat::from_rotation_y(roll);
+        Self {
+            anchor: anchor(&open, if is_flat { 5 } else { fingers }),
+            closed: open,
+            open,
+            place_from_hand,
+        }
+    }
+
+    /// Closes the fingers until each would be `grip` metres in the skin of an arm of radius `surface`, the hand itself being at
+    /// `-depth`; a finger that does not reach the arm closes to a fist.
+    pub fn close(&mut self, surface: f64, depth: f64, grip: f64) {
+        let height = self.first_contact(surface) - depth;
+        let fist = Hand::curled(1.0);
+        for digit in 0..5 {
+            let closed_by = |share: f64| {
+                let mut hand = self.open;
+                bend(&mut hand, &self.open, &fist, (digit, share));
+                hand
+            };
+            let is_in = |share: f64| {
+                let hand = closed_by(share);
+                let balls = phalanges(&hand, digit).into_iter();
+                let sunk = balls.map(|ball| self.sunk(ball, surface, height));
+                sunk.fold(f64::NEG_INFINITY, f64::max) >= grip
+            };
+            let share = first_share(is_in);
+            bend(&mut self.closed, &self.open, &fist, (digit, share));
+        }
+    }
+
+    /// The hand with its fingers closed by a share, 0 to 1.
+    pub fn hand(&self, share: f64) -> Hand {
+        let mut hand = self.open;
+        for digit in 0..5 {
+            bend(&mut hand, &self.open, &self.closed, (digit, share));
+        }
+        hand
+    }
+
+    /// How high the anchor is above an arm of radius `surface` when the open hand first touches it, metres.
+    pub fn first_contact(&self, surface: f64) -> f64 {
+        let hand = spheres(&self.open);
+        let heights = hand
+            .spheres()
+            .iter()
+            .filter_map(|ball| self.touches_at(ball, surface));
+        heights.fold(f64::NEG_INFINITY, f64::max)
+    }
+
+    /// The height of the anchor at which a ball touches; `None` if it passes beside the arm.
+    fn touches_at(&self, ball: &Sphere, surface: f64) -> Option<f64> {
+        let at = self.place_from_hand * (ball.center - self.anchor);
+        let reach = ball.radius + surface;
+        let square = reach * reach - at.y * at.y;
+        (square > 0.0).then(|| square.sqrt() - at.z - surface)
+    }
+
+    /// How deep a ball is in the arm when the anchor is at a height, metres; negative outside.
+    fn sunk(&self, ball: Sphere, surface: f64, height: f64) -> f64 {
+        let at = self.place_from_hand * (ball.center - self.anchor);
+        ball.radius + surface - at.y.hypot(at.z + height + surface)
+    }
+
+    /// `patch_from_hand` when the anchor is `height` metres above a place of the arm.
+    pub fn pose(&self, (along, around): (f64, f64), radius: f64) -> Pose {
+        // The place's frame at +x (x is −z of the arm, y stays, z is its x), then around the arm.
+        let rotation = DQuat::from_rotation_z(around) * DQuat::from_rotation_y(FRAC_PI_2);
+        let place = radius * (rotation * DVec3::Z) + along * DVec3::Z;
+        let patch_from_hand = rotation * self.place_from_hand;
+        Pose::new(patch_from_hand, place - patch_from_hand * self.anchor)
+    }
+}
+
+/// The spheres of a hand, within [`SURFACE_ERROR`].
+pub(super) fn spheres(hand: &Hand) -> SphereUnion {
+    let solid = hand.solid().expect("fingers between open and closed");
+    solid.pack(SURFACE_ERROR).expect("a hand takes few spheres")
+}
+
+/// Sets a digit (0 to 3 are fingers, 4 is the thumb) a share of the way from one hand to another.
+fn bend(hand: &mut Hand, from: &Hand, to: &Hand, (digit, share): (usize, f64)) {
+    let between = |a: f64, b: f64| a + share * (b - a);
+    let pose = |a: &FingerPose, b: &FingerPose| FingerPose {
+        spread: between(a.spread, b.spread),
+        knuckle: between(a.knuckle, b.knuckle),
+        middle: between(a.middle, b.middle),
+        end: between(a.end, b.end),
+    };
+    if digit < 4 {
+        hand.fingers[digit] = pose(&from.fingers[digit], &to.fingers[digit]);
+    } else {
+        hand.thumb = pose(&from.thumb, &to.thumb);
+        hand.opposition = between(from.opposition, to.opposition);
+    }
+}
+
+/// The least share from which on something is so, to 1e-4; 1 if it never is. It is looked for in steps, since a finger can pass.
+fn first_share(is_so: impl Fn(f64) -> bool) -> f64 {
+    const STEPS: usize = 40;
+    let share = |step: usize| step as f64 / STEPS as f64;
+    let Some(step) = (0..=STEPS).find(|&step| is_so(share(step))) else {
+        return 1.0;
+    };
+    let (mut low, mut high) = (share(step.saturating_sub(1)), share(step));
+    while high - low > 1e-4 {
+        let middle = 0.5 * (low + high);
+        match is_so(middle) {
+            true => high = middle,
+            false => low = middle,
+        }
+    }
+    high
+}
+
+/// The middle of the touching part: of the straight fingers' tips, or of the flat hand near its knuckles.
+fn anchor(hand: &Hand, fingers: usize) -> DVec3 {
+    let strands = hand.strands();
+    match fingers {
+        5 => strands[1][0].center.lerp(strands[1][1].center, 0.75),
+        n => {
+            strands[..n]
+                .iter()
+                .map(|finger| finger[4].center)
+                .sum::<DVec3>()
+                / n as f64
+        }
+    }
+}
+
+/// Balls along the phalanges of a digit (0 to 3 are fingers, 4 is the thumb).
+fn phalanges(hand: &Hand, digit: usize) -> Vec<Sphere> {
+    const STEPS: usize = 6;
+    let strand = if digit == 4 { Hand::THUMB } else { digit };
+    let balls = &hand.strands()[strand][1..];
+    let pairs = balls.windows(2).flat_map(|pair| {
+        (0..STEPS).map(move |step| {
+            let share = step as f64 / STEPS as f64;
+            Sphere {
+                center: pair[0].center.lerp(pair[1].center, share),
+                radius: pair[0].radius + share * (pair[1].radius - pair[0].radius) + SURFACE_ERROR,
+            }
+        })
+    });
+    pairs.collect()
+}
