@@ -372,7 +372,11 @@ fn bad_numbers_of_taxels_are_refused_with_key_file_line_and_column() {
         assert_eq!(said(table), expected);
     }
     fs::write(&path, "friction,stroke_mm\n0.5\n").unwrap();
-    assert!(said(table).contains("one row a taxel, of as many numbers"));
+    assert!(
+        said(table).contains(" columns; 1 columns in every row"),
+        "{}",
+        said(table)
+    );
 }
 
 /// A ball over a palm that moves aside; `press`: its wish, `palm`: more keys of the patch.
