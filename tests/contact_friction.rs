@@ -6,34 +6,19 @@ use bubbletouch::contact::{
 };
 use bubbletouch::geometry::Pose;
 use bubbletouch::objects::{MeshModel, Model, Sphere, SphereUnion};
-use bubbletouch::random::Seed;
 use bubbletouch::world::{Grid, Layout, Patch, Shear, Shears, SkinPatch, Taxel, Taxels};
 use glam::{DQuat, DVec2, DVec3};
 use rand::Rng;
 
 mod mesh_shapes;
+mod random_scenes;
 use mesh_shapes::cuboid;
-
-const TAXEL: Taxel = Taxel {
-    radius: 1e-3,
-    stiffness: 100.0,
-    damping: 0.0,
-    stroke: 5e-3,
-};
+use random_scenes::{TAXEL, direction, rng};
 
 const SHEAR: Shear = Shear {
     stiffness: 400.0,
     friction: 0.6,
 };
-
-fn rng(name: &str, case: u64) -> impl Rng {
-    Seed::new(9).named(name).numbered(case).rng()
-}
-
-fn direction(rng: &mut impl Rng) -> DVec3 {
-    let mut random = || rng.gen_range(-1.0..1.0);
-    DVec3::new(random(), random(), random()).normalize_or(DVec3::X)
-}
 
 fn flat(n: usize, pitch: f64) -> SkinPatch {
     let grid = Grid {
