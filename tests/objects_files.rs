@@ -6,8 +6,8 @@ use glam::DVec3;
 use std::fmt::Write as _;
 use std::fs::File;
 use std::io::BufReader;
-use std::io::Write;
-use std::path::PathBuf;
+
+mod reference_data;
 
 const HEADER: &str = "ply
 format FORMAT 1.0
@@ -229,19 +229,9 @@ fn spheres_that_cannot_be_used_say_why() {
     assert_eq!(latin.exit_code(), 2, "{latin}");
 }
 
-/// A folder of reference data, found by an environment variable.
-fn reference(variable: &str) -> Option<PathBuf> {
-    let folder = std::env::var_os(variable).map(PathBuf::from);
-    if folder.is_none() {
-        writeln!(std::io::stderr(), "SKIPPED: {variable} names no folder")
-            .expect("standard error takes a line");
-    }
-    folder
-}
-
 #[test]
 fn the_scanned_objects_are_read_and_get_spheres_of_millimetres() {
-    let Some(folder) = reference("BUBBLETOUCH_YCB") else {
+    let Some(folder) = reference_data::folder("BUBBLETOUCH_YCB") else {
         return;
     };
     let mut n_meshes = 0;

@@ -6,9 +6,9 @@ use bubbletouch::packing::{Body, DetailChain, pack_mesh, packing_error};
 use bubbletouch::study::PackingCache;
 use glam::{DQuat, DVec2, DVec3};
 use std::f64::consts::TAU;
-use std::io::Write;
 
 mod mesh_shapes;
+mod reference_data;
 use mesh_shapes::{cuboid, icosphere};
 
 const MM: f64 = 1e-3;
@@ -277,12 +277,7 @@ fn the_cache_gives_back_what_was_packed_and_knows_what_from() {
 
 #[test]
 fn scanned_objects_pack_within_half_a_millimetre() {
-    let Some(folder) = std::env::var_os("BUBBLETOUCH_YCB") else {
-        writeln!(
-            std::io::stderr(),
-            "SKIPPED: BUBBLETOUCH_YCB names no folder of meshes"
-        )
-        .expect("standard error takes a line");
+    let Some(folder) = reference_data::folder("BUBBLETOUCH_YCB") else {
         return;
     };
     for (name, most) in [("014_lemon", 60), ("062_dice", 200)] {

@@ -8,17 +8,13 @@ use bubbletouch::objects::{Sphere, SphereUnion};
 use bubbletouch::world::{Grid, Patch, Scene, Taxel};
 use glam::{DMat3, DVec3};
 use serde_json::Value;
-use std::io::Write;
 use std::path::Path;
+
+mod reference_data;
 
 #[test]
 fn every_reference_scene_agrees_within_a_picometre() {
-    let Some(folder) = std::env::var_os("BUBBLETOUCH_REFERENCE") else {
-        writeln!(
-            std::io::stderr(),
-            "SKIPPED: BUBBLETOUCH_REFERENCE names no folder of reference scenes"
-        )
-        .expect("standard error takes a line");
+    let Some(folder) = reference_data::folder("BUBBLETOUCH_REFERENCE") else {
         return;
     };
     let mut n_frames = 0;

@@ -8,8 +8,9 @@ use bubbletouch::scene::{
 };
 use bubbletouch::world::{Motion, Phase, Scene, VelocityPlan};
 use glam::{DQuat, DVec3};
-use std::io::Write;
 use std::path::{Path, PathBuf};
+
+mod reference_data;
 
 fn shipped(name: &str) -> PathBuf {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("experiments/scenes");
@@ -430,12 +431,7 @@ fn a_scene_begins_as_if_it_had_stood_so_for_long() {
 
 #[test]
 fn the_original_slides_a_drill_over_64_x_64_taxels() {
-    let Some(folder) = std::env::var_os("BUBBLETOUCH_REFERENCE") else {
-        writeln!(
-            std::io::stderr(),
-            "SKIPPED: BUBBLETOUCH_REFERENCE names no folder of reference scenes"
-        )
-        .expect("standard error takes a line");
+    let Some(folder) = reference_data::folder("BUBBLETOUCH_REFERENCE") else {
         return;
     };
     let folder = Path::new(&folder).join("traj_drill_example");
