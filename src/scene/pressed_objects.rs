@@ -76,29 +76,9 @@ impl PressedObjects {
                 moving: pressed.object,
                 direction: patch_from_world.rotation * press.direction,
             };
-            let start = poses[pressed.object];
-            let strokes = patch.taxels().all().iter().map(|taxel| taxel.stroke);
-            let part = PART * strokes.fold(f64::INFINITY, f64::min);
-            let way = (press.speed * dt).min(press.travel);
-            let n_parts = (way / part).ceil().clamp(1.0, MOST_PARTS);
-            let step = way / n_parts;
             pressed.wanted = press.force_at(time);
-            let is_let_go = pressed.wanted == 0.0;
-            for _ in 0..n_parts as usize {
-                let here = pressed.now.travel;
-                let back = (here - step).max(0.0);
-                // Without a force it goes back whether it touches anything or not.
-                let travels = match is_let_go {
-                    true => [back; 3],
-                    false => [back, here, (here + step).min(press.travel)],
-                };
-                poses[pressed.object] = start;
-                pressed.now = moved.hold(poses, travels, pressed.wanted, workspace);
-                let is_at_end = [travels[0], travels[2]].contains(&pressed.now.travel);
-                if !is_at_end || pressed.now.travel == here {
-                    break;
-                }
-            }
+            let way = (press.speed * dt).min(press.travel);
+            pressed.go(&moved, poses, [way, press.travel], workspace);
             let pose = &mut objects.poses[pressed.object];
             pose.translation += pressed.now.travel * press.direction;
         }
@@ -112,6 +92,41 @@ impl PressedObjects {
                 force: pressed.now.force,
                 wanted: pressed.wanted,
             };
+        }
+    }
+}
+
+impl Pressed {
+    /// Goes towards the force that is wanted, at most `way` metres and up to `farthest` from where its motion says that it is.
+    ///
+    /// `poses`: `patch_from_object`, one an object, that of this one as its motion says.
+    fn go(
+        &mut self,
+        moved: &MovedObject,
+        poses: &mut [Pose],
+        [way, farthest]: [f64; 2],
+        workspace: &mut SkinWorkspace,
+    ) {
+        let start = poses[self.object];
+        let strokes = moved.patch.taxels().all().iter().map(|taxel| taxel.stroke);
+        let part = PART * strokes.fold(f64::INFINITY, f64::min);
+        let n_parts = (way / part).ceil().clamp(1.0, MOST_PARTS);
+        let step = way / n_parts;
+        let is_let_go = self.wanted == 0.0;
+        for _ in 0..n_parts as usize {
+            let here = self.now.travel;
+            let back = (here - step).max(0.0);
+            // Without a force it goes back whether it touches anything or not.
+            let travels = match is_let_go {
+                true => [back; 3],
+                false => [back, here, (here + step).min(farthest)],
+            };
+            poses[self.object] = start;
+            self.now = moved.hold(poses, travels, self.wanted, workspace);
+            let is_at_end = [travels[0], travels[2]].contains(&self.now.travel);
+            if !is_at_end || self.now.travel == here {
+                break;
+            }
         }
     }
 }
