@@ -1,7 +1,9 @@
 //! The command line: one file a subcommand, each `Args` → work → files or terminal.
 
+mod about_study;
 mod classify;
 mod features;
+mod merge;
 mod objects;
 mod objects_pack;
 mod objects_show;
@@ -14,7 +16,9 @@ mod run_object_detail;
 mod run_reconstruction;
 mod simulate;
 mod study_args;
+mod study_folder;
 mod touches;
+mod verify;
 mod which_object;
 
 use bubbletouch::Result;
@@ -34,6 +38,10 @@ struct CommandLine {
 enum Command {
     /// Run a study: simulate, compress, recognise; write tables, charts and a report
     Run(run::Args),
+    /// Put the shards of a study together
+    Merge(merge::Args),
+    /// Run a few cells of a folder of results again, and say whether they are the same bytes
+    Verify(verify::Args),
     /// Say what a study would do: cells, touches, memory and time, without running it
     Plan(plan::Args),
     /// Write a study's touches as NumPy files, to train elsewhere
@@ -57,6 +65,8 @@ pub fn dispatch() -> Result<()> {
     match CommandLine::parse().command {
         None => run::run(&run::Args::quickstart()),
         Some(Command::Run(args)) => run::run(&args),
+        Some(Command::Merge(args)) => merge::merge(&args),
+        Some(Command::Verify(args)) => verify::verify(&args),
         Some(Command::Plan(args)) => plan::plan(&args),
         Some(Command::Touches(args)) => touches::touches(&args),
         Some(Command::Features(args)) => features::features(&args),
