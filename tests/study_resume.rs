@@ -416,3 +416,43 @@ fn results_verify_until_a_number_in_them_is_changed() {
     assert_eq!(output.status.code(), Some(2));
     assert!(said(&output).contains("again it is"), "{}", said(&output));
 }
+
+#[test]
+fn a_program_that_starts_a_run_reads_json_lines_and_nothing_else() {
+    let case = case();
+    let (output, error) = case.succeeds(&["run", "study.toml", "--out", "whole", "--json"]);
+    assert_eq!(error, "");
+    let events: Vec<serde_json::Value> = output
+        .lines()
+        .map(|line| serde_json::from_str(line).unwrap())
+        .collect();
+    let last = events.last().unwrap();
+    assert_eq!(last["event"], "finished");
+    assert_eq!(
+        (&last["cells"], &last["finished_before"]),
+        (&64.into(), &64.into())
+    );
+    let (output, error) = case.succeeds(&["run", "study.toml", "--out", "whole", "--quiet"]);
+    assert_eq!((output.as_str(), error.as_str()), ("", ""));
+}
+
+#[test]
+fn two_runs_side_by_side_say_what_moved() {
+    let case = case();
+    case.file("noisy.toml", STUDY.replace("[0.05, 0.2]", "[0.2, 0.4]"));
+    case.succeeds(&["run", "noisy.toml", "--out", "noisy"]);
+    let (output, _) = case.succeeds(&["compare", "whole", "noisy", "--out", "moved.csv"]);
+    assert!(
+        output.contains("16 cells are in both runs, 16 in the first alone, 16 in the second"),
+        "{output}"
+    );
+    assert!(output.contains("16 have the same accuracy"), "{output}");
+    let moved = fs::read_to_string(case.path("moved.csv")).unwrap();
+    assert_eq!(moved.lines().count(), 1 + 16);
+    assert!(moved.lines().next().unwrap().ends_with("p_value,p_holm"));
+    case.file("other.toml", STUDY.replace("[0.05, 0.2]", "0.7"));
+    case.succeeds(&["run", "other.toml", "--out", "other"]);
+    let output = case.run(&["compare", "whole", "other"]);
+    assert_eq!(output.status.code(), Some(2));
+    assert!(said(&output).contains("no cell"), "{}", said(&output));
+}

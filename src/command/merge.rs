@@ -1,9 +1,9 @@
 //! `bubbletouch merge`: the shards of a study put together.
 
+use super::listener::Listener;
 use super::output::{output_folder, packings_beside};
 use super::run::{FinishedStudy, failures, identity, results_folder, seconds_since};
 use super::study_args::StudyArgs;
-use bubbletouch::report::progress;
 use bubbletouch::study::journal::{Identity, JOURNAL_FILE, Journal};
 use bubbletouch::study::{Manner, Part, n_left, run_with};
 use bubbletouch::{Error, Result};
@@ -20,6 +20,8 @@ pub struct Args {
     /// More folders with journals of shards, such as those of other machines
     #[arg(long, value_name = "FOLDER")]
     from: Vec<PathBuf>,
+    #[command(flatten)]
+    listener: Listener,
 }
 
 pub fn merge(args: &Args) -> Result<()> {
@@ -53,7 +55,7 @@ pub fn merge(args: &Args) -> Result<()> {
         retries: false,
         part: Part::All,
     };
-    let progress = progress::to_stderr();
+    let progress = args.listener.progress();
     let touched = loaded.touched.as_ref();
     let outcome = run_with(
         &loaded.plan,
@@ -78,7 +80,7 @@ pub fn merge(args: &Args) -> Result<()> {
         "{n_journals} shards, {:.1} s",
         seconds_since(started)
     ));
-    finished.tell();
+    finished.tell(args.listener);
     failures(&outcome, &folder)
 }
 

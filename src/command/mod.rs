@@ -2,7 +2,9 @@
 
 mod about_study;
 mod classify;
+mod compare;
 mod features;
+mod listener;
 mod merge;
 mod objects;
 mod objects_pack;
@@ -40,6 +42,8 @@ enum Command {
     Run(run::Args),
     /// Put the shards of a study together
     Merge(merge::Args),
+    /// Say what moved between two folders of results, and whether chance explains it
+    Compare(compare::Args),
     /// Run a few cells of a folder of results again, and say whether they are the same bytes
     Verify(verify::Args),
     /// Say what a study would do: cells, touches, memory and time, without running it
@@ -66,6 +70,7 @@ pub fn dispatch() -> Result<()> {
         None => run::run(&run::Args::quickstart()),
         Some(Command::Run(args)) => run::run(&args),
         Some(Command::Merge(args)) => merge::merge(&args),
+        Some(Command::Compare(args)) => compare::compare(&args),
         Some(Command::Verify(args)) => verify::verify(&args),
         Some(Command::Plan(args)) => plan::plan(&args),
         Some(Command::Touches(args)) => touches::touches(&args),

@@ -1,6 +1,7 @@
 //! `bubbletouch run`: a study from its file to its folder of results.
 
 use super::about_study::report_page;
+use super::listener::Listener;
 use super::output::{packings_beside, terminal_width};
 use super::run_object_detail::run_object_detail;
 use super::run_reconstruction::run_reconstruction;
@@ -8,7 +9,7 @@ use super::study_args::{LoadedStudy, StudyArgs};
 use super::study_folder::{Start, StudyFolder};
 use bubbletouch::files::write_bytes;
 use bubbletouch::report::csv_tables::repeatable_hashes;
-use bubbletouch::report::{headlines, progress, results, terminal};
+use bubbletouch::report::{headlines, results, terminal};
 use bubbletouch::study::journal::Identity;
 use bubbletouch::study::provenance::{MANIFEST_FILE, Manifest, RunFacts};
 use bubbletouch::study::{Manner, Outcome, Part, Shard, StudyKind, n_left, run_with};
@@ -33,6 +34,8 @@ pub struct Args {
     /// Evaluate only part I of N of the cells, for one of N processes or machines; `bubbletouch merge` puts them together
     #[arg(long, value_name = "I/N")]
     shard: Option<Shard>,
+    #[command(flatten)]
+    listener: Listener,
     /// A demonstration runs anew unless it was interrupted.
     #[arg(skip)]
     is_demonstration: bool,
@@ -47,7 +50,28 @@ impl Args {
             fresh: false,
             fail_fast: false,
             shard: None,
+            listener: Listener::default(),
             is_demonstration: true,
+        }
+    }
+
+    /// An error if there is an option that this kind of study has no use for yet.
+    fn check_options(&self, kind: StudyKind) -> Result<()> {
+        let given = [
+            ("--fresh", self.fresh),
+            ("--fail-fast", self.fail_fast),
+            ("--shard", self.shard.is_some()),
+        ];
+        let given = given.into_iter().find(|(_, is_given)| *is_given);
+        match given {
+            Some((option, _)) if kind != StudyKind::Recognition => {
+                let allowed = format!(
+                    "no such option: it is for {}",
+                    StudyKind::Recognition.words()
+                );
+                Err(Error::input(option, kind.words(), allowed))
+            }
+            _ => Ok(()),
         }
     }
 
@@ -62,10 +86,12 @@ impl Args {
 
 pub fn run(args: &Args) -> Result<()> {
     let folder = results_folder(&args.study, args.out.as_deref())?;
-    match args.study.kind()? {
+    let kind = args.study.kind()?;
+    args.check_options(kind)?;
+    match kind {
         StudyKind::Recognition => run_recognition(args, &folder),
-        StudyKind::Reconstruction => run_reconstruction(&args.study, &folder),
-        StudyKind::ObjectDetail => run_object_detail(&args.study, &folder),
+        StudyKind::Reconstruction => run_reconstruction(&args.study, args.listener, &folder),
+        StudyKind::ObjectDetail => run_object_detail(&args.study, args.listener, &folder),
     }
 }
 
@@ -81,14 +107,13 @@ fn run_recognition(args: &Args, folder: &Path) -> Result<()> {
     let started = SystemTime::now();
     let loaded = args.study.load(Some(&packings_beside(folder)))?;
     let identity = identity(&loaded);
-    let kept = StudyFolder::open(folder, &identity, args.start(), args.shard)?;
+    let kept = StudyFolder::open(folder, &identity, (args.start(), args.shard), args.listener)?;
     let n_all = loaded.n_evaluations();
     let n_left = n_left(&loaded.plan, &loaded.sweep, &kept.journal);
     if n_left < n_all {
-        eprintln!(
-            "going on: {} of {n_all} cells were finished before",
-            n_all - n_left
-        );
+        let n_before = n_all - n_left;
+        let going_on = format!("going on: {n_before} of {n_all} cells were finished before");
+        args.listener.remark(&going_on);
     }
     let manner = Manner {
         journal: &kept.journal,
@@ -96,7 +121,7 @@ fn run_recognition(args: &Args, folder: &Path) -> Result<()> {
         retries: true,
         part: args.shard.map_or(Part::All, Part::Shard),
     };
-    let progress = progress::to_stderr();
+    let progress = args.listener.progress();
     let outcome = run_with(
         &loaded.plan,
         &loaded.sweep,
@@ -107,10 +132,10 @@ fn run_recognition(args: &Args, folder: &Path) -> Result<()> {
     kept.journal.sync()?;
     if let Some(shard) = args.shard {
         progress.finish(&format!("{:.1} s", seconds_since(started)));
-        println!(
-            "Shard {shard} is done; when all are, put them together: bubbletouch merge {}",
-            args.study.study.display()
-        );
+        let study = args.study.study.display();
+        args.listener.remark(&format!(
+            "shard {shard} is done; when all are, put them together: bubbletouch merge {study}"
+        ));
         return failures(&outcome, folder);
     }
     let finished = FinishedStudy {
@@ -129,7 +154,7 @@ fn run_recognition(args: &Args, folder: &Path) -> Result<()> {
     if args.is_demonstration {
         kept.forget()?;
     }
-    finished.tell();
+    finished.tell(args.listener);
     failures(&outcome, folder)
 }
 
@@ -181,8 +206,19 @@ impl FinishedStudy<'_> {
     }
 
     /// Says on standard output what was found.
-    pub fn tell(&self) {
+    pub fn tell(&self, listener: Listener) {
         let tables = &self.outcome.tables;
+        listener.finished(serde_json::json!({
+            "event": "finished",
+            "folder": self.folder,
+            "cells": self.loaded.n_evaluations(),
+            "finished_before": self.n_before,
+            "failed": tables.failures.len(),
+            "elapsed_s": seconds_since(self.started),
+        }));
+        if !listener.is_person() {
+            return;
+        }
         let table = self.folder.join("summary.csv").display().to_string();
         println!(
             "{}",

@@ -1,5 +1,6 @@
 //! A study's folder while a run works in it: what was finished before, and what a signal must not lose.
 
+use super::listener::Listener;
 use super::output::output_folder;
 use bubbletouch::study::Shard;
 use bubbletouch::study::journal::{Identity, JOURNAL_FILE, Journal, set_aside};
@@ -29,13 +30,13 @@ impl StudyFolder {
     pub fn open(
         folder: &Path,
         identity: &Identity,
-        start: Start,
-        shard: Option<Shard>,
+        (start, shard): (Start, Option<Shard>),
+        listener: Listener,
     ) -> Result<Self> {
         if start == Start::Fresh
             && let Some(old) = set_aside(folder)?
         {
-            eprintln!("the old results are in {}", old.display());
+            listener.remark(&format!("the old results are in {}", old.display()));
         }
         output_folder(folder)?;
         let name = shard.map_or(JOURNAL_FILE.to_owned(), |shard| {

@@ -8,6 +8,7 @@
 
 mod axis;
 mod check;
+mod compare_runs;
 mod content_hash;
 mod estimate;
 mod evaluation;
@@ -53,6 +54,7 @@ mod training;
 
 pub use axis::Axis;
 pub(crate) use check::{Check, not_negative, positive};
+pub use compare_runs::{RunComparison, RunDifference, compare_runs};
 pub(crate) use content_hash::ContentHash;
 pub use estimate::Estimate;
 pub use evaluation::CONFIDENCE;
