@@ -1,6 +1,6 @@
 //! What moved between two runs, for the terminal.
 
-use crate::report::terminal::{align_right, finish, ruled_table, wrap};
+use crate::report::terminal::{align, finish, ruled_table, wrap};
 use crate::report::varying::{Levels, Settings, unbroken_parts};
 use crate::study::table::Cell;
 use crate::study::{RunComparison, RunDifference};
@@ -64,7 +64,7 @@ fn table(comparison: &RunComparison, settings: &Settings, width: usize) -> Strin
         let labels = axes.iter().map(|levels| levels.axis.value(cell).label);
         table.add_row(labels.chain(numbers(row)));
     }
-    align_right(&mut table, axes.len()..axes.len() + 4);
+    align(&mut table, &axes, 4);
     let left_out = rows.len().saturating_sub(MOST_LISTED);
     let remark = match left_out {
         0 => String::new(),
