@@ -102,6 +102,9 @@
 //! threads, printing or global state. Threads live in `study`, and in `whole_body` for large touches; files in `study`, `scene`
 //! (what a scene names) and `report`.
 //!
+//! The [`guide`] explains the [statistics](guide::statistics) of a study and how to run one on [many
+//! machines](guide::many_machines).
+//!
 //! # Sources
 //!
 //! - `[BT]` Hollis, Patterson, Cui, Trinkle, *BubbleTouch: a quasi-static tactile skin simulator*, 2018 (arXiv 1809.09153).
@@ -132,6 +135,7 @@ pub mod contact;
 pub mod error;
 pub mod files;
 pub mod geometry;
+pub mod guide;
 pub mod mesh;
 mod numbers_csv;
 pub mod objects;

@@ -1,0 +1,7 @@
+//! Guide: pages about what no single item explains.
+
+#[doc = include_str!("statistics.md")]
+pub mod statistics {}
+
+#[doc = include_str!("many_machines.md")]
+pub mod many_machines {}
