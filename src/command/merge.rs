@@ -40,7 +40,7 @@ pub fn merge(args: &Args) -> Result<()> {
         }
     }
     journal.sync()?;
-    let n_left = n_left(&loaded.plan, &loaded.sweep, &journal);
+    let n_left = n_left(&loaded.plan, &loaded.sweep, Part::All, &journal);
     if n_left > 0 {
         let n_all = loaded.n_evaluations();
         return Err(Error::input(

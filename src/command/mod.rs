@@ -17,6 +17,8 @@ mod run;
 mod run_object_detail;
 mod run_reconstruction;
 mod simulate;
+mod slurm;
+mod slurm_jobs;
 mod study_args;
 mod study_folder;
 mod touches;
@@ -42,6 +44,8 @@ enum Command {
     Run(run::Args),
     /// Put the shards of a study together
     Merge(merge::Args),
+    /// Run a study as an array of Slurm jobs, and the merge after them; what failed is submitted again by the same command
+    Slurm(slurm::Args),
     /// Say what moved between two folders of results, and whether chance explains it
     Compare(compare::Args),
     /// Run a few cells of a folder of results again, and say whether they are the same bytes
@@ -70,6 +74,7 @@ pub fn dispatch() -> Result<()> {
         None => run::run(&run::Args::quickstart()),
         Some(Command::Run(args)) => run::run(&args),
         Some(Command::Merge(args)) => merge::merge(&args),
+        Some(Command::Slurm(args)) => slurm::slurm(&args),
         Some(Command::Compare(args)) => compare::compare(&args),
         Some(Command::Verify(args)) => verify::verify(&args),
         Some(Command::Plan(args)) => plan::plan(&args),

@@ -109,7 +109,7 @@ fn run_recognition(args: &Args, folder: &Path) -> Result<()> {
     let identity = identity(&loaded);
     let kept = StudyFolder::open(folder, &identity, (args.start(), args.shard), args.listener)?;
     let n_all = loaded.n_evaluations();
-    let n_left = n_left(&loaded.plan, &loaded.sweep, &kept.journal);
+    let n_left = n_left(&loaded.plan, &loaded.sweep, Part::All, &kept.journal);
     if n_left < n_all {
         let n_before = n_all - n_left;
         let going_on = format!("going on: {n_before} of {n_all} cells were finished before");

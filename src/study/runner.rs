@@ -205,7 +205,7 @@ impl<'a> Run<'a> {
     /// Families of an array that are to be done, by trial and group.
     fn jobs(&self, array: usize, n_frames: usize) -> Vec<Job<'a>> {
         let mut jobs = Vec::new();
-        for (group, trial, families) in self.pieces() {
+        for (group, trial, families) in pieces(self.plan, self.sweep, self.manner.part) {
             if (group.array, group.frames) != (array, n_frames) {
                 continue;
             }
@@ -226,33 +226,6 @@ impl<'a> Run<'a> {
             }
         }
         jobs
-    }
-
-    /// All trials and groups with those of their families that are this shard's.
-    fn pieces(&self) -> Vec<(&'a Group, usize, Vec<&'a [Cell]>)> {
-        let groups = &self.sweep.groups;
-        let n_trials = self.plan.spec.trials;
-        let n_pieces = groups.len() * n_trials;
-        let mut pieces = Vec::with_capacity(n_pieces);
-        let mut n_families = 0;
-        for trial in 0..n_trials {
-            for group in groups {
-                let number = pieces.len();
-                let is_ours = |(place, family): &(usize, &[Cell])| match self.manner.part {
-                    Part::All => true,
-                    Part::Shard(shard) => shard.takes((number, n_pieces), n_families + place),
-                    Part::Holding(cells) => {
-                        let mut numbers = family.iter().map(|cell| (cell.cell, trial));
-                        numbers.any(|number| cells.contains(&number))
-                    }
-                };
-                let families = group.families().enumerate().filter(is_ours);
-                let families = families.map(|(_, family)| family).collect();
-                pieces.push((group, trial, families));
-                n_families += group.families().count();
-            }
-        }
-        pieces
     }
 
     /// Evaluates jobs; with what came of them the processor-seconds of measuring.
@@ -284,9 +257,43 @@ impl<'a> Run<'a> {
     }
 }
 
-/// Cells, counted once a trial, of which a journal does not say what came of them.
-pub fn n_left(plan: &Plan, sweep: &Sweep, journal: &Journal) -> usize {
-    with_what_was_done_before(plan, sweep, journal, Vec::new()).1
+/// All trials and groups, with those of their families that belong to a part.
+fn pieces<'a>(
+    plan: &Plan,
+    sweep: &'a Sweep,
+    part: Part,
+) -> Vec<(&'a Group, usize, Vec<&'a [Cell]>)> {
+    let n_pieces = sweep.groups.len() * plan.spec.trials;
+    let mut pieces = Vec::with_capacity(n_pieces);
+    let mut n_families = 0;
+    for trial in 0..plan.spec.trials {
+        for group in &sweep.groups {
+            let number = pieces.len();
+            let is_in = |(place, family): &(usize, &[Cell])| match part {
+                Part::All => true,
+                Part::Shard(shard) => shard.takes((number, n_pieces), n_families + place),
+                Part::Holding(cells) => {
+                    let mut numbers = family.iter().map(|cell| (cell.cell, trial));
+                    numbers.any(|number| cells.contains(&number))
+                }
+            };
+            let families = group.families().enumerate().filter(is_in);
+            let families = families.map(|(_, family)| family).collect();
+            pieces.push((group, trial, families));
+            n_families += group.families().count();
+        }
+    }
+    pieces
+}
+
+/// Cells of a part, counted once a trial, of which a journal does not say what came of them.
+pub fn n_left(plan: &Plan, sweep: &Sweep, part: Part, journal: &Journal) -> usize {
+    let is_left = |family: &[Cell], trial| Finished::in_journal(journal, family, trial).is_none();
+    let of_piece = |(_, trial, families): (&Group, usize, Vec<&[Cell]>)| -> usize {
+        let left = families.iter().filter(|family| is_left(family, trial));
+        left.map(|family| family.len()).sum()
+    };
+    pieces(plan, sweep, part).into_iter().map(of_piece).sum()
 }
 
 /// Every finished family, from this run or from earlier ones, and how many cells are left.

@@ -14,6 +14,16 @@ pub struct Shard {
 }
 
 impl Shard {
+    /// All parts of a whole, first to last.
+    pub fn all(count: usize) -> impl Iterator<Item = Self> {
+        (1..=count).map(move |index| Self { index, count })
+    }
+
+    /// Its number, from 1.
+    pub fn index(&self) -> usize {
+        self.index
+    }
+
     /// Whether this part holds a piece of work, given the number of its group of pieces and its own among all pieces.
     ///
     /// Pieces of a group share what comes before them, so whole groups are dealt out as long as there is one for everybody.
