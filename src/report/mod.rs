@@ -52,4 +52,5 @@ pub mod terminal;
 pub mod text_width;
 mod time_scale;
 pub mod varying;
+pub mod whole_body_results;
 mod x_scale;

@@ -43,6 +43,7 @@ pub mod table;
 mod touch_files;
 mod touch_set;
 mod training;
+pub mod whole_body;
 
 pub use axis::Axis;
 pub(crate) use check::{Check, not_negative, positive};

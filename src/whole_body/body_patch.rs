@@ -160,6 +160,18 @@ impl WholeBody {
     pub fn n_taxels(&self) -> usize {
         self.n_taxels
     }
+    /// Bytes that it holds; what touches it has its own ([`BodyState::n_bytes`](super::BodyState::n_bytes)).
+    pub fn n_bytes(&self) -> usize {
+        let patch = |patch: &BodyPatch| {
+            let surface = match &patch.surface {
+                Surface::Rows(rows) => rows.n_bytes(),
+                Surface::Dome(dome) => dome.n_bytes(),
+            };
+            size_of::<BodyPatch>() + patch.name.len() + surface
+        };
+        self.patches.iter().map(patch).sum::<usize>() + size_of_val(&self.firsts[..])
+    }
+
     /// A frame of the whole body, n_taxels, that is zero but for some taxels: touched ones with their deflections or forces.
     ///
     /// # Panics

@@ -128,6 +128,17 @@ impl BodyState {
         })
     }
 
+    /// How many patches the last step looked at: those near an object, and those on which something was still deflected.
+    pub fn n_visited(&self) -> usize {
+        self.busy.len()
+    }
+
+    /// Bytes that it holds of each patch and taxel.
+    pub fn n_bytes(&self) -> usize {
+        let patches = self.patches.iter().map(PatchState::n_bytes).sum::<usize>();
+        patches + self.patches.len() * (size_of::<Pose>() + size_of::<Sphere>() + size_of::<u32>())
+    }
+
     /// All deflections of one patch, n_taxels, metres, in the order of its layout.
     ///
     /// # Panics

@@ -63,6 +63,11 @@ impl DomePatch {
         self.ball
     }
 
+    /// Bytes that it holds on the heap.
+    pub fn n_bytes(&self) -> usize {
+        size_of_val(self.dome.rings()) + size_of_val(self.dome.directions())
+    }
+
     /// Pushes by one object.
     pub fn push(&self, state: &mut PatchState, object: &SphereClusters, patch_from_object: &Pose) {
         let rotation = DMat3::from_quat(patch_from_object.rotation);

@@ -71,6 +71,17 @@ impl PatchState {
         self.n_saturated
     }
 
+    /// Bytes that it holds.
+    pub fn n_bytes(&self) -> usize {
+        size_of::<Self>()
+            + size_of_val(&self.deflections[..])
+            + size_of_val(&self.spans[..])
+            + size_of_val(&self.scratch.shares[..])
+            + size_of_val(&self.scratch.heights[..])
+            + self.active.capacity() * size_of::<u32>()
+            + (self.touched.capacity() + self.before.capacity()) * size_of::<(u32, f64)>()
+    }
+
     /// n_taxels deflections, metres.
     pub fn deflections(&self) -> &[f64] {
         &self.deflections

@@ -71,6 +71,15 @@ impl RowPatch {
         self.ball
     }
 
+    /// Bytes that it holds on the heap.
+    pub fn n_bytes(&self) -> usize {
+        size_of_val(self.extrusion.places())
+            + size_of_val(self.extrusion.axes())
+            + size_of_val(self.extrusion.rows())
+            + size_of_val(&self.circles[..])
+            + size_of_val(&self.lines.positions[..])
+    }
+
     /// The rows.
     pub fn lines(&self) -> &Lines {
         &self.lines
