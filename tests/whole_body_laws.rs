@@ -354,14 +354,15 @@ fn a_step_allocates_nothing_once_the_touch_has_been_seen() {
 
 #[test]
 fn a_body_at_rest_has_a_few_bytes_a_taxel() {
-    let (mut n_taxels, mut kept) = (0, None);
+    let (mut n_taxels, mut n_bytes, mut kept) = (0, 0, None);
     let bytes = peak_bytes(|| {
         let sleeve = Extrusion::cylinder(0.06, 0.2, 3.0, 1e-3).unwrap();
         let patches =
             (0..20).map(|k| BodyPatch::new(format!("{k}"), sleeve.clone(), TAXEL).unwrap());
         let body = WholeBody::new(patches.collect()).unwrap();
-        n_taxels = body.n_taxels();
-        kept = Some(BodyState::at_rest(&body));
+        let state = BodyState::at_rest(&body);
+        (n_taxels, n_bytes) = (body.n_taxels(), body.n_bytes() + state.n_bytes());
+        kept = Some(state);
     });
     drop(kept);
     let share = bytes as f64 / n_taxels as f64;
@@ -369,6 +370,8 @@ fn a_body_at_rest_has_a_few_bytes_a_taxel() {
         n_taxels > 700_000 && (8.0..10.0).contains(&share),
         "{share} bytes a taxel"
     );
+    let said = n_bytes as f64 / bytes as f64;
+    assert!((said - 1.0).abs() < 0.02, "{n_bytes} of {bytes} bytes");
 }
 
 #[test]

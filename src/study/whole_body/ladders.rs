@@ -1,7 +1,7 @@
-//! What a step costs by the size of skin, touch and object: rungs of sleeves under a sheet of spheres.
+//! What a step costs by the size of skin, touch and object: rungs of sleeves under a cushion of spheres.
 
 use super::drive::{Drive, Driven, PosedBody};
-use super::objects::sheet;
+use super::objects::cushion;
 use super::path::Path;
 use super::plan::WholeBodyPlan;
 use super::sleeves::Sleeve;
@@ -15,9 +15,9 @@ use glam::DVec3;
 /// of the other ladders, where the touch needs more room: as large as a trunk.
 const SMALL: (usize, usize) = (5, 2);
 const LARGE: (usize, usize) = (9, 4);
-/// Share of a sleeve's taxels that a touch may cover, at most: there must be room for the sheet.
+/// Share of a sleeve's taxels that a touch may cover, at most: there must be room for the cushion.
 const MOST_TOUCHED: f64 = 0.4;
-/// The sheet swings by so many radians about the sleeve's axis, and slides by such a share of its side, each half second.
+/// The cushion swings by so many radians about the sleeve's axis, and slides by such a share of its side, each half second.
 const SWING: f64 = 0.05;
 const SLIDE: f64 = 0.02;
 const PERIOD: f64 = 0.5;
@@ -81,7 +81,7 @@ pub(super) fn climb(plan: &WholeBodyPlan, rung: &Rung) -> Result<(BodyCase, Driv
     let (body, poses) = sleeve.body(rung.n_taxels, plan.taxel, plan.pitch)?;
     let side = plan.pitch * (rung.n_touched as f64).sqrt();
     // Its spheres are where a taxel's own sphere begins.
-    let object = sheet(rung.n_spheres, side, sleeve.radius() + plan.taxel.radius)?;
+    let object = cushion(rung.n_spheres, side, sleeve.radius() + plan.taxel.radius)?;
     let posed = PosedBody { body: &body, poses };
     let path = Path {
         world_from_link: Pose::IDENTITY,
@@ -91,7 +91,7 @@ pub(super) fn climb(plan: &WholeBodyPlan, rung: &Rung) -> Result<(BodyCase, Driv
         period: PERIOD,
     };
     let mut drive = Drive::new(&posed, &object, path);
-    // A sheet that goes deeper than the stroke only saturates more.
+    // A cushion that goes deeper than the stroke only saturates more.
     let (mut out, mut deep) = (0.0, plan.taxel.stroke);
     for _ in 0..N_HALVINGS {
         let depth = 0.5 * (out + deep);

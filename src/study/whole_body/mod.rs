@@ -7,7 +7,7 @@
 //!    Each step is pressed, what is touched is compressed ([`Columns`](crate::sensing::Columns)), and a linear SVM says what it is.
 //! 2. **Recognition**: that SVM has learned from simulated touches of some objects, and is tested on others of the same objects.
 //! 3. **Ladders**: what a step costs as the skin grows at the same touch, as the touch grows on the same skin, and with the spheres
-//!    of the object, on bodies of equal sleeves under a sheet of spheres.
+//!    of the object, on bodies of equal sleeves under a cushion of spheres.
 //! 4. **Bars**: what this comes to, beside what was asked.
 //!
 //! Counts, sums and decisions are the same bytes at any number of threads; times have tables of their own.

@@ -1,4 +1,4 @@
-//! What touches a body: built-in objects, solids of a few parts, and sheets of spheres.
+//! What touches a body: built-in objects, solids of a few parts, and cushions of spheres.
 
 use super::plan::ObjectPlan;
 use super::spec::BodyPartSpec;
@@ -58,26 +58,30 @@ fn part(part: &BodyPartSpec) -> Result<Part> {
     Part::new(shape, Pose::from_translation(MM * DVec3::from_array(at)))
 }
 
-/// Radius of the spheres of a sheet, in distances between them. Larger: each taxel is under more of them.
+/// Radius of the spheres of a cushion, in distances between them. Larger: each taxel is under more of them.
 const SPHERE_RADIUS: f64 = 3.0;
 /// Steps of a lattice whose points lie evenly in a square, however many they are: the golden ratio.
 const GOLDEN: f64 = 0.618_033_988_749_894_9;
 
-/// A square sheet of n spheres of `side` metres, bent around a cylinder about z, its middle at +x, that the spheres touch from
-/// outside.
-pub(super) fn sheet(n: usize, side: f64, cylinder: f64) -> Result<SphereUnion> {
-    let radius = SPHERE_RADIUS * side / (n as f64).sqrt();
-    let spheres = (0..n).map(|k| {
-        let around = ((k as f64 * GOLDEN).fract() - 0.5) * side / cylinder;
-        let along = ((k as f64 + 0.5) / n as f64 - 0.5) * side;
-        let (sin, cos) = around.sin_cos();
-        let away = cylinder + radius;
-        Sphere {
-            center: DVec3::new(away * cos, away * sin, along),
-            radius,
-        }
-    });
-    SphereUnion::new(spheres.collect())
+/// A square cushion of n spheres, `side` metres each way, bent around a cylinder about z, its middle at +x: half of the spheres touch
+/// the cylinder from outside, the others are on its far side, half a side away.
+pub(super) fn cushion(n: usize, side: f64, cylinder: f64) -> Result<SphereUnion> {
+    let n_inside = n.div_ceil(2);
+    let radius = SPHERE_RADIUS * side / (n_inside as f64).sqrt();
+    let sheet = |n: usize, away: f64| {
+        (0..n).map(move |k| {
+            let around = ((k as f64 * GOLDEN).fract() - 0.5) * side / cylinder;
+            let along = ((k as f64 + 0.5) / n as f64 - 0.5) * side;
+            let (sin, cos) = around.sin_cos();
+            Sphere {
+                center: DVec3::new(away * cos, away * sin, along),
+                radius,
+            }
+        })
+    };
+    let inside = sheet(n_inside, cylinder + radius);
+    let outside = sheet(n - n_inside, cylinder + radius + 0.5 * side);
+    SphereUnion::new(inside.chain(outside).collect())
 }
 
 #[cfg(test)]
@@ -85,11 +89,12 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_spheres_of_a_sheet_touch_the_cylinder_evenly() {
+    fn half_the_spheres_of_a_cushion_touch_the_cylinder_evenly() {
         let (side, cylinder) = (0.1, 0.08);
-        let union = sheet(1000, side, cylinder).unwrap();
+        let union = cushion(2000, side, cylinder).unwrap();
+        assert_eq!(union.n_spheres(), 2000);
         let mut quarters = [0; 16];
-        for sphere in union.spheres() {
+        for sphere in &union.spheres()[..1000] {
             let away = sphere.center.truncate().length();
             assert!((away - sphere.radius - cylinder).abs() < 1e-12);
             let angle = sphere.center.y.atan2(sphere.center.x);

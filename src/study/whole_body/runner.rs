@@ -30,6 +30,8 @@ pub struct BodyPicture {
     pub scene: String,
     /// Places on the skin, metres, some millimetres apart, and the pressure on their patch: force over area, Pa.
     pub skin: Vec<(DVec3, f64)>,
+    /// Patches that are touched.
+    pub n_patches: usize,
     /// Touched taxels, metres.
     pub touched: Vec<DVec3>,
     /// What touches, metres.
@@ -159,7 +161,7 @@ fn picture(
     object: &SphereUnion,
 ) -> Result<BodyPicture> {
     let path = drive.path;
-    drive.probe(&path);
+    let n_patches = drive.probe(&path).n_patches;
     let body = covered.body();
     let mut pressures = vec![0.0; body.patches().len()];
     let mut touched = Vec::new();
@@ -191,6 +193,7 @@ fn picture(
     Ok(BodyPicture {
         scene: scene.name.clone(),
         skin: skin.collect(),
+        n_patches,
         touched,
         object: object.moved(&path.at(0.0)).spheres().to_vec(),
     })

@@ -191,7 +191,7 @@ pub struct LaddersSpec {
     pub touched_at_taxels: Vec<usize>,
     /// Rungs of the touch, taxels, about.
     pub touched: Vec<usize>,
-    /// Rungs of the object, spheres; the first makes the sheet of the other ladders.
+    /// Rungs of the object, spheres; the first makes the cushion of the other ladders; half are on its far side.
     pub spheres: Vec<usize>,
     /// Taxels touched on the rungs of the object, about.
     pub touched_at_spheres: usize,
