@@ -170,7 +170,10 @@ fn draw_stages(title: &str, tables: &WholeBodyTables) -> Drawing {
         .filter(|(_, time)| time.stage == Stage::Whole)
         .map(|(case, time)| (case, time))
         .collect();
-    let mut entries = line_entries(STAGES.map(|(_, name)| name));
+    let names = STAGES.iter().enumerate();
+    let mut entries: Vec<LegendEntry> = names
+        .map(|(number, (_, name))| LegendEntry::new((*name).to_owned(), Mark::Point(number)))
+        .collect();
     entries.push(LegendEntry::new("a millisecond".to_owned(), Mark::Dashes));
     let settings = "medians over steps; in brackets the taxels touched";
     let heading = Heading::of(title, settings, entries, WIDTH);

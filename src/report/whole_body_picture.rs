@@ -1,18 +1,17 @@
 //! The picture of a touched body: with what touches it, and the pressure on its patches without.
 
-use super::canvas::View;
+use super::canvas::{Hit, View};
 use super::colours::share;
 use super::picture::{Label, Picture};
 use super::shaded_view::{Lighting, PAINT, Stage};
 use crate::error::Result;
 use crate::objects::Sphere;
-use crate::report::axis::short_number;
 use crate::study::whole_body::BodyPicture;
 use glam::{DQuat, DVec2, DVec3};
 use std::f64::consts::FRAC_PI_2;
 
 /// Pixels of a panel.
-const PANEL: [usize; 2] = [520, 900];
+const PANEL: [usize; 2] = [600, 900];
 /// Skin that nothing touches, and taxels that something does.
 const BARE: [u8; 3] = [226, 214, 200];
 const TOUCHED: [u8; 3] = [0xd5, 0x5e, 0x00];
@@ -38,7 +37,7 @@ pub fn whole_body_picture(scene: &BodyPicture) -> Result<Picture> {
     let both: Vec<Sphere> = alone.iter().copied().chain(object).collect();
 
     let [width, height] = PANEL;
-    let room = DVec2::new(0.86 * width as f64, height as f64 - 150.0);
+    let room = DVec2::new(0.62 * width as f64, height as f64 - 150.0);
     let stage = Stage::seen(View::from_angles(AZIMUTH, ELEVATION), &both, PANEL, room);
     let highest = scene.skin.iter().map(|place| place.1).fold(0.0, f64::max);
     let pressure = |number: usize| match scene.skin.get(number) {
@@ -53,8 +52,7 @@ pub fn whole_body_picture(scene: &BodyPicture) -> Result<Picture> {
     };
     let mut picture = Picture::blank(2 * width, height)?;
     let hits = stage.canvas.hits(&both);
-    let number =
-        |hits: &[Option<super::canvas::Hit>], ray: usize| hits[ray].map_or(0, |hit| hit.part);
+    let number = |hits: &[Option<Hit>], ray: usize| hits[ray].map_or(0, |hit| hit.part);
     let view = stage.view(&hits, Lighting::Smoothed, |ray| colour(number(&hits, ray)));
     picture.place(&view, [0, 0], PANEL);
     let hits = stage.canvas.hits(&alone);
@@ -84,7 +82,11 @@ pub fn whole_body_picture(scene: &BodyPicture) -> Result<Picture> {
     labels.push(picture.draw_scale(stage.pixels_per_metre, width as f64, below, 13));
     draw_scale(&mut picture, width + width / 4, width / 2, height - 40);
     for (place, pressure) in [(-0.25, 0.0), (0.0, 0.5), (0.25, 1.0)] {
-        let kilopascals = format!("{} kPa", short_number(1e-3 * pressure * highest));
+        let kilopascals = 1e-3 * pressure * highest;
+        let kilopascals = match highest >= 1e4 {
+            true => format!("{kilopascals:.0} kPa"),
+            false => format!("{kilopascals:.2} kPa"),
+        };
         labels.push(label(1.0 + place, kilopascals, height as f64 - 12.0, 12));
     }
     picture.write_labels(&labels)?;

@@ -4,6 +4,7 @@ use crate::error::Result;
 use crate::report::axis::short_number;
 use crate::report::drawing::escape;
 use crate::report::folder::Folder;
+use crate::report::headlines::TextTable;
 use crate::report::html::{Picture, STYLE, figure, fill};
 use crate::report::whole_body_charts::draw_whole_body_charts;
 use crate::report::whole_body_picture::whole_body_picture;
@@ -71,11 +72,7 @@ pub fn write_whole_body(
         picture = format!("<section><h2>What is touched</h2>{shown}</section>");
         folder.add("touched.png", png);
     }
-    let html = |table: Option<_>| {
-        table.map_or(String::new(), |table: super::headlines::TextTable| {
-            table.html()
-        })
-    };
+    let html = |table: Option<_>| table.map_or(String::new(), |table: TextTable| table.html());
     let page = fill(TEMPLATE, |name| match name {
         "style" => STYLE.to_owned(),
         "name" => escape(&about.name),
