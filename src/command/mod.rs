@@ -34,6 +34,9 @@ struct CommandLine {
 #[derive(Subcommand)]
 enum Command {
     /// Run a study: simulate, compress, recognise; write tables, charts and a report
+    ///
+    /// Its file says of which kind it is: [recognition], [reconstruction] (how well frames come back), [object_detail] (how detailed
+    /// objects must be) or [whole_body] (what a body of millions of taxels costs).
     Run(run::Args),
     /// Say what a study would do: cells, touches, memory and time, without running it
     Plan(plan::Args),
