@@ -31,6 +31,16 @@ pub enum Error {
         /// What the system answered.
         source: std::io::Error,
     },
+    /// Some cells of a study failed; what the others found is written. The command exits with code 1.
+    #[error("{path}: {n_failed} of {n_cells} cells failed; the file says why, and the same command tries them again", path = path.display())]
+    Cells {
+        /// The table of failures.
+        path: PathBuf,
+        /// Cells that failed, counted once a trial.
+        n_failed: usize,
+        /// All cells, counted once a trial.
+        n_cells: usize,
+    },
 }
 
 impl Error {
@@ -51,7 +61,7 @@ impl Error {
                 given,
                 allowed,
             } => Self::input(format!("{outer}{place}"), given, allowed),
-            io @ Self::Io { .. } => io,
+            other @ (Self::Io { .. } | Self::Cells { .. }) => other,
         }
     }
 
@@ -91,7 +101,7 @@ impl Error {
     pub fn exit_code(&self) -> u8 {
         match self {
             Self::Input { .. } => 2,
-            Self::Io { .. } => 1,
+            Self::Io { .. } | Self::Cells { .. } => 1,
         }
     }
 }

@@ -102,7 +102,16 @@ fn tables_but_for_times_are_the_same_bytes_at_any_number_of_threads_and_obey_the
         said.contains("What was asked") && said.contains("fingertip"),
         "{said}"
     );
-    case.succeeds(&["run", "study.toml", "--threads", "2", "--out", "2"]);
+    let quiet = [
+        "run",
+        "study.toml",
+        "--threads",
+        "2",
+        "--out",
+        "2",
+        "--quiet",
+    ];
+    assert_eq!(case.succeeds(&quiet), (String::new(), String::new()));
     let read = |folder: &str, name: &str| fs::read(case.path(folder).join(name)).unwrap();
     for name in [
         "whole_body.csv",

@@ -1,7 +1,11 @@
 //! The command line: one file a subcommand, each `Args` → work → files or terminal.
 
+mod about_study;
 mod classify;
+mod compare;
 mod features;
+mod listener;
+mod merge;
 mod objects;
 mod objects_pack;
 mod objects_show;
@@ -15,7 +19,9 @@ mod run_reconstruction;
 mod run_whole_body;
 mod simulate;
 mod study_args;
+mod study_folder;
 mod touches;
+mod verify;
 mod which_object;
 
 use bubbletouch::Result;
@@ -38,6 +44,12 @@ enum Command {
     /// Its file says of which kind it is: [recognition], [reconstruction] (how well frames come back), [object_detail] (how detailed
     /// objects must be) or [whole_body] (what a body of millions of taxels costs).
     Run(run::Args),
+    /// Put the shards of a study together
+    Merge(merge::Args),
+    /// Say what moved between two folders of results, and whether chance explains it
+    Compare(compare::Args),
+    /// Run a few cells of a folder of results again, and say whether they are the same bytes
+    Verify(verify::Args),
     /// Say what a study would do: cells, touches, memory and time, without running it
     Plan(plan::Args),
     /// Write a study's touches as NumPy files, to train elsewhere
@@ -61,6 +73,9 @@ pub fn dispatch() -> Result<()> {
     match CommandLine::parse().command {
         None => run::run(&run::Args::quickstart()),
         Some(Command::Run(args)) => run::run(&args),
+        Some(Command::Merge(args)) => merge::merge(&args),
+        Some(Command::Compare(args)) => compare::compare(&args),
+        Some(Command::Verify(args)) => verify::verify(&args),
         Some(Command::Plan(args)) => plan::plan(&args),
         Some(Command::Touches(args)) => touches::touches(&args),
         Some(Command::Features(args)) => features::features(&args),

@@ -1,17 +1,22 @@
 //! `bubbletouch run`: a study from its file to its folder of results.
 
-use super::output::{output_folder, packings_beside, terminal_width};
+use super::about_study::report_page;
+use super::listener::Listener;
+use super::output::{packings_beside, terminal_width};
 use super::run_object_detail::run_object_detail;
 use super::run_reconstruction::run_reconstruction;
 use super::run_whole_body::run_whole_body;
 use super::study_args::{LoadedStudy, StudyArgs};
-use bubbletouch::Result;
+use super::study_folder::{Start, StudyFolder};
 use bubbletouch::files::write_bytes;
-use bubbletouch::report::html::{Limit, ReportPage, Snapshots};
-use bubbletouch::report::{headlines, progress, results, terminal};
-use bubbletouch::study::{Outcome, StudyKind, run as run_study};
+use bubbletouch::report::csv_tables::repeatable_hashes;
+use bubbletouch::report::{headlines, results, terminal};
+use bubbletouch::study::journal::Identity;
+use bubbletouch::study::provenance::{MANIFEST_FILE, Manifest, RunFacts};
+use bubbletouch::study::{Manner, Outcome, Part, Shard, StudyKind, n_left, run_with};
+use bubbletouch::{Error, Result};
 use std::path::{Path, PathBuf};
-use std::time::Instant;
+use std::time::SystemTime;
 
 #[derive(clap::Args)]
 pub struct Args {
@@ -20,6 +25,21 @@ pub struct Args {
     /// Where to write tables, charts and report.html [default: results/ and the study's name]
     #[arg(long, value_name = "FOLDER")]
     out: Option<PathBuf>,
+    /// Start over; what stands in the folder is kept beside it, as FOLDER.1, FOLDER.2 ... Without it, a run goes on from
+    /// what an earlier run of the same study has finished
+    #[arg(long)]
+    fresh: bool,
+    /// Stop at the first cell that fails, rather than record it in failures.csv and go on
+    #[arg(long)]
+    fail_fast: bool,
+    /// Evaluate only part I of N of the cells, for one of N processes or machines; `bubbletouch merge` puts them together
+    #[arg(long, value_name = "I/N")]
+    shard: Option<Shard>,
+    #[command(flatten)]
+    listener: Listener,
+    /// A demonstration runs anew unless it was interrupted.
+    #[arg(skip)]
+    is_demonstration: bool,
 }
 
 impl Args {
@@ -28,148 +48,202 @@ impl Args {
         Self {
             study: StudyArgs::quickstart(),
             out: None,
+            fresh: false,
+            fail_fast: false,
+            shard: None,
+            listener: Listener::default(),
+            is_demonstration: true,
+        }
+    }
+
+    /// An error if there is an option that this kind of study has no use for yet.
+    fn check_options(&self, kind: StudyKind) -> Result<()> {
+        let given = [
+            ("--fresh", self.fresh),
+            ("--fail-fast", self.fail_fast),
+            ("--shard", self.shard.is_some()),
+        ];
+        let given = given.into_iter().find(|(_, is_given)| *is_given);
+        match given {
+            Some((option, _)) if kind != StudyKind::Recognition => {
+                let allowed = format!(
+                    "no such option: it is for {}",
+                    StudyKind::Recognition.words()
+                );
+                Err(Error::input(option, kind.words(), allowed))
+            }
+            _ => Ok(()),
+        }
+    }
+
+    fn start(&self) -> Start {
+        match (self.fresh, self.is_demonstration) {
+            (true, _) => Start::Fresh,
+            (false, true) => Start::Demonstration,
+            (false, false) => Start::GoOn,
         }
     }
 }
 
 pub fn run(args: &Args) -> Result<()> {
-    let start = Instant::now();
-    let folder = match &args.out {
-        Some(folder) => folder.clone(),
-        None => Path::new("results").join(args.study.name()?),
-    };
-    match args.study.kind()? {
-        StudyKind::Recognition => run_recognition(args, &folder, start),
-        StudyKind::Reconstruction => run_reconstruction(&args.study, &folder),
-        StudyKind::ObjectDetail => run_object_detail(&args.study, &folder),
-        StudyKind::WholeBody => run_whole_body(&args.study, &folder),
+    let folder = results_folder(&args.study, args.out.as_deref())?;
+    let kind = args.study.kind()?;
+    args.check_options(kind)?;
+    match kind {
+        StudyKind::Recognition => run_recognition(args, &folder),
+        StudyKind::Reconstruction => run_reconstruction(&args.study, args.listener, &folder),
+        StudyKind::ObjectDetail => run_object_detail(&args.study, args.listener, &folder),
+        StudyKind::WholeBody => run_whole_body(&args.study, args.listener, &folder),
     }
 }
 
-fn run_recognition(args: &Args, folder: &Path, start: Instant) -> Result<()> {
+/// Where a study's results go.
+pub fn results_folder(study: &StudyArgs, out: Option<&Path>) -> Result<PathBuf> {
+    match out {
+        Some(folder) => Ok(folder.to_owned()),
+        None => Ok(Path::new("results").join(study.name()?)),
+    }
+}
+
+fn run_recognition(args: &Args, folder: &Path) -> Result<()> {
+    let started = SystemTime::now();
     let loaded = args.study.load(Some(&packings_beside(folder)))?;
-    output_folder(folder)?;
-    let progress = progress::to_stderr();
-    let outcome = run_study(
+    let identity = identity(&loaded);
+    let kept = StudyFolder::open(folder, &identity, (args.start(), args.shard), args.listener)?;
+    let n_all = loaded.n_evaluations();
+    let n_left = n_left(&loaded.plan, &loaded.sweep, &kept.journal);
+    if n_left < n_all {
+        let n_before = n_all - n_left;
+        let going_on = format!("going on: {n_before} of {n_all} cells were finished before");
+        args.listener.remark(&going_on);
+    }
+    let manner = Manner {
+        journal: &kept.journal,
+        fail_fast: args.fail_fast,
+        retries: true,
+        part: args.shard.map_or(Part::All, Part::Shard),
+    };
+    let progress = args.listener.progress();
+    let outcome = run_with(
         &loaded.plan,
         &loaded.sweep,
         loaded.touched.as_ref(),
         progress.as_ref(),
+        manner,
     )?;
+    kept.journal.sync()?;
+    if let Some(shard) = args.shard {
+        progress.finish(&format!("{:.1} s", seconds_since(started)));
+        let study = args.study.study.display();
+        args.listener.remark(&format!(
+            "shard {shard} is done; when all are, put them together: bubbletouch merge {study}"
+        ));
+        return failures(&outcome, folder);
+    }
+    let finished = FinishedStudy {
+        args: &args.study,
+        folder,
+        loaded: &loaded,
+        identity: &identity,
+        outcome: &outcome,
+        started,
+        n_before: n_all - n_left,
+    };
     progress.stage("report", 1);
-    let page = report_page(&loaded, &outcome, args, start.elapsed().as_secs_f64())?;
-    results::write_all(folder, &outcome.tables, &page)?;
-    write_bytes(
-        &folder.join("study.toml"),
-        loaded.plan.spec.to_toml().as_bytes(),
-    )?;
+    finished.write()?;
     progress.advance(1);
-    progress.finish(&format!("{:.1} s", start.elapsed().as_secs_f64()));
-    let table = folder.join("summary.csv").display().to_string();
-    println!(
-        "{}",
-        terminal::summary_table(&outcome.tables, terminal_width(), &table)
-    );
-    print!("{}", headlines::text(&outcome.tables, terminal_width()));
-    println!(
-        "Results in {}; open {}",
-        folder.display(),
-        folder.join("report.html").display()
-    );
-    Ok(())
+    progress.finish(&format!("{:.1} s", seconds_since(started)));
+    if args.is_demonstration {
+        kept.forget()?;
+    }
+    finished.tell(args.listener);
+    failures(&outcome, folder)
 }
 
-fn report_page(
-    loaded: &LoadedStudy,
-    outcome: &Outcome,
-    args: &Args,
-    wall_s: f64,
-) -> Result<ReportPage> {
-    let spec = &loaded.plan.spec;
-    let sample = loaded.touched.samples(&loaded.plan, &loaded.sweep)?;
-    Ok(ReportPage {
-        name: loaded.name.clone(),
-        question: spec.question.clone(),
-        expected: spec.expected.clone(),
-        settings: settings(loaded),
-        limits: limits(loaded, outcome),
-        snapshots: Some(Snapshots {
-            frames: sample.frames,
-            pitch_mm: sample.pitch_mm,
-            quantity: sample.quantity,
-            caption: sample.caption,
+/// What the results of a study depend on.
+pub fn identity(loaded: &LoadedStudy) -> Identity {
+    Identity::new(loaded.plan.spec.to_toml(), loaded.touched.content())
+}
+
+pub fn seconds_since(started: SystemTime) -> f64 {
+    started.elapsed().unwrap_or_default().as_secs_f64()
+}
+
+/// A study with all its cells done, and where its files go.
+pub struct FinishedStudy<'a> {
+    pub args: &'a StudyArgs,
+    pub folder: &'a Path,
+    pub loaded: &'a LoadedStudy,
+    pub identity: &'a Identity,
+    pub outcome: &'a Outcome,
+    pub started: SystemTime,
+    /// Cells that were finished before this run, counted once a trial.
+    pub n_before: usize,
+}
+
+impl FinishedStudy<'_> {
+    /// Writes tables, charts, the page, the study and the manifest.
+    pub fn write(&self) -> Result<()> {
+        let tables = &self.outcome.tables;
+        let page = report_page(
+            self.loaded,
+            self.outcome,
+            self.args,
+            seconds_since(self.started),
+        )?;
+        results::write_all(self.folder, tables, &page)?;
+        let spec = &self.loaded.plan.spec;
+        write_bytes(&self.folder.join("study.toml"), spec.to_toml().as_bytes())?;
+        let facts = RunFacts {
+            started: self.started,
+            seed: spec.seed,
+            n_cells: self.loaded.sweep.n_cells(),
+            n_trials: spec.trials,
+            n_finished_before: self.n_before,
+            n_failed: tables.failures.len(),
+            tables_sha256: repeatable_hashes(tables)?,
+        };
+        let manifest = Manifest::new(self.identity, facts).to_json();
+        write_bytes(&self.folder.join(MANIFEST_FILE), manifest.as_bytes())
+    }
+
+    /// Says on standard output what was found.
+    pub fn tell(&self, listener: Listener) {
+        let tables = &self.outcome.tables;
+        listener.finished(serde_json::json!({
+            "event": "finished",
+            "folder": self.folder,
+            "cells": self.loaded.n_evaluations(),
+            "finished_before": self.n_before,
+            "failed": tables.failures.len(),
+            "elapsed_s": seconds_since(self.started),
+        }));
+        if !listener.is_person() {
+            return;
+        }
+        let table = self.folder.join("summary.csv").display().to_string();
+        println!(
+            "{}",
+            terminal::summary_table(tables, terminal_width(), &table)
+        );
+        print!("{}", headlines::text(tables, terminal_width()));
+        println!(
+            "Results in {}; open {}",
+            self.folder.display(),
+            self.folder.join("report.html").display()
+        );
+    }
+}
+
+/// An error if some cells failed.
+pub fn failures(outcome: &Outcome, folder: &Path) -> Result<()> {
+    let n_failed = outcome.tables.failures.len();
+    match n_failed {
+        0 => Ok(()),
+        _ => Err(Error::Cells {
+            path: folder.join("failures.csv"),
+            n_failed,
+            n_cells: outcome.tables.accuracy.len() + n_failed,
         }),
-        pareto: spec.report.pareto,
-        wall_s: Some(wall_s),
-        command: command_line(args),
-        program: concat!("bubbletouch ", env!("CARGO_PKG_VERSION")).to_owned(),
-    })
-}
-
-fn settings(loaded: &LoadedStudy) -> Vec<(String, String)> {
-    let spec = &loaded.plan.spec;
-    let row = |name: &str, value: String| (name.to_owned(), value);
-    let mut rows = loaded.touched.settings();
-    rows.extend([
-        row("Touches", loaded.sweep.labels.len().to_string()),
-        row("Stroke", format!("{} mm", spec.skin.stroke_mm)),
-        row("Trials", spec.trials.to_string()),
-        row("Seed", spec.seed.to_string()),
-    ]);
-    rows
-}
-
-fn limits(loaded: &LoadedStudy, outcome: &Outcome) -> Vec<Limit> {
-    let sum = |count: fn(&bubbletouch::study::ArrayOutcome) -> usize| -> u64 {
-        outcome.arrays.iter().map(|array| count(array) as u64).sum()
-    };
-    let n_touches = sum(|a| a.n_touches);
-    let n_capped = outcome
-        .tables
-        .accuracy
-        .iter()
-        .filter(|(_, score)| score.n_capped > 0)
-        .count();
-    let limit = |what: &str, count, of, meaning: &str| Limit {
-        what: what.to_owned(),
-        count,
-        of,
-        meaning: meaning.to_owned(),
-    };
-    vec![
-        limit(
-            "touches that met nothing",
-            sum(|a| a.n_missed),
-            n_touches,
-            match loaded.plan.human_touch {
-                Some(_) => {
-                    "the hand was beyond the array or between its taxels; their frames hold no contact"
-                }
-                None => "no part of the object was over the array; their frames hold no contact",
-            },
-        ),
-        limit(
-            "touches with a saturated taxel",
-            sum(|a| a.n_saturated),
-            n_touches,
-            "a taxel was at its stroke, where it cannot tell how much further the object pushes",
-        ),
-        limit(
-            "fits stopped at the solver's iteration cap",
-            n_capped as u64,
-            outcome.tables.accuracy.len() as u64,
-            "at least one of their SVMs is short of its tolerance",
-        ),
-    ]
-}
-
-fn command_line(args: &Args) -> String {
-    let mut command = format!("bubbletouch run {}", args.study.study.display());
-    if let Some(objects) = &args.study.objects {
-        command += &format!(" --objects {}", objects.display());
     }
-    if let Some(seed) = args.study.seed {
-        command += &format!(" --seed {seed}");
-    }
-    command
 }

@@ -1,11 +1,11 @@
 //! `bubbletouch run` of a study that reconstructs frames.
 
+use super::listener::Listener;
 use super::output::{output_folder, packings_beside, terminal_width};
 use super::study_args::StudyArgs;
 use bubbletouch::Result;
 use bubbletouch::files::write_bytes;
 use bubbletouch::random::Seed;
-use bubbletouch::report::progress;
 use bubbletouch::report::reconstruction_frames::draw_samples;
 use bubbletouch::report::reconstruction_results::write_reconstruction;
 use bubbletouch::report::reconstruction_text::reconstruction_summary;
@@ -14,13 +14,13 @@ use bubbletouch::study::{draw_touches, load_objects, millimetres};
 use std::path::Path;
 use std::time::Instant;
 
-pub fn run_reconstruction(args: &StudyArgs, folder: &Path) -> Result<()> {
+pub fn run_reconstruction(args: &StudyArgs, listener: Listener, folder: &Path) -> Result<()> {
     let start = Instant::now();
     let plan = args.reconstruction_plan()?;
     let objects = load_objects(&plan.spec.objects, Some(&packings_beside(folder)))?;
     let touched = draw_touches(objects, &plan.placement, &Seed::new(plan.spec.seed))?;
     output_folder(folder)?;
-    let progress = progress::to_stderr();
+    let progress = listener.progress();
     let outcome = reconstruct(&plan, &touched, progress.as_ref())?;
     progress.stage("report", 1);
     let grid = plan.patch.grid;
@@ -37,6 +37,10 @@ pub fn run_reconstruction(args: &StudyArgs, folder: &Path) -> Result<()> {
     write_bytes(&folder.join("study.toml"), plan.spec.to_toml().as_bytes())?;
     progress.advance(1);
     progress.finish(&format!("{:.1} s", start.elapsed().as_secs_f64()));
+    listener.finished(serde_json::json!({ "event": "finished", "folder": folder }));
+    if !listener.is_person() {
+        return Ok(());
+    }
     println!("{}", plan.spec.question);
     println!(
         "{} objects; dictionaries learned from {} clean training touches, tested on {} others\n",

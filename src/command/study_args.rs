@@ -37,6 +37,13 @@ pub struct LoadedStudy {
     pub sweep: Sweep,
 }
 
+impl LoadedStudy {
+    /// Cells, counted once a trial.
+    pub fn n_evaluations(&self) -> usize {
+        self.sweep.n_cells() * self.plan.spec.trials
+    }
+}
+
 impl StudyArgs {
     pub fn quickstart() -> Self {
         Self {

@@ -5,17 +5,19 @@
 
 use crate::error::{Error, Result};
 use crate::report::folder::Folder;
+use crate::study::ContentHash;
 use crate::study::table::{
-    Cell, CellScore, Comparison, Confused, Confusion, Pareto, Published, StageTime, Tables,
-    TrialScore, TrialTime,
+    Cell, CellScore, Comparison, Confused, Confusion, Failure, Pareto, Published, StageTime,
+    Tables, TrialScore, TrialTime,
 };
 use serde::Serialize;
 use serde::de::DeserializeOwned;
+use std::collections::BTreeMap;
 use std::fs::File;
 use std::path::{Path, PathBuf};
 
 /// File names of the tables, in the order in which [`write_tables`] writes them.
-pub const TABLE_FILES: [&str; 9] = [
+pub const TABLE_FILES: [&str; 10] = [
     "accuracy.csv",
     "summary.csv",
     "confusion.csv",
@@ -25,7 +27,24 @@ pub const TABLE_FILES: [&str; 9] = [
     "stages.csv",
     "confused.csv",
     "published.csv",
+    "failures.csv",
 ];
+
+/// SHA-256 of every table without times, by its file's name: the same for the same study.
+pub fn repeatable_hashes(tables: &Tables) -> Result<BTreeMap<String, String>> {
+    let mut folder = Folder::new(Path::new(""));
+    add_tables(&mut folder, tables)?;
+    let files = folder
+        .files()
+        .filter(|(name, _)| !TIME_TABLES.contains(name));
+    let hash = |content: &[u8]| ContentHash::default().bytes(content).hex();
+    Ok(files
+        .map(|(name, content)| (name.to_owned(), hash(content)))
+        .collect())
+}
+
+/// Those of them that hold times, which no two runs share.
+pub const TIME_TABLES: [&str; 3] = ["timing.csv", "pareto.csv", "stages.csv"];
 
 /// Writes every table into `dir` (created if missing), each as a whole file; returns their paths.
 pub fn write_tables(dir: &Path, tables: &Tables) -> Result<Vec<PathBuf>> {
@@ -46,6 +65,7 @@ pub(super) fn add_tables(folder: &mut Folder, tables: &Tables) -> Result<()> {
         stages,
         confused,
         published,
+        failures,
     ] = TABLE_FILES;
     folder.add_table(accuracy, &tables.accuracy)?;
     folder.add_table(summary, &tables.summary)?;
@@ -55,7 +75,8 @@ pub(super) fn add_tables(folder: &mut Folder, tables: &Tables) -> Result<()> {
     folder.add_table(pareto, &tables.pareto)?;
     folder.add_table(stages, &tables.stages)?;
     folder.add_table(confused, &tables.confused)?;
-    folder.add_table(published, &tables.published)
+    folder.add_table(published, &tables.published)?;
+    folder.add_table(failures, &tables.failures)
 }
 
 /// Reads the tables that [`write_tables`] wrote.
@@ -71,6 +92,7 @@ pub fn read_tables(dir: &Path) -> Result<Tables> {
         stages: read_rows::<StageTime>(&path(6))?,
         confused: read_rows::<Confused>(&path(7))?,
         published: read_cell_rows::<Published>(&path(8))?,
+        failures: read_cell_rows::<Failure>(&path(9))?,
     })
 }
 

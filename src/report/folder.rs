@@ -42,6 +42,12 @@ impl<'a> Folder<'a> {
         Ok(())
     }
 
+    /// Names and contents.
+    pub fn files(&self) -> impl Iterator<Item = (&str, &[u8])> {
+        let files = self.files.iter();
+        files.map(|(name, content)| (name.as_str(), content.as_slice()))
+    }
+
     /// Makes the folder if it is missing and writes every file whole; returns their paths. The error says if a file is in
     /// the way.
     pub fn write(self) -> Result<Vec<PathBuf>> {

@@ -265,8 +265,8 @@ pub(super) fn align_right(table: &mut Table, columns: impl IntoIterator<Item = u
     }
 }
 
-/// Numbers right, words left.
-fn align(table: &mut Table, axes: &[&Levels], n_numbers: usize) {
+/// Numbers right, words left: columns of axes, then so many of numbers.
+pub(super) fn align(table: &mut Table, axes: &[&Levels], n_numbers: usize) {
     for (index, column) in table.column_iter_mut().enumerate() {
         column.set_padding((0, 2));
         let is_word = axes

@@ -13,13 +13,14 @@ use crate::recognition::interval::Interval;
 use crate::recognition::metrics::ConfusionMatrix;
 use crate::recognition::split::Split;
 use ndarray::{ArrayView2, Axis};
+use serde::{Deserialize, Serialize};
 use std::time::Instant;
 
 /// Confidence of every interval in the tables.
 pub const CONFIDENCE: f64 = 0.95;
 
 /// What a cell scored in a trial.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Evaluation {
     /// Row of the accuracy table.
     pub score: TrialScore,

@@ -18,6 +18,7 @@ use crate::world::{HumanTouch, Patch, SkinPatch, TouchRanges};
 use ndarray::{Array1, Array2, ArrayViewMut2, Axis};
 use rand::Rng;
 use rayon::prelude::*;
+use std::collections::BTreeMap;
 use std::time::Instant;
 
 /// Touches recorded by one thread at a time.
@@ -199,5 +200,8 @@ impl TouchSet for HumanTouches {
             ),
             row("Arm", format!("{:.0} mm across", 2e3 * self.plan.surface)),
         ]
+    }
+    fn content(&self) -> BTreeMap<String, String> {
+        BTreeMap::new()
     }
 }

@@ -1,11 +1,11 @@
 //! Packings kept in a folder, by what they were made from.
 
+use super::content_hash::ContentHash;
 use crate::error::{Error, Result};
 use crate::files::write_whole;
 use crate::mesh::{Surface, TriangleMesh};
 use crate::objects::{read_spheres, write_spheres};
 use crate::packing::{Body, Packing, pack_mesh_watched};
-use sha2::{Digest, Sha256};
 use std::fs::File;
 use std::io::BufReader;
 use std::path::PathBuf;
@@ -85,19 +85,10 @@ impl PackingCache {
 }
 
 fn key(mesh: &TriangleMesh, body: Body, tolerance: f64) -> String {
-    let mut hash = Sha256::new();
-    hash.update(METHOD);
-    hash.update(format!("{body:?}"));
-    hash.update(tolerance.to_le_bytes());
-    hash.update((mesh.vertices().len() as u64).to_le_bytes());
-    for coordinate in mesh.vertices().iter().flat_map(|v| v.to_array()) {
-        hash.update(coordinate.to_le_bytes());
-    }
-    for corner in mesh.triangles().iter().flatten() {
-        hash.update(corner.to_le_bytes());
-    }
-    hash.finalize()
-        .iter()
-        .map(|byte| format!("{byte:02x}"))
-        .collect()
+    ContentHash::default()
+        .bytes(METHOD)
+        .bytes(format!("{body:?}"))
+        .numbers([tolerance])
+        .mesh(mesh)
+        .hex()
 }

@@ -1,22 +1,24 @@
-//! Runs a plan: simulate each array once, measure each group once a trial, evaluate every cell.
+//! Runs a plan: simulate each array once, measure each group once a trial, evaluate every cell that is not done yet.
 
-use super::evaluation::{Evaluation, Trial};
-use super::measurement::measure_group;
+use super::finished::{Finished, Measuring, Simulated};
+use super::job::{FinishedFamily, Job};
+use super::journal::Journal;
 use super::plan::{Plan, millimetres};
 use super::progress::Progress;
 use super::published::compare_with_published;
+use super::shard::Shard;
 use super::simulation::Frames;
 use super::spec::StepSpec;
-use super::summary::{compare_with_best, most_confused, pareto, summarise};
 use super::sweep::{Group, Sweep};
-use super::table::{Cell, Confusion, StageTime, Tables};
+use super::table::{Cell, StageTime, Tables};
+use super::tabulate::tabulate;
 use super::touch_set::TouchSet;
 use crate::error::Result;
 use crate::random::Seed;
 use crate::signal::{Noise, SignalStep};
 use crate::world::Patch;
 use rayon::prelude::*;
-use std::collections::BTreeMap;
+use std::collections::BTreeSet;
 
 /// What a study found.
 #[derive(Clone, Debug)]
@@ -25,6 +27,8 @@ pub struct Outcome {
     pub tables: Tables,
     /// What happened while the touches of each array were made.
     pub arrays: Vec<ArrayOutcome>,
+    /// Cells, counted once a trial, that nobody has evaluated: those of other shards.
+    pub n_left: usize,
 }
 
 /// What happened while the touches of an array were made.
@@ -40,10 +44,28 @@ pub struct ArrayOutcome {
     pub n_saturated: usize,
 }
 
-/// A cell's result in one trial.
-struct Scored {
-    cell: Cell,
-    evaluation: Evaluation,
+/// How a run goes about its cells.
+#[derive(Clone, Copy)]
+pub struct Manner<'a> {
+    /// Where finished work is looked for and kept.
+    pub journal: &'a Journal,
+    /// Whether the first cell that fails ends the run. Else failures are recorded in a table of their own.
+    pub fail_fast: bool,
+    /// Whether cells that failed in an earlier run are tried again.
+    pub retries: bool,
+    /// The part of the work to do.
+    pub part: Part<'a>,
+}
+
+/// Which families of which trials a run evaluates.
+#[derive(Clone, Copy, Debug)]
+pub enum Part<'a> {
+    /// All.
+    All,
+    /// One of several equal parts.
+    Shard(Shard),
+    /// Those that hold one of these: (number of the cell, trial).
+    Holding(&'a BTreeSet<(usize, usize)>),
 }
 
 /// Runs a study. The tables but for times are the same bytes at any number of threads.
@@ -56,134 +78,239 @@ pub fn run(
     touched: &dyn TouchSet,
     progress: &dyn Progress,
 ) -> Result<Outcome> {
+    let manner = Manner {
+        journal: &Journal::none(),
+        fail_fast: true,
+        retries: false,
+        part: Part::All,
+    };
+    run_with(plan, sweep, touched, progress, manner)
+}
+
+/// Runs what a journal has not yet of a study. The tables but for times are the same bytes as if it had run at once.
+///
+/// # Errors
+/// The journal cannot be written; what a stage refuses, if the first cell that fails ends the run.
+pub fn run_with(
+    plan: &Plan,
+    sweep: &Sweep,
+    touched: &dyn TouchSet,
+    progress: &dyn Progress,
+    manner: Manner,
+) -> Result<Outcome> {
+    let run = Run {
+        plan,
+        sweep,
+        touched,
+        progress,
+        manner,
+    };
     let mut tables = Tables::default();
     let mut arrays = Vec::new();
-    let mut scored = Vec::new();
-    for (array, patch) in plan.arrays.iter().enumerate() {
-        let n_touches = sweep.labels.len();
+    let mut new = Vec::new();
+    for array in 0..plan.arrays.len() {
         for (place, &n_frames) in plan.frames.iter().enumerate() {
-            let stage = in_frames(&format!("touch {}", describe(patch)), n_frames);
-            progress.stage(&stage, n_touches as u64);
-            let frames = touched.simulate(patch, n_frames, progress);
-            let stage = in_frames("simulate", n_frames);
-            let simulate = stage_time(&stage, patch, n_touches, frames.cpu_s);
+            let Some((simulated, finished, stages)) = run.on_array(array, n_frames)? else {
+                continue;
+            };
+            new.extend(finished);
+            tables.stages.extend(stages);
             // The deepest frame is the same however many come before it.
             if place == 0 {
                 arrays.push(ArrayOutcome {
-                    patch: *patch,
-                    n_touches,
-                    n_missed: frames.n_missed,
-                    n_saturated: frames.n_saturated,
+                    patch: plan.arrays[array],
+                    n_touches: sweep.labels.len(),
+                    n_missed: simulated.n_missed,
+                    n_saturated: simulated.n_saturated,
                 });
             }
-            let study = Study {
-                plan,
-                sweep,
-                touched,
-                progress,
-            };
-            let (array_scored, measure) = study.recognise(array, &frames)?;
-            scored.extend(array_scored);
-            tables.stages.extend([simulate, measure]);
         }
     }
-    fill(&mut tables, scored, &touched.class_names())?;
+    let (finished, n_left) = with_what_was_done_before(plan, sweep, manner.journal, new);
+    tabulate(&mut tables, finished, &touched.class_names())?;
     let published = &plan.spec.report.published;
     tables.published = compare_with_published(published, &tables.summary);
-    Ok(Outcome { tables, arrays })
+    Ok(Outcome {
+        tables,
+        arrays,
+        n_left,
+    })
 }
 
 /// What every job of a run shares.
 #[derive(Clone, Copy)]
-struct Study<'a> {
-    plan: &'a Plan,
-    sweep: &'a Sweep,
-    touched: &'a dyn TouchSet,
-    progress: &'a dyn Progress,
+pub struct Run<'a> {
+    pub plan: &'a Plan,
+    pub sweep: &'a Sweep,
+    pub touched: &'a dyn TouchSet,
+    pub progress: &'a dyn Progress,
+    pub manner: Manner<'a>,
 }
 
-impl Study<'_> {
-    /// All groups and trials of an array read in so many frames a touch, and what measuring them cost.
-    fn recognise(&self, array: usize, frames: &Frames) -> Result<(Vec<Scored>, StageTime)> {
+/// What came of an array: its touches, its families, and what they cost.
+type OnArray<'a> = (Simulated, Vec<FinishedFamily<'a>>, [StageTime; 2]);
+
+impl<'a> Run<'a> {
+    /// Does what is to be done on an array read in so many frames a touch; `None` if it is another shard's.
+    fn on_array(&self, array: usize, n_frames: usize) -> Result<Option<OnArray<'a>>> {
+        let jobs = self.jobs(array, n_frames);
+        let journal = self.manner.journal;
+        let known = Simulated::in_journal(journal, array, n_frames);
+        let is_all = matches!(self.manner.part, Part::All);
+        if jobs.is_empty() && known.is_none() && !is_all {
+            return Ok(None);
+        }
+        let (simulated, finished, measuring) = match known {
+            Some(known) if jobs.is_empty() => (known, Vec::new(), Measuring::default()),
+            _ => self.evaluate(array, n_frames, &jobs)?,
+        };
+        let measuring = measuring.kept_with_earlier(journal, array, n_frames)?;
         let patch = &self.plan.arrays[array];
-        let n_trials = self.plan.spec.trials;
-        let groups: Vec<&Group> = self
-            .sweep
-            .groups
-            .iter()
-            .filter(|group| group.array == array && group.frames == frames.n_frames)
-            .collect();
-        let n_fits: usize = groups.iter().map(|g| g.cells.len() * n_trials).sum();
-        let stage = in_frames(&format!("recognise {}", describe(patch)), frames.n_frames);
-        self.progress.stage(&stage, n_fits as u64);
-        let jobs: Vec<Job> = (0..n_trials)
-            .flat_map(|trial| {
-                groups.iter().map(move |group| Job {
-                    study: *self,
-                    frames,
+        let stages = [
+            ("simulate", self.sweep.labels.len(), simulated.cpu_s),
+            ("measure", measuring.n_measured, measuring.cpu_s),
+        ];
+        let stages = stages.map(|(name, n_touches, cpu_s)| {
+            stage_time(&in_frames(name, n_frames), patch, n_touches, cpu_s)
+        });
+        Ok(Some((simulated, finished, stages)))
+    }
+
+    /// Makes the touches of an array and evaluates jobs on them.
+    fn evaluate(
+        &self,
+        array: usize,
+        n_frames: usize,
+        jobs: &[Job<'a>],
+    ) -> Result<(Simulated, Vec<FinishedFamily<'a>>, Measuring)> {
+        let patch = &self.plan.arrays[array];
+        let n_touches = self.sweep.labels.len();
+        let name = in_frames(&format!("touch {}", describe(patch)), n_frames);
+        self.progress.stage(&name, n_touches as u64);
+        let frames = self.touched.simulate(patch, n_frames, self.progress);
+        let simulated = Simulated {
+            n_missed: frames.n_missed,
+            n_saturated: frames.n_saturated,
+            cpu_s: frames.cpu_s,
+        };
+        simulated.keep(self.manner.journal, array, n_frames)?;
+        let (finished, cpu_s) = self.recognise(jobs, patch, &frames)?;
+        let measuring = Measuring {
+            n_measured: jobs.len() * n_touches,
+            cpu_s,
+        };
+        Ok((simulated, finished, measuring))
+    }
+
+    /// Families of an array that are to be done, by trial and group.
+    fn jobs(&self, array: usize, n_frames: usize) -> Vec<Job<'a>> {
+        let mut jobs = Vec::new();
+        for (group, trial, families) in self.pieces() {
+            if (group.array, group.frames) != (array, n_frames) {
+                continue;
+            }
+            let is_left =
+                |family: &&[Cell]| match Finished::in_journal(self.manner.journal, family, trial) {
+                    None => true,
+                    Some(Finished::Failed(_)) => self.manner.retries,
+                    Some(Finished::Scored(_)) => false,
+                };
+            let families: Vec<&[Cell]> = families.into_iter().filter(is_left).collect();
+            if !families.is_empty() {
+                jobs.push(Job {
+                    run: *self,
                     group,
                     trial,
-                })
-            })
-            .collect();
-        let results = jobs.par_iter().map(Job::run).collect::<Result<Vec<_>>>()?;
-        let n_measured = results.len() * self.sweep.labels.len();
-        let cpu_s = results.iter().map(|(_, seconds)| seconds).sum();
-        let scored = results.into_iter().flat_map(|(scored, _)| scored).collect();
-        let stage = in_frames("measure", frames.n_frames);
-        Ok((scored, stage_time(&stage, patch, n_measured, cpu_s)))
-    }
-}
-
-/// One group of cells in one trial.
-struct Job<'a> {
-    study: Study<'a>,
-    frames: &'a Frames,
-    group: &'a Group,
-    trial: usize,
-}
-
-impl Job<'_> {
-    /// Measures, then evaluates the cells; with it the processor-seconds of measuring.
-    fn run(&self) -> Result<(Vec<Scored>, f64)> {
-        let Study { plan, sweep, .. } = self.study;
-        let mut scored = Vec::new();
-        let mut measure_s = 0.0;
-        for n_measurements in self.group.projected() {
-            let touches = (self.study.touched, self.frames);
-            let trial = (self.trial, &sweep.splits[self.trial]);
-            let measured = measure_group(plan, self.group, touches, trial, n_measurements)?;
-            measure_s += measured.cpu_s;
-            // A group of prefixes is projected once and serves all cells; else each m serves its own.
-            let nested = self.group.ensemble.is_prefix_nested();
-            let families: Vec<&[Cell]> = self
-                .group
-                .families()
-                .filter(|family| nested || family[0].measurements == n_measurements)
-                .collect();
-            let trial = Trial {
-                plan,
-                sweep,
-                measurements: &measured,
-                number: self.trial,
-            };
-            let results = families
-                .into_par_iter()
-                .map(|family| self.evaluate(&trial, family))
-                .collect::<Result<Vec<_>>>()?;
-            scored.extend(results.into_iter().flatten());
+                    families,
+                });
+            }
         }
-        Ok((scored, measure_s))
+        jobs
     }
 
-    fn evaluate(&self, trial: &Trial, family: &[Cell]) -> Result<Vec<Scored>> {
-        let evaluations = trial.evaluate(family)?;
-        self.study.progress.advance(family.len() as u64);
-        let cells = family.iter().cloned().zip(evaluations);
-        Ok(cells
-            .map(|(cell, evaluation)| Scored { cell, evaluation })
-            .collect())
+    /// All trials and groups with those of their families that are this shard's.
+    fn pieces(&self) -> Vec<(&'a Group, usize, Vec<&'a [Cell]>)> {
+        let groups = &self.sweep.groups;
+        let n_trials = self.plan.spec.trials;
+        let n_pieces = groups.len() * n_trials;
+        let mut pieces = Vec::with_capacity(n_pieces);
+        let mut n_families = 0;
+        for trial in 0..n_trials {
+            for group in groups {
+                let number = pieces.len();
+                let is_ours = |(place, family): &(usize, &[Cell])| match self.manner.part {
+                    Part::All => true,
+                    Part::Shard(shard) => shard.takes((number, n_pieces), n_families + place),
+                    Part::Holding(cells) => {
+                        let mut numbers = family.iter().map(|cell| (cell.cell, trial));
+                        numbers.any(|number| cells.contains(&number))
+                    }
+                };
+                let families = group.families().enumerate().filter(is_ours);
+                let families = families.map(|(_, family)| family).collect();
+                pieces.push((group, trial, families));
+                n_families += group.families().count();
+            }
+        }
+        pieces
     }
+
+    /// Evaluates jobs; with what came of them the processor-seconds of measuring.
+    fn recognise(
+        &self,
+        jobs: &[Job<'a>],
+        patch: &Patch,
+        frames: &Frames,
+    ) -> Result<(Vec<FinishedFamily<'a>>, f64)> {
+        if jobs.is_empty() {
+            return Ok((Vec::new(), 0.0));
+        }
+        let families = jobs.iter().flat_map(|job| &job.families);
+        let n_fits: usize = families.map(|family| family.len()).sum();
+        let stage = in_frames(&format!("recognise {}", describe(patch)), frames.n_frames);
+        self.progress.stage(&stage, n_fits as u64);
+        let results = jobs
+            .par_iter()
+            .map(|job| job.run(frames))
+            .collect::<Result<Vec<_>>>()?;
+        let measure_s = results.iter().map(|(_, seconds)| seconds).sum();
+        Ok((
+            results
+                .into_iter()
+                .flat_map(|(finished, _)| finished)
+                .collect(),
+            measure_s,
+        ))
+    }
+}
+
+/// Cells, counted once a trial, of which a journal does not say what came of them.
+pub fn n_left(plan: &Plan, sweep: &Sweep, journal: &Journal) -> usize {
+    with_what_was_done_before(plan, sweep, journal, Vec::new()).1
+}
+
+/// Every finished family, from this run or from earlier ones, and how many cells are left.
+fn with_what_was_done_before<'a>(
+    plan: &Plan,
+    sweep: &'a Sweep,
+    journal: &Journal,
+    mut finished: Vec<FinishedFamily<'a>>,
+) -> (Vec<FinishedFamily<'a>>, usize) {
+    let number = |(family, trial, _): &FinishedFamily| (family[0].cell, *trial);
+    let now: BTreeSet<(usize, usize)> = finished.iter().map(number).collect();
+    let mut n_left = 0;
+    for trial in 0..plan.spec.trials {
+        for family in sweep.groups.iter().flat_map(Group::families) {
+            if now.contains(&(family[0].cell, trial)) {
+                continue;
+            }
+            match Finished::in_journal(journal, family, trial) {
+                Some(before) => finished.push((family, trial, before)),
+                None => n_left += family.len(),
+            }
+        }
+    }
+    (finished, n_left)
 }
 
 /// The study's steps in this group's condition, on a skin.
@@ -225,38 +352,6 @@ fn stage_time(stage: &str, patch: &Patch, n_touches: usize, cpu_s: f64) -> Stage
         ny: patch.grid.ny,
         n_touches,
         cpu_s,
-        us_per_touch: 1e6 * cpu_s / n_touches as f64,
+        us_per_touch: 1e6 * cpu_s / n_touches.max(1) as f64,
     }
-}
-
-/// Sorts results into the tables: by cell, then by trial.
-fn fill(tables: &mut Tables, mut scored: Vec<Scored>, names: &[&str]) -> Result<()> {
-    scored.sort_by_key(|s| (s.cell.cell, s.evaluation.score.trial));
-    let mut confusions: BTreeMap<(usize, usize, usize), usize> = BTreeMap::new();
-    for Scored { cell, evaluation } in scored {
-        for &(object, predicted, count) in &evaluation.confusion {
-            *confusions
-                .entry((cell.cell, object, predicted))
-                .or_default() += count;
-        }
-        tables.accuracy.push((cell.clone(), evaluation.score));
-        tables.timing.push((cell, evaluation.time));
-    }
-    let name = |label: usize| names[label].to_owned();
-    tables.confusion = confusions
-        .into_iter()
-        .map(|((cell, object, predicted), count)| Confusion {
-            cell,
-            object: name(object),
-            predicted: name(predicted),
-            count,
-        })
-        .collect();
-    tables.summary = summarise(&tables.accuracy)?;
-    tables.comparison = compare_with_best(&tables.accuracy)?;
-    if let Some(row) = tables.comparison.first() {
-        tables.confused = most_confused(&tables.confusion, row.best_cell);
-    }
-    tables.pareto = pareto(&tables.accuracy, &tables.timing);
-    Ok(())
 }

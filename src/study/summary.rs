@@ -66,8 +66,19 @@ pub fn compare_with_best(rows: &[Row]) -> Result<Vec<Comparison>> {
 }
 
 fn against(trials: &[Row], best: &[Row]) -> Result<Comparison> {
-    let scores = |rows: &[Row]| -> Vec<f64> { rows.iter().map(|(_, t)| t.accuracy).collect() };
-    let (ours, theirs) = (scores(trials), scores(best));
+    // A cell may have failed in some trials.
+    let in_both = |rows: &[Row], others: &[Row]| -> Vec<f64> {
+        let is_in = |trial| others.iter().any(|(_, t)| t.trial == trial);
+        let both = rows.iter().filter(|(_, t)| is_in(t.trial));
+        both.map(|(_, t)| t.accuracy).collect()
+    };
+    let (ours, theirs) = (in_both(trials, best), in_both(best, trials));
+    let n_both = ours.len();
+    let mean_of = |values: &[f64]| values.iter().sum::<f64>() / n_both as f64;
+    let difference = match n_both {
+        0 => mean(trials, |t| t.accuracy) - mean(best, |t| t.accuracy),
+        _ => mean_of(&ours) - mean_of(&theirs),
+    };
     // How much the trials overlap is a matter of touches, however many of them one decision takes.
     let size = TrialSize {
         n_train: trials[0].1.n_train,
@@ -77,8 +88,8 @@ fn against(trials: &[Row], best: &[Row]) -> Result<Comparison> {
     Ok(Comparison {
         cell: trials[0].0.cell,
         best_cell: best[0].0.cell,
-        n_trials: trials.len(),
-        difference: mean(trials, |t| t.accuracy) - mean(best, |t| t.accuracy),
+        n_trials: n_both,
+        difference,
         difference_low: test.map(|t| t.interval.low),
         difference_high: test.map(|t| t.interval.high),
         p_value: test.map(|t| t.p_value),

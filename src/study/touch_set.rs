@@ -1,5 +1,6 @@
 //! What a recognition study asks of its touches: of pressed objects, or of human touches.
 
+use super::content_hash::ContentHash;
 use super::estimate::{PLACE_SPHERE_S, PLACE_TRIANGLE_S};
 use super::measurement::{TouchToRead, touches_of_study};
 use super::plan::Plan;
@@ -14,6 +15,7 @@ use crate::objects::Model;
 use crate::random::Seed;
 use crate::world::Patch;
 use ndarray::Array1;
+use std::collections::BTreeMap;
 
 /// Touches of several classes: objects, or kinds of touch. They follow each other class by class.
 pub trait TouchSet: Sync {
@@ -40,6 +42,9 @@ pub trait TouchSet: Sync {
 
     /// What a report says about them: name and value.
     fn settings(&self) -> Vec<(String, String)>;
+
+    /// SHA-256 of what each object is made of, by its name; empty if the study's text says all.
+    fn content(&self) -> BTreeMap<String, String>;
 }
 
 impl TouchSet for Vec<TouchedObject> {
@@ -98,5 +103,13 @@ impl TouchSet for Vec<TouchedObject> {
             }
         }
         rows
+    }
+
+    fn content(&self) -> BTreeMap<String, String> {
+        let hash = |t: &TouchedObject| {
+            let model = ContentHash::default().model(&t.object.model);
+            (t.object.name.clone(), model.hex())
+        };
+        self.iter().map(hash).collect()
     }
 }

@@ -1,0 +1,137 @@
+//! Progress as JSON lines, for programs that start a run.
+//!
+//! ```text
+//! {"event":"stage","name":"recognise 32×32 at 2 mm","total":240}
+//! {"event":"progress","done":96,"total":240,"elapsed_s":1.2}
+//! {"event":"message","text":"going on: 96 of 240 cells were finished before"}
+//! ```
+
+use crate::study::progress::Progress;
+use serde_json::{Value, json};
+use std::io::Write;
+use std::sync::Mutex;
+use std::time::{Duration, Instant};
+
+/// How often progress within a stage is told, at most.
+const INTERVAL: Duration = Duration::from_millis(200);
+
+/// One line an event, each written whole.
+pub struct JsonLines<W: Write + Send> {
+    state: Mutex<State<W>>,
+}
+
+struct State<W> {
+    writer: W,
+    stage: Option<Stage>,
+}
+
+struct Stage {
+    total: u64,
+    done: u64,
+    start: Instant,
+    told: Instant,
+}
+
+impl<W: Write + Send> JsonLines<W> {
+    /// Lines go to this writer; that it fails does not stop the run.
+    pub fn to(writer: W) -> Self {
+        let state = State {
+            writer,
+            stage: None,
+        };
+        Self {
+            state: Mutex::new(state),
+        }
+    }
+
+    /// The writer, once nobody listens any more.
+    pub fn into_inner(self) -> Option<W> {
+        self.state.into_inner().ok().map(|state| state.writer)
+    }
+}
+
+impl<W: Write> State<W> {
+    fn write(&mut self, event: &Value) {
+        let _ = writeln!(self.writer, "{event}").and_then(|()| self.writer.flush());
+    }
+
+    fn tell_progress(&mut self) {
+        if let Some(stage) = &self.stage {
+            let event = json!({
+                "event": "progress",
+                "done": stage.done,
+                "total": stage.total,
+                "elapsed_s": stage.start.elapsed().as_secs_f64(),
+            });
+            self.write(&event);
+        }
+    }
+}
+
+impl<W: Write + Send> Progress for JsonLines<W> {
+    fn stage(&self, name: &str, total: u64) {
+        if let Ok(mut state) = self.state.lock() {
+            state.tell_progress();
+            let now = Instant::now();
+            state.stage = Some(Stage {
+                total,
+                done: 0,
+                start: now,
+                told: now,
+            });
+            state.write(&json!({ "event": "stage", "name": name, "total": total }));
+        }
+    }
+
+    fn advance(&self, n: u64) {
+        let Ok(mut state) = self.state.lock() else {
+            return;
+        };
+        let Some(stage) = state.stage.as_mut() else {
+            return;
+        };
+        stage.done += n;
+        if stage.told.elapsed() >= INTERVAL {
+            stage.told = Instant::now();
+            state.tell_progress();
+        }
+    }
+
+    fn finish(&self, message: &str) {
+        if let Ok(mut state) = self.state.lock() {
+            state.tell_progress();
+            state.stage = None;
+            if !message.is_empty() {
+                state.write(&json!({ "event": "message", "text": message }));
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_line_is_an_event_and_the_last_of_a_stage_says_all_of_it() {
+        let lines = JsonLines::to(Vec::new());
+        lines.stage("simulate \"it\"", 10);
+        lines.advance(4);
+        lines.advance(6);
+        lines.stage("learn", 3);
+        lines.finish("done");
+        let text = String::from_utf8(lines.into_inner().unwrap()).unwrap();
+        let events: Vec<Value> = text
+            .lines()
+            .map(|line| serde_json::from_str(line).unwrap())
+            .collect();
+        assert_eq!(events[0]["name"], "simulate \"it\"");
+        assert_eq!(
+            (&events[1]["done"], &events[1]["total"]),
+            (&json!(10), &json!(10))
+        );
+        assert_eq!(events[2]["event"], "stage");
+        assert_eq!(events[3]["done"], 0);
+        assert_eq!(events[4]["text"], "done");
+    }
+}

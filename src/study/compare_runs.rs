@@ -1,0 +1,146 @@
+//! Two runs side by side: what moved between cells of the same settings, and whether chance explains it.
+
+use super::evaluation::CONFIDENCE;
+use super::table::{Cell, TrialScore};
+use crate::error::{Error, Result};
+use crate::recognition::comparison::{TrialSize, compare, holm};
+use serde::{Deserialize, Serialize};
+use std::collections::HashMap;
+
+/// A cell that both runs have (with the [`Cell`] of the second before it: a row of what `bubbletouch compare` writes).
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct RunDifference {
+    /// Number of the cell in the first run.
+    pub first_cell: usize,
+    /// Trials that both have: they are paired, since equal trials of equal seeds split the same touches.
+    pub n_trials: usize,
+    /// Mean accuracy over these trials in the first run.
+    pub first_accuracy: f64,
+    /// The same in the second.
+    pub second_accuracy: f64,
+    /// Second less first.
+    pub difference: f64,
+    /// Lower end of the 95 % interval of the difference; empty with one trial.
+    pub difference_low: Option<f64>,
+    /// Upper end of it; empty with one trial.
+    pub difference_high: Option<f64>,
+    /// Two-sided p-value of no difference; empty with one trial.
+    pub p_value: Option<f64>,
+    /// The same after Holm's correction for all cells that are compared.
+    pub p_holm: Option<f64>,
+}
+
+impl RunDifference {
+    /// Whether chance explains it less than once in twenty such comparisons of runs.
+    pub fn is_significant(&self) -> bool {
+        self.p_holm.is_some_and(|p| p < 1.0 - CONFIDENCE)
+    }
+}
+
+/// Two runs.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RunComparison {
+    /// Cells of both, in the order of the second.
+    pub both: Vec<(Cell, RunDifference)>,
+    /// How many cells only the first has.
+    pub n_first_only: usize,
+    /// How many cells only the second has.
+    pub n_second_only: usize,
+}
+
+/// A row of the accuracy table.
+type Row = (Cell, TrialScore);
+
+/// Compares the accuracy tables of two runs, cell by cell of equal settings, paired over trials.
+///
+/// # Errors
+/// No cell is in both; trials without training or test rows.
+pub fn compare_runs(first: &[Row], second: &[Row]) -> Result<RunComparison> {
+    let (first, second) = (by_cell(first), by_cell(second));
+    let known: HashMap<String, &[Row]> = first
+        .iter()
+        .map(|rows| (settings(&rows[0].0), *rows))
+        .collect();
+    let mut both = Vec::new();
+    for ours in &second {
+        if let Some(theirs) = known.get(&settings(&ours[0].0)) {
+            both.push((ours[0].0.clone(), difference(theirs, ours)?));
+        }
+    }
+    if both.is_empty() {
+        return Err(Error::input(
+            "two runs",
+            "no cell of the one has the settings of a cell of the other",
+            "runs that share at least one cell",
+        ));
+    }
+    correct(&mut both);
+    Ok(RunComparison {
+        n_first_only: first.len() - both.len(),
+        n_second_only: second.len() - both.len(),
+        both,
+    })
+}
+
+fn by_cell(rows: &[Row]) -> Vec<&[Row]> {
+    rows.chunk_by(|a, b| a.0.cell == b.0.cell).collect()
+}
+
+/// All settings in words; the number may be another where other cells came before.
+fn settings(cell: &Cell) -> String {
+    let unnumbered = Cell {
+        cell: 0,
+        ..cell.clone()
+    };
+    format!("{unnumbered:?}")
+}
+
+fn difference(first: &[Row], second: &[Row]) -> Result<RunDifference> {
+    let pairs: Vec<(&TrialScore, &TrialScore)> = second
+        .iter()
+        .filter_map(|(_, ours)| {
+            let mut first = first.iter().map(|(_, theirs)| theirs);
+            Some((first.find(|theirs| theirs.trial == ours.trial)?, ours))
+        })
+        .collect();
+    let of_first: Vec<f64> = pairs.iter().map(|(theirs, _)| theirs.accuracy).collect();
+    let of_second: Vec<f64> = pairs.iter().map(|(_, ours)| ours.accuracy).collect();
+    if pairs.is_empty() {
+        let given = format!("no trial of cell {} is in both", second[0].0.cell);
+        return Err(Error::input(
+            "two runs",
+            given,
+            "runs that share their trials",
+        ));
+    }
+    let mean = |values: &[f64]| values.iter().sum::<f64>() / values.len() as f64;
+    let (cell, ours) = &second[0];
+    let size = TrialSize {
+        n_train: ours.n_train,
+        n_test: ours.n_test * cell.fused_touches,
+    };
+    let test = compare(&of_second, &of_first, size, CONFIDENCE)?;
+    Ok(RunDifference {
+        first_cell: first[0].0.cell,
+        n_trials: pairs.len(),
+        first_accuracy: mean(&of_first),
+        second_accuracy: mean(&of_second),
+        difference: mean(&of_second) - mean(&of_first),
+        difference_low: test.map(|t| t.interval.low),
+        difference_high: test.map(|t| t.interval.high),
+        p_value: test.map(|t| t.p_value),
+        p_holm: None,
+    })
+}
+
+fn correct(rows: &mut [(Cell, RunDifference)]) {
+    let tested: Vec<&mut RunDifference> = rows
+        .iter_mut()
+        .map(|(_, row)| row)
+        .filter(|row| row.p_value.is_some())
+        .collect();
+    let values: Vec<f64> = tested.iter().filter_map(|row| row.p_value).collect();
+    for (row, p) in tested.into_iter().zip(holm(&values)) {
+        row.p_holm = Some(p);
+    }
+}

@@ -1,0 +1,121 @@
+//! One group of cells in one trial: measured once, family by family evaluated.
+
+use super::evaluation::Trial;
+use super::finished::Finished;
+use super::measurement::{Measurements, measure_group};
+use super::runner::Run;
+use super::simulation::Frames;
+use super::sweep::Group;
+use super::table::Cell;
+use crate::error::Result;
+use rayon::prelude::*;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+
+/// A group in a trial, and those of its families that are to be evaluated.
+pub struct Job<'a> {
+    /// What every job of a run shares.
+    pub run: Run<'a>,
+    /// The group.
+    pub group: &'a Group,
+    /// Number of the trial.
+    pub trial: usize,
+    /// Families in their order.
+    pub families: Vec<&'a [Cell]>,
+}
+
+/// A family of cells, what came of it, and in which trial.
+pub type FinishedFamily<'a> = (&'a [Cell], usize, Finished);
+
+impl<'a> Job<'a> {
+    /// Measures, then evaluates the families, and keeps each as soon as it is finished; with them the processor-seconds of
+    /// measuring.
+    ///
+    /// # Errors
+    /// The journal cannot be written; what a cell fails of, if the first to fail ends the run.
+    pub fn run(&self, frames: &Frames) -> Result<(Vec<FinishedFamily<'a>>, f64)> {
+        let mut finished = Vec::new();
+        let mut measure_s = 0.0;
+        // A group of prefixes is projected once and serves all cells; else each m serves its own.
+        let nested = self.group.ensemble.is_prefix_nested();
+        for n_measurements in self.group.projected() {
+            let serves = |family: &&&[Cell]| nested || family[0].measurements == n_measurements;
+            let families: Vec<&[Cell]> = self.families.iter().filter(serves).copied().collect();
+            if families.is_empty() {
+                continue;
+            }
+            let (measured, cpu_s) = match self.measure(frames, n_measurements) {
+                Ok(measured) => {
+                    let cpu_s = measured.cpu_s;
+                    (Ok(measured), cpu_s)
+                }
+                Err(error) if self.run.manner.fail_fast => return Err(error),
+                Err(error) => (Err(error.to_string()), 0.0),
+            };
+            measure_s += cpu_s;
+            let results = families
+                .into_par_iter()
+                .map(|family| self.finish(family, measured.as_ref()))
+                .collect::<Result<Vec<_>>>()?;
+            finished.extend(results);
+        }
+        Ok((finished, measure_s))
+    }
+
+    fn measure(&self, frames: &Frames, n_measurements: usize) -> Result<Measurements> {
+        let Run {
+            plan,
+            sweep,
+            touched,
+            ..
+        } = self.run;
+        let touches = (touched, frames);
+        let trial = (self.trial, &sweep.splits[self.trial]);
+        measure_group(plan, self.group, touches, trial, n_measurements)
+    }
+
+    fn finish(
+        &self,
+        family: &'a [Cell],
+        measured: std::result::Result<&Measurements, &String>,
+    ) -> Result<FinishedFamily<'a>> {
+        let finished = match measured {
+            Ok(measured) => self.evaluate(family, measured)?,
+            Err(said) => Finished::Failed(said.clone()),
+        };
+        finished.keep(self.run.manner.journal, family, self.trial)?;
+        self.run.progress.advance(family.len() as u64);
+        Ok((family, self.trial, finished))
+    }
+
+    fn evaluate(&self, family: &[Cell], measurements: &Measurements) -> Result<Finished> {
+        let Run {
+            plan,
+            sweep,
+            manner,
+            ..
+        } = self.run;
+        let trial = Trial {
+            plan,
+            sweep,
+            measurements,
+            number: self.trial,
+        };
+        if manner.fail_fast {
+            return trial.evaluate(family).map(Finished::Scored);
+        }
+        // A defect in one classifier is no reason to lose a night's work on the others.
+        let result = catch_unwind(AssertUnwindSafe(|| trial.evaluate(family)));
+        Ok(match result {
+            Ok(Ok(evaluations)) => Finished::Scored(evaluations),
+            Ok(Err(error)) => Finished::Failed(error.to_string()),
+            Err(panic) => Finished::Failed(format!("a defect of the program: {}", words(&*panic))),
+        })
+    }
+}
+
+/// What a panic said.
+fn words(panic: &(dyn std::any::Any + Send)) -> &str {
+    let text = panic.downcast_ref::<&str>().copied();
+    let text = text.or_else(|| panic.downcast_ref::<String>().map(String::as_str));
+    text.unwrap_or("it did not say why")
+}

@@ -1,0 +1,234 @@
+//! The journal of a run: one file, one writer at a time.
+
+use super::identity::Identity;
+use super::line::{Records, decode, encode};
+use crate::error::{Error, Result};
+use serde::Serialize;
+use serde::de::DeserializeOwned;
+use std::fs::{File, OpenOptions, TryLockError};
+use std::io::{self, Read, Seek, SeekFrom, Write};
+use std::path::{Path, PathBuf};
+use std::sync::{Mutex, MutexGuard};
+use std::time::{Duration, Instant};
+
+/// The journal's name in a folder of results.
+pub const JOURNAL_FILE: &str = "journal.jsonl";
+
+/// The key of the first line.
+const HEADER: &str = "study";
+
+/// A line is with the system when [`Journal::keep`] returns, so that it outlives the process, and on the disk within this
+/// time, so that little is lost with the power. Waiting for the disk after each line would cost cells of a millisecond more
+/// than themselves.
+const SYNC_INTERVAL: Duration = Duration::from_millis(100);
+
+/// What a run has finished, on disk; or a journal that keeps nothing.
+#[derive(Debug, Default)]
+pub struct Journal {
+    path: PathBuf,
+    before: Records,
+    writer: Mutex<Option<Writer>>,
+}
+
+#[derive(Debug)]
+struct Writer {
+    file: File,
+    synced: Instant,
+    /// A line may be torn at the end: nothing may follow it.
+    is_broken: bool,
+}
+
+impl Journal {
+    /// A journal that knows nothing and keeps nothing.
+    pub fn none() -> Self {
+        Self::default()
+    }
+
+    /// Opens the journal of this study, or starts one, at `path` in a folder that exists. A torn last line is cut off.
+    ///
+    /// # Errors
+    /// Another process has it open; it was begun with another identity (the error says what differs); it is damaged before
+    /// its last line; it cannot be read or written.
+    pub fn open(path: &Path, identity: &Identity) -> Result<Self> {
+        let (mut file, decoded) = read_locked(path)?;
+        let place = path.display().to_string();
+        if let Some(header) = decoded.records.get(HEADER) {
+            let begun: Identity = serde_json::from_str(header.get()).map_err(|error| {
+                Error::input(
+                    &place,
+                    format!("a first line of another kind ({error})"),
+                    "a journal of this program; --fresh starts over beside it",
+                )
+            })?;
+            begun.check_same(identity, &place)?;
+        }
+        let read_error = |e| Error::io(path, "write", e);
+        file.set_len(decoded.n_whole as u64).map_err(read_error)?;
+        file.seek(SeekFrom::End(0)).map_err(read_error)?;
+        let writer = Writer {
+            file,
+            synced: Instant::now(),
+            is_broken: false,
+        };
+        let is_new = decoded.n_whole == 0;
+        let journal = Self {
+            path: path.to_owned(),
+            before: decoded.records,
+            writer: Mutex::new(Some(writer)),
+        };
+        if is_new {
+            journal.keep(HEADER, identity)?;
+            journal.sync()?;
+            sync_folder(path)?;
+        }
+        Ok(journal)
+    }
+
+    /// The records that stand in a journal, by key, whoever is writing to it; none where there is no file.
+    pub fn read(path: &Path) -> Result<Option<(Identity, Self)>> {
+        let bytes = match std::fs::read(path) {
+            Ok(bytes) => bytes,
+            Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(None),
+            Err(error) => return Err(Error::io(path, "read", error)),
+        };
+        let records = decode(&bytes).records;
+        let Some(header) = records.get(HEADER) else {
+            return Ok(None);
+        };
+        let identity = serde_json::from_str(header.get())
+            .map_err(|error| Error::input(path.display(), error, "a journal of this program"))?;
+        let journal = Self {
+            path: path.to_owned(),
+            before: records,
+            writer: Mutex::new(None),
+        };
+        Ok(Some((identity, journal)))
+    }
+
+    /// What was kept under a key before this journal was opened; `None` too for a record of another kind.
+    pub fn get<R: DeserializeOwned>(&self, key: &str) -> Option<R> {
+        serde_json::from_str(self.before.get(key)?.get()).ok()
+    }
+
+    /// How many records there were when it was opened.
+    pub fn n_before(&self) -> usize {
+        self.before.len().saturating_sub(1)
+    }
+
+    /// Keeps a record: when this returns, the end of the process cannot lose it.
+    pub fn keep(&self, key: &str, record: &impl Serialize) -> Result<()> {
+        let mut guard = self.lock();
+        let Some(writer) = guard.as_mut() else {
+            return Ok(());
+        };
+        let line = encode(key, record).map_err(|e| Error::io(&self.path, "write", e.into()))?;
+        writer
+            .append(&line)
+            .map_err(|e| Error::io(&self.path, "write", e))
+    }
+
+    /// Adds what another journal holds and this one did not hold when it was opened.
+    pub fn take_from(&mut self, other: Self) -> Result<()> {
+        for (key, record) in other.before {
+            if key != HEADER && !self.before.contains_key(&key) {
+                self.keep(&key, &record)?;
+                self.before.insert(key, record);
+            }
+        }
+        Ok(())
+    }
+
+    /// Waits until everything is on the disk.
+    pub fn sync(&self) -> Result<()> {
+        let mut guard = self.lock();
+        let Some(writer) = guard.as_mut() else {
+            return Ok(());
+        };
+        writer.sync().map_err(|e| Error::io(&self.path, "write", e))
+    }
+
+    /// As [`sync`](Self::sync), and no thread writes from then on: for a process that is about to end.
+    pub fn stop(&self) -> Result<()> {
+        let guard = self.lock();
+        // Never given back: who wants to write waits for the end.
+        let mut writer = std::mem::ManuallyDrop::new(guard);
+        let Some(writer) = writer.as_mut() else {
+            return Ok(());
+        };
+        writer.sync().map_err(|e| Error::io(&self.path, "write", e))
+    }
+
+    fn lock(&self) -> MutexGuard<'_, Option<Writer>> {
+        // A thread that panicked while it wrote has left a broken writer, and that knows it.
+        self.writer
+            .lock()
+            .unwrap_or_else(|poisoned| poisoned.into_inner())
+    }
+}
+
+impl Writer {
+    fn append(&mut self, line: &str) -> io::Result<()> {
+        if self.is_broken {
+            return Err(io::Error::other("an earlier line could not be written"));
+        }
+        self.is_broken = true;
+        self.file.write_all(line.as_bytes())?;
+        if self.synced.elapsed() >= SYNC_INTERVAL {
+            self.sync()?;
+        }
+        self.is_broken = false;
+        Ok(())
+    }
+
+    fn sync(&mut self) -> io::Result<()> {
+        self.file.sync_data()?;
+        self.synced = Instant::now();
+        Ok(())
+    }
+}
+
+/// Opens a journal, or makes an empty one, for this process alone, and reads it.
+fn read_locked(path: &Path) -> Result<(File, super::line::Decoded)> {
+    let options = OpenOptions::new()
+        .read(true)
+        .write(true)
+        .create(true)
+        .truncate(false)
+        .open(path);
+    let mut file = options.map_err(|e| Error::io(path, "write", e))?;
+    file.try_lock().map_err(|error| match error {
+        TryLockError::WouldBlock => Error::input(
+            path.display(),
+            "another run is writing to it",
+            "one run in a folder at a time: wait for that one, or name another folder with --out",
+        ),
+        TryLockError::Error(error) => Error::io(path, "lock", error),
+    })?;
+    let mut bytes = Vec::new();
+    file.read_to_end(&mut bytes)
+        .map_err(|e| Error::io(path, "read", e))?;
+    let decoded = decode(&bytes);
+    match decoded.broken {
+        None => Ok((file, decoded)),
+        Some(line) => Err(Error::input(
+            format!("{}: line {line}", path.display()),
+            "does not match its checksum, though lines follow it",
+            "a journal as it was written; --fresh starts over beside it",
+        )),
+    }
+}
+
+/// A new file is on the disk when its folder is.
+fn sync_folder(path: &Path) -> Result<()> {
+    let folder = path
+        .parent()
+        .filter(|parent| !parent.as_os_str().is_empty());
+    let folder = folder.unwrap_or(Path::new("."));
+    // Not every system opens folders; those that do not have no such wait.
+    match File::open(folder) {
+        Ok(folder_file) => folder_file
+            .sync_all()
+            .map_err(|e| Error::io(folder, "write", e)),
+        Err(_) => Ok(()),
+    }
+}

@@ -1,0 +1,15 @@
+//! Journal: what a run has finished, on disk as soon as it is finished, so that the next run goes on from there.
+//!
+//! A [`Journal`] is a file of lines beside the tables, one a finished piece of work, each with its checksum. Its first line
+//! is the [`Identity`] of the study: a run on another study, other objects or by another program is refused, with what
+//! differs. A process that is killed loses the work in flight and nothing else: the line that it was writing is recognised as
+//! torn, dropped, and its work done again.
+
+mod identity;
+mod journal_file;
+mod line;
+mod set_aside;
+
+pub use identity::Identity;
+pub use journal_file::{JOURNAL_FILE, Journal};
+pub use set_aside::set_aside;

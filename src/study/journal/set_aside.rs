@@ -1,0 +1,38 @@
+//! Old results, kept beside the new.
+
+use super::journal_file::JOURNAL_FILE;
+use crate::error::{Error, Result};
+use std::fs::{self, File, TryLockError};
+use std::path::{Path, PathBuf};
+
+/// Renames a folder of results to the first free of `NAME.1`, `NAME.2` …; its new name, or `None` where there is none.
+///
+/// # Errors
+/// A run is still writing to it; it cannot be renamed.
+pub fn set_aside(folder: &Path) -> Result<Option<PathBuf>> {
+    if !folder.exists() {
+        return Ok(None);
+    }
+    let journal = folder.join(JOURNAL_FILE);
+    let _held = match File::open(&journal) {
+        Ok(file) => match file.try_lock() {
+            Err(TryLockError::WouldBlock) => {
+                let given = "another run is writing to it";
+                return Err(Error::input(
+                    journal.display(),
+                    given,
+                    "a folder that no run is writing to",
+                ));
+            }
+            _ => Some(file),
+        },
+        Err(_) => None,
+    };
+    let name = folder.file_name().unwrap_or_default().to_string_lossy();
+    let free = (1..)
+        .map(|k| folder.with_file_name(format!("{name}.{k}")))
+        .find(|path| !path.exists());
+    let free = free.expect("there is no last number");
+    fs::rename(folder, &free).map_err(|e| Error::io(folder, "rename", e))?;
+    Ok(Some(free))
+}

@@ -1,0 +1,134 @@
+//! Where results come from: the program, the machine, the study and its objects.
+
+use super::journal::Identity;
+use chrono::{DateTime, SecondsFormat, Utc};
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+use std::fs;
+use std::time::SystemTime;
+
+/// Program and version.
+pub const PROGRAM: &str = concat!("bubbletouch ", env!("CARGO_PKG_VERSION"));
+
+/// Hash of the sources that the program was built from: equal hashes, equal results.
+pub const SOURCE: &str = env!("BUBBLETOUCH_SOURCE");
+
+/// The commit at which sources last changed, `-changed` if they were not those of it, `unknown` outside a repository.
+const COMMIT: &str = env!("BUBBLETOUCH_COMMIT");
+
+/// What built the program.
+const RUSTC: &str = env!("BUBBLETOUCH_RUSTC");
+
+/// What it was built for.
+const TARGET: &str = env!("BUBBLETOUCH_TARGET");
+
+/// The manifest's name in a folder of results.
+pub const MANIFEST_FILE: &str = "manifest.json";
+
+/// `manifest.json`: where the files of a folder come from.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Manifest {
+    /// Program and version.
+    pub program: String,
+    /// Hash of its sources.
+    pub source: String,
+    /// Its commit.
+    pub commit: String,
+    /// What built it.
+    pub rustc: String,
+    /// What it was built for.
+    pub target: String,
+    /// The processor's name, or `unknown`.
+    pub cpu: String,
+    /// Threads that the machine runs at once.
+    pub cores: usize,
+    /// Threads that the last run used.
+    pub threads: usize,
+    /// The last run's start and end, UTC.
+    pub started: String,
+    /// Its end.
+    pub ended: String,
+    /// Cells that the last run found finished, counted once a trial.
+    pub n_finished_before: usize,
+    /// Root of all randomness.
+    pub seed: u64,
+    /// Cells of the study.
+    pub n_cells: usize,
+    /// Trials of each.
+    pub n_trials: usize,
+    /// Cells that failed, counted once a trial.
+    pub n_failed: usize,
+    /// SHA-256 of `study.toml`: the study with every default spelt out.
+    pub study_sha256: String,
+    /// SHA-256 of what each object is made of, by its name.
+    pub objects_sha256: BTreeMap<String, String>,
+    /// SHA-256 of the tables that hold no times, by their file's name.
+    pub tables_sha256: BTreeMap<String, String>,
+}
+
+/// What a run says of itself for its manifest.
+#[derive(Clone, Debug)]
+pub struct RunFacts {
+    /// When it began.
+    pub started: SystemTime,
+    /// Root of all randomness.
+    pub seed: u64,
+    /// Cells of the study.
+    pub n_cells: usize,
+    /// Trials of each.
+    pub n_trials: usize,
+    /// Cells that it found finished, counted once a trial.
+    pub n_finished_before: usize,
+    /// Cells that failed, counted once a trial.
+    pub n_failed: usize,
+    /// SHA-256 of the tables that hold no times, by their file's name.
+    pub tables_sha256: BTreeMap<String, String>,
+}
+
+impl Manifest {
+    /// Of a run that ends now.
+    pub fn new(identity: &Identity, facts: RunFacts) -> Self {
+        let study = super::content_hash::ContentHash::default().bytes(&identity.study);
+        Self {
+            program: identity.program.clone(),
+            source: identity.source.clone(),
+            commit: COMMIT.to_owned(),
+            rustc: RUSTC.to_owned(),
+            target: TARGET.to_owned(),
+            cpu: cpu(),
+            cores: std::thread::available_parallelism().map_or(1, usize::from),
+            threads: rayon::current_num_threads(),
+            started: time(facts.started),
+            ended: time(SystemTime::now()),
+            n_finished_before: facts.n_finished_before,
+            seed: facts.seed,
+            n_cells: facts.n_cells,
+            n_trials: facts.n_trials,
+            n_failed: facts.n_failed,
+            study_sha256: study.hex(),
+            objects_sha256: identity.objects.clone(),
+            tables_sha256: facts.tables_sha256,
+        }
+    }
+
+    /// As JSON with a line a value.
+    pub fn to_json(&self) -> String {
+        let json = serde_json::to_string_pretty(self);
+        json.expect("every field has a JSON form") + "\n"
+    }
+}
+
+/// The processor's name where the system tells it.
+fn cpu() -> String {
+    let of_system = fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
+    let name = of_system.lines().find_map(|line| {
+        let (key, value) = line.split_once(':')?;
+        (key.trim() == "model name").then(|| value.trim().to_owned())
+    });
+    name.unwrap_or_else(|| "unknown".to_owned())
+}
+
+/// `2026-11-22T06:30:00Z`
+fn time(time: SystemTime) -> String {
+    DateTime::<Utc>::from(time).to_rfc3339_opts(SecondsFormat::Secs, true)
+}

@@ -1,0 +1,63 @@
+//! Finished families → tables: by cell, then by trial.
+
+use super::evaluation::Evaluation;
+use super::finished::Finished;
+use super::job::FinishedFamily;
+use super::summary::{compare_with_best, most_confused, pareto, summarise};
+use super::table::{Cell, Confusion, Failure, Tables};
+use crate::error::Result;
+use std::collections::BTreeMap;
+
+/// Fills every table but those of stages and of published numbers; `names` are those of the classes.
+pub fn tabulate(tables: &mut Tables, finished: Vec<FinishedFamily>, names: &[&str]) -> Result<()> {
+    let mut scored: Vec<(Cell, Evaluation)> = Vec::new();
+    for (family, trial, finished) in finished {
+        match finished {
+            Finished::Scored(evaluations) => {
+                scored.extend(family.iter().cloned().zip(evaluations));
+            }
+            Finished::Failed(error) => {
+                let failure = Failure { trial, error };
+                let cells = family.iter().cloned();
+                tables
+                    .failures
+                    .extend(cells.map(|cell| (cell, failure.clone())));
+            }
+        }
+    }
+    tables
+        .failures
+        .sort_by_key(|(cell, failure)| (cell.cell, failure.trial));
+    scored.sort_by_key(|(cell, evaluation)| (cell.cell, evaluation.score.trial));
+    fill(tables, scored, names)
+}
+
+fn fill(tables: &mut Tables, scored: Vec<(Cell, Evaluation)>, names: &[&str]) -> Result<()> {
+    let mut confusions: BTreeMap<(usize, usize, usize), usize> = BTreeMap::new();
+    for (cell, evaluation) in scored {
+        for &(object, predicted, count) in &evaluation.confusion {
+            *confusions
+                .entry((cell.cell, object, predicted))
+                .or_default() += count;
+        }
+        tables.accuracy.push((cell.clone(), evaluation.score));
+        tables.timing.push((cell, evaluation.time));
+    }
+    let name = |label: usize| names[label].to_owned();
+    tables.confusion = confusions
+        .into_iter()
+        .map(|((cell, object, predicted), count)| Confusion {
+            cell,
+            object: name(object),
+            predicted: name(predicted),
+            count,
+        })
+        .collect();
+    tables.summary = summarise(&tables.accuracy)?;
+    tables.comparison = compare_with_best(&tables.accuracy)?;
+    if let Some(row) = tables.comparison.first() {
+        tables.confused = most_confused(&tables.confusion, row.best_cell);
+    }
+    tables.pareto = pareto(&tables.accuracy, &tables.timing);
+    Ok(())
+}
