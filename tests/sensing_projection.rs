@@ -61,6 +61,29 @@ fn measuring_what_is_touched_is_measuring_the_frame() {
 }
 
 #[test]
+fn larger_hadamard_blocks_read_more_taxels_and_their_rows_are_orthonormal_too() {
+    let seed = Seed::new(5);
+    let (grid, m) = ((64, 64), 16);
+    let mut last = 0;
+    for block in [1, 32, 256, 4096] {
+        let projection = Projection::sbhe(grid, m, block, &seed).unwrap();
+        let n_read = projection.columns().n_read();
+        assert!(n_read > last && n_read <= m * block, "{block}: {n_read}");
+        assert_eq!(projection.columns().n_entries(), m * block);
+        last = n_read;
+        let matrix = projection.matrix();
+        let products = matrix.dot(&matrix.t()) - Array2::<f64>::eye(m);
+        assert!(products.iter().all(|error| error.abs() < 1e-13));
+    }
+    assert_eq!(last, 4096);
+    let published = Projection::new(Ensemble::Sbhe, grid, m, &seed).unwrap();
+    let same = Projection::sbhe(grid, m, 32, &seed).unwrap();
+    assert_eq!(published.matrix(), same.matrix());
+    let error = Projection::sbhe(grid, m, 48, &seed).unwrap_err();
+    assert_eq!(error.to_string(), "Hadamard block: 48; a power of two");
+}
+
+#[test]
 fn measuring_is_multiplying_by_the_matrix() {
     for ensemble in ENSEMBLES {
         for (grid, m) in [((1, 1), 1), ((3, 5), 4), ((12, 9), 50), ((8, 8), 64)] {

@@ -3,6 +3,7 @@
 use bubbletouch::random::Seed;
 use bubbletouch::study::object_detail::{ObjectDetailPlan, ObjectDetailStudySpec};
 use bubbletouch::study::reconstruction::{ReconstructionPlan, ReconstructionStudySpec};
+use bubbletouch::study::whole_body::{WholeBodyPlan, WholeBodyStudySpec};
 use bubbletouch::study::{
     HumanTouches, Plan, StudyKind, StudySpec, Sweep, draw_touches, load_objects,
 };
@@ -54,6 +55,13 @@ fn every_experiment_can_run() {
             assert!(!spec.question.is_empty() && !spec.expected.is_empty());
             let plan = ObjectDetailPlan::new(&place, spec).unwrap();
             assert!(plan.n_models() > 2, "{place} compares something");
+            continue;
+        }
+        if StudyKind::of(&text) == StudyKind::WholeBody {
+            let spec = WholeBodyStudySpec::parse(&place, &text).unwrap();
+            assert!(!spec.question.is_empty() && !spec.expected.is_empty());
+            let plan = WholeBodyPlan::new(&place, path.parent().unwrap(), spec).unwrap();
+            assert!(plan.scenes.len() > 1, "{place} compares something");
             continue;
         }
         if StudyKind::of(&text) == StudyKind::Reconstruction {

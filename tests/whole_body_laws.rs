@@ -1,15 +1,15 @@
 //! Laws of a whole body: what its kernel finds is what the kernel for skins of any shape finds, and nothing costs but touch.
 
-use bubbletouch::contact::{DamperState, SkinWorkspace, press_skin};
+use bubbletouch::contact::{DamperState, SkinWorkspace, press_skin, relaxation_factor};
 use bubbletouch::geometry::Pose;
 use bubbletouch::objects::{Model, Sphere, SphereUnion};
 use bubbletouch::whole_body::{
     AT_REST, BodyContact, BodyPatch, BodyState, CoveredRobot, SphereClusters, WholeBody,
 };
-use bubbletouch::world::{Extrusion, Grid, Layout, Robot, SkinPatch, Taxel, Taxels};
+use bubbletouch::world::{Dome, Extrusion, Grid, Robot, SkinPatch, Taxel, Taxels};
 use glam::DVec3;
 use rand::Rng;
-use std::f64::consts::TAU;
+use std::f64::consts::{PI, TAU};
 use std::path::Path;
 
 mod counting;
@@ -35,10 +35,24 @@ fn random_extrusion(rng: &mut impl Rng) -> Extrusion {
     extrusion.unwrap()
 }
 
+/// A part of a ball, some centimetres large.
+fn random_dome(rng: &mut impl Rng) -> Dome {
+    let (radius, pitch) = (rng.gen_range(0.01..0.06), rng.gen_range(1e-3..4e-3));
+    let (polar, arc) = (rng.gen_range(0.2..PI), rng.gen_range(0.2..TAU));
+    let polar = if rng.gen_bool(0.3) { 0.5 * PI } else { polar };
+    let arc = if rng.gen_bool(0.3) { TAU } else { arc };
+    Dome::new(radius, polar, arc, pitch).unwrap()
+}
+
 fn random_body(rng: &mut impl Rng, taxel: Taxel) -> WholeBody {
     let n = rng.gen_range(1..6);
-    let patches =
-        (0..n).map(|k| BodyPatch::new(format!("patch {k}"), random_extrusion(rng), taxel));
+    let patches = (0..n).map(|k| {
+        let name = format!("patch {k}");
+        match rng.gen_bool(0.3) {
+            true => BodyPatch::dome(name, random_dome(rng), taxel),
+            false => BodyPatch::new(name, random_extrusion(rng), taxel),
+        }
+    });
     WholeBody::new(patches.collect::<Result<_, _>>().unwrap()).unwrap()
 }
 
@@ -55,8 +69,7 @@ fn random_union(rng: &mut impl Rng) -> SphereUnion {
 /// The same patches as skins of any layout.
 fn as_skins(body: &WholeBody) -> Vec<SkinPatch> {
     let skin = |patch: &BodyPatch| {
-        let layout = Layout::from(patch.extrusion());
-        SkinPatch::new(patch.name(), layout, Taxels::Equal(*patch.taxel())).unwrap()
+        SkinPatch::new(patch.name(), patch.layout(), Taxels::Equal(*patch.taxel())).unwrap()
     };
     body.patches().iter().map(skin).collect()
 }
@@ -203,11 +216,12 @@ fn what_goes_away_leaves_nothing_behind() {
 }
 
 #[test]
-fn damped_taxels_relax_as_dampers_do_until_they_are_at_rest() {
+fn damped_taxels_relax_and_push_as_dampers_do_until_they_are_at_rest() {
     let taxel = Taxel {
         damping: 5.0,
         ..TAXEL
     };
+    let mut n_pushed = 0;
     for case in 0..20 {
         let mut rng = rng("damped", case);
         let body = random_body(&mut rng, taxel);
@@ -233,6 +247,17 @@ fn damped_taxels_relax_as_dampers_do_until_they_are_at_rest() {
                     assert!((fast - slow).abs() <= AT_REST, "case {case}, step {step}");
                 }
             }
+            let forces = body.frame(state.forces(&body));
+            let slow_forces = slow.iter().flat_map(|slow| &slow.force);
+            // What an earlier step has put to rest is pushed out anew.
+            let slack = taxel.stiffness * AT_REST / (1.0 - relaxation_factor(&taxel, dt));
+            for (fast, slow) in forces.iter().zip(slow_forces) {
+                assert!(
+                    (fast - slow).abs() <= slack,
+                    "case {case}, step {step}: {fast} {slow}"
+                );
+                n_pushed += usize::from(*fast > 100.0 * slack);
+            }
             touch
                 .objects
                 .iter_mut()
@@ -244,6 +269,29 @@ fn damped_taxels_relax_as_dampers_do_until_they_are_at_rest() {
         }
         assert_eq!(state.touched(&body).count(), 0, "case {case}");
     }
+    assert!(n_pushed > 10_000, "{n_pushed}");
+}
+
+#[test]
+fn without_dampers_the_force_is_that_of_the_spring() {
+    let mut n_touched = 0;
+    for case in 0..20 {
+        let mut rng = rng("springs", case);
+        let body = random_body(&mut rng, TAXEL);
+        let mut state = BodyState::at_rest(&body);
+        for _ in 0..2 {
+            let touch = Touch::random(&mut rng, &body);
+            state.place(&body, &touch.patches);
+            n_touched += state
+                .press(&body, &touch.clusters(), &touch.objects, DT)
+                .n_touched;
+            let springs = state
+                .touched(&body)
+                .map(|(taxel, deflection)| (taxel, TAXEL.stiffness * deflection));
+            assert!(state.forces(&body).eq(springs));
+        }
+    }
+    assert!(n_touched > 1000, "{n_touched}");
 }
 
 #[test]
@@ -306,14 +354,15 @@ fn a_step_allocates_nothing_once_the_touch_has_been_seen() {
 
 #[test]
 fn a_body_at_rest_has_a_few_bytes_a_taxel() {
-    let (mut n_taxels, mut kept) = (0, None);
+    let (mut n_taxels, mut n_bytes, mut kept) = (0, 0, None);
     let bytes = peak_bytes(|| {
         let sleeve = Extrusion::cylinder(0.06, 0.2, 3.0, 1e-3).unwrap();
         let patches =
             (0..20).map(|k| BodyPatch::new(format!("{k}"), sleeve.clone(), TAXEL).unwrap());
         let body = WholeBody::new(patches.collect()).unwrap();
-        n_taxels = body.n_taxels();
-        kept = Some(BodyState::at_rest(&body));
+        let state = BodyState::at_rest(&body);
+        (n_taxels, n_bytes) = (body.n_taxels(), body.n_bytes() + state.n_bytes());
+        kept = Some(state);
     });
     drop(kept);
     let share = bytes as f64 / n_taxels as f64;
@@ -321,6 +370,8 @@ fn a_body_at_rest_has_a_few_bytes_a_taxel() {
         n_taxels > 700_000 && (8.0..10.0).contains(&share),
         "{share} bytes a taxel"
     );
+    let said = n_bytes as f64 / bytes as f64;
+    assert!((said - 1.0).abs() < 0.02, "{n_bytes} of {bytes} bytes");
 }
 
 #[test]
@@ -368,22 +419,23 @@ fn taxels_of_a_covered_robot_are_a_pitch_apart_across_seams_too() {
     let still = vec![0.0; robot.n_positions()];
     let links = robot.forward(&Pose::IDENTITY, &still).unwrap();
     covered.patch_poses(&links, &mut poses);
-    // Those of one limb, so that nothing else is near.
+    // Those of one limb, so that nothing else is near; of its half balls, whose poles are less even, only as neighbours.
     let patches = covered.body().patches().iter().zip(&poses);
     let limb = patches.filter(|(patch, _)| patch.name().starts_with("left_shank "));
-    let centers: Vec<DVec3> = limb
+    let centers: Vec<(bool, DVec3)> = limb
         .flat_map(|(patch, pose)| {
-            let centers = Layout::from(patch.extrusion()).centers().to_vec();
+            let is_side = !patch.name().contains("cap");
+            let centers = patch.layout().centers().to_vec();
             centers
                 .into_iter()
-                .map(|center| pose.transform_point(center))
+                .map(move |center| (is_side, pose.transform_point(center)))
         })
         .collect();
     assert!(centers.len() > 1000, "{}", centers.len());
-    for center in &centers {
+    for (_, center) in centers.iter().filter(|(is_side, _)| *is_side) {
         let mut distances: Vec<f64> = centers
             .iter()
-            .map(|other| other.distance(*center))
+            .map(|(_, other)| other.distance(*center))
             .collect();
         distances.sort_by(f64::total_cmp);
         // At the ends of the limb a taxel has three neighbours.
@@ -419,12 +471,19 @@ fn patches_go_with_their_links() {
 }
 
 #[test]
-fn a_robot_without_cylinders_and_a_pitch_that_is_none_are_refused() {
+fn a_robot_with_nothing_to_cover_and_a_pitch_that_is_none_are_refused() {
     let bare = CoveredRobot::new(&Robot::floating("ghost"), TAXEL, 1e-3, 0.1).unwrap_err();
     assert!(
         bare.to_string()
-            .starts_with("robot ghost: no cylinder to cover; "),
+            .starts_with("robot ghost: no cylinder or ball to cover; "),
         "{bare}"
+    );
+    let tiny = Dome::new(1e-3, 1.0, 1.0, 1e-4).unwrap();
+    let error = BodyPatch::dome("pin", tiny, TAXEL).unwrap_err();
+    assert!(
+        error
+            .to_string()
+            .starts_with("body patch pin, dome radius: 0.001 m; ")
     );
     let error = CoveredRobot::new(&humanoid(), TAXEL, -1.0, 0.1).unwrap_err();
     assert!(

@@ -16,6 +16,7 @@ mod recording;
 mod run;
 mod run_object_detail;
 mod run_reconstruction;
+mod run_whole_body;
 mod simulate;
 mod slurm;
 mod slurm_jobs;
@@ -41,6 +42,9 @@ struct CommandLine {
 #[derive(Subcommand)]
 enum Command {
     /// Run a study: simulate, compress, recognise; write tables, charts and a report
+    ///
+    /// Its file says of which kind it is: [recognition], [reconstruction] (how well frames come back), [object_detail] (how detailed
+    /// objects must be) or [whole_body] (what a body of millions of taxels costs).
     Run(run::Args),
     /// Put the shards of a study together
     Merge(merge::Args),

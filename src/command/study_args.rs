@@ -3,6 +3,7 @@
 use bubbletouch::random::Seed;
 use bubbletouch::study::object_detail::{ObjectDetailPlan, ObjectDetailStudySpec};
 use bubbletouch::study::reconstruction::{ReconstructionPlan, ReconstructionStudySpec};
+use bubbletouch::study::whole_body::{WholeBodyPlan, WholeBodyStudySpec};
 use bubbletouch::study::{
     HumanTouches, ObjectsSpec, Plan, StudyKind, StudySpec, Sweep, TouchSet, draw_touches,
     load_objects,
@@ -106,6 +107,21 @@ impl StudyArgs {
         spec.seed = self.seed.unwrap_or(spec.seed);
         self.replace_objects(&mut spec.objects);
         ObjectDetailPlan::new(&place, spec)
+    }
+
+    /// Reads and checks a study of a whole body; it has objects of its own.
+    pub fn whole_body_plan(&self) -> Result<WholeBodyPlan> {
+        set_threads(self.threads)?;
+        let place = self.study.display().to_string();
+        if let Some(folder) = &self.objects {
+            let allowed =
+                "no such option: a whole body is touched by the objects that its study names";
+            return Err(Error::input("--objects", folder.display(), allowed));
+        }
+        let mut spec = WholeBodyStudySpec::parse(&place, &self.text()?)?;
+        spec.seed = self.seed.unwrap_or(spec.seed);
+        let folder = self.study.parent().unwrap_or(Path::new(""));
+        WholeBodyPlan::new(&place, folder, spec)
     }
 
     fn replace_objects(&self, objects: &mut ObjectsSpec) {

@@ -69,7 +69,7 @@ impl DamperState {
 }
 
 /// What a step of one length does to taxels of one kind.
-struct Relaxation {
+pub(crate) struct Relaxation {
     stiffness: f64,
     /// φ.
     left: f64,
@@ -78,7 +78,7 @@ struct Relaxation {
 }
 
 impl Relaxation {
-    fn of(taxel: &Taxel, dt: f64) -> Self {
+    pub(crate) fn of(taxel: &Taxel, dt: f64) -> Self {
         // 1 − φ without cancellation for steps much shorter than c / k.
         let gone = if taxel.damping == 0.0 {
             1.0
@@ -95,9 +95,15 @@ impl Relaxation {
     /// Takes a taxel to the end of the step and returns its force.
     #[inline]
     fn advance(&self, deflection: &mut f64, pushed: f64) -> f64 {
-        let relaxed = *deflection * self.left;
-        *deflection = relaxed.max(pushed);
-        self.stiffness * (*deflection - relaxed) / self.gone
+        let before = *deflection;
+        *deflection = (before * self.left).max(pushed);
+        self.force(before, *deflection)
+    }
+
+    /// The force, newtons, that takes a taxel from a deflection to another, metres, within the step.
+    #[inline]
+    pub(crate) fn force(&self, before: f64, after: f64) -> f64 {
+        self.stiffness * (after - before * self.left) / self.gone
     }
 }
 

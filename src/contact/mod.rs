@@ -51,6 +51,7 @@ mod spring_load;
 mod swept_triangle;
 mod taxel_contact;
 
+pub(crate) use damper::Relaxation;
 pub use damper::{DamperState, relaxation_factor};
 pub use friction::{FrictionLoad, FrictionState, Grip, GripCounts, NormalForce};
 pub(crate) use grid_lines::Lines;

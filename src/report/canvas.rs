@@ -14,6 +14,8 @@ pub(super) struct Hit {
     pub height: f64,
     /// In the frame of the picture: right, up, towards the eye.
     pub normal: DVec3,
+    /// Which of the spheres; 0 of another surface.
+    pub part: usize,
 }
 
 /// Axes of the picture in the object's frame.
@@ -26,7 +28,11 @@ pub(super) struct View {
 impl View {
     /// The eye stands before the object (−y), 30° to the right of it and 38° up.
     pub fn three_quarter() -> Self {
-        let (azimuth, elevation) = (30f64.to_radians(), 38f64.to_radians());
+        Self::from_angles(30f64.to_radians(), 38f64.to_radians())
+    }
+
+    /// The eye stands before the object (−y), so many radians to the right of it and up.
+    pub fn from_angles(azimuth: f64, elevation: f64) -> Self {
         let right = DVec3::new(azimuth.cos(), azimuth.sin(), 0.0);
         let back = DVec3::new(azimuth.sin(), -azimuth.cos(), 0.0);
         let towards_eye = elevation.cos() * back + elevation.sin() * DVec3::Z;
@@ -95,7 +101,7 @@ impl Canvas {
     /// What the rays meet of spheres.
     pub fn hits(&self, spheres: &[Sphere]) -> Vec<Option<Hit>> {
         let mut hits: Vec<Option<Hit>> = vec![None; self.width * self.height];
-        for sphere in spheres {
+        for (part, sphere) in spheres.iter().enumerate() {
             let height = sphere.center.dot(self.view.towards_eye);
             let center = self.view.project(sphere.center);
             self.each_ray(center, DVec2::splat(sphere.radius), |index, offset| {
@@ -103,7 +109,11 @@ impl Canvas {
                 let height = height + sphere.radius * forward;
                 if hits[index].is_none_or(|hit| hit.height < height) {
                     let normal = DVec3::new(offset.x, -offset.y, forward);
-                    hits[index] = Some(Hit { height, normal });
+                    hits[index] = Some(Hit {
+                        height,
+                        normal,
+                        part,
+                    });
                 }
             });
         }
@@ -131,6 +141,7 @@ impl Canvas {
             Some(Hit {
                 height: point.dot(towards_eye),
                 normal: DVec3::new(normal.dot(right), normal.dot(up), normal.dot(towards_eye)),
+                part: 0,
             })
         };
         (0..self.width * self.height)

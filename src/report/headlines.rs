@@ -93,6 +93,21 @@ pub fn text(tables: &Tables, width: usize) -> String {
 }
 
 impl TextTable {
+    /// Rows under heads, of which some are numbers; none if there are no rows.
+    pub(super) fn of(
+        title: &'static str,
+        note: String,
+        heads: Vec<(&'static str, bool)>,
+        rows: Vec<Vec<String>>,
+    ) -> Option<Self> {
+        (!rows.is_empty()).then_some(Self {
+            title,
+            note,
+            heads,
+            rows,
+        })
+    }
+
     /// For the terminal: the title and the note, the table, an empty line.
     pub fn text(&self, width: usize) -> String {
         let mut table = ruled_table(width);

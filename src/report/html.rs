@@ -12,6 +12,8 @@ use ndarray::Array2;
 use std::fmt::Write;
 
 const TEMPLATE: &str = include_str!("report.html");
+/// How every page looks.
+pub(super) const STYLE: &str = include_str!("style.css");
 
 /// What a study says of itself, beside its tables.
 #[derive(Clone, Debug, Default)]
@@ -84,8 +86,12 @@ impl Picture {
 
     /// A drawing's PNG in the page: smaller than an SVG for pictures of many taxels.
     pub fn raster(drawing: &Drawing, png: &[u8], title: &str) -> Self {
+        Self::of_png(png, (drawing.width(), drawing.height()), title)
+    }
+
+    /// A PNG in the page, with its width and height in pixels.
+    pub fn of_png(png: &[u8], (width, height): (f64, f64), title: &str) -> Self {
         let data = base64(png);
-        let (width, height) = (drawing.width(), drawing.height());
         Self {
             title: title.to_owned(),
             element: format!(
@@ -115,6 +121,7 @@ pub struct Pictures {
 pub fn page(about: &ReportPage, tables: &Tables, pictures: &Pictures) -> String {
     let answer = Answer::of(tables);
     fill(TEMPLATE, |name| match name {
+        "style" => STYLE.to_owned(),
         "name" => escape(&about.name),
         "question" => escape(&about.question),
         "expected" => match about.expected.is_empty() {
@@ -145,7 +152,7 @@ pub fn page(about: &ReportPage, tables: &Tables, pictures: &Pictures) -> String 
 }
 
 /// Replaces each `{{name}}` of a template once, left to right: what is put in is never searched again.
-fn fill(template: &str, value: impl Fn(&str) -> String) -> String {
+pub(super) fn fill(template: &str, value: impl Fn(&str) -> String) -> String {
     let mut parts = template.split("{{");
     let mut filled = parts.next().unwrap_or_default().to_owned();
     for part in parts {
@@ -227,7 +234,8 @@ fn section(title: &str, figure: Option<String>) -> String {
     }
 }
 
-fn figure(picture: &Picture) -> String {
+/// A picture in its frame.
+pub(super) fn figure(picture: &Picture) -> String {
     format!(
         "<figure tabindex=\"0\" aria-label=\"{}\"><div class=\"card\">{}</div></figure>",
         escape(&picture.title),

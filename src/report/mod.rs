@@ -54,4 +54,8 @@ pub mod terminal;
 pub mod text_width;
 mod time_scale;
 pub mod varying;
+pub mod whole_body_charts;
+pub mod whole_body_picture;
+pub mod whole_body_results;
+mod whole_body_text;
 mod x_scale;

@@ -45,8 +45,12 @@ struct Ray {
 
 impl Stage {
     /// The spheres in the middle of width × height pixels, as large as `room` (pixels each way) allows.
-    pub fn new(spheres: &[Sphere], [width, height]: [usize; 2], room: DVec2) -> Self {
-        let view = View::three_quarter();
+    pub fn new(spheres: &[Sphere], size: [usize; 2], room: DVec2) -> Self {
+        Self::seen(View::three_quarter(), spheres, size, room)
+    }
+
+    /// The same, seen from elsewhere.
+    pub fn seen(view: View, spheres: &[Sphere], [width, height]: [usize; 2], room: DVec2) -> Self {
         let (low, high) = extent(&view, spheres);
         let pixels_per_metre = (room / (high - low)).min_element();
         let canvas = Canvas {

@@ -78,6 +78,22 @@ impl Columns {
         self.n_measurements
     }
 
+    /// How many numbers of Φ are not zero.
+    pub fn n_entries(&self) -> usize {
+        self.entries.len()
+    }
+
+    /// How many taxels any measurement reads.
+    pub fn n_read(&self) -> usize {
+        let columns = self.starts.windows(2);
+        columns.filter(|ends| ends[0] < ends[1]).count()
+    }
+
+    /// Bytes that it holds.
+    pub fn n_bytes(&self) -> usize {
+        size_of_val(&self.starts[..]) + size_of_val(&self.entries[..])
+    }
+
     /// Measures a frame that is zero but for `touched` (taxel, value) into `measurements` (m), whatever was there; to rounding what
     /// [`Projection::measure`] says of the whole frame. Nothing is allocated.
     ///

@@ -10,7 +10,7 @@ use ndarray::{ArrayView2, ArrayViewMut2};
 
 /// B, a power of two: 32 as in \[SBHE\]. Larger blocks mix more taxels into each measurement, slower; at 1 the ensemble is
 /// a subsample. Arrays of fewer taxels take the next power of two above their number.
-const BLOCK: usize = 32;
+pub(super) const BLOCK: usize = 32;
 /// Frames transformed side by side, one in each lane of a vector register.
 const LANES: usize = 8;
 
@@ -29,8 +29,9 @@ pub(super) struct ScrambledHadamard {
 }
 
 impl ScrambledHadamard {
-    pub(super) fn new(m: usize, n: usize, stream: &Seed) -> Self {
-        let block = BLOCK.min(n.next_power_of_two());
+    /// In blocks of `block` taxels, a power of two.
+    pub(super) fn new(m: usize, n: usize, block: usize, stream: &Seed) -> Self {
+        let block = block.min(n.next_power_of_two());
         let n_padded = n.next_multiple_of(block);
         let rows = permutation(n_padded, &stream.named("rows"));
         let mut picks: Vec<_> = rows.into_iter().take(m).zip(0..).collect();
@@ -48,13 +49,13 @@ impl ScrambledHadamard {
         let all = frames.as_slice().unwrap_or_default();
         let scale = 1.0 / (self.block as f64).sqrt();
         let group_len = LANES * self.n_taxels;
+        let mut values = vec![[0.0; LANES]; self.block];
         for (group, frames) in all.chunks(group_len).enumerate() {
             for picks in self.picks.chunk_by(|a, b| self.same_block(a, b)) {
-                let mut values = [[0.0; LANES]; BLOCK];
-                let values = &mut values[..self.block];
+                values.fill([0.0; LANES]);
                 let first = picks[0].0 / self.block * self.block;
-                self.gather(frames, &self.taxels[first..first + self.block], values);
-                transform(values);
+                self.gather(frames, &self.taxels[first..first + self.block], &mut values);
+                transform(&mut values);
                 for &(coefficient, measurement) in picks {
                     let lanes = &values[coefficient - first];
                     for (lane, value) in lanes[..frames.len() / self.n_taxels].iter().enumerate() {
@@ -140,8 +141,12 @@ mod tests {
 
     #[test]
     fn the_fast_transform_is_the_dense_matrix() {
-        for (n, m) in [(1, 1), (2, 1), (5, 5), (32, 7), (64, 64), (100, 41)] {
-            let hadamard = ScrambledHadamard::new(m, n, &Seed::new(3));
+        let sizes = [(1, 1), (2, 1), (5, 5), (32, 7), (64, 64), (100, 41)];
+        for ((n, m), block) in sizes
+            .into_iter()
+            .flat_map(|size| [(size, 8), (size, BLOCK), (size, 128)])
+        {
+            let hadamard = ScrambledHadamard::new(m, n, block, &Seed::new(3));
             let frames = Array2::from_shape_fn((19, n), |(i, j)| ((i * n + j) as f64).sin());
             let mut fast = Array2::zeros((19, m));
             hadamard.measure(frames.view(), fast.view_mut());
@@ -153,7 +158,7 @@ mod tests {
     #[test]
     fn rows_are_orthonormal_when_nothing_is_padded() {
         for (n, m) in [(32, 32), (128, 128), (16, 9)] {
-            let matrix = dense(&ScrambledHadamard::new(m, n, &Seed::new(4)));
+            let matrix = dense(&ScrambledHadamard::new(m, n, BLOCK, &Seed::new(4)));
             let products = matrix.dot(&matrix.t()) - Array2::<f64>::eye(m);
             assert!(products.iter().all(|error| error.abs() < 1e-14));
         }

@@ -1,6 +1,6 @@
 //! One prepared projection of any ensemble.
 
-use super::hadamard::ScrambledHadamard;
+use super::hadamard::{BLOCK, ScrambledHadamard};
 use super::sparse::VerySparse;
 use super::{Ensemble, block_average, dense, subsample};
 use crate::error::{Error, Result};
@@ -50,21 +50,17 @@ impl Projection {
     /// # Errors
     /// An array without taxels; m = 0 or m > n.
     pub fn new(ensemble: Ensemble, grid: (usize, usize), m: usize, seed: &Seed) -> Result<Self> {
-        let n = grid.0 * grid.1;
-        if n == 0 || m == 0 || m > n {
-            return Err(Error::input(
-                "number of measurements",
-                format!("{m} of {} × {} taxels", grid.1, grid.0),
-                "from 1 to the number of taxels",
-            ));
-        }
+        let n = check_size(grid, m)?;
         let operator = match ensemble {
             Ensemble::Gaussian => Operator::Dense(dense::gaussian(m, n, &seed.named("gaussian"))),
             Ensemble::Bernoulli => {
                 Operator::Dense(dense::bernoulli(m, n, &seed.named("bernoulli")))
             }
             Ensemble::Sparse => Operator::Sparse(VerySparse::new(m, n, &seed.named("sparse"))),
-            Ensemble::Sbhe => Operator::Hadamard(ScrambledHadamard::new(m, n, &seed.named("sbhe"))),
+            Ensemble::Sbhe => {
+                let stream = seed.named("sbhe");
+                Operator::Hadamard(ScrambledHadamard::new(m, n, BLOCK, &stream))
+            }
             Ensemble::BlockAverage => Operator::Blocks(block_average::blocks(grid, m)),
             Ensemble::Subsample => {
                 Operator::Taxels(subsample::taxels(m, n, &seed.named("subsample")))
@@ -77,6 +73,27 @@ impl Projection {
             n_taxels: n,
             n_measurements,
             operator,
+        })
+    }
+
+    /// The scrambled block Hadamard ensemble in blocks of `block` taxels, where \[SBHE\] and [`Projection::new`] have 32.
+    ///
+    /// m measurements read at most m · `block` taxels. Where that is far below n, as on a body of millions, most taxels are never
+    /// read: a block of some n / m taxels or more lets every taxel be heard, and still costs few entries a taxel.
+    ///
+    /// # Errors
+    /// As [`Projection::new`]; a block that is not a power of two.
+    pub fn sbhe(grid: (usize, usize), m: usize, block: usize, seed: &Seed) -> Result<Self> {
+        let n = check_size(grid, m)?;
+        if !block.is_power_of_two() {
+            return Err(Error::input("Hadamard block", block, "a power of two"));
+        }
+        let hadamard = ScrambledHadamard::new(m, n, block, &seed.named("sbhe"));
+        Ok(Self {
+            ensemble: Ensemble::Sbhe,
+            n_taxels: n,
+            n_measurements: m,
+            operator: Operator::Hadamard(hadamard),
         })
     }
 
@@ -191,4 +208,17 @@ impl Projection {
         }
         matrix
     }
+}
+
+/// The taxels of a grid that has any, and from which m measurements can be made.
+fn check_size(grid: (usize, usize), m: usize) -> Result<usize> {
+    let n = grid.0 * grid.1;
+    if n == 0 || m == 0 || m > n {
+        return Err(Error::input(
+            "number of measurements",
+            format!("{m} of {} × {} taxels", grid.1, grid.0),
+            "from 1 to the number of taxels",
+        ));
+    }
+    Ok(n)
 }

@@ -51,6 +51,7 @@ mod tabulate;
 mod touch_files;
 mod touch_set;
 mod training;
+pub mod whole_body;
 
 pub use axis::Axis;
 pub(crate) use check::{Check, not_negative, positive};

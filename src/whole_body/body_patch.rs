@@ -1,66 +1,51 @@
-//! A body: patches of skin whose taxels need no bytes of their own.
+//! A body: patches of skin whose taxels need few bytes of their own.
 
-use crate::contact::Lines;
+use super::dome_patch::DomePatch;
+use super::row_patch::RowPatch;
 use crate::error::{Error, Result};
 use crate::objects::Sphere;
-use crate::world::{Extrusion, Taxel};
-use glam::DVec2;
-use std::ops::Range;
+use crate::world::{Dome, Extrusion, Layout, Taxel};
 
-/// Columns in a bundle. More: columns are looked at in vain; fewer: bundles are.
-pub(super) const BUNDLE: usize = 8;
-/// What rounding may add to a reach, far above 1e-16 and far below what is felt.
-const ROUNDING: f64 = 1.0 + 1e-9;
-
-/// A patch of a body: equal taxels in a row that is repeated along a line.
+/// A patch of a body: equal taxels in rows.
 #[derive(Clone, Debug)]
 pub struct BodyPatch {
     name: String,
-    extrusion: Extrusion,
-    taxel: Taxel,
-    /// Of each bundle of columns, in their order.
-    circles: Vec<Circle>,
-    lines: Lines,
-    /// Around all taxels from their rest centres back to the substrate, in the patch frame.
-    ball: Sphere,
+    surface: Surface,
 }
 
-/// A circle in the plane across the rows.
-#[derive(Clone, Copy, Debug)]
-struct Circle {
-    center: DVec2,
-    radius: f64,
+/// How the taxels of a patch lie.
+#[derive(Clone, Debug)]
+pub(super) enum Surface {
+    /// One row repeated along a line.
+    Rows(RowPatch),
+    /// Rings on a sphere.
+    Dome(DomePatch),
 }
 
 impl BodyPatch {
-    /// The error names the patch and the property of its taxels that is out of its range.
+    /// A flat patch or a part of a cylinder. The error names the patch and the property of its taxels that is out of its range.
     pub fn new(name: impl Into<String>, extrusion: Extrusion, taxel: Taxel) -> Result<Self> {
         let name = name.into();
-        taxel
-            .check()
-            .map_err(|error| error.under(format!("body patch {name}, ")))?;
+        check_taxel(&name, &taxel)?;
+        let surface = Surface::Rows(RowPatch::new(extrusion, taxel));
+        Ok(Self { name, surface })
+    }
+
+    /// A part of a sphere. The error names the patch and the property of its taxels that is out of its range, or a sphere too
+    /// small for their stroke.
+    pub fn dome(name: impl Into<String>, dome: Dome, taxel: Taxel) -> Result<Self> {
+        let name = name.into();
+        check_taxel(&name, &taxel)?;
         let depth = taxel.stroke + taxel.radius;
-        let columns: Vec<_> = extrusion.places().iter().zip(extrusion.axes()).collect();
-        let ends = |column: &(&DVec2, &DVec2)| [*column.0, *column.0 - depth * *column.1];
-        let circle = |columns: &[(&DVec2, &DVec2)]| Circle::around(columns.iter().flat_map(ends));
-        let lines = Lines::at(extrusion.rows());
-        let whole = circle(&columns);
-        let (first, last) = (
-            lines.positions[0],
-            lines.positions[lines.positions.len() - 1],
-        );
-        let center = whole.center.extend(0.5 * (first + last));
-        Ok(Self {
-            ball: Sphere {
-                center: extrusion.uvw_from_patch().transpose() * center,
-                radius: whole.radius.hypot(0.5 * (last - first)),
-            },
-            circles: columns.chunks(BUNDLE).map(circle).collect(),
-            name,
-            extrusion,
-            taxel,
-            lines,
-        })
+        if dome.radius() < depth {
+            return Err(Error::input(
+                format!("body patch {name}, dome radius"),
+                format!("{} m", dome.radius()),
+                format!("at least {depth} m, a taxel's stroke and radius"),
+            ));
+        }
+        let surface = Surface::Dome(DomePatch::new(dome, taxel));
+        Ok(Self { name, surface })
     }
 
     /// What it is called.
@@ -68,84 +53,69 @@ impl BodyPatch {
         &self.name
     }
 
-    /// Where the taxels rest.
-    pub fn extrusion(&self) -> &Extrusion {
-        &self.extrusion
+    /// Every taxel's place and axis, in the patch frame; 48 bytes a taxel.
+    pub fn layout(&self) -> Layout {
+        match &self.surface {
+            Surface::Rows(rows) => rows.extrusion().into(),
+            Surface::Dome(dome) => dome.dome().into(),
+        }
     }
 
     /// What each of the taxels is.
     pub fn taxel(&self) -> &Taxel {
-        &self.taxel
+        match &self.surface {
+            Surface::Rows(rows) => rows.taxel(),
+            Surface::Dome(dome) => dome.taxel(),
+        }
     }
 
     /// How many taxels.
     pub fn n_taxels(&self) -> usize {
-        self.extrusion.n_taxels()
+        match &self.surface {
+            Surface::Rows(rows) => rows.extrusion().n_taxels(),
+            Surface::Dome(dome) => dome.dome().n_taxels(),
+        }
     }
 
     /// A ball in the patch frame that every sphere comes near to that pushes a taxel: nearer than the sum of the radii and ρ.
     pub fn ball(&self) -> Sphere {
-        self.ball
-    }
-
-    /// The rows.
-    pub(super) fn lines(&self) -> &Lines {
-        &self.lines
-    }
-
-    /// Runs of neighbouring bundles that a circle of radius `reach` (with ρ in it) comes near; ranges of columns.
-    #[inline(always)]
-    pub(super) fn each_run_near(
-        &self,
-        center: DVec2,
-        reach: f64,
-        mut visit: impl FnMut(Range<usize>),
-    ) {
-        let n_columns = self.extrusion.places().len();
-        let mut start = None;
-        for (bundle, circle) in self.circles.iter().enumerate() {
-            match (circle.is_near(center, reach), start) {
-                (true, None) => start = Some(bundle * BUNDLE),
-                (false, Some(from)) => {
-                    visit(from..bundle * BUNDLE);
-                    start = None;
-                }
-                _ => {}
-            }
-        }
-        if let Some(from) = start {
-            visit(from..n_columns);
+        match &self.surface {
+            Surface::Rows(rows) => rows.ball(),
+            Surface::Dome(dome) => dome.ball(),
         }
     }
 
-    /// Whether a circle of radius `reach` (with ρ in it) comes near any bundle.
+    /// How the taxels lie.
+    pub(super) fn surface(&self) -> &Surface {
+        &self.surface
+    }
+
+    /// How many rows, or rings.
+    pub(super) fn n_rows(&self) -> usize {
+        match &self.surface {
+            Surface::Rows(rows) => rows.extrusion().rows().len(),
+            Surface::Dome(dome) => dome.dome().rings().len(),
+        }
+    }
+
+    /// The number of the first taxel of a row.
     #[inline(always)]
-    pub(super) fn is_near(&self, center: DVec2, reach: f64) -> bool {
-        let mut circles = self.circles.iter();
-        circles.any(|circle| circle.is_near(center, reach))
+    pub(super) fn row_start(&self, row: u32) -> u32 {
+        match &self.surface {
+            Surface::Rows(rows) => row * rows.extrusion().places().len() as u32,
+            Surface::Dome(dome) => dome.dome().rings()[row as usize].first as u32,
+        }
     }
 }
 
-impl Circle {
-    fn around(points: impl Iterator<Item = DVec2> + Clone) -> Self {
-        let center = points.clone().sum::<DVec2>() / points.clone().count() as f64;
-        let distances = points.map(|point| point.distance(center));
-        Self {
-            center,
-            radius: distances.fold(0.0, f64::max),
-        }
-    }
-
-    #[inline(always)]
-    fn is_near(&self, center: DVec2, reach: f64) -> bool {
-        let reach = (self.radius + reach) * ROUNDING;
-        self.center.distance_squared(center) <= reach * reach
-    }
+fn check_taxel(patch: &str, taxel: &Taxel) -> Result<()> {
+    let place = |error: Error| error.under(format!("body patch {patch}, "));
+    taxel.check().map_err(place)
 }
 
 /// All patches of a body.
 ///
-/// Taxels are numbered patch by patch, each in the order of its [`Extrusion`].
+/// Taxels are numbered patch by patch, each in the order of its [layout](BodyPatch::layout).
 #[derive(Clone, Debug)]
 pub struct WholeBody {
     patches: Vec<BodyPatch>,
@@ -189,5 +159,28 @@ impl WholeBody {
     /// How many taxels all patches have.
     pub fn n_taxels(&self) -> usize {
         self.n_taxels
+    }
+    /// Bytes that it holds; what touches it has its own ([`BodyState::n_bytes`](super::BodyState::n_bytes)).
+    pub fn n_bytes(&self) -> usize {
+        let patch = |patch: &BodyPatch| {
+            let surface = match &patch.surface {
+                Surface::Rows(rows) => rows.n_bytes(),
+                Surface::Dome(dome) => dome.n_bytes(),
+            };
+            size_of::<BodyPatch>() + patch.name.len() + surface
+        };
+        self.patches.iter().map(patch).sum::<usize>() + size_of_val(&self.firsts[..])
+    }
+
+    /// A frame of the whole body, n_taxels, that is zero but for some taxels: touched ones with their deflections or forces.
+    ///
+    /// # Panics
+    /// If there is no such taxel.
+    pub fn frame(&self, touched: impl IntoIterator<Item = (usize, f64)>) -> Vec<f64> {
+        let mut frame = vec![0.0; self.n_taxels];
+        for (taxel, value) in touched {
+            frame[taxel] = value;
+        }
+        frame
     }
 }

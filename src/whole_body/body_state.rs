@@ -20,6 +20,8 @@ pub struct BodyState {
     object_balls: Vec<Sphere>,
     /// Patches with something to do in this step; ascending.
     busy: Vec<u32>,
+    /// How long this step was, seconds.
+    dt: f64,
     contact: BodyContact,
 }
 
@@ -87,6 +89,7 @@ impl BodyState {
             body.patches().len(),
             "a state of this body"
         );
+        self.dt = dt;
         self.find_busy(objects, world_from_objects);
         let (poses, balls, object_balls) =
             (&self.world_from_patches, &self.balls, &self.object_balls);
@@ -113,7 +116,30 @@ impl BodyState {
         })
     }
 
-    /// All deflections of one patch, n_taxels, metres, in the order of its extrusion.
+    /// The forces on the deflected taxels, ascending: number and newtons; 0 on one that relaxes freely.
+    ///
+    /// They are those of [`DamperState`](crate::contact::DamperState): kδ without a damper, else the constant force that takes
+    /// the taxel there within the last step, which tends to kδ + cδ̇.
+    pub fn forces(&self, body: &WholeBody) -> impl Iterator<Item = (usize, f64)> {
+        self.busy.iter().flat_map(|&number| {
+            let (patch, first) = (number as usize, body.firsts()[number as usize]);
+            let forces = self.patches[patch].forces(&body.patches()[patch], self.dt);
+            forces.map(move |(taxel, force)| (first + taxel as usize, force))
+        })
+    }
+
+    /// How many patches the last step looked at: those near an object, and those on which something was still deflected.
+    pub fn n_visited(&self) -> usize {
+        self.busy.len()
+    }
+
+    /// Bytes that it holds of each patch and taxel.
+    pub fn n_bytes(&self) -> usize {
+        let patches = self.patches.iter().map(PatchState::n_bytes).sum::<usize>();
+        patches + self.patches.len() * (size_of::<Pose>() + size_of::<Sphere>() + size_of::<u32>())
+    }
+
+    /// All deflections of one patch, n_taxels, metres, in the order of its layout.
     ///
     /// # Panics
     /// If there is no such patch.

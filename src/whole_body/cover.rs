@@ -1,11 +1,12 @@
-//! A robot covered in skin: a patch on every part of the sides of its cylinders.
+//! A robot covered in skin: patches on the sides of its cylinders and on the half balls at their ends.
 
 use super::body_patch::{BodyPatch, WholeBody};
+use super::half_balls::{HalfBall, half_balls};
 use crate::error::{Error, Result};
 use crate::geometry::Pose;
-use crate::world::{Extrusion, LinkGeometry, Robot, ShapeRole, Taxel};
+use crate::world::{Dome, Extrusion, LinkGeometry, Robot, ShapeRole, Taxel};
 use glam::{DQuat, DVec3};
-use std::f64::consts::TAU;
+use std::f64::consts::{FRAC_PI_2, TAU};
 
 /// A robot's skin, and where its patches are on the links.
 #[derive(Clone, Debug)]
@@ -21,6 +22,23 @@ struct Mount {
     link_from_patch: Pose,
 }
 
+/// What covers: equal taxels, and how they are shared out.
+#[derive(Clone, Copy)]
+struct Cover {
+    taxel: Taxel,
+    /// From taxel to taxel, metres.
+    pitch: f64,
+    /// Of a patch, about, metres.
+    side: f64,
+}
+
+/// Patches so far.
+#[derive(Default)]
+struct Covered {
+    patches: Vec<BodyPatch>,
+    mounts: Vec<Mount>,
+}
+
 /// The side of a cylinder on a link.
 struct Side<'a> {
     name: &'a str,
@@ -31,15 +49,21 @@ struct Side<'a> {
 }
 
 impl CoveredRobot {
-    /// Covers the sides of the cylinders and capsules that a robot's links touch with, each cut around and along into equal
-    /// patches of about `side` metres, a taxel about every `pitch` metres, across the seams too.
+    /// Covers the cylinders, capsules and balls that a robot's links touch with, cut into equal patches of about `side` by `side`
+    /// metres, a taxel about every `pitch` metres, across the seams too.
     ///
-    /// Patches are called by their link, their ring from its lower end and their place around it from +x, both from 1:
-    /// `trunk 2.3`; a link's second cylinder begins with `trunk'`. The error is a robot without a cylinder, a taxel that
-    /// cannot be, or a pitch or side for which a patch has no or too many taxels.
+    /// - The side of a cylinder is cut around and along. Patches are called by their link, their ring from its lower end and their
+    ///   place around it from +x, both from 1: `trunk 2.3`; a link's second cylinder begins with `trunk'`.
+    /// - A ball at the end of a cylinder of its radius, and the end of a capsule, is covered on its outer half, any other ball
+    ///   wholly; each half is cut from pole to rim: `head cap 2.3` is the third part of the second half ball of the file. A ball
+    ///   within a larger one of another link, such as an elbow's inner one, is never touched, and left out.
+    ///
+    /// Flat ends and boxes stay bare. The error is a robot with nothing to cover, a taxel that cannot be, or a pitch or side for
+    /// which a patch has no or too many taxels.
     pub fn new(robot: &Robot, taxel: Taxel, pitch: f64, side: f64) -> Result<Self> {
-        let mut patches = Vec::new();
-        let mut mounts = Vec::new();
+        let cover = Cover { taxel, pitch, side };
+        let mut covered = Covered::default();
+        let half_balls = half_balls(robot)?;
         for (number, link) in robot.links().iter().enumerate() {
             let mut name = link.name.clone();
             for shape in &link.shapes {
@@ -56,27 +80,36 @@ impl CoveredRobot {
                         radius,
                         length,
                     };
-                    side_of.cover(taxel, pitch, side, &mut patches, &mut mounts)?;
+                    covered.add_side(&side_of, cover)?;
                     name.push('\'');
                 }
             }
+            let of_link = half_balls.iter().filter(|half| half.link == number);
+            for (cap, half) in of_link.enumerate() {
+                covered.add_half_ball(&format!("{} cap {}", link.name, cap + 1), half, cover)?;
+            }
         }
-        if patches.is_empty() {
+        if covered.patches.is_empty() {
             return Err(Error::input(
                 format!("robot {}", robot.name()),
-                "no cylinder to cover",
-                "a link with a collision cylinder or capsule",
+                "no cylinder or ball to cover",
+                "a link with a collision cylinder, capsule or sphere",
             ));
         }
         Ok(Self {
-            body: WholeBody::new(patches)?,
-            mounts,
+            body: WholeBody::new(covered.patches)?,
+            mounts: covered.mounts,
         })
     }
 
     /// The patches.
     pub fn body(&self) -> &WholeBody {
         &self.body
+    }
+
+    /// The link that each patch is on.
+    pub fn links(&self) -> impl ExactSizeIterator<Item = usize> {
+        self.mounts.iter().map(|mount| mount.link)
     }
 
     /// The `world_from_patch` poses for a robot whose links are at `world_from_link` poses, in the order of the patches.
@@ -93,34 +126,48 @@ impl CoveredRobot {
     }
 }
 
-impl Side<'_> {
-    fn cover(
-        &self,
-        taxel: Taxel,
-        pitch: f64,
-        side: f64,
-        patches: &mut Vec<BodyPatch>,
-        mounts: &mut Vec<Mount>,
-    ) -> Result<()> {
+impl Covered {
+    fn add_side(&mut self, of: &Side, cover: Cover) -> Result<()> {
+        let Cover { taxel, pitch, side } = cover;
         let parts = |length: f64| (length / side).round().max(1.0);
-        let (n_around, n_along) = (parts(TAU * self.radius), parts(self.length));
+        let (n_around, n_along) = (parts(TAU * of.radius), parts(of.length));
         // Half a pitch is left at each seam, so that taxels go on across it.
-        let arc = TAU / n_around - pitch / self.radius;
-        let length = self.length / n_along - pitch;
-        let part = Extrusion::cylinder(self.radius, length.max(0.0), arc, pitch)
-            .map_err(|error| error.under(format!("skin of {}, ", self.name)))?;
+        let arc = TAU / n_around - pitch / of.radius;
+        let length = of.length / n_along - pitch;
+        let part = Extrusion::cylinder(of.radius, length.max(0.0), arc, pitch)
+            .map_err(|error| error.under(format!("skin of {}, ", of.name)))?;
         for ring in 0..n_along as usize {
-            let height = ((ring as f64 + 0.5) / n_along - 0.5) * self.length;
+            let height = ((ring as f64 + 0.5) / n_along - 0.5) * of.length;
             for place in 0..n_around as usize {
                 let turn = DQuat::from_rotation_z(TAU * place as f64 / n_around);
                 let cylinder_from_patch = Pose::new(turn, height * DVec3::Z);
-                let name = format!("{} {}.{}", self.name, ring + 1, place + 1);
-                patches.push(BodyPatch::new(name, part.clone(), taxel)?);
-                mounts.push(Mount {
-                    link: self.link,
-                    link_from_patch: self.link_from_cylinder.compose(&cylinder_from_patch),
+                let name = format!("{} {}.{}", of.name, ring + 1, place + 1);
+                self.patches
+                    .push(BodyPatch::new(name, part.clone(), taxel)?);
+                self.mounts.push(Mount {
+                    link: of.link,
+                    link_from_patch: of.link_from_cylinder.compose(&cylinder_from_patch),
                 });
             }
+        }
+        Ok(())
+    }
+
+    fn add_half_ball(&mut self, name: &str, half: &HalfBall, cover: Cover) -> Result<()> {
+        let Cover { taxel, pitch, side } = cover;
+        let area = TAU * half.radius * half.radius;
+        let n_around = (area / (side * side)).round().max(1.0);
+        let part = Dome::new(half.radius, FRAC_PI_2, TAU / n_around, pitch)
+            .map_err(|error| error.under(format!("skin of {name}, ")))?;
+        for place in 0..n_around as usize {
+            let turn = DQuat::from_rotation_z(TAU * place as f64 / n_around);
+            let name = format!("{name}.{}", place + 1);
+            self.patches
+                .push(BodyPatch::dome(name, part.clone(), taxel)?);
+            self.mounts.push(Mount {
+                link: half.link,
+                link_from_patch: half.link_from_ball.compose(&Pose::from_rotation(turn)),
+            });
         }
         Ok(())
     }

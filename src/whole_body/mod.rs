@@ -8,9 +8,11 @@
 //! 3. **taxels**: a patch is a row of taxels repeated along a line ([`Extrusion`](crate::world::Extrusion)). Across the line a
 //!    sphere is `b` beside the axis of a column and `h` above it, the same in all rows; along it, `d` from a row. So
 //!    `δ = √(S² − b² − d²) − h`, with the first part once a column and sphere, the root once a taxel that it covers.
+//!    On a sphere of radius R around the origin ([`Dome`](crate::world::Dome)) taxels lie in rings, and all that a taxel's axis n
+//!    decides is t = c·n: `δ = √(t² − |c|² + S²) − (t − R)`, so that a sphere covers an interval of each ring.
 //!
 //! A patch remembers which columns of which rows it has touched: only these are wiped, relaxed and read
-//! ([`BodyState::touched`]).
+//! ([`BodyState::touched`], [`BodyState::forces`]); [`WholeBody::frame`] makes a dense frame of them.
 //!
 //! ```
 //! use bubbletouch::geometry::Pose;
@@ -41,7 +43,10 @@
 mod body_patch;
 mod body_state;
 mod cover;
+mod dome_patch;
+mod half_balls;
 mod patch_state;
+mod row_patch;
 mod sphere_clusters;
 
 pub use body_patch::{BodyPatch, WholeBody};

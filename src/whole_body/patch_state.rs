@@ -1,8 +1,9 @@
 //! One patch from step to step: which of its taxels are deflected, and how far.
 
 use super::SphereClusters;
-use super::body_patch::BodyPatch;
-use crate::contact::{relaxation_factor, saturation_limit};
+use super::body_patch::{BodyPatch, Surface};
+use super::row_patch::RowPatch;
+use crate::contact::{Relaxation, relaxation_factor, saturation_limit};
 use crate::geometry::Pose;
 use crate::objects::Sphere;
 use glam::{DMat3, DVec3, Vec3Swizzles};
@@ -23,6 +24,8 @@ pub(super) struct PatchState {
     active: Vec<u32>,
     /// The deflected taxels by number, and by how much, metres.
     touched: Vec<(u32, f64)>,
+    /// The same before the last step; of damped taxels only, whose force depends on it.
+    before: Vec<(u32, f64)>,
     n_saturated: usize,
     scratch: Scratch,
 }
@@ -38,11 +41,13 @@ struct Scratch {
 
 impl PatchState {
     pub fn at_rest(patch: &BodyPatch) -> Self {
-        let n_columns = patch.extrusion().places().len();
-        let n_rows = patch.extrusion().rows().len();
+        let n_columns = match patch.surface() {
+            Surface::Rows(rows) => rows.extrusion().places().len(),
+            Surface::Dome(_) => 0,
+        };
         Self {
             deflections: vec![0.0; patch.n_taxels()],
-            spans: vec![0..0; n_rows],
+            spans: vec![0..0; patch.n_rows()],
             scratch: Scratch {
                 shares: vec![0.0; n_columns],
                 heights: vec![0.0; n_columns],
@@ -66,6 +71,17 @@ impl PatchState {
         self.n_saturated
     }
 
+    /// Bytes that it holds.
+    pub fn n_bytes(&self) -> usize {
+        size_of::<Self>()
+            + size_of_val(&self.deflections[..])
+            + size_of_val(&self.spans[..])
+            + size_of_val(&self.scratch.shares[..])
+            + size_of_val(&self.scratch.heights[..])
+            + self.active.capacity() * size_of::<u32>()
+            + (self.touched.capacity() + self.before.capacity()) * size_of::<(u32, f64)>()
+    }
+
     /// n_taxels deflections, metres.
     pub fn deflections(&self) -> &[f64] {
         &self.deflections
@@ -78,19 +94,53 @@ impl PatchState {
         objects: impl Iterator<Item = (&'a SphereClusters, Pose)>,
         dt: f64,
     ) {
+        if patch.taxel().damping > 0.0 {
+            std::mem::swap(&mut self.touched, &mut self.before);
+        }
         self.relax(patch, relaxation_factor(patch.taxel(), dt));
         for (object, pose) in objects {
-            push_by_object(self, patch, object, &pose);
+            match patch.surface() {
+                Surface::Rows(rows) => push_by_object(self, rows, object, &pose),
+                Surface::Dome(dome) => dome.push(self, object, &pose),
+            }
         }
         self.read(patch);
     }
 
+    /// The deflected taxels, ascending, and the forces, newtons, that took them there in the last step, which was of `dt` seconds.
+    pub fn forces(&self, patch: &BodyPatch, dt: f64) -> impl Iterator<Item = (u32, f64)> {
+        let relaxation = Relaxation::of(patch.taxel(), dt);
+        let mut before = self.before.iter().copied().peekable();
+        self.touched.iter().map(move |&(taxel, deflection)| {
+            while before.next_if(|&(earlier, _)| earlier < taxel).is_some() {}
+            let was = before.next_if(|&(earlier, _)| earlier == taxel);
+            let was = was.map_or(0.0, |(_, deflection)| deflection);
+            (taxel, relaxation.force(was, deflection))
+        })
+    }
+
+    /// Pushes taxels of a row, `columns` of it, as far as `needed` says of each, in metres.
+    #[inline(always)]
+    pub fn push_row(
+        &mut self,
+        row: usize,
+        first: usize,
+        columns: Range<usize>,
+        needed: impl Fn(usize) -> f64,
+    ) {
+        let span = columns.start as u32..columns.end as u32;
+        widen(&mut self.spans[row], &span, row as u32, &mut self.active);
+        let taxels = &mut self.deflections[first + columns.start..first + columns.end];
+        for (deflection, column) in taxels.iter_mut().zip(columns) {
+            *deflection = deflection.max(needed(column));
+        }
+    }
+
     fn relax(&mut self, patch: &BodyPatch, left: f64) {
-        let n_columns = patch.extrusion().places().len();
         let (spans, deflections) = (&mut self.spans, &mut self.deflections);
         self.active.retain(|&row| {
             let span = &mut spans[row as usize];
-            let first = row as usize * n_columns;
+            let first = patch.row_start(row) as usize;
             let taxels = &mut deflections[first + span.start as usize..first + span.end as usize];
             let mut is_active = false;
             for deflection in taxels {
@@ -109,13 +159,13 @@ impl PatchState {
     fn read(&mut self, patch: &BodyPatch) {
         let stroke = patch.taxel().stroke;
         let limit = saturation_limit(stroke);
-        let n_columns = patch.extrusion().places().len() as u32;
         self.active.sort_unstable();
         self.touched.clear();
         self.n_saturated = 0;
         for &row in &self.active {
             let Range { start, end } = self.spans[row as usize];
-            let numbers = row * n_columns + start..row * n_columns + end;
+            let first = patch.row_start(row);
+            let numbers = first + start..first + end;
             let taxels = &mut self.deflections[numbers.start as usize..numbers.end as usize];
             for (number, deflection) in numbers.zip(taxels) {
                 if *deflection > 0.0 {
@@ -132,7 +182,7 @@ impl PatchState {
 #[multiversion(targets("x86_64+avx2+fma"))]
 fn push_by_object(
     state: &mut PatchState,
-    patch: &BodyPatch,
+    patch: &RowPatch,
     object: &SphereClusters,
     patch_from_object: &Pose,
 ) {
@@ -163,7 +213,7 @@ fn push_by_object(
 #[inline(always)]
 fn push_columns(
     state: &mut PatchState,
-    patch: &BodyPatch,
+    patch: &RowPatch,
     center: DVec3,
     reach: f64,
     run: Range<usize>,
@@ -193,7 +243,7 @@ fn push_columns(
 impl Scratch {
     /// Computes what a sphere (u, v, w; S) is to the columns of a run.
     #[inline(always)]
-    fn lay(&mut self, patch: &BodyPatch, center: DVec3, reach: f64, run: Range<usize>) {
+    fn lay(&mut self, patch: &RowPatch, center: DVec3, reach: f64, run: Range<usize>) {
         let taxel = patch.taxel();
         let behind = -taxel.stroke - taxel.radius;
         let columns = patch.extrusion().places()[run.clone()].iter();

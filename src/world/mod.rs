@@ -6,6 +6,7 @@
 
 mod basins;
 mod body;
+mod dome;
 mod extrusion;
 mod human_touch;
 mod layout;
@@ -30,6 +31,7 @@ mod touches;
 mod trajectory;
 
 pub use body::Body;
+pub use dome::{Dome, DomeRing};
 pub use extrusion::Extrusion;
 pub use human_touch::{HandState, HumanTouch, TOUCH_KINDS, TouchKind, TouchRanges};
 pub use layout::{Layout, MOST_TAXELS};

@@ -1,0 +1,61 @@
+//! Where an object is at a time: to and fro about a place in the frame of a link.
+
+use crate::geometry::Pose;
+use glam::{DQuat, DVec3};
+use std::f64::consts::TAU;
+
+/// A path. At time t, with s = sin(2π t / period), the object is turned about the link's z axis by s · swing and moved by s · moves.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Path {
+    /// Where the link is: `world_from_link`.
+    pub world_from_link: Pose,
+    /// Where the object starts: `link_from_object`.
+    pub start: Pose,
+    /// Metres, in the frame of the link.
+    pub moves: DVec3,
+    /// Radians.
+    pub swing: f64,
+    /// Seconds.
+    pub period: f64,
+}
+
+impl Path {
+    /// `world_from_object` at a time, seconds.
+    pub fn at(&self, time: f64) -> Pose {
+        let share = (TAU * time / self.period).sin();
+        let moved = Pose::new(
+            DQuat::from_rotation_z(share * self.swing),
+            share * self.moves,
+        );
+        self.world_from_link.compose(&moved.compose(&self.start))
+    }
+
+    /// The same, starting further along a direction of the link's frame, metres.
+    pub fn shifted(&self, by: DVec3) -> Self {
+        Self {
+            start: Pose::new(self.start.rotation, self.start.translation + by),
+            ..*self
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_path_comes_back_after_its_period_and_is_farthest_after_a_quarter() {
+        let path = Path {
+            world_from_link: Pose::from_translation(DVec3::Z),
+            start: Pose::from_translation(DVec3::X),
+            moves: 0.5 * DVec3::Z,
+            swing: 0.5 * std::f64::consts::PI,
+            period: 2.0,
+        };
+        let place = |time: f64| path.at(time).translation;
+        assert_eq!(place(0.0), DVec3::new(1.0, 0.0, 1.0));
+        assert!(place(2.0).distance(place(0.0)) < 1e-15);
+        assert!(place(0.5).distance(DVec3::new(0.0, 1.0, 1.5)) < 1e-15);
+        assert!(place(1.5).distance(DVec3::new(0.0, -1.0, 0.5)) < 1e-15);
+    }
+}

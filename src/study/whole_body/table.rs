@@ -1,0 +1,171 @@
+//! The result tables of a study of a whole body: one plain struct a row, one field a column.
+
+use serde::{Deserialize, Serialize};
+
+/// What a row belongs to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Series {
+    /// An object on the robot.
+    Scene,
+    /// The skin grows, the touch does not.
+    Skin,
+    /// The touch grows, the skin does not.
+    Touch,
+    /// The object's spheres grow, skin and touch do not.
+    Spheres,
+}
+
+/// What was measured: a scene, or a rung of a ladder.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct BodyCase {
+    /// What it belongs to.
+    pub series: Series,
+    /// The scene, or the rung.
+    pub name: String,
+    /// Taxels of the body.
+    pub n_taxels: usize,
+    /// Its patches.
+    pub n_patches: usize,
+    /// Spheres of the object.
+    pub n_spheres: usize,
+}
+
+/// What happened on the way (with the [`BodyCase`] before it: a row of `whole_body.csv`).
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct BodyCount {
+    /// Steps.
+    pub n_steps: usize,
+    /// Taxels with a deflection, mean over steps.
+    pub touched_mean: f64,
+    /// The fewest.
+    pub touched_min: usize,
+    /// The most.
+    pub touched_max: usize,
+    /// Taxels at their stroke that the object would push further, mean over steps.
+    pub saturated_mean: f64,
+    /// Patches that were looked at, mean over steps.
+    pub patches_visited_mean: f64,
+    /// Patches with a touched taxel, mean over steps.
+    pub patches_touched_mean: f64,
+    /// Sum of all deflections over taxels and steps, mm.
+    pub deflection_sum_mm: f64,
+    /// Memory of the body and what it remembers at rest, bytes a taxel.
+    pub bytes_per_taxel: f64,
+}
+
+/// What a scene was taken for (a row of `sensed.csv`).
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct BodySensed {
+    /// The scene.
+    pub scene: String,
+    /// The compression.
+    pub compression: String,
+    /// Sum of all measurements' sizes over steps, mm.
+    pub measurement_sum_mm: f64,
+    /// What most steps were taken for; of equals the first of the objects.
+    pub decision: String,
+    /// By how many of the steps.
+    pub decision_share: f64,
+}
+
+/// How well objects are told apart from a compression (a row of `recognition.csv`).
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct BodyRecognition {
+    /// The compression: `sbhe_32` has blocks of 32 taxels.
+    pub compression: String,
+    /// m.
+    pub n_measurements: usize,
+    /// Numbers of Φ that are not zero, a taxel.
+    pub entries_per_taxel: f64,
+    /// Share of the taxels that some measurement reads.
+    pub read_share: f64,
+    /// Memory of Φ by columns, bytes a taxel.
+    pub bytes_per_taxel: f64,
+    /// Objects that are told apart.
+    pub n_objects: usize,
+    /// Training touches, all objects.
+    pub n_training: usize,
+    /// Test touches, all objects.
+    pub n_test: usize,
+    /// Share of the test touches that were recognised.
+    pub accuracy: f64,
+    /// Lower end of its 95 % interval.
+    pub accuracy_low: f64,
+    /// Upper end of it.
+    pub accuracy_high: f64,
+    /// Binary SVMs that stopped at the solver's iteration cap.
+    pub n_capped: usize,
+}
+
+/// What is timed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Stage {
+    /// The step of the skin.
+    Press,
+    /// Measurements of what is touched.
+    Compress,
+    /// The decision.
+    Classify,
+    /// All three.
+    Whole,
+}
+
+/// What a step cost (with the [`BodyCase`] before it: a row of `timing.csv`).
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct BodyTime {
+    /// What was timed.
+    pub stage: Stage,
+    /// The compression; empty for `press`.
+    pub compression: String,
+    /// Median over steps, µs.
+    pub us_median: f64,
+    /// 5th percentile, µs.
+    pub us_p05: f64,
+    /// 95th percentile, µs.
+    pub us_p95: f64,
+    /// By the median.
+    pub steps_per_s: f64,
+}
+
+/// What was asked, and what it came to (a row of `bars.csv`).
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Bar {
+    /// What was asked of.
+    pub what: String,
+    /// What was measured.
+    pub measured: f64,
+    /// The unit of both.
+    pub unit: String,
+    /// Whether more is better.
+    pub at_least: bool,
+    /// What was asked.
+    pub bar: f64,
+    /// Whether it was met.
+    pub is_met: bool,
+}
+
+/// All result tables of a study of a whole body.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct WholeBodyTables {
+    /// One row a scene or rung.
+    pub cases: Vec<(BodyCase, BodyCount)>,
+    /// One row a scene and compression.
+    pub sensed: Vec<BodySensed>,
+    /// One row a compression.
+    pub recognition: Vec<BodyRecognition>,
+    /// One row a scene or rung, stage and compression.
+    pub timing: Vec<(BodyCase, BodyTime)>,
+    /// One row a bar of which everything was measured.
+    pub bars: Vec<Bar>,
+}
+
+impl WholeBodyTables {
+    /// Adds what happened in a case, and what it cost.
+    pub(super) fn add(&mut self, case: &BodyCase, count: BodyCount, times: Vec<BodyTime>) {
+        self.cases.push((case.clone(), count));
+        let times = times.into_iter().map(|time| (case.clone(), time));
+        self.timing.extend(times);
+    }
+}

@@ -1,0 +1,159 @@
+//! A patch on a sphere: rings of taxels, of which a pushing sphere covers one interval each.
+//!
+//! The axis of every taxel goes through the centre, so with t = c·n and Q = |c|² − S² the sphere needs
+//! `δ = √(t² − Q) − (t − R)`, wherever the taxel is. It is positive where t is above
+//!
+//! ```text
+//! √Q                if 0 ≤ Q ≤ R²: the sphere is beside the taxel's axis below
+//! (R² + Q) / (2R)   if Q > R²: it is above the taxel below
+//! ```
+//!
+//! and the sphere is not behind the substrate where t ≥ R − s − ρ. On a ring t is A + B cos(φ − φ_c): an interval.
+
+use super::SphereClusters;
+use super::patch_state::PatchState;
+use crate::geometry::Pose;
+use crate::objects::Sphere;
+use crate::world::{Dome, DomeRing, Taxel};
+use glam::{DMat3, DVec3, Vec3Swizzles};
+use std::f64::consts::{PI, TAU};
+use std::ops::Range;
+
+/// What rounding may add to an interval, in radians: far above 1e-16 and far below what is felt.
+const ROUNDING: f64 = 1e-9;
+/// The same of an arc cosine, which turns an error of 1e-16 near 1 into one of 1e-8.
+const ACOS_ROUNDING: f64 = 1e-7;
+
+/// Equal taxels on a dome.
+#[derive(Clone, Debug)]
+pub(super) struct DomePatch {
+    dome: Dome,
+    taxel: Taxel,
+    /// Around all taxels from their rest centres back to the substrate, in the patch frame.
+    ball: Sphere,
+}
+
+impl DomePatch {
+    /// Taxels that are good ones, of which a dome is large enough.
+    pub fn new(dome: Dome, taxel: Taxel) -> Self {
+        let depth = taxel.stroke + taxel.radius;
+        let (outer, inner) = (dome.radius(), dome.radius() - depth);
+        let ends = || dome.axes().flat_map(|axis| [outer * axis, inner * axis]);
+        let center = ends().sum::<DVec3>() / (2 * dome.n_taxels()) as f64;
+        let radius = ends().map(|end| end.distance(center)).fold(0.0, f64::max);
+        Self {
+            ball: Sphere { center, radius },
+            dome,
+            taxel,
+        }
+    }
+
+    /// Where the taxels rest.
+    pub fn dome(&self) -> &Dome {
+        &self.dome
+    }
+
+    /// What each of the taxels is.
+    pub fn taxel(&self) -> &Taxel {
+        &self.taxel
+    }
+
+    /// As [`BodyPatch::ball`](super::BodyPatch::ball).
+    pub fn ball(&self) -> Sphere {
+        self.ball
+    }
+
+    /// Bytes that it holds on the heap.
+    pub fn n_bytes(&self) -> usize {
+        size_of_val(self.dome.rings()) + size_of_val(self.dome.directions())
+    }
+
+    /// Pushes by one object.
+    pub fn push(&self, state: &mut PatchState, object: &SphereClusters, patch_from_object: &Pose) {
+        let rotation = DMat3::from_quat(patch_from_object.rotation);
+        let rho = self.taxel.radius;
+        let is_near = |center: DVec3, reach: f64| {
+            let reach = (reach + self.ball.radius) * (1.0 + ROUNDING);
+            center.distance_squared(self.ball.center) <= reach * reach
+        };
+        for (ball, spheres) in object.each() {
+            let center = rotation * ball.center + patch_from_object.translation;
+            if !is_near(center, ball.radius + rho) {
+                continue;
+            }
+            for sphere in spheres {
+                let center = rotation * sphere.center + patch_from_object.translation;
+                let reach = sphere.radius + rho;
+                if is_near(center, reach) {
+                    self.push_rings(state, center, reach);
+                }
+            }
+        }
+    }
+
+    /// Pushes by a sphere (centre in the patch frame; S), metres.
+    fn push_rings(&self, state: &mut PatchState, center: DVec3, reach: f64) {
+        let radius = self.dome.radius();
+        let power = center.length_squared() - reach * reach;
+        let behind = radius - self.taxel.stroke - self.taxel.radius;
+        let least = self.least_along(power).max(behind);
+        let across = center.xy().length();
+        let angle = center.y.atan2(center.x);
+        for (row, ring) in self.dome.rings().iter().enumerate() {
+            let (along, around) = (center.z * ring.cos, across * ring.sin);
+            let Some(half_width) = half_width(least - along, around) else {
+                continue;
+            };
+            let directions = &self.dome.directions()[ring.first..ring.first + ring.n];
+            let slope = ring.sin * center.xy();
+            let needed = |column: usize| {
+                let t = along + slope.dot(directions[column]);
+                let q = t * t - power;
+                match q > 0.0 && t >= behind {
+                    true => q.sqrt() - (t - radius),
+                    false => 0.0,
+                }
+            };
+            for columns in covered(ring, angle, half_width) {
+                if !columns.is_empty() {
+                    state.push_row(row, ring.first, columns, needed);
+                }
+            }
+        }
+    }
+
+    /// Above which t a taxel is pushed, metres.
+    fn least_along(&self, power: f64) -> f64 {
+        let radius = self.dome.radius();
+        match power {
+            power if power < 0.0 => f64::NEG_INFINITY,
+            power if power <= radius * radius => power.sqrt(),
+            power => (radius * radius + power) / (2.0 * radius),
+        }
+    }
+}
+
+/// How far from φ_c, radians, `around · cos(φ − φ_c)` is `least` or more, and by no more than rounding beyond; `None` where it
+/// nowhere is.
+fn half_width(least: f64, around: f64) -> Option<f64> {
+    if least > around * (1.0 + ROUNDING) {
+        return None;
+    }
+    if least <= -around {
+        return Some(PI);
+    }
+    Some((least / around).min(1.0).acos() + ACOS_ROUNDING)
+}
+
+/// The columns of a ring within `half_width` radians of an angle: of a ring that goes around, in up to three parts.
+fn covered(ring: &DomeRing, angle: f64, half_width: f64) -> [Range<usize>; 3] {
+    [-TAU, 0.0, TAU].map(|turn| {
+        let middle = (angle + turn - ring.start) / ring.step;
+        let spread = half_width / ring.step + ROUNDING;
+        let first = (middle - spread).ceil().max(0.0) as usize;
+        let last = (middle + spread).floor();
+        // Below zero the cast would make it the first column.
+        let end = if last < 0.0 { 0 } else { last as usize + 1 };
+        first..end.min(ring.n)
+    })
+}

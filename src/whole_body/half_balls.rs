@@ -1,0 +1,101 @@
+//! The half balls of a robot that can be touched: ends of capsules, and balls.
+
+use crate::error::Result;
+use crate::geometry::Pose;
+use crate::world::{LinkGeometry, LinkShape, Robot, ShapeRole};
+use glam::{DQuat, DVec3};
+
+/// Distances and radii that differ by less are meant to be the same, metres.
+const SAME: f64 = 1e-6;
+
+/// Half a ball on a link.
+pub(super) struct HalfBall {
+    pub link: usize,
+    /// The centre, and +z to the pole.
+    pub link_from_ball: Pose,
+    /// Metres.
+    pub radius: f64,
+}
+
+/// The outer halves of the balls that a robot's links touch with, link by link, each link's in the order of the file; both halves
+/// of a ball that is at no cylinder's end. Those within a larger ball of another link, all joints at zero, are left out.
+pub(super) fn half_balls(robot: &Robot) -> Result<Vec<HalfBall>> {
+    let all: Vec<HalfBall> = robot
+        .links()
+        .iter()
+        .enumerate()
+        .flat_map(|(link, of)| of_link(link, &of.shapes))
+        .collect();
+    let links = robot.forward(&Pose::IDENTITY, &vec![0.0; robot.n_positions()])?;
+    let center =
+        |half: &HalfBall| links[half.link].transform_point(half.link_from_ball.translation);
+    let is_within = |inner: &HalfBall, outer: &HalfBall| {
+        let apart = center(inner).distance(center(outer));
+        outer.link != inner.link && outer.radius > inner.radius + apart
+    };
+    let is_hidden: Vec<bool> = all
+        .iter()
+        .map(|half| all.iter().any(|other| is_within(half, other)))
+        .collect();
+    let halves = all.into_iter().zip(is_hidden);
+    Ok(halves
+        .filter_map(|(half, is_hidden)| (!is_hidden).then_some(half))
+        .collect())
+}
+
+fn of_link(link: usize, shapes: &[LinkShape]) -> Vec<HalfBall> {
+    let touching = || {
+        let collision = |shape: &&LinkShape| shape.role == ShapeRole::Collision;
+        shapes.iter().filter(collision)
+    };
+    let mut halves = Vec::new();
+    for shape in touching() {
+        match shape.geometry {
+            LinkGeometry::Capsule { radius, length } => {
+                for end in ends(&shape.origin, length) {
+                    halves.push(half(link, end, radius));
+                }
+            }
+            LinkGeometry::Sphere { radius } => {
+                let center = shape.origin.translation;
+                let is_end = |(place, _): &(DVec3, DVec3)| place.distance(center) < SAME;
+                let cylinders = touching().filter_map(|other| match other.geometry {
+                    LinkGeometry::Cylinder { radius: of, length } if (of - radius).abs() < SAME => {
+                        Some(ends(&other.origin, length))
+                    }
+                    _ => None,
+                });
+                match cylinders.flatten().find(is_end) {
+                    Some(end) => halves.push(half(link, end, radius)),
+                    None => {
+                        let up = shape.origin.transform_vector(DVec3::Z);
+                        halves.push(half(link, (center, up), radius));
+                        halves.push(half(link, (center, -up), radius));
+                    }
+                }
+            }
+            _ => {}
+        }
+    }
+    halves
+}
+
+/// The ends of a cylinder at a pose: centre, and unit outwards.
+fn ends(link_from_cylinder: &Pose, length: f64) -> [(DVec3, DVec3); 2] {
+    [-1.0, 1.0].map(|side| {
+        let outwards = side * DVec3::Z;
+        (
+            link_from_cylinder.transform_point(0.5 * length * outwards),
+            link_from_cylinder.transform_vector(outwards),
+        )
+    })
+}
+
+fn half(link: usize, (center, pole): (DVec3, DVec3), radius: f64) -> HalfBall {
+    let rotation = DQuat::from_rotation_arc(DVec3::Z, pole);
+    HalfBall {
+        link,
+        link_from_ball: Pose::new(rotation, center),
+        radius,
+    }
+}
