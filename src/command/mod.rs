@@ -12,6 +12,7 @@ mod recording;
 mod run;
 mod run_object_detail;
 mod run_reconstruction;
+mod run_stability;
 mod simulate;
 mod study_args;
 mod touches;

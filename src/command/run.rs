@@ -3,6 +3,7 @@
 use super::output::{output_folder, packings_beside, terminal_width};
 use super::run_object_detail::run_object_detail;
 use super::run_reconstruction::run_reconstruction;
+use super::run_stability::run_stability;
 use super::study_args::{LoadedStudy, StudyArgs};
 use bubbletouch::Result;
 use bubbletouch::files::write_bytes;
@@ -41,6 +42,7 @@ pub fn run(args: &Args) -> Result<()> {
         StudyKind::Recognition => run_recognition(args, &folder, start),
         StudyKind::Reconstruction => run_reconstruction(&args.study, &folder),
         StudyKind::ObjectDetail => run_object_detail(&args.study, &folder),
+        StudyKind::Stability => run_stability(&args.study, &folder),
     }
 }
 

@@ -1,4 +1,4 @@
-//! What a study asks about: recognition, reconstruction, or the objects themselves.
+//! What a study asks about: recognition, reconstruction, the objects themselves, or contact itself.
 
 /// The kinds of studies, told apart by a table that only one of them has.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -9,6 +9,8 @@ pub enum StudyKind {
     Reconstruction,
     /// How detailed must an object be? A file with an `[object_detail]` table.
     ObjectDetail,
+    /// Where does each way to simulate contact break? A file with a `[stability]` table.
+    Stability,
 }
 
 impl StudyKind {
@@ -18,6 +20,7 @@ impl StudyKind {
         match () {
             () if table.contains_key("reconstruction") => Self::Reconstruction,
             () if table.contains_key("object_detail") => Self::ObjectDetail,
+            () if table.contains_key("stability") => Self::Stability,
             () => Self::Recognition,
         }
     }
@@ -28,6 +31,7 @@ impl StudyKind {
             Self::Recognition => "a study that recognises objects",
             Self::Reconstruction => "a study that reconstructs frames",
             Self::ObjectDetail => "a study of how detailed objects are",
+            Self::Stability => "a study of where contact methods break",
         }
     }
 }
