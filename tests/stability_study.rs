@@ -17,7 +17,7 @@ question = "What breaks?"
 [[stability.parts]]
 scene = "rest"
 methods = ["quasi_static", "implicit_euler", "semi_implicit"]
-taxels = 4
+taxels = 8
 stiffness_n_per_m = [1e1, 1e5]
 object_mass_kg = [1e-3, 1e3]
 taxel_mass_kg = [1e-7, 1e-2]
@@ -26,7 +26,7 @@ dt_s = [1e-3, 1e-1]
 [[stability.parts]]
 scene = "press"
 methods = ["quasi_static", "implicit_euler", "semi_implicit"]
-taxels = 4
+taxels = 8
 stiffness_n_per_m = 1e3
 taxel_mass_kg = [1e-6, 1e-2]
 dt_s = [1e-4, 1e-1]
@@ -111,7 +111,7 @@ fn ours_is_right_everywhere_the_others_break_where_they_must_and_threads_change_
 fn keys_that_are_out_of_range_are_named_with_their_part() {
     assert_eq!(StudyKind::of(QUICK), StudyKind::Stability);
     for (old, new, said) in [
-        ("taxels = 4", "taxels = 5", "key stability.parts[1].taxels: 5; even"),
+        ("taxels = 8", "taxels = 5", "key stability.parts[1].taxels: 5; even"),
         ("[1e1, 1e5]", "[1e1, 0.0]", "key stability.parts[1].stiffness_n_per_m: 0"),
         ("[1e-7, 1e-2]", "[]", "key stability.parts[1].taxel_mass_kg: an empty list"),
         ("dt_s = [1e-4, 1e-1]", "dt_s = -1.0", "key stability.parts[2].dt_s: -1"),

@@ -35,8 +35,8 @@ pub struct RapierSettings {
 pub enum RapierContacts {
     /// As the engine comes: springs of 30 Hz, and penetration taken back at 3 units of length a second at most.
     AsItComes,
-    /// Critically damped springs of 20 / Δt, and penetration taken back as fast as they say. Harder ones chatter at the stops; softer ones
-    /// let the lightest of two bodies sink in by its share of the other's weight.
+    /// Critically damped springs of 300 / Δt, and penetration taken back as fast as they say. Harder ones gain nothing; softer ones let
+    /// light taxels sink in under springs that are stiff for the step.
     Hard,
 }
 
@@ -72,7 +72,7 @@ impl RapierSettings {
         match self.contacts {
             RapierContacts::AsItComes => plain,
             RapierContacts::Hard => {
-                let softness = SpringCoefficients::new(std::env::var("CF").map_or(20.0, |s| s.parse::<f64>().unwrap()) / dt, 1.0);
+                let softness = SpringCoefficients::new(300.0 / dt, 1.0);
                 IntegrationParameters {
                     contact_softness: softness,
                     static_contact_softness: softness,
