@@ -151,7 +151,7 @@ fn the_step_response_under_a_weight_tends_to_the_closed_form_with_order_one() {
 fn a_ball_on_its_guide_comes_to_the_rest_of_the_quasi_static_balance() {
     // Critical for the ball: it is at rest soon.
     let (mass, n) = (0.02, 4);
-    let c = 2.0 * (100.0 * (mass / 16.0 + 1e-4)).sqrt();
+    let c = 2.0 * f64::sqrt(100.0 * (mass / 16.0 + 1e-4));
     let (patch, ball) = (bowl(n, taxel(c)), ball());
     let system = system(&patch, &ball, 1e-4, free(mass));
     let found = rest(&system).unwrap();
@@ -309,7 +309,7 @@ fn what_cannot_be_simulated_is_refused_by_its_name() {
 fn taxels_as_bodies_in_rapier_come_to_the_same_rest_where_masses_are_alike() {
     use bubbletouch::dynamics::{RapierSettings, RapierWorld};
     let (mass, m) = (0.04, 1e-3);
-    let c = 2.0 * (100.0 * (mass / 4.0 + m)).sqrt();
+    let c = 2.0 * f64::sqrt(100.0 * (mass / 4.0 + m));
     let (patch, ball) = (skin(2, taxel(c)), ball());
     let system = system(&patch, &ball, m, free(mass));
     let found = rest(&system).unwrap();
