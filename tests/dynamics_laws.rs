@@ -97,7 +97,14 @@ fn both(state: &State) -> [Box<dyn Integrator>; 2] {
 }
 
 /// Where an integrator has a taxel after `time`, less `exact`.
-fn error_after(system: &System, start: &State, which: usize, time: f64, n: usize, exact: f64) -> f64 {
+fn error_after(
+    system: &System,
+    start: &State,
+    which: usize,
+    time: f64,
+    n: usize,
+    exact: f64,
+) -> f64 {
     let mut integrators = both(start);
     let integrator = integrators[which].as_mut();
     run(system, integrator, &steps(time / n as f64, n)).unwrap();
@@ -163,10 +170,16 @@ fn a_ball_on_its_guide_comes_to_the_rest_of_the_quasi_static_balance() {
     };
     let gravity = -9.81 * DVec3::Z;
     let mut balancer = Balancer::new();
-    let balance = balancer.settle(&object, &[skin], gravity, &at(TOUCHING)).unwrap();
+    let balance = balancer
+        .settle(&object, &[skin], gravity, &at(TOUCHING))
+        .unwrap();
     assert_eq!(balance.outcome, Outcome::Settled);
     let travel = TOUCHING - balance.pose.translation.z;
-    assert!((travel - found.travel).abs() < 1e-9, "{travel} {}", found.travel);
+    assert!(
+        (travel - found.travel).abs() < 1e-9,
+        "{travel} {}",
+        found.travel
+    );
     let mut implicit = ImplicitEuler::new(&system);
     run(&system, &mut implicit, &steps(1e-3, 3000)).unwrap();
     let state = implicit.state(&system);
@@ -216,7 +229,10 @@ fn implicit_euler_never_gains_energy_however_long_the_step() {
                     integrator.step(&system, dt);
                     let after = integrator.state(&system).energy(&system);
                     let scale = before.abs().max(after.abs()).max(mass * 0.5);
-                    assert!(after <= before + 1e-12 * scale, "{mass} {m} {dt}: {before} {after}");
+                    assert!(
+                        after <= before + 1e-12 * scale,
+                        "{mass} {m} {dt}: {before} {after}"
+                    );
                     before = after;
                 }
             }
@@ -238,7 +254,10 @@ fn explicit_steps_diverge_beyond_their_limit_and_not_before() {
                 energy_limit: limit,
                 ..steps(dt, 20_000)
             };
-            run(&system, &mut integrator, &steps).unwrap().divergence.is_some()
+            run(&system, &mut integrator, &steps)
+                .unwrap()
+                .divergence
+                .is_some()
         };
         assert!(!diverges(0.999 * limit), "{m}");
         assert!(diverges(1.001 * limit), "{m}");
@@ -291,7 +310,11 @@ fn what_cannot_be_simulated_is_refused_by_its_name() {
     let tilted = Layout::new(vec![DVec3::ZERO], vec![DVec3::X]).unwrap();
     let tilted = SkinPatch::new("side", tilted, Taxels::Equal(taxel(0.0))).unwrap();
     let error = System::new(&tilted, 1.0, &ball, at(1.0), free(1.0), 1.0).unwrap_err();
-    assert!(error.to_string().starts_with("skin patch side, taxel 1: axis"));
+    assert!(
+        error
+            .to_string()
+            .starts_with("skin patch side, taxel 1: axis")
+    );
     let system = system(&patch, &ball, 1.0, free(1.0));
     let mut integrator = ImplicitEuler::new(&system);
     for (dt, frames, said) in [(0.0, &[1][..], "time step"), (1.0, &[2, 2][..], "frames")] {
@@ -316,6 +339,10 @@ fn taxels_as_bodies_in_rapier_come_to_the_same_rest_where_masses_are_alike() {
     let mut world = RapierWorld::new(&system, RapierSettings::tuned(&system)).unwrap();
     run(&system, &mut world, &steps(1e-3, 1000)).unwrap();
     let state = world.state(&system);
-    assert!((state.travel / found.travel - 1.0).abs() < 1e-3, "{}", state.travel);
+    assert!(
+        (state.travel / found.travel - 1.0).abs() < 1e-3,
+        "{}",
+        state.travel
+    );
     assert!((state.support() / (mass * 9.81) - 1.0).abs() < 1e-3);
 }

@@ -77,21 +77,28 @@ fn ours_is_right_everywhere_the_others_break_where_they_must_and_threads_change_
             _ => {
                 let is_beyond = cell.dt_s > 10.0 * score.explicit_limit_s;
                 let is_press = cell.scene == StabilityScene::Press;
-                assert!(!(is_beyond && is_press && score.outcome == Outcome::Right), "{about}");
+                assert!(
+                    !(is_beyond && is_press && score.outcome == Outcome::Right),
+                    "{about}"
+                );
             }
         }
         let is_right = score.outcome == Outcome::Right;
         let errors = [score.force_imbalance, score.deflection_error];
-        assert!(!is_right || errors.iter().all(|e| e.unwrap() <= TOLERANCE), "{about}");
+        assert!(
+            !is_right || errors.iter().all(|e| e.unwrap() <= TOLERANCE),
+            "{about}"
+        );
     }
     let explicit = scores.iter().zip(&cells);
     let explicit = explicit.filter(|(_, cell)| cell.method == ContactMethod::SemiImplicit);
-    let right = explicit.clone().filter(|(score, _)| score.outcome == Outcome::Right);
+    let right = explicit
+        .clone()
+        .filter(|(score, _)| score.outcome == Outcome::Right);
     assert!(right.count() >= 2, "it is no straw man");
     let broken = explicit.filter(|(score, _)| score.outcome >= Outcome::MissedContact);
     assert!(broken.count() >= 8);
-    let summary: Vec<StabilitySummary> =
-        read_rows(&case.path("1/stability_summary.csv")).unwrap();
+    let summary: Vec<StabilitySummary> = read_rows(&case.path("1/stability_summary.csv")).unwrap();
     assert_eq!(summary.len(), 3 * 3);
     for row in summary {
         let kinds = [
@@ -111,26 +118,57 @@ fn ours_is_right_everywhere_the_others_break_where_they_must_and_threads_change_
 fn keys_that_are_out_of_range_are_named_with_their_part() {
     assert_eq!(StudyKind::of(QUICK), StudyKind::Stability);
     for (old, new, said) in [
-        ("taxels = 8", "taxels = 5", "key stability.parts[1].taxels: 5; even"),
-        ("[1e1, 1e5]", "[1e1, 0.0]", "key stability.parts[1].stiffness_n_per_m: 0"),
-        ("[1e-7, 1e-2]", "[]", "key stability.parts[1].taxel_mass_kg: an empty list"),
-        ("dt_s = [1e-4, 1e-1]", "dt_s = -1.0", "key stability.parts[2].dt_s: -1"),
-        ("stroke_mm = 20.0", "stroke_mm = 0.0", "key stability.parts[3].stroke_mm: 0"),
-        ("object_mass_kg = 1.0\n", "", "key stability.parts[3].object_mass_kg: none"),
+        (
+            "taxels = 8",
+            "taxels = 5",
+            "key stability.parts[1].taxels: 5; even",
+        ),
+        (
+            "[1e1, 1e5]",
+            "[1e1, 0.0]",
+            "key stability.parts[1].stiffness_n_per_m: 0",
+        ),
+        (
+            "[1e-7, 1e-2]",
+            "[]",
+            "key stability.parts[1].taxel_mass_kg: an empty list",
+        ),
+        (
+            "dt_s = [1e-4, 1e-1]",
+            "dt_s = -1.0",
+            "key stability.parts[2].dt_s: -1",
+        ),
+        (
+            "stroke_mm = 20.0",
+            "stroke_mm = 0.0",
+            "key stability.parts[3].stroke_mm: 0",
+        ),
+        (
+            "object_mass_kg = 1.0\n",
+            "",
+            "key stability.parts[3].object_mass_kg: none",
+        ),
         (
             "stiffness_n_per_m = 1e3",
             "stiffness_n_per_m = 1e3\nobject_mass_kg = 1.0",
             "key stability.parts[2].object_mass_kg: a mass",
         ),
         ("\"semi_implicit\"", "\"magic\"", "magic"),
-        ("stroke_mm = 20.0", "solver_iterations = 0", "key stability.parts[3].solver_iterations: 0"),
+        (
+            "stroke_mm = 20.0",
+            "solver_iterations = 0",
+            "key stability.parts[3].solver_iterations: 0",
+        ),
     ] {
         assert!(QUICK.contains(old), "{old}");
         let text = QUICK.replacen(old, new, 1);
         let plan = StabilityStudySpec::parse("study.toml", &text)
             .and_then(|spec| StabilityPlan::new("study.toml", spec));
         let error = plan.unwrap_err().to_string();
-        assert!(error.contains(said) && error.starts_with("study.toml"), "{error}");
+        assert!(
+            error.contains(said) && error.starts_with("study.toml"),
+            "{error}"
+        );
     }
     let case = Case::new();
     case.file("study.toml", QUICK);

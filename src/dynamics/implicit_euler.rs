@@ -51,8 +51,7 @@ impl ImplicitEuler {
             let (inertia, drag) = (m / (dt * dt), properties.damping / dt);
             let a = inertia + drag + properties.stiffness;
             let deflection = self.state.deflection[taxel];
-            let kept =
-                (inertia + drag) * deflection + inertia * dt * self.state.velocity[taxel];
+            let kept = (inertia + drag) * deflection + inertia * dt * self.state.velocity[taxel];
             self.free[taxel] = (kept / a).min(properties.stroke);
             self.stiffness[taxel] = a;
         }

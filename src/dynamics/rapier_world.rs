@@ -107,7 +107,11 @@ impl RapierWorld {
     pub fn new(system: &System, settings: RapierSettings) -> Result<Self> {
         let Some(spheres) = system.object.spheres() else {
             let allowed = "a union of spheres";
-            return Err(Error::input("object of a dynamics engine", "a mesh", allowed));
+            return Err(Error::input(
+                "object of a dynamics engine",
+                "a mesh",
+                allowed,
+            ));
         };
         let mut world = PhysicsWorld::new();
         world.gravity = match system.drive {
@@ -164,7 +168,9 @@ impl RapierWorld {
             .gravity_scale(0.0)
             .locked_axes(guide)
             .can_sleep(false);
-        let (handle, collider) = self.world.insert(body, ball(properties.radius, SKIN, OBJECT));
+        let (handle, collider) = self
+            .world
+            .insert(body, ball(properties.radius, SKIN, OBJECT));
         let joint = PrismaticJointBuilder::new(Vector::Z)
             .local_anchor1(center)
             .motor_model(MotorModel::ForceBased)

@@ -86,7 +86,11 @@ fn check(steps: &Steps) -> Result<()> {
     let are_within = steps.frames.iter().all(|step| (1..=steps.n).contains(step));
     if !(is_rising && are_within) {
         let allowed = format!("ascending steps from 1 to {}", steps.n);
-        return Err(Error::input("frames", format!("{:?}", steps.frames), allowed));
+        return Err(Error::input(
+            "frames",
+            format!("{:?}", steps.frames),
+            allowed,
+        ));
     }
     Ok(())
 }
@@ -103,7 +107,9 @@ fn look(system: &System, state: &State, limit: f64) -> Option<Divergence> {
 fn record(system: &System, kept: &[State]) -> DynamicRecording {
     let (n_frames, n_taxels) = (kept.len(), system.n_taxels());
     let all = |of: fn(&State) -> &Vec<f64>| {
-        Array2::from_shape_fn((n_frames, n_taxels), |(frame, taxel)| of(&kept[frame])[taxel])
+        Array2::from_shape_fn((n_frames, n_taxels), |(frame, taxel)| {
+            of(&kept[frame])[taxel]
+        })
     };
     let deflection = all(|state| &state.deflection);
     let taxels = system.patch.taxels();

@@ -28,10 +28,16 @@ pub fn rest(system: &System) -> Option<Rest> {
     let carried = |travel: f64| -> f64 {
         let taxels = system.patch.taxels();
         let springs = pushed(travel).enumerate();
-        springs.map(|(taxel, d)| taxels.at(taxel).stiffness * d).sum()
+        springs
+            .map(|(taxel, d)| taxels.at(taxel).stiffness * d)
+            .sum()
     };
     let weight = mass * gravity;
-    let first = system.starts().iter().copied().fold(f64::INFINITY, f64::min);
+    let first = system
+        .starts()
+        .iter()
+        .copied()
+        .fold(f64::INFINITY, f64::min);
     let (mut low, mut high) = (first, floor);
     if carried(floor) <= weight {
         low = floor;

@@ -96,7 +96,11 @@ impl<'a> Map<'a> {
         Self {
             rows,
             scene: rows[0].0.scene,
-            columns: distinct(cells().map(|cell| (cell.method, cell.solver_iterations)).collect()),
+            columns: distinct(
+                cells()
+                    .map(|cell| (cell.method, cell.solver_iterations))
+                    .collect(),
+            ),
             settings: distinct(cells().map(setting).collect()),
             masses: rising(cells().map(|cell| cell.taxel_mass_kg).collect()),
             dts: rising(cells().map(|cell| cell.dt_s).collect()),
@@ -105,7 +109,9 @@ impl<'a> Map<'a> {
 
     fn title(&self) -> &'static str {
         match self.scene {
-            StabilityScene::Rest => "A ball is let go on taxels and comes to rest: what is right, and what breaks",
+            StabilityScene::Rest => {
+                "A ball is let go on taxels and comes to rest: what is right, and what breaks"
+            }
             StabilityScene::Press => {
                 "A ball is pressed on taxels with 0.5 m/s, held, and taken off: what is right, and what breaks"
             }
@@ -274,13 +280,25 @@ impl<'a> Map<'a> {
             drawing.text(at, &short_number(1e3 * dt), style);
         }
         let middle = x + 0.5 * self.panel_size().0;
-        drawing.text((middle, bottom + 26.0), "time step, ms", style.colour(MUTED));
+        drawing.text(
+            (middle, bottom + 26.0),
+            "time step, ms",
+            style.colour(MUTED),
+        );
     }
 
     fn draw_legend(&self, drawing: &mut Drawing, top: f64) {
         let entries = [
-            (Outcome::Right, "−9", format!("within {} %", 100.0 * TOLERANCE)),
-            (Outcome::Inaccurate, "−1", "worse; the number is the power of ten of the error".to_owned()),
+            (
+                Outcome::Right,
+                "−9",
+                format!("within {} %", 100.0 * TOLERANCE),
+            ),
+            (
+                Outcome::Inaccurate,
+                "−1",
+                "worse; the number is the power of ten of the error".to_owned(),
+            ),
             (Outcome::MissedContact, "m", "contact was missed".to_owned()),
             (Outcome::EnergyGrowth, "e", "gained energy".to_owned()),
             (Outcome::NotFinite, "n", "not finite".to_owned()),
@@ -354,8 +372,20 @@ fn draw_ground(drawing: &mut Drawing, place: Area, fill: Rgb) {
     drawing.frame(place, Stroke::new(PAPER, 1.0));
 }
 
+/// On a ground of its own, so that no line runs through it: a minus would be read as a plus.
 fn draw_sign(drawing: &mut Drawing, place: Area, fill: Rgb, sign: &str) {
-    let middle = (place.x + place.width / 2.0, place.y + place.height / 2.0 + 4.0);
+    let width = text_width(sign, 11.0) + 4.0;
+    let ground = Area {
+        x: place.x + 0.5 * (place.width - width),
+        y: place.y + 3.0,
+        width,
+        height: place.height - 6.0,
+    };
+    drawing.area(ground, fill);
+    let middle = (
+        place.x + place.width / 2.0,
+        place.y + place.height / 2.0 + 4.0,
+    );
     let style = TextStyle::new(11).align(Align::Middle);
     drawing.text(middle, sign, style.colour(text_on(fill)));
 }

@@ -38,7 +38,8 @@ pub fn stability_summary(tables: &StabilityTables, width: usize) -> String {
         "deflection",
     ]);
     for row in &tables.summary {
-        let worst = |value: Option<f64>| value.map_or(String::new(), |value| format!("{value:.1e}"));
+        let worst =
+            |value: Option<f64>| value.map_or(String::new(), |value| format!("{value:.1e}"));
         table.add_row([
             scene_name(row.scene).to_owned(),
             method_name(row.method, row.solver_iterations),

@@ -6,7 +6,8 @@ use super::table::{StabilityCell, StabilityScore, StabilityTime};
 use crate::contact::balance::{Balancer, FreeObject, Outcome as BalanceOutcome, PlacedSkin};
 use crate::contact::{DamperState, SkinWorkspace, deflect_skin, press_skin_to_force};
 use crate::dynamics::{
-    Divergence, Drive, DynamicRecording, ImplicitEuler, Integrator, SemiImplicit, Steps, System, run,
+    Divergence, Drive, DynamicRecording, ImplicitEuler, Integrator, SemiImplicit, Steps, System,
+    run,
 };
 use crate::error::Result;
 use crate::geometry::Pose;
@@ -77,7 +78,10 @@ pub(super) fn measure(
             wall_s,
             per_simulated_s,
         };
-        if best.as_ref().is_none_or(|(kept, _)| rank(&score) < rank(kept)) {
+        if best
+            .as_ref()
+            .is_none_or(|(kept, _)| rank(&score) < rank(kept))
+        {
             best = Some((score, time));
         }
     }
@@ -86,7 +90,10 @@ pub(super) fn measure(
 
 /// Less is better.
 fn rank(score: &StabilityScore) -> (Outcome, f64) {
-    (score.outcome, score.deflection_error.unwrap_or(f64::INFINITY))
+    (
+        score.outcome,
+        score.deflection_error.unwrap_or(f64::INFINITY),
+    )
 }
 
 /// How many times stiffer than the tolerance asks: the ball sinks in by its share of every taxel.
@@ -95,7 +102,10 @@ const SAFETY: f64 = 4.0;
 /// What a careful author of a penalty method tries: as stiff as the error allows, and as stiff as the step allows.
 fn contact_stiffnesses(cell: &StabilityCell, scene: &CellScene) -> Result<Vec<Option<f64>>> {
     let truth = &scene.truth;
-    let needed = scene.taxel.stiffness.max(truth.heaviest / scene.taxel.stroke);
+    let needed = scene
+        .taxel
+        .stiffness
+        .max(truth.heaviest / scene.taxel.stroke);
     let exact = SAFETY * needed / TOLERANCE;
     let system = scene.system(cell)?;
     let stable = SemiImplicit::stiffest(&system, cell.dt_s, truth.n_touched);

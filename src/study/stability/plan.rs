@@ -80,7 +80,9 @@ impl PartCheck<'_> {
 
     fn lay_out(&self) -> Result<StabilityPart> {
         let part = self.part;
-        let methods = self.check.list(&self.key("methods"), part.methods.clone())?;
+        let methods = self
+            .check
+            .list(&self.key("methods"), part.methods.clone())?;
         let sides = self.sides()?;
         let stroke = self.positive("stroke_mm", &Axis::One(part.stroke_mm))?[0];
         let stiffnesses = self.positive("stiffness_n_per_m", &part.stiffness_n_per_m)?;

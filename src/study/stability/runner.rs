@@ -12,10 +12,7 @@ use rayon::prelude::*;
 ///
 /// # Errors
 /// A scene that cannot be built: a cradle too deep for its ball.
-pub fn measure_stability(
-    plan: &StabilityPlan,
-    progress: &dyn Progress,
-) -> Result<StabilityTables> {
+pub fn measure_stability(plan: &StabilityPlan, progress: &dyn Progress) -> Result<StabilityTables> {
     progress.stage("stability", plan.n_cells() as u64);
     let cells = plan.parts.iter();
     let cells = cells.flat_map(|part| part.cells.iter().map(|cell| (cell, part.stroke)));

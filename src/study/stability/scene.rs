@@ -138,7 +138,14 @@ impl CellScene {
             Drive::Imposed(_) => Pose::from_translation(pose.translation + APPROACH * DVec3::Z),
         };
         let reach = APPROACH + 2.0 * self.taxel.stroke;
-        System::new(patch, cell.taxel_mass_kg, ball, pose, self.drive.clone(), reach)
+        System::new(
+            patch,
+            cell.taxel_mass_kg,
+            ball,
+            pose,
+            self.drive.clone(),
+            reach,
+        )
     }
 
     fn of_free(
@@ -155,7 +162,14 @@ impl CellScene {
         };
         let (k, m) = (taxel.stiffness, cell.taxel_mass_kg);
         let reach = 2.0 * taxel.stroke;
-        let system = System::new(&cradle.patch, m, &cradle.ball, cradle.pose, drive.clone(), reach)?;
+        let system = System::new(
+            &cradle.patch,
+            m,
+            &cradle.ball,
+            cradle.pose,
+            drive.clone(),
+            reach,
+        )?;
         let rest = rest(&system).expect("a free ball over taxels comes to rest");
         let n_touched = rest.deflection.iter().filter(|d| **d > 0.0).count();
         // What each taxel has to move, itself included.
@@ -184,15 +198,9 @@ impl CellScene {
         })
     }
 
-    fn of_imposed(
-        cell: &StabilityCell,
-        cradle: Cradle,
-        taxel: Taxel,
-        pitch: f64,
-    ) -> Result<Self> {
+    fn of_imposed(cell: &StabilityCell, cradle: Cradle, taxel: Taxel, pitch: f64) -> Result<Self> {
         let (k, m) = (taxel.stiffness, cell.taxel_mass_kg);
-        let ratio = skin_sim::DAMPING
-            / (2.0 * (skin_sim::STIFFNESS * skin_sim::TAXEL_MASS).sqrt());
+        let ratio = skin_sim::DAMPING / (2.0 * (skin_sim::STIFFNESS * skin_sim::TAXEL_MASS).sqrt());
         let damping = 2.0 * ratio * (k * m).sqrt();
         let depth = 0.5 * taxel.stroke;
         let way = (APPROACH + depth) / SPEED;
@@ -212,7 +220,10 @@ impl CellScene {
         let reach = APPROACH + 2.0 * taxel.stroke;
         let system = System::new(&cradle.patch, m, &cradle.ball, high, drive.clone(), reach)?;
         let deepest = APPROACH + depth;
-        let deflection = system.starts().iter().map(|start| (deepest - start).max(0.0));
+        let deflection = system
+            .starts()
+            .iter()
+            .map(|start| (deepest - start).max(0.0));
         let deflection: Vec<f64> = deflection.collect();
         let springs: f64 = deflection.iter().sum();
         // What springs hold at the deepest, and what taxels have that are hit at twice the speed: four times that.
@@ -240,7 +251,10 @@ impl CellScene {
 /// The taxels that are in as far as any share what the stops carry.
 fn heaviest(taxel: &Taxel, rest: &Rest) -> f64 {
     let deepest = rest.deflection.iter().copied().fold(0.0, f64::max);
-    let are_there = rest.deflection.iter().filter(|&&d| d >= deepest * (1.0 - 1e-9));
+    let are_there = rest
+        .deflection
+        .iter()
+        .filter(|&&d| d >= deepest * (1.0 - 1e-9));
     taxel.stiffness * deepest + rest.stops / are_there.count() as f64
 }
 
@@ -262,7 +276,8 @@ mod tests {
     use crate::study::stability::ContactMethod;
 
     #[test]
-    fn the_ball_meets_the_innermost_taxels_where_it_starts_and_all_within_a_quarter_of_the_stroke() {
+    fn the_ball_meets_the_innermost_taxels_where_it_starts_and_all_within_a_quarter_of_the_stroke()
+    {
         for taxels in [2, 8, 16] {
             let cell = StabilityCell {
                 part: 1,
