@@ -90,6 +90,7 @@
 //! | [`packing`] | a mesh and a tolerance → few spheres |
 //! | [`world`] | taxels, layouts, resting poses → touches; robots and hands and their motion → poses |
 //! | [`contact`] | a scene and poses → deflections; free objects → poses at rest |
+//! | [`dynamics`] | the same with mass, in time: what the quasi-static model is measured against |
 //! | [`whole_body`] | millions of taxels, objects and poses → the taxels that are touched |
 //! | [`signal`] | deflections → frames |
 //! | [`sensing`] | frames → measurements, and back |
@@ -98,7 +99,7 @@
 //! | [`scene`] | TOML → robots, skin and objects that move → frames over time |
 //! | [`report`] | tables and frames → files for people |
 //!
-//! The nine stages from `mesh` to `recognition` are pure: no files (but a robot's, if it is asked for by its path), clock,
+//! The ten stages from `mesh` to `recognition` are pure: no files (but a robot's, if it is asked for by its path), clock,
 //! threads, printing or global state. Threads live in `study`, and in `whole_body` for large touches; files in `study`, `scene`
 //! (what a scene names) and `report`.
 //!
@@ -132,6 +133,7 @@
 #![warn(missing_docs)]
 
 pub mod contact;
+pub mod dynamics;
 pub mod error;
 pub mod files;
 pub mod geometry;

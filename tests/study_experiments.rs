@@ -3,6 +3,7 @@
 use bubbletouch::random::Seed;
 use bubbletouch::study::object_detail::{ObjectDetailPlan, ObjectDetailStudySpec};
 use bubbletouch::study::reconstruction::{ReconstructionPlan, ReconstructionStudySpec};
+use bubbletouch::study::stability::{StabilityPlan, StabilityStudySpec};
 use bubbletouch::study::whole_body::{WholeBodyPlan, WholeBodyStudySpec};
 use bubbletouch::study::{
     HumanTouches, Plan, StudyKind, StudySpec, Sweep, draw_touches, load_objects,
@@ -68,6 +69,13 @@ fn every_experiment_can_run() {
             let spec = ReconstructionStudySpec::parse(&place, &text).unwrap();
             assert!(!spec.question.is_empty() && !spec.expected.is_empty());
             let plan = ReconstructionPlan::new(&place, spec).unwrap();
+            assert!(plan.n_cells() > 1, "{place} compares something");
+            continue;
+        }
+        if StudyKind::of(&text) == StudyKind::Stability {
+            let spec = StabilityStudySpec::parse(&place, &text).unwrap();
+            assert!(!spec.question.is_empty() && !spec.expected.is_empty());
+            let plan = StabilityPlan::new(&place, spec).unwrap();
             assert!(plan.n_cells() > 1, "{place} compares something");
             continue;
         }

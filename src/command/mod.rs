@@ -16,6 +16,7 @@ mod recording;
 mod run;
 mod run_object_detail;
 mod run_reconstruction;
+mod run_stability;
 mod run_whole_body;
 mod simulate;
 mod slurm;

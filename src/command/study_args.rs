@@ -3,6 +3,7 @@
 use bubbletouch::random::Seed;
 use bubbletouch::study::object_detail::{ObjectDetailPlan, ObjectDetailStudySpec};
 use bubbletouch::study::reconstruction::{ReconstructionPlan, ReconstructionStudySpec};
+use bubbletouch::study::stability::{StabilityPlan, StabilityStudySpec};
 use bubbletouch::study::whole_body::{WholeBodyPlan, WholeBodyStudySpec};
 use bubbletouch::study::{
     HumanTouches, ObjectsSpec, Plan, StudyKind, StudySpec, Sweep, TouchSet, draw_touches,
@@ -122,6 +123,13 @@ impl StudyArgs {
         spec.seed = self.seed.unwrap_or(spec.seed);
         let folder = self.study.parent().unwrap_or(Path::new(""));
         WholeBodyPlan::new(&place, folder, spec)
+    }
+
+    /// Reads and checks a study of where contact methods break; it has no objects and nothing random to replace.
+    pub fn stability_plan(&self) -> Result<StabilityPlan> {
+        set_threads(self.threads)?;
+        let place = self.study.display().to_string();
+        StabilityPlan::new(&place, StabilityStudySpec::parse(&place, &self.text()?)?)
     }
 
     fn replace_objects(&self, objects: &mut ObjectsSpec) {

@@ -50,6 +50,8 @@ pub mod scene_summary;
 mod shaded_view;
 mod signal_axis;
 pub mod snapshots;
+pub mod stability_map;
+pub mod stability_results;
 pub mod terminal;
 pub mod text_width;
 mod time_scale;

@@ -1,4 +1,4 @@
-//! What a study asks about: recognition, reconstruction, the objects themselves, or a whole body.
+//! What a study asks about: recognition, reconstruction, the objects themselves, a whole body, or contact itself.
 
 /// The kinds of studies, told apart by a table that only one of them has.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -11,6 +11,8 @@ pub enum StudyKind {
     ObjectDetail,
     /// What does a whole body of skin cost? A file with a `[whole_body]` table.
     WholeBody,
+    /// Where does each way to simulate contact break? A file with a `[stability]` table.
+    Stability,
 }
 
 impl StudyKind {
@@ -21,6 +23,7 @@ impl StudyKind {
             () if table.contains_key("reconstruction") => Self::Reconstruction,
             () if table.contains_key("object_detail") => Self::ObjectDetail,
             () if table.contains_key("whole_body") => Self::WholeBody,
+            () if table.contains_key("stability") => Self::Stability,
             () => Self::Recognition,
         }
     }
@@ -32,6 +35,7 @@ impl StudyKind {
             Self::Reconstruction => "a study that reconstructs frames",
             Self::ObjectDetail => "a study of how detailed objects are",
             Self::WholeBody => "a study of a whole body of skin",
+            Self::Stability => "a study of where contact methods break",
         }
     }
 }

@@ -44,6 +44,7 @@ mod spec_human;
 mod spec_scene;
 mod spec_signal;
 mod splits;
+pub mod stability;
 mod summary;
 mod sweep;
 pub mod table;

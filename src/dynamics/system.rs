@@ -1,0 +1,129 @@
+//! What moves: taxels with mass, and an object on a guide.
+
+use crate::contact::{SkinWorkspace, press_skin};
+use crate::error::{Error, Result};
+use crate::geometry::Pose;
+use crate::objects::Model;
+use crate::world::{SkinPatch, VelocityPlan};
+use glam::DVec3;
+
+/// What moves the object along its guide.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Drive {
+    /// Its weight.
+    Free {
+        /// M, kg, positive.
+        mass: f64,
+        /// g, m/s², towards the skin, positive.
+        gravity: f64,
+        /// Where it is let go, at rest: metres of travel.
+        travel: f64,
+    },
+    /// A motion, whatever it costs: of the object's origin in the patch frame. Only the way along z counts; the travel is 0 where it
+    /// starts.
+    Imposed(VelocityPlan),
+}
+
+/// A skin with mass and one object above it.
+#[derive(Clone, Debug)]
+pub struct System<'a> {
+    /// The skin; all its axes are +z.
+    pub patch: &'a SkinPatch,
+    /// m of each taxel, kg.
+    pub taxel_mass: f64,
+    /// The object.
+    pub object: &'a Model,
+    /// `patch_from_object` at a travel of 0.
+    pub pose: Pose,
+    /// What moves it.
+    pub drive: Drive,
+    starts: Vec<f64>,
+}
+
+impl<'a> System<'a> {
+    /// Checks and prepares a system. Taxels that the object does not meet within `reach` metres of travel are never pushed.
+    ///
+    /// The error names a mass, a gravity or a reach that is not positive, and the first taxel whose axis is not +z.
+    pub fn new(
+        patch: &'a SkinPatch,
+        taxel_mass: f64,
+        object: &'a Model,
+        pose: Pose,
+        drive: Drive,
+        reach: f64,
+    ) -> Result<Self> {
+        positive("taxel mass", taxel_mass, "kg")?;
+        positive("reach of an object on a guide", reach, "m")?;
+        if let Drive::Free { mass, gravity, .. } = drive {
+            positive("object mass", mass, "kg")?;
+            positive("gravity", gravity, "m/s²")?;
+        }
+        let axes = patch.layout().axes();
+        if let Some(taxel) = axes.iter().position(|&axis| axis != DVec3::Z) {
+            return Err(Error::input(
+                format!("skin patch {}, taxel {}", patch.name(), taxel + 1),
+                format!("axis {}", axes[taxel]),
+                "an axis along z: the object's guide runs along the taxels",
+            ));
+        }
+        Ok(Self {
+            starts: starts(patch, object, &pose, reach),
+            patch,
+            taxel_mass,
+            object,
+            pose,
+            drive,
+        })
+    }
+
+    /// How many taxels.
+    pub fn n_taxels(&self) -> usize {
+        self.starts.len()
+    }
+
+    /// The travel at which the object meets each taxel, metres; infinite for those that it does not meet.
+    pub fn starts(&self) -> &[f64] {
+        &self.starts
+    }
+
+    /// The travel at which the first taxel is at its stroke, metres: no rigid stop lets the object go further.
+    pub fn floor(&self) -> f64 {
+        let taxels = self.patch.taxels();
+        let ends = self.starts.iter().enumerate();
+        ends.map(|(taxel, start)| start + taxels.at(taxel).stroke)
+            .fold(f64::INFINITY, f64::min)
+    }
+
+    /// The travel before the first step, metres.
+    pub fn first_travel(&self) -> f64 {
+        match &self.drive {
+            Drive::Free { travel, .. } => *travel,
+            Drive::Imposed(plan) => self.imposed(plan, 0.0),
+        }
+    }
+
+    /// Where a motion has the object at a time, metres of travel.
+    pub(super) fn imposed(&self, plan: &VelocityPlan, time: f64) -> f64 {
+        plan.pose_at(0.0).translation.z - plan.pose_at(time).translation.z
+    }
+}
+
+fn positive(place: &str, value: f64, unit: &str) -> Result<()> {
+    if value.is_finite() && value > 0.0 {
+        return Ok(());
+    }
+    let allowed = "a finite positive number";
+    Err(Error::input(place, format!("{value} {unit}"), allowed))
+}
+
+/// Along the axes a taxel that is pushed is pushed as much further as the object goes: one press at the end of the reach tells all.
+fn starts(patch: &SkinPatch, object: &Model, pose: &Pose, reach: f64) -> Vec<f64> {
+    let mut workspace = SkinWorkspace::new();
+    let low = Pose::new(pose.rotation, pose.translation - reach * DVec3::Z);
+    press_skin(patch, std::slice::from_ref(object), &[low], &mut workspace);
+    let mut starts = vec![f64::INFINITY; patch.n_taxels()];
+    for contact in workspace.contacts() {
+        starts[contact.taxel] = reach - contact.needed;
+    }
+    starts
+}

@@ -1,0 +1,159 @@
+//! A study of stability that can run: every key checked, its cells laid out.
+
+use super::spec::{ContactMethod, StabilityPartSpec, StabilityScene, StabilityStudySpec};
+use super::table::StabilityCell;
+use crate::error::Result;
+use crate::study::axis::Axis;
+use crate::study::check::{Check, positive};
+use crate::study::plan::MM;
+
+/// Settings of a study of stability, ready to run.
+#[derive(Clone, Debug)]
+pub struct StabilityPlan {
+    /// As it was written.
+    pub spec: StabilityStudySpec,
+    /// Between neighbouring taxels, metres.
+    pub pitch: f64,
+    /// What is tried, in this order.
+    pub parts: Vec<StabilityPart>,
+}
+
+/// Cells that share what no axis says.
+#[derive(Clone, Debug, PartialEq)]
+pub struct StabilityPart {
+    /// s, metres.
+    pub stroke: f64,
+    /// What is simulated; methods that this build does not have are left out.
+    pub cells: Vec<StabilityCell>,
+}
+
+/// Taxels a side, at most: a million and more of bodies is no question of stability.
+const MOST_TAXELS: usize = 256;
+
+impl StabilityPlan {
+    /// Checks a study; the error names `place` (the file) and the first key that is out of its range.
+    pub fn new(place: &str, spec: StabilityStudySpec) -> Result<Self> {
+        let check = Check { place };
+        let wanted = &spec.stability;
+        let millimetres = "a positive number of millimetres";
+        let pitch = check.value("stability.pitch_mm", wanted.pitch_mm, positive, millimetres)?;
+        check.list("stability.parts", wanted.parts.clone())?;
+        let parts = wanted.parts.iter().enumerate();
+        let parts = parts.map(|(number, part)| {
+            let part = PartCheck {
+                check: &check,
+                number,
+                part,
+            };
+            part.lay_out()
+        });
+        let parts = parts.collect::<Result<Vec<_>>>()?;
+        Ok(Self {
+            pitch: pitch * MM,
+            parts,
+            spec,
+        })
+    }
+
+    /// All cells.
+    pub fn n_cells(&self) -> usize {
+        self.parts.iter().map(|part| part.cells.len()).sum()
+    }
+}
+
+/// One part, and what it is called in errors.
+struct PartCheck<'a> {
+    check: &'a Check<'a>,
+    number: usize,
+    part: &'a StabilityPartSpec,
+}
+
+impl PartCheck<'_> {
+    fn key(&self, name: &str) -> String {
+        format!("stability.parts[{}].{name}", self.number + 1)
+    }
+
+    fn positive(&self, name: &str, axis: &Axis<f64>) -> Result<Vec<f64>> {
+        let allowed = "positive numbers";
+        self.check.axis(&self.key(name), axis, positive, allowed)
+    }
+
+    fn lay_out(&self) -> Result<StabilityPart> {
+        let part = self.part;
+        let methods = self
+            .check
+            .list(&self.key("methods"), part.methods.clone())?;
+        let sides = self.sides()?;
+        let stroke = self.positive("stroke_mm", &Axis::One(part.stroke_mm))?[0];
+        let stiffnesses = self.positive("stiffness_n_per_m", &part.stiffness_n_per_m)?;
+        let taxel_masses = self.positive("taxel_mass_kg", &part.taxel_mass_kg)?;
+        let object_masses = self.object_masses()?;
+        let dts = self.positive("dt_s", &part.dt_s)?;
+        let iterations = self.key("solver_iterations");
+        let iterations = self.check.counts(&iterations, &part.solver_iterations)?;
+        let mut cells = Vec::new();
+        for method in methods.into_iter().filter(|method| method.is_built()) {
+            for iterations in of_method(method, &iterations) {
+                for &taxels in &sides {
+                    for &stiffness_n_per_m in &stiffnesses {
+                        for &object_mass_kg in &object_masses {
+                            for &taxel_mass_kg in &taxel_masses {
+                                cells.extend(dts.iter().map(|&dt_s| StabilityCell {
+                                    part: self.number + 1,
+                                    scene: part.scene,
+                                    method,
+                                    solver_iterations: iterations,
+                                    taxels,
+                                    stiffness_n_per_m,
+                                    taxel_mass_kg,
+                                    object_mass_kg,
+                                    dt_s,
+                                }));
+                            }
+                        }
+                    }
+                }
+            }
+        }
+        Ok(StabilityPart {
+            stroke: stroke * MM,
+            cells,
+        })
+    }
+
+    /// Even, so that the ball lies between four taxels and not on one.
+    fn sides(&self) -> Result<Vec<usize>> {
+        let key = self.key("taxels");
+        let sides = self.check.counts(&key, &self.part.taxels)?;
+        match sides.iter().find(|&&n| n % 2 != 0 || n > MOST_TAXELS) {
+            Some(n) => {
+                let allowed = format!("even numbers from 2 to {MOST_TAXELS}");
+                Err(self.check.error(&key, n, allowed))
+            }
+            None => Ok(sides),
+        }
+    }
+
+    fn object_masses(&self) -> Result<Vec<Option<f64>>> {
+        let key = self.key("object_mass_kg");
+        match (&self.part.object_mass_kg, self.part.scene) {
+            (None, StabilityScene::Press) => Ok(vec![None]),
+            (Some(_), StabilityScene::Press) => {
+                let allowed = "no such key: the ball's motion is imposed";
+                Err(self.check.error(&key, "a mass", allowed))
+            }
+            (None, _) => Err(self.check.error(&key, "none", "a mass: the ball is free")),
+            (Some(axis), _) => {
+                let masses = self.positive("object_mass_kg", axis)?;
+                Ok(masses.into_iter().map(Some).collect())
+            }
+        }
+    }
+}
+
+fn of_method(method: ContactMethod, iterations: &[usize]) -> Vec<Option<usize>> {
+    match method.is_engine() {
+        true => iterations.iter().copied().map(Some).collect(),
+        false => vec![None],
+    }
+}

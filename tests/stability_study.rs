@@ -1,0 +1,181 @@
+//! The study of where contact methods break.
+
+mod command;
+
+use bubbletouch::report::csv_tables::read_rows;
+use bubbletouch::study::StudyKind;
+use bubbletouch::study::stability::table::{StabilityCell, StabilityScore, StabilitySummary};
+use bubbletouch::study::stability::{
+    ContactMethod, Outcome, StabilityPlan, StabilityScene, StabilityStudySpec, TOLERANCE,
+};
+use command::Case;
+use std::fs;
+
+const QUICK: &str = r#"
+question = "What breaks?"
+
+[[stability.parts]]
+scene = "rest"
+methods = ["quasi_static", "implicit_euler", "semi_implicit"]
+taxels = 8
+stiffness_n_per_m = [1e1, 1e5]
+object_mass_kg = [1e-3, 1e3]
+taxel_mass_kg = [1e-7, 1e-2]
+dt_s = [1e-3, 1e-1]
+
+[[stability.parts]]
+scene = "press"
+methods = ["quasi_static", "implicit_euler", "semi_implicit"]
+taxels = 8
+stiffness_n_per_m = 1e3
+taxel_mass_kg = [1e-6, 1e-2]
+dt_s = [1e-4, 1e-1]
+
+[[stability.parts]]
+scene = "plunger"
+methods = ["quasi_static", "implicit_euler", "semi_implicit"]
+taxels = 8
+stroke_mm = 20.0
+stiffness_n_per_m = 16.37
+object_mass_kg = 1.0
+taxel_mass_kg = [1e-3, 1e-2]
+dt_s = [5e-4, 5e-2]
+"#;
+
+#[test]
+fn ours_is_right_everywhere_the_others_break_where_they_must_and_threads_change_no_byte() {
+    let case = Case::new();
+    case.file("study.toml", QUICK);
+    let (said, _) = case.succeeds(&["run", "study.toml", "--threads", "1", "--out", "1"]);
+    assert!(said.contains("quasi-static"), "{said}");
+    case.succeeds(&["run", "study.toml", "--threads", "2", "--out", "2"]);
+    let read = |folder: &str, name: &str| fs::read(case.path(folder).join(name)).unwrap();
+    for name in [
+        "stability.csv",
+        "stability_summary.csv",
+        "stability_rest.svg",
+        "stability_press.svg",
+        "stability_plunger.png",
+        "study.toml",
+    ] {
+        assert!(!read("1", name).is_empty());
+        assert!(read("1", name) == read("2", name), "{name}");
+    }
+    let path = case.path("1/stability.csv");
+    let cells: Vec<StabilityCell> = read_rows(&path).unwrap();
+    let scores: Vec<StabilityScore> = read_rows(&path).unwrap();
+    assert_eq!(cells.len(), 3 * (16 + 4 + 4));
+    for (cell, score) in cells.iter().zip(&scores) {
+        let about = format!("{cell:?} {score:?}");
+        match cell.method {
+            ContactMethod::QuasiStatic => {
+                assert_eq!(score.outcome, Outcome::Right, "{about}");
+                assert!(score.force_imbalance.unwrap() <= 1e-6, "{about}");
+                assert!(score.deflection_error.unwrap() <= 1e-6, "{about}");
+            }
+            ContactMethod::ImplicitEuler => assert_eq!(score.outcome, Outcome::Right, "{about}"),
+            _ => {
+                let is_beyond = cell.dt_s > 10.0 * score.explicit_limit_s;
+                let is_press = cell.scene == StabilityScene::Press;
+                assert!(
+                    !(is_beyond && is_press && score.outcome == Outcome::Right),
+                    "{about}"
+                );
+            }
+        }
+        let is_right = score.outcome == Outcome::Right;
+        let errors = [score.force_imbalance, score.deflection_error];
+        assert!(
+            !is_right || errors.iter().all(|e| e.unwrap() <= TOLERANCE),
+            "{about}"
+        );
+    }
+    let explicit = scores.iter().zip(&cells);
+    let explicit = explicit.filter(|(_, cell)| cell.method == ContactMethod::SemiImplicit);
+    let right = explicit
+        .clone()
+        .filter(|(score, _)| score.outcome == Outcome::Right);
+    assert!(right.count() >= 2, "it is no straw man");
+    let broken = explicit.filter(|(score, _)| score.outcome >= Outcome::MissedContact);
+    assert!(broken.count() >= 8);
+    let summary: Vec<StabilitySummary> = read_rows(&case.path("1/stability_summary.csv")).unwrap();
+    assert_eq!(summary.len(), 3 * 3);
+    for row in summary {
+        let kinds = [
+            row.n_right,
+            row.n_inaccurate,
+            row.n_missed_contact,
+            row.n_energy_growth,
+            row.n_not_finite,
+        ];
+        assert_eq!(kinds.iter().sum::<usize>(), row.n_cells);
+    }
+    let svg = String::from_utf8(read("1", "stability_rest.svg")).unwrap();
+    assert!(svg.contains("limit of an explicit spring") && svg.contains("M : m"));
+}
+
+#[test]
+fn keys_that_are_out_of_range_are_named_with_their_part() {
+    assert_eq!(StudyKind::of(QUICK), StudyKind::Stability);
+    for (old, new, said) in [
+        (
+            "taxels = 8",
+            "taxels = 5",
+            "key stability.parts[1].taxels: 5; even",
+        ),
+        (
+            "[1e1, 1e5]",
+            "[1e1, 0.0]",
+            "key stability.parts[1].stiffness_n_per_m: 0",
+        ),
+        (
+            "[1e-7, 1e-2]",
+            "[]",
+            "key stability.parts[1].taxel_mass_kg: an empty list",
+        ),
+        (
+            "dt_s = [1e-4, 1e-1]",
+            "dt_s = -1.0",
+            "key stability.parts[2].dt_s: -1",
+        ),
+        (
+            "stroke_mm = 20.0",
+            "stroke_mm = 0.0",
+            "key stability.parts[3].stroke_mm: 0",
+        ),
+        (
+            "object_mass_kg = 1.0\n",
+            "",
+            "key stability.parts[3].object_mass_kg: none",
+        ),
+        (
+            "stiffness_n_per_m = 1e3",
+            "stiffness_n_per_m = 1e3\nobject_mass_kg = 1.0",
+            "key stability.parts[2].object_mass_kg: a mass",
+        ),
+        ("\"semi_implicit\"", "\"magic\"", "magic"),
+        (
+            "stroke_mm = 20.0",
+            "solver_iterations = 0",
+            "key stability.parts[3].solver_iterations: 0",
+        ),
+    ] {
+        assert!(QUICK.contains(old), "{old}");
+        let text = QUICK.replacen(old, new, 1);
+        let plan = StabilityStudySpec::parse("study.toml", &text)
+            .and_then(|spec| StabilityPlan::new("study.toml", spec));
+        let error = plan.unwrap_err().to_string();
+        assert!(
+            error.contains(said) && error.starts_with("study.toml"),
+            "{error}"
+        );
+    }
+    let case = Case::new();
+    case.file("study.toml", QUICK);
+    for arguments in [
+        &["run", "study.toml", "--seed", "1"][..],
+        &["plan", "study.toml"],
+    ] {
+        assert_eq!(case.run(arguments).status.code(), Some(2), "{arguments:?}");
+    }
+}
