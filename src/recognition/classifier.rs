@@ -4,6 +4,7 @@
 //! linfa classifier does; and whatever implements those traits is scored the same way by
 //! [`predict_split`].
 
+use std::borrow::Cow;
 use std::sync::Arc;
 
 use linfa::traits::{Fit, PredictInplace};
@@ -210,10 +211,15 @@ impl Classifier {
             .collect())
     }
 
-    fn scaled(&self, training: &Dataset) -> Result<(FittedScaling, Dataset)> {
+    /// The scaling, and the training rows scaled: themselves, where it changes nothing.
+    fn scaled<'a>(&self, training: &'a Dataset) -> Result<(FittedScaling, Cow<'a, Dataset>)> {
         let scaling = self.scaling.fit(training.records.view())?;
+        if scaling.changes_nothing() {
+            return Ok((scaling, Cow::Borrowed(training)));
+        }
         let scaled = scaling.apply(training.records.view())?;
-        Ok((scaling, Dataset::new(scaled, training.targets.clone())))
+        let scaled = Dataset::new(scaled, training.targets.clone());
+        Ok((scaling, Cow::Owned(scaled)))
     }
 
     fn train_with_c(

@@ -77,12 +77,12 @@ impl<T: Scalar> MarginPair<T> {
             .slice_mut(s![..before.0, ..before.1])
             .assign(&self.across);
         let (old, new) = first.split_at(before.0);
-        all.products(old, &second[before.1..], |i, j, product| {
-            across[[i, before.1 + j]] = product;
-        });
-        all.products(new, &second, |i, j, product| {
-            across[[before.0 + i, j]] = product;
-        });
+        across
+            .slice_mut(s![..before.0, before.1..])
+            .assign(&all.products(old, &second[before.1..]));
+        across
+            .slice_mut(s![before.0.., ..])
+            .assign(&all.products(new, &second));
         self.across = across;
     }
 

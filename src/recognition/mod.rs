@@ -74,6 +74,7 @@ mod points;
 pub mod random_forest;
 pub(crate) mod ranked;
 mod row_products;
+mod row_tiles;
 mod scalar;
 pub mod scaling;
 mod seed;

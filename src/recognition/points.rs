@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use ndarray::linalg::general_mat_mul;
-use ndarray::{Array1, Array2, ArrayView1, ArrayView2, ArrayViewMut2, Axis, Zip, s};
+use ndarray::{Array1, Array2, ArrayView1, ArrayView2, ArrayViewMut2, Axis, s};
 
 use crate::recognition::kernel::KernelFunction;
 use crate::recognition::row_products::Rows;
@@ -36,11 +36,10 @@ impl<T: Scalar> Points<T> {
         let n_rows = rows.len();
         let mut values = Array2::zeros((n_rows, centre.len()));
         let mut norms = Vec::with_capacity(n_rows);
-        for (mut to, from) in values.rows_mut().into_iter().zip(rows) {
-            Zip::from(&mut to)
-                .and(from)
-                .and(centre)
-                .for_each(|to, &from, &centre| *to = T::of(from - centre));
+        let centre = centre.to_vec();
+        for (mut to, row) in values.rows_mut().into_iter().zip(rows) {
+            let own = to.as_slice_mut().expect("a new array is stored row by row");
+            move_row(own, row, &centre);
             norms.push(to.dot(&to));
         }
         let norms = norms.into();
@@ -176,6 +175,19 @@ impl<T: Scalar> PointsView<'_, T> {
                 degree,
             } => products.mapv_inplace(|value| polynomial(value, gamma, coef0, degree)),
         }
+    }
+}
+
+/// A row less the centre. Over slices: a walk over ndarray's views is not always made vector instructions of.
+pub(crate) fn move_row<T: Scalar>(to: &mut [T], row: ArrayView1<f64>, centre: &[f64]) {
+    let both = to.iter_mut().zip(centre);
+    match row.as_slice() {
+        Some(row) => both
+            .zip(row)
+            .for_each(|((to, &centre), &x)| *to = T::of(x - centre)),
+        None => both
+            .zip(row)
+            .for_each(|((to, &centre), &x)| *to = T::of(x - centre)),
     }
 }
 

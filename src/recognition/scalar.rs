@@ -2,6 +2,9 @@
 
 use ndarray::NdFloat;
 
+use crate::recognition::row_products::Rows;
+use crate::recognition::row_tiles;
+
 /// f32 or f64: what a Gram matrix holds.
 pub(crate) trait Scalar: NdFloat {
     /// The nearest value.
@@ -10,6 +13,11 @@ pub(crate) trait Scalar: NdFloat {
     fn wide(self) -> f64;
     /// `exp(−γ · distance)` in place of each squared distance.
     fn exponentials(distances: &mut [Self], gamma: f64);
+    /// Products of some rows with others, by number, where they lie: row by row into `products`; `false`, and nothing
+    /// written, where there is no fast way.
+    fn products_in_place(_: Rows<Self>, _: &[usize], _: &[usize], _: &mut [Self]) -> bool {
+        false
+    }
 }
 
 impl Scalar for f64 {
@@ -39,6 +47,15 @@ impl Scalar for f32 {
 
     fn exponentials(distances: &mut [Self], gamma: f64) {
         exponentials_f32(distances, gamma as f32);
+    }
+
+    fn products_in_place(
+        all: Rows<Self>,
+        rows: &[usize],
+        others: &[usize],
+        products: &mut [Self],
+    ) -> bool {
+        row_tiles::products_in_place(all, rows, others, products)
     }
 }
 

@@ -66,12 +66,16 @@ impl FittedScaling {
     /// Another number of columns than in training, or a NaN or infinite feature.
     pub fn apply(&self, features: ArrayView2<f64>) -> Result<Array2<f64>> {
         check_width(&features, self.offset.len())?;
-        let changes_nothing = self.offset.iter().all(|&offset| offset == 0.0)
-            && self.scale.iter().all(|&scale| scale == 1.0);
-        if changes_nothing {
+        if self.changes_nothing() {
             return Ok(features.to_owned());
         }
         Ok((&features - &self.offset) / &self.scale)
+    }
+
+    /// Whether scaled features are the features themselves.
+    pub(crate) fn changes_nothing(&self) -> bool {
+        self.offset.iter().all(|&offset| offset == 0.0)
+            && self.scale.iter().all(|&scale| scale == 1.0)
     }
 }
 

@@ -2,12 +2,12 @@
 
 use std::ops::Range;
 
-use ndarray::{Array1, Array2, ArrayView1, ArrayView2, ArrayViewMut2, Axis, Zip};
+use ndarray::{Array1, Array2, ArrayView1, ArrayView2, ArrayViewMut2, Axis};
 
 use crate::recognition::between::pairs;
 use crate::recognition::dataset::Dataset;
 use crate::recognition::kernel::KernelFunction;
-use crate::recognition::points::Points;
+use crate::recognition::points::{Points, move_row};
 use crate::recognition::scalar::Scalar;
 use crate::recognition::svm::BinaryProblem;
 
@@ -196,11 +196,10 @@ fn about<'a, V>(
     value: impl Fn(&Array1<f64>) -> V,
 ) -> impl Iterator<Item = V> {
     let mut moved = Array1::zeros(centre.len());
+    let centre = centre.to_vec();
     rows.map(move |row| {
-        Zip::from(&mut moved)
-            .and(row)
-            .and(centre)
-            .for_each(|to, x, c| *to = x - c);
+        let to = moved.as_slice_mut().expect("a new array is contiguous");
+        move_row(to, row, &centre);
         value(&moved)
     })
 }
