@@ -2,9 +2,12 @@
 
 use super::envelope::{Envelope, Limit};
 use super::grid_lines::GridLines;
-use super::placed_sphere::{PlacedSphere, View};
+use super::placed_sphere::PlacedSphere;
+use super::sheet::Sheet;
+use super::sphere_search::{SphereSearch, search};
 use crate::geometry::Pose;
 use crate::world::{Patch, Scene};
+use multiversion::multiversion;
 
 /// What a press did, beside its deflections in [`Workspace::deflections`].
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -22,12 +25,11 @@ pub struct Contact {
 pub struct Workspace {
     /// Of the last scene's grid.
     lines: GridLines,
-    /// Spheres that can press, in the patch frame before any travel.
-    spheres: Vec<PlacedSphere>,
+    /// Spheres that can press.
+    search: SphereSearch,
     /// Where the scene's meshes stop the taxels; empty if it has none.
     envelope: Envelope,
-    /// n_taxels deflections, metres, row by row.
-    deflections: Vec<f64>,
+    sheet: Sheet,
     /// Of the last press to a force: see [`starts`](Self::starts).
     starts: Vec<f64>,
 }
@@ -40,15 +42,11 @@ impl Workspace {
 
     /// Deflections of the last press: n_taxels, metres, row (patch y, ascending) by row.
     pub fn deflections(&self) -> &[f64] {
-        &self.deflections
+        self.sheet.deflections()
     }
 
     /// Keeps the spheres that can press a taxel on the way to the goal, and returns the travel to first contact if the
     /// goal is a depth (`None` where no travel touches anything).
-    ///
-    /// Most spheres of an object are on its far side. They cost one row of the rotation and one comparison: a sphere
-    /// presses nothing before its lowest point meets the plane of the taxels. For a depth, a few spheres are looked at
-    /// beforehand, so that the comparison is with a travel close to the final one from the start.
     pub(super) fn gather(
         &mut self,
         scene: &Scene,
@@ -61,47 +59,17 @@ impl Workspace {
             "one pose an object"
         );
         self.lines.lay(&scene.patch.grid);
-        self.spheres.clear();
-        let views = || {
-            let pairs = scene.objects.iter().zip(patch_from_objects);
-            pairs.filter_map(|(object, pose)| {
-                let spheres = object.spheres()?.spheres();
-                Some((
-                    spheres,
-                    View::new(scene.patch.taxel.radius, &self.lines, pose),
-                ))
-            })
+        let mut first = search(
+            &mut self.search,
+            scene,
+            patch_from_objects,
+            &self.lines,
+            goal,
+        );
+        let limit = match goal {
+            Goal::Travel(travel) => Limit::Travel(travel),
+            Goal::Depth(depth) => Limit::Past { depth, first },
         };
-        let depth = match goal {
-            Goal::Depth(depth) => depth,
-            Goal::Travel(travel) => {
-                for (spheres, view) in views() {
-                    let near = spheres.iter().filter_map(|s| view.place(s, travel));
-                    self.spheres.extend(near);
-                }
-                let limit = Limit::Travel(travel);
-                self.envelope
-                    .look(scene, patch_from_objects, &self.lines, limit);
-                return None;
-            }
-        };
-        let mut first = f64::INFINITY;
-        for (spheres, view) in views() {
-            for sphere in spheres.iter().step_by(PREVIEW_STRIDE) {
-                if let Some(placed) = view.place(sphere, first) {
-                    first = first.min(placed.first_touch(&self.lines));
-                }
-            }
-        }
-        for (spheres, view) in views() {
-            for sphere in spheres {
-                if let Some(placed) = view.place(sphere, first + depth) {
-                    first = first.min(placed.first_touch(&self.lines));
-                    self.spheres.push(placed);
-                }
-            }
-        }
-        let limit = Limit::Past { depth, first };
         if self
             .envelope
             .look(scene, patch_from_objects, &self.lines, limit)
@@ -128,9 +96,12 @@ impl Workspace {
     pub(super) fn starts(&mut self, patch: &Patch, travel: f64) -> &[f64] {
         self.push(patch, travel, f64::NEG_INFINITY);
         self.starts.clear();
-        self.starts.reserve(self.deflections.len());
-        let touched = self.deflections.iter().filter(|&&needed| needed > 0.0);
-        self.starts.extend(touched.map(|needed| travel - needed));
+        self.starts.reserve(patch.grid.n_taxels());
+        let Self { sheet, starts, .. } = self;
+        sheet.each_row(|taxels| {
+            let touched = taxels.iter().filter(|needed| **needed > 0.0);
+            starts.extend(touched.map(|needed| travel - *needed));
+        });
         &self.starts
     }
 
@@ -141,29 +112,47 @@ impl Workspace {
 
     /// Leaves all taxels of a patch at rest.
     pub(super) fn touch_nothing(&mut self, patch: &Patch) {
-        self.deflections.clear();
-        self.deflections.resize(patch.grid.n_taxels(), 0.0);
+        self.sheet.clear(patch.grid.nx, patch.grid.ny);
     }
 
     /// Sets the deflections to what the taxels need at a travel, without a stop; spheres whose centres are lower than `behind` do
     /// not count.
     fn push(&mut self, patch: &Patch, travel: f64, behind: f64) {
         self.touch_nothing(patch);
-        for sphere in &self.spheres {
-            let height = sphere.center.z - travel;
-            if height < sphere.reach && height >= behind {
-                sphere.raise(&self.lines, height, &mut self.deflections);
-            }
-        }
-        for (deflection, height) in self.deflections.iter_mut().zip(&self.envelope.heights) {
-            *deflection = deflection.max(travel - height);
+        raise_all(
+            &self.search.found,
+            &self.lines,
+            [travel, behind],
+            &mut self.sheet,
+        );
+        if !self.envelope.heights.is_empty() {
+            self.sheet.cover(&(0..patch.grid.ny), &(0..patch.grid.nx));
+            let mut heights = self.envelope.heights.chunks_exact(patch.grid.nx);
+            self.sheet.each_row(|taxels| {
+                let heights = heights.next().unwrap_or_default();
+                for (deflection, height) in taxels.iter_mut().zip(heights) {
+                    *deflection = deflection.max(travel - height);
+                }
+            });
         }
     }
 }
 
-/// One sphere in so many is looked at to estimate first contact. Larger: a worse estimate, so more spheres are placed in
-/// vain; smaller: more spheres are looked at twice.
-const PREVIEW_STRIDE: usize = 16;
+/// Raises the deflections to what the spheres need at a travel; those with their centres lower than `behind` do not count.
+#[multiversion(targets("x86_64+avx2+fma"))]
+fn raise_all(
+    spheres: &[PlacedSphere],
+    lines: &GridLines,
+    [travel, behind]: [f64; 2],
+    sheet: &mut Sheet,
+) {
+    for sphere in spheres {
+        let height = sphere.center.z - travel;
+        if height < sphere.reach && height >= behind {
+            sphere.raise(lines, height, sheet);
+        }
+    }
+}
 
 /// How far a press goes.
 #[derive(Clone, Copy)]
@@ -223,7 +212,7 @@ pub fn press_to_travel(
 fn indent(patch: &Patch, travel: f64, workspace: &mut Workspace) -> Contact {
     let taxel = &patch.taxel;
     workspace.push(patch, travel, -taxel.stroke - taxel.radius);
-    let (n_touched, n_saturated) = stop_at_stroke(&mut workspace.deflections, taxel.stroke);
+    let (n_touched, n_saturated) = stop_at_stroke(&mut workspace.sheet, taxel.stroke);
     Contact {
         travel,
         n_touched,
@@ -238,13 +227,16 @@ pub(crate) fn saturation_limit(stroke: f64) -> f64 {
 }
 
 /// Counts touched and saturated taxels and stops the latter at their stroke.
-fn stop_at_stroke(deflections: &mut [f64], stroke: f64) -> (usize, usize) {
+#[multiversion(targets("x86_64+avx2+fma"))]
+fn stop_at_stroke(sheet: &mut Sheet, stroke: f64) -> (usize, usize) {
     let limit = saturation_limit(stroke);
     let (mut n_touched, mut n_saturated) = (0, 0);
-    for deflection in deflections {
-        n_touched += usize::from(*deflection > 0.0);
-        n_saturated += usize::from(*deflection > limit);
-        *deflection = deflection.min(stroke);
-    }
+    sheet.each_row(|taxels| {
+        for deflection in taxels {
+            n_touched += usize::from(*deflection > 0.0);
+            n_saturated += usize::from(*deflection > limit);
+            *deflection = deflection.min(stroke);
+        }
+    });
     (n_touched, n_saturated)
 }

@@ -42,10 +42,9 @@ mod body_patch;
 mod body_state;
 mod cover;
 mod patch_state;
-mod sphere_clusters;
 
+pub use crate::objects::SphereClusters;
 pub use body_patch::{BodyPatch, WholeBody};
 pub use body_state::{BodyContact, BodyState};
 pub use cover::CoveredRobot;
 pub use patch_state::AT_REST;
-pub use sphere_clusters::SphereClusters;
