@@ -3,7 +3,7 @@
 use super::grid_lines::GridLines;
 use super::sheet::Sheet;
 use crate::geometry::Pose;
-use crate::objects::{ClusterBounds, Sphere};
+use crate::objects::{Cluster, ClusterBounds, MOST_IN_CLUSTER, Sphere};
 use glam::{DMat3, DVec3};
 use std::ops::Range;
 
@@ -70,6 +70,8 @@ impl View {
             let at_z = self.rows.z_axis.dot(middle) + self.translation.z;
             let below = up.dot(DVec3::new(wide[k], deep[k], high[k]));
             let below = (below + largest[k] + self.taxel_radius) * ROUNDING;
+            // The ball is the tighter one around spheres of different sizes.
+            let below = if beside < below { beside } else { below };
             let is_beside = (at_x.abs() >= half_x + beside) | (at_y.abs() >= half_y + beside);
             starts[k] = if is_beside {
                 f64::INFINITY
@@ -77,6 +79,24 @@ impl View {
                 at_z - below
             };
         }
+    }
+
+    /// Travels before which the spheres of a cluster meet no taxel, metres.
+    #[inline(always)]
+    pub fn starts(&self, cluster: &Cluster) -> [f64; MOST_IN_CLUSTER] {
+        let [x, y, z] = cluster.centers;
+        let mut starts = [f64::INFINITY; MOST_IN_CLUSTER];
+        for (k, start) in starts.iter_mut().enumerate() {
+            let center = DVec3::new(x[k], y[k], z[k]);
+            let reach = self.taxel_radius + cluster.radii[k];
+            let its = self.rows.z_axis.dot(center) + self.translation.z - reach;
+            *start = if k < cluster.n_spheres {
+                its
+            } else {
+                f64::INFINITY
+            };
+        }
+        starts
     }
 
     /// The sphere in the patch frame; `None` if it meets no taxel before `travel` or its shadow misses the patch.

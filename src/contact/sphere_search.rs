@@ -22,20 +22,35 @@ pub(super) struct SphereSearch {
 /// So many clusters are looked at together.
 const LOOK: usize = 8;
 
-/// Visits the clusters that start below a limit.
-#[inline(always)]
-fn each_below(starts: &[[f64; LOOK]], limit: f64, mut visit: impl FnMut(usize)) {
-    for (look, starts) in starts.iter().enumerate() {
-        let any = starts
-            .iter()
-            .fold(false, |any, &start| any | (start < limit));
-        if any {
-            for (k, &start) in starts.iter().enumerate() {
-                if start < limit {
-                    visit(look * LOOK + k);
-                }
-            }
+/// Which of a few values are below a limit, ascending. (An iterator whose parts are put in place at once: closures would be compiled
+/// without vector instructions.)
+struct Below {
+    /// A bit each.
+    left: u32,
+}
+
+impl Below {
+    #[inline(always)]
+    fn of<const N: usize>(values: &[f64; N], limit: f64) -> Self {
+        let mut left = 0;
+        for (k, &value) in values.iter().enumerate() {
+            left |= u32::from(value < limit) << k;
         }
+        Self { left }
+    }
+}
+
+impl Iterator for Below {
+    type Item = usize;
+
+    #[inline(always)]
+    fn next(&mut self) -> Option<usize> {
+        if self.left == 0 {
+            return None;
+        }
+        let first = self.left.trailing_zeros() as usize;
+        self.left &= self.left - 1;
+        Some(first)
     }
 }
 
@@ -96,13 +111,16 @@ impl SphereSearch {
         // The nearest cluster by itself, then what may be before its first.
         for limit in [lowest.next_up(), f64::INFINITY] {
             for (union, view, starts) in self.unions(scene) {
-                each_below(starts, limit.min(first), |cluster| {
-                    for sphere in union.of(cluster) {
-                        if let Some(placed) = view.place(sphere, first) {
-                            first = first.min(placed.first_touch(lines));
+                for (look, starts) in starts.iter().enumerate() {
+                    for k in Below::of(starts, limit.min(first)) {
+                        let cluster = union.of(look * LOOK + k);
+                        for sphere in Below::of(&view.starts(&cluster), first) {
+                            if let Some(placed) = view.place(&cluster.at(sphere), first) {
+                                first = first.min(placed.first_touch(lines));
+                            }
                         }
                     }
-                });
+                }
             }
         }
         first
@@ -113,10 +131,16 @@ impl SphereSearch {
         let mut found = std::mem::take(&mut self.found);
         found.clear();
         for (union, view, starts) in self.unions(scene) {
-            each_below(starts, limit, |cluster| {
-                let spheres = union.of(cluster).iter();
-                found.extend(spheres.filter_map(|sphere| view.place(sphere, limit)));
-            });
+            for (look, starts) in starts.iter().enumerate() {
+                for k in Below::of(starts, limit) {
+                    let cluster = union.of(look * LOOK + k);
+                    for sphere in Below::of(&view.starts(&cluster), limit) {
+                        if let Some(placed) = view.place(&cluster.at(sphere), limit) {
+                            found.push(placed);
+                        }
+                    }
+                }
+            }
         }
         self.found = found;
     }

@@ -4,13 +4,16 @@ use super::{Sphere, SphereUnion};
 use glam::{DVec3, DVec4};
 
 /// Spheres in a cluster, at most. More: spheres are looked at in vain; fewer: clusters are.
-const MOST: usize = 16;
+pub(crate) const MOST_IN_CLUSTER: usize = 16;
 
 /// The spheres of an object in clusters: near each other and about as large. The same spheres always give the same clusters.
 #[derive(Clone, Debug)]
 pub struct SphereClusters {
-    /// Cluster by cluster.
-    spheres: Vec<Sphere>,
+    /// Centres of the spheres, cluster by cluster: x, y, z, metres. Zeros behind the last, so that a whole cluster can be looked
+    /// at from any of them.
+    centers: [Vec<f64>; 3],
+    /// Their radii.
+    radii: Vec<f64>,
     /// Where each cluster begins among the spheres, and behind them where the last one ends.
     starts: Vec<u32>,
     bounds: ClusterBounds,
@@ -47,9 +50,18 @@ impl SphereClusters {
             starts.push((spheres.len() - behind.len()) as u32);
             rest = behind;
         }
+        let padded = |of: fn(&Sphere) -> f64| {
+            let behind = [0.0; MOST_IN_CLUSTER];
+            spheres.iter().map(of).chain(behind).collect()
+        };
         Self {
+            centers: [
+                padded(|s| s.center.x),
+                padded(|s| s.center.y),
+                padded(|s| s.center.z),
+            ],
+            radii: padded(|s| s.radius),
             ball: Extent::of(&spheres).ball(&spheres),
-            spheres,
             starts,
             bounds,
         }
@@ -57,7 +69,7 @@ impl SphereClusters {
 
     /// How many spheres.
     pub fn n_spheres(&self) -> usize {
-        self.spheres.len()
+        self.starts[self.starts.len() - 1] as usize
     }
 
     /// A ball around all of them, in the object's frame, metres.
@@ -66,8 +78,15 @@ impl SphereClusters {
     }
 
     /// The clusters: a ball around each, and its spheres; in the object's frame, metres.
-    pub(crate) fn each(&self) -> impl Iterator<Item = (Sphere, &[Sphere])> {
-        (0..self.bounds.len()).map(|cluster| (self.bounds.ball(cluster), self.of(cluster)))
+    pub(crate) fn each(&self) -> impl Iterator<Item = (Sphere, impl Iterator<Item = Sphere>)> {
+        (0..self.bounds.len()).map(|cluster| {
+            let spheres = self.of(cluster);
+            let n_spheres = spheres.n_spheres;
+            (
+                self.bounds.ball(cluster),
+                (0..n_spheres).map(move |k| spheres.at(k)),
+            )
+        })
     }
 
     /// Around each cluster.
@@ -76,9 +95,41 @@ impl SphereClusters {
     }
 
     /// The spheres of a cluster.
-    pub(crate) fn of(&self, cluster: usize) -> &[Sphere] {
-        &self.spheres[self.starts[cluster] as usize..self.starts[cluster + 1] as usize]
+    #[inline(always)]
+    pub(crate) fn of(&self, cluster: usize) -> Cluster<'_> {
+        let first = self.starts[cluster] as usize;
+        Cluster {
+            n_spheres: self.starts[cluster + 1] as usize - first,
+            centers: self.centers.each_ref().map(|all| lanes(&all[first..])),
+            radii: lanes(&self.radii[first..]),
+        }
     }
+}
+
+/// The spheres of a cluster; in the lanes behind the last, any others.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Cluster<'a> {
+    pub n_spheres: usize,
+    /// x, y, z in the object's frame, metres.
+    pub centers: [&'a [f64; MOST_IN_CLUSTER]; 3],
+    /// Metres.
+    pub radii: &'a [f64; MOST_IN_CLUSTER],
+}
+
+impl Cluster<'_> {
+    /// One of its spheres.
+    #[inline(always)]
+    pub fn at(&self, k: usize) -> Sphere {
+        Sphere {
+            center: DVec3::from_array(self.centers.map(|all| all[k])),
+            radius: self.radii[k],
+        }
+    }
+}
+
+#[inline(always)]
+fn lanes(values: &[f64]) -> &[f64; MOST_IN_CLUSTER] {
+    values.first_chunk().expect("values are padded")
 }
 
 impl ClusterBounds {
@@ -138,7 +189,7 @@ impl Extent {
 
 /// Halves spheres across the longest side of where their centres are, or by their size if that differs more, until few are left.
 fn cut(spheres: &mut [Sphere], sizes: &mut Vec<usize>) {
-    if spheres.len() <= MOST {
+    if spheres.len() <= MOST_IN_CLUSTER {
         sizes.push(spheres.len());
         return;
     }
@@ -172,9 +223,10 @@ mod tests {
             };
             let mut found = Vec::new();
             for (ball, its) in clusters.each() {
-                assert!((1..=MOST).contains(&its.len()));
+                let its: Vec<Sphere> = its.collect();
+                assert!((1..=MOST_IN_CLUSTER).contains(&its.len()));
                 assert!(its.iter().all(|sphere| is_inside(sphere, &ball)));
-                found.extend_from_slice(its);
+                found.extend(its);
             }
             assert!(
                 found

@@ -148,7 +148,7 @@ fn push_by_object(
         if is_beside(center.z, reach) || !patch.is_near(center.xy(), reach) {
             continue;
         }
-        for &Sphere { center, radius } in spheres {
+        for Sphere { center, radius } in spheres {
             let (center, reach) = (rotation * center + translation, radius + rho);
             if !is_beside(center.z, reach) {
                 patch.each_run_near(center.xy(), reach, |run| {
