@@ -146,6 +146,17 @@ fn raise_all(
     [travel, behind]: [f64; 2],
     sheet: &mut Sheet,
 ) {
+    raise_each(spheres, lines, [travel, behind], sheet);
+}
+
+/// [`raise_all`] with the instructions of whatever calls it: the same results to the bit.
+#[inline(always)]
+fn raise_each(
+    spheres: &[PlacedSphere],
+    lines: &GridLines,
+    [travel, behind]: [f64; 2],
+    sheet: &mut Sheet,
+) {
     for sphere in spheres {
         let height = sphere.center.z - travel;
         if height < sphere.reach && height >= behind {
@@ -239,4 +250,74 @@ fn stop_at_stroke(sheet: &mut Sheet, stroke: f64) -> (usize, usize) {
         }
     });
     (n_touched, n_saturated)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::objects::{Sphere, SphereUnion};
+    use crate::random::Seed;
+    use crate::world::{Grid, Taxel};
+    use glam::{DQuat, DVec3};
+    use rand::Rng;
+
+    /// Some unions of spheres of any size about a grid.
+    fn random_scene(rng: &mut impl Rng) -> (Scene, Vec<Pose>) {
+        let mut vector = |most: f64| DVec3::from_array([0; 3].map(|_| rng.gen_range(-most..most)));
+        let poses: Vec<Pose> = (0..2)
+            .map(|_| Pose::new(DQuat::from_scaled_axis(vector(3.0)), vector(0.02)))
+            .collect();
+        let mut union = || {
+            let spheres = (0..rng.gen_range(1..200)).map(|_| Sphere {
+                center: DVec3::from_array([0; 3].map(|_| rng.gen_range(-0.03..0.03))),
+                radius: 10f64.powf(rng.gen_range(-4.0..-1.0)),
+            });
+            SphereUnion::new(spheres.collect()).unwrap()
+        };
+        let objects = poses.iter().map(|_| union().into()).collect();
+        let grid = Grid {
+            nx: rng.gen_range(1..50),
+            ny: rng.gen_range(1..50),
+            pitch: rng.gen_range(5e-4..4e-3),
+        };
+        let taxel = Taxel {
+            radius: 1e-3,
+            stiffness: 100.0,
+            damping: 0.0,
+            stroke: 5e-3,
+        };
+        let patch = Patch::new(grid, taxel).unwrap();
+        (Scene { patch, objects }, poses)
+    }
+
+    #[test]
+    fn vector_instructions_change_no_bit() {
+        let mut rng = Seed::new(1).named("instructions").rng();
+        let mut n_touched = 0;
+        for case in 0..300 {
+            let (scene, poses) = random_scene(&mut rng);
+            let depth = rng.gen_range(1e-4..2e-2);
+            let (mut fast, mut plain) = (Workspace::new(), Workspace::new());
+            let first = fast.gather(&scene, &poses, Goal::Depth(depth));
+            plain.lines.lay(&scene.patch.grid);
+            let plainly = plain
+                .search
+                .run(&scene, &poses, &plain.lines, Goal::Depth(depth));
+            assert_eq!(first, plainly.is_finite().then_some(plainly), "case {case}");
+            let ends = [plainly + depth, -6e-3];
+            fast.push(&scene.patch, ends[0], ends[1]);
+            plain.touch_nothing(&scene.patch);
+            raise_each(&plain.search.found, &plain.lines, ends, &mut plain.sheet);
+            let bits = |workspace: &Workspace| -> Vec<u64> {
+                workspace
+                    .deflections()
+                    .iter()
+                    .map(|d| d.to_bits())
+                    .collect()
+            };
+            assert_eq!(bits(&fast), bits(&plain), "case {case}");
+            n_touched += fast.deflections().iter().filter(|&&d| d > 0.0).count();
+        }
+        assert!(n_touched > 10_000, "{n_touched}");
+    }
 }

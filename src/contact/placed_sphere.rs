@@ -201,22 +201,14 @@ impl PlacedSphere {
         for row in rows {
             let dy = lines.y.positions[row] - self.center.y;
             let half_width = (footprint - dy * dy).max(0.0).sqrt();
-            let Range { start, end } = lines.x.within(self.center.x, half_width);
-            // Whole blocks, unless the grid ends.
-            let end = end.next_multiple_of(BLOCK).min(lines.x.positions.len());
-            let columns = start / BLOCK * BLOCK..end;
+            let columns = lines.x.within(self.center.x, half_width);
             let row_reach2 = reach2 - dy * dy;
-            let (places, ends) = lines.x.positions[columns.clone()].as_chunks::<BLOCK>();
-            let (lanes, rest) = sheet.row(row, columns).as_chunks_mut::<BLOCK>();
-            let q = |x: f64| {
+            let places = &lines.x.positions[columns.clone()];
+            for (deflection, x) in sheet.row(row, columns).iter_mut().zip(places) {
                 let dx = x - self.center.x;
-                row_reach2 - dx * dx
-            };
-            for (deflections, x) in lanes.iter_mut().zip(places) {
-                raise_lanes(deflections, x.map(q), height);
-            }
-            for (deflection, x) in rest.iter_mut().zip(ends) {
-                raise_lanes(std::array::from_mut(deflection), [q(*x)], height);
+                let q = row_reach2 - dx * dx;
+                let needed = if q > 0.0 { q.sqrt() - height } else { 0.0 };
+                *deflection = deflection.max(needed);
             }
         }
     }

@@ -58,7 +58,6 @@ impl Iterator for Below {
 /// infinite if none is, or if the goal is a travel.
 ///
 /// For a depth, the cluster that is nearest is looked at beforehand, so that most others need no look to know what is first.
-/// The same results with and without vector instructions.
 #[multiversion(targets("x86_64+avx2+fma"))]
 pub(super) fn search(
     search: &mut SphereSearch,
@@ -67,19 +66,31 @@ pub(super) fn search(
     lines: &GridLines,
     goal: Goal,
 ) -> f64 {
-    search.lay(scene, patch_from_objects, lines);
-    let (first, limit) = match goal {
-        Goal::Travel(travel) => (f64::INFINITY, travel),
-        Goal::Depth(depth) => {
-            let first = search.first_touch(scene, lines);
-            (first, first + depth)
-        }
-    };
-    search.gather(scene, limit);
-    first
+    search.run(scene, patch_from_objects, lines, goal)
 }
 
 impl SphereSearch {
+    /// [`search`] with the instructions of whatever calls it: the same results to the bit.
+    #[inline(always)]
+    pub fn run(
+        &mut self,
+        scene: &Scene,
+        patch_from_objects: &[Pose],
+        lines: &GridLines,
+        goal: Goal,
+    ) -> f64 {
+        self.lay(scene, patch_from_objects, lines);
+        let (first, limit) = match goal {
+            Goal::Travel(travel) => (f64::INFINITY, travel),
+            Goal::Depth(depth) => {
+                let first = self.first_touch(scene, lines);
+                (first, first + depth)
+            }
+        };
+        self.gather(scene, limit);
+        first
+    }
+
     #[inline(always)]
     fn lay(&mut self, scene: &Scene, patch_from_objects: &[Pose], lines: &GridLines) {
         self.views.clear();
