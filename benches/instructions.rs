@@ -5,14 +5,14 @@
 //! processors with AVX2 and without AVX-512. Without valgrind it says so and counts nothing.
 
 use bubbletouch::files::CsvFile;
-use hot_paths::{HotPath, body_step, decision, sensing, sparse_press};
+use hot_paths::{Make, body_step, decision, sensing, sparse_press};
 use serde::Serialize;
 use std::path::Path;
 use std::process::Command;
 
 mod hot_paths;
 
-const PATHS: [(&str, fn() -> HotPath); 4] = [
+const PATHS: [(&str, Make); 4] = [
     ("press", sparse_press),
     ("body", body_step),
     ("sense", sensing),

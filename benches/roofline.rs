@@ -8,7 +8,7 @@
 //! operations at the fused peak, its roots, and its bytes; its share is that over the time it takes.
 
 use bubbletouch::files::CsvFile;
-use hot_paths::{HotPath, decision, dense_body, dense_press, sensing};
+use hot_paths::{HotPath, Make, decision, dense_body, dense_press, sensing};
 use multiversion::multiversion;
 use serde::Serialize;
 use std::hint::black_box;
@@ -235,7 +235,7 @@ fn main() -> bubbletouch::Result<()> {
     let mut rows = Vec::new();
     let machine = ceilings(&mut rows, is_test);
     rows.iter().for_each(print);
-    let paths: [fn() -> HotPath; 6] = [
+    let paths: [Make; 6] = [
         || dense_press(64, 32),
         || dense_press(512, 32),
         || dense_body(64, 32),

@@ -25,6 +25,9 @@ pub struct HotPath {
     pub work: Work,
 }
 
+/// Makes a path ready to go.
+pub type Make = fn() -> HotPath;
+
 /// What a step has to do at least, counted from the equations: each multiplication, addition, comparison and root is one operation,
 /// each number that is read or written counts with its bytes, however often it is in a cache.
 #[derive(Clone, Copy, Default)]

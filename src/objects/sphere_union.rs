@@ -32,7 +32,7 @@ impl Sphere {
 pub struct SphereUnion {
     spheres: Vec<Sphere>,
     /// Of these spheres; made when they are first asked for.
-    clusters: OnceLock<SphereClusters>,
+    clusters: OnceLock<Box<SphereClusters>>,
 }
 
 impl PartialEq for SphereUnion {
@@ -83,7 +83,8 @@ impl SphereUnion {
 
     /// The spheres in clusters of neighbours: sorted at the first call, about 100 ns a sphere, and kept.
     pub fn clusters(&self) -> &SphereClusters {
-        self.clusters.get_or_init(|| SphereClusters::new(self))
+        let sort = || Box::new(SphereClusters::new(self));
+        self.clusters.get_or_init(sort)
     }
 
     /// How many spheres.
