@@ -249,6 +249,7 @@ fn main() -> bubbletouch::Result<()> {
         rows.push(row);
     }
     if has("--write") {
+        std::fs::create_dir_all("results/whole_body").expect("a folder for results");
         let mut file = CsvFile::create(Path::new("results/whole_body/roofline.csv"))?;
         for row in &rows {
             file.row(row)?;
