@@ -3,17 +3,20 @@
 use bubbletouch::contact::balance::{Balancer, FreeObject, PlacedSkin};
 use bubbletouch::contact::{SkinWorkspace, Workspace, press_skin, press_to_depth, press_to_travel};
 use bubbletouch::geometry::Pose;
-use bubbletouch::mesh::TriangleMesh;
+use bubbletouch::mesh::{LengthUnit, MeshFormat, Surface, TriangleMesh};
 use bubbletouch::objects::{
     Catalogue, MeshModel, Model, Sphere, SphereUnion, vertex_spheres, write_spheres,
 };
+use bubbletouch::packing::{Body, pack_mesh};
 use bubbletouch::random::Seed;
 use bubbletouch::scene::{ScenePlan, SceneSpec, Simulation, Stepping};
 use bubbletouch::world::{Grid, Layout, Patch, RestPoses, Scene, SkinPatch, Taxel, Taxels, Touch};
 use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
 use glam::{DQuat, DVec3};
 use rand::Rng;
+use std::fs::File;
 use std::hint::black_box;
+use std::io::BufReader;
 
 const DEPTH: f64 = 3e-3;
 
@@ -153,6 +156,75 @@ fn scan(n_rings: usize) -> TriangleMesh {
         [[a, c, b], [b, c, d]]
     });
     TriangleMesh::new("scan", vertices.collect(), triangles.collect()).expect("a valid mesh")
+}
+
+/// A mustard bottle as one sphere a vertex of its scan, and packed to a tenth of the pitch: the mesh in BUBBLETOUCH_YCB, or a
+/// generated one beside the built-in bottle, which is said.
+fn bottles() -> [(&'static str, Model); 2] {
+    let folder = std::env::var_os("BUBBLETOUCH_YCB").map(std::path::PathBuf::from);
+    let path = folder.map(|folder| folder.join("006_mustard_bottle.ply"));
+    let Some(path) = path.filter(|path| path.exists()) else {
+        eprintln!(
+            "BUBBLETOUCH_YCB has no mustard bottle: a generated ball and the built-in bottle stand for it"
+        );
+        let ball = vertex_spheres("scan", scan(64).vertices()).expect("vertices apart");
+        let bottle = Catalogue::builtin().expect("the built-in catalogue is valid");
+        let bottle = bottle
+            .object("mustard_bottle")
+            .and_then(|entry| entry.build(2e-4));
+        let bottle = bottle.expect("a built-in object");
+        return [("vertex", ball.into()), ("packed", bottle.model)];
+    };
+    let place = path.display().to_string();
+    let file = BufReader::new(File::open(&path).expect("the mesh can be read"));
+    let mesh = MeshFormat::Ply.read(&place, LengthUnit::Metre, file);
+    let mesh = mesh
+        .and_then(|file| file.into_mesh(&place))
+        .expect("a good mesh");
+    let vertex = vertex_spheres(&place, mesh.vertices()).expect("vertices apart");
+    let packing = pack_mesh(&Surface::new(mesh), Body::Solid, 2e-4).expect("a closed mesh");
+    [
+        ("vertex", vertex.into()),
+        ("packed", packing.spheres.into()),
+    ]
+}
+
+/// Touches as in the original study: each of another offset, yaw or tilt; on the bottle as it stands and as it lies.
+fn touches(c: &mut Criterion) {
+    let mut group = c.benchmark_group("press_64x64");
+    for (name, model) in bottles() {
+        let n_spheres = model.n_spheres();
+        let scene = Scene {
+            patch: patch(64),
+            objects: vec![model],
+        };
+        let standing = RestPoses::AsModelled.of(&scene.objects[0]).swap_remove(0);
+        let lying = RestPoses::Stable.of(&scene.objects[0]).swap_remove(0);
+        for (rest_name, rest) in [("standing", standing), ("lying", lying)] {
+            let pose = |number: usize| {
+                let digit = |place: usize, n: usize| (number / place % n) as f64;
+                let touch = Touch {
+                    rest: 0,
+                    offset: [2e-3 * digit(1, 6), 2e-3 * digit(6, 6)],
+                    yaw: (10.0 * digit(36, 6)).to_radians(),
+                    tilt: [216, 432].map(|place| (5.0 * digit(place, 2)).to_radians()),
+                    depth: DEPTH,
+                    indices: [None; 7],
+                };
+                touch.patch_from_object(&rest)
+            };
+            let poses: Vec<Pose> = (0..864).map(pose).collect();
+            let (mut workspace, mut number) = (Workspace::new(), 0);
+            let id = BenchmarkId::new(format!("{name}_{n_spheres}"), rest_name);
+            group.bench_function(id, |b| {
+                b.iter(|| {
+                    number = (number + 1) % poses.len();
+                    press_to_depth(black_box(&scene), &[poses[number]], DEPTH, &mut workspace)
+                });
+            });
+        }
+    }
+    group.finish();
 }
 
 /// The triangles themselves beside spheres around their vertices.
@@ -296,5 +368,7 @@ fn frame(c: &mut Criterion) {
     group.finish();
 }
 
-criterion_group!(benches, press, catalogue, mesh, curved, rest, frame);
+criterion_group!(
+    benches, press, touches, catalogue, mesh, curved, rest, frame
+);
 criterion_main!(benches);

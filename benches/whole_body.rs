@@ -135,5 +135,22 @@ fn spheres(c: &mut Criterion) {
     group.finish();
 }
 
-criterion_group!(benches, skin, touch, spheres);
+/// One thread beside two: of small touches neither is faster, as they are not shared.
+fn threads(c: &mut Criterion) {
+    let mut group = c.benchmark_group("body_threads_2000000_taxels_1000_spheres");
+    for n_touched in [100, 1_000, 10_000, 20_000] {
+        for n_threads in [1, 2] {
+            let pool = rayon::ThreadPoolBuilder::new()
+                .num_threads(n_threads)
+                .build();
+            let pool = pool.expect("two threads can be had");
+            let mut bench = Bench::touching(2_000_000, 1_000, n_touched);
+            let id = BenchmarkId::new(format!("{n_touched}_touched"), n_threads);
+            group.bench_function(id, |b| pool.install(|| b.iter(|| bench.step())));
+        }
+    }
+    group.finish();
+}
+
+criterion_group!(benches, skin, touch, spheres, threads);
 criterion_main!(benches);

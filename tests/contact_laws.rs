@@ -110,6 +110,29 @@ fn the_kernel_agrees_with_every_sphere_against_every_taxel() {
 }
 
 #[test]
+fn what_an_earlier_press_touched_is_wiped() {
+    let mut rng = Seed::new(6).rng();
+    let mut reused = Workspace::new();
+    let grid = Grid {
+        nx: 37,
+        ny: 22,
+        pitch: 2e-3,
+    };
+    let mut n_touched = 0;
+    for case in 0..200 {
+        let (mut scene, poses) = random_scene(&mut rng);
+        scene.patch = Patch::new(grid, TAXEL).unwrap();
+        let depth = rng.gen_range(1e-4..1e-2);
+        let mut fresh = Workspace::new();
+        let contacts = [&mut reused, &mut fresh].map(|w| press_to_depth(&scene, &poses, depth, w));
+        assert_eq!(contacts[0], contacts[1], "case {case}");
+        assert_eq!(reused.deflections(), fresh.deflections(), "case {case}");
+        n_touched += contacts[0].map_or(0, |contact| contact.n_touched);
+    }
+    assert!(n_touched > 1_000, "{n_touched}");
+}
+
+#[test]
 fn first_contact_is_where_the_first_taxel_begins_to_move() {
     let mut rng = Seed::new(2).rng();
     let mut workspace = Workspace::new();

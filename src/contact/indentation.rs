@@ -2,9 +2,12 @@
 
 use super::envelope::{Envelope, Limit};
 use super::grid_lines::GridLines;
-use super::placed_sphere::{PlacedSphere, View};
+use super::placed_sphere::PlacedSphere;
+use super::sheet::Sheet;
+use super::sphere_search::{SphereSearch, search};
 use crate::geometry::Pose;
 use crate::world::{Patch, Scene};
+use multiversion::multiversion;
 
 /// What a press did, beside its deflections in [`Workspace::deflections`].
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -22,12 +25,11 @@ pub struct Contact {
 pub struct Workspace {
     /// Of the last scene's grid.
     lines: GridLines,
-    /// Spheres that can press, in the patch frame before any travel.
-    spheres: Vec<PlacedSphere>,
+    /// Spheres that can press.
+    search: SphereSearch,
     /// Where the scene's meshes stop the taxels; empty if it has none.
     envelope: Envelope,
-    /// n_taxels deflections, metres, row by row.
-    deflections: Vec<f64>,
+    sheet: Sheet,
     /// Of the last press to a force: see [`starts`](Self::starts).
     starts: Vec<f64>,
 }
@@ -40,15 +42,11 @@ impl Workspace {
 
     /// Deflections of the last press: n_taxels, metres, row (patch y, ascending) by row.
     pub fn deflections(&self) -> &[f64] {
-        &self.deflections
+        self.sheet.deflections()
     }
 
     /// Keeps the spheres that can press a taxel on the way to the goal, and returns the travel to first contact if the
     /// goal is a depth (`None` where no travel touches anything).
-    ///
-    /// Most spheres of an object are on its far side. They cost one row of the rotation and one comparison: a sphere
-    /// presses nothing before its lowest point meets the plane of the taxels. For a depth, a few spheres are looked at
-    /// beforehand, so that the comparison is with a travel close to the final one from the start.
     pub(super) fn gather(
         &mut self,
         scene: &Scene,
@@ -61,47 +59,17 @@ impl Workspace {
             "one pose an object"
         );
         self.lines.lay(&scene.patch.grid);
-        self.spheres.clear();
-        let views = || {
-            let pairs = scene.objects.iter().zip(patch_from_objects);
-            pairs.filter_map(|(object, pose)| {
-                let spheres = object.spheres()?.spheres();
-                Some((
-                    spheres,
-                    View::new(scene.patch.taxel.radius, &self.lines, pose),
-                ))
-            })
+        let mut first = search(
+            &mut self.search,
+            scene,
+            patch_from_objects,
+            &self.lines,
+            goal,
+        );
+        let limit = match goal {
+            Goal::Travel(travel) => Limit::Travel(travel),
+            Goal::Depth(depth) => Limit::Past { depth, first },
         };
-        let depth = match goal {
-            Goal::Depth(depth) => depth,
-            Goal::Travel(travel) => {
-                for (spheres, view) in views() {
-                    let near = spheres.iter().filter_map(|s| view.place(s, travel));
-                    self.spheres.extend(near);
-                }
-                let limit = Limit::Travel(travel);
-                self.envelope
-                    .look(scene, patch_from_objects, &self.lines, limit);
-                return None;
-            }
-        };
-        let mut first = f64::INFINITY;
-        for (spheres, view) in views() {
-            for sphere in spheres.iter().step_by(PREVIEW_STRIDE) {
-                if let Some(placed) = view.place(sphere, first) {
-                    first = first.min(placed.first_touch(&self.lines));
-                }
-            }
-        }
-        for (spheres, view) in views() {
-            for sphere in spheres {
-                if let Some(placed) = view.place(sphere, first + depth) {
-                    first = first.min(placed.first_touch(&self.lines));
-                    self.spheres.push(placed);
-                }
-            }
-        }
-        let limit = Limit::Past { depth, first };
         if self
             .envelope
             .look(scene, patch_from_objects, &self.lines, limit)
@@ -128,9 +96,12 @@ impl Workspace {
     pub(super) fn starts(&mut self, patch: &Patch, travel: f64) -> &[f64] {
         self.push(patch, travel, f64::NEG_INFINITY);
         self.starts.clear();
-        self.starts.reserve(self.deflections.len());
-        let touched = self.deflections.iter().filter(|&&needed| needed > 0.0);
-        self.starts.extend(touched.map(|needed| travel - needed));
+        self.starts.reserve(patch.grid.n_taxels());
+        let Self { sheet, starts, .. } = self;
+        sheet.each_row(|taxels| {
+            let touched = taxels.iter().filter(|needed| **needed > 0.0);
+            starts.extend(touched.map(|needed| travel - *needed));
+        });
         &self.starts
     }
 
@@ -141,29 +112,58 @@ impl Workspace {
 
     /// Leaves all taxels of a patch at rest.
     pub(super) fn touch_nothing(&mut self, patch: &Patch) {
-        self.deflections.clear();
-        self.deflections.resize(patch.grid.n_taxels(), 0.0);
+        self.sheet.clear(patch.grid.nx, patch.grid.ny);
     }
 
     /// Sets the deflections to what the taxels need at a travel, without a stop; spheres whose centres are lower than `behind` do
     /// not count.
     fn push(&mut self, patch: &Patch, travel: f64, behind: f64) {
         self.touch_nothing(patch);
-        for sphere in &self.spheres {
-            let height = sphere.center.z - travel;
-            if height < sphere.reach && height >= behind {
-                sphere.raise(&self.lines, height, &mut self.deflections);
-            }
-        }
-        for (deflection, height) in self.deflections.iter_mut().zip(&self.envelope.heights) {
-            *deflection = deflection.max(travel - height);
+        raise_all(
+            &self.search.found,
+            &self.lines,
+            [travel, behind],
+            &mut self.sheet,
+        );
+        if !self.envelope.heights.is_empty() {
+            self.sheet.cover(&(0..patch.grid.ny), &(0..patch.grid.nx));
+            let mut heights = self.envelope.heights.chunks_exact(patch.grid.nx);
+            self.sheet.each_row(|taxels| {
+                let heights = heights.next().unwrap_or_default();
+                for (deflection, height) in taxels.iter_mut().zip(heights) {
+                    *deflection = deflection.max(travel - height);
+                }
+            });
         }
     }
 }
 
-/// One sphere in so many is looked at to estimate first contact. Larger: a worse estimate, so more spheres are placed in
-/// vain; smaller: more spheres are looked at twice.
-const PREVIEW_STRIDE: usize = 16;
+/// Raises the deflections to what the spheres need at a travel; those with their centres lower than `behind` do not count.
+#[multiversion(targets("x86_64+avx2+fma"))]
+fn raise_all(
+    spheres: &[PlacedSphere],
+    lines: &GridLines,
+    [travel, behind]: [f64; 2],
+    sheet: &mut Sheet,
+) {
+    raise_each(spheres, lines, [travel, behind], sheet);
+}
+
+/// [`raise_all`] with the instructions of whatever calls it: the same results to the bit.
+#[inline(always)]
+fn raise_each(
+    spheres: &[PlacedSphere],
+    lines: &GridLines,
+    [travel, behind]: [f64; 2],
+    sheet: &mut Sheet,
+) {
+    for sphere in spheres {
+        let height = sphere.center.z - travel;
+        if height < sphere.reach && height >= behind {
+            sphere.raise(lines, height, sheet);
+        }
+    }
+}
 
 /// How far a press goes.
 #[derive(Clone, Copy)]
@@ -223,7 +223,7 @@ pub fn press_to_travel(
 fn indent(patch: &Patch, travel: f64, workspace: &mut Workspace) -> Contact {
     let taxel = &patch.taxel;
     workspace.push(patch, travel, -taxel.stroke - taxel.radius);
-    let (n_touched, n_saturated) = stop_at_stroke(&mut workspace.deflections, taxel.stroke);
+    let (n_touched, n_saturated) = stop_at_stroke(&mut workspace.sheet, taxel.stroke);
     Contact {
         travel,
         n_touched,
@@ -238,13 +238,86 @@ pub(crate) fn saturation_limit(stroke: f64) -> f64 {
 }
 
 /// Counts touched and saturated taxels and stops the latter at their stroke.
-fn stop_at_stroke(deflections: &mut [f64], stroke: f64) -> (usize, usize) {
+#[multiversion(targets("x86_64+avx2+fma"))]
+fn stop_at_stroke(sheet: &mut Sheet, stroke: f64) -> (usize, usize) {
     let limit = saturation_limit(stroke);
     let (mut n_touched, mut n_saturated) = (0, 0);
-    for deflection in deflections {
-        n_touched += usize::from(*deflection > 0.0);
-        n_saturated += usize::from(*deflection > limit);
-        *deflection = deflection.min(stroke);
-    }
+    sheet.each_row(|taxels| {
+        for deflection in taxels {
+            n_touched += usize::from(*deflection > 0.0);
+            n_saturated += usize::from(*deflection > limit);
+            *deflection = deflection.min(stroke);
+        }
+    });
     (n_touched, n_saturated)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::objects::{Sphere, SphereUnion};
+    use crate::random::Seed;
+    use crate::world::{Grid, Taxel};
+    use glam::{DQuat, DVec3};
+    use rand::Rng;
+
+    /// Some unions of spheres of any size about a grid.
+    fn random_scene(rng: &mut impl Rng) -> (Scene, Vec<Pose>) {
+        let mut vector = |most: f64| DVec3::from_array([0; 3].map(|_| rng.gen_range(-most..most)));
+        let poses: Vec<Pose> = (0..2)
+            .map(|_| Pose::new(DQuat::from_scaled_axis(vector(3.0)), vector(0.02)))
+            .collect();
+        let mut union = || {
+            let spheres = (0..rng.gen_range(1..200)).map(|_| Sphere {
+                center: DVec3::from_array([0; 3].map(|_| rng.gen_range(-0.03..0.03))),
+                radius: 10f64.powf(rng.gen_range(-4.0..-1.0)),
+            });
+            SphereUnion::new(spheres.collect()).unwrap()
+        };
+        let objects = poses.iter().map(|_| union().into()).collect();
+        let grid = Grid {
+            nx: rng.gen_range(1..50),
+            ny: rng.gen_range(1..50),
+            pitch: rng.gen_range(5e-4..4e-3),
+        };
+        let taxel = Taxel {
+            radius: 1e-3,
+            stiffness: 100.0,
+            damping: 0.0,
+            stroke: 5e-3,
+        };
+        let patch = Patch::new(grid, taxel).unwrap();
+        (Scene { patch, objects }, poses)
+    }
+
+    #[test]
+    fn vector_instructions_change_no_bit() {
+        let mut rng = Seed::new(1).named("instructions").rng();
+        let mut n_touched = 0;
+        for case in 0..300 {
+            let (scene, poses) = random_scene(&mut rng);
+            let depth = rng.gen_range(1e-4..2e-2);
+            let (mut fast, mut plain) = (Workspace::new(), Workspace::new());
+            let first = fast.gather(&scene, &poses, Goal::Depth(depth));
+            plain.lines.lay(&scene.patch.grid);
+            let plainly = plain
+                .search
+                .run(&scene, &poses, &plain.lines, Goal::Depth(depth));
+            assert_eq!(first, plainly.is_finite().then_some(plainly), "case {case}");
+            let ends = [plainly + depth, -6e-3];
+            fast.push(&scene.patch, ends[0], ends[1]);
+            plain.touch_nothing(&scene.patch);
+            raise_each(&plain.search.found, &plain.lines, ends, &mut plain.sheet);
+            let bits = |workspace: &Workspace| -> Vec<u64> {
+                workspace
+                    .deflections()
+                    .iter()
+                    .map(|d| d.to_bits())
+                    .collect()
+            };
+            assert_eq!(bits(&fast), bits(&plain), "case {case}");
+            n_touched += fast.deflections().iter().filter(|&&d| d > 0.0).count();
+        }
+        assert!(n_touched > 10_000, "{n_touched}");
+    }
 }

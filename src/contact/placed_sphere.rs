@@ -1,8 +1,9 @@
 //! A sphere over a flat grid, and the taxels under it, row by row.
 
 use super::grid_lines::GridLines;
+use super::sheet::Sheet;
 use crate::geometry::Pose;
-use crate::objects::Sphere;
+use crate::objects::{Cluster, ClusterBounds, MOST_IN_CLUSTER, Sphere};
 use glam::{DMat3, DVec3};
 use std::ops::Range;
 
@@ -21,11 +22,15 @@ const ROUNDING: f64 = 1.0 + 1e-9;
 /// ends of short rows are computed in vain.
 const SQUARE: usize = 10;
 
+/// So many columns are raised at once: f64 lanes of 256 bits.
+pub(super) const BLOCK: usize = 4;
+
 /// What is needed is compared before its root is taken: a square that is less than this share of the least that counts has a root
 /// that does not, however both are rounded. Larger: rounding decides; smaller: roots in vain.
 const ALMOST: f64 = 1.0 - 1e-12;
 
 /// An object's frame seen from the patch.
+#[derive(Clone, Debug)]
 pub(super) struct View {
     /// Rows of the rotation.
     rows: DMat3,
@@ -48,8 +53,54 @@ impl View {
         }
     }
 
+    /// Travels before which no sphere of a cluster meets a taxel, metres, one a cluster; infinite if its shadow misses the patch.
+    #[inline(always)]
+    pub fn lay_starts(&self, bounds: &ClusterBounds, starts: &mut [f64]) {
+        let n = starts.len();
+        let [x, y, z] = bounds.middle.each_ref().map(|all| &all[..n]);
+        let [wide, deep, high] = bounds.half.each_ref().map(|all| &all[..n]);
+        let (radius, largest) = (&bounds.radius[..n], &bounds.largest[..n]);
+        let [half_x, half_y] = self.half_size;
+        let up = self.rows.z_axis.abs();
+        for k in 0..n {
+            let middle = DVec3::new(x[k], y[k], z[k]);
+            let beside = (self.taxel_radius + radius[k]) * ROUNDING;
+            let at_x = self.rows.x_axis.dot(middle) + self.translation.x;
+            let at_y = self.rows.y_axis.dot(middle) + self.translation.y;
+            let at_z = self.rows.z_axis.dot(middle) + self.translation.z;
+            let below = up.dot(DVec3::new(wide[k], deep[k], high[k]));
+            let below = (below + largest[k] + self.taxel_radius) * ROUNDING;
+            // The ball is the tighter one around spheres of different sizes.
+            let below = if beside < below { beside } else { below };
+            let is_beside = (at_x.abs() >= half_x + beside) | (at_y.abs() >= half_y + beside);
+            starts[k] = if is_beside {
+                f64::INFINITY
+            } else {
+                at_z - below
+            };
+        }
+    }
+
+    /// Travels before which the spheres of a cluster meet no taxel, metres.
+    #[inline(always)]
+    pub fn starts(&self, cluster: &Cluster) -> [f64; MOST_IN_CLUSTER] {
+        let [x, y, z] = cluster.centers;
+        let mut starts = [f64::INFINITY; MOST_IN_CLUSTER];
+        for (k, start) in starts.iter_mut().enumerate() {
+            let center = DVec3::new(x[k], y[k], z[k]);
+            let reach = self.taxel_radius + cluster.radii[k];
+            let its = self.rows.z_axis.dot(center) + self.translation.z - reach;
+            *start = if k < cluster.n_spheres {
+                its
+            } else {
+                f64::INFINITY
+            };
+        }
+        starts
+    }
+
     /// The sphere in the patch frame; `None` if it meets no taxel before `travel` or its shadow misses the patch.
-    #[inline]
+    #[inline(always)]
     pub fn place(&self, sphere: &Sphere, travel: f64) -> Option<PlacedSphere> {
         let reach = self.taxel_radius + sphere.radius;
         let z = self.rows.z_axis.dot(sphere.center) + self.translation.z;
@@ -67,8 +118,19 @@ impl View {
     }
 }
 
+/// Raises deflections to √q − h.
+#[inline(always)]
+fn raise_lanes<const N: usize>(deflections: &mut [f64; N], q: [f64; N], height: f64) {
+    for (deflection, q) in deflections.iter_mut().zip(q) {
+        // The root of less than nothing is not a number, and the other one is the maximum. (A comparison in its place is
+        // compiled to a masked store, for which some processors take ten times as long.)
+        *deflection = deflection.max(q.sqrt() - height);
+    }
+}
+
 impl PlacedSphere {
     /// The travel at which the sphere meets the taxel nearest to its axis, its first; infinite if it passes between all.
+    #[inline(always)]
     pub fn first_touch(&self, lines: &GridLines) -> f64 {
         let DVec3 { x, y, z } = self.center;
         let (dx, dy) = (x - lines.x.nearest(x), y - lines.y.nearest(y));
@@ -77,15 +139,78 @@ impl PlacedSphere {
     }
 
     /// Raises the deflections to what the sphere needs with its centre at a height over the grid.
-    pub fn raise(&self, lines: &GridLines, height: f64, deflections: &mut [f64]) {
-        self.each_row(lines, height, |taxels, places, row_reach2| {
-            for (deflection, x) in deflections[taxels].iter_mut().zip(places) {
+    #[inline(always)]
+    pub fn raise(&self, lines: &GridLines, height: f64, sheet: &mut Sheet) {
+        let reach2 = self.reach * self.reach;
+        let lift = height.max(0.0);
+        let footprint = (reach2 - lift * lift).max(0.0);
+        let half_width = footprint.sqrt();
+        let columns = lines.x.within(self.center.x, half_width);
+        let rows = lines.y.within(self.center.y, half_width);
+        if columns.is_empty() || rows.is_empty() {
+            return;
+        }
+        sheet.cover(&rows, &columns);
+        let first = columns.start / BLOCK * BLOCK;
+        match (columns.end - first).div_ceil(BLOCK) {
+            1 => self.raise_square::<1>(lines, rows, first, height, sheet),
+            2 => self.raise_square::<2>(lines, rows, first, height, sheet),
+            3 => self.raise_square::<3>(lines, rows, first, height, sheet),
+            _ => self.raise_rows(lines, rows, footprint, height, sheet),
+        }
+    }
+
+    /// N blocks from column `first` of each row.
+    #[inline(always)]
+    fn raise_square<const N: usize>(
+        &self,
+        lines: &GridLines,
+        rows: Range<usize>,
+        first: usize,
+        height: f64,
+        sheet: &mut Sheet,
+    ) {
+        let reach2 = self.reach * self.reach;
+        let mut dx2 = [[f64::INFINITY; BLOCK]; N];
+        let places = &lines.x.positions[first..];
+        for (dx2, x) in dx2.as_flattened_mut().iter_mut().zip(places) {
+            let dx = x - self.center.x;
+            *dx2 = dx * dx;
+        }
+        for row in rows {
+            let dy = lines.y.positions[row] - self.center.y;
+            let row_reach2 = reach2 - dy * dy;
+            let blocks: &mut [[f64; BLOCK]; N] = sheet.blocks(row, first);
+            for (deflections, dx2) in blocks.iter_mut().zip(&dx2) {
+                raise_lanes(deflections, dx2.map(|dx2| row_reach2 - dx2), height);
+            }
+        }
+    }
+
+    /// Of each row the columns that it reaches.
+    #[inline(always)]
+    fn raise_rows(
+        &self,
+        lines: &GridLines,
+        rows: Range<usize>,
+        footprint: f64,
+        height: f64,
+        sheet: &mut Sheet,
+    ) {
+        let reach2 = self.reach * self.reach;
+        for row in rows {
+            let dy = lines.y.positions[row] - self.center.y;
+            let half_width = (footprint - dy * dy).max(0.0).sqrt();
+            let columns = lines.x.within(self.center.x, half_width);
+            let row_reach2 = reach2 - dy * dy;
+            let places = &lines.x.positions[columns.clone()];
+            for (deflection, x) in sheet.row(row, columns).iter_mut().zip(places) {
                 let dx = x - self.center.x;
                 let q = row_reach2 - dx * dx;
                 let needed = if q > 0.0 { q.sqrt() - height } else { 0.0 };
                 *deflection = deflection.max(needed);
             }
-        });
+        }
     }
 
     /// Raises the deflections to what the sphere needs with its centre where it is, and marks those that it has raised.

@@ -2,9 +2,8 @@
 
 use super::body_patch::WholeBody;
 use super::patch_state::PatchState;
-use super::sphere_clusters::SphereClusters;
 use crate::geometry::Pose;
-use crate::objects::Sphere;
+use crate::objects::{Sphere, SphereClusters};
 
 /// Deflected taxels at the last step from which on threads share the work. Less is done before a second thread is awake.
 const WORTH_THREADS: usize = 4000;

@@ -47,10 +47,9 @@ mod dome_patch;
 mod half_balls;
 mod patch_state;
 mod row_patch;
-mod sphere_clusters;
 
+pub use crate::objects::SphereClusters;
 pub use body_patch::{BodyPatch, WholeBody};
 pub use body_state::{BodyContact, BodyState};
 pub use cover::CoveredRobot;
 pub use patch_state::AT_REST;
-pub use sphere_clusters::SphereClusters;

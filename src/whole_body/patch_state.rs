@@ -178,7 +178,11 @@ impl PatchState {
     }
 }
 
-/// Pushes a patch by one object; the same bits with and without vector instructions.
+/// Pushes a patch by one object; the same bits with and without vector instructions, as nothing is fused.
+///
+/// In doubles, though roots of singles would be 4.6 times as fast: a single's last digit in S² is worth more the larger the sphere.
+/// Of 32 spheres that touch all of 64 × 64 taxels singles were wrong by 5e-9 m (radius 45 mm, pressed lightly), 2e-7 m (as deep as
+/// its middle) and 6e-7 m (radius 4 m); of 512 × 512 by up to 5e-5 m.
 #[multiversion(targets("x86_64+avx2+fma"))]
 fn push_by_object(
     state: &mut PatchState,
@@ -198,7 +202,7 @@ fn push_by_object(
         if is_beside(center.z, reach) || !patch.is_near(center.xy(), reach) {
             continue;
         }
-        for &Sphere { center, radius } in spheres {
+        for Sphere { center, radius } in spheres {
             let (center, reach) = (rotation * center + translation, radius + rho);
             if !is_beside(center.z, reach) {
                 patch.each_run_near(center.xy(), reach, |run| {

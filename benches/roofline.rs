@@ -1,0 +1,260 @@
+//! What share of what this machine can do the hot paths achieve, on one core.
+//!
+//! `cargo bench --bench roofline` prints a table; with `-- --write`, it also goes to `results/whole_body/roofline.csv`.
+//!
+//! The machine's ceilings are measured first: operations a second (fused multiply-adds count as two; multiplications and additions by
+//! themselves, since a result that is the same on every processor may not fuse them), roots a second, and bytes a second of a
+//! triad a[i] = b[i] + 3 c[i] whose arrays together are as large as what a path looks at. A path's least time is the longest of its
+//! operations at the fused peak, its roots, and its bytes; its share is that over the time it takes.
+
+use bubbletouch::files::CsvFile;
+use hot_paths::{HotPath, Make, decision, dense_body, dense_press, sensing};
+use multiversion::multiversion;
+use serde::Serialize;
+use std::hint::black_box;
+use std::path::Path;
+use std::time::{Duration, Instant};
+
+mod hot_paths;
+
+/// Each time is the median of so many.
+const REPEATS: usize = 15;
+/// Each of them takes at least so long.
+const LEAST: Duration = Duration::from_millis(10);
+
+/// A row of the table: a ceiling of the machine, or a path beside the ceilings.
+#[derive(Default, Serialize)]
+struct Row {
+    name: String,
+    /// Of one step.
+    operations: Option<f64>,
+    roots: Option<f64>,
+    bytes: Option<f64>,
+    working_set_bytes: Option<f64>,
+    /// Median.
+    time_us: Option<f64>,
+    giga_operations_per_s: Option<f64>,
+    giga_roots_per_s: Option<f64>,
+    gb_per_s: Option<f64>,
+    /// Which ceiling is the lowest.
+    bound: Option<&'static str>,
+    share_of_roofline: Option<f64>,
+}
+
+/// What the machine can do, a second.
+struct Ceilings {
+    fused: f64,
+    roots: f64,
+}
+
+macro_rules! loops {
+    ($fused:ident, $unfused:ident, $roots:ident, $real:ty, $lanes:expr) => {
+        /// So many times a fused multiply-add of each number.
+        #[multiversion(targets("x86_64+avx2+fma"))]
+        fn $fused(n: usize) -> $real {
+            let mut values = std::array::from_fn::<$real, $lanes, _>(|_| black_box(1.0));
+            let factor = black_box(0.999);
+            for _ in 0..n {
+                values.iter_mut().for_each(|x| *x = x.mul_add(factor, 1e-3));
+            }
+            values.iter().sum()
+        }
+
+        /// The same in two operations.
+        #[multiversion(targets("x86_64+avx2+fma"))]
+        fn $unfused(n: usize) -> $real {
+            let mut values = std::array::from_fn::<$real, $lanes, _>(|_| black_box(1.0));
+            let factor = black_box(0.999);
+            for _ in 0..n {
+                values.iter_mut().for_each(|x| *x = *x * factor + 1e-3);
+            }
+            values.iter().sum()
+        }
+
+        /// So many times the root of each number.
+        #[multiversion(targets("x86_64+avx2+fma"))]
+        fn $roots(n: usize) -> $real {
+            let mut values = std::array::from_fn::<$real, $lanes, _>(|_| black_box(2.0));
+            for _ in 0..n {
+                values.iter_mut().for_each(|x| *x = x.sqrt());
+            }
+            values.iter().sum()
+        }
+    };
+}
+
+// Twelve registers of lanes: enough for the latency of two units, few enough to stay in registers.
+loops!(fused_f64, unfused_f64, roots_f64, f64, 48);
+loops!(fused_f32, unfused_f32, roots_f32, f32, 96);
+
+#[multiversion(targets("x86_64+avx2+fma"))]
+fn triad(a: &mut [f64], b: &[f64], c: &[f64]) {
+    for ((a, b), c) in a.iter_mut().zip(b).zip(c) {
+        *a = b + 3.0 * c;
+    }
+}
+
+/// Seconds a call, median of some runs.
+fn seconds(mut call: impl FnMut(), is_test: bool) -> f64 {
+    let mut time = |n: u32| {
+        let start = Instant::now();
+        (0..n).for_each(|_| call());
+        start.elapsed()
+    };
+    let mut n = 1;
+    while time(n) < LEAST && !is_test {
+        n *= 2;
+    }
+    let repeats = if is_test { 1 } else { REPEATS };
+    let mut times: Vec<f64> = (0..repeats)
+        .map(|_| time(n).as_secs_f64() / f64::from(n))
+        .collect();
+    times.sort_by(f64::total_cmp);
+    times[repeats / 2]
+}
+
+/// Bytes a second of a triad whose arrays take so many bytes together.
+fn bandwidth(working_set: f64, is_test: bool) -> f64 {
+    let n = (working_set / 24.0).ceil() as usize;
+    let (mut a, b, c) = (vec![0.0; n], vec![1.0; n], vec![2.0; n]);
+    let call = || triad(black_box(&mut a), black_box(&b), black_box(&c));
+    24.0 * n as f64 / seconds(call, is_test)
+}
+
+fn ceiling(
+    rows: &mut Vec<Row>,
+    name: &str,
+    per_call: f64,
+    call: impl FnMut(),
+    is_test: bool,
+) -> f64 {
+    let rate = per_call / seconds(call, is_test);
+    let giga = Some(rate * 1e-9);
+    let is_root = name.starts_with("roots");
+    rows.push(Row {
+        name: name.into(),
+        giga_operations_per_s: giga.filter(|_| !is_root),
+        giga_roots_per_s: giga.filter(|_| is_root),
+        ..Row::default()
+    });
+    rate
+}
+
+fn ceilings(rows: &mut Vec<Row>, is_test: bool) -> Ceilings {
+    const N: usize = 1000;
+    let (f64s, f32s) = (48.0 * N as f64, 96.0 * N as f64);
+    let mut measure =
+        |name, per_call, call: &mut dyn FnMut()| ceiling(rows, name, per_call, call, is_test);
+    let fused = measure("peak_fused_f64", 2.0 * f64s, &mut || {
+        _ = black_box(fused_f64(N))
+    });
+    measure("peak_unfused_f64", 2.0 * f64s, &mut || {
+        _ = black_box(unfused_f64(N))
+    });
+    let roots = measure("roots_f64", f64s, &mut || _ = black_box(roots_f64(N)));
+    measure("peak_fused_f32", 2.0 * f32s, &mut || {
+        _ = black_box(fused_f32(N))
+    });
+    measure("peak_unfused_f32", 2.0 * f32s, &mut || {
+        _ = black_box(unfused_f32(N))
+    });
+    measure("roots_f32", f32s, &mut || _ = black_box(roots_f32(N)));
+    for (name, bytes) in [
+        ("16_kB", 16e3),
+        ("256_kB", 256e3),
+        ("4_MB", 4e6),
+        ("200_MB", 200e6),
+    ] {
+        rows.push(Row {
+            name: format!("triad_{name}"),
+            working_set_bytes: Some(bytes),
+            gb_per_s: Some(bandwidth(bytes, is_test) * 1e-9),
+            ..Row::default()
+        });
+    }
+    Ceilings { fused, roots }
+}
+
+fn achieved(mut path: HotPath, ceilings: &Ceilings, is_test: bool) -> Row {
+    let work = path.work;
+    let time = seconds(&mut path.step, is_test);
+    let least = [
+        ("operations", work.operations / ceilings.fused),
+        ("roots", work.roots / ceilings.roots),
+        ("bytes", work.bytes / bandwidth(work.working_set, is_test)),
+    ];
+    let (bound, least) = least
+        .into_iter()
+        .fold(("", 0.0), |a, b| if b.1 > a.1 { b } else { a });
+    Row {
+        name: path.name,
+        operations: Some(work.operations),
+        roots: Some(work.roots),
+        bytes: Some(work.bytes),
+        working_set_bytes: Some(work.working_set),
+        time_us: Some(time * 1e6),
+        giga_operations_per_s: Some(work.operations / time * 1e-9),
+        giga_roots_per_s: Some(work.roots / time * 1e-9),
+        gb_per_s: Some(work.bytes / time * 1e-9),
+        bound: Some(bound),
+        share_of_roofline: Some(least / time),
+    }
+}
+
+fn print(row: &Row) {
+    let number = |value: Option<f64>| value.map_or(String::new(), |value| format!("{value:.2}"));
+    println!(
+        "{:42} {:>10} {:>10} {:>10} {:>10} {:>11} {:>7}",
+        row.name,
+        number(row.time_us),
+        number(row.giga_operations_per_s),
+        number(row.giga_roots_per_s),
+        number(row.gb_per_s),
+        row.bound.unwrap_or_default(),
+        number(row.share_of_roofline),
+    );
+}
+
+fn main() -> bubbletouch::Result<()> {
+    let has = |flag: &str| std::env::args().any(|argument| argument == flag);
+    // `cargo test --benches` and CI only want to know that it runs.
+    let is_test = has("--test");
+    let columns = [
+        "path",
+        "us a step",
+        "Gop/s",
+        "Groot/s",
+        "GB/s",
+        "bound",
+        "share",
+    ];
+    let [path, time, operations, roots, bytes, bound, share] = columns;
+    println!(
+        "{path:42} {time:>10} {operations:>10} {roots:>10} {bytes:>10} {bound:>11} {share:>7}"
+    );
+    let mut rows = Vec::new();
+    let machine = ceilings(&mut rows, is_test);
+    rows.iter().for_each(print);
+    let paths: [Make; 6] = [
+        || dense_press(64, 32),
+        || dense_press(512, 32),
+        || dense_body(64, 32),
+        || dense_body(512, 32),
+        sensing,
+        decision,
+    ];
+    for path in paths {
+        let row = achieved(path(), &machine, is_test);
+        print(&row);
+        rows.push(row);
+    }
+    if has("--write") {
+        std::fs::create_dir_all("results/whole_body").expect("a folder for results");
+        let mut file = CsvFile::create(Path::new("results/whole_body/roofline.csv"))?;
+        for row in &rows {
+            file.row(row)?;
+        }
+        file.commit()?;
+    }
+    Ok(())
+}

@@ -1,0 +1,242 @@
+//! Spheres of an object, neighbours together, so that those far from the skin are left out by the dozen.
+
+use super::{Sphere, SphereUnion};
+use glam::{DVec3, DVec4};
+
+/// Spheres in a cluster, at most. More: spheres are looked at in vain; fewer: clusters are.
+pub(crate) const MOST_IN_CLUSTER: usize = 16;
+
+/// The spheres of an object in clusters: near each other and about as large. The same spheres always give the same clusters.
+#[derive(Clone, Debug)]
+pub struct SphereClusters {
+    /// Centres of the spheres, cluster by cluster: x, y, z, metres. Zeros behind the last, so that a whole cluster can be looked
+    /// at from any of them.
+    centers: [Vec<f64>; 3],
+    /// Their radii.
+    radii: Vec<f64>,
+    /// Where each cluster begins among the spheres, and behind them where the last one ends.
+    starts: Vec<u32>,
+    bounds: ClusterBounds,
+    /// Around all.
+    ball: Sphere,
+}
+
+/// What is around each cluster, coordinate by coordinate, so that several clusters are looked at with one instruction; metres,
+/// in the object's frame.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct ClusterBounds {
+    /// Middles of the boxes around the centres of the spheres: x, y, z.
+    pub middle: [Vec<f64>; 3],
+    /// Half the sides of these boxes.
+    pub half: [Vec<f64>; 3],
+    /// Radii of the largest spheres.
+    pub largest: Vec<f64>,
+    /// Radii of balls about the middles that hold the spheres.
+    pub radius: Vec<f64>,
+}
+
+impl SphereClusters {
+    /// Sorts the spheres of an object into clusters; about 100 ns a sphere.
+    pub fn new(union: &SphereUnion) -> Self {
+        let mut spheres = union.spheres().to_vec();
+        let mut sizes = Vec::new();
+        cut(&mut spheres, &mut sizes);
+        let mut starts = vec![0];
+        let mut bounds = ClusterBounds::default();
+        let mut rest = &spheres[..];
+        for &size in &sizes {
+            let (its, behind) = rest.split_at(size);
+            bounds.push(its);
+            starts.push((spheres.len() - behind.len()) as u32);
+            rest = behind;
+        }
+        let padded = |of: fn(&Sphere) -> f64| {
+            let behind = [0.0; MOST_IN_CLUSTER];
+            spheres.iter().map(of).chain(behind).collect()
+        };
+        Self {
+            centers: [
+                padded(|s| s.center.x),
+                padded(|s| s.center.y),
+                padded(|s| s.center.z),
+            ],
+            radii: padded(|s| s.radius),
+            ball: Extent::of(&spheres).ball(&spheres),
+            starts,
+            bounds,
+        }
+    }
+
+    /// How many spheres.
+    pub fn n_spheres(&self) -> usize {
+        self.starts[self.starts.len() - 1] as usize
+    }
+
+    /// A ball around all of them, in the object's frame, metres.
+    pub fn ball(&self) -> Sphere {
+        self.ball
+    }
+
+    /// The clusters: a ball around each, and its spheres; in the object's frame, metres.
+    pub(crate) fn each(&self) -> impl Iterator<Item = (Sphere, impl Iterator<Item = Sphere>)> {
+        (0..self.bounds.len()).map(|cluster| {
+            let spheres = self.of(cluster);
+            let n_spheres = spheres.n_spheres;
+            (
+                self.bounds.ball(cluster),
+                (0..n_spheres).map(move |k| spheres.at(k)),
+            )
+        })
+    }
+
+    /// Around each cluster.
+    pub(crate) fn bounds(&self) -> &ClusterBounds {
+        &self.bounds
+    }
+
+    /// The spheres of a cluster.
+    #[inline(always)]
+    pub(crate) fn of(&self, cluster: usize) -> Cluster<'_> {
+        let first = self.starts[cluster] as usize;
+        Cluster {
+            n_spheres: self.starts[cluster + 1] as usize - first,
+            centers: self.centers.each_ref().map(|all| lanes(&all[first..])),
+            radii: lanes(&self.radii[first..]),
+        }
+    }
+}
+
+/// The spheres of a cluster; in the lanes behind the last, any others.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Cluster<'a> {
+    pub n_spheres: usize,
+    /// x, y, z in the object's frame, metres.
+    pub centers: [&'a [f64; MOST_IN_CLUSTER]; 3],
+    /// Metres.
+    pub radii: &'a [f64; MOST_IN_CLUSTER],
+}
+
+impl Cluster<'_> {
+    /// One of its spheres.
+    #[inline(always)]
+    pub fn at(&self, k: usize) -> Sphere {
+        Sphere {
+            center: DVec3::from_array(self.centers.map(|all| all[k])),
+            radius: self.radii[k],
+        }
+    }
+}
+
+#[inline(always)]
+fn lanes(values: &[f64]) -> &[f64; MOST_IN_CLUSTER] {
+    values.first_chunk().expect("values are padded")
+}
+
+impl ClusterBounds {
+    fn push(&mut self, spheres: &[Sphere]) {
+        let extent = Extent::of(spheres);
+        let ball = extent.ball(spheres);
+        for axis in 0..3 {
+            self.middle[axis].push(ball.center[axis]);
+            self.half[axis].push(0.5 * extent.sides()[axis]);
+        }
+        self.largest.push(extent.high.w);
+        self.radius.push(ball.radius);
+    }
+
+    /// How many clusters.
+    pub fn len(&self) -> usize {
+        self.radius.len()
+    }
+
+    fn ball(&self, cluster: usize) -> Sphere {
+        Sphere {
+            center: DVec3::from_array([0, 1, 2].map(|axis| self.middle[axis][cluster])),
+            radius: self.radius[cluster],
+        }
+    }
+}
+
+/// The smallest and largest centre and radius (as w) of some spheres.
+struct Extent {
+    low: DVec4,
+    high: DVec4,
+}
+
+impl Extent {
+    fn of(spheres: &[Sphere]) -> Self {
+        let all = || spheres.iter().map(|s| s.center.extend(s.radius));
+        Self {
+            low: all().fold(DVec4::INFINITY, DVec4::min),
+            high: all().fold(DVec4::NEG_INFINITY, DVec4::max),
+        }
+    }
+
+    fn sides(&self) -> DVec4 {
+        self.high - self.low
+    }
+
+    /// About the middle of the centres, around the spheres.
+    fn ball(&self, spheres: &[Sphere]) -> Sphere {
+        let center = (0.5 * (self.low + self.high)).truncate();
+        let reaches = spheres.iter().map(|s| s.center.distance(center) + s.radius);
+        Sphere {
+            center,
+            radius: reaches.fold(0.0, f64::max),
+        }
+    }
+}
+
+/// Halves spheres across the longest side of where their centres are, or by their size if that differs more, until few are left.
+fn cut(spheres: &mut [Sphere], sizes: &mut Vec<usize>) {
+    if spheres.len() <= MOST_IN_CLUSTER {
+        sizes.push(spheres.len());
+        return;
+    }
+    let side = Extent::of(spheres).sides().max_position();
+    let along = |sphere: &Sphere| sphere.center.extend(sphere.radius)[side];
+    spheres.sort_by(|a, b| along(a).total_cmp(&along(b)));
+    let (left, right) = spheres.split_at_mut(spheres.len() / 2);
+    cut(left, sizes);
+    cut(right, sizes);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::random::Seed;
+    use rand::Rng;
+
+    #[test]
+    fn every_sphere_is_in_one_cluster_and_inside_its_ball() {
+        let mut rng = Seed::new(1).named("clusters").rng();
+        for n in [1, 16, 17, 1000] {
+            let spheres: Vec<Sphere> = (0..n)
+                .map(|_| Sphere {
+                    center: DVec3::from_array(std::array::from_fn(|_| rng.gen_range(-1.0..1.0))),
+                    radius: rng.gen_range(0.01..0.2),
+                })
+                .collect();
+            let clusters = SphereClusters::new(&SphereUnion::new(spheres.clone()).unwrap());
+            let is_inside = |inner: &Sphere, outer: &Sphere| {
+                inner.center.distance(outer.center) + inner.radius <= outer.radius * (1.0 + 1e-12)
+            };
+            let mut found = Vec::new();
+            for (ball, its) in clusters.each() {
+                let its: Vec<Sphere> = its.collect();
+                assert!((1..=MOST_IN_CLUSTER).contains(&its.len()));
+                assert!(its.iter().all(|sphere| is_inside(sphere, &ball)));
+                found.extend(its);
+            }
+            assert!(
+                found
+                    .iter()
+                    .all(|sphere| is_inside(sphere, &clusters.ball()))
+            );
+            let bits = |s: &Sphere| (s.center.to_array().map(f64::to_bits), s.radius.to_bits());
+            let mut pairs = [spheres, found].map(|all| all.iter().map(bits).collect::<Vec<_>>());
+            pairs.iter_mut().for_each(|all| all.sort_unstable());
+            assert_eq!(pairs[0], pairs[1]);
+        }
+    }
+}
