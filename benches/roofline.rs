@@ -52,33 +52,42 @@ macro_rules! loops {
         /// So many times a fused multiply-add of each number.
         #[multiversion(targets("x86_64+avx2+fma"))]
         fn $fused(n: usize) -> $real {
-            let mut values = std::array::from_fn::<$real, $lanes, _>(|_| black_box(1.0));
+            let mut values: [$real; $lanes] = black_box([1.0; $lanes]);
             let factor = black_box(0.999);
             for _ in 0..n {
-                values.iter_mut().for_each(|x| *x = x.mul_add(factor, 1e-3));
+                for x in &mut values {
+                    *x = x.mul_add(factor, 1e-3);
+                }
             }
-            values.iter().sum()
+            // The numbers as they lie in memory: a sum would tempt the compiler to keep them one by one.
+            black_box(&values)[0]
         }
 
         /// The same in two operations.
         #[multiversion(targets("x86_64+avx2+fma"))]
         fn $unfused(n: usize) -> $real {
-            let mut values = std::array::from_fn::<$real, $lanes, _>(|_| black_box(1.0));
+            let mut values: [$real; $lanes] = black_box([1.0; $lanes]);
             let factor = black_box(0.999);
             for _ in 0..n {
-                values.iter_mut().for_each(|x| *x = *x * factor + 1e-3);
+                for x in &mut values {
+                    *x = *x * factor + 1e-3;
+                }
             }
-            values.iter().sum()
+            // The numbers as they lie in memory: a sum would tempt the compiler to keep them one by one.
+            black_box(&values)[0]
         }
 
         /// So many times the root of each number.
         #[multiversion(targets("x86_64+avx2+fma"))]
         fn $roots(n: usize) -> $real {
-            let mut values = std::array::from_fn::<$real, $lanes, _>(|_| black_box(2.0));
+            let mut values: [$real; $lanes] = black_box([2.0; $lanes]);
             for _ in 0..n {
-                values.iter_mut().for_each(|x| *x = x.sqrt());
+                for x in &mut values {
+                    *x = x.sqrt();
+                }
             }
-            values.iter().sum()
+            // The numbers as they lie in memory: a sum would tempt the compiler to keep them one by one.
+            black_box(&values)[0]
         }
     };
 }

@@ -233,6 +233,27 @@ fn ctrl_c_ends_a_run_within_two_seconds_and_says_how_to_go_on() {
 }
 
 #[test]
+fn a_signal_ends_a_run_though_nobody_reads_what_it_says() {
+    let case = case();
+    let mut run = start(&case, &["run", "study.toml", "--out", "unread"]);
+    let journal = case.path("unread/journal.jsonl");
+    while cell_keys(&journal).is_empty() {
+        sleep(Duration::from_millis(5));
+    }
+    drop(run.stderr.take());
+    let id = run.id().to_string();
+    let asked = Instant::now();
+    Command::new("kill")
+        .args(["-s", "TERM", &id])
+        .status()
+        .unwrap();
+    while run.try_wait().unwrap().is_none() {
+        assert!(asked.elapsed() < Duration::from_secs(2), "it hangs");
+        sleep(Duration::from_millis(5));
+    }
+}
+
+#[test]
 fn a_second_run_in_a_folder_is_told_of_the_first() {
     let case = case();
     let mut first = start(&case, &["run", "study.toml", "--out", "shared"]);

@@ -5,6 +5,7 @@ use super::output::output_folder;
 use bubbletouch::study::Shard;
 use bubbletouch::study::journal::{Identity, JOURNAL_FILE, Journal, set_aside};
 use bubbletouch::{Error, Result};
+use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -69,10 +70,14 @@ fn end_well_on_signals(journal: &Arc<Journal>) -> Result<()> {
     let journal = Arc::clone(journal);
     let set = ctrlc::set_handler(move || {
         let synced = journal.stop();
-        eprintln!("\nstopped: every finished cell is kept; the same command goes on from there");
+        let mut said =
+            "\nstopped: every finished cell is kept; the same command goes on from there"
+                .to_owned();
         if let Err(error) = synced {
-            eprintln!("error: {error}");
+            said += &format!("\nerror: {error}");
         }
+        // Nobody may be left to read it, which must not keep the process from ending.
+        let _ = writeln!(std::io::stderr(), "{said}");
         std::process::exit(130);
     });
     set.map_err(|error| Error::io("signals", "listen", std::io::Error::other(error)))
