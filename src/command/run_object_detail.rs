@@ -24,10 +24,7 @@ pub fn run_object_detail(args: &StudyArgs, listener: Listener, folder: &Path) ->
     progress.stage("report", 1);
     write_object_detail(folder, &tables)?;
     write_bytes(&folder.join("study.toml"), plan.spec.to_toml().as_bytes())?;
-    progress.advance(1);
-    progress.finish(&format!("{:.1} s", start.elapsed().as_secs_f64()));
-    listener.finished(serde_json::json!({ "event": "finished", "folder": folder }));
-    if !listener.is_person() {
+    if !listener.wrote(folder, progress.as_ref(), start) {
         return Ok(());
     }
     println!("{}", plan.spec.question);

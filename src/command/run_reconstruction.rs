@@ -35,10 +35,7 @@ pub fn run_reconstruction(args: &StudyArgs, listener: Listener, folder: &Path) -
     )?;
     write_reconstruction(folder, &outcome.tables, &frames)?;
     write_bytes(&folder.join("study.toml"), plan.spec.to_toml().as_bytes())?;
-    progress.advance(1);
-    progress.finish(&format!("{:.1} s", start.elapsed().as_secs_f64()));
-    listener.finished(serde_json::json!({ "event": "finished", "folder": folder }));
-    if !listener.is_person() {
+    if !listener.wrote(folder, progress.as_ref(), start) {
         return Ok(());
     }
     println!("{}", plan.spec.question);

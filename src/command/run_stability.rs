@@ -23,10 +23,7 @@ pub fn run_stability(args: &StudyArgs, listener: Listener, folder: &Path) -> Res
     progress.stage("report", 1);
     write_stability(folder, &tables)?;
     write_bytes(&folder.join("study.toml"), plan.spec.to_toml().as_bytes())?;
-    progress.advance(1);
-    progress.finish(&format!("{:.1} s", start.elapsed().as_secs_f64()));
-    listener.finished(serde_json::json!({ "event": "finished", "folder": folder }));
-    if !listener.is_person() {
+    if !listener.wrote(folder, progress.as_ref(), start) {
         return Ok(());
     }
     println!("{}\n", plan.spec.question);

@@ -29,10 +29,7 @@ pub fn run_whole_body(args: &StudyArgs, listener: Listener, folder: &Path) -> Re
     };
     write_whole_body(folder, &outcome, &about)?;
     write_bytes(&folder.join("study.toml"), plan.spec.to_toml().as_bytes())?;
-    progress.advance(1);
-    progress.finish(&format!("{:.1} s", start.elapsed().as_secs_f64()));
-    listener.finished(serde_json::json!({ "event": "finished", "folder": folder }));
-    if !listener.is_person() {
+    if !listener.wrote(folder, progress.as_ref(), start) {
         return Ok(());
     }
     println!("{}\n", plan.spec.question);

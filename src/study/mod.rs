@@ -26,6 +26,7 @@ mod object_files;
 mod packing_cache;
 mod packings;
 mod pareto;
+mod part;
 mod plan;
 mod plan_human;
 mod plan_learning;
@@ -68,10 +69,11 @@ pub use object_files::{
     MeshUse, NamedMesh, load_mesh, load_named_meshes, load_objects, read_mesh_file,
 };
 pub use packing_cache::{CachedPacking, PackingCache};
+pub use part::{Part, n_left};
 pub use plan::{Amount, Plan, SplitKind, SplitPlan, millimetres};
 pub use plan_human::HumanTouchPlan;
 pub use plan_signal::Condition;
-pub use runner::{ArrayOutcome, Manner, Outcome, Part, n_left, run, run_with};
+pub use runner::{ArrayOutcome, Manner, Outcome, run, run_with};
 pub use samples::{Samples, sample_frames};
 pub use shard::Shard;
 pub use simulation::{Frames, TouchedObject, draw_touches, simulate_array};

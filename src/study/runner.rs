@@ -3,10 +3,10 @@
 use super::finished::{Finished, Measuring, Simulated};
 use super::job::{FinishedFamily, Job};
 use super::journal::Journal;
+use super::part::{Part, pieces, with_what_was_done_before};
 use super::plan::{Plan, millimetres};
 use super::progress::Progress;
 use super::published::compare_with_published;
-use super::shard::Shard;
 use super::simulation::Frames;
 use super::spec::StepSpec;
 use super::sweep::{Group, Sweep};
@@ -18,7 +18,6 @@ use crate::random::Seed;
 use crate::signal::{Noise, SignalStep};
 use crate::world::Patch;
 use rayon::prelude::*;
-use std::collections::BTreeSet;
 
 /// What a study found.
 #[derive(Clone, Debug)]
@@ -55,17 +54,6 @@ pub struct Manner<'a> {
     pub retries: bool,
     /// The part of the work to do.
     pub part: Part<'a>,
-}
-
-/// Which families of which trials a run evaluates.
-#[derive(Clone, Copy, Debug)]
-pub enum Part<'a> {
-    /// All.
-    All,
-    /// One of several equal parts.
-    Shard(Shard),
-    /// Those that hold one of these: (number of the cell, trial).
-    Holding(&'a BTreeSet<(usize, usize)>),
 }
 
 /// Runs a study. The tables but for times are the same bytes at any number of threads.
@@ -255,69 +243,6 @@ impl<'a> Run<'a> {
             measure_s,
         ))
     }
-}
-
-/// All trials and groups, with those of their families that belong to a part.
-fn pieces<'a>(
-    plan: &Plan,
-    sweep: &'a Sweep,
-    part: Part,
-) -> Vec<(&'a Group, usize, Vec<&'a [Cell]>)> {
-    let n_pieces = sweep.groups.len() * plan.spec.trials;
-    let mut pieces = Vec::with_capacity(n_pieces);
-    let mut n_families = 0;
-    for trial in 0..plan.spec.trials {
-        for group in &sweep.groups {
-            let number = pieces.len();
-            let is_in = |(place, family): &(usize, &[Cell])| match part {
-                Part::All => true,
-                Part::Shard(shard) => shard.takes((number, n_pieces), n_families + place),
-                Part::Holding(cells) => {
-                    let mut numbers = family.iter().map(|cell| (cell.cell, trial));
-                    numbers.any(|number| cells.contains(&number))
-                }
-            };
-            let families = group.families().enumerate().filter(is_in);
-            let families = families.map(|(_, family)| family).collect();
-            pieces.push((group, trial, families));
-            n_families += group.families().count();
-        }
-    }
-    pieces
-}
-
-/// Cells of a part, counted once a trial, of which a journal does not say what came of them.
-pub fn n_left(plan: &Plan, sweep: &Sweep, part: Part, journal: &Journal) -> usize {
-    let is_left = |family: &[Cell], trial| Finished::in_journal(journal, family, trial).is_none();
-    let of_piece = |(_, trial, families): (&Group, usize, Vec<&[Cell]>)| -> usize {
-        let left = families.iter().filter(|family| is_left(family, trial));
-        left.map(|family| family.len()).sum()
-    };
-    pieces(plan, sweep, part).into_iter().map(of_piece).sum()
-}
-
-/// Every finished family, from this run or from earlier ones, and how many cells are left.
-fn with_what_was_done_before<'a>(
-    plan: &Plan,
-    sweep: &'a Sweep,
-    journal: &Journal,
-    mut finished: Vec<FinishedFamily<'a>>,
-) -> (Vec<FinishedFamily<'a>>, usize) {
-    let number = |(family, trial, _): &FinishedFamily| (family[0].cell, *trial);
-    let now: BTreeSet<(usize, usize)> = finished.iter().map(number).collect();
-    let mut n_left = 0;
-    for trial in 0..plan.spec.trials {
-        for family in sweep.groups.iter().flat_map(Group::families) {
-            if now.contains(&(family[0].cell, trial)) {
-                continue;
-            }
-            match Finished::in_journal(journal, family, trial) {
-                Some(before) => finished.push((family, trial, before)),
-                None => n_left += family.len(),
-            }
-        }
-    }
-    (finished, n_left)
 }
 
 /// The study's steps in this group's condition, on a skin.
