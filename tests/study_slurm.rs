@@ -15,7 +15,7 @@ use std::time::{Duration, Instant};
 
 const STUDY: &str = r#"
 question = "Do jobs of a cluster make the same tables?"
-trials = 4
+trials = 48
 
 [objects]
 sets = ["household"]
@@ -224,6 +224,8 @@ fn eight_jobs_of_which_one_is_killed_make_the_tables_of_a_single_run() {
         said.contains("are in the queue") && !said.contains("submitted"),
         "{said}"
     );
+    let queue = cluster.ask("squeue", &["--noheader", "--format", "%F"]);
+    let job = queue.lines().next().unwrap_or_default().trim();
     let journal = case.path("jobs/journal.3-of-8.jsonl");
     let start = Instant::now();
     while n_cells(&journal) == 0 {
@@ -233,8 +235,6 @@ fn eight_jobs_of_which_one_is_killed_make_the_tables_of_a_single_run() {
         );
         sleep(Duration::from_millis(5));
     }
-    let job = cluster.ask("squeue", &["--noheader", "--format", "%F"]);
-    let job = job.lines().next().unwrap_or_default().trim();
     cluster.ask("scancel", &["--signal=KILL", "--full", &format!("{job}_3")]);
     cluster.wait_until_empty();
     let finished = n_cells(&journal);
