@@ -57,8 +57,10 @@ impl View {
     #[inline(always)]
     pub fn lay_starts(&self, bounds: &ClusterBounds, starts: &mut [f64]) {
         let n = starts.len();
-        let [x, y, z] = bounds.middle.each_ref().map(|all| &all[..n]);
-        let [wide, deep, high] = bounds.half.each_ref().map(|all| &all[..n]);
+        let [x, y, z] = &bounds.middle;
+        let (x, y, z) = (&x[..n], &y[..n], &z[..n]);
+        let [wide, deep, high] = &bounds.half;
+        let (wide, deep, high) = (&wide[..n], &deep[..n], &high[..n]);
         let (radius, largest) = (&bounds.radius[..n], &bounds.largest[..n]);
         let [half_x, half_y] = self.half_size;
         let up = self.rows.z_axis.abs();
@@ -118,13 +120,18 @@ impl View {
     }
 }
 
-/// Raises deflections to √q − h.
+/// Raises deflections to √(S² − Δy² − Δx²) − h. (By numbers: the parts of an iterator that are compiled elsewhere would be called.)
 #[inline(always)]
-fn raise_lanes<const N: usize>(deflections: &mut [f64; N], q: [f64; N], height: f64) {
-    for (deflection, q) in deflections.iter_mut().zip(q) {
+fn raise_lanes<const N: usize>(
+    deflections: &mut [f64; N],
+    reach2: f64,
+    dx2: &[f64; N],
+    height: f64,
+) {
+    for k in 0..N {
         // The root of less than nothing is not a number, and the other one is the maximum. (A comparison in its place is
         // compiled to a masked store, for which some processors take ten times as long.)
-        *deflection = deflection.max(q.sqrt() - height);
+        deflections[k] = deflections[k].max((reach2 - dx2[k]).sqrt() - height);
     }
 }
 
@@ -181,8 +188,8 @@ impl PlacedSphere {
             let dy = lines.y.positions[row] - self.center.y;
             let row_reach2 = reach2 - dy * dy;
             let blocks: &mut [[f64; BLOCK]; N] = sheet.blocks(row, first);
-            for (deflections, dx2) in blocks.iter_mut().zip(&dx2) {
-                raise_lanes(deflections, dx2.map(|dx2| row_reach2 - dx2), height);
+            for block in 0..N {
+                raise_lanes(&mut blocks[block], row_reach2, &dx2[block], height);
             }
         }
     }

@@ -98,9 +98,10 @@ impl SphereClusters {
     #[inline(always)]
     pub(crate) fn of(&self, cluster: usize) -> Cluster<'_> {
         let first = self.starts[cluster] as usize;
+        let [x, y, z] = &self.centers;
         Cluster {
             n_spheres: self.starts[cluster + 1] as usize - first,
-            centers: self.centers.each_ref().map(|all| lanes(&all[first..])),
+            centers: [lanes(&x[first..]), lanes(&y[first..]), lanes(&z[first..])],
             radii: lanes(&self.radii[first..]),
         }
     }
@@ -120,8 +121,9 @@ impl Cluster<'_> {
     /// One of its spheres.
     #[inline(always)]
     pub fn at(&self, k: usize) -> Sphere {
+        let [x, y, z] = self.centers;
         Sphere {
-            center: DVec3::from_array(self.centers.map(|all| all[k])),
+            center: DVec3::new(x[k], y[k], z[k]),
             radius: self.radii[k],
         }
     }
