@@ -1,10 +1,12 @@
 //! The command line: one file a subcommand, each `Args` → work → files or terminal.
 
 mod about_study;
+mod cache;
 mod classify;
 mod compare;
 mod features;
 mod listener;
+mod memory_args;
 mod merge;
 mod objects;
 mod objects_pack;
@@ -55,6 +57,8 @@ enum Command {
     Compare(compare::Args),
     /// Run a few cells of a folder of results again, and say whether they are the same bytes
     Verify(verify::Args),
+    /// List or remove the touches that studies keep beside their results
+    Cache(cache::Args),
     /// Say what a study would do: cells, touches, memory and time, without running it
     Plan(plan::Args),
     /// Write a study's touches as NumPy files, to train elsewhere
@@ -82,6 +86,7 @@ pub fn dispatch() -> Result<()> {
         Some(Command::Slurm(args)) => slurm::slurm(&args),
         Some(Command::Compare(args)) => compare::compare(&args),
         Some(Command::Verify(args)) => verify::verify(&args),
+        Some(Command::Cache(args)) => cache::cache(&args),
         Some(Command::Plan(args)) => plan::plan(&args),
         Some(Command::Touches(args)) => touches::touches(&args),
         Some(Command::Features(args)) => features::features(&args),

@@ -2,6 +2,7 @@
 
 use super::about_study::report_page;
 use super::listener::Listener;
+use super::memory_args::MemoryArgs;
 use super::output::{packings_beside, terminal_width};
 use super::run_object_detail::run_object_detail;
 use super::run_reconstruction::run_reconstruction;
@@ -13,6 +14,7 @@ use bubbletouch::files::write_bytes;
 use bubbletouch::report::csv_tables::repeatable_hashes;
 use bubbletouch::report::{headlines, results, terminal};
 use bubbletouch::study::journal::Identity;
+use bubbletouch::study::memory::peak_memory;
 use bubbletouch::study::provenance::{MANIFEST_FILE, Manifest, RunFacts};
 use bubbletouch::study::{Manner, Outcome, Part, Shard, StudyKind, n_left, run_with};
 use bubbletouch::{Error, Result};
@@ -37,6 +39,8 @@ pub struct Args {
     #[arg(long, value_name = "I/N")]
     shard: Option<Shard>,
     #[command(flatten)]
+    memory: MemoryArgs,
+    #[command(flatten)]
     listener: Listener,
     /// A demonstration runs anew unless it was interrupted.
     #[arg(skip)]
@@ -52,6 +56,7 @@ impl Args {
             fresh: false,
             fail_fast: false,
             shard: None,
+            memory: MemoryArgs::default(),
             listener: Listener::default(),
             is_demonstration: true,
         }
@@ -64,6 +69,7 @@ impl Args {
             ("--fail-fast", self.fail_fast),
             ("--shard", self.shard.is_some()),
         ];
+        let given = given.into_iter().chain(self.memory.given());
         let given = given.into_iter().find(|(_, is_given)| *is_given);
         match given {
             Some((option, _)) if kind != StudyKind::Recognition => {
@@ -110,6 +116,8 @@ pub fn results_folder(study: &StudyArgs, out: Option<&Path>) -> Result<PathBuf> 
 fn run_recognition(args: &Args, folder: &Path) -> Result<()> {
     let started = SystemTime::now();
     let loaded = args.study.load(Some(&packings_beside(folder)))?;
+    let memory = args.memory.plan(&loaded)?;
+    let storage = args.memory.storage(folder, &memory)?;
     let identity = identity(&loaded);
     let kept = StudyFolder::open(folder, &identity, (args.start(), args.shard), args.listener)?;
     let n_all = loaded.n_evaluations();
@@ -124,6 +132,8 @@ fn run_recognition(args: &Args, folder: &Path) -> Result<()> {
         fail_fast: args.fail_fast,
         retries: true,
         part: args.shard.map_or(Part::All, Part::Shard),
+        storage: &storage,
+        at_once: memory.at_once,
     };
     let progress = args.listener.progress();
     let outcome = run_with(
@@ -219,6 +229,7 @@ impl FinishedStudy<'_> {
             "finished_before": self.n_before,
             "failed": tables.failures.len(),
             "elapsed_s": seconds_since(self.started),
+            "peak_memory_bytes": peak_memory(),
         }));
         if !listener.is_person() {
             return;

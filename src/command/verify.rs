@@ -1,5 +1,6 @@
 //! `bubbletouch verify`: whether a folder of results comes out again.
 
+use super::memory_args::MemoryArgs;
 use super::output::packings_beside;
 use super::study_args::StudyArgs;
 use bubbletouch::random::Seed;
@@ -27,6 +28,8 @@ pub struct Args {
     /// Threads; all cores when left out
     #[arg(long, value_name = "N")]
     threads: Option<usize>,
+    #[command(flatten)]
+    memory: MemoryArgs,
 }
 
 pub fn verify(args: &Args) -> Result<()> {
@@ -41,11 +44,15 @@ pub fn verify(args: &Args) -> Result<()> {
     };
     let loaded = study.load(Some(&packings_beside(folder)))?;
     let chosen = draw(&tables, args);
+    let memory = args.memory.plan(&loaded)?;
+    let storage = args.memory.storage(folder, &memory)?;
     let manner = Manner {
         journal: &Journal::none(),
         fail_fast: true,
         retries: false,
         part: Part::Holding(&chosen),
+        storage: &storage,
+        at_once: memory.at_once,
     };
     let progress = progress::to_stderr();
     let touched = loaded.touched.as_ref();

@@ -2,9 +2,9 @@
 
 use super::evaluation::Trial;
 use super::finished::Finished;
+use super::frames::Frames;
 use super::measurement::{Measurements, measure_group};
 use super::runner::Run;
-use super::simulation::Frames;
 use super::sweep::Group;
 use super::table::Cell;
 use crate::error::Result;
@@ -52,11 +52,11 @@ impl<'a> Job<'a> {
                 Err(error) => (Err(error.to_string()), 0.0),
             };
             measure_s += cpu_s;
-            let results = families
-                .into_par_iter()
-                .map(|family| self.finish(family, measured.as_ref()))
-                .collect::<Result<Vec<_>>>()?;
-            finished.extend(results);
+            for families in families.chunks(self.run.manner.at_once.families) {
+                let families = families.par_iter();
+                let results = families.map(|family| self.finish(family, measured.as_ref()));
+                finished.extend(results.collect::<Result<Vec<_>>>()?);
+            }
         }
         Ok((finished, measure_s))
     }

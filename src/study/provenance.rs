@@ -48,6 +48,9 @@ pub struct Manifest {
     pub started: String,
     /// Its end.
     pub ended: String,
+    /// Most bytes of memory that the last run held, where the system tells.
+    #[serde(default)]
+    pub peak_memory_bytes: Option<u64>,
     /// Cells that the last run found finished, counted once a trial.
     pub n_finished_before: usize,
     /// Root of all randomness.
@@ -100,6 +103,7 @@ impl Manifest {
             threads: rayon::current_num_threads(),
             started: time(facts.started),
             ended: time(SystemTime::now()),
+            peak_memory_bytes: super::memory::peak_memory(),
             n_finished_before: facts.n_finished_before,
             seed: facts.seed,
             n_cells: facts.n_cells,
