@@ -14,10 +14,11 @@ use bubbletouch::report::csv_tables::repeatable_hashes;
 use bubbletouch::report::{headlines, results, terminal};
 use bubbletouch::study::journal::Identity;
 use bubbletouch::study::provenance::{MANIFEST_FILE, Manifest, RunFacts};
-use bubbletouch::study::{Manner, Outcome, Part, Shard, StudyKind, n_left, run_with};
+use bubbletouch::study::time_left::Work;
+use bubbletouch::study::{Manner, Outcome, Part, Shard, StudyKind, n_left, run_with, workload};
 use bubbletouch::{Error, Result};
 use std::path::{Path, PathBuf};
-use std::time::SystemTime;
+use std::time::{Instant, SystemTime};
 
 #[derive(clap::Args)]
 pub struct Args {
@@ -126,6 +127,11 @@ fn run_recognition(args: &Args, folder: &Path) -> Result<()> {
         part: args.shard.map_or(Part::All, Part::Shard),
     };
     let progress = args.listener.progress();
+    let report_s = match args.shard {
+        Some(_) => 0.0,
+        None => results::planned_s(&loaded.sweep.cells().collect::<Vec<_>>()),
+    };
+    progress.expect(&expected_work(&loaded, manner, report_s));
     let outcome = run_with(
         &loaded.plan,
         &loaded.sweep,
@@ -152,7 +158,9 @@ fn run_recognition(args: &Args, folder: &Path) -> Result<()> {
         n_before: n_all - n_left,
     };
     progress.stage("report", 1);
+    let start = Instant::now();
     finished.write()?;
+    progress.worked(Work::Report, report_s, start.elapsed().as_secs_f64());
     progress.advance(1);
     progress.finish(&format!("{:.1} s", seconds_since(started)));
     if args.is_demonstration {
@@ -160,6 +168,14 @@ fn run_recognition(args: &Args, folder: &Path) -> Result<()> {
     }
     finished.tell(args.listener);
     failures(&outcome, folder)
+}
+
+/// What a run will do, down to its report.
+fn expected_work(loaded: &LoadedStudy, manner: Manner, report_s: f64) -> Vec<(Work, f64)> {
+    let touched = loaded.touched.as_ref();
+    let mut work = workload(&loaded.plan, &loaded.sweep, touched, manner);
+    work.push((Work::Report, report_s));
+    work
 }
 
 /// What the results of a study depend on.

@@ -1,5 +1,6 @@
 //! One group of cells in one trial: measured once, family by family evaluated.
 
+use super::estimate::measure_s;
 use super::evaluation::Trial;
 use super::finished::Finished;
 use super::measurement::{Measurements, measure_group};
@@ -7,9 +8,11 @@ use super::runner::Run;
 use super::simulation::Frames;
 use super::sweep::Group;
 use super::table::Cell;
+use super::time_left::Work;
 use crate::error::Result;
 use rayon::prelude::*;
 use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::time::Instant;
 
 /// A group in a trial, and those of its families that are to be evaluated.
 pub struct Job<'a> {
@@ -35,14 +38,7 @@ impl<'a> Job<'a> {
     pub fn run(&self, frames: &Frames) -> Result<(Vec<FinishedFamily<'a>>, f64)> {
         let mut finished = Vec::new();
         let mut measure_s = 0.0;
-        // A group of prefixes is projected once and serves all cells; else each m serves its own.
-        let nested = self.group.ensemble.is_prefix_nested();
-        for n_measurements in self.group.projected() {
-            let serves = |family: &&&[Cell]| nested || family[0].measurements == n_measurements;
-            let families: Vec<&[Cell]> = self.families.iter().filter(serves).copied().collect();
-            if families.is_empty() {
-                continue;
-            }
+        for (n_measurements, families) in self.batches() {
             let (measured, cpu_s) = match self.measure(frames, n_measurements) {
                 Ok(measured) => {
                     let cpu_s = measured.cpu_s;
@@ -52,6 +48,8 @@ impl<'a> Job<'a> {
                 Err(error) => (Err(error.to_string()), 0.0),
             };
             measure_s += cpu_s;
+            let planned_s = self.measuring_s(n_measurements);
+            self.run.progress.worked(Work::Measure, planned_s, cpu_s);
             let results = families
                 .into_par_iter()
                 .map(|family| self.finish(family, measured.as_ref()))
@@ -59,6 +57,25 @@ impl<'a> Job<'a> {
             finished.extend(results);
         }
         Ok((finished, measure_s))
+    }
+
+    /// What is measured once, and the families that it serves: a group of prefixes is projected once and serves all cells; else
+    /// each m serves its own.
+    pub fn batches(&self) -> Vec<(usize, Vec<&'a [Cell]>)> {
+        let nested = self.group.ensemble.is_prefix_nested();
+        let served = |n_measurements| {
+            let serves = |family: &&&[Cell]| nested || family[0].measurements == n_measurements;
+            let families: Vec<&[Cell]> = self.families.iter().filter(serves).copied().collect();
+            (!families.is_empty()).then_some((n_measurements, families))
+        };
+        let projected = self.group.projected().into_iter();
+        projected.filter_map(served).collect()
+    }
+
+    /// Planned processor-seconds to measure all touches once.
+    pub fn measuring_s(&self, n_measurements: usize) -> f64 {
+        let n_touches = self.run.sweep.labels.len();
+        measure_s(self.run.plan, self.group, n_touches, n_measurements)
     }
 
     fn measure(&self, frames: &Frames, n_measurements: usize) -> Result<Measurements> {
@@ -78,10 +95,14 @@ impl<'a> Job<'a> {
         family: &'a [Cell],
         measured: std::result::Result<&Measurements, &String>,
     ) -> Result<FinishedFamily<'a>> {
+        let start = Instant::now();
         let finished = match measured {
             Ok(measured) => self.evaluate(family, measured)?,
             Err(said) => Finished::Failed(said.clone()),
         };
+        let (kind, planned_s) = self.run.learning(family);
+        let took_s = start.elapsed().as_secs_f64();
+        self.run.progress.worked(kind, planned_s, took_s);
         finished.keep(self.run.manner.journal, family, self.trial)?;
         self.run.progress.advance(family.len() as u64);
         Ok((family, self.trial, finished))

@@ -5,6 +5,7 @@
 use super::check::Check;
 use super::imperfection::{Imperfection, TestedOn};
 use super::plan_human::{HumanTouchPlan, no_placement};
+use super::repeats::Repeats;
 use super::spec::{CombineSpec, GroupSpec, StepSpec, StudySpec};
 use super::training::ChoicePlan;
 use crate::error::Result;
@@ -72,6 +73,8 @@ pub struct Plan {
     pub choice: ChoicePlan,
     /// How touches are split.
     pub split: SplitPlan,
+    /// What trials draw anew.
+    pub repeats: Repeats,
 }
 
 /// How many measurements: absolute, or as a fraction of the taxels.
@@ -152,6 +155,7 @@ impl Plan {
             check.counts("recognition.fused_touches", &spec.recognition.fused_touches)?;
         let train_touches = check.train_touches(&spec)?;
         let split = check.split(&spec)?;
+        let repeats = check.repeats(&spec)?;
         let speed = check.speed(&spec.touches)?;
         Ok(Self {
             arrays,
@@ -176,6 +180,7 @@ impl Plan {
             fused_touches,
             choice,
             split,
+            repeats,
             spec,
         })
     }
