@@ -73,7 +73,7 @@ fn every_line_of_a_run_is_an_event_as_the_guide_has_it() {
     assert_eq!(error, "", "nothing for people");
     let (schema, events) = (schema(), events(&said));
     events.iter().for_each(|event| check(event, &schema));
-    let of_kind = |kind: &str| events.iter().filter(move |event| event["event"] == *kind);
+    let of_kind = |kind: &'static str| events.iter().filter(move |event| event["event"] == *kind);
     let stages: Vec<&str> = of_kind("stage")
         .map(|event| event["name"].as_str().unwrap())
         .collect();

@@ -85,9 +85,11 @@ fn the_manual_has_a_page_for_each_subcommand_that_renders_without_a_warning() {
     assert_eq!(fs::read(case.path("man1/bubbletouch.1")).unwrap(), first);
     for subcommand in SUBCOMMANDS {
         let page = fs::read(case.path(&format!("man1/bubbletouch-{subcommand}.1"))).unwrap();
-        let Some((is_accepted, said)) =
-            accepted("groff", &["-man", "-Tutf8", "-ww", "-P-c"], &page)
-        else {
+        let Some((is_accepted, said)) = accepted(
+            "groff",
+            &["-k", "-man", "-Tutf8", "-ww", "-P-c", "-P-b", "-P-u"],
+            &page,
+        ) else {
             return;
         };
         assert!(
@@ -110,10 +112,10 @@ fn a_pipe_gets_no_escape_codes_and_no_color_is_respected() {
         "press",
         "--object",
         "mug",
-        "--size-mm",
-        "64",
+        "--taxels",
+        "16x16",
         "--pitch-mm",
-        "4",
+        "8",
     ];
     for (name, value) in [
         ("NO_COLOR", "1"),
@@ -133,7 +135,7 @@ fn a_pipe_gets_no_escape_codes_and_no_color_is_respected() {
 fn a_terminal_gets_colours_unless_no_color_is_set() {
     // `script` gives a program a terminal.
     let bubbletouch = env!("CARGO_BIN_EXE_bubbletouch");
-    let press = format!("{bubbletouch} press --object mug --size-mm 64 --pitch-mm 4");
+    let press = format!("{bubbletouch} press --object mug --taxels 16x16 --pitch-mm 8");
     let help = format!("{bubbletouch} --help");
     for (command, has_colours) in [
         (&press, true),

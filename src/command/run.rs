@@ -14,7 +14,7 @@ use bubbletouch::report::csv_tables::repeatable_hashes;
 use bubbletouch::report::{headlines, results, terminal};
 use bubbletouch::study::journal::Identity;
 use bubbletouch::study::provenance::{MANIFEST_FILE, Manifest, RunFacts};
-use bubbletouch::study::time_left::Work;
+use bubbletouch::study::time_left::{Piece, Work};
 use bubbletouch::study::{Manner, Outcome, Part, Shard, StudyKind, n_left, run_with, workload};
 use bubbletouch::{Error, Result};
 use std::path::{Path, PathBuf};
@@ -127,11 +127,9 @@ fn run_recognition(args: &Args, folder: &Path) -> Result<()> {
         part: args.shard.map_or(Part::All, Part::Shard),
     };
     let progress = args.listener.progress();
-    let report_s = match args.shard {
-        Some(_) => 0.0,
-        None => results::planned_s(&loaded.sweep.cells().collect::<Vec<_>>()),
-    };
-    progress.expect(&expected_work(&loaded, manner, report_s));
+    let report = report_work(&loaded, args.shard);
+    let work = workload(&loaded.plan, &loaded.sweep, loaded.touched.as_ref(), manner);
+    progress.expect(&[&work[..], &[report]].concat());
     let outcome = run_with(
         &loaded.plan,
         &loaded.sweep,
@@ -160,7 +158,7 @@ fn run_recognition(args: &Args, folder: &Path) -> Result<()> {
     progress.stage("report", 1);
     let start = Instant::now();
     finished.write()?;
-    progress.worked(Work::Report, report_s, start.elapsed().as_secs_f64());
+    progress.worked(&report, start.elapsed().as_secs_f64());
     progress.advance(1);
     progress.finish(&format!("{:.1} s", seconds_since(started)));
     if args.is_demonstration {
@@ -170,12 +168,17 @@ fn run_recognition(args: &Args, folder: &Path) -> Result<()> {
     failures(&outcome, folder)
 }
 
-/// What a run will do, down to its report.
-fn expected_work(loaded: &LoadedStudy, manner: Manner, report_s: f64) -> Vec<(Work, f64)> {
-    let touched = loaded.touched.as_ref();
-    let mut work = workload(&loaded.plan, &loaded.sweep, touched, manner);
-    work.push((Work::Report, report_s));
-    work
+/// What a run does when all cells are there; a shard does nothing then.
+fn report_work(loaded: &LoadedStudy, shard: Option<Shard>) -> Piece {
+    let cells: Vec<_> = loaded.sweep.cells().collect();
+    Piece {
+        kind: Work::Report,
+        place: 0,
+        planned_s: match shard {
+            Some(_) => 0.0,
+            None => results::planned_s(&cells),
+        },
+    }
 }
 
 /// What the results of a study depend on.

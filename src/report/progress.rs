@@ -2,7 +2,7 @@
 
 use crate::report::run_clock::{RunClock, in_words};
 use crate::study::progress::Progress;
-use crate::study::time_left::Work;
+use crate::study::time_left::Piece;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressState, ProgressStyle};
 use std::io::{IsTerminal, Write};
 use std::sync::{Arc, Mutex};
@@ -58,12 +58,12 @@ impl Progress for Bar {
         write_line(&mut std::io::stderr(), message);
     }
 
-    fn expect(&self, work: &[(Work, f64)]) {
+    fn expect(&self, work: &[Piece]) {
         self.clock.expect(work);
     }
 
-    fn worked(&self, kind: Work, planned_s: f64, took_s: f64) {
-        self.clock.worked(kind, planned_s, took_s);
+    fn worked(&self, piece: &Piece, took_s: f64) {
+        self.clock.worked(piece, took_s);
     }
 }
 

@@ -8,7 +8,7 @@
 
 use crate::report::run_clock::RunClock;
 use crate::study::progress::Progress;
-use crate::study::time_left::Work;
+use crate::study::time_left::Piece;
 use serde_json::{Value, json};
 use std::io::Write;
 use std::sync::Mutex;
@@ -105,12 +105,12 @@ impl<W: Write + Send> Progress for JsonLines<W> {
         }
     }
 
-    fn expect(&self, work: &[(Work, f64)]) {
+    fn expect(&self, work: &[Piece]) {
         self.clock.expect(work);
     }
 
-    fn worked(&self, kind: Work, planned_s: f64, took_s: f64) {
-        self.clock.worked(kind, planned_s, took_s);
+    fn worked(&self, piece: &Piece, took_s: f64) {
+        self.clock.worked(piece, took_s);
     }
 
     fn finish(&self, message: &str) {

@@ -1,6 +1,6 @@
 //! How long a run has gone on, and how long it still takes.
 
-use crate::study::time_left::{TimeLeft, Work};
+use crate::study::time_left::{Piece, TimeLeft};
 use std::sync::Mutex;
 use std::time::Instant;
 
@@ -21,7 +21,7 @@ pub struct RunTimes {
 
 impl RunClock {
     /// See [`Progress::expect`](crate::study::progress::Progress::expect).
-    pub fn expect(&self, work: &[(Work, f64)]) {
+    pub fn expect(&self, work: &[Piece]) {
         if let Ok(mut state) = self.state.lock() {
             let left = TimeLeft::new(work, rayon::current_num_threads());
             *state = Some((Instant::now(), left));
@@ -29,11 +29,11 @@ impl RunClock {
     }
 
     /// See [`Progress::worked`](crate::study::progress::Progress::worked).
-    pub fn worked(&self, kind: Work, planned_s: f64, took_s: f64) {
+    pub fn worked(&self, piece: &Piece, took_s: f64) {
         if let Ok(mut state) = self.state.lock()
             && let Some((_, left)) = state.as_mut()
         {
-            left.worked(kind, planned_s, took_s);
+            left.worked(piece, took_s);
         }
     }
 
@@ -63,15 +63,21 @@ pub fn in_words(seconds: f64) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::study::time_left::Work;
 
     #[test]
     fn a_clock_knows_nothing_until_it_is_told_what_to_expect() {
         let clock = RunClock::default();
-        clock.worked(Work::Measure, 1.0, 1.0);
+        let report = Piece {
+            kind: Work::Report,
+            place: 0,
+            planned_s: 5.0,
+        };
+        clock.worked(&report, 1.0);
         assert_eq!(clock.times(), None);
-        clock.expect(&[(Work::Report, 5.0)]);
+        clock.expect(&[report]);
         assert_eq!(clock.times().map(|times| times.left_s), Some(5.0));
-        clock.worked(Work::Report, 5.0, 3.0);
+        clock.worked(&report, 3.0);
         assert_eq!(clock.times().map(|times| times.left_s), Some(0.0));
     }
 

@@ -1,6 +1,5 @@
 //! One group of cells in one trial: measured once, family by family evaluated.
 
-use super::estimate::measure_s;
 use super::evaluation::Trial;
 use super::finished::Finished;
 use super::measurement::{Measurements, measure_group};
@@ -8,7 +7,6 @@ use super::runner::Run;
 use super::simulation::Frames;
 use super::sweep::Group;
 use super::table::Cell;
-use super::time_left::Work;
 use crate::error::Result;
 use rayon::prelude::*;
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -48,8 +46,8 @@ impl<'a> Job<'a> {
                 Err(error) => (Err(error.to_string()), 0.0),
             };
             measure_s += cpu_s;
-            let planned_s = self.measuring_s(n_measurements);
-            self.run.progress.worked(Work::Measure, planned_s, cpu_s);
+            let piece = self.measuring(n_measurements, &families);
+            self.run.progress.worked(&piece, cpu_s);
             let results = families
                 .into_par_iter()
                 .map(|family| self.finish(family, measured.as_ref()))
@@ -70,12 +68,6 @@ impl<'a> Job<'a> {
         };
         let projected = self.group.projected().into_iter();
         projected.filter_map(served).collect()
-    }
-
-    /// Planned processor-seconds to measure all touches once.
-    pub fn measuring_s(&self, n_measurements: usize) -> f64 {
-        let n_touches = self.run.sweep.labels.len();
-        measure_s(self.run.plan, self.group, n_touches, n_measurements)
     }
 
     fn measure(&self, frames: &Frames, n_measurements: usize) -> Result<Measurements> {
@@ -100,9 +92,8 @@ impl<'a> Job<'a> {
             Ok(measured) => self.evaluate(family, measured)?,
             Err(said) => Finished::Failed(said.clone()),
         };
-        let (kind, planned_s) = self.run.learning(family);
         let took_s = start.elapsed().as_secs_f64();
-        self.run.progress.worked(kind, planned_s, took_s);
+        self.run.progress.worked(&self.run.learning(family), took_s);
         finished.keep(self.run.manner.journal, family, self.trial)?;
         self.run.progress.advance(family.len() as u64);
         Ok((family, self.trial, finished))

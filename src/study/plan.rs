@@ -19,6 +19,9 @@ use crate::world::{Patch, Placement};
 /// Metres in a millimetre.
 pub(super) const MM: f64 = 1e-3;
 
+/// Trials of a study, at most: each has its split in memory before the first runs.
+const MOST_TRIALS: usize = 100_000;
+
 /// Millimetres as people write them: 2, not 2.0000000000000004.
 pub fn millimetres(metres: f64) -> f64 {
     (metres * 1e9).round() / 1e6
@@ -119,6 +122,10 @@ impl Plan {
     pub fn new(place: &str, mut spec: StudySpec) -> Result<Self> {
         let check = Check { place };
         check.positive_count("trials", spec.trials)?;
+        if spec.trials > MOST_TRIALS {
+            let allowed = format!("at most {MOST_TRIALS}");
+            return Err(check.error("trials", spec.trials, allowed));
+        }
         if spec.human_touch.is_none() {
             check.objects(&spec.objects)?;
         }

@@ -16,20 +16,33 @@ pub enum Work {
     Report,
 }
 
+/// A piece of work.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Piece {
+    /// What is done.
+    pub kind: Work,
+    /// What it is done for, such as a cell by its number: the same in each trial, so that one trial tells what others cost.
+    pub place: usize,
+    /// What it was planned to take, processor-seconds.
+    pub planned_s: f64,
+}
+
 /// Planned and spent processor-seconds of a run.
 ///
-/// Of each kind of work, what is left costs as much more or less than planned as what was done; a kind that has hardly begun, as
-/// all work so far. Threads are as busy as they have been.
+/// What is left of a place costs as much more or less than planned as what was done for it; where little was done, as all work
+/// of its kind; and a kind that has hardly begun, as all work so far. Threads are as busy as they have been.
 #[derive(Clone, Debug)]
 pub struct TimeLeft {
     n_threads: f64,
     kinds: BTreeMap<Work, Spent>,
-    /// Sum of the squares of what pieces of work took, for the length of a usual one.
-    squares: f64,
+    places: BTreeMap<(Work, usize), Spent>,
+    /// Sum of the squares of what pieces took that a thread does alone, and of what they took.
+    alone: [f64; 2],
 }
 
 #[derive(Clone, Copy, Debug, Default)]
 struct Spent {
+    n_pieces: usize,
     /// Of all the work, by plan.
     planned_s: f64,
     /// Of the finished part, by plan.
@@ -38,30 +51,60 @@ struct Spent {
     took_s: f64,
 }
 
+impl Spent {
+    fn left_s(&self) -> f64 {
+        (self.planned_s - self.done_s).max(0.0)
+    }
+
+    /// What a planned second takes, where `prior` counts as much as `weight_s` planned seconds.
+    fn factor(&self, prior: f64, weight_s: f64) -> f64 {
+        match self.done_s + weight_s {
+            0.0 => prior,
+            sum_s => (self.took_s + weight_s * prior) / sum_s,
+        }
+    }
+}
+
 /// Share of a kind's planned work that counts as much as the common factor of all work: before that much is done, its own factor
 /// is chance.
-const HESITATION: f64 = 0.02;
+const KIND_HESITATION: f64 = 0.02;
+/// The same for a place and the factor of its kind, as a share of one of its pieces.
+const PLACE_HESITATION: f64 = 0.3;
 
 impl TimeLeft {
-    /// Of a run with this work, processor-seconds, some of which may be of the same kind.
-    pub fn new(work: &[(Work, f64)], n_threads: usize) -> Self {
-        let mut kinds: BTreeMap<Work, Spent> = BTreeMap::new();
-        for &(kind, planned_s) in work {
-            kinds.entry(kind).or_default().planned_s += planned_s;
-        }
-        Self {
+    /// Of a run with this work.
+    pub fn new(work: &[Piece], n_threads: usize) -> Self {
+        let mut left = Self {
             n_threads: n_threads as f64,
-            kinds,
-            squares: 0.0,
+            kinds: BTreeMap::new(),
+            places: BTreeMap::new(),
+            alone: [0.0; 2],
+        };
+        for piece in work {
+            for spent in left.spent(piece) {
+                spent.planned_s += piece.planned_s;
+                spent.n_pieces += 1;
+            }
+        }
+        left
+    }
+
+    /// A piece of work is done, or a part of one, and took so long on its thread.
+    pub fn worked(&mut self, piece: &Piece, took_s: f64) {
+        for spent in self.spent(piece) {
+            spent.done_s += piece.planned_s;
+            spent.took_s += took_s;
+        }
+        if matches!(piece.kind, Work::Learn(_)) {
+            self.alone[0] += took_s * took_s;
+            self.alone[1] += took_s;
         }
     }
 
-    /// A piece of work is done that was planned to take `planned_s`, and took `took_s` on its thread.
-    pub fn worked(&mut self, kind: Work, planned_s: f64, took_s: f64) {
-        let spent = self.kinds.entry(kind).or_default();
-        spent.done_s += planned_s;
-        spent.took_s += took_s;
-        self.squares += took_s * took_s;
+    fn spent(&mut self, piece: &Piece) -> [&mut Spent; 2] {
+        let kind = self.kinds.entry(piece.kind).or_default();
+        let place = self.places.entry((piece.kind, piece.place)).or_default();
+        [kind, place]
     }
 
     /// Seconds left when a run has gone on for `elapsed_s`.
@@ -71,18 +114,22 @@ impl TimeLeft {
             (done + spent.done_s, took + spent.took_s)
         });
         let common = if done_s > 0.0 { took_s / done_s } else { 1.0 };
-        let left = |spent: &Spent| {
-            let hesitation = HESITATION * spent.planned_s;
-            let factor = match spent.done_s + hesitation {
-                0.0 => common,
-                done_s => (spent.took_s + hesitation * common) / done_s,
-            };
-            (spent.planned_s - spent.done_s).max(0.0) * factor
+        let of_kind = |kind: &Work| {
+            let spent = &self.kinds[kind];
+            spent.factor(common, KIND_HESITATION * spent.planned_s)
         };
-        let left_s: f64 = at_once().map(|(_, spent)| left(spent)).sum();
+        let places = self
+            .places
+            .iter()
+            .filter(|((kind, _), _)| *kind != Work::Report);
+        let left = places.map(|((kind, _), spent)| {
+            let piece_s = spent.planned_s / spent.n_pieces.max(1) as f64;
+            spent.left_s() * spent.factor(of_kind(kind), PLACE_HESITATION * piece_s)
+        });
+        let left_s: f64 = left.sum();
         // Each thread is somewhere within a piece that nobody has heard of yet; a second is longer within a long one.
-        let usual_s = if took_s > 0.0 {
-            self.squares / took_s
+        let usual_s = if self.alone[1] > 0.0 {
+            self.alone[0] / self.alone[1]
         } else {
             0.0
         };
@@ -91,8 +138,7 @@ impl TimeLeft {
             true => (took_s + under_way_s) / elapsed_s,
             false => self.n_threads,
         };
-        let report = self.kinds.get(&Work::Report);
-        let report_s = report.map_or(0.0, |spent| (spent.planned_s - spent.done_s).max(0.0));
+        let report_s = self.kinds.get(&Work::Report).map_or(0.0, Spent::left_s);
         (left_s - under_way_s) / busy + report_s
     }
 }
@@ -104,23 +150,17 @@ mod tests {
     use rand::Rng;
     use rand_chacha::ChaCha8Rng;
 
-    /// A piece of work: its kind, its plan, what it takes.
-    type Piece = (Work, f64, f64);
-
     /// Pieces one after the other on threads, then a report; (elapsed, estimate) after each, and how long all takes.
     fn run(
         pieces: &[Piece],
         n_threads: usize,
         (planned_s, report_s): (f64, f64),
     ) -> (Vec<[f64; 2]>, f64) {
-        let mut work: Vec<(Work, f64)> = pieces
-            .iter()
-            .map(|&(kind, planned, _)| (kind, planned))
-            .collect();
-        work.push((Work::Report, planned_s));
+        let mut work: Vec<Piece> = pieces.iter().map(|(piece, _)| *piece).collect();
+        work.push(piece(Work::Report, 0, planned_s));
         let mut left = TimeLeft::new(&work, n_threads);
         // When each thread is free, and what it does until then.
-        let mut threads: Vec<(f64, Option<Piece>)> = vec![(0.0, None); n_threads];
+        let mut threads: Vec<(f64, Option<(Piece, f64)>)> = vec![(0.0, None); n_threads];
         let mut told = Vec::new();
         let mut next = pieces.iter();
         let mut now = 0.0;
@@ -134,12 +174,12 @@ mod tests {
             .filter(|&thread| threads[thread].0.is_finite())
         {
             now = threads[thread].0;
-            if let Some((kind, planned_s, took_s)) = threads[thread].1.take() {
-                left.worked(kind, planned_s, took_s);
+            if let Some((piece, took_s)) = threads[thread].1.take() {
+                left.worked(&piece, took_s);
                 told.push([now, left.left_s(now)]);
             }
             threads[thread] = match next.next() {
-                Some(piece) => (now + piece.2, Some(*piece)),
+                Some(piece) => (now + piece.1, Some(*piece)),
                 None => (f64::INFINITY, None),
             };
         }
@@ -156,22 +196,37 @@ mod tests {
         errors.fold(0.0, f64::max)
     }
 
+    fn piece(kind: Work, place: usize, planned_s: f64) -> Piece {
+        Piece {
+            kind,
+            place,
+            planned_s,
+        }
+    }
+
     /// Arrays one after the other, each with touches, and in each trial measuring and three classifiers with several m. What
-    /// they take is what was planned, times a factor a kind, times chance.
-    fn study(rng: &mut ChaCha8Rng, n_trials: usize, factor: impl Fn(Work) -> f64) -> Vec<Piece> {
+    /// they take is what was planned, times a factor a kind, times one a place, times chance.
+    fn study(
+        rng: &mut ChaCha8Rng,
+        n_trials: usize,
+        factor: impl Fn(Work) -> f64,
+    ) -> Vec<(Piece, f64)> {
+        let mut chance = |spread: f64| -> f64 { rng.gen_range(-spread..spread).exp() };
+        let of_place: Vec<f64> = (0..40).map(|_| chance(0.4)).collect();
         let mut pieces = Vec::new();
-        for array in [1.0, 4.0] {
-            let mut add = |kind: Work, planned_s: f64| {
-                let chance: f64 = rng.gen_range(-0.5..0.5);
-                pieces.push((kind, planned_s, planned_s * factor(kind) * chance.exp()));
+        for (array, size) in [(0, 1.0), (1, 4.0)] {
+            let mut add = |kind: Work, place: usize, planned_s: f64| {
+                let took_s = planned_s * factor(kind) * of_place[place] * chance(0.2);
+                pieces.push((piece(kind, place, planned_s), took_s));
             };
-            (0..40).for_each(|_| add(Work::Touch, 0.02 * array));
+            (0..40).for_each(|_| add(Work::Touch, array, 0.02 * size));
             for _ in 0..n_trials {
-                add(Work::Measure, 0.3 * array);
-                for m in [1.0, 4.0, 16.0] {
-                    add(Work::Learn(ClassifierKind::LinearSvm), 0.1 * m);
-                    add(Work::Learn(ClassifierKind::RbfSvm), 0.3 * m);
-                    add(Work::Learn(ClassifierKind::KNearest), 0.01 * m);
+                add(Work::Measure, 2 + array, 0.3 * size);
+                for (place, m) in [(0, 1.0), (1, 4.0), (2, 16.0)] {
+                    let place = 4 + 3 * array + place;
+                    add(Work::Learn(ClassifierKind::LinearSvm), place, 0.1 * m);
+                    add(Work::Learn(ClassifierKind::RbfSvm), 10 + place, 0.3 * m);
+                    add(Work::Learn(ClassifierKind::KNearest), 20 + place, 0.01 * m);
                 }
             }
         }
@@ -232,11 +287,11 @@ mod tests {
 
     #[test]
     fn nothing_is_left_at_the_end_but_the_report() {
-        let work = [(Work::Touch, 4.0), (Work::Report, 1.5)];
+        let work = [piece(Work::Touch, 0, 4.0), piece(Work::Report, 0, 1.5)];
         let mut left = TimeLeft::new(&work, 1);
-        left.worked(Work::Touch, 4.0, 9.0);
+        left.worked(&work[0], 9.0);
         assert_eq!(left.left_s(9.0), 1.5);
-        left.worked(Work::Report, 1.5, 1.0);
+        left.worked(&work[1], 1.0);
         assert_eq!(left.left_s(10.0), 0.0);
     }
 }

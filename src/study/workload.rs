@@ -1,24 +1,20 @@
 //! The work of a run in planned processor-seconds: what a listener needs to say how long it still takes.
 
-use super::estimate::{family_s, touch_s};
+use super::estimate::{family_s, measure_s, touch_s};
+use super::job::Job;
 use super::plan::Plan;
 use super::progress::{Progress, Silent};
 use super::runner::{Manner, Run};
 use super::sweep::Sweep;
 use super::table::Cell;
-use super::time_left::Work;
+use super::time_left::{Piece, Work};
 use super::touch_set::TouchSet;
 use crate::world::Patch;
 use std::sync::Mutex;
 use std::time::Instant;
 
 /// What [`run_with`](super::run_with) will do: for [`Progress::expect`]. What a journal has is not done again.
-pub fn workload(
-    plan: &Plan,
-    sweep: &Sweep,
-    touched: &dyn TouchSet,
-    manner: Manner,
-) -> Vec<(Work, f64)> {
+pub fn workload(plan: &Plan, sweep: &Sweep, touched: &dyn TouchSet, manner: Manner) -> Vec<Piece> {
     let run = Run {
         plan,
         sweep,
@@ -26,7 +22,6 @@ pub fn workload(
         progress: &Silent,
         manner,
     };
-    let n_touches = sweep.labels.len();
     let mut work = Vec::new();
     for (array, patch) in plan.arrays.iter().enumerate() {
         for &n_frames in &plan.frames {
@@ -34,10 +29,10 @@ pub fn workload(
             if jobs.is_empty() {
                 continue;
             }
-            work.push((Work::Touch, touch_s(patch, touched, n_touches, n_frames)));
+            work.push(run.touching(patch, n_frames));
             for job in &jobs {
                 for (n_measurements, families) in job.batches() {
-                    work.push((Work::Measure, job.measuring_s(n_measurements)));
+                    work.push(job.measuring(n_measurements, &families));
                     work.extend(families.into_iter().map(|family| run.learning(family)));
                 }
             }
@@ -47,29 +42,58 @@ pub fn workload(
 }
 
 impl Run<'_> {
-    /// A family in one trial, as work.
-    pub fn learning(&self, family: &[Cell]) -> (Work, f64) {
+    /// All touches on an array.
+    fn touching(&self, patch: &Patch, n_frames: usize) -> Piece {
+        let n_touches = self.sweep.labels.len();
+        Piece {
+            kind: Work::Touch,
+            place: n_frames * patch.grid.n_taxels(),
+            planned_s: touch_s(patch, self.touched, n_touches, n_frames),
+        }
+    }
+
+    /// A family in one trial.
+    pub fn learning(&self, family: &[Cell]) -> Piece {
         let n_objects = self.touched.class_names().len();
-        let planned_s = family_s(self.plan, family, n_objects, self.sweep.labels.len());
-        (Work::Learn(family[0].classifier), planned_s)
+        let n_touches = self.sweep.labels.len();
+        Piece {
+            kind: Work::Learn(family[0].classifier),
+            place: family[0].cell,
+            planned_s: family_s(self.plan, family, n_objects, n_touches),
+        }
+    }
+}
+
+impl Job<'_> {
+    /// To measure all touches once, for these families.
+    pub fn measuring(&self, n_measurements: usize, families: &[&[Cell]]) -> Piece {
+        let Run { plan, sweep, .. } = self.run;
+        Piece {
+            kind: Work::Measure,
+            place: families[0][0].cell,
+            planned_s: measure_s(plan, self.group, sweep.labels.len(), n_measurements),
+        }
     }
 }
 
 /// Tells touches as they are made, and what they were planned to take and took: all threads make them.
 pub struct TouchMeter<'a> {
     progress: &'a dyn Progress,
-    planned_s: f64,
+    /// One touch.
+    piece: Piece,
     told: Mutex<Instant>,
 }
 
 impl<'a> TouchMeter<'a> {
     /// For all touches on an array.
     pub fn new(run: &Run<'a>, patch: &Patch, n_frames: usize) -> Self {
-        let n_touches = run.sweep.labels.len();
-        let all_s = touch_s(patch, run.touched, n_touches, n_frames);
+        let all = run.touching(patch, n_frames);
         Self {
             progress: run.progress,
-            planned_s: all_s / n_touches.max(1) as f64,
+            piece: Piece {
+                planned_s: all.planned_s / run.sweep.labels.len().max(1) as f64,
+                ..all
+            },
             told: Mutex::new(Instant::now()),
         }
     }
@@ -85,8 +109,12 @@ impl Progress for TouchMeter<'_> {
         if let Ok(mut told) = self.told.lock() {
             let took_s = told.elapsed().as_secs_f64() * rayon::current_num_threads() as f64;
             *told = Instant::now();
-            self.progress
-                .worked(Work::Touch, n as f64 * self.planned_s, took_s);
+            let planned_s = n as f64 * self.piece.planned_s;
+            let piece = Piece {
+                planned_s,
+                ..self.piece
+            };
+            self.progress.worked(&piece, took_s);
         }
     }
 

@@ -1,4 +1,5 @@
-//! Throws broken files at a reader: valid ones, mutated; it must answer, soon, in little memory, with a value or a sentence.
+//! Throws broken files at a reader: valid ones, mutated; it must answer, soon, in little memory (20 bytes for one
+//! of its input, or as many as it states a reason for), with a value or a sentence.
 //!
 //! A run of the tests tries as many inputs a reader as take a few seconds, the same in every run. BUBBLETOUCH_FUZZ_SECONDS=600
 //! goes on for as long a reader, from BUBBLETOUCH_FUZZ_SEED on. An input that a reader stumbles over is written to the folder of
@@ -25,19 +26,17 @@ pub struct Target<'a> {
     pub words: &'static [&'static str],
     /// Mutated inputs in a run of the tests: as many as take a few seconds.
     pub n_inputs: usize,
-    /// Bytes that it may hold beside 20 times its input; why, at the place where the target is made.
-    pub spare_bytes: usize,
+    /// Bytes that it may hold for one of its input, and beside these; why, if it is more than usual, at the place where the
+    /// target is made.
+    pub most_bytes: (usize, usize),
     /// Reads an input.
     pub read: &'a dyn Fn(&[u8]) -> bubbletouch::Result<()>,
 }
 
-/// What any reader may hold beside 20 times its input: buffers of the standard library, and sentences.
-pub const SPARE: usize = 1 << 18;
-
 /// A mutated input is not longer.
 const LONGEST: usize = 300_000;
 /// The longest sentence.
-const LONGEST_ERROR: usize = 2_000;
+const LONGEST_ERROR: usize = 5_000;
 /// More memory than this ends the process, before it ends the machine.
 const MOST_BYTES: usize = 1 << 30;
 /// Inputs that brought something new, kept as starting points.
@@ -123,7 +122,8 @@ impl Target<'_> {
         if took.as_secs_f64() > allowed {
             self.stumbled(&kept, &format!("took {took:?} for {} bytes", input.len()));
         }
-        let most = 20 * input.len() + self.spare_bytes;
+        let (times, spare) = self.most_bytes;
+        let most = times * input.len() + spare;
         if peak > most {
             self.stumbled(&kept, &format!("held {peak} bytes for {}", input.len()));
         }
