@@ -20,6 +20,7 @@ mod run_object_detail;
 mod run_reconstruction;
 mod run_stability;
 mod run_whole_body;
+mod shell;
 mod simulate;
 mod slurm;
 mod slurm_jobs;
@@ -75,6 +76,10 @@ enum Command {
     Recording(recording::Args),
     /// List the built-in objects, or draw one
     Objects(objects::Args),
+    /// Write completions for a shell to standard output
+    Completions(shell::CompletionArgs),
+    /// Write the manual page, or those of all subcommands
+    Man(shell::ManArgs),
 }
 
 /// Parses the command line and does what it says.
@@ -95,5 +100,7 @@ pub fn dispatch() -> Result<()> {
         Some(Command::Press(args)) => press::press(&args),
         Some(Command::Recording(args)) => recording::recording(&args),
         Some(Command::Objects(args)) => objects::objects(&args),
+        Some(Command::Completions(args)) => shell::completions(&args),
+        Some(Command::Man(args)) => shell::man(&args),
     }
 }

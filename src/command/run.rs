@@ -16,10 +16,11 @@ use bubbletouch::report::{headlines, results, terminal};
 use bubbletouch::study::journal::Identity;
 use bubbletouch::study::memory::peak_memory;
 use bubbletouch::study::provenance::{MANIFEST_FILE, Manifest, RunFacts};
-use bubbletouch::study::{Manner, Outcome, Part, Shard, StudyKind, n_left, run_with};
+use bubbletouch::study::time_left::{Piece, Work};
+use bubbletouch::study::{Manner, Outcome, Part, Shard, StudyKind, n_left, run_with, workload};
 use bubbletouch::{Error, Result};
 use std::path::{Path, PathBuf};
-use std::time::SystemTime;
+use std::time::{Instant, SystemTime};
 
 #[derive(clap::Args)]
 pub struct Args {
@@ -136,6 +137,9 @@ fn run_recognition(args: &Args, folder: &Path) -> Result<()> {
         at_once: memory.at_once,
     };
     let progress = args.listener.progress();
+    let report = report_work(&loaded, args.shard);
+    let work = workload(&loaded.plan, &loaded.sweep, loaded.touched.as_ref(), manner);
+    progress.expect(&[&work[..], &[report]].concat());
     let outcome = run_with(
         &loaded.plan,
         &loaded.sweep,
@@ -162,7 +166,9 @@ fn run_recognition(args: &Args, folder: &Path) -> Result<()> {
         n_before: n_all - n_left,
     };
     progress.stage("report", 1);
+    let start = Instant::now();
     finished.write()?;
+    progress.worked(&report, start.elapsed().as_secs_f64());
     progress.advance(1);
     progress.finish(&format!("{:.1} s", seconds_since(started)));
     if args.is_demonstration {
@@ -170,6 +176,19 @@ fn run_recognition(args: &Args, folder: &Path) -> Result<()> {
     }
     finished.tell(args.listener);
     failures(&outcome, folder)
+}
+
+/// What a run does when all cells are there; a shard does nothing then.
+fn report_work(loaded: &LoadedStudy, shard: Option<Shard>) -> Piece {
+    let cells: Vec<_> = loaded.sweep.cells().collect();
+    Piece {
+        kind: Work::Report,
+        place: 0,
+        planned_s: match shard {
+            Some(_) => 0.0,
+            None => results::planned_s(&cells),
+        },
+    }
 }
 
 /// What the results of a study depend on.

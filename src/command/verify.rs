@@ -4,7 +4,7 @@ use super::memory_args::MemoryArgs;
 use super::output::packings_beside;
 use super::study_args::StudyArgs;
 use bubbletouch::random::Seed;
-use bubbletouch::report::csv_tables::{read_tables, repeatable_hashes, to_csv};
+use bubbletouch::report::csv_tables::{read_tables, sha256_of, to_csv};
 use bubbletouch::report::progress;
 use bubbletouch::study::journal::Journal;
 use bubbletouch::study::provenance::{MANIFEST_FILE, Manifest, SOURCE};
@@ -35,7 +35,7 @@ pub struct Args {
 pub fn verify(args: &Args) -> Result<()> {
     let folder = &args.results;
     let tables = read_tables(folder)?;
-    check_manifest(args, &tables)?;
+    check_manifest(args)?;
     let study = StudyArgs {
         study: folder.join("study.toml"),
         objects: None,
@@ -87,14 +87,14 @@ pub fn verify(args: &Args) -> Result<()> {
 }
 
 /// An error if a table is not what the manifest says; a note if the program is another.
-fn check_manifest(args: &Args, tables: &Tables) -> Result<()> {
+fn check_manifest(args: &Args) -> Result<()> {
     let path = args.results.join(MANIFEST_FILE);
     let text = std::fs::read_to_string(&path).map_err(|e| Error::io(&path, "read", e))?;
     let manifest: Manifest = serde_json::from_str(&text)
         .map_err(|e| Error::input(path.display(), e, "a manifest of this program"))?;
-    for (name, hash) in repeatable_hashes(tables)? {
-        if manifest.tables_sha256.get(&name) != Some(&hash) {
-            let place = args.results.join(name);
+    for (name, hash) in &manifest.tables_sha256 {
+        let place = args.results.join(name);
+        if sha256_of(&place)? != *hash {
             let allowed = "the table that the manifest names by its SHA-256";
             return Err(Error::input(
                 place.display(),

@@ -5,6 +5,8 @@ pub mod statistics {}
 
 #[doc = include_str!("memory_and_disk.md")]
 pub mod memory_and_disk {}
+#[doc = include_str!("events.md")]
+pub mod events {}
 
 #[doc = include_str!("many_machines.md")]
 pub mod many_machines {}

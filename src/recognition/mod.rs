@@ -40,6 +40,7 @@
 use serde::{Deserialize, Serialize};
 
 mod between;
+pub mod bootstrap;
 pub mod choice;
 pub mod class_model;
 mod class_weights;
@@ -86,6 +87,7 @@ pub mod svm_model;
 pub mod trained_classifier;
 mod training;
 mod unbeaten;
+pub mod variance;
 mod voting;
 
 /// A classifier that a study can sweep.

@@ -44,6 +44,7 @@ pub mod reconstruction_results;
 pub mod reconstruction_text;
 pub mod recording;
 pub mod results;
+pub mod run_clock;
 pub mod run_differences;
 pub mod scene_files;
 pub mod scene_summary;

@@ -80,16 +80,12 @@ impl Estimate {
         let n_touches = sweep.labels.len();
         let n_threads = rayon::current_num_threads();
         let n_trials = plan.spec.trials;
-        let taxels = |group: &Group| plan.arrays[group.array].grid.n_taxels() as f64;
-        let largest = |group: &Group| group.projected().into_iter().max().unwrap_or(0) as f64;
-        let place_s = touched.place_s();
-        let n_presses = plan.frames.iter().sum::<usize>() as f64;
-        let press_s =
-            |patch: &Patch| place_s + CLEAR_TAXEL_S * (n_touches * patch.grid.n_taxels()) as f64;
-        let simulate_s = n_presses * plan.arrays.iter().map(press_s).sum::<f64>();
-        let read_s = |g: &Group| {
-            let n_frames = (n_touches * g.frames) as f64;
-            n_frames * taxels(g) * (SIGNAL_TAXEL_S + PROJECT_S * largest(g))
+        let n_presses = plan.frames.iter().sum::<usize>();
+        let arrays = plan.arrays.iter();
+        let simulate_s = arrays.map(|patch| touch_s(patch, touched, n_touches, n_presses));
+        let read_s = |g: &Group| -> f64 {
+            let projected = g.projected().into_iter();
+            projected.map(|m| measure_s(plan, g, n_touches, m)).sum()
         };
         // Of the cells that share a fit, the first.
         let fits = || {
@@ -105,7 +101,7 @@ impl Estimate {
             n_trials,
             n_fits: fits().count(),
             memory_bytes: memory.most_bytes,
-            simulate_s,
+            simulate_s: simulate_s.sum(),
             measure_s: n_trials as f64 * sweep.groups.iter().map(read_s).sum::<f64>(),
             recognise_s: n_trials as f64
                 * fits()
@@ -119,6 +115,36 @@ impl Estimate {
     pub fn wall_s(&self) -> f64 {
         (self.simulate_s + self.measure_s + self.recognise_s) / self.n_threads as f64
     }
+}
+
+/// Processor-seconds to make all touches on an array, so many frames each.
+pub(super) fn touch_s(
+    patch: &Patch,
+    touched: &dyn TouchSet,
+    n_touches: usize,
+    n_frames: usize,
+) -> f64 {
+    let clear_s = CLEAR_TAXEL_S * (n_touches * patch.grid.n_taxels()) as f64;
+    n_frames as f64 * (touched.place_s() + clear_s)
+}
+
+/// Processor-seconds to read and project all frames of a group once.
+pub(super) fn measure_s(
+    plan: &Plan,
+    group: &Group,
+    n_touches: usize,
+    n_measurements: usize,
+) -> f64 {
+    let n_taxels = plan.arrays[group.array].grid.n_taxels();
+    let n_read = (n_touches * group.frames * n_taxels) as f64;
+    n_read * (SIGNAL_TAXEL_S + PROJECT_S * n_measurements as f64)
+}
+
+/// Processor-seconds to fit and test a family in one trial.
+pub(super) fn family_s(plan: &Plan, family: &[Cell], n_objects: usize, n_touches: usize) -> f64 {
+    let fits = family.chunk_by(|a, b| a.c == b.c);
+    fits.map(|cells| recognise_s(plan, &cells[0], n_objects, n_touches))
+        .sum()
 }
 
 /// The fits of a family with one C in one trial, and the prediction of every test touch.

@@ -146,12 +146,13 @@ pub fn measure_group(
 ) -> Result<Measurements> {
     let patch = &plan.arrays[group.array];
     let seed = Seed::new(plan.spec.seed);
+    let drawn = plan.repeats.projection(trial) as u64;
     let trial = trial as u64;
     let projection = Projection::new(
         group.ensemble,
         (patch.grid.ny, patch.grid.nx),
         n_measurements,
-        &seed.named("projection").numbered(trial),
+        &seed.named("projection").numbered(drawn),
     )?;
     let skins = skins(plan, group, trial);
     let chains: Vec<Chain> = skins

@@ -14,6 +14,7 @@ use super::sweep::{Group, Sweep};
 use super::table::{Cell, StageTime, Tables};
 use super::tabulate::tabulate;
 use super::touch_set::TouchSet;
+use super::workload::TouchMeter;
 use crate::error::Result;
 use crate::random::Seed;
 use crate::signal::{Noise, SignalStep};
@@ -183,7 +184,8 @@ impl<'a> Run<'a> {
         let name = in_frames(&format!("touch {}", describe(patch)), n_frames);
         self.progress.stage(&name, n_touches as u64);
         let storage = self.manner.storage;
-        let frames = storage.frames(self.touched, (patch, n_frames), self.progress)?;
+        let meter = TouchMeter::new(self, patch, n_frames);
+        let frames = storage.frames(self.touched, (patch, n_frames), &meter)?;
         let simulated = Simulated {
             n_missed: frames.facts.n_missed,
             n_saturated: frames.facts.n_saturated,
@@ -199,7 +201,7 @@ impl<'a> Run<'a> {
     }
 
     /// Families of an array that are to be done, by trial and group.
-    fn jobs(&self, array: usize, n_frames: usize) -> Vec<Job<'a>> {
+    pub fn jobs(&self, array: usize, n_frames: usize) -> Vec<Job<'a>> {
         let mut jobs = Vec::new();
         for (group, trial, families) in pieces(self.plan, self.sweep, self.manner.part) {
             if (group.array, group.frames) != (array, n_frames) {

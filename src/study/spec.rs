@@ -30,6 +30,10 @@ pub struct StudySpec {
     /// How often each cell is repeated with a new split, projection and noise.
     #[serde(default = "one")]
     pub trials: usize,
+    /// Instead of a projection of its own for each trial: so many projections, each with each of `trials` / so many splits. It
+    /// tells what the projection does to the accuracy from what the split does (`variance.csv`).
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub projections_per_split: Option<usize>,
     /// What is touched.
     #[serde(default, skip_serializing_if = "is_default")]
     pub objects: ObjectsSpec,
