@@ -15,6 +15,7 @@ mod output;
 mod plan;
 mod press;
 mod recording;
+mod report;
 mod run;
 mod run_object_detail;
 mod run_reconstruction;
@@ -54,6 +55,8 @@ enum Command {
     Merge(merge::Args),
     /// Run a study as an array of Slurm jobs, and the merge after them; what failed is submitted again by the same command
     Slurm(slurm::Args),
+    /// Write the charts and the page of a folder of results again, from its tables
+    Report(report::Args),
     /// Say what moved between two folders of results, and whether chance explains it
     Compare(compare::Args),
     /// Run a few cells of a folder of results again, and say whether they are the same bytes
@@ -89,6 +92,7 @@ pub fn dispatch() -> Result<()> {
         Some(Command::Run(args)) => run::run(&args),
         Some(Command::Merge(args)) => merge::merge(&args),
         Some(Command::Slurm(args)) => slurm::slurm(&args),
+        Some(Command::Report(args)) => report::report(&args),
         Some(Command::Compare(args)) => compare::compare(&args),
         Some(Command::Verify(args)) => verify::verify(&args),
         Some(Command::Cache(args)) => cache::cache(&args),

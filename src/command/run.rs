@@ -1,6 +1,6 @@
 //! `bubbletouch run`: a study from its file to its folder of results.
 
-use super::about_study::report_page;
+use super::about_study::{add_manifest, add_touches, command_line, limits, page_of_spec};
 use super::listener::Listener;
 use super::memory_args::MemoryArgs;
 use super::output::{packings_beside, terminal_width};
@@ -216,16 +216,25 @@ impl FinishedStudy<'_> {
     /// Writes tables, charts, the page, the study and the manifest.
     pub fn write(&self) -> Result<()> {
         let tables = &self.outcome.tables;
-        let page = report_page(
-            self.loaded,
-            self.outcome,
-            self.args,
-            seconds_since(self.started),
-        )?;
-        results::write_all(self.folder, tables, &page)?;
+        let manifest = self.manifest()?;
         let spec = &self.loaded.plan.spec;
+        let mut page = page_of_spec(spec, &self.loaded.name);
+        page.limits = limits(self.loaded, self.outcome);
+        add_touches(&mut page, self.loaded)?;
+        add_manifest(&mut page, manifest.clone());
+        page.wall_s = Some(seconds_since(self.started));
+        results::write_all(self.folder, tables, &page)?;
         write_bytes(&self.folder.join("study.toml"), spec.to_toml().as_bytes())?;
+        let manifest = manifest.to_json();
+        write_bytes(&self.folder.join(MANIFEST_FILE), manifest.as_bytes())
+    }
+
+    fn manifest(&self) -> Result<Manifest> {
+        let spec = &self.loaded.plan.spec;
+        let tables = &self.outcome.tables;
         let facts = RunFacts {
+            study: self.loaded.name.clone(),
+            command: command_line(self.args),
             started: self.started,
             seed: spec.seed,
             n_cells: self.loaded.sweep.n_cells(),
@@ -234,8 +243,7 @@ impl FinishedStudy<'_> {
             n_failed: tables.failures.len(),
             tables_sha256: repeatable_hashes(tables)?,
         };
-        let manifest = Manifest::new(self.identity, facts).to_json();
-        write_bytes(&self.folder.join(MANIFEST_FILE), manifest.as_bytes())
+        Ok(Manifest::new(self.identity, facts))
     }
 
     /// Says on standard output what was found.

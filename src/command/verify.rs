@@ -88,10 +88,10 @@ pub fn verify(args: &Args) -> Result<()> {
 
 /// An error if a table is not what the manifest says; a note if the program is another.
 fn check_manifest(args: &Args) -> Result<()> {
-    let path = args.results.join(MANIFEST_FILE);
-    let text = std::fs::read_to_string(&path).map_err(|e| Error::io(&path, "read", e))?;
-    let manifest: Manifest = serde_json::from_str(&text)
-        .map_err(|e| Error::input(path.display(), e, "a manifest of this program"))?;
+    let manifest = Manifest::read(&args.results)?.ok_or_else(|| {
+        let path = args.results.join(MANIFEST_FILE);
+        Error::input(path.display(), "is missing", "the manifest of a run")
+    })?;
     for (name, hash) in &manifest.tables_sha256 {
         let place = args.results.join(name);
         if sha256_of(&place)? != *hash {
