@@ -103,8 +103,8 @@
 //! threads, printing or global state. Threads live in `study`, and in `whole_body` for large touches; files in `study`, `scene`
 //! (what a scene names) and `report`.
 //!
-//! The [`guide`] explains the [statistics](guide::statistics) of a study and how to run one on [many
-//! machines](guide::many_machines).
+//! The [`guide`] explains the [statistics](guide::statistics) of a study, how to run one on [many
+//! machines](guide::many_machines), and what happens at the [limits](guide::limits) of every method.
 //!
 //! # Sources
 //!

@@ -14,6 +14,7 @@ mod plan;
 mod press;
 mod recording;
 mod run;
+mod run_breaking_points;
 mod run_object_detail;
 mod run_reconstruction;
 mod run_stability;

@@ -3,5 +3,8 @@
 #[doc = include_str!("statistics.md")]
 pub mod statistics {}
 
+#[doc = include_str!("limits.md")]
+pub mod limits {}
+
 #[doc = include_str!("many_machines.md")]
 pub mod many_machines {}
