@@ -17,6 +17,7 @@ mod press;
 mod recording;
 mod report;
 mod run;
+mod run_breaking_points;
 mod run_object_detail;
 mod run_reconstruction;
 mod run_stability;

@@ -4,6 +4,7 @@ use super::about_study::{add_manifest, add_touches, command_line, limits, page_o
 use super::listener::Listener;
 use super::memory_args::MemoryArgs;
 use super::output::{packings_beside, terminal_width};
+use super::run_breaking_points::run_breaking_points;
 use super::run_object_detail::run_object_detail;
 use super::run_reconstruction::run_reconstruction;
 use super::run_stability::run_stability;
@@ -101,6 +102,7 @@ pub fn run(args: &Args) -> Result<()> {
         StudyKind::Recognition => run_recognition(args, &folder),
         StudyKind::Reconstruction => run_reconstruction(&args.study, args.listener, &folder),
         StudyKind::ObjectDetail => run_object_detail(&args.study, args.listener, &folder),
+        StudyKind::BreakingPoints => run_breaking_points(&args.study, args.listener, &folder),
         StudyKind::Stability => run_stability(&args.study, args.listener, &folder),
         StudyKind::WholeBody => run_whole_body(&args.study, args.listener, &folder),
     }

@@ -10,6 +10,8 @@
 
 pub mod answer;
 pub mod axis;
+mod breaking_points_charts;
+pub mod breaking_points_results;
 mod canvas;
 pub mod chart;
 pub mod chart_plan;

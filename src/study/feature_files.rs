@@ -3,7 +3,7 @@
 //! | file | holds |
 //! |---|---|
 //! | `features.npy` | n × m, f64: the measurements of every touch, before scaling |
-//! | `labels.npy` | n, i64: the object's number |
+//! | `labels.npy` | n, i64: the object's number (of mislabelled training touches another's) |
 //! | `train.npy` | i64: the rows that the trial trains on, in its order; a prefix is a smaller training set |
 //! | `test.npy` | i64: the rows that it tests, ascending |
 //! | `objects.csv` | one row an object: number, name |
@@ -87,7 +87,7 @@ pub fn cell_features(
     let all: Vec<usize> = (0..sweep.labels.len()).collect();
     let features = measured.features(cell, &all);
     Ok(FeatureSet {
-        data: dataset(features, sweep.labels.clone())?,
+        data: dataset(features, sweep.learned_labels(plan, (cell, trial), &split)?)?,
         split,
     })
 }

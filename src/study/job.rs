@@ -110,6 +110,7 @@ impl<'a> Job<'a> {
             plan,
             sweep,
             measurements,
+            tested: measurements,
             number: self.trial,
         };
         if manner.fail_fast {

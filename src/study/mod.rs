@@ -7,6 +7,7 @@
 //! projection is drawn from its own named stream, and sums are taken in a fixed order.
 
 mod axis;
+pub mod breaking_points;
 mod check;
 mod compare_runs;
 mod content_hash;
@@ -34,6 +35,7 @@ mod plan_human;
 mod plan_learning;
 mod plan_scene;
 mod plan_signal;
+mod plan_training;
 pub mod progress;
 pub mod provenance;
 mod published;
