@@ -12,6 +12,8 @@ mod objects_show;
 mod output;
 mod plan;
 mod press;
+mod press_place;
+mod press_poses;
 mod recording;
 mod run;
 mod run_object_detail;

@@ -6,6 +6,7 @@
 //! Threads live here. Whatever their number, a study's tables are the same bytes, times apart: every touch, split, noise and
 //! projection is drawn from its own named stream, and sums are taken in a fixed order.
 
+pub mod advice;
 mod axis;
 mod check;
 mod compare_runs;
