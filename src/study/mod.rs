@@ -45,6 +45,7 @@ mod spec;
 mod spec_human;
 mod spec_scene;
 mod spec_signal;
+pub mod speed_accuracy;
 mod splits;
 pub mod stability;
 mod summary;
@@ -70,6 +71,7 @@ pub use object_files::{
     MeshUse, NamedMesh, load_mesh, load_named_meshes, load_objects, read_mesh_file,
 };
 pub use packing_cache::{CachedPacking, PackingCache};
+pub(crate) use pareto::{Choice, unbeaten};
 pub use part::{Part, n_left};
 pub use plan::{Amount, Plan, SplitKind, SplitPlan, millimetres};
 pub use plan_human::HumanTouchPlan;
