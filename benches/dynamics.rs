@@ -4,14 +4,10 @@
 //! the timed part.
 
 use bubbletouch::contact::{Workspace, press_to_travel};
-use bubbletouch::dynamics::{
-    Drive, ImplicitEuler, Integrator, SemiImplicit, System, skin_sim,
-};
+use bubbletouch::dynamics::{Drive, ImplicitEuler, Integrator, SemiImplicit, System, skin_sim};
 use bubbletouch::geometry::Pose;
 use bubbletouch::objects::{Catalogue, Model};
-use bubbletouch::world::{
-    Grid, Patch, RestPoses, Scene, SkinPatch, Taxel, Touch, VelocityPlan,
-};
+use bubbletouch::world::{Grid, Patch, RestPoses, Scene, SkinPatch, Taxel, Touch, VelocityPlan};
 use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
 use glam::DVec3;
 use std::hint::black_box;
@@ -20,6 +16,8 @@ const DT: f64 = 1e-2;
 const N_STEPS: usize = 3;
 const DEPTH: f64 = 3e-3;
 const STROKE: f64 = 5e-3;
+/// How much further objects are looked for, metres: they stay where they are.
+const REACH: f64 = 1e-6;
 
 fn patch(side: usize) -> Patch {
     let grid = Grid {
@@ -40,7 +38,9 @@ fn patch(side: usize) -> Patch {
 /// A built-in bottle within half a millimetre.
 fn bottle() -> Model {
     let catalogue = Catalogue::builtin().expect("the built-in catalogue is valid");
-    let entry = catalogue.object("mustard_bottle").expect("a built-in object");
+    let entry = catalogue
+        .object("mustard_bottle")
+        .expect("a built-in object");
     entry.build(5e-4).expect("it can be packed").model
 }
 
@@ -101,7 +101,7 @@ fn touch(c: &mut Criterion) {
             &bottle,
             pose,
             Drive::Imposed(still),
-            2.0 * STROKE,
+            REACH,
         );
         let system = system.expect("axes along z");
         let stiffest = SemiImplicit::stiffest(&system, DT, 1);

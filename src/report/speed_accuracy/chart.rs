@@ -4,7 +4,9 @@ use super::points::{ChartKind, ChartPoint};
 use crate::report::chart;
 use crate::report::colours::INK;
 use crate::report::drawing::{Align, Area, Drawing, Point, Stroke, TextStyle};
-use crate::report::legend::{Heading, LEFT, LegendEntry, MARKER_RADIUS, Mark, RIGHT, line_colour};
+use crate::report::legend::{
+    Heading, LEFT, LegendEntry, MARKER_RADIUS, Mark, RIGHT, dashes, line_colour,
+};
 use crate::report::log_scale::{LogScale, draw_y_ticks};
 use crate::report::pareto_chart::{draw_steps, paler};
 use crate::report::time_scale::{TimeScale, time_label};
@@ -14,61 +16,13 @@ const HEIGHT: f64 = 380.0;
 /// Pixels of a line of the list below.
 const LINE: f64 = 17.0;
 
-impl ChartKind {
-    /// File name without ending.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Contact => "speed_accuracy_contact",
-            Self::Decision => "speed_accuracy_decision",
-            Self::Training => "speed_accuracy_training",
-            Self::Resolution => "speed_accuracy_resolution",
-        }
-    }
-
-    /// What the chart is read as.
-    pub fn title(self) -> &'static str {
-        match self {
-            Self::Contact => "Contact: error of the deflections against the time of a touch",
-            Self::Decision => "Recognition: accuracy against the time of a decision",
-            Self::Training => "Recognition: accuracy against the time of a training",
-            Self::Resolution => "Studies: what can be told apart against the time that it takes",
-        }
-    }
-
-    fn settings(self) -> &'static str {
-        match self {
-            Self::Contact => {
-                "64 × 64 taxels unless the study says otherwise; medians over objects, on the front with quartiles; exact contact has no \
-                 error and stands at the lower edge"
-            }
-            Self::Decision => {
-                "press, noise, compression and answer of one touch, one thread; tested on the exact objects; on the front with 95 % intervals"
-            }
-            Self::Training => {
-                "one thread; tested on the exact objects; on the front with 95 % intervals"
-            }
-            Self::Resolution => {
-                "half the width of 95 % intervals: of an accuracy at one trial's test touches, and of a difference by the corrected t-test"
-            }
-        }
-    }
-
-    fn axes(self) -> (&'static str, &'static str) {
-        match self {
-            Self::Contact => (
-                "time of a touch, one thread (median)",
-                "mean deflection error, mm",
-            ),
-            Self::Decision => ("time of a decision", "accuracy"),
-            Self::Training => ("time of a training", "accuracy"),
-            Self::Resolution => ("processor time of the study", "half width of the interval"),
-        }
-    }
-}
+/// Pixels of the shelf below a logarithmic axis, on which points without error stand.
+const SHELF: f64 = 34.0;
 
 /// Values up the chart.
 enum YScale {
-    Log(LogScale),
+    /// With the place of zero, if there is one.
+    Log(LogScale, Option<f64>),
     Share(Area),
 }
 
@@ -78,12 +32,21 @@ impl YScale {
             return Self::Share(frame);
         }
         let values = points.iter().map(|point| point.value);
-        Self::Log(LogScale::over(values, frame.y + frame.height, frame.y))
+        let has_shelf = values.clone().any(|value| value == 0.0);
+        let bottom = frame.y + frame.height;
+        let (low, shelf) = match has_shelf {
+            true => (bottom - SHELF, Some(bottom - 0.5 * SHELF)),
+            false => (bottom, None),
+        };
+        Self::Log(LogScale::over(values, low, frame.y), shelf)
     }
 
     fn place(&self, value: f64) -> f64 {
         match self {
-            Self::Log(scale) => scale.place(value),
+            Self::Log(scale, shelf) => match (value == 0.0, shelf) {
+                (true, Some(place)) => *place,
+                _ => scale.place(value),
+            },
             Self::Share(frame) => chart::y_at(*frame, value),
         }
     }
@@ -160,7 +123,14 @@ impl FrontChart<'_> {
             );
         }
         let places: Vec<Point> = self.front.iter().map(|point| at(point)).collect();
-        draw_steps(&mut drawing, &places, frame);
+        let mut fronts: Vec<_> = self.front.iter().map(|point| point.front()).collect();
+        fronts.sort_by(|a, b| a.1.cmp(&b.1));
+        fronts.dedup();
+        for front in &fronts {
+            let of_it = self.front.iter().filter(|point| point.front() == *front);
+            let steps: Vec<Point> = of_it.map(|point| at(point)).collect();
+            draw_steps(&mut drawing, &steps, frame);
+        }
         for (point, &place) in self.front.iter().zip(&places) {
             self.draw_on_front(&mut drawing, point, (place, &y));
         }
@@ -185,8 +155,14 @@ impl FrontChart<'_> {
                 chart::draw_axes(drawing, frame);
                 chart::draw_y_labels(drawing, frame);
             }
-            YScale::Log(scale) => {
+            YScale::Log(scale, shelf) => {
                 draw_y_ticks(drawing, frame, *scale, &scale.ticks());
+                if let Some(place) = shelf {
+                    let edge = place - 0.5 * SHELF;
+                    drawing.line((frame.x, edge), (frame.x + frame.width, edge), dashes(1.0));
+                    let style = TextStyle::new(12).align(Align::End);
+                    drawing.text((frame.x - 9.0, place + 4.5), "exact", style);
+                }
                 let ink = Stroke::new(INK, 1.0);
                 let bottom = frame.y + frame.height;
                 drawing.line((frame.x, bottom), (frame.x + frame.width, bottom), ink);

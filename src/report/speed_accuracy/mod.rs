@@ -6,6 +6,7 @@
 mod chart;
 mod points;
 mod results;
+mod words;
 
 pub use chart::draw_front_chart;
 pub use points::{ChartKind, ChartPoint, points};

@@ -1,10 +1,9 @@
 //! Points of charts: a setting, what it costs, and what it gives.
 
-use crate::report::axis::{classifier_name, ensemble_name};
+use super::words::{chain_setting, contact_setting, way_name};
+use crate::report::axis::classifier_name;
 use crate::study::object_detail::quantile;
-use crate::study::speed_accuracy::table::{
-    ChainCell, ContactCell, ContactWay, PeerRow, SpeedAccuracyTables,
-};
+use crate::study::speed_accuracy::table::{PeerRow, SpeedAccuracyTables};
 use crate::study::{Choice, unbeaten};
 use serde::{Deserialize, Serialize};
 
@@ -41,8 +40,19 @@ pub struct ChartPoint {
     pub value_low: f64,
     /// Upper end.
     pub value_high: f64,
-    /// Whether no other point of the chart beats it: at most as dear, at least as good, and better in one of both.
+    /// Whether no other point of the chart beats it: at most as dear, at least as good, and better in one of both. (Widths of different
+    /// intervals do not compare: each group of that chart has a front of its own.)
     pub on_front: bool,
+}
+
+impl ChartPoint {
+    /// What it is compared within: its chart, and where groups do not compare, its group.
+    pub fn front(&self) -> (ChartKind, String) {
+        match self.chart {
+            ChartKind::Resolution => (self.chart, self.group.clone()),
+            _ => (self.chart, String::new()),
+        }
+    }
 }
 
 const HERE: &str = "this run";
@@ -73,12 +83,20 @@ pub fn points(tables: &SpeedAccuracyTables) -> Vec<ChartPoint> {
     points
 }
 
-/// Says of each point whether another one of its chart beats it.
+/// Says of each point whether another one beats it that it can be compared with.
 fn mark_fronts(points: &mut [ChartPoint]) {
+    let mut fronts: Vec<(ChartKind, String)> = Vec::new();
     let choices: Vec<Choice> = points
         .iter()
         .map(|point| Choice {
-            level: point.chart as usize as f64,
+            level: {
+                let front = point.front();
+                let known = fronts.iter().position(|known| *known == front);
+                if known.is_none() {
+                    fronts.push(front);
+                }
+                known.unwrap_or(fronts.len() - 1) as f64
+            },
             costs: match point.chart.more_is_better() {
                 true => [point.cost_us, -point.value],
                 false => [point.cost_us, point.value],
@@ -213,41 +231,6 @@ fn keep_first<T: PartialEq + Clone>(values: &mut Vec<T>) {
         }
         is_new
     });
-}
-
-fn way_name(way: ContactWay) -> &'static str {
-    match way {
-        ContactWay::PackedSpheres => "packed spheres",
-        ContactWay::VertexSpheres => "a sphere a vertex",
-        ContactWay::ExactMesh => "mesh, exact",
-        ContactWay::SolidMarching => "solid, exact",
-        ContactWay::TimeSteps => "quasi-static, stepped",
-        ContactWay::SemiImplicit => "semi-implicit Euler",
-        ContactWay::ImplicitEuler => "implicit Euler",
-        ContactWay::Rapier => "rapier, tuned",
-    }
-}
-
-/// `packed spheres within 0.2 mm`, `implicit Euler, steps of 1 ms`.
-fn contact_setting(cell: &ContactCell) -> String {
-    let way = way_name(cell.way);
-    match (cell.tolerance_mm, cell.dt_ms) {
-        (_, Some(dt)) => format!("{way}, steps of {dt} ms"),
-        (Some(mm), None) => format!("{way} within {mm} mm"),
-        (None, None) => way.to_owned(),
-    }
-}
-
-/// `RBF SVM, SBHE, m = 64, pitch 2 mm, spheres within 0.2 mm`.
-fn chain_setting(cell: &ChainCell) -> String {
-    format!(
-        "{}, {}, m = {}, pitch {} mm, spheres within {} mm",
-        classifier_name(cell.classifier),
-        ensemble_name(cell.ensemble),
-        cell.measurements,
-        cell.pitch_mm,
-        cell.tolerance_mm
-    )
 }
 
 #[cfg(test)]

@@ -63,14 +63,3 @@ pub fn speed_accuracy_summary(tables: &SpeedAccuracyTables, width: usize) -> Str
     }
     text
 }
-
-impl ChartKind {
-    /// What a value is, at the head of a column.
-    fn value_name(self) -> &'static str {
-        match self {
-            Self::Contact => "error, mm",
-            Self::Decision | Self::Training => "accuracy",
-            Self::Resolution => "half width",
-        }
-    }
-}

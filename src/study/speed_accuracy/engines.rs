@@ -100,7 +100,8 @@ impl Stepper<'_> {
         }
         let skin = SkinPatch::from(patch);
         let drive = Drive::Imposed(plan);
-        let reach = reading.depth + 2.0 * taxel.stroke;
+        // No further: where an object comes is found by a press so deep, and small spheres would be behind the substrate by then.
+        let reach = reading.depth;
         let system = System::new(&skin, m, self.model, start, drive, reach)?;
         let mut integrator = self.integrator(&system)?;
         let steps = Steps {

@@ -14,6 +14,7 @@
 //! The [report](crate::report::speed_accuracy) makes points of these tables, and charts of the points.
 
 mod contact;
+mod decision_times;
 mod engines;
 mod peers;
 mod plan;

@@ -3,24 +3,21 @@
 use super::plan::{RecognitionSweep, SpeedAccuracyPlan, Tolerance};
 use super::subject::{Subject, spread_evenly};
 use super::table::{ChainCell, ChainScore, ChainTime, SpeedAccuracyTables};
-use crate::contact::{Workspace, press_to_depth};
 use crate::error::{Error, Result};
-use crate::geometry::Pose;
 use crate::objects::{Model, Object};
 use crate::random::Seed;
 use crate::recognition::ClassifierKind;
-use crate::recognition::classifier::{Classifier, TrainedClassifier};
+use crate::recognition::classifier::Classifier;
 use crate::recognition::dataset::{Dataset, dataset};
 use crate::recognition::interval::Interval;
 use crate::sensing::Projection;
-use crate::signal::{Chain, Noise, NoiseUnit, Scratch, SignalStep};
+use crate::signal::{Chain, Noise, NoiseUnit, SignalStep};
 use crate::study::CONFIDENCE;
 use crate::study::measurement::{Reading, TouchToRead, measure, touches_to_read};
-use crate::study::object_detail::quantile;
 use crate::study::plan::millimetres;
 use crate::study::progress::{Progress, Silent};
 use crate::study::simulation::{TouchedObject, draw_touches, simulate_array};
-use crate::world::{Patch, Placement, Scene};
+use crate::world::{Patch, Placement};
 use ndarray::{Array1, Array2, ArrayView2, Axis};
 use rayon::prelude::*;
 use std::path::Path;
@@ -105,13 +102,13 @@ fn one_thread() -> Result<rayon::ThreadPool> {
 }
 
 /// All chains on one array and detail.
-struct Bench<'a> {
-    sweep: &'a RecognitionSweep,
-    patch: &'a Patch,
+pub(super) struct Bench<'a> {
+    pub sweep: &'a RecognitionSweep,
+    pub patch: &'a Patch,
     level: Tolerance,
-    touched: &'a [TouchedObject],
+    pub touched: &'a [TouchedObject],
     /// n_touches × n_taxels, of this detail.
-    learned: ArrayView2<'a, f32>,
+    pub learned: ArrayView2<'a, f32>,
     /// The same touches of the exact objects.
     tested: ArrayView2<'a, f32>,
     seed: Seed,
@@ -119,9 +116,9 @@ struct Bench<'a> {
 }
 
 /// Noise and a projection, ready for one touch after the other.
-struct Front {
-    chain: Chain,
-    projection: Projection,
+pub(super) struct Front {
+    pub chain: Chain,
+    pub projection: Projection,
 }
 
 impl Bench<'_> {
@@ -175,7 +172,7 @@ impl Bench<'_> {
     }
 
     /// Each touch is noisy in its own way, by its name.
-    fn to_read(&self) -> Vec<TouchToRead> {
+    pub fn to_read(&self) -> Vec<TouchToRead> {
         touches_to_read(self.touched, &self.seed.named("speed accuracy signal"))
     }
 
@@ -236,72 +233,5 @@ impl Bench<'_> {
             n_capped: classifier.n_capped(),
         };
         Ok((score, [self.time_answers(&classifier, &test)?, fit_s]))
-    }
-
-    /// Every touch that is timed: spread evenly over all.
-    fn timed(&self) -> Vec<usize> {
-        let all: Vec<usize> = (0..self.learned.nrows()).collect();
-        let chosen = spread_evenly(&all, self.sweep.spec.timed_touches);
-        chosen.into_iter().copied().collect()
-    }
-
-    /// Median microseconds of a press.
-    fn time_presses(&self) -> f64 {
-        let per_object = self.learned.nrows() / self.touched.len();
-        let scenes = self.touched.iter();
-        let scenes: Vec<Scene> = scenes
-            .map(|touched| Scene::of_one(self.patch, &touched.object.model))
-            .collect();
-        let mut workspace = Workspace::new();
-        self.median_us(&self.timed(), |touch| {
-            let touched = &self.touched[touch / per_object];
-            let place = &touched.touches[touch % per_object];
-            let pose: Pose = place.patch_from_object(&touched.rests[place.rest]);
-            let scene = &scenes[touch / per_object];
-            press_to_depth(scene, &[pose], place.depth, &mut workspace);
-        })
-    }
-
-    /// Median microseconds of noise and compression.
-    fn time_front(&self, front: &Front) -> f64 {
-        let to_read = self.to_read();
-        let mut scratch = Scratch::default();
-        let mut frame = Array2::zeros((1, self.learned.ncols()));
-        let mut row = Array2::zeros((1, front.projection.n_measurements()));
-        self.median_us(&self.timed(), |touch| {
-            let felt = self.learned.row(touch);
-            for (to, from) in frame.iter_mut().zip(felt) {
-                *to = f64::from(*from);
-            }
-            let values = frame.as_slice_mut().expect("one whole row");
-            front
-                .chain
-                .apply(values, None, &to_read[touch].seed, &mut scratch);
-            front.projection.measure_into(frame.view(), row.view_mut());
-        })
-    }
-
-    /// Median microseconds of an answer.
-    fn time_answers(&self, classifier: &TrainedClassifier, test: &Dataset) -> Result<f64> {
-        let all: Vec<usize> = (0..test.targets.len()).collect();
-        let chosen = spread_evenly(&all, self.sweep.spec.timed_touches);
-        let chosen: Vec<usize> = chosen.into_iter().copied().collect();
-        let row = |touch: usize| test.records.slice(ndarray::s![touch..touch + 1, ..]);
-        // What fails fails at once.
-        classifier.labels(row(0))?;
-        Ok(self.median_us(&chosen, |touch| {
-            classifier.labels(row(touch)).expect("rows like the first");
-        }))
-    }
-
-    /// Once over all before it counts, and once that counts.
-    fn median_us(&self, touches: &[usize], mut act: impl FnMut(usize)) -> f64 {
-        touches.iter().for_each(|&touch| act(touch));
-        let timed = touches.iter().map(|&touch| {
-            let start = Instant::now();
-            act(touch);
-            1e6 * start.elapsed().as_secs_f64()
-        });
-        quantile(&mut timed.collect::<Vec<_>>(), 0.5)
     }
 }
