@@ -7,6 +7,7 @@ use super::output::{packings_beside, terminal_width};
 use super::run_breaking_points::run_breaking_points;
 use super::run_object_detail::run_object_detail;
 use super::run_reconstruction::run_reconstruction;
+use super::run_speed_accuracy::run_speed_accuracy;
 use super::run_stability::run_stability;
 use super::run_whole_body::run_whole_body;
 use super::study_args::{LoadedStudy, StudyArgs};
@@ -104,6 +105,7 @@ pub fn run(args: &Args) -> Result<()> {
         StudyKind::ObjectDetail => run_object_detail(&args.study, args.listener, &folder),
         StudyKind::BreakingPoints => run_breaking_points(&args.study, args.listener, &folder),
         StudyKind::Stability => run_stability(&args.study, args.listener, &folder),
+        StudyKind::SpeedAccuracy => run_speed_accuracy(&args.study, args.listener, &folder),
         StudyKind::WholeBody => run_whole_body(&args.study, args.listener, &folder),
     }
 }

@@ -6,6 +6,7 @@
 //! Threads live here. Whatever their number, a study's tables are the same bytes, times apart: every touch, split, noise and
 //! projection is drawn from its own named stream, and sums are taken in a fixed order.
 
+pub mod advice;
 mod axis;
 pub mod breaking_points;
 mod check;
@@ -49,6 +50,7 @@ mod spec;
 mod spec_human;
 mod spec_scene;
 mod spec_signal;
+pub mod speed_accuracy;
 mod splits;
 pub mod stability;
 mod summary;
@@ -80,6 +82,7 @@ pub use object_files::{
     MeshUse, NamedMesh, load_mesh, load_named_meshes, load_objects, read_mesh_file,
 };
 pub use packing_cache::{CachedPacking, PackingCache};
+pub(crate) use pareto::{Choice, unbeaten};
 pub use part::{Part, n_left};
 pub use plan::{Amount, Plan, SplitKind, SplitPlan, millimetres};
 pub use plan_human::HumanTouchPlan;
