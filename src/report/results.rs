@@ -69,6 +69,20 @@ fn add_page(folder: &mut Folder, tables: &Tables, about: &ReportPage) -> Result<
     Ok(())
 }
 
+/// Seconds to draw and write all of it for these cells, as on one core of a 2-core x86-64 server.
+pub fn planned_s(cells: &[&Cell]) -> f64 {
+    let n_charts = plan_charts(cells).len();
+    let n_rasters = n_charts.min(MOST_IN_PAGE) as f64;
+    REST_S + RASTER_S * n_rasters + VECTORS_S * n_charts as f64
+}
+
+/// Seconds for a chart's PNG.
+const RASTER_S: f64 = 0.1;
+/// Seconds for a chart's SVG.
+const VECTORS_S: f64 = 0.02;
+/// Seconds for tables, touches, the confusion matrix and the page.
+const REST_S: f64 = 0.3;
+
 /// Every chart of a study: file name without ending, title, drawing.
 pub fn draw_charts(tables: &Tables) -> Vec<(String, String, Drawing)> {
     let cells: Vec<&Cell> = tables.summary.iter().map(|(cell, _)| cell).collect();

@@ -1,6 +1,10 @@
 //! The logarithmic axis of a chart of times.
 
-use crate::report::drawing::Area;
+use crate::report::colours::{GRID, INK};
+use crate::report::drawing::{Align, Area, Drawing, Stroke, TextStyle};
+use crate::report::legend::RIGHT;
+use crate::report::text_width::text_width;
+use crate::report::x_scale::TICK_SIZE;
 
 /// A logarithmic axis of time.
 pub(super) struct TimeScale {
@@ -23,6 +27,24 @@ impl TimeScale {
     pub(super) fn x(&self, seconds: f64, frame: Area) -> f64 {
         let share = (seconds / self.low).ln() / (self.high / self.low).ln();
         frame.x + share * frame.width
+    }
+
+    /// Ticks, labels and grid lines.
+    pub(super) fn draw_ticks(&self, drawing: &mut Drawing, frame: Area) {
+        let bottom = frame.y + frame.height;
+        for (seconds, is_labelled) in self.ticks(frame) {
+            let x = self.x(seconds, frame);
+            drawing.line((x, frame.y), (x, bottom), Stroke::new(GRID, 1.0));
+            drawing.line((x, bottom), (x, bottom + 5.0), Stroke::new(INK, 1.0));
+            if is_labelled {
+                let label = time_label(seconds);
+                // At the very end of the axis, half a label would leave the paper.
+                let half = text_width(&label, f64::from(TICK_SIZE)) / 2.0;
+                let middle = x.min(frame.x + frame.width + RIGHT - 2.0 - half);
+                let style = TextStyle::new(TICK_SIZE).align(Align::Middle);
+                drawing.text((middle, bottom + 19.0), &label, style);
+            }
+        }
     }
 
     /// 1, 2 and 5 of every decade within the axis (all digits of a decade that fills it), and whether there is room for each

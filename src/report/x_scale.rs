@@ -95,6 +95,7 @@ fn is_logarithmic(axis: Axis, numbers: &[f64]) -> bool {
             | Axis::Measurements
             | Axis::C
             | Axis::TrainTouches
+            | Axis::ClassImbalance
             | Axis::FusedTouches
             | Axis::Frames
     );

@@ -56,6 +56,9 @@ pub struct Manifest {
     pub started: String,
     /// Its end.
     pub ended: String,
+    /// Most bytes of memory that the last run held, where the system tells.
+    #[serde(default)]
+    pub peak_memory_bytes: Option<u64>,
     /// Cells that the last run found finished, counted once a trial.
     pub n_finished_before: usize,
     /// Root of all randomness.
@@ -72,7 +75,34 @@ pub struct Manifest {
     pub objects_sha256: BTreeMap<String, String>,
     /// SHA-256 of the tables that hold no times, by their file's name.
     pub tables_sha256: BTreeMap<String, String>,
+    /// How the intervals and p-values of the tables are made, by table and columns.
+    #[serde(default)]
+    pub methods: BTreeMap<String, String>,
 }
+
+/// The methods, by table and columns. Everything is at 95 %.
+const METHODS: [(&str, &str); 5] = [
+    (
+        "accuracy.csv, summary.csv: accuracy_low, accuracy_high",
+        "Wilson score interval of the test rows of one trial",
+    ),
+    (
+        "summary.csv: bootstrap_low, bootstrap_high",
+        "bootstrap of the mean over trials, expanded percentiles; with projections_per_split, splits and projections drawn apart",
+    ),
+    (
+        "comparison.csv: difference_low, difference_high, p_value, p_holm",
+        "corrected resampled t-test against the best cell (Nadeau, Bengio 2003); p_holm: corrected for the number of cells by Holm's method",
+    ),
+    (
+        "variance.csv: accuracy_std_low, accuracy_std_high, p_value",
+        "crossed random effects by the method of moments; modified large samples (of the rest chi-squared); F test",
+    ),
+    (
+        "bubbletouch compare: p_holm",
+        "corrected resampled t-tests, corrected for the number of cells by Holm's method",
+    ),
+];
 
 /// What a run says of itself for its manifest.
 #[derive(Clone, Debug)]
@@ -114,6 +144,7 @@ impl Manifest {
             threads: rayon::current_num_threads(),
             started: time(facts.started),
             ended: time(SystemTime::now()),
+            peak_memory_bytes: super::memory::peak_memory(),
             n_finished_before: facts.n_finished_before,
             seed: facts.seed,
             n_cells: facts.n_cells,
@@ -122,6 +153,9 @@ impl Manifest {
             study_sha256: study.hex(),
             objects_sha256: identity.objects.clone(),
             tables_sha256: facts.tables_sha256,
+            methods: METHODS
+                .map(|(columns, method)| (columns.to_owned(), method.to_owned()))
+                .into(),
         }
     }
 

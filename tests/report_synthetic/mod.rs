@@ -258,6 +258,8 @@ fn add_cell(tables: &mut Tables, cell: Cell, n_trials: usize, n_objects: usize) 
             cell.clone(),
             TrialScore {
                 trial,
+                split: None,
+                projection: None,
                 n_train: 75 * n_objects,
                 n_test,
                 n_left_out: 0,
@@ -307,6 +309,8 @@ fn add_cell(tables: &mut Tables, cell: Cell, n_trials: usize, n_objects: usize) 
             accuracy_std: (variance / (n_trials as f64 - 1.0).max(1.0)).sqrt(),
             accuracy_low,
             accuracy_high,
+            bootstrap_low: (n_trials >= 5).then_some(mean - 0.01),
+            bootstrap_high: (n_trials >= 5).then_some(mean + 0.01),
             macro_f1: mean - 0.004,
             n_capped: 0,
         },
@@ -387,6 +391,7 @@ fn add_comparison(tables: &mut Tables, n_trials: usize) {
             difference_low: several.then_some(difference - 0.01),
             difference_high: several.then_some(difference + 0.01),
             p_value: several.then_some((-100.0 * difference.abs()).exp()),
+            p_holm: None,
         });
     }
 }
