@@ -4,7 +4,7 @@ use crate::error::Result;
 use crate::report::answer::Answer;
 use crate::report::csv_tables::{LIMITS_FILE, TABLE_FILES};
 use crate::report::drawing::escape;
-use crate::report::headlines::{confused_table, published_table};
+use crate::report::headlines::{confused_table, published_table, variance_table};
 use crate::report::page::about::ReportPage;
 use crate::report::page::choices::choices_html;
 use crate::report::page::frame::{Page, Section, sentences_html};
@@ -64,6 +64,8 @@ pub fn page(about: &ReportPage, tables: &Tables, pictures: &Pictures) -> Result<
     page.add(confusion(pictures, is_live));
     page.sections
         .extend(confused_table(tables).map(|table| table.section("confused")));
+    page.sections
+        .extend(variance_table(tables).map(|table| table.section("variance")));
     page.add(Section::new(
         "settings",
         "Settings",
@@ -136,7 +138,7 @@ fn gallery(about: &ReportPage) -> Result<String> {
 
 fn cells(tables: &Tables, answer: &Answer, is_live: bool) -> Section {
     let note = "<p class=\"quiet\">“As good”: the mean accuracy lies within the interval of the best cell. “To the best” and p: a t-test \
-         paired over trials, corrected for their overlap, not for the number of cells.</p>";
+         paired over trials, corrected for their overlap; p (Holm) is corrected for the number of cells too.</p>";
     let table = live("cells", is_live, &summary_html(tables, answer));
     Section::new("cells", "All cells", format!("{note}{table}"))
 }
