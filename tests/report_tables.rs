@@ -3,7 +3,7 @@
 mod report_synthetic;
 
 use bubbletouch::report::csv_tables::{TABLE_FILES, read_tables, to_csv, write_tables};
-use bubbletouch::report::html::ReportPage;
+use bubbletouch::report::page::ReportPage;
 use bubbletouch::report::results::write_all;
 use bubbletouch::study::table::{Cell, Comparison, Tables};
 use report_synthetic::{about, add_headlines, cell, noise_cells, quickstart_cells, tables};

@@ -1,5 +1,6 @@
 //! `bubbletouch verify`: whether a folder of results comes out again.
 
+use super::memory_args::MemoryArgs;
 use super::output::packings_beside;
 use super::study_args::StudyArgs;
 use bubbletouch::random::Seed;
@@ -27,6 +28,8 @@ pub struct Args {
     /// Threads; all cores when left out
     #[arg(long, value_name = "N")]
     threads: Option<usize>,
+    #[command(flatten)]
+    memory: MemoryArgs,
 }
 
 pub fn verify(args: &Args) -> Result<()> {
@@ -41,11 +44,15 @@ pub fn verify(args: &Args) -> Result<()> {
     };
     let loaded = study.load(Some(&packings_beside(folder)))?;
     let chosen = draw(&tables, args);
+    let memory = args.memory.plan(&loaded)?;
+    let storage = args.memory.storage(folder, &memory)?;
     let manner = Manner {
         journal: &Journal::none(),
         fail_fast: true,
         retries: false,
         part: Part::Holding(&chosen),
+        storage: &storage,
+        at_once: memory.at_once,
     };
     let progress = progress::to_stderr();
     let touched = loaded.touched.as_ref();
@@ -81,10 +88,10 @@ pub fn verify(args: &Args) -> Result<()> {
 
 /// An error if a table is not what the manifest says; a note if the program is another.
 fn check_manifest(args: &Args) -> Result<()> {
-    let path = args.results.join(MANIFEST_FILE);
-    let text = std::fs::read_to_string(&path).map_err(|e| Error::io(&path, "read", e))?;
-    let manifest: Manifest = serde_json::from_str(&text)
-        .map_err(|e| Error::input(path.display(), e, "a manifest of this program"))?;
+    let manifest = Manifest::read(&args.results)?.ok_or_else(|| {
+        let path = args.results.join(MANIFEST_FILE);
+        Error::input(path.display(), "is missing", "the manifest of a run")
+    })?;
     for (name, hash) in &manifest.tables_sha256 {
         let place = args.results.join(name);
         if sha256_of(&place)? != *hash {

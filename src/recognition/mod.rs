@@ -84,6 +84,7 @@ mod seed;
 mod smo;
 mod sorted;
 pub mod split;
+pub mod spoiled;
 pub mod svm;
 pub mod svm_model;
 pub mod trained_classifier;

@@ -32,6 +32,8 @@ pub const TABLE_FILES: [&str; 10] = [
 
 /// The table of variance components, of studies that have them.
 pub const VARIANCE_FILE: &str = "variance.csv";
+/// How often limits of the model were reached, beside the tables.
+pub const LIMITS_FILE: &str = "limits.csv";
 
 /// SHA-256 of every table without times, by its file's name: the same for the same study.
 pub fn repeatable_hashes(tables: &Tables) -> Result<BTreeMap<String, String>> {

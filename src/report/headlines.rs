@@ -4,6 +4,7 @@
 use crate::report::answer::Answer;
 use crate::report::axis::short_number;
 use crate::report::drawing::escape;
+use crate::report::page::Section;
 use crate::report::terminal::{finish, ruled_table, wrap};
 use crate::study::table::{Source, Tables};
 use comfy_table::{CellAlignment, ColumnConstraint};
@@ -173,15 +174,19 @@ impl TextTable {
         format!("{}\n\n{}\n", said.join("\n"), finish(&table))
     }
 
-    /// For the page: a section.
-    pub fn html(&self) -> String {
+    /// For a page: a section.
+    pub(super) fn section(&self, id: &'static str) -> Section {
+        Section::new(id, self.title, self.html())
+    }
+
+    fn html(&self) -> String {
         let class = |is_number: bool| match is_number {
             true => " class=\"number\"",
             false => "",
         };
         let title = self.title;
         let mut html = format!(
-            "<section><h2>{title}</h2><p class=\"quiet\">{}</p><div class=\"wide words\" tabindex=\"0\" role=\"region\" \
+            "<p class=\"quiet\">{}</p><div class=\"wide words\" tabindex=\"0\" role=\"region\" \
              aria-label=\"{title}\"><table><thead><tr>",
             escape(&self.note)
         );
@@ -198,6 +203,6 @@ impl TextTable {
             }
             html += "</tr>";
         }
-        html + "</tbody></table></div></section>"
+        html + "</tbody></table></div>"
     }
 }

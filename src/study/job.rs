@@ -2,9 +2,9 @@
 
 use super::evaluation::Trial;
 use super::finished::Finished;
+use super::frames::Frames;
 use super::measurement::{Measurements, measure_group};
 use super::runner::Run;
-use super::simulation::Frames;
 use super::sweep::Group;
 use super::table::Cell;
 use crate::error::Result;
@@ -48,11 +48,11 @@ impl<'a> Job<'a> {
             measure_s += cpu_s;
             let piece = self.measuring(n_measurements, &families);
             self.run.progress.worked(&piece, cpu_s);
-            let results = families
-                .into_par_iter()
-                .map(|family| self.finish(family, measured.as_ref()))
-                .collect::<Result<Vec<_>>>()?;
-            finished.extend(results);
+            for families in families.chunks(self.run.manner.at_once.families) {
+                let families = families.par_iter();
+                let results = families.map(|family| self.finish(family, measured.as_ref()));
+                finished.extend(results.collect::<Result<Vec<_>>>()?);
+            }
         }
         Ok((finished, measure_s))
     }
@@ -110,6 +110,7 @@ impl<'a> Job<'a> {
             plan,
             sweep,
             measurements,
+            tested: measurements,
             number: self.trial,
         };
         if manner.fail_fast {

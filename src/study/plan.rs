@@ -70,6 +70,10 @@ pub struct Plan {
     pub penalties: Vec<Option<f64>>,
     /// The axis of training touches an object; `None` is all of them.
     pub train_touches: Vec<Option<usize>>,
+    /// The axis of training touches with another object's label, as a fraction; `None` without the key.
+    pub mislabelled: Vec<Option<f64>>,
+    /// The axis of class imbalance; `None` without the key.
+    pub class_imbalance: Vec<Option<f64>>,
     /// The axis of test touches that are decided on together.
     pub fused_touches: Vec<usize>,
     /// How C and γ are chosen where they are.
@@ -161,6 +165,8 @@ impl Plan {
         let fused_touches =
             check.counts("recognition.fused_touches", &spec.recognition.fused_touches)?;
         let train_touches = check.train_touches(&spec)?;
+        let mislabelled = check.mislabelled(&spec)?;
+        let class_imbalance = check.class_imbalance(&spec)?;
         let split = check.split(&spec)?;
         let repeats = check.repeats(&spec)?;
         let speed = check.speed(&spec.touches)?;
@@ -184,6 +190,8 @@ impl Plan {
             classifiers,
             penalties,
             train_touches,
+            mislabelled,
+            class_imbalance,
             fused_touches,
             choice,
             split,

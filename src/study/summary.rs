@@ -19,21 +19,24 @@ type Row = (Cell, TrialScore);
 pub fn summarise(rows: &[Row]) -> Result<Vec<(Cell, CellScore)>> {
     let mut bootstrap = Bootstrap::default();
     rows.chunk_by(|a, b| a.0.cell == b.0.cell)
-        .map(|trials| Ok((trials[0].0.clone(), score(trials, &mut bootstrap)?)))
+        .map(|trials| {
+            let scores: Vec<&TrialScore> = trials.iter().map(|(_, score)| score).collect();
+            Ok((trials[0].0.clone(), score(&scores, &mut bootstrap)?))
+        })
         .collect()
 }
 
-fn score(trials: &[Row], bootstrap: &mut Bootstrap) -> Result<CellScore> {
-    let accuracy = mean(trials, |t| t.accuracy);
-    let squares: f64 = trials
-        .iter()
-        .map(|(_, t)| (t.accuracy - accuracy).powi(2))
-        .sum();
-    let n_test = trials.iter().map(|(_, t)| t.n_test).min().unwrap_or(0);
+/// What the trials of a cell say together.
+pub fn score(trials: &[&TrialScore], bootstrap: &mut Bootstrap) -> Result<CellScore> {
+    let mean = |value: fn(&TrialScore) -> f64| {
+        trials.iter().map(|trial| value(trial)).sum::<f64>() / trials.len() as f64
+    };
+    let accuracy = mean(|t| t.accuracy);
+    let squares: f64 = trials.iter().map(|t| (t.accuracy - accuracy).powi(2)).sum();
+    let n_test = trials.iter().map(|t| t.n_test).min().unwrap_or(0);
     let n_correct = (accuracy * n_test as f64).round() as usize;
     let interval = Interval::wilson(n_correct, n_test, CONFIDENCE)?;
-    let scores: Vec<&TrialScore> = trials.iter().map(|(_, score)| score).collect();
-    let of_mean = match accuracies(&scores) {
+    let of_mean = match accuracies(trials) {
         Some(scores) => bootstrap.mean(scores.view(), CONFIDENCE)?,
         None => None,
     };
@@ -49,8 +52,8 @@ fn score(trials: &[Row], bootstrap: &mut Bootstrap) -> Result<CellScore> {
         accuracy_high: interval.high,
         bootstrap_low: of_mean.map(|interval| interval.low),
         bootstrap_high: of_mean.map(|interval| interval.high),
-        macro_f1: mean(trials, |t| t.macro_f1),
-        n_capped: trials.iter().map(|(_, t)| t.n_capped).sum(),
+        macro_f1: mean(|t| t.macro_f1),
+        n_capped: trials.iter().map(|t| t.n_capped).sum(),
     })
 }
 

@@ -77,6 +77,12 @@ pub struct Cell {
     pub c: Option<f64>,
     /// Training touches an object, at most.
     pub train_touches: usize,
+    /// Fraction of them with another object's label; only if the study has the key.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub mislabelled_fraction: Option<f64>,
+    /// How many times as many the most frequent object has as the rarest; only if the study has the key.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub class_imbalance: Option<f64>,
     /// Test touches of an object that are decided on together, by the sum of their scores.
     pub fused_touches: usize,
 }
@@ -370,6 +376,8 @@ pub(crate) mod tests {
             classifier: ClassifierKind::LinearSvm,
             c: Some(1.0),
             train_touches: 75,
+            mislabelled_fraction: None,
+            class_imbalance: None,
             fused_touches: 1,
         }
     }

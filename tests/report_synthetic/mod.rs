@@ -3,7 +3,7 @@
 
 use bubbletouch::recognition::ClassifierKind;
 use bubbletouch::recognition::features::Features;
-use bubbletouch::report::html::{Limit, ReportPage, Snapshots};
+use bubbletouch::report::page::{Limit, ReportPage, Snapshots};
 use bubbletouch::sensing::Ensemble;
 use bubbletouch::signal::NoiseUnit;
 use bubbletouch::signal::Quantity;
@@ -139,6 +139,39 @@ pub fn many_cells() -> Vec<Cell> {
                             size_mm,
                             ratio,
                             measurements: (nx as f64 * nx as f64 / ratio).ceil() as usize,
+                            ..cell()
+                        });
+                    }
+                }
+            }
+        }
+    }
+    cells
+}
+
+/// 10,000 cells: 10 noises × 5 smoothings × 5 ensembles × 5 pitches × 8 ratios.
+pub fn ten_thousand_cells() -> Vec<Cell> {
+    let mut cells = Vec::new();
+    for noise in 0..10 {
+        for smoothing in 0..5 {
+            for ensemble in [
+                Ensemble::Gaussian,
+                Ensemble::Sbhe,
+                Ensemble::BlockAverage,
+                Ensemble::Subsample,
+                Ensemble::Sparse,
+            ] {
+                for pitch in 1..6 {
+                    for ratio in 0..8 {
+                        let ratio = f64::from(1 << ratio);
+                        cells.push(Cell {
+                            noise_std: 0.01 * f64::from(noise),
+                            smoothing_mm: f64::from(smoothing),
+                            ensemble,
+                            pitch_mm: f64::from(pitch),
+                            size_mm: 64.0 * f64::from(pitch),
+                            ratio,
+                            measurements: (4096.0 / ratio) as usize,
                             ..cell()
                         });
                     }
@@ -444,5 +477,6 @@ pub fn about() -> ReportPage {
         command: "bubbletouch run experiments/quickstart.toml --seed 1 --out results/quickstart"
             .to_owned(),
         program: "bubbletouch 0.1.0".to_owned(),
+        ..ReportPage::default()
     }
 }
