@@ -99,6 +99,7 @@ fn equal_tables_give_equal_bytes_in_every_file() {
     assert_eq!(
         names[TABLE_FILES.len()..],
         [
+            "limits.csv",
             "accuracy_by_noise.png",
             "accuracy_by_noise.svg",
             "accuracy_by_noise_per_classifier.png",

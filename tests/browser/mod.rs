@@ -2,8 +2,10 @@
 // Each test file uses its part of this.
 #![allow(dead_code)]
 
+pub mod shown;
+
 use serde_json::{Value, json};
-use std::io::{Read, Write};
+use std::io::{BufRead, BufReader, Read, Write};
 use std::net::{TcpListener, TcpStream};
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
@@ -34,7 +36,7 @@ pub struct Browser {
     driver: Child,
     port: u16,
     session: String,
-    _profile: TempDir,
+    folder: TempDir,
 }
 
 impl Browser {
@@ -59,7 +61,7 @@ impl Browser {
             driver,
             port,
             session: String::new(),
-            _profile: profile,
+            folder: profile,
         };
         browser.open_session(&chromium);
         Some(browser)
@@ -77,7 +79,7 @@ impl Browser {
         let mut arguments: Vec<String> = ARGUMENTS.map(str::to_owned).into();
         arguments.push(format!(
             "--user-data-dir={}",
-            self._profile.path().display()
+            self.folder.path().join("profile").display()
         ));
         let asked = json!({ "capabilities": { "alwaysMatch": {
             "goog:loggingPrefs": { "browser": "ALL" },
@@ -86,6 +88,11 @@ impl Browser {
         let opened = self.ask("POST", "/session", Some(asked));
         let id = opened["sessionId"].as_str().expect("a session has an id");
         self.session = format!("/session/{id}");
+    }
+
+    /// A folder that lasts as long as the browser.
+    pub fn folder(&self) -> &Path {
+        self.folder.path()
     }
 
     /// Opens a file and gives the milliseconds until everything of it was there.
@@ -142,6 +149,9 @@ impl Browser {
 
     /// Clicks on the first element of a CSS selector, as a person does.
     pub fn click(&self, selector: &str) {
+        self.run(&format!(
+            "document.querySelector({selector:?}).scrollIntoView({{ block: 'center' }})"
+        ));
         let asked = json!({ "using": "css selector", "value": selector });
         let found = self.post("/element", asked);
         let id = found
@@ -201,11 +211,8 @@ impl Browser {
         );
         stream.write_all(head.as_bytes()).unwrap();
         stream.write_all(body.as_bytes()).unwrap();
-        let mut answer = Vec::new();
-        stream.read_to_end(&mut answer).unwrap();
-        let answer = String::from_utf8(answer).unwrap();
-        let (head, body) = answer.split_once("\r\n\r\n").expect("an answer has a head");
-        let value: Value = serde_json::from_str(body).expect("an answer in JSON");
+        let (head, body) = answer(&mut BufReader::new(stream));
+        let value: Value = serde_json::from_str(&body).expect("an answer in JSON");
         assert!(head.starts_with("HTTP/1.1 200"), "{method} {path}: {value}");
         value["value"].clone()
     }
@@ -227,6 +234,25 @@ impl Drop for Browser {
         let _ = self.driver.kill();
         let _ = self.driver.wait();
     }
+}
+
+/// Head and body of an answer; the driver keeps its connections open, so the head says where the body ends.
+fn answer(stream: &mut impl BufRead) -> (String, String) {
+    let (mut head, mut length) = (String::new(), 0);
+    loop {
+        let mut line = String::new();
+        let n = stream.read_line(&mut line).unwrap();
+        if n == 0 || line == "\r\n" {
+            break;
+        }
+        if let Some(value) = line.to_ascii_lowercase().strip_prefix("content-length:") {
+            length = value.trim().parse().unwrap();
+        }
+        head += &line;
+    }
+    let mut body = vec![0; length];
+    stream.read_exact(&mut body).unwrap();
+    (head, String::from_utf8(body).unwrap())
 }
 
 /// Where a program is, if it is installed.

@@ -13,8 +13,7 @@ use crate::report::page::provenance::provenance_html;
 use crate::report::page::study_data::StudyData;
 use crate::report::page::tables::{failures_html, limits_html, summary_html, times_html};
 use crate::report::page::touches::touches_html;
-use crate::report::varying::Settings;
-use crate::study::table::{Cell, Tables};
+use crate::study::table::Tables;
 use std::fmt::Write;
 
 /// Letters of pictures for readers without script, at most: a study of thousands of cells has megabytes of them.
@@ -68,7 +67,7 @@ pub fn page(about: &ReportPage, tables: &Tables, pictures: &Pictures) -> Result<
     page.add(Section::new(
         "settings",
         "Settings",
-        settings_html(about, tables),
+        settings_html(about, &answer),
     ));
     page.add(limits(about, tables));
     page.add(Section::new("times", "Times", times_html(about, tables)));
@@ -155,9 +154,8 @@ fn confusion(pictures: &Pictures, is_live: bool) -> Section {
     Section::new("confusion", "What was taken for what", body)
 }
 
-fn settings_html(about: &ReportPage, tables: &Tables) -> String {
-    let cells: Vec<&Cell> = tables.summary.iter().map(|(cell, _)| cell).collect();
-    let settings = Settings::of(&cells);
+fn settings_html(about: &ReportPage, answer: &Answer) -> String {
+    let settings = answer.settings();
     let mut html = String::from("<dl>");
     for (name, value) in &about.settings {
         let class = match value.len() > 60 {

@@ -4,7 +4,7 @@ use crate::report::answer::Answer;
 use crate::report::axis::Axis;
 use crate::report::chart_plan::{ChartPlan, plan_charts};
 use crate::report::page::confusion_data::{ConfusionData, confusion_data};
-use crate::report::varying::{Levels, Settings};
+use crate::report::varying::Levels;
 use crate::report::x_scale::{Spacing, spacing};
 use crate::study::table::{Cell, CellScore, Tables};
 use serde::Serialize;
@@ -74,7 +74,7 @@ impl StudyData {
     /// The data of a study; none without cells, or if they are all alike.
     pub fn of(tables: &Tables, answer: &Answer) -> Option<Self> {
         let rows: Vec<&Cell> = tables.summary.iter().map(|(cell, _)| cell).collect();
-        let settings = Settings::of(&rows);
+        let settings = answer.settings();
         let plans = plan_charts(&rows);
         let best = rows.iter().position(|c| c.cell == answer.best.0.cell)?;
         let mut shown: Vec<&Levels> = settings.single().chain(&settings.following).collect();

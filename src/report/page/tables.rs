@@ -4,7 +4,6 @@ use crate::report::answer::{Answer, accuracy_sentence};
 use crate::report::axis::{classifier_name, short_number};
 use crate::report::drawing::escape;
 use crate::report::page::about::ReportPage;
-use crate::report::varying::Settings;
 use crate::study::table::{Cell, CellScore, Comparison, Tables};
 use std::collections::HashMap;
 use std::fmt::Write;
@@ -14,9 +13,7 @@ const MOST_CELLS: usize = 500;
 
 /// Cells with their scores and their distances to the best, in their order or, of very many, the most accurate first.
 pub(super) fn summary_html(tables: &Tables, answer: &Answer) -> String {
-    let cells: Vec<&Cell> = tables.summary.iter().map(|(cell, _)| cell).collect();
-    let settings = Settings::of(&cells);
-    let axes = settings.shown();
+    let axes = answer.settings().shown();
     let rows = tables.comparison.iter().map(|row| (row.cell, row));
     let comparisons: HashMap<usize, &Comparison> = rows.collect();
     let mut rows: Vec<&(Cell, CellScore)> = tables.summary.iter().collect();
