@@ -1,6 +1,7 @@
 //! The experiments that come with the crate: they say what they ask, and they can run.
 
 use bubbletouch::random::Seed;
+use bubbletouch::study::breaking_points::{BreakingPointsPlan, BreakingPointsSpec};
 use bubbletouch::study::object_detail::{ObjectDetailPlan, ObjectDetailStudySpec};
 use bubbletouch::study::reconstruction::{ReconstructionPlan, ReconstructionStudySpec};
 use bubbletouch::study::speed_accuracy::{SpeedAccuracyPlan, SpeedAccuracyStudySpec};
@@ -71,6 +72,13 @@ fn every_experiment_can_run() {
             assert!(!spec.question.is_empty() && !spec.expected.is_empty());
             let plan = ReconstructionPlan::new(&place, spec).unwrap();
             assert!(plan.n_cells() > 1, "{place} compares something");
+            continue;
+        }
+        if StudyKind::of(&text) == StudyKind::BreakingPoints {
+            let spec = BreakingPointsSpec::parse(&place, &text).unwrap();
+            assert!(!spec.question.is_empty() && !spec.expected.is_empty());
+            let plan = BreakingPointsPlan::new(&place, spec).unwrap();
+            assert!(plan.n_values() > 1, "{place} compares something");
             continue;
         }
         if StudyKind::of(&text) == StudyKind::SpeedAccuracy {

@@ -2,10 +2,12 @@
 
 mod about_study;
 mod advise;
+mod cache;
 mod classify;
 mod compare;
 mod features;
 mod listener;
+mod memory_args;
 mod merge;
 mod objects;
 mod objects_pack;
@@ -16,12 +18,15 @@ mod press;
 mod press_place;
 mod press_poses;
 mod recording;
+mod report;
 mod run;
+mod run_breaking_points;
 mod run_object_detail;
 mod run_reconstruction;
 mod run_speed_accuracy;
 mod run_stability;
 mod run_whole_body;
+mod shell;
 mod simulate;
 mod slurm;
 mod slurm_jobs;
@@ -56,10 +61,14 @@ enum Command {
     Merge(merge::Args),
     /// Run a study as an array of Slurm jobs, and the merge after them; what failed is submitted again by the same command
     Slurm(slurm::Args),
+    /// Write the charts and the page of a folder of results again, from its tables
+    Report(report::Args),
     /// Say what moved between two folders of results, and whether chance explains it
     Compare(compare::Args),
     /// Run a few cells of a folder of results again, and say whether they are the same bytes
     Verify(verify::Args),
+    /// List or remove the touches that studies keep beside their results
+    Cache(cache::Args),
     /// Say what a study would do: cells, touches, memory and time, without running it
     Plan(plan::Args),
     /// Say which setting is the cheapest that is accurate enough, or the most accurate that is cheap enough
@@ -78,6 +87,10 @@ enum Command {
     Recording(recording::Args),
     /// List the built-in objects, or draw one
     Objects(objects::Args),
+    /// Write completions for a shell to standard output
+    Completions(shell::CompletionArgs),
+    /// Write the manual page, or those of all subcommands
+    Man(shell::ManArgs),
 }
 
 /// Parses the command line and does what it says.
@@ -87,8 +100,10 @@ pub fn dispatch() -> Result<()> {
         Some(Command::Run(args)) => run::run(&args),
         Some(Command::Merge(args)) => merge::merge(&args),
         Some(Command::Slurm(args)) => slurm::slurm(&args),
+        Some(Command::Report(args)) => report::report(&args),
         Some(Command::Compare(args)) => compare::compare(&args),
         Some(Command::Verify(args)) => verify::verify(&args),
+        Some(Command::Cache(args)) => cache::cache(&args),
         Some(Command::Plan(args)) => plan::plan(&args),
         Some(Command::Advise(args)) => advise::advise(&args),
         Some(Command::Touches(args)) => touches::touches(&args),
@@ -98,5 +113,7 @@ pub fn dispatch() -> Result<()> {
         Some(Command::Press(args)) => press::press(&args),
         Some(Command::Recording(args)) => recording::recording(&args),
         Some(Command::Objects(args)) => objects::objects(&args),
+        Some(Command::Completions(args)) => shell::completions(&args),
+        Some(Command::Man(args)) => shell::man(&args),
     }
 }

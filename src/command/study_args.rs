@@ -1,6 +1,7 @@
 //! What `run`, `plan` and `touches` have in common: a study file, and what overrides it.
 
 use bubbletouch::random::Seed;
+use bubbletouch::study::breaking_points::{BreakingPointsPlan, BreakingPointsSpec};
 use bubbletouch::study::object_detail::{ObjectDetailPlan, ObjectDetailStudySpec};
 use bubbletouch::study::reconstruction::{ReconstructionPlan, ReconstructionStudySpec};
 use bubbletouch::study::speed_accuracy::{SpeedAccuracyPlan, SpeedAccuracyStudySpec};
@@ -109,6 +110,16 @@ impl StudyArgs {
         spec.seed = self.seed.unwrap_or(spec.seed);
         self.replace_objects(&mut spec.objects);
         ObjectDetailPlan::new(&place, spec)
+    }
+
+    /// Reads and checks a study of where recognition breaks.
+    pub fn breaking_points_plan(&self) -> Result<BreakingPointsPlan> {
+        set_threads(self.threads)?;
+        let place = self.study.display().to_string();
+        let mut spec = BreakingPointsSpec::parse(&place, &self.text()?)?;
+        spec.seed = self.seed.unwrap_or(spec.seed);
+        self.replace_objects(&mut spec.objects);
+        BreakingPointsPlan::new(&place, spec)
     }
 
     /// Reads and checks a study of a whole body; it has objects of its own.

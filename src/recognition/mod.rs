@@ -40,6 +40,7 @@
 use serde::{Deserialize, Serialize};
 
 mod between;
+pub mod bootstrap;
 pub mod choice;
 pub mod class_model;
 mod class_weights;
@@ -81,11 +82,13 @@ mod seed;
 mod smo;
 mod sorted;
 pub mod split;
+pub mod spoiled;
 pub mod svm;
 pub mod svm_model;
 pub mod trained_classifier;
 mod training;
 mod unbeaten;
+pub mod variance;
 mod voting;
 
 /// A classifier that a study can sweep.

@@ -79,13 +79,24 @@ fn power_of_ten(digit: i32, power: i32) -> f64 {
 
 /// `20 µs`, `5 ms`, `100 s`.
 pub(super) fn time_label(seconds: f64) -> String {
-    let (number, unit) = match seconds {
+    let (number, unit) = in_unit(seconds);
+    format!("{number:.0} {unit}")
+}
+
+/// A time to three digits that count: `20.3 µs`.
+pub(super) fn time_words(seconds: f64) -> String {
+    let (number, unit) = in_unit(seconds);
+    let rounded: f64 = format!("{number:.2e}").parse().unwrap_or(number);
+    format!("{rounded} {unit}")
+}
+
+fn in_unit(seconds: f64) -> (f64, &'static str) {
+    match seconds {
         s if s < 0.999e-6 => (s * 1e9, "ns"),
         s if s < 0.999e-3 => (s * 1e6, "µs"),
         s if s < 0.999 => (s * 1e3, "ms"),
         s => (s, "s"),
-    };
-    format!("{number:.0} {unit}")
+    }
 }
 
 #[cfg(test)]
@@ -105,6 +116,18 @@ mod tests {
             (200.0, "200 s"),
         ] {
             assert_eq!(time_label(seconds), label);
+        }
+    }
+
+    #[test]
+    fn times_in_words_have_three_digits() {
+        for (seconds, words) in [
+            (4.2e-8, "42 ns"),
+            (2.0349e-5, "20.3 µs"),
+            (0.12, "120 ms"),
+            (1234.0, "1230 s"),
+        ] {
+            assert_eq!(time_words(seconds), words);
         }
     }
 

@@ -76,6 +76,12 @@ pub struct Cell {
     pub c: Option<f64>,
     /// Training touches an object, at most.
     pub train_touches: usize,
+    /// Fraction of them with another object's label; only if the study has the key.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub mislabelled_fraction: Option<f64>,
+    /// How many times as many the most frequent object has as the rarest; only if the study has the key.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub class_imbalance: Option<f64>,
     /// Test touches of an object that are decided on together, by the sum of their scores.
     pub fused_touches: usize,
 }
@@ -114,6 +120,12 @@ impl Cell {
 pub struct TrialScore {
     /// Number of the trial, from 0.
     pub trial: usize,
+    /// Number of its split. This column and the next are there only if the study has `projections_per_split`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub split: Option<usize>,
+    /// Number of its projection.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub projection: Option<usize>,
     /// Training rows.
     pub n_train: usize,
     /// Test rows: groups of `fused_touches` test touches.
@@ -155,6 +167,13 @@ pub struct CellScore {
     pub accuracy_low: f64,
     /// Upper end of the same interval.
     pub accuracy_high: f64,
+    /// Lower end of the 95 % bootstrap interval of the mean over trials: where it would be with other splits, projections and
+    /// noise on the same touches. Empty with fewer than five trials (or splits, or projections).
+    #[serde(default)]
+    pub bootstrap_low: Option<f64>,
+    /// Upper end of the same interval.
+    #[serde(default)]
+    pub bootstrap_high: Option<f64>,
     /// Mean macro-F1 over trials.
     pub macro_f1: f64,
     /// Binary SVMs that stopped at the iteration cap, all trials.
@@ -229,6 +248,48 @@ pub struct Comparison {
     /// Upper end of it; empty with one trial.
     pub difference_high: Option<f64>,
     /// Two-sided p-value of no difference; empty with one trial.
+    pub p_value: Option<f64>,
+    /// The same after Holm's correction for all cells but the best; empty for that one.
+    #[serde(default)]
+    pub p_holm: Option<f64>,
+}
+
+/// What makes the accuracies of a cell's trials differ.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Source {
+    /// Which touches train and which test.
+    Split,
+    /// The random projection.
+    Projection,
+    /// Noise and what else is drawn in each trial, and what a split and a projection do together.
+    Rest,
+}
+
+/// What a source adds to the variance of a cell's accuracy: a row of `variance.csv`, for studies with `projections_per_split`.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Variance {
+    /// Number of the cell.
+    pub cell: usize,
+    /// The source.
+    pub source: Source,
+    /// How many of it were drawn; of the rest: trials.
+    pub n_levels: usize,
+    /// Degrees of freedom of its mean square.
+    pub degrees_of_freedom: usize,
+    /// Its mean square.
+    pub mean_square: f64,
+    /// Unbiased estimate of its variance (method of moments); below zero by chance if it is small.
+    pub estimate: f64,
+    /// Standard deviation that it alone gives the accuracy: the root of the estimate, 0 if that is below zero.
+    pub accuracy_std: f64,
+    /// Lower end of the 95 % interval of that standard deviation (modified large samples; of the rest χ²).
+    pub accuracy_std_low: f64,
+    /// Upper end of the same interval.
+    pub accuracy_std_high: f64,
+    /// Share of the variance of a trial, estimates below zero taken as zero; empty if nothing varies.
+    pub share: Option<f64>,
+    /// p-value of the F test that it adds nothing; empty for the rest.
     pub p_value: Option<f64>,
 }
 
@@ -316,6 +377,8 @@ pub struct Tables {
     pub published: Vec<(Cell, Published)>,
     /// One row per cell and trial that failed.
     pub failures: Vec<(Cell, Failure)>,
+    /// Three rows per cell, for studies with `projections_per_split`.
+    pub variance: Vec<Variance>,
 }
 
 #[cfg(test)]
@@ -351,6 +414,8 @@ pub(crate) mod tests {
             classifier: ClassifierKind::LinearSvm,
             c: Some(1.0),
             train_touches: 75,
+            mislabelled_fraction: None,
+            class_imbalance: None,
             fused_touches: 1,
         }
     }

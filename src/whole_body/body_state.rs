@@ -94,11 +94,10 @@ impl BodyState {
             (&self.world_from_patches, &self.balls, &self.object_balls);
         let step = |number: u32, state: &mut PatchState| {
             let number = number as usize;
-            let patch_from_world = poses[number].inverse();
             let placed = objects.iter().zip(world_from_objects).zip(object_balls);
             let near = placed
                 .filter(|(_, ball)| are_near(ball, &balls[number]))
-                .map(|((object, pose), _)| (object, patch_from_world.compose(pose)));
+                .map(|((object, pose), _)| (object, pose.seen_from(&poses[number])));
             state.step(&body.patches()[number], near, dt);
         };
         let share = self.contact.n_touched >= WORTH_THREADS;
