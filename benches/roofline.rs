@@ -5,7 +5,8 @@
 //! The machine's ceilings are measured first: operations a second (fused multiply-adds count as two; multiplications and additions by
 //! themselves, since a result that is the same on every processor may not fuse them), roots a second, and bytes a second of a
 //! triad a[i] = b[i] + 3 c[i] whose arrays together are as large as what a path looks at. A path's least time is the longest of its
-//! operations at the fused peak, its roots, and its bytes; its share is that over the time it takes.
+//! operations at the fused peak, its roots, and its bytes; its share is that over the time it takes. It is above one where a path does
+//! less than its equations ask for: a root that no deflection is beaten by is not taken.
 
 use bubbletouch::files::CsvFile;
 use hot_paths::{HotPath, Make, decision, dense_body, dense_press, sensing};
@@ -50,7 +51,10 @@ struct Ceilings {
 macro_rules! loops {
     ($fused:ident, $unfused:ident, $roots:ident, $real:ty, $lanes:expr) => {
         /// So many times a fused multiply-add of each number.
-        #[multiversion(targets("x86_64+avx2+fma"))]
+        #[multiversion(targets(
+            "x86_64+avx512f+avx512bw+avx512dq+avx512vl+avx2+fma",
+            "x86_64+avx2+fma"
+        ))]
         fn $fused(n: usize) -> $real {
             let mut values: [$real; $lanes] = black_box([1.0; $lanes]);
             let factor = black_box(0.999);
@@ -64,7 +68,10 @@ macro_rules! loops {
         }
 
         /// The same in two operations.
-        #[multiversion(targets("x86_64+avx2+fma"))]
+        #[multiversion(targets(
+            "x86_64+avx512f+avx512bw+avx512dq+avx512vl+avx2+fma",
+            "x86_64+avx2+fma"
+        ))]
         fn $unfused(n: usize) -> $real {
             let mut values: [$real; $lanes] = black_box([1.0; $lanes]);
             let factor = black_box(0.999);
@@ -78,7 +85,10 @@ macro_rules! loops {
         }
 
         /// So many times the root of each number.
-        #[multiversion(targets("x86_64+avx2+fma"))]
+        #[multiversion(targets(
+            "x86_64+avx512f+avx512bw+avx512dq+avx512vl+avx2+fma",
+            "x86_64+avx2+fma"
+        ))]
         fn $roots(n: usize) -> $real {
             let mut values: [$real; $lanes] = black_box([2.0; $lanes]);
             for _ in 0..n {
@@ -92,11 +102,14 @@ macro_rules! loops {
     };
 }
 
-// Twelve registers of lanes: enough for the latency of two units, few enough to stay in registers.
+// Twelve registers of 256 bits or six of 512: enough for the latency of the units, few enough to stay in registers.
 loops!(fused_f64, unfused_f64, roots_f64, f64, 48);
 loops!(fused_f32, unfused_f32, roots_f32, f32, 96);
 
-#[multiversion(targets("x86_64+avx2+fma"))]
+#[multiversion(targets(
+    "x86_64+avx512f+avx512bw+avx512dq+avx512vl+avx2+fma",
+    "x86_64+avx2+fma"
+))]
 fn triad(a: &mut [f64], b: &[f64], c: &[f64]) {
     for ((a, b), c) in a.iter_mut().zip(b).zip(c) {
         *a = b + 3.0 * c;
