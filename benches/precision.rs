@@ -8,14 +8,16 @@
 
 use bubbletouch::files::{CsvFile, write_bytes};
 use bubbletouch::random::Seed;
+use clock::seconds;
 use multiversion::multiversion;
 use precision_chart::draw;
 use rand::Rng;
 use serde::Serialize;
 use std::hint::black_box;
 use std::path::Path;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
+mod clock;
 mod precision_chart;
 
 const PITCH: f64 = 2e-3;
@@ -23,9 +25,9 @@ const PITCH: f64 = 2e-3;
 const RHO: f64 = 1e-3;
 /// Spheres in a touch.
 const N_SPHERES: usize = 32;
-/// Touches whose errors count; the times are medians of more.
+/// Touches whose errors count; the first one is timed.
 const N_TOUCHES: u64 = 20;
-const REPEATS: usize = 15;
+/// Each of the runs of which a time is the median takes at least so long.
 const LEAST: Duration = Duration::from_millis(5);
 /// Metres.
 const RADII: [f64; 7] = [2e-3, 1e-2, 4.5e-2, 0.1, 0.3, 1.0, 4.0];
@@ -130,24 +132,6 @@ fn spheres(n: usize, radius: f64, is_light: bool, touch: u64) -> Vec<[f64; 4]> {
     (0..N_SPHERES).map(sphere).collect()
 }
 
-/// Seconds a call, median of some runs.
-fn seconds(mut call: impl FnMut(), is_test: bool) -> f64 {
-    let mut time = |n: u32| {
-        let start = Instant::now();
-        (0..n).for_each(|_| call());
-        start.elapsed()
-    };
-    let mut n = 1;
-    while time(n) < LEAST && !is_test {
-        n *= 2;
-    }
-    let repeats = if is_test { 1 } else { REPEATS };
-    let each = |_| time(n).as_secs_f64() / f64::from(n);
-    let mut times: Vec<f64> = (0..repeats).map(each).collect();
-    times.sort_by(f64::total_cmp);
-    times[repeats / 2]
-}
-
 fn measure(n: usize, radius: f64, is_light: bool, is_test: bool) -> Row {
     let places: Vec<f64> = (0..n)
         .map(|k| (k as f64 - 0.5 * (n - 1) as f64) * PITCH)
@@ -170,11 +154,13 @@ fn measure(n: usize, radius: f64, is_light: bool, is_test: bool) -> Row {
     let f64_us = 1e6
         * seconds(
             || press_f64(black_box(&spheres), &places, &mut exact),
+            LEAST,
             is_test,
         );
     let f32_us = 1e6
         * seconds(
             || press_f32(black_box(&spheres), &singles, &mut rounded),
+            LEAST,
             is_test,
         );
     Row {

@@ -9,18 +9,18 @@
 //! less than its equations ask for: a root that no deflection is beaten by is not taken.
 
 use bubbletouch::files::CsvFile;
+use clock::seconds;
 use hot_paths::{HotPath, Make, decision, dense_body, dense_press, sensing};
 use multiversion::multiversion;
 use serde::Serialize;
 use std::hint::black_box;
 use std::path::Path;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
+mod clock;
 mod hot_paths;
 
-/// Each time is the median of so many.
-const REPEATS: usize = 15;
-/// Each of them takes at least so long.
+/// Each of the runs of which a time is the median takes at least so long.
 const LEAST: Duration = Duration::from_millis(10);
 
 /// A row of the table: a ceiling of the machine, or a path beside the ceilings.
@@ -116,31 +116,12 @@ fn triad(a: &mut [f64], b: &[f64], c: &[f64]) {
     }
 }
 
-/// Seconds a call, median of some runs.
-fn seconds(mut call: impl FnMut(), is_test: bool) -> f64 {
-    let mut time = |n: u32| {
-        let start = Instant::now();
-        (0..n).for_each(|_| call());
-        start.elapsed()
-    };
-    let mut n = 1;
-    while time(n) < LEAST && !is_test {
-        n *= 2;
-    }
-    let repeats = if is_test { 1 } else { REPEATS };
-    let mut times: Vec<f64> = (0..repeats)
-        .map(|_| time(n).as_secs_f64() / f64::from(n))
-        .collect();
-    times.sort_by(f64::total_cmp);
-    times[repeats / 2]
-}
-
 /// Bytes a second of a triad whose arrays take so many bytes together.
 fn bandwidth(working_set: f64, is_test: bool) -> f64 {
     let n = (working_set / 24.0).ceil() as usize;
     let (mut a, b, c) = (vec![0.0; n], vec![1.0; n], vec![2.0; n]);
     let call = || triad(black_box(&mut a), black_box(&b), black_box(&c));
-    24.0 * n as f64 / seconds(call, is_test)
+    24.0 * n as f64 / seconds(call, LEAST, is_test)
 }
 
 fn ceiling(
@@ -150,7 +131,7 @@ fn ceiling(
     call: impl FnMut(),
     is_test: bool,
 ) -> f64 {
-    let rate = per_call / seconds(call, is_test);
+    let rate = per_call / seconds(call, LEAST, is_test);
     let giga = Some(rate * 1e-9);
     let is_root = name.starts_with("roots");
     rows.push(Row {
@@ -199,7 +180,7 @@ fn ceilings(rows: &mut Vec<Row>, is_test: bool) -> Ceilings {
 
 fn achieved(mut path: HotPath, ceilings: &Ceilings, is_test: bool) -> Row {
     let work = path.work;
-    let time = seconds(&mut path.step, is_test);
+    let time = seconds(&mut path.step, LEAST, is_test);
     let least = [
         ("operations", work.operations / ceilings.fused),
         ("roots", work.roots / ceilings.roots),

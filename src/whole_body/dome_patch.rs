@@ -16,7 +16,7 @@ use super::patch_state::PatchState;
 use crate::geometry::Pose;
 use crate::objects::Sphere;
 use crate::world::{Dome, DomeRing, Taxel};
-use glam::{DMat3, DVec3, Vec3Swizzles};
+use glam::{DVec3, Vec3Swizzles};
 use std::f64::consts::{PI, TAU};
 use std::ops::Range;
 
@@ -81,9 +81,7 @@ impl DomePatch {
 impl Pushed for DomePatch {
     #[inline(always)]
     fn view(&self, patch_from_object: &Pose) -> View {
-        let rotation = DMat3::from_quat(patch_from_object.rotation);
-        let rho = self.taxel.radius;
-        View::new(rotation, patch_from_object.translation, rho, self.ball)
+        View::of_pose(patch_from_object, self.taxel.radius, self.ball)
     }
 
     /// Nothing is nearer than its ball, which has been looked at.

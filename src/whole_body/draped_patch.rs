@@ -10,7 +10,7 @@ use crate::contact::{beats, raise};
 use crate::geometry::Pose;
 use crate::objects::Sphere;
 use crate::world::{Layout, Taxel};
-use glam::{DMat3, DVec3};
+use glam::DVec3;
 
 /// Taxels in a block of tiles.
 pub(super) const BLOCK: usize = LANES * LANES;
@@ -128,9 +128,7 @@ impl DrapedPatch {
 impl Pushed for DrapedPatch {
     #[inline(always)]
     fn view(&self, patch_from_object: &Pose) -> View {
-        let rotation = DMat3::from_quat(patch_from_object.rotation);
-        let rho = self.taxel.radius;
-        View::new(rotation, patch_from_object.translation, rho, self.ball)
+        View::of_pose(patch_from_object, self.taxel.radius, self.ball)
     }
 
     #[inline(always)]
