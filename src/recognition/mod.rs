@@ -70,6 +70,8 @@ pub mod metrics;
 pub mod naive_bayes;
 mod near_margin;
 pub mod over_time;
+mod packed;
+mod panels;
 mod points;
 pub mod random_forest;
 pub(crate) mod ranked;
@@ -86,6 +88,8 @@ pub mod svm_model;
 pub mod trained_classifier;
 mod training;
 mod unbeaten;
+#[cfg(target_arch = "x86_64")]
+mod vector_registers;
 mod voting;
 
 /// A classifier that a study can sweep.
