@@ -73,6 +73,8 @@ pub mod metrics;
 pub mod naive_bayes;
 mod near_margin;
 pub mod over_time;
+mod packed;
+mod panels;
 mod points;
 pub mod random_forest;
 pub(crate) mod ranked;
@@ -91,6 +93,8 @@ pub mod trained_classifier;
 mod training;
 mod unbeaten;
 pub mod variance;
+#[cfg(target_arch = "x86_64")]
+mod vector_registers;
 mod voting;
 
 /// A classifier that a study can sweep.
