@@ -4,7 +4,7 @@ use super::evaluation::CONFIDENCE;
 use super::repeats::Paired;
 use super::table::{Cell, TrialScore};
 use crate::error::{Error, Result};
-use crate::recognition::comparison::holm_of_some;
+use crate::recognition::many_tests::holm_of_some;
 use serde::{Deserialize, Serialize};
 use std::collections::HashMap;
 

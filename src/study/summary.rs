@@ -8,8 +8,8 @@ use super::table::{
 };
 use crate::error::Result;
 use crate::recognition::bootstrap::Bootstrap;
-use crate::recognition::comparison::holm_of_some;
 use crate::recognition::interval::Interval;
+use crate::recognition::many_tests::holm_of_some;
 use std::collections::BTreeMap;
 
 /// A row of the accuracy table.

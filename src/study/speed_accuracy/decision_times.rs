@@ -16,14 +16,14 @@ use std::time::Instant;
 impl Bench<'_> {
     /// Every touch that is timed: spread evenly over all.
     fn timed(&self) -> Vec<usize> {
-        let all: Vec<usize> = (0..self.learned.nrows()).collect();
+        let all: Vec<usize> = (0..self.learned.len()).collect();
         let chosen = spread_evenly(&all, self.sweep.spec.timed_touches);
         chosen.into_iter().copied().collect()
     }
 
     /// Median microseconds of a press.
     pub fn time_presses(&self) -> f64 {
-        let per_object = self.learned.nrows() / self.touched.len();
+        let per_object = self.learned.len() / self.touched.len();
         let scenes = self.touched.iter();
         let scenes: Vec<Scene> = scenes
             .map(|touched| Scene::of_one(self.patch, &touched.object.model))
@@ -39,22 +39,20 @@ impl Bench<'_> {
     }
 
     /// Median microseconds of noise and compression.
-    pub fn time_front(&self, front: &Front) -> f64 {
+    pub fn time_front(&self, front: &Front) -> Result<f64> {
         let to_read = self.to_read();
         let mut scratch = Scratch::default();
-        let mut frame = Array2::zeros((1, self.learned.ncols()));
+        let mut frame = Array2::zeros((1, self.learned.n_taxels()));
         let mut row = Array2::zeros((1, front.projection.n_measurements()));
-        self.median_us(&self.timed(), |touch| {
-            let felt = self.learned.row(touch);
-            for (to, from) in frame.iter_mut().zip(felt) {
-                *to = f64::from(*from);
-            }
+        let felt = self.learned.to_array()?;
+        Ok(self.median_us(&self.timed(), |touch| {
+            frame.row_mut(0).assign(&felt.row(touch));
             let values = frame.as_slice_mut().expect("one whole row");
             front
                 .chain
                 .apply(values, None, &to_read[touch].seed, &mut scratch);
             front.projection.measure_into(frame.view(), row.view_mut());
-        })
+        }))
     }
 
     /// Median microseconds of an answer.

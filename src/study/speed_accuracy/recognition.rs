@@ -13,6 +13,7 @@ use crate::recognition::interval::Interval;
 use crate::sensing::Projection;
 use crate::signal::{Chain, Noise, NoiseUnit, SignalStep};
 use crate::study::CONFIDENCE;
+use crate::study::frames::KeptFrames;
 use crate::study::measurement::{Reading, TouchToRead, measure, touches_to_read};
 use crate::study::plan::millimetres;
 use crate::study::progress::{Progress, Silent};
@@ -73,20 +74,20 @@ pub(super) fn measure_recognition(
     progress.stage("recognise", n_cells as u64);
     let one_thread = one_thread()?;
     for patch in &sweep.patches {
-        let truth = simulate_array(&exact, patch, 1, &Silent).deflection;
+        let truth = simulate_array(&exact, patch, 1, &Silent).kept;
         for (level, models) in &levels {
             let mut touched = exact.clone();
             for (touched, object) in touched.iter_mut().zip(objects(models)) {
                 touched.object = object;
             }
-            let learned = simulate_array(&touched, patch, 1, &Silent).deflection;
+            let learned = simulate_array(&touched, patch, 1, &Silent).kept;
             let bench = Bench {
                 sweep,
                 patch,
                 level: *level,
                 touched: &touched,
-                learned: learned.view(),
-                tested: truth.view(),
+                learned: &learned,
+                tested: &truth,
                 seed,
                 one_thread: &one_thread,
             };
@@ -107,10 +108,10 @@ pub(super) struct Bench<'a> {
     pub patch: &'a Patch,
     level: Tolerance,
     pub touched: &'a [TouchedObject],
-    /// n_touches × n_taxels, of this detail.
-    pub learned: ArrayView2<'a, f32>,
+    /// A frame a touch, of this detail.
+    pub learned: &'a KeptFrames,
     /// The same touches of the exact objects.
-    tested: ArrayView2<'a, f32>,
+    tested: &'a KeptFrames,
     seed: Seed,
     one_thread: &'a rayon::ThreadPool,
 }
@@ -139,9 +140,9 @@ impl Bench<'_> {
                     chain: Chain::new(&[SignalStep::Noise(noise)], self.patch)?,
                     projection: Projection::new(ensemble, size, measurements, &stream)?,
                 };
-                let learned = self.measured(&front, self.learned);
-                let tested = self.measured(&front, self.tested);
-                let project_us = self.one_thread.install(|| self.time_front(&front));
+                let learned = self.measured(&front, self.learned)?;
+                let tested = self.measured(&front, self.tested)?;
+                let project_us = self.one_thread.install(|| self.time_front(&front))?;
                 for &classifier in &spec.classifier {
                     let cell = ChainCell {
                         pitch_mm: millimetres(self.patch.grid.pitch),
@@ -176,14 +177,14 @@ impl Bench<'_> {
         touches_to_read(self.touched, &self.seed.named("speed accuracy signal"))
     }
 
-    fn measured(&self, front: &Front, frames: ArrayView2<f32>) -> Array2<f64> {
+    fn measured(&self, front: &Front, frames: &KeptFrames) -> Result<Array2<f64>> {
         let reading = Reading {
             chains: std::slice::from_ref(&front.chain),
             projection: &front.projection,
             taxel: self.patch.taxel,
             speed: 0.0,
         };
-        measure(reading, frames, &self.to_read()).0
+        Ok(measure(reading, (frames, 1), &self.to_read())?.0)
     }
 
     /// Numbers of the touches of each object from `first` to before `last`.
