@@ -4,7 +4,7 @@ use crate::error::Result;
 use crate::report::answer::Answer;
 use crate::report::csv_tables::{LIMITS_FILE, TABLE_FILES};
 use crate::report::drawing::escape;
-use crate::report::headlines::{confused_table, published_table};
+use crate::report::headlines::{confused_table, published_table, variance_table};
 use crate::report::page::about::ReportPage;
 use crate::report::page::choices::choices_html;
 use crate::report::page::frame::{Page, Section, sentences_html};
@@ -64,6 +64,8 @@ pub fn page(about: &ReportPage, tables: &Tables, pictures: &Pictures) -> Result<
     page.add(confusion(pictures, is_live));
     page.sections
         .extend(confused_table(tables).map(|table| table.section("confused")));
+    page.sections
+        .extend(variance_table(tables).map(|table| table.section("variance")));
     page.add(Section::new(
         "settings",
         "Settings",
