@@ -73,7 +73,7 @@ function describe(cell) {
   if (cell === study.best) lines.push("the best cell");
   else if (difference !== null) {
     const p = cells.p[cell];
-    lines.push(`${signed(difference, 3)} to the best` + (p === null ? "" : `, p ${p < 0.001 ? "< 0.001" : "= " + p.toFixed(3)}`));
+    lines.push(`${signed(difference, 3)} to the best` + (p === null ? "" : `, ${study.p} ${p < 0.001 ? "< 0.001" : "= " + p.toFixed(3)}`));
   }
   if (cells.decide_us[cell] !== null) {
     lines.push(`${duration(1e-6 * cells.decide_us[cell])} a decision, ${duration(cells.fit_s[cell])} to train`);

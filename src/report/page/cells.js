@@ -33,7 +33,7 @@ class CellTable {
       score("accuracy [95 %]", cells.accuracy, (_, cell) => accuracyText(cell)),
       score("macro-F1", cells.f1, (f1) => f1.toFixed(3)),
       score("to the best", cells.difference, (difference) => signed(difference, 3)),
-      score("p", cells.p, chanceValue),
+      score(study.p, cells.p, chanceValue),
       score("decision", cells.decide_us, (us) => duration(1e-6 * us)),
       score("training", cells.fit_s, duration),
       { title: "remark", value: (cell) => this.rank(cell), text: (cell) => ["best", "as good", ""][this.rank(cell)], setting: true },

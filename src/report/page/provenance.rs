@@ -48,11 +48,12 @@ pub(super) fn provenance_html(manifest: &Manifest) -> String {
         );
     }
     html += "</dl>";
-    html += &hashes("Tables (SHA-256)", &manifest.tables_sha256);
-    html + &hashes("Objects (SHA-256)", &manifest.objects_sha256)
+    html += &listed("Methods of intervals and p-values", &manifest.methods);
+    html += &listed("Tables (SHA-256)", &manifest.tables_sha256);
+    html + &listed("Objects (SHA-256)", &manifest.objects_sha256)
 }
 
-fn hashes(title: &str, known: &BTreeMap<String, String>) -> String {
+fn listed(title: &str, known: &BTreeMap<String, String>) -> String {
     if known.is_empty() {
         return String::new();
     }

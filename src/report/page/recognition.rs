@@ -138,7 +138,7 @@ fn gallery(about: &ReportPage) -> Result<String> {
 
 fn cells(tables: &Tables, answer: &Answer, is_live: bool) -> Section {
     let note = "<p class=\"quiet\">“As good”: the mean accuracy lies within the interval of the best cell. “To the best” and p: a t-test \
-         paired over trials, corrected for their overlap, not for the number of cells.</p>";
+         paired over trials, corrected for their overlap; p (Holm) is corrected for the number of cells too.</p>";
     let table = live("cells", is_live, &summary_html(tables, answer));
     Section::new("cells", "All cells", format!("{note}{table}"))
 }

@@ -4,6 +4,7 @@ use crate::report::answer::Answer;
 use crate::report::axis::Axis;
 use crate::report::chart_plan::{ChartPlan, plan_charts};
 use crate::report::page::confusion_data::{ConfusionData, confusion_data};
+use crate::report::page::tables::{p_name, p_value};
 use crate::report::varying::Levels;
 use crate::report::x_scale::{Spacing, spacing};
 use crate::study::table::{Cell, CellScore, Tables};
@@ -21,6 +22,8 @@ pub(super) struct StudyData {
     /// Share recognised by guessing, if the number of classes is known.
     chance: Option<f64>,
     confusion: Option<ConfusionData>,
+    /// What p-values are called.
+    p: &'static str,
 }
 
 /// A setting that varies.
@@ -104,6 +107,7 @@ impl StudyData {
             best,
             chance: (!names.is_empty()).then(|| 1.0 / names.len() as f64),
             confusion: confusion_data(tables, answer, names),
+            p: p_name(tables),
         })
     }
 
@@ -190,7 +194,7 @@ impl Columns {
             columns
                 .difference
                 .push(row.map(|row| decimals(row.difference)));
-            columns.p.push(row.and_then(|row| row.p_value).map(digits));
+            columns.p.push(row.and_then(|row| p_value(row)).map(digits));
             let cost = costs.get(&cell.cell);
             columns.fit_s.push(cost.map(|row| digits(row.fit_s)));
             let decide_us = cost.map(|row| digits(row.predict_us_per_decision));

@@ -29,8 +29,12 @@ pub(super) fn summary_html(tables: &Tables, answer: &Answer) -> String {
     for levels in &axes {
         let _ = write!(html, "<th scope=\"col\">{}</th>", levels.heading());
     }
-    html += "<th scope=\"col\">accuracy [95 %]</th><th scope=\"col\">macro-F1</th>\
-             <th scope=\"col\">to the best</th><th scope=\"col\">p</th><th></th></tr></thead><tbody>";
+    let _ = write!(
+        html,
+        "<th scope=\"col\">accuracy [95 %]</th><th scope=\"col\">macro-F1</th><th scope=\"col\">to the best</th>\
+         <th scope=\"col\">{}</th><th></th></tr></thead><tbody>",
+        p_name(tables)
+    );
     for (cell, score) in rows.into_iter().take(MOST_CELLS) {
         let remark = answer.remark(cell, score);
         let _ = write!(
@@ -50,7 +54,7 @@ pub(super) fn summary_html(tables: &Tables, answer: &Answer) -> String {
         let row = row.filter(|row| row.cell != row.best_cell);
         let difference = row.map_or(String::new(), |row| format!("{:+.3}", row.difference));
         let p = row
-            .and_then(|row| row.p_value)
+            .and_then(|row| p_value(row))
             .map_or(String::new(), p_sentence);
         let _ = write!(
             html,
@@ -60,6 +64,19 @@ pub(super) fn summary_html(tables: &Tables, answer: &Answer) -> String {
         );
     }
     html + "</tbody></table></div>"
+}
+
+/// A p-value as a page shows it: corrected for the number of cells, but for tables of earlier versions.
+pub(super) fn p_value(row: &Comparison) -> Option<f64> {
+    row.p_holm.or(row.p_value)
+}
+
+/// What it is called.
+pub(super) fn p_name(tables: &Tables) -> &'static str {
+    match tables.comparison.iter().any(|row| row.p_holm.is_some()) {
+        true => "p (Holm)",
+        false => "p",
+    }
 }
 
 fn p_sentence(p: f64) -> String {
