@@ -128,7 +128,10 @@ impl<'a> WayChart<'a> {
         let score = self.lines.first().and_then(|line| line.1.first());
         let chance = self.breaks.first().map_or(1.0, |row| row.chance);
         let (n_test, n_trials) = score.map_or((0, 0), |score| (score.n_test, score.n_trials));
-        format!("{:.0} objects, {n_test} test touches a trial, {n_trials} trials", 1.0 / chance)
+        format!(
+            "{:.0} objects, {n_test} test touches a trial, {n_trials} trials",
+            1.0 / chance
+        )
     }
 
     /// Where a classifier breaks: `half of its best at 0.53 (0.48 to 0.6)`.
