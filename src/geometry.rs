@@ -51,6 +51,16 @@ impl Pose {
         Self::new(rotation, -(rotation * self.translation))
     }
 
+    /// `world_from_b.seen_from(&world_from_a)` is `a_from_b`: what `inverse().compose()` is, but of the difference of the
+    /// places, so that it has all its digits however far from the world's origin both are.
+    pub fn seen_from(&self, frame: &Self) -> Self {
+        let back = frame.rotation.conjugate();
+        Self::new(
+            (back * self.rotation).normalize(),
+            back * (self.translation - frame.translation),
+        )
+    }
+
     /// Where the motion takes a point, metres.
     pub fn transform_point(&self, point: DVec3) -> DVec3 {
         self.rotation * point + self.translation

@@ -103,8 +103,9 @@
 //! threads, printing or global state. Threads live in `study`, and in `whole_body` for large touches; files in `study`, `scene`
 //! (what a scene names) and `report`.
 //!
-//! The [`guide`] explains the [statistics](guide::statistics) of a study and how to run one on [many
-//! machines](guide::many_machines).
+//! The [`guide`] explains the [statistics](guide::statistics) of a study, how to run one on [many
+//! machines](guide::many_machines), the [events](guide::events) that a run tells to programs, what a study holds in
+//! [memory and on disk](guide::memory_and_disk), and what happens at the [limits](guide::limits) of every method.
 //!
 //! # Sources
 //!

@@ -62,12 +62,12 @@ pub fn simulate(
     let mut poses: Vec<Pose> = Vec::with_capacity(scene.objects.len());
     for frame in 0..n_frames {
         let time = recording.time[frame];
-        let patch_from_world = world_from_patch.pose_at(time).inverse();
+        let patch = world_from_patch.pose_at(time);
         poses.clear();
         poses.extend(
             world_from_objects
                 .iter()
-                .map(|plan| patch_from_world.compose(&plan.pose_at(time))),
+                .map(|plan| plan.pose_at(time).seen_from(&patch)),
         );
         let contact = press_to_travel(scene, &poses, 0.0, &mut workspace);
         state.step(&taxels, dt, workspace.deflections());

@@ -109,6 +109,8 @@ impl<'a> Judgement<'a> {
         let place = |at: usize| members.partition_point(|&row| row < self.rows[at].0);
         let places: Vec<usize> = own.clone().map(place).collect();
         let mut n_open = self.n_open[own].iter_mut();
+        let width = kernel.ncols();
+        let kernel = kernel.to_slice().expect("a kernel is stored row by row");
         for run in places.chunk_by(|a, b| a + 1 == *b) {
             let columns = run[0]..run[0] + run.len();
             let mut values = vec![T::zero(); run.len()];
@@ -117,8 +119,7 @@ impl<'a> Judgement<'a> {
                 if let Some(beta) = &solved.beta {
                     let weighing = beta.iter().enumerate().filter(|(_, beta)| **beta != 0.0);
                     let rows = weighing.map(|(at, &beta)| {
-                        let row = kernel.row(at).to_slice();
-                        let row = row.expect("a kernel is stored row by row");
+                        let row = &kernel[at * width..][..width];
                         (&row[columns.clone()], T::of(beta))
                     });
                     values.fill(T::zero());
@@ -198,14 +199,31 @@ fn columns<T: Scalar>(symmetric: ArrayView2<T>, columns: &[usize]) -> Array2<T> 
         let row = |&row: &usize| symmetric.row(row).to_slice();
         let row = |at| row(at).expect("a kernel is stored row by row");
         let rows: Vec<&[T]> = columns.iter().map(row).collect();
-        for at in 0..n {
-            let to = &mut values[at * width + number * TILE..][..rows.len()];
-            for (to, row) in to.iter_mut().zip(&rows) {
-                *to = row[at];
-            }
+        let first = number * TILE;
+        match <&[&[T]; TILE]>::try_from(&rows[..]) {
+            Ok(rows) => columns_of(rows, &mut values[first..], width),
+            Err(_) => (0..n).for_each(|at| {
+                let to = values[at * width + first..].iter_mut();
+                to.zip(&rows).for_each(|(to, row)| *to = row[at]);
+            }),
         }
     }
     to
+}
+
+/// The columns that some rows become, into rows of so many values.
+fn columns_of<T: Copy>(rows: &[&[T]; TILE], to: &mut [T], width: usize) {
+    let n = rows[0].len();
+    let mut columns = [rows[0]; TILE];
+    for i in 0..TILE {
+        columns[i] = &rows[i][..n];
+    }
+    for at in 0..n {
+        let to = &mut to[at * width..][..TILE];
+        for i in 0..TILE {
+            to[i] = columns[i][at];
+        }
+    }
 }
 
 #[cfg(test)]

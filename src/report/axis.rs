@@ -38,6 +38,10 @@ pub enum Axis {
     C,
     /// Training touches an object.
     TrainTouches,
+    /// Fraction of them with a wrong label.
+    Mislabelled,
+    /// Most frequent object's training touches over the rarest's.
+    ClassImbalance,
     /// Test touches decided on together.
     FusedTouches,
     /// What a skin and its reader do to the signal.
@@ -49,7 +53,7 @@ pub enum Axis {
 }
 
 /// Every axis but [`Signal`](Axis::Signal), which stands for several, in the order in which tables show them.
-pub const AXES: [Axis; 23] = [
+pub const AXES: [Axis; 25] = [
     Axis::Pitch,
     Axis::Size,
     Axis::Noise,
@@ -70,6 +74,8 @@ pub const AXES: [Axis; 23] = [
     Axis::Classifier,
     Axis::C,
     Axis::TrainTouches,
+    Axis::Mislabelled,
+    Axis::ClassImbalance,
     Axis::FusedTouches,
     Axis::Ratio,
     Axis::Measurements,
@@ -103,6 +109,8 @@ impl Axis {
             Self::Classifier => "classifier",
             Self::C => "c",
             Self::TrainTouches => "train_touches",
+            Self::Mislabelled => "mislabelled_fraction",
+            Self::ClassImbalance => "class_imbalance",
             Self::FusedTouches => "fused_touches",
             Self::Imperfection(kind) => kind.key(),
             Self::TestedOn => "tested_on",
@@ -126,6 +134,8 @@ impl Axis {
             Self::Classifier => "classifier",
             Self::C => "C",
             Self::TrainTouches => "training touches",
+            Self::Mislabelled => "mislabelled",
+            Self::ClassImbalance => "class imbalance",
             Self::FusedTouches => "touches fused",
             Self::Imperfection(kind) => kind.name(),
             Self::TestedOn => "test skin",
@@ -156,6 +166,8 @@ impl Axis {
             Self::Classifier => "classifier",
             Self::C => "soft-margin penalty C",
             Self::TrainTouches => "training touches an object",
+            Self::Mislabelled => "training touches with another object's label (%)",
+            Self::ClassImbalance => "class imbalance (most : fewest training touches)",
             Self::FusedTouches => "touches decided on together",
             Self::Imperfection(kind) => signal_axis::title(kind),
             Self::TestedOn => "test skin",
@@ -184,6 +196,8 @@ impl Axis {
                 None => word("none"),
             },
             Self::TrainTouches => with_suffix(cell.train_touches as f64, "", ""),
+            Self::Mislabelled => percent(cell.mislabelled_fraction.unwrap_or(0.0)),
+            Self::ClassImbalance => with_suffix(cell.class_imbalance.unwrap_or(1.0), ":1", ":1"),
             Self::FusedTouches => with_suffix(cell.fused_touches as f64, "", ""),
             Self::Imperfection(kind) => signal_axis::value(kind, cell),
             Self::TestedOn => word(match cell.tested_on.unwrap_or_default() {
@@ -198,7 +212,12 @@ impl Axis {
 impl Axis {
     /// The name and the value in a cell: `m = 64`, `compression 64:1`.
     pub fn phrase(self, cell: &Cell) -> String {
-        let label = self.value(cell).label;
+        self.phrase_of(&self.value(cell))
+    }
+
+    /// The name and a value.
+    pub fn phrase_of(self, value: &AxisValue) -> String {
+        let label = value.label.clone();
         match self {
             Self::Measurements | Self::C | Self::Frames | Self::FusedTouches => {
                 format!("{} = {label}", self.name())
@@ -333,13 +352,14 @@ fn size(cell: &Cell) -> AxisValue {
     }
 }
 
+/// 100 × 0.07 is not 7 in floating point; the label is rounded, and so is the place on the axis.
+fn percent(fraction: f64) -> AxisValue {
+    with_suffix((fraction * 1e8).round() / 1e6, "", " %")
+}
+
 fn noise(cell: &Cell) -> AxisValue {
     match cell.noise_unit {
-        // 100 × 0.07 is not 7 in floating point; the label is rounded, and so is the place on the axis.
-        NoiseUnit::FullScale => {
-            let percent = (cell.noise_std * 1e8).round() / 1e6;
-            with_suffix(percent, "", " %")
-        }
+        NoiseUnit::FullScale => percent(cell.noise_std),
         NoiseUnit::Mm => with_suffix(cell.noise_std, "", " mm"),
         NoiseUnit::N => with_suffix(cell.noise_std, "", " N"),
     }

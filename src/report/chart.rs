@@ -275,7 +275,12 @@ pub(super) fn draw_y_labels(drawing: &mut Drawing, frame: Area) {
 }
 
 /// The interval between neighbouring points, shaded.
-fn draw_band(drawing: &mut Drawing, points: &[(f64, &CellScore)], frame: Area, fill: [u8; 3]) {
+pub(super) fn draw_band(
+    drawing: &mut Drawing,
+    points: &[(f64, &CellScore)],
+    frame: Area,
+    fill: [u8; 3],
+) {
     let lower = points
         .iter()
         .map(|(x, s)| (*x, y_at(frame, s.accuracy_low)));
@@ -300,7 +305,12 @@ fn draw_whiskers(drawing: &mut Drawing, points: &[(f64, &CellScore)], frame: Are
 }
 
 /// The line through the points.
-fn draw_line(drawing: &mut Drawing, points: &[(f64, &CellScore)], frame: Area, line: usize) {
+pub(super) fn draw_line(
+    drawing: &mut Drawing,
+    points: &[(f64, &CellScore)],
+    frame: Area,
+    line: usize,
+) {
     let places: Vec<Point> = points
         .iter()
         .map(|(x, score)| (*x, y_at(frame, score.accuracy)))
@@ -311,7 +321,12 @@ fn draw_line(drawing: &mut Drawing, points: &[(f64, &CellScore)], frame: Area, l
 }
 
 /// A marker at each point.
-fn draw_markers(drawing: &mut Drawing, points: &[(f64, &CellScore)], frame: Area, line: usize) {
+pub(super) fn draw_markers(
+    drawing: &mut Drawing,
+    points: &[(f64, &CellScore)],
+    frame: Area,
+    line: usize,
+) {
     for (x, score) in points {
         let place = (*x, y_at(frame, score.accuracy));
         drawing.marker(line, place, MARKER_RADIUS, line_colour(line));

@@ -27,11 +27,13 @@ pub struct ChartPlan {
 }
 
 /// First choice first: what a reader looks for along x.
-const ALONG_X: [Axis; 15] = [
+const ALONG_X: [Axis; 17] = [
     Axis::Ratio,
     Axis::Measurements,
     Axis::FusedTouches,
     Axis::TrainTouches,
+    Axis::Mislabelled,
+    Axis::ClassImbalance,
     Axis::Noise,
     Axis::Smoothing,
     Axis::C,
@@ -46,7 +48,7 @@ const ALONG_X: [Axis; 15] = [
 ];
 
 /// What makes good lines: resolution first, then ways of treating the signal.
-const AS_LINES: [Axis; 15] = [
+const AS_LINES: [Axis; 17] = [
     Axis::TestedOn,
     Axis::OverTime,
     Axis::Pitch,
@@ -59,13 +61,15 @@ const AS_LINES: [Axis; 15] = [
     Axis::Frames,
     Axis::FusedTouches,
     Axis::TrainTouches,
+    Axis::Mislabelled,
+    Axis::ClassImbalance,
     Axis::C,
     Axis::Ratio,
     Axis::Measurements,
 ];
 
 /// What makes good panels.
-const AS_PANELS: [Axis; 15] = [
+const AS_PANELS: [Axis; 17] = [
     Axis::TestedOn,
     Axis::OverTime,
     Axis::Size,
@@ -77,6 +81,8 @@ const AS_PANELS: [Axis; 15] = [
     Axis::Smoothing,
     Axis::FusedTouches,
     Axis::TrainTouches,
+    Axis::Mislabelled,
+    Axis::ClassImbalance,
     Axis::C,
     Axis::Pitch,
     Axis::Ratio,

@@ -86,6 +86,8 @@ impl Levels {
             Axis::Imperfection(Imperfection::Scan) => "0 ms",
             Axis::Imperfection(_) => "0 %",
             Axis::TestedOn => "the same skin",
+            Axis::Mislabelled => "0 %",
+            Axis::ClassImbalance => "1:1",
             _ => return false,
         };
         self.values.iter().all(|value| value.label == usual)
@@ -114,6 +116,8 @@ impl Settings {
             Axis::Pitch,
             Axis::C,
             Axis::TrainTouches,
+            Axis::Mislabelled,
+            Axis::ClassImbalance,
             Axis::FusedTouches,
             Axis::Smoothing,
             Axis::Noise,

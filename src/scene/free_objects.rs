@@ -178,11 +178,7 @@ fn push_by_others(
     for ((patch, skin), pushed) in plan.patches.iter().zip(skins).zip(pushed) {
         pushed.clear();
         if objects.can_reach(&patch.skin, &skin.pose) {
-            let patch_from_world = skin.pose.inverse();
-            let poses = objects
-                .poses
-                .iter()
-                .map(|pose| patch_from_world.compose(pose));
+            let poses = objects.poses.iter().map(|pose| pose.seen_from(&skin.pose));
             let poses: Vec<Pose> = poses.collect();
             press_skin(&patch.skin, &plan.models, &poses, workspace);
             pushed.extend_from_slice(workspace.deflections());

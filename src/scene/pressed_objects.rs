@@ -66,15 +66,13 @@ impl PressedObjects {
             let press = planned.expect("only those that are pressed are here");
             let patch = &plan.patches[press.patch].skin;
             let skin = &skins[press.patch];
-            let patch_from_world = skin.pose.inverse();
             poses.clear();
-            let seen = objects.poses.iter();
-            poses.extend(seen.map(|pose| patch_from_world.compose(pose)));
+            poses.extend(objects.poses.iter().map(|pose| pose.seen_from(&skin.pose)));
             let moved = MovedObject {
                 patch,
                 objects: &plan.models,
                 moving: pressed.object,
-                direction: patch_from_world.rotation * press.direction,
+                direction: skin.pose.rotation.conjugate() * press.direction,
             };
             pressed.wanted = press.force_at(time);
             let way = (press.speed * dt).min(press.travel);

@@ -21,10 +21,10 @@ pub(super) struct PlacedObjects {
     pub balls: Vec<(DVec3, f64)>,
 }
 
-/// Where an object is that touches nothing: farther away than any skin, and near enough that distances stay exact.
+/// Where an object is that touches nothing: farther away than any skin, and near enough that its square is a number.
 pub(super) const OUT_OF_REACH: Pose = Pose {
     rotation: glam::DQuat::IDENTITY,
-    translation: DVec3::new(0.0, 0.0, 1e6),
+    translation: DVec3::new(0.0, 0.0, 1e100),
 };
 
 impl PlacedObjects {
@@ -33,12 +33,11 @@ impl PlacedObjects {
         let Some(bounds) = skin.tree().bounds() else {
             return false;
         };
-        let patch_from_world = world_from_patch.inverse();
         self.poses
             .iter()
             .zip(&self.balls)
             .any(|(pose, &(center, radius))| {
-                let center = patch_from_world.transform_point(pose.transform_point(center));
+                let center = pose.seen_from(world_from_patch).transform_point(center);
                 let reach = radius + skin.tree().largest_radius();
                 // What rounding may add, far above 1e-16 and far below what is felt.
                 bounds.distance_squared(center) <= reach * reach * (1.0 + 1e-9)
@@ -178,11 +177,7 @@ impl SkinState {
             return;
         }
         self.is_idle = false;
-        let patch_from_world = self.pose.inverse();
-        let seen = objects
-            .poses
-            .iter()
-            .map(|pose| patch_from_world.compose(pose));
+        let seen = objects.poses.iter().map(|pose| pose.seen_from(&self.pose));
         self.poses.clear();
         self.poses.extend(seen);
         let workspace = &mut self.workspace;

@@ -12,7 +12,7 @@ use crate::recognition::fusion::{fuse_rows, fuse_scores};
 use crate::recognition::interval::Interval;
 use crate::recognition::metrics::ConfusionMatrix;
 use crate::recognition::split::Split;
-use ndarray::{ArrayView2, Axis};
+use ndarray::{Array1, ArrayView2, Axis};
 use serde::{Deserialize, Serialize};
 use std::time::Instant;
 
@@ -39,6 +39,8 @@ pub struct Trial<'a> {
     pub sweep: &'a Sweep,
     /// Measurements of all touches, at least the cell's m a frame.
     pub measurements: &'a Measurements,
+    /// The same of what test touches are: the measurements themselves, unless something has changed since they were learned from.
+    pub tested: &'a Measurements,
     /// Number of the trial.
     pub number: usize,
 }
@@ -57,7 +59,7 @@ impl Trial<'_> {
     pub fn evaluate(&self, family: &[Cell]) -> Result<Vec<Evaluation>> {
         let split = self.sweep.split(self.plan, &family[0], self.number)?;
         let training = self.training(&family[0], &split)?;
-        let test = self.rows(&family[0], &split.test)?;
+        let test = rows(&family[0], (self.tested, &split.test), &self.sweep.labels)?;
         let same_fit: Vec<&[Cell]> = family.chunk_by(|a, b| a.c == b.c).collect();
         let penalties: Vec<Option<f64>> = same_fit.iter().map(|cells| cells[0].c).collect();
         let fitted = training.train_all(&penalties)?;
@@ -89,13 +91,16 @@ impl Trial<'_> {
         let predicted = scored.fitted.classifier.labels_of_scores(fused.view());
         let predict_s = scored.score_s + start.elapsed().as_secs_f64();
         let truth = rows.groups.iter().map(|group| truth[group[0]]).collect();
-        let truth: ndarray::Array1<usize> = truth;
+        let truth: Array1<usize> = truth;
         let n_objects = self.sweep.labels.iter().max().map_or(0, |last| last + 1);
         let matrix = ConfusionMatrix::new(truth.view(), predicted.view(), n_objects)?;
+        let (split, projection) = self.plan.repeats.numbers(self.number);
         let interval = Interval::wilson(matrix.n_correct(), matrix.n_rows(), CONFIDENCE)?;
         Ok(Evaluation {
             score: TrialScore {
                 trial: self.number,
+                split,
+                projection,
                 n_train: scored.n_train,
                 n_test: matrix.n_rows(),
                 n_left_out: rows.n_left_out,
@@ -125,23 +130,31 @@ impl Trial<'_> {
 
     fn training(&self, cell: &Cell, split: &Split) -> Result<Training<'_>> {
         let keys = self.sweep.group_keys.as_ref();
+        let labels = self
+            .sweep
+            .learned_labels(self.plan, (cell, self.number), split)?;
         Ok(Training {
             recognition: &self.plan.spec.recognition,
             choice: &self.plan.choice,
             kind: cell.classifier,
-            data: self.rows(cell, &split.train)?,
+            data: rows(cell, (self.measurements, &split.train), &labels)?,
             group_keys: keys.map(|keys| keys.select(Axis(0), &split.train)),
             seed: self.seed("validation"),
         })
-    }
-
-    fn rows(&self, cell: &Cell, touches: &[usize]) -> Result<Dataset> {
-        let labels = self.sweep.labels.select(Axis(0), touches);
-        dataset(self.measurements.features(cell, touches), labels)
     }
 
     fn seed(&self, name: &str) -> Seed {
         let seed = Seed::new(self.plan.spec.seed).named(name);
         seed.numbered(self.number as u64)
     }
+}
+
+/// What a cell learns from, or is tested on, of some touches.
+fn rows(
+    cell: &Cell,
+    (measurements, touches): (&Measurements, &[usize]),
+    labels: &Array1<usize>,
+) -> Result<Dataset> {
+    let labels = labels.select(Axis(0), touches);
+    dataset(measurements.features(cell, touches), labels)
 }

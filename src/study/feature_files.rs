@@ -3,12 +3,13 @@
 //! | file | holds |
 //! |---|---|
 //! | `features.npy` | n × m, f64: the measurements of every touch, before scaling |
-//! | `labels.npy` | n, i64: the object's number |
+//! | `labels.npy` | n, i64: the object's number (of mislabelled training touches another's) |
 //! | `train.npy` | i64: the rows that the trial trains on, in its order; a prefix is a smaller training set |
 //! | `test.npy` | i64: the rows that it tests, ascending |
 //! | `objects.csv` | one row an object: number, name |
 //! | `cell.toml` | the settings of the cell and the trial |
 
+use super::frames::FrameStorage;
 use super::measurement::measure_group;
 use super::plan::Plan;
 use super::progress::Progress;
@@ -73,7 +74,8 @@ pub fn cell_features(
         &format!("touch {}", describe(patch)),
         sweep.labels.len() as u64,
     );
-    let frames = touched.simulate(patch, group.frames, progress);
+    let storage = FrameStorage::in_memory();
+    let frames = storage.frames(touched, (patch, group.frames), progress)?;
     // As the run does it: nested measurements are the leading ones of the largest m.
     let n_projected = group
         .projected()
@@ -85,7 +87,7 @@ pub fn cell_features(
     let all: Vec<usize> = (0..sweep.labels.len()).collect();
     let features = measured.features(cell, &all);
     Ok(FeatureSet {
-        data: dataset(features, sweep.labels.clone())?,
+        data: dataset(features, sweep.learned_labels(plan, (cell, trial), &split)?)?,
         split,
     })
 }

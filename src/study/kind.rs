@@ -1,4 +1,5 @@
-//! What a study asks about: recognition, reconstruction, the objects themselves, a whole body, or contact itself.
+//! What a study asks about: recognition, reconstruction, the objects themselves, a whole body, contact itself, where recognition
+//! breaks, or what accuracy costs.
 
 /// The kinds of studies, told apart by a table that only one of them has.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -13,6 +14,10 @@ pub enum StudyKind {
     WholeBody,
     /// Where does each way to simulate contact break? A file with a `[stability]` table.
     Stability,
+    /// How far can each setting be driven before recognition breaks? A file with `[[breaking_points]]` tables.
+    BreakingPoints,
+    /// What does accuracy cost? A file with a `[speed_accuracy]` table.
+    SpeedAccuracy,
 }
 
 impl StudyKind {
@@ -24,6 +29,8 @@ impl StudyKind {
             () if table.contains_key("object_detail") => Self::ObjectDetail,
             () if table.contains_key("whole_body") => Self::WholeBody,
             () if table.contains_key("stability") => Self::Stability,
+            () if table.contains_key("breaking_points") => Self::BreakingPoints,
+            () if table.contains_key("speed_accuracy") => Self::SpeedAccuracy,
             () => Self::Recognition,
         }
     }
@@ -36,6 +43,8 @@ impl StudyKind {
             Self::ObjectDetail => "a study of how detailed objects are",
             Self::WholeBody => "a study of a whole body of skin",
             Self::Stability => "a study of where contact methods break",
+            Self::BreakingPoints => "a study of where recognition breaks",
+            Self::SpeedAccuracy => "a study of what accuracy costs",
         }
     }
 }

@@ -2,7 +2,7 @@
 
 use super::axis::Axis;
 use super::check::{Check, not_negative, positive};
-use super::plan::{Amount, SplitKind, SplitPlan};
+use super::plan::Amount;
 use super::spec::{RecognitionSpec, SensingSpec, StudySpec};
 use super::training::{ChoicePlan, DEFAULT_FOLDS};
 use crate::error::Result;
@@ -196,6 +196,10 @@ impl Check<'_> {
                 self.positive_count(key, count)?;
             }
         }
+        if let Some(gib) = recognition.solver_memory_gib {
+            let allowed = "a positive number of gibibytes";
+            self.value("recognition.solver_memory_gib", gib, positive, allowed)?;
+        }
         if !(1..=20).contains(&recognition.degree) {
             let given = recognition.degree;
             return Err(self.error("recognition.degree", given, "from 1 to 20"));
@@ -230,53 +234,5 @@ impl Check<'_> {
             }
         }
         Ok(values.into_iter().map(Some).collect())
-    }
-
-    pub fn train_touches(&self, spec: &StudySpec) -> Result<Vec<Option<usize>>> {
-        let Some(axis) = &spec.recognition.train_touches else {
-            return Ok(vec![None]);
-        };
-        let counts = self.counts("recognition.train_touches", axis)?;
-        Ok(counts.into_iter().map(Some).collect())
-    }
-
-    pub fn split(&self, spec: &StudySpec) -> Result<SplitPlan> {
-        let recognition = &spec.recognition;
-        let kind = match (recognition.test_fraction, recognition.folds) {
-            (Some(_), Some(_)) => {
-                return Err(self.error(
-                    "recognition",
-                    "both test_fraction and folds",
-                    "one of them",
-                ));
-            }
-            (fraction, None) => {
-                let inside = |f: f64| f > 0.0 && f < 1.0;
-                let fraction = self.value(
-                    "recognition.test_fraction",
-                    fraction.unwrap_or(0.25),
-                    inside,
-                    "between 0 and 1",
-                )?;
-                SplitKind::HoldOut(fraction)
-            }
-            (None, Some(k)) => {
-                if k < 2 {
-                    return Err(self.error("recognition.folds", k, "at least 2"));
-                }
-                if !spec.trials.is_multiple_of(k) {
-                    return Err(self.error(
-                        "trials",
-                        spec.trials,
-                        format!("a multiple of recognition.folds = {k}"),
-                    ));
-                }
-                SplitKind::Folds(k)
-            }
-        };
-        Ok(SplitPlan {
-            kind,
-            keep_together: recognition.keep_together,
-        })
     }
 }

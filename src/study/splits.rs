@@ -19,6 +19,7 @@ pub fn draw_split(
     keys: Option<&Array1<usize>>,
     trial: usize,
 ) -> Result<Split> {
+    let trial = plan.repeats.split(trial);
     let seed = Seed::new(plan.spec.seed).named("split");
     match plan.split.kind {
         SplitKind::HoldOut(fraction) => {
@@ -83,6 +84,20 @@ pub fn check_folds(plan: &Plan, train_touches: &[usize]) -> Result<()> {
         ));
     }
     Ok(())
+}
+
+/// No imbalance leaves an object without a training touch.
+pub fn check_imbalance(plan: &Plan, train_touches: &[usize]) -> Result<()> {
+    let most = 2.0 * train_touches.iter().min().copied().unwrap_or(0) as f64;
+    let ratios = plan.class_imbalance.iter().flatten();
+    match ratios.copied().find(|&ratio| ratio > most) {
+        None => Ok(()),
+        Some(ratio) => Err(Error::input(
+            "key recognition.class_imbalance",
+            ratio,
+            format!("at most {most}, twice the training touches of every object"),
+        )),
+    }
 }
 
 /// The touches of the object that has fewest among any of some rows.

@@ -3,7 +3,7 @@
 //! ```text
 //! array × frames a touch ── touches simulated once
 //!   └─ condition of the signal × test skin × ensemble (a group), and trial ── frames read and projected once, at the largest m
-//!        └─ m × over time × features × classifier × training touches (a family) ── rows made once
+//!        └─ m × over time × features × classifier × training rows (a family) ── rows made once
 //!             └─ C ── fit, score test touches
 //!                  └─ fused touches (a cell) ── decide
 //! ```
@@ -12,11 +12,13 @@ use super::imperfection::{Imperfection, TestedOn};
 use super::plan::{Plan, millimetres};
 use super::plan_signal::Condition;
 use super::published::check_published;
-use super::splits::{check_folds, check_fused_touches, draw_split, train_touches};
+use super::splits::{check_folds, check_fused_touches, check_imbalance, draw_split, train_touches};
 use super::table::Cell;
 use super::touch_set::TouchSet;
 use crate::error::{Error, Result};
+use crate::random::Seed;
 use crate::recognition::split::Split;
+use crate::recognition::spoiled::mislabelled;
 use crate::sensing::Ensemble;
 use crate::world::Patch;
 use ndarray::Array1;
@@ -58,7 +60,8 @@ impl Group {
         let family = |cell: &Cell| {
             let (m, kind) = (cell.measurements, cell.classifier);
             let rows = (cell.over_time, cell.features);
-            (m, rows, kind, cell.train_touches)
+            let spoiled = (cell.mislabelled_fraction, cell.class_imbalance);
+            (m, rows, kind, cell.train_touches, spoiled)
         };
         self.cells.chunk_by(move |a, b| family(a) == family(b))
     }
@@ -102,6 +105,7 @@ impl Sweep {
         let train_touches = train_touches(plan, &splits, &labels)?;
         check_fused_touches(plan, &splits, &labels)?;
         check_folds(plan, &train_touches)?;
+        check_imbalance(plan, &train_touches)?;
         let mut sweep = Self {
             groups: Vec::new(),
             splits,
@@ -118,17 +122,42 @@ impl Sweep {
         Ok(sweep)
     }
 
-    /// A trial's split, with no more training touches an object than the cell allows; an error for a trial that the study
-    /// does not have.
+    /// A trial's split, with no more training touches an object than the cell allows, and with its imbalance; an error for a
+    /// trial that the study does not have.
     pub fn split(&self, plan: &Plan, cell: &Cell, trial: usize) -> Result<Split> {
         let split = self.splits.get(trial).ok_or_else(|| {
             let last = self.splits.len() - 1;
             Error::input("trial", trial, format!("0 to {last}, the study's trials"))
         })?;
-        match plan.spec.recognition.train_touches {
-            None => Ok(split.clone()),
-            Some(_) => split.at_most(self.labels.view(), cell.train_touches),
+        let split = match plan.spec.recognition.train_touches {
+            None => split.clone(),
+            Some(_) => split.at_most(self.labels.view(), cell.train_touches)?,
+        };
+        match cell.class_imbalance {
+            None => Ok(split),
+            Some(ratio) => {
+                split.with_imbalance(self.labels.view(), ratio, &training_stream(plan, trial))
+            }
         }
+    }
+
+    /// The label of every touch as a cell learns it in a trial: some of the split's training touches may have another
+    /// object's.
+    pub fn learned_labels(
+        &self,
+        plan: &Plan,
+        (cell, trial): (&Cell, usize),
+        split: &Split,
+    ) -> Result<Array1<usize>> {
+        let mut labels = self.labels.clone();
+        if let Some(fraction) = cell.mislabelled_fraction {
+            let right = labels.select(ndarray::Axis(0), &split.train);
+            let wrong = mislabelled(right.view(), fraction, &training_stream(plan, trial))?;
+            for (&row, label) in split.train.iter().zip(wrong) {
+                labels[row] = label;
+            }
+        }
+        Ok(labels)
     }
 
     fn add_groups(&mut self, plan: &Plan, (array, frames): (usize, usize), train: &[usize]) {
@@ -174,6 +203,12 @@ impl Sweep {
     }
 }
 
+/// What a trial's training rows are spoiled with.
+fn training_stream(plan: &Plan, trial: usize) -> Seed {
+    let seed = Seed::new(plan.spec.seed).named("training rows");
+    seed.numbered(trial as u64)
+}
+
 /// The m axis on an array; a ratio axis can name the same m twice on a small one.
 fn measurement_counts(plan: &Plan, patch: &Patch, ensemble: Ensemble) -> Vec<usize> {
     let n_taxels = patch.grid.n_taxels();
@@ -190,23 +225,34 @@ fn measurement_counts(plan: &Plan, patch: &Patch, ensemble: Ensemble) -> Vec<usi
     counts
 }
 
-/// Over time × features × classifier × training touches: the first cell of each family with a number of measurements.
+/// Over time × features × classifier × training touches × what spoils them: the first cell of each family with a number of
+/// measurements.
 fn families(plan: &Plan, first: &Cell, train_touches: &[usize]) -> Vec<Cell> {
     let mut families = Vec::new();
     for &over_time in &plan.over_time {
         for &features in &plan.features {
             for &classifier in &plan.classifiers {
-                families.extend(train_touches.iter().map(|&train_touches| Cell {
-                    over_time,
-                    features,
-                    classifier,
-                    train_touches,
-                    ..first.clone()
-                }));
+                for &train_touches in train_touches {
+                    families.extend(spoiled(plan).map(|[imbalance, mislabelled]| Cell {
+                        over_time,
+                        features,
+                        classifier,
+                        train_touches,
+                        class_imbalance: imbalance,
+                        mislabelled_fraction: mislabelled,
+                        ..first.clone()
+                    }));
+                }
             }
         }
     }
     families
+}
+
+/// Class imbalance × mislabelled fraction.
+fn spoiled(plan: &Plan) -> impl Iterator<Item = [Option<f64>; 2]> {
+    let imbalances = plan.class_imbalance.iter();
+    imbalances.flat_map(|&imbalance| plan.mislabelled.iter().map(move |&part| [imbalance, part]))
 }
 
 /// The cells of a family: every C that its classifier has a use for, with every number of fused touches.
@@ -262,6 +308,8 @@ fn group_cell(plan: &Plan, group: &Group, measurements: usize) -> Cell {
         classifier: plan.classifiers[0],
         c: None,
         train_touches: 0,
+        mislabelled_fraction: None,
+        class_imbalance: None,
         fused_touches: plan.fused_touches[0],
     }
 }

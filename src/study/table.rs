@@ -3,6 +3,7 @@
 //! A row of `accuracy.csv` is a [`Cell`] followed by a [`TrialScore`]; the other tables are built the same way.
 
 use super::imperfection::{IMPERFECTIONS, Imperfection, Strengths, TestedOn};
+pub use super::variance_table::{Source, Variance};
 use crate::recognition::ClassifierKind;
 use crate::recognition::features::Features;
 use crate::recognition::over_time::OverTime;
@@ -76,6 +77,12 @@ pub struct Cell {
     pub c: Option<f64>,
     /// Training touches an object, at most.
     pub train_touches: usize,
+    /// Fraction of them with another object's label; only if the study has the key.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub mislabelled_fraction: Option<f64>,
+    /// How many times as many the most frequent object has as the rarest; only if the study has the key.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub class_imbalance: Option<f64>,
     /// Test touches of an object that are decided on together, by the sum of their scores.
     pub fused_touches: usize,
 }
@@ -114,6 +121,12 @@ impl Cell {
 pub struct TrialScore {
     /// Number of the trial, from 0.
     pub trial: usize,
+    /// Number of its split. This column and the next are there only if the study has `projections_per_split`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub split: Option<usize>,
+    /// Number of its projection.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub projection: Option<usize>,
     /// Training rows.
     pub n_train: usize,
     /// Test rows: groups of `fused_touches` test touches.
@@ -155,6 +168,13 @@ pub struct CellScore {
     pub accuracy_low: f64,
     /// Upper end of the same interval.
     pub accuracy_high: f64,
+    /// Lower end of the 95 % bootstrap interval of the mean over trials: where it would be with other splits, projections and
+    /// noise on the same touches. Empty with fewer than five trials (or splits, or projections).
+    #[serde(default)]
+    pub bootstrap_low: Option<f64>,
+    /// Upper end of the same interval.
+    #[serde(default)]
+    pub bootstrap_high: Option<f64>,
     /// Mean macro-F1 over trials.
     pub macro_f1: f64,
     /// Binary SVMs that stopped at the iteration cap, all trials.
@@ -230,6 +250,9 @@ pub struct Comparison {
     pub difference_high: Option<f64>,
     /// Two-sided p-value of no difference; empty with one trial.
     pub p_value: Option<f64>,
+    /// The same after Holm's correction for all cells but the best; empty for that one.
+    #[serde(default)]
+    pub p_holm: Option<f64>,
 }
 
 /// What a trial of a cell cost (with the [`Cell`] before it: a row of `timing.csv`).
@@ -316,6 +339,8 @@ pub struct Tables {
     pub published: Vec<(Cell, Published)>,
     /// One row per cell and trial that failed.
     pub failures: Vec<(Cell, Failure)>,
+    /// Three rows per cell, for studies with `projections_per_split`.
+    pub variance: Vec<Variance>,
 }
 
 #[cfg(test)]
@@ -351,6 +376,8 @@ pub(crate) mod tests {
             classifier: ClassifierKind::LinearSvm,
             c: Some(1.0),
             train_touches: 75,
+            mislabelled_fraction: None,
+            class_imbalance: None,
             fused_touches: 1,
         }
     }

@@ -107,11 +107,10 @@ impl BodyState {
         let instructions = self.instructions;
         let step = |number: u32, state: &mut PatchState| {
             let number = number as usize;
-            let patch_from_world = poses[number].inverse();
             let placed = objects.iter().zip(world_from_objects).zip(object_balls);
             let near = placed
                 .filter(|(_, ball)| are_near(ball, &balls[number]))
-                .map(|((object, pose), _)| (object, patch_from_world.compose(pose)));
+                .map(|((object, pose), _)| (object, pose.seen_from(&poses[number])));
             state.step(&body.patches()[number], near, dt, instructions);
         };
         let share = self.contact.n_touched >= WORTH_THREADS;

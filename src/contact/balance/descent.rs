@@ -18,12 +18,18 @@ const MAX_ROUNDS: usize = 40;
 const AT_REST: f64 = 1e-7;
 /// Imbalance that a pose at rest never has more of, even where flanks are so steep that nothing nearby is better.
 const PROMISED: f64 = 1e-6;
-/// Looseness of ties and stops at which a pose is at rest, as a share of the largest deflection.
+/// Looseness of ties and stops at which a pose is at rest, in springs' forces, as a share of the largest of them.
 const TIGHT: f64 = 1e-7;
 /// Steps up to this share of the farthest are foreseen with all contacts that they make.
 const NEARBY: f64 = 0.04;
-/// Smoothing of ties as a share of the largest deflection.
+/// Smoothing of ties as a share of the largest deflection, and of the one under which a taxel carries all the weight.
 const SMOOTHING: f64 = 1e-2;
+/// The least smoothing, in last bits of the object's size.
+const LAST_BITS: f64 = 64.0;
+/// Rounds in which ties and stops are made steeper, at most: five to the so many-th is what f64 has room for.
+const MOST_TIGHTENED: usize = 12;
+/// Places closer than this share of the object's size and way are the same.
+const SAME_PLACE: f64 = 1e-15;
 
 /// One object on its way down.
 pub(super) struct Descent<'a> {
@@ -83,6 +89,8 @@ impl<'a> Descent<'a> {
             rotation: start.rotation,
             smoothness: Smoothness {
                 smoothing: 1e-3 * stroke,
+                load: SMOOTHING * weight.length(),
+                least: LAST_BITS * f64::EPSILON * object.radius,
                 stop_stiffness: (1e3 * stiffness).max(weight.length() / (1e-3 * stroke)),
             },
             multipliers: std::mem::take(&mut balancer.multipliers),
@@ -106,6 +114,7 @@ impl<'a> Descent<'a> {
     pub fn run(&mut self) -> Outcome {
         self.look(&[]);
         let mut looseness = f64::INFINITY;
+        let mut n_tightened = 0;
         for _ in 0..MAX_ROUNDS {
             match self.descend() {
                 Stop::Rest => {}
@@ -116,24 +125,29 @@ impl<'a> Descent<'a> {
                 }
                 Stop::Exhausted => return Outcome::Unsettled,
             }
-            let deepest = self.deepest();
-            if self.imbalance() <= AT_REST && self.looseness() <= TIGHT * deepest {
+            if self.imbalance() <= AT_REST && self.looseness() <= TIGHT {
                 return Outcome::Settled;
+            }
+            let deepest = self.deepest();
+            if deepest == 0.0 {
+                // Less than the last bit above taxels that are too stiff to be pressed by it.
+                return Outcome::Unsettled;
             }
             let now = &self.balancer.now;
             self.multipliers = now.loads.multipliers(&now.pairs.all);
             self.smoothness.smoothing = self.smoothness.smoothing.min(SMOOTHING * deepest);
             // Where the energy bends down between ties, multipliers need steeper sides to converge.
             let (before, now) = (looseness, self.looseness());
-            if now > 0.25 * before {
-                self.smoothness.smoothing *= 0.2;
+            if now > TIGHT.max(0.25 * before) && n_tightened < MOST_TIGHTENED {
+                n_tightened += 1;
+                self.smoothness.tighten(0.2);
                 self.smoothness.stop_stiffness *= 5.0;
             }
             looseness = now;
             let behind = std::mem::take(&mut self.balancer.now.pairs.behind);
             self.look(&behind);
         }
-        let is_tight = self.looseness() <= 1e3 * TIGHT * self.deepest();
+        let is_tight = self.looseness() <= 1e3 * TIGHT;
         match self.imbalance() <= PROMISED && is_tight {
             true => Outcome::Settled,
             false => Outcome::Unsettled,
@@ -154,7 +168,7 @@ impl<'a> Descent<'a> {
                 None => return Stop::Rest,
             };
             let length = norm(&step.motion);
-            if length <= 1e-15 * (self.arm + self.center.length()) {
+            if length <= self.same_place() {
                 return Stop::Rest;
             }
             match self.attempt(&step, slope) {
@@ -242,11 +256,17 @@ impl<'a> Descent<'a> {
         loop {
             self.center = above + way * down;
             self.look(&behind);
-            if self.balancer.now.loads.elastic <= 0.5 * self.weight.length() * way {
+            let is_no_worse = self.balancer.now.loads.elastic <= 0.5 * self.weight.length() * way;
+            if is_no_worse || way <= self.same_place() {
                 return true;
             }
             way *= 0.5;
         }
+    }
+
+    /// Metres that are none.
+    fn same_place(&self) -> f64 {
+        SAME_PLACE * (self.arm + self.center.length())
     }
 
     /// Looks at the pose; `behind`: the spheres that were behind taxels where it comes from.

@@ -63,21 +63,25 @@ impl Energy {
         (force, torque)
     }
 
-    /// How far shares and stops are from what they say, metres: spheres that share a taxel should push it equally far, and a
-    /// stop that carries should be met exactly, and none passed.
+    /// How far shares and stops are from what they say: spheres that share a taxel should push it equally far, and a stop that
+    /// carries should be met exactly, and none passed. As what the taxel's spring makes of that distance, as a share of the
+    /// largest force of a spring; 0 where there is none.
     pub fn looseness(&self, skins: &[PlacedSkin]) -> f64 {
-        let mut worst: f64 = 0.0;
+        let (mut worst, mut largest): (f64, f64) = (0.0, 0.0);
         for load in self.loads.carrying() {
+            let taxels = skins[load.key.0 as usize].patch.taxels();
+            let taxel = taxels.at(load.key.1 as usize);
+            let past = load.deepest - taxel.stroke;
+            let mut loose: f64 = if load.stop > 0.0 { past.abs() } else { past };
             for at in load.pairs.clone() {
                 if self.loads.shares[at] > 1e-9 {
-                    worst = worst.max(load.deepest - self.pairs.all[at].deflection);
+                    loose = loose.max(load.deepest - self.pairs.all[at].deflection);
                 }
             }
-            let taxels = skins[load.key.0 as usize].patch.taxels();
-            let past = load.deepest - taxels.at(load.key.1 as usize).stroke;
-            worst = worst.max(if load.stop > 0.0 { past.abs() } else { past });
+            worst = worst.max(taxel.stiffness * loose);
+            largest = largest.max(taxel.stiffness * load.deepest);
         }
-        worst
+        if largest > 0.0 { worst / largest } else { 0.0 }
     }
 
     /// How many taxels are pushed along a flank that is as good as parallel to their axis.

@@ -27,10 +27,27 @@ pub(super) struct Multipliers {
 /// How the energy is made smooth.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Smoothness {
-    /// μ, metres.
+    /// μ of soft taxels, metres.
     pub smoothing: f64,
+    /// μ k of stiff ones, newtons: a smoothing that is little on a soft taxel is more than what its stiff neighbour goes.
+    pub load: f64,
+    /// The least μ, metres: less than rounding of deflections would decide ties.
+    pub least: f64,
     /// κ, N/m.
     pub stop_stiffness: f64,
+}
+
+impl Smoothness {
+    /// μ of a taxel of this stiffness (N/m), metres.
+    fn of(&self, stiffness: f64) -> f64 {
+        self.smoothing.min(self.load / stiffness).max(self.least)
+    }
+
+    /// Ties are steeper by this factor below 1.
+    pub fn tighten(&mut self, factor: f64) {
+        self.smoothing *= factor;
+        self.load *= factor;
+    }
 }
 
 /// A taxel and the pairs that it is in.
@@ -42,6 +59,8 @@ pub(super) struct Load {
     pub n_sharing: usize,
     /// max δ, metres; negative if nothing touches it.
     pub deepest: f64,
+    /// μ, metres.
+    pub smoothing: f64,
     /// What the stop carries, newtons.
     pub stop: f64,
     /// Along the axis, with the stop's, newtons; 0 if nothing touches it.
@@ -110,10 +129,11 @@ impl Loads {
             self.known.extend(pairs.iter().map(of));
         }
         let known = known.map(|known| (&self.known[..], known.iter().map(|k| k.1 * k.1).sum()));
-        let max = tied_max(deflections, known, smoothness.smoothing, &mut self.sharing);
-        self.shares.extend_from_slice(&self.sharing);
         let (skin, number) = (&skins[key.0 as usize], key.1 as usize);
         let taxel = skin.patch.taxels().at(number);
+        let smoothing = smoothness.of(taxel.stiffness);
+        let max = tied_max(deflections, known, smoothing, &mut self.sharing);
+        self.shares.extend_from_slice(&self.sharing);
         let others = skin.pushed.get(number).copied().unwrap_or(0.0);
         let lambda = multipliers.stops.get(&key).copied().unwrap_or(0.0);
         let (k, kappa) = (taxel.stiffness, smoothness.stop_stiffness);
@@ -129,6 +149,7 @@ impl Loads {
                 .iter()
                 .copied()
                 .fold(f64::NEG_INFINITY, f64::max),
+            smoothing,
             stop,
             force: k * value + stop,
             tangent: if value > 0.0 { k } else { 0.0 } + if stop > 0.0 { kappa } else { 0.0 },

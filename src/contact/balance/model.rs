@@ -106,7 +106,7 @@ impl Model {
         let mut hessian = self.curvature;
         for load in self.loads.carrying() {
             let (mut mean, mut sum) = ([0.0; 6], [0.0; 6]);
-            let stiffening = load.force / scene.smoothness.smoothing;
+            let stiffening = load.force / load.smoothing;
             for at in load.pairs.clone() {
                 let (slope, share) = (&self.slopes[at], self.loads.shares[at]);
                 if share > 0.0 {
@@ -261,6 +261,8 @@ mod tests {
             multipliers: &multipliers,
             smoothness: Smoothness {
                 smoothing: 2e-4,
+                load: f64::INFINITY,
+                least: 0.0,
                 stop_stiffness: 1e4,
             },
             weight: DVec3::new(0.1, 0.3, -0.9),

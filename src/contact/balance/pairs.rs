@@ -78,7 +78,7 @@ impl Pairs {
             behind: now_behind,
             deepest,
         } = self;
-        let patch_from_object = skin.world_from_patch.inverse().compose(pose);
+        let patch_from_object = pose.seen_from(&skin.world_from_patch);
         let rotation = DMat3::from_quat(patch_from_object.rotation);
         let center_of_mass = patch_from_object.transform_point(object.center_of_mass);
         let tree = skin.patch.tree();

@@ -66,10 +66,10 @@ impl Balancer {
     ///
     /// It goes to the rest that lies downhill; from a pose at rest it does not move. The skins do not move meanwhile, and
     /// their dampers do not count. The error names a gravity that is zero or not finite, and a pose that is not finite.
-    pub fn settle(
+    pub fn settle<'s>(
         &mut self,
         object: &FreeObject,
-        skins: &[PlacedSkin],
+        skins: &[PlacedSkin<'s>],
         gravity: DVec3,
         start: &Pose,
     ) -> Result<Balance> {
@@ -87,10 +87,19 @@ impl Balancer {
                 "finite numbers",
             ));
         }
-        let mut descent = Descent::new(self, object, skins, gravity, start);
+        // Where the object is, is the origin: far from the world's, places have too few digits to balance stiff springs.
+        let origin = start.translation;
+        let from_there = |pose: &Pose| Pose::new(pose.rotation, pose.translation - origin);
+        let near = |skin: &PlacedSkin<'s>| PlacedSkin {
+            world_from_patch: from_there(&skin.world_from_patch),
+            ..*skin
+        };
+        let skins: Vec<PlacedSkin> = skins.iter().map(near).collect();
+        let mut descent = Descent::new(self, object, &skins, gravity, &from_there(start));
         let outcome = descent.run();
-        let balance = descent.balance(outcome);
+        let mut balance = descent.balance(outcome);
         self.multipliers = descent.multipliers;
+        balance.pose.translation += origin;
         Ok(balance)
     }
 }

@@ -1,4 +1,5 @@
-//! The solver's two passes over all variables, written so that the compiler makes vector instructions of them.
+//! The solver's two passes over all variables, written so that the compiler makes vector instructions of them; f32 has
+//! [its own](super::passes_512) where the processor allows it.
 //!
 //! Every slice is a whole number of [`LANES`] long ([`padded`]). Each lane keeps its own extreme; where the extreme of all is
 //! gets looked up afterwards, the lowest index of equals, so results do not depend on the processor.
@@ -84,18 +85,24 @@ pub(super) fn select_up<T: Scalar>(f: &[T], up: &[T]) -> Option<usize> {
     }
 }
 
-/// `f − step (row_i − row_j)` in place.
-#[inline(always)]
-pub(super) fn step_along<T: Scalar>(f: &mut [T], row_i: &[T], row_j: &[T], step: T) {
+/// Takes `f − step (row_i − row_j)` in place, and finds the next variable to raise.
+#[multiversion::multiversion(targets("x86_64+avx2+fma"))]
+pub(crate) fn step_along<T: Scalar>(
+    f: &mut [T],
+    (row_i, row_j): (&[T], &[T]),
+    step: T,
+    up: &[T],
+) -> Option<usize> {
     let n = f.len();
     let (row_i, row_j) = (&row_i[..n], &row_j[..n]);
     for at in 0..n {
         f[at] -= step * (row_i[at] - row_j[at]);
     }
+    select_up(f, up)
 }
 
 /// What the second pass found.
-pub(super) struct Down<T> {
+pub(crate) struct Down<T> {
     /// The variable to lower with `i`: the largest gain of the dual objective, to second order [Fan, Chen, Lin 2005];
     /// `None` when no pair violates the optimality conditions.
     pub j: Option<usize>,
@@ -105,8 +112,8 @@ pub(super) struct Down<T> {
 
 /// The variable to lower when i, whose f is `highest`, is raised. `row` is row i of the Gram matrix; `low` is 0 where a
 /// variable can be lowered and −∞ elsewhere; `gains` is scratch.
-#[inline(always)]
-pub(super) fn select_down<T: Scalar>(
+#[multiversion::multiversion(targets("x86_64+avx2+fma"))]
+pub(crate) fn select_down<T: Scalar>(
     (f, low): (&[T], &[T]),
     (row, diagonal): (&[T], &[T]),
     (highest, own): (T, T),
@@ -199,7 +206,7 @@ mod tests {
         let mut f = values(n, 0.9);
         let mut plain = f.clone();
 
-        step_along(&mut f, &row_i, &row_j, 0.3);
+        let next = step_along(&mut f, (&row_i, &row_j), 0.3, &up);
         for i in 0..n {
             plain[i] -= 0.3 * (row_i[i] - row_j[i]);
         }
@@ -210,7 +217,8 @@ mod tests {
                 best = (plain[i] + up[i], i);
             }
         }
-        assert_eq!(select_up(&f, &up), Some(best.1));
+        assert_eq!(next, Some(best.1));
+        assert_eq!(select_up(&f, &up), next);
 
         let (highest, i) = best;
         let down = select_down(

@@ -1,0 +1,239 @@
+//! A study of breaking points that can run: each value of each way is a recognition study of its own.
+
+use super::scale::WayScale;
+use super::spec::{BreakingPointsSpec, DrivenAs, DrivenTouches, WaySpec};
+use crate::error::{Error, Result};
+use crate::study::check::Check;
+use crate::study::plan::Plan;
+use crate::study::spec::StudySpec;
+use toml::{Table, Value};
+
+/// Ways to drive a study, ready to be gone.
+#[derive(Clone, Debug)]
+pub struct BreakingPointsPlan {
+    /// As it was written.
+    pub spec: BreakingPointsSpec,
+    /// The ways, as they were written.
+    pub ways: Vec<PlannedWay>,
+}
+
+/// A way to drive a study.
+#[derive(Clone, Debug)]
+pub struct PlannedWay {
+    /// One word.
+    pub name: String,
+    /// What runs along x, with its unit.
+    pub label: String,
+    /// How places between values are measured.
+    pub scale: WayScale,
+    /// Which touches have the value.
+    pub touches: DrivenTouches,
+    /// Its values, ascending.
+    pub values: Vec<PlannedValue>,
+}
+
+/// A value of a way.
+#[derive(Clone, Debug)]
+pub struct PlannedValue {
+    /// In the unit of the way's keys.
+    pub value: f64,
+    /// What is learned.
+    pub learned: Plan,
+    /// What is tested, if not the same.
+    pub tested: Option<Plan>,
+}
+
+impl BreakingPointsPlan {
+    /// Checks a study; the error names `place` (the file) and the first key that is out of its range, or the way and the value
+    /// at which a key is.
+    pub fn new(place: &str, spec: BreakingPointsSpec) -> Result<Self> {
+        let check = Check { place };
+        let base = spec.base();
+        check_single(&check, &Plan::new(place, base.clone())?)?;
+        if spec.breaking_points.is_empty() {
+            return Err(check.error("breaking_points", "none", "at least one way"));
+        }
+        let names: Vec<&str> = spec.breaking_points.iter().map(|w| &w.name[..]).collect();
+        check.list("breaking_points.name", names)?;
+        let base = Table::try_from(base).expect("every field of a study has a TOML form");
+        let ways = spec.breaking_points.iter().enumerate();
+        let ways = ways.map(|(index, way)| Way::new(place, index, way).plan(&base));
+        let ways = ways.collect::<Result<_>>()?;
+        Ok(Self { spec, ways })
+    }
+
+    /// Values of all ways.
+    pub fn n_values(&self) -> usize {
+        self.ways.iter().map(|way| way.values.len()).sum()
+    }
+}
+
+/// A way that is being checked.
+struct Way<'a> {
+    /// The file and the way's number, from 1.
+    place: String,
+    spec: &'a WaySpec,
+}
+
+impl<'a> Way<'a> {
+    fn new(place: &str, index: usize, spec: &'a WaySpec) -> Self {
+        let place = format!("{place}, breaking_points[{}]", index + 1);
+        Self { place, spec }
+    }
+
+    fn error(&self, key: &str, given: impl ToString, allowed: impl ToString) -> Error {
+        Error::input(format!("{}, key {key}", self.place), given, allowed)
+    }
+
+    fn plan(&self, base: &Table) -> Result<PlannedWay> {
+        let WaySpec {
+            name,
+            label,
+            scale,
+            touches,
+            ..
+        } = self.spec;
+        let is_word = |c: char| c.is_ascii_alphanumeric() || c == '_';
+        if name.is_empty() || !name.chars().all(is_word) {
+            return Err(self.error("name", format!("'{name}'"), "letters, digits and _"));
+        }
+        if self.spec.keys.is_empty() {
+            return Err(self.error("keys", "an empty list", "at least one key of the study"));
+        }
+        let numbers = self.numbers()?;
+        let mut beside = base.clone();
+        for (key, value) in &self.spec.beside {
+            self.set(&mut beside, key, value.clone())?;
+        }
+        let others = match touches {
+            DrivenTouches::All => None,
+            _ => Some(self.study("beside", beside.clone())?),
+        };
+        let values = numbers
+            .iter()
+            .zip(&self.spec.values)
+            .map(|(&value, given)| {
+                let mut table = beside.clone();
+                for key in &self.spec.keys {
+                    self.set(&mut table, key, self.driven(given, value))?;
+                }
+                let driven = self.study(&format!("at {value}"), table)?;
+                let (learned, tested) = match (others.clone(), touches) {
+                    (Some(others), DrivenTouches::Training) => (driven, Some(others)),
+                    (Some(others), DrivenTouches::Test) => (others, Some(driven)),
+                    _ => (driven, None),
+                };
+                Ok(PlannedValue {
+                    value,
+                    learned,
+                    tested,
+                })
+            });
+        Ok(PlannedWay {
+            values: values.collect::<Result<_>>()?,
+            name: name.clone(),
+            label: label.clone(),
+            scale: *scale,
+            touches: *touches,
+        })
+    }
+
+    /// The values as ascending numbers that the scale has places for.
+    fn numbers(&self) -> Result<Vec<f64>> {
+        let number = |value: &Value| match value {
+            Value::Integer(number) => Ok(*number as f64),
+            Value::Float(number) if number.is_finite() => Ok(*number),
+            other => Err(self.error("values", other, "finite numbers")),
+        };
+        let numbers = self.spec.values.iter().map(number);
+        let numbers = numbers.collect::<Result<Vec<_>>>()?;
+        if numbers.len() < 3 {
+            return Err(self.error("values", format!("{} values", numbers.len()), "at least 3"));
+        }
+        if let Some(pair) = numbers.windows(2).find(|pair| pair[0] >= pair[1]) {
+            let given = format!("{} before {}", pair[0], pair[1]);
+            return Err(self.error("values", given, "ascending values"));
+        }
+        let is_logarithmic = self.spec.scale == WayScale::Logarithmic;
+        if is_logarithmic && numbers[0] < 0.0 {
+            let allowed = "zero or more, or scale = \"linear\"";
+            return Err(self.error("values", numbers[0], allowed));
+        }
+        if self.spec.driven_as == DrivenAs::HalfWidth && numbers[0] < 0.0 {
+            return Err(self.error("values", numbers[0], "zero or more: half widths"));
+        }
+        Ok(numbers)
+    }
+
+    fn driven(&self, given: &Value, value: f64) -> Value {
+        match self.spec.driven_as {
+            DrivenAs::Value => given.clone(),
+            DrivenAs::HalfWidth if value == 0.0 => Value::Float(0.0),
+            DrivenAs::HalfWidth => {
+                let ends = [-value, value].map(Value::Float).to_vec();
+                let spread = [("uniform".to_owned(), Value::Array(ends))];
+                Value::Table(spread.into_iter().collect())
+            }
+        }
+    }
+
+    /// Sets a key of the study, such as `signal.noise_std_n`.
+    fn set(&self, study: &mut Table, key: &str, value: Value) -> Result<()> {
+        let mut parts: Vec<&str> = key.split('.').collect();
+        let last = parts.pop().unwrap_or_default();
+        let mut table = study;
+        for part in parts {
+            let entry = table
+                .entry(part)
+                .or_insert_with(|| Value::Table(Table::new()));
+            table = entry.as_table_mut().ok_or_else(|| {
+                self.error(
+                    "keys",
+                    key,
+                    "a key of the study, such as signal.smoothing_mm",
+                )
+            })?;
+        }
+        table.insert(last.to_owned(), value);
+        Ok(())
+    }
+
+    /// The recognition study that a table is.
+    fn study(&self, at: &str, table: Table) -> Result<Plan> {
+        let place = format!("{} {at}", self.place);
+        let spec: std::result::Result<StudySpec, _> = table.try_into();
+        let spec = spec.map_err(|error| {
+            let said = error.message().trim().replace('\n', " ");
+            Error::input(&place, said, "keys and values of a recognition study")
+        })?;
+        let plan = Plan::new(&place, spec)?;
+        check_single(&Check { place: &place }, &plan)?;
+        Ok(plan)
+    }
+}
+
+/// Every axis but that of classifiers has one value.
+fn check_single(check: &Check, plan: &Plan) -> Result<()> {
+    let of_signal = plan.conditions().len() * plan.tested_on.len();
+    let of_recognition = plan.over_time.len()
+        * plan.features.len()
+        * plan.penalties.len()
+        * plan.train_touches.len()
+        * plan.mislabelled.len()
+        * plan.class_imbalance.len()
+        * plan.fused_touches.len();
+    let of_sensing = plan.ensembles.len() * plan.amounts.len();
+    for (key, n) in [
+        ("skin", plan.arrays.len()),
+        ("touches.frames", plan.frames.len()),
+        ("signal", of_signal),
+        ("sensing", of_sensing),
+        ("recognition", of_recognition),
+    ] {
+        if n != 1 {
+            let allowed = "one: values are swept by breaking_points, and only classifiers compared";
+            return Err(check.error(key, format!("{n} settings"), allowed));
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,278 @@
+//! Runs a study of breaking points: every value of every way on all threads.
+
+use super::half::Curve;
+use super::plan::{BreakingPointsPlan, PlannedValue, PlannedWay};
+use super::table::{BreakingPoint, BreakingPointsTables, Side, WayCell};
+use crate::error::{Error, Result};
+use crate::objects::Object;
+use crate::random::Seed;
+use crate::recognition::ClassifierKind;
+use crate::recognition::bootstrap::Bootstrap;
+use crate::study::evaluation::{Evaluation, Trial};
+use crate::study::frames::Frames;
+use crate::study::measurement::{Measurements, measure_group};
+use crate::study::object_files::load_objects;
+use crate::study::plan::Plan;
+use crate::study::progress::{Progress, Silent};
+use crate::study::simulation::{TouchedObject, draw_touches, simulate_array};
+use crate::study::spec::ObjectsSpec;
+use crate::study::summary::score;
+use crate::study::sweep::Sweep;
+use crate::study::table::{Cell, CellScore};
+use rayon::prelude::*;
+use std::path::Path;
+
+/// Goes every way of a study. Packings are looked for and kept in the folder `packings`, if one is given. The tables but for times
+/// are the same bytes at any number of threads.
+///
+/// # Errors
+/// Objects that are not there, or too few touches for a value: named with its way. What a stage refuses.
+pub fn find_breaking_points(
+    plan: &BreakingPointsPlan,
+    packings: Option<&Path>,
+    progress: &dyn Progress,
+) -> Result<BreakingPointsTables> {
+    let sets = ObjectSets::load(plan, packings, progress)?;
+    progress.stage("drive", plan.n_values() as u64);
+    let ways = plan.ways.iter();
+    let values: Vec<_> = ways
+        .flat_map(|way| way.values.iter().map(move |value| (way, value)))
+        .collect();
+    let evaluated = values
+        .par_iter()
+        // One at a time: values of one way may all be slow.
+        .with_max_len(1)
+        .map(|(way, value)| {
+            let found = evaluate(value, &sets)
+                .map_err(|error| error.under(format!("way {} at {}, ", way.name, value.value)))?;
+            progress.advance(1);
+            Ok(found)
+        })
+        .collect::<Result<Vec<_>>>()?;
+    let mut tables = BreakingPointsTables::default();
+    let mut evaluated = evaluated.into_iter();
+    for way in &plan.ways {
+        let values = evaluated.by_ref().take(way.values.len()).collect();
+        add_way(&mut tables, way, values, plan.spec.seed)?;
+    }
+    Ok(tables)
+}
+
+/// The objects that ways touch, by what says so.
+struct ObjectSets(Vec<(ObjectsSpec, Vec<Object>)>);
+
+impl ObjectSets {
+    fn load(
+        plan: &BreakingPointsPlan,
+        packings: Option<&Path>,
+        progress: &dyn Progress,
+    ) -> Result<Self> {
+        let values = plan.ways.iter().flat_map(|way| &way.values);
+        let plans = values.flat_map(|value| [Some(&value.learned), value.tested.as_ref()]);
+        let mut specs: Vec<&ObjectsSpec> = Vec::new();
+        for plan in plans.flatten() {
+            if !specs.contains(&&plan.spec.objects) {
+                specs.push(&plan.spec.objects);
+            }
+        }
+        progress.stage("objects", specs.len() as u64);
+        let sets = specs.into_iter().map(|spec| {
+            let objects = load_objects(spec, packings)?;
+            progress.advance(1);
+            Ok((spec.clone(), objects))
+        });
+        Ok(Self(sets.collect::<Result<_>>()?))
+    }
+
+    fn of(&self, plan: &Plan) -> Vec<Object> {
+        let set = self.0.iter().find(|(spec, _)| *spec == plan.spec.objects);
+        set.map_or_else(Vec::new, |(_, objects)| objects.clone())
+    }
+}
+
+/// Touches of a plan, and how they are split.
+struct World<'a> {
+    plan: &'a Plan,
+    touched: Vec<TouchedObject>,
+    sweep: Sweep,
+    frames: Frames,
+}
+
+impl<'a> World<'a> {
+    fn new(plan: &'a Plan, sets: &ObjectSets) -> Result<Self> {
+        let seed = Seed::new(plan.spec.seed);
+        let touched = draw_touches(sets.of(plan), &plan.placement, &seed)?;
+        let sweep = Sweep::new(plan, &touched)?;
+        let frames = simulate_array(&touched, &plan.arrays[0], plan.frames[0], &Silent);
+        Ok(Self {
+            plan,
+            touched,
+            sweep,
+            frames,
+        })
+    }
+
+    fn measure(&self, trial: usize) -> Result<Measurements> {
+        let group = &self.sweep.groups[0];
+        let split = (trial, &self.sweep.splits[trial]);
+        let n_measurements = group.projected()[0];
+        measure_group(
+            self.plan,
+            group,
+            (&self.touched, &self.frames),
+            split,
+            n_measurements,
+        )
+    }
+}
+
+/// What was found at a value.
+struct Evaluated {
+    n_objects: usize,
+    /// The trials of each classifier.
+    classifiers: Vec<(ClassifierKind, Vec<Evaluation>)>,
+}
+
+fn evaluate(value: &PlannedValue, sets: &ObjectSets) -> Result<Evaluated> {
+    let learned = World::new(&value.learned, sets)?;
+    let tested = value.tested.as_ref().map(|plan| World::new(plan, sets));
+    let tested = tested.transpose()?;
+    if let Some(tested) = &tested {
+        check_alike(&learned, tested)?;
+    }
+    let families: Vec<&[Cell]> = learned.sweep.groups[0].families().collect();
+    let mut classifiers: Vec<_> = families
+        .iter()
+        .map(|family| (family[0].classifier, Vec::new()))
+        .collect();
+    for number in 0..value.learned.spec.trials {
+        let measurements = learned.measure(number)?;
+        let of_tested = tested.as_ref().map(|world| world.measure(number));
+        let of_tested = of_tested.transpose()?;
+        let trial = Trial {
+            plan: learned.plan,
+            sweep: &learned.sweep,
+            measurements: &measurements,
+            tested: of_tested.as_ref().unwrap_or(&measurements),
+            number,
+        };
+        let evaluated = families.par_iter().map(|family| trial.evaluate(family));
+        for (rows, evaluations) in classifiers
+            .iter_mut()
+            .zip(evaluated.collect::<Result<Vec<_>>>()?)
+        {
+            rows.1.extend(evaluations);
+        }
+    }
+    Ok(Evaluated {
+        n_objects: learned.touched.len(),
+        classifiers,
+    })
+}
+
+/// What is learned can be tested: the same touches, split alike, measured by the same projection.
+fn check_alike(learned: &World, tested: &World) -> Result<()> {
+    let grids = [learned, tested].map(|world| world.plan.arrays[0].grid);
+    let shapes = grids.map(|grid| (grid.nx, grid.ny));
+    let sensed = [learned, tested].map(|world| {
+        let cell = &world.sweep.groups[0].cells[0];
+        (cell.ensemble, cell.n_features())
+    });
+    let is_alike = learned.sweep.labels == tested.sweep.labels
+        && learned.sweep.splits == tested.sweep.splits
+        && shapes[0] == shapes[1]
+        && sensed[0] == sensed[1];
+    if is_alike {
+        return Ok(());
+    }
+    Err(Error::input(
+        "key touches",
+        "other objects, touches, taxels or measurements where it is tested",
+        "all: what is learned and what is tested must be alike but for what happens to it",
+    ))
+}
+
+/// The rows of a way, value by value, and where it breaks each classifier.
+fn add_way(
+    tables: &mut BreakingPointsTables,
+    way: &PlannedWay,
+    evaluated: Vec<Evaluated>,
+    seed: u64,
+) -> Result<()> {
+    let n_objects = evaluated.first().map_or(0, |value| value.n_objects);
+    let mut curves: Vec<(ClassifierKind, Vec<CellScore>)> = Vec::new();
+    let mut bootstrap = Bootstrap::default();
+    for (planned, found) in way.values.iter().zip(evaluated) {
+        for (place, (classifier, trials)) in found.classifiers.into_iter().enumerate() {
+            let cell = WayCell {
+                way: way.name.clone(),
+                touches: way.touches,
+                value: planned.value,
+                classifier,
+            };
+            let scores = trials.iter().map(|trial| &trial.score);
+            let score = score(&scores.collect::<Vec<_>>(), &mut bootstrap)?;
+            if curves.len() == place {
+                curves.push((classifier, Vec::new()));
+            }
+            curves[place].1.push(score.clone());
+            tables.summary.push((cell.clone(), score));
+            for Evaluation { score, time, .. } in trials {
+                tables.accuracy.push((cell.clone(), score));
+                tables.timing.push((cell.clone(), time));
+            }
+        }
+    }
+    let seed = Seed::new(seed).named("breaking points").named(&way.name);
+    for (number, (classifier, scores)) in curves.iter().enumerate() {
+        let seed = seed.numbered(number as u64);
+        let found = breaking_points(way, (*classifier, scores), n_objects, &seed);
+        tables.breaking_points.extend(found);
+    }
+    Ok(())
+}
+
+/// One row a side of the best of a curve.
+fn breaking_points(
+    way: &PlannedWay,
+    (classifier, scores): (ClassifierKind, &[CellScore]),
+    n_objects: usize,
+    seed: &Seed,
+) -> Vec<BreakingPoint> {
+    let values: Vec<f64> = way.values.iter().map(|planned| planned.value).collect();
+    let accuracy: Vec<f64> = scores.iter().map(|score| score.accuracy).collect();
+    let n_test: Vec<usize> = scores.iter().map(|score| score.n_test).collect();
+    let curve = Curve {
+        values: &values,
+        accuracy: &accuracy,
+        n_test: &n_test,
+        scale: way.scale,
+    };
+    let (best, last) = (curve.best(), values.len() - 1);
+    let row = |side| {
+        let half = curve.half(side, &seed.numbered(side as u64));
+        let end = match side {
+            Side::Smaller => 0,
+            Side::Larger => last,
+        };
+        let finite = |value: f64| value.is_finite().then_some(value);
+        BreakingPoint {
+            way: way.name.clone(),
+            classifier,
+            side,
+            best: accuracy[best],
+            best_low: scores[best].accuracy_low,
+            best_high: scores[best].accuracy_high,
+            best_at: values[best],
+            half: 0.5 * accuracy[best],
+            chance: 1.0 / n_objects as f64,
+            is_reached: half.at.is_finite(),
+            breaks_at: finite(half.at),
+            breaks_at_low: finite(half.interval.low),
+            breaks_at_high: finite(half.interval.high),
+            end: values[end],
+            accuracy_at_end: accuracy[end],
+        }
+    };
+    curve.sides().into_iter().map(row).collect()
+}
