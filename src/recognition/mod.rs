@@ -87,6 +87,7 @@ pub mod svm;
 pub mod svm_model;
 pub mod trained_classifier;
 mod training;
+mod transposed;
 mod unbeaten;
 #[cfg(target_arch = "x86_64")]
 mod vector_registers;
