@@ -9,9 +9,11 @@ use bubbletouch::objects::{Catalogue, read_spheres};
 use bubbletouch::report::csv_tables::{TABLE_FILES, VARIANCE_FILE, read_tables, write_tables};
 use bubbletouch::report::offers::read_offers;
 use bubbletouch::scene::{ScenePlan, SceneSpec};
+use bubbletouch::study::breaking_points::BreakingPointsSpec;
 use bubbletouch::study::journal::{Identity, Journal};
 use bubbletouch::study::object_detail::{ObjectDetailPlan, ObjectDetailStudySpec};
 use bubbletouch::study::reconstruction::{ReconstructionPlan, ReconstructionStudySpec};
+use bubbletouch::study::speed_accuracy::SpeedAccuracyStudySpec;
 use bubbletouch::study::stability::{StabilityPlan, StabilityStudySpec};
 use bubbletouch::study::table::Tables;
 use bubbletouch::study::whole_body::{WholeBodyPlan, WholeBodyStudySpec};
@@ -111,6 +113,8 @@ fn read_study(input: &[u8]) -> Result<()> {
             let spec = WholeBodyStudySpec::parse(PLACE, text)?;
             WholeBodyPlan::new(PLACE, &folder("experiments"), spec).map(drop)
         }
+        StudyKind::BreakingPoints => BreakingPointsSpec::parse(PLACE, text).map(drop),
+        StudyKind::SpeedAccuracy => SpeedAccuracyStudySpec::parse(PLACE, text).map(drop),
         StudyKind::Stability => {
             let spec = StabilityStudySpec::parse(PLACE, text)?;
             StabilityPlan::new(PLACE, spec).map(drop)
