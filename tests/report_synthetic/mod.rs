@@ -61,6 +61,8 @@ pub fn cell() -> Cell {
         scan_time_ms: None,
         adc_bits: None,
         tested_on: None,
+        mislabelled_fraction: None,
+        class_imbalance: None,
         ensemble: Ensemble::Gaussian,
         measurements: 256,
         ratio: 16.0,
