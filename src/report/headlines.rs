@@ -22,6 +22,9 @@ pub struct TextTable {
 
 /// Each published accuracy beside the most accurate of our cells that it is about; none if the study names none.
 pub fn published_table(tables: &Tables) -> Option<TextTable> {
+    if tables.published.is_empty() {
+        return None;
+    }
     let answer = Answer::of(tables)?;
     let row = |(cell, row): &(_, crate::study::table::Published)| {
         vec![
@@ -56,6 +59,9 @@ pub fn published_table(tables: &Tables) -> Option<TextTable> {
 
 /// The pairs of objects that the best cell confuses most often; none if it confuses nothing.
 pub fn confused_table(tables: &Tables) -> Option<TextTable> {
+    if tables.confused.is_empty() {
+        return None;
+    }
     let answer = Answer::of(tables)?;
     let rows: Vec<Vec<String>> = tables
         .confused
@@ -88,6 +94,9 @@ pub fn confused_table(tables: &Tables) -> Option<TextTable> {
 
 /// What makes the best cell's accuracy differ from trial to trial; none unless trials tell splits from projections.
 pub fn variance_table(tables: &Tables) -> Option<TextTable> {
+    if tables.variance.is_empty() {
+        return None;
+    }
     let answer = Answer::of(tables)?;
     let best = &answer.best.0;
     let of_best = tables.variance.iter().filter(|row| row.cell == best.cell);
