@@ -20,7 +20,8 @@ fn accepted(program: &str, arguments: &[&str], input: &[u8]) -> Option<(bool, St
         .stderr(Stdio::piped())
         .spawn();
     let Ok(mut child) = child else {
-        writeln!(std::io::stderr(), "SKIPPED: no {program} here").unwrap();
+        writeln!(std::io::stderr(), "SKIPPED: no {program} here")
+            .expect("standard error takes a line");
         return None;
     };
     let mut stdin = child.stdin.take().unwrap();
@@ -155,7 +156,8 @@ fn a_terminal_gets_colours_unless_no_color_is_set() {
             script.env("NO_COLOR", "1");
         }
         let Ok(output) = script.output() else {
-            writeln!(std::io::stderr(), "SKIPPED: no `script` here").unwrap();
+            writeln!(std::io::stderr(), "SKIPPED: no `script` here")
+                .expect("standard error takes a line");
             return;
         };
         assert!(output.status.success());

@@ -7,17 +7,20 @@ use bubbletouch::geometry::Pose;
 use bubbletouch::mesh::{LengthUnit, MeshFormat};
 use bubbletouch::objects::{Catalogue, read_spheres};
 use bubbletouch::report::csv_tables::{TABLE_FILES, VARIANCE_FILE, read_tables, write_tables};
+use bubbletouch::report::offers::read_offers;
 use bubbletouch::scene::{ScenePlan, SceneSpec};
+use bubbletouch::study::breaking_points::BreakingPointsSpec;
 use bubbletouch::study::journal::{Identity, Journal};
 use bubbletouch::study::object_detail::{ObjectDetailPlan, ObjectDetailStudySpec};
 use bubbletouch::study::reconstruction::{ReconstructionPlan, ReconstructionStudySpec};
+use bubbletouch::study::speed_accuracy::SpeedAccuracyStudySpec;
 use bubbletouch::study::stability::{StabilityPlan, StabilityStudySpec};
 use bubbletouch::study::table::Tables;
 use bubbletouch::study::whole_body::{WholeBodyPlan, WholeBodyStudySpec};
 use bubbletouch::study::{Plan, StudyKind, StudySpec, compare_runs};
 use bubbletouch::world::{Interpolation, PoseTrajectory, Robot};
 use bubbletouch::{Error, Result};
-use fuzzing::Target;
+use fuzzing::{SOON, Target};
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -88,6 +91,7 @@ fn studies() {
         n_inputs: 2000,
         // A plan lists its values: { grid = [-10, 10, 1000] } in a few letters.
         most_bytes: (TREE, 8 << 20),
+        least_s: SOON,
         read: &read_study,
     }
     .run();
@@ -109,6 +113,8 @@ fn read_study(input: &[u8]) -> Result<()> {
             let spec = WholeBodyStudySpec::parse(PLACE, text)?;
             WholeBodyPlan::new(PLACE, &folder("experiments"), spec).map(drop)
         }
+        StudyKind::BreakingPoints => BreakingPointsSpec::parse(PLACE, text).map(drop),
+        StudyKind::SpeedAccuracy => SpeedAccuracyStudySpec::parse(PLACE, text).map(drop),
         StudyKind::Stability => {
             let spec = StabilityStudySpec::parse(PLACE, text)?;
             StabilityPlan::new(PLACE, spec).map(drop)
@@ -143,6 +149,8 @@ fn scenes() {
         n_inputs: 300,
         // What a scene names is read with it: a robot, packed objects, and the taxels of its skin.
         most_bytes: (TREE, 512 << 20),
+        // A patch may ask for four million taxels, about a microsecond each.
+        least_s: 10.0,
         read: &|input| {
             ScenePlan::new(PLACE, &scenes, SceneSpec::parse(PLACE, text_of(input)?)?).map(drop)
         },
@@ -195,6 +203,7 @@ source = "measured with a ruler"
         ],
         n_inputs: 1000,
         most_bytes: (TREE, 1 << 18),
+        least_s: SOON,
         read: &|input| Catalogue::parse("set", PLACE, text_of(input)?).map(drop),
     }
     .run();
@@ -267,6 +276,7 @@ fn mesh(
         n_inputs: 3000,
         // A PLY header may claim any number of elements, and the reader makes room for the first 65,536 at once.
         most_bytes: (20, 4 << 20),
+        least_s: SOON,
         read: &|input| {
             let file = format.read(PLACE, LengthUnit::Millimetre, input)?;
             file.into_mesh(PLACE).map(drop)
@@ -363,6 +373,7 @@ fn robots() {
         ],
         n_inputs: 2000,
         most_bytes: (TREE, 1 << 18),
+        least_s: SOON,
         read: &|input| {
             let robot = Robot::from_urdf(PLACE, text_of(input)?)?;
             robot
@@ -385,6 +396,7 @@ fn spheres() {
         words: &[",", "\"", "x", "r", "\n", ",,,,", "0.5"],
         n_inputs: 4000,
         most_bytes: (FIELDS, 1 << 18),
+        least_s: SOON,
         read: &|input| read_spheres(PLACE, input).map(drop),
     }
     .run();
@@ -401,6 +413,7 @@ fn way_points() {
         words: &[",", "\"", "time_s", "x_mm", "qw", "\n", "yaw_deg"],
         n_inputs: 4000,
         most_bytes: (FIELDS, 1 << 18),
+        least_s: SOON,
         read: &|input| {
             let trajectory = PoseTrajectory::read_csv(PLACE, input, Interpolation::default())?;
             let pose = trajectory.pose_at(0.5 * trajectory.end());
@@ -470,6 +483,7 @@ fn tables_of_results() {
         ],
         n_inputs: 800,
         most_bytes: (FIELDS, 1 << 20),
+        least_s: SOON,
         read: &|input| {
             let Some((number, content)) = input.split_first() else {
                 return Ok(());
@@ -478,7 +492,9 @@ fn tables_of_results() {
             let valid = fs::read(&path).unwrap();
             fs::write(&path, content).unwrap();
             let read = read_tables(at.path());
+            let offers = read_offers(at.path());
             fs::write(&path, valid).unwrap();
+            offers?;
             compare_runs(&tables.accuracy, &read?.accuracy).map(drop)
         },
     }
@@ -512,6 +528,7 @@ fn journals() {
         n_inputs: 1200,
         // The study within a journal is TOML.
         most_bytes: (TREE, 1 << 18),
+        least_s: SOON,
         read: &|input| {
             let read = |content: &[u8]| {
                 fs::write(&path, content).unwrap();

@@ -141,19 +141,20 @@ fn solve(matrix: &Array2<f64>, measured: &[f64]) -> Vec<f64> {
 
 #[test]
 fn as_many_measurements_as_taxels_lose_nothing() {
-    for side in [2, 8, 12] {
+    for side in [2, 8, 12, 16] {
         let n = side * side;
         let frame = Array2::from_shape_fn((1, n), |(_, i)| 5e-3 * (1.3 * i as f64).sin().max(0.0));
         for ensemble in ENSEMBLES {
             let projection = Projection::new(ensemble, (side, side), n, &Seed::new(4)).unwrap();
             let measured = projection.measure(frame.view());
             let back = solve(&projection.matrix(), measured.row(0).as_slice().unwrap());
-            // Sparse matrices of a few taxels may have rows of nothing: their rank is what the guide says, no more.
-            if ensemble == Ensemble::Sparse && back.iter().any(|x| !x.is_finite()) {
-                assert!(
-                    side == 2,
-                    "{side} × {side} sparse measurements are singular"
-                );
+            // Blocks of 32 taxels that are filled up with zeros: of their coefficients only so many as taxels are kept.
+            let is_padded = ensemble == Ensemble::Sbhe && side == 12;
+            // Sparse matrices of a few taxels may have rows of nothing.
+            let is_empty = ensemble == Ensemble::Sparse && side == 2;
+            if is_padded || is_empty {
+                let is_lost = back.iter().any(|x| !x.is_finite() || x.abs() > 1.0);
+                assert!(is_lost, "{ensemble:?}, {n}: else the guide is wrong");
                 continue;
             }
             for (back, x) in back.iter().zip(frame.row(0)) {

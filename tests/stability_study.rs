@@ -198,7 +198,7 @@ fn rows_of_other_programs_stand_in_the_parts_that_ask_for_such_cells() {
     let foreign = asked.replace("8,10,", "8,77,");
     case.file("peers.csv", format!("{header}{asked}{foreign}"));
     let (with, _) = case.succeeds(&["run", "study.toml", "--out", "with"]);
-    assert!(with.contains("MuJoCo, discrete"), "{with}");
+    assert!(with.contains("MuJoCo"), "{with}");
     let cells: Vec<StabilityCell> = read_rows(&case.path("with/stability.csv")).unwrap();
     let peers = cells.iter().filter(|cell| cell.method.is_peer());
     assert_eq!(peers.count(), 1, "only cells that the study has");

@@ -2,6 +2,7 @@
 
 /// Which of a few values are below a limit, ascending. (An iterator whose parts are put in place at once: closures would be compiled
 /// without vector instructions.)
+#[derive(Clone, Copy, Default)]
 pub(crate) struct Below {
     /// A bit each.
     left: u32,

@@ -21,21 +21,24 @@ impl Instructions {
     /// Those that this processor has, the best one last.
     pub fn here() -> &'static [Self] {
         static HERE: OnceLock<Vec<Instructions>> = OnceLock::new();
-        HERE.get_or_init(|| {
-            let mut here = vec![Self::Baseline];
-            #[cfg(target_arch = "x86_64")]
-            {
-                use std::arch::is_x86_feature_detected as has;
-                if has!("avx2") && has!("fma") {
-                    here.push(Self::Avx2);
-                    let has_512 = has!("avx512f") && has!("avx512bw");
-                    if has_512 && has!("avx512dq") && has!("avx512vl") {
-                        here.push(Self::Avx512);
-                    }
-                }
-            }
-            here
-        })
+        HERE.get_or_init(|| [vec![Self::Baseline], Self::beyond_baseline()].concat())
+    }
+
+    #[cfg(target_arch = "x86_64")]
+    fn beyond_baseline() -> Vec<Self> {
+        use std::arch::is_x86_feature_detected as has;
+        let has_256 = has!("avx2") && has!("fma");
+        let has_512 = has!("avx512f") && has!("avx512bw") && has!("avx512dq") && has!("avx512vl");
+        match (has_256, has_512) {
+            (false, _) => Vec::new(),
+            (true, false) => vec![Self::Avx2],
+            (true, true) => vec![Self::Avx2, Self::Avx512],
+        }
+    }
+
+    #[cfg(not(target_arch = "x86_64"))]
+    fn beyond_baseline() -> Vec<Self> {
+        Vec::new()
     }
 
     /// What is meant: the best one by its name; of what the processor has not, the best that it has.

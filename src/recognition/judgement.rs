@@ -12,10 +12,8 @@ use ndarray::{Array2, ArrayView2};
 use crate::recognition::followed_sums::{Sums, add_rows, class_sums};
 use crate::recognition::scalar::Scalar;
 use crate::recognition::svm::Multiclass;
+use crate::recognition::transposed::write_columns;
 use crate::recognition::voting::Ballot;
-
-/// Rows transposed at once: a cache line of f32.
-const TILE: usize = 16;
 
 /// What validation needs of a problem's solution.
 pub(crate) struct Solved {
@@ -192,38 +190,13 @@ impl<'a> Judgement<'a> {
 
 /// Columns of a symmetric matrix: its rows, transposed.
 fn columns<T: Scalar>(symmetric: ArrayView2<T>, columns: &[usize]) -> Array2<T> {
-    let (n, width) = (symmetric.nrows(), columns.len());
-    let mut to = Array2::zeros((n, width));
+    let mut to = Array2::zeros((symmetric.nrows(), columns.len()));
+    let row = |&row: &usize| symmetric.row(row).to_slice();
+    let row = |at| row(at).expect("a kernel is stored row by row");
+    let rows: Vec<&[T]> = columns.iter().map(row).collect();
     let values = to.as_slice_mut().expect("a new array is contiguous");
-    for (number, columns) in columns.chunks(TILE).enumerate() {
-        let row = |&row: &usize| symmetric.row(row).to_slice();
-        let row = |at| row(at).expect("a kernel is stored row by row");
-        let rows: Vec<&[T]> = columns.iter().map(row).collect();
-        let first = number * TILE;
-        match <&[&[T]; TILE]>::try_from(&rows[..]) {
-            Ok(rows) => columns_of(rows, &mut values[first..], width),
-            Err(_) => (0..n).for_each(|at| {
-                let to = values[at * width + first..].iter_mut();
-                to.zip(&rows).for_each(|(to, row)| *to = row[at]);
-            }),
-        }
-    }
+    write_columns(&rows, values, columns.len());
     to
-}
-
-/// The columns that some rows become, into rows of so many values.
-fn columns_of<T: Copy>(rows: &[&[T]; TILE], to: &mut [T], width: usize) {
-    let n = rows[0].len();
-    let mut columns = [rows[0]; TILE];
-    for i in 0..TILE {
-        columns[i] = &rows[i][..n];
-    }
-    for at in 0..n {
-        let to = &mut to[at * width..][..TILE];
-        for i in 0..TILE {
-            to[i] = columns[i][at];
-        }
-    }
 }
 
 #[cfg(test)]

@@ -91,6 +91,7 @@ pub mod svm;
 pub mod svm_model;
 pub mod trained_classifier;
 mod training;
+mod transposed;
 mod unbeaten;
 pub mod variance;
 #[cfg(target_arch = "x86_64")]

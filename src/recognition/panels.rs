@@ -87,8 +87,7 @@ impl Panels {
         )
     }
 
-    /// Products of `left` with the packed rows, row by row into `to`; `false`, and nothing written, where the processor has not
-    /// got the instructions.
+    /// Products of `left` with the packed rows, row by row into `to`; `false`, and nothing written, without the instructions.
     pub fn multiply(&self, left: Rows<f32>, wanted: Wanted, to: &mut [&mut [f32]]) -> bool {
         multiply(self, left, wanted, to)
     }

@@ -35,9 +35,10 @@ pub struct BodyContact {
     pub n_saturated: usize,
     /// Patches with a deflected taxel.
     pub n_patches: usize,
-    /// Pairs of a sphere and a patch whose taxels were computed: what is left of those of all spheres of the objects near a patch.
+    /// Pairs of a sphere and a patch for which rows, rings or tiles were looked at: what is left of those of all spheres of the
+    /// objects near a patch.
     pub n_evaluated: usize,
-    /// The other ones of those pairs, which were left out before.
+    /// The other ones of those pairs, left out with their clusters or by their distance from the whole patch.
     pub n_rejected: usize,
 }
 

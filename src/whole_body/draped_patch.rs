@@ -1,19 +1,21 @@
 //! A patch on any surface: tiles of taxels that each have their own axis.
 //!
-//! The taxels are kept eight by eight in the order of their layout, and balls are around tiles and around blocks of eight tiles: a
-//! sphere looks at blocks, at the tiles of those that it is near, and at the taxels of those tiles.
+//! The taxels are kept eight by eight in the order of their layout. Balls are around these tiles, around eight tiles that follow each
+//! other, around eight of those, and so on: a sphere goes down to the tiles that it is near.
 
 use super::lanes::{Balls, FAR, LANES, View, ball_around, filled};
 use super::object_press::Pushed;
 use super::patch_state::PatchState;
-use crate::contact::{beats, raise};
+use crate::contact::{Below, beats, raise};
 use crate::geometry::Pose;
 use crate::objects::Sphere;
 use crate::world::{Layout, Taxel};
 use glam::DVec3;
 
-/// Taxels in a block of tiles.
+/// Taxels whose touched span is remembered together.
 pub(super) const BLOCK: usize = LANES * LANES;
+/// Levels of balls, at most: eight times as many taxels with each.
+const MOST_LEVELS: usize = 10;
 
 /// Equal taxels that rest anywhere: 61 bytes each with what is remembered of them.
 #[derive(Clone, Debug)]
@@ -21,10 +23,9 @@ pub(super) struct DrapedPatch {
     n_taxels: usize,
     taxel: Taxel,
     tiles: Vec<Tile>,
-    /// Around the tiles, eight of them at a time: one of a block.
-    tile_balls: Vec<Balls>,
-    /// Around the blocks.
-    block_balls: Vec<Balls>,
+    /// The first level is one block of at most eight balls; a ball of a level is around the block of its number of the next one, and of
+    /// the last level around a tile.
+    levels: Vec<Vec<Balls>>,
     /// Around all.
     ball: Sphere,
 }
@@ -48,12 +49,17 @@ impl DrapedPatch {
         let ends = |&(center, axis): &(DVec3, DVec3)| [center, center - depth * axis];
         let ball = |taxels: &[_]| ball_around(taxels.iter().flat_map(ends));
         let balls = |n: usize| taxels.chunks(n).map(ball).collect::<Vec<_>>();
+        let mut levels = vec![Balls::blocks(&balls(LANES))];
+        let mut size = LANES;
+        while levels[0].len() > 1 {
+            size *= LANES;
+            levels.insert(0, Balls::blocks(&balls(size)));
+        }
         Self {
             n_taxels: taxels.len(),
             taxel,
             tiles: taxels.chunks(LANES).map(Tile::new).collect(),
-            tile_balls: Balls::blocks(&balls(LANES)),
-            block_balls: Balls::blocks(&balls(BLOCK)),
+            levels,
             ball: ball(&taxels),
         }
     }
@@ -87,9 +93,8 @@ impl DrapedPatch {
 
     /// Bytes that it holds on the heap.
     pub fn n_bytes(&self) -> usize {
-        size_of_val(&self.tiles[..])
-            + size_of_val(&self.tile_balls[..])
-            + size_of_val(&self.block_balls[..])
+        let levels = self.levels.iter().map(|balls| size_of_val(&balls[..]));
+        size_of_val(&self.tiles[..]) + levels.sum::<usize>()
     }
 
     /// Pushes a tile.
@@ -133,22 +138,60 @@ impl Pushed for DrapedPatch {
 
     #[inline(always)]
     fn is_near(&self, center: DVec3, reach: f64) -> bool {
-        let mut is_near = false;
-        for balls in &self.block_balls {
-            is_near |= !balls.near(center, reach).is_empty();
-        }
-        is_near
+        Descent::new(&self.levels, center, reach).next().is_some()
     }
 
     #[inline(always)]
     fn push(&self, state: &mut PatchState, center: DVec3, reach: f64) {
-        for (group, balls) in self.block_balls.iter().enumerate() {
-            for k in balls.near(center, reach) {
-                let block = group * LANES + k;
-                for tile in self.tile_balls[block].near(center, reach) {
-                    self.push_tile(state, block * LANES + tile, center, reach);
-                }
-            }
+        for tile in Descent::new(&self.levels, center, reach) {
+            self.push_tile(state, tile, center, reach);
+        }
+    }
+}
+
+/// The tiles that a sphere is near, ascending.
+struct Descent<'a> {
+    levels: &'a [Vec<Balls>],
+    center: DVec3,
+    reach: f64,
+    /// The level that is looked at.
+    level: usize,
+    /// The block of each level down to it, and which of its balls are still to come.
+    blocks: [(usize, Below); MOST_LEVELS],
+}
+
+impl<'a> Descent<'a> {
+    #[inline(always)]
+    fn new(levels: &'a [Vec<Balls>], center: DVec3, reach: f64) -> Self {
+        let mut blocks = [(0, Below::default()); MOST_LEVELS];
+        blocks[0].1 = levels[0][0].near(center, reach);
+        Self {
+            levels,
+            center,
+            reach,
+            level: 0,
+            blocks,
+        }
+    }
+}
+
+impl Iterator for Descent<'_> {
+    type Item = usize;
+
+    #[inline(always)]
+    fn next(&mut self) -> Option<usize> {
+        loop {
+            let (block, left) = &mut self.blocks[self.level];
+            let Some(k) = left.next() else {
+                self.level = self.level.checked_sub(1)?;
+                continue;
+            };
+            let ball = *block * LANES + k;
+            let Some(below) = self.levels.get(self.level + 1) else {
+                return Some(ball);
+            };
+            self.level += 1;
+            self.blocks[self.level] = (ball, below[ball].near(self.center, self.reach));
         }
     }
 }

@@ -107,7 +107,7 @@ impl View {
         dx * dx + dy * dy + dz * dz - reach * reach
     }
 
-    /// How far each cluster is from the patch, in no unit: below zero if one of its spheres may touch it.
+    /// How far each cluster is from touching the patch, as a difference of squares, m²: below zero if one of its spheres may.
     #[inline(always)]
     pub fn lay_gaps(&self, bounds: &ClusterBounds, gaps: &mut [f64]) {
         let n = gaps.len();

@@ -27,7 +27,7 @@ pub(super) struct PatchState {
     /// The same before the last step; of damped taxels only, whose force depends on it.
     before: Vec<(u32, f64)>,
     n_saturated: usize,
-    /// Spheres whose taxels were computed in the last step.
+    /// Spheres for which rows, rings or tiles were looked at in the last step.
     pub n_evaluated: usize,
     /// Spheres of the objects near the patch that were left out before that.
     pub n_rejected: usize,

@@ -3,13 +3,12 @@
 use super::Layout;
 use glam::DVec3;
 
-/// Taxels that are to be together at last, and at next to last: of a tile and a block of a body's patch.
+/// Taxels that are to be together at last, and so many of those, and so on: the tiles of a body's patch.
 const TILE: usize = 8;
-const BLOCK: usize = 64;
 
 impl Layout {
-    /// The same taxels in an order in which each 64 and each 8 from the first on are neighbours, and which taxel of this layout each
-    /// of them is. The same layout always gives the same order.
+    /// The same taxels in an order in which each 8, 64, 512 and so on from the first on are neighbours, and which taxel of this layout
+    /// each of them is. The same layout always gives the same order.
     pub fn with_neighbours_together(&self) -> (Self, Vec<usize>) {
         let mut order: Vec<usize> = (0..self.n_taxels()).collect();
         halve(&mut order, self.centers());
@@ -18,25 +17,26 @@ impl Layout {
     }
 }
 
-/// Halves taxels across the longest side of where they are, at a whole block or tile, until a tile is left.
+/// Halves taxels across the longest side of where they are, at a whole number of the largest parts, until a tile is left.
 fn halve(order: &mut [usize], centers: &[DVec3]) {
     if order.len() <= TILE {
         return;
     }
-    let unit = if order.len() > BLOCK { BLOCK } else { TILE };
-    let half = (order.len() / 2).next_multiple_of(unit);
+    let mut part = TILE;
+    while part * TILE < order.len() {
+        part *= TILE;
+    }
+    let half = (order.len() / 2).next_multiple_of(part);
     let all = || order.iter().map(|&k| centers[k]);
     let low = all().fold(DVec3::INFINITY, DVec3::min);
     let high = all().fold(DVec3::NEG_INFINITY, DVec3::max);
     let side = (high - low).max_position();
-    if half < order.len() {
-        // Ties by number: the order depends on nothing but the taxels.
-        order.select_nth_unstable_by(half, |&a, &b| {
-            let order = centers[a][side].total_cmp(&centers[b][side]);
-            order.then(a.cmp(&b))
-        });
-    }
-    let (left, right) = order.split_at_mut(half.min(order.len()));
+    // Ties by number: the order depends on nothing but the taxels.
+    order.select_nth_unstable_by(half, |&a, &b| {
+        let order = centers[a][side].total_cmp(&centers[b][side]);
+        order.then(a.cmp(&b))
+    });
+    let (left, right) = order.split_at_mut(half);
     halve(left, centers);
     halve(right, centers);
 }

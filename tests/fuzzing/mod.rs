@@ -29,9 +29,14 @@ pub struct Target<'a> {
     /// Bytes that it may hold for one of its input, and beside these; why, if it is more than usual, at the place where the
     /// target is made.
     pub most_bytes: (usize, usize),
+    /// Processor-seconds that it may take for however small an input; [`SOON`] unless it says why.
+    pub least_s: f64,
     /// Reads an input.
     pub read: &'a dyn Fn(&[u8]) -> bubbletouch::Result<()>,
 }
+
+/// Beside a second for each 100 kB: what a small file may take.
+pub const SOON: f64 = 0.25;
 
 /// A mutated input is not longer.
 const LONGEST: usize = 300_000;
@@ -118,7 +123,7 @@ impl Target<'_> {
         } else {
             10.0
         };
-        let allowed = slack * (input.len() as f64 / 1e5).max(0.25);
+        let allowed = slack * (input.len() as f64 / 1e5).max(self.least_s);
         if took.as_secs_f64() > allowed {
             self.stumbled(&kept, &format!("took {took:?} for {} bytes", input.len()));
         }

@@ -24,6 +24,10 @@ const TIGHT: f64 = 1e-7;
 const NEARBY: f64 = 0.04;
 /// Smoothing of ties as a share of the largest deflection, and of the one under which a taxel carries all the weight.
 const SMOOTHING: f64 = 1e-2;
+/// The least smoothing, in last bits of the object's size.
+const LAST_BITS: f64 = 64.0;
+/// Rounds in which ties and stops are made steeper, at most: five to the so many-th is what f64 has room for.
+const MOST_TIGHTENED: usize = 12;
 /// Places closer than this share of the object's size and way are the same.
 const SAME_PLACE: f64 = 1e-15;
 
@@ -86,6 +90,7 @@ impl<'a> Descent<'a> {
             smoothness: Smoothness {
                 smoothing: 1e-3 * stroke,
                 load: SMOOTHING * weight.length(),
+                least: LAST_BITS * f64::EPSILON * object.radius,
                 stop_stiffness: (1e3 * stiffness).max(weight.length() / (1e-3 * stroke)),
             },
             multipliers: std::mem::take(&mut balancer.multipliers),
@@ -109,6 +114,7 @@ impl<'a> Descent<'a> {
     pub fn run(&mut self) -> Outcome {
         self.look(&[]);
         let mut looseness = f64::INFINITY;
+        let mut n_tightened = 0;
         for _ in 0..MAX_ROUNDS {
             match self.descend() {
                 Stop::Rest => {}
@@ -132,7 +138,8 @@ impl<'a> Descent<'a> {
             self.smoothness.smoothing = self.smoothness.smoothing.min(SMOOTHING * deepest);
             // Where the energy bends down between ties, multipliers need steeper sides to converge.
             let (before, now) = (looseness, self.looseness());
-            if now > 0.25 * before {
+            if now > TIGHT.max(0.25 * before) && n_tightened < MOST_TIGHTENED {
+                n_tightened += 1;
                 self.smoothness.tighten(0.2);
                 self.smoothness.stop_stiffness *= 5.0;
             }

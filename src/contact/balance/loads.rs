@@ -31,6 +31,8 @@ pub(super) struct Smoothness {
     pub smoothing: f64,
     /// μ k of stiff ones, newtons: a smoothing that is little on a soft taxel is more than what its stiff neighbour goes.
     pub load: f64,
+    /// The least μ, metres: less than rounding of deflections would decide ties.
+    pub least: f64,
     /// κ, N/m.
     pub stop_stiffness: f64,
 }
@@ -38,7 +40,7 @@ pub(super) struct Smoothness {
 impl Smoothness {
     /// μ of a taxel of this stiffness (N/m), metres.
     fn of(&self, stiffness: f64) -> f64 {
-        self.smoothing.min(self.load / stiffness)
+        self.smoothing.min(self.load / stiffness).max(self.least)
     }
 
     /// Ties are steeper by this factor below 1.

@@ -262,6 +262,7 @@ mod tests {
             smoothness: Smoothness {
                 smoothing: 2e-4,
                 load: f64::INFINITY,
+                least: 0.0,
                 stop_stiffness: 1e4,
             },
             weight: DVec3::new(0.1, 0.3, -0.9),

@@ -7,9 +7,7 @@ use super::row_sums::weighted_sum;
 use crate::recognition::kernel::KernelFunction;
 use crate::recognition::points::Points;
 use crate::recognition::scalar::Scalar;
-
-/// Rows and columns transposed at once.
-const TILE: usize = 16;
+use crate::recognition::transposed::write_columns;
 
 /// K of one binary problem, n × n, symmetric and positive semidefinite. Rows are padded to whole lanes with zeros.
 pub(crate) trait Gram<T> {
@@ -92,35 +90,12 @@ impl<T: Scalar> Dense<T> {
         self.mirror(n_first);
     }
 
-    /// Copies what is left of the diagonal block of the rows from `n_first` on to above it, in tiles that stay in the cache.
+    /// Copies what is left of the diagonal block of the rows from `n_first` on to above it.
     fn mirror(&mut self, n_first: usize) {
-        let (n, stride) = (self.n, self.stride);
-        let (above, below) = self.values.split_at_mut(n_first * stride);
-        for top in (n_first..n).step_by(TILE) {
-            let below = &below[(top - n_first) * stride..];
-            let height = TILE.min(n - top);
-            for left in (0..n_first).step_by(TILE) {
-                let width = TILE.min(n_first - left);
-                if (height, width) == (TILE, TILE) {
-                    let mut tile = [[T::zero(); TILE]; TILE];
-                    for at in 0..TILE {
-                        tile[at].copy_from_slice(&below[at * stride + left..][..TILE]);
-                    }
-                    for i in 0..TILE {
-                        let to = &mut above[(left + i) * stride + top..][..TILE];
-                        for j in 0..TILE {
-                            to[j] = tile[j][i];
-                        }
-                    }
-                } else {
-                    for i in left..left + width {
-                        for at in 0..height {
-                            above[i * stride + top + at] = below[at * stride + i];
-                        }
-                    }
-                }
-            }
-        }
+        let (above, below) = self.values.split_at_mut(n_first * self.stride);
+        let rows = below.chunks_exact(self.stride).map(|row| &row[..n_first]);
+        let rows: Vec<&[T]> = rows.collect();
+        write_columns(&rows, &mut above[n_first..], self.stride);
     }
 
     /// A whole matrix.

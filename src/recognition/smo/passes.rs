@@ -245,6 +245,40 @@ mod tests {
     }
 
     #[test]
+    fn the_passes_of_the_processor_find_the_same_to_the_bit() {
+        let n = 7 * LANES;
+        let single = |salt: f64| {
+            values(n, salt)
+                .iter()
+                .map(|v| *v as f32)
+                .collect::<Vec<_>>()
+        };
+        let marks = |every: usize| {
+            let mark = |i: usize| {
+                if i.is_multiple_of(every) {
+                    f32::NEG_INFINITY
+                } else {
+                    0.0
+                }
+            };
+            (0..n).map(mark).collect::<Vec<_>>()
+        };
+        let (row_i, row_j, diagonal) = (single(0.1), single(0.5), vec![2.5; n]);
+        for (up, low) in [(marks(3), marks(4)), (marks(1), marks(1))] {
+            let (mut f, mut plain) = (single(0.9), single(0.9));
+            let next = f32::step_along(&mut f, (&row_i, &row_j), 0.3, &up);
+            assert_eq!(next, step_along(&mut plain, (&row_i, &row_j), 0.3, &up));
+            assert_eq!(f, plain);
+            let (mut gains, mut expected) = (vec![0.0; n], vec![0.0; n]);
+            let (states, rows, own) = ((&f[..], &low[..]), (&row_i[..], &diagonal[..]), (0.8, 2.5));
+            let found = f32::select_down(states, rows, own, 1e-12, &mut gains);
+            let down = select_down(states, rows, own, 1e-12, &mut expected);
+            assert_eq!((found.j, found.violation), (down.j, down.violation));
+            assert_eq!(gains, expected);
+        }
+    }
+
+    #[test]
     fn nothing_is_found_where_nothing_can_move() {
         let f = vec![1.0_f32; LANES];
         assert_eq!(select_up(&f, &[f32::NEG_INFINITY; LANES]), None);

@@ -83,8 +83,8 @@ pub(crate) fn select_down(
 #[target_feature(enable = "avx512f")]
 fn first_equal(values: &[[f32; LANES]], wanted: f32) -> Option<usize> {
     let wanted = _mm512_set1_ps(wanted);
-    for at in 0..values.len() {
-        let is_here = _mm512_cmp_ps_mask::<_CMP_EQ_OQ>(load(&values[at]), wanted);
+    for (at, values) in values.iter().enumerate() {
+        let is_here = _mm512_cmp_ps_mask::<_CMP_EQ_OQ>(load(values), wanted);
         if is_here != 0 {
             return Some(at * LANES + is_here.trailing_zeros() as usize);
         }

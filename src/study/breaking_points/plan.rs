@@ -105,7 +105,10 @@ impl<'a> Way<'a> {
         for (key, value) in &self.spec.beside {
             self.set(&mut beside, key, value.clone())?;
         }
-        let others = self.study("beside", beside.clone())?;
+        let others = match touches {
+            DrivenTouches::All => None,
+            _ => Some(self.study("beside", beside.clone())?),
+        };
         let values = numbers
             .iter()
             .zip(&self.spec.values)
@@ -115,10 +118,10 @@ impl<'a> Way<'a> {
                     self.set(&mut table, key, self.driven(given, value))?;
                 }
                 let driven = self.study(&format!("at {value}"), table)?;
-                let (learned, tested) = match touches {
-                    DrivenTouches::All => (driven, None),
-                    DrivenTouches::Training => (driven, Some(others.clone())),
-                    DrivenTouches::Test => (others.clone(), Some(driven)),
+                let (learned, tested) = match (others.clone(), touches) {
+                    (Some(others), DrivenTouches::Training) => (driven, Some(others)),
+                    (Some(others), DrivenTouches::Test) => (others, Some(driven)),
+                    _ => (driven, None),
                 };
                 Ok(PlannedValue {
                     value,

@@ -48,9 +48,9 @@ pub struct BodyCount {
     pub patches_visited_mean: f64,
     /// Patches with a touched taxel, mean over steps.
     pub patches_touched_mean: f64,
-    /// Spheres whose taxels were computed, each counted on every patch where they were, mean over steps.
+    /// Spheres for which rows, rings or tiles of taxels were looked at, counted on each patch where they were, mean over steps.
     pub spheres_evaluated_mean: f64,
-    /// Spheres that were left out before that on a patch near the object, mean over steps.
+    /// Spheres that were left out before that, counted on each patch near the object, mean over steps.
     pub spheres_rejected_mean: f64,
     /// Sum of all deflections over taxels and steps, mm.
     pub deflection_sum_mm: f64,
