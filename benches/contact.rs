@@ -1,7 +1,9 @@
 //! One press: the kernel beside every sphere against every taxel.
 
 use bubbletouch::contact::balance::{Balancer, FreeObject, PlacedSkin};
-use bubbletouch::contact::{SkinWorkspace, Workspace, press_skin, press_to_depth, press_to_travel};
+use bubbletouch::contact::{
+    Instructions, SkinWorkspace, Workspace, press_skin, press_to_depth, press_to_travel,
+};
 use bubbletouch::geometry::Pose;
 use bubbletouch::mesh::{LengthUnit, MeshFormat, Surface, TriangleMesh};
 use bubbletouch::objects::{
@@ -227,6 +229,26 @@ fn touches(c: &mut Criterion) {
     group.finish();
 }
 
+/// The same touch with each of the vector instructions that this machine has.
+fn instructions(c: &mut Criterion) {
+    let mut group = c.benchmark_group("press_instructions");
+    for n_spheres in [1_000, 8_000] {
+        let scene = Scene {
+            patch: patch(64),
+            objects: vec![egg(n_spheres).into()],
+        };
+        let pose = zero_touch(&scene.objects[0]);
+        for &instructions in Instructions::here() {
+            let mut workspace = Workspace::with(instructions);
+            let id = BenchmarkId::new(format!("{instructions:?}"), n_spheres);
+            group.bench_function(id, |b| {
+                b.iter(|| press_to_depth(black_box(&scene), &[pose], DEPTH, &mut workspace));
+            });
+        }
+    }
+    group.finish();
+}
+
 /// The triangles themselves beside spheres around their vertices.
 fn mesh(c: &mut Criterion) {
     let mut group = c.benchmark_group("press_mesh_64x64");
@@ -369,6 +391,14 @@ fn frame(c: &mut Criterion) {
 }
 
 criterion_group!(
-    benches, press, touches, catalogue, mesh, curved, rest, frame
+    benches,
+    press,
+    touches,
+    instructions,
+    catalogue,
+    mesh,
+    curved,
+    rest,
+    frame
 );
 criterion_main!(benches);

@@ -5,21 +5,22 @@
 //! The machine's ceilings are measured first: operations a second (fused multiply-adds count as two; multiplications and additions by
 //! themselves, since a result that is the same on every processor may not fuse them), roots a second, and bytes a second of a
 //! triad a[i] = b[i] + 3 c[i] whose arrays together are as large as what a path looks at. A path's least time is the longest of its
-//! operations at the fused peak, its roots, and its bytes; its share is that over the time it takes.
+//! operations at the fused peak, its roots, and its bytes; its share is that over the time it takes. It is above one where a path does
+//! less than its equations ask for: a root that no deflection is beaten by is not taken.
 
 use bubbletouch::files::CsvFile;
+use clock::seconds;
 use hot_paths::{HotPath, Make, decision, dense_body, dense_press, sensing};
 use multiversion::multiversion;
 use serde::Serialize;
 use std::hint::black_box;
 use std::path::Path;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
+mod clock;
 mod hot_paths;
 
-/// Each time is the median of so many.
-const REPEATS: usize = 15;
-/// Each of them takes at least so long.
+/// Each of the runs of which a time is the median takes at least so long.
 const LEAST: Duration = Duration::from_millis(10);
 
 /// A row of the table: a ceiling of the machine, or a path beside the ceilings.
@@ -50,7 +51,10 @@ struct Ceilings {
 macro_rules! loops {
     ($fused:ident, $unfused:ident, $roots:ident, $real:ty, $lanes:expr) => {
         /// So many times a fused multiply-add of each number.
-        #[multiversion(targets("x86_64+avx2+fma"))]
+        #[multiversion(targets(
+            "x86_64+avx512f+avx512bw+avx512dq+avx512vl+avx2+fma",
+            "x86_64+avx2+fma"
+        ))]
         fn $fused(n: usize) -> $real {
             let mut values: [$real; $lanes] = black_box([1.0; $lanes]);
             let factor = black_box(0.999);
@@ -64,7 +68,10 @@ macro_rules! loops {
         }
 
         /// The same in two operations.
-        #[multiversion(targets("x86_64+avx2+fma"))]
+        #[multiversion(targets(
+            "x86_64+avx512f+avx512bw+avx512dq+avx512vl+avx2+fma",
+            "x86_64+avx2+fma"
+        ))]
         fn $unfused(n: usize) -> $real {
             let mut values: [$real; $lanes] = black_box([1.0; $lanes]);
             let factor = black_box(0.999);
@@ -78,7 +85,10 @@ macro_rules! loops {
         }
 
         /// So many times the root of each number.
-        #[multiversion(targets("x86_64+avx2+fma"))]
+        #[multiversion(targets(
+            "x86_64+avx512f+avx512bw+avx512dq+avx512vl+avx2+fma",
+            "x86_64+avx2+fma"
+        ))]
         fn $roots(n: usize) -> $real {
             let mut values: [$real; $lanes] = black_box([2.0; $lanes]);
             for _ in 0..n {
@@ -92,34 +102,18 @@ macro_rules! loops {
     };
 }
 
-// Twelve registers of lanes: enough for the latency of two units, few enough to stay in registers.
+// Twelve registers of 256 bits or six of 512: enough for the latency of the units, few enough to stay in registers.
 loops!(fused_f64, unfused_f64, roots_f64, f64, 48);
 loops!(fused_f32, unfused_f32, roots_f32, f32, 96);
 
-#[multiversion(targets("x86_64+avx2+fma"))]
+#[multiversion(targets(
+    "x86_64+avx512f+avx512bw+avx512dq+avx512vl+avx2+fma",
+    "x86_64+avx2+fma"
+))]
 fn triad(a: &mut [f64], b: &[f64], c: &[f64]) {
     for ((a, b), c) in a.iter_mut().zip(b).zip(c) {
         *a = b + 3.0 * c;
     }
-}
-
-/// Seconds a call, median of some runs.
-fn seconds(mut call: impl FnMut(), is_test: bool) -> f64 {
-    let mut time = |n: u32| {
-        let start = Instant::now();
-        (0..n).for_each(|_| call());
-        start.elapsed()
-    };
-    let mut n = 1;
-    while time(n) < LEAST && !is_test {
-        n *= 2;
-    }
-    let repeats = if is_test { 1 } else { REPEATS };
-    let mut times: Vec<f64> = (0..repeats)
-        .map(|_| time(n).as_secs_f64() / f64::from(n))
-        .collect();
-    times.sort_by(f64::total_cmp);
-    times[repeats / 2]
 }
 
 /// Bytes a second of a triad whose arrays take so many bytes together.
@@ -127,7 +121,7 @@ fn bandwidth(working_set: f64, is_test: bool) -> f64 {
     let n = (working_set / 24.0).ceil() as usize;
     let (mut a, b, c) = (vec![0.0; n], vec![1.0; n], vec![2.0; n]);
     let call = || triad(black_box(&mut a), black_box(&b), black_box(&c));
-    24.0 * n as f64 / seconds(call, is_test)
+    24.0 * n as f64 / seconds(call, LEAST, is_test)
 }
 
 fn ceiling(
@@ -137,7 +131,7 @@ fn ceiling(
     call: impl FnMut(),
     is_test: bool,
 ) -> f64 {
-    let rate = per_call / seconds(call, is_test);
+    let rate = per_call / seconds(call, LEAST, is_test);
     let giga = Some(rate * 1e-9);
     let is_root = name.starts_with("roots");
     rows.push(Row {
@@ -186,7 +180,7 @@ fn ceilings(rows: &mut Vec<Row>, is_test: bool) -> Ceilings {
 
 fn achieved(mut path: HotPath, ceilings: &Ceilings, is_test: bool) -> Row {
     let work = path.work;
-    let time = seconds(&mut path.step, is_test);
+    let time = seconds(&mut path.step, LEAST, is_test);
     let least = [
         ("operations", work.operations / ceilings.fused),
         ("roots", work.roots / ceilings.roots),

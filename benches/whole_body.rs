@@ -2,8 +2,8 @@
 
 use bubbletouch::geometry::Pose;
 use bubbletouch::objects::{Sphere, SphereUnion};
-use bubbletouch::whole_body::{BodyPatch, BodyState, SphereClusters, WholeBody};
-use bubbletouch::world::{Extrusion, Taxel};
+use bubbletouch::whole_body::{BodyPatch, BodyState, Instructions, SphereClusters, WholeBody};
+use bubbletouch::world::{Extrusion, Grid, Layout, Taxel};
 use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
 use glam::DVec3;
 use std::f64::consts::PI;
@@ -152,5 +152,50 @@ fn threads(c: &mut Criterion) {
     group.finish();
 }
 
-criterion_group!(benches, skin, touch, spheres, threads);
+/// Each of the vector instructions that this machine has, on small spheres and on one that touches everything.
+fn instructions(c: &mut Criterion) {
+    let mut group = c.benchmark_group("body_instructions_2000000_taxels_10000_touched");
+    for &instructions in Instructions::here() {
+        for n_spheres in [1, 1_000, 10_000] {
+            let mut bench = Bench::touching(2_000_000, n_spheres, 10_000);
+            bench.state.use_instructions(instructions);
+            let id = BenchmarkId::new(format!("{instructions:?}"), n_spheres);
+            group.bench_function(id, |b| b.iter(|| bench.step()));
+        }
+    }
+    group.finish();
+}
+
+/// A ball rolls on a flat patch of rows, and on the same taxels as a draped patch.
+fn draped(c: &mut Criterion) {
+    let grid = Grid {
+        nx: 300,
+        ny: 300,
+        pitch: 1e-3,
+    };
+    let extrusion = Extrusion::grid(&grid).expect("the grid has taxels");
+    let (layout, _) = Layout::from(&extrusion).with_neighbours_together();
+    let rows = BodyPatch::new("rows", extrusion, TAXEL);
+    let draped = BodyPatch::draped("draped", &layout, TAXEL);
+    let object = [ball(1_000, 0.1)];
+    let mut group = c.benchmark_group("body_draped_90000_taxels_1000_spheres");
+    for patch in [rows, draped] {
+        let patch = patch.expect("the taxel is a good one");
+        let name = patch.name().to_owned();
+        let body = WholeBody::new(vec![patch]).expect("one name");
+        let mut state = BodyState::at_rest(&body);
+        let mut step = 0;
+        group.bench_function(name, |b| {
+            b.iter(|| {
+                step += 1;
+                let turn = glam::DQuat::from_rotation_y(1e-3 * f64::from(step));
+                let pose = Pose::new(turn, DVec3::new(0.0, 0.0, 0.099));
+                state.press(&body, &object, &[pose], 1e-3).n_touched
+            });
+        });
+    }
+    group.finish();
+}
+
+criterion_group!(benches, skin, touch, spheres, threads, instructions, draped);
 criterion_main!(benches);

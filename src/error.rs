@@ -44,12 +44,13 @@ pub enum Error {
 }
 
 impl Error {
-    /// An [`Error::Input`] from anything printable.
+    /// An [`Error::Input`] from anything printable. Of long lines, and of many, the beginning: what is quoted from a broken file
+    /// may be the whole file.
     pub fn input(place: impl ToString, given: impl ToString, allowed: impl ToString) -> Self {
         Self::Input {
-            place: place.to_string(),
-            given: given.to_string(),
-            allowed: allowed.to_string(),
+            place: shortened(place.to_string()),
+            given: shortened(given.to_string()),
+            allowed: shortened(allowed.to_string()),
         }
     }
 
@@ -103,5 +104,47 @@ impl Error {
             Self::Input { .. } => 2,
             Self::Io { .. } | Self::Cells { .. } => 1,
         }
+    }
+}
+
+/// Letters of a line that are shown.
+const LETTERS: usize = 500;
+/// Lines that are shown.
+const LINES: usize = 25;
+
+/// A text that a person can read to its end.
+fn shortened(text: String) -> String {
+    let is_long = |line: &str| line.len() > LETTERS && line.chars().nth(LETTERS).is_some();
+    if text.len() <= LETTERS || (text.lines().count() <= LINES && !text.lines().any(is_long)) {
+        return text;
+    }
+    let line = |line: &str| match is_long(line) {
+        true => line.chars().take(LETTERS).chain(['…']).collect(),
+        false => line.to_owned(),
+    };
+    let mut lines: Vec<String> = text.lines().take(LINES).map(line).collect();
+    let n_more = text.lines().count().saturating_sub(LINES);
+    if n_more > 0 {
+        lines.push(format!("  … and {n_more} more lines"));
+    }
+    lines.join("\n")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_sentence_about_a_broken_file_does_not_repeat_the_file() {
+        let said = |given: &str| Error::input("a.toml", given, "less").to_string();
+        assert_eq!(said("7\n  8"), "a.toml: 7\n  8; less");
+        let long = "é".repeat(3 * LETTERS);
+        assert_eq!(
+            said(&long).chars().filter(|&letter| letter == 'é').count(),
+            LETTERS
+        );
+        let lines = said(&"line\n".repeat(10_000));
+        assert_eq!(lines.matches("line\n").count(), LINES);
+        assert!(lines.contains("and 9975 more lines"), "{lines}");
     }
 }

@@ -104,7 +104,8 @@
 //! (what a scene names) and `report`.
 //!
 //! The [`guide`] explains the [statistics](guide::statistics) of a study, how to run one on [many
-//! machines](guide::many_machines), and what happens at the [limits](guide::limits) of every method.
+//! machines](guide::many_machines), the [events](guide::events) that a run tells to programs, what a study holds in
+//! [memory and on disk](guide::memory_and_disk), and what happens at the [limits](guide::limits) of every method.
 //!
 //! # Sources
 //!

@@ -3,7 +3,7 @@
 mod report_synthetic;
 
 use bubbletouch::report::csv_tables::{TABLE_FILES, read_tables, to_csv, write_tables};
-use bubbletouch::report::html::ReportPage;
+use bubbletouch::report::page::ReportPage;
 use bubbletouch::report::results::write_all;
 use bubbletouch::study::table::{Cell, Comparison, Tables};
 use report_synthetic::{about, add_headlines, cell, noise_cells, quickstart_cells, tables};
@@ -55,9 +55,10 @@ fn a_row_is_the_cell_then_the_score_and_nothing_stands_for_absent() {
     assert_eq!(
         summary,
         "cell,pitch_mm,nx,ny,size_mm,noise_std,noise_unit,smoothing_mm,ensemble,measurements,ratio,frames,features,\
-         classifier,c,train_touches,fused_touches,n_trials,n_test,accuracy,accuracy_std,accuracy_low,accuracy_high,macro_f1,n_capped\n\
+         classifier,c,train_touches,fused_touches,n_trials,n_test,accuracy,accuracy_std,accuracy_low,accuracy_high,\
+         bootstrap_low,bootstrap_high,macro_f1,n_capped\n\
          0,2.0,64,64,128.0,0.05,full_scale,0.0,gaussian,256,16.0,1,raw,linear_svm,,75,1,1,50,0.7,0.0,0.5625,\
-         1e-7,0.696,0\n"
+         1e-7,,,0.696,0\n"
     );
     let comparison = Comparison {
         cell: 3,
@@ -67,10 +68,11 @@ fn a_row_is_the_cell_then_the_score_and_nothing_stands_for_absent() {
         difference_low: None,
         difference_high: None,
         p_value: None,
+        p_holm: None,
     };
     assert_eq!(
         String::from_utf8(to_csv(&[comparison]).unwrap()).unwrap(),
-        "cell,best_cell,n_trials,difference,difference_low,difference_high,p_value\n3,1,1,-0.25,,,\n"
+        "cell,best_cell,n_trials,difference,difference_low,difference_high,p_value,p_holm\n3,1,1,-0.25,,,,\n"
     );
 }
 
@@ -97,6 +99,7 @@ fn equal_tables_give_equal_bytes_in_every_file() {
     assert_eq!(
         names[TABLE_FILES.len()..],
         [
+            "limits.csv",
             "accuracy_by_noise.png",
             "accuracy_by_noise.svg",
             "accuracy_by_noise_per_classifier.png",

@@ -179,3 +179,44 @@ fn keys_that_are_out_of_range_are_named_with_their_part() {
         assert_eq!(case.run(arguments).status.code(), Some(2), "{arguments:?}");
     }
 }
+
+#[test]
+fn rows_of_other_programs_stand_in_the_parts_that_ask_for_such_cells() {
+    let case = Case::new();
+    let study = QUICK.replacen(
+        "question = \"What breaks?\"",
+        "question = \"What breaks?\"\n[stability]\npeers = \"peers.csv\"",
+        1,
+    );
+    case.file("study.toml", &study);
+    let (without, _) = case.succeeds(&["run", "study.toml", "--out", "without"]);
+    assert!(!without.contains("MuJoCo"), "no file, no rows: {without}");
+    let header = "part,scene,method,solver_iterations,taxels,stiffness_n_per_m,taxel_mass_kg,object_mass_kg,dt_s,mass_ratio,\
+                  explicit_limit_s,damping_n_s_per_m,contact_stiffness_n_per_m,outcome,force_imbalance,deflection_error,n_steps,\
+                  simulated_s,wall_s,per_simulated_s,program,version,date\n";
+    let asked = "1,rest,mujoco_discrete,,8,10,1e-7,1e-3,1e-3,1e4,2e-4,0.1,,right,1e-9,2e-5,500,0.5,1.0,2.0,MuJoCo,4.0.0,2026-11-22\n";
+    let foreign = asked.replace("8,10,", "8,77,");
+    case.file("peers.csv", format!("{header}{asked}{foreign}"));
+    let (with, _) = case.succeeds(&["run", "study.toml", "--out", "with"]);
+    assert!(with.contains("MuJoCo"), "{with}");
+    let cells: Vec<StabilityCell> = read_rows(&case.path("with/stability.csv")).unwrap();
+    let peers = cells.iter().filter(|cell| cell.method.is_peer());
+    assert_eq!(peers.count(), 1, "only cells that the study has");
+    let svg = fs::read_to_string(case.path("with/stability_rest.svg")).unwrap();
+    assert!(svg.contains("MuJoCo 4.0.0, 2026-11-22"));
+    let press = fs::read_to_string(case.path("with/stability_press.svg")).unwrap();
+    assert!(!press.contains("MuJoCo"));
+    case.file(
+        "peers.csv",
+        format!("{header}{}", asked.replace("right", "fine")),
+    );
+    let output = case.run(&["run", "study.toml", "--out", "broken"]);
+    let error = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(output.status.code(), Some(2), "{error}");
+    assert!(error.contains("peers.csv, line 2"), "{error}");
+    let study = QUICK.replacen("\"semi_implicit\"", "\"mujoco_euler\"", 1);
+    case.file("study.toml", &study);
+    let output = case.run(&["run", "study.toml"]);
+    let error = String::from_utf8(output.stderr).unwrap();
+    assert!(error.contains("key stability.parts[1].methods"), "{error}");
+}

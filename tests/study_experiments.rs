@@ -4,6 +4,7 @@ use bubbletouch::random::Seed;
 use bubbletouch::study::breaking_points::{BreakingPointsPlan, BreakingPointsSpec};
 use bubbletouch::study::object_detail::{ObjectDetailPlan, ObjectDetailStudySpec};
 use bubbletouch::study::reconstruction::{ReconstructionPlan, ReconstructionStudySpec};
+use bubbletouch::study::speed_accuracy::{SpeedAccuracyPlan, SpeedAccuracyStudySpec};
 use bubbletouch::study::stability::{StabilityPlan, StabilityStudySpec};
 use bubbletouch::study::whole_body::{WholeBodyPlan, WholeBodyStudySpec};
 use bubbletouch::study::{
@@ -78,6 +79,14 @@ fn every_experiment_can_run() {
             assert!(!spec.question.is_empty() && !spec.expected.is_empty());
             let plan = BreakingPointsPlan::new(&place, spec).unwrap();
             assert!(plan.n_values() > 1, "{place} compares something");
+            continue;
+        }
+        if StudyKind::of(&text) == StudyKind::SpeedAccuracy {
+            let spec = SpeedAccuracyStudySpec::parse(&place, &text).unwrap();
+            assert!(!spec.question.is_empty() && !spec.expected.is_empty());
+            let plan = SpeedAccuracyPlan::new(&place, path.parent().unwrap(), spec).unwrap();
+            let has_all = plan.contact.is_some() && plan.recognition.is_some();
+            assert!(has_all && plan.resolution.is_some(), "{place}");
             continue;
         }
         if StudyKind::of(&text) == StudyKind::Stability {

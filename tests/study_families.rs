@@ -12,8 +12,8 @@ use bubbletouch::recognition::features::Features;
 use bubbletouch::recognition::fusion::fuse_rows;
 use bubbletouch::sensing::Projection;
 use bubbletouch::signal::{Chain, Noise, NoiseUnit, Scratch, SignalStep};
+use bubbletouch::study::Outcome;
 use bubbletouch::study::table::{Cell, TrialScore};
-use bubbletouch::study::{Estimate, Outcome};
 use bubbletouch::world::Scene;
 use ndarray::{Array1, Array2, Axis};
 use std::collections::BTreeMap;
@@ -201,7 +201,7 @@ fn cells_that_differ_in_fused_touches_share_one_fit_and_all_c_are_trained_togeth
     let study = Study::new(&with("", "fused_touches = [1, 2, 4]\nc = [0.1, 1.0]"));
     let groups = &study.sweep.groups;
     assert_eq!(groups.iter().flat_map(|g| g.families()).count(), 1);
-    let estimate = Estimate::new(&study.plan, &study.touched, &study.sweep);
+    let estimate = study.estimate();
     assert_eq!((estimate.n_cells, estimate.n_fits), (6, 2));
     let outcome = study.run();
     let mut fits: BTreeMap<(usize, String), Vec<u64>> = BTreeMap::new();
@@ -316,7 +316,7 @@ fn a_choice_by_some_of_the_touches_does_not_see_the_others() {
 fn frames_take_memory_and_time_in_proportion() {
     let estimate = |frames: usize| {
         let study = Study::new(&with(&format!("frames = {frames}"), ""));
-        Estimate::new(&study.plan, &study.touched, &study.sweep)
+        study.estimate()
     };
     let (one, four) = (estimate(1), estimate(4));
     assert!(four.simulate_s > 3.9 * one.simulate_s);

@@ -44,6 +44,7 @@ fn every_frame_is_its_touch_pressed_alone() {
     let study = Study::new(STUDY);
     let patch = study.plan.arrays[0];
     let frames = simulate_array(&study.touched, &patch, 1, &Silent);
+    let deflection = frames.kept.to_array().unwrap();
     let mut row = 0;
     let (mut n_missed, mut n_saturated) = (0, 0);
     for object in &study.touched {
@@ -55,16 +56,17 @@ fn every_frame_is_its_touch_pressed_alone() {
             };
             let pose = touch.patch_from_object(&object.rests[touch.rest]);
             let contact = press_to_depth(&scene, &[pose], touch.depth, &mut workspace);
-            let alone: Vec<f32> = workspace.deflections().iter().map(|&d| d as f32).collect();
-            assert_eq!(frames.deflection.row(row).to_vec(), alone, "row {row}");
+            let alone = workspace.deflections().iter();
+            let alone: Vec<f64> = alone.map(|&d| f64::from(d as f32)).collect();
+            assert_eq!(deflection.row(row).to_vec(), alone, "row {row}");
             n_missed += usize::from(contact.is_none());
             n_saturated += usize::from(contact.is_some_and(|c| c.n_saturated > 0));
             row += 1;
         }
     }
-    assert_eq!(row, frames.deflection.nrows());
-    assert_eq!(frames.n_missed, n_missed);
-    assert_eq!(frames.n_saturated, n_saturated);
+    assert_eq!(row, deflection.nrows());
+    assert_eq!(frames.facts.n_missed, n_missed);
+    assert_eq!(frames.facts.n_saturated, n_saturated);
 }
 
 /// What the equations of contact give, taxel by taxel and sphere by sphere; `None` if no travel meets the object.
@@ -99,27 +101,28 @@ fn missed_and_saturated_touches_are_counted_as_the_equations_say() {
     let patch = study.plan.arrays[0];
     let stroke = patch.taxel.stroke;
     let frames = simulate_array(&study.touched, &patch, 1, &Silent);
+    let deflection = frames.kept.to_array().unwrap();
     let touches = study
         .touched
         .iter()
         .flat_map(|object| object.touches.iter().map(move |touch| (object, touch)));
     let (mut n_missed, mut n_saturated) = (0, 0);
-    for (row, (object, touch)) in frames.deflection.outer_iter().zip(touches) {
+    for (row, (object, touch)) in deflection.outer_iter().zip(touches) {
         let expected = by_the_equations(&patch, object, touch);
         n_missed += usize::from(expected.is_none());
         let expected = expected.unwrap_or_else(|| vec![0.0; patch.grid.n_taxels()]);
         n_saturated += usize::from(expected.iter().any(|&d| d > stroke * (1.0 + 1e-9)));
         for (&simulated, expected) in row.iter().zip(expected) {
-            let difference = (f64::from(simulated) - expected.min(stroke)).abs();
+            let difference = (simulated - expected.min(stroke)).abs();
             assert!(difference < 1e-9, "{difference} m");
         }
     }
     let n_touches = 3 * 4 * 2 * 2 * 2 * 2;
-    assert_eq!(frames.deflection.nrows(), n_touches);
+    assert_eq!(deflection.nrows(), n_touches);
     assert_eq!(n_missed, n_touches / 4, "the offset of 400 mm");
-    assert_eq!(frames.n_missed, n_missed);
+    assert_eq!(frames.facts.n_missed, n_missed);
     assert_eq!(n_saturated, 3 * n_touches / 8, "the depth of 4 mm");
-    assert_eq!(frames.n_saturated, n_saturated);
+    assert_eq!(frames.facts.n_saturated, n_saturated);
     let outcome = study.run();
     assert_eq!(outcome.arrays[0].n_missed, n_missed);
     assert_eq!(outcome.arrays[0].n_saturated, n_saturated);
@@ -223,15 +226,16 @@ fn a_damper_pushes_back_on_taxels_that_move_and_not_on_saturated_ones() {
         .replace("[sensing]", "[signal]\nsteps = [\"force\"]\n\n[sensing]");
     let study = Study::new(&text);
     let patch = study.plan.arrays[0];
-    let frames = simulate_array(&study.touched, &patch, 1, &Silent).deflection;
+    let frames = simulate_array(&study.touched, &patch, 1, &Silent);
+    let frames = frames.kept.to_array().unwrap();
     let samples = sample_frames(&study.plan, &study.sweep, &study.touched).unwrap();
     assert_eq!(samples.frames.len(), study.touched.len());
     let per_object = study.touched[0].touches.len();
     let (mut n_moving, mut n_saturated) = (0, 0);
     for (object, (_, forces)) in samples.frames.iter().enumerate() {
         for (&deflection, &force) in frames.row(object * per_object).iter().zip(forces) {
-            let spring = 200.0 * f64::from(deflection);
-            let is_saturated = deflection == patch.taxel.stroke as f32;
+            let spring = 200.0 * deflection;
+            let is_saturated = deflection == f64::from(patch.taxel.stroke as f32);
             let is_moving = deflection > 0.0 && !is_saturated;
             let damper = if is_moving { 4.0 * 0.05 } else { 0.0 };
             assert!((force - spring - damper).abs() < 1e-6, "{force} N");

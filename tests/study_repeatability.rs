@@ -194,8 +194,11 @@ fn an_object_is_touched_the_same_whatever_else_is_in_the_set() {
             assert_eq!((few.touched.len(), many.touched.len()), (2, 4));
             let patch = &few.plan.arrays[0];
             let silent = &bubbletouch::study::progress::Silent;
-            let few_frames = simulate_array(&few.touched, patch, 1, silent).deflection;
-            let many_frames = simulate_array(&many.touched, patch, 1, silent).deflection;
+            let frames = |touched| {
+                let frames = simulate_array(touched, patch, 1, silent);
+                frames.kept.to_array().unwrap()
+            };
+            let (few_frames, many_frames) = (frames(&few.touched), frames(&many.touched));
             for (label, object) in few.touched.iter().enumerate() {
                 let name = &object.object.name;
                 let other = many.touched.iter().position(|o| o.object.name == *name);

@@ -2,52 +2,97 @@
 
 use super::study_args::{LoadedStudy, StudyArgs};
 use bubbletouch::Result;
-use bubbletouch::report::html::{Limit, ReportPage, Snapshots};
-use bubbletouch::study::Outcome;
-use bubbletouch::study::provenance::PROGRAM;
+use bubbletouch::report::page::{Limit, ReportPage, Snapshots, StudyAbout};
+use bubbletouch::study::provenance::{Manifest, PROGRAM};
+use bubbletouch::study::{Outcome, Samples, StudySpec};
+use std::time::Instant;
 
-/// What the page says beside the tables.
-pub fn report_page(
-    loaded: &LoadedStudy,
-    outcome: &Outcome,
-    args: &StudyArgs,
-    wall_s: f64,
-) -> Result<ReportPage> {
-    let spec = &loaded.plan.spec;
-    let sample = loaded.touched.samples(&loaded.plan, &loaded.sweep)?;
-    Ok(ReportPage {
-        name: loaded.name.clone(),
+/// What a page says without the study's objects.
+pub fn page_of_spec(spec: &StudySpec, name: &str) -> ReportPage {
+    let row = |name: &str, value: String| (name.to_owned(), value);
+    ReportPage {
+        name: name.to_owned(),
         question: spec.question.clone(),
         expected: spec.expected.clone(),
-        settings: settings(loaded),
-        limits: limits(loaded, outcome),
-        snapshots: Some(Snapshots {
-            frames: sample.frames,
-            pitch_mm: sample.pitch_mm,
-            quantity: sample.quantity,
-            caption: sample.caption,
-        }),
+        settings: vec![
+            row("Stroke", format!("{} mm", spec.skin.stroke_mm)),
+            row("Trials", spec.trials.to_string()),
+            row("Seed", spec.seed.to_string()),
+        ],
         pareto: spec.report.pareto,
-        wall_s: Some(wall_s),
+        program: PROGRAM.to_owned(),
+        ..ReportPage::default()
+    }
+}
+
+/// Adds what is known of objects and touches.
+pub fn add_touches(page: &mut ReportPage, loaded: &LoadedStudy) -> Result<()> {
+    let mut settings = loaded.touched.settings();
+    let n_touches = loaded.sweep.labels.len().to_string();
+    settings.push(("Touches".to_owned(), n_touches));
+    page.settings.splice(0..0, settings);
+    let samples = loaded.touched.samples(&loaded.plan, &loaded.sweep)?;
+    page.gallery = gallery(&samples);
+    page.snapshots = Some(snapshots(
+        &samples,
+        samples.frames.clone(),
+        &samples.caption,
+    ));
+    Ok(())
+}
+
+/// What the page of a study that is not of recognition says; the question and the expectation are the study's.
+pub fn study_about(
+    args: &StudyArgs,
+    (question, expected): (&str, &str),
+    start: Instant,
+) -> Result<StudyAbout> {
+    Ok(StudyAbout {
+        name: args.name()?,
+        question: question.to_owned(),
+        expected: expected.to_owned(),
+        wall_s: start.elapsed().as_secs_f64(),
         command: command_line(args),
         program: PROGRAM.to_owned(),
     })
 }
 
-fn settings(loaded: &LoadedStudy) -> Vec<(String, String)> {
-    let spec = &loaded.plan.spec;
-    let row = |name: &str, value: String| (name.to_owned(), value);
-    let mut rows = loaded.touched.settings();
-    rows.extend([
-        row("Touches", loaded.sweep.labels.len().to_string()),
-        row("Stroke", format!("{} mm", spec.skin.stroke_mm)),
-        row("Trials", spec.trials.to_string()),
-        row("Seed", spec.seed.to_string()),
-    ]);
-    rows
+/// Adds what a manifest knows.
+pub fn add_manifest(page: &mut ReportPage, manifest: Manifest) {
+    page.wall_s = manifest.wall_s();
+    page.command = manifest.command.clone();
+    page.manifest = Some(manifest);
 }
 
-fn limits(loaded: &LoadedStudy, outcome: &Outcome) -> Vec<Limit> {
+fn snapshots(
+    samples: &Samples,
+    frames: Vec<(String, ndarray::Array2<f64>)>,
+    caption: &str,
+) -> Snapshots {
+    Snapshots {
+        frames,
+        pitch_mm: samples.pitch_mm,
+        quantity: samples.quantity,
+        caption: caption.to_owned(),
+    }
+}
+
+/// Every object; before them what the picture shows, if that is something else.
+fn gallery(samples: &Samples) -> Vec<Snapshots> {
+    let mut sets = Vec::new();
+    if samples.each.is_empty() || samples.caption != samples.each_caption {
+        let frames = samples.frames.clone();
+        sets.push(snapshots(samples, frames, &samples.caption));
+    }
+    if !samples.each.is_empty() {
+        let frames = samples.each.clone();
+        sets.push(snapshots(samples, frames, &samples.each_caption));
+    }
+    sets
+}
+
+/// How often limits were reached.
+pub fn limits(loaded: &LoadedStudy, outcome: &Outcome) -> Vec<Limit> {
     let sum = |count: fn(&bubbletouch::study::ArrayOutcome) -> usize| -> u64 {
         outcome.arrays.iter().map(|array| count(array) as u64).sum()
     };
@@ -98,7 +143,8 @@ fn limits(loaded: &LoadedStudy, outcome: &Outcome) -> Vec<Limit> {
     ]
 }
 
-fn command_line(args: &StudyArgs) -> String {
+/// The command that makes a study's folder again.
+pub fn command_line(args: &StudyArgs) -> String {
     let mut command = format!("bubbletouch run {}", args.study.display());
     if let Some(objects) = &args.objects {
         command += &format!(" --objects {}", objects.display());

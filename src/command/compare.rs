@@ -2,10 +2,12 @@
 
 use super::output::{check_ending, terminal_width};
 use bubbletouch::Result;
-use bubbletouch::files::CsvFile;
+use bubbletouch::files::{CsvFile, write_bytes};
 use bubbletouch::report::csv_tables::read_tables;
 use bubbletouch::report::run_differences::differences_text;
+use bubbletouch::report::run_differences_page::differences_page;
 use bubbletouch::study::compare_runs;
+use bubbletouch::study::provenance::PROGRAM;
 use std::path::PathBuf;
 
 #[derive(clap::Args)]
@@ -17,11 +19,17 @@ pub struct Args {
     /// Write every cell that both have to a CSV file
     #[arg(long, value_name = "FILE.csv")]
     out: Option<PathBuf>,
+    /// Write sentences, a chart and the cells to a page
+    #[arg(long, value_name = "FILE.html")]
+    html: Option<PathBuf>,
 }
 
 pub fn compare(args: &Args) -> Result<()> {
     if let Some(out) = &args.out {
         check_ending(out, "csv")?;
+    }
+    if let Some(html) = &args.html {
+        check_ending(html, "html")?;
     }
     let (first, second) = (read_tables(&args.first)?, read_tables(&args.second)?);
     let place = format!("{} and {}: ", args.first.display(), args.second.display());
@@ -39,6 +47,11 @@ pub fn compare(args: &Args) -> Result<()> {
             file.row(row)?;
         }
         file.commit()?;
+    }
+    if let Some(html) = &args.html {
+        let [first, second] = [&args.first, &args.second].map(|path| path.display().to_string());
+        let page = differences_page(&comparison, (&first, &second), PROGRAM);
+        write_bytes(html, page.as_bytes())?;
     }
     Ok(())
 }

@@ -1,6 +1,7 @@
 //! `bubbletouch merge`: the shards of a study put together.
 
 use super::listener::Listener;
+use super::memory_args::MemoryArgs;
 use super::output::{output_folder, packings_beside};
 use super::run::{FinishedStudy, failures, identity, results_folder, seconds_since};
 use super::study_args::StudyArgs;
@@ -20,6 +21,8 @@ pub struct Args {
     /// More folders with journals of shards, such as those of other machines
     #[arg(long, value_name = "FOLDER")]
     from: Vec<PathBuf>,
+    #[command(flatten)]
+    memory: MemoryArgs,
     #[command(flatten)]
     listener: Listener,
 }
@@ -49,11 +52,15 @@ pub fn merge(args: &Args) -> Result<()> {
             "the journals of all shards, each run to its end (or bubbletouch run, which does here what is left)",
         ));
     }
+    let memory = args.memory.plan(&loaded)?;
+    let storage = args.memory.storage(&folder, &memory)?;
     let manner = Manner {
         journal: &journal,
         fail_fast: false,
         retries: false,
         part: Part::All,
+        storage: &storage,
+        at_once: memory.at_once,
     };
     let progress = args.listener.progress();
     let touched = loaded.touched.as_ref();

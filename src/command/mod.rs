@@ -1,10 +1,13 @@
 //! The command line: one file a subcommand, each `Args` → work → files or terminal.
 
 mod about_study;
+mod advise;
+mod cache;
 mod classify;
 mod compare;
 mod features;
 mod listener;
+mod memory_args;
 mod merge;
 mod objects;
 mod objects_pack;
@@ -12,13 +15,18 @@ mod objects_show;
 mod output;
 mod plan;
 mod press;
+mod press_place;
+mod press_poses;
 mod recording;
+mod report;
 mod run;
 mod run_breaking_points;
 mod run_object_detail;
 mod run_reconstruction;
+mod run_speed_accuracy;
 mod run_stability;
 mod run_whole_body;
+mod shell;
 mod simulate;
 mod slurm;
 mod slurm_jobs;
@@ -46,18 +54,25 @@ enum Command {
     /// Run a study: simulate, compress, recognise; write tables, charts and a report
     ///
     /// Its file says of which kind it is: [recognition], [reconstruction] (how well frames come back), [object_detail] (how detailed
-    /// objects must be) or [whole_body] (what a body of millions of taxels costs).
+    /// objects must be), [whole_body] (what a body of millions of taxels costs), [stability] (where contact methods break) or
+    /// [speed_accuracy] (what accuracy costs).
     Run(run::Args),
     /// Put the shards of a study together
     Merge(merge::Args),
     /// Run a study as an array of Slurm jobs, and the merge after them; what failed is submitted again by the same command
     Slurm(slurm::Args),
+    /// Write the charts and the page of a folder of results again, from its tables
+    Report(report::Args),
     /// Say what moved between two folders of results, and whether chance explains it
     Compare(compare::Args),
     /// Run a few cells of a folder of results again, and say whether they are the same bytes
     Verify(verify::Args),
+    /// List or remove the touches that studies keep beside their results
+    Cache(cache::Args),
     /// Say what a study would do: cells, touches, memory and time, without running it
     Plan(plan::Args),
+    /// Say which setting is the cheapest that is accurate enough, or the most accurate that is cheap enough
+    Advise(advise::Args),
     /// Write a study's touches as NumPy files, to train elsewhere
     Touches(touches::Args),
     /// Write what one cell of a study learns from as NumPy files, to train on exactly those rows elsewhere
@@ -72,6 +87,10 @@ enum Command {
     Recording(recording::Args),
     /// List the built-in objects, or draw one
     Objects(objects::Args),
+    /// Write completions for a shell to standard output
+    Completions(shell::CompletionArgs),
+    /// Write the manual page, or those of all subcommands
+    Man(shell::ManArgs),
 }
 
 /// Parses the command line and does what it says.
@@ -81,9 +100,12 @@ pub fn dispatch() -> Result<()> {
         Some(Command::Run(args)) => run::run(&args),
         Some(Command::Merge(args)) => merge::merge(&args),
         Some(Command::Slurm(args)) => slurm::slurm(&args),
+        Some(Command::Report(args)) => report::report(&args),
         Some(Command::Compare(args)) => compare::compare(&args),
         Some(Command::Verify(args)) => verify::verify(&args),
+        Some(Command::Cache(args)) => cache::cache(&args),
         Some(Command::Plan(args)) => plan::plan(&args),
+        Some(Command::Advise(args)) => advise::advise(&args),
         Some(Command::Touches(args)) => touches::touches(&args),
         Some(Command::Features(args)) => features::features(&args),
         Some(Command::Classify(args)) => classify::classify(&args),
@@ -91,5 +113,7 @@ pub fn dispatch() -> Result<()> {
         Some(Command::Press(args)) => press::press(&args),
         Some(Command::Recording(args)) => recording::recording(&args),
         Some(Command::Objects(args)) => objects::objects(&args),
+        Some(Command::Completions(args)) => shell::completions(&args),
+        Some(Command::Man(args)) => shell::man(&args),
     }
 }

@@ -1,5 +1,6 @@
 //! `bubbletouch plan`: what a study would do, without doing it.
 
+use super::memory_args::CeilingArgs;
 use super::study_args::StudyArgs;
 use bubbletouch::Result;
 use bubbletouch::study::Estimate;
@@ -8,11 +9,19 @@ use bubbletouch::study::Estimate;
 pub struct Args {
     #[command(flatten)]
     study: StudyArgs,
+    #[command(flatten)]
+    ceiling: CeilingArgs,
 }
 
 pub fn plan(args: &Args) -> Result<()> {
     let loaded = args.study.load(None)?;
-    let estimate = Estimate::new(&loaded.plan, loaded.touched.as_ref(), &loaded.sweep);
+    let memory = args.ceiling.plan(&loaded)?;
+    let estimate = Estimate::new(
+        &loaded.plan,
+        loaded.touched.as_ref(),
+        &loaded.sweep,
+        &memory,
+    );
     println!("{}: {}", loaded.name, loaded.plan.spec.question);
     println!("{estimate}");
     Ok(())

@@ -1,6 +1,8 @@
 //! `bubbletouch press`: one object, one patch, one reading.
 
 use super::output::terminal_width;
+use super::press_place::Place;
+use super::press_poses::{self, press_poses};
 use super::which_object::spheres_file;
 use bubbletouch::contact::{Contact, Workspace, press_to_depth, press_to_force, press_to_travel};
 use bubbletouch::geometry::Pose;
@@ -11,7 +13,7 @@ use bubbletouch::report::pressure_map::pressure_text;
 use bubbletouch::report::terminal::Ink;
 use bubbletouch::signal::Quantity;
 use bubbletouch::study::{MeshUse, ModelSpec, load_mesh};
-use bubbletouch::world::{Grid, Patch, RestPose, RestPoses, Scene, Taxel, Touch};
+use bubbletouch::world::{Grid, Patch, Scene, Taxel};
 use bubbletouch::{Error, Result};
 use ndarray::Array2;
 use std::path::PathBuf;
@@ -39,6 +41,8 @@ pub struct Args {
     force_n: Option<f64>,
     #[command(flatten)]
     place: Place,
+    #[command(flatten)]
+    many: press_poses::Args,
     /// What a mesh becomes: vertex_spheres, mesh (itself) or packed [default: vertex_spheres]
     #[arg(long, value_name = "MODEL", value_parser = parse_model)]
     model: Option<ModelSpec>,
@@ -83,29 +87,6 @@ struct Source {
     spheres: Option<PathBuf>,
 }
 
-#[derive(clap::Args)]
-#[group(id = "Place", multiple = true)]
-struct Place {
-    /// Which stable pose the object lies in, from 0 (the likeliest) [default: as modelled, its z up]
-    #[arg(long, value_name = "N")]
-    rest: Option<usize>,
-    /// Where the patch is over the object's middle, along x [default: 0]
-    #[arg(long, value_name = "MM", allow_negative_numbers = true)]
-    offset_x_mm: Option<f64>,
-    /// The same along y [default: 0]
-    #[arg(long, value_name = "MM", allow_negative_numbers = true)]
-    offset_y_mm: Option<f64>,
-    /// How the object is turned about the vertical [default: 0]
-    #[arg(long, value_name = "DEG", allow_negative_numbers = true)]
-    yaw_deg: Option<f64>,
-    /// How the patch is tilted about its x axis [default: 0]
-    #[arg(long, value_name = "DEG", allow_negative_numbers = true)]
-    tilt_x_deg: Option<f64>,
-    /// The same about its y axis [default: 0]
-    #[arg(long, value_name = "DEG", allow_negative_numbers = true)]
-    tilt_y_deg: Option<f64>,
-}
-
 fn parse_taxels(text: &str) -> std::result::Result<(usize, usize), String> {
     const MOST: usize = 4096;
     let parsed = text
@@ -135,6 +116,10 @@ pub fn press(args: &Args) -> Result<()> {
         patch,
         objects: vec![model],
     };
+    if let Some(path) = &args.many.poses {
+        let depth = args.depth_mm.map(positive_depth).transpose()?;
+        return press_poses(&args.many, path, &scene, depth, args.out.as_deref());
+    }
     let mut workspace = Workspace::new();
     let contact = args.contact(&scene, pose, &mut workspace)?;
     let (nx, ny) = args.taxels;
@@ -240,15 +225,18 @@ impl Args {
             (None, Some(_)) => return Ok(press_to_travel(scene, &[pose], 0.0, workspace)),
             (depth_mm, _) => depth_mm.unwrap_or(3.0),
         };
-        if !(depth_mm.is_finite() && depth_mm > 0.0) {
-            return Err(Error::input(
-                "--depth-mm",
-                depth_mm,
-                "a positive number of millimetres",
-            ));
-        }
-        press_to_depth(scene, &[pose], depth_mm * MM, workspace).ok_or_else(not_over)
+        let depth = positive_depth(depth_mm)?;
+        press_to_depth(scene, &[pose], depth, workspace).ok_or_else(not_over)
     }
+}
+
+/// Metres.
+fn positive_depth(depth_mm: f64) -> Result<f64> {
+    if depth_mm.is_finite() && depth_mm > 0.0 {
+        return Ok(depth_mm * MM);
+    }
+    let allowed = "a positive number of millimetres";
+    Err(Error::input("--depth-mm", depth_mm, allowed))
 }
 
 fn not_over() -> Error {
@@ -257,42 +245,4 @@ fn not_over() -> Error {
         "the object is not over the array",
         "an offset that brings some of it over a taxel",
     )
-}
-
-impl Place {
-    fn touch(&self) -> Result<Touch> {
-        let number = |name: &str, value: Option<f64>| match value.unwrap_or(0.0) {
-            v if v.is_finite() => Ok(v),
-            v => Err(Error::input(name, v, "a finite number")),
-        };
-        Ok(Touch {
-            rest: 0,
-            offset: [
-                number("--offset-x-mm", self.offset_x_mm)? * MM,
-                number("--offset-y-mm", self.offset_y_mm)? * MM,
-            ],
-            yaw: number("--yaw-deg", self.yaw_deg)?.to_radians(),
-            tilt: [
-                number("--tilt-x-deg", self.tilt_x_deg)?.to_radians(),
-                number("--tilt-y-deg", self.tilt_y_deg)?.to_radians(),
-            ],
-            depth: 0.0,
-            indices: [None; 7],
-        })
-    }
-
-    fn rest(&self, model: &Model) -> Result<RestPose> {
-        let Some(number) = self.rest else {
-            return Ok(RestPoses::AsModelled.of(model).swap_remove(0));
-        };
-        let mut poses = RestPoses::Stable.of(model);
-        if number >= poses.len() {
-            return Err(Error::input(
-                "--rest",
-                number,
-                format!("0 to {}, the stable poses of this object", poses.len() - 1),
-            ));
-        }
-        Ok(poses.swap_remove(number))
-    }
 }

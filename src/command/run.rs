@@ -1,11 +1,13 @@
 //! `bubbletouch run`: a study from its file to its folder of results.
 
-use super::about_study::report_page;
+use super::about_study::{add_manifest, add_touches, command_line, limits, page_of_spec};
 use super::listener::Listener;
+use super::memory_args::MemoryArgs;
 use super::output::{packings_beside, terminal_width};
 use super::run_breaking_points::run_breaking_points;
 use super::run_object_detail::run_object_detail;
 use super::run_reconstruction::run_reconstruction;
+use super::run_speed_accuracy::run_speed_accuracy;
 use super::run_stability::run_stability;
 use super::run_whole_body::run_whole_body;
 use super::study_args::{LoadedStudy, StudyArgs};
@@ -14,11 +16,13 @@ use bubbletouch::files::write_bytes;
 use bubbletouch::report::csv_tables::repeatable_hashes;
 use bubbletouch::report::{headlines, results, terminal};
 use bubbletouch::study::journal::Identity;
+use bubbletouch::study::memory::peak_memory;
 use bubbletouch::study::provenance::{MANIFEST_FILE, Manifest, RunFacts};
-use bubbletouch::study::{Manner, Outcome, Part, Shard, StudyKind, n_left, run_with};
+use bubbletouch::study::time_left::{Piece, Work};
+use bubbletouch::study::{Manner, Outcome, Part, Shard, StudyKind, n_left, run_with, workload};
 use bubbletouch::{Error, Result};
 use std::path::{Path, PathBuf};
-use std::time::SystemTime;
+use std::time::{Instant, SystemTime};
 
 #[derive(clap::Args)]
 pub struct Args {
@@ -38,6 +42,8 @@ pub struct Args {
     #[arg(long, value_name = "I/N")]
     shard: Option<Shard>,
     #[command(flatten)]
+    memory: MemoryArgs,
+    #[command(flatten)]
     listener: Listener,
     /// A demonstration runs anew unless it was interrupted.
     #[arg(skip)]
@@ -53,6 +59,7 @@ impl Args {
             fresh: false,
             fail_fast: false,
             shard: None,
+            memory: MemoryArgs::default(),
             listener: Listener::default(),
             is_demonstration: true,
         }
@@ -65,6 +72,7 @@ impl Args {
             ("--fail-fast", self.fail_fast),
             ("--shard", self.shard.is_some()),
         ];
+        let given = given.into_iter().chain(self.memory.given());
         let given = given.into_iter().find(|(_, is_given)| *is_given);
         match given {
             Some((option, _)) if kind != StudyKind::Recognition => {
@@ -97,6 +105,7 @@ pub fn run(args: &Args) -> Result<()> {
         StudyKind::ObjectDetail => run_object_detail(&args.study, args.listener, &folder),
         StudyKind::BreakingPoints => run_breaking_points(&args.study, args.listener, &folder),
         StudyKind::Stability => run_stability(&args.study, args.listener, &folder),
+        StudyKind::SpeedAccuracy => run_speed_accuracy(&args.study, args.listener, &folder),
         StudyKind::WholeBody => run_whole_body(&args.study, args.listener, &folder),
     }
 }
@@ -112,6 +121,8 @@ pub fn results_folder(study: &StudyArgs, out: Option<&Path>) -> Result<PathBuf> 
 fn run_recognition(args: &Args, folder: &Path) -> Result<()> {
     let started = SystemTime::now();
     let loaded = args.study.load(Some(&packings_beside(folder)))?;
+    let memory = args.memory.plan(&loaded)?;
+    let storage = args.memory.storage(folder, &memory)?;
     let identity = identity(&loaded);
     let kept = StudyFolder::open(folder, &identity, (args.start(), args.shard), args.listener)?;
     let n_all = loaded.n_evaluations();
@@ -126,8 +137,13 @@ fn run_recognition(args: &Args, folder: &Path) -> Result<()> {
         fail_fast: args.fail_fast,
         retries: true,
         part: args.shard.map_or(Part::All, Part::Shard),
+        storage: &storage,
+        at_once: memory.at_once,
     };
     let progress = args.listener.progress();
+    let report = report_work(&loaded, args.shard);
+    let work = workload(&loaded.plan, &loaded.sweep, loaded.touched.as_ref(), manner);
+    progress.expect(&[&work[..], &[report]].concat());
     let outcome = run_with(
         &loaded.plan,
         &loaded.sweep,
@@ -154,7 +170,9 @@ fn run_recognition(args: &Args, folder: &Path) -> Result<()> {
         n_before: n_all - n_left,
     };
     progress.stage("report", 1);
+    let start = Instant::now();
     finished.write()?;
+    progress.worked(&report, start.elapsed().as_secs_f64());
     progress.advance(1);
     progress.finish(&format!("{:.1} s", seconds_since(started)));
     if args.is_demonstration {
@@ -162,6 +180,19 @@ fn run_recognition(args: &Args, folder: &Path) -> Result<()> {
     }
     finished.tell(args.listener);
     failures(&outcome, folder)
+}
+
+/// What a run does when all cells are there; a shard does nothing then.
+fn report_work(loaded: &LoadedStudy, shard: Option<Shard>) -> Piece {
+    let cells: Vec<_> = loaded.sweep.cells().collect();
+    Piece {
+        kind: Work::Report,
+        place: 0,
+        planned_s: match shard {
+            Some(_) => 0.0,
+            None => results::planned_s(&cells),
+        },
+    }
 }
 
 /// What the results of a study depend on.
@@ -189,16 +220,25 @@ impl FinishedStudy<'_> {
     /// Writes tables, charts, the page, the study and the manifest.
     pub fn write(&self) -> Result<()> {
         let tables = &self.outcome.tables;
-        let page = report_page(
-            self.loaded,
-            self.outcome,
-            self.args,
-            seconds_since(self.started),
-        )?;
-        results::write_all(self.folder, tables, &page)?;
+        let manifest = self.manifest()?;
         let spec = &self.loaded.plan.spec;
+        let mut page = page_of_spec(spec, &self.loaded.name);
+        page.limits = limits(self.loaded, self.outcome);
+        add_touches(&mut page, self.loaded)?;
+        add_manifest(&mut page, manifest.clone());
+        page.wall_s = Some(seconds_since(self.started));
+        results::write_all(self.folder, tables, &page)?;
         write_bytes(&self.folder.join("study.toml"), spec.to_toml().as_bytes())?;
+        let manifest = manifest.to_json();
+        write_bytes(&self.folder.join(MANIFEST_FILE), manifest.as_bytes())
+    }
+
+    fn manifest(&self) -> Result<Manifest> {
+        let spec = &self.loaded.plan.spec;
+        let tables = &self.outcome.tables;
         let facts = RunFacts {
+            study: self.loaded.name.clone(),
+            command: command_line(self.args),
             started: self.started,
             seed: spec.seed,
             n_cells: self.loaded.sweep.n_cells(),
@@ -207,8 +247,7 @@ impl FinishedStudy<'_> {
             n_failed: tables.failures.len(),
             tables_sha256: repeatable_hashes(tables)?,
         };
-        let manifest = Manifest::new(self.identity, facts).to_json();
-        write_bytes(&self.folder.join(MANIFEST_FILE), manifest.as_bytes())
+        Ok(Manifest::new(self.identity, facts))
     }
 
     /// Says on standard output what was found.
@@ -221,6 +260,7 @@ impl FinishedStudy<'_> {
             "finished_before": self.n_before,
             "failed": tables.failures.len(),
             "elapsed_s": seconds_since(self.started),
+            "peak_memory_bytes": peak_memory(),
         }));
         if !listener.is_person() {
             return;

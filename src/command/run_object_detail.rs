@@ -1,5 +1,6 @@
 //! `bubbletouch run` of a study of how detailed objects are.
 
+use super::about_study::study_about;
 use super::listener::Listener;
 use super::output::{output_folder, packings_beside, terminal_width};
 use super::study_args::StudyArgs;
@@ -22,7 +23,9 @@ pub fn run_object_detail(args: &StudyArgs, listener: Listener, folder: &Path) ->
     let packings = packings_beside(folder);
     let tables = measure_detail(&plan, meshes, Some(&packings), progress.as_ref())?;
     progress.stage("report", 1);
-    write_object_detail(folder, &tables)?;
+    let asked = (&plan.spec.question[..], &plan.spec.expected[..]);
+    let about = study_about(args, asked, start)?;
+    write_object_detail(folder, &tables, &about)?;
     write_bytes(&folder.join("study.toml"), plan.spec.to_toml().as_bytes())?;
     if !listener.wrote(folder, progress.as_ref(), start) {
         return Ok(());
@@ -30,6 +33,10 @@ pub fn run_object_detail(args: &StudyArgs, listener: Listener, folder: &Path) ->
     println!("{}", plan.spec.question);
     println!("{n_objects} meshes, {} models of each\n", plan.n_models());
     println!("{}", object_detail_summary(&tables, terminal_width()));
-    println!("Results in {}", folder.display());
+    println!(
+        "Results in {}; open {}",
+        folder.display(),
+        folder.join("report.html").display()
+    );
     Ok(())
 }

@@ -1,5 +1,6 @@
 //! `bubbletouch run` of a study that reconstructs frames.
 
+use super::about_study::study_about;
 use super::listener::Listener;
 use super::output::{output_folder, packings_beside, terminal_width};
 use super::study_args::StudyArgs;
@@ -33,7 +34,9 @@ pub fn run_reconstruction(args: &StudyArgs, listener: Listener, folder: &Path) -
         pitch_mm,
         plan.quantity(),
     )?;
-    write_reconstruction(folder, &outcome.tables, &frames)?;
+    let asked = (&plan.spec.question[..], &plan.spec.expected[..]);
+    let about = study_about(args, asked, start)?;
+    write_reconstruction(folder, &outcome.tables, &frames, &about)?;
     write_bytes(&folder.join("study.toml"), plan.spec.to_toml().as_bytes())?;
     if !listener.wrote(folder, progress.as_ref(), start) {
         return Ok(());
@@ -53,6 +56,10 @@ pub fn run_reconstruction(args: &StudyArgs, listener: Listener, folder: &Path) -
         "{}",
         reconstruction_summary(&outcome.tables, terminal_width())
     );
-    println!("Results in {}", folder.display());
+    println!(
+        "Results in {}; open {}",
+        folder.display(),
+        folder.join("report.html").display()
+    );
     Ok(())
 }

@@ -1,5 +1,6 @@
 //! `bubbletouch run` of a study of where contact methods break.
 
+use super::about_study::study_about;
 use super::listener::Listener;
 use super::output::{output_folder, terminal_width};
 use super::study_args::StudyArgs;
@@ -21,7 +22,9 @@ pub fn run_stability(args: &StudyArgs, listener: Listener, folder: &Path) -> Res
     let progress = listener.progress();
     let tables = measure_stability(&plan, progress.as_ref())?;
     progress.stage("report", 1);
-    write_stability(folder, &tables)?;
+    let asked = (&plan.spec.question[..], &plan.spec.expected[..]);
+    let about = study_about(args, asked, start)?;
+    write_stability(folder, &tables, &about)?;
     write_bytes(&folder.join("study.toml"), plan.spec.to_toml().as_bytes())?;
     if !listener.wrote(folder, progress.as_ref(), start) {
         return Ok(());
@@ -31,6 +34,10 @@ pub fn run_stability(args: &StudyArgs, listener: Listener, folder: &Path) -> Res
     if !cfg!(feature = "rapier") {
         println!("Without rapier's rows: this command was built without --features rapier");
     }
-    println!("Results in {}", folder.display());
+    println!(
+        "Results in {}; open {}",
+        folder.display(),
+        folder.join("report.html").display()
+    );
     Ok(())
 }

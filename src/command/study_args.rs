@@ -4,6 +4,7 @@ use bubbletouch::random::Seed;
 use bubbletouch::study::breaking_points::{BreakingPointsPlan, BreakingPointsSpec};
 use bubbletouch::study::object_detail::{ObjectDetailPlan, ObjectDetailStudySpec};
 use bubbletouch::study::reconstruction::{ReconstructionPlan, ReconstructionStudySpec};
+use bubbletouch::study::speed_accuracy::{SpeedAccuracyPlan, SpeedAccuracyStudySpec};
 use bubbletouch::study::stability::{StabilityPlan, StabilityStudySpec};
 use bubbletouch::study::whole_body::{WholeBodyPlan, WholeBodyStudySpec};
 use bubbletouch::study::{
@@ -141,6 +142,17 @@ impl StudyArgs {
         set_threads(self.threads)?;
         let place = self.study.display().to_string();
         StabilityPlan::new(&place, StabilityStudySpec::parse(&place, &self.text()?)?)
+    }
+
+    /// Reads and checks a study of what accuracy costs.
+    pub fn speed_accuracy_plan(&self) -> Result<SpeedAccuracyPlan> {
+        set_threads(self.threads)?;
+        let place = self.study.display().to_string();
+        let mut spec = SpeedAccuracyStudySpec::parse(&place, &self.text()?)?;
+        spec.seed = self.seed.unwrap_or(spec.seed);
+        self.replace_objects(&mut spec.objects);
+        let folder = self.study.parent().unwrap_or(Path::new(""));
+        SpeedAccuracyPlan::new(&place, folder, spec)
     }
 
     fn replace_objects(&self, objects: &mut ObjectsSpec) {

@@ -1,9 +1,10 @@
 //! `bubbletouch verify`: whether a folder of results comes out again.
 
+use super::memory_args::MemoryArgs;
 use super::output::packings_beside;
 use super::study_args::StudyArgs;
 use bubbletouch::random::Seed;
-use bubbletouch::report::csv_tables::{read_tables, repeatable_hashes, to_csv};
+use bubbletouch::report::csv_tables::{read_tables, sha256_of, to_csv};
 use bubbletouch::report::progress;
 use bubbletouch::study::journal::Journal;
 use bubbletouch::study::provenance::{MANIFEST_FILE, Manifest, SOURCE};
@@ -27,12 +28,14 @@ pub struct Args {
     /// Threads; all cores when left out
     #[arg(long, value_name = "N")]
     threads: Option<usize>,
+    #[command(flatten)]
+    memory: MemoryArgs,
 }
 
 pub fn verify(args: &Args) -> Result<()> {
     let folder = &args.results;
     let tables = read_tables(folder)?;
-    check_manifest(args, &tables)?;
+    check_manifest(args)?;
     let study = StudyArgs {
         study: folder.join("study.toml"),
         objects: None,
@@ -41,11 +44,15 @@ pub fn verify(args: &Args) -> Result<()> {
     };
     let loaded = study.load(Some(&packings_beside(folder)))?;
     let chosen = draw(&tables, args);
+    let memory = args.memory.plan(&loaded)?;
+    let storage = args.memory.storage(folder, &memory)?;
     let manner = Manner {
         journal: &Journal::none(),
         fail_fast: true,
         retries: false,
         part: Part::Holding(&chosen),
+        storage: &storage,
+        at_once: memory.at_once,
     };
     let progress = progress::to_stderr();
     let touched = loaded.touched.as_ref();
@@ -80,14 +87,14 @@ pub fn verify(args: &Args) -> Result<()> {
 }
 
 /// An error if a table is not what the manifest says; a note if the program is another.
-fn check_manifest(args: &Args, tables: &Tables) -> Result<()> {
-    let path = args.results.join(MANIFEST_FILE);
-    let text = std::fs::read_to_string(&path).map_err(|e| Error::io(&path, "read", e))?;
-    let manifest: Manifest = serde_json::from_str(&text)
-        .map_err(|e| Error::input(path.display(), e, "a manifest of this program"))?;
-    for (name, hash) in repeatable_hashes(tables)? {
-        if manifest.tables_sha256.get(&name) != Some(&hash) {
-            let place = args.results.join(name);
+fn check_manifest(args: &Args) -> Result<()> {
+    let manifest = Manifest::read(&args.results)?.ok_or_else(|| {
+        let path = args.results.join(MANIFEST_FILE);
+        Error::input(path.display(), "is missing", "the manifest of a run")
+    })?;
+    for (name, hash) in &manifest.tables_sha256 {
+        let place = args.results.join(name);
+        if sha256_of(&place)? != *hash {
             let allowed = "the table that the manifest names by its SHA-256";
             return Err(Error::input(
                 place.display(),

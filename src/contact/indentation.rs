@@ -2,12 +2,12 @@
 
 use super::envelope::{Envelope, Limit};
 use super::grid_lines::GridLines;
+use super::instructions::{Instructions, for_instructions};
 use super::placed_sphere::PlacedSphere;
 use super::sheet::Sheet;
 use super::sphere_search::{SphereSearch, search};
 use crate::geometry::Pose;
 use crate::world::{Patch, Scene};
-use multiversion::multiversion;
 
 /// What a press did, beside its deflections in [`Workspace::deflections`].
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -23,6 +23,7 @@ pub struct Contact {
 /// Scratch of one thread; it is reused, so a press allocates nothing once the largest scene has been seen.
 #[derive(Clone, Debug, Default)]
 pub struct Workspace {
+    instructions: Instructions,
     /// Of the last scene's grid.
     lines: GridLines,
     /// Spheres that can press.
@@ -38,6 +39,14 @@ impl Workspace {
     /// An empty workspace.
     pub fn new() -> Self {
         Self::default()
+    }
+
+    /// An empty workspace for some other than the best instructions, to compare them.
+    pub fn with(instructions: Instructions) -> Self {
+        Self {
+            instructions,
+            ..Self::default()
+        }
     }
 
     /// Deflections of the last press: n_taxels, metres, row (patch y, ascending) by row.
@@ -60,6 +69,7 @@ impl Workspace {
         );
         self.lines.lay(&scene.patch.grid);
         let mut first = search(
+            self.instructions,
             &mut self.search,
             scene,
             patch_from_objects,
@@ -120,9 +130,11 @@ impl Workspace {
     fn push(&mut self, patch: &Patch, travel: f64, behind: f64) {
         self.touch_nothing(patch);
         raise_all(
+            self.instructions,
             &self.search.found,
             &self.lines,
-            [travel, behind],
+            travel,
+            behind,
             &mut self.sheet,
         );
         if !self.envelope.heights.is_empty() {
@@ -138,23 +150,23 @@ impl Workspace {
     }
 }
 
-/// Raises the deflections to what the spheres need at a travel; those with their centres lower than `behind` do not count.
-#[multiversion(targets("x86_64+avx2+fma"))]
-fn raise_all(
-    spheres: &[PlacedSphere],
-    lines: &GridLines,
-    [travel, behind]: [f64; 2],
-    sheet: &mut Sheet,
-) {
-    raise_each(spheres, lines, [travel, behind], sheet);
+for_instructions! {
+    /// Raises the deflections to what the spheres need at a travel; those with their centres lower than `behind` do not count.
+    fn raise_all(
+        spheres: &[PlacedSphere],
+        lines: &GridLines,
+        travel: f64,
+        behind: f64,
+        sheet: &mut Sheet,
+    ) = raise_each
 }
 
-/// [`raise_all`] with the instructions of whatever calls it: the same results to the bit.
 #[inline(always)]
 fn raise_each(
     spheres: &[PlacedSphere],
     lines: &GridLines,
-    [travel, behind]: [f64; 2],
+    travel: f64,
+    behind: f64,
     sheet: &mut Sheet,
 ) {
     for sphere in spheres {
@@ -223,7 +235,8 @@ pub fn press_to_travel(
 fn indent(patch: &Patch, travel: f64, workspace: &mut Workspace) -> Contact {
     let taxel = &patch.taxel;
     workspace.push(patch, travel, -taxel.stroke - taxel.radius);
-    let (n_touched, n_saturated) = stop_at_stroke(&mut workspace.sheet, taxel.stroke);
+    let instructions = workspace.instructions;
+    let [n_touched, n_saturated] = stop_at_stroke(instructions, &mut workspace.sheet, taxel.stroke);
     Contact {
         travel,
         n_touched,
@@ -237,9 +250,13 @@ pub(crate) fn saturation_limit(stroke: f64) -> f64 {
     stroke * (1.0 + 1e-12)
 }
 
-/// Counts touched and saturated taxels and stops the latter at their stroke.
-#[multiversion(targets("x86_64+avx2+fma"))]
-fn stop_at_stroke(sheet: &mut Sheet, stroke: f64) -> (usize, usize) {
+for_instructions! {
+    /// Counts touched and saturated taxels and stops the latter at their stroke.
+    fn stop_at_stroke(sheet: &mut Sheet, stroke: f64) -> [usize; 2] = stop_each
+}
+
+#[inline(always)]
+fn stop_each(sheet: &mut Sheet, stroke: f64) -> [usize; 2] {
     let limit = saturation_limit(stroke);
     let (mut n_touched, mut n_saturated) = (0, 0);
     sheet.each_row(|taxels| {
@@ -249,75 +266,5 @@ fn stop_at_stroke(sheet: &mut Sheet, stroke: f64) -> (usize, usize) {
             *deflection = deflection.min(stroke);
         }
     });
-    (n_touched, n_saturated)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::objects::{Sphere, SphereUnion};
-    use crate::random::Seed;
-    use crate::world::{Grid, Taxel};
-    use glam::{DQuat, DVec3};
-    use rand::Rng;
-
-    /// Some unions of spheres of any size about a grid.
-    fn random_scene(rng: &mut impl Rng) -> (Scene, Vec<Pose>) {
-        let mut vector = |most: f64| DVec3::from_array([0; 3].map(|_| rng.gen_range(-most..most)));
-        let poses: Vec<Pose> = (0..2)
-            .map(|_| Pose::new(DQuat::from_scaled_axis(vector(3.0)), vector(0.02)))
-            .collect();
-        let mut union = || {
-            let spheres = (0..rng.gen_range(1..200)).map(|_| Sphere {
-                center: DVec3::from_array([0; 3].map(|_| rng.gen_range(-0.03..0.03))),
-                radius: 10f64.powf(rng.gen_range(-4.0..-1.0)),
-            });
-            SphereUnion::new(spheres.collect()).unwrap()
-        };
-        let objects = poses.iter().map(|_| union().into()).collect();
-        let grid = Grid {
-            nx: rng.gen_range(1..50),
-            ny: rng.gen_range(1..50),
-            pitch: rng.gen_range(5e-4..4e-3),
-        };
-        let taxel = Taxel {
-            radius: 1e-3,
-            stiffness: 100.0,
-            damping: 0.0,
-            stroke: 5e-3,
-        };
-        let patch = Patch::new(grid, taxel).unwrap();
-        (Scene { patch, objects }, poses)
-    }
-
-    #[test]
-    fn vector_instructions_change_no_bit() {
-        let mut rng = Seed::new(1).named("instructions").rng();
-        let mut n_touched = 0;
-        for case in 0..300 {
-            let (scene, poses) = random_scene(&mut rng);
-            let depth = rng.gen_range(1e-4..2e-2);
-            let (mut fast, mut plain) = (Workspace::new(), Workspace::new());
-            let first = fast.gather(&scene, &poses, Goal::Depth(depth));
-            plain.lines.lay(&scene.patch.grid);
-            let plainly = plain
-                .search
-                .run(&scene, &poses, &plain.lines, Goal::Depth(depth));
-            assert_eq!(first, plainly.is_finite().then_some(plainly), "case {case}");
-            let ends = [plainly + depth, -6e-3];
-            fast.push(&scene.patch, ends[0], ends[1]);
-            plain.touch_nothing(&scene.patch);
-            raise_each(&plain.search.found, &plain.lines, ends, &mut plain.sheet);
-            let bits = |workspace: &Workspace| -> Vec<u64> {
-                workspace
-                    .deflections()
-                    .iter()
-                    .map(|d| d.to_bits())
-                    .collect()
-            };
-            assert_eq!(bits(&fast), bits(&plain), "case {case}");
-            n_touched += fast.deflections().iter().filter(|&&d| d > 0.0).count();
-        }
-        assert!(n_touched > 10_000, "{n_touched}");
-    }
+    [n_touched, n_saturated]
 }

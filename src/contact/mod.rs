@@ -32,6 +32,7 @@
 //! the bit, the forces are those of `spring_load`.
 
 pub mod balance;
+mod below;
 mod coulomb;
 mod crossing;
 mod damper;
@@ -40,8 +41,10 @@ mod friction;
 mod grid_lines;
 mod hold_force;
 mod indentation;
+mod instructions;
 mod placed_sphere;
 mod press_force;
+mod raise;
 mod scene_meshes;
 mod sheet;
 mod simulate;
@@ -53,6 +56,7 @@ mod spring_load;
 mod swept_triangle;
 mod taxel_contact;
 
+pub(crate) use below::Below;
 pub(crate) use damper::Relaxation;
 pub use damper::{DamperState, relaxation_factor};
 pub use friction::{FrictionLoad, FrictionState, Grip, GripCounts, NormalForce};
@@ -60,7 +64,10 @@ pub(crate) use grid_lines::Lines;
 pub use hold_force::{HeldForce, MovedObject};
 pub(crate) use indentation::saturation_limit;
 pub use indentation::{Contact, Workspace, first_contact, press_to_depth, press_to_travel};
+pub use instructions::Instructions;
+pub(crate) use instructions::for_instructions;
 pub use press_force::press_to_force;
+pub(crate) use raise::{beats, raise};
 pub use simulate::{Recording, simulate};
 pub use skin_force::{SkinPress, press_skin_to_force};
 pub use skin_press::{SkinContact, SkinWorkspace, deflect_skin, press_skin};

@@ -1,6 +1,7 @@
 //! A sphere over a flat grid, and the taxels under it, row by row.
 
 use super::grid_lines::GridLines;
+use super::raise::{ALMOST, beats, raise};
 use super::sheet::Sheet;
 use crate::geometry::Pose;
 use crate::objects::{Cluster, ClusterBounds, MOST_IN_CLUSTER, Sphere};
@@ -25,9 +26,8 @@ const SQUARE: usize = 10;
 /// So many columns are raised at once: f64 lanes of 256 bits.
 pub(super) const BLOCK: usize = 4;
 
-/// What is needed is compared before its root is taken: a square that is less than this share of the least that counts has a root
-/// that does not, however both are rounded. Larger: rounding decides; smaller: roots in vain.
-const ALMOST: f64 = 1.0 - 1e-12;
+/// The same of footprints that are wider than three blocks: lanes of 512 bits.
+pub(super) const WIDE: usize = 8;
 
 /// An object's frame seen from the patch.
 #[derive(Clone, Debug)]
@@ -120,19 +120,14 @@ impl View {
     }
 }
 
-/// Raises deflections to √(S² − Δy² − Δx²) − h. (By numbers: the parts of an iterator that are compiled elsewhere would be called.)
+/// What is left of a number less each of some.
 #[inline(always)]
-fn raise_lanes<const N: usize>(
-    deflections: &mut [f64; N],
-    reach2: f64,
-    dx2: &[f64; N],
-    height: f64,
-) {
+fn less<const N: usize>(of: f64, numbers: &[f64; N]) -> [f64; N] {
+    let mut left = [0.0; N];
     for k in 0..N {
-        // The root of less than nothing is not a number, and the other one is the maximum. (A comparison in its place is
-        // compiled to a masked store, for which some processors take ten times as long.)
-        deflections[k] = deflections[k].max((reach2 - dx2[k]).sqrt() - height);
+        left[k] = of - numbers[k];
     }
+    left
 }
 
 impl PlacedSphere {
@@ -180,21 +175,23 @@ impl PlacedSphere {
         let reach2 = self.reach * self.reach;
         let mut dx2 = [[f64::INFINITY; BLOCK]; N];
         let places = &lines.x.positions[first..];
-        for (dx2, x) in dx2.as_flattened_mut().iter_mut().zip(places) {
-            let dx = x - self.center.x;
-            *dx2 = dx * dx;
+        let places = &places[..places.len().min(N * BLOCK)];
+        for k in 0..places.len() {
+            let dx = places[k] - self.center.x;
+            dx2[k / BLOCK][k % BLOCK] = dx * dx;
         }
         for row in rows {
             let dy = lines.y.positions[row] - self.center.y;
             let row_reach2 = reach2 - dy * dy;
             let blocks: &mut [[f64; BLOCK]; N] = sheet.blocks(row, first);
             for block in 0..N {
-                raise_lanes(&mut blocks[block], row_reach2, &dx2[block], height);
+                let squares = less(row_reach2, &dx2[block]);
+                raise(&squares, &[height; BLOCK], &mut blocks[block]);
             }
         }
     }
 
-    /// Of each row the columns that it reaches.
+    /// Of each row the columns that it reaches, more than a block of them.
     #[inline(always)]
     fn raise_rows(
         &self,
@@ -205,17 +202,28 @@ impl PlacedSphere {
         sheet: &mut Sheet,
     ) {
         let reach2 = self.reach * self.reach;
+        let last = lines.x.positions.len() - WIDE;
         for row in rows {
             let dy = lines.y.positions[row] - self.center.y;
             let half_width = (footprint - dy * dy).max(0.0).sqrt();
             let columns = lines.x.within(self.center.x, half_width);
             let row_reach2 = reach2 - dy * dy;
-            let places = &lines.x.positions[columns.clone()];
-            for (deflection, x) in sheet.row(row, columns).iter_mut().zip(places) {
-                let dx = x - self.center.x;
-                let q = row_reach2 - dx * dx;
-                let needed = if q > 0.0 { q.sqrt() - height } else { 0.0 };
-                *deflection = deflection.max(needed);
+            let mut next = columns.start;
+            while next < columns.end {
+                // The last block of a row goes over some of the one before it again.
+                let first = next.min(last);
+                let mut dx2 = [0.0; WIDE];
+                let places = &lines.x.positions[first..first + WIDE];
+                for k in 0..WIDE {
+                    let dx = places[k] - self.center.x;
+                    dx2[k] = dx * dx;
+                }
+                let squares = less(row_reach2, &dx2);
+                let taxels = sheet.wide_block(row, first);
+                if beats(&squares, &[height; WIDE], taxels) {
+                    raise(&squares, &[height; WIDE], taxels);
+                }
+                next = first + WIDE;
             }
         }
     }

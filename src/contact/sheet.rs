@@ -1,6 +1,6 @@
 //! The deflections of a grid patch, and where they are.
 
-use super::placed_sphere::BLOCK;
+use super::placed_sphere::{BLOCK, WIDE};
 use std::ops::Range;
 
 /// The deflections of a grid, row by row, and the rectangle outside of which all are zero.
@@ -53,6 +53,14 @@ impl Sheet {
         let first = row * self.n_columns + first;
         let (blocks, _) = self.deflections[first..first + N * BLOCK].as_chunks_mut();
         blocks.try_into().expect("so many blocks are cut")
+    }
+
+    /// A wide block of columns of a row, from column `first`, all of them in the row.
+    #[inline(always)]
+    pub fn wide_block(&mut self, row: usize, first: usize) -> &mut [f64; WIDE] {
+        let first = row * self.n_columns + first;
+        let block = self.deflections[first..].first_chunk_mut();
+        block.expect("a row is as long")
     }
 
     /// Visits what is covered, row by row.

@@ -1,12 +1,13 @@
 //! Which spheres of a scene can press a grid patch: clusters of neighbours first, then the spheres of those that are near.
 
+use super::below::Below;
 use super::grid_lines::GridLines;
 use super::indentation::Goal;
+use super::instructions::for_instructions;
 use super::placed_sphere::{PlacedSphere, View};
 use crate::geometry::Pose;
 use crate::objects::SphereClusters;
 use crate::world::Scene;
-use multiversion::multiversion;
 
 /// Scratch of a search, reused.
 #[derive(Clone, Debug, Default)]
@@ -22,75 +23,41 @@ pub(super) struct SphereSearch {
 /// So many clusters are looked at together.
 const LOOK: usize = 8;
 
-/// Which of a few values are below a limit, ascending. (An iterator whose parts are put in place at once: closures would be compiled
-/// without vector instructions.)
-struct Below {
-    /// A bit each.
-    left: u32,
+for_instructions! {
+    /// Finds the spheres that can press a taxel on the way to the goal, and returns the travel at which the first taxel is touched;
+    /// infinite if none is, or if the goal is a travel.
+    ///
+    /// For a depth, the cluster that is nearest is looked at beforehand, so that most others need no look to know what is first.
+    pub(super) fn search(
+        search: &mut SphereSearch,
+        scene: &Scene,
+        patch_from_objects: &[Pose],
+        lines: &GridLines,
+        goal: Goal,
+    ) -> f64 = run
 }
 
-impl Below {
-    #[inline(always)]
-    fn of<const N: usize>(values: &[f64; N], limit: f64) -> Self {
-        let mut left = 0;
-        for (k, &value) in values.iter().enumerate() {
-            left |= u32::from(value < limit) << k;
-        }
-        Self { left }
-    }
-}
-
-impl Iterator for Below {
-    type Item = usize;
-
-    #[inline(always)]
-    fn next(&mut self) -> Option<usize> {
-        if self.left == 0 {
-            return None;
-        }
-        let first = self.left.trailing_zeros() as usize;
-        self.left &= self.left - 1;
-        Some(first)
-    }
-}
-
-/// Finds the spheres that can press a taxel on the way to the goal, and returns the travel at which the first taxel is touched;
-/// infinite if none is, or if the goal is a travel.
-///
-/// For a depth, the cluster that is nearest is looked at beforehand, so that most others need no look to know what is first.
-#[multiversion(targets("x86_64+avx2+fma"))]
-pub(super) fn search(
+#[inline(always)]
+fn run(
     search: &mut SphereSearch,
     scene: &Scene,
     patch_from_objects: &[Pose],
     lines: &GridLines,
     goal: Goal,
 ) -> f64 {
-    search.run(scene, patch_from_objects, lines, goal)
+    search.lay(scene, patch_from_objects, lines);
+    let (first, limit) = match goal {
+        Goal::Travel(travel) => (f64::INFINITY, travel),
+        Goal::Depth(depth) => {
+            let first = search.first_touch(scene, lines);
+            (first, first + depth)
+        }
+    };
+    search.gather(scene, limit);
+    first
 }
 
 impl SphereSearch {
-    /// [`search`] with the instructions of whatever calls it: the same results to the bit.
-    #[inline(always)]
-    pub fn run(
-        &mut self,
-        scene: &Scene,
-        patch_from_objects: &[Pose],
-        lines: &GridLines,
-        goal: Goal,
-    ) -> f64 {
-        self.lay(scene, patch_from_objects, lines);
-        let (first, limit) = match goal {
-            Goal::Travel(travel) => (f64::INFINITY, travel),
-            Goal::Depth(depth) => {
-                let first = self.first_touch(scene, lines);
-                (first, first + depth)
-            }
-        };
-        self.gather(scene, limit);
-        first
-    }
-
     #[inline(always)]
     fn lay(&mut self, scene: &Scene, patch_from_objects: &[Pose], lines: &GridLines) {
         self.views.clear();
@@ -113,8 +80,12 @@ impl SphereSearch {
     fn first_touch(&self, scene: &Scene, lines: &GridLines) -> f64 {
         let mut lowest = [f64::INFINITY; LOOK];
         for starts in self.starts.as_chunks::<LOOK>().0 {
-            for (lowest, &start) in lowest.iter_mut().zip(starts) {
-                *lowest = if start < *lowest { start } else { *lowest };
+            for k in 0..LOOK {
+                lowest[k] = if starts[k] < lowest[k] {
+                    starts[k]
+                } else {
+                    lowest[k]
+                };
             }
         }
         let lowest = lowest.into_iter().fold(f64::INFINITY, f64::min);

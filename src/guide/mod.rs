@@ -3,6 +3,12 @@
 #[doc = include_str!("statistics.md")]
 pub mod statistics {}
 
+#[doc = include_str!("memory_and_disk.md")]
+pub mod memory_and_disk {}
+
+#[doc = include_str!("events.md")]
+pub mod events {}
+
 #[doc = include_str!("limits.md")]
 pub mod limits {}
 

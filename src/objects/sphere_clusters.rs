@@ -77,18 +77,6 @@ impl SphereClusters {
         self.ball
     }
 
-    /// The clusters: a ball around each, and its spheres; in the object's frame, metres.
-    pub(crate) fn each(&self) -> impl Iterator<Item = (Sphere, impl Iterator<Item = Sphere>)> {
-        (0..self.bounds.len()).map(|cluster| {
-            let spheres = self.of(cluster);
-            let n_spheres = spheres.n_spheres;
-            (
-                self.bounds.ball(cluster),
-                (0..n_spheres).map(move |k| spheres.at(k)),
-            )
-        })
-    }
-
     /// Around each cluster.
     pub(crate) fn bounds(&self) -> &ClusterBounds {
         &self.bounds
@@ -149,13 +137,6 @@ impl ClusterBounds {
     /// How many clusters.
     pub fn len(&self) -> usize {
         self.radius.len()
-    }
-
-    fn ball(&self, cluster: usize) -> Sphere {
-        Sphere {
-            center: DVec3::from_array([0, 1, 2].map(|axis| self.middle[axis][cluster])),
-            radius: self.radius[cluster],
-        }
     }
 }
 
@@ -224,8 +205,15 @@ mod tests {
                 inner.center.distance(outer.center) + inner.radius <= outer.radius * (1.0 + 1e-12)
             };
             let mut found = Vec::new();
-            for (ball, its) in clusters.each() {
-                let its: Vec<Sphere> = its.collect();
+            let bounds = clusters.bounds();
+            for cluster in 0..bounds.len() {
+                let middle = [0, 1, 2].map(|axis| bounds.middle[axis][cluster]);
+                let ball = Sphere {
+                    center: DVec3::from_array(middle),
+                    radius: bounds.radius[cluster],
+                };
+                let its = clusters.of(cluster);
+                let its: Vec<Sphere> = (0..its.n_spheres).map(|k| its.at(k)).collect();
                 assert!((1..=MOST_IN_CLUSTER).contains(&its.len()));
                 assert!(its.iter().all(|sphere| is_inside(sphere, &ball)));
                 found.extend(its);

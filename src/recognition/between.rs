@@ -4,6 +4,7 @@ use std::ops::Range;
 
 use ndarray::{Array2, ArrayView2, s};
 
+use crate::recognition::packed::Packed;
 use crate::recognition::scalar::Scalar;
 use crate::recognition::sorted::Sorted;
 
@@ -32,40 +33,47 @@ pub(crate) fn pairs(
     own.flat_map(move |a| other.clone().filter(move |&b| b > a).map(move |b| (a, b)))
 }
 
-/// Kernel values between the rows of two groups of classes.
-pub(crate) struct Between<T> {
-    rows: Range<usize>,
+/// Kernel values between the rows of a group of classes and those of others, group by group.
+pub(crate) struct Between<'a, T> {
+    sorted: &'a Sorted<T>,
     columns: Range<usize>,
+    packed: Packed<'a, T>,
+    rows: Range<usize>,
     values: Array2<T>,
 }
 
-impl<T: Scalar> Default for Between<T> {
-    fn default() -> Self {
+impl<'a, T: Scalar> Between<'a, T> {
+    /// None yet, of this group with any.
+    pub fn new(sorted: &'a Sorted<T>, own: &Range<usize>) -> Self {
+        let columns = sorted.rows_of(own);
         Self {
+            sorted,
+            packed: sorted.points().range(columns.clone()).packed(),
+            columns,
             rows: 0..0,
-            columns: 0..0,
             values: Array2::zeros((0, 0)),
         }
     }
-}
 
-impl<T: Scalar> Between<T> {
-    /// Those of two groups, in the memory of the last ones where they are as many.
-    pub fn compute(&mut self, sorted: &Sorted<T>, own: &Range<usize>, other: &Range<usize>) {
-        self.rows = sorted.rows_of(own);
-        self.columns = sorted.rows_of(other);
+    /// Those with another group or the same, in the memory of the last ones where they are as many.
+    pub fn compute(&mut self, other: &Range<usize>) {
+        self.rows = self.sorted.rows_of(other);
         let size = (self.rows.len(), self.columns.len());
         if self.values.dim() != size {
             self.values = Array2::zeros(size);
         }
-        sorted.kernel_into(
-            self.rows.clone(),
-            self.columns.clone(),
-            self.values.view_mut(),
-        );
+        let points = self.sorted.points();
+        let rows = points.range(self.rows.clone());
+        if self.rows == self.columns {
+            self.packed.multiply_own(self.values.view_mut());
+        } else {
+            self.packed.multiply(rows.values, self.values.view_mut());
+        }
+        let columns = points.range(self.columns.clone());
+        rows.apply(self.values.view_mut(), columns, &self.sorted.kernel());
     }
 
-    /// Those of some of the rows and columns.
+    /// Those of some of the other group's rows with some of the own group's.
     pub fn part(&self, rows: &Range<usize>, columns: &Range<usize>) -> ArrayView2<'_, T> {
         let within =
             |of: &Range<usize>, all: &Range<usize>| of.start - all.start..of.end - all.start;

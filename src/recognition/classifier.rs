@@ -24,7 +24,7 @@ use crate::recognition::naive_bayes::NaiveBayes;
 use crate::recognition::random_forest::RandomForest;
 use crate::recognition::scaling::{FittedScaling, Scaling};
 use crate::recognition::split::{Split, stratified_k_fold};
-use crate::recognition::svm::{Multiclass, Solver, SvmParams};
+use crate::recognition::svm::{DEFAULT_MEMORY_BYTES, Multiclass, Solver, SvmParams};
 use crate::recognition::trained_classifier::Model;
 use crate::{Error, Result};
 
@@ -73,6 +73,8 @@ pub struct Classifier {
     pub n_trees: usize,
     /// Splits below each other in a tree or in a forest's trees, at least 1; `None`: until leaves are pure.
     pub max_depth: Option<usize>,
+    /// Most bytes of kernel values that an SVM's solver holds at once; see [`SvmParams::memory_bytes`].
+    pub memory_bytes: usize,
 }
 
 impl Classifier {
@@ -92,6 +94,7 @@ impl Classifier {
             n_neighbours: 5,
             n_trees: 100,
             max_depth: None,
+            memory_bytes: DEFAULT_MEMORY_BYTES,
         }
     }
 
@@ -290,7 +293,7 @@ impl Classifier {
             c,
             tolerance: self.tolerance,
             solver: self.solver,
-            ..SvmParams::default()
+            memory_bytes: self.memory_bytes,
         })
     }
 

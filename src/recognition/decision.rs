@@ -1,10 +1,10 @@
 //! The decision functions of all binary problems, by matrix products.
 
-use ndarray::linalg::general_mat_mul;
 use ndarray::{Array1, Array2, ArrayView2, Axis, s};
 
 use crate::recognition::class_weights::ClassWeights;
 use crate::recognition::kernel::KernelFunction;
+use crate::recognition::packed::Packed;
 use crate::recognition::points::Points;
 use crate::recognition::scalar::Scalar;
 use crate::recognition::sorted::Sorted;
@@ -87,10 +87,10 @@ impl<T: Scalar> DecisionFunctions<T> {
     /// Decision values of rows (n × m): n × n_problems.
     pub fn values(&self, features: ArrayView2<f64>) -> Array2<f64> {
         let mut values = Array2::zeros((features.nrows(), self.rho.len()));
-        let mut scratch = self.scratch(features.nrows());
+        let mut room = self.room(features.nrows());
         let blocks = values.axis_chunks_iter_mut(Axis(0), BLOCK_ROWS);
         for (mut values, points) in blocks.zip(self.blocks(&features)) {
-            let sums = self.sums_of(&points, &mut scratch);
+            let sums = self.sums_of(&points, &mut room);
             values.zip_mut_with(&sums.t(), |to, from| *to = from.wide());
             values -= &self.rho;
         }
@@ -112,14 +112,14 @@ impl<T: Scalar> DecisionFunctions<T> {
             }
             ballot.winners()
         };
-        let mut scratch = self.scratch(features.nrows());
+        let mut room = self.room(features.nrows());
         let of_block = |points| match &self.sums {
             Sums::Support(
                 support @ Support {
                     pairs: Some(pairs), ..
                 },
             ) => {
-                let values = support.kernel_values(&points, &mut scratch);
+                let values = support.kernel_values(&points, &mut room);
                 let mut winners = pairs.unbeaten(values);
                 let open: Vec<usize> = (0..winners.len())
                     .filter(|row| winners[*row].is_none())
@@ -131,7 +131,7 @@ impl<T: Scalar> DecisionFunctions<T> {
                 }
                 winners.into_iter().flatten().collect()
             }
-            _ => elect(self.sums_of(&points, &mut scratch)),
+            _ => elect(self.sums_of(&points, &mut room)),
         };
         self.blocks(&features).flat_map(of_block).collect()
     }
@@ -142,49 +142,55 @@ impl<T: Scalar> DecisionFunctions<T> {
             .map(|rows| Points::new(rows, self.centre.view()))
     }
 
-    /// Room for the kernel values of a block: written over and over, so that its memory is asked for once.
-    fn scratch(&self, n_rows: usize) -> Array2<T> {
-        let n_vectors = match &self.sums {
-            Sums::Hyperplanes(_) => 0,
-            Sums::Support(support) => support.vectors.len(),
+    fn room(&self, n_rows: usize) -> Room<'_, T> {
+        let (packed, n_vectors) = match &self.sums {
+            Sums::Hyperplanes(_) => (None, 0),
+            Sums::Support(support) => {
+                let vectors = &support.vectors;
+                (Some(vectors.all().packed()), vectors.len())
+            }
         };
-        Array2::zeros((BLOCK_ROWS.min(n_rows), n_vectors))
+        Room {
+            packed,
+            values: Array2::zeros((BLOCK_ROWS.min(n_rows), n_vectors)),
+        }
     }
 
     /// `Σ y a K(x_i, x)` of some rows: n_problems × rows, so that all rows of a problem lie side by side.
-    fn sums_of(&self, points: &Points<T>, scratch: &mut Array2<T>) -> Array2<T> {
+    fn sums_of(&self, points: &Points<T>, room: &mut Room<T>) -> Array2<T> {
         match &self.sums {
-            Sums::Hyperplanes(normals) => normals.dot(&points.all().values.t()),
+            Sums::Hyperplanes(normals) => {
+                let mut sums = Array2::zeros((normals.nrows(), points.len()));
+                let packed = points.all().packed();
+                packed.multiply(normals.view(), sums.view_mut());
+                sums
+            }
             Sums::Support(support) => {
-                support.sums(support.kernel_values(points, scratch), self.rho.len())
+                support.sums(support.kernel_values(points, room), self.rho.len())
             }
         }
     }
 }
 
+/// What all blocks of rows need.
+struct Room<'a, T> {
+    /// The support vectors, if there are any.
+    packed: Option<Packed<'a, T>>,
+    /// Room for a block's kernel values: written over and over, so that its memory is asked for once.
+    values: Array2<T>,
+}
+
 impl<T: Scalar> Support<T> {
     /// `K(x, x_i)`: rows × vectors.
-    fn kernel_values<'a>(
-        &self,
-        points: &Points<T>,
-        scratch: &'a mut Array2<T>,
-    ) -> ArrayView2<'a, T> {
+    fn kernel_values<'a>(&self, points: &Points<T>, room: &'a mut Room<T>) -> ArrayView2<'a, T> {
         let n = points.len();
-        let mut values = scratch.slice_mut(s![..n, ..]);
-        let vectors = self.vectors.all();
+        let mut values = room.values.slice_mut(s![..n, ..]);
         let points = points.all();
-        // Transposed, so that the values of many vectors with one row are written side by side.
-        let (zero, one) = (T::zero(), T::one());
-        let mut products = values.view_mut().reversed_axes();
-        general_mat_mul(
-            one,
-            &vectors.values,
-            &points.values.t(),
-            zero,
-            &mut products,
-        );
-        points.apply(values, vectors, &self.kernel);
-        scratch.slice(s![..n, ..])
+        if let Some(packed) = &room.packed {
+            packed.multiply(points.values, values.view_mut());
+        }
+        points.apply(values.view_mut(), self.vectors.all(), &self.kernel);
+        room.values.slice(s![..n, ..])
     }
 
     /// `Σ y a K(x_i, x)` from kernel values (rows × vectors): n_problems × rows.

@@ -86,7 +86,10 @@ impl<T: Scalar> Sums<T> {
             self.values.iter_mut().for_each(|sum| *sum *= start);
         }
         let change = places.iter().zip(change).filter(|(_, beta)| **beta != 0.0);
-        let weigh = |(&at, &beta): (&usize, &f64)| (row(rows, at), T::of(beta));
+        let width = rows.ncols();
+        let rows = rows.as_slice().expect("rows lie one by one");
+        let row = |at: usize| &rows[at * width..][..width];
+        let weigh = |(&at, &beta): (&usize, &f64)| (row(at), T::of(beta));
         add_rows(&mut self.values, change.map(weigh).collect());
         self.beta.copy_from_slice(beta);
         self.c = c;

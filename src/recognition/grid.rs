@@ -13,7 +13,7 @@ use crate::recognition::judgement::{Judgement, Solved};
 use crate::recognition::kernel::KernelFunction;
 use crate::recognition::scalar::Scalar;
 use crate::recognition::seed::moved;
-use crate::recognition::smo::{Part, Room, Runs, Smo};
+use crate::recognition::smo::{Room, Runs, Smo, part_of};
 use crate::recognition::sorted::Sorted;
 use crate::recognition::split::Split;
 use crate::recognition::svm::Multiclass;
@@ -58,7 +58,7 @@ impl<T: Scalar> Grid<'_, T> {
     /// iteration cap.
     pub fn n_correct(&self, kernels: &[KernelFunction], goal: Goal) -> (Array2<usize>, usize) {
         let all = self.sorted.points().all();
-        let products = all.products(all);
+        let products = all.packed().own_products();
         let folds: Vec<Fold> = self.folds.iter().map(|split| self.fold(split)).collect();
         let mut counts = Array2::zeros((kernels.len(), goal.path.len()));
         let mut n_capped = 0;
@@ -188,7 +188,7 @@ fn solve<T: Scalar>(
         .iter()
         .map(|at| block.positive.contains(at))
         .collect();
-    let mut gram = Part::new(&block.kernel, &places, room);
+    let mut gram = part_of(&block.kernel, &places, room);
     let mut smo = Smo::new(&mut gram, &is_positive);
     // Classes that no hyperplane parts from the rest have values that are equal within the tolerance, and the largest wins:
     // there the start decides. So one-vs-rest starts from nothing, as training does.

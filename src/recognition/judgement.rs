@@ -12,10 +12,8 @@ use ndarray::{Array2, ArrayView2};
 use crate::recognition::followed_sums::{Sums, add_rows, class_sums};
 use crate::recognition::scalar::Scalar;
 use crate::recognition::svm::Multiclass;
+use crate::recognition::transposed::write_columns;
 use crate::recognition::voting::Ballot;
-
-/// Rows transposed at once: a cache line of f32.
-const TILE: usize = 16;
 
 /// What validation needs of a problem's solution.
 pub(crate) struct Solved {
@@ -109,6 +107,8 @@ impl<'a> Judgement<'a> {
         let place = |at: usize| members.partition_point(|&row| row < self.rows[at].0);
         let places: Vec<usize> = own.clone().map(place).collect();
         let mut n_open = self.n_open[own].iter_mut();
+        let width = kernel.ncols();
+        let kernel = kernel.to_slice().expect("a kernel is stored row by row");
         for run in places.chunk_by(|a, b| a + 1 == *b) {
             let columns = run[0]..run[0] + run.len();
             let mut values = vec![T::zero(); run.len()];
@@ -117,8 +117,7 @@ impl<'a> Judgement<'a> {
                 if let Some(beta) = &solved.beta {
                     let weighing = beta.iter().enumerate().filter(|(_, beta)| **beta != 0.0);
                     let rows = weighing.map(|(at, &beta)| {
-                        let row = kernel.row(at).to_slice();
-                        let row = row.expect("a kernel is stored row by row");
+                        let row = &kernel[at * width..][..width];
                         (&row[columns.clone()], T::of(beta))
                     });
                     values.fill(T::zero());
@@ -191,20 +190,12 @@ impl<'a> Judgement<'a> {
 
 /// Columns of a symmetric matrix: its rows, transposed.
 fn columns<T: Scalar>(symmetric: ArrayView2<T>, columns: &[usize]) -> Array2<T> {
-    let (n, width) = (symmetric.nrows(), columns.len());
-    let mut to = Array2::zeros((n, width));
+    let mut to = Array2::zeros((symmetric.nrows(), columns.len()));
+    let row = |&row: &usize| symmetric.row(row).to_slice();
+    let row = |at| row(at).expect("a kernel is stored row by row");
+    let rows: Vec<&[T]> = columns.iter().map(row).collect();
     let values = to.as_slice_mut().expect("a new array is contiguous");
-    for (number, columns) in columns.chunks(TILE).enumerate() {
-        let row = |&row: &usize| symmetric.row(row).to_slice();
-        let row = |at| row(at).expect("a kernel is stored row by row");
-        let rows: Vec<&[T]> = columns.iter().map(row).collect();
-        for at in 0..n {
-            let to = &mut values[at * width + number * TILE..][..rows.len()];
-            for (to, row) in to.iter_mut().zip(&rows) {
-                *to = row[at];
-            }
-        }
-    }
+    write_columns(&rows, values, columns.len());
     to
 }
 

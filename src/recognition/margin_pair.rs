@@ -5,7 +5,7 @@ use ndarray::{Array2, s};
 use crate::recognition::dual::DualSolution;
 use crate::recognition::row_products::Rows;
 use crate::recognition::scalar::Scalar;
-use crate::recognition::smo::{Dense, Smo, extremes, gather};
+use crate::recognition::smo::{Part, Room, Smo, extremes, gather};
 
 /// Rows that join in a round, at least, while rows violate.
 const FEWEST_JOINING: usize = 24;
@@ -36,7 +36,7 @@ pub(crate) struct MarginPair<T> {
     rows: Sides,
     /// Whether each row of each class takes part.
     takes_part: [Vec<bool>; 2],
-    /// Products of the first's rows with the second's.
+    /// Products of the second's rows with the first's.
     across: Array2<T>,
     /// Coefficients of the first's rows, then of the second's.
     beta: Vec<f64>,
@@ -72,17 +72,17 @@ impl<T: Scalar> MarginPair<T> {
             let rows = self.rows[side].iter();
             rows.map(|row| starts[side] + row).collect()
         });
-        let mut across = Array2::zeros((first.len(), second.len()));
+        let mut across = Array2::zeros((second.len(), first.len()));
         across
             .slice_mut(s![..before.0, ..before.1])
             .assign(&self.across);
-        let (old, new) = first.split_at(before.0);
+        let (old, new) = second.split_at(before.0);
         across
             .slice_mut(s![..before.0, before.1..])
-            .assign(&all.products(old, &second[before.1..]));
+            .assign(&all.products(old, &first[before.1..]));
         across
             .slice_mut(s![before.0.., ..])
-            .assign(&all.products(new, &second));
+            .assign(&all.products(new, &first));
         self.across = across;
     }
 
@@ -100,26 +100,42 @@ impl<T: Scalar> MarginPair<T> {
         self.beta = grown;
     }
 
-    /// Solves on the rows that take part, from the last solution. `within` holds the products within each class; the Gram
-    /// matrix is written into the memory of the last one.
+    /// Solves on the rows that take part, from the last solution. `within` holds the products within each class; rows of the
+    /// Gram matrix are written into the memory of the last one.
     pub fn solve(
         &mut self,
         within: &[Array2<T>],
-        gram: &mut Dense<T>,
+        room: &mut Room<T>,
         goal: PairGoal,
     ) -> DualSolution {
-        let [first, second] = &self.rows;
-        let [within_first, within_second] = self.classes.map(|class| &within[class]);
-        gram.of_blocks(
-            first.len(),
-            second.len(),
-            |i, row| gather(row, whole_row(within_first, first[i]), first),
-            |i, row| gather(row, whole_row(within_second, second[i]), second),
-            |mut across| across.assign(&self.across),
-        );
-        let is_positive = self.is_positive();
         let beta = std::mem::take(&mut self.beta);
-        let mut smo = Smo::resume(gram, &is_positive, beta, self.c);
+        let [first, second] = &self.rows;
+        let within = self.classes.map(|class| &within[class]);
+        let diagonal = |side: usize| {
+            self.rows[side]
+                .iter()
+                .map(move |&row| within[side][[row, row]])
+        };
+        let across = self.across.as_slice().expect("a new array is contiguous");
+        let write = |i: usize, to: &mut [T]| {
+            let (left, right) = to.split_at_mut(first.len());
+            if i < first.len() {
+                gather(left, whole_row(within[0], first[i]), first);
+                for (to, row) in right
+                    .iter_mut()
+                    .zip(across.chunks_exact(first.len().max(1)))
+                {
+                    *to = row[i];
+                }
+            } else {
+                let i = i - first.len();
+                left.copy_from_slice(&across[i * first.len()..][..first.len()]);
+                gather(right, whole_row(within[1], second[i]), second);
+            }
+        };
+        let mut gram = Part::new(diagonal(0).chain(diagonal(1)), write, room);
+        let is_positive = self.is_positive();
+        let mut smo = Smo::resume(&mut gram, &is_positive, beta, self.c);
         if let Some(most_iterations) = goal.most_iterations {
             smo = smo.of_at_most(most_iterations);
         }
@@ -132,7 +148,8 @@ impl<T: Scalar> MarginPair<T> {
 
     fn is_positive(&self) -> Vec<bool> {
         let n_first = self.rows[0].len();
-        (0..self.beta.len()).map(|i| i < n_first).collect()
+        let n = n_first + self.rows[1].len();
+        (0..n).map(|i| i < n_first).collect()
     }
 
     /// The rows that weigh in the solution, by the place of their class and their number within it, with their coefficients.

@@ -40,6 +40,7 @@
 use serde::{Deserialize, Serialize};
 
 mod between;
+pub mod bootstrap;
 pub mod choice;
 pub mod class_model;
 mod class_weights;
@@ -65,11 +66,15 @@ pub mod linear_model;
 pub mod linear_svm;
 mod linfa_solver;
 pub mod logistic;
+pub mod many_tests;
 mod margin_pair;
+mod mean_squares;
 pub mod metrics;
 pub mod naive_bayes;
 mod near_margin;
 pub mod over_time;
+mod packed;
+mod panels;
 mod points;
 pub mod random_forest;
 pub(crate) mod ranked;
@@ -86,7 +91,11 @@ pub mod svm;
 pub mod svm_model;
 pub mod trained_classifier;
 mod training;
+mod transposed;
 mod unbeaten;
+pub mod variance;
+#[cfg(target_arch = "x86_64")]
+mod vector_registers;
 mod voting;
 
 /// A classifier that a study can sweep.

@@ -18,8 +18,9 @@ use ndarray::{Array2, Axis};
 use crate::recognition::dual::DualSolution;
 use crate::recognition::few_dimensions::spanned;
 use crate::recognition::margin_pair::{MarginPair, PairGoal, Sides, nearest};
+use crate::recognition::packed::Packed;
 use crate::recognition::scalar::Scalar;
-use crate::recognition::smo::Dense;
+use crate::recognition::smo::{Dense, Room};
 use crate::recognition::sorted::Sorted;
 
 /// Dimensions in which the first rows are looked for. More find them better and cost more.
@@ -38,10 +39,12 @@ const ROWS_NEAR_MARGIN: usize = 24;
 /// All pairs of classes, each with the rows it is solved on.
 pub(crate) struct NearMargin<'a, T> {
     sorted: &'a Sorted<T>,
+    /// The rows of each class, packed.
+    packed: Vec<Packed<'a, T>>,
     /// Products within each class.
     within: Vec<Array2<T>>,
     pairs: Vec<MarginPair<T>>,
-    gram: Dense<T>,
+    room: Room<T>,
 }
 
 /// What a round found for a pair.
@@ -65,13 +68,18 @@ impl<'a, T: Scalar> NearMargin<'a, T> {
     fn of_rows(sorted: &'a Sorted<T>, rows: Vec<Sides>) -> Self {
         let sizes = |pair: [usize; 2]| pair.map(|class| sorted.ranges()[class].len());
         let pairs = sorted.all_pairs().map(|(a, b)| [a, b]);
+        let ranges = sorted.ranges().iter();
+        let packed: Vec<Packed<T>> = ranges
+            .map(|range| sorted.points().range(range.clone()).packed())
+            .collect();
         let mut all = Self {
             sorted,
-            within: sorted.within(),
+            within: packed.iter().map(Packed::own_products).collect(),
+            packed,
             pairs: pairs
                 .map(|pair| MarginPair::new(pair, sizes(pair)))
                 .collect(),
-            gram: Dense::default(),
+            room: Room::new(),
         };
         for (pair, rows) in rows.iter().enumerate() {
             all.join(pair, rows);
@@ -79,8 +87,8 @@ impl<'a, T: Scalar> NearMargin<'a, T> {
         all
     }
 
-    /// Bytes that the products take when all rows of all pairs take part, with the hyperplanes of a round and all rows in few
-    /// dimensions.
+    /// Bytes that the products take when all rows of all pairs take part, with the hyperplanes of a round, packed rows, and all
+    /// rows in few dimensions.
     pub fn most_bytes(sorted: &Sorted<T>) -> usize {
         let sizes = || sorted.ranges().iter().map(Range::len);
         let within: usize = sizes().map(|n| n * n).sum();
@@ -88,7 +96,10 @@ impl<'a, T: Scalar> NearMargin<'a, T> {
         let largest = sizes().max().unwrap_or(0);
         let normals = sorted.all_pairs().count() * (sorted.centre().len() + 2 * largest);
         let few = sorted.points().len() * FEW_DIMENSIONS;
-        (within + across + normals + few) * size_of::<T>() + Dense::<T>::bytes(2 * largest)
+        let packed = |n| Packed::<T>::bytes(n, sorted.centre().len() + FEW_DIMENSIONS);
+        (within + across + normals + few) * size_of::<T>()
+            + sizes().map(packed).sum::<usize>()
+            + Dense::<T>::bytes(2 * largest)
     }
 
     /// Solves all pairs for this C, starting from the solutions of the last one, to a violation of the optimality conditions
@@ -153,7 +164,7 @@ impl<'a, T: Scalar> NearMargin<'a, T> {
         let mut rounds = Vec::with_capacity(pairs.len());
         let mut sums = vec![0.0; normals.ncols()];
         for (&pair, mut normal) in pairs.iter().zip(normals.rows_mut()) {
-            let solution = self.pairs[pair].solve(&self.within, &mut self.gram, goal);
+            let solution = self.pairs[pair].solve(&self.within, &mut self.room, goal);
             sums.fill(0.0);
             self.add_normal(pair, &mut sums);
             normal
@@ -174,8 +185,9 @@ impl<'a, T: Scalar> NearMargin<'a, T> {
             let own: Vec<usize> = (0..rounds.len())
                 .filter(|&at| side(&rounds[at]).is_some())
                 .collect();
-            let rows = self.sorted.points().range(range.clone()).values;
-            let products = normals.select(Axis(0), &own).dot(&rows.t());
+            let mut products = Array2::zeros((own.len(), range.len()));
+            let own_normals = normals.select(Axis(0), &own);
+            self.packed[class].multiply(own_normals.view(), products.view_mut());
             for (&at, products) in own.iter().zip(products.rows()) {
                 if let Some(side) = side(&rounds[at]) {
                     rounds[at].products[side] = products.to_vec();

@@ -2,10 +2,10 @@
 
 use std::ops::Range;
 
-use ndarray::linalg::general_mat_mul;
 use ndarray::{Array1, Array2, ArrayView1, ArrayView2, ArrayViewMut2, Axis, s};
 
 use crate::recognition::kernel::KernelFunction;
+use crate::recognition::packed::Packed;
 use crate::recognition::row_products::Rows;
 use crate::recognition::scalar::Scalar;
 
@@ -48,7 +48,8 @@ impl<T: Scalar> Points<T> {
 
     /// Their coordinates along some directions (k × m): n × k.
     pub fn along(&self, directions: ArrayView2<T>) -> Self {
-        let values = self.values.dot(&directions.t());
+        let mut values = Array2::zeros((self.len(), directions.nrows()));
+        Packed::new(directions).multiply(self.values.view(), values.view_mut());
         let norms = values.map_axis(Axis(1), |row| row.dot(&row));
         Self { values, norms }
     }
@@ -106,7 +107,12 @@ pub(crate) struct PointsView<'a, T> {
     norms: ArrayView1<'a, T>,
 }
 
-impl<T: Scalar> PointsView<'_, T> {
+impl<'a, T: Scalar> PointsView<'a, T> {
+    /// The same rows, packed for products with others.
+    pub fn packed(&self) -> Packed<'a, T> {
+        Packed::new(self.values)
+    }
+
     /// `K(x, x)` per row.
     pub fn diagonal(&self, kernel: &KernelFunction) -> Vec<T> {
         self.norms
@@ -123,33 +129,18 @@ impl<T: Scalar> PointsView<'_, T> {
             .collect()
     }
 
-    /// `x_i · z_j`: n × n of the others.
-    pub fn products(&self, others: PointsView<T>) -> Array2<T> {
-        self.values.dot(&others.values.t())
-    }
-
     /// `K(x_i, z_j)`: n × n of the others.
     pub fn kernel(&self, others: PointsView<T>, kernel: &KernelFunction) -> Array2<T> {
-        let mut values = self.products(others);
+        let mut values = self.values.dot(&others.values.t());
         self.apply(values.view_mut(), others, kernel);
         values
     }
 
-    /// `K(x_i, z_j)` into n × n of the others, whose rows are contiguous.
-    pub fn kernel_into(
-        &self,
-        others: PointsView<T>,
-        kernel: &KernelFunction,
-        mut to: ArrayViewMut2<T>,
-    ) {
-        general_mat_mul(
-            T::one(),
-            &self.values,
-            &others.values.t(),
-            T::zero(),
-            &mut to,
-        );
-        self.apply(to, others, kernel);
+    /// `K(x_i, x_j)`: n × n.
+    pub fn own_kernel(&self, kernel: &KernelFunction) -> Array2<T> {
+        let mut values = self.packed().own_products();
+        self.apply(values.view_mut(), *self, kernel);
+        values
     }
 
     /// Turns products with the others into kernel values, in place.

@@ -8,7 +8,7 @@ use crate::recognition::row_products::Rows;
 /// Products of some rows with others, by number, row by row into `products`; `false`, and nothing written, where the
 /// processor has not got the instructions.
 #[cfg(target_arch = "x86_64")]
-#[multiversion::multiversion(targets("x86_64+avx2+fma"))]
+#[multiversion::multiversion(targets("x86_64+avx512f", "x86_64+avx2+fma"))]
 pub(crate) fn products_in_place(
     all: Rows<f32>,
     rows: &[usize],
@@ -16,6 +16,10 @@ pub(crate) fn products_in_place(
     products: &mut [f32],
 ) -> bool {
     multiversion::target::match_target! {
+        "x86_64+avx512f" => {
+            avx512::products(all, rows, others, products);
+            true
+        }
         "x86_64+avx2+fma" => {
             avx2::products(all, rows, others, products);
             true
@@ -30,6 +34,132 @@ pub(crate) fn products_in_place(
 #[cfg(not(target_arch = "x86_64"))]
 pub(crate) fn products_in_place(_: Rows<f32>, _: &[usize], _: &[usize], _: &mut [f32]) -> bool {
     false
+}
+
+/// Features that pass at once: the rows of a tile stay in the first cache while the others pass.
+const DEPTH: usize = 512;
+
+/// Goes over all tiles of N rows with M others: `tile` gives the products of one. What the last few lack is made up by their
+/// last row.
+#[cfg(target_arch = "x86_64")]
+fn by_tiles<const N: usize, const M: usize>(
+    all: Rows<f32>,
+    (rows, others): (&[usize], &[usize]),
+    products: &mut [f32],
+    tile: impl Fn([&[f32]; N], [&[f32]; M]) -> [[f32; M]; N],
+) {
+    products.fill(0.0);
+    for start in (0..all.n_features).step_by(DEPTH) {
+        let piece = start..all.n_features.min(start + DEPTH);
+        let row = |of: &[usize], at: usize| &all.row(of[at.min(of.len() - 1)])[piece.clone()];
+        for i in (0..rows.len()).step_by(N) {
+            let left = std::array::from_fn(|at| row(rows, i + at));
+            for j in (0..others.len()).step_by(M) {
+                let tile = tile(left, std::array::from_fn(|at| row(others, j + at)));
+                for (at, tile) in tile.iter().enumerate().take(rows.len() - i) {
+                    let to = &mut products[(i + at) * others.len()..][..others.len()];
+                    let both = to[j..].iter_mut().zip(tile);
+                    both.for_each(|(to, &product)| *to += product);
+                }
+            }
+        }
+    }
+}
+
+#[cfg(target_arch = "x86_64")]
+mod avx512 {
+    use std::arch::x86_64::{
+        __m512, _mm512_add_ps, _mm512_castpd_ps, _mm512_castps_pd, _mm512_fmadd_ps,
+        _mm512_setzero_ps, _mm512_shuffle_f32x4, _mm512_unpackhi_pd, _mm512_unpackhi_ps,
+        _mm512_unpacklo_pd, _mm512_unpacklo_ps,
+    };
+
+    use crate::recognition::row_products::Rows;
+    use crate::recognition::vector_registers::{load, store};
+
+    /// Values in a vector register.
+    const LANES: usize = 16;
+    /// Rows multiplied with as many others at once: their sums meet in one register.
+    const N: usize = 4;
+
+    #[target_feature(enable = "avx512f")]
+    pub fn products(all: Rows<f32>, rows: &[usize], others: &[usize], products: &mut [f32]) {
+        super::by_tiles(all, (rows, others), products, |left, right| {
+            tile(left, right)
+        });
+    }
+
+    /// All products of a few rows with a few others. Each lane keeps its own sums; they meet at the end.
+    ///
+    /// A name for the sums of each row: an array of arrays is kept in memory.
+    #[target_feature(enable = "avx512f")]
+    fn tile(left: [&[f32]; N], right: [&[f32]; N]) -> [[f32; N]; N] {
+        let n = left[0].len();
+        let mut left_lanes: [&[[f32; LANES]]; N] = [&[]; N];
+        let mut right_lanes: [&[[f32; LANES]]; N] = [&[]; N];
+        for i in 0..N {
+            left_lanes[i] = left[i][..n].as_chunks().0;
+            right_lanes[i] = right[i][..n].as_chunks().0;
+        }
+        let n_lanes = n / LANES;
+        let zero = [_mm512_setzero_ps(); N];
+        let (mut a, mut b, mut c, mut d) = (zero, zero, zero, zero);
+        for at in 0..n_lanes {
+            let mut own = zero;
+            for j in 0..N {
+                own[j] = load(&right_lanes[j][at]);
+            }
+            a = add_products(a, load(&left_lanes[0][at]), own);
+            b = add_products(b, load(&left_lanes[1][at]), own);
+            c = add_products(c, load(&left_lanes[2][at]), own);
+            d = add_products(d, load(&left_lanes[3][at]), own);
+        }
+        let first = add_parts(add_lanes(a), add_lanes(b));
+        let second = add_parts(add_lanes(c), add_lanes(d));
+        let sums = store(add_parts(first, second));
+        let mut products = [[0.0; N]; N];
+        for i in 0..N {
+            for j in 0..N {
+                products[i][j] = sums[i * N + j];
+                for at in n_lanes * LANES..n {
+                    products[i][j] += left[i][at] * right[j][at];
+                }
+            }
+        }
+        products
+    }
+
+    #[inline]
+    #[target_feature(enable = "avx512f")]
+    fn add_products(sums: [__m512; N], left: __m512, right: [__m512; N]) -> [__m512; N] {
+        [
+            _mm512_fmadd_ps(left, right[0], sums[0]),
+            _mm512_fmadd_ps(left, right[1], sums[1]),
+            _mm512_fmadd_ps(left, right[2], sums[2]),
+            _mm512_fmadd_ps(left, right[3], sums[3]),
+        ]
+    }
+
+    /// The sums of four neighbouring lanes, of four registers side by side: a₀ b₀ c₀ d₀ a₁ b₁ ….
+    #[inline]
+    #[target_feature(enable = "avx512f")]
+    fn add_lanes([a, b, c, d]: [__m512; N]) -> __m512 {
+        let ab = _mm512_add_ps(_mm512_unpacklo_ps(a, b), _mm512_unpackhi_ps(a, b));
+        let cd = _mm512_add_ps(_mm512_unpacklo_ps(c, d), _mm512_unpackhi_ps(c, d));
+        let (ab, cd) = (_mm512_castps_pd(ab), _mm512_castps_pd(cd));
+        let low = _mm512_castpd_ps(_mm512_unpacklo_pd(ab, cd));
+        let high = _mm512_castpd_ps(_mm512_unpackhi_pd(ab, cd));
+        _mm512_add_ps(low, high)
+    }
+
+    /// Adds neighbouring quarters: a₀ + a₁, a₂ + a₃, b₀ + b₁, b₂ + b₃.
+    #[inline]
+    #[target_feature(enable = "avx512f")]
+    fn add_parts(a: __m512, b: __m512) -> __m512 {
+        let even = _mm512_shuffle_f32x4(a, b, 0b10_00_10_00);
+        let odd = _mm512_shuffle_f32x4(a, b, 0b11_01_11_01);
+        _mm512_add_ps(even, odd)
+    }
 }
 
 #[cfg(target_arch = "x86_64")]
@@ -51,22 +181,9 @@ mod avx2 {
 
     #[target_feature(enable = "avx2,fma")]
     pub fn products(all: Rows<f32>, rows: &[usize], others: &[usize], products: &mut [f32]) {
-        // What the last few lack is made up by their last row.
-        let row = |of: &[usize], at: usize| all.row(of[at.min(of.len() - 1)]);
-        for i in (0..rows.len()).step_by(N) {
-            let left = [i, i + 1, i + 2, i + 3].map(|at| row(rows, at));
-            for j in (0..others.len()).step_by(M) {
-                let right = [j, j + 1, j + 2].map(|at| row(others, at));
-                let tile = tile(left, right);
-                for (at, tile) in tile.iter().enumerate().take(rows.len() - i) {
-                    let to = &mut products[(i + at) * others.len()..][..others.len()];
-                    to[j..]
-                        .iter_mut()
-                        .zip(tile)
-                        .for_each(|(to, &product)| *to = product);
-                }
-            }
-        }
+        super::by_tiles(all, (rows, others), products, |left, right| {
+            tile(left, right)
+        });
     }
 
     /// All products of a few rows with a few others. Each lane keeps its own sums; they meet at the end.

@@ -2,8 +2,12 @@
 
 use ndarray::NdFloat;
 
+use crate::recognition::panels::{Panels, Wanted};
 use crate::recognition::row_products::Rows;
 use crate::recognition::row_tiles;
+use crate::recognition::smo::passes::{self, Down};
+#[cfg(target_arch = "x86_64")]
+use crate::recognition::smo::passes_512;
 
 /// f32 or f64: what a Gram matrix holds.
 pub(crate) trait Scalar: NdFloat {
@@ -16,6 +20,39 @@ pub(crate) trait Scalar: NdFloat {
     /// Products of some rows with others, by number, where they lie: row by row into `products`; `false`, and nothing
     /// written, where there is no fast way.
     fn products_in_place(_: Rows<Self>, _: &[usize], _: &[usize], _: &mut [Self]) -> bool {
+        false
+    }
+    /// The solver's [first pass](passes::step_along).
+    fn step_along(
+        f: &mut [Self],
+        rows: (&[Self], &[Self]),
+        step: Self,
+        up: &[Self],
+    ) -> Option<usize> {
+        passes::step_along(f, rows, step, up)
+    }
+    /// The solver's [second pass](passes::select_down).
+    fn select_down(
+        f_and_low: (&[Self], &[Self]),
+        row_and_diagonal: (&[Self], &[Self]),
+        highest_and_own: (Self, Self),
+        smallest_curvature: Self,
+        gains: &mut [Self],
+    ) -> Down<Self> {
+        passes::select_down(
+            f_and_low,
+            row_and_diagonal,
+            highest_and_own,
+            smallest_curvature,
+            gains,
+        )
+    }
+    /// So many rows packed for products with others, where there is a fast way.
+    fn panels(_: Rows<Self>, _: usize) -> Option<Panels> {
+        None
+    }
+    /// Products of rows with packed rows, row by row; `false`, and nothing written, where there is no fast way.
+    fn multiply(_: &Panels, _: Rows<Self>, _: Wanted, _: &mut [&mut [Self]]) -> bool {
         false
     }
 }
@@ -56,6 +93,67 @@ impl Scalar for f32 {
         products: &mut [Self],
     ) -> bool {
         row_tiles::products_in_place(all, rows, others, products)
+    }
+
+    fn panels(rows: Rows<Self>, n_rows: usize) -> Option<Panels> {
+        Panels::new(rows, n_rows)
+    }
+
+    fn multiply(panels: &Panels, left: Rows<Self>, wanted: Wanted, to: &mut [&mut [Self]]) -> bool {
+        panels.multiply(left, wanted, to)
+    }
+
+    #[cfg(target_arch = "x86_64")]
+    fn step_along(
+        f: &mut [Self],
+        rows: (&[Self], &[Self]),
+        step: Self,
+        up: &[Self],
+    ) -> Option<usize> {
+        step_along_f32(f, rows, step, up)
+    }
+
+    #[cfg(target_arch = "x86_64")]
+    fn select_down(
+        f_and_low: (&[Self], &[Self]),
+        row_and_diagonal: (&[Self], &[Self]),
+        highest_and_own: (Self, Self),
+        smallest_curvature: Self,
+        gains: &mut [Self],
+    ) -> Down<Self> {
+        select_down_f32(
+            f_and_low,
+            row_and_diagonal,
+            highest_and_own,
+            smallest_curvature,
+            gains,
+        )
+    }
+}
+
+#[cfg(target_arch = "x86_64")]
+#[multiversion::multiversion(targets("x86_64+avx512f"))]
+fn step_along_f32(f: &mut [f32], rows: (&[f32], &[f32]), step: f32, up: &[f32]) -> Option<usize> {
+    multiversion::target::match_target! {
+        "x86_64+avx512f" => passes_512::step_along(f, rows, step, up),
+        _ => passes::step_along(f, rows, step, up),
+    }
+}
+
+#[cfg(target_arch = "x86_64")]
+#[multiversion::multiversion(targets("x86_64+avx512f"))]
+fn select_down_f32(
+    f_and_low: (&[f32], &[f32]),
+    row_and_diagonal: (&[f32], &[f32]),
+    highest_and_own: (f32, f32),
+    smallest: f32,
+    gains: &mut [f32],
+) -> Down<f32> {
+    multiversion::target::match_target! {
+        "x86_64+avx512f" => {
+            passes_512::select_down(f_and_low, row_and_diagonal, highest_and_own, smallest, gains)
+        }
+        _ => passes::select_down(f_and_low, row_and_diagonal, highest_and_own, smallest, gains),
     }
 }
 

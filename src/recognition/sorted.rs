@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use ndarray::{Array1, Array2, ArrayView1, ArrayView2, ArrayViewMut2, Axis};
+use ndarray::{Array1, Array2, ArrayView1, ArrayView2, Axis};
 
 use crate::recognition::between::pairs;
 use crate::recognition::dataset::Dataset;
@@ -175,17 +175,9 @@ impl<T: Scalar> Sorted<T> {
     pub fn within(&self) -> Vec<Array2<T>> {
         let within = |range: &Range<usize>| {
             let own = self.points.range(range.clone());
-            own.kernel(own, &self.kernel)
+            own.own_kernel(&self.kernel)
         };
         self.ranges.iter().map(within).collect()
-    }
-
-    /// Kernel values of some rows with others, into rows.len() × columns.len().
-    pub fn kernel_into(&self, rows: Range<usize>, columns: Range<usize>, to: ArrayViewMut2<T>) {
-        let columns = self.points.range(columns);
-        self.points
-            .range(rows)
-            .kernel_into(columns, &self.kernel, to);
     }
 }
 

@@ -12,7 +12,7 @@ use crate::recognition::dual::DualSolution;
 use crate::recognition::kernel::KernelFunction;
 use crate::recognition::near_margin::NearMargin;
 use crate::recognition::scalar::Scalar;
-use crate::recognition::smo::{Cached, Dense, Gram, Smo, copy};
+use crate::recognition::smo::{Cached, Dense, Gram, Smo};
 use crate::recognition::sorted::Sorted;
 use crate::recognition::svm::BinaryProblem;
 
@@ -78,23 +78,17 @@ impl<T: Scalar> Sorted<T> {
     fn pairs_from_blocks(&self, goal: Goal, problems: &mut [Vec<BinaryProblem>]) {
         let within = self.within();
         let groups = groups(self.ranges());
-        let (mut gram, mut between) = (Dense::default(), Between::default());
+        let mut gram = Dense::default();
         for (at, own) in groups.iter().enumerate() {
+            let mut between = Between::new(self, own);
             for other in &groups[at..] {
-                if own != other {
-                    between.compute(self, own, other);
-                }
+                between.compute(other);
                 for (a, b) in pairs(own.clone(), other.clone()) {
                     let [first, second] = [a, b].map(|class| self.ranges()[class].clone());
                     gram.of_blocks(
-                        first.len(),
-                        second.len(),
-                        |i, row| copy(row, within[a].row(i)),
-                        |i, row| copy(row, within[b].row(i)),
-                        |mut across| match own == other {
-                            true => self.kernel_into(first.clone(), second.clone(), across),
-                            false => across.assign(&between.part(&first, &second)),
-                        },
+                        within[a].view(),
+                        within[b].view(),
+                        between.part(&second, &first),
                     );
                     self.solve_pair(&mut gram, (a, b), goal, problems);
                 }
@@ -139,7 +133,7 @@ impl<T: Scalar> Sorted<T> {
         if 2 * Dense::<T>::bytes(self.points().len()) <= goal.memory {
             let all = self.points().all();
             let mut gram = Dense::default();
-            gram.of_whole(all.kernel(all, &self.kernel()).view());
+            gram.of_whole(all.own_kernel(&self.kernel()).view());
             self.against_rest(&mut gram, goal, &mut problems);
         } else {
             let mut gram = Cached::new(self.points(), self.kernel(), goal.memory);

@@ -69,6 +69,11 @@ impl Answer {
         })
     }
 
+    /// What varies in the study.
+    pub(super) fn settings(&self) -> &Settings {
+        &self.settings
+    }
+
     /// The findings, one sentence each, the most important first.
     pub fn sentences(&self) -> Vec<String> {
         let mut sentences = Vec::new();

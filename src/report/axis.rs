@@ -212,7 +212,12 @@ impl Axis {
 impl Axis {
     /// The name and the value in a cell: `m = 64`, `compression 64:1`.
     pub fn phrase(self, cell: &Cell) -> String {
-        let label = self.value(cell).label;
+        self.phrase_of(&self.value(cell))
+    }
+
+    /// The name and a value.
+    pub fn phrase_of(self, value: &AxisValue) -> String {
+        let label = value.label.clone();
         match self {
             Self::Measurements | Self::C | Self::Frames | Self::FusedTouches => {
                 format!("{} = {label}", self.name())

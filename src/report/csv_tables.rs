@@ -8,7 +8,7 @@ use crate::report::folder::Folder;
 use crate::study::ContentHash;
 use crate::study::table::{
     Cell, CellScore, Comparison, Confused, Confusion, Failure, Pareto, Published, StageTime,
-    Tables, TrialScore, TrialTime,
+    Tables, TrialScore, TrialTime, Variance,
 };
 use serde::Serialize;
 use serde::de::DeserializeOwned;
@@ -30,6 +30,11 @@ pub const TABLE_FILES: [&str; 10] = [
     "failures.csv",
 ];
 
+/// The table of variance components, of studies that have them.
+pub const VARIANCE_FILE: &str = "variance.csv";
+/// How often limits of the model were reached, beside the tables.
+pub const LIMITS_FILE: &str = "limits.csv";
+
 /// SHA-256 of every table without times, by its file's name: the same for the same study.
 pub fn repeatable_hashes(tables: &Tables) -> Result<BTreeMap<String, String>> {
     let mut folder = Folder::new(Path::new(""));
@@ -41,6 +46,12 @@ pub fn repeatable_hashes(tables: &Tables) -> Result<BTreeMap<String, String>> {
     Ok(files
         .map(|(name, content)| (name.to_owned(), hash(content)))
         .collect())
+}
+
+/// SHA-256 of a file as it stands there.
+pub fn sha256_of(path: &Path) -> Result<String> {
+    let content = std::fs::read(path).map_err(|e| Error::io(path, "read", e))?;
+    Ok(ContentHash::default().bytes(content).hex())
 }
 
 /// Those of them that hold times, which no two runs share.
@@ -76,7 +87,11 @@ pub(super) fn add_tables(folder: &mut Folder, tables: &Tables) -> Result<()> {
     folder.add_table(stages, &tables.stages)?;
     folder.add_table(confused, &tables.confused)?;
     folder.add_table(published, &tables.published)?;
-    folder.add_table(failures, &tables.failures)
+    folder.add_table(failures, &tables.failures)?;
+    match tables.variance.is_empty() {
+        true => Ok(()),
+        false => folder.add_table(VARIANCE_FILE, &tables.variance),
+    }
 }
 
 /// Reads the tables that [`write_tables`] wrote.
@@ -93,6 +108,10 @@ pub fn read_tables(dir: &Path) -> Result<Tables> {
         confused: read_rows::<Confused>(&path(7))?,
         published: read_cell_rows::<Published>(&path(8))?,
         failures: read_cell_rows::<Failure>(&path(9))?,
+        variance: match dir.join(VARIANCE_FILE) {
+            path if path.exists() => read_rows::<Variance>(&path)?,
+            _ => Vec::new(),
+        },
     })
 }
 

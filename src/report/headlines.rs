@@ -1,11 +1,12 @@
-//! Two short tables that people ask for first: published accuracies beside ours, and what is confused most often; the same
-//! rows for the terminal and for the page.
+//! Short tables that people ask for first: published accuracies beside ours, what is confused most often, and what makes trials
+//! differ; the same rows for the terminal and for the page.
 
 use crate::report::answer::Answer;
 use crate::report::axis::short_number;
 use crate::report::drawing::escape;
+use crate::report::page::Section;
 use crate::report::terminal::{finish, ruled_table, wrap};
-use crate::study::table::Tables;
+use crate::study::table::{Source, Tables};
 use comfy_table::{CellAlignment, ColumnConstraint};
 use std::fmt::Write;
 
@@ -21,6 +22,9 @@ pub struct TextTable {
 
 /// Each published accuracy beside the most accurate of our cells that it is about; none if the study names none.
 pub fn published_table(tables: &Tables) -> Option<TextTable> {
+    if tables.published.is_empty() {
+        return None;
+    }
     let answer = Answer::of(tables)?;
     let row = |(cell, row): &(_, crate::study::table::Published)| {
         vec![
@@ -55,6 +59,9 @@ pub fn published_table(tables: &Tables) -> Option<TextTable> {
 
 /// The pairs of objects that the best cell confuses most often; none if it confuses nothing.
 pub fn confused_table(tables: &Tables) -> Option<TextTable> {
+    if tables.confused.is_empty() {
+        return None;
+    }
     let answer = Answer::of(tables)?;
     let rows: Vec<Vec<String>> = tables
         .confused
@@ -85,10 +92,60 @@ pub fn confused_table(tables: &Tables) -> Option<TextTable> {
     })
 }
 
-/// Both tables as text without escape codes, lines at most `width` letters long; empty if there is neither.
+/// What makes the best cell's accuracy differ from trial to trial; none unless trials tell splits from projections.
+pub fn variance_table(tables: &Tables) -> Option<TextTable> {
+    if tables.variance.is_empty() {
+        return None;
+    }
+    let answer = Answer::of(tables)?;
+    let best = &answer.best.0;
+    let of_best = tables.variance.iter().filter(|row| row.cell == best.cell);
+    let rows: Vec<Vec<String>> = of_best
+        .map(|row| {
+            let source = match row.source {
+                Source::Split => format!("{} splits", row.n_levels),
+                Source::Projection => format!("{} projections", row.n_levels),
+                Source::Rest => "noise, and both together".to_owned(),
+            };
+            let std = [
+                row.accuracy_std,
+                row.accuracy_std_low,
+                row.accuracy_std_high,
+            ];
+            let [std, low, high] = std.map(|std| format!("{std:.3}"));
+            let percent = |share| format!("{:.0} %", 100.0 * share);
+            vec![
+                source,
+                format!("{std} [{low}, {high}]"),
+                row.share.map_or("-".to_owned(), percent),
+                row.p_value.map_or(String::new(), |p| match p < 0.001 {
+                    true => "< 0.001".to_owned(),
+                    false => format!("{p:.3}"),
+                }),
+            ]
+        })
+        .collect();
+    let note = match &answer.place(best)[..] {
+        "" => String::new(),
+        place => format!("At {place}."),
+    };
+    let heads = vec![
+        ("source", false),
+        ("standard deviation [95 %]", true),
+        ("of the variance", true),
+        ("p", true),
+    ];
+    TextTable::of("What makes trials differ", note, heads, rows)
+}
+
+/// All of them as text without escape codes, lines at most `width` letters long; empty if there are none.
 pub fn text(tables: &Tables, width: usize) -> String {
-    let both = [published_table(tables), confused_table(tables)];
-    let texts: Vec<String> = both.iter().flatten().map(|t| t.text(width)).collect();
+    let all = [
+        published_table(tables),
+        confused_table(tables),
+        variance_table(tables),
+    ];
+    let texts: Vec<String> = all.iter().flatten().map(|t| t.text(width)).collect();
     texts.concat()
 }
 
@@ -126,15 +183,19 @@ impl TextTable {
         format!("{}\n\n{}\n", said.join("\n"), finish(&table))
     }
 
-    /// For the page: a section.
-    pub fn html(&self) -> String {
+    /// For a page: a section.
+    pub(super) fn section(&self, id: &'static str) -> Section {
+        Section::new(id, self.title, self.html())
+    }
+
+    fn html(&self) -> String {
         let class = |is_number: bool| match is_number {
             true => " class=\"number\"",
             false => "",
         };
         let title = self.title;
         let mut html = format!(
-            "<section><h2>{title}</h2><p class=\"quiet\">{}</p><div class=\"wide words\" tabindex=\"0\" role=\"region\" \
+            "<p class=\"quiet\">{}</p><div class=\"wide words\" tabindex=\"0\" role=\"region\" \
              aria-label=\"{title}\"><table><thead><tr>",
             escape(&self.note)
         );
@@ -151,6 +212,6 @@ impl TextTable {
             }
             html += "</tr>";
         }
-        html + "</tbody></table></div></section>"
+        html + "</tbody></table></div>"
     }
 }

@@ -92,6 +92,19 @@ pub(super) fn draw_x_ticks(drawing: &mut Drawing, area: Area, x: LogScale, ticks
     }
 }
 
+/// Ticks, labels and grid lines of an axis along y.
+pub(super) fn draw_y_ticks(drawing: &mut Drawing, area: Area, y: LogScale, ticks: &[f64]) {
+    for &tick in ticks {
+        let at = y.place(tick);
+        let right = area.x + area.width;
+        drawing.line((area.x, at), (right, at), Stroke::new(GRID, 1.0));
+        drawing.line((area.x - 5.0, at), (area.x, at), Stroke::new(INK, 1.0));
+        let beside = (area.x - 9.0, at + 4.5);
+        let style = TextStyle::new(12).align(Align::End);
+        drawing.text(beside, &short_number(tick), style);
+    }
+}
+
 /// Both axes of a panel with their ticks and grid.
 pub(super) fn draw_axes(
     drawing: &mut Drawing,
@@ -102,17 +115,7 @@ pub(super) fn draw_axes(
     let (right, bottom) = (area.x + area.width, area.y + area.height);
     let ink = Stroke::new(INK, 1.0);
     draw_x_ticks(drawing, area, x, x_ticks);
-    for &tick in y_ticks {
-        let at = y.place(tick);
-        drawing.line((area.x, at), (right, at), Stroke::new(GRID, 1.0));
-        drawing.line((area.x - 5.0, at), (area.x, at), ink);
-        let beside = (area.x - 9.0, at + 4.5);
-        drawing.text(
-            beside,
-            &short_number(tick),
-            TextStyle::new(12).align(Align::End),
-        );
-    }
+    draw_y_ticks(drawing, area, y, y_ticks);
     drawing.line((area.x, bottom), (right, bottom), ink);
     drawing.line((area.x, area.y), (area.x, bottom), ink);
 }

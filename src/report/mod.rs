@@ -1,7 +1,7 @@
 //! Report: tables → files for people.
 //!
 //! In: the result tables ([`Tables`](crate::study::table::Tables)), frames (ny × nx, metres or newtons), and what the study
-//! says of itself ([`ReportPage`](html::ReportPage)). Out: CSV files, charts and pictures (SVG and PNG), terminal text, and
+//! says of itself ([`ReportPage`](page::ReportPage)). Out: CSV files, charts and pictures (SVG and PNG), terminal text, and
 //! one self-contained HTML page. Equal input gives equal bytes; every file is whole or not there.
 //!
 //! [`results::write_all`] writes a study's folder; [`terminal::summary_table`] is what a run prints at its end;
@@ -24,14 +24,14 @@ mod folder;
 pub mod frame_files;
 pub mod headlines;
 pub mod heat_map;
-pub mod html;
-mod html_tables;
 mod legend;
 mod log_scale;
 pub mod object_detail_charts;
 mod object_detail_recognition;
 pub mod object_detail_results;
 pub mod object_picture;
+pub mod offers;
+pub mod page;
 mod panels;
 pub mod pareto_chart;
 mod picture;
@@ -46,12 +46,15 @@ pub mod reconstruction_results;
 pub mod reconstruction_text;
 pub mod recording;
 pub mod results;
+pub mod run_clock;
 pub mod run_differences;
+pub mod run_differences_page;
 pub mod scene_files;
 pub mod scene_summary;
 mod shaded_view;
 mod signal_axis;
 pub mod snapshots;
+pub mod speed_accuracy;
 pub mod stability_map;
 pub mod stability_results;
 pub mod terminal;

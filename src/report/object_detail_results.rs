@@ -1,32 +1,109 @@
 //! The folder of a study of object detail, and what it prints at its end.
 
-use super::object_detail_charts::{draw_object_detail_charts, median_time_us, method_name};
+use super::object_detail_charts::{
+    draw_object_detail_charts, median_time_us, method_name, methods,
+};
 use crate::error::Result;
 use crate::report::axis::{classifier_name, short_number};
 use crate::report::folder::Folder;
-use crate::report::terminal::{align_right, plain_table};
-use crate::study::object_detail::table::{DetailRecognition, ObjectDetailTables};
+use crate::report::page::StudyAbout;
+use crate::report::page::plain::{self, plain_page};
+use crate::report::terminal::{align_right, plain_table, wrap};
+use crate::study::object_detail::table::{DetailRecognition, DetailSummary, ObjectDetailTables};
+use comfy_table::Table;
 use std::path::{Path, PathBuf};
 
-/// Writes tables and charts into `dir` (created if missing); returns the paths, tables first.
+/// Writes tables, charts and the page into `dir` (created if missing); returns the paths, tables first.
 ///
 /// Everything is drawn before the first file is written, and each file is whole or not there.
-pub fn write_object_detail(dir: &Path, tables: &ObjectDetailTables) -> Result<Vec<PathBuf>> {
+pub fn write_object_detail(
+    dir: &Path,
+    tables: &ObjectDetailTables,
+    about: &StudyAbout,
+) -> Result<Vec<PathBuf>> {
     let mut folder = Folder::new(dir);
-    folder.add_table("object_detail.csv", &tables.detail)?;
-    folder.add_table("object_detail_summary.csv", &tables.summary)?;
-    folder.add_table("timing.csv", &tables.timing)?;
+    let [detail, summary, timing, recognition] = FILES;
+    folder.add_table(detail, &tables.detail)?;
+    folder.add_table(summary, &tables.summary)?;
+    folder.add_table(timing, &tables.timing)?;
+    let mut n_files = 3;
     if !tables.recognition.is_empty() {
-        folder.add_table("object_detail_recognition.csv", &tables.recognition)?;
+        folder.add_table(recognition, &tables.recognition)?;
+        n_files = 4;
     }
-    for (name, title, drawing) in draw_object_detail_charts(tables) {
-        folder.add_chart(&name, &title, &drawing)?;
+    let drawn = draw_object_detail_charts(tables);
+    for (name, title, drawing) in &drawn {
+        folder.add_chart(name, title, drawing)?;
     }
+    let learned = recognition_table(&tables.recognition, WIDE);
+    let found = vec![
+        plain::answer(&sentences(tables)),
+        plain::table("models", "Models", NOTE, &summary_table(tables, WIDE)),
+        plain::charts(&drawn),
+        plain::table("recognition", "Recognition", LEARNED, &learned),
+    ];
+    folder.add("report.html", plain_page(about, found, &FILES[..n_files]));
     folder.write()
 }
 
+/// The most exact model, and what each takes to be within half a millimetre.
+fn sentences(tables: &ObjectDetailTables) -> Vec<String> {
+    let error = |row: &DetailSummary| row.error_median_mm;
+    let sentence = |row: &DetailSummary| {
+        format!(
+            "{}: {} mm error with {:.0} spheres, {:.0} µs a touch.",
+            method_name(row.method),
+            short_number(error(row)),
+            row.n_spheres_median,
+            median_time_us(tables, row.method, row.tolerance_mm)
+        )
+    };
+    let models = tables
+        .summary
+        .iter()
+        .filter(|row| row.n_spheres_median > 0.0);
+    let best = models.clone().min_by(|a, b| error(a).total_cmp(&error(b)));
+    let mut sentences: Vec<String> = best
+        .map(|row| format!("The most exact model of spheres is {}", sentence(row)))
+        .into_iter()
+        .collect();
+    for method in methods(tables.summary.iter().map(|row| row.method)) {
+        let good = models
+            .clone()
+            .filter(|row| row.method == method && error(row) <= 0.5);
+        let fewest = good.min_by(|a, b| a.n_spheres_median.total_cmp(&b.n_spheres_median));
+        sentences
+            .extend(fewest.map(|row| format!("Fewest spheres within 0.5 mm by {}", sentence(row))));
+    }
+    sentences
+}
+
+const FILES: [&str; 4] = [
+    "object_detail.csv",
+    "object_detail_summary.csv",
+    "timing.csv",
+    "object_detail_recognition.csv",
+];
+
+const NOTE: &str = "Medians over objects; error is the mean over touched taxels of |deflection − that of the exact mesh|, worst \
+    that of the worst object, − offset with the best constant depth taken off, × packing the ratio of that to the packing's.";
+
+const LEARNED: &str = "Classifiers that learned from models, tested on the exact meshes and on the models themselves.";
+
+/// Letters a line where nothing has to fit a terminal.
+const WIDE: usize = 200;
+
 /// A line a method and level: medians over objects. Lines are at most about `width` letters long.
 pub fn object_detail_summary(tables: &ObjectDetailTables, width: usize) -> String {
+    let table = summary_table(tables, width);
+    let mut text = format!("{}\n\n{table}\n", wrap(NOTE, width).join("\n"));
+    if !tables.recognition.is_empty() {
+        text += &recognition_text(&tables.recognition, width);
+    }
+    text
+}
+
+fn summary_table(tables: &ObjectDetailTables, width: usize) -> Table {
     let mut table = plain_table(width);
     table.set_header([
         "model",
@@ -57,18 +134,21 @@ pub fn object_detail_summary(tables: &ObjectDetailTables, width: usize) -> Strin
         ]);
     }
     align_right(&mut table, 1..9);
-    let mut text = format!(
-        "Medians over objects; error is the mean over touched taxels of |deflection − that of the exact mesh|, worst\n\
-        that of the worst object, − offset with the best constant depth taken off, × packing the ratio of that to the packing's.\n\n{table}\n"
-    );
-    if !tables.recognition.is_empty() {
-        text += &recognition_text(&tables.recognition, width);
-    }
-    text
+    table
 }
 
 /// What was recognised by classifiers that have learned from models.
 fn recognition_text(rows: &[DetailRecognition], width: usize) -> String {
+    let table = recognition_table(rows, width);
+    let n_capped: usize = rows.iter().map(|row| row.n_capped).sum();
+    let mut text = format!("{}\n\n{table}\n", wrap(LEARNED, width).join("\n"));
+    if n_capped > 0 {
+        text += &format!("{n_capped} of their problems stopped at the solver's iteration cap\n");
+    }
+    text
+}
+
+fn recognition_table(rows: &[DetailRecognition], width: usize) -> Table {
     let mut table = plain_table(width);
     table.set_header([
         "classifier",
@@ -92,12 +172,5 @@ fn recognition_text(rows: &[DetailRecognition], width: usize) -> String {
         ]);
     }
     align_right(&mut table, 2..6);
-    let n_capped: usize = rows.iter().map(|row| row.n_capped).sum();
-    let mut text = format!(
-        "Classifiers that learned from models, tested on the exact meshes and on the models themselves:\n\n{table}\n"
-    );
-    if n_capped > 0 {
-        text += &format!("{n_capped} of their problems stopped at the solver's iteration cap\n");
-    }
-    text
+    table
 }

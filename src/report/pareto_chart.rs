@@ -2,16 +2,15 @@
 
 use crate::report::axis::Axis;
 use crate::report::chart::{draw_axes, draw_y_labels, n_classes, y_at};
-use crate::report::colours::{GRID, INK, Rgb};
-use crate::report::drawing::{Align, Area, Drawing, Point, Stroke, TextStyle};
+use crate::report::colours::{INK, Rgb};
+use crate::report::drawing::{Align, Area, Drawing, Point, TextStyle};
 use crate::report::legend::{
-    CHANCE, FRONT, Heading, LegendEntry, MARKER_RADIUS, Mark, RIGHT, line_colour,
+    CHANCE, FRONT, Heading, LegendEntry, MARKER_RADIUS, Mark, line_colour,
 };
 use crate::report::panels::Panels;
 use crate::report::text_width::text_width;
-use crate::report::time_scale::{TimeScale, time_label};
+use crate::report::time_scale::TimeScale;
 use crate::report::varying::{Levels, Settings, unbroken_parts};
-use crate::report::x_scale::TICK_SIZE;
 use crate::study::table::{Cell, Pareto, Tables};
 
 /// Classifiers from which on a study is about choosing one.
@@ -143,21 +142,8 @@ impl Chart<'_> {
     }
 
     fn draw_panel(&self, drawing: &mut Drawing, panel: usize, frame: Area, scale: &TimeScale) {
-        let bottom = frame.y + frame.height;
         draw_axes(drawing, frame);
-        for (seconds, is_labelled) in scale.ticks(frame) {
-            let x = scale.x(seconds, frame);
-            drawing.line((x, frame.y), (x, bottom), Stroke::new(GRID, 1.0));
-            drawing.line((x, bottom), (x, bottom + 5.0), Stroke::new(INK, 1.0));
-            if is_labelled {
-                let label = time_label(seconds);
-                // At the very end of the axis, half a label would leave the paper.
-                let half = text_width(&label, f64::from(TICK_SIZE)) / 2.0;
-                let middle = x.min(frame.x + frame.width + RIGHT - 2.0 - half);
-                let style = TextStyle::new(TICK_SIZE).align(Align::Middle);
-                drawing.text((middle, bottom + 19.0), &label, style);
-            }
-        }
+        scale.draw_ticks(drawing, frame);
         if let Some(chance) = self.chance {
             let y = y_at(frame, chance);
             drawing.line((frame.x, y), (frame.x + frame.width, y), CHANCE);
@@ -235,7 +221,7 @@ impl Chart<'_> {
 }
 
 /// What accuracy a budget of time buys: level until the next cell of the front.
-fn draw_steps(drawing: &mut Drawing, front: &[Point], frame: Area) {
+pub(super) fn draw_steps(drawing: &mut Drawing, front: &[Point], frame: Area) {
     let Some(&last) = front.last() else {
         return;
     };
@@ -276,7 +262,7 @@ fn name_places(front: &[Point], names: &[String], frame: Area) -> Vec<Option<Poi
     places
 }
 
-fn paler(colour: Rgb) -> Rgb {
+pub(super) fn paler(colour: Rgb) -> Rgb {
     colour.map(|channel| channel + ((255 - channel) as f64 * 0.45) as u8)
 }
 

@@ -1,9 +1,11 @@
 //! Progress on standard error: a bar on a terminal, a line a stage elsewhere.
 
+use crate::report::run_clock::{RunClock, in_words};
 use crate::study::progress::Progress;
-use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use crate::study::time_left::Piece;
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressState, ProgressStyle};
 use std::io::{IsTerminal, Write};
-use std::sync::Mutex;
+use std::sync::{Arc, Mutex};
 use std::time::Instant;
 
 /// The listener that suits standard error: a bar, or plain lines if it is not a terminal.
@@ -16,19 +18,25 @@ pub fn to_stderr() -> Box<dyn Progress> {
     }
 }
 
-/// A bar with rate and time left.
+/// A bar of the stage with its rate, and the time left: of the whole run where it has said what it will do, else of the stage.
 #[derive(Default)]
 pub struct Bar {
     current: Mutex<Option<ProgressBar>>,
+    clock: Arc<RunClock>,
 }
 
 impl Progress for Bar {
     fn stage(&self, name: &str, total: u64) {
         self.close();
         let bar = ProgressBar::with_draw_target(Some(total), ProgressDrawTarget::stderr());
-        let template = "{msg:>14} [{bar:32}] {pos}/{len}, {per_sec}, {eta} left";
+        let template = "{msg:>14} [{bar:32}] {pos}/{len}, {per_sec}, {left}";
         if let Ok(style) = ProgressStyle::with_template(template) {
-            bar.set_style(style.progress_chars("=> "));
+            let clock = Arc::clone(&self.clock);
+            let left = move |state: &ProgressState, text: &mut dyn std::fmt::Write| {
+                // A text in memory takes all that is written.
+                let _ = text.write_str(&left(&clock, state.eta().as_secs_f64()));
+            };
+            bar.set_style(style.with_key("left", left).progress_chars("=> "));
         }
         bar.set_message(name.to_owned());
         bar.tick();
@@ -48,6 +56,21 @@ impl Progress for Bar {
     fn finish(&self, message: &str) {
         self.close();
         write_line(&mut std::io::stderr(), message);
+    }
+
+    fn expect(&self, work: &[Piece]) {
+        self.clock.expect(work);
+    }
+
+    fn worked(&self, piece: &Piece, took_s: f64) {
+        self.clock.worked(piece, took_s);
+    }
+}
+
+fn left(clock: &RunClock, stage_left_s: f64) -> String {
+    match clock.times() {
+        Some(times) => format!("{} left", in_words(times.left_s)),
+        None => format!("{} left of this stage", in_words(stage_left_s)),
     }
 }
 

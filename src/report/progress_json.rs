@@ -2,11 +2,13 @@
 //!
 //! ```text
 //! {"event":"stage","name":"recognise 32×32 at 2 mm","total":240}
-//! {"event":"progress","done":96,"total":240,"elapsed_s":1.2}
+//! {"event":"progress","done":96,"total":240,"elapsed_s":1.2,"run_elapsed_s":2.5,"run_left_s":3.1}
 //! {"event":"message","text":"going on: 96 of 240 cells were finished before"}
 //! ```
 
+use crate::report::run_clock::RunClock;
 use crate::study::progress::Progress;
+use crate::study::time_left::Piece;
 use serde_json::{Value, json};
 use std::io::Write;
 use std::sync::Mutex;
@@ -18,6 +20,7 @@ const INTERVAL: Duration = Duration::from_millis(200);
 /// One line an event, each written whole.
 pub struct JsonLines<W: Write + Send> {
     state: Mutex<State<W>>,
+    clock: RunClock,
 }
 
 struct State<W> {
@@ -41,6 +44,7 @@ impl<W: Write + Send> JsonLines<W> {
         };
         Self {
             state: Mutex::new(state),
+            clock: RunClock::default(),
         }
     }
 
@@ -55,14 +59,18 @@ impl<W: Write> State<W> {
         let _ = writeln!(self.writer, "{event}").and_then(|()| self.writer.flush());
     }
 
-    fn tell_progress(&mut self) {
+    fn tell_progress(&mut self, clock: &RunClock) {
         if let Some(stage) = &self.stage {
-            let event = json!({
+            let mut event = json!({
                 "event": "progress",
                 "done": stage.done,
                 "total": stage.total,
                 "elapsed_s": stage.start.elapsed().as_secs_f64(),
             });
+            if let Some(times) = clock.times() {
+                event["run_elapsed_s"] = times.elapsed_s.into();
+                event["run_left_s"] = times.left_s.into();
+            }
             self.write(&event);
         }
     }
@@ -71,7 +79,7 @@ impl<W: Write> State<W> {
 impl<W: Write + Send> Progress for JsonLines<W> {
     fn stage(&self, name: &str, total: u64) {
         if let Ok(mut state) = self.state.lock() {
-            state.tell_progress();
+            state.tell_progress(&self.clock);
             let now = Instant::now();
             state.stage = Some(Stage {
                 total,
@@ -93,13 +101,21 @@ impl<W: Write + Send> Progress for JsonLines<W> {
         stage.done += n;
         if stage.told.elapsed() >= INTERVAL {
             stage.told = Instant::now();
-            state.tell_progress();
+            state.tell_progress(&self.clock);
         }
+    }
+
+    fn expect(&self, work: &[Piece]) {
+        self.clock.expect(work);
+    }
+
+    fn worked(&self, piece: &Piece, took_s: f64) {
+        self.clock.worked(piece, took_s);
     }
 
     fn finish(&self, message: &str) {
         if let Ok(mut state) = self.state.lock() {
-            state.tell_progress();
+            state.tell_progress(&self.clock);
             state.stage = None;
             if !message.is_empty() {
                 state.write(&json!({ "event": "message", "text": message }));

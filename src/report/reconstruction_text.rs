@@ -2,10 +2,13 @@
 
 use super::reconstruction_charts::{cell_words, noise_words, values_of};
 use crate::report::axis::{basis_name, ensemble_name, short_number, solver_name};
-use crate::report::terminal::{align_right, plain_table};
+use crate::report::page::{Section, plain};
+use crate::report::terminal::{align_right, plain_table, wrap};
 use crate::study::reconstruction::table::{
     ReconstructionCell, ReconstructionScore, ReconstructionTables, ReconstructionTime,
 };
+
+use comfy_table::Table;
 
 type Row<'a> = (
     &'a ReconstructionCell,
@@ -16,15 +19,39 @@ type Row<'a> = (
 /// For each noise level and number of measurements, the best cell of every solver; then what compression costs or gains
 /// beside full sampling. Lines are at most about `width` letters long.
 pub fn reconstruction_summary(tables: &ReconstructionTables, width: usize) -> String {
-    let rows: Vec<Row> = tables
-        .reconstruction
-        .iter()
-        .zip(&tables.timing)
-        .map(|((cell, score), (_, time))| (cell, score, time))
-        .collect();
+    let rows = rows(tables);
     if rows.is_empty() {
         return "No cell has been computed.\n".to_owned();
     }
+    let table = best_table(&rows, width);
+    let mut text = format!("{}\n\n{table}\n\n", wrap(NOTE, width).join("\n"));
+    for sentence in answers(&rows) {
+        text += &sentence;
+        text.push('\n');
+    }
+    text
+}
+
+/// The same for a page.
+pub(super) fn reconstruction_sections(tables: &ReconstructionTables) -> [Section; 2] {
+    let rows = rows(tables);
+    let table = best_table(&rows, 200);
+    [
+        plain::answer(&answers(&rows)),
+        plain::table("best", "Best cells", NOTE, &table),
+    ]
+}
+
+const NOTE: &str = "The best dictionary and ensemble of each solver; error is relative to the clean frames, full is that of \
+    the noisy frame itself.";
+
+fn rows(tables: &ReconstructionTables) -> Vec<Row<'_>> {
+    let rows = tables.reconstruction.iter().zip(&tables.timing);
+    rows.map(|((cell, score), (_, time))| (cell, score, time))
+        .collect()
+}
+
+fn best_table(rows: &[Row], width: usize) -> Table {
     let mut table = plain_table(width);
     table.set_header([
         "noise",
@@ -36,7 +63,7 @@ pub fn reconstruction_summary(tables: &ReconstructionTables, width: usize) -> St
         "full",
         "frames/s a core",
     ]);
-    for best in best_cells(&rows) {
+    for best in best_cells(rows) {
         let (cell, score, time) = best;
         table.add_row([
             short_number(cell.noise_std),
@@ -53,15 +80,7 @@ pub fn reconstruction_summary(tables: &ReconstructionTables, width: usize) -> St
         ]);
     }
     align_right(&mut table, [0, 1, 6, 7]);
-    let mut text = "The best dictionary and ensemble of each solver; error is relative to the clean frames, full is that of \
-        the noisy frame itself.\n\n"
-        .to_owned();
-    text += &format!("{table}\n\n");
-    for sentence in answers(&rows) {
-        text += &sentence;
-        text.push('\n');
-    }
-    text
+    table
 }
 
 /// The lowest error of each noise level, m and solver, in the order of the tables.

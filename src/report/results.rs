@@ -5,10 +5,10 @@ use crate::report::answer::Answer;
 use crate::report::chart::{chart_title, draw_chart};
 use crate::report::chart_plan::plan_charts;
 use crate::report::confusion_picture::confusion_picture;
-use crate::report::csv_tables::add_tables;
+use crate::report::csv_tables::{LIMITS_FILE, add_tables};
 use crate::report::drawing::Drawing;
 use crate::report::folder::Folder;
-use crate::report::html::{Picture, Pictures, ReportPage, page};
+use crate::report::page::{Picture, Pictures, ReportPage, page};
 use crate::report::pareto_chart::{Cost, draw_pareto, is_wanted};
 use crate::report::snapshots::snapshots;
 use crate::study::table::{Cell, Tables};
@@ -25,6 +25,19 @@ const MOST_IN_PAGE: usize = 24;
 pub fn write_all(dir: &Path, tables: &Tables, about: &ReportPage) -> Result<Vec<PathBuf>> {
     let mut folder = Folder::new(dir);
     add_tables(&mut folder, tables)?;
+    folder.add_table(LIMITS_FILE, &about.limits)?;
+    add_page(&mut folder, tables, about)?;
+    folder.write()
+}
+
+/// Writes charts, pictures and the page into a folder that has the tables; as [`write_all`].
+pub fn write_page(dir: &Path, tables: &Tables, about: &ReportPage) -> Result<Vec<PathBuf>> {
+    let mut folder = Folder::new(dir);
+    add_page(&mut folder, tables, about)?;
+    folder.write()
+}
+
+fn add_page(folder: &mut Folder, tables: &Tables, about: &ReportPage) -> Result<()> {
     let mut pictures = Pictures::default();
     for (name, title, drawing) in draw_pareto_charts(tables, about.pareto) {
         pictures.times.push(Picture::of(&drawing, &title));
@@ -50,13 +63,25 @@ pub fn write_all(dir: &Path, tables: &Tables, about: &ReportPage) -> Result<Vec<
     if let Some(set) = &about.snapshots {
         let drawing = snapshots(&set.frames, set.pitch_mm, set.quantity, &set.caption)?;
         // As SVG, ten thousand noisy taxels would be a megabyte.
-        let png = drawing.png()?;
-        pictures.touches = Some(Picture::raster(&drawing, &png, &set.caption));
-        folder.add("snapshots.png", png);
+        folder.add("snapshots.png", drawing.png()?);
     }
-    folder.add("report.html", page(about, tables, &pictures));
-    folder.write()
+    folder.add("report.html", page(about, tables, &pictures)?);
+    Ok(())
 }
+
+/// Seconds to draw and write all of it for these cells, as on one core of a 2-core x86-64 server.
+pub fn planned_s(cells: &[&Cell]) -> f64 {
+    let n_charts = plan_charts(cells).len();
+    let n_rasters = n_charts.min(MOST_IN_PAGE) as f64;
+    REST_S + RASTER_S * n_rasters + VECTORS_S * n_charts as f64
+}
+
+/// Seconds for a chart's PNG.
+const RASTER_S: f64 = 0.1;
+/// Seconds for a chart's SVG.
+const VECTORS_S: f64 = 0.02;
+/// Seconds for tables, touches, the confusion matrix and the page.
+const REST_S: f64 = 0.3;
 
 /// Every chart of a study: file name without ending, title, drawing.
 pub fn draw_charts(tables: &Tables) -> Vec<(String, String, Drawing)> {

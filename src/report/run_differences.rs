@@ -4,6 +4,7 @@ use crate::report::terminal::{align, finish, ruled_table, wrap};
 use crate::report::varying::{Levels, Settings, unbroken_parts};
 use crate::study::table::Cell;
 use crate::study::{RunComparison, RunDifference};
+use comfy_table::Table;
 
 /// Cells that are listed, at most.
 const MOST_LISTED: usize = 30;
@@ -20,10 +21,18 @@ pub fn differences_text(comparison: &RunComparison, width: usize) -> String {
         text += &wrap(&sentence, width).join("\n");
         text.push('\n');
     }
-    text + "\n" + &table(comparison, &settings, width)
+    let left_out = match comparison.both.len().saturating_sub(MOST_LISTED) {
+        0 => String::new(),
+        n => {
+            format!("{n} cells that moved less surely are left out here; --out FILE.csv has all\n")
+        }
+    };
+    let table = differences_table(comparison, &settings, width, MOST_LISTED);
+    text + "\n" + &finish(&table) + &left_out
 }
 
-fn verdict(comparison: &RunComparison) -> Vec<String> {
+/// What moved, in sentences.
+pub(super) fn verdict(comparison: &RunComparison) -> Vec<String> {
     let rows = || comparison.both.iter().map(|(_, row)| row);
     let surely = |better: bool| {
         let moved = rows().filter(|row| row.is_significant() && (row.difference > 0.0) == better);
@@ -48,7 +57,13 @@ fn verdict(comparison: &RunComparison) -> Vec<String> {
     sentences
 }
 
-fn table(comparison: &RunComparison, settings: &Settings, width: usize) -> String {
+/// The cells that moved most surely, at most so many, in lines of so many letters.
+pub(super) fn differences_table(
+    comparison: &RunComparison,
+    settings: &Settings,
+    width: usize,
+    most: usize,
+) -> Table {
     let axes = settings.shown();
     let mut rows: Vec<&(Cell, RunDifference)> = comparison.both.iter().collect();
     rows.sort_by(|(_, a), (_, b)| {
@@ -60,19 +75,12 @@ fn table(comparison: &RunComparison, settings: &Settings, width: usize) -> Strin
     let names = axes.iter().map(|levels| levels.axis.name().to_owned());
     let heads = ["first", "second", "difference [95 %]", "p (Holm)"].map(str::to_owned);
     table.set_header(names.chain(heads));
-    for (cell, row) in rows.iter().take(MOST_LISTED) {
+    for (cell, row) in rows.iter().take(most) {
         let labels = axes.iter().map(|levels| levels.axis.value(cell).label);
         table.add_row(labels.chain(numbers(row)));
     }
     align(&mut table, &axes, 4);
-    let left_out = rows.len().saturating_sub(MOST_LISTED);
-    let remark = match left_out {
-        0 => String::new(),
-        n => {
-            format!("{n} cells that moved less surely are left out here; --out FILE.csv has all\n")
-        }
-    };
-    finish(&table) + &remark
+    table
 }
 
 fn numbers(row: &RunDifference) -> [String; 4] {

@@ -32,7 +32,7 @@ pub fn draw_stability_maps(tables: &StabilityTables) -> Vec<(String, String, Dra
     let mut maps: Vec<(String, String, Drawing)> = Vec::new();
     let parts = tables.stability.chunk_by(|a, b| a.0.part == b.0.part);
     for rows in parts {
-        let map = Map::of(rows);
+        let map = Map::of(rows, &tables.peers);
         if map.columns.len() < 2 || map.dts.len() * map.masses.len() < 2 {
             continue;
         }
@@ -56,6 +56,9 @@ pub(super) fn method_name(method: ContactMethod, iterations: Option<usize>) -> S
         ContactMethod::ImplicitEuler => "implicit Euler, exact contact",
         ContactMethod::RapierAsItComes => "rapier as it comes",
         ContactMethod::RapierTuned => "rapier tuned",
+        ContactMethod::MujocoEuler => "MuJoCo as it comes",
+        ContactMethod::MujocoImplicitfast => "MuJoCo, implicitfast",
+        ContactMethod::MujocoDiscrete => "MuJoCo, discrete, hard",
     };
     match iterations {
         Some(n) => format!("{name}, {n} iterations"),
@@ -74,6 +77,8 @@ fn scene_file(scene: StabilityScene) -> &'static str {
 /// One part of a study.
 struct Map<'a> {
     rows: &'a [Row],
+    /// Who measured the rows of other programs, and when.
+    peers: &'a str,
     scene: StabilityScene,
     /// Methods and iterations.
     columns: Vec<(ContactMethod, Option<usize>)>,
@@ -86,7 +91,7 @@ struct Map<'a> {
 }
 
 impl<'a> Map<'a> {
-    fn of(rows: &'a [Row]) -> Self {
+    fn of(rows: &'a [Row], peers: &'a str) -> Self {
         let cells = || rows.iter().map(|(cell, _)| cell);
         let rising = |values: Vec<f64>| {
             let mut values = distinct(values);
@@ -95,6 +100,7 @@ impl<'a> Map<'a> {
         };
         Self {
             rows,
+            peers,
             scene: rows[0].0.scene,
             columns: distinct(
                 cells()
@@ -323,6 +329,10 @@ impl<'a> Map<'a> {
         drawing.line((LEFT, y - 4.0), (LEFT + 26.0, y - 4.0), LIMIT);
         let text = "limit of an explicit spring without damper, Δt = 2 √(m / k)";
         drawing.text((LEFT + 32.0, y), text, TextStyle::new(12));
+        if self.columns.iter().any(|(method, _)| method.is_peer()) {
+            let at = (LEFT + 56.0 + text_width(text, 12.0), y);
+            drawing.text(at, self.peers, TextStyle::new(12).colour(MUTED));
+        }
     }
 }
 

@@ -3,27 +3,84 @@
 use super::stability_map::{draw_stability_maps, method_name};
 use crate::error::Result;
 use crate::report::folder::Folder;
-use crate::report::terminal::{align_right, plain_table};
+use crate::report::page::StudyAbout;
+use crate::report::page::plain::{self, plain_page};
+use crate::report::terminal::{align_right, plain_table, wrap};
 use crate::study::stability::table::StabilityTables;
 use crate::study::stability::{StabilityScene, TOLERANCE};
+use comfy_table::Table;
 use std::path::{Path, PathBuf};
 
-/// Writes tables and maps into `dir` (created if missing); returns the paths, tables first.
+const FILES: [&str; 3] = ["stability.csv", "stability_summary.csv", "timing.csv"];
+
+/// Writes tables, maps and the page into `dir` (created if missing); returns the paths, tables first.
 ///
 /// Everything is drawn before the first file is written, and each file is whole or not there.
-pub fn write_stability(dir: &Path, tables: &StabilityTables) -> Result<Vec<PathBuf>> {
+pub fn write_stability(
+    dir: &Path,
+    tables: &StabilityTables,
+    about: &StudyAbout,
+) -> Result<Vec<PathBuf>> {
     let mut folder = Folder::new(dir);
-    folder.add_table("stability.csv", &tables.stability)?;
-    folder.add_table("stability_summary.csv", &tables.summary)?;
-    folder.add_table("timing.csv", &tables.timing)?;
-    for (name, title, drawing) in draw_stability_maps(tables) {
-        folder.add_chart(&name, &title, &drawing)?;
+    let [cells, summary, timing] = FILES;
+    folder.add_table(cells, &tables.stability)?;
+    folder.add_table(summary, &tables.summary)?;
+    folder.add_table(timing, &tables.timing)?;
+    let maps = draw_stability_maps(tables);
+    for (name, title, drawing) in &maps {
+        folder.add_chart(name, title, drawing)?;
     }
+    let found = vec![
+        plain::answer(&sentences(tables)),
+        plain::table(
+            "methods",
+            "Scenes and methods",
+            &note(),
+            &summary_table(tables, 200),
+        ),
+        plain::charts(&maps),
+    ];
+    folder.add("report.html", plain_page(about, found, &FILES));
     folder.write()
+}
+
+/// How often each method is right, the best first.
+fn sentences(tables: &StabilityTables) -> Vec<String> {
+    let mut methods: Vec<(String, usize, usize)> = Vec::new();
+    for row in &tables.summary {
+        let name = method_name(row.method, row.solver_iterations);
+        let known = methods.iter().position(|(known, ..)| *known == name);
+        let place = known.unwrap_or(methods.len());
+        if known.is_none() {
+            methods.push((name, 0, 0));
+        }
+        methods[place].1 += row.n_right;
+        methods[place].2 += row.n_cells;
+    }
+    let share = |n_right: usize, n_cells: usize| n_right as f64 / n_cells.max(1) as f64;
+    methods.sort_by(|a, b| share(b.1, b.2).total_cmp(&share(a.1, a.2)));
+    let sentence = |(name, n_right, n_cells): &(String, usize, usize)| {
+        let percent = 100.0 * share(*n_right, *n_cells);
+        format!("Right in {n_right} of {n_cells} cells ({percent:.0} %): {name}.")
+    };
+    methods.iter().map(sentence).collect()
 }
 
 /// A line a scene and method. Lines are at most about `width` letters long.
 pub fn stability_summary(tables: &StabilityTables, width: usize) -> String {
+    let (note, table) = (note(), summary_table(tables, width));
+    format!("{}\n\n{table}\n", wrap(&note, width).join("\n"))
+}
+
+fn note() -> String {
+    let percent = 100.0 * TOLERANCE;
+    format!(
+        "right: force balance and deflections within {percent} %; missed: contact was missed; energy: more of it than there can be; \
+         imbalance, deflection: the worst errors of what came to an end, as shares"
+    )
+}
+
+fn summary_table(tables: &StabilityTables, width: usize) -> Table {
     let mut table = plain_table(width);
     table.set_header([
         "scene",
@@ -54,11 +111,7 @@ pub fn stability_summary(tables: &StabilityTables, width: usize) -> String {
         ]);
     }
     align_right(&mut table, 2..10);
-    format!(
-        "right: force balance and deflections within {} %; missed: contact was missed; energy: more of it than there can be;\n\
-         imbalance, deflection: the worst errors of what came to an end, as shares\n\n{table}\n",
-        100.0 * TOLERANCE
-    )
+    table
 }
 
 fn scene_name(scene: StabilityScene) -> &'static str {

@@ -1,6 +1,10 @@
 //! The logarithmic axis of a chart of times.
 
-use crate::report::drawing::Area;
+use crate::report::colours::{GRID, INK};
+use crate::report::drawing::{Align, Area, Drawing, Stroke, TextStyle};
+use crate::report::legend::RIGHT;
+use crate::report::text_width::text_width;
+use crate::report::x_scale::TICK_SIZE;
 
 /// A logarithmic axis of time.
 pub(super) struct TimeScale {
@@ -23,6 +27,24 @@ impl TimeScale {
     pub(super) fn x(&self, seconds: f64, frame: Area) -> f64 {
         let share = (seconds / self.low).ln() / (self.high / self.low).ln();
         frame.x + share * frame.width
+    }
+
+    /// Ticks, labels and grid lines.
+    pub(super) fn draw_ticks(&self, drawing: &mut Drawing, frame: Area) {
+        let bottom = frame.y + frame.height;
+        for (seconds, is_labelled) in self.ticks(frame) {
+            let x = self.x(seconds, frame);
+            drawing.line((x, frame.y), (x, bottom), Stroke::new(GRID, 1.0));
+            drawing.line((x, bottom), (x, bottom + 5.0), Stroke::new(INK, 1.0));
+            if is_labelled {
+                let label = time_label(seconds);
+                // At the very end of the axis, half a label would leave the paper.
+                let half = text_width(&label, f64::from(TICK_SIZE)) / 2.0;
+                let middle = x.min(frame.x + frame.width + RIGHT - 2.0 - half);
+                let style = TextStyle::new(TICK_SIZE).align(Align::Middle);
+                drawing.text((middle, bottom + 19.0), &label, style);
+            }
+        }
     }
 
     /// 1, 2 and 5 of every decade within the axis (all digits of a decade that fills it), and whether there is room for each
@@ -57,13 +79,24 @@ fn power_of_ten(digit: i32, power: i32) -> f64 {
 
 /// `20 µs`, `5 ms`, `100 s`.
 pub(super) fn time_label(seconds: f64) -> String {
-    let (number, unit) = match seconds {
+    let (number, unit) = in_unit(seconds);
+    format!("{number:.0} {unit}")
+}
+
+/// A time to three digits that count: `20.3 µs`.
+pub(super) fn time_words(seconds: f64) -> String {
+    let (number, unit) = in_unit(seconds);
+    let rounded: f64 = format!("{number:.2e}").parse().unwrap_or(number);
+    format!("{rounded} {unit}")
+}
+
+fn in_unit(seconds: f64) -> (f64, &'static str) {
+    match seconds {
         s if s < 0.999e-6 => (s * 1e9, "ns"),
         s if s < 0.999e-3 => (s * 1e6, "µs"),
         s if s < 0.999 => (s * 1e3, "ms"),
         s => (s, "s"),
-    };
-    format!("{number:.0} {unit}")
+    }
 }
 
 #[cfg(test)]
@@ -83,6 +116,18 @@ mod tests {
             (200.0, "200 s"),
         ] {
             assert_eq!(time_label(seconds), label);
+        }
+    }
+
+    #[test]
+    fn times_in_words_have_three_digits() {
+        for (seconds, words) in [
+            (4.2e-8, "42 ns"),
+            (2.0349e-5, "20.3 µs"),
+            (0.12, "120 ms"),
+            (1234.0, "1230 s"),
+        ] {
+            assert_eq!(time_words(seconds), words);
         }
     }
 

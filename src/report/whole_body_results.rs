@@ -1,36 +1,15 @@
 //! The folder of a study of a whole body: tables, charts, a picture, the page; and what a run prints at its end.
 
 use crate::error::Result;
-use crate::report::axis::short_number;
-use crate::report::drawing::escape;
 use crate::report::folder::Folder;
-use crate::report::headlines::TextTable;
-use crate::report::html::{Picture, STYLE, figure, fill};
+use crate::report::page::plain::{charts, plain_page};
+use crate::report::page::{Picture, Section, StudyAbout, figure};
 use crate::report::whole_body_charts::draw_whole_body_charts;
 use crate::report::whole_body_picture::whole_body_picture;
 use crate::report::whole_body_text::{bars_table, recognition_table, scenes_table};
 use crate::study::whole_body::table::WholeBodyTables;
 use crate::study::whole_body::{BodyOutcome, BodyPicture};
 use std::path::{Path, PathBuf};
-
-const TEMPLATE: &str = include_str!("whole_body.html");
-
-/// What a study of a whole body says of itself, beside its tables.
-#[derive(Clone, Debug, Default)]
-pub struct WholeBodyAbout {
-    /// The study's name.
-    pub name: String,
-    /// What it asks.
-    pub question: String,
-    /// What was expected before it ran; may be empty.
-    pub expected: String,
-    /// Seconds from start to end.
-    pub wall_s: f64,
-    /// The command that makes the folder again.
-    pub command: String,
-    /// Program and version: `bubbletouch 0.1.0`.
-    pub program: String,
-}
 
 /// File names of the tables, in the order in which they are written.
 pub const WHOLE_BODY_FILES: [&str; 5] = [
@@ -47,7 +26,7 @@ pub const WHOLE_BODY_FILES: [&str; 5] = [
 pub fn write_whole_body(
     dir: &Path,
     outcome: &BodyOutcome,
-    about: &WholeBodyAbout,
+    about: &StudyAbout,
 ) -> Result<Vec<PathBuf>> {
     let tables = &outcome.tables;
     let mut folder = Folder::new(dir);
@@ -57,43 +36,24 @@ pub fn write_whole_body(
     folder.add_table(recognition, &tables.recognition)?;
     folder.add_table(sensed, &tables.sensed)?;
     folder.add_table(timing, &tables.timing)?;
-    let mut charts = String::new();
-    for (name, title, drawing) in draw_whole_body_charts(tables) {
-        charts += &figure(&Picture::of(&drawing, &title));
-        folder.add_chart(&name, &title, &drawing)?;
-    }
-    let mut picture = String::new();
+    let mut found: Vec<Section> = Vec::new();
+    found.extend(bars_table(tables).map(|table| table.section("bars")));
     if let Some(scene) = most_touched(outcome) {
         let drawn = whole_body_picture(scene)?;
         let png = drawn.png()?;
         let title = format!("The scene {}, and the pressure on each patch", scene.scene);
-        let size = (drawn.width as f64, drawn.height as f64);
-        let shown = figure(&Picture::of_png(&png, size, &title));
-        picture = format!("<section><h2>What is touched</h2>{shown}</section>");
+        let shown = figure(&Picture::of_png(&png, (drawn.width, drawn.height), &title));
+        found.push(Section::new("touched", "What is touched", shown));
         folder.add("touched.png", png);
     }
-    let html = |table: Option<_>| table.map_or(String::new(), |table: TextTable| table.html());
-    let page = fill(TEMPLATE, |name| match name {
-        "style" => STYLE.to_owned(),
-        "name" => escape(&about.name),
-        "question" => escape(&about.question),
-        "expected" if about.expected.is_empty() => String::new(),
-        "expected" => format!(
-            "<p class=\"quiet\">Expected: {}</p>",
-            escape(&about.expected)
-        ),
-        "bars" => html(bars_table(tables)),
-        "picture" => picture.clone(),
-        "scenes" => html(scenes_table(tables)),
-        "charts" => charts.clone(),
-        "recognition" => html(recognition_table(tables)),
-        "wall" => short_number(about.wall_s.round()),
-        "command" => escape(&about.command),
-        "program" => escape(&about.program),
-        "files" => WHOLE_BODY_FILES.join(", "),
-        other => format!("(no value for {other})"),
-    });
-    folder.add("report.html", page);
+    found.extend(scenes_table(tables).map(|table| table.section("scenes")));
+    let drawn = draw_whole_body_charts(tables);
+    for (name, title, drawing) in &drawn {
+        folder.add_chart(name, title, drawing)?;
+    }
+    found.push(charts(&drawn));
+    found.extend(recognition_table(tables).map(|table| table.section("recognition")));
+    folder.add("report.html", plain_page(about, found, &WHOLE_BODY_FILES));
     folder.write()
 }
 

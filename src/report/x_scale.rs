@@ -17,18 +17,14 @@ pub(super) struct XScale {
 }
 
 impl XScale {
-    /// Numbers stand on a logarithmic axis where ratios are what matters, strengths that start at zero and grow manifold on a
-    /// square-root axis, words at equal distances.
+    /// Places of values in a panel.
     pub(super) fn of(levels: &Levels, frame: Area) -> Self {
-        let places: Vec<f64> = match levels.numbers() {
-            Some(numbers) if is_logarithmic(levels.axis, &numbers) => {
-                numbers.iter().map(|number| number.ln()).collect()
-            }
-            Some(numbers) if is_of_roots(levels.axis, &numbers) => {
-                numbers.iter().map(|number| number.sqrt()).collect()
-            }
-            Some(numbers) => numbers,
-            None => (0..levels.values.len()).map(|i| i as f64).collect(),
+        let numbers = levels.numbers().unwrap_or_default();
+        let places: Vec<f64> = match spacing(levels) {
+            Spacing::Logarithmic => numbers.iter().map(|number| number.ln()).collect(),
+            Spacing::OfRoots => numbers.iter().map(|number| number.sqrt()).collect(),
+            Spacing::Even => numbers,
+            Spacing::Words => (0..levels.values.len()).map(|i| i as f64).collect(),
         };
         let low = places.iter().copied().fold(f64::INFINITY, f64::min);
         let high = places.iter().copied().fold(f64::NEG_INFINITY, f64::max);
@@ -67,6 +63,29 @@ fn label_rows(ticks: &[(AxisValue, f64)]) -> Vec<Option<usize>> {
         rows.push(row);
     }
     rows
+}
+
+/// How the values of an axis are spaced.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Spacing {
+    /// Where ratios are what matters.
+    Logarithmic,
+    /// By square roots: strengths that start at zero and grow manifold.
+    OfRoots,
+    /// By themselves.
+    Even,
+    /// At equal distances: words.
+    Words,
+}
+
+/// The spacing that suits an axis.
+pub(super) fn spacing(levels: &Levels) -> Spacing {
+    match levels.numbers() {
+        Some(numbers) if is_logarithmic(levels.axis, &numbers) => Spacing::Logarithmic,
+        Some(numbers) if is_of_roots(levels.axis, &numbers) => Spacing::OfRoots,
+        Some(_) => Spacing::Even,
+        None => Spacing::Words,
+    }
 }
 
 fn is_logarithmic(axis: Axis, numbers: &[f64]) -> bool {

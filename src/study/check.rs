@@ -11,6 +11,9 @@ pub fn not_negative(value: f64) -> bool {
     value.is_finite() && value >= 0.0
 }
 
+/// Values of one axis, at most: more is a slip, and each would be compared with all others.
+const MOST_VALUES: usize = 10_000;
+
 /// Checks of one file's keys.
 pub struct Check<'a> {
     /// The study's file.
@@ -51,12 +54,25 @@ impl Check<'_> {
         if values.is_empty() {
             return Err(self.error(key, "an empty list", "at least one value"));
         }
+        self.axis_length(key, values.len())?;
         for (index, value) in values.iter().enumerate() {
             if values[..index].contains(value) {
                 return Err(self.error(key, format!("{value:?} twice"), "each value once"));
             }
         }
         Ok(values)
+    }
+
+    /// An axis of so many values is one that a study can mean.
+    pub fn axis_length(&self, key: &str, n_values: usize) -> Result<()> {
+        match n_values {
+            0..=MOST_VALUES => Ok(()),
+            n => Err(self.error(
+                key,
+                format!("{n} values"),
+                format!("at most {MOST_VALUES} values"),
+            )),
+        }
     }
 
     pub fn counts(&self, key: &str, axis: &Axis<usize>) -> Result<Vec<usize>> {

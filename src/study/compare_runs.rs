@@ -1,9 +1,10 @@
 //! Two runs side by side: what moved between cells of the same settings, and whether chance explains it.
 
 use super::evaluation::CONFIDENCE;
+use super::repeats::Paired;
 use super::table::{Cell, TrialScore};
 use crate::error::{Error, Result};
-use crate::recognition::comparison::{TrialSize, compare, holm};
+use crate::recognition::many_tests::holm_of_some;
 use serde::{Deserialize, Serialize};
 use std::collections::HashMap;
 
@@ -96,16 +97,8 @@ fn settings(cell: &Cell) -> String {
 }
 
 fn difference(first: &[Row], second: &[Row]) -> Result<RunDifference> {
-    let pairs: Vec<(&TrialScore, &TrialScore)> = second
-        .iter()
-        .filter_map(|(_, ours)| {
-            let mut first = first.iter().map(|(_, theirs)| theirs);
-            Some((first.find(|theirs| theirs.trial == ours.trial)?, ours))
-        })
-        .collect();
-    let of_first: Vec<f64> = pairs.iter().map(|(theirs, _)| theirs.accuracy).collect();
-    let of_second: Vec<f64> = pairs.iter().map(|(_, ours)| ours.accuracy).collect();
-    if pairs.is_empty() {
+    let paired = Paired::of(second, first);
+    if paired.n_trials() == 0 {
         let given = format!("no trial of cell {} is in both", second[0].0.cell);
         return Err(Error::input(
             "two runs",
@@ -113,19 +106,14 @@ fn difference(first: &[Row], second: &[Row]) -> Result<RunDifference> {
             "runs that share their trials",
         ));
     }
-    let mean = |values: &[f64]| values.iter().sum::<f64>() / values.len() as f64;
-    let (cell, ours) = &second[0];
-    let size = TrialSize {
-        n_train: ours.n_train,
-        n_test: ours.n_test * cell.fused_touches,
-    };
-    let test = compare(&of_second, &of_first, size, CONFIDENCE)?;
+    let (ours, theirs) = paired.means();
+    let test = paired.test()?;
     Ok(RunDifference {
         first_cell: first[0].0.cell,
-        n_trials: pairs.len(),
-        first_accuracy: mean(&of_first),
-        second_accuracy: mean(&of_second),
-        difference: mean(&of_second) - mean(&of_first),
+        n_trials: paired.n_trials(),
+        first_accuracy: theirs,
+        second_accuracy: ours,
+        difference: ours - theirs,
         difference_low: test.map(|t| t.interval.low),
         difference_high: test.map(|t| t.interval.high),
         p_value: test.map(|t| t.p_value),
@@ -134,13 +122,8 @@ fn difference(first: &[Row], second: &[Row]) -> Result<RunDifference> {
 }
 
 fn correct(rows: &mut [(Cell, RunDifference)]) {
-    let tested: Vec<&mut RunDifference> = rows
-        .iter_mut()
-        .map(|(_, row)| row)
-        .filter(|row| row.p_value.is_some())
-        .collect();
-    let values: Vec<f64> = tested.iter().filter_map(|row| row.p_value).collect();
-    for (row, p) in tested.into_iter().zip(holm(&values)) {
-        row.p_holm = Some(p);
+    let p_values: Vec<Option<f64>> = rows.iter().map(|(_, row)| row.p_value).collect();
+    for ((_, row), p_holm) in rows.iter_mut().zip(holm_of_some(&p_values)) {
+        row.p_holm = p_holm;
     }
 }

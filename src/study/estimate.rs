@@ -1,12 +1,12 @@
 //! What a study will take: cells, touches, memory and time, told before it runs.
 
+use super::memory::MemoryPlan;
 use super::plan::Plan;
 use super::sweep::{Group, Sweep};
 use super::table::Cell;
 use super::touch_set::TouchSet;
 use crate::recognition::ClassifierKind;
 use crate::recognition::svm::{Multiclass, Solver};
-use crate::sensing::Ensemble;
 use crate::world::Patch;
 use std::fmt;
 
@@ -29,7 +29,7 @@ pub struct Estimate {
     /// Fits of one trial, those of a choice of C and γ not counted; cells that differ in how many touches are fused share
     /// one.
     pub n_fits: usize,
-    /// Most bytes held at once: the frames of one array (F · n_touches · n_taxels, f32), the measurements in flight.
+    /// Most bytes held at once.
     pub memory_bytes: f64,
     /// Seconds to make all touches, one core.
     pub simulate_s: f64,
@@ -76,33 +76,16 @@ const PREDICT_S: f64 = 2.5e-11;
 
 impl Estimate {
     /// Estimates a study that is laid out.
-    pub fn new(plan: &Plan, touched: &dyn TouchSet, sweep: &Sweep) -> Self {
+    pub fn new(plan: &Plan, touched: &dyn TouchSet, sweep: &Sweep, memory: &MemoryPlan) -> Self {
         let n_touches = sweep.labels.len();
         let n_threads = rayon::current_num_threads();
         let n_trials = plan.spec.trials;
-        let taxels = |group: &Group| plan.arrays[group.array].grid.n_taxels() as f64;
-        let largest = |group: &Group| group.projected().into_iter().max().unwrap_or(0) as f64;
-        let frames = sweep
-            .groups
-            .iter()
-            .map(|g| 4.0 * (n_touches * g.frames) as f64 * taxels(g));
-        // Of every group in flight: its measurements, the scaled copies that training and prediction make of them, and a
-        // matrix if its ensemble has one.
-        let in_flight = sweep.groups.iter().map(|g| {
-            let matrix = match g.ensemble {
-                Ensemble::Gaussian => 8.0 * taxels(g) * largest(g),
-                _ => 0.0,
-            };
-            n_threads as f64 * (16.0 * (n_touches * g.frames) as f64 * largest(g) + matrix)
-        });
-        let place_s = touched.place_s();
-        let n_presses = plan.frames.iter().sum::<usize>() as f64;
-        let press_s =
-            |patch: &Patch| place_s + CLEAR_TAXEL_S * (n_touches * patch.grid.n_taxels()) as f64;
-        let simulate_s = n_presses * plan.arrays.iter().map(press_s).sum::<f64>();
-        let read_s = |g: &Group| {
-            let n_frames = (n_touches * g.frames) as f64;
-            n_frames * taxels(g) * (SIGNAL_TAXEL_S + PROJECT_S * largest(g))
+        let n_presses = plan.frames.iter().sum::<usize>();
+        let arrays = plan.arrays.iter();
+        let simulate_s = arrays.map(|patch| touch_s(patch, touched, n_touches, n_presses));
+        let read_s = |g: &Group| -> f64 {
+            let projected = g.projected().into_iter();
+            projected.map(|m| measure_s(plan, g, n_touches, m)).sum()
         };
         // Of the cells that share a fit, the first.
         let fits = || {
@@ -117,8 +100,8 @@ impl Estimate {
             n_cells: sweep.n_cells(),
             n_trials,
             n_fits: fits().count(),
-            memory_bytes: largest_of(frames) + largest_of(in_flight),
-            simulate_s,
+            memory_bytes: memory.most_bytes,
+            simulate_s: simulate_s.sum(),
             measure_s: n_trials as f64 * sweep.groups.iter().map(read_s).sum::<f64>(),
             recognise_s: n_trials as f64
                 * fits()
@@ -132,6 +115,36 @@ impl Estimate {
     pub fn wall_s(&self) -> f64 {
         (self.simulate_s + self.measure_s + self.recognise_s) / self.n_threads as f64
     }
+}
+
+/// Processor-seconds to make all touches on an array, so many frames each.
+pub(super) fn touch_s(
+    patch: &Patch,
+    touched: &dyn TouchSet,
+    n_touches: usize,
+    n_frames: usize,
+) -> f64 {
+    let clear_s = CLEAR_TAXEL_S * (n_touches * patch.grid.n_taxels()) as f64;
+    n_frames as f64 * (touched.place_s() + clear_s)
+}
+
+/// Processor-seconds to read and project all frames of a group once.
+pub(super) fn measure_s(
+    plan: &Plan,
+    group: &Group,
+    n_touches: usize,
+    n_measurements: usize,
+) -> f64 {
+    let n_taxels = plan.arrays[group.array].grid.n_taxels();
+    let n_read = (n_touches * group.frames * n_taxels) as f64;
+    n_read * (SIGNAL_TAXEL_S + PROJECT_S * n_measurements as f64)
+}
+
+/// Processor-seconds to fit and test a family in one trial.
+pub(super) fn family_s(plan: &Plan, family: &[Cell], n_objects: usize, n_touches: usize) -> f64 {
+    let fits = family.chunk_by(|a, b| a.c == b.c);
+    fits.map(|cells| recognise_s(plan, &cells[0], n_objects, n_touches))
+        .sum()
 }
 
 /// The fits of a family with one C in one trial, and the prediction of every test touch.
@@ -200,10 +213,6 @@ fn fit_s(plan: &Plan, cell: &Cell, n_objects: usize, touches: f64) -> f64 {
     }
 }
 
-fn largest_of(values: impl Iterator<Item = f64>) -> f64 {
-    values.fold(0.0, f64::max)
-}
-
 impl fmt::Display for Estimate {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         writeln!(f, "  objects  {}", self.n_objects)?;
@@ -226,7 +235,7 @@ impl fmt::Display for Estimate {
                 (results, fits) => format!("{results} results of {fits} fits"),
             }
         )?;
-        writeln!(f, "  memory   about {}", Bytes(self.memory_bytes))?;
+        writeln!(f, "  memory   at most {}", Bytes(self.memory_bytes))?;
         write!(
             f,
             "  time     about {} on {} threads (one core: touch {}, measure {}, recognise {})",

@@ -94,10 +94,13 @@ impl Trial<'_> {
         let truth: Array1<usize> = truth;
         let n_objects = self.sweep.labels.iter().max().map_or(0, |last| last + 1);
         let matrix = ConfusionMatrix::new(truth.view(), predicted.view(), n_objects)?;
+        let (split, projection) = self.plan.repeats.numbers(self.number);
         let interval = Interval::wilson(matrix.n_correct(), matrix.n_rows(), CONFIDENCE)?;
         Ok(Evaluation {
             score: TrialScore {
                 trial: self.number,
+                split,
+                projection,
                 n_train: scored.n_train,
                 n_test: matrix.n_rows(),
                 n_left_out: rows.n_left_out,

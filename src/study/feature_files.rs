@@ -9,6 +9,7 @@
 //! | `objects.csv` | one row an object: number, name |
 //! | `cell.toml` | the settings of the cell and the trial |
 
+use super::frames::FrameStorage;
 use super::measurement::measure_group;
 use super::plan::Plan;
 use super::progress::Progress;
@@ -73,7 +74,8 @@ pub fn cell_features(
         &format!("touch {}", describe(patch)),
         sweep.labels.len() as u64,
     );
-    let frames = touched.simulate(patch, group.frames, progress);
+    let storage = FrameStorage::in_memory();
+    let frames = storage.frames(touched, (patch, group.frames), progress)?;
     // As the run does it: nested measurements are the leading ones of the largest m.
     let n_projected = group
         .projected()

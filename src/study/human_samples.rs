@@ -70,6 +70,8 @@ pub fn human_samples(plan: &Plan, sweep: &Sweep, touches: &HumanTouches) -> Resu
             "One touch of each kind by a hand on {} × {} taxels at {pitch_mm} mm around a forearm (x around it, y along it), no noise",
             grid.nx, grid.ny
         ),
+        each: Vec::new(),
+        each_caption: String::new(),
     })
 }
 

@@ -1,12 +1,13 @@
 //! Human touches of a study: drawn once, recorded on each array.
 
+use super::content_hash::ContentHash;
+use super::frames::{FrameWriter, Frames, Making, Press};
 use super::human_samples::human_samples;
 use super::measurement::TouchToRead;
 use super::plan::Plan;
 use super::plan_human::HumanTouchPlan;
 use super::progress::Progress;
 use super::samples::Samples;
-use super::simulation::Frames;
 use super::spec::GroupSpec;
 use super::sweep::Sweep;
 use super::touch_set::TouchSet;
@@ -15,14 +16,10 @@ use crate::error::{Error, Result};
 use crate::objects::{Hand, Model};
 use crate::random::Seed;
 use crate::world::{HumanTouch, Patch, SkinPatch, TouchRanges};
-use ndarray::{Array1, Array2, ArrayViewMut2, Axis};
+use ndarray::{Array1, ArrayViewMut2};
 use rand::Rng;
 use rayon::prelude::*;
 use std::collections::BTreeMap;
-use std::time::Instant;
-
-/// Touches recorded by one thread at a time.
-const BLOCK: usize = 8;
 
 /// Seconds to bring a hand to the skin once, and of a moving one to make its spheres.
 const PLACE_HAND_S: f64 = 6e-5;
@@ -129,52 +126,36 @@ impl TouchSet for HumanTouches {
         ))
     }
 
-    fn simulate(&self, patch: &Patch, n_frames: usize, progress: &dyn Progress) -> Frames {
+    fn simulate(
+        &self,
+        (patch, n_frames): (&Patch, usize),
+        writer: FrameWriter,
+        progress: &dyn Progress,
+    ) -> Result<Frames> {
         let skin = self
             .plan
             .skin(patch)
             .expect("the plan has checked that it fits");
-        let n_rows = self.touches.len() * n_frames;
-        let mut deflection = Array2::zeros((n_rows, patch.grid.n_taxels()));
-        let counts: Vec<(usize, usize, f64)> = deflection
-            .axis_chunks_iter_mut(Axis(0), BLOCK * n_frames)
-            .into_par_iter()
-            .zip(self.touches.par_chunks(BLOCK))
-            .map_init(SkinWorkspace::new, |workspace, (mut rows, touches)| {
-                let start = Instant::now();
-                let (mut n_missed, mut n_saturated) = (0, 0);
-                let rows = rows.axis_chunks_iter_mut(Axis(0), n_frames);
-                for (rows, touch) in rows.zip(touches) {
-                    let (missed, saturated) =
-                        record_touch(&skin, touch, self.plan.interval, rows, workspace);
-                    n_missed += usize::from(missed);
-                    n_saturated += usize::from(saturated);
-                }
-                progress.advance(touches.len() as u64);
-                (n_missed, n_saturated, start.elapsed().as_secs_f64())
-            })
-            .collect();
-        Frames {
-            deflection,
-            n_frames,
-            n_missed: counts.iter().map(|count| count.0).sum(),
-            n_saturated: counts.iter().map(|count| count.1).sum(),
-            cpu_s: counts.iter().map(|count| count.2).sum(),
-        }
+        let interval = self.plan.interval;
+        let mut making = Making::new(writer, n_frames, progress);
+        making.make(&HandPress { skin, interval }, &self.touches)?;
+        making.finish()
     }
 
     fn to_read(&self, _plan: &Plan, _n_frames: usize, seed: &Seed) -> Vec<TouchToRead> {
-        let of_kind = |name: &'static str| {
+        let of_kind = |(label, name): (usize, &'static str)| {
             let kind = seed.named(name);
-            (0..self.plan.per_kind as u64).map(move |touch| TouchToRead {
-                seed: kind.numbered(touch),
+            let n = self.plan.per_kind;
+            (0..n).map(move |touch| TouchToRead {
+                number: label * n + touch,
+                seed: kind.numbered(touch as u64),
                 interval: Some(self.plan.interval),
                 before: None,
                 skin: 0,
             })
         };
-        let kinds = self.plan.kinds.iter();
-        kinds.flat_map(|kind| of_kind(kind.name())).collect()
+        let names = self.plan.kinds.iter().map(|kind| kind.name());
+        names.enumerate().flat_map(of_kind).collect()
     }
 
     fn samples(&self, plan: &Plan, sweep: &Sweep) -> Result<Samples> {
@@ -201,7 +182,38 @@ impl TouchSet for HumanTouches {
             row("Arm", format!("{:.0} mm across", 2e3 * self.plan.surface)),
         ]
     }
+
     fn content(&self) -> BTreeMap<String, String> {
         BTreeMap::new()
+    }
+
+    fn key(&self) -> String {
+        let hash = ContentHash::default().bytes(format!("{:?}", self.plan));
+        hash.bytes(format!("{:?}", self.touches)).hex()
+    }
+}
+
+/// Records hands on a skin.
+struct HandPress {
+    skin: SkinPatch,
+    /// Seconds between frames.
+    interval: f64,
+}
+
+impl Press for HandPress {
+    type Touch = RecordedTouch;
+    type Workspace = SkinWorkspace;
+
+    fn workspace(&self) -> SkinWorkspace {
+        SkinWorkspace::new()
+    }
+
+    fn press(
+        &self,
+        touch: &RecordedTouch,
+        workspace: &mut SkinWorkspace,
+        rows: ArrayViewMut2<f32>,
+    ) -> (bool, bool) {
+        record_touch(&self.skin, touch, self.interval, rows, workspace)
     }
 }

@@ -2,14 +2,15 @@
 
 use super::evaluation::Trial;
 use super::finished::Finished;
+use super::frames::Frames;
 use super::measurement::{Measurements, measure_group};
 use super::runner::Run;
-use super::simulation::Frames;
 use super::sweep::Group;
 use super::table::Cell;
 use crate::error::Result;
 use rayon::prelude::*;
 use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::time::Instant;
 
 /// A group in a trial, and those of its families that are to be evaluated.
 pub struct Job<'a> {
@@ -35,14 +36,7 @@ impl<'a> Job<'a> {
     pub fn run(&self, frames: &Frames) -> Result<(Vec<FinishedFamily<'a>>, f64)> {
         let mut finished = Vec::new();
         let mut measure_s = 0.0;
-        // A group of prefixes is projected once and serves all cells; else each m serves its own.
-        let nested = self.group.ensemble.is_prefix_nested();
-        for n_measurements in self.group.projected() {
-            let serves = |family: &&&[Cell]| nested || family[0].measurements == n_measurements;
-            let families: Vec<&[Cell]> = self.families.iter().filter(serves).copied().collect();
-            if families.is_empty() {
-                continue;
-            }
+        for (n_measurements, families) in self.batches() {
             let (measured, cpu_s) = match self.measure(frames, n_measurements) {
                 Ok(measured) => {
                     let cpu_s = measured.cpu_s;
@@ -52,13 +46,28 @@ impl<'a> Job<'a> {
                 Err(error) => (Err(error.to_string()), 0.0),
             };
             measure_s += cpu_s;
-            let results = families
-                .into_par_iter()
-                .map(|family| self.finish(family, measured.as_ref()))
-                .collect::<Result<Vec<_>>>()?;
-            finished.extend(results);
+            let piece = self.measuring(n_measurements, &families);
+            self.run.progress.worked(&piece, cpu_s);
+            for families in families.chunks(self.run.manner.at_once.families) {
+                let families = families.par_iter();
+                let results = families.map(|family| self.finish(family, measured.as_ref()));
+                finished.extend(results.collect::<Result<Vec<_>>>()?);
+            }
         }
         Ok((finished, measure_s))
+    }
+
+    /// What is measured once, and the families that it serves: a group of prefixes is projected once and serves all cells; else
+    /// each m serves its own.
+    pub fn batches(&self) -> Vec<(usize, Vec<&'a [Cell]>)> {
+        let nested = self.group.ensemble.is_prefix_nested();
+        let served = |n_measurements| {
+            let serves = |family: &&&[Cell]| nested || family[0].measurements == n_measurements;
+            let families: Vec<&[Cell]> = self.families.iter().filter(serves).copied().collect();
+            (!families.is_empty()).then_some((n_measurements, families))
+        };
+        let projected = self.group.projected().into_iter();
+        projected.filter_map(served).collect()
     }
 
     fn measure(&self, frames: &Frames, n_measurements: usize) -> Result<Measurements> {
@@ -78,10 +87,13 @@ impl<'a> Job<'a> {
         family: &'a [Cell],
         measured: std::result::Result<&Measurements, &String>,
     ) -> Result<FinishedFamily<'a>> {
+        let start = Instant::now();
         let finished = match measured {
             Ok(measured) => self.evaluate(family, measured)?,
             Err(said) => Finished::Failed(said.clone()),
         };
+        let took_s = start.elapsed().as_secs_f64();
+        self.run.progress.worked(&self.run.learning(family), took_s);
         finished.keep(self.run.manner.journal, family, self.trial)?;
         self.run.progress.advance(family.len() as u64);
         Ok((family, self.trial, finished))

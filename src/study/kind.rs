@@ -1,5 +1,5 @@
-//! What a study asks about: recognition, reconstruction, the objects themselves, a whole body, contact itself, or where
-//! recognition breaks.
+//! What a study asks about: recognition, reconstruction, the objects themselves, a whole body, contact itself, where recognition
+//! breaks, or what accuracy costs.
 
 /// The kinds of studies, told apart by a table that only one of them has.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -16,6 +16,8 @@ pub enum StudyKind {
     Stability,
     /// How far can each setting be driven before recognition breaks? A file with `[[breaking_points]]` tables.
     BreakingPoints,
+    /// What does accuracy cost? A file with a `[speed_accuracy]` table.
+    SpeedAccuracy,
 }
 
 impl StudyKind {
@@ -28,6 +30,7 @@ impl StudyKind {
             () if table.contains_key("whole_body") => Self::WholeBody,
             () if table.contains_key("stability") => Self::Stability,
             () if table.contains_key("breaking_points") => Self::BreakingPoints,
+            () if table.contains_key("speed_accuracy") => Self::SpeedAccuracy,
             () => Self::Recognition,
         }
     }
@@ -41,6 +44,7 @@ impl StudyKind {
             Self::WholeBody => "a study of a whole body of skin",
             Self::Stability => "a study of where contact methods break",
             Self::BreakingPoints => "a study of where recognition breaks",
+            Self::SpeedAccuracy => "a study of what accuracy costs",
         }
     }
 }

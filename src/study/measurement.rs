@@ -1,9 +1,10 @@
 //! Frames → signal → measurements, for one condition of the signal, ensemble and trial.
 
+use super::frames::{Frames, KeptFrames};
 use super::imperfection::{TestedOn, skin};
 use super::plan::Plan;
 use super::runner::signal_steps;
-use super::simulation::{Frames, TouchedObject};
+use super::simulation::TouchedObject;
 use super::sweep::Group;
 use super::table::Cell;
 use super::touch_set::TouchSet;
@@ -13,7 +14,7 @@ use crate::recognition::split::Split;
 use crate::sensing::Projection;
 use crate::signal::{Chain, Recording, Scratch};
 use crate::world::Taxel;
-use ndarray::{Array1, Array2, ArrayView2, ArrayViewMut2, Axis, s};
+use ndarray::{Array1, Array2, ArrayViewMut2, Axis, s};
 use rand::Rng;
 use rayon::prelude::*;
 use std::time::Instant;
@@ -84,6 +85,8 @@ impl Measurements {
 /// A touch to read.
 #[derive(Clone, Copy, Debug)]
 pub struct TouchToRead {
+    /// Its number: its frames are those from `number · F` on.
+    pub number: usize,
     /// Its name: what its own randomness is drawn from.
     pub seed: Seed,
     /// Seconds between its frames; `None` when the press waits at each.
@@ -96,10 +99,14 @@ pub struct TouchToRead {
 
 /// All touches, named by their object and their number within it; each at rest while it is read, on a fresh skin.
 pub fn touches_to_read(touched: &[TouchedObject], seed: &Seed) -> Vec<TouchToRead> {
+    let mut number = 0;
     let of_object = |t: &TouchedObject| {
         let object = seed.named(&t.object.name);
-        (0..t.touches.len() as u64).map(move |touch| TouchToRead {
-            seed: object.numbered(touch),
+        let first = number;
+        number += t.touches.len();
+        (0..t.touches.len()).map(move |touch| TouchToRead {
+            number: first + touch,
+            seed: object.numbered(touch as u64),
             interval: None,
             before: None,
             skin: 0,
@@ -139,12 +146,13 @@ pub fn measure_group(
 ) -> Result<Measurements> {
     let patch = &plan.arrays[group.array];
     let seed = Seed::new(plan.spec.seed);
+    let drawn = plan.repeats.projection(trial) as u64;
     let trial = trial as u64;
     let projection = Projection::new(
         group.ensemble,
         (patch.grid.ny, patch.grid.nx),
         n_measurements,
-        &seed.named("projection").numbered(trial),
+        &seed.named("projection").numbered(drawn),
     )?;
     let skins = skins(plan, group, trial);
     let chains: Vec<Chain> = skins
@@ -158,15 +166,16 @@ pub fn measure_group(
         speed: plan.speed,
     };
     let signal = seed.named("signal").numbered(trial);
-    let mut touches = touched.to_read(plan, frames.n_frames, &signal);
+    let n_frames = frames.facts.n_frames;
+    let mut touches = touched.to_read(plan, n_frames, &signal);
     for &touch in &split.test {
         touches[touch].skin = skins.len() - 1;
     }
-    let (values, cpu_s) = measure(reading, frames.deflection.view(), &touches);
+    let (values, cpu_s) = measure(reading, (&frames.kept, n_frames), &touches)?;
     let ones = Array2::ones((1, patch.grid.n_taxels()));
     Ok(Measurements {
         values,
-        n_frames: frames.n_frames,
+        n_frames,
         of_ones: projection.measure(ones.view()).row(0).to_owned(),
         cpu_s,
     })
@@ -182,45 +191,43 @@ fn skins(plan: &Plan, group: &Group, trial: u64) -> Vec<Seed> {
     }
 }
 
-/// Reads every touch of (n_touches · F) × n_taxels metres of deflection. With the measurements (n_touches · F) × m come
-/// processor-seconds.
+/// Reads touches of F frames of deflection each. With the measurements (n_touches · F) × m come processor-seconds.
+///
+/// # Errors
+/// Frames that are in a file cannot be read.
 pub fn measure(
     reading: Reading,
-    deflection: ArrayView2<f32>,
+    (frames, n_frames): (&KeptFrames, usize),
     touches: &[TouchToRead],
-) -> (Array2<f64>, f64) {
-    let n_frames = deflection.nrows() / touches.len().max(1);
+) -> Result<(Array2<f64>, f64)> {
     let block = (BLOCK / n_frames.max(1)).max(1);
     let n_measurements = reading.projection.n_measurements();
-    let mut values = Array2::zeros((deflection.nrows(), n_measurements));
+    let mut values = Array2::zeros((touches.len() * n_frames, n_measurements));
     let cpu_s = values
         .axis_chunks_iter_mut(Axis(0), block * n_frames.max(1))
         .into_par_iter()
-        .zip(touches.par_chunks(block).enumerate())
-        .map_init(Scratch::default, |scratch, (out, (number, touches))| {
+        .zip(touches.par_chunks(block))
+        .map_init(Scratch::default, |scratch, (out, touches)| {
             let start = Instant::now();
-            let first = number * block * n_frames;
-            let touches = (touches, first, n_frames);
-            measure_block(reading, deflection, touches, scratch, out);
-            start.elapsed().as_secs_f64()
+            measure_block(reading, (frames, n_frames), touches, scratch, out)?;
+            Ok(start.elapsed().as_secs_f64())
         })
-        .collect::<Vec<_>>()
+        .collect::<Result<Vec<_>>>()?
         .iter()
         .sum();
-    (values, cpu_s)
+    Ok((values, cpu_s))
 }
 
-/// Reads touches whose frames follow each other from a row on, F each.
+/// Reads some touches, F frames each.
 fn measure_block(
     reading: Reading,
-    deflection: ArrayView2<f32>,
-    (touches, first, n_frames): (&[TouchToRead], usize, usize),
+    (kept, n_frames): (&KeptFrames, usize),
+    touches: &[TouchToRead],
     scratch: &mut Scratch,
     out: ArrayViewMut2<f64>,
-) {
-    let n_taxels = deflection.ncols();
-    let rows = s![first..first + touches.len() * n_frames, ..];
-    let mut frames = deflection.slice(rows).mapv(f64::from);
+) -> Result<()> {
+    let n_taxels = kept.n_taxels();
+    let mut frames = Array2::zeros((touches.len() * n_frames, n_taxels));
     let all = frames
         .as_slice_mut()
         .expect("rows of a new array are contiguous");
@@ -229,6 +236,9 @@ fn measure_block(
         .iter()
         .zip(all.chunks_exact_mut(n_frames * n_taxels))
     {
+        for (frame, row) in frames.chunks_exact_mut(n_taxels).enumerate() {
+            kept.read(touch.number * n_frames + frame, row)?;
+        }
         let before = touch
             .before
             .filter(|_| reading.chains[touch.skin].remembers());
@@ -237,15 +247,16 @@ fn measure_block(
             continue;
         };
         // The deepest frame of the touch before, and the skin let go.
-        let deepest = deflection.row((before + 1) * n_frames - 1);
         with_history.clear();
-        with_history.extend(deepest.iter().map(|&value| f64::from(value)));
         with_history.resize(2 * n_taxels, 0.0);
+        let deepest = (before + 1) * n_frames - 1;
+        kept.read(deepest, &mut with_history[..n_taxels])?;
         with_history.extend_from_slice(frames);
         reading.read(touch, (&mut with_history, 2), &mut rates, scratch);
         frames.copy_from_slice(&with_history[2 * n_taxels..]);
     }
     reading.projection.measure_into(frames.view(), out);
+    Ok(())
 }
 
 impl Reading<'_> {

@@ -6,6 +6,7 @@
 //! Threads live here. Whatever their number, a study's tables are the same bytes, times apart: every touch, split, noise and
 //! projection is drawn from its own named stream, and sums are taken in a fixed order.
 
+pub mod advice;
 mod axis;
 pub mod breaking_points;
 mod check;
@@ -15,6 +16,7 @@ mod estimate;
 mod evaluation;
 mod feature_files;
 mod finished;
+mod frames;
 mod human_samples;
 mod human_touches;
 mod imperfection;
@@ -22,6 +24,7 @@ mod job;
 pub mod journal;
 mod kind;
 mod measurement;
+pub mod memory;
 pub mod object_detail;
 mod object_files;
 mod packing_cache;
@@ -38,6 +41,7 @@ pub mod progress;
 pub mod provenance;
 mod published;
 pub mod reconstruction;
+mod repeats;
 mod runner;
 mod samples;
 mod shard;
@@ -46,16 +50,20 @@ mod spec;
 mod spec_human;
 mod spec_scene;
 mod spec_signal;
+pub mod speed_accuracy;
 mod splits;
 pub mod stability;
 mod summary;
 mod sweep;
 pub mod table;
 mod tabulate;
+pub mod time_left;
 mod touch_files;
 mod touch_set;
 mod training;
+mod variance_table;
 pub mod whole_body;
+mod workload;
 
 pub use axis::Axis;
 pub(crate) use check::{Check, not_negative, positive};
@@ -64,6 +72,9 @@ pub(crate) use content_hash::ContentHash;
 pub use estimate::Estimate;
 pub use evaluation::CONFIDENCE;
 pub use feature_files::{FeatureSet, cell_features, read_features, write_features, write_npy};
+pub use frames::{
+    CachedTouches, FrameFacts, FrameStorage, FrameWriter, Frames, KeptFrames, TouchCache,
+};
 pub use human_touches::{HumanTouches, RecordedTouch, record_touch};
 pub use imperfection::{IMPERFECTIONS, Imperfection, Strengths, TestedOn};
 pub use kind::StudyKind;
@@ -71,16 +82,19 @@ pub use object_files::{
     MeshUse, NamedMesh, load_mesh, load_named_meshes, load_objects, read_mesh_file,
 };
 pub use packing_cache::{CachedPacking, PackingCache};
+pub(crate) use pareto::{Choice, unbeaten};
 pub use part::{Part, n_left};
 pub use plan::{Amount, Plan, SplitKind, SplitPlan, millimetres};
 pub use plan_human::HumanTouchPlan;
 pub use plan_signal::Condition;
+pub use repeats::Repeats;
 pub use runner::{ArrayOutcome, Manner, Outcome, run, run_with};
 pub use samples::{Samples, sample_frames};
 pub use shard::Shard;
-pub use simulation::{Frames, TouchedObject, draw_touches, simulate_array};
+pub use simulation::{TouchedObject, draw_touches, simulate_array};
 pub use spec::*;
 pub use sweep::{Group, Sweep};
 pub use touch_files::write_touches;
 pub use touch_set::TouchSet;
 pub use training::ChoicePlan;
+pub use workload::workload;

@@ -108,10 +108,17 @@ pub fn load_named_meshes(folder: &Path, spec: &ObjectsSpec) -> Result<Vec<NamedM
     Ok(meshes)
 }
 
-fn load_set(set: &str, names: Option<&[String]>, tolerance: f64) -> Result<Vec<Object>> {
-    entries(set)?
-        .par_iter()
+/// The wanted objects of a set, as solids.
+pub(super) fn set_entries(set: &str, names: Option<&[String]>) -> Result<Vec<Entry>> {
+    let entries = entries(set)?.into_iter();
+    Ok(entries
         .filter(|entry| is_wanted(&entry.name, names))
+        .collect())
+}
+
+fn load_set(set: &str, names: Option<&[String]>, tolerance: f64) -> Result<Vec<Object>> {
+    set_entries(set, names)?
+        .par_iter()
         .map(|entry| entry.build(tolerance))
         .collect()
 }

@@ -5,6 +5,7 @@
 use super::check::Check;
 use super::imperfection::{Imperfection, TestedOn};
 use super::plan_human::{HumanTouchPlan, no_placement};
+use super::repeats::Repeats;
 use super::spec::{CombineSpec, GroupSpec, StepSpec, StudySpec};
 use super::training::ChoicePlan;
 use crate::error::Result;
@@ -17,6 +18,9 @@ use crate::world::{Patch, Placement};
 
 /// Metres in a millimetre.
 pub(super) const MM: f64 = 1e-3;
+
+/// Trials of a study, at most: each has its split in memory before the first runs.
+const MOST_TRIALS: usize = 100_000;
 
 /// Millimetres as people write them: 2, not 2.0000000000000004.
 pub fn millimetres(metres: f64) -> f64 {
@@ -76,6 +80,8 @@ pub struct Plan {
     pub choice: ChoicePlan,
     /// How touches are split.
     pub split: SplitPlan,
+    /// What trials draw anew.
+    pub repeats: Repeats,
 }
 
 /// How many measurements: absolute, or as a fraction of the taxels.
@@ -120,6 +126,10 @@ impl Plan {
     pub fn new(place: &str, mut spec: StudySpec) -> Result<Self> {
         let check = Check { place };
         check.positive_count("trials", spec.trials)?;
+        if spec.trials > MOST_TRIALS {
+            let allowed = format!("at most {MOST_TRIALS}");
+            return Err(check.error("trials", spec.trials, allowed));
+        }
         if spec.human_touch.is_none() {
             check.objects(&spec.objects)?;
         }
@@ -158,6 +168,7 @@ impl Plan {
         let mislabelled = check.mislabelled(&spec)?;
         let class_imbalance = check.class_imbalance(&spec)?;
         let split = check.split(&spec)?;
+        let repeats = check.repeats(&spec)?;
         let speed = check.speed(&spec.touches)?;
         Ok(Self {
             arrays,
@@ -184,6 +195,7 @@ impl Plan {
             fused_touches,
             choice,
             split,
+            repeats,
             spec,
         })
     }

@@ -196,6 +196,10 @@ impl Check<'_> {
                 self.positive_count(key, count)?;
             }
         }
+        if let Some(gib) = recognition.solver_memory_gib {
+            let allowed = "a positive number of gibibytes";
+            self.value("recognition.solver_memory_gib", gib, positive, allowed)?;
+        }
         if !(1..=20).contains(&recognition.degree) {
             let given = recognition.degree;
             return Err(self.error("recognition.degree", given, "from 1 to 20"));

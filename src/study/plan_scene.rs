@@ -233,6 +233,7 @@ impl Check<'_> {
             }
             SpreadSpec::Range(RangeSpec::Grid(first, last, count)) => {
                 self.positive_count(key, count)?;
+                self.axis_length(key, count)?;
                 let step = if count > 1 {
                     (last - first) / (count - 1) as f64
                 } else {

@@ -1,10 +1,12 @@
 //! Where results come from: the program, the machine, the study and its objects.
 
 use super::journal::Identity;
+use crate::error::{Error, Result};
 use chrono::{DateTime, SecondsFormat, Utc};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::fs;
+use std::path::Path;
 use std::time::SystemTime;
 
 /// Program and version.
@@ -28,6 +30,12 @@ pub const MANIFEST_FILE: &str = "manifest.json";
 /// `manifest.json`: where the files of a folder come from.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Manifest {
+    /// The study's name; empty in manifests of earlier versions.
+    #[serde(default)]
+    pub study: String,
+    /// The command that makes the folder again; empty in manifests of earlier versions.
+    #[serde(default)]
+    pub command: String,
     /// Program and version.
     pub program: String,
     /// Hash of its sources.
@@ -48,6 +56,9 @@ pub struct Manifest {
     pub started: String,
     /// Its end.
     pub ended: String,
+    /// Most bytes of memory that the last run held, where the system tells.
+    #[serde(default)]
+    pub peak_memory_bytes: Option<u64>,
     /// Cells that the last run found finished, counted once a trial.
     pub n_finished_before: usize,
     /// Root of all randomness.
@@ -64,11 +75,42 @@ pub struct Manifest {
     pub objects_sha256: BTreeMap<String, String>,
     /// SHA-256 of the tables that hold no times, by their file's name.
     pub tables_sha256: BTreeMap<String, String>,
+    /// How the intervals and p-values of the tables are made, by table and columns.
+    #[serde(default)]
+    pub methods: BTreeMap<String, String>,
 }
+
+/// The methods, by table and columns. Everything is at 95 %.
+const METHODS: [(&str, &str); 5] = [
+    (
+        "accuracy.csv, summary.csv: accuracy_low, accuracy_high",
+        "Wilson score interval of the test rows of one trial",
+    ),
+    (
+        "summary.csv: bootstrap_low, bootstrap_high",
+        "bootstrap of the mean over trials, expanded percentiles; with projections_per_split, splits and projections drawn apart",
+    ),
+    (
+        "comparison.csv: difference_low, difference_high, p_value, p_holm",
+        "corrected resampled t-test against the best cell (Nadeau, Bengio 2003); p_holm: corrected for the number of cells by Holm's method",
+    ),
+    (
+        "variance.csv: accuracy_std_low, accuracy_std_high, p_value",
+        "crossed random effects by the method of moments; modified large samples (of the rest chi-squared); F test",
+    ),
+    (
+        "bubbletouch compare: p_holm",
+        "corrected resampled t-tests, corrected for the number of cells by Holm's method",
+    ),
+];
 
 /// What a run says of itself for its manifest.
 #[derive(Clone, Debug)]
 pub struct RunFacts {
+    /// The study's name.
+    pub study: String,
+    /// The command that makes the folder again.
+    pub command: String,
     /// When it began.
     pub started: SystemTime,
     /// Root of all randomness.
@@ -90,6 +132,8 @@ impl Manifest {
     pub fn new(identity: &Identity, facts: RunFacts) -> Self {
         let study = super::content_hash::ContentHash::default().bytes(&identity.study);
         Self {
+            study: facts.study,
+            command: facts.command,
             program: identity.program.clone(),
             source: identity.source.clone(),
             commit: COMMIT.to_owned(),
@@ -100,6 +144,7 @@ impl Manifest {
             threads: rayon::current_num_threads(),
             started: time(facts.started),
             ended: time(SystemTime::now()),
+            peak_memory_bytes: super::memory::peak_memory(),
             n_finished_before: facts.n_finished_before,
             seed: facts.seed,
             n_cells: facts.n_cells,
@@ -108,7 +153,32 @@ impl Manifest {
             study_sha256: study.hex(),
             objects_sha256: identity.objects.clone(),
             tables_sha256: facts.tables_sha256,
+            methods: METHODS
+                .map(|(columns, method)| (columns.to_owned(), method.to_owned()))
+                .into(),
         }
+    }
+
+    /// Reads a folder's; none if it has none.
+    ///
+    /// # Errors
+    /// It cannot be read, or is not of this program.
+    pub fn read(folder: &Path) -> Result<Option<Self>> {
+        let path = folder.join(MANIFEST_FILE);
+        if !path.exists() {
+            return Ok(None);
+        }
+        let text = fs::read_to_string(&path).map_err(|e| Error::io(&path, "read", e))?;
+        let read = serde_json::from_str(&text);
+        read.map(Some)
+            .map_err(|e| Error::input(path.display(), e, "a manifest of this program"))
+    }
+
+    /// Seconds from the last run's start to its end; none if they are not times of day.
+    pub fn wall_s(&self) -> Option<f64> {
+        let time = |text: &str| DateTime::parse_from_rfc3339(text).ok();
+        let (start, end) = (time(&self.started)?, time(&self.ended)?);
+        Some((end - start).num_milliseconds() as f64 / 1e3)
     }
 
     /// As JSON with a line a value.

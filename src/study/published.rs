@@ -163,6 +163,8 @@ mod tests {
                         accuracy_std: 0.0,
                         accuracy_low: accuracy - 0.1,
                         accuracy_high: accuracy + 0.1,
+                        bootstrap_low: None,
+                        bootstrap_high: None,
                         macro_f1: accuracy,
                         n_capped: 0,
                     };

@@ -1,18 +1,20 @@
 //! Runs a plan: simulate each array once, measure each group once a trial, evaluate every cell that is not done yet.
 
 use super::finished::{Finished, Measuring, Simulated};
+use super::frames::{FrameStorage, Frames};
 use super::job::{FinishedFamily, Job};
 use super::journal::Journal;
+use super::memory::AtOnce;
 use super::part::{Part, pieces, with_what_was_done_before};
 use super::plan::{Plan, millimetres};
 use super::progress::Progress;
 use super::published::compare_with_published;
-use super::simulation::Frames;
 use super::spec::StepSpec;
 use super::sweep::{Group, Sweep};
 use super::table::{Cell, StageTime, Tables};
 use super::tabulate::tabulate;
 use super::touch_set::TouchSet;
+use super::workload::TouchMeter;
 use crate::error::Result;
 use crate::random::Seed;
 use crate::signal::{Noise, SignalStep};
@@ -54,6 +56,10 @@ pub struct Manner<'a> {
     pub retries: bool,
     /// The part of the work to do.
     pub part: Part<'a>,
+    /// Where frames come from and are kept.
+    pub storage: &'a FrameStorage,
+    /// How much of the work is in memory at the same time.
+    pub at_once: AtOnce,
 }
 
 /// Runs a study. The tables but for times are the same bytes at any number of threads.
@@ -71,6 +77,8 @@ pub fn run(
         fail_fast: true,
         retries: false,
         part: Part::All,
+        storage: &FrameStorage::in_memory(),
+        at_once: AtOnce::ALL,
     };
     run_with(plan, sweep, touched, progress, manner)
 }
@@ -175,11 +183,13 @@ impl<'a> Run<'a> {
         let n_touches = self.sweep.labels.len();
         let name = in_frames(&format!("touch {}", describe(patch)), n_frames);
         self.progress.stage(&name, n_touches as u64);
-        let frames = self.touched.simulate(patch, n_frames, self.progress);
+        let storage = self.manner.storage;
+        let meter = TouchMeter::new(self, patch, n_frames);
+        let frames = storage.frames(self.touched, (patch, n_frames), &meter)?;
         let simulated = Simulated {
-            n_missed: frames.n_missed,
-            n_saturated: frames.n_saturated,
-            cpu_s: frames.cpu_s,
+            n_missed: frames.facts.n_missed,
+            n_saturated: frames.facts.n_saturated,
+            cpu_s: frames.facts.cpu_s,
         };
         simulated.keep(self.manner.journal, array, n_frames)?;
         let (finished, cpu_s) = self.recognise(jobs, patch, &frames)?;
@@ -191,7 +201,7 @@ impl<'a> Run<'a> {
     }
 
     /// Families of an array that are to be done, by trial and group.
-    fn jobs(&self, array: usize, n_frames: usize) -> Vec<Job<'a>> {
+    pub fn jobs(&self, array: usize, n_frames: usize) -> Vec<Job<'a>> {
         let mut jobs = Vec::new();
         for (group, trial, families) in pieces(self.plan, self.sweep, self.manner.part) {
             if (group.array, group.frames) != (array, n_frames) {
@@ -228,12 +238,16 @@ impl<'a> Run<'a> {
         }
         let families = jobs.iter().flat_map(|job| &job.families);
         let n_fits: usize = families.map(|family| family.len()).sum();
-        let stage = in_frames(&format!("recognise {}", describe(patch)), frames.n_frames);
+        let stage = in_frames(
+            &format!("recognise {}", describe(patch)),
+            frames.facts.n_frames,
+        );
         self.progress.stage(&stage, n_fits as u64);
-        let results = jobs
-            .par_iter()
-            .map(|job| job.run(frames))
-            .collect::<Result<Vec<_>>>()?;
+        let mut results = Vec::with_capacity(jobs.len());
+        for jobs in jobs.chunks(self.manner.at_once.jobs) {
+            let jobs = jobs.par_iter().map(|job| job.run(frames));
+            results.extend(jobs.collect::<Result<Vec<_>>>()?);
+        }
         let measure_s = results.iter().map(|(_, seconds)| seconds).sum();
         Ok((
             results

@@ -28,11 +28,16 @@ pub struct Samples {
     pub quantity: Quantity,
     /// What they show.
     pub caption: String,
+    /// One touch of each object, if `frames` show some objects only; empty if they show something else.
+    pub each: Vec<(String, Array2<f64>)>,
+    /// What those show.
+    pub each_caption: String,
 }
 
 /// The first touch of the objects that the study names for its picture (else of four spread over its list), read with its
 /// finest array at its highest noise, before smoothing; in a study of one imperfection at a time, the first touch of the first
-/// of them, read with each imperfection at its last value. A skin that remembers was touched by the last of them before.
+/// of them, read with each imperfection at its last value. A skin that remembers was touched by the last of them before. Beside them the
+/// first touch of every object, at the highest noise.
 pub fn sample_frames(plan: &Plan, sweep: &Sweep, touched: &[TouchedObject]) -> Result<Samples> {
     let group = loudest_group(plan, sweep)
         .ok_or_else(|| Error::input("study", "no cells", "at least one value an axis"))?;
@@ -46,6 +51,11 @@ pub fn sample_frames(plan: &Plan, sweep: &Sweep, touched: &[TouchedObject]) -> R
     let quantity = Chain::new(&steps(plan, group), patch)?.quantity();
     let mut frames = Vec::new();
     let groups = imperfect_groups(plan, sweep, group.array);
+    let noise = match group.condition.noise {
+        0.0 => "no noise".to_owned(),
+        level => format!("noise of {}", plan.describe_noise(level)),
+    };
+    let each_caption = format!("One touch each on {array}, {noise}");
     let caption = match objects.first() {
         Some(first) if !groups.is_empty() => {
             // One taxel of a large gain would take the colours of all others.
@@ -67,18 +77,19 @@ pub fn sample_frames(plan: &Plan, sweep: &Sweep, touched: &[TouchedObject]) -> R
             for object in objects {
                 frames.push((name(object), read(plan, group, object, before)?));
             }
-            let noise = match group.condition.noise {
-                0.0 => "no noise".to_owned(),
-                level => format!("noise of {}", plan.describe_noise(level)),
-            };
-            format!("One touch each on {array}, {noise}")
+            each_caption.clone()
         }
     };
+    let each = touched.iter();
+    let each = each.map(|object| Ok((name(object), read(plan, group, object, before)?)));
+    let each = each.collect::<Result<_>>()?;
     Ok(Samples {
         frames,
         pitch_mm,
         quantity,
         caption,
+        each,
+        each_caption,
     })
 }
 

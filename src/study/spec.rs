@@ -30,6 +30,10 @@ pub struct StudySpec {
     /// How often each cell is repeated with a new split, projection and noise.
     #[serde(default = "one")]
     pub trials: usize,
+    /// Instead of a projection of its own for each trial: so many projections, each with each of `trials` / so many splits. It
+    /// tells what the projection does to the accuracy from what the split does (`variance.csv`).
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub projections_per_split: Option<usize>,
     /// What is touched.
     #[serde(default, skip_serializing_if = "is_default")]
     pub objects: ObjectsSpec,
@@ -124,6 +128,10 @@ pub struct RecognitionSpec {
     /// Splits below each other in a tree or in a forest's trees; until leaves are pure when left out.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub max_depth: Option<usize>,
+    /// Most gibibytes of kernel values that an SVM's solver holds at once; 2 when left out. Above it values are computed again,
+    /// which takes longer and may change last digits.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub solver_memory_gib: Option<f64>,
     /// Axis: training touches an object, at most; all of the training split when left out.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub train_touches: Option<Axis<usize>>,

@@ -19,6 +19,7 @@ pub fn draw_split(
     keys: Option<&Array1<usize>>,
     trial: usize,
 ) -> Result<Split> {
+    let trial = plan.repeats.split(trial);
     let seed = Seed::new(plan.spec.seed).named("split");
     match plan.split.kind {
         SplitKind::HoldOut(fraction) => {

@@ -2,12 +2,14 @@
 
 use super::evaluation::CONFIDENCE;
 use super::pareto::{Choice, unbeaten};
+use super::repeats::{Paired, accuracies};
 use super::table::{
     Cell, CellScore, Comparison, Confused, Confusion, Pareto, TrialScore, TrialTime,
 };
 use crate::error::Result;
-use crate::recognition::comparison::{TrialSize, compare};
+use crate::recognition::bootstrap::Bootstrap;
 use crate::recognition::interval::Interval;
+use crate::recognition::many_tests::holm_of_some;
 use std::collections::BTreeMap;
 
 /// A row of the accuracy table.
@@ -15,16 +17,17 @@ type Row = (Cell, TrialScore);
 
 /// One row a cell from one row a cell and trial; the trials of a cell follow each other.
 pub fn summarise(rows: &[Row]) -> Result<Vec<(Cell, CellScore)>> {
+    let mut bootstrap = Bootstrap::default();
     rows.chunk_by(|a, b| a.0.cell == b.0.cell)
         .map(|trials| {
             let scores: Vec<&TrialScore> = trials.iter().map(|(_, score)| score).collect();
-            Ok((trials[0].0.clone(), score(&scores)?))
+            Ok((trials[0].0.clone(), score(&scores, &mut bootstrap)?))
         })
         .collect()
 }
 
 /// What the trials of a cell say together.
-pub fn score(trials: &[&TrialScore]) -> Result<CellScore> {
+pub fn score(trials: &[&TrialScore], bootstrap: &mut Bootstrap) -> Result<CellScore> {
     let mean = |value: fn(&TrialScore) -> f64| {
         trials.iter().map(|trial| value(trial)).sum::<f64>() / trials.len() as f64
     };
@@ -33,6 +36,10 @@ pub fn score(trials: &[&TrialScore]) -> Result<CellScore> {
     let n_test = trials.iter().map(|t| t.n_test).min().unwrap_or(0);
     let n_correct = (accuracy * n_test as f64).round() as usize;
     let interval = Interval::wilson(n_correct, n_test, CONFIDENCE)?;
+    let of_mean = match accuracies(trials) {
+        Some(scores) => bootstrap.mean(scores.view(), CONFIDENCE)?,
+        None => None,
+    };
     Ok(CellScore {
         n_trials: trials.len(),
         n_test,
@@ -43,6 +50,8 @@ pub fn score(trials: &[&TrialScore]) -> Result<CellScore> {
         },
         accuracy_low: interval.low,
         accuracy_high: interval.high,
+        bootstrap_low: of_mean.map(|interval| interval.low),
+        bootstrap_high: of_mean.map(|interval| interval.high),
         macro_f1: mean(|t| t.macro_f1),
         n_capped: trials.iter().map(|t| t.n_capped).sum(),
     })
@@ -66,37 +75,36 @@ pub fn compare_with_best(rows: &[Row]) -> Result<Vec<Comparison>> {
     let Some(best) = best else {
         return Ok(Vec::new());
     };
-    cells.iter().map(|trials| against(trials, best)).collect()
+    let compared = cells.iter().map(|trials| against(trials, best));
+    let mut table = compared.collect::<Result<Vec<_>>>()?;
+    let is_other = |row: &Comparison| row.cell != row.best_cell;
+    let p_values = table
+        .iter()
+        .map(|row| row.p_value.filter(|_| is_other(row)));
+    let corrected = holm_of_some(&p_values.collect::<Vec<_>>());
+    for (row, p_holm) in table.iter_mut().zip(corrected) {
+        row.p_holm = p_holm;
+    }
+    Ok(table)
 }
 
 fn against(trials: &[Row], best: &[Row]) -> Result<Comparison> {
     // A cell may have failed in some trials.
-    let in_both = |rows: &[Row], others: &[Row]| -> Vec<f64> {
-        let is_in = |trial| others.iter().any(|(_, t)| t.trial == trial);
-        let both = rows.iter().filter(|(_, t)| is_in(t.trial));
-        both.map(|(_, t)| t.accuracy).collect()
+    let paired = Paired::of(trials, best);
+    let (ours, theirs) = match paired.n_trials() {
+        0 => (mean(trials, |t| t.accuracy), mean(best, |t| t.accuracy)),
+        _ => paired.means(),
     };
-    let (ours, theirs) = (in_both(trials, best), in_both(best, trials));
-    let n_both = ours.len();
-    let mean_of = |values: &[f64]| values.iter().sum::<f64>() / n_both as f64;
-    let difference = match n_both {
-        0 => mean(trials, |t| t.accuracy) - mean(best, |t| t.accuracy),
-        _ => mean_of(&ours) - mean_of(&theirs),
-    };
-    // How much the trials overlap is a matter of touches, however many of them one decision takes.
-    let size = TrialSize {
-        n_train: trials[0].1.n_train,
-        n_test: trials[0].1.n_test * trials[0].0.fused_touches,
-    };
-    let test = compare(&ours, &theirs, size, CONFIDENCE)?;
+    let test = paired.test()?;
     Ok(Comparison {
         cell: trials[0].0.cell,
         best_cell: best[0].0.cell,
-        n_trials: n_both,
-        difference,
+        n_trials: paired.n_trials(),
+        difference: ours - theirs,
         difference_low: test.map(|t| t.interval.low),
         difference_high: test.map(|t| t.interval.high),
         p_value: test.map(|t| t.p_value),
+        p_holm: None,
     })
 }
 

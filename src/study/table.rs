@@ -3,6 +3,7 @@
 //! A row of `accuracy.csv` is a [`Cell`] followed by a [`TrialScore`]; the other tables are built the same way.
 
 use super::imperfection::{IMPERFECTIONS, Imperfection, Strengths, TestedOn};
+pub use super::variance_table::{Source, Variance};
 use crate::recognition::ClassifierKind;
 use crate::recognition::features::Features;
 use crate::recognition::over_time::OverTime;
@@ -120,6 +121,12 @@ impl Cell {
 pub struct TrialScore {
     /// Number of the trial, from 0.
     pub trial: usize,
+    /// Number of its split. This column and the next are there only if the study has `projections_per_split`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub split: Option<usize>,
+    /// Number of its projection.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub projection: Option<usize>,
     /// Training rows.
     pub n_train: usize,
     /// Test rows: groups of `fused_touches` test touches.
@@ -161,6 +168,13 @@ pub struct CellScore {
     pub accuracy_low: f64,
     /// Upper end of the same interval.
     pub accuracy_high: f64,
+    /// Lower end of the 95 % bootstrap interval of the mean over trials: where it would be with other splits, projections and
+    /// noise on the same touches. Empty with fewer than five trials (or splits, or projections).
+    #[serde(default)]
+    pub bootstrap_low: Option<f64>,
+    /// Upper end of the same interval.
+    #[serde(default)]
+    pub bootstrap_high: Option<f64>,
     /// Mean macro-F1 over trials.
     pub macro_f1: f64,
     /// Binary SVMs that stopped at the iteration cap, all trials.
@@ -236,6 +250,9 @@ pub struct Comparison {
     pub difference_high: Option<f64>,
     /// Two-sided p-value of no difference; empty with one trial.
     pub p_value: Option<f64>,
+    /// The same after Holm's correction for all cells but the best; empty for that one.
+    #[serde(default)]
+    pub p_holm: Option<f64>,
 }
 
 /// What a trial of a cell cost (with the [`Cell`] before it: a row of `timing.csv`).
@@ -322,6 +339,8 @@ pub struct Tables {
     pub published: Vec<(Cell, Published)>,
     /// One row per cell and trial that failed.
     pub failures: Vec<(Cell, Failure)>,
+    /// Three rows per cell, for studies with `projections_per_split`.
+    pub variance: Vec<Variance>,
 }
 
 #[cfg(test)]

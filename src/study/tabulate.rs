@@ -5,6 +5,7 @@ use super::finished::Finished;
 use super::job::FinishedFamily;
 use super::summary::{compare_with_best, most_confused, pareto, summarise};
 use super::table::{Cell, Confusion, Failure, Tables};
+use super::variance_table::variances;
 use crate::error::Result;
 use std::collections::BTreeMap;
 
@@ -54,6 +55,7 @@ fn fill(tables: &mut Tables, scored: Vec<(Cell, Evaluation)>, names: &[&str]) ->
         })
         .collect();
     tables.summary = summarise(&tables.accuracy)?;
+    tables.variance = variances(&tables.accuracy)?;
     tables.comparison = compare_with_best(&tables.accuracy)?;
     if let Some(row) = tables.comparison.first() {
         tables.confused = most_confused(&tables.confusion, row.best_cell);

@@ -2,11 +2,12 @@
 
 use super::content_hash::ContentHash;
 use super::estimate::{PLACE_SPHERE_S, PLACE_TRIANGLE_S};
+use super::frames::{FrameWriter, Frames};
 use super::measurement::{TouchToRead, touches_of_study};
 use super::plan::Plan;
 use super::progress::Progress;
 use super::samples::{Samples, sample_frames};
-use super::simulation::{Frames, TouchedObject, simulate_array, touch_labels};
+use super::simulation::{TouchedObject, simulate_into, touch_labels};
 use super::spec::GroupSpec;
 use super::splits::group_keys;
 use super::sweep::Sweep;
@@ -29,7 +30,15 @@ pub trait TouchSet: Sync {
     fn group_keys(&self, kind: GroupSpec) -> Result<Array1<usize>>;
 
     /// Makes all touches on an array, F frames each; the same bytes at any number of threads.
-    fn simulate(&self, patch: &Patch, n_frames: usize, progress: &dyn Progress) -> Frames;
+    ///
+    /// # Errors
+    /// The writer's file cannot be written.
+    fn simulate(
+        &self,
+        on: (&Patch, usize),
+        writer: FrameWriter,
+        progress: &dyn Progress,
+    ) -> Result<Frames>;
 
     /// How each touch is read in a trial, F frames each, whose randomness is drawn from `seed`.
     fn to_read(&self, plan: &Plan, n_frames: usize, seed: &Seed) -> Vec<TouchToRead>;
@@ -45,6 +54,9 @@ pub trait TouchSet: Sync {
 
     /// SHA-256 of what each object is made of, by its name; empty if the study's text says all.
     fn content(&self) -> BTreeMap<String, String>;
+
+    /// SHA-256 of all that frames depend on, the array apart.
+    fn key(&self) -> String;
 }
 
 impl TouchSet for Vec<TouchedObject> {
@@ -60,8 +72,13 @@ impl TouchSet for Vec<TouchedObject> {
         group_keys(self, kind)
     }
 
-    fn simulate(&self, patch: &Patch, n_frames: usize, progress: &dyn Progress) -> Frames {
-        simulate_array(self, patch, n_frames, progress)
+    fn simulate(
+        &self,
+        on: (&Patch, usize),
+        writer: FrameWriter,
+        progress: &dyn Progress,
+    ) -> Result<Frames> {
+        simulate_into(self, on, writer, progress)
     }
 
     fn to_read(&self, plan: &Plan, n_frames: usize, seed: &Seed) -> Vec<TouchToRead> {
@@ -111,5 +128,14 @@ impl TouchSet for Vec<TouchedObject> {
             (t.object.name.clone(), model.hex())
         };
         self.iter().map(hash).collect()
+    }
+
+    fn key(&self) -> String {
+        let mut hash = ContentHash::default();
+        for t in self {
+            hash = hash.model(&t.object.model);
+            hash = hash.bytes(format!("\n{:?}\n{:?}\n", t.rests, t.touches));
+        }
+        hash.hex()
     }
 }

@@ -1,5 +1,6 @@
 //! Training of a family of cells: the same rows and features, one fit for each C.
 
+use super::memory::solver_memory;
 use super::spec::RecognitionSpec;
 use crate::error::Result;
 use crate::random::Seed;
@@ -163,6 +164,7 @@ impl Training<'_> {
             n_neighbours: recognition.n_neighbours.unwrap_or(usual.n_neighbours),
             n_trees: recognition.n_trees.unwrap_or(usual.n_trees),
             max_depth: recognition.max_depth,
+            memory_bytes: solver_memory(recognition.solver_memory_gib),
             ..usual
         }
     }

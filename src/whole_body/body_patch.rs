@@ -1,12 +1,13 @@
 //! A body: patches of skin whose taxels need few bytes of their own.
 
 use super::dome_patch::DomePatch;
+use super::draped_patch::{self, DrapedPatch};
 use super::row_patch::RowPatch;
 use crate::error::{Error, Result};
 use crate::objects::Sphere;
 use crate::world::{Dome, Extrusion, Layout, Taxel};
 
-/// A patch of a body: equal taxels in rows.
+/// A patch of a body: equal taxels, in rows or anywhere.
 #[derive(Clone, Debug)]
 pub struct BodyPatch {
     name: String,
@@ -20,6 +21,8 @@ pub(super) enum Surface {
     Rows(RowPatch),
     /// Rings on a sphere.
     Dome(DomePatch),
+    /// Anywhere, each with an axis of its own.
+    Draped(DrapedPatch),
 }
 
 impl BodyPatch {
@@ -48,6 +51,17 @@ impl BodyPatch {
         Ok(Self { name, surface })
     }
 
+    /// Taxels anywhere, such as on a mesh ([`Layout::draped`]), numbered as in the layout. The error names the patch and the property
+    /// of its taxels that is out of its range.
+    ///
+    /// It is fast if neighbours have near numbers: see [`Layout::with_neighbours_together`].
+    pub fn draped(name: impl Into<String>, layout: &Layout, taxel: Taxel) -> Result<Self> {
+        let name = name.into();
+        check_taxel(&name, &taxel)?;
+        let surface = Surface::Draped(DrapedPatch::new(layout, taxel));
+        Ok(Self { name, surface })
+    }
+
     /// What it is called.
     pub fn name(&self) -> &str {
         &self.name
@@ -58,6 +72,7 @@ impl BodyPatch {
         match &self.surface {
             Surface::Rows(rows) => rows.extrusion().into(),
             Surface::Dome(dome) => dome.dome().into(),
+            Surface::Draped(draped) => draped.layout(),
         }
     }
 
@@ -66,6 +81,7 @@ impl BodyPatch {
         match &self.surface {
             Surface::Rows(rows) => rows.taxel(),
             Surface::Dome(dome) => dome.taxel(),
+            Surface::Draped(draped) => draped.taxel(),
         }
     }
 
@@ -74,6 +90,7 @@ impl BodyPatch {
         match &self.surface {
             Surface::Rows(rows) => rows.extrusion().n_taxels(),
             Surface::Dome(dome) => dome.dome().n_taxels(),
+            Surface::Draped(draped) => draped.n_taxels(),
         }
     }
 
@@ -82,6 +99,7 @@ impl BodyPatch {
         match &self.surface {
             Surface::Rows(rows) => rows.ball(),
             Surface::Dome(dome) => dome.ball(),
+            Surface::Draped(draped) => draped.ball(),
         }
     }
 
@@ -90,11 +108,12 @@ impl BodyPatch {
         &self.surface
     }
 
-    /// How many rows, or rings.
+    /// How many rows, rings, or blocks of tiles.
     pub(super) fn n_rows(&self) -> usize {
         match &self.surface {
             Surface::Rows(rows) => rows.extrusion().rows().len(),
             Surface::Dome(dome) => dome.dome().rings().len(),
+            Surface::Draped(draped) => draped.n_taxels().div_ceil(draped_patch::BLOCK),
         }
     }
 
@@ -104,6 +123,7 @@ impl BodyPatch {
         match &self.surface {
             Surface::Rows(rows) => row * rows.extrusion().places().len() as u32,
             Surface::Dome(dome) => dome.dome().rings()[row as usize].first as u32,
+            Surface::Draped(_) => row * draped_patch::BLOCK as u32,
         }
     }
 }
@@ -166,6 +186,7 @@ impl WholeBody {
             let surface = match &patch.surface {
                 Surface::Rows(rows) => rows.n_bytes(),
                 Surface::Dome(dome) => dome.n_bytes(),
+                Surface::Draped(draped) => draped.n_bytes(),
             };
             size_of::<BodyPatch>() + patch.name.len() + surface
         };

@@ -2,11 +2,12 @@
 
 use super::body_patch::WholeBody;
 use super::patch_state::PatchState;
+use crate::contact::Instructions;
 use crate::geometry::Pose;
 use crate::objects::{Sphere, SphereClusters};
 
 /// Deflected taxels at the last step from which on threads share the work. Less is done before a second thread is awake.
-const WORTH_THREADS: usize = 4000;
+pub const WORTH_THREADS: usize = 4000;
 
 /// What touches a body, between steps; it is reused, so a step allocates nothing once the largest touch has been seen.
 #[derive(Clone, Debug, Default)]
@@ -21,6 +22,7 @@ pub struct BodyState {
     busy: Vec<u32>,
     /// How long this step was, seconds.
     dt: f64,
+    instructions: Instructions,
     contact: BodyContact,
 }
 
@@ -33,6 +35,11 @@ pub struct BodyContact {
     pub n_saturated: usize,
     /// Patches with a deflected taxel.
     pub n_patches: usize,
+    /// Pairs of a sphere and a patch for which rows, rings or tiles were looked at: what is left of those of all spheres of the
+    /// objects near a patch.
+    pub n_evaluated: usize,
+    /// The other ones of those pairs, left out with their clusters or by their distance from the whole patch.
+    pub n_rejected: usize,
 }
 
 impl BodyState {
@@ -44,6 +51,11 @@ impl BodyState {
         };
         state.place(body, &vec![Pose::IDENTITY; body.patches().len()]);
         state
+    }
+
+    /// Has the steps computed by some other than the best instructions, to compare them.
+    pub fn use_instructions(&mut self, instructions: Instructions) {
+        self.instructions = instructions;
     }
 
     /// Moves the patches to `world_from_patch` poses, one each. A body that stands still is placed once.
@@ -92,13 +104,14 @@ impl BodyState {
         self.find_busy(objects, world_from_objects);
         let (poses, balls, object_balls) =
             (&self.world_from_patches, &self.balls, &self.object_balls);
+        let instructions = self.instructions;
         let step = |number: u32, state: &mut PatchState| {
             let number = number as usize;
             let placed = objects.iter().zip(world_from_objects).zip(object_balls);
             let near = placed
                 .filter(|(_, ball)| are_near(ball, &balls[number]))
                 .map(|((object, pose), _)| (object, pose.seen_from(&poses[number])));
-            state.step(&body.patches()[number], near, dt);
+            state.step(&body.patches()[number], near, dt, instructions);
         };
         let share = self.contact.n_touched >= WORTH_THREADS;
         step_each(&self.busy, 0, &mut self.patches, share, &step);
@@ -165,6 +178,8 @@ impl BodyState {
             let patch = &self.patches[number as usize];
             self.contact.n_touched += patch.touched().len();
             self.contact.n_saturated += patch.n_saturated();
+            self.contact.n_evaluated += patch.n_evaluated;
+            self.contact.n_rejected += patch.n_rejected;
             self.contact.n_patches += usize::from(!patch.touched().is_empty());
         }
         self.contact

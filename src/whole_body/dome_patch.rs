@@ -10,12 +10,13 @@
 //!
 //! and the sphere is not behind the substrate where t ≥ R − s − ρ. On a ring t is A + B cos(φ − φ_c): an interval.
 
-use super::SphereClusters;
+use super::lanes::{View, ball_around};
+use super::object_press::Pushed;
 use super::patch_state::PatchState;
 use crate::geometry::Pose;
 use crate::objects::Sphere;
 use crate::world::{Dome, DomeRing, Taxel};
-use glam::{DMat3, DVec3, Vec3Swizzles};
+use glam::{DVec3, Vec3Swizzles};
 use std::f64::consts::{PI, TAU};
 use std::ops::Range;
 
@@ -38,11 +39,9 @@ impl DomePatch {
     pub fn new(dome: Dome, taxel: Taxel) -> Self {
         let depth = taxel.stroke + taxel.radius;
         let (outer, inner) = (dome.radius(), dome.radius() - depth);
-        let ends = || dome.axes().flat_map(|axis| [outer * axis, inner * axis]);
-        let center = ends().sum::<DVec3>() / (2 * dome.n_taxels()) as f64;
-        let radius = ends().map(|end| end.distance(center)).fold(0.0, f64::max);
+        let ends = dome.axes().flat_map(|axis| [outer * axis, inner * axis]);
         Self {
-            ball: Sphere { center, radius },
+            ball: ball_around(ends),
             dome,
             taxel,
         }
@@ -68,31 +67,31 @@ impl DomePatch {
         size_of_val(self.dome.rings()) + size_of_val(self.dome.directions())
     }
 
-    /// Pushes by one object.
-    pub fn push(&self, state: &mut PatchState, object: &SphereClusters, patch_from_object: &Pose) {
-        let rotation = DMat3::from_quat(patch_from_object.rotation);
-        let rho = self.taxel.radius;
-        let is_near = |center: DVec3, reach: f64| {
-            let reach = (reach + self.ball.radius) * (1.0 + ROUNDING);
-            center.distance_squared(self.ball.center) <= reach * reach
-        };
-        for (ball, spheres) in object.each() {
-            let center = rotation * ball.center + patch_from_object.translation;
-            if !is_near(center, ball.radius + rho) {
-                continue;
-            }
-            for sphere in spheres {
-                let center = rotation * sphere.center + patch_from_object.translation;
-                let reach = sphere.radius + rho;
-                if is_near(center, reach) {
-                    self.push_rings(state, center, reach);
-                }
-            }
+    /// Above which t a taxel is pushed, metres.
+    fn least_along(&self, power: f64) -> f64 {
+        let radius = self.dome.radius();
+        match power {
+            power if power < 0.0 => f64::NEG_INFINITY,
+            power if power <= radius * radius => power.sqrt(),
+            power => (radius * radius + power) / (2.0 * radius),
         }
     }
+}
 
-    /// Pushes by a sphere (centre in the patch frame; S), metres.
-    fn push_rings(&self, state: &mut PatchState, center: DVec3, reach: f64) {
+impl Pushed for DomePatch {
+    #[inline(always)]
+    fn view(&self, patch_from_object: &Pose) -> View {
+        View::of_pose(patch_from_object, self.taxel.radius, self.ball)
+    }
+
+    /// Nothing is nearer than its ball, which has been looked at.
+    #[inline(always)]
+    fn is_near(&self, _: DVec3, _: f64) -> bool {
+        true
+    }
+
+    #[inline(always)]
+    fn push(&self, state: &mut PatchState, center: DVec3, reach: f64) {
         let radius = self.dome.radius();
         let power = center.length_squared() - reach * reach;
         let behind = radius - self.taxel.stroke - self.taxel.radius;
@@ -119,16 +118,6 @@ impl DomePatch {
                     state.push_row(row, ring.first, columns, needed);
                 }
             }
-        }
-    }
-
-    /// Above which t a taxel is pushed, metres.
-    fn least_along(&self, power: f64) -> f64 {
-        let radius = self.dome.radius();
-        match power {
-            power if power < 0.0 => f64::NEG_INFINITY,
-            power if power <= radius * radius => power.sqrt(),
-            power => (radius * radius + power) / (2.0 * radius),
         }
     }
 }

@@ -9,7 +9,8 @@
 //!    sphere is `b` beside the axis of a column and `h` above it, the same in all rows; along it, `d` from a row. So
 //!    `δ = √(S² − b² − d²) − h`, with the first part once a column and sphere, the root once a taxel that it covers.
 //!    On a sphere of radius R around the origin ([`Dome`](crate::world::Dome)) taxels lie in rings, and all that a taxel's axis n
-//!    decides is t = c·n: `δ = √(t² − |c|² + S²) − (t − R)`, so that a sphere covers an interval of each ring.
+//!    decides is t = c·n: `δ = √(t² − |c|² + S²) − (t − R)`, so that a sphere covers an interval of each ring. On any other surface
+//!    ([`BodyPatch::draped`]) taxels have their own axes, and are looked at by tiles of eight.
 //!
 //! A patch remembers which columns of which rows it has touched: only these are wiped, relaxed and read
 //! ([`BodyState::touched`], [`BodyState::forces`]); [`WholeBody::frame`] makes a dense frame of them.
@@ -44,12 +45,17 @@ mod body_patch;
 mod body_state;
 mod cover;
 mod dome_patch;
+mod draped_patch;
 mod half_balls;
+mod lanes;
+mod object_press;
 mod patch_state;
 mod row_patch;
+mod row_press;
 
+pub use crate::contact::Instructions;
 pub use crate::objects::SphereClusters;
 pub use body_patch::{BodyPatch, WholeBody};
-pub use body_state::{BodyContact, BodyState};
+pub use body_state::{BodyContact, BodyState, WORTH_THREADS};
 pub use cover::CoveredRobot;
 pub use patch_state::AT_REST;

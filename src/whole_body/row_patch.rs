@@ -1,55 +1,58 @@
 //! A patch that is a row of taxels repeated along a line: flat, or a part of a cylinder.
 
+use super::lanes::{Balls, FAR, LANES, ball_around, filled};
 use crate::contact::Lines;
 use crate::objects::Sphere;
 use crate::world::{Extrusion, Taxel};
 use glam::DVec2;
-use std::ops::Range;
-
-/// Columns in a bundle. More: columns are looked at in vain; fewer: bundles are.
-pub(super) const BUNDLE: usize = 8;
-/// What rounding may add to a reach, far above 1e-16 and far below what is felt.
-const ROUNDING: f64 = 1.0 + 1e-9;
 
 /// Equal taxels in a row that is repeated, and what finds those that a sphere is near.
 #[derive(Clone, Debug)]
 pub(super) struct RowPatch {
     extrusion: Extrusion,
     taxel: Taxel,
-    /// Of each bundle of columns, in their order.
-    circles: Vec<Circle>,
+    bundles: Vec<Bundle>,
+    circles: Vec<Balls>,
     lines: Lines,
-    /// Around all taxels from their rest centres back to the substrate, in the patch frame.
+    /// Around all taxels from their rest centres back to the substrate: u, v, w.
     ball: Sphere,
 }
 
-/// A circle in the plane across the rows.
-#[derive(Clone, Copy, Debug)]
-struct Circle {
-    center: DVec2,
-    radius: f64,
+/// Neighbouring columns, coordinate by coordinate: rest centres (metres) and axes. The last one is filled up with some far away.
+#[derive(Clone, Debug)]
+pub(super) struct Bundle {
+    pub u: [f64; LANES],
+    pub v: [f64; LANES],
+    pub axis_u: [f64; LANES],
+    pub axis_v: [f64; LANES],
 }
 
 impl RowPatch {
     /// Taxels that are good ones.
     pub fn new(extrusion: Extrusion, taxel: Taxel) -> Self {
         let depth = taxel.stroke + taxel.radius;
-        let columns: Vec<_> = extrusion.places().iter().zip(extrusion.axes()).collect();
-        let ends = |column: &(&DVec2, &DVec2)| [*column.0, *column.0 - depth * *column.1];
-        let circle = |columns: &[(&DVec2, &DVec2)]| Circle::around(columns.iter().flat_map(ends));
+        let columns = extrusion.places().iter().copied();
+        let columns: Vec<_> = columns.zip(extrusion.axes().iter().copied()).collect();
         let lines = Lines::at(extrusion.rows());
-        let whole = circle(&columns);
         let (first, last) = (
             lines.positions[0],
             lines.positions[lines.positions.len() - 1],
         );
-        let center = whole.center.extend(0.5 * (first + last));
+        // From the rest centres back to the substrate, across the rows.
+        let ends = |&(place, axis): &(DVec2, DVec2)| {
+            [place, place - depth * axis].map(|end: DVec2| end.extend(0.0))
+        };
+        let circle = |columns: &[_]| ball_around(columns.iter().flat_map(ends));
+        let circles: Vec<Sphere> = columns.chunks(LANES).map(circle).collect();
+        let whole = circle(&columns);
+        let center = whole.center.with_z(0.5 * (first + last));
         Self {
             ball: Sphere {
-                center: extrusion.uvw_from_patch().transpose() * center,
+                center,
                 radius: whole.radius.hypot(0.5 * (last - first)),
             },
-            circles: columns.chunks(BUNDLE).map(circle).collect(),
+            bundles: columns.chunks(LANES).map(Bundle::new).collect(),
+            circles: Balls::blocks(&circles),
             extrusion,
             taxel,
             lines,
@@ -68,6 +71,14 @@ impl RowPatch {
 
     /// As [`BodyPatch::ball`](super::BodyPatch::ball).
     pub fn ball(&self) -> Sphere {
+        Sphere {
+            center: self.extrusion.uvw_from_patch().transpose() * self.ball.center,
+            ..self.ball
+        }
+    }
+
+    /// The same ball with its centre as u, v, w.
+    pub fn ball_in_uvw(&self) -> Sphere {
         self.ball
     }
 
@@ -76,6 +87,7 @@ impl RowPatch {
         size_of_val(self.extrusion.places())
             + size_of_val(self.extrusion.axes())
             + size_of_val(self.extrusion.rows())
+            + size_of_val(&self.bundles[..])
             + size_of_val(&self.circles[..])
             + size_of_val(&self.lines.positions[..])
     }
@@ -85,47 +97,26 @@ impl RowPatch {
         &self.lines
     }
 
-    /// Runs of neighbouring bundles that a circle of radius `reach` (with ρ in it) comes near; ranges of columns.
-    #[inline(always)]
-    pub fn each_run_near(&self, center: DVec2, reach: f64, mut visit: impl FnMut(Range<usize>)) {
-        let n_columns = self.extrusion.places().len();
-        let mut start = None;
-        for (bundle, circle) in self.circles.iter().enumerate() {
-            match (circle.is_near(center, reach), start) {
-                (true, None) => start = Some(bundle * BUNDLE),
-                (false, Some(from)) => {
-                    visit(from..bundle * BUNDLE);
-                    start = None;
-                }
-                _ => {}
-            }
-        }
-        if let Some(from) = start {
-            visit(from..n_columns);
-        }
+    /// The bundles of columns.
+    pub fn bundles(&self) -> &[Bundle] {
+        &self.bundles
     }
 
-    /// Whether a circle of radius `reach` (with ρ in it) comes near any bundle.
-    #[inline(always)]
-    pub fn is_near(&self, center: DVec2, reach: f64) -> bool {
-        let mut circles = self.circles.iter();
-        circles.any(|circle| circle.is_near(center, reach))
+    /// Circles around them across the rows, as balls with their middles at w = 0.
+    pub fn circles(&self) -> &[Balls] {
+        &self.circles
     }
 }
 
-impl Circle {
-    fn around(points: impl Iterator<Item = DVec2> + Clone) -> Self {
-        let center = points.clone().sum::<DVec2>() / points.clone().count() as f64;
-        let distances = points.map(|point| point.distance(center));
+impl Bundle {
+    fn new(columns: &[(DVec2, DVec2)]) -> Self {
+        let nowhere = (DVec2::splat(FAR), DVec2::X);
+        let of = |value| filled(columns, &nowhere, value);
         Self {
-            center,
-            radius: distances.fold(0.0, f64::max),
+            u: of(|(place, _)| place.x),
+            v: of(|(place, _)| place.y),
+            axis_u: of(|(_, axis)| axis.x),
+            axis_v: of(|(_, axis)| axis.y),
         }
-    }
-
-    #[inline(always)]
-    fn is_near(&self, center: DVec2, reach: f64) -> bool {
-        let reach = (self.radius + reach) * ROUNDING;
-        self.center.distance_squared(center) <= reach * reach
     }
 }

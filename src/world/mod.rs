@@ -13,6 +13,7 @@ mod layout;
 mod layout_curved;
 mod layout_draped;
 mod layout_flat;
+mod layout_order;
 mod mass;
 mod motion;
 mod patch;

@@ -11,6 +11,7 @@ thread_local! {
     static COUNT: Cell<usize> = const { Cell::new(0) };
     static LIVE: Cell<isize> = const { Cell::new(0) };
     static PEAK: Cell<isize> = const { Cell::new(0) };
+    static LIMIT: Cell<isize> = const { Cell::new(isize::MAX) };
 }
 
 unsafe impl GlobalAlloc for Counting {
@@ -21,6 +22,9 @@ unsafe impl GlobalAlloc for Counting {
             live.set(live.get() + layout.size() as isize);
             live.get()
         });
+        if live > LIMIT.with(Cell::get) {
+            return std::ptr::null_mut();
+        }
         PEAK.with(|peak| peak.set(peak.get().max(live)));
         unsafe { System.alloc(layout) }
     }
@@ -47,4 +51,13 @@ pub fn peak_bytes(work: impl FnOnce()) -> usize {
     PEAK.with(|peak| peak.set(before));
     work();
     (PEAK.with(Cell::get) - before) as usize
+}
+
+/// What `work` returns; the process ends if it holds more than so many bytes.
+pub fn limit_bytes<R>(bytes: usize, work: impl FnOnce() -> R) -> R {
+    let most = LIVE.with(Cell::get) + bytes as isize;
+    LIMIT.with(|limit| limit.set(most));
+    let result = work();
+    LIMIT.with(|limit| limit.set(isize::MAX));
+    result
 }

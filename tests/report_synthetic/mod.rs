@@ -3,7 +3,7 @@
 
 use bubbletouch::recognition::ClassifierKind;
 use bubbletouch::recognition::features::Features;
-use bubbletouch::report::html::{Limit, ReportPage, Snapshots};
+use bubbletouch::report::page::{Limit, ReportPage, Snapshots};
 use bubbletouch::sensing::Ensemble;
 use bubbletouch::signal::NoiseUnit;
 use bubbletouch::signal::Quantity;
@@ -61,6 +61,8 @@ pub fn cell() -> Cell {
         scan_time_ms: None,
         adc_bits: None,
         tested_on: None,
+        mislabelled_fraction: None,
+        class_imbalance: None,
         ensemble: Ensemble::Gaussian,
         measurements: 256,
         ratio: 16.0,
@@ -149,6 +151,39 @@ pub fn many_cells() -> Vec<Cell> {
     cells
 }
 
+/// 10,000 cells: 10 noises × 5 smoothings × 5 ensembles × 5 pitches × 8 ratios.
+pub fn ten_thousand_cells() -> Vec<Cell> {
+    let mut cells = Vec::new();
+    for noise in 0..10 {
+        for smoothing in 0..5 {
+            for ensemble in [
+                Ensemble::Gaussian,
+                Ensemble::Sbhe,
+                Ensemble::BlockAverage,
+                Ensemble::Subsample,
+                Ensemble::Sparse,
+            ] {
+                for pitch in 1..6 {
+                    for ratio in 0..8 {
+                        let ratio = f64::from(1 << ratio);
+                        cells.push(Cell {
+                            noise_std: 0.01 * f64::from(noise),
+                            smoothing_mm: f64::from(smoothing),
+                            ensemble,
+                            pitch_mm: f64::from(pitch),
+                            size_mm: 64.0 * f64::from(pitch),
+                            ratio,
+                            measurements: (4096.0 / ratio) as usize,
+                            ..cell()
+                        });
+                    }
+                }
+            }
+        }
+    }
+    cells
+}
+
 /// Tables for some cells with the names of `n_objects` objects.
 pub fn tables(cells: Vec<Cell>, n_trials: usize, n_objects: usize) -> Tables {
     let mut tables = Tables::default();
@@ -225,6 +260,8 @@ fn add_cell(tables: &mut Tables, cell: Cell, n_trials: usize, n_objects: usize) 
             cell.clone(),
             TrialScore {
                 trial,
+                split: None,
+                projection: None,
                 n_train: 75 * n_objects,
                 n_test,
                 n_left_out: 0,
@@ -274,6 +311,8 @@ fn add_cell(tables: &mut Tables, cell: Cell, n_trials: usize, n_objects: usize) 
             accuracy_std: (variance / (n_trials as f64 - 1.0).max(1.0)).sqrt(),
             accuracy_low,
             accuracy_high,
+            bootstrap_low: (n_trials >= 5).then_some(mean - 0.01),
+            bootstrap_high: (n_trials >= 5).then_some(mean + 0.01),
             macro_f1: mean - 0.004,
             n_capped: 0,
         },
@@ -354,6 +393,7 @@ fn add_comparison(tables: &mut Tables, n_trials: usize) {
             difference_low: several.then_some(difference - 0.01),
             difference_high: several.then_some(difference + 0.01),
             p_value: several.then_some((-100.0 * difference.abs()).exp()),
+            p_holm: None,
         });
     }
 }
@@ -439,5 +479,6 @@ pub fn about() -> ReportPage {
         command: "bubbletouch run experiments/quickstart.toml --seed 1 --out results/quickstart"
             .to_owned(),
         program: "bubbletouch 0.1.0".to_owned(),
+        ..ReportPage::default()
     }
 }

@@ -3,10 +3,11 @@
 #![allow(dead_code)]
 
 use bubbletouch::random::Seed;
+use bubbletouch::study::memory::MemoryPlan;
 use bubbletouch::study::progress::Silent;
 use bubbletouch::study::table::{Cell, TrialScore};
 use bubbletouch::study::{
-    Outcome, Plan, StudySpec, Sweep, TouchedObject, draw_touches, load_objects, run,
+    Estimate, Outcome, Plan, StudySpec, Sweep, TouchedObject, draw_touches, load_objects, run,
 };
 
 /// A study that is laid out.
@@ -28,6 +29,11 @@ impl Study {
             touched,
             sweep,
         }
+    }
+
+    pub fn estimate(&self) -> Estimate {
+        let memory = MemoryPlan::new(&self.plan, &self.sweep, self.touched.len(), None).unwrap();
+        Estimate::new(&self.plan, &self.touched, &self.sweep, &memory)
     }
 
     pub fn run(&self) -> Outcome {

@@ -1,15 +1,13 @@
 //! Gram matrices as the solver reads them: two rows at a time, the diagonal, a weighted sum of rows, a part.
 
-use ndarray::{Array2, ArrayView1, ArrayView2, ArrayViewMut2, Axis, s};
+use ndarray::{Array2, ArrayView1, ArrayView2, Axis};
 
 use super::passes::padded;
 use super::row_sums::weighted_sum;
 use crate::recognition::kernel::KernelFunction;
 use crate::recognition::points::Points;
 use crate::recognition::scalar::Scalar;
-
-/// Rows and columns transposed at once.
-const TILE: usize = 16;
+use crate::recognition::transposed::write_columns;
 
 /// K of one binary problem, n × n, symmetric and positive semidefinite. Rows are padded to whole lanes with zeros.
 pub(crate) trait Gram<T> {
@@ -71,47 +69,33 @@ impl<T: Scalar> Dense<T> {
         self.diagonal.resize(self.stride, T::zero());
     }
 
-    /// K of two classes of so many rows from its blocks, as they are written: row by row within the first and within the
-    /// second, and between them (first × second).
+    /// K of two classes from its blocks: within the first, within the second, and between them (second × first).
     pub fn of_blocks(
         &mut self,
-        n_first: usize,
-        n_second: usize,
-        first: impl Fn(usize, &mut [T]),
-        second: impl Fn(usize, &mut [T]),
-        across: impl FnOnce(ArrayViewMut2<T>),
+        first: ArrayView2<T>,
+        second: ArrayView2<T>,
+        across: ArrayView2<T>,
     ) {
-        self.refill(n_first + n_second, |i, row| {
+        let n_first = first.nrows();
+        self.refill(n_first + second.nrows(), |i, row| {
             let (left, right) = row.split_at_mut(n_first);
             match i.checked_sub(n_first) {
-                None => first(i, left),
-                Some(i) => second(i, right),
+                None => copy(left, first.row(i)),
+                Some(i) => {
+                    copy(left, across.row(i));
+                    copy(right, second.row(i));
+                }
             }
         });
-        let (n, stride) = (self.n, self.stride);
-        let rows =
-            ArrayViewMut2::from_shape((n_first, stride), &mut self.values[..n_first * stride]);
-        across(
-            rows.expect("rows fill the values")
-                .slice_mut(s![.., n_first..n]),
-        );
         self.mirror(n_first);
     }
 
-    /// Copies what is above the diagonal block of the first `n_first` rows to below it, in tiles that stay in the cache.
+    /// Copies what is left of the diagonal block of the rows from `n_first` on to above it.
     fn mirror(&mut self, n_first: usize) {
-        let (n, stride) = (self.n, self.stride);
-        let (above, below) = self.values.split_at_mut(n_first * stride);
-        for left in (0..n_first).step_by(TILE) {
-            for top in (n_first..n).step_by(TILE) {
-                for j in top..(top + TILE).min(n) {
-                    let row = &mut below[(j - n_first) * stride..][..n_first];
-                    for (i, to) in row.iter_mut().enumerate().skip(left).take(TILE) {
-                        *to = above[i * stride + j];
-                    }
-                }
-            }
-        }
+        let (above, below) = self.values.split_at_mut(n_first * self.stride);
+        let rows = below.chunks_exact(self.stride).map(|row| &row[..n_first]);
+        let rows: Vec<&[T]> = rows.collect();
+        write_columns(&rows, &mut above[n_first..], self.stride);
     }
 
     /// A whole matrix.
@@ -125,7 +109,7 @@ impl<T: Scalar> Dense<T> {
 }
 
 /// Copies a row.
-pub(crate) fn copy<T: Copy>(to: &mut [T], from: ArrayView1<T>) {
+fn copy<T: Copy>(to: &mut [T], from: ArrayView1<T>) {
     match from.as_slice() {
         Some(from) => to.copy_from_slice(from),
         None => to.iter_mut().zip(from).for_each(|(to, &from)| *to = from),
@@ -297,7 +281,7 @@ impl<T: Scalar> Gram<T> for Cached<'_, T> {
     fn part(&mut self, indices: &[usize]) -> Dense<T> {
         let some = self.points.select(indices);
         let mut part = Dense::default();
-        part.of_whole(some.all().kernel(some.all(), &self.kernel).view());
+        part.of_whole(some.all().own_kernel(&self.kernel).view());
         part
     }
 }

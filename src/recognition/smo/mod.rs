@@ -13,21 +13,24 @@
 
 mod gram;
 mod part;
-mod passes;
+pub(crate) mod passes;
+#[cfg(target_arch = "x86_64")]
+pub(crate) mod passes_512;
 mod row_sums;
 mod runs;
 mod start;
 mod variables;
 
-pub(crate) use gram::{Cached, Dense, Gram, copy, gather};
-pub(crate) use part::{Part, Room};
+pub(crate) use gram::{Cached, Dense, Gram, gather};
+pub(crate) use part::{Part, Room, part_of};
 pub(crate) use runs::Runs;
 pub(crate) use variables::extremes;
 
+use crate::recognition::dataset::all_finite;
 use crate::recognition::dual::DualSolution;
 use crate::recognition::scalar::Scalar;
-use passes::{select_down, select_up, step_along};
-use variables::{Variables, rho};
+use passes::select_up;
+use variables::{Variables, linear_and_quadratic, rho};
 
 /// Iterations after which a problem counts as not solved, as in LIBSVM; or 100 a row, if that is more.
 const MOST_ITERATIONS: u64 = 10_000_000;
@@ -152,17 +155,14 @@ impl<'a, G> Smo<'a, G> {
 
     /// `Σ y β − ½ β K β`.
     fn objective(&self) -> f64 {
-        let terms = self.beta.iter().zip(&self.f).zip(self.is_positive);
-        terms
-            .map(|((&beta, &f), &is_positive)| 0.5 * beta * (sign(is_positive) + f))
-            .sum()
+        let (linear, quadratic) = linear_and_quadratic(&self.beta, self.is_positive, &self.f);
+        linear - 0.5 * quadratic
     }
 
     /// How far the optimality conditions for a C are violated; below 0 when they hold with room to spare, infinite when
     /// kernel values have left nothing to go by.
     fn violation(&self, c: f64) -> f64 {
-        let is_finite = self.f.iter().fold(true, |all, f| all & f.is_finite());
-        if !is_finite {
+        if !all_finite(&self.f) {
             return f64::INFINITY;
         }
         let (highest, lowest) = extremes(&self.beta, self.is_positive, &self.f, c);
@@ -252,7 +252,6 @@ enum Stop {
 }
 
 /// Moves pairs of variables until the optimality conditions hold, iterations run out, or few variables are left to move.
-#[multiversion::multiversion(targets("x86_64+avx2+fma"))]
 fn run<T: Scalar, G: Gram<T>>(
     gram: &mut G,
     variables: &mut Variables<T>,
@@ -275,7 +274,7 @@ fn run<T: Scalar, G: Gram<T>>(
         let highest = variables.f[i];
         let (row_i, diagonal) = gram.row_and_diagonal(i);
         let own = diagonal[i];
-        let down = select_down(
+        let down = T::select_down(
             (&variables.f, &variables.low),
             (row_i, diagonal),
             (highest, own),
@@ -301,8 +300,8 @@ fn run<T: Scalar, G: Gram<T>>(
         until_look = until_look.saturating_sub(1);
         let step = variables.step(i, j, curvature.max(smallest_curvature.wide()));
         let (row_i, row_j) = gram.rows(i, j);
-        step_along(&mut variables.f, row_i, row_j, T::of(step));
-        match select_up(&variables.f, &variables.up) {
+        let rows = (row_i, row_j);
+        match T::step_along(&mut variables.f, rows, T::of(step), &variables.up) {
             Some(next) => i = next,
             None => return Stop::Done,
         }

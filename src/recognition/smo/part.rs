@@ -1,8 +1,8 @@
-//! A part of a Gram matrix that is held elsewhere: rows are brought together when the solver first asks for them.
+//! A Gram matrix whose values are held elsewhere: rows are brought together when the solver first asks for them.
 
 use ndarray::ArrayView2;
 
-use super::gram::{Dense, Gram};
+use super::gram::{Dense, Gram, gather};
 use super::passes::padded;
 use super::row_sums::weighted_sum;
 use super::runs::Runs;
@@ -26,40 +26,50 @@ impl<T> Room<T> {
     }
 }
 
-/// K of some rows of a whole matrix (standard layout).
-pub(crate) struct Part<'a, T> {
-    whole: &'a [T],
-    width: usize,
-    rows: &'a [usize],
-    runs: Runs,
+/// K of n rows, by what writes the n values of a row.
+pub(crate) struct Part<'a, T, F> {
+    n: usize,
     stride: usize,
+    write: F,
     room: &'a mut Room<T>,
 }
 
-impl<'a, T: Scalar> Part<'a, T> {
-    /// The rows and columns at these indices.
-    ///
-    /// # Panics
-    /// When `whole` is not stored row by row.
-    pub fn new(whole: &'a ArrayView2<T>, rows: &'a [usize], room: &'a mut Room<T>) -> Self {
-        let width = whole.ncols();
-        let whole = whole.as_slice().expect("a product is stored row by row");
-        let stride = padded(rows.len());
-        room.is_here.clear();
-        room.is_here.resize(rows.len(), false);
-        if room.values.len() < rows.len() * stride {
-            room.values.resize(rows.len() * stride, T::zero());
-        }
+/// The rows and columns of a whole matrix at these indices.
+///
+/// # Panics
+/// When `whole` is not stored row by row.
+pub(crate) fn part_of<'a, T: Scalar>(
+    whole: &'a ArrayView2<T>,
+    rows: &'a [usize],
+    room: &'a mut Room<T>,
+) -> Part<'a, T, impl Fn(usize, &mut [T])> {
+    let width = whole.ncols();
+    let whole = whole.as_slice().expect("a product is stored row by row");
+    let runs = Runs::new(rows);
+    let diagonal = rows.iter().map(|&row| whole[row * width + row]);
+    let write = move |i: usize, to: &mut [T]| {
+        runs.copy(&whole[rows[i] * width..][..width], to);
+    };
+    Part::new(diagonal, write, room)
+}
+
+impl<'a, T: Scalar, F: Fn(usize, &mut [T])> Part<'a, T, F> {
+    /// Of as many rows as the diagonal has values.
+    pub fn new(diagonal: impl Iterator<Item = T>, write: F, room: &'a mut Room<T>) -> Self {
         room.diagonal.clear();
-        room.diagonal
-            .extend(rows.iter().map(|&row| whole[row * width + row]));
+        room.diagonal.extend(diagonal);
+        let n = room.diagonal.len();
+        let stride = padded(n);
         room.diagonal.resize(stride, T::zero());
+        room.is_here.clear();
+        room.is_here.resize(n, false);
+        if room.values.len() < n * stride {
+            room.values.resize(n * stride, T::zero());
+        }
         Self {
-            whole,
-            width,
-            rows,
-            runs: Runs::new(rows),
+            n,
             stride,
+            write,
             room,
         }
     }
@@ -69,9 +79,10 @@ impl<'a, T: Scalar> Part<'a, T> {
             return;
         }
         self.room.is_here[i] = true;
-        let from = &self.whole[self.rows[i] * self.width..][..self.width];
         let to = &mut self.room.values[i * self.stride..][..self.stride];
-        self.runs.copy(from, to).fill(T::zero());
+        let (to, padding) = to.split_at_mut(self.n);
+        (self.write)(i, to);
+        padding.fill(T::zero());
     }
 
     fn at(&self, i: usize) -> &[T] {
@@ -79,9 +90,9 @@ impl<'a, T: Scalar> Part<'a, T> {
     }
 }
 
-impl<T: Scalar> Gram<T> for Part<'_, T> {
+impl<T: Scalar, F: Fn(usize, &mut [T])> Gram<T> for Part<'_, T, F> {
     fn len(&self) -> usize {
-        self.rows.len()
+        self.n
     }
 
     fn rows(&mut self, i: usize, j: usize) -> (&[T], &[T]) {
@@ -99,7 +110,7 @@ impl<T: Scalar> Gram<T> for Part<'_, T> {
         (0..beta.len())
             .filter(|&j| beta[j] != 0.0)
             .for_each(|j| self.bring(j));
-        weighted_sum(self.rows.len(), beta, |j| self.at(j))
+        weighted_sum(self.n, beta, |j| self.at(j))
     }
 
     fn fits(&self, _: usize) -> bool {
@@ -107,12 +118,10 @@ impl<T: Scalar> Gram<T> for Part<'_, T> {
     }
 
     fn part(&mut self, indices: &[usize]) -> Dense<T> {
+        indices.iter().for_each(|&i| self.bring(i));
         let mut part = Dense::default();
         part.refill(indices.len(), |i, to| {
-            let from = &self.whole[self.rows[indices[i]] * self.width..][..self.width];
-            for (to, &column) in to.iter_mut().zip(indices) {
-                *to = from[self.rows[column]];
-            }
+            gather(to, self.at(indices[i]), indices)
         });
         part
     }

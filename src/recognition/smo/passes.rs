@@ -1,4 +1,5 @@
-//! The solver's two passes over all variables, written so that the compiler makes vector instructions of them.
+//! The solver's two passes over all variables, written so that the compiler makes vector instructions of them; f32 has
+//! [its own](super::passes_512) where the processor allows it.
 //!
 //! Every slice is a whole number of [`LANES`] long ([`padded`]). Each lane keeps its own extreme; where the extreme of all is
 //! gets looked up afterwards, the lowest index of equals, so results do not depend on the processor.
@@ -84,18 +85,24 @@ pub(super) fn select_up<T: Scalar>(f: &[T], up: &[T]) -> Option<usize> {
     }
 }
 
-/// `f − step (row_i − row_j)` in place.
-#[inline(always)]
-pub(super) fn step_along<T: Scalar>(f: &mut [T], row_i: &[T], row_j: &[T], step: T) {
+/// Takes `f − step (row_i − row_j)` in place, and finds the next variable to raise.
+#[multiversion::multiversion(targets("x86_64+avx2+fma"))]
+pub(crate) fn step_along<T: Scalar>(
+    f: &mut [T],
+    (row_i, row_j): (&[T], &[T]),
+    step: T,
+    up: &[T],
+) -> Option<usize> {
     let n = f.len();
     let (row_i, row_j) = (&row_i[..n], &row_j[..n]);
     for at in 0..n {
         f[at] -= step * (row_i[at] - row_j[at]);
     }
+    select_up(f, up)
 }
 
 /// What the second pass found.
-pub(super) struct Down<T> {
+pub(crate) struct Down<T> {
     /// The variable to lower with `i`: the largest gain of the dual objective, to second order [Fan, Chen, Lin 2005];
     /// `None` when no pair violates the optimality conditions.
     pub j: Option<usize>,
@@ -105,8 +112,8 @@ pub(super) struct Down<T> {
 
 /// The variable to lower when i, whose f is `highest`, is raised. `row` is row i of the Gram matrix; `low` is 0 where a
 /// variable can be lowered and −∞ elsewhere; `gains` is scratch.
-#[inline(always)]
-pub(super) fn select_down<T: Scalar>(
+#[multiversion::multiversion(targets("x86_64+avx2+fma"))]
+pub(crate) fn select_down<T: Scalar>(
     (f, low): (&[T], &[T]),
     (row, diagonal): (&[T], &[T]),
     (highest, own): (T, T),
@@ -199,7 +206,7 @@ mod tests {
         let mut f = values(n, 0.9);
         let mut plain = f.clone();
 
-        step_along(&mut f, &row_i, &row_j, 0.3);
+        let next = step_along(&mut f, (&row_i, &row_j), 0.3, &up);
         for i in 0..n {
             plain[i] -= 0.3 * (row_i[i] - row_j[i]);
         }
@@ -210,7 +217,8 @@ mod tests {
                 best = (plain[i] + up[i], i);
             }
         }
-        assert_eq!(select_up(&f, &up), Some(best.1));
+        assert_eq!(next, Some(best.1));
+        assert_eq!(select_up(&f, &up), next);
 
         let (highest, i) = best;
         let down = select_down(
@@ -234,6 +242,40 @@ mod tests {
         }
         assert_eq!(down.j, at);
         assert_eq!(down.violation, violation);
+    }
+
+    #[test]
+    fn the_passes_of_the_processor_find_the_same_to_the_bit() {
+        let n = 7 * LANES;
+        let single = |salt: f64| {
+            values(n, salt)
+                .iter()
+                .map(|v| *v as f32)
+                .collect::<Vec<_>>()
+        };
+        let marks = |every: usize| {
+            let mark = |i: usize| {
+                if i.is_multiple_of(every) {
+                    f32::NEG_INFINITY
+                } else {
+                    0.0
+                }
+            };
+            (0..n).map(mark).collect::<Vec<_>>()
+        };
+        let (row_i, row_j, diagonal) = (single(0.1), single(0.5), vec![2.5; n]);
+        for (up, low) in [(marks(3), marks(4)), (marks(1), marks(1))] {
+            let (mut f, mut plain) = (single(0.9), single(0.9));
+            let next = f32::step_along(&mut f, (&row_i, &row_j), 0.3, &up);
+            assert_eq!(next, step_along(&mut plain, (&row_i, &row_j), 0.3, &up));
+            assert_eq!(f, plain);
+            let (mut gains, mut expected) = (vec![0.0; n], vec![0.0; n]);
+            let (states, rows, own) = ((&f[..], &low[..]), (&row_i[..], &diagonal[..]), (0.8, 2.5));
+            let found = f32::select_down(states, rows, own, 1e-12, &mut gains);
+            let down = select_down(states, rows, own, 1e-12, &mut expected);
+            assert_eq!((found.j, found.violation), (down.j, down.violation));
+            assert_eq!(gains, expected);
+        }
     }
 
     #[test]

@@ -2,6 +2,7 @@
 
 use super::gram::Gram;
 use super::row_sums::add_row;
+use super::variables::linear_and_quadratic;
 use super::{Smo, sign};
 use crate::recognition::scalar::Scalar;
 
@@ -38,11 +39,7 @@ impl<G> Smo<'_, G> {
 
     /// Takes β to another C: multiplied by what is best for the objective, as far as the new bounds allow.
     pub(super) fn stretch(&mut self, c: f64) {
-        let (mut linear, mut quadratic) = (0.0, 0.0);
-        for ((&beta, &f), &is_positive) in self.beta.iter().zip(&self.f).zip(self.is_positive) {
-            linear += beta * sign(is_positive);
-            quadratic += beta * (sign(is_positive) - f);
-        }
+        let (linear, quadratic) = linear_and_quadratic(&self.beta, self.is_positive, &self.f);
         if self.c > 0.0 && self.c != c && quadratic > 0.0 {
             let most = c / self.c;
             let factor = (linear / quadratic).clamp(0.0, most);

@@ -4,9 +4,32 @@ use super::passes::padded;
 use crate::recognition::scalar::Scalar;
 
 /// Variables looked at side by side.
-const LANES: usize = 4;
+const LANES: usize = 8;
+
+/// 0 where β can move, −∞ elsewhere.
+#[inline(always)]
+fn mark<T: Scalar>(can_move: bool) -> T {
+    if can_move {
+        T::zero()
+    } else {
+        T::neg_infinity()
+    }
+}
+
+/// Notes in which directions all β can move.
+#[multiversion::multiversion(targets("x86_64+avx512f", "x86_64+avx2+fma"))]
+fn mark_all<T: Scalar>(beta: &[f64], is_positive: &[bool], c: f64, up: &mut [T], low: &mut [T]) {
+    let n = beta.len();
+    let (is_positive, up, low) = (&is_positive[..n], &mut up[..n], &mut low[..n]);
+    for i in 0..n {
+        let (lowest, highest) = bounds(is_positive[i], c);
+        up[i] = mark(beta[i] < highest);
+        low[i] = mark(beta[i] > lowest);
+    }
+}
 
 /// Where a variable may be: between 0 and C for a positive row, between −C and 0 for a negative one.
+#[inline(always)]
 fn bounds(is_positive: bool, c: f64) -> (f64, f64) {
     if is_positive { (0.0, c) } else { (-c, 0.0) }
 }
@@ -41,7 +64,7 @@ impl<T: Scalar> Variables<T> {
             gains: vec![T::zero(); padded(n)],
         };
         variables.f.resize(padded(n), T::zero());
-        (0..n).for_each(|i| variables.mark(i));
+        mark_all(beta, is_positive, c, &mut variables.up, &mut variables.low);
         variables
     }
 
@@ -57,16 +80,8 @@ impl<T: Scalar> Variables<T> {
     #[inline(always)]
     fn mark(&mut self, i: usize) {
         let (lowest, highest) = bounds(self.is_positive[i], self.c);
-        self.up[i] = if self.beta[i] < highest {
-            T::zero()
-        } else {
-            T::neg_infinity()
-        };
-        self.low[i] = if self.beta[i] > lowest {
-            T::zero()
-        } else {
-            T::neg_infinity()
-        };
+        self.up[i] = mark(self.beta[i] < highest);
+        self.low[i] = mark(self.beta[i] > lowest);
     }
 
     /// Raises β_i and lowers β_j by as much: to the optimum along that line, or to the first bound. How much it was.
@@ -114,42 +129,55 @@ impl<T: Scalar> Variables<T> {
 }
 
 /// `(max of f that can be raised, min of f that can be lowered)`, in f64, for any β within its bounds.
+#[multiversion::multiversion(targets("x86_64+avx512f", "x86_64+avx2+fma"))]
 pub(crate) fn extremes(beta: &[f64], is_positive: &[bool], f: &[f64], c: f64) -> (f64, f64) {
     let (beta, last_beta) = beta.as_chunks::<LANES>();
     let (is_positive, last_is_positive) = is_positive.as_chunks::<LANES>();
     let (f, last_f) = f.as_chunks::<LANES>();
+    let n = beta.len();
+    let (is_positive, f) = (&is_positive[..n], &f[..n]);
     // Each lane keeps its own; they meet at the end.
     let (mut highest, mut lowest) = ([f64::NEG_INFINITY; LANES], [f64::INFINITY; LANES]);
-    let mut meet = |lane: usize, beta: f64, is_positive: bool, f: f64| {
-        let (low, high) = bounds(is_positive, c);
-        let raised = if beta < high { f } else { f64::NEG_INFINITY };
-        let lowered = if beta > low { f } else { f64::INFINITY };
-        highest[lane] = if raised > highest[lane] {
-            raised
-        } else {
-            highest[lane]
-        };
-        lowest[lane] = if lowered < lowest[lane] {
-            lowered
-        } else {
-            lowest[lane]
-        };
-    };
-    for ((beta, is_positive), f) in beta.iter().zip(is_positive).zip(f) {
+    for at in 0..n {
         for lane in 0..LANES {
-            meet(lane, beta[lane], is_positive[lane], f[lane]);
+            let both = (&mut highest[lane], &mut lowest[lane]);
+            widen(both, beta[at][lane], is_positive[at][lane], f[at][lane], c);
         }
     }
-    for (lane, ((&beta, &is_positive), &f)) in last_beta
-        .iter()
-        .zip(last_is_positive)
-        .zip(last_f)
-        .enumerate()
-    {
-        meet(lane, beta, is_positive, f);
+    for at in 0..last_beta.len() {
+        let both = (&mut highest[at], &mut lowest[at]);
+        widen(both, last_beta[at], last_is_positive[at], last_f[at], c);
     }
     let highest = highest.into_iter().fold(f64::NEG_INFINITY, f64::max);
     (highest, lowest.into_iter().fold(f64::INFINITY, f64::min))
+}
+
+/// Takes one more variable into the extremes.
+#[inline(always)]
+fn widen((highest, lowest): (&mut f64, &mut f64), beta: f64, is_positive: bool, f: f64, c: f64) {
+    let (low, high) = bounds(is_positive, c);
+    let raised = if beta < high { f } else { f64::NEG_INFINITY };
+    let lowered = if beta > low { f } else { f64::INFINITY };
+    *highest = if raised > *highest { raised } else { *highest };
+    *lowest = if lowered < *lowest { lowered } else { *lowest };
+}
+
+/// `Σ y β` and `β K β` of β and its f, of which the dual objective is the first less half the second.
+#[multiversion::multiversion(targets("x86_64+avx512f", "x86_64+avx2+fma"))]
+pub(super) fn linear_and_quadratic(beta: &[f64], is_positive: &[bool], f: &[f64]) -> (f64, f64) {
+    let n = beta.len();
+    let (is_positive, f) = (&is_positive[..n], &f[..n]);
+    // Each lane keeps its own; they meet at the end.
+    let (mut linear, mut quadratic) = ([0.0; LANES], [0.0; LANES]);
+    for start in (0..n).step_by(LANES) {
+        for lane in 0..LANES.min(n - start) {
+            let at = start + lane;
+            let y = if is_positive[at] { 1.0 } else { -1.0 };
+            linear[lane] += beta[at] * y;
+            quadratic[lane] += beta[at] * (y - f[at]);
+        }
+    }
+    (linear.iter().sum(), quadratic.iter().sum())
 }
 
 /// ρ: the mean of −f over the variables between their bounds, or the middle of what the others allow (LIBSVM's rule).

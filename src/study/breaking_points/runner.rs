@@ -7,12 +7,14 @@ use crate::error::{Error, Result};
 use crate::objects::Object;
 use crate::random::Seed;
 use crate::recognition::ClassifierKind;
+use crate::recognition::bootstrap::Bootstrap;
 use crate::study::evaluation::{Evaluation, Trial};
+use crate::study::frames::Frames;
 use crate::study::measurement::{Measurements, measure_group};
 use crate::study::object_files::load_objects;
 use crate::study::plan::Plan;
 use crate::study::progress::{Progress, Silent};
-use crate::study::simulation::{Frames, TouchedObject, draw_touches, simulate_array};
+use crate::study::simulation::{TouchedObject, draw_touches, simulate_array};
 use crate::study::spec::ObjectsSpec;
 use crate::study::summary::score;
 use crate::study::sweep::Sweep;
@@ -199,6 +201,7 @@ fn add_way(
 ) -> Result<()> {
     let n_objects = evaluated.first().map_or(0, |value| value.n_objects);
     let mut curves: Vec<(ClassifierKind, Vec<CellScore>)> = Vec::new();
+    let mut bootstrap = Bootstrap::default();
     for (planned, found) in way.values.iter().zip(evaluated) {
         for (place, (classifier, trials)) in found.classifiers.into_iter().enumerate() {
             let cell = WayCell {
@@ -208,7 +211,7 @@ fn add_way(
                 classifier,
             };
             let scores = trials.iter().map(|trial| &trial.score);
-            let score = score(&scores.collect::<Vec<_>>())?;
+            let score = score(&scores.collect::<Vec<_>>(), &mut bootstrap)?;
             if curves.len() == place {
                 curves.push((classifier, Vec::new()));
             }

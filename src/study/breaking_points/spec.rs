@@ -107,6 +107,7 @@ impl BreakingPointsSpec {
             expected: String::new(),
             seed: self.seed,
             trials: self.trials,
+            projections_per_split: None,
             objects: self.objects.clone(),
             skin: self.skin.clone(),
             touches: self.touches.clone(),

@@ -6,11 +6,12 @@ use crate::geometry::Pose;
 use crate::objects::Model;
 use crate::study::simulation::TouchedObject;
 use crate::world::{Patch, Scene};
+use glam::DVec3;
 use std::time::Instant;
 
 /// How far a model's deflections are from the mesh's, metres.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct DeflectionError {
+pub(in crate::study) struct DeflectionError {
     /// |δ − δ*|, mean over taxels that either touches.
     pub mean: f64,
     /// 95th percentile over the same.
@@ -18,7 +19,7 @@ pub(super) struct DeflectionError {
 }
 
 /// How a mesh was touched, and what was read.
-pub(super) struct Truth {
+pub(in crate::study) struct Truth {
     patch: Patch,
     readings: Vec<Reading>,
     /// Touches that met nothing.
@@ -27,9 +28,11 @@ pub(super) struct Truth {
     pub n_touched: usize,
 }
 
-struct Reading {
+/// One touch, and what exact contact says of it.
+pub(in crate::study) struct Reading {
     patch_from_object: Pose,
-    depth: f64,
+    /// Past first contact, metres.
+    pub depth: f64,
     travel: f64,
     deflections: Vec<f64>,
 }
@@ -43,7 +46,7 @@ const N_REPEATS: usize = 3;
 
 impl Truth {
     /// Touches a mesh exactly.
-    pub(super) fn new(touched: &TouchedObject, patch: &Patch) -> Self {
+    pub(in crate::study) fn new(touched: &TouchedObject, patch: &Patch) -> Self {
         let scene = Scene::of_one(patch, &touched.object.model);
         let mut workspace = Workspace::new();
         let (mut readings, mut n_missed, mut n_touched) = (Vec::new(), 0, 0);
@@ -69,13 +72,25 @@ impl Truth {
         }
     }
 
+    /// Touches that met it.
+    pub(in crate::study) fn readings(&self) -> &[Reading] {
+        &self.readings
+    }
+
+    /// Takes other deflections for right: those that `feel` says of each touch, by the object's pose under the pressed patch.
+    pub(in crate::study) fn feel_instead(&mut self, feel: impl Fn(&Pose) -> Vec<f64>) {
+        for reading in &mut self.readings {
+            reading.deflections = feel(&reading.pressed());
+        }
+    }
+
     /// Touches that met the mesh.
     pub(super) fn n_met(&self) -> usize {
         self.readings.len()
     }
 
     /// Of a model read where the mesh was, the patch drawn back by `offset` metres.
-    pub(super) fn error(&self, model: &Model, offset: f64) -> DeflectionError {
+    pub(in crate::study) fn error(&self, model: &Model, offset: f64) -> DeflectionError {
         let mut errors = Vec::new();
         self.each_difference(&Scene::of_one(&self.patch, model), offset, |difference| {
             errors.push(difference.abs());
@@ -95,7 +110,7 @@ impl Truth {
         for reading in &self.readings {
             let pose = [reading.patch_from_object];
             press_to_depth(&scene, &pose, reading.depth, &mut workspace);
-            reading.each_difference(&workspace, &mut |difference| {
+            reading.each_difference(workspace.deflections(), &mut |difference| {
                 sum += difference.abs();
                 count += 1;
             });
@@ -127,7 +142,7 @@ impl Truth {
     }
 
     /// Median time of a touch to its depth on one thread, seconds; 0 if nothing was met.
-    pub(super) fn seconds_per_touch(&self, model: &Model) -> f64 {
+    pub(in crate::study) fn seconds_per_touch(&self, model: &Model) -> f64 {
         let scene = Scene::of_one(&self.patch, model);
         let mut workspace = Workspace::new();
         let mut press = |reading: &Reading| {
@@ -151,7 +166,7 @@ impl Truth {
         for reading in &self.readings {
             let travel = reading.travel - offset;
             press_to_travel(scene, &[reading.patch_from_object], travel, &mut workspace);
-            reading.each_difference(&workspace, &mut visit);
+            reading.each_difference(workspace.deflections(), &mut visit);
         }
     }
 
@@ -171,9 +186,14 @@ impl Truth {
 }
 
 impl Reading {
-    /// Calls `visit` with δ − δ* of each taxel that either touches.
-    fn each_difference(&self, workspace: &Workspace, visit: &mut impl FnMut(f64)) {
-        for (model, mesh) in workspace.deflections().iter().zip(&self.deflections) {
+    /// `patch_from_object` where the patch was read: as if it had not travelled and the object had come.
+    pub(in crate::study) fn pressed(&self) -> Pose {
+        Pose::from_translation(-self.travel * DVec3::Z).compose(&self.patch_from_object)
+    }
+
+    /// Calls `visit` with δ − δ* of each taxel that either touches; `felt` is δ, n_taxels, metres.
+    pub(in crate::study) fn each_difference(&self, felt: &[f64], visit: &mut impl FnMut(f64)) {
+        for (model, mesh) in felt.iter().zip(&self.deflections) {
             if *model > 0.0 || *mesh > 0.0 {
                 visit(model - mesh);
             }

@@ -23,6 +23,7 @@ mod summary;
 pub mod table;
 mod variants;
 
+pub(in crate::study) use deflection::{Reading, Truth};
 pub use plan::{ObjectDetailPlan, RecognitionPlan};
 pub use runner::measure_detail;
 pub use spec::{DetailMethod, DetailRecognitionSpec, ObjectDetailSpec, ObjectDetailStudySpec};

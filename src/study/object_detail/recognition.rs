@@ -68,10 +68,10 @@ impl<'a> Sensor<'a> {
         let mut touched = draw_touches(vec![object(&variants[0])], &self.placement, &self.seed)?;
         let measured = variants.iter().map(|variant| {
             touched[0].object = object(variant);
-            let frames = simulate_array(&touched, &self.patch, 1, &Silent).deflection;
-            self.projection.measure(frames.mapv(f64::from).view())
+            let frames = simulate_array(&touched, &self.patch, 1, &Silent);
+            Ok(self.projection.measure(frames.kept.to_array()?.view()))
         });
-        Ok(measured.collect())
+        measured.collect()
     }
 
     /// A row a level and classifier, from what was felt of the models of each object. `rows` are theirs in the same order, the

@@ -7,9 +7,10 @@ use crate::random::Seed;
 use crate::recognition::split::{Split, stratified_hold_out};
 use crate::sensing::{Dictionary, Ensemble};
 use crate::signal::{Chain, Noise, NoiseUnit};
+use crate::study::frames::Frames;
 use crate::study::measurement::{Reading, TouchToRead, measure, touches_to_read};
 use crate::study::progress::Progress;
-use crate::study::simulation::{Frames, TouchedObject, simulate_array, touch_labels};
+use crate::study::simulation::{TouchedObject, simulate_array, touch_labels};
 use ndarray::{Array1, Array2, Axis};
 use rayon::prelude::*;
 
@@ -144,9 +145,8 @@ fn read(
         taxel: plan.patch.taxel,
         speed: plan.speed,
     };
-    let deflection = frames.deflection.select(Axis(0), rows);
     let touches: Vec<TouchToRead> = rows.iter().map(|&row| touches[row]).collect();
-    Ok(measure(reading, deflection.view(), &touches).0)
+    Ok(measure(reading, (&frames.kept, 1), &touches)?.0)
 }
 
 /// The first test touch of a few objects spread over the list.

@@ -6,6 +6,7 @@ use crate::error::Result;
 use crate::study::axis::Axis;
 use crate::study::check::{Check, positive};
 use crate::study::plan::MM;
+use std::path::{Path, PathBuf};
 
 /// Settings of a study of stability, ready to run.
 #[derive(Clone, Debug)]
@@ -16,6 +17,8 @@ pub struct StabilityPlan {
     pub pitch: f64,
     /// What is tried, in this order.
     pub parts: Vec<StabilityPart>,
+    /// Where the rows of other programs are.
+    pub peers: Option<PathBuf>,
 }
 
 /// Cells that share what no axis says.
@@ -51,6 +54,10 @@ impl StabilityPlan {
         Ok(Self {
             pitch: pitch * MM,
             parts,
+            peers: wanted.peers.as_ref().map(|path| {
+                let folder = Path::new(place).parent().unwrap_or(Path::new(""));
+                folder.join(path)
+            }),
             spec,
         })
     }
@@ -83,6 +90,11 @@ impl PartCheck<'_> {
         let methods = self
             .check
             .list(&self.key("methods"), part.methods.clone())?;
+        if methods.iter().any(|method| method.is_peer()) {
+            let allowed =
+                "methods of this program: other programs leave their rows in stability.peers";
+            return Err(self.check.error(&self.key("methods"), "MuJoCo", allowed));
+        }
         let sides = self.sides()?;
         let stroke = self.positive("stroke_mm", &Axis::One(part.stroke_mm))?[0];
         let stiffnesses = self.positive("stiffness_n_per_m", &part.stiffness_n_per_m)?;

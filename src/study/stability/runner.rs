@@ -1,6 +1,7 @@
 //! Runs a study of stability: all cells on all threads.
 
 use super::cell::measure;
+use super::peers::join_peers;
 use super::plan::StabilityPlan;
 use super::summary::summary;
 use super::table::StabilityTables;
@@ -11,7 +12,7 @@ use rayon::prelude::*;
 /// Runs a study. The tables but for times are the same bytes at any number of threads.
 ///
 /// # Errors
-/// A scene that cannot be built: a cradle too deep for its ball.
+/// A scene that cannot be built: a cradle too deep for its ball; a file of peers that cannot be read.
 pub fn measure_stability(plan: &StabilityPlan, progress: &dyn Progress) -> Result<StabilityTables> {
     progress.stage("stability", plan.n_cells() as u64);
     let cells = plan.parts.iter();
@@ -32,6 +33,7 @@ pub fn measure_stability(plan: &StabilityPlan, progress: &dyn Progress) -> Resul
         tables.stability.push((cell.clone(), score));
         tables.timing.push((cell.clone(), time));
     }
+    join_peers(plan, &mut tables)?;
     tables.summary = summary(&tables.stability);
     Ok(tables)
 }

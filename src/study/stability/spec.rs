@@ -3,6 +3,7 @@
 use crate::error::{Error, Result};
 use crate::study::axis::Axis;
 use serde::{Deserialize, Serialize};
+use std::path::PathBuf;
 
 /// The file.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -24,6 +25,9 @@ pub struct StabilitySpec {
     /// Between neighbouring taxels; they are balls of half as much.
     #[serde(default = "default_pitch")]
     pub pitch_mm: f64,
+    /// A table that other programs wrote (`benches/peers/stability.py`), beside the study's file; left out where it is not.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub peers: Option<PathBuf>,
     /// Products of axes that are tried, one after the other.
     pub parts: Vec<StabilityPartSpec>,
 }
@@ -85,12 +89,26 @@ pub enum ContactMethod {
     RapierAsItComes,
     /// rapier tuned for skin. Only with the feature `rapier`; left out without it.
     RapierTuned,
+    /// MuJoCo as it comes: Euler's integrator, soft contacts. Only in [`peers`](StabilitySpec::peers), as the next two.
+    MujocoEuler,
+    /// MuJoCo with its integrator `implicitfast`, soft contacts.
+    MujocoImplicitfast,
+    /// MuJoCo with its integrator `discrete`, contacts as hard as it gets.
+    MujocoDiscrete,
 }
 
 impl ContactMethod {
     /// Whether this build has it.
     pub fn is_built(self) -> bool {
         !self.is_engine() || cfg!(feature = "rapier")
+    }
+
+    /// Whether it is another program's.
+    pub fn is_peer(self) -> bool {
+        matches!(
+            self,
+            Self::MujocoEuler | Self::MujocoImplicitfast | Self::MujocoDiscrete
+        )
     }
 
     /// Whether solver iterations mean something to it.

@@ -102,4 +102,18 @@ pub struct StabilityTables {
     pub summary: Vec<StabilitySummary>,
     /// One row a cell, in the order of the plan.
     pub timing: Vec<(StabilityCell, StabilityTime)>,
+    /// Who measured the rows of other programs, and when: `MuJoCo 4.0.0, 2026-11-22`; empty without such rows. They are in the tables
+    /// above, at the end of the parts that they belong to.
+    pub peers: String,
+}
+
+/// Who measured a row of another program: it ends with these columns.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct PeerSource {
+    /// Which program.
+    pub program: String,
+    /// Of the program.
+    pub version: String,
+    /// Year-month-day.
+    pub date: String,
 }

@@ -1,6 +1,7 @@
 //! What a body was asked to do, and what it does.
 
 use super::table::{Bar, BodyCase, BodyCount, BodyTime, Series, Stage, WholeBodyTables};
+use crate::whole_body::WORTH_THREADS;
 
 /// Taxels from which on the step must not grow with the skin.
 const LARGE_SKIN: usize = 100_000;
@@ -43,6 +44,7 @@ pub(super) fn bars(tables: &WholeBodyTables) -> Vec<Bar> {
         bars.push(at_least(what, 1e6 / us, "steps/s", 100_000.0));
     }
     bars.extend(answers(tables));
+    bars.extend(threads(tables));
     let bytes = tables.cases.iter().map(|(_, count)| count.bytes_per_taxel);
     if let Some(most) = bytes.reduce(f64::max) {
         let what = "memory of a body at rest".to_owned();
@@ -112,6 +114,34 @@ fn answers(tables: &WholeBodyTables) -> Vec<Bar> {
             at_most(what, 1e-3 * time.us_median, "ms", 1.0)
         })
         .collect()
+}
+
+/// Where a touch is small: the time with all threads over that with one, at worst.
+fn threads(tables: &WholeBodyTables) -> Option<Bar> {
+    let small = |case: &BodyCase| {
+        let count = tables.cases.iter().find(|(of, _)| of == case);
+        count.is_some_and(|(_, count)| count.touched_max < WORTH_THREADS)
+    };
+    let presses: Vec<_> = tables
+        .timing
+        .iter()
+        .filter(|(case, time)| time.stage == Stage::Press && small(case))
+        .collect();
+    let ratios: Vec<f64> = presses
+        .iter()
+        .filter(|(_, time)| time.n_threads > 1)
+        .filter_map(|(case, all)| {
+            let is_it = |(of, time): &&&(BodyCase, BodyTime)| of == case && time.n_threads == 1;
+            let (_, alone) = presses.iter().find(is_it)?;
+            Some(all.us_median / alone.us_median)
+        })
+        .collect();
+    let worst = ratios.iter().copied().reduce(f64::max)?;
+    let what = format!(
+        "time with all threads over that with one, worst of {} small touches",
+        ratios.len()
+    );
+    Some(at_most(what, worst, "times", 1.1))
 }
 
 /// Of the line through points that leaves the least squares.

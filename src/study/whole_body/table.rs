@@ -48,6 +48,10 @@ pub struct BodyCount {
     pub patches_visited_mean: f64,
     /// Patches with a touched taxel, mean over steps.
     pub patches_touched_mean: f64,
+    /// Spheres for which rows, rings or tiles of taxels were looked at, counted on each patch where they were, mean over steps.
+    pub spheres_evaluated_mean: f64,
+    /// Spheres that were left out before that, counted on each patch near the object, mean over steps.
+    pub spheres_rejected_mean: f64,
     /// Sum of all deflections over taxels and steps, mm.
     pub deflection_sum_mm: f64,
     /// Memory of the body and what it remembers at rest, bytes a taxel.
@@ -119,6 +123,8 @@ pub struct BodyTime {
     pub stage: Stage,
     /// The compression; empty for `press`.
     pub compression: String,
+    /// Threads that a large touch is shared by.
+    pub n_threads: usize,
     /// Median over steps, µs.
     pub us_median: f64,
     /// 5th percentile, µs.

@@ -1,29 +1,42 @@
-//! The tables of the page: all cells, limits reached, times.
+//! The tables of the page that do not move: cells, limits reached, failures, times.
 
 use crate::report::answer::{Answer, accuracy_sentence};
 use crate::report::axis::{classifier_name, short_number};
 use crate::report::drawing::escape;
-use crate::report::html::ReportPage;
-use crate::report::varying::Settings;
-use crate::study::table::{Cell, Comparison, Tables};
+use crate::report::page::about::ReportPage;
+use crate::study::table::{Cell, CellScore, Comparison, Tables};
 use std::collections::HashMap;
 use std::fmt::Write;
 
-/// Every cell with its score and its distance to the best.
-pub(super) fn summary_html(tables: &Tables, answer: Option<&Answer>) -> String {
-    let cells: Vec<&Cell> = tables.summary.iter().map(|(cell, _)| cell).collect();
-    let settings = Settings::of(&cells);
-    let axes = settings.shown();
+/// Cells that a table without script shows, at most.
+const MOST_CELLS: usize = 500;
+
+/// Cells with their scores and their distances to the best, in their order or, of very many, the most accurate first.
+pub(super) fn summary_html(tables: &Tables, answer: &Answer) -> String {
+    let axes = answer.settings().shown();
     let rows = tables.comparison.iter().map(|row| (row.cell, row));
     let comparisons: HashMap<usize, &Comparison> = rows.collect();
-    let mut html = String::from("<table><thead><tr>");
+    let mut rows: Vec<&(Cell, CellScore)> = tables.summary.iter().collect();
+    let n_left_out = rows.len().saturating_sub(MOST_CELLS);
+    let mut html = String::new();
+    if n_left_out > 0 {
+        rows.sort_by(|(_, a), (_, b)| b.accuracy.total_cmp(&a.accuracy));
+        html += &format!(
+            "<p>The {MOST_CELLS} most accurate cells; {n_left_out} more are in summary.csv.</p>"
+        );
+    }
+    html += "<div class=\"wide\" tabindex=\"0\" role=\"region\" aria-label=\"Summary of cells\"><table><thead><tr>";
     for levels in &axes {
         let _ = write!(html, "<th scope=\"col\">{}</th>", levels.heading());
     }
-    html += "<th scope=\"col\">accuracy [95 %]</th><th scope=\"col\">macro-F1</th>\
-             <th scope=\"col\">to the best</th><th scope=\"col\">p</th><th></th></tr></thead><tbody>";
-    for (cell, score) in &tables.summary {
-        let remark = answer.map_or("", |answer| answer.remark(cell, score));
+    let _ = write!(
+        html,
+        "<th scope=\"col\">accuracy [95 %]</th><th scope=\"col\">macro-F1</th><th scope=\"col\">to the best</th>\
+         <th scope=\"col\">{}</th><th></th></tr></thead><tbody>",
+        p_name(tables)
+    );
+    for (cell, score) in rows.into_iter().take(MOST_CELLS) {
+        let remark = answer.remark(cell, score);
         let _ = write!(
             html,
             "<tr{}>",
@@ -41,7 +54,7 @@ pub(super) fn summary_html(tables: &Tables, answer: Option<&Answer>) -> String {
         let row = row.filter(|row| row.cell != row.best_cell);
         let difference = row.map_or(String::new(), |row| format!("{:+.3}", row.difference));
         let p = row
-            .and_then(|row| row.p_value)
+            .and_then(|row| p_value(row))
             .map_or(String::new(), p_sentence);
         let _ = write!(
             html,
@@ -50,7 +63,20 @@ pub(super) fn summary_html(tables: &Tables, answer: Option<&Answer>) -> String {
             score.macro_f1
         );
     }
-    html + "</tbody></table>"
+    html + "</tbody></table></div>"
+}
+
+/// A p-value as a page shows it: corrected for the number of cells, but for tables of earlier versions.
+pub(super) fn p_value(row: &Comparison) -> Option<f64> {
+    row.p_holm.or(row.p_value)
+}
+
+/// What it is called.
+pub(super) fn p_name(tables: &Tables) -> &'static str {
+    match tables.comparison.iter().any(|row| row.p_holm.is_some()) {
+        true => "p (Holm)",
+        false => "p",
+    }
 }
 
 fn p_sentence(p: f64) -> String {
@@ -88,6 +114,39 @@ pub(super) fn limits_html(about: &ReportPage, tables: &Tables) -> String {
     html + "</ul>"
 }
 
+/// Failures in a page, at most.
+const MOST_FAILURES: usize = 50;
+
+/// Cells that failed, and why; empty if none did.
+pub(super) fn failures_html(tables: &Tables) -> String {
+    let failures = &tables.failures;
+    if failures.is_empty() {
+        return String::new();
+    }
+    let mut html = String::from(
+        "<h3>Cells that failed</h3><div class=\"wide words\" tabindex=\"0\" role=\"region\" aria-label=\"Cells that failed\"><table>\
+         <thead><tr><th scope=\"col\">cell</th><th scope=\"col\">trial</th><th scope=\"col\">error</th></tr></thead><tbody>",
+    );
+    for (cell, failure) in failures.iter().take(MOST_FAILURES) {
+        let _ = write!(
+            html,
+            "<tr><td>{}</td><td>{}</td><td>{}</td></tr>",
+            cell.cell,
+            failure.trial,
+            escape(&failure.error)
+        );
+    }
+    html += "</tbody></table></div>";
+    if failures.len() > MOST_FAILURES {
+        let _ = write!(
+            html,
+            "<p>The first {MOST_FAILURES} of {}; all are in failures.csv.</p>",
+            failures.len()
+        );
+    }
+    html
+}
+
 /// What each stage cost.
 pub(super) fn times_html(about: &ReportPage, tables: &Tables) -> String {
     let mut html = String::new();
@@ -98,8 +157,8 @@ pub(super) fn times_html(about: &ReportPage, tables: &Tables) -> String {
             short_number(seconds)
         );
     }
-    html += "<div class=\"wide times\"><table><thead><tr><th>stage</th><th>at</th><th>touches</th><th>µs a touch</th>\
-             <th>processor s</th></tr></thead><tbody>";
+    html += "<div class=\"wide times\" tabindex=\"0\" role=\"region\" aria-label=\"Times\"><table><thead><tr><th scope=\"col\">stage</th><th scope=\"col\">at</th><th scope=\"col\">touches</th><th scope=\"col\">µs a touch</th>\
+             <th scope=\"col\">processor s</th></tr></thead><tbody>";
     for stage in &tables.stages {
         let _ = write!(
             html,

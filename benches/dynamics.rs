@@ -1,0 +1,143 @@
+//! A touch by one evaluation beside the same touch by taxels as bodies, at 8 × 8 to 64 × 64 taxels.
+//!
+//! Bodies are put under the object where it is to be, and stepped three times in 10 ms: fewer do not settle. Scene and all are built outside
+//! the timed part.
+
+use bubbletouch::contact::{Workspace, press_to_travel};
+use bubbletouch::dynamics::{Drive, ImplicitEuler, Integrator, SemiImplicit, System, skin_sim};
+use bubbletouch::geometry::Pose;
+use bubbletouch::objects::{Catalogue, Model};
+use bubbletouch::world::{Grid, Patch, RestPoses, Scene, SkinPatch, Taxel, Touch, VelocityPlan};
+use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
+use glam::DVec3;
+use std::hint::black_box;
+
+const DT: f64 = 1e-2;
+const N_STEPS: usize = 3;
+const DEPTH: f64 = 3e-3;
+const STROKE: f64 = 5e-3;
+/// How much further objects are looked for, metres: they stay where they are.
+const REACH: f64 = 1e-6;
+
+fn patch(side: usize) -> Patch {
+    let grid = Grid {
+        nx: side,
+        ny: side,
+        pitch: 2e-3,
+    };
+    let stiffness: f64 = 100.0;
+    let taxel = Taxel {
+        radius: 1e-3,
+        stiffness,
+        damping: 2.0 * (stiffness * skin_sim::TAXEL_MASS).sqrt(),
+        stroke: STROKE,
+    };
+    Patch::new(grid, taxel).expect("a good patch")
+}
+
+/// A built-in bottle within half a millimetre.
+fn bottle() -> Model {
+    let catalogue = Catalogue::builtin().expect("the built-in catalogue is valid");
+    let entry = catalogue
+        .object("mustard_bottle")
+        .expect("a built-in object");
+    entry.build(5e-4).expect("it can be packed").model
+}
+
+/// `patch_from_object` at the depth.
+fn pressed(scene: &Scene) -> Pose {
+    let rest = RestPoses::AsModelled.of(&scene.objects[0]).swap_remove(0);
+    let touch = Touch {
+        rest: 0,
+        offset: [0.0; 2],
+        yaw: 0.3,
+        tilt: [0.03, -0.02],
+        depth: DEPTH,
+        indices: [None; 7],
+    };
+    let pose = touch.patch_from_object(&rest);
+    let mut workspace = Workspace::new();
+    let contact = bubbletouch::contact::press_to_depth(scene, &[pose], DEPTH, &mut workspace);
+    let travel = contact.expect("the bottle is over the patch").travel;
+    Pose::from_translation(-travel * DVec3::Z).compose(&pose)
+}
+
+/// Mean |δ − δ*| over touched taxels, mm.
+fn error_mm(felt: &[f64], right: &[f64]) -> f64 {
+    let pairs = felt.iter().zip(right);
+    let (mut sum, mut n) = (0.0, 0);
+    for (felt, right) in pairs.filter(|(a, b)| **a > 1e-9 || **b > 0.0) {
+        sum += 1e3 * (felt - right).abs();
+        n += 1;
+    }
+    sum / f64::from(n)
+}
+
+fn steps(integrator: &mut dyn Integrator, system: &System) -> Vec<f64> {
+    for _ in 0..N_STEPS {
+        integrator.step(system, DT);
+    }
+    integrator.state(system).deflection.clone()
+}
+
+fn touch(c: &mut Criterion) {
+    let mut group = c.benchmark_group("touch");
+    group.sample_size(10);
+    let bottle = bottle();
+    for side in [8, 16, 32, 64] {
+        let patch = patch(side);
+        let scene = Scene::of_one(&patch, &bottle);
+        let pose = pressed(&scene);
+        let mut workspace = Workspace::new();
+        group.bench_function(BenchmarkId::new("direct", side), |b| {
+            b.iter(|| press_to_travel(black_box(&scene), &[pose], 0.0, &mut workspace));
+        });
+        let right = workspace.deflections().to_vec();
+        let skin = SkinPatch::from(patch);
+        let still = VelocityPlan::new(pose, Vec::new()).expect("no phases are good phases");
+        let system = System::new(
+            &skin,
+            skin_sim::TAXEL_MASS,
+            &bottle,
+            pose,
+            Drive::Imposed(still),
+            REACH,
+        );
+        let system = system.expect("axes along z");
+        let stiffest = SemiImplicit::stiffest(&system, DT, 1);
+        let mut bodies: Vec<(&str, Box<dyn Fn() -> Box<dyn Integrator>>)> = vec![
+            (
+                "semi_implicit",
+                Box::new(|| Box::new(SemiImplicit::new(&system, stiffest))),
+            ),
+            (
+                "implicit_euler",
+                Box::new(|| Box::new(ImplicitEuler::new(&system))),
+            ),
+        ];
+        #[cfg(feature = "rapier")]
+        bodies.push((
+            "rapier_tuned",
+            Box::new(|| {
+                use bubbletouch::dynamics::{RapierSettings, RapierWorld};
+                let settings = RapierSettings::tuned(&system);
+                Box::new(RapierWorld::new(&system, settings).expect("spheres"))
+            }),
+        ));
+        for (name, build) in bodies.drain(..) {
+            let felt = steps(build().as_mut(), &system);
+            println!("{name}, {side} x {side}: {:.4} mm", error_mm(&felt, &right));
+            group.bench_function(BenchmarkId::new(name, side), |b| {
+                b.iter_batched(
+                    &build,
+                    |mut integrator| steps(integrator.as_mut(), &system),
+                    criterion::BatchSize::PerIteration,
+                );
+            });
+        }
+    }
+    group.finish();
+}
+
+criterion_group!(benches, touch);
+criterion_main!(benches);

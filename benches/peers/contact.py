@@ -1,0 +1,352 @@
+#!/usr/bin/env python3
+"""Times MuJoCo and bubbletouch on the same presses, side by side: the same objects, the same poses, one run.
+
+A patch of 64 x 64 taxels (balls of 1 mm at 2 mm) is pressed 3 mm into an object. MuJoCo does it in two ways: with taxels as bodies on slide
+joints, and with its own tactile sensor on a signed-distance octree. Ours evaluates the packed object directly. What is right says our
+exact contact with the mesh, which tests of bubbletouch hold against a slow oracle. See README.md beside this file.
+"""
+
+import argparse
+import csv
+import datetime
+import json
+import os
+import platform
+import statistics
+import subprocess
+import tempfile
+import time
+from pathlib import Path
+
+import mujoco
+import numpy as np
+import trimesh
+
+ROOT = Path(__file__).resolve().parents[2]
+SIDE, PITCH, RADIUS, STROKE, DEPTH = 64, 2e-3, 1e-3, 5e-3, 3e-3
+STIFFNESS, TAXEL_MASS = 100.0, 1e-3
+
+COLUMNS = [
+    "date", "machine", "program", "version", "method", "setting", "object", "n_taxels", "n_touches", "us_per_touch",
+    "error_mm", "error_p95_mm", "error_max_mm", "build_s",
+]
+
+
+def grid():
+    """Places of the taxels along a side, metres; taxels are numbered row (y) by row."""
+    return (np.arange(SIDE) - (SIDE - 1) / 2) * PITCH
+
+
+def draw_poses(bounds, n, seed):
+    """Poses of an object high above the patch, upside down, so that its top comes first: n x (x, y, z, qw, qx, qy, qz)."""
+    rng = np.random.default_rng(seed)
+    rows = []
+    middle = bounds.mean(axis=0)
+    for _ in range(n):
+        yaw, tilts = rng.uniform(0, 2 * np.pi), np.radians(rng.uniform(-5, 5, 2))
+        turn = trimesh.transformations.euler_matrix(np.pi + tilts[0], tilts[1], yaw, "rxyz")
+        offset = rng.uniform(-10e-3, 10e-3, 2)
+        # The middle of the object's box comes over the middle of the patch, and then aside by the offset.
+        at = np.array([*offset, 0.3]) - turn[:3, :3] @ middle
+        rows.append([*at, *trimesh.transformations.quaternion_from_matrix(turn)])
+    return np.array(rows)
+
+
+class Ours:
+    """The command: it presses, and times itself."""
+
+    def __init__(self, binary, scratch):
+        self.binary, self.scratch = binary, Path(scratch)
+
+    def press(self, source, poses, depth=None, repeat=1):
+        """Deflections (n x n_taxels, metres) and what the command says of travel and time."""
+        file, out = self.scratch / "poses.csv", self.scratch / "out.npy"
+        np.savetxt(file, poses, delimiter=",", header="x,y,z,qw,qx,qy,qz", comments="", fmt="%.17g")
+        command = [self.binary, "press", *source, "--poses", str(file), "--repeat", str(repeat), "--json", "--out", str(out)]
+        command += ["--depth-mm", str(1e3 * depth)] if depth else []
+        done = subprocess.run(command, capture_output=True, text=True, env=dict(os.environ, RAYON_NUM_THREADS="1"))
+        if done.returncode != 0:
+            raise SystemExit(done.stderr)
+        return np.load(out).reshape(len(poses), -1), json.loads(done.stdout)
+
+    def pack(self, path, tolerance_mm):
+        """The spheres of a mesh as a file, kept from run to run, and the seconds that it took."""
+        kept = ROOT / "target" / "peers" / f"{path.stem}_{tolerance_mm}.csv"
+        if kept.exists():
+            return kept, float("nan")
+        kept.parent.mkdir(parents=True, exist_ok=True)
+        start = time.perf_counter()
+        command = [self.binary, "objects", "pack", str(path), "--tolerance-mm", str(tolerance_mm), "--out", str(kept)]
+        subprocess.run(command, check=True, capture_output=True)
+        return kept, time.perf_counter() - start
+
+
+class TactileSensor:
+    """MuJoCo's tactile sensor: how deep each vertex of a pad is inside the object, by its signed-distance octree."""
+
+    method = "mujoco_tactile"
+
+    def __init__(self, mesh, octree_depth):
+        self.setting = f"octree depth {octree_depth}"
+        spec = mujoco.MjSpec()
+        spec.option.gravity = [0, 0, 0]
+        add_mesh(spec, "object", mesh.vertices, mesh.faces, needsdf=True, octree_maxdepth=octree_depth)
+        xs = grid()
+        vertices = np.array([[x, y, 0.0] for y in xs for x in xs])
+        corner = np.arange(SIDE * SIDE).reshape(SIDE, SIDE)[:-1, :-1].ravel()
+        faces = np.concatenate([[[c, c + 1, c + SIDE], [c + 1, c + SIDE + 1, c + SIDE]] for c in corner])
+        add_mesh(spec, "pad", vertices, faces, inertia=mujoco.mjtMeshInertia.mjMESH_INERTIA_SHELL)
+        # The sensor looks at objects only that collide with its body: a box does that, at the cost of 6 us.
+        spec.worldbody.add_geom(name="pad", type=mujoco.mjtGeom.mjGEOM_MESH, meshname="pad", contype=0, conaffinity=0)
+        spec.worldbody.add_geom(type=mujoco.mjtGeom.mjGEOM_BOX, size=[0.064, 0.064, 0.01], pos=[0, 0, -0.01])
+        body = spec.worldbody.add_body(name="object")
+        body.add_freejoint()
+        body.add_geom(type=mujoco.mjtGeom.mjGEOM_MESH, meshname="object")
+        spec.add_sensor(
+            name="skin", type=mujoco.mjtSensor.mjSENS_TACTILE, objtype=mujoco.mjtObj.mjOBJ_MESH, objname="pad",
+            reftype=mujoco.mjtObj.mjOBJ_GEOM, refname="pad",
+        )
+        start = time.perf_counter()
+        self.model = spec.compile()
+        self.build_s = time.perf_counter() - start
+        self.data = mujoco.MjData(self.model)
+        # The tips of the taxels, the best constant height of the pad's vertices is chosen in `tune`.
+        self.height = RADIUS
+
+    def tune(self, poses, truth):
+        """Puts the vertices at the height that makes the mean error least: at the tips, or somewhat within the balls."""
+        heights = np.linspace(0.5 * RADIUS, 1.2 * RADIUS, 29)
+        errors = []
+        for height in heights:
+            self.height = height
+            errors.append(error_of(np.array([self.read(pose) for pose in poses]), truth)[0])
+        self.height = heights[int(np.argmin(errors))]
+
+    def read(self, pose):
+        self.evaluate(pose)
+        return self.data.sensordata[: SIDE * SIDE].copy()
+
+    def evaluate(self, pose):
+        """No more than the sensor needs: places, collisions, the sensor. A whole step takes a little longer."""
+        model, data = self.model, self.data
+        data.qpos[:] = pose
+        data.qpos[2] -= self.height
+        mujoco.mj_kinematics(model, data)
+        mujoco.mj_comPos(model, data)
+        mujoco.mj_collision(model, data)
+        mujoco.mj_sensorVel(model, data)
+
+
+class Bodies:
+    """Taxels as bodies on slide joints in MuJoCo: a ball of 1 g on a spring and the damper that is best for it."""
+
+    method = "mujoco_bodies"
+
+    def __init__(self, mesh, n_steps, dt):
+        """An object: the convex hull of a mesh, or a ball if `mesh` is a radius."""
+        self.n_steps = n_steps
+        self.setting = f"{'ball' if np.isscalar(mesh) else 'hull'}, {n_steps} steps of {1e3 * dt:g} ms"
+        spec = mujoco.MjSpec()
+        spec.option.gravity = [0, 0, 0]
+        spec.option.timestep = dt
+        spec.option.integrator = mujoco.mjtIntegrator.mjINT_DISCRETE
+        # As hard as it gets: with the engine's limit on how fast a contact recovers (twice the step), ten steps and more would not settle.
+        spec.option.disableflags |= mujoco.mjtDisableBit.mjDSBL_REFSAFE
+        contact = dict(solref=[0.1 * dt, 1], solimp=[0.99, 0.9999, 1e-4, 0.5, 2], friction=[0, 0, 0], condim=1)
+        body = spec.worldbody.add_body(name="object", mocap=True)
+        if np.isscalar(mesh):
+            body.add_geom(type=mujoco.mjtGeom.mjGEOM_SPHERE, size=[mesh, 0, 0], contype=1, conaffinity=2, **contact)
+        else:
+            add_mesh(spec, "object", mesh.vertices, mesh.faces)
+            body.add_geom(type=mujoco.mjtGeom.mjGEOM_MESH, meshname="object", contype=1, conaffinity=2, **contact)
+        damping = 2 * np.sqrt(STIFFNESS * TAXEL_MASS)
+        for y in grid():
+            for x in grid():
+                taxel = spec.worldbody.add_body(pos=[x, y, 0])
+                # Stiffness and damping are polynomials of the deflection and its rate.
+                taxel.add_joint(
+                    type=mujoco.mjtJoint.mjJNT_SLIDE, axis=[0, 0, -1], stiffness=[STIFFNESS, 0, 0], damping=[damping, 0, 0]
+                )
+                taxel.add_geom(type=mujoco.mjtGeom.mjGEOM_SPHERE, size=[RADIUS, 0, 0], mass=TAXEL_MASS, contype=2, conaffinity=1, **contact)
+        start = time.perf_counter()
+        self.model = spec.compile()
+        self.build_s = time.perf_counter() - start
+        self.data = mujoco.MjData(self.model)
+
+    def read(self, pose):
+        self.evaluate(pose)
+        return self.data.qpos.copy()
+
+    def evaluate(self, pose):
+        model, data = self.model, self.data
+        mujoco.mj_resetData(model, data)
+        data.mocap_pos[0], data.mocap_quat[0] = pose[:3], pose[3:]
+        for _ in range(self.n_steps):
+            mujoco.mj_step(model, data)
+
+
+def add_mesh(spec, name, vertices, faces, **options):
+    mesh = spec.add_mesh(name=name)
+    mesh.uservert, mesh.userface = np.asarray(vertices).ravel().tolist(), np.asarray(faces).ravel().tolist()
+    for key, value in options.items():
+        setattr(mesh, key, value)
+
+
+def error_of(felt, truth):
+    """Mean, 95th percentile and largest |difference| over taxels that either touches, mm."""
+    either = (felt > 0) | (truth > 0)
+    off = 1e3 * np.abs(np.maximum(felt, 0) - truth)[either]
+    return off.mean(), np.percentile(off, 95), off.max()
+
+
+def timed(evaluate, poses):
+    """Microseconds of each pose."""
+    times = []
+    for pose in poses:
+        start = time.perf_counter()
+        evaluate(pose)
+        times.append(1e6 * (time.perf_counter() - start))
+    return times
+
+
+def compare(object_name, truth, peers, ours, poses, rounds):
+    """Rows of an object; peers and ours take turns, medians are taken."""
+    times = {id(peer): [] for peer in peers}
+    our_times = {setting: [] for setting, *_ in ours[1]}
+    for _ in range(rounds):
+        for setting, source, _ in ours[1]:
+            our_times[setting].append(ours[0].press(source, poses, repeat=20)[1]["us"])
+        for peer in peers:
+            times[id(peer)] += timed(peer.evaluate, poses)
+    rows = []
+    for setting, source, build_s in ours[1]:
+        felt, _ = ours[0].press(source, poses)
+        rows.append(("bubbletouch", "bubbletouch", setting, statistics.median(our_times[setting]), error_of(felt, truth), build_s))
+    for peer in peers:
+        felt = np.array([peer.read(pose) for pose in poses])
+        rows.append(("MuJoCo", peer.method, peer.setting, statistics.median(times[id(peer)]), error_of(felt, truth), peer.build_s))
+    return [row_of(object_name, len(poses), *row) for row in rows]
+
+
+def row_of(object_name, n_touches, program, method, setting, us, errors, build_s):
+    row = dict(zip(["error_mm", "error_p95_mm", "error_max_mm"], [f"{error:.6f}" for error in errors]))
+    version = mujoco.__version__ if program == "MuJoCo" else package_version()
+    return row | {
+        "date": datetime.date.today().isoformat(), "machine": machine(), "program": program, "version": version, "method": method,
+        "setting": setting, "object": object_name, "n_taxels": SIDE * SIDE, "n_touches": n_touches, "us_per_touch": f"{us:.3f}",
+        "build_s": "" if np.isnan(build_s) else f"{build_s:.2f}",
+    }
+
+
+def package_version():
+    lines = (ROOT / "Cargo.toml").read_text().splitlines()
+    return next(line.split('"')[1] for line in lines if line.startswith("version"))
+
+
+def machine():
+    try:
+        lines = Path("/proc/cpuinfo").read_text().splitlines()
+        return next(line.split(":")[1].strip() for line in lines if line.startswith("model name"))
+    except (OSError, StopIteration):
+        return platform.processor() or platform.machine()
+
+
+def on_mesh(path, ours, options):
+    mesh = trimesh.load(path, process=False)
+    print(f"{path.stem}: {len(mesh.faces)} triangles", flush=True)
+    high = draw_poses(mesh.bounds, options.touches, seed=len(mesh.faces))
+    exact = ["--mesh", str(path), "--model", "mesh"]
+    truth, said = ours.press(exact, high, depth=DEPTH)
+    poses = high.copy()
+    poses[:, 2] -= 1e-3 * np.array([press["travel_mm"] for press in said["presses"]])
+    truth, _ = ours.press(exact, poses)
+    sources = [("exact mesh", exact, 0.0)]
+    for tolerance in options.tolerances_mm:
+        kept, build_s = ours.pack(path, tolerance)
+        sources.append((f"packed within {tolerance:g} mm", ["--spheres", str(kept)], build_s))
+    sensors = [TactileSensor(mesh, depth) for depth in options.octree_depths]
+    for sensor in sensors:
+        sensor.tune(poses, truth)
+    bodies = [Bodies(mesh, n, dt) for dt in options.dts for n in options.steps]
+    return compare(path.stem, truth, sensors + bodies, (ours, sources), poses, options.rounds)
+
+
+def on_ball(ours, options, radius=0.05):
+    """A ball needs no mesh: one sphere is exact."""
+    file = ours.scratch / "ball.csv"
+    file.write_text(f"x,y,z,r\n0,0,0,{radius}\n")
+    high = draw_poses(np.array([[-radius] * 3, [radius] * 3]), options.touches, seed=1)
+    source = ["--spheres", str(file)]
+    _, said = ours.press(source, high, depth=DEPTH)
+    poses = high.copy()
+    poses[:, 2] -= 1e-3 * np.array([press["travel_mm"] for press in said["presses"]])
+    truth, _ = ours.press(source, poses)
+    bodies = [Bodies(radius, n, dt) for dt in options.dts for n in options.steps]
+    return compare("ball_100mm", truth, bodies, (ours, [("one sphere", source, 0.0)]), poses, options.rounds)
+
+
+def tell(rows):
+    """What the bars of speed ask: the peer's time over ours at an equal or smaller error, object by object."""
+    for name in dict.fromkeys(row["object"] for row in rows):
+        of_object = [row for row in rows if row["object"] == name]
+        ours = [row for row in of_object if row["program"] == "bubbletouch"]
+        for row in of_object:
+            print(f"  {name:28} {row['program']:12} {row['setting']:28} {float(row['us_per_touch']):10.1f} us  {float(row['error_mm']):.4f} mm", end="")
+            better = [our for our in ours if float(our["error_mm"]) <= float(row["error_mm"])]
+            if row["program"] == "MuJoCo" and better:
+                best = min(better, key=lambda our: float(our["us_per_touch"]))
+                print(f"  {float(row['us_per_touch']) / float(best['us_per_touch']):7.1f} x {best['setting']}", end="")
+            print()
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--objects", type=Path, required=True, help="a folder of closed PLY meshes in metres")
+    parser.add_argument("--names", nargs="*", help="only these meshes (names without ending); all when left out")
+    parser.add_argument("--binary", default=str(ROOT / "target" / "release" / "bubbletouch"))
+    parser.add_argument("--touches", type=int, default=10, help="touches an object")
+    parser.add_argument("--rounds", type=int, default=3, help="how often all take turns")
+    parser.add_argument("--tolerances-mm", type=float, nargs="*", default=[0.5, 0.2, 0.1])
+    parser.add_argument("--octree-depths", type=int, nargs="*", default=[6, 7])
+    parser.add_argument("--steps", type=int, nargs="*", default=[1, 3], help="steps of taxels as bodies; three settle them")
+    parser.add_argument("--dts", type=float, nargs="*", default=[1e-2], help="their time steps, s")
+    parser.add_argument("--append", action="store_true", help="keep the rows of other objects that the file has")
+    parser.add_argument("--out", type=Path, default=ROOT / "results" / "peers" / "contact.csv")
+    options = parser.parse_args()
+    paths = sorted(path for path in options.objects.glob("*.ply") if not options.names or path.stem in options.names)
+    if not paths:
+        parser.error(f"no PLY meshes of these names in {options.objects}")
+    with tempfile.TemporaryDirectory() as scratch:
+        ours = Ours(options.binary, scratch)
+        rows = kept(options.out) if options.append else []
+        if not options.append:
+            rows += on_ball(ours, options)
+            tell(rows)
+        for path in paths:
+            new = on_mesh(path, ours, options)
+            tell(new)
+            rows = [row for row in rows if row["object"] != path.stem] + new
+            write(options.out, rows)
+    write(options.out, rows)
+
+
+def kept(path):
+    if not path.exists():
+        return []
+    with open(path, newline="") as file:
+        return list(csv.DictReader(file))
+
+
+def write(path, rows):
+    """Whole, or not at all."""
+    path.parent.mkdir(parents=True, exist_ok=True)
+    part = path.with_suffix(".part")
+    with open(part, "w", newline="") as file:
+        writer = csv.DictWriter(file, COLUMNS)
+        writer.writeheader()
+        writer.writerows(rows)
+    part.replace(path)
+
+
+if __name__ == "__main__":
+    main()

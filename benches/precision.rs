@@ -1,0 +1,218 @@
+//! What a press in singles instead of doubles would cost in accuracy and gain in time, on one core.
+//!
+//! `cargo bench --bench precision` prints a table; with `-- --write`, it also goes to `results/whole_body/precision.csv`, and as a chart
+//! to `precision.svg` and `.png` beside it.
+//!
+//! The same kernel, that of a flat patch, in both: spheres in the patch's frame, rows of the footprint, blocks of a register of 512 bits,
+//! no root where no deflection is beaten. Coordinates are from the middle of the patch, so that singles are as good as they can be.
+
+use bubbletouch::files::{CsvFile, write_bytes};
+use bubbletouch::random::Seed;
+use clock::seconds;
+use multiversion::multiversion;
+use precision_chart::draw;
+use rand::Rng;
+use serde::Serialize;
+use std::hint::black_box;
+use std::path::Path;
+use std::time::Duration;
+
+mod clock;
+mod precision_chart;
+
+const PITCH: f64 = 2e-3;
+/// The taxels' own, in S.
+const RHO: f64 = 1e-3;
+/// Spheres in a touch.
+const N_SPHERES: usize = 32;
+/// Touches whose errors count; the first one is timed.
+const N_TOUCHES: u64 = 20;
+/// Each of the runs of which a time is the median takes at least so long.
+const LEAST: Duration = Duration::from_millis(5);
+/// Metres.
+const RADII: [f64; 7] = [2e-3, 1e-2, 4.5e-2, 0.1, 0.3, 1.0, 4.0];
+
+/// A row of the table.
+#[derive(Serialize)]
+pub struct Row {
+    /// Taxels along a side of the patch.
+    pub n: usize,
+    /// How deep the spheres are: `light`, 3 mm at most, or `middle`, as deep as their centres.
+    pub depth: &'static str,
+    pub radius_m: f64,
+    /// Touched taxels, mean over touches.
+    pub touched_mean: f64,
+    pub f64_us: f64,
+    pub f32_us: f64,
+    /// f64_us over f32_us.
+    pub gain: f64,
+    /// Metres, over all touches and taxels.
+    pub error_max_m: f64,
+    pub error_mean_m: f64,
+}
+
+macro_rules! kernel {
+    ($name:ident, $real:ty, $lanes:expr) => {
+        /// Presses spheres (x, y, h, S) on n × n taxels.
+        #[multiversion(targets(
+            "x86_64+avx512f+avx512bw+avx512dq+avx512vl+avx2+fma",
+            "x86_64+avx2+fma"
+        ))]
+        fn $name(spheres: &[[f64; 4]], places: &[$real], deflections: &mut [$real]) {
+            let n = places.len();
+            let density = 1.0 / (places[1] - places[0]);
+            deflections.fill(0.0);
+            for sphere in spheres {
+                let (x, y, h, s) = (
+                    sphere[0] as $real,
+                    sphere[1] as $real,
+                    sphere[2] as $real,
+                    sphere[3] as $real,
+                );
+                let lift = if h > 0.0 { h } else { 0.0 };
+                for row in 0..n {
+                    let dy = places[row] - y;
+                    let left = s * s - lift * lift - dy * dy;
+                    if left <= 0.0 {
+                        continue;
+                    }
+                    let (middle, spread) = ((x - places[0]) * density, left.sqrt() * density);
+                    let first = (middle - spread).max(0.0) as usize / $lanes;
+                    let last = (((middle + spread).max(0.0) as usize + 1).min(n)).div_ceil($lanes);
+                    for block in first..last {
+                        let start = block * $lanes;
+                        let places = &places[start..start + $lanes];
+                        let taxels = &mut deflections[row * n + start..][..$lanes];
+                        let (mut squares, mut raised) = ([0.0; $lanes], [0.0; $lanes]);
+                        let mut beaten = 0_u32;
+                        for k in 0..$lanes {
+                            let dx = places[k] - x;
+                            squares[k] = (s * s - dy * dy) - dx * dx;
+                            raised[k] = taxels[k];
+                            let bar = (h + raised[k]).max(0.0);
+                            beaten |= u32::from(squares[k] > bar * bar) << k;
+                        }
+                        if beaten == 0 {
+                            continue;
+                        }
+                        for k in 0..$lanes {
+                            let needed = squares[k].sqrt() - h;
+                            let needed = if squares[k] > 0.0 { needed } else { 0.0 };
+                            raised[k] = raised[k].max(needed);
+                        }
+                        taxels.copy_from_slice(&raised);
+                    }
+                }
+            }
+        }
+    };
+}
+
+kernel!(press_f64, f64, 8);
+kernel!(press_f32, f32, 16);
+
+/// Spheres of about a radius, anywhere over n × n taxels.
+fn spheres(n: usize, radius: f64, is_light: bool, touch: u64) -> Vec<[f64; 4]> {
+    let mut rng = Seed::new(11).named("precision").numbered(touch).rng();
+    let half = 0.5 * PITCH * n as f64;
+    let sphere = |_| {
+        let s = RHO + radius * rng.gen_range(0.9..1.1);
+        // What is as deep as its centre must not be deeper than the patch is wide.
+        let height = match is_light {
+            true => s - rng.gen_range(0.0..3e-3_f64.min(s)),
+            false => rng.gen_range(-0.1..0.1) * s.min(half),
+        };
+        [
+            rng.gen_range(-half..half),
+            rng.gen_range(-half..half),
+            height,
+            s,
+        ]
+    };
+    (0..N_SPHERES).map(sphere).collect()
+}
+
+fn measure(n: usize, radius: f64, is_light: bool, is_test: bool) -> Row {
+    let places: Vec<f64> = (0..n)
+        .map(|k| (k as f64 - 0.5 * (n - 1) as f64) * PITCH)
+        .collect();
+    let singles: Vec<f32> = places.iter().map(|&place| place as f32).collect();
+    let (mut exact, mut rounded) = (vec![0.0; n * n], vec![0.0; n * n]);
+    let (mut n_touched, mut most, mut sum) = (0, 0.0_f64, 0.0);
+    for touch in 0..N_TOUCHES {
+        let spheres = spheres(n, radius, is_light, touch);
+        press_f64(&spheres, &places, &mut exact);
+        press_f32(&spheres, &singles, &mut rounded);
+        for (exact, rounded) in exact.iter().zip(&rounded) {
+            let error = (exact - f64::from(*rounded)).abs();
+            n_touched += usize::from(*exact > 0.0);
+            most = most.max(error);
+            sum += error;
+        }
+    }
+    let spheres = spheres(n, radius, is_light, 0);
+    let f64_us = 1e6
+        * seconds(
+            || press_f64(black_box(&spheres), &places, &mut exact),
+            LEAST,
+            is_test,
+        );
+    let f32_us = 1e6
+        * seconds(
+            || press_f32(black_box(&spheres), &singles, &mut rounded),
+            LEAST,
+            is_test,
+        );
+    Row {
+        n,
+        depth: if is_light { "light" } else { "middle" },
+        radius_m: radius,
+        touched_mean: n_touched as f64 / N_TOUCHES as f64,
+        f64_us,
+        f32_us,
+        gain: f64_us / f32_us,
+        error_max_m: most,
+        error_mean_m: sum / n_touched.max(1) as f64,
+    }
+}
+
+fn main() -> bubbletouch::Result<()> {
+    let has = |flag: &str| std::env::args().any(|argument| argument == flag);
+    // `cargo test --benches` and CI only want to know that it runs.
+    let is_test = has("--test");
+    println!("taxels  depth   radius m  touched    f64 us    f32 us  gain  largest error m");
+    let mut rows = Vec::new();
+    for n in if is_test { vec![64] } else { vec![64, 512] } {
+        for is_light in [true, false] {
+            for radius in RADII {
+                let row = measure(n, radius, is_light, is_test);
+                println!(
+                    "{:>6}  {:6} {:>9} {:>8.0} {:>9.2} {:>9.2} {:>5.2} {:>16.1e}",
+                    row.n,
+                    row.depth,
+                    row.radius_m,
+                    row.touched_mean,
+                    row.f64_us,
+                    row.f32_us,
+                    row.gain,
+                    row.error_max_m
+                );
+                rows.push(row);
+            }
+        }
+    }
+    let drawing = draw(&rows);
+    if has("--write") {
+        let folder = Path::new("results/whole_body");
+        std::fs::create_dir_all(folder).expect("a folder for results");
+        let mut file = CsvFile::create(&folder.join("precision.csv"))?;
+        for row in &rows {
+            file.row(row)?;
+        }
+        file.commit()?;
+        let title = "A press in singles: error and gain";
+        write_bytes(&folder.join("precision.svg"), drawing.svg(title).as_bytes())?;
+        write_bytes(&folder.join("precision.png"), &drawing.png()?)?;
+    }
+    Ok(())
+}

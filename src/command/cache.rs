@@ -1,0 +1,117 @@
+//! `bubbletouch cache`: the touches that studies keep beside their results.
+
+use super::memory_args::bytes;
+use bubbletouch::Result;
+use bubbletouch::study::TouchCache;
+use bubbletouch::study::memory::GIB;
+use comfy_table::{Table, presets::NOTHING};
+use std::path::PathBuf;
+use std::time::SystemTime;
+
+#[derive(clap::Args)]
+pub struct Args {
+    #[command(subcommand)]
+    action: Action,
+}
+
+#[derive(clap::Subcommand)]
+enum Action {
+    /// What is kept, what was used last first
+    List {
+        #[command(flatten)]
+        place: Place,
+    },
+    /// Remove what was used longest ago; damaged files too
+    Prune {
+        #[command(flatten)]
+        place: Place,
+        /// Keep this much, in GiB; nothing when left out
+        #[arg(long, value_name = "GIB")]
+        keep_gib: Option<f64>,
+    },
+}
+
+#[derive(clap::Args)]
+struct Place {
+    /// The folder beside whose results they are kept
+    #[arg(default_value = "results")]
+    results: PathBuf,
+}
+
+impl Place {
+    fn cache(&self) -> TouchCache {
+        TouchCache::new(self.results.join("touches"), u64::MAX)
+    }
+}
+
+pub fn cache(args: &Args) -> Result<()> {
+    match &args.action {
+        Action::List { place } => list(place),
+        Action::Prune { place, keep_gib } => prune(place, *keep_gib),
+    }
+}
+
+fn list(place: &Place) -> Result<()> {
+    let all = place.cache().list()?;
+    if all.is_empty() {
+        println!("{}: no touches are kept", place.results.display());
+        return Ok(());
+    }
+    let mut table = Table::new();
+    table.load_preset(NOTHING);
+    table.set_header(["name", "what", "size", "took", "last used"]);
+    for touches in &all {
+        let (what, cost) = match touches.facts() {
+            Ok(facts) => (facts.what, format!("{:.0} s", facts.cpu_s)),
+            Err(_) => ("damaged".to_owned(), String::new()),
+        };
+        let name = touches.path.file_stem().unwrap_or_default();
+        let name = name.to_string_lossy();
+        table.add_row([
+            name.chars().take(12).collect(),
+            what,
+            gib(touches.n_bytes),
+            cost,
+            ago(touches.used),
+        ]);
+    }
+    println!("{table}");
+    let sum = all.iter().map(|touches| touches.n_bytes).sum();
+    println!(
+        "{} in {}",
+        gib(sum),
+        place.results.join("touches").display()
+    );
+    Ok(())
+}
+
+fn prune(place: &Place, keep_gib: Option<f64>) -> Result<()> {
+    let keep = match keep_gib {
+        None | Some(0.0) => 0,
+        Some(gib) => bytes("--keep-gib", gib)?,
+    };
+    let gone = place.cache().prune(keep)?;
+    let sum = gone.iter().map(|touches| touches.n_bytes).sum();
+    println!("removed {} files, {}", gone.len(), gib(sum));
+    Ok(())
+}
+
+/// A size in words.
+fn gib(n_bytes: u64) -> String {
+    let gib = n_bytes as f64 / GIB;
+    match gib {
+        _ if gib < 1.0 => format!("{:.1} MiB", 1024.0 * gib),
+        _ => format!("{gib:.2} GiB"),
+    }
+}
+
+/// How long ago, in words.
+fn ago(time: SystemTime) -> String {
+    let seconds = time.elapsed().unwrap_or_default().as_secs();
+    match seconds {
+        0..120 => "just now".to_owned(),
+        120..7200 => format!("{} min ago", seconds / 60),
+        7200..172_800 => format!("{} h ago", seconds / 3600),
+        _ => format!("{} days ago", seconds / 86_400),
+    }
+}

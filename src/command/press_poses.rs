@@ -1,0 +1,158 @@
+//! `bubbletouch press --poses`: one object read in many places, and how long each reading takes.
+
+use super::output::check_ending;
+use bubbletouch::contact::{Contact, Workspace, press_to_depth, press_to_travel};
+use bubbletouch::geometry::Pose;
+use bubbletouch::study::write_npy;
+use bubbletouch::world::Scene;
+use bubbletouch::{Error, Result};
+use glam::{DQuat, DVec3};
+use ndarray::Array3;
+use serde::{Deserialize, Serialize};
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+#[derive(clap::Args)]
+pub struct Args {
+    /// Instead of one place: press the object at every pose of a CSV file, to the depth past first contact or, without one, where
+    /// it is. Columns x, y, z in metres and qw, qx, qy, qz: the object in the patch frame (taxels rest in the plane z = 0, axes
+    /// along +z). --out takes a .npy file of n × ny × nx metres
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["Place", "force_n"])]
+    pub poses: Option<PathBuf>,
+    /// How often each pose is pressed to be timed
+    #[arg(long, value_name = "N", default_value_t = 1, requires = "poses")]
+    repeat: usize,
+    /// Say travel, taxels and time of each pose as JSON
+    #[arg(long, requires = "poses")]
+    json: bool,
+}
+
+/// A row of the file.
+#[derive(Deserialize)]
+struct Row {
+    x: f64,
+    y: f64,
+    z: f64,
+    qw: f64,
+    qx: f64,
+    qy: f64,
+    qz: f64,
+}
+
+/// What is said of a pose.
+#[derive(Serialize)]
+struct Reading {
+    /// How far the patch travelled, mm.
+    travel_mm: f64,
+    n_touched: usize,
+    n_saturated: usize,
+    /// Median over repetitions.
+    us: f64,
+}
+
+/// Presses at the poses of the file at `path`, `depth` metres past first contact or where they are.
+pub fn press_poses(
+    args: &Args,
+    path: &Path,
+    scene: &Scene,
+    depth: Option<f64>,
+    out: Option<&Path>,
+) -> Result<()> {
+    if args.repeat == 0 {
+        return Err(Error::input("--repeat", 0, "at least 1"));
+    }
+    if let Some(out) = out {
+        check_ending(out, "npy")?;
+    }
+    let poses = read_poses(path)?;
+    let grid = &scene.patch.grid;
+    let mut frames = Array3::zeros((poses.len(), grid.ny, grid.nx));
+    let mut workspace = Workspace::new();
+    let press = |pose: &Pose, workspace: &mut Workspace| match depth {
+        None => Some(press_to_travel(scene, &[*pose], 0.0, workspace)),
+        Some(depth) => press_to_depth(scene, &[*pose], depth, workspace),
+    };
+    let mut contacts: Vec<Option<Contact>> = Vec::with_capacity(poses.len());
+    for (pose, mut frame) in poses.iter().zip(frames.outer_iter_mut()) {
+        contacts.push(press(pose, &mut workspace));
+        for (to, from) in frame.iter_mut().zip(workspace.deflections()) {
+            *to = *from;
+        }
+    }
+    // Round after round: a pose that is pressed again at once is nearer to the processor than a new one.
+    let mut times = vec![Vec::with_capacity(args.repeat); poses.len()];
+    for _ in 0..args.repeat {
+        for (pose, times) in poses.iter().zip(&mut times) {
+            let start = Instant::now();
+            press(pose, &mut workspace);
+            times.push(1e6 * start.elapsed().as_secs_f64());
+        }
+    }
+    if let Some(out) = out {
+        write_npy(out, &frames)?;
+    }
+    let readings = contacts
+        .iter()
+        .zip(&mut times)
+        .map(|(contact, times)| Reading {
+            travel_mm: contact.map_or(0.0, |contact| 1e3 * contact.travel),
+            n_touched: contact.map_or(0, |contact| contact.n_touched),
+            n_saturated: contact.map_or(0, |contact| contact.n_saturated),
+            us: median(times),
+        });
+    tell(args, scene, &readings.collect::<Vec<_>>());
+    Ok(())
+}
+
+fn tell(args: &Args, scene: &Scene, readings: &[Reading]) {
+    let model = &scene.objects[0];
+    let mut us: Vec<f64> = readings.iter().map(|reading| reading.us).collect();
+    let us = median(&mut us);
+    if args.json {
+        let said = serde_json::json!({
+            "n_spheres": model.n_spheres(),
+            "n_triangles": model.n_triangles(),
+            "us": us,
+            "presses": readings,
+        });
+        println!("{said}");
+        return;
+    }
+    let n_missed = readings.iter().filter(|r| r.n_touched == 0).count();
+    println!(
+        "{} poses, {n_missed} without contact; {us:.2} µs a press (median)",
+        readings.len()
+    );
+}
+
+fn read_poses(path: &Path) -> Result<Vec<Pose>> {
+    let place = path.display().to_string();
+    let allowed = "a CSV file with columns x, y, z, qw, qx, qy, qz of finite numbers";
+    let failed = |error: csv::Error| {
+        let line = error.position().map(|at| format!(", line {}", at.line()));
+        let place = format!("{place}{}", line.unwrap_or_default());
+        Error::input(place, format!("cannot be read ({error})"), allowed)
+    };
+    let mut poses = Vec::new();
+    let mut reader = csv::Reader::from_path(path).map_err(failed)?;
+    for (number, row) in reader.deserialize().enumerate() {
+        let row: Row = row.map_err(failed)?;
+        let turn = DQuat::from_xyzw(row.qx, row.qy, row.qz, row.qw);
+        let at = DVec3::new(row.x, row.y, row.z);
+        if !(at.is_finite() && turn.length().is_finite() && turn.length() > 0.0) {
+            let place = format!("{place}, row {}", number + 1);
+            return Err(Error::input(place, format!("{at}, {turn}"), allowed));
+        }
+        poses.push(Pose::new(turn.normalize(), at));
+    }
+    match poses.is_empty() {
+        true => Err(Error::input(place, "no poses", "at least one")),
+        false => Ok(poses),
+    }
+}
+
+fn median(values: &mut [f64]) -> f64 {
+    values.sort_by(f64::total_cmp);
+    let n = values.len();
+    0.5 * (values[(n - 1) / 2] + values[n / 2])
+}

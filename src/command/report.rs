@@ -1,0 +1,71 @@
+//! `bubbletouch report`: the page of a folder of results again, from its tables.
+
+use super::about_study::{add_manifest, add_touches, page_of_spec};
+use super::output::packings_beside;
+use super::study_args::StudyArgs;
+use bubbletouch::report::csv_tables::{LIMITS_FILE, read_rows, read_tables};
+use bubbletouch::report::page::ReportPage;
+use bubbletouch::report::results::write_page;
+use bubbletouch::study::provenance::Manifest;
+use bubbletouch::{Error, Result};
+use std::path::{Path, PathBuf};
+
+#[derive(clap::Args)]
+pub struct Args {
+    /// A folder that `bubbletouch run` wrote
+    results: PathBuf,
+}
+
+pub fn report(args: &Args) -> Result<()> {
+    let folder = &args.results;
+    let tables = read_tables(folder)?;
+    let page = about(folder)?;
+    write_page(folder, &tables, &page)?;
+    println!("Wrote {}", folder.join("report.html").display());
+    Ok(())
+}
+
+/// What the folder says of itself: its study, its manifest, and the touches of its study, made again.
+fn about(folder: &Path) -> Result<ReportPage> {
+    let study = StudyArgs {
+        study: folder.join("study.toml"),
+        objects: None,
+        seed: None,
+        threads: None,
+    };
+    let manifest = Manifest::read(folder)?;
+    let name = match &manifest {
+        Some(manifest) if !manifest.study.is_empty() => manifest.study.clone(),
+        _ => folder_name(folder)?,
+    };
+    let spec = study.plan()?.spec;
+    let mut page = page_of_spec(&spec, &name);
+    let packings = packings_beside(folder);
+    let loaded = study.load(Some(&packings));
+    if let Err(error) = loaded.and_then(|loaded| add_touches(&mut page, &loaded)) {
+        eprintln!("note: the page has no sample touches: {error}");
+    }
+    let limits = folder.join(LIMITS_FILE);
+    match limits.exists() {
+        true => page.limits = read_rows(&limits)?,
+        false => eprintln!(
+            "note: the page does not say which limits were reached: there is no {}",
+            limits.display()
+        ),
+    }
+    if let Some(manifest) = manifest {
+        add_manifest(&mut page, manifest);
+    }
+    if page.command.is_empty() {
+        page.command = format!("bubbletouch run {}", study.study.display());
+    }
+    Ok(page)
+}
+
+fn folder_name(folder: &Path) -> Result<String> {
+    let whole = folder
+        .canonicalize()
+        .map_err(|e| Error::io(folder, "read", e))?;
+    let name = whole.file_name().unwrap_or_default();
+    Ok(name.to_string_lossy().into_owned())
+}

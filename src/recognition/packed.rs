@@ -1,0 +1,128 @@
+//! The right factor of matrix products, packed once for many left ones.
+
+use ndarray::linalg::general_mat_mul;
+use ndarray::{Array2, ArrayView2, ArrayViewMut2};
+
+use crate::recognition::panels::{Panels, Wanted};
+use crate::recognition::row_products::Rows;
+use crate::recognition::scalar::Scalar;
+
+/// Rows and columns mirrored at once: a cache line of f32.
+const TILE: usize = 16;
+
+/// Rows (n × m) that others are multiplied with.
+#[derive(Clone, Debug)]
+pub(crate) struct Packed<'a, T> {
+    rows: ArrayView2<'a, T>,
+    /// The same rows, where the processor and the precision allow it.
+    panels: Option<Panels>,
+}
+
+impl<'a, T: Scalar> Packed<'a, T> {
+    /// Of rows that are stored one after the other.
+    pub fn new(rows: ArrayView2<'a, T>) -> Self {
+        Self {
+            panels: T::panels(in_place(&rows), rows.nrows()),
+            rows,
+        }
+    }
+
+    /// Bytes that packing so many rows takes.
+    pub fn bytes(n_rows: usize, n_features: usize) -> usize {
+        Panels::bytes(n_rows, n_features)
+    }
+
+    /// `x_i · z_j` of other rows x and these z: into n_left × n, whose rows are contiguous.
+    pub fn multiply(&self, left: ArrayView2<T>, mut to: ArrayViewMut2<T>) {
+        if !self.by_panels(left, Wanted::All, &mut to) {
+            // Transposed, so that a row's products with many of these are written side by side.
+            let (one, zero) = (T::one(), T::zero());
+            general_mat_mul(one, &self.rows, &left.t(), zero, &mut to.reversed_axes());
+        }
+    }
+
+    /// `z_i · z_j` of all these: n × n, symmetric.
+    pub fn own_products(&self) -> Array2<T> {
+        let n = self.rows.nrows();
+        let mut products = Array2::zeros((n, n));
+        self.multiply_own(products.view_mut());
+        products
+    }
+
+    /// `z_i · z_j` of all these: into n × n, symmetric, whose rows are contiguous.
+    pub fn multiply_own(&self, mut to: ArrayViewMut2<T>) {
+        if self.by_panels(self.rows, Wanted::UpToOwn, &mut to) {
+            mirror(&mut to);
+        } else {
+            general_mat_mul(T::one(), &self.rows, &self.rows.t(), T::zero(), &mut to);
+        }
+    }
+
+    fn by_panels(&self, left: ArrayView2<T>, wanted: Wanted, to: &mut ArrayViewMut2<T>) -> bool {
+        assert_eq!(to.dim(), (left.nrows(), self.rows.nrows()));
+        let Some(panels) = &self.panels else {
+            return false;
+        };
+        let rows = to.rows_mut().into_iter();
+        let mut rows: Vec<&mut [T]> = rows
+            .map(|row| row.into_slice().expect("rows of products are contiguous"))
+            .collect();
+        T::multiply(panels, in_place(&left), wanted, &mut rows)
+    }
+}
+
+fn in_place<'a, T>(rows: &ArrayView2<'a, T>) -> Rows<'a, T> {
+    Rows {
+        values: rows.to_slice().expect("rows are stored one by one"),
+        n_features: rows.ncols(),
+    }
+}
+
+/// Copies what is below the diagonal to above it, in tiles that stay in the cache.
+fn mirror<T: Copy>(square: &mut ArrayViewMut2<T>) {
+    let n = square.nrows();
+    for top in (0..n).step_by(TILE) {
+        for left in (0..=top).step_by(TILE) {
+            for i in top..n.min(top + TILE) {
+                for j in left..i.min(left + TILE) {
+                    square[[j, i]] = square[[i, j]];
+                }
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use ndarray::s;
+
+    fn rows<T: Scalar>(n: usize, m: usize) -> Array2<T> {
+        Array2::from_shape_fn((n, m), |(i, j)| T::of(((i * m + j) as f64 * 1.7).sin()))
+    }
+
+    fn assert_products<T: Scalar>(tolerance: f64) {
+        for (n_left, n, m) in [(5, 70, 33), (20, 1, 600), (1, 17, 1)] {
+            let (left, right) = (rows::<T>(n_left, m), rows::<T>(n, m));
+            let expected = left.dot(&right.t());
+            let packed = Packed::new(right.view());
+            // Into a part of something larger.
+            let mut to = Array2::zeros((n_left, n + 3));
+            packed.multiply(left.view(), to.slice_mut(s![.., 2..n + 2]));
+            for ((i, j), expected) in expected.indexed_iter() {
+                assert!((to[[i, j + 2]] - *expected).wide().abs() < tolerance);
+            }
+            let own = packed.own_products();
+            for ((i, j), expected) in right.dot(&right.t()).indexed_iter() {
+                assert!((own[[i, j]] - *expected).wide().abs() < tolerance);
+                assert_eq!(own[[i, j]], own[[j, i]]);
+            }
+        }
+    }
+
+    #[test]
+    fn products_are_those_of_ndarray_in_both_precisions() {
+        assert_products::<f32>(1e-4);
+        assert_products::<f64>(1e-12);
+    }
+}

@@ -1,0 +1,300 @@
+//! Products of f32 rows with many others that are packed into panels beforehand, near the processor's peak.
+//!
+//! A tile of products stays in vector registers while the features pass by [Goto, van de Geijn 2008]: [`TILE_ROWS`] rows with
+//! one panel of the others. The features pass in pieces of [`DEPTH`], so that the tile's rows stay in the first cache, and a
+//! few panels at a time, so that those stay in the second.
+
+use crate::recognition::row_products::Rows;
+
+/// Values in a vector register.
+const LANES: usize = 16;
+/// Rows of a tile. With [`PANEL_LANES`], its sums fill 24 of 32 vector registers.
+const TILE_ROWS: usize = 8;
+/// Registers across a panel.
+const PANEL_LANES: usize = 3;
+/// Packed rows of a panel.
+const PANEL_ROWS: usize = PANEL_LANES * LANES;
+/// Features that pass at once: the rows of a tile then take 8 kB.
+const DEPTH: usize = 256;
+/// Panels that the tiles of all rows meet before the next: 600 kB.
+const PANELS_AT_ONCE: usize = 12;
+
+/// Which products of rows with packed rows are wanted.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Wanted {
+    /// All.
+    All,
+    /// Those of each row with the packed ones up to the same number. Some others are written, too.
+    UpToOwn,
+}
+
+/// Rows packed into panels, for products with others.
+#[derive(Clone, Debug)]
+pub(crate) struct Panels {
+    n_rows: usize,
+    n_features: usize,
+    /// For each piece of features, for each panel, for each feature: its values in all rows of the panel. The last panel is as
+    /// wide as it must be; 0 stands for rows that it lacks.
+    values: Vec<[f32; LANES]>,
+}
+
+impl Panels {
+    /// Packs the first so many rows, if the processor has what products take.
+    pub fn new(rows: Rows<f32>, n_rows: usize) -> Option<Self> {
+        if !is_supported() {
+            return None;
+        }
+        let mut panels = Self {
+            n_rows,
+            n_features: rows.n_features,
+            values: vec![[0.0; LANES]; rows.n_features * n_rows.div_ceil(LANES)],
+        };
+        for piece in panels.pieces() {
+            for panel in 0..n_rows.div_ceil(PANEL_ROWS) {
+                let (start, width) = panels.place(panel, piece);
+                let to = &mut panels.values[start..][..width * piece.1];
+                for row in panel * PANEL_ROWS..n_rows.min((panel + 1) * PANEL_ROWS) {
+                    let at = row % PANEL_ROWS;
+                    let to = to.iter_mut().skip(at / LANES).step_by(width);
+                    let from = &rows.row(row)[piece.0..][..piece.1];
+                    to.zip(from).for_each(|(to, &value)| to[at % LANES] = value);
+                }
+            }
+        }
+        Some(panels)
+    }
+
+    /// Bytes that so many packed rows take.
+    pub fn bytes(n_rows: usize, n_features: usize) -> usize {
+        n_rows.next_multiple_of(LANES) * n_features * size_of::<f32>()
+    }
+
+    /// The pieces that features pass in: the first of each, and how many.
+    fn pieces(&self) -> Vec<(usize, usize)> {
+        let starts = (0..self.n_features).step_by(DEPTH);
+        starts
+            .map(|start| (start, DEPTH.min(self.n_features - start)))
+            .collect()
+    }
+
+    /// Where a panel's piece starts, and how many registers it is wide.
+    fn place(&self, panel: usize, (feature, n): (usize, usize)) -> (usize, usize) {
+        let lanes = self.n_rows.div_ceil(LANES);
+        let before = panel * PANEL_LANES;
+        (
+            feature * lanes + before * n,
+            PANEL_LANES.min(lanes - before),
+        )
+    }
+
+    /// Products of `left` with the packed rows, row by row into `to`; `false`, and nothing written, without the instructions.
+    pub fn multiply(&self, left: Rows<f32>, wanted: Wanted, to: &mut [&mut [f32]]) -> bool {
+        multiply(self, left, wanted, to)
+    }
+}
+
+#[cfg(target_arch = "x86_64")]
+fn is_supported() -> bool {
+    std::is_x86_feature_detected!("avx512f")
+}
+
+#[cfg(not(target_arch = "x86_64"))]
+fn is_supported() -> bool {
+    false
+}
+
+#[cfg(target_arch = "x86_64")]
+#[multiversion::multiversion(targets("x86_64+avx512f"))]
+fn multiply(panels: &Panels, left: Rows<f32>, wanted: Wanted, to: &mut [&mut [f32]]) -> bool {
+    multiversion::target::match_target! {
+        "x86_64+avx512f" => {
+            avx512::multiply(panels, left, wanted, to);
+            true
+        }
+        _ => {
+            let _ = (panels, left, wanted, to);
+            false
+        }
+    }
+}
+
+#[cfg(not(target_arch = "x86_64"))]
+fn multiply(_: &Panels, _: Rows<f32>, _: Wanted, _: &mut [&mut [f32]]) -> bool {
+    false
+}
+
+#[cfg(target_arch = "x86_64")]
+mod avx512 {
+    use std::arch::x86_64::{_mm512_fmadd_ps, _mm512_set1_ps, _mm512_setzero_ps};
+
+    use super::{DEPTH, LANES, PANEL_LANES, PANEL_ROWS, PANELS_AT_ONCE, Panels, TILE_ROWS, Wanted};
+    use crate::recognition::row_products::Rows;
+    use crate::recognition::vector_registers::{load, store};
+
+    /// The products of a tile's rows with the rows of a panel.
+    type Tile<const WIDTH: usize> = [[[f32; LANES]; WIDTH]; TILE_ROWS];
+
+    #[target_feature(enable = "avx512f")]
+    pub fn multiply(panels: &Panels, left: Rows<f32>, wanted: Wanted, to: &mut [&mut [f32]]) {
+        if panels.n_features == 0 {
+            to.iter_mut().for_each(|row| row.fill(0.0));
+        }
+        let mut rows = Box::new([[0.0; DEPTH]; TILE_ROWS]);
+        let n_panels = panels.n_rows.div_ceil(PANEL_ROWS);
+        for piece in panels.pieces() {
+            for first_panel in (0..n_panels).step_by(PANELS_AT_ONCE) {
+                for first in (0..to.len()).step_by(TILE_ROWS) {
+                    let n = TILE_ROWS.min(to.len() - first);
+                    let last_panel = match wanted {
+                        Wanted::All => n_panels,
+                        Wanted::UpToOwn => (first + n - 1) / PANEL_ROWS + 1,
+                    };
+                    for at in 0..n {
+                        rows[at][..piece.1]
+                            .copy_from_slice(&left.row(first + at)[piece.0..][..piece.1]);
+                    }
+                    let to = &mut to[first..first + n];
+                    for panel in first_panel..last_panel.min(first_panel + PANELS_AT_ONCE) {
+                        let (start, width) = panels.place(panel, piece);
+                        let values = &panels.values[start..][..width * piece.1];
+                        let columns = (panel * PANEL_ROWS, piece.0 == 0);
+                        match width {
+                            PANEL_LANES => put(tile::<PANEL_LANES>(&rows, values), to, columns),
+                            2 => put(tile::<2>(&rows, values), to, columns),
+                            _ => put(tile::<1>(&rows, values), to, columns),
+                        }
+                    }
+                }
+            }
+        }
+    }
+
+    /// The products of a piece of a tile's rows with a panel that is so many registers wide.
+    ///
+    /// Loops, not closures: a function of the standard library that calls a closure has not got its vector instructions.
+    #[target_feature(enable = "avx512f")]
+    fn tile<const WIDTH: usize>(
+        rows: &[[f32; DEPTH]; TILE_ROWS],
+        panel: &[[f32; LANES]],
+    ) -> Tile<WIDTH> {
+        let panel = panel.as_chunks::<WIDTH>().0;
+        let panel = &panel[..panel.len().min(DEPTH)];
+        let mut sums = [[_mm512_setzero_ps(); WIDTH]; TILE_ROWS];
+        for at in 0..panel.len() {
+            let mut own = [_mm512_setzero_ps(); WIDTH];
+            for j in 0..WIDTH {
+                own[j] = load(&panel[at][j]);
+            }
+            for i in 0..TILE_ROWS {
+                let value = _mm512_set1_ps(rows[i][at]);
+                for j in 0..WIDTH {
+                    sums[i][j] = _mm512_fmadd_ps(value, own[j], sums[i][j]);
+                }
+            }
+        }
+        let mut tile = [[[0.0; LANES]; WIDTH]; TILE_ROWS];
+        for i in 0..TILE_ROWS {
+            for j in 0..WIDTH {
+                tile[i][j] = store(sums[i][j]);
+            }
+        }
+        tile
+    }
+
+    /// Writes a tile's products from a column on if they are the first piece's, else adds them.
+    #[target_feature(enable = "avx512f")]
+    fn put<const WIDTH: usize>(
+        tile: Tile<WIDTH>,
+        to: &mut [&mut [f32]],
+        (column, is_first): (usize, bool),
+    ) {
+        for (to, tile) in to.iter_mut().zip(&tile) {
+            let to = &mut to[column..];
+            let n = to.len().min(WIDTH * LANES);
+            let (to, from) = (&mut to[..n], &tile.as_flattened()[..n]);
+            if is_first {
+                to.copy_from_slice(from);
+            } else {
+                for at in 0..n {
+                    to[at] += from[at];
+                }
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// n rows of m values with no pattern.
+    fn values(n: usize, m: usize, salt: f64) -> Vec<f32> {
+        let value = |i: usize| (i as f64 * 1.7 + salt).sin() as f32;
+        (0..n * m).map(value).collect()
+    }
+
+    fn product(left: &[f32], right: &[f32]) -> f64 {
+        let both = left.iter().zip(right);
+        both.map(|(&a, &b)| f64::from(a) * f64::from(b)).sum()
+    }
+
+    #[test]
+    fn products_are_sums_of_products_whatever_the_numbers_of_rows_and_features() {
+        for (n_left, n_right, m) in [
+            (1, 1, 1),
+            (8, 48, 16),
+            (9, 49, 7),
+            (3, 300, 513),
+            (20, 65, 512),
+            (50, 30, 1100),
+            (4, 5, 0),
+            (0, 3, 4),
+        ] {
+            let (left, right) = (values(n_left, m, 0.3), values(n_right, m, 2.0));
+            let rows = |values| Rows {
+                values,
+                n_features: m,
+            };
+            let row = |values: &[f32], at: usize| values[at * m..][..m].to_vec();
+            let Some(panels) = Panels::new(rows(&right), n_right) else {
+                eprintln!("skipped: this processor has no AVX-512");
+                return;
+            };
+            let mut to = vec![vec![7.0; n_right]; n_left];
+            let mut slices: Vec<&mut [f32]> = to.iter_mut().map(Vec::as_mut_slice).collect();
+            assert!(panels.multiply(rows(&left), Wanted::All, &mut slices));
+            for i in 0..n_left {
+                for j in 0..n_right {
+                    let expected = product(&row(&left, i), &row(&right, j));
+                    assert!(
+                        (f64::from(to[i][j]) - expected).abs() <= 1e-6 * m as f64,
+                        "{n_left} {n_right} {m}: {i} {j}"
+                    );
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn products_up_to_a_rows_own_are_all_there() {
+        let (n, m) = (130, 20);
+        let all = values(n, m, 0.7);
+        let rows = Rows {
+            values: &all,
+            n_features: m,
+        };
+        let Some(panels) = Panels::new(rows, n) else {
+            eprintln!("skipped: this processor has no AVX-512");
+            return;
+        };
+        let mut to = vec![vec![0.0; n]; n];
+        let mut slices: Vec<&mut [f32]> = to.iter_mut().map(Vec::as_mut_slice).collect();
+        assert!(panels.multiply(rows, Wanted::UpToOwn, &mut slices));
+        for i in 0..n {
+            for j in 0..=i {
+                let expected = product(rows.row(i), rows.row(j));
+                assert!((f64::from(to[i][j]) - expected).abs() < 1e-5, "{i} {j}");
+            }
+        }
+    }
+}

@@ -1,0 +1,78 @@
+//! What a study says of itself, beside its tables.
+
+use crate::signal::Quantity;
+use crate::study::provenance::Manifest;
+use ndarray::Array2;
+use serde::{Deserialize, Serialize};
+
+/// What a study says of itself, beside its tables.
+#[derive(Clone, Debug, Default)]
+pub struct ReportPage {
+    /// The study's name.
+    pub name: String,
+    /// What it asks.
+    pub question: String,
+    /// What was expected before it ran; may be empty.
+    pub expected: String,
+    /// Settings worth knowing that no table holds: objects, touches, placement, seed. Name and value.
+    pub settings: Vec<(String, String)>,
+    /// Limits that were reached.
+    pub limits: Vec<Limit>,
+    /// Sample touches for a picture.
+    pub snapshots: Option<Snapshots>,
+    /// Sample touches for the page; if there are none, those of the picture.
+    pub gallery: Vec<Snapshots>,
+    /// Whether accuracy is charted against time; `None` leaves it to the number of classifiers.
+    pub pareto: Option<bool>,
+    /// Seconds from start to end, if known.
+    pub wall_s: Option<f64>,
+    /// The command that makes the folder again.
+    pub command: String,
+    /// Program and version: `bubbletouch 0.1.0`.
+    pub program: String,
+    /// Where the results come from, if known.
+    pub manifest: Option<Manifest>,
+}
+
+/// What a study that is not of recognition says of itself, beside its tables.
+#[derive(Clone, Debug, Default)]
+pub struct StudyAbout {
+    /// The study's name.
+    pub name: String,
+    /// What it asks.
+    pub question: String,
+    /// What was expected before it ran; may be empty.
+    pub expected: String,
+    /// Seconds from start to end.
+    pub wall_s: f64,
+    /// The command that makes the folder again.
+    pub command: String,
+    /// Program and version: `bubbletouch 0.1.0`.
+    pub program: String,
+}
+
+/// How often a limit of the model was reached: a row of `limits.csv`.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Limit {
+    /// What happened: `saturated taxels`.
+    pub what: String,
+    /// How often.
+    pub count: u64,
+    /// Out of how many.
+    pub of: u64,
+    /// What it means for the reader.
+    pub meaning: String,
+}
+
+/// Sample touches on one scale of colours.
+#[derive(Clone, Debug)]
+pub struct Snapshots {
+    /// Names and frames (ny × nx, row = y ascending).
+    pub frames: Vec<(String, Array2<f64>)>,
+    /// Millimetres between taxels.
+    pub pitch_mm: f64,
+    /// What the frames hold.
+    pub quantity: Quantity,
+    /// What was pressed how, and the noise.
+    pub caption: String,
+}

@@ -1,0 +1,176 @@
+//! What every page has: head, question, contents, sections, foot.
+
+use crate::report::drawing::escape;
+
+const TEMPLATE: &str = include_str!("page.html");
+const STYLE: &str = include_str!("page.css");
+/// In the order in which each may use what comes before it.
+const SCRIPT: [&str; 10] = [
+    include_str!("base.js"),
+    include_str!("filter.js"),
+    include_str!("points.js"),
+    include_str!("axes.js"),
+    include_str!("accuracy.js"),
+    include_str!("advice.js"),
+    include_str!("pareto.js"),
+    include_str!("cells.js"),
+    include_str!("confusion.js"),
+    include_str!("main.js"),
+];
+
+/// A page.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Page {
+    /// What it is called, above all.
+    pub name: String,
+    /// What was asked; may be empty.
+    pub question: String,
+    /// What was expected; may be empty.
+    pub expected: String,
+    /// What was found, section by section.
+    pub sections: Vec<Section>,
+    /// HTML of the foot.
+    pub foot: String,
+    /// JSON that the script draws from; none for a page without script.
+    pub data: Option<String>,
+}
+
+/// A part of a page with a heading.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Section {
+    /// Where links lead; letters and hyphens.
+    pub id: &'static str,
+    /// Its heading.
+    pub title: &'static str,
+    /// HTML below the heading; a section without is left out.
+    pub body: String,
+}
+
+impl Section {
+    /// A section.
+    pub fn new(id: &'static str, title: &'static str, body: impl Into<String>) -> Self {
+        let body = body.into();
+        Self { id, title, body }
+    }
+
+    fn html(&self) -> String {
+        let Self { id, title, body } = self;
+        let class = match *id {
+            "answer" => " class=\"found\"",
+            _ => "",
+        };
+        format!(
+            "<section id=\"{id}\" aria-labelledby=\"{id}-title\"{class}>\n<h2 id=\"{id}-title\">{title}</h2>\n{body}\n</section>\n"
+        )
+    }
+}
+
+impl Page {
+    /// Adds a section, unless it is empty.
+    pub fn add(&mut self, section: Section) {
+        if !section.body.is_empty() {
+            self.sections.push(section);
+        }
+    }
+
+    /// The HTML.
+    pub fn html(&self) -> String {
+        let paragraph = |class: &str, before: &str, text: &str| match text {
+            "" => String::new(),
+            text => format!("<p class=\"{class}\">{before}{}</p>", escape(text)),
+        };
+        fill(TEMPLATE, |name| match name {
+            "style" => STYLE.to_owned(),
+            "name" => escape(&self.name),
+            "question" => paragraph("question", "", &self.question),
+            "expected" => paragraph("quiet", "Expected: ", &self.expected),
+            "contents" => self.contents(),
+            "sections" => self.sections.iter().map(Section::html).collect(),
+            "foot" => self.foot.clone(),
+            "script" => self.script(),
+            other => format!("(no value for {other})"),
+        })
+    }
+
+    fn contents(&self) -> String {
+        let links = self.sections.iter();
+        let links = links
+            .map(|Section { id, title, .. }| format!("<li><a href=\"#{id}\">{title}</a></li>"));
+        format!("<ul>{}</ul>", links.collect::<String>())
+    }
+
+    fn script(&self) -> String {
+        let Some(data) = &self.data else {
+            return String::new();
+        };
+        // What ends an element of HTML has no place in JSON but within its strings.
+        let data = data.replace('<', "\\u003c");
+        format!(
+            "<script type=\"application/json\" id=\"study\">{data}</script>\n<script>\n(() => {{\n\"use strict\";\n{}}})();\n</script>\n",
+            SCRIPT.join("\n")
+        )
+    }
+}
+
+/// The first sentence large, the others as a list; empty if there is none.
+pub(super) fn sentences_html(sentences: &[String]) -> String {
+    let Some((first, others)) = sentences.split_first() else {
+        return String::new();
+    };
+    let items = others.iter();
+    let items = items.map(|sentence| format!("<li>{}</li>", unbroken(sentence)));
+    let list = match others.is_empty() {
+        true => String::new(),
+        false => format!("<ul>{}</ul>", items.collect::<String>()),
+    };
+    format!("<p class=\"answer\">{}</p>{list}", unbroken(first))
+}
+
+/// A sentence as HTML whose lines do not break between a number and its unit or its sign.
+pub(super) fn unbroken(text: &str) -> String {
+    let parts = [" mm", " %", " = ", " ms"];
+    parts.iter().fold(escape(text), |text, part| {
+        text.replace(part, &part.replace(' ', "\u{a0}"))
+    })
+}
+
+/// Replaces each `{{name}}` of a template once, left to right: what is put in is never searched again.
+fn fill(template: &str, value: impl Fn(&str) -> String) -> String {
+    let mut parts = template.split("{{");
+    let mut filled = parts.next().unwrap_or_default().to_owned();
+    for part in parts {
+        match part.split_once("}}") {
+            Some((name, rest)) => {
+                filled += &value(name);
+                filled += rest;
+            }
+            None => filled += part,
+        }
+    }
+    filled
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_put_into_a_template_is_not_searched_for_names() {
+        let value = |name: &str| format!("<{name} {{{{b}}}}>");
+        assert_eq!(
+            fill("x {{a}} y {{b}} z", value),
+            "x <a {{b}}> y <b {{b}}> z"
+        );
+    }
+
+    #[test]
+    fn no_text_in_the_data_ends_the_script() {
+        let page = Page {
+            data: Some("[\"</script><b>\"]".to_owned()),
+            ..Page::default()
+        };
+        let html = page.html();
+        assert!(html.contains("[\"\\u003c/script>\\u003cb>\"]"));
+        assert_eq!(html.matches("</script>").count(), 2);
+    }
+}

@@ -1,0 +1,23 @@
+//! `report.html`: one page with everything in it, that needs no network.
+//!
+//! In: tables, pictures, and what a study says of itself. Out: HTML. The numbers of a study of recognition are in the page once, as
+//! JSON; a script draws from it charts that can be asked, filtered and arranged. Without script, pictures and tables that do not
+//! move stand in their places.
+
+mod about;
+mod choices;
+mod confusion_data;
+mod frame;
+mod picture;
+pub(super) mod plain;
+mod provenance;
+mod recognition;
+mod study_data;
+mod tables;
+mod touches;
+
+pub use about::{Limit, ReportPage, Snapshots, StudyAbout};
+pub(super) use frame::Section;
+pub(super) use picture::figure;
+pub use picture::{Picture, Pictures};
+pub use recognition::page;

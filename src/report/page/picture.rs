@@ -1,0 +1,100 @@
+//! Pictures in a page.
+
+use crate::report::drawing::{Drawing, escape};
+
+/// A picture for the page.
+#[derive(Clone, Debug)]
+pub struct Picture {
+    /// Title, and text for those who cannot see it.
+    pub title: String,
+    /// An `<svg>` or `<img>` element.
+    pub element: String,
+}
+
+impl Picture {
+    /// An SVG in the page.
+    pub fn of(drawing: &Drawing, title: &str) -> Self {
+        Self {
+            title: title.to_owned(),
+            element: drawing.svg(title),
+        }
+    }
+
+    /// A PNG in the page, with its width and height in pixels.
+    pub fn of_png(png: &[u8], (width, height): (usize, usize), title: &str) -> Self {
+        let data = base64(png);
+        Self {
+            title: title.to_owned(),
+            element: format!(
+                r#"<img src="data:image/png;base64,{data}" width="{width}" height="{height}" alt="{}">"#,
+                escape(title)
+            ),
+        }
+    }
+}
+
+/// The pictures of a study of recognition, for readers without script.
+#[derive(Clone, Debug, Default)]
+pub struct Pictures {
+    /// Charts, the main one first.
+    pub charts: Vec<Picture>,
+    /// Charts of accuracy against time.
+    pub times: Vec<Picture>,
+    /// How many charts lie beside the page only.
+    pub n_more_charts: usize,
+    /// The confusion matrix of the best cell.
+    pub confusion: Option<Picture>,
+}
+
+/// A picture in its frame.
+pub(crate) fn figure(picture: &Picture) -> String {
+    format!(
+        "<figure class=\"card\" tabindex=\"0\" aria-label=\"{}\">{}</figure>",
+        escape(&picture.title),
+        picture.element
+    )
+}
+
+/// Pictures, one below the other.
+pub(crate) fn figures<'a>(pictures: impl IntoIterator<Item = &'a Picture>) -> String {
+    pictures.into_iter().map(figure).collect()
+}
+
+/// RFC 4648 with padding.
+fn base64(bytes: &[u8]) -> String {
+    const LETTERS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    let mut text = String::with_capacity(bytes.len().div_ceil(3) * 4);
+    for group in bytes.chunks(3) {
+        let byte = |i: usize| u32::from(group.get(i).copied().unwrap_or(0));
+        let bits = byte(0) << 16 | byte(1) << 8 | byte(2);
+        for place in 0..4 {
+            let letter = LETTERS[(bits >> (18 - 6 * place)) as usize & 63];
+            text.push(if place <= group.len() {
+                char::from(letter)
+            } else {
+                '='
+            });
+        }
+    }
+    text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn base64_agrees_with_the_examples_of_rfc_4648() {
+        for (bytes, text) in [
+            ("", ""),
+            ("f", "Zg=="),
+            ("fo", "Zm8="),
+            ("foo", "Zm9v"),
+            ("foob", "Zm9vYg=="),
+            ("fooba", "Zm9vYmE="),
+            ("foobar", "Zm9vYmFy"),
+        ] {
+            assert_eq!(base64(bytes.as_bytes()), text);
+        }
+    }
+}

@@ -1,0 +1,103 @@
+//! Charts and settings as a reader meets them.
+
+use super::points::ChartKind;
+use crate::report::axis::{classifier_name, ensemble_name};
+use crate::study::speed_accuracy::table::{ChainCell, ContactCell, ContactWay};
+
+impl ChartKind {
+    /// File name without ending.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Contact => "speed_accuracy_contact",
+            Self::Decision => "speed_accuracy_decision",
+            Self::Training => "speed_accuracy_training",
+            Self::Resolution => "speed_accuracy_resolution",
+        }
+    }
+
+    /// What the chart is read as.
+    pub fn title(self) -> &'static str {
+        match self {
+            Self::Contact => "Contact: error of the deflections against the time of a touch",
+            Self::Decision => "Recognition: accuracy against the time of a decision",
+            Self::Training => "Recognition: accuracy against the time of a training",
+            Self::Resolution => "Studies: what can be told apart against the time that it takes",
+        }
+    }
+
+    /// What all of its points have in common.
+    pub(super) fn settings(self) -> &'static str {
+        match self {
+            Self::Contact => {
+                "64 × 64 taxels unless the study says otherwise; medians over objects, on the front with quartiles"
+            }
+            Self::Decision => {
+                "press, noise, compression and answer of one touch, one thread; tested on the exact objects; on the front with 95 % intervals"
+            }
+            Self::Training => {
+                "one thread; tested on the exact objects; on the front with 95 % intervals"
+            }
+            Self::Resolution => {
+                "half the width of 95 % intervals: of an accuracy at one trial's test touches, and of a difference by the corrected t-test"
+            }
+        }
+    }
+
+    /// What runs along x, and along y.
+    pub(super) fn axes(self) -> (&'static str, &'static str) {
+        match self {
+            Self::Contact => (
+                "time of a touch, one thread (median)",
+                "mean deflection error, mm",
+            ),
+            Self::Decision => ("time of a decision", "accuracy"),
+            Self::Training => ("time of a training", "accuracy"),
+            Self::Resolution => ("processor time of the study", "half width of the interval"),
+        }
+    }
+
+    /// What a value is, at the head of a column.
+    pub(super) fn value_name(self) -> &'static str {
+        match self {
+            Self::Contact => "error, mm",
+            Self::Decision | Self::Training => "accuracy",
+            Self::Resolution => "half width",
+        }
+    }
+}
+
+/// A way to evaluate contact: what has one colour in the chart.
+pub(super) fn way_name(way: ContactWay) -> &'static str {
+    match way {
+        ContactWay::PackedSpheres => "packed spheres",
+        ContactWay::VertexSpheres => "a sphere a vertex",
+        ContactWay::ExactMesh => "mesh, exact",
+        ContactWay::SolidMarching => "solid, exact",
+        ContactWay::TimeSteps => "quasi-static, stepped",
+        ContactWay::SemiImplicit => "semi-implicit Euler",
+        ContactWay::ImplicitEuler => "implicit Euler",
+        ContactWay::Rapier => "rapier, tuned",
+    }
+}
+
+/// `packed spheres within 0.2 mm`, `implicit Euler, steps of 1 ms`.
+pub(super) fn contact_setting(cell: &ContactCell) -> String {
+    let way = way_name(cell.way);
+    match (cell.tolerance_mm, cell.dt_ms) {
+        (_, Some(dt)) => format!("{way}, steps of {dt} ms"),
+        (Some(mm), None) => format!("{way} within {mm} mm"),
+        (None, None) => way.to_owned(),
+    }
+}
+
+/// `RBF SVM, SBHE, m = 64, pitch 2 mm, spheres within 0.2 mm`.
+pub(super) fn chain_setting(cell: &ChainCell) -> String {
+    format!(
+        "{}, {}, m = {}, pitch {} mm, spheres within {} mm",
+        classifier_name(cell.classifier),
+        ensemble_name(cell.ensemble),
+        cell.measurements,
+        cell.pitch_mm,
+        cell.tolerance_mm
+    )
+}

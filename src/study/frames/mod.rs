@@ -1,0 +1,42 @@
+//! The frames of an array's touches: made once, read by every cell; kept in memory or, where they are too large for it, in a file.
+
+mod cache;
+mod coding;
+mod frame_file;
+mod kept;
+mod making;
+mod storage;
+
+pub use cache::{CachedTouches, TouchCache};
+pub(super) use coding::most_bytes;
+pub use kept::{FrameWriter, KeptFrames};
+pub(super) use making::{Making, Press, made_at_once};
+pub use storage::FrameStorage;
+
+use serde::{Deserialize, Serialize};
+
+/// Frames of an array and what happened while they were made.
+#[derive(Debug)]
+pub struct Frames {
+    /// (n_touches · F) frames of metres of deflection; object by object, touch by touch, the deepest frame of a touch last.
+    pub kept: KeptFrames,
+    /// What happened.
+    pub facts: FrameFacts,
+}
+
+/// What happened while frames were made.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct FrameFacts {
+    /// What they are of, in words.
+    pub what: String,
+    /// Taxels of a frame.
+    pub n_taxels: usize,
+    /// F, frames a touch.
+    pub n_frames: usize,
+    /// Touches that met nothing: their frames are zero.
+    pub n_missed: usize,
+    /// Touches with at least one taxel at its stroke when they are deepest.
+    pub n_saturated: usize,
+    /// Processor-seconds, summed over threads.
+    pub cpu_s: f64,
+}

@@ -1,0 +1,217 @@
+//! The part on contact: what an evaluation of each model costs, and how wrong it is.
+
+use super::engines::{StepMethod, Stepper};
+use super::plan::{ContactPlan, SpeedAccuracyPlan, Tolerance};
+use super::solid_contact::press_solid;
+use super::subject::{Subject, spread_evenly};
+use super::table::{ContactCell, ContactScore, ContactTime, ContactWay, SpeedAccuracyTables};
+use crate::error::Result;
+use crate::objects::Model;
+use crate::random::Seed;
+use crate::study::object_detail::{Truth, quantile};
+use crate::study::progress::Progress;
+use crate::world::Placement;
+use rayon::prelude::*;
+use std::path::Path;
+use std::time::Instant;
+
+/// Millimetres in a metre.
+const MM: f64 = 1e3;
+
+/// An object with its models and what exact contact says.
+struct Ready<'a> {
+    subject: &'a Subject,
+    truth: Truth,
+    models: Vec<(ContactWay, Option<Tolerance>, Model)>,
+}
+
+/// Fills the tables of contact: models on all threads, times on one.
+pub(super) fn measure_contact(
+    plan: &SpeedAccuracyPlan,
+    contact: &ContactPlan,
+    (subjects, packings): (&[Subject], Option<&Path>),
+    progress: &dyn Progress,
+    tables: &mut SpeedAccuracyTables,
+) -> Result<()> {
+    let chosen = spread_evenly(subjects, contact.spec.objects);
+    progress.stage("models", chosen.len() as u64);
+    let ready = chosen
+        .into_par_iter()
+        // One at a time: to pack a mesh takes from seconds to a minute.
+        .with_max_len(1)
+        .map(|subject| {
+            let ready = prepare(plan, contact, subject, packings);
+            progress.advance(1);
+            ready
+        })
+        .collect::<Result<Vec<_>>>()?;
+    progress.stage("time touches", ready.len() as u64);
+    for object in &ready {
+        measure_models(plan, object, tables);
+        progress.advance(1);
+    }
+    let stepped = spread_evenly(&ready, contact.spec.stepped_objects);
+    let methods = StepMethod::built();
+    let n_runs = stepped.len() * methods.len() * contact.dts.len();
+    progress.stage("step through time", n_runs as u64);
+    // Methods and steps outside, so that the tables go by them.
+    for &method in &methods {
+        for (&dt, &dt_ms) in contact.dts.iter().zip(&contact.spec.dt_ms) {
+            for object in &stepped {
+                let (_, tolerance, model) = middle_packing(object);
+                let stepper = Stepper {
+                    patch: &plan.patch,
+                    model,
+                    method,
+                    dt,
+                };
+                let cell = ContactCell {
+                    way: method.way(),
+                    tolerance_mm: tolerance.map(|tolerance| tolerance.mm),
+                    dt_ms: Some(dt_ms),
+                    ..cell(object, model)
+                };
+                measure_stepped(cell, &stepper, object, contact.spec.stepped_touches, tables)?;
+                progress.advance(1);
+            }
+        }
+    }
+    Ok(())
+}
+
+fn prepare<'a>(
+    plan: &SpeedAccuracyPlan,
+    contact: &ContactPlan,
+    subject: &'a Subject,
+    packings: Option<&Path>,
+) -> Result<Ready<'a>> {
+    let placement = Placement {
+        per_object: Some(contact.spec.touches),
+        ..plan.placement.clone()
+    };
+    let finest = plan.levels[plan.levels.len() - 1];
+    let seed = Seed::new(plan.spec.seed);
+    let mut models = Vec::new();
+    for &level in &plan.levels {
+        let packed = subject.packed(level, packings)?;
+        models.push((ContactWay::PackedSpheres, Some(level), packed));
+    }
+    let vertices = subject.vertex_spheres()?;
+    models.extend(vertices.map(|model| (ContactWay::VertexSpheres, None, model)));
+    let mesh = subject.mesh();
+    models.extend(mesh.map(|model| (ContactWay::ExactMesh, None, model)));
+    Ok(Ready {
+        truth: subject.truth(&plan.patch, &placement, (finest, &seed))?,
+        subject,
+        models,
+    })
+}
+
+fn measure_models(plan: &SpeedAccuracyPlan, object: &Ready, tables: &mut SpeedAccuracyTables) {
+    for (way, tolerance, model) in &object.models {
+        let error = object.truth.error(model, 0.0);
+        let cell = ContactCell {
+            way: *way,
+            tolerance_mm: tolerance.map(|tolerance| tolerance.mm),
+            ..cell(object, model)
+        };
+        let score = ContactScore {
+            n_touches: object.truth.readings().len(),
+            error_mm: Some(MM * error.mean),
+            error_p95_mm: Some(MM * error.p95),
+            n_steps: None,
+        };
+        let us_per_touch = 1e6 * object.truth.seconds_per_touch(model);
+        push(tables, cell, score, us_per_touch);
+    }
+    let Some(solid) = object.subject.solid() else {
+        return;
+    };
+    let timed = object.truth.readings().iter().map(|reading| {
+        let start = Instant::now();
+        press_solid(&plan.patch, solid, &reading.pressed());
+        start.elapsed().as_secs_f64()
+    });
+    let mut seconds: Vec<f64> = timed.collect();
+    let cell = ContactCell {
+        way: ContactWay::SolidMarching,
+        tolerance_mm: None,
+        dt_ms: None,
+        object: object.subject.name().to_owned(),
+        n_spheres: 0,
+    };
+    // It is what says what is right.
+    let score = ContactScore {
+        n_touches: seconds.len(),
+        error_mm: Some(0.0),
+        error_p95_mm: Some(0.0),
+        n_steps: None,
+    };
+    let us_per_touch = 1e6 * quantile(&mut seconds, 0.5);
+    push(tables, cell, score, us_per_touch);
+}
+
+/// Touches of one object by one method with one time step.
+fn measure_stepped(
+    cell: ContactCell,
+    stepper: &Stepper,
+    object: &Ready,
+    n_touches: usize,
+    tables: &mut SpeedAccuracyTables,
+) -> Result<()> {
+    let (mut errors, mut seconds, mut n_steps) = (Vec::new(), Vec::new(), 0);
+    let mut is_finite = true;
+    let readings = object.truth.readings();
+    let chosen = &readings[..n_touches.min(readings.len())];
+    for reading in chosen {
+        let start = Instant::now();
+        let stepped = stepper.touch(reading)?;
+        seconds.push(start.elapsed().as_secs_f64());
+        n_steps = stepped.n_steps;
+        match stepped.deflections {
+            Some(felt) => reading.each_difference(&felt, &mut |difference: f64| {
+                errors.push(difference.abs());
+            }),
+            None => is_finite = false,
+        }
+    }
+    is_finite &= errors.iter().all(|error: &f64| error.is_finite());
+    let mean = errors.iter().sum::<f64>() / errors.len().max(1) as f64;
+    let score = ContactScore {
+        n_touches: chosen.len(),
+        error_mm: is_finite.then_some(MM * mean),
+        error_p95_mm: is_finite.then(|| MM * quantile(&mut errors, 0.95)),
+        n_steps: Some(n_steps),
+    };
+    push(tables, cell, score, 1e6 * quantile(&mut seconds, 0.5));
+    Ok(())
+}
+
+/// The packing in the middle of the levels: fine enough not to hide what steps do, and not the dearest.
+fn middle_packing<'a>(object: &'a Ready) -> &'a (ContactWay, Option<Tolerance>, Model) {
+    let is_packing =
+        |(way, ..): &&(ContactWay, Option<Tolerance>, Model)| *way == ContactWay::PackedSpheres;
+    let packings: Vec<_> = object.models.iter().filter(is_packing).collect();
+    packings[packings.len() / 2]
+}
+
+fn cell(object: &Ready, model: &Model) -> ContactCell {
+    ContactCell {
+        way: ContactWay::PackedSpheres,
+        tolerance_mm: None,
+        dt_ms: None,
+        object: object.subject.name().to_owned(),
+        n_spheres: model.n_spheres(),
+    }
+}
+
+fn push(
+    tables: &mut SpeedAccuracyTables,
+    cell: ContactCell,
+    score: ContactScore,
+    us_per_touch: f64,
+) {
+    tables.contact.push((cell.clone(), score));
+    let time = ContactTime { us_per_touch };
+    tables.contact_timing.push((cell, time));
+}

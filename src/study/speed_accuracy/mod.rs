@@ -1,0 +1,33 @@
+//! A study of its own kind: what does accuracy cost, for every choice there is here?
+//!
+//! A file with a `[speed_accuracy]` table is such a study: [`SpeedAccuracyStudySpec`] (as written) → [`SpeedAccuracyPlan`] (checked, SI) →
+//! [`measure_speed_accuracy`] → [`table::SpeedAccuracyTables`]. It has three parts, each left out where its table is:
+//!
+//! - **contact**: time of a touch against its deflection error, of models of objects (packed spheres, a sphere a vertex, the mesh itself,
+//!   solids by their distance functions), of time steps, and of methods whose taxels have mass. Exact contact says what is right. Rows
+//!   that other programs left in a file of [`peers`](ContactSpec::peers) stand beside ours.
+//! - **recognition**: share of right answers against the time of a decision (touch, compress, classify: one touch at a time on one thread) and
+//!   of a training (one thread), over pitch, detail of the objects, ensemble, ratio and classifier. Learned from objects of that
+//!   detail, tested on other touches of the exact ones.
+//! - **resolution**: half the width of intervals against the time of the study that it takes, over touches an object and trials.
+//!
+//! The [report](crate::report::speed_accuracy) makes points of these tables, and charts of the points.
+
+mod contact;
+mod decision_times;
+mod engines;
+mod peers;
+mod plan;
+mod recognition;
+mod resolution;
+mod runner;
+mod solid_contact;
+mod spec;
+mod subject;
+pub mod table;
+
+pub use plan::{ContactPlan, RecognitionSweep, ResolutionPlan, SpeedAccuracyPlan};
+pub use runner::measure_speed_accuracy;
+pub use spec::{
+    ContactSpec, RecognitionSweepSpec, ResolutionSpec, SpeedAccuracySpec, SpeedAccuracyStudySpec,
+};

@@ -1,0 +1,119 @@
+//! The part on what a study resolves: real studies of several sizes, and the intervals of what they say.
+
+use super::plan::{ResolutionPlan, SpeedAccuracyPlan, Tolerance};
+use super::subject::Subject;
+use super::table::{Resolved, SpeedAccuracyTables, StudySize, StudyTime};
+use crate::error::Result;
+use crate::objects::Object;
+use crate::random::Seed;
+use crate::recognition::comparison::{TrialSize, compare};
+use crate::recognition::interval::Interval;
+use crate::study::progress::{Progress, Silent};
+use crate::study::spec::StudySpec;
+use crate::study::table::{Tables, TrialScore};
+use crate::study::{CONFIDENCE, Plan, Sweep, draw_touches, run};
+use rayon::prelude::*;
+use std::path::Path;
+
+/// What every one of these studies is, but for what touches what.
+const STUDY: &str = r#"
+question = "What does a study of this size resolve?"
+[skin]
+pitch_mm = 2.0
+taxels = 2
+stroke_mm = 5.0
+[signal]
+steps = ["noise"]
+noise_std_full_scale = 0.05
+[sensing]
+[recognition]
+classifier = "linear_svm"
+test_fraction = 0.25
+"#;
+
+/// Fills the tables of what studies resolve; objects have the coarsest detail.
+pub(super) fn measure_resolution(
+    plan: &SpeedAccuracyPlan,
+    resolution: &ResolutionPlan,
+    (subjects, packings): (&[Subject], Option<&Path>),
+    progress: &dyn Progress,
+    tables: &mut SpeedAccuracyTables,
+) -> Result<()> {
+    let spec = &resolution.spec;
+    progress.stage("studies", spec.touches.len() as u64);
+    let coarsest: Tolerance = plan.levels[0];
+    let objects = subjects
+        .par_iter()
+        .map(|subject| {
+            let model = subject.packed(coarsest, packings)?;
+            Ok(Object::of_one_part(subject.name(), model))
+        })
+        .collect::<Result<Vec<_>>>()?;
+    let most = spec.trials.iter().copied().max().unwrap_or(2);
+    for &touches in &spec.touches {
+        let mut study = StudySpec::parse(&plan.place, STUDY)?;
+        study.seed = plan.spec.seed;
+        study.trials = most;
+        study.objects = plan.spec.objects.clone();
+        study.skin = plan.spec.skin.clone();
+        study.touches = plan.spec.touches.clone();
+        study.touches.per_object = Some(touches);
+        study.sensing.ratio = Some(crate::study::Axis::Many(spec.ratio.to_vec()));
+        let study = Plan::new(&plan.place, study)?;
+        let touched = draw_touches(
+            objects.clone(),
+            &study.placement,
+            &Seed::new(plan.spec.seed),
+        )?;
+        let sweep = Sweep::new(&study, &touched)?;
+        let found = run(&study, &sweep, &touched, &Silent)?.tables;
+        for &trials in &spec.trials {
+            let size = StudySize { touches, trials };
+            let cpu_s = cost(&found, trials, most);
+            tables
+                .resolution
+                .push((size.clone(), resolved(&found, trials)?));
+            tables.resolution_timing.push((size, StudyTime { cpu_s }));
+        }
+        progress.advance(1);
+    }
+    Ok(())
+}
+
+/// What the leading trials of a study of two cells say.
+fn resolved(found: &Tables, trials: usize) -> Result<Resolved> {
+    let of_cell = |cell: usize| -> Vec<&TrialScore> {
+        let rows = found.accuracy.iter().filter(|(row, _)| row.cell == cell);
+        rows.map(|(_, score)| score).take(trials).collect()
+    };
+    let [first, second] = [0, 1].map(of_cell);
+    let scores =
+        |rows: &[&TrialScore]| -> Vec<f64> { rows.iter().map(|row| row.accuracy).collect() };
+    let size = TrialSize {
+        n_train: first[0].n_train,
+        n_test: first[0].n_test,
+    };
+    let compared = compare(&scores(&first), &scores(&second), size, CONFIDENCE)?;
+    let compared = compared.expect("at least two trials");
+    let accuracy = scores(&first).iter().sum::<f64>() / trials as f64;
+    let n_right = (accuracy * size.n_test as f64).round() as usize;
+    let interval = Interval::wilson(n_right, size.n_test, CONFIDENCE)?;
+    Ok(Resolved {
+        n_test: size.n_test,
+        accuracy,
+        accuracy_half_width: 0.5 * (interval.high - interval.low),
+        difference: compared.mean_difference,
+        difference_half_width: 0.5 * (compared.interval.high - compared.interval.low),
+    })
+}
+
+/// Processor-seconds of the leading trials: touches are made once, the rest is done in each trial.
+fn cost(found: &Tables, trials: usize, most: usize) -> f64 {
+    let share = trials as f64 / most as f64;
+    let stages = found.stages.iter().map(|row| match row.stage.as_str() {
+        "simulate" => row.cpu_s,
+        _ => row.cpu_s * share,
+    });
+    let fits = found.timing.iter().filter(|(_, row)| row.trial < trials);
+    stages.sum::<f64>() + fits.map(|(_, row)| row.fit_s + row.predict_s).sum::<f64>()
+}

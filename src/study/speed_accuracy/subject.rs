@@ -1,0 +1,154 @@
+//! What is touched: a closed mesh or a solid, as spheres of each detail and exactly.
+
+use super::plan::Tolerance;
+use super::solid_contact::press_solid;
+use crate::error::Result;
+use crate::geometry::Pose;
+use crate::mesh::Surface;
+use crate::objects::{Entry, MeshModel, Model, Object, Solid, vertex_spheres};
+use crate::random::Seed;
+use crate::study::object_detail::Truth;
+use crate::study::object_files::{NamedMesh, load_named_meshes, set_entries};
+use crate::study::packings::pack_within;
+use crate::study::simulation::draw_touches;
+use crate::study::spec::ObjectsSpec;
+use crate::world::{Patch, Placement};
+use std::path::Path;
+
+/// An object before it has a model.
+pub(super) enum Subject {
+    /// A closed mesh: its file, and its surface.
+    Mesh {
+        name: String,
+        place: String,
+        surface: Box<Surface>,
+    },
+    /// A solid of a set.
+    Solid(Entry),
+}
+
+/// All objects of a study, solids first.
+pub(super) fn load_subjects(spec: &ObjectsSpec) -> Result<Vec<Subject>> {
+    let mut subjects = Vec::new();
+    for set in &spec.sets {
+        let entries = set_entries(set, spec.names.as_deref())?;
+        subjects.extend(entries.into_iter().map(Subject::Solid));
+    }
+    if let Some(folder) = &spec.meshes {
+        let meshes = load_named_meshes(folder, spec)?;
+        subjects.extend(meshes.into_iter().map(Subject::of_mesh));
+    }
+    Ok(subjects)
+}
+
+/// At most `n` of them, spread evenly over the list, the first and the last among them.
+pub(super) fn spread_evenly<T>(all: &[T], n: usize) -> Vec<&T> {
+    let n = n.min(all.len());
+    let last = all.len().saturating_sub(1);
+    let gaps = n.saturating_sub(1).max(1);
+    (0..n).map(|k| &all[k * last / gaps]).collect()
+}
+
+impl Subject {
+    fn of_mesh(NamedMesh { name, place, mesh }: NamedMesh) -> Self {
+        Self::Mesh {
+            name,
+            place,
+            surface: Box::new(Surface::new(mesh)),
+        }
+    }
+
+    pub fn name(&self) -> &str {
+        match self {
+            Self::Mesh { name, .. } => name,
+            Self::Solid(entry) => &entry.name,
+        }
+    }
+
+    /// Spheres within a tolerance; those of meshes are looked for and kept in the folder `packings`.
+    pub fn packed(&self, tolerance: Tolerance, packings: Option<&Path>) -> Result<Model> {
+        match self {
+            Self::Mesh { place, surface, .. } => {
+                let packed = pack_within(place, surface, tolerance.metres, packings)?;
+                Ok(packed.spheres.into())
+            }
+            Self::Solid(entry) => Ok(entry.build(tolerance.metres)?.model),
+        }
+    }
+
+    /// A sphere a vertex; none of a solid.
+    pub fn vertex_spheres(&self) -> Result<Option<Model>> {
+        match self {
+            Self::Mesh { place, surface, .. } => {
+                let spheres = vertex_spheres(place, surface.mesh().vertices())?;
+                Ok(Some(spheres.into()))
+            }
+            Self::Solid(_) => Ok(None),
+        }
+    }
+
+    /// The triangles; none of a solid.
+    pub fn mesh(&self) -> Option<Model> {
+        match self {
+            Self::Mesh { surface, .. } => Some(MeshModel::new(surface.mesh().clone()).into()),
+            Self::Solid(_) => None,
+        }
+    }
+
+    pub fn solid(&self) -> Option<&Solid> {
+        match self {
+            Self::Mesh { .. } => None,
+            Self::Solid(entry) => Some(&entry.solid),
+        }
+    }
+
+    /// The model that is the object itself, or as near to it as it gets: the triangles, or spheres within half of the finest tolerance.
+    pub fn exact(&self, finest: Tolerance) -> Result<Model> {
+        match self.mesh() {
+            Some(mesh) => Ok(mesh),
+            None => {
+                let finer = Tolerance {
+                    mm: 0.5 * finest.mm,
+                    metres: 0.5 * finest.metres,
+                };
+                self.packed(finer, None)
+            }
+        }
+    }
+
+    /// The touches that every study would draw for an object of this name, and what exact contact says of them.
+    pub fn truth(
+        &self,
+        patch: &Patch,
+        placement: &Placement,
+        (finest, seed): (Tolerance, &Seed),
+    ) -> Result<Truth> {
+        let object = Object::of_one_part(self.name(), self.exact(finest)?);
+        let touched = draw_touches(vec![object], placement, seed)?;
+        let mut truth = Truth::new(&touched[0], patch);
+        if let Some(solid) = self.solid() {
+            truth.feel_instead(|pose: &Pose| press_solid(patch, solid, pose));
+        }
+        Ok(truth)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn objects_are_spread_over_the_whole_list_and_none_comes_twice() {
+        let all: Vec<usize> = (0..38).collect();
+        assert_eq!(spread_evenly(&all, 3), [&0, &18, &37]);
+        assert_eq!(spread_evenly(&all, 1), [&0]);
+        assert_eq!(spread_evenly(&all, 99).len(), 38);
+        assert!(spread_evenly::<usize>(&[], 3).is_empty());
+        for n in 2..=38 {
+            let mut chosen = spread_evenly(&all, n);
+            assert_eq!((chosen[0], chosen[n - 1]), (&0, &37));
+            chosen.dedup();
+            assert_eq!(chosen.len(), n);
+        }
+    }
+}

@@ -1,0 +1,311 @@
+//! How long a run still takes: from what its work was planned to cost, and what it has cost so far.
+
+use crate::recognition::ClassifierKind;
+use std::collections::BTreeMap;
+
+/// Kinds of work. The plan of each may be wrong by a factor of its own: another machine, touches that are hard to tell apart.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Work {
+    /// Touches are made.
+    Touch,
+    /// Frames are read and projected.
+    Measure,
+    /// A classifier is trained and tested.
+    Learn(ClassifierKind),
+    /// Tables and charts are written, on one thread at the end.
+    Report,
+}
+
+/// A piece of work.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Piece {
+    /// What is done.
+    pub kind: Work,
+    /// What it is done for, such as a cell by its number: the same in each trial, so that one trial tells what others cost.
+    pub place: usize,
+    /// What it was planned to take, processor-seconds.
+    pub planned_s: f64,
+}
+
+/// Planned and spent processor-seconds of a run.
+///
+/// What is left of a place costs as much more or less than planned as what was done for it; where little was done, as all work
+/// of its kind; and a kind that has hardly begun, as all work so far. Threads are as busy as they have been.
+#[derive(Clone, Debug)]
+pub struct TimeLeft {
+    n_threads: f64,
+    kinds: BTreeMap<Work, Spent>,
+    places: BTreeMap<(Work, usize), Spent>,
+    /// Sum of the squares of what pieces took that a thread does alone, and of what they took.
+    alone: [f64; 2],
+}
+
+#[derive(Clone, Copy, Debug, Default)]
+struct Spent {
+    n_pieces: usize,
+    /// Of all the work, by plan.
+    planned_s: f64,
+    /// Of the finished part, by plan.
+    done_s: f64,
+    /// Of the finished part, as it was.
+    took_s: f64,
+}
+
+impl Spent {
+    fn left_s(&self) -> f64 {
+        (self.planned_s - self.done_s).max(0.0)
+    }
+
+    /// What a planned second takes, where `prior` counts as much as `weight_s` planned seconds.
+    fn factor(&self, prior: f64, weight_s: f64) -> f64 {
+        match self.done_s + weight_s {
+            0.0 => prior,
+            sum_s => (self.took_s + weight_s * prior) / sum_s,
+        }
+    }
+}
+
+/// Share of a kind's planned work that counts as much as the common factor of all work: before that much is done, its own factor
+/// is chance.
+const KIND_HESITATION: f64 = 0.02;
+/// The same for a place and the factor of its kind, as a share of one of its pieces.
+const PLACE_HESITATION: f64 = 0.3;
+
+impl TimeLeft {
+    /// Of a run with this work.
+    pub fn new(work: &[Piece], n_threads: usize) -> Self {
+        let mut left = Self {
+            n_threads: n_threads as f64,
+            kinds: BTreeMap::new(),
+            places: BTreeMap::new(),
+            alone: [0.0; 2],
+        };
+        for piece in work {
+            for spent in left.spent(piece) {
+                spent.planned_s += piece.planned_s;
+                spent.n_pieces += 1;
+            }
+        }
+        left
+    }
+
+    /// A piece of work is done, or a part of one, and took so long on its thread.
+    pub fn worked(&mut self, piece: &Piece, took_s: f64) {
+        for spent in self.spent(piece) {
+            spent.done_s += piece.planned_s;
+            spent.took_s += took_s;
+        }
+        if matches!(piece.kind, Work::Learn(_)) {
+            self.alone[0] += took_s * took_s;
+            self.alone[1] += took_s;
+        }
+    }
+
+    fn spent(&mut self, piece: &Piece) -> [&mut Spent; 2] {
+        let kind = self.kinds.entry(piece.kind).or_default();
+        let place = self.places.entry((piece.kind, piece.place)).or_default();
+        [kind, place]
+    }
+
+    /// Seconds left when a run has gone on for `elapsed_s`.
+    pub fn left_s(&self, elapsed_s: f64) -> f64 {
+        let at_once = || self.kinds.iter().filter(|(kind, _)| **kind != Work::Report);
+        let (done_s, took_s) = at_once().fold((0.0, 0.0), |(done, took), (_, spent)| {
+            (done + spent.done_s, took + spent.took_s)
+        });
+        let common = if done_s > 0.0 { took_s / done_s } else { 1.0 };
+        let of_kind = |kind: &Work| {
+            let spent = &self.kinds[kind];
+            spent.factor(common, KIND_HESITATION * spent.planned_s)
+        };
+        let places = self
+            .places
+            .iter()
+            .filter(|((kind, _), _)| *kind != Work::Report);
+        let left = places.map(|((kind, _), spent)| {
+            let piece_s = spent.planned_s / spent.n_pieces.max(1) as f64;
+            spent.left_s() * spent.factor(of_kind(kind), PLACE_HESITATION * piece_s)
+        });
+        let left_s: f64 = left.sum();
+        // Each thread is somewhere within a piece that nobody has heard of yet; a second is longer within a long one. What they
+        // have done of these pieces makes up for the time in which, at the end, some threads wait for the last.
+        let usual_s = match self.alone[1] > 0.0 {
+            true => self.alone[0] / self.alone[1],
+            false => 0.0,
+        };
+        let under_way_s = (0.5 * self.n_threads * usual_s).min(0.5 * left_s);
+        let busy = match took_s > 0.0 && elapsed_s > 0.0 {
+            true => (took_s + under_way_s) / elapsed_s,
+            false => self.n_threads,
+        };
+        let report_s = self.kinds.get(&Work::Report).map_or(0.0, Spent::left_s);
+        left_s / busy + report_s
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::random::Seed;
+    use rand::Rng;
+    use rand_chacha::ChaCha8Rng;
+
+    /// Pieces one after the other on threads, then a report; (elapsed, estimate) after each, and how long all takes.
+    fn run(
+        pieces: &[(Piece, f64)],
+        n_threads: usize,
+        (planned_s, report_s): (f64, f64),
+    ) -> (Vec<[f64; 2]>, f64) {
+        let mut work: Vec<Piece> = pieces.iter().map(|(piece, _)| *piece).collect();
+        work.push(piece(Work::Report, 0, planned_s));
+        let mut left = TimeLeft::new(&work, n_threads);
+        // When each thread is free, and what it does until then.
+        let mut threads: Vec<(f64, Option<(Piece, f64)>)> = vec![(0.0, None); n_threads];
+        let mut told = Vec::new();
+        let mut next = pieces.iter();
+        let mut now = 0.0;
+        while let Some(thread) = threads
+            .iter()
+            .position(|t| {
+                t.0 == threads
+                    .iter()
+                    .fold(f64::INFINITY, |least, t| least.min(t.0))
+            })
+            .filter(|&thread| threads[thread].0.is_finite())
+        {
+            now = threads[thread].0;
+            if let Some((piece, took_s)) = threads[thread].1.take() {
+                left.worked(&piece, took_s);
+                told.push([now, left.left_s(now)]);
+            }
+            threads[thread] = match next.next() {
+                Some(piece) => (now + piece.1, Some(*piece)),
+                None => (f64::INFINITY, None),
+            };
+        }
+        (told, now + report_s)
+    }
+
+    /// The largest relative error of the estimates after the first tenth; below 2 % of the run, seconds do not count.
+    fn worst((told, total): &(Vec<[f64; 2]>, f64)) -> f64 {
+        let after = told.iter().filter(|[elapsed, _]| *elapsed > 0.1 * total);
+        let errors = after.map(|[elapsed, estimate]| {
+            let true_left = total - elapsed;
+            ((estimate - true_left).abs() - 0.02 * total).max(0.0) / true_left.max(0.02 * total)
+        });
+        errors.fold(0.0, f64::max)
+    }
+
+    fn piece(kind: Work, place: usize, planned_s: f64) -> Piece {
+        Piece {
+            kind,
+            place,
+            planned_s,
+        }
+    }
+
+    /// Arrays one after the other, each with touches, and in each trial measuring and three classifiers with several m. What
+    /// they take is what was planned, times a factor a kind, times one a cell (much the same on both arrays), times chance.
+    fn study(
+        rng: &mut ChaCha8Rng,
+        n_trials: usize,
+        factor: impl Fn(Work) -> f64,
+    ) -> Vec<(Piece, f64)> {
+        let mut chance = |spread: f64| rng.gen_range(-spread..spread).exp();
+        let of_cell: Vec<f64> = (0..40).map(|_| chance(0.4)).collect();
+        let mut pieces = Vec::new();
+        for (array, size) in [(0, 1.0), (1, 4.0)] {
+            let of_array = chance(0.15);
+            let mut add = |kind: Work, place: usize, planned_s: f64| {
+                let as_planned = of_cell[place] * of_array * chance(0.2);
+                let took_s = planned_s * factor(kind) * as_planned;
+                let place = 40 * array + place;
+                pieces.push((piece(kind, place, planned_s), took_s));
+            };
+            (0..40).for_each(|_| add(Work::Touch, 0, 0.02 * size));
+            for _ in 0..n_trials {
+                add(Work::Measure, 1, 0.3 * size);
+                for (place, m) in [(2, 1.0), (3, 4.0), (4, 16.0)] {
+                    add(
+                        Work::Learn(ClassifierKind::LinearSvm),
+                        place,
+                        0.1 * m * size,
+                    );
+                    add(
+                        Work::Learn(ClassifierKind::RbfSvm),
+                        10 + place,
+                        0.3 * m * size,
+                    );
+                    add(
+                        Work::Learn(ClassifierKind::KNearest),
+                        20 + place,
+                        0.01 * m * size,
+                    );
+                }
+            }
+        }
+        pieces
+    }
+
+    #[test]
+    fn after_the_first_tenth_the_time_left_is_right_within_thirty_percent() {
+        let mut rng = Seed::new(1).rng();
+        // How wrong the plan is, by kind.
+        let right = |_: Work| 1.0;
+        let slow = |_: Work| 4.0;
+        let mixed = |kind: Work| match kind {
+            Work::Touch => 0.4,
+            Work::Measure => 2.0,
+            Work::Learn(ClassifierKind::LinearSvm) => 3.0,
+            Work::Learn(_) => 0.5,
+            Work::Report => 1.0,
+        };
+        let factors: [&dyn Fn(Work) -> f64; 3] = [&right, &slow, &mixed];
+        for (number, factor) in factors.into_iter().enumerate() {
+            for n_threads in [1, 2, 8] {
+                let pieces = study(&mut rng, 10 + 10 * n_threads, factor);
+                let worst = worst(&run(&pieces, n_threads, (1.0, 1.0)));
+                assert!(
+                    worst < 0.3,
+                    "factors {number}, {n_threads} threads: {worst}"
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn a_count_of_pieces_alone_would_be_wrong() {
+        // What the estimate is for: the same run told by how many pieces are done.
+        let mut rng = Seed::new(2).rng();
+        let pieces = study(&mut rng, 20, |_| 1.0);
+        let (told, total) = run(&pieces, 2, (1.0, 1.0));
+        let n = told.len() as f64;
+        let by_count = told
+            .iter()
+            .enumerate()
+            .map(|(k, [elapsed, _])| [*elapsed, elapsed * (n - 1.0 - k as f64) / (k as f64 + 1.0)]);
+        assert!(worst(&(by_count.collect(), total)) > 0.5);
+    }
+
+    #[test]
+    fn before_anything_is_done_it_is_the_plan_shared_by_threads() {
+        let work = [
+            piece(Work::Touch, 0, 4.0),
+            piece(Work::Measure, 0, 6.0),
+            piece(Work::Report, 0, 1.5),
+        ];
+        let left = TimeLeft::new(&work, 2);
+        assert_eq!(left.left_s(0.0), 6.5);
+        assert_eq!(TimeLeft::new(&[], 2).left_s(3.0), 0.0);
+    }
+
+    #[test]
+    fn nothing_is_left_at_the_end_but_the_report() {
+        let work = [piece(Work::Touch, 0, 4.0), piece(Work::Report, 0, 1.5)];
+        let mut left = TimeLeft::new(&work, 1);
+        left.worked(&work[0], 9.0);
+        assert_eq!(left.left_s(9.0), 1.5);
+        left.worked(&work[1], 1.0);
+        assert_eq!(left.left_s(10.0), 0.0);
+    }
+}

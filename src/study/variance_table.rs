@@ -1,0 +1,87 @@
+//! How much of the spread of each cell's accuracy comes from splits, from projections, and from the rest.
+
+use super::evaluation::CONFIDENCE;
+use super::repeats::accuracies;
+use super::table::{Cell, TrialScore};
+use crate::error::Result;
+use crate::recognition::variance::{Component, components};
+use serde::{Deserialize, Serialize};
+
+/// What makes the accuracies of a cell's trials differ.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Source {
+    /// Which touches train and which test.
+    Split,
+    /// The random projection.
+    Projection,
+    /// Noise and what else is drawn in each trial, and what a split and a projection do together.
+    Rest,
+}
+
+/// What a source adds to the variance of a cell's accuracy: a row of `variance.csv`, for studies with `projections_per_split`.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Variance {
+    /// Number of the cell.
+    pub cell: usize,
+    /// The source.
+    pub source: Source,
+    /// How many of it were drawn; of the rest: trials.
+    pub n_levels: usize,
+    /// Degrees of freedom of its mean square.
+    pub degrees_of_freedom: usize,
+    /// Its mean square.
+    pub mean_square: f64,
+    /// Unbiased estimate of its variance (method of moments); below zero by chance if it is small.
+    pub estimate: f64,
+    /// Standard deviation that it alone gives the accuracy: the root of the estimate, 0 if that is below zero.
+    pub accuracy_std: f64,
+    /// Lower end of the 95 % interval of that standard deviation (modified large samples; of the rest χ²).
+    pub accuracy_std_low: f64,
+    /// Upper end of the same interval.
+    pub accuracy_std_high: f64,
+    /// Share of the variance of a trial, estimates below zero taken as zero; empty if nothing varies.
+    pub share: Option<f64>,
+    /// p-value of the F test that it adds nothing; empty for the rest.
+    pub p_value: Option<f64>,
+}
+
+/// Three rows a cell whose trials combine every split with every projection; none for other cells.
+pub fn variances(rows: &[(Cell, TrialScore)]) -> Result<Vec<Variance>> {
+    let mut table = Vec::new();
+    for trials in rows.chunk_by(|a, b| a.0.cell == b.0.cell) {
+        let scores: Vec<&TrialScore> = trials.iter().map(|(_, score)| score).collect();
+        let Some(scores) = accuracies(&scores).filter(|scores| scores.ncols() > 1) else {
+            continue;
+        };
+        if scores.nrows() < 2 {
+            continue;
+        }
+        let found = components(scores.view(), CONFIDENCE)?;
+        let parts = [
+            (Source::Split, found.rows),
+            (Source::Projection, found.columns),
+            (Source::Rest, found.rest),
+        ];
+        let total: f64 = parts.iter().map(|(_, part)| part.variance()).sum();
+        let cell = trials[0].0.cell;
+        table.extend(parts.map(|(source, part)| row(cell, source, &part, total)));
+    }
+    Ok(table)
+}
+
+fn row(cell: usize, source: Source, part: &Component, total: f64) -> Variance {
+    Variance {
+        cell,
+        source,
+        n_levels: part.n_levels,
+        degrees_of_freedom: part.degrees_of_freedom,
+        mean_square: part.mean_square,
+        estimate: part.estimate,
+        accuracy_std: part.variance().sqrt(),
+        accuracy_std_low: part.interval.low.sqrt(),
+        accuracy_std_high: part.interval.high.sqrt(),
+        share: (total > 0.0).then(|| part.variance() / total),
+        p_value: part.p_value,
+    }
+}

@@ -1,0 +1,212 @@
+//! Eight at a time: what is near a sphere is looked for among blocks of eight balls, and taxels are pushed by eight.
+
+use crate::contact::Below;
+use crate::geometry::Pose;
+use crate::objects::{ClusterBounds, MOST_IN_CLUSTER, Sphere, SphereClusters};
+use glam::{DMat3, DVec3};
+
+/// Taxels in a block, and balls: f64 lanes of 512 bits. More: taxels beside small spheres are computed in vain; fewer: blocks are
+/// looked at in vain.
+pub(super) const LANES: usize = 8;
+/// What rounding may add to a reach, far above 1e-16 and far below what is felt.
+pub(super) const ROUNDING: f64 = 1.0 + 1e-9;
+/// A coordinate of what fills a block up, metres: no reach is so long.
+pub(super) const FAR: f64 = 1e100;
+
+/// Eight balls, coordinate by coordinate, metres.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Balls {
+    x: [f64; LANES],
+    y: [f64; LANES],
+    z: [f64; LANES],
+    radius: [f64; LANES],
+}
+
+impl Balls {
+    /// Blocks of some balls, in their order; the last one is filled up with balls that nothing is near.
+    pub fn blocks(balls: &[Sphere]) -> Vec<Self> {
+        let nowhere = Sphere {
+            center: DVec3::splat(FAR),
+            radius: 0.0,
+        };
+        let block = |balls: &[Sphere]| {
+            let of = |value| filled(balls, &nowhere, value);
+            Self {
+                x: of(|ball: &Sphere| ball.center.x),
+                y: of(|ball| ball.center.y),
+                z: of(|ball| ball.center.z),
+                radius: of(|ball| ball.radius),
+            }
+        };
+        balls.chunks(LANES).map(block).collect()
+    }
+
+    /// Which of them a sphere with this reach comes near.
+    #[inline(always)]
+    pub fn near(&self, center: DVec3, reach: f64) -> Below {
+        let mut gaps = [0.0; LANES];
+        for (k, gap) in gaps.iter_mut().enumerate() {
+            let (dx, dy, dz) = (
+                center.x - self.x[k],
+                center.y - self.y[k],
+                center.z - self.z[k],
+            );
+            let reach = (self.radius[k] + reach) * ROUNDING;
+            *gap = dx * dx + dy * dy + dz * dz - reach * reach;
+        }
+        Below::of(&gaps, 0.0)
+    }
+}
+
+/// An object's frame seen from a patch, and where in it something can be pushed.
+pub(super) struct View {
+    /// Rows of the rotation.
+    rows: DMat3,
+    translation: DVec3,
+    /// ρ.
+    taxel_radius: f64,
+    /// Around all taxels from their rest centres back to the substrate.
+    ball: Sphere,
+}
+
+impl View {
+    /// Of an object at `rotation` and `translation` from a patch with taxels of one radius, all of them in a ball.
+    pub fn new(rotation: DMat3, translation: DVec3, taxel_radius: f64, ball: Sphere) -> Self {
+        Self {
+            rows: rotation.transpose(),
+            translation,
+            taxel_radius,
+            ball,
+        }
+    }
+
+    /// The same of a pose in the patch's own frame.
+    #[inline(always)]
+    pub fn of_pose(patch_from_object: &Pose, taxel_radius: f64, ball: Sphere) -> Self {
+        let rotation = DMat3::from_quat(patch_from_object.rotation);
+        Self::new(rotation, patch_from_object.translation, taxel_radius, ball)
+    }
+
+    #[inline(always)]
+    fn at(&self, place: DVec3) -> DVec3 {
+        DVec3::new(
+            self.rows.x_axis.dot(place) + self.translation.x,
+            self.rows.y_axis.dot(place) + self.translation.y,
+            self.rows.z_axis.dot(place) + self.translation.z,
+        )
+    }
+
+    #[inline(always)]
+    fn gap(&self, center: DVec3, reach: f64) -> f64 {
+        let reach = (self.ball.radius + reach) * ROUNDING;
+        let (dx, dy, dz) = (
+            center.x - self.ball.center.x,
+            center.y - self.ball.center.y,
+            center.z - self.ball.center.z,
+        );
+        dx * dx + dy * dy + dz * dz - reach * reach
+    }
+
+    /// How far each cluster is from touching the patch, as a difference of squares, m²: below zero if one of its spheres may.
+    #[inline(always)]
+    pub fn lay_gaps(&self, bounds: &ClusterBounds, gaps: &mut [f64]) {
+        let n = gaps.len();
+        let [x, y, z] = &bounds.middle;
+        let (x, y, z, radius) = (&x[..n], &y[..n], &z[..n], &bounds.radius[..n]);
+        for k in 0..n {
+            let center = self.at(DVec3::new(x[k], y[k], z[k]));
+            gaps[k] = self.gap(center, radius[k] + self.taxel_radius);
+        }
+    }
+
+    /// The ball around a cluster: its centre in the patch, and its radius with ρ.
+    #[inline(always)]
+    pub fn ball(&self, bounds: &ClusterBounds, cluster: usize) -> (DVec3, f64) {
+        let [x, y, z] = &bounds.middle;
+        let middle = DVec3::new(x[cluster], y[cluster], z[cluster]);
+        (self.at(middle), bounds.radius[cluster] + self.taxel_radius)
+    }
+
+    /// The spheres of a cluster in the patch.
+    #[inline(always)]
+    pub fn spheres(&self, object: &SphereClusters, cluster: usize) -> Placed {
+        let cluster = object.of(cluster);
+        let [x, y, z] = cluster.centers;
+        let zeros = [0.0; MOST_IN_CLUSTER];
+        let mut placed = Placed {
+            x: zeros,
+            y: zeros,
+            z: zeros,
+            reaches: zeros,
+            gaps: zeros,
+        };
+        for k in 0..MOST_IN_CLUSTER {
+            let center = self.at(DVec3::new(x[k], y[k], z[k]));
+            let reach = cluster.radii[k] + self.taxel_radius;
+            let gap = self.gap(center, reach);
+            placed.gaps[k] = if k < cluster.n_spheres { gap } else { 1.0 };
+            placed.x[k] = center.x;
+            placed.y[k] = center.y;
+            placed.z[k] = center.z;
+            placed.reaches[k] = reach;
+        }
+        placed
+    }
+}
+
+/// The spheres of a cluster in a patch, coordinate by coordinate, metres.
+pub(super) struct Placed {
+    x: [f64; MOST_IN_CLUSTER],
+    y: [f64; MOST_IN_CLUSTER],
+    z: [f64; MOST_IN_CLUSTER],
+    /// S.
+    reaches: [f64; MOST_IN_CLUSTER],
+    /// Below zero of those that may touch the patch.
+    gaps: [f64; MOST_IN_CLUSTER],
+}
+
+impl Placed {
+    /// Those that may touch the patch.
+    #[inline(always)]
+    pub fn near(&self) -> Below {
+        Below::of(&self.gaps, 0.0)
+    }
+
+    /// The centre and S of one.
+    #[inline(always)]
+    pub fn at(&self, k: usize) -> (DVec3, f64) {
+        (DVec3::new(self.x[k], self.y[k], self.z[k]), self.reaches[k])
+    }
+}
+
+/// A value of each of up to a block's items, filled up with those of another one.
+pub(super) fn filled<T>(items: &[T], behind: &T, value: fn(&T) -> f64) -> [f64; LANES] {
+    let mut values = [value(behind); LANES];
+    for (lane, item) in values.iter_mut().zip(items) {
+        *lane = value(item);
+    }
+    values
+}
+
+/// A ball around some points, at least one, about their mean.
+pub(super) fn ball_around(points: impl Iterator<Item = DVec3> + Clone) -> Sphere {
+    let center = points.clone().sum::<DVec3>() / points.clone().count() as f64;
+    let distances = points.map(|point| point.distance(center));
+    Sphere {
+        center,
+        radius: distances.fold(0.0, f64::max),
+    }
+}
+
+/// The largest of a block.
+#[inline(always)]
+pub(super) fn largest(values: &[f64; LANES]) -> f64 {
+    let larger = |a: f64, b: f64| if a > b { a } else { b };
+    let mut most = *values;
+    for half in [4, 2, 1] {
+        for k in 0..half {
+            most[k] = larger(most[k], most[k + half]);
+        }
+    }
+    most[0]
+}

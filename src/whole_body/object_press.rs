@@ -1,0 +1,79 @@
+//! Presses an object on a patch: clusters of spheres, spheres, and then what the patch's surface makes of them.
+
+use super::SphereClusters;
+use super::body_patch::Surface;
+use super::lanes::{LANES, View};
+use super::patch_state::PatchState;
+use crate::contact::{Below, for_instructions};
+use crate::geometry::Pose;
+use glam::DVec3;
+
+/// A surface of taxels that spheres push. (A trait, not closures: those would be compiled without vector instructions.)
+pub(super) trait Pushed {
+    /// The object's frame seen from that of the surface.
+    fn view(&self, patch_from_object: &Pose) -> View;
+
+    /// Whether a ball comes near any of its taxels; centre in its frame and radius with ρ in it, metres.
+    fn is_near(&self, center: DVec3, reach: f64) -> bool;
+
+    /// Pushes by a sphere: centre in its frame and S, metres.
+    fn push(&self, state: &mut PatchState, center: DVec3, reach: f64);
+}
+
+for_instructions! {
+    /// Pushes a patch by one object.
+    pub(super) fn push_object(
+        state: &mut PatchState,
+        surface: &Surface,
+        object: &SphereClusters,
+        patch_from_object: &Pose,
+    ) = push_surface
+}
+
+#[inline(always)]
+fn push_surface(
+    state: &mut PatchState,
+    surface: &Surface,
+    object: &SphereClusters,
+    patch_from_object: &Pose,
+) {
+    match surface {
+        Surface::Rows(rows) => push_each(state, rows, object, patch_from_object),
+        Surface::Dome(dome) => push_each(state, dome, object, patch_from_object),
+        Surface::Draped(draped) => push_each(state, draped, object, patch_from_object),
+    }
+}
+
+#[inline(always)]
+fn push_each(
+    state: &mut PatchState,
+    surface: &impl Pushed,
+    object: &SphereClusters,
+    patch_from_object: &Pose,
+) {
+    let view = surface.view(patch_from_object);
+    let bounds = object.bounds();
+    let mut gaps = std::mem::take(&mut state.gaps);
+    gaps.clear();
+    gaps.resize(bounds.len().next_multiple_of(LANES), f64::INFINITY);
+    view.lay_gaps(bounds, &mut gaps[..bounds.len()]);
+    let mut n_evaluated = 0;
+    for (look, gaps) in gaps.as_chunks::<LANES>().0.iter().enumerate() {
+        for k in Below::of(gaps, 0.0) {
+            let cluster = look * LANES + k;
+            let (center, reach) = view.ball(bounds, cluster);
+            if !surface.is_near(center, reach) {
+                continue;
+            }
+            let spheres = view.spheres(object, cluster);
+            for k in spheres.near() {
+                let (center, reach) = spheres.at(k);
+                surface.push(state, center, reach);
+                n_evaluated += 1;
+            }
+        }
+    }
+    state.gaps = gaps;
+    state.n_evaluated += n_evaluated;
+    state.n_rejected += object.n_spheres() - n_evaluated;
+}

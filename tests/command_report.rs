@@ -1,0 +1,118 @@
+//! The command: a folder's page again from its tables, and two folders side by side as a page.
+
+mod command;
+
+use command::Case;
+use std::fs;
+
+/// A second of work.
+const STUDY: &str = r#"
+question = "What does the page say?"
+trials = 2
+
+[objects]
+sets = ["household"]
+names = ["mug", "banana", "scissors"]
+surface_error_mm = 2.0
+
+[skin]
+pitch_mm = 8.0
+size_mm = 64.0
+stroke_mm = 5.0
+
+[touches]
+per_object = 16
+offset_x_mm = { uniform = [-8.0, 8.0] }
+depth_mm = 3.0
+
+[signal]
+noise_std_full_scale = 0.05
+
+[sensing]
+ensemble = "gaussian"
+ratio = [4, 16]
+
+[recognition]
+classifier = ["linear_svm", "naive_bayes"]
+"#;
+
+/// A page without the line that says how long the run took: a manifest knows whole seconds.
+fn but_for_seconds(page: &str) -> String {
+    let lines = page.lines().filter(|line| !line.contains("The run took"));
+    lines.collect::<Vec<_>>().join("\n")
+}
+
+#[test]
+fn the_page_comes_again_from_the_tables() {
+    let case = Case::new();
+    case.file("asked.toml", STUDY);
+    case.succeeds(&["run", "asked.toml", "--out", "found"]);
+    let file = case.path("found/report.html");
+    let written = fs::read_to_string(&file).unwrap();
+    for part in [
+        "What does the page say?",
+        "<h1>asked</h1>",
+        "bubbletouch run asked.toml",
+        "<b>0 of 8</b> cells that failed",
+        "alt=\"scissors: largest deflection",
+        "SHA-256 of study.toml",
+    ] {
+        assert!(written.contains(part), "the page has {part}");
+    }
+    fs::remove_file(&file).unwrap();
+    let (said, remarks) = case.succeeds(&["report", "found"]);
+    assert_eq!((&said[..], &remarks[..]), ("Wrote found/report.html\n", ""));
+    let again = fs::read_to_string(&file).unwrap();
+    assert_eq!(but_for_seconds(&again), but_for_seconds(&written));
+    // What an older version did not write is missed aloud.
+    fs::remove_file(case.path("found/limits.csv")).unwrap();
+    fs::remove_file(case.path("found/manifest.json")).unwrap();
+    let (_, remarks) = case.succeeds(&["report", "found"]);
+    assert!(
+        remarks.contains("does not say which limits were reached"),
+        "{remarks}"
+    );
+    assert!(
+        fs::read_to_string(&file)
+            .unwrap()
+            .contains("<h1>found</h1>")
+    );
+    fs::remove_file(case.path("found/summary.csv")).unwrap();
+    let output = case.run(&["report", "found"]);
+    assert!(!output.status.success());
+    let said = String::from_utf8(output.stderr).unwrap();
+    assert!(
+        said.contains("summary.csv") && !said.contains("panicked"),
+        "{said}"
+    );
+}
+
+#[test]
+fn two_folders_stand_side_by_side_in_a_page() {
+    let case = Case::new();
+    case.file("asked.toml", STUDY);
+    case.file("noisy.toml", STUDY.replace("0.05", "0.4"));
+    for name in ["asked", "noisy"] {
+        let study = format!("{name}.toml");
+        case.succeeds(&["run", &study, "--out", name]);
+    }
+    case.file("same.toml", STUDY);
+    case.succeeds(&["run", "same.toml", "--out", "same"]);
+    case.succeeds(&["compare", "asked", "same", "--html", "moved.html"]);
+    let page = fs::read_to_string(case.path("moved.html")).unwrap();
+    for part in [
+        "4 cells are in both runs",
+        "4 have the same accuracy",
+        "Accuracy of each cell in both runs",
+        "p (Holm)",
+        "First: asked; second: same.",
+    ] {
+        assert!(page.contains(part), "the page has {part}");
+    }
+    assert_eq!(page.matches("<tr>").count(), 1 + 4);
+    let refused = case.run(&["compare", "asked", "same", "--html", "moved.txt"]);
+    assert_eq!(refused.status.code(), Some(2));
+    let apart = case.run(&["compare", "asked", "noisy", "--html", "apart.html"]);
+    assert_eq!(apart.status.code(), Some(2), "no cell has the same noise");
+    assert!(!case.path("apart.html").exists());
+}

@@ -1,0 +1,232 @@
+//! The page in a browser: what it answers to the mouse and to the keyboard.
+
+mod browser;
+mod report_synthetic;
+
+use browser::shown::{Shown, show};
+use browser::{ARROW_DOWN, ARROW_RIGHT, Browser};
+use report_synthetic::{about, quickstart_cells, tables};
+use serde_json::json;
+
+/// Where the first point of a chart stands in the window, after scrolling there.
+fn first_point(browser: &Browser, chart: &str) -> (f64, f64) {
+    let place = browser.run(&format!(
+        "document.querySelector('{chart} .panels').scrollIntoView({{ block: 'center', behavior: 'instant' }});
+         const box = document.querySelector('{chart} .panels svg > path[transform]').getBoundingClientRect();
+         return [box.left + box.width / 2, box.top + box.height / 2]"
+    ));
+    (place[0].as_f64().unwrap(), place[1].as_f64().unwrap())
+}
+
+const TIP: &str =
+    "return document.querySelector('.tip').hidden ? '' : document.querySelector('.tip').innerText";
+const SPOKEN: &str = "return document.querySelector('[aria-live]').textContent";
+
+#[test]
+fn points_say_cell_interval_and_n_to_the_mouse_and_to_the_arrow_keys() {
+    let made = tables(quickstart_cells(), 3, 24);
+    let Some(Shown { browser, .. }) = show(&made, &about()) else {
+        return;
+    };
+    assert_eq!(browser.text(TIP), "");
+    let (x, y) = first_point(&browser, "#accuracy");
+    browser.point_at(x, y);
+    let score = &made.summary[0].1;
+    let interval = format!(
+        "accuracy {:.3} [{:.3}, {:.3}] (95 %)",
+        score.accuracy, score.accuracy_low, score.accuracy_high
+    );
+    let said = browser.text(TIP);
+    for part in [
+        "Cell 0: pitch 2 mm",
+        "compression 4:1",
+        &interval,
+        "n = 600 test decisions, mean of 3 trials",
+    ] {
+        assert!(said.contains(part), "{part:?} in {said:?}");
+    }
+    browser.point_at(5.0, 5.0);
+    assert_eq!(browser.text(TIP), "");
+    // By keyboard, from the point that was asked last: along its line, then to the same place on the other line.
+    browser.run("document.querySelector('#accuracy .panels svg').focus({ preventScroll: true })");
+    for (key, cell) in [(ARROW_RIGHT, 1), (ARROW_RIGHT, 2), (ARROW_DOWN, 10)] {
+        browser.press(key);
+        let said = browser.text(SPOKEN);
+        assert!(said.starts_with(&format!("Cell {cell}: ")), "{said}");
+        assert!(browser.text(TIP).starts_with(&format!("Cell {cell}: ")));
+    }
+    browser.check_quiet();
+}
+
+#[test]
+fn a_filter_leaves_what_is_chosen_in_the_table_and_in_the_chart() {
+    let Some(Shown { browser, .. }) = show(&tables(quickstart_cells(), 3, 24), &about()) else {
+        return;
+    };
+    let rows = "return document.querySelectorAll('#cells tbody tr').length";
+    let markers =
+        "return document.querySelectorAll('#accuracy .panels svg > path[transform]').length";
+    assert_eq!((browser.count(rows), browser.count(markers)), (16, 16));
+    for section in ["#cells", "#accuracy"] {
+        browser.click(&format!("{section} summary"));
+        browser.click(&format!(
+            "{section} [aria-label='pitch'] .chip:nth-of-type(2)"
+        ));
+    }
+    assert_eq!((browser.count(rows), browser.count(markers)), (8, 8));
+    assert_eq!(
+        browser.text("return document.querySelector('#cells .state').textContent"),
+        "pitch 2 mm"
+    );
+    // The last value of an axis cannot be taken away: all come back.
+    browser.click("#cells [aria-label='pitch'] .chip:nth-of-type(1)");
+    assert_eq!(browser.count(rows), 16);
+    // What stands along x, as lines and in panels can be exchanged, and every cell stays in the chart.
+    browser.click("#accuracy .filter > .plain");
+    for (role, name) in [
+        (1, "m"),
+        (2, "array size"),
+        (1, "pitch"),
+        (2, "compression"),
+        (3, "none"),
+    ] {
+        browser.choose(
+            &format!("#accuracy .controls label:nth-of-type({role}) select"),
+            name,
+        );
+    }
+    let shown = browser.count(markers);
+    assert_eq!(
+        shown, 8,
+        "two pitches, four ratios, the array size of the best cell"
+    );
+    browser.check_quiet();
+}
+
+#[test]
+fn the_table_of_cells_sorts_by_any_column() {
+    let made = tables(quickstart_cells(), 3, 24);
+    let Some(Shown { browser, .. }) = show(&made, &about()) else {
+        return;
+    };
+    let column = "const heads = [...document.querySelectorAll('#cells th')];
+         const n = heads.findIndex((h) => h.textContent.startsWith('accuracy'));
+         return [...document.querySelectorAll('#cells tbody tr')].map((r) => r.cells[n].textContent.slice(0, 5))";
+    let mut expected: Vec<String> = made
+        .summary
+        .iter()
+        .map(|(_, score)| format!("{:.3}", score.accuracy))
+        .collect();
+    assert_eq!(browser.run(column), json!(expected));
+    let head = "#cells th:nth-of-type(6) button";
+    browser.click(head);
+    expected.sort();
+    expected.reverse();
+    assert_eq!(browser.run(column), json!(expected), "most accurate first");
+    let order =
+        "return document.querySelector('#cells th:nth-of-type(6)').getAttribute('aria-sort')";
+    assert_eq!(browser.text(order), "descending");
+    browser.click(head);
+    expected.reverse();
+    assert_eq!(browser.run(column), json!(expected));
+    assert_eq!(browser.text(order), "ascending");
+    browser.check_quiet();
+}
+
+#[test]
+fn the_confusion_matrix_sorts_and_is_read_by_keyboard() {
+    let made = tables(quickstart_cells(), 3, 24);
+    let Some(Shown { browser, .. }) = show(&made, &about()) else {
+        return;
+    };
+    let diagonal = "return [...document.querySelectorAll('#confusion tbody tr')].map((r, i) => Number(r.cells[i + 1].textContent))";
+    let counts = |value: serde_json::Value| -> Vec<u64> {
+        let list = value.as_array().unwrap().iter();
+        list.map(|v| v.as_u64().unwrap()).collect()
+    };
+    let hits = made
+        .confusion
+        .iter()
+        .filter(|row| row.cell == 4 && row.object == row.predicted);
+    let hits: Vec<u64> = hits.map(|row| row.count as u64).collect();
+    assert_eq!(counts(browser.run(diagonal)), hits, "as in the study");
+    browser.choose("#confusion select", "hardest first");
+    let sorted = counts(browser.run(diagonal));
+    assert!(sorted.is_sorted() && sorted[0] < sorted[23], "{sorted:?}");
+    let rows =
+        "return [...document.querySelectorAll('#confusion tbody th')].map((h) => h.textContent)";
+    browser.choose("#confusion select", "by name");
+    let names: Vec<String> = serde_json::from_value(browser.run(rows)).unwrap();
+    assert_eq!(
+        (names[0].as_str(), names[2].as_str()),
+        ("adjustable wrench", "banana")
+    );
+    // Confused together: an object's neighbour is one that it is taken for.
+    browser.choose("#confusion select", "confused together");
+    let beside = "const rows = [...document.querySelectorAll('#confusion tbody tr')];
+         return rows.filter((r, i) => i > 0 && (r.cells[i].textContent || rows[i - 1].cells[i + 1].textContent)).length";
+    assert!(browser.count(beside) >= 16, "{}", browser.count(beside));
+    // A row's name brings what it is confused with to the front, and stays in focus.
+    browser.click("#confusion tbody tr:nth-of-type(5) button");
+    let first = browser.text("return document.querySelector('#confusion tbody th').textContent");
+    assert_eq!(
+        browser.text("return document.activeElement.textContent"),
+        first
+    );
+    browser.run("document.querySelector('#confusion td[tabindex=\"0\"]').focus()");
+    assert!(
+        browser
+            .text(SPOKEN)
+            .contains(&format!("{first}: recognised"))
+    );
+    browser.press(ARROW_RIGHT);
+    assert!(
+        browser
+            .text(SPOKEN)
+            .starts_with(&format!("{first} taken for "))
+    );
+    browser.check_quiet();
+}
+
+#[test]
+fn the_front_is_what_no_cell_beats_and_the_advice_lies_on_it() {
+    let mut made = tables(quickstart_cells(), 3, 24);
+    for (cell, row) in &mut made.pareto {
+        row.predict_us_per_decision = 2.0 + 40.0 * row.accuracy + ((cell.cell * 7) % 5) as f64;
+    }
+    let Some(Shown { browser, .. }) = show(&made, &about()) else {
+        return;
+    };
+    let beaten = |i: usize| {
+        // A page holds four decimals of an accuracy, so that means that differ by their rounding are equal.
+        let cost = |j: usize| {
+            let accuracy = (made.summary[j].1.accuracy * 1e4).round();
+            (made.pareto[j].1.predict_us_per_decision, accuracy)
+        };
+        let ((time, accuracy), all) = (cost(i), 0..made.pareto.len());
+        all.map(cost)
+            .any(|(t, a)| t <= time && a >= accuracy && (t < time || a > accuracy))
+    };
+    let mut front: Vec<usize> = (0..16).filter(|&i| !beaten(i)).collect();
+    front.sort_by(|&a, &b| {
+        made.summary[a]
+            .1
+            .accuracy
+            .total_cmp(&made.summary[b].1.accuracy)
+    });
+    let words: Vec<String> = front.iter().map(usize::to_string).collect();
+    let drawn = "return document.querySelector('#pareto svg .front[data-cells]').dataset.cells";
+    assert_eq!(browser.text(drawn), words.join(","));
+    assert!(front.len() > 2 && front.len() < 16);
+    // A wish between two cells of the front is fulfilled by the upper.
+    let wish = 0.5 * (made.summary[front[0]].1.accuracy + made.summary[front[1]].1.accuracy);
+    browser.run(&format!(
+        "const wish = document.querySelector('#pareto input'); wish.value = {wish}; wish.dispatchEvent(new Event('input'))"
+    ));
+    let advised = "return document.querySelector('#pareto .advice').dataset.cell";
+    assert_eq!(browser.text(advised), words[1]);
+    let (x, y) = first_point(&browser, "#pareto");
+    browser.point_at(x, y);
+    assert!(browser.text(TIP).contains("a decision"));
+    browser.check_quiet();
+}

@@ -1,0 +1,275 @@
+//! A study within a ceiling of memory, and touches that are kept from one run to the next.
+
+mod command;
+mod study;
+
+use bubbletouch::study::memory::{AtOnce, MemoryPlan};
+use bubbletouch::study::progress::Silent;
+use bubbletouch::study::{
+    FrameStorage, Manner, Outcome, Part, TouchCache, journal::Journal, run_with,
+};
+use command::Case;
+use std::fs;
+use std::path::Path;
+use study::Study;
+
+/// Touches that remember the one before, so that frames are read out of their order too.
+const SMALL: &str = r#"
+question = "?"
+trials = 2
+seed = 5
+
+[objects]
+sets = ["balls"]
+
+[skin]
+pitch_mm = [2.0, 4.0]
+size_mm = 64.0
+stroke_mm = 5.0
+
+[touches]
+per_object = 12
+frames = [1, 3]
+offset_x_mm = { uniform = [-6.0, 6.0] }
+offset_y_mm = { uniform = [-6.0, 6.0] }
+depth_mm = { uniform = [1.0, 3.0] }
+
+[signal]
+noise_std_full_scale = [0.0, 0.05]
+hysteresis_full_scale = 0.1
+steps = ["hysteresis", "noise"]
+
+[sensing]
+ensemble = ["sbhe", "gaussian"]
+ratio = [8, 32]
+
+[recognition]
+classifier = ["linear_svm", "k_nearest"]
+c = [0.1, 1.0]
+"#;
+
+/// 4,800 touches of 16,384 taxels, which would take 310 MB if all taxels were kept.
+const LARGE: &str = r#"
+question = "?"
+trials = 1
+
+[objects]
+sets = ["balls"]
+
+[skin]
+pitch_mm = 1.0
+taxels = 128
+stroke_mm = 5.0
+
+[touches]
+per_object = 300
+offset_x_mm = { uniform = [-20.0, 20.0] }
+offset_y_mm = { uniform = [-20.0, 20.0] }
+depth_mm = { uniform = [1.0, 3.0] }
+
+[sensing]
+ensemble = "sbhe"
+ratio = [256, 512, 1024]
+
+[recognition]
+classifier = "linear_svm"
+train_touches = 30
+solver_memory_gib = 0.01
+"#;
+
+fn run_in(study: &Study, storage: &FrameStorage, at_once: AtOnce) -> Outcome {
+    let manner = Manner {
+        journal: &Journal::none(),
+        fail_fast: true,
+        retries: false,
+        part: Part::All,
+        storage,
+        at_once,
+    };
+    run_with(&study.plan, &study.sweep, &study.touched, &Silent, manner).unwrap()
+}
+
+#[test]
+fn frames_in_files_and_one_piece_at_a_time_give_the_same_tables() {
+    let study = Study::new(SMALL);
+    let usual = study.run();
+    let folder = tempfile::tempdir().unwrap();
+    for (limit, n_kept) in [(u64::MAX, 4), (0, 0)] {
+        let cache = TouchCache::new(folder.path().join(limit.to_string()), limit);
+        let storage = FrameStorage::new(cache.clone(), 0);
+        for (jobs, families) in [(1, 1), (3, 2)] {
+            let outcome = run_in(&study, &storage, AtOnce { jobs, families });
+            assert_eq!(outcome.tables.accuracy, usual.tables.accuracy);
+            assert_eq!(outcome.tables.confusion, usual.tables.confusion);
+            assert_eq!(outcome.arrays, usual.arrays);
+            assert_eq!(cache.list().unwrap().len(), n_kept, "limit {limit}");
+        }
+    }
+}
+
+#[test]
+fn touches_that_are_kept_are_not_made_again_and_others_are() {
+    let folder = tempfile::tempdir().unwrap();
+    let cache = TouchCache::new(folder.path(), u64::MAX);
+    let storage = FrameStorage::new(cache.clone(), 0);
+    let seconds = |text: &str| -> Vec<u64> {
+        let outcome = run_in(&Study::new(text), &storage, AtOnce::ALL);
+        let stages = outcome.tables.stages.iter();
+        let made = stages.filter(|stage| stage.stage.starts_with("simulate"));
+        made.map(|stage| stage.cpu_s.to_bits()).collect()
+    };
+    let first = seconds(SMALL);
+    // A clock that ran twice would not show the same nanosecond.
+    assert_eq!(seconds(SMALL), first);
+    assert_eq!(seconds(&SMALL.replace("trials = 2", "trials = 1")), first);
+    assert_eq!(cache.list().unwrap().len(), 4);
+    for change in [
+        ("seed = 5", "seed = 6"),
+        ("[1.0, 3.0]", "[1.0, 3.5]"),
+        ("stroke_mm = 5.0", "stroke_mm = 9.0"),
+    ] {
+        let before = cache.list().unwrap().len();
+        seconds(&SMALL.replace(change.0, change.1));
+        assert_eq!(cache.list().unwrap().len(), before + 4, "{change:?}");
+    }
+    let facts = cache.list().unwrap()[0].facts().unwrap();
+    let (n_objects, n_taxels) = (Study::new(SMALL).touched.len(), facts.n_taxels);
+    assert!(n_taxels == 1024 || n_taxels == 256, "{n_taxels}");
+    assert!(
+        facts
+            .what
+            .starts_with(&format!("{} touches", 12 * n_objects))
+    );
+}
+
+#[test]
+fn what_was_used_longest_ago_goes_first() {
+    let folder = tempfile::tempdir().unwrap();
+    let all = TouchCache::new(folder.path(), u64::MAX);
+    let study = Study::new(SMALL);
+    run_in(&study, &FrameStorage::new(all.clone(), 0), AtOnce::ALL);
+    let listed = all.list().unwrap();
+    let sizes: Vec<u64> = listed.iter().map(|touches| touches.n_bytes).collect();
+    let two: u64 = sizes[..2].iter().sum();
+    let gone = all.prune(two).unwrap();
+    assert_eq!(gone, listed[2..]);
+    assert_eq!(all.list().unwrap(), listed[..2]);
+    assert_eq!(all.prune(0).unwrap().len(), 2);
+    assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0);
+}
+
+#[test]
+fn a_damaged_file_is_named_and_can_be_pruned() {
+    let case = Case::new();
+    // Few cells, whose charts are soon drawn.
+    let few = SMALL.replace("[\"sbhe\", \"gaussian\"]", "\"sbhe\"");
+    let few = few.replace("[8, 32]", "8").replace("[0.0, 0.05]", "0.0");
+    let few = few.replace(
+        "[\"linear_svm\", \"k_nearest\"]\nc = [0.1, 1.0]",
+        "\"k_nearest\"",
+    );
+    case.file("few.toml", &few);
+    let cache = TouchCache::new(case.path("results/touches"), u64::MAX);
+    run_in(
+        &Study::new(&few),
+        &FrameStorage::new(cache.clone(), 0),
+        AtOnce::ALL,
+    );
+    let (said, _) = case.succeeds(&["cache", "list"]);
+    assert!(
+        said.contains("touches of 3 frames, 32×32 at 2 mm"),
+        "{said}"
+    );
+    // The command reads what it did not make.
+    let seconds = cache.list().unwrap()[3].facts().unwrap().cpu_s;
+    case.succeeds(&["run", "few.toml", "--quiet"]);
+    let stages = fs::read_to_string(case.path("results/few/stages.csv")).unwrap();
+    assert!(
+        stages.contains(&seconds.to_string()),
+        "{seconds} s in {stages}"
+    );
+    for kept in cache.list().unwrap() {
+        let mut bytes = fs::read(&kept.path).unwrap();
+        let middle = bytes.len() / 2;
+        bytes[middle] ^= 4;
+        fs::write(&kept.path, bytes).unwrap();
+    }
+    let output = case.run(&["run", "few.toml", "--quiet", "--fresh"]);
+    let said = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(output.status.code(), Some(2), "{said}");
+    assert!(
+        said.contains(".touches") && said.contains("cache prune"),
+        "{said}"
+    );
+    case.succeeds(&["cache", "prune"]);
+    let (said, _) = case.succeeds(&["cache", "list"]);
+    assert!(said.contains("no touches are kept"), "{said}");
+    case.succeeds(&["run", "few.toml", "--quiet", "--fresh"]);
+}
+
+/// The least ceiling of a study, as its refusal says it.
+fn least_gib(case: &Case, study: &str) -> String {
+    let output = case.run(&["plan", study, "--memory-gib", "0.0001"]);
+    assert_eq!(output.status.code(), Some(2));
+    let said = String::from_utf8(output.stderr).unwrap();
+    let (_, after) = said.split_once("at least ").expect("how much it takes");
+    let (least, _) = after.split_once(" GiB").expect("a unit");
+    // It is rounded to hundredths.
+    format!("{:.2}", least.parse::<f64>().unwrap() + 0.01)
+}
+
+#[test]
+fn a_study_stays_below_its_ceiling_and_finds_the_same() {
+    let case = Case::new();
+    case.file("large.toml", LARGE);
+    let least = least_gib(&case, "large.toml");
+    let ceiling = least.parse::<f64>().unwrap() * f64::from(1 << 30);
+    assert!(ceiling < 0.4e9, "{least} GiB");
+    case.succeeds(&["run", "large.toml", "--out", "free", "--quiet"]);
+    let out = [
+        "run",
+        "large.toml",
+        "--out",
+        "below",
+        "--quiet",
+        "--memory-gib",
+    ];
+    case.succeeds(&[&out[..], &[least.as_str()]].concat());
+    for table in ["accuracy.csv", "confusion.csv", "summary.csv"] {
+        let read = |folder: &str| fs::read(case.path(folder).join(table)).unwrap();
+        assert_eq!(read("free"), read("below"), "{table}");
+    }
+    let Some(peak) = peak(&case.path("below")) else {
+        println!("SKIPPED: this system does not tell how much memory a process took");
+        return;
+    };
+    assert!((peak as f64) < ceiling, "{peak} bytes, ceiling {ceiling}");
+}
+
+fn peak(folder: &Path) -> Option<u64> {
+    let manifest = fs::read_to_string(folder.join("manifest.json")).unwrap();
+    let manifest: serde_json::Value = serde_json::from_str(&manifest).unwrap();
+    manifest["peak_memory_bytes"].as_u64()
+}
+
+#[test]
+fn a_ceiling_too_low_is_refused_with_what_it_takes() {
+    let study = Study::new(SMALL);
+    let plan = |ceiling| MemoryPlan::new(&study.plan, &study.sweep, study.touched.len(), ceiling);
+    let error = plan(Some(1 << 20)).unwrap_err();
+    assert_eq!(error.exit_code(), 2);
+    assert!(error.to_string().contains("at least 0."), "{error}");
+    let free = plan(None).unwrap();
+    assert_eq!(free.at_once, AtOnce::ALL);
+    let most = free.most_bytes as u64;
+    assert_eq!(plan(Some(most + 1)).unwrap().at_once, AtOnce::ALL);
+    let tight = plan(Some(most * 3 / 4));
+    assert!(tight.is_err() || tight.unwrap().most_bytes <= most as f64 * 0.75);
+    let case = Case::new();
+    case.file("small.toml", SMALL);
+    for bad in ["0", "-1", "nan", "inf"] {
+        let output = case.run(&["run", "small.toml", &format!("--memory-gib={bad}")]);
+        assert_eq!(output.status.code(), Some(2), "{bad}");
+    }
+    assert!(!case.path("results").exists());
+}
