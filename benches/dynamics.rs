@@ -105,7 +105,8 @@ fn touch(c: &mut Criterion) {
         );
         let system = system.expect("axes along z");
         let stiffest = SemiImplicit::stiffest(&system, DT, 1);
-        let mut bodies: Vec<(&str, Box<dyn Fn() -> Box<dyn Integrator>>)> = vec![
+        type Start<'a> = Box<dyn Fn() -> Box<dyn Integrator> + 'a>;
+        let mut bodies: Vec<(&str, Start)> = vec![
             (
                 "semi_implicit",
                 Box::new(|| Box::new(SemiImplicit::new(&system, stiffest))),
