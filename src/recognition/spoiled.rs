@@ -118,7 +118,7 @@ mod tests {
             }
             for row in 0..500 {
                 assert!(before[row] == labels[row] || before[row] == wrong[row]);
-                assert!(wrong[row] % 3 == 0 && wrong[row] < 15);
+                assert!(wrong[row].is_multiple_of(3) && wrong[row] < 15);
             }
             before = wrong;
         }
