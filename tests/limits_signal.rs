@@ -127,12 +127,11 @@ fn solve(matrix: &Array2<f64>, measured: &[f64]) -> Vec<f64> {
     for k in 0..n {
         let pivot = (k..n).max_by(|&a, &b| rows[a][k].abs().total_cmp(&rows[b][k].abs()));
         rows.swap(k, pivot.unwrap());
-        for i in 0..n {
-            if i != k {
-                let factor = rows[i][k] / rows[k][k];
-                for j in k..=n {
-                    rows[i][j] -= factor * rows[k][j];
-                }
+        let by = rows[k].clone();
+        for (_, row) in rows.iter_mut().enumerate().filter(|(i, _)| *i != k) {
+            let factor = row[k] / by[k];
+            for (value, pivot) in row.iter_mut().zip(&by).skip(k) {
+                *value -= factor * pivot;
             }
         }
     }

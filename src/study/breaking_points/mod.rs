@@ -7,7 +7,7 @@
 //!
 //! A way **breaks** a classifier where its mean accuracy, going outwards from its best, first falls to half of the best:
 //! between two values where a straight line on the axis' scale says so. The interval of that place is from repeated draws of
-//! all accuracies out of what their test rows leave open ([`half`](self::half)).
+//! all accuracies out of what their test rows leave open (`half`).
 
 mod half;
 mod plan;
