@@ -231,10 +231,9 @@ fn what_is_out_of_reach_is_left_out_and_nothing_else() {
         let mut workspace = SkinWorkspace::new();
         for frame in frames(&plan, Stepping::AsNeeded) {
             for (reading, patch) in frame.patches.iter().zip(&plan.patches) {
-                let patch_from_world = reading.pose.inverse();
                 let objects = frame.objects.iter();
                 let poses: Vec<Pose> = objects
-                    .map(|object| patch_from_world.compose(&object.pose))
+                    .map(|object| object.pose.seen_from(&reading.pose))
                     .collect();
                 let counts = press_skin(&patch.skin, &plan.models, &poses, &mut workspace);
                 assert_eq!(reading.deflection, workspace.deflections());

@@ -16,7 +16,6 @@ use bubbletouch::files::write_bytes;
 use bubbletouch::report::csv_tables::repeatable_hashes;
 use bubbletouch::report::{headlines, results, terminal};
 use bubbletouch::study::journal::Identity;
-use bubbletouch::study::memory::peak_memory;
 use bubbletouch::study::provenance::{MANIFEST_FILE, Manifest, RunFacts};
 use bubbletouch::study::time_left::{Piece, Work};
 use bubbletouch::study::{Manner, Outcome, Part, Shard, StudyKind, n_left, run_with, workload};
@@ -260,7 +259,6 @@ impl FinishedStudy<'_> {
             "finished_before": self.n_before,
             "failed": tables.failures.len(),
             "elapsed_s": seconds_since(self.started),
-            "peak_memory_bytes": peak_memory(),
         }));
         if !listener.is_person() {
             return;

@@ -200,18 +200,20 @@ impl Browser {
         self.ask("POST", &format!("{}{path}", self.session), Some(body))
     }
 
-    /// One request, one connection.
+    /// One request, one connection; once more where the driver hangs up, as it may on a busy machine.
     fn ask(&self, method: &str, path: &str, body: Option<Value>) -> Value {
         let body = body.map_or(String::new(), |body| body.to_string());
-        let mut stream = TcpStream::connect(("127.0.0.1", self.port)).unwrap();
-        let head = format!(
-            "{method} {path} HTTP/1.1\r\nHost: 127.0.0.1:{}\r\nContent-Type: application/json\r\nContent-Length: {}\r\nConnection: close\r\n\r\n",
+        let request = format!(
+            "{method} {path} HTTP/1.1\r\nHost: 127.0.0.1:{}\r\nContent-Type: application/json\r\nContent-Length: {}\r\nConnection: close\r\n\r\n{body}",
             self.port,
             body.len()
         );
-        stream.write_all(head.as_bytes()).unwrap();
-        stream.write_all(body.as_bytes()).unwrap();
-        let (head, body) = answer(&mut BufReader::new(stream));
+        let send = || {
+            let mut stream = TcpStream::connect(("127.0.0.1", self.port))?;
+            stream.write_all(request.as_bytes())?;
+            answer(&mut BufReader::new(stream))
+        };
+        let (head, body) = send().or_else(|_| send()).expect("an answer of the driver");
         let value: Value = serde_json::from_str(&body).expect("an answer in JSON");
         assert!(head.starts_with("HTTP/1.1 200"), "{method} {path}: {value}");
         value["value"].clone()
@@ -237,11 +239,11 @@ impl Drop for Browser {
 }
 
 /// Head and body of an answer; the driver keeps its connections open, so the head says where the body ends.
-fn answer(stream: &mut impl BufRead) -> (String, String) {
+fn answer(stream: &mut impl BufRead) -> std::io::Result<(String, String)> {
     let (mut head, mut length) = (String::new(), 0);
     loop {
         let mut line = String::new();
-        let n = stream.read_line(&mut line).unwrap();
+        let n = stream.read_line(&mut line)?;
         if n == 0 || line == "\r\n" {
             break;
         }
@@ -251,8 +253,8 @@ fn answer(stream: &mut impl BufRead) -> (String, String) {
         head += &line;
     }
     let mut body = vec![0; length];
-    stream.read_exact(&mut body).unwrap();
-    (head, String::from_utf8(body).unwrap())
+    stream.read_exact(&mut body)?;
+    Ok((head, String::from_utf8(body).unwrap()))
 }
 
 /// Where a program is, if it is installed.
