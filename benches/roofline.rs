@@ -1,6 +1,7 @@
 //! What share of what this machine can do the hot paths achieve, on one core.
 //!
-//! `cargo bench --bench roofline` prints a table; with `-- --write`, it also goes to `results/whole_body/roofline.csv`.
+//! `cargo bench --bench roofline` prints a table; with `-- --write`, it also goes to `results/whole_body/roofline.csv`
+//! and, as a page, to `roofline.md` beside it.
 //!
 //! The machine's ceilings are measured first: operations a second (fused multiply-adds count as two; multiplications and additions by
 //! themselves, since a result that is the same on every processor may not fuse them), roots a second, and bytes a second of a
@@ -218,6 +219,46 @@ fn print(row: &Row) {
     );
 }
 
+/// The same rows as a page: ceilings, then what each path asks for and achieves.
+fn page(rows: &[Row]) -> String {
+    let number = |value: Option<f64>| value.map_or(String::new(), |value| format!("{value:.3}"));
+    let count = |value: Option<f64>| value.map_or(String::new(), |value| format!("{value:.0}"));
+    let mut page = String::from(
+        "# Roofline\n\nOne core; `cargo bench --bench roofline -- --write`. What is counted is said in benches/README.md.\n\n\
+         ## Ceilings of the machine\n\n| ceiling | 10⁹ operations/s | 10⁹ roots/s | GB/s |\n|---|---|---|---|\n",
+    );
+    let (ceilings, paths): (Vec<&Row>, Vec<&Row>) =
+        rows.iter().partition(|row| row.share_of_roofline.is_none());
+    for row in ceilings {
+        let per_s = [
+            row.giga_operations_per_s,
+            row.giga_roots_per_s,
+            row.gb_per_s,
+        ]
+        .map(number);
+        page += &format!("| {} | {} |\n", row.name, per_s.join(" | "));
+    }
+    page += "\n## Hot paths, a step\n\n| path | operations | roots | bytes | µs | 10⁹ operations/s | 10⁹ roots/s | GB/s | bound by | share of the roofline |\n\
+             |---|---|---|---|---|---|---|---|---|---|\n";
+    for row in paths {
+        let asked = [row.operations, row.roots, row.bytes].map(count);
+        let time = number(row.time_us);
+        let per_s = [
+            row.giga_operations_per_s,
+            row.giga_roots_per_s,
+            row.gb_per_s,
+        ]
+        .map(number);
+        let (asked, per_s) = (asked.join(" | "), per_s.join(" | "));
+        let (bound, share) = (row.bound.unwrap_or_default(), number(row.share_of_roofline));
+        page += &format!(
+            "| {} | {asked} | {time} | {per_s} | {bound} | {share} |\n",
+            row.name
+        );
+    }
+    page
+}
+
 fn main() -> bubbletouch::Result<()> {
     let has = |flag: &str| std::env::args().any(|argument| argument == flag);
     // `cargo test --benches` and CI only want to know that it runs.
@@ -258,6 +299,8 @@ fn main() -> bubbletouch::Result<()> {
             file.row(row)?;
         }
         file.commit()?;
+        let path = Path::new("results/whole_body/roofline.md");
+        bubbletouch::files::write_bytes(path, page(&rows).as_bytes())?;
     }
     Ok(())
 }
