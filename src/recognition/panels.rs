@@ -9,6 +9,7 @@ use crate::recognition::row_products::Rows;
 /// Values in a vector register.
 const LANES: usize = 16;
 /// Rows of a tile. With [`PANEL_LANES`], its sums fill 24 of 32 vector registers.
+#[cfg(target_arch = "x86_64")]
 const TILE_ROWS: usize = 8;
 /// Registers across a panel.
 const PANEL_LANES: usize = 3;
@@ -17,6 +18,7 @@ const PANEL_ROWS: usize = PANEL_LANES * LANES;
 /// Features that pass at once: the rows of a tile then take 8 kB.
 const DEPTH: usize = 256;
 /// Panels that the tiles of all rows meet before the next: 600 kB.
+#[cfg(target_arch = "x86_64")]
 const PANELS_AT_ONCE: usize = 12;
 
 /// Which products of rows with packed rows are wanted.

@@ -37,6 +37,7 @@ pub(crate) fn products_in_place(_: Rows<f32>, _: &[usize], _: &[usize], _: &mut 
 }
 
 /// Features that pass at once: the rows of a tile stay in the first cache while the others pass.
+#[cfg(target_arch = "x86_64")]
 const DEPTH: usize = 512;
 
 /// Goes over all tiles of N rows with M others: `tile` gives the products of one. What the last few lack is made up by their
