@@ -108,6 +108,15 @@ impl CsvFile {
     }
 }
 
+/// What to say of a table that cannot be read: the file, the line where it is known, and what is `allowed`.
+pub fn table_error(path: &Path, allowed: &str) -> impl Fn(csv::Error) -> Error {
+    move |error| {
+        let line = error.position().map(|at| format!(", line {}", at.line()));
+        let place = format!("{}{}", path.display(), line.unwrap_or_default());
+        Error::input(place, format!("cannot be read ({error})"), allowed)
+    }
+}
+
 /// Writes a file through `fill`; on any failure what stood under `path` still stands there.
 pub fn write_whole(
     path: &Path,

@@ -143,6 +143,7 @@ pub mod mesh;
 mod numbers_csv;
 pub mod objects;
 pub mod packing;
+pub mod quantile;
 pub mod random;
 pub mod recognition;
 pub mod report;

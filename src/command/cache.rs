@@ -2,8 +2,8 @@
 
 use super::memory_args::bytes;
 use bubbletouch::Result;
-use bubbletouch::study::TouchCache;
-use bubbletouch::study::memory::GIB;
+use bubbletouch::study::memory::Bytes;
+use bubbletouch::study::{CachedTouches, TouchCache};
 use comfy_table::{Table, presets::NOTHING};
 use std::path::PathBuf;
 use std::time::SystemTime;
@@ -70,16 +70,15 @@ fn list(place: &Place) -> Result<()> {
         table.add_row([
             name.chars().take(12).collect(),
             what,
-            gib(touches.n_bytes),
+            size([touches]),
             cost,
             ago(touches.used),
         ]);
     }
     println!("{table}");
-    let sum = all.iter().map(|touches| touches.n_bytes).sum();
     println!(
         "{} in {}",
-        gib(sum),
+        size(&all),
         place.results.join("touches").display()
     );
     Ok(())
@@ -91,18 +90,14 @@ fn prune(place: &Place, keep_gib: Option<f64>) -> Result<()> {
         Some(gib) => bytes("--keep-gib", gib)?,
     };
     let gone = place.cache().prune(keep)?;
-    let sum = gone.iter().map(|touches| touches.n_bytes).sum();
-    println!("removed {} files, {}", gone.len(), gib(sum));
+    println!("removed {} files, {}", gone.len(), size(&gone));
     Ok(())
 }
 
-/// A size in words.
-fn gib(n_bytes: u64) -> String {
-    let gib = n_bytes as f64 / GIB;
-    match gib {
-        _ if gib < 1.0 => format!("{:.1} MiB", 1024.0 * gib),
-        _ => format!("{gib:.2} GiB"),
-    }
+/// The size of some of them in words.
+fn size<'a>(touches: impl IntoIterator<Item = &'a CachedTouches>) -> String {
+    let n_bytes: u64 = touches.into_iter().map(|touches| touches.n_bytes).sum();
+    Bytes(n_bytes as f64).to_string()
 }
 
 /// How long ago, in words.

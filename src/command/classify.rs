@@ -1,6 +1,7 @@
 //! `bubbletouch classify`: one classifier on one folder of features, timed.
 
 use super::study_args::set_threads;
+use bubbletouch::quantile::quantile;
 use bubbletouch::random::Seed;
 use bubbletouch::recognition::ClassifierKind;
 use bubbletouch::recognition::choice::{Candidates, Chosen};
@@ -189,9 +190,9 @@ impl Args {
             accuracy: n_correct as f64 / n_test as f64,
             accuracy_low: interval.low,
             accuracy_high: interval.high,
-            fit_median_s: median(&fit_s),
+            fit_median_s: quantile(&mut fit_s.clone(), 0.5),
             fit_s,
-            predict_median_s: median(&predict_s),
+            predict_median_s: quantile(&mut predict_s.clone(), 0.5),
             predict_s,
             svm: svm_findings(&trained),
         };
@@ -243,16 +244,6 @@ fn svm_findings(trained: &TrainedClassifier) -> Option<SvmFindings> {
         // What training minimises is the dual objective with the other sign.
         dual_objective: -problems.iter().map(|p| p.solution.objective).sum::<f64>(),
     })
-}
-
-fn median(values: &[f64]) -> f64 {
-    let mut sorted = values.to_vec();
-    sorted.sort_by(f64::total_cmp);
-    let middle = sorted.len() / 2;
-    match sorted.len() % 2 {
-        1 => sorted[middle],
-        _ => 0.5 * (sorted[middle - 1] + sorted[middle]),
-    }
 }
 
 fn print(findings: &Findings) {

@@ -2,7 +2,7 @@
 
 use super::output::touches_beside;
 use super::study_args::LoadedStudy;
-use bubbletouch::study::memory::{GIB, MemoryPlan, machine_memory};
+use bubbletouch::study::memory::{AtOnce, GIB, MemoryPlan, machine_memory};
 use bubbletouch::study::{FrameStorage, TouchCache};
 use bubbletouch::{Error, Result};
 use std::path::Path;
@@ -38,20 +38,27 @@ impl CeilingArgs {
     }
 }
 
-impl MemoryArgs {
-    /// What a study may hold at once.
-    pub fn plan(&self, loaded: &LoadedStudy) -> Result<MemoryPlan> {
-        self.ceiling.plan(loaded)
-    }
+/// The room that a run has.
+pub struct Room {
+    /// Where frames come from and are kept.
+    pub storage: FrameStorage,
+    /// How much of the work is in memory at the same time.
+    pub at_once: AtOnce,
+}
 
-    /// Where its frames are kept when results go to a folder.
-    pub fn storage(&self, folder: &Path, memory: &MemoryPlan) -> Result<FrameStorage> {
+impl MemoryArgs {
+    /// The room of a study whose results go to a folder.
+    pub fn room(&self, loaded: &LoadedStudy, folder: &Path) -> Result<Room> {
+        let memory = self.ceiling.plan(loaded)?;
         let limit = match self.cache_gib.unwrap_or(CACHE_GIB) {
             0.0 => 0,
             gib => bytes("--cache-gib", gib)?,
         };
         let cache = TouchCache::new(touches_beside(folder), limit);
-        Ok(FrameStorage::new(cache, memory.frames))
+        Ok(Room {
+            storage: FrameStorage::new(cache, memory.frames),
+            at_once: memory.at_once,
+        })
     }
 
     /// The options that were given, by name.

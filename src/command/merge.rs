@@ -52,15 +52,14 @@ pub fn merge(args: &Args) -> Result<()> {
             "the journals of all shards, each run to its end (or bubbletouch run, which does here what is left)",
         ));
     }
-    let memory = args.memory.plan(&loaded)?;
-    let storage = args.memory.storage(&folder, &memory)?;
+    let room = args.memory.room(&loaded, &folder)?;
     let manner = Manner {
         journal: &journal,
         fail_fast: false,
         retries: false,
         part: Part::All,
-        storage: &storage,
-        at_once: memory.at_once,
+        storage: &room.storage,
+        at_once: room.at_once,
     };
     let progress = args.listener.progress();
     let touched = loaded.touched.as_ref();

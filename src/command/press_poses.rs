@@ -2,7 +2,9 @@
 
 use super::output::check_ending;
 use bubbletouch::contact::{Contact, Workspace, press_to_depth, press_to_travel};
+use bubbletouch::files::table_error;
 use bubbletouch::geometry::Pose;
+use bubbletouch::quantile::quantile;
 use bubbletouch::study::write_npy;
 use bubbletouch::world::Scene;
 use bubbletouch::{Error, Result};
@@ -98,7 +100,7 @@ pub fn press_poses(
             travel_mm: contact.map_or(0.0, |contact| 1e3 * contact.travel),
             n_touched: contact.map_or(0, |contact| contact.n_touched),
             n_saturated: contact.map_or(0, |contact| contact.n_saturated),
-            us: median(times),
+            us: quantile(times, 0.5),
         });
     tell(args, scene, &readings.collect::<Vec<_>>());
     Ok(())
@@ -107,7 +109,7 @@ pub fn press_poses(
 fn tell(args: &Args, scene: &Scene, readings: &[Reading]) {
     let model = &scene.objects[0];
     let mut us: Vec<f64> = readings.iter().map(|reading| reading.us).collect();
-    let us = median(&mut us);
+    let us = quantile(&mut us, 0.5);
     if args.json {
         let said = serde_json::json!({
             "n_spheres": model.n_spheres(),
@@ -128,15 +130,11 @@ fn tell(args: &Args, scene: &Scene, readings: &[Reading]) {
 fn read_poses(path: &Path) -> Result<Vec<Pose>> {
     let place = path.display().to_string();
     let allowed = "a CSV file with columns x, y, z, qw, qx, qy, qz of finite numbers";
-    let failed = |error: csv::Error| {
-        let line = error.position().map(|at| format!(", line {}", at.line()));
-        let place = format!("{place}{}", line.unwrap_or_default());
-        Error::input(place, format!("cannot be read ({error})"), allowed)
-    };
+    let failed = table_error(path, allowed);
     let mut poses = Vec::new();
-    let mut reader = csv::Reader::from_path(path).map_err(failed)?;
+    let mut reader = csv::Reader::from_path(path).map_err(&failed)?;
     for (number, row) in reader.deserialize().enumerate() {
-        let row: Row = row.map_err(failed)?;
+        let row: Row = row.map_err(&failed)?;
         let turn = DQuat::from_xyzw(row.qx, row.qy, row.qz, row.qw);
         let at = DVec3::new(row.x, row.y, row.z);
         if !(at.is_finite() && turn.length().is_finite() && turn.length() > 0.0) {
@@ -149,10 +147,4 @@ fn read_poses(path: &Path) -> Result<Vec<Pose>> {
         true => Err(Error::input(place, "no poses", "at least one")),
         false => Ok(poses),
     }
-}
-
-fn median(values: &mut [f64]) -> f64 {
-    values.sort_by(f64::total_cmp);
-    let n = values.len();
-    0.5 * (values[(n - 1) / 2] + values[n / 2])
 }

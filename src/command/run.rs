@@ -120,8 +120,7 @@ pub fn results_folder(study: &StudyArgs, out: Option<&Path>) -> Result<PathBuf> 
 fn run_recognition(args: &Args, folder: &Path) -> Result<()> {
     let started = SystemTime::now();
     let loaded = args.study.load(Some(&packings_beside(folder)))?;
-    let memory = args.memory.plan(&loaded)?;
-    let storage = args.memory.storage(folder, &memory)?;
+    let room = args.memory.room(&loaded, folder)?;
     let identity = identity(&loaded);
     let kept = StudyFolder::open(folder, &identity, (args.start(), args.shard), args.listener)?;
     let n_all = loaded.n_evaluations();
@@ -136,8 +135,8 @@ fn run_recognition(args: &Args, folder: &Path) -> Result<()> {
         fail_fast: args.fail_fast,
         retries: true,
         part: args.shard.map_or(Part::All, Part::Shard),
-        storage: &storage,
-        at_once: memory.at_once,
+        storage: &room.storage,
+        at_once: room.at_once,
     };
     let progress = args.listener.progress();
     let report = report_work(&loaded, args.shard);

@@ -44,15 +44,14 @@ pub fn verify(args: &Args) -> Result<()> {
     };
     let loaded = study.load(Some(&packings_beside(folder)))?;
     let chosen = draw(&tables, args);
-    let memory = args.memory.plan(&loaded)?;
-    let storage = args.memory.storage(folder, &memory)?;
+    let room = args.memory.room(&loaded, folder)?;
     let manner = Manner {
         journal: &Journal::none(),
         fail_fast: true,
         retries: false,
         part: Part::Holding(&chosen),
-        storage: &storage,
-        at_once: memory.at_once,
+        storage: &room.storage,
+        at_once: room.at_once,
     };
     let progress = progress::to_stderr();
     let touched = loaded.touched.as_ref();

@@ -1,5 +1,6 @@
 //! Intervals of a mean over trials by the bootstrap.
 
+use crate::quantile::of_sorted;
 use crate::random::Seed;
 use crate::recognition::interval::{Interval, check_confidence};
 use crate::{Error, Result};
@@ -67,8 +68,8 @@ impl Bootstrap {
         means.sort_unstable_by(f64::total_cmp);
         let tail = tail(n, confidence)?;
         Ok(Some(Interval {
-            low: quantile(&means, tail),
-            high: quantile(&means, 1.0 - tail),
+            low: of_sorted(&means, tail),
+            high: of_sorted(&means, 1.0 - tail),
         }))
     }
 
@@ -125,14 +126,6 @@ fn tail(n: usize, confidence: f64) -> Result<f64> {
         .map_err(|error| Error::input("bootstrap", error, "at least two trials"))?;
     let t = student.inverse_cdf(0.5 + 0.5 * confidence);
     Ok(Normal::standard().cdf(-(n / (n - 1.0)).sqrt() * t))
-}
-
-/// Of sorted values, linear between them (type 7 of Hyndman and Fan, NumPy's default).
-fn quantile(sorted: &[f64], share: f64) -> f64 {
-    let place = share * (sorted.len() - 1) as f64;
-    let below = place as usize;
-    let above = (below + 1).min(sorted.len() - 1);
-    sorted[below] + (place - below as f64) * (sorted[above] - sorted[below])
 }
 
 #[cfg(test)]

@@ -6,10 +6,11 @@ use super::legend::{
 };
 use super::log_scale::{LogScale, axis_titles, draw_axes};
 use super::object_detail_recognition::draw_recognition;
+use crate::quantile::quantile;
 use crate::report::colours::INK;
 use crate::report::drawing::{Align, Area, Drawing, Point, Stroke, TextStyle};
+use crate::study::object_detail::DetailMethod;
 use crate::study::object_detail::table::{DetailCell, DetailSummary, ObjectDetailTables};
-use crate::study::object_detail::{DetailMethod, quantile};
 
 const PANEL: (f64, f64) = (360.0, 300.0);
 /// Room for a panel's tick labels.

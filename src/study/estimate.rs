@@ -1,6 +1,6 @@
 //! What a study will take: cells, touches, memory and time, told before it runs.
 
-use super::memory::MemoryPlan;
+use super::memory::{Bytes, MemoryPlan};
 use super::plan::Plan;
 use super::sweep::{Group, Sweep};
 use super::table::Cell;
@@ -245,19 +245,6 @@ impl fmt::Display for Estimate {
             Seconds(self.measure_s),
             Seconds(self.recognise_s)
         )
-    }
-}
-
-struct Bytes(f64);
-
-impl fmt::Display for Bytes {
-    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        let mib = self.0 / f64::from(1 << 20);
-        match mib {
-            _ if mib < 1.0 => write!(f, "1 MiB"),
-            _ if mib < 1024.0 => write!(f, "{mib:.0} MiB"),
-            _ => write!(f, "{:.1} GiB", mib / 1024.0),
-        }
     }
 }
 

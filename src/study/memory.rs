@@ -8,7 +8,7 @@ use crate::error::{Error, Result};
 use crate::recognition::ClassifierKind;
 use crate::recognition::svm::{DEFAULT_MEMORY_BYTES, Multiclass, Solver};
 use crate::sensing::Ensemble;
-use std::fs;
+use std::{fmt, fs};
 
 /// Bytes of a gibibyte.
 pub const GIB: f64 = (1u64 << 30) as f64;
@@ -230,4 +230,18 @@ fn kilobytes(path: &str, key: &str) -> Option<u64> {
     let line = text.lines().find_map(|line| line.strip_prefix(key))?;
     let number = line.trim_start_matches(':').trim().strip_suffix("kB")?;
     Some(number.trim().parse::<u64>().ok()? * 1024)
+}
+
+/// A number of bytes in words: 12 MiB, 1.5 GiB.
+pub struct Bytes(pub f64);
+
+impl fmt::Display for Bytes {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        let mib = self.0 / f64::from(1 << 20);
+        match mib {
+            _ if mib < 1.0 => write!(f, "1 MiB"),
+            _ if mib < 1024.0 => write!(f, "{mib:.0} MiB"),
+            _ => write!(f, "{:.1} GiB", mib / 1024.0),
+        }
+    }
 }

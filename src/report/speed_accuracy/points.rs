@@ -1,8 +1,8 @@
 //! Points of charts: a setting, what it costs, and what it gives.
 
 use super::words::{chain_setting, contact_setting, way_name};
+use crate::quantile::quantile;
 use crate::report::axis::classifier_name;
-use crate::study::object_detail::quantile;
 use crate::study::speed_accuracy::table::{PeerRow, SpeedAccuracyTables};
 use crate::study::{Choice, unbeaten};
 use serde::{Deserialize, Serialize};

@@ -21,14 +21,29 @@ enum Place {
 }
 
 impl KeptFrames {
-    /// Those of a file, read into memory where they are to be quick.
-    pub(super) fn of_file(file: FrameFile, in_memory: bool) -> Result<Self> {
-        let n_taxels = file.facts().n_taxels;
-        let place = match in_memory {
-            true => Place::Memory(file.read_all()?),
-            false => Place::File(file),
-        };
-        Ok(Self { n_taxels, place })
+    /// Those of a file.
+    pub(super) fn of_file(file: FrameFile) -> Self {
+        Self {
+            n_taxels: file.facts().n_taxels,
+            place: Place::File(file),
+        }
+    }
+
+    /// Reads them into memory if they take at most so many bytes.
+    pub(super) fn within(mut self, most: u64) -> Result<Self> {
+        if let Place::File(file) = &self.place
+            && file.n_bytes() <= most
+        {
+            self.place = Place::Memory(file.read_all()?);
+        }
+        Ok(self)
+    }
+
+    /// Lets their file go with them.
+    pub(super) fn remove_when_done(&mut self) {
+        if let Place::File(file) = &mut self.place {
+            file.remove_when_done();
+        }
     }
 
     /// How many.
@@ -47,14 +62,6 @@ impl KeptFrames {
     /// Taxels of each.
     pub fn n_taxels(&self) -> usize {
         self.n_taxels
-    }
-
-    /// Bytes of memory.
-    pub fn bytes(&self) -> usize {
-        match &self.place {
-            Place::Memory(frames) => frames.iter().map(|frame| frame.len() + 16).sum(),
-            Place::File(file) => 8 * (file.len() + 1),
-        }
     }
 
     /// Writes frame `number` into `frame` (n_taxels, metres).

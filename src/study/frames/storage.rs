@@ -3,7 +3,6 @@
 use super::Frames;
 use super::cache::TouchCache;
 use super::coding::most_bytes;
-use super::frame_file::FrameFile;
 use super::kept::{FrameWriter, KeptFrames};
 use crate::error::Result;
 use crate::study::content_hash::ContentHash;
@@ -61,7 +60,10 @@ impl FrameStorage {
         let key = key(touched, patch, n_frames);
         if let Some(file) = cache.open(&key)? {
             progress.advance(n_touches as u64);
-            return self.opened(file);
+            return Ok(Frames {
+                facts: file.facts().clone(),
+                kept: KeptFrames::of_file(file).within(self.memory)?,
+            });
         }
         if (n_touches * n_frames * most_bytes(n_taxels)) as u64 <= self.memory {
             let frames = simulate(in_memory())?;
@@ -72,20 +74,13 @@ impl FrameStorage {
         }
         cache.prepare()?;
         let path = cache.path(&key);
-        drop(simulate(FrameWriter::in_file(&path, n_taxels, &what)?)?);
-        let mut file = FrameFile::open(&path)?;
+        let mut frames = simulate(FrameWriter::in_file(&path, n_taxels, &what)?)?;
         match cache.may_keep(&path) {
             true => cache.make_room()?,
-            false => file.remove_when_done(),
+            false => frames.kept.remove_when_done(),
         }
-        self.opened(file)
-    }
-
-    fn opened(&self, file: FrameFile) -> Result<Frames> {
-        let facts = file.facts().clone();
-        let in_memory = file.n_bytes() <= self.memory;
-        let kept = KeptFrames::of_file(file, in_memory)?;
-        Ok(Frames { kept, facts })
+        frames.kept = frames.kept.within(self.memory)?;
+        Ok(frames)
     }
 }
 

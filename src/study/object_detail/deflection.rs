@@ -1,9 +1,9 @@
 //! What the skin feels of a model, beside what it feels of the mesh itself.
 
-use super::summary::quantile;
 use crate::contact::{Workspace, first_contact, press_to_depth, press_to_travel};
 use crate::geometry::Pose;
 use crate::objects::Model;
+use crate::quantile::quantile;
 use crate::study::simulation::TouchedObject;
 use crate::world::{Patch, Scene};
 use glam::DVec3;

@@ -27,4 +27,3 @@ pub(in crate::study) use deflection::{Reading, Truth};
 pub use plan::{ObjectDetailPlan, RecognitionPlan};
 pub use runner::measure_detail;
 pub use spec::{DetailMethod, DetailRecognitionSpec, ObjectDetailSpec, ObjectDetailStudySpec};
-pub(crate) use summary::quantile;

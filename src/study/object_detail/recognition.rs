@@ -4,11 +4,11 @@
 //! contact. The leading touches train, the others test.
 
 use super::plan::{ObjectDetailPlan, RecognitionPlan};
-use super::summary::quantile;
 use super::table::{DetailCell, DetailRecognition, DetailScore};
 use super::variants::Variant;
 use crate::error::Result;
 use crate::objects::Object;
+use crate::quantile::quantile;
 use crate::random::Seed;
 use crate::recognition::ClassifierKind;
 use crate::recognition::classifier::Classifier;

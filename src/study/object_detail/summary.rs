@@ -2,20 +2,9 @@
 
 use super::spec::DetailMethod;
 use super::table::{DetailCell, DetailScore, DetailSummary};
+use crate::quantile::quantile;
 
 type Row = (DetailCell, DetailScore);
-
-/// The value that a part (0 to 1) of the values do not exceed, between neighbours by their distance; 0 of none. Sorts them.
-pub(crate) fn quantile(values: &mut [f64], part: f64) -> f64 {
-    if values.is_empty() {
-        return 0.0;
-    }
-    values.sort_by(f64::total_cmp);
-    let place = part * (values.len() - 1) as f64;
-    let below = place.floor() as usize;
-    let above = (below + 1).min(values.len() - 1);
-    values[below] + (place - below as f64) * (values[above] - values[below])
-}
 
 /// One row a method and level, in the order of their first appearance.
 pub(super) fn summary(rows: &[Row]) -> Vec<DetailSummary> {
@@ -81,18 +70,5 @@ fn summary_row(
         error_own_contact_median_mm: own[1],
         error_own_contact_worst_mm: own[3],
         times_packing: (!ratios.is_empty()).then(|| quantile(&mut ratios, 0.5)),
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn quantiles_are_values_or_between_them() {
-        assert_eq!(quantile(&mut [3.0, 1.0, 2.0], 0.5), 2.0);
-        assert_eq!(quantile(&mut [3.0, 1.0, 2.0], 1.0), 3.0);
-        assert_eq!(quantile(&mut [1.0, 2.0], 0.25), 1.25);
-        assert_eq!(quantile(&mut [], 0.5), 0.0);
     }
 }

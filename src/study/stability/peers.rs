@@ -2,7 +2,8 @@
 
 use super::plan::StabilityPlan;
 use super::table::{PeerSource, StabilityCell, StabilityScore, StabilityTables, StabilityTime};
-use crate::error::{Error, Result};
+use crate::error::Result;
+use crate::files::table_error;
 use std::path::Path;
 
 type Row = (StabilityCell, StabilityScore, StabilityTime, PeerSource);
@@ -60,23 +61,18 @@ fn is_asked(plan: &StabilityPlan, cell: &StabilityCell) -> bool {
 }
 
 fn read(path: &Path) -> Result<Vec<Row>> {
-    let failed = |error: csv::Error| {
-        let line = error.position().map(|at| format!(", line {}", at.line()));
-        let place = format!("{}{}", path.display(), line.unwrap_or_default());
-        let allowed = "a table as benches/peers/stability.py writes it";
-        Error::input(place, format!("cannot be read ({error})"), allowed)
-    };
-    let mut reader = csv::Reader::from_path(path).map_err(failed)?;
-    let headers = reader.headers().map_err(failed)?.clone();
+    let failed = table_error(path, "a table as benches/peers/stability.py writes it");
+    let mut reader = csv::Reader::from_path(path).map_err(&failed)?;
+    let headers = reader.headers().map_err(&failed)?.clone();
     let mut rows = Vec::new();
     for record in reader.records() {
-        let record = record.map_err(failed)?;
+        let record = record.map_err(&failed)?;
         // A line is read once for each of its parts: serde's flattening takes an empty field for an empty text.
         rows.push((
-            record.deserialize(Some(&headers)).map_err(failed)?,
-            record.deserialize(Some(&headers)).map_err(failed)?,
-            record.deserialize(Some(&headers)).map_err(failed)?,
-            record.deserialize(Some(&headers)).map_err(failed)?,
+            record.deserialize(Some(&headers)).map_err(&failed)?,
+            record.deserialize(Some(&headers)).map_err(&failed)?,
+            record.deserialize(Some(&headers)).map_err(&failed)?,
+            record.deserialize(Some(&headers)).map_err(&failed)?,
         ));
     }
     Ok(rows)

@@ -6,7 +6,7 @@ use super::table::{BodyCount, BodyTime, Stage};
 use crate::error::{Error, Result};
 use crate::geometry::Pose;
 use crate::objects::SphereUnion;
-use crate::study::object_detail::quantile;
+use crate::quantile::quantile;
 use crate::study::plan::millimetres;
 use crate::whole_body::{BodyContact, BodyState, SphereClusters, WholeBody};
 use glam::DVec3;
