@@ -1,7 +1,7 @@
 //! The right factor of matrix products, packed once for many left ones.
 
-use ndarray::linalg::general_mat_mul;
-use ndarray::{Array2, ArrayView2, ArrayViewMut2};
+use ndarray::linalg::{general_mat_mul, general_mat_vec_mul};
+use ndarray::{Array2, ArrayView1, ArrayView2, ArrayViewMut1, ArrayViewMut2};
 
 use crate::recognition::panels::{Panels, Wanted};
 use crate::recognition::row_products::Rows;
@@ -58,16 +58,32 @@ impl<'a, T: Scalar> Packed<'a, T> {
         }
     }
 
+    /// `x_i · z_j` of other rows x and these z: n values into each slice.
+    pub fn multiply_rows(&self, left: &[&[T]], to: &mut [&mut [T]]) {
+        if let Some(panels) = &self.panels
+            && T::multiply(panels, left, Wanted::All, to)
+        {
+            return;
+        }
+        for (row, to) in left.iter().zip(to) {
+            let row = ArrayView1::from(*row);
+            let (one, zero) = (T::one(), T::zero());
+            general_mat_vec_mul(one, &self.rows, &row, zero, &mut ArrayViewMut1::from(&mut **to));
+        }
+    }
+
     fn by_panels(&self, left: ArrayView2<T>, wanted: Wanted, to: &mut ArrayViewMut2<T>) -> bool {
         assert_eq!(to.dim(), (left.nrows(), self.rows.nrows()));
         let Some(panels) = &self.panels else {
             return false;
         };
+        let left = in_place(&left);
+        let left: Vec<&[T]> = (0..to.nrows()).map(|row| left.row(row)).collect();
         let rows = to.rows_mut().into_iter();
         let mut rows: Vec<&mut [T]> = rows
             .map(|row| row.into_slice().expect("rows of products are contiguous"))
             .collect();
-        T::multiply(panels, in_place(&left), wanted, &mut rows)
+        T::multiply(panels, &left, wanted, &mut rows)
     }
 }
 

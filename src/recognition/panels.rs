@@ -90,7 +90,7 @@ impl Panels {
     }
 
     /// Products of `left` with the packed rows, row by row into `to`; `false`, and nothing written, without the instructions.
-    pub fn multiply(&self, left: Rows<f32>, wanted: Wanted, to: &mut [&mut [f32]]) -> bool {
+    pub fn multiply(&self, left: &[&[f32]], wanted: Wanted, to: &mut [&mut [f32]]) -> bool {
         multiply(self, left, wanted, to)
     }
 }
@@ -107,7 +107,7 @@ fn is_supported() -> bool {
 
 #[cfg(target_arch = "x86_64")]
 #[multiversion::multiversion(targets("x86_64+avx512f"))]
-fn multiply(panels: &Panels, left: Rows<f32>, wanted: Wanted, to: &mut [&mut [f32]]) -> bool {
+fn multiply(panels: &Panels, left: &[&[f32]], wanted: Wanted, to: &mut [&mut [f32]]) -> bool {
     multiversion::target::match_target! {
         "x86_64+avx512f" => {
             avx512::multiply(panels, left, wanted, to);
@@ -121,7 +121,7 @@ fn multiply(panels: &Panels, left: Rows<f32>, wanted: Wanted, to: &mut [&mut [f3
 }
 
 #[cfg(not(target_arch = "x86_64"))]
-fn multiply(_: &Panels, _: Rows<f32>, _: Wanted, _: &mut [&mut [f32]]) -> bool {
+fn multiply(_: &Panels, _: &[&[f32]], _: Wanted, _: &mut [&mut [f32]]) -> bool {
     false
 }
 
@@ -130,14 +130,13 @@ mod avx512 {
     use std::arch::x86_64::{_mm512_fmadd_ps, _mm512_set1_ps, _mm512_setzero_ps};
 
     use super::{DEPTH, LANES, PANEL_LANES, PANEL_ROWS, PANELS_AT_ONCE, Panels, TILE_ROWS, Wanted};
-    use crate::recognition::row_products::Rows;
     use crate::recognition::vector_registers::{load, store};
 
     /// The products of a tile's rows with the rows of a panel.
     type Tile<const WIDTH: usize> = [[[f32; LANES]; WIDTH]; TILE_ROWS];
 
     #[target_feature(enable = "avx512f")]
-    pub fn multiply(panels: &Panels, left: Rows<f32>, wanted: Wanted, to: &mut [&mut [f32]]) {
+    pub fn multiply(panels: &Panels, left: &[&[f32]], wanted: Wanted, to: &mut [&mut [f32]]) {
         if panels.n_features == 0 {
             to.iter_mut().for_each(|row| row.fill(0.0));
         }
@@ -153,7 +152,7 @@ mod avx512 {
                     };
                     for at in 0..n {
                         rows[at][..piece.1]
-                            .copy_from_slice(&left.row(first + at)[piece.0..][..piece.1]);
+                            .copy_from_slice(&left[first + at][piece.0..][..piece.1]);
                     }
                     let to = &mut to[first..first + n];
                     for panel in first_panel..last_panel.min(first_panel + PANELS_AT_ONCE) {
@@ -264,10 +263,11 @@ mod tests {
             };
             let mut to = vec![vec![7.0; n_right]; n_left];
             let mut slices: Vec<&mut [f32]> = to.iter_mut().map(Vec::as_mut_slice).collect();
-            assert!(panels.multiply(rows(&left), Wanted::All, &mut slices));
+            let left: Vec<&[f32]> = (0..n_left).map(|row| rows(&left).row(row)).collect();
+            assert!(panels.multiply(&left, Wanted::All, &mut slices));
             for (i, found) in to.iter().enumerate() {
                 for (j, &found) in found.iter().enumerate() {
-                    let expected = product(&row(&left, i), &row(&right, j));
+                    let expected = product(left[i], &row(&right, j));
                     assert!(
                         (f64::from(found) - expected).abs() <= 1e-6 * m as f64,
                         "{n_left} {n_right} {m}: {i} {j}"
@@ -291,7 +291,8 @@ mod tests {
         };
         let mut to = vec![vec![0.0; n]; n];
         let mut slices: Vec<&mut [f32]> = to.iter_mut().map(Vec::as_mut_slice).collect();
-        assert!(panels.multiply(rows, Wanted::UpToOwn, &mut slices));
+        let left: Vec<&[f32]> = (0..n).map(|row| rows.row(row)).collect();
+        assert!(panels.multiply(&left, Wanted::UpToOwn, &mut slices));
         for (i, found) in to.iter().enumerate() {
             for (j, &found) in found.iter().enumerate().take(i + 1) {
                 let expected = product(rows.row(i), rows.row(j));

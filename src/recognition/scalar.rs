@@ -10,7 +10,7 @@ use crate::recognition::smo::passes::{self, Down};
 use crate::recognition::smo::passes_512;
 
 /// f32 or f64: what a Gram matrix holds.
-pub(crate) trait Scalar: NdFloat {
+pub(crate) trait Scalar: NdFloat + Default {
     /// The nearest value.
     fn of(value: f64) -> Self;
     /// The same value.
@@ -52,7 +52,7 @@ pub(crate) trait Scalar: NdFloat {
         None
     }
     /// Products of rows with packed rows, row by row; `false`, and nothing written, where there is no fast way.
-    fn multiply(_: &Panels, _: Rows<Self>, _: Wanted, _: &mut [&mut [Self]]) -> bool {
+    fn multiply(_: &Panels, _: &[&[Self]], _: Wanted, _: &mut [&mut [Self]]) -> bool {
         false
     }
 }
@@ -99,7 +99,7 @@ impl Scalar for f32 {
         Panels::new(rows, n_rows)
     }
 
-    fn multiply(panels: &Panels, left: Rows<Self>, wanted: Wanted, to: &mut [&mut [Self]]) -> bool {
+    fn multiply(panels: &Panels, left: &[&[Self]], wanted: Wanted, to: &mut [&mut [Self]]) -> bool {
         panels.multiply(left, wanted, to)
     }
 

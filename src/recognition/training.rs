@@ -10,7 +10,7 @@ use std::ops::Range;
 use crate::recognition::between::{Between, GROUP_ROWS, groups, pairs};
 use crate::recognition::dual::DualSolution;
 use crate::recognition::kernel::KernelFunction;
-use crate::recognition::near_margin::NearMargin;
+use crate::recognition::near_margin::{NearMargin, PairsNearMargin, few_dimensions};
 use crate::recognition::scalar::Scalar;
 use crate::recognition::smo::{Cached, Dense, Gram, Smo};
 use crate::recognition::sorted::Sorted;
@@ -65,14 +65,19 @@ impl<T: Scalar> Sorted<T> {
     }
 
     fn pairs_near_margin(&self, goal: Goal, problems: &mut [Vec<BinaryProblem>]) {
-        let mut near_margin = NearMargin::new(self, goal.path[0]);
-        for (&c, problems) in goal.path.iter().zip(problems) {
-            let solutions = near_margin.solve(c, goal.tolerance);
-            for ((a, b), solution) in self.all_pairs().zip(solutions) {
-                let sides = (self.classes()[a], Some(self.classes()[b]));
-                problems.push(self.problem(&self.pair_rows(a, b), sides, solution));
+        let few = few_dimensions(self);
+        let all = PairsNearMargin::new(self, &few);
+        for pairs in all.blocks() {
+            let mut near_margin = all.near(&pairs, goal.path[0]);
+            for (&c, problems) in goal.path.iter().zip(&mut *problems) {
+                let solutions = near_margin.solve(c, goal.tolerance);
+                for (&(a, b), solution) in pairs.iter().zip(solutions) {
+                    let sides = (self.classes()[a], Some(self.classes()[b]));
+                    problems.push(self.problem(&self.pair_rows(a, b), sides, solution));
+                }
             }
         }
+        in_order(problems);
     }
 
     fn pairs_from_blocks(&self, goal: Goal, problems: &mut [Vec<BinaryProblem>]) {
@@ -94,9 +99,7 @@ impl<T: Scalar> Sorted<T> {
                 }
             }
         }
-        for problems in problems {
-            problems.sort_by_key(|problem| (problem.positive, problem.negative));
-        }
+        in_order(problems);
     }
 
     fn pairs_from_rows(&self, goal: Goal, problems: &mut [Vec<BinaryProblem>]) {
@@ -194,5 +197,12 @@ impl<T: Scalar> Sorted<T> {
             rows: rows.iter().map(|&row| self.order()[row]).collect(),
             solution,
         }
+    }
+}
+
+/// Sorts the problems of each C by their classes.
+fn in_order(problems: &mut [Vec<BinaryProblem>]) {
+    for problems in problems {
+        problems.sort_by_key(|problem| (problem.positive, problem.negative));
     }
 }
