@@ -3,6 +3,7 @@
 use ndarray::{ArrayView1, ArrayView2};
 use serde::{Deserialize, Serialize};
 
+use crate::recognition::extent::Extent;
 use crate::{Error, Result};
 
 /// The width parameter γ of a kernel, in inverse squared feature units.
@@ -50,8 +51,12 @@ impl Kernel {
         }
     }
 
-    /// The kernel with γ as a number, taken from the training features (n_rows × m).
-    pub(crate) fn resolve(&self, features: ArrayView2<f64>) -> Result<KernelFunction> {
+    /// The kernel with γ as a number, taken from the training features (n_rows × m) of this extent.
+    pub(crate) fn resolve(
+        &self,
+        features: ArrayView2<f64>,
+        extent: &Extent,
+    ) -> Result<KernelFunction> {
         let function = match *self {
             Self::Linear => KernelFunction::Linear,
             Self::Rbf { gamma } => KernelFunction::Rbf {
@@ -76,7 +81,7 @@ impl Kernel {
                 }
             }
         };
-        function.check(features)?;
+        function.check(extent.largest_norm)?;
         Ok(function)
     }
 }
@@ -116,11 +121,9 @@ pub(crate) enum KernelFunction {
 }
 
 impl KernelFunction {
-    /// Refuses features (n_rows × m) so large that some kernel value is infinite. None exceeds those of a row with itself,
-    /// nor a squared distance four times the largest squared norm.
-    fn check(&self, features: ArrayView2<f64>) -> Result<()> {
-        let norms = features.rows().into_iter().map(|row| row.dot(&row));
-        let norm = norms.fold(0.0, f64::max);
+    /// Refuses rows whose largest squared norm is so large that some kernel value is infinite. None exceeds those of a row
+    /// with itself, nor a squared distance four times the largest squared norm.
+    fn check(&self, norm: f64) -> Result<()> {
         let largest = match *self {
             Self::Linear | Self::Rbf { .. } => 4.0 * norm,
             Self::Polynomial {
@@ -171,7 +174,8 @@ mod tests {
                 coef0,
                 degree,
             };
-            assert!(kernel.resolve(features.view()).is_err());
+            let extent = Extent::of(features.view()).unwrap();
+            assert!(kernel.resolve(features.view(), &extent).is_err());
         }
     }
 }

@@ -132,8 +132,8 @@ mod avx512 {
     use super::{DEPTH, LANES, PANEL_LANES, PANEL_ROWS, PANELS_AT_ONCE, Panels, TILE_ROWS, Wanted};
     use crate::recognition::vector_registers::{load, store};
 
-    /// The products of a tile's rows with the rows of a panel.
-    type Tile<const WIDTH: usize> = [[[f32; LANES]; WIDTH]; TILE_ROWS];
+    /// The products of so many rows with the rows of a panel.
+    type Tile<const ROWS: usize, const WIDTH: usize> = [[[f32; LANES]; WIDTH]; ROWS];
 
     #[target_feature(enable = "avx512f")]
     pub fn multiply(panels: &Panels, left: &[&[f32]], wanted: Wanted, to: &mut [&mut [f32]]) {
@@ -159,10 +159,11 @@ mod avx512 {
                         let (start, width) = panels.place(panel, piece);
                         let values = &panels.values[start..][..width * piece.1];
                         let columns = (panel * PANEL_ROWS, piece.0 == 0);
-                        match width {
-                            PANEL_LANES => put(tile::<PANEL_LANES>(&rows, values), to, columns),
-                            2 => put(tile::<2>(&rows, values), to, columns),
-                            _ => put(tile::<1>(&rows, values), to, columns),
+                        // The last rows are few: less is computed for nothing.
+                        match n {
+                            1..=2 => write_tile::<2>(&rows, (values, width), to, columns),
+                            3..=4 => write_tile::<4>(&rows, (values, width), to, columns),
+                            _ => write_tile::<TILE_ROWS>(&rows, (values, width), to, columns),
                         }
                     }
                 }
@@ -170,31 +171,46 @@ mod avx512 {
         }
     }
 
-    /// The products of a piece of a tile's rows with a panel that is so many registers wide.
+    /// Writes the products of a piece of a tile's first rows with a panel.
+    #[target_feature(enable = "avx512f")]
+    fn write_tile<const ROWS: usize>(
+        rows: &[[f32; DEPTH]; TILE_ROWS],
+        (panel, width): (&[[f32; LANES]], usize),
+        to: &mut [&mut [f32]],
+        columns: (usize, bool),
+    ) {
+        match width {
+            PANEL_LANES => put(tile::<ROWS, PANEL_LANES>(rows, panel), to, columns),
+            2 => put(tile::<ROWS, 2>(rows, panel), to, columns),
+            _ => put(tile::<ROWS, 1>(rows, panel), to, columns),
+        }
+    }
+
+    /// The products of a piece of a tile's first rows with a panel that is so many registers wide.
     ///
     /// Loops, not closures: a function of the standard library that calls a closure has not got its vector instructions.
     #[target_feature(enable = "avx512f")]
-    fn tile<const WIDTH: usize>(
+    fn tile<const ROWS: usize, const WIDTH: usize>(
         rows: &[[f32; DEPTH]; TILE_ROWS],
         panel: &[[f32; LANES]],
-    ) -> Tile<WIDTH> {
+    ) -> Tile<ROWS, WIDTH> {
         let panel = panel.as_chunks::<WIDTH>().0;
         let panel = &panel[..panel.len().min(DEPTH)];
-        let mut sums = [[_mm512_setzero_ps(); WIDTH]; TILE_ROWS];
+        let mut sums = [[_mm512_setzero_ps(); WIDTH]; ROWS];
         for at in 0..panel.len() {
             let mut own = [_mm512_setzero_ps(); WIDTH];
             for j in 0..WIDTH {
                 own[j] = load(&panel[at][j]);
             }
-            for i in 0..TILE_ROWS {
+            for i in 0..ROWS {
                 let value = _mm512_set1_ps(rows[i][at]);
                 for j in 0..WIDTH {
                     sums[i][j] = _mm512_fmadd_ps(value, own[j], sums[i][j]);
                 }
             }
         }
-        let mut tile = [[[0.0; LANES]; WIDTH]; TILE_ROWS];
-        for i in 0..TILE_ROWS {
+        let mut tile = [[[0.0; LANES]; WIDTH]; ROWS];
+        for i in 0..ROWS {
             for j in 0..WIDTH {
                 tile[i][j] = store(sums[i][j]);
             }
@@ -204,8 +220,8 @@ mod avx512 {
 
     /// Writes a tile's products from a column on if they are the first piece's, else adds them.
     #[target_feature(enable = "avx512f")]
-    fn put<const WIDTH: usize>(
-        tile: Tile<WIDTH>,
+    fn put<const ROWS: usize, const WIDTH: usize>(
+        tile: Tile<ROWS, WIDTH>,
         to: &mut [&mut [f32]],
         (column, is_first): (usize, bool),
     ) {
