@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use ndarray::{Array2, ArrayView2, s};
+use ndarray::ArrayViewMut2;
 
 use crate::recognition::packed::Packed;
 use crate::recognition::scalar::Scalar;
@@ -39,7 +39,8 @@ pub(crate) struct Between<'a, T> {
     columns: Range<usize>,
     packed: Packed<'a, T>,
     rows: Range<usize>,
-    values: Array2<T>,
+    /// Row by row.
+    values: Vec<T>,
 }
 
 impl<'a, T: Scalar> Between<'a, T> {
@@ -51,33 +52,36 @@ impl<'a, T: Scalar> Between<'a, T> {
             packed: sorted.points().range(columns.clone()).packed(),
             columns,
             rows: 0..0,
-            values: Array2::zeros((0, 0)),
+            values: Vec::new(),
         }
     }
 
-    /// Those with another group or the same, in the memory of the last ones where they are as many.
+    /// Those with another group or the same, in the memory of the last ones.
     pub fn compute(&mut self, other: &Range<usize>) {
         self.rows = self.sorted.rows_of(other);
         let size = (self.rows.len(), self.columns.len());
-        if self.values.dim() != size {
-            self.values = Array2::zeros(size);
-        }
+        self.values.resize(size.0 * size.1, T::zero());
+        let values = ArrayViewMut2::from_shape(size, &mut self.values);
+        let mut values = values.expect("room for all values was made");
         let points = self.sorted.points();
         let rows = points.range(self.rows.clone());
         if self.rows == self.columns {
-            self.packed.multiply_own(self.values.view_mut());
+            self.packed.multiply_own(values.view_mut());
         } else {
-            self.packed.multiply(rows.values, self.values.view_mut());
+            self.packed.multiply(rows.values, values.view_mut());
         }
         let columns = points.range(self.columns.clone());
-        rows.apply(self.values.view_mut(), columns, &self.sorted.kernel());
+        rows.apply(values, columns, &self.sorted.kernel());
     }
 
-    /// Those of some of the other group's rows with some of the own group's.
-    pub fn part(&self, rows: &Range<usize>, columns: &Range<usize>) -> ArrayView2<'_, T> {
+    /// Those of some of the other group's rows with some of the own group's, row by row.
+    pub fn part(&self, rows: &Range<usize>, columns: &Range<usize>) -> Vec<&[T]> {
         let within =
             |of: &Range<usize>, all: &Range<usize>| of.start - all.start..of.end - all.start;
-        self.values
-            .slice(s![within(rows, &self.rows), within(columns, &self.columns)])
+        let columns = within(columns, &self.columns);
+        let width = self.columns.len();
+        within(rows, &self.rows)
+            .map(|row| &self.values[row * width..][columns.clone()])
+            .collect()
     }
 }

@@ -20,6 +20,7 @@ use crate::recognition::dual::DualSolution;
 use crate::recognition::few_dimensions::spanned;
 use crate::recognition::margin_pair::{MarginPair, PairGoal, Sides, nearest};
 use crate::recognition::packed::Packed;
+use crate::recognition::row_products::multiply;
 use crate::recognition::scalar::Scalar;
 use crate::recognition::smo::{Dense, Room};
 use crate::recognition::sorted::Sorted;
@@ -45,22 +46,19 @@ const ROWS_NEAR_MARGIN: usize = 24;
 /// The rows of all classes, as their pairs need them.
 pub(crate) struct Classes<'a, T> {
     sorted: &'a Sorted<T>,
-    /// The rows of each class, packed.
-    packed: Vec<Packed<'a, T>>,
     /// Products within each class.
     within: Vec<Array2<T>>,
 }
 
 impl<'a, T: Scalar> Classes<'a, T> {
     pub fn new(sorted: &'a Sorted<T>) -> Self {
-        let ranges = sorted.ranges().iter();
-        let packed: Vec<Packed<T>> = ranges
-            .map(|range| sorted.points().range(range.clone()).packed())
-            .collect();
+        let within = |range: &Range<usize>| {
+            let own = sorted.points().range(range.clone());
+            own.packed().own_products()
+        };
         Self {
             sorted,
-            within: packed.iter().map(Packed::own_products).collect(),
-            packed,
+            within: sorted.ranges().iter().map(within).collect(),
         }
     }
 
@@ -218,7 +216,7 @@ impl<'c, 'a, T: Scalar> NearMargin<'c, 'a, T> {
         round.products.resize(end, T::zero());
         // Of each class the normals of its pairs, and where their products go.
         let mut of_classes: Vec<(Vec<&[T]>, Vec<&mut [T]>)> = Vec::new();
-        of_classes.resize_with(self.classes.packed.len(), Default::default);
+        of_classes.resize_with(self.classes.within.len(), Default::default);
         let mut products = &mut round.products[..];
         for (number, &pair) in pairs.iter().enumerate() {
             let normal = &round.normals[number * n_features..][..n_features];
@@ -229,8 +227,13 @@ impl<'c, 'a, T: Scalar> NearMargin<'c, 'a, T> {
                 products = later;
             }
         }
-        for (packed, (normals, mut products)) in self.classes.packed.iter().zip(of_classes) {
-            packed.multiply_rows(&normals, &mut products);
+        let rows = self.classes.sorted.points().in_place();
+        for (range, (normals, mut products)) in self.classes.sorted.ranges().iter().zip(of_classes)
+        {
+            if !normals.is_empty() {
+                let rows: Vec<&[T]> = range.clone().map(|row| rows.row(row)).collect();
+                multiply(&normals, &rows, &mut products);
+            }
         }
         self.round = round;
     }
@@ -268,7 +271,7 @@ impl<'a, T: Scalar> PairsNearMargin<'a, T> {
 
     /// Pairs of some classes, in turn all: so few that what is known of them stays in the cache.
     pub fn blocks(&self) -> impl Iterator<Item = Vec<(usize, usize)>> {
-        let n = self.all.packed.len();
+        let n = self.all.within.len();
         let groups: Vec<Range<usize>> = (0..n).step_by(CLASSES_AT_ONCE).map(|start| start..n.min(start + CLASSES_AT_ONCE)).collect();
         let mut blocks = Vec::new();
         for (at, own) in groups.iter().enumerate() {

@@ -1,7 +1,7 @@
 //! The right factor of matrix products, packed once for many left ones.
 
-use ndarray::linalg::{general_mat_mul, general_mat_vec_mul};
-use ndarray::{Array2, ArrayView1, ArrayView2, ArrayViewMut1, ArrayViewMut2};
+use ndarray::linalg::general_mat_mul;
+use ndarray::{Array2, ArrayView2, ArrayViewMut2};
 
 use crate::recognition::panels::{Panels, Wanted};
 use crate::recognition::row_products::Rows;
@@ -55,20 +55,6 @@ impl<'a, T: Scalar> Packed<'a, T> {
             mirror(&mut to);
         } else {
             general_mat_mul(T::one(), &self.rows, &self.rows.t(), T::zero(), &mut to);
-        }
-    }
-
-    /// `x_i · z_j` of other rows x and these z: n values into each slice.
-    pub fn multiply_rows(&self, left: &[&[T]], to: &mut [&mut [T]]) {
-        if let Some(panels) = &self.panels
-            && T::multiply(panels, left, Wanted::All, to)
-        {
-            return;
-        }
-        for (row, to) in left.iter().zip(to) {
-            let row = ArrayView1::from(*row);
-            let (one, zero) = (T::one(), T::zero());
-            general_mat_vec_mul(one, &self.rows, &row, zero, &mut ArrayViewMut1::from(&mut **to));
         }
     }
 

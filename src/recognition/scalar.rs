@@ -17,9 +17,9 @@ pub(crate) trait Scalar: NdFloat + Default {
     fn wide(self) -> f64;
     /// `exp(−γ · distance)` in place of each squared distance.
     fn exponentials(distances: &mut [Self], gamma: f64);
-    /// Products of some rows with others, by number, where they lie: row by row into `products`; `false`, and nothing
+    /// Products of some rows with others, all equally long, where they lie: row by row into `products`; `false`, and nothing
     /// written, where there is no fast way.
-    fn products_in_place(_: Rows<Self>, _: &[usize], _: &[usize], _: &mut [Self]) -> bool {
+    fn products_in_place(_: &[&[Self]], _: &[&[Self]], _: &mut [&mut [Self]]) -> bool {
         false
     }
     /// The solver's [first pass](passes::step_along).
@@ -87,12 +87,11 @@ impl Scalar for f32 {
     }
 
     fn products_in_place(
-        all: Rows<Self>,
-        rows: &[usize],
-        others: &[usize],
-        products: &mut [Self],
+        rows: &[&[Self]],
+        others: &[&[Self]],
+        products: &mut [&mut [Self]],
     ) -> bool {
-        row_tiles::products_in_place(all, rows, others, products)
+        row_tiles::products_in_place(rows, others, products)
     }
 
     fn panels(rows: Rows<Self>, n_rows: usize) -> Option<Panels> {

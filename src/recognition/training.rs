@@ -1,8 +1,8 @@
 //! Many binary problems from one set of rows: what they share is computed once.
 //!
 //! One-vs-one needs every block of kernel values between two classes exactly once, and every block within a class for all
-//! its pairs: rows are sorted by class, blocks within classes are kept, and the block between two classes is written by a
-//! matrix product to where the solver reads it. So n rows of k classes take about n²/k values in memory, not n².
+//! its pairs: rows are sorted by class, blocks within classes are kept, and of a pair's the solver reads what it asks
+//! for. So n rows of k classes take about n²/k values in memory, not n².
 //! One-vs-rest shares the whole matrix. All C of a path are solved while a problem's Gram matrix is at hand, each from the last.
 
 use std::ops::Range;
@@ -12,9 +12,10 @@ use crate::recognition::dual::DualSolution;
 use crate::recognition::kernel::KernelFunction;
 use crate::recognition::near_margin::{NearMargin, PairsNearMargin, few_dimensions};
 use crate::recognition::scalar::Scalar;
-use crate::recognition::smo::{Cached, Dense, Gram, Smo};
+use crate::recognition::smo::{Cached, Dense, Gram, Room, Smo, part_of_blocks};
 use crate::recognition::sorted::Sorted;
 use crate::recognition::svm::BinaryProblem;
+use crate::recognition::transposed::write_columns;
 
 /// Features from which on one-vs-one linear SVMs are solved on the rows near their margins.
 const SCREENING_FROM_FEATURES: usize = 128;
@@ -83,18 +84,20 @@ impl<T: Scalar> Sorted<T> {
     fn pairs_from_blocks(&self, goal: Goal, problems: &mut [Vec<BinaryProblem>]) {
         let within = self.within();
         let groups = groups(self.ranges());
-        let mut gram = Dense::default();
+        let mut room = Room::new();
+        let mut above = Vec::new();
         for (at, own) in groups.iter().enumerate() {
             let mut between = Between::new(self, own);
             for other in &groups[at..] {
                 between.compute(other);
                 for (a, b) in pairs(own.clone(), other.clone()) {
                     let [first, second] = [a, b].map(|class| self.ranges()[class].clone());
-                    gram.of_blocks(
-                        within[a].view(),
-                        within[b].view(),
-                        between.part(&second, &first),
-                    );
+                    let below = between.part(&second, &first);
+                    above.resize(first.len() * second.len(), T::zero());
+                    write_columns(&below, &mut above, second.len());
+                    let across = [above.chunks_exact(second.len()).collect(), below];
+                    let within = [&within[a], &within[b]];
+                    let mut gram = part_of_blocks(within, &across, &mut room);
                     self.solve_pair(&mut gram, (a, b), goal, problems);
                 }
             }

@@ -22,7 +22,7 @@ mod start;
 mod variables;
 
 pub(crate) use gram::{Cached, Dense, Gram, gather};
-pub(crate) use part::{Part, Room, part_of};
+pub(crate) use part::{Part, Room, part_of, part_of_blocks};
 pub(crate) use runs::Runs;
 pub(crate) use variables::extremes;
 
