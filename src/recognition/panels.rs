@@ -15,11 +15,11 @@ const TILE_ROWS: usize = 8;
 const PANEL_LANES: usize = 3;
 /// Packed rows of a panel.
 const PANEL_ROWS: usize = PANEL_LANES * LANES;
-/// Features that pass at once: the rows of a tile then take 8 kB.
-const DEPTH: usize = 256;
+/// Features that pass at once: the rows of a tile then take 16 kB.
+const DEPTH: usize = 512;
 /// Panels that the tiles of all rows meet before the next: 600 kB.
 #[cfg(target_arch = "x86_64")]
-const PANELS_AT_ONCE: usize = 12;
+const PANELS_AT_ONCE: usize = 6;
 
 /// Which products of rows with packed rows are wanted.
 #[derive(Clone, Copy, Debug, PartialEq)]

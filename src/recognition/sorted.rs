@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use ndarray::{Array1, Array2, ArrayView1, ArrayView2};
+use ndarray::{Array1, ArrayView1, ArrayView2};
 
 use crate::recognition::between::pairs;
 use crate::recognition::dataset::Dataset;
@@ -180,14 +180,5 @@ impl<T: Scalar> Sorted<T> {
             .clone()
             .chain(self.ranges[b].clone())
             .collect()
-    }
-
-    /// Kernel values within each class.
-    pub fn within(&self) -> Vec<Array2<T>> {
-        let within = |range: &Range<usize>| {
-            let own = self.points.range(range.clone());
-            own.own_kernel(&self.kernel)
-        };
-        self.ranges.iter().map(within).collect()
     }
 }

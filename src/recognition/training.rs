@@ -7,7 +7,7 @@
 
 use std::ops::Range;
 
-use crate::recognition::between::{Between, GROUP_ROWS, groups, pairs};
+use crate::recognition::between::{Group, groups, pairs};
 use crate::recognition::dual::DualSolution;
 use crate::recognition::kernel::KernelFunction;
 use crate::recognition::near_margin::{NearMargin, PairsNearMargin, few_dimensions};
@@ -47,13 +47,10 @@ impl<T: Scalar> Sorted<T> {
         problems
     }
 
-    /// Whether the blocks within classes, those between two groups and the largest pair fit.
+    /// Whether the blocks within groups of classes, those between two groups and the largest pair fit.
     fn fits(&self, memory: usize) -> bool {
-        let sizes = || self.ranges().iter().map(Range::len);
-        let largest = sizes().max().unwrap_or(0);
-        let within: usize = sizes().map(|n| n * n).sum();
-        (within + (GROUP_ROWS + largest).pow(2)) * size_of::<T>() + Dense::<T>::bytes(2 * largest)
-            <= memory
+        let largest = self.ranges().iter().map(Range::len).max().unwrap_or(0);
+        Group::bytes(self, &groups(self.ranges())) + Dense::<T>::bytes(2 * largest) <= memory
     }
 
     /// Whether products take so long that hyperplanes should say which are needed.
@@ -82,22 +79,27 @@ impl<T: Scalar> Sorted<T> {
     }
 
     fn pairs_from_blocks(&self, goal: Goal, problems: &mut [Vec<BinaryProblem>]) {
-        let within = self.within();
-        let groups = groups(self.ranges());
-        let mut room = Room::new();
-        let mut above = Vec::new();
+        let classes = groups(self.ranges());
+        let groups: Vec<Group<T>> = classes.iter().map(|own| Group::new(self, own)).collect();
+        let (mut between, mut above, mut room) = (Vec::new(), Vec::new(), Room::new());
         for (at, own) in groups.iter().enumerate() {
-            let mut between = Between::new(self, own);
-            for other in &groups[at..] {
-                between.compute(other);
-                for (a, b) in pairs(own.clone(), other.clone()) {
-                    let [first, second] = [a, b].map(|class| self.ranges()[class].clone());
-                    let below = between.part(&second, &first);
+            let packed = own.packed();
+            for (number, other) in groups.iter().enumerate().skip(at) {
+                if number > at {
+                    own.with(&packed, other, &mut between);
+                }
+                for (a, b) in pairs(classes[at].clone(), classes[number].clone()) {
+                    let [first, second] = [a, b].map(|class| &self.ranges()[class]);
+                    let below = if number > at {
+                        own.part_with(other, &between, (second, first))
+                    } else {
+                        own.own_part(second, first)
+                    };
                     above.resize(first.len() * second.len(), T::zero());
                     write_columns(&below, &mut above, second.len());
                     let across = [above.chunks_exact(second.len()).collect(), below];
-                    let within = [&within[a], &within[b]];
-                    let mut gram = part_of_blocks(within, &across, &mut room);
+                    let within = [own.own_part(first, first), other.own_part(second, second)];
+                    let mut gram = part_of_blocks(&within, &across, &mut room);
                     self.solve_pair(&mut gram, (a, b), goal, problems);
                 }
             }

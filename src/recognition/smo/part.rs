@@ -1,6 +1,6 @@
 //! A Gram matrix whose values are held elsewhere: rows are brought together when the solver first asks for them.
 
-use ndarray::{Array2, ArrayView2};
+use ndarray::ArrayView2;
 
 use super::gram::{Dense, Gram, gather};
 use super::passes::padded;
@@ -53,28 +53,26 @@ pub(crate) fn part_of<'a, T: Scalar>(
     Part::new(diagonal, write, room)
 }
 
-/// K of two classes from its blocks: within each, and the rows of those across, first with second and second with first.
-///
-/// # Panics
-/// When a block within a class is not stored row by row.
+/// K of two classes from the rows of its blocks: within each, and across, those of the first with the second and of the second
+/// with the first.
 pub(crate) fn part_of_blocks<'a, T: Scalar>(
-    within: [&'a Array2<T>; 2],
+    within: &'a [Vec<&[T]>; 2],
     across: &'a [Vec<&[T]>; 2],
     room: &'a mut Room<T>,
 ) -> Part<'a, T, impl Fn(usize, &mut [T])> {
-    let n_first = within[0].nrows();
-    let diagonals = within.map(|block| block.diag().into_iter());
-    let [first, second] = diagonals;
+    let n_first = within[0].len();
+    let diagonal = within.iter().flat_map(|block| {
+        let rows = block.iter().enumerate();
+        rows.map(|(at, row)| row[at])
+    });
     let write = move |i: usize, to: &mut [T]| {
         let (left, right) = to.split_at_mut(n_first);
         let (side, row) = if i < n_first { (0, i) } else { (1, i - n_first) };
-        let own = within[side].row(row).to_slice();
-        let own = own.expect("kernel values lie row by row");
-        let (to_own, to_other) = if side == 0 { (left, right) } else { (right, left) };
-        to_own.copy_from_slice(own);
-        to_other.copy_from_slice(across[side][row]);
+        let (own, other) = if side == 0 { (left, right) } else { (right, left) };
+        own.copy_from_slice(within[side][row]);
+        other.copy_from_slice(across[side][row]);
     };
-    Part::new(first.chain(second).copied(), write, room)
+    Part::new(diagonal, write, room)
 }
 
 impl<'a, T: Scalar, F: Fn(usize, &mut [T])> Part<'a, T, F> {
