@@ -75,7 +75,8 @@ impl<'a, T: Scalar> Group<'a, T> {
         values.resize(size.0 * size.1, T::zero());
         let values = ArrayViewMut2::from_shape(size, values);
         let mut values = values.expect("room for all values was made");
-        let [own, others] = [self, other].map(|group| self.sorted.points().range(group.rows.clone()));
+        let [own, others] =
+            [self, other].map(|group| self.sorted.points().range(group.rows.clone()));
         packed.multiply(others.values, values.view_mut());
         others.apply(values, own, &self.sorted.kernel());
     }

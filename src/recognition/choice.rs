@@ -163,7 +163,9 @@ fn kernels(
     scales: &[f64],
 ) -> Result<Vec<KernelFunction>> {
     if scales.is_empty() || params.kernel == Kernel::Linear {
-        return Ok(vec![params.kernel.resolve(training.records.view(), extent)?]);
+        return Ok(vec![
+            params.kernel.resolve(training.records.view(), extent)?,
+        ]);
     }
     let unit = Gamma::Scale.resolve(training.records.view())?;
     ascending(scales)
@@ -233,7 +235,13 @@ fn on_one_matrix(
             return grid(params, &sorted, folds, kernels, path);
         }
     }
-    grid(params, &by_fold::<f64>(data, folds, kernels[0]), folds, kernels, path)
+    grid(
+        params,
+        &by_fold::<f64>(data, folds, kernels[0]),
+        folds,
+        kernels,
+        path,
+    )
 }
 
 /// Rows by class, and within a class by fold: what a fold trains on then lies in few runs.
@@ -345,7 +353,8 @@ mod tests {
                 };
                 let extent = Extent::of(data.records.view()).unwrap();
                 let kernels = kernels(&params, (&data, &extent), &[0.3, 3.0]).unwrap();
-                let fast = on_one_matrix(&params, (&data, &extent), &folds, &kernels, &path).unwrap();
+                let fast =
+                    on_one_matrix(&params, (&data, &extent), &folds, &kernels, &path).unwrap();
                 let slow = one_by_one(&params, &data, &folds, &kernels, &path).unwrap();
                 assert_eq!(fast, slow, "{kernel:?} {multiclass:?}");
                 assert_eq!(fast.0.nrows(), if kernel == Kernel::Linear { 1 } else { 2 });

@@ -101,7 +101,10 @@ mod tests {
     #[test]
     fn what_is_not_finite_is_named_and_what_is_only_large_is_not() {
         let mut features = Array2::from_elem((3, 20), 1e200);
-        assert_eq!(Extent::of(features.view()).unwrap().largest_norm, f64::INFINITY);
+        assert_eq!(
+            Extent::of(features.view()).unwrap().largest_norm,
+            f64::INFINITY
+        );
         for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
             features[[1, 17]] = bad;
             let error = Extent::of(features.view()).unwrap_err().to_string();

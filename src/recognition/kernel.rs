@@ -99,10 +99,9 @@ impl Gamma {
                 // Two plain passes; ndarray's own variance divides at every value.
                 let n = features.len() as f64;
                 let mean = features.sum() / n;
-                // Row by row, so that few additions wait for each other.
-                let of_row = |row: ArrayView1<f64>| {
-                    let moved = &row - mean;
-                    moved.dot(&moved)
+                let of_row = |row: ArrayView1<f64>| match row.as_slice() {
+                    Some(row) => squares_about(mean, row),
+                    None => squares_about(mean, &row.to_vec()),
                 };
                 let squares: f64 = features.rows().into_iter().map(of_row).sum();
                 let scale = features.ncols() as f64 * squares / n;
@@ -110,6 +109,20 @@ impl Gamma {
             }
         }
     }
+}
+
+/// `Σ (x − mean)²`.
+#[multiversion::multiversion(targets("x86_64+avx512f", "x86_64+avx2+fma"))]
+fn squares_about(mean: f64, values: &[f64]) -> f64 {
+    let (lanes, last) = values.as_chunks::<8>();
+    let mut squares = [0.0; 8];
+    for values in lanes {
+        for lane in 0..8 {
+            squares[lane] += (values[lane] - mean) * (values[lane] - mean);
+        }
+    }
+    let last = last.iter().map(|value| (value - mean) * (value - mean));
+    squares.iter().sum::<f64>() + last.sum::<f64>()
 }
 
 /// A kernel with every parameter a number.

@@ -73,13 +73,7 @@ impl<T: Scalar> MarginPair<T> {
 
     /// Lets rows of both classes take part, with coefficients of 0. `products` are `w·x` of all rows of both, none before
     /// the first solution; the rows of a class lie among all from `starts` on.
-    pub fn join(
-        &mut self,
-        joining: &Sides,
-        products: [&[T]; 2],
-        all: Rows<T>,
-        starts: [usize; 2],
-    ) {
+    pub fn join(&mut self, joining: &Sides, products: [&[T]; 2], all: Rows<T>, starts: [usize; 2]) {
         let before = self.rows.each_ref().map(Vec::len);
         self.take_in(joining, products);
         let [first, second]: Sides = [0, 1].map(|side| {
@@ -123,12 +117,7 @@ impl<T: Scalar> MarginPair<T> {
 
     /// Solves on the rows that take part, from the last solution. `within` holds the products within each class; rows of the
     /// Gram matrix are written into the memory of the last one.
-    pub fn solve(
-        &mut self,
-        within: &[Array2<T>],
-        room: &mut Room<T>,
-        goal: PairGoal,
-    ) {
+    pub fn solve(&mut self, within: &[Array2<T>], room: &mut Room<T>, goal: PairGoal) {
         let (beta, f) = (std::mem::take(&mut self.beta), std::mem::take(&mut self.f));
         let [first, second] = &self.rows;
         let within = self.classes.map(|class| &within[class]);

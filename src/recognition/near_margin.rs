@@ -266,13 +266,20 @@ pub(crate) struct PairsNearMargin<'a, T> {
 impl<'a, T: Scalar> PairsNearMargin<'a, T> {
     /// Of these rows, and of the same in [`few_dimensions`].
     pub fn new(sorted: &'a Sorted<T>, few: &'a Sorted<T>) -> Self {
-        Self { along_means: along_means(few), few: Classes::new(few), all: Classes::new(sorted) }
+        Self {
+            along_means: along_means(few),
+            few: Classes::new(few),
+            all: Classes::new(sorted),
+        }
     }
 
     /// Pairs of some classes, in turn all: so few that what is known of them stays in the cache.
     pub fn blocks(&self) -> impl Iterator<Item = Vec<(usize, usize)>> {
         let n = self.all.within.len();
-        let groups: Vec<Range<usize>> = (0..n).step_by(CLASSES_AT_ONCE).map(|start| start..n.min(start + CLASSES_AT_ONCE)).collect();
+        let groups: Vec<Range<usize>> = (0..n)
+            .step_by(CLASSES_AT_ONCE)
+            .map(|start| start..n.min(start + CLASSES_AT_ONCE))
+            .collect();
         let mut blocks = Vec::new();
         for (at, own) in groups.iter().enumerate() {
             for other in &groups[at..] {
@@ -293,7 +300,8 @@ impl<'a, T: Scalar> PairsNearMargin<'a, T> {
     fn near_means(&self, (a, b): (usize, usize)) -> Sides {
         let along: [Vec<T>; 2] = [a, b].map(|own| {
             let rows = self.few.sorted.ranges()[own].clone();
-            rows.map(|row| self.along_means[[row, a]] - self.along_means[[row, b]]).collect()
+            rows.map(|row| self.along_means[[row, a]] - self.along_means[[row, b]])
+                .collect()
         });
         nearest(along.each_ref().map(Vec::as_slice), ROWS_ALONG_MEANS)
     }

@@ -101,6 +101,25 @@ impl<T: Scalar> Points<T> {
         }
     }
 
+    /// Some rows, by ascending number, in the memory of all.
+    pub fn keep(self, rows: &[usize]) -> Self {
+        let n_features = self.values.ncols();
+        let norms = self.norms.select(Axis(0), rows);
+        let mut values = self.values.into_raw_vec_and_offset().0;
+        for (to, &row) in rows.iter().enumerate() {
+            if to != row {
+                let from = row * n_features..(row + 1) * n_features;
+                values.copy_within(from, to * n_features);
+            }
+        }
+        values.truncate(rows.len() * n_features);
+        let values = Array2::from_shape_vec((rows.len(), n_features), values);
+        Self {
+            values: values.expect("whole rows were kept"),
+            norms,
+        }
+    }
+
     /// All of them.
     pub fn all(&self) -> PointsView<'_, T> {
         self.range(0..self.len())
@@ -282,6 +301,17 @@ mod tests {
         let origin = Array1::zeros(3);
         let [a, b] = [a, b].map(|rows| Points::<T>::new(rows.view(), origin.view()));
         a.all().kernel(b.all(), kernel)
+    }
+
+    #[test]
+    fn rows_that_are_kept_are_those_that_are_selected() {
+        let rows = Array2::from_shape_fn((6, 3), |(i, j)| (i * 3 + j) as f64);
+        let points = Points::<f64>::new(rows.view(), Array1::zeros(3).view());
+        for some in [&[0, 1, 2, 3, 4, 5][..], &[1, 2, 5], &[0, 4], &[]] {
+            let (kept, selected) = (points.clone().keep(some), points.select(some));
+            assert_eq!(kept.values, selected.values);
+            assert_eq!(kept.norms, selected.norms);
+        }
     }
 
     #[test]

@@ -65,7 +65,9 @@ pub(crate) fn multiply<T: Scalar>(rows: &[&[T]], others: &[&[T]], to: &mut [&mut
     };
     let products = whole(rows).dot(&whole(others).t());
     for (to, products) in to.iter_mut().zip(products.rows()) {
-        to.iter_mut().zip(products).for_each(|(to, &from)| *to = from);
+        to.iter_mut()
+            .zip(products)
+            .for_each(|(to, &from)| *to = from);
     }
 }
 

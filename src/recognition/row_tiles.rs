@@ -80,9 +80,7 @@ mod avx512 {
 
     #[target_feature(enable = "avx512f")]
     pub fn products(rows: &[&[f32]], others: &[&[f32]], products: &mut [&mut [f32]]) {
-        super::by_tiles((rows, others), products, |left, right| {
-            tile(left, right)
-        });
+        super::by_tiles((rows, others), products, |left, right| tile(left, right));
     }
 
     /// All products of a few rows with a few others. Each lane keeps its own sums; they meet at the end.
@@ -175,9 +173,7 @@ mod avx2 {
 
     #[target_feature(enable = "avx2,fma")]
     pub fn products(rows: &[&[f32]], others: &[&[f32]], products: &mut [&mut [f32]]) {
-        super::by_tiles((rows, others), products, |left, right| {
-            tile(left, right)
-        });
+        super::by_tiles((rows, others), products, |left, right| tile(left, right));
     }
 
     /// All products of a few rows with a few others. Each lane keeps its own sums; they meet at the end.

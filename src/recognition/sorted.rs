@@ -12,6 +12,7 @@ use crate::recognition::scalar::Scalar;
 use crate::recognition::svm::BinaryProblem;
 
 /// Training rows sorted by class, about their centre.
+#[derive(Clone)]
 pub(crate) struct Sorted<T> {
     points: Points<T>,
     /// The original number of each sorted row.
@@ -99,6 +100,11 @@ impl<T: Scalar> Sorted<T> {
     /// The rows, class by class.
     pub fn points(&self) -> &Points<T> {
         &self.points
+    }
+
+    /// The rows alone.
+    pub fn into_points(self) -> Points<T> {
+        self.points
     }
 
     /// The original number of each sorted row.

@@ -1,5 +1,7 @@
 //! Soft-margin support vector machines for many classes: parameters and training.
 
+use std::borrow::Cow;
+
 use linfa::traits::Fit;
 use ndarray::{Array1, Array2, ArrayView1};
 use serde::{Deserialize, Serialize};
@@ -109,7 +111,12 @@ impl Default for SvmParams {
 }
 
 /// Rows, their classes, the kernel, and where it is taken about.
-type Sorting<'a> = (&'a Dataset, &'a [usize], KernelFunction, ArrayView1<'a, f64>);
+type Sorting<'a> = (
+    &'a Dataset,
+    &'a [usize],
+    KernelFunction,
+    ArrayView1<'a, f64>,
+);
 
 /// A binary problem of a multi-class SVM and its solution.
 #[derive(Clone, Debug, PartialEq)]
@@ -178,11 +185,11 @@ impl SvmParams {
         if !self.wants_double(n_rows, kernel, path, 0.0) {
             let sorted = Sorted::<f32>::new(data, classes, kernel, centre);
             if !self.wants_double(n_rows, kernel, path, sorted.farthest()) {
-                return self.solve_sorted(&sorted, path);
+                return self.solve_sorted(sorted, path);
             }
         }
         let sorted = Sorted::<f64>::new(data, classes, kernel, centre);
-        self.solve_sorted(&sorted, path)
+        self.solve_sorted(sorted, path)
     }
 
     /// Whether f32 kernel values would not do for rows of which the farthest is so far from the centre (squared): few rows (then f64 costs nothing), a tolerance near f32's rounding, or
@@ -210,7 +217,7 @@ impl SvmParams {
             || largest > SINGLE_MOST
     }
 
-    fn solve_sorted<T: Scalar>(&self, sorted: &Sorted<T>, path: &[f64]) -> Vec<SvmModel>
+    fn solve_sorted<T: Scalar>(&self, sorted: Sorted<T>, path: &[f64]) -> Vec<SvmModel>
     where
         Decision: From<DecisionFunctions<T>>,
     {
@@ -223,10 +230,16 @@ impl SvmParams {
             Multiclass::OneVsOne => sorted.one_vs_one(goal),
             _ => sorted.one_vs_rest(goal),
         };
-        trained
-            .into_iter()
-            .map(|problems| SvmModel::new(sorted, self.multiclass, problems))
-            .collect()
+        let mut trained = trained.into_iter();
+        // The last model may have the rows.
+        let last = trained.next_back();
+        let mut models: Vec<SvmModel> = trained
+            .map(|problems| SvmModel::new(Cow::Borrowed(&sorted), self.multiclass, problems))
+            .collect();
+        models.extend(
+            last.map(|problems| SvmModel::new(Cow::Owned(sorted), self.multiclass, problems)),
+        );
+        models
     }
 
     fn train_linfa(&self, sorting: Sorting, path: &[f64]) -> Result<Vec<SvmModel>> {
@@ -241,7 +254,8 @@ impl SvmParams {
                     self.multiclass,
                     (c, self.tolerance),
                 )?;
-                Ok(SvmModel::new(&sorted, self.multiclass, problems))
+                let sorted = Cow::Borrowed(&sorted);
+                Ok(SvmModel::new(sorted, self.multiclass, problems))
             })
             .collect()
     }

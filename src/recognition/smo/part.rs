@@ -67,8 +67,16 @@ pub(crate) fn part_of_blocks<'a, T: Scalar>(
     });
     let write = move |i: usize, to: &mut [T]| {
         let (left, right) = to.split_at_mut(n_first);
-        let (side, row) = if i < n_first { (0, i) } else { (1, i - n_first) };
-        let (own, other) = if side == 0 { (left, right) } else { (right, left) };
+        let (side, row) = if i < n_first {
+            (0, i)
+        } else {
+            (1, i - n_first)
+        };
+        let (own, other) = if side == 0 {
+            (left, right)
+        } else {
+            (right, left)
+        };
         own.copy_from_slice(within[side][row]);
         other.copy_from_slice(across[side][row]);
     };
