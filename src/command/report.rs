@@ -32,6 +32,7 @@ fn about(folder: &Path) -> Result<ReportPage> {
         objects: None,
         seed: None,
         threads: None,
+        paths_from: None,
     };
     let manifest = Manifest::read(folder)?;
     let name = match &manifest {

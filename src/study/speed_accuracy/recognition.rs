@@ -10,11 +10,12 @@ use crate::recognition::ClassifierKind;
 use crate::recognition::classifier::Classifier;
 use crate::recognition::dataset::{Dataset, dataset};
 use crate::recognition::interval::Interval;
-use crate::sensing::Projection;
+use crate::sensing::{Ensemble, Projection};
 use crate::signal::{Chain, Noise, NoiseUnit, SignalStep};
 use crate::study::CONFIDENCE;
 use crate::study::frames::KeptFrames;
 use crate::study::measurement::{Reading, TouchToRead, measure, touches_to_read};
+use crate::study::pieces::{NamedPiece, PiecesLeft};
 use crate::study::plan::millimetres;
 use crate::study::progress::{Progress, Silent};
 use crate::study::simulation::{TouchedObject, draw_touches, simulate_array};
@@ -27,74 +28,170 @@ use std::time::Instant;
 /// Objects of one detail: what is touched, in places that all details share.
 type Details = Vec<Model>;
 
-/// Fills the tables of recognition. Touches are made on all threads; fits and decisions are timed on one.
-pub(super) fn measure_recognition(
-    plan: &SpeedAccuracyPlan,
-    sweep: &RecognitionSweep,
-    (subjects, packings): (&[Subject], Option<&Path>),
-    progress: &dyn Progress,
-    tables: &mut SpeedAccuracyTables,
-) -> Result<()> {
-    let chosen = spread_evenly(subjects, sweep.spec.objects);
-    if chosen.len() < 2 {
-        let given = format!("{} objects", chosen.len());
-        return Err(Error::input(&plan.place, given, "at least 2 to tell apart"));
+/// Every chain from touch to answer, on some of the objects.
+pub(super) struct RecognitionPart<'a> {
+    plan: &'a SpeedAccuracyPlan,
+    sweep: &'a RecognitionSweep,
+    chosen: Vec<&'a Subject>,
+    packings: Option<&'a Path>,
+}
+
+/// The objects of a sweep, exact and of each level that is needed.
+struct Built {
+    exact: Vec<TouchedObject>,
+    levels: Vec<Option<Details>>,
+}
+
+impl<'a> RecognitionPart<'a> {
+    pub fn new(
+        plan: &'a SpeedAccuracyPlan,
+        sweep: &'a RecognitionSweep,
+        (subjects, packings): (&'a [Subject], Option<&'a Path>),
+    ) -> Self {
+        Self {
+            plan,
+            sweep,
+            chosen: spread_evenly(subjects, sweep.spec.objects),
+            packings,
+        }
     }
-    let finest = plan.levels[plan.levels.len() - 1];
-    progress.stage("objects", (1 + sweep.levels.len()) as u64);
-    let build = |make: &(dyn Fn(&Subject) -> Result<Model> + Sync)| -> Result<Details> {
-        let models = chosen
-            .par_iter()
-            .with_max_len(1)
-            .map(|subject| make(subject));
-        let models = models.collect::<Result<Vec<_>>>();
-        progress.advance(1);
-        models
-    };
-    let exact = build(&|subject| subject.exact(finest))?;
-    let mut levels = Vec::new();
-    for &level in &sweep.levels {
-        let models = build(&|subject| subject.packed(level, packings))?;
-        levels.push((level, models));
+
+    /// Chains on the same array and detail share their touches.
+    pub fn pieces(&self) -> Vec<NamedPiece> {
+        let mut pieces = Vec::new();
+        for (group, bench) in self.benches().into_iter().enumerate() {
+            let names = self.names(bench).into_iter();
+            pieces.extend(names.map(|name| NamedPiece { name, group }));
+        }
+        pieces
     }
-    let seed = Seed::new(plan.spec.seed);
-    let placement = Placement {
-        per_object: Some(sweep.spec.training_touches + sweep.spec.test_touches),
-        ..plan.placement.clone()
-    };
-    let objects = |models: &Details| -> Vec<Object> {
-        let pairs = chosen.iter().zip(models);
+
+    /// Numbers of arrays and levels.
+    fn benches(&self) -> Vec<(usize, usize)> {
+        let levels = 0..self.sweep.levels.len();
+        let arrays = 0..self.sweep.patches.len();
+        arrays
+            .flat_map(|array| levels.clone().map(move |level| (array, level)))
+            .collect()
+    }
+
+    /// The chains of a bench.
+    fn names(&self, bench: (usize, usize)) -> Vec<String> {
+        let spec = &self.sweep.spec;
+        let mut names = Vec::new();
+        for &ensemble in &spec.ensemble {
+            for &ratio in &spec.ratio {
+                let classifiers = spec.classifier.iter();
+                names.extend(
+                    classifiers.map(|&kind| self.chain_name(bench, (ensemble, ratio), kind)),
+                );
+            }
+        }
+        names
+    }
+
+    fn chain_name(
+        &self,
+        (array, level): (usize, usize),
+        (ensemble, ratio): (Ensemble, f64),
+        classifier: ClassifierKind,
+    ) -> String {
+        let pitch_mm = millimetres(self.sweep.patches[array].grid.pitch);
+        let tolerance_mm = self.sweep.levels[level].mm;
+        format!(
+            "{classifier:?} after {ensemble:?} {ratio}:1 at {pitch_mm} mm, objects within {tolerance_mm} mm"
+        )
+    }
+
+    /// Touches are made on all threads; fits and decisions are timed on one.
+    pub fn measure(&self, left: &PiecesLeft<SpeedAccuracyTables>) -> Result<()> {
+        let is_left = |&bench: &(usize, usize)| self.names(bench).iter().any(|name| left.has(name));
+        let benches: Vec<_> = self.benches().into_iter().filter(is_left).collect();
+        if benches.is_empty() {
+            return Ok(());
+        }
+        if self.chosen.len() < 2 {
+            let given = format!("{} objects", self.chosen.len());
+            let allowed = "at least 2 to tell apart";
+            return Err(Error::input(&self.plan.place, given, allowed));
+        }
+        let names: Vec<String> = benches.iter().flat_map(|&b| self.names(b)).collect();
+        let Some(built) = left.prepare(&names, || self.build(&benches, left.progress))? else {
+            return Ok(());
+        };
+        let n_left = left.of(names, String::clone).len();
+        left.progress.stage("recognise", n_left as u64);
+        let one_thread = one_thread()?;
+        for array in 0..self.sweep.patches.len() {
+            let patch = &self.sweep.patches[array];
+            let of_array = benches.iter().filter(|bench| bench.0 == array);
+            let mut tested = None;
+            for &(_, level) in of_array {
+                let Some(models) = &built.levels[level] else {
+                    continue;
+                };
+                let tested =
+                    tested.get_or_insert_with(|| simulate_array(&built.exact, patch, 1, &Silent));
+                let mut touched = built.exact.clone();
+                for (touched, object) in touched.iter_mut().zip(self.objects(models)) {
+                    touched.object = object;
+                }
+                let learned = simulate_array(&touched, patch, 1, &Silent).kept;
+                let bench = Bench {
+                    part: self,
+                    number: (array, level),
+                    sweep: self.sweep,
+                    patch,
+                    level: self.sweep.levels[level],
+                    touched: &touched,
+                    learned: &learned,
+                    tested: &tested.kept,
+                    seed: Seed::new(self.plan.spec.seed),
+                    one_thread: &one_thread,
+                };
+                bench.run(left)?;
+            }
+        }
+        Ok(())
+    }
+
+    fn build(&self, benches: &[(usize, usize)], progress: &dyn Progress) -> Result<Built> {
+        let n_levels = self.sweep.levels.len();
+        let needed = (0..n_levels).map(|level| benches.iter().any(|bench| bench.1 == level));
+        let needed: Vec<bool> = needed.collect();
+        let n_needed = needed.iter().filter(|&&is_needed| is_needed).count();
+        progress.stage("objects", (1 + n_needed) as u64);
+        let build = |make: &(dyn Fn(&Subject) -> Result<Model> + Sync)| -> Result<Details> {
+            let chosen = self.chosen.par_iter().with_max_len(1);
+            let models = chosen.map(|subject| make(subject)).collect();
+            progress.advance(1);
+            models
+        };
+        let finest = self.plan.levels[self.plan.levels.len() - 1];
+        let exact = build(&|subject| subject.exact(finest))?;
+        let packed = |(&level, is_needed): (&Tolerance, bool)| -> Result<Option<Details>> {
+            let build = || build(&|subject| subject.packed(level, self.packings));
+            is_needed.then(build).transpose()
+        };
+        let levels = self.sweep.levels.iter().zip(needed).map(packed);
+        let levels = levels.collect::<Result<_>>()?;
+        let placement = Placement {
+            per_object: Some(self.sweep.spec.training_touches + self.sweep.spec.test_touches),
+            ..self.plan.placement.clone()
+        };
+        let seed = Seed::new(self.plan.spec.seed);
+        Ok(Built {
+            exact: draw_touches(self.objects(&exact), &placement, &seed)?,
+            levels,
+        })
+    }
+
+    fn objects(&self, models: &Details) -> Vec<Object> {
+        let pairs = self.chosen.iter().zip(models);
         pairs
             .map(|(subject, model)| Object::of_one_part(subject.name(), model.clone()))
             .collect()
-    };
-    let exact = draw_touches(objects(&exact), &placement, &seed)?;
-    let n_chains = sweep.spec.ensemble.len() * sweep.spec.ratio.len() * sweep.spec.classifier.len();
-    let n_cells = sweep.patches.len() * levels.len() * n_chains;
-    progress.stage("recognise", n_cells as u64);
-    let one_thread = one_thread()?;
-    for patch in &sweep.patches {
-        let truth = simulate_array(&exact, patch, 1, &Silent).kept;
-        for (level, models) in &levels {
-            let mut touched = exact.clone();
-            for (touched, object) in touched.iter_mut().zip(objects(models)) {
-                touched.object = object;
-            }
-            let learned = simulate_array(&touched, patch, 1, &Silent).kept;
-            let bench = Bench {
-                sweep,
-                patch,
-                level: *level,
-                touched: &touched,
-                learned: &learned,
-                tested: &truth,
-                seed,
-                one_thread: &one_thread,
-            };
-            bench.run(progress, tables)?;
-        }
     }
-    Ok(())
 }
 
 fn one_thread() -> Result<rayon::ThreadPool> {
@@ -104,6 +201,8 @@ fn one_thread() -> Result<rayon::ThreadPool> {
 
 /// All chains on one array and detail.
 pub(super) struct Bench<'a> {
+    part: &'a RecognitionPart<'a>,
+    number: (usize, usize),
     pub sweep: &'a RecognitionSweep,
     pub patch: &'a Patch,
     level: Tolerance,
@@ -122,54 +221,91 @@ pub(super) struct Front {
     pub projection: Projection,
 }
 
+/// Measurements of all touches, of the detail and of the exact objects, and what one takes.
+struct Compressed {
+    learned: Array2<f64>,
+    tested: Array2<f64>,
+    project_us: f64,
+}
+
 impl Bench<'_> {
-    fn run(&self, progress: &dyn Progress, tables: &mut SpeedAccuracyTables) -> Result<()> {
+    fn run(&self, left: &PiecesLeft<SpeedAccuracyTables>) -> Result<()> {
         let spec = &self.sweep.spec;
         let sense_us = self.one_thread.install(|| self.time_presses());
         for &ensemble in &spec.ensemble {
             for &ratio in &spec.ratio {
-                let n_taxels = self.patch.grid.n_taxels();
-                let measurements = ((n_taxels as f64 / ratio).round() as usize).max(1);
-                let size = (self.patch.grid.ny, self.patch.grid.nx);
-                let stream = self.seed.named("speed accuracy projection");
-                let noise = Noise {
-                    std: spec.noise_std_full_scale,
-                    unit: NoiseUnit::FullScale,
+                let name = |kind| self.part.chain_name(self.number, (ensemble, ratio), kind);
+                let kinds = left.of(spec.classifier.iter(), |kind| name(**kind));
+                if kinds.is_empty() {
+                    continue;
+                }
+                let names: Vec<String> = kinds.iter().map(|kind| name(**kind)).collect();
+                let Some(before) = left.prepare(&names, || self.compress(ensemble, ratio))? else {
+                    continue;
                 };
-                let front = Front {
-                    chain: Chain::new(&[SignalStep::Noise(noise)], self.patch)?,
-                    projection: Projection::new(ensemble, size, measurements, &stream)?,
-                };
-                let learned = self.measured(&front, self.learned)?;
-                let tested = self.measured(&front, self.tested)?;
-                let project_us = self.one_thread.install(|| self.time_front(&front))?;
-                for &classifier in &spec.classifier {
-                    let cell = ChainCell {
-                        pitch_mm: millimetres(self.patch.grid.pitch),
-                        n_taxels,
-                        tolerance_mm: self.level.mm,
-                        ensemble,
-                        ratio,
-                        measurements,
-                        classifier,
-                    };
-                    let rows = (learned.view(), tested.view());
-                    let (score, [classify_us, fit_s]) =
-                        self.one_thread.install(|| self.learn(classifier, rows))?;
-                    let time = ChainTime {
-                        sense_us,
-                        project_us,
-                        classify_us,
-                        decision_us: sense_us + project_us + classify_us,
-                        fit_s,
-                    };
-                    tables.recognition.push((cell.clone(), score));
-                    tables.recognition_timing.push((cell, time));
-                    progress.advance(1);
+                for &&classifier in &kinds {
+                    left.finish(&name(classifier), || {
+                        self.chain((ensemble, ratio), classifier, &before, sense_us)
+                    })?;
                 }
             }
         }
         Ok(())
+    }
+
+    /// What comes before every classifier.
+    fn compress(&self, ensemble: Ensemble, ratio: f64) -> Result<Compressed> {
+        let n_taxels = self.patch.grid.n_taxels();
+        let measurements = ((n_taxels as f64 / ratio).round() as usize).max(1);
+        let size = (self.patch.grid.ny, self.patch.grid.nx);
+        let stream = self.seed.named("speed accuracy projection");
+        let noise = Noise {
+            std: self.sweep.spec.noise_std_full_scale,
+            unit: NoiseUnit::FullScale,
+        };
+        let front = Front {
+            chain: Chain::new(&[SignalStep::Noise(noise)], self.patch)?,
+            projection: Projection::new(ensemble, size, measurements, &stream)?,
+        };
+        Ok(Compressed {
+            learned: self.measured(&front, self.learned)?,
+            tested: self.measured(&front, self.tested)?,
+            project_us: self.one_thread.install(|| self.time_front(&front))?,
+        })
+    }
+
+    fn chain(
+        &self,
+        (ensemble, ratio): (Ensemble, f64),
+        classifier: ClassifierKind,
+        before: &Compressed,
+        sense_us: f64,
+    ) -> Result<SpeedAccuracyTables> {
+        let cell = ChainCell {
+            pitch_mm: millimetres(self.patch.grid.pitch),
+            n_taxels: self.patch.grid.n_taxels(),
+            tolerance_mm: self.level.mm,
+            ensemble,
+            ratio,
+            measurements: before.learned.ncols(),
+            classifier,
+        };
+        let rows = (before.learned.view(), before.tested.view());
+        let (score, [classify_us, fit_s]) =
+            self.one_thread.install(|| self.learn(classifier, rows))?;
+        let project_us = before.project_us;
+        let time = ChainTime {
+            sense_us,
+            project_us,
+            classify_us,
+            decision_us: sense_us + project_us + classify_us,
+            fit_s,
+        };
+        Ok(SpeedAccuracyTables {
+            recognition: vec![(cell.clone(), score)],
+            recognition_timing: vec![(cell, time)],
+            ..SpeedAccuracyTables::default()
+        })
     }
 
     /// Each touch is noisy in its own way, by its name.
