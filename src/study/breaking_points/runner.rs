@@ -1,7 +1,7 @@
-//! Runs a study of breaking points: every value of every way on all threads.
+//! What happens at a value of a way, and where the values of a way break it.
 
 use super::half::Curve;
-use super::plan::{BreakingPointsPlan, PlannedValue, PlannedWay};
+use super::plan::{PlannedValue, PlannedWay};
 use super::table::{BreakingPoint, BreakingPointsTables, Side, WayCell};
 use crate::error::{Error, Result};
 use crate::objects::Object;
@@ -11,8 +11,7 @@ use crate::recognition::bootstrap::Bootstrap;
 use crate::study::evaluation::{Evaluation, Trial};
 use crate::study::frames::Frames;
 use crate::study::measurement::{Measurements, measure_group};
-use crate::study::object_files::{load_objects, objects_content};
-use crate::study::pieces::{NamedPiece, PieceRows, PieceStudy, PiecesLeft};
+use crate::study::object_files::load_objects;
 use crate::study::plan::Plan;
 use crate::study::progress::{Progress, Silent};
 use crate::study::simulation::{TouchedObject, draw_touches, simulate_array};
@@ -22,92 +21,12 @@ use crate::study::sweep::Sweep;
 use crate::study::table::{Cell, CellScore};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
-use std::collections::BTreeMap;
-use std::path::{Path, PathBuf};
-
-/// A study of breaking points, and where packings are looked for and kept, if anywhere.
-pub struct BreakingPointsStudy {
-    /// What to run.
-    pub plan: BreakingPointsPlan,
-    /// The folder of packings.
-    pub packings: Option<PathBuf>,
-}
-
-/// What was found at a value of a way, or at several.
-#[derive(Clone, Debug, Default, Serialize, Deserialize)]
-pub struct DrivenRows(Vec<Evaluated>);
-
-impl PieceRows for DrivenRows {
-    fn append(&mut self, next: Self) {
-        self.0.extend(next.0);
-    }
-}
-
-impl BreakingPointsStudy {
-    /// SHA-256 of what each object is made from, by its name, over all sets of objects that ways touch.
-    ///
-    /// # Errors
-    /// Objects that are not there.
-    pub fn content(&self) -> Result<BTreeMap<String, String>> {
-        let mut content = BTreeMap::new();
-        let values = self.plan.ways.iter().flat_map(|way| &way.values);
-        for spec in object_specs(values) {
-            content.extend(objects_content(spec)?);
-        }
-        Ok(content)
-    }
-
-    /// All values of all ways, each with its name as a piece.
-    fn named_values(&self) -> impl Iterator<Item = (String, &PlannedWay, &PlannedValue)> {
-        let ways = self.plan.ways.iter();
-        ways.flat_map(|way| {
-            let values = way.values.iter();
-            values.map(move |value| (format!("{} at {}", way.name, value.value), way, value))
-        })
-    }
-}
-
-impl PieceStudy for BreakingPointsStudy {
-    type Rows = DrivenRows;
-    type Tables = BreakingPointsTables;
-
-    fn pieces(&self) -> Vec<NamedPiece> {
-        NamedPiece::each_alone(self.named_values().map(|(name, ..)| name))
-    }
-
-    fn measure(&self, left: &PiecesLeft<DrivenRows>) -> Result<()> {
-        let values = left.of(self.named_values(), |(name, ..)| name.clone());
-        let plans = values.iter().map(|(.., value)| *value);
-        let sets = ObjectSets::load(plans, self.packings.as_deref(), left.progress)?;
-        left.progress.stage("drive", values.len() as u64);
-        values
-            .par_iter()
-            // One at a time: values of one way may all be slow.
-            .with_max_len(1)
-            .try_for_each(|(name, way, value)| {
-                left.finish(name, || {
-                    let found = evaluate(way, value, &sets).map_err(|error| {
-                        error.under(format!("way {} at {}, ", way.name, value.value))
-                    })?;
-                    Ok(DrivenRows(vec![found]))
-                })
-            })
-    }
-
-    fn tables(&self, rows: DrivenRows) -> Result<BreakingPointsTables> {
-        let mut tables = BreakingPointsTables::default();
-        let mut evaluated = rows.0.into_iter().peekable();
-        for way in &self.plan.ways {
-            let of_way =
-                std::iter::from_fn(|| evaluated.next_if(|found| found.way == way.name)).collect();
-            add_way(&mut tables, way, of_way, self.plan.spec.seed)?;
-        }
-        Ok(tables)
-    }
-}
+use std::path::Path;
 
 /// What says which objects some values touch, each once.
-fn object_specs<'a>(values: impl Iterator<Item = &'a PlannedValue>) -> Vec<&'a ObjectsSpec> {
+pub(super) fn object_specs<'a>(
+    values: impl Iterator<Item = &'a PlannedValue>,
+) -> Vec<&'a ObjectsSpec> {
     let plans = values.flat_map(|value| [Some(&value.learned), value.tested.as_ref()]);
     let mut specs: Vec<&ObjectsSpec> = Vec::new();
     for plan in plans.flatten() {
@@ -119,10 +38,10 @@ fn object_specs<'a>(values: impl Iterator<Item = &'a PlannedValue>) -> Vec<&'a O
 }
 
 /// The objects that ways touch, by what says so.
-struct ObjectSets(Vec<(ObjectsSpec, Vec<Object>)>);
+pub(super) struct ObjectSets(Vec<(ObjectsSpec, Vec<Object>)>);
 
 impl ObjectSets {
-    fn load<'a>(
+    pub fn load<'a>(
         values: impl Iterator<Item = &'a PlannedValue>,
         packings: Option<&Path>,
         progress: &dyn Progress,
@@ -181,15 +100,20 @@ impl<'a> World<'a> {
 
 /// What was found at a value.
 #[derive(Clone, Debug, Serialize, Deserialize)]
-struct Evaluated {
-    way: String,
+pub(super) struct Evaluated {
+    pub way: String,
     value: f64,
     n_objects: usize,
     /// The trials of each classifier.
     classifiers: Vec<(ClassifierKind, Vec<Evaluation>)>,
 }
 
-fn evaluate(way: &PlannedWay, value: &PlannedValue, sets: &ObjectSets) -> Result<Evaluated> {
+/// Learns and tests at a value, in all trials.
+pub(super) fn evaluate(
+    way: &PlannedWay,
+    value: &PlannedValue,
+    sets: &ObjectSets,
+) -> Result<Evaluated> {
     let learned = World::new(&value.learned, sets)?;
     let tested = value.tested.as_ref().map(|plan| World::new(plan, sets));
     let tested = tested.transpose()?;
@@ -256,7 +180,7 @@ fn check_alike(learned: &World, tested: &World) -> Result<()> {
 }
 
 /// The rows of a way, value by value, and where it breaks each classifier.
-fn add_way(
+pub(super) fn add_way(
     tables: &mut BreakingPointsTables,
     way: &PlannedWay,
     evaluated: Vec<Evaluated>,

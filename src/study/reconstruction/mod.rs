@@ -6,6 +6,9 @@
 //! Noise is on taxels, before Φ. Dictionaries, covariances and which atoms to keep are learned from the **clean** frames of
 //! training touches, which a simulator has; test touches are never seen by them.
 
+mod isometry;
+mod job;
+mod measured;
 mod plan;
 mod runner;
 mod score;

@@ -19,6 +19,7 @@ mod engines;
 mod peers;
 mod plan;
 mod recognition;
+mod recognition_part;
 mod resolution;
 mod runner;
 mod solid_contact;

@@ -3,7 +3,7 @@
 use super::contact::ContactPart;
 use super::peers::read_peers;
 use super::plan::SpeedAccuracyPlan;
-use super::recognition::RecognitionPart;
+use super::recognition_part::RecognitionPart;
 use super::resolution::ResolutionPart;
 use super::subject::{Subject, load_subjects};
 use super::table::SpeedAccuracyTables;
