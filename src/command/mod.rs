@@ -66,11 +66,11 @@ enum Command {
     Merge(merge::Args),
     /// Run a study as an array of Slurm jobs, and the merge after them; what failed is submitted again by the same command
     Slurm(slurm::Args),
-    /// Write the charts and the page of a folder of results again, from its tables
+    /// Write the charts and the page of a folder of results again, from its tables (of studies that recognise)
     Report(report::Args),
     /// Say what moved between two folders of results, and whether chance explains it
     Compare(compare::Args),
-    /// Run a few cells of a folder of results again, and say whether they are the same bytes
+    /// Run a few cells or pieces of a folder of results again, and say whether they are the same bytes
     Verify(verify::Args),
     /// List or remove the touches that studies keep beside their results
     Cache(cache::Args),

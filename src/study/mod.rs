@@ -75,7 +75,8 @@ pub use estimate::Estimate;
 pub use evaluation::CONFIDENCE;
 pub use feature_files::{FeatureSet, cell_features, read_features, write_features, write_npy};
 pub use frames::{
-    CachedTouches, FrameFacts, FrameStorage, FrameWriter, Frames, KeptFrames, TouchCache,
+    CachedTouches, FrameFacts, FrameStorage, FrameWriter, Frames, KeptFrames, KeyedTouches,
+    TouchCache,
 };
 pub use human_touches::{HumanTouches, RecordedTouch, record_touch};
 pub use imperfection::{IMPERFECTIONS, Imperfection, Strengths, TestedOn};
