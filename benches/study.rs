@@ -81,6 +81,7 @@ impl PieceStudy for Nothing {
 /// Two objects on an array of 64 taxels, in 12,000 ways.
 const STUDY: &str = r#"
 question = "What does the engine cost?"
+trials = 1
 
 [objects]
 sets = ["cans"]

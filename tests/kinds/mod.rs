@@ -295,6 +295,7 @@ ratio = [4.0, 16.0]
 /// A way whose last value leaves nothing to learn from.
 pub const IMBALANCED: &str = r#"
 question = "What if some values cannot be?"
+trials = 1
 
 [objects]
 sets = ["cans"]
