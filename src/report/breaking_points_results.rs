@@ -4,10 +4,25 @@ use super::breaking_points_charts::{break_words, draw_breaking_points};
 use crate::error::Result;
 use crate::report::axis::{classifier_name, short_number};
 use crate::report::folder::Folder;
+use crate::report::study_tables::{StudyTables, TableFiles, table_file};
 use crate::report::terminal::{align_right, plain_table};
 use crate::study::breaking_points::PlannedWay;
 use crate::study::breaking_points::table::{BreakingPointsTables, Side};
 use std::path::{Path, PathBuf};
+
+impl StudyTables for BreakingPointsTables {
+    const OF_PIECES: &'static [&'static str] = &["accuracy.csv", "summary.csv"];
+    const OF_ALL: &'static [&'static str] = &["breaking_points.csv"];
+
+    fn files(&self) -> Result<TableFiles> {
+        Ok(vec![
+            table_file("accuracy.csv", &self.accuracy)?,
+            table_file("summary.csv", &self.summary)?,
+            table_file("breaking_points.csv", &self.breaking_points)?,
+            table_file("timing.csv", &self.timing)?,
+        ])
+    }
+}
 
 /// Writes tables and charts into `dir` (created if missing); returns the paths, tables first.
 ///
@@ -18,10 +33,7 @@ pub fn write_breaking_points(
     tables: &BreakingPointsTables,
 ) -> Result<Vec<PathBuf>> {
     let mut folder = Folder::new(dir);
-    folder.add_table("accuracy.csv", &tables.accuracy)?;
-    folder.add_table("summary.csv", &tables.summary)?;
-    folder.add_table("breaking_points.csv", &tables.breaking_points)?;
-    folder.add_table("timing.csv", &tables.timing)?;
+    folder.add_files(tables.files()?);
     for (name, title, drawing) in draw_breaking_points(ways, tables) {
         folder.add_chart(&name, &title, &drawing)?;
     }

@@ -57,6 +57,7 @@ pub mod snapshots;
 pub mod speed_accuracy;
 pub mod stability_map;
 pub mod stability_results;
+pub mod study_tables;
 pub mod terminal;
 pub mod text_width;
 mod time_scale;

@@ -1,0 +1,58 @@
+//! Studies of a whole body of skin.
+
+use super::piece_kind::PieceKind;
+use super::study_args::StudyArgs;
+use bubbletouch::Result;
+use bubbletouch::report::page::StudyAbout;
+use bubbletouch::report::whole_body_results::{whole_body_summary, write_whole_body};
+use bubbletouch::study::file_content;
+use bubbletouch::study::whole_body::table::WholeBodyTables;
+use bubbletouch::study::whole_body::{WholeBodyPlan, picture_body};
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+
+pub struct WholeBodyKind {
+    plan: WholeBodyPlan,
+    /// The robot's file.
+    robot: PathBuf,
+}
+
+impl PieceKind for WholeBodyKind {
+    type Study = WholeBodyPlan;
+
+    fn load(args: &StudyArgs, _packings: PathBuf) -> Result<Self> {
+        let plan = args.whole_body_plan()?;
+        let robot = args.folder().join(&plan.spec.whole_body.robot);
+        Ok(Self { plan, robot })
+    }
+
+    fn study(&self) -> &WholeBodyPlan {
+        &self.plan
+    }
+
+    fn to_toml(&self) -> String {
+        self.plan.spec.to_toml()
+    }
+
+    fn asked(&self) -> (&str, &str) {
+        (&self.plan.spec.question, &self.plan.spec.expected)
+    }
+
+    fn seed(&self) -> u64 {
+        self.plan.spec.seed
+    }
+
+    fn content(&self) -> Result<BTreeMap<String, String>> {
+        let robot = file_content(&self.robot)?;
+        Ok([("robot".to_owned(), robot)].into())
+    }
+
+    fn write(&self, tables: &WholeBodyTables, folder: &Path, about: &StudyAbout) -> Result<()> {
+        let picture = picture_body(&self.plan, tables)?;
+        write_whole_body(folder, (tables, picture.as_ref()), about).map(drop)
+    }
+
+    fn words(&self, tables: &WholeBodyTables, width: usize) -> String {
+        whole_body_summary(tables, width)
+    }
+}
