@@ -1,5 +1,6 @@
 //! The folder of a study of stability, and what it prints at its end.
 
+use super::stability_joints::draw_joints;
 use super::stability_map::{draw_stability_maps, method_name};
 use crate::error::Result;
 use crate::report::folder::Folder;
@@ -26,7 +27,8 @@ pub fn write_stability(
     folder.add_table(cells, &tables.stability)?;
     folder.add_table(summary, &tables.summary)?;
     folder.add_table(timing, &tables.timing)?;
-    let maps = draw_stability_maps(tables);
+    let mut maps = draw_stability_maps(tables);
+    maps.extend(draw_joints(tables));
     for (name, title, drawing) in &maps {
         folder.add_chart(name, title, drawing)?;
     }
