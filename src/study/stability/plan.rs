@@ -162,9 +162,7 @@ impl PartCheck<'_> {
                 refuse(other, "a mass", "no such key: the ball's motion is imposed")
             }
             (None, None, _) => refuse(one, "none", "a mass: the ball is free"),
-            (Some(_), Some(_), _) => {
-                refuse(other, "a mass", "one of this key and object_mass_kg")
-            }
+            (Some(_), Some(_), _) => refuse(other, "a mass", "one of this key and object_mass_kg"),
             (Some(axis), None, _) => {
                 let masses = self.positive(one, axis)?;
                 Ok(masses.into_iter().map(ObjectMass::Of).collect())
