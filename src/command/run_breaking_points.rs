@@ -1,5 +1,6 @@
 //! `bubbletouch run` of a study of where recognition breaks.
 
+use super::about_study::study_about;
 use super::listener::Listener;
 use super::output::{output_folder, packings_beside, terminal_width};
 use super::study_args::StudyArgs;
@@ -20,13 +21,19 @@ pub fn run_breaking_points(args: &StudyArgs, listener: Listener, folder: &Path) 
     let packings = packings_beside(folder);
     let tables = find_breaking_points(&plan, Some(&packings), progress.as_ref())?;
     progress.stage("report", 1);
-    write_breaking_points(folder, &plan.ways, &tables)?;
+    let asked = (&plan.spec.question[..], &plan.spec.expected[..]);
+    let about = study_about(args, asked, start)?;
+    write_breaking_points(folder, &plan.ways, &tables, &about)?;
     write_bytes(&folder.join("study.toml"), plan.spec.to_toml().as_bytes())?;
     if !listener.wrote(folder, progress.as_ref(), start) {
         return Ok(());
     }
     println!("{}\n", plan.spec.question);
     println!("{}", breaking_points_summary(&tables, terminal_width()));
-    println!("Results in {}", folder.display());
+    println!(
+        "Results in {}; open {}",
+        folder.display(),
+        folder.join("report.html").display()
+    );
     Ok(())
 }

@@ -10,6 +10,7 @@ use super::legend::{
 use super::log_scale::{LogScale, draw_axes, draw_x_ticks};
 use super::panels::Panels;
 use super::stability_map::method_name;
+use super::time_scale::time_words;
 use crate::dynamics::skin_sim::UNSTABLE_JOINTS;
 use crate::report::axis::short_number;
 use crate::report::colours::{GRID, INK};
@@ -29,6 +30,27 @@ struct Rung<'a> {
     outcome: Outcome,
     /// Seconds a simulated second; of what steps nothing, in all.
     seconds: f64,
+}
+
+impl Rung<'_> {
+    /// A line each.
+    fn said(&self) -> Vec<String> {
+        let came = match self.outcome {
+            Outcome::Right => "right",
+            Outcome::Inaccurate => "worse than 1 %",
+            Outcome::MissedContact => "contact was missed",
+            Outcome::EnergyGrowth => "gained energy",
+            Outcome::NotFinite => "not finite",
+        };
+        let time = match self.cell.method {
+            ContactMethod::QuasiStatic => "for the whole answer",
+            _ => "of computing a simulated second",
+        };
+        vec![
+            came.to_owned(),
+            format!("{} {time}", time_words(self.seconds)),
+        ]
+    }
 }
 
 /// A method with its iterations.
@@ -189,6 +211,12 @@ impl Ladder<'_> {
             }
             for (rung, &place) in rungs.iter().zip(&places) {
                 draw_outcome(drawing, number, place, rung.outcome);
+                let title = format!(
+                    "{}, {} joints",
+                    method_name(line.0, line.1),
+                    joints(rung.cell)
+                );
+                drawing.ask(place, number, title, rung.said());
             }
         }
     }

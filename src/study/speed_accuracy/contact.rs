@@ -2,9 +2,12 @@
 
 use super::engines::{StepMethod, Stepper};
 use super::plan::{ContactPlan, SpeedAccuracyPlan, Tolerance};
+use super::single_contact::{FlatRows, Precision};
 use super::solid_contact::press_solid;
 use super::subject::{Subject, spread_evenly};
-use super::table::{ContactCell, ContactScore, ContactTime, ContactWay, SpeedAccuracyTables};
+use super::table::{
+    ContactCell, ContactScore, ContactTime, ContactWay, SpeedAccuracyTables, Touched,
+};
 use crate::error::Result;
 use crate::objects::Model;
 use crate::quantile::quantile;
@@ -18,9 +21,12 @@ use std::time::Instant;
 
 /// Millimetres in a metre.
 const MM: f64 = 1e3;
+/// How often each touch by rows is timed.
+const N_REPEATS: usize = 5;
 
 /// An object with its models and what exact contact says.
 struct Ready<'a> {
+    touched: Touched,
     subject: &'a Subject,
     truth: Truth,
     models: Vec<(ContactWay, Option<Tolerance>, Model)>,
@@ -30,18 +36,23 @@ struct Ready<'a> {
 pub(super) fn measure_contact(
     plan: &SpeedAccuracyPlan,
     contact: &ContactPlan,
-    (subjects, packings): (&[Subject], Option<&Path>),
+    (subjects, scans, packings): (&[Subject], &[Subject], Option<&Path>),
     progress: &dyn Progress,
     tables: &mut SpeedAccuracyTables,
 ) -> Result<()> {
     let chosen = spread_evenly(subjects, contact.spec.objects);
+    let chosen: Vec<(Touched, &Subject)> = chosen
+        .into_iter()
+        .map(|subject| (Touched::Object, subject))
+        .chain(scans.iter().map(|scan| (Touched::Scan, scan)))
+        .collect();
     progress.stage("models", chosen.len() as u64);
     let ready = chosen
         .into_par_iter()
         // One at a time: to pack a mesh takes from seconds to a minute.
         .with_max_len(1)
-        .map(|subject| {
-            let ready = prepare(plan, contact, subject, packings);
+        .map(|touched| {
+            let ready = prepare(plan, contact, touched, packings);
             progress.advance(1);
             ready
         })
@@ -51,7 +62,11 @@ pub(super) fn measure_contact(
         measure_models(plan, object, tables);
         progress.advance(1);
     }
-    let stepped = spread_evenly(&ready, contact.spec.stepped_objects);
+    let objects: Vec<&Ready> = ready
+        .iter()
+        .filter(|ready| ready.touched == Touched::Object)
+        .collect();
+    let stepped = spread_evenly(&objects, contact.spec.stepped_objects);
     let methods = StepMethod::built();
     let n_runs = stepped.len() * methods.len() * contact.dts.len();
     progress.stage("step through time", n_runs as u64);
@@ -83,7 +98,7 @@ pub(super) fn measure_contact(
 fn prepare<'a>(
     plan: &SpeedAccuracyPlan,
     contact: &ContactPlan,
-    subject: &'a Subject,
+    (touched, subject): (Touched, &'a Subject),
     packings: Option<&Path>,
 ) -> Result<Ready<'a>> {
     let placement = Placement {
@@ -103,6 +118,7 @@ fn prepare<'a>(
     models.extend(mesh.map(|model| (ContactWay::ExactMesh, None, model)));
     Ok(Ready {
         truth: subject.truth(&plan.patch, &placement, (finest, &seed))?,
+        touched,
         subject,
         models,
     })
@@ -125,6 +141,7 @@ fn measure_models(plan: &SpeedAccuracyPlan, object: &Ready, tables: &mut SpeedAc
         let us_per_touch = 1e6 * object.truth.seconds_per_touch(model);
         push(tables, cell, score, us_per_touch);
     }
+    measure_precision(plan, object, tables);
     let Some(solid) = object.subject.solid() else {
         return;
     };
@@ -138,6 +155,7 @@ fn measure_models(plan: &SpeedAccuracyPlan, object: &Ready, tables: &mut SpeedAc
         way: ContactWay::SolidMarching,
         tolerance_mm: None,
         dt_ms: None,
+        touched: object.touched,
         object: object.subject.name().to_owned(),
         n_spheres: 0,
     };
@@ -150,6 +168,46 @@ fn measure_models(plan: &SpeedAccuracyPlan, object: &Ready, tables: &mut SpeedAc
     };
     let us_per_touch = 1e6 * quantile(&mut seconds, 0.5);
     push(tables, cell, score, us_per_touch);
+}
+
+/// The packing of the middle detail by rows of a flat patch, in doubles and in singles.
+fn measure_precision(plan: &SpeedAccuracyPlan, object: &Ready, tables: &mut SpeedAccuracyTables) {
+    let (_, tolerance, model) = middle_packing(object);
+    let (Some(mut rows), Some(spheres)) = (FlatRows::new(&plan.patch), model.spheres()) else {
+        return;
+    };
+    let spheres = spheres.spheres();
+    let readings = object.truth.readings();
+    for (way, precision) in [
+        (ContactWay::RowsInDoubles, Precision::Doubles),
+        (ContactWay::RowsInSingles, Precision::Singles),
+    ] {
+        let mut errors: Vec<f64> = Vec::new();
+        for reading in readings {
+            rows.press(precision, spheres, &reading.pressed());
+            let felt = rows.deflections(precision);
+            reading.each_difference(&felt, &mut |difference: f64| errors.push(difference.abs()));
+        }
+        // Every touch was made once before it counts.
+        let timed = (0..N_REPEATS).flat_map(|_| readings).map(|reading| {
+            let start = Instant::now();
+            rows.press(precision, spheres, &reading.pressed());
+            start.elapsed().as_secs_f64()
+        });
+        let mut seconds: Vec<f64> = timed.collect();
+        let cell = ContactCell {
+            way,
+            tolerance_mm: tolerance.map(|tolerance| tolerance.mm),
+            ..cell(object, model)
+        };
+        let score = ContactScore {
+            n_touches: readings.len(),
+            error_mm: Some(MM * errors.iter().sum::<f64>() / errors.len().max(1) as f64),
+            error_p95_mm: Some(MM * quantile(&mut errors, 0.95)),
+            n_steps: None,
+        };
+        push(tables, cell, score, 1e6 * quantile(&mut seconds, 0.5));
+    }
 }
 
 /// Touches of one object by one method with one time step.
@@ -201,6 +259,7 @@ fn cell(object: &Ready, model: &Model) -> ContactCell {
         way: ContactWay::PackedSpheres,
         tolerance_mm: None,
         dt_ms: None,
+        touched: object.touched,
         object: object.subject.name().to_owned(),
         n_spheres: model.n_spheres(),
     }

@@ -138,6 +138,9 @@ fn check_contact(check: &Check, folder: &Path, spec: &ContactSpec) -> Result<Con
     ] {
         check.positive_count(&key(name), count)?;
     }
+    if let Some(scans) = &spec.scans {
+        check.list(&key("scans.names"), scans.names.clone())?;
+    }
     let dts = Axis::Many(spec.dt_ms.clone());
     let dts = check.axis(&key("dt_ms"), &dts, positive, "positive numbers")?;
     Ok(ContactPlan {

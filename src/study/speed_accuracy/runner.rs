@@ -5,7 +5,7 @@ use super::peers::read_peers;
 use super::plan::SpeedAccuracyPlan;
 use super::recognition::measure_recognition;
 use super::resolution::measure_resolution;
-use super::subject::load_subjects;
+use super::subject::{load_scans, load_subjects};
 use super::table::SpeedAccuracyTables;
 use crate::error::Result;
 use crate::study::progress::Progress;
@@ -29,6 +29,8 @@ pub fn measure_speed_accuracy(
     let subjects = load_subjects(&plan.spec.objects)?;
     let objects = (subjects.as_slice(), packings);
     if let Some(contact) = contact {
+        let scans = load_scans(contact.spec.scans.as_ref(), &plan.spec.objects)?;
+        let objects = (subjects.as_slice(), scans.as_slice(), packings);
         measure_contact(plan, contact, objects, progress, &mut tables)?;
     }
     if let Some(sweep) = &plan.recognition {

@@ -2,6 +2,7 @@
 
 use super::plan::Tolerance;
 use super::solid_contact::press_solid;
+use super::spec::ScansSpec;
 use crate::error::Result;
 use crate::geometry::Pose;
 use crate::mesh::Surface;
@@ -39,6 +40,20 @@ pub(super) fn load_subjects(spec: &ObjectsSpec) -> Result<Vec<Subject>> {
         subjects.extend(meshes.into_iter().map(Subject::of_mesh));
     }
     Ok(subjects)
+}
+
+/// The meshes that are touched beside a study's objects; none where their folder is not.
+pub(super) fn load_scans(scans: Option<&ScansSpec>, objects: &ObjectsSpec) -> Result<Vec<Subject>> {
+    let Some(scans) = scans.filter(|scans| scans.meshes.is_dir()) else {
+        return Ok(Vec::new());
+    };
+    let wanted = ObjectsSpec {
+        names: Some(scans.names.clone()),
+        mesh_unit: objects.mesh_unit,
+        ..ObjectsSpec::default()
+    };
+    let meshes = load_named_meshes(&scans.meshes, &wanted)?;
+    Ok(meshes.into_iter().map(Subject::of_mesh).collect())
 }
 
 /// At most `n` of them, spread evenly over the list, the first and the last among them.
