@@ -49,9 +49,9 @@ impl PieceKind for BreakingPointsKind {
         &self,
         tables: &BreakingPointsTables,
         folder: &Path,
-        _about: &StudyAbout,
+        about: &StudyAbout,
     ) -> Result<()> {
-        write_breaking_points(folder, &self.0.plan.ways, tables).map(drop)
+        write_breaking_points(folder, &self.0.plan.ways, tables, about).map(drop)
     }
 
     fn words(&self, tables: &BreakingPointsTables, width: usize) -> String {

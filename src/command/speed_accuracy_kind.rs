@@ -5,7 +5,6 @@ use super::study_args::StudyArgs;
 use bubbletouch::Result;
 use bubbletouch::report::page::StudyAbout;
 use bubbletouch::report::speed_accuracy::{speed_accuracy_summary, write_speed_accuracy};
-use bubbletouch::study::objects_content;
 use bubbletouch::study::speed_accuracy::SpeedAccuracyStudy;
 use bubbletouch::study::speed_accuracy::table::SpeedAccuracyTables;
 use std::collections::BTreeMap;
@@ -39,24 +38,24 @@ impl PieceKind for SpeedAccuracyKind {
     }
 
     fn content(&self) -> Result<BTreeMap<String, String>> {
-        objects_content(&self.0.plan.spec.objects)
+        self.0.content()
     }
 
-    fn write(
-        &self,
-        tables: &SpeedAccuracyTables,
-        folder: &Path,
-        _about: &StudyAbout,
-    ) -> Result<()> {
-        write_speed_accuracy(folder, tables).map(drop)
+    fn write(&self, tables: &SpeedAccuracyTables, folder: &Path, about: &StudyAbout) -> Result<()> {
+        write_speed_accuracy(folder, tables, about).map(drop)
     }
 
     fn words(&self, tables: &SpeedAccuracyTables, width: usize) -> String {
         let mut words = speed_accuracy_summary(tables, width);
-        let contact = self.0.plan.contact.as_ref();
-        let peers = contact.and_then(|contact| contact.peers.as_ref());
-        if let Some(path) = peers.filter(|path| !path.exists()) {
+        let Some(contact) = &self.0.plan.contact else {
+            return words;
+        };
+        if let Some(path) = contact.peers.as_ref().filter(|path| !path.exists()) {
             words += &format!("Without other programs: there is no {}\n", path.display());
+        }
+        if let Some(scans) = self.0.plan.scans().filter(|s| !s.meshes.is_dir()) {
+            let folder = scans.meshes.display();
+            words += &format!("Without scans: there is no folder {folder}; --objects names one\n");
         }
         words
     }

@@ -21,7 +21,7 @@ const QUICKSTART: &str = include_str!("../../experiments/quickstart.toml");
 pub struct StudyArgs {
     /// The study, a TOML file
     pub study: PathBuf,
-    /// A folder of PLY, OBJ or STL meshes, one object a file; replaces the study's objects
+    /// A folder of PLY, OBJ or STL meshes, one object a file; replaces the study's objects, or the folder of its scans
     #[arg(long, value_name = "FOLDER")]
     pub objects: Option<PathBuf>,
     /// Root of all randomness; replaces the study's
@@ -160,7 +160,14 @@ impl StudyArgs {
         let place = self.study.display().to_string();
         let mut spec = SpeedAccuracyStudySpec::parse(&place, &self.text()?)?;
         spec.seed = self.seed.unwrap_or(spec.seed);
-        self.replace_objects(&mut spec.objects);
+        let contact = spec.speed_accuracy.contact.as_mut();
+        match (
+            &self.objects,
+            contact.and_then(|contact| contact.scans.as_mut()),
+        ) {
+            (Some(folder), Some(scans)) => scans.meshes.clone_from(folder),
+            _ => self.replace_objects(&mut spec.objects),
+        }
         SpeedAccuracyPlan::new(&place, &self.folder(), spec)
     }
 

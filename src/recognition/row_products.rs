@@ -21,20 +21,13 @@ impl<'a, T: Scalar> Rows<'a, T> {
     pub fn products(self, rows: &[usize], others: &[usize]) -> Array2<T> {
         let mut products = Array2::zeros((rows.len(), others.len()));
         let to = products.as_slice_mut().expect("a new array is contiguous");
-        if T::products_in_place(self, rows, others, to) {
-            products
-        } else {
-            self.select(rows).dot(&self.select(others).t())
-        }
-    }
-
-    fn select(self, rows: &[usize]) -> Array2<T> {
-        let mut values = Vec::with_capacity(rows.len() * self.n_features);
-        for &row in rows {
-            values.extend_from_slice(self.row(row));
-        }
-        Array2::from_shape_vec((rows.len(), self.n_features), values)
-            .expect("whole rows were copied")
+        let mut to: Vec<&mut [T]> = to.chunks_exact_mut(others.len().max(1)).collect();
+        let [rows, others] = [rows, others].map(|of| {
+            let rows = of.iter().map(|&row| self.row(row));
+            rows.collect::<Vec<&[T]>>()
+        });
+        multiply(&rows, &others, &mut to);
+        products
     }
 
     /// Adds rows, by number, each times a weight; in f64, since large weights may all but cancel.
@@ -57,6 +50,24 @@ impl<'a, T: Scalar> Rows<'a, T> {
     #[inline(always)]
     pub fn row(self, row: usize) -> &'a [T] {
         &self.values[row * self.n_features..][..self.n_features]
+    }
+}
+
+/// Products of rows with others, all equally long: those of each row into a slice.
+pub(crate) fn multiply<T: Scalar>(rows: &[&[T]], others: &[&[T]], to: &mut [&mut [T]]) {
+    if T::products_in_place(rows, others, to) {
+        return;
+    }
+    let whole = |rows: &[&[T]]| {
+        let n_features = rows.first().map_or(0, |row| row.len());
+        Array2::from_shape_vec((rows.len(), n_features), rows.concat())
+            .expect("whole rows were copied")
+    };
+    let products = whole(rows).dot(&whole(others).t());
+    for (to, products) in to.iter_mut().zip(products.rows()) {
+        to.iter_mut()
+            .zip(products)
+            .for_each(|(to, &from)| *to = from);
     }
 }
 
@@ -108,12 +119,10 @@ mod tests {
     ) {
         let n_features = values.len() / 11;
         let all = Rows { values, n_features };
-        let copied = all.select(rows).dot(&all.select(others).t());
-        for products in [all.products(rows, others), copied] {
-            assert_eq!(products.dim(), expected.dim());
-            for (product, expected) in products.iter().zip(expected) {
-                assert!((product.wide() - expected).abs() <= tolerance);
-            }
+        let products = all.products(rows, others);
+        assert_eq!(products.dim(), expected.dim());
+        for (product, expected) in products.iter().zip(expected) {
+            assert!((product.wide() - expected).abs() <= tolerance);
         }
     }
 

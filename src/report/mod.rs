@@ -55,6 +55,7 @@ mod shaded_view;
 mod signal_axis;
 pub mod snapshots;
 pub mod speed_accuracy;
+mod stability_joints;
 pub mod stability_map;
 pub mod stability_results;
 pub mod study_tables;

@@ -1,5 +1,6 @@
 //! The folder of a study of stability, and what it prints at its end.
 
+use super::stability_joints::draw_joints;
 use super::stability_map::{draw_stability_maps, method_name};
 use crate::error::Result;
 use crate::report::folder::Folder;
@@ -37,7 +38,8 @@ pub fn write_stability(
 ) -> Result<Vec<PathBuf>> {
     let mut folder = Folder::new(dir);
     folder.add_files(tables.files()?);
-    let maps = draw_stability_maps(tables);
+    let mut maps = draw_stability_maps(tables);
+    maps.extend(draw_joints(tables));
     for (name, title, drawing) in &maps {
         folder.add_chart(name, title, drawing)?;
     }

@@ -2,9 +2,12 @@
 
 use super::engines::{StepMethod, Stepper};
 use super::plan::{ContactPlan, SpeedAccuracyPlan, Tolerance};
+use super::single_contact::{FlatRows, Precision};
 use super::solid_contact::press_solid;
 use super::subject::{Subject, spread_evenly};
-use super::table::{ContactCell, ContactScore, ContactTime, ContactWay, SpeedAccuracyTables};
+use super::table::{
+    ContactCell, ContactScore, ContactTime, ContactWay, SpeedAccuracyTables, Touched,
+};
 use crate::error::Result;
 use crate::objects::Model;
 use crate::quantile::quantile;
@@ -19,9 +22,12 @@ use std::time::Instant;
 
 /// Millimetres in a metre.
 const MM: f64 = 1e3;
+/// How often each touch by rows is timed.
+const N_REPEATS: usize = 5;
 
 /// An object with its models and what exact contact says.
 struct Ready<'a> {
+    touched: Touched,
     subject: &'a Subject,
     truth: Truth,
     models: Vec<(ContactWay, Option<Tolerance>, Model)>,
@@ -31,7 +37,8 @@ struct Ready<'a> {
 pub(super) struct ContactPart<'a> {
     plan: &'a SpeedAccuracyPlan,
     contact: &'a ContactPlan,
-    chosen: Vec<&'a Subject>,
+    /// Objects of the study, then scans.
+    chosen: Vec<(Touched, &'a Subject)>,
     packings: Option<&'a Path>,
 }
 
@@ -42,12 +49,16 @@ impl<'a> ContactPart<'a> {
     pub fn new(
         plan: &'a SpeedAccuracyPlan,
         contact: &'a ContactPlan,
-        (subjects, packings): (&'a [Subject], Option<&'a Path>),
+        (subjects, scans): (&'a [Subject], &'a [Subject]),
+        packings: Option<&'a Path>,
     ) -> Self {
+        let objects = spread_evenly(subjects, contact.spec.objects).into_iter();
+        let objects = objects.map(|subject| (Touched::Object, subject));
+        let scans = scans.iter().map(|scan| (Touched::Scan, scan));
         Self {
             plan,
             contact,
-            chosen: spread_evenly(subjects, contact.spec.objects),
+            chosen: objects.chain(scans).collect(),
             packings,
         }
     }
@@ -64,18 +75,24 @@ impl<'a> ContactPart<'a> {
     }
 
     fn models_name(&self, object: usize) -> String {
-        format!("contact with {}", self.chosen[object].name())
+        let (touched, subject) = self.chosen[object];
+        let whose = match touched {
+            Touched::Object => "",
+            Touched::Scan => "scan ",
+        };
+        format!("contact with {whose}{}", subject.name())
     }
 
     fn step_name(&self, (method, _, dt_ms, object): &StepRun) -> String {
-        let name = self.chosen[*object].name();
+        let name = self.chosen[*object].1.name();
         format!("{method:?} of {dt_ms} ms with {name}")
     }
 
-    /// Methods and steps outside, so that the tables go by them.
+    /// Methods and steps outside, so that the tables go by them. Scans are not stepped.
     fn steps(&self) -> Vec<StepRun> {
-        let all: Vec<usize> = (0..self.chosen.len()).collect();
-        let stepped = spread_evenly(&all, self.contact.spec.stepped_objects);
+        let is_object = |&object: &usize| self.chosen[object].0 == Touched::Object;
+        let objects: Vec<usize> = (0..self.chosen.len()).filter(is_object).collect();
+        let stepped = spread_evenly(&objects, self.contact.spec.stepped_objects);
         let dts = || self.contact.dts.iter().zip(&self.contact.spec.dt_ms);
         let mut runs = Vec::new();
         for method in StepMethod::built() {
@@ -156,7 +173,7 @@ impl<'a> ContactPart<'a> {
 fn prepare<'a>(
     plan: &SpeedAccuracyPlan,
     contact: &ContactPlan,
-    subject: &'a Subject,
+    (touched, subject): (Touched, &'a Subject),
     packings: Option<&Path>,
 ) -> Result<Ready<'a>> {
     let placement = Placement {
@@ -176,6 +193,7 @@ fn prepare<'a>(
     models.extend(mesh.map(|model| (ContactWay::ExactMesh, None, model)));
     Ok(Ready {
         truth: subject.truth(&plan.patch, &placement, (finest, &seed))?,
+        touched,
         subject,
         models,
     })
@@ -198,6 +216,7 @@ fn measure_models(plan: &SpeedAccuracyPlan, object: &Ready, tables: &mut SpeedAc
         let us_per_touch = 1e6 * object.truth.seconds_per_touch(model);
         push(tables, cell, score, us_per_touch);
     }
+    measure_precision(plan, object, tables);
     let Some(solid) = object.subject.solid() else {
         return;
     };
@@ -211,6 +230,7 @@ fn measure_models(plan: &SpeedAccuracyPlan, object: &Ready, tables: &mut SpeedAc
         way: ContactWay::SolidMarching,
         tolerance_mm: None,
         dt_ms: None,
+        touched: object.touched,
         object: object.subject.name().to_owned(),
         n_spheres: 0,
     };
@@ -223,6 +243,46 @@ fn measure_models(plan: &SpeedAccuracyPlan, object: &Ready, tables: &mut SpeedAc
     };
     let us_per_touch = 1e6 * quantile(&mut seconds, 0.5);
     push(tables, cell, score, us_per_touch);
+}
+
+/// The packing of the middle detail by rows of a flat patch, in doubles and in singles.
+fn measure_precision(plan: &SpeedAccuracyPlan, object: &Ready, tables: &mut SpeedAccuracyTables) {
+    let (_, tolerance, model) = middle_packing(object);
+    let (Some(mut rows), Some(spheres)) = (FlatRows::new(&plan.patch), model.spheres()) else {
+        return;
+    };
+    let spheres = spheres.spheres();
+    let readings = object.truth.readings();
+    for (way, precision) in [
+        (ContactWay::RowsInDoubles, Precision::Doubles),
+        (ContactWay::RowsInSingles, Precision::Singles),
+    ] {
+        let mut errors: Vec<f64> = Vec::new();
+        for reading in readings {
+            rows.press(precision, spheres, &reading.pressed());
+            let felt = rows.deflections(precision);
+            reading.each_difference(&felt, &mut |difference: f64| errors.push(difference.abs()));
+        }
+        // Every touch was made once before it counts.
+        let timed = (0..N_REPEATS).flat_map(|_| readings).map(|reading| {
+            let start = Instant::now();
+            rows.press(precision, spheres, &reading.pressed());
+            start.elapsed().as_secs_f64()
+        });
+        let mut seconds: Vec<f64> = timed.collect();
+        let cell = ContactCell {
+            way,
+            tolerance_mm: tolerance.map(|tolerance| tolerance.mm),
+            ..cell(object, model)
+        };
+        let score = ContactScore {
+            n_touches: readings.len(),
+            error_mm: Some(MM * errors.iter().sum::<f64>() / errors.len().max(1) as f64),
+            error_p95_mm: Some(MM * quantile(&mut errors, 0.95)),
+            n_steps: None,
+        };
+        push(tables, cell, score, 1e6 * quantile(&mut seconds, 0.5));
+    }
 }
 
 /// Touches of one object by one method with one time step.
@@ -274,6 +334,7 @@ fn cell(object: &Ready, model: &Model) -> ContactCell {
         way: ContactWay::PackedSpheres,
         tolerance_mm: None,
         dt_ms: None,
+        touched: object.touched,
         object: object.subject.name().to_owned(),
         n_spheres: model.n_spheres(),
     }

@@ -5,10 +5,12 @@ use super::peers::read_peers;
 use super::plan::SpeedAccuracyPlan;
 use super::recognition_part::RecognitionPart;
 use super::resolution::ResolutionPart;
-use super::subject::{Subject, load_subjects};
+use super::subject::{Subject, load_scans, load_subjects, scans_content};
 use super::table::SpeedAccuracyTables;
 use crate::error::Result;
+use crate::study::objects_content;
 use crate::study::pieces::{NamedPiece, PieceRows, PieceStudy, PiecesLeft};
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 /// A study of speed against accuracy and its objects.
@@ -16,6 +18,8 @@ pub struct SpeedAccuracyStudy {
     /// What to run.
     pub plan: SpeedAccuracyPlan,
     subjects: Vec<Subject>,
+    /// Touched in the part on contact only.
+    scans: Vec<Subject>,
     packings: Option<PathBuf>,
 }
 
@@ -26,11 +30,24 @@ impl SpeedAccuracyStudy {
     /// Objects that are not there.
     pub fn new(plan: SpeedAccuracyPlan, packings: Option<PathBuf>) -> Result<Self> {
         let subjects = load_subjects(&plan.spec.objects)?;
+        let scans = load_scans(plan.scans(), &plan.spec.objects)?;
         Ok(Self {
             plan,
             subjects,
+            scans,
             packings,
         })
+    }
+
+    /// SHA-256 of what each object and scan is made from, by its name.
+    ///
+    /// # Errors
+    /// A file that cannot be read.
+    pub fn content(&self) -> Result<BTreeMap<String, String>> {
+        let objects = &self.plan.spec.objects;
+        let mut content = objects_content(objects)?;
+        content.extend(scans_content(self.plan.scans(), objects)?);
+        Ok(content)
     }
 
     fn objects(&self) -> (&[Subject], Option<&Path>) {
@@ -39,7 +56,9 @@ impl SpeedAccuracyStudy {
 
     fn contact(&self) -> Option<ContactPart<'_>> {
         let contact = self.plan.contact.as_ref()?;
-        Some(ContactPart::new(&self.plan, contact, self.objects()))
+        let objects = (self.subjects.as_slice(), self.scans.as_slice());
+        let packings = self.packings.as_deref();
+        Some(ContactPart::new(&self.plan, contact, objects, packings))
     }
 
     fn recognition(&self) -> Option<RecognitionPart<'_>> {
