@@ -1,6 +1,6 @@
 //! Studies of where recognition breaks.
 
-use super::piece_kind::PieceKind;
+use super::piece_kind::{KindFacts, PieceKind};
 use super::study_args::StudyArgs;
 use bubbletouch::Result;
 use bubbletouch::report::breaking_points_results::{
@@ -9,7 +9,6 @@ use bubbletouch::report::breaking_points_results::{
 use bubbletouch::report::page::StudyAbout;
 use bubbletouch::study::breaking_points::BreakingPointsStudy;
 use bubbletouch::study::breaking_points::table::BreakingPointsTables;
-use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 pub struct BreakingPointsKind(BreakingPointsStudy);
@@ -28,21 +27,14 @@ impl PieceKind for BreakingPointsKind {
         &self.0
     }
 
-    fn to_toml(&self) -> String {
-        self.0.plan.spec.to_toml()
-    }
-
-    fn asked(&self) -> (&str, &str) {
+    fn facts(&self) -> Result<KindFacts> {
         let spec = &self.0.plan.spec;
-        (&spec.question, &spec.expected)
-    }
-
-    fn seed(&self) -> u64 {
-        self.0.plan.spec.seed
-    }
-
-    fn content(&self) -> Result<BTreeMap<String, String>> {
-        self.0.content()
+        Ok(KindFacts {
+            toml: spec.to_toml(),
+            asked: [spec.question.clone(), spec.expected.clone()],
+            seed: spec.seed,
+            content: self.0.content()?,
+        })
     }
 
     fn write(

@@ -1,6 +1,6 @@
 //! Studies of how detailed objects are.
 
-use super::piece_kind::PieceKind;
+use super::piece_kind::{KindFacts, PieceKind};
 use super::study_args::StudyArgs;
 use bubbletouch::Result;
 use bubbletouch::report::object_detail_results::{object_detail_summary, write_object_detail};
@@ -8,7 +8,6 @@ use bubbletouch::report::page::StudyAbout;
 use bubbletouch::study::object_detail::ObjectDetailStudy;
 use bubbletouch::study::object_detail::table::ObjectDetailTables;
 use bubbletouch::study::{load_named_meshes, objects_content};
-use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 pub struct ObjectDetailKind(ObjectDetailStudy);
@@ -30,21 +29,14 @@ impl PieceKind for ObjectDetailKind {
         &self.0
     }
 
-    fn to_toml(&self) -> String {
-        self.0.plan.spec.to_toml()
-    }
-
-    fn asked(&self) -> (&str, &str) {
+    fn facts(&self) -> Result<KindFacts> {
         let spec = &self.0.plan.spec;
-        (&spec.question, &spec.expected)
-    }
-
-    fn seed(&self) -> u64 {
-        self.0.plan.spec.seed
-    }
-
-    fn content(&self) -> Result<BTreeMap<String, String>> {
-        objects_content(&self.0.plan.spec.objects)
+        Ok(KindFacts {
+            toml: spec.to_toml(),
+            asked: [spec.question.clone(), spec.expected.clone()],
+            seed: spec.seed,
+            content: objects_content(&self.0.plan.spec.objects)?,
+        })
     }
 
     fn write(&self, tables: &ObjectDetailTables, folder: &Path, about: &StudyAbout) -> Result<()> {

@@ -29,18 +29,24 @@ pub trait PieceKind: Sized {
     fn load(args: &StudyArgs, packings: PathBuf) -> Result<Self>;
     /// What runs.
     fn study(&self) -> &Self::Study;
-    /// The study with every default spelt out, as TOML.
-    fn to_toml(&self) -> String;
-    /// What it asks, and what was expected.
-    fn asked(&self) -> (&str, &str);
-    /// Root of all randomness.
-    fn seed(&self) -> u64;
-    /// SHA-256 of what the study's text does not say: objects and other files, by name.
-    fn content(&self) -> Result<BTreeMap<String, String>>;
+    /// What its file says, and what that is about.
+    fn facts(&self) -> Result<KindFacts>;
     /// Writes tables, charts and page.
     fn write(&self, tables: &Tables<Self>, folder: &Path, about: &StudyAbout) -> Result<()>;
     /// What a person reads at the end, in lines of about `width` letters.
     fn words(&self, tables: &Tables<Self>, width: usize) -> String;
+}
+
+/// What a study's file says, and what that is about.
+pub struct KindFacts {
+    /// The study with every default spelt out, as TOML.
+    pub toml: String,
+    /// What it asks, and what was expected.
+    pub asked: [String; 2],
+    /// Root of all randomness.
+    pub seed: u64,
+    /// SHA-256 of what the study's text does not say: objects and other files, by name.
+    pub content: BTreeMap<String, String>,
 }
 
 /// The tables of a kind.
@@ -52,6 +58,7 @@ type Rows<K> = <<K as PieceKind>::Study as PieceStudy>::Rows;
 /// A loaded study.
 pub struct PieceRun<K> {
     kind: K,
+    facts: KindFacts,
     identity: Identity,
     n_pieces: usize,
 }
@@ -59,9 +66,11 @@ pub struct PieceRun<K> {
 impl<K: PieceKind> PieceRun<K> {
     pub fn load(args: &StudyArgs, folder: &Path) -> Result<Self> {
         let kind = K::load(args, packings_beside(folder))?;
+        let facts = kind.facts()?;
         Ok(Self {
-            identity: Identity::new(kind.to_toml(), kind.content()?),
+            identity: Identity::new(facts.toml.clone(), facts.content.clone()),
             n_pieces: kind.study().pieces().len(),
+            facts,
             kind,
         })
     }
@@ -139,11 +148,14 @@ impl<K: PieceKind> AnyOutcome for PieceOutcome<'_, K> {
 
     fn write(&self, ended: &EndedRun) -> Result<()> {
         let (kind, folder) = (&self.run.kind, ended.folder);
-        let (question, expected) = kind.asked();
+        let KindFacts {
+            toml, asked, seed, ..
+        } = &self.run.facts;
+        let [question, expected] = asked.clone();
         let about = StudyAbout {
             name: ended.args.name()?,
-            question: question.to_owned(),
-            expected: expected.to_owned(),
+            question,
+            expected,
             wall_s: seconds_since(ended.started),
             command: command_line(ended.args),
             program: PROGRAM.to_owned(),
@@ -153,13 +165,13 @@ impl<K: PieceKind> AnyOutcome for PieceOutcome<'_, K> {
         let rows = to_csv(&self.failures)
             .map_err(|error| Error::io(&failures, "write", std::io::Error::other(error)))?;
         write_bytes(&failures, &rows)?;
-        write_bytes(&folder.join("study.toml"), kind.to_toml().as_bytes())?;
+        write_bytes(&folder.join("study.toml"), toml.as_bytes())?;
         let facts = RunFacts {
             study: about.name,
             command: about.command,
             paths_from: ended.args.folder(),
             started: ended.started,
-            seed: kind.seed(),
+            seed: *seed,
             n_cells: self.run.n_pieces,
             n_trials: 1,
             n_finished_before: ended.n_before,
@@ -173,7 +185,7 @@ impl<K: PieceKind> AnyOutcome for PieceOutcome<'_, K> {
 
     fn tell(&self, folder: &Path) {
         let kind = &self.run.kind;
-        println!("{}\n", kind.asked().0);
+        println!("{}\n", self.run.facts.asked[0]);
         println!("{}", kind.words(&self.tables, terminal_width()));
         let page = folder.join("report.html");
         match page.exists() {

@@ -1,6 +1,6 @@
 //! Studies that reconstruct frames.
 
-use super::piece_kind::PieceKind;
+use super::piece_kind::{KindFacts, PieceKind};
 use super::study_args::StudyArgs;
 use bubbletouch::Result;
 use bubbletouch::random::Seed;
@@ -11,7 +11,6 @@ use bubbletouch::report::reconstruction_text::reconstruction_summary;
 use bubbletouch::study::reconstruction::ReconstructionStudy;
 use bubbletouch::study::reconstruction::table::ReconstructionTables;
 use bubbletouch::study::{draw_touches, load_objects, millimetres, objects_content};
-use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 pub struct ReconstructionKind(ReconstructionStudy);
@@ -30,21 +29,14 @@ impl PieceKind for ReconstructionKind {
         &self.0
     }
 
-    fn to_toml(&self) -> String {
-        self.0.plan.spec.to_toml()
-    }
-
-    fn asked(&self) -> (&str, &str) {
+    fn facts(&self) -> Result<KindFacts> {
         let spec = &self.0.plan.spec;
-        (&spec.question, &spec.expected)
-    }
-
-    fn seed(&self) -> u64 {
-        self.0.plan.spec.seed
-    }
-
-    fn content(&self) -> Result<BTreeMap<String, String>> {
-        objects_content(&self.0.plan.spec.objects)
+        Ok(KindFacts {
+            toml: spec.to_toml(),
+            asked: [spec.question.clone(), spec.expected.clone()],
+            seed: spec.seed,
+            content: objects_content(&self.0.plan.spec.objects)?,
+        })
     }
 
     fn write(

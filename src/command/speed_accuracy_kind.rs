@@ -1,13 +1,12 @@
 //! Studies of what accuracy costs.
 
-use super::piece_kind::PieceKind;
+use super::piece_kind::{KindFacts, PieceKind};
 use super::study_args::StudyArgs;
 use bubbletouch::Result;
 use bubbletouch::report::page::StudyAbout;
 use bubbletouch::report::speed_accuracy::{speed_accuracy_summary, write_speed_accuracy};
 use bubbletouch::study::speed_accuracy::SpeedAccuracyStudy;
 use bubbletouch::study::speed_accuracy::table::SpeedAccuracyTables;
-use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 pub struct SpeedAccuracyKind(SpeedAccuracyStudy);
@@ -24,21 +23,14 @@ impl PieceKind for SpeedAccuracyKind {
         &self.0
     }
 
-    fn to_toml(&self) -> String {
-        self.0.plan.spec.to_toml()
-    }
-
-    fn asked(&self) -> (&str, &str) {
+    fn facts(&self) -> Result<KindFacts> {
         let spec = &self.0.plan.spec;
-        (&spec.question, &spec.expected)
-    }
-
-    fn seed(&self) -> u64 {
-        self.0.plan.spec.seed
-    }
-
-    fn content(&self) -> Result<BTreeMap<String, String>> {
-        self.0.content()
+        Ok(KindFacts {
+            toml: spec.to_toml(),
+            asked: [spec.question.clone(), spec.expected.clone()],
+            seed: spec.seed,
+            content: self.0.content()?,
+        })
     }
 
     fn write(&self, tables: &SpeedAccuracyTables, folder: &Path, about: &StudyAbout) -> Result<()> {

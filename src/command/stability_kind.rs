@@ -1,6 +1,6 @@
 //! Studies of where contact methods break.
 
-use super::piece_kind::PieceKind;
+use super::piece_kind::{KindFacts, PieceKind};
 use super::study_args::StudyArgs;
 use bubbletouch::report::page::StudyAbout;
 use bubbletouch::report::stability_results::{stability_summary, write_stability};
@@ -27,22 +27,15 @@ impl PieceKind for StabilityKind {
         &self.0
     }
 
-    fn to_toml(&self) -> String {
-        self.0.spec.to_toml()
-    }
-
-    fn asked(&self) -> (&str, &str) {
-        (&self.0.spec.question, &self.0.spec.expected)
-    }
-
-    /// Nothing is drawn at random.
-    fn seed(&self) -> u64 {
-        0
-    }
-
-    /// With an engine more cells are laid out than without.
-    fn content(&self) -> Result<BTreeMap<String, String>> {
-        Ok(BTreeMap::new())
+    /// Nothing is drawn at random, and no object is loaded.
+    fn facts(&self) -> Result<KindFacts> {
+        let spec = &self.0.spec;
+        Ok(KindFacts {
+            toml: spec.to_toml(),
+            asked: [spec.question.clone(), spec.expected.clone()],
+            seed: 0,
+            content: BTreeMap::new(),
+        })
     }
 
     fn write(&self, tables: &StabilityTables, folder: &Path, about: &StudyAbout) -> Result<()> {

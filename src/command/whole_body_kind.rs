@@ -1,6 +1,6 @@
 //! Studies of a whole body of skin.
 
-use super::piece_kind::PieceKind;
+use super::piece_kind::{KindFacts, PieceKind};
 use super::study_args::StudyArgs;
 use bubbletouch::Result;
 use bubbletouch::report::page::StudyAbout;
@@ -8,7 +8,6 @@ use bubbletouch::report::whole_body_results::{whole_body_summary, write_whole_bo
 use bubbletouch::study::file_content;
 use bubbletouch::study::whole_body::table::WholeBodyTables;
 use bubbletouch::study::whole_body::{WholeBodyPlan, picture_body};
-use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 pub struct WholeBodyKind {
@@ -30,21 +29,14 @@ impl PieceKind for WholeBodyKind {
         &self.plan
     }
 
-    fn to_toml(&self) -> String {
-        self.plan.spec.to_toml()
-    }
-
-    fn asked(&self) -> (&str, &str) {
-        (&self.plan.spec.question, &self.plan.spec.expected)
-    }
-
-    fn seed(&self) -> u64 {
-        self.plan.spec.seed
-    }
-
-    fn content(&self) -> Result<BTreeMap<String, String>> {
-        let robot = file_content(&self.robot)?;
-        Ok([("robot".to_owned(), robot)].into())
+    fn facts(&self) -> Result<KindFacts> {
+        let spec = &self.plan.spec;
+        Ok(KindFacts {
+            toml: spec.to_toml(),
+            asked: [spec.question.clone(), spec.expected.clone()],
+            seed: spec.seed,
+            content: [("robot".to_owned(), file_content(&self.robot)?)].into(),
+        })
     }
 
     fn write(&self, tables: &WholeBodyTables, folder: &Path, about: &StudyAbout) -> Result<()> {
