@@ -3,13 +3,12 @@
 //! `cargo bench --bench precision` prints a table; with `-- --write`, it also goes to `results/whole_body/precision.csv`, and as a chart
 //! to `precision.svg` and `.png` beside it.
 //!
-//! The same kernel, that of a flat patch, in both: spheres in the patch's frame, rows of the footprint, blocks of a register of 512 bits,
-//! no root where no deflection is beaten. Coordinates are from the middle of the patch, so that singles are as good as they can be.
+//! The same kernel in both: `contact::flat_rows`.
 
+use bubbletouch::contact::flat_rows::{press_f32, press_f64};
 use bubbletouch::files::{CsvFile, write_bytes};
 use bubbletouch::random::Seed;
 use clock::seconds;
-use multiversion::multiversion;
 use precision_chart::draw;
 use rand::Rng;
 use serde::Serialize;
@@ -50,66 +49,6 @@ pub struct Row {
     pub error_max_m: f64,
     pub error_mean_m: f64,
 }
-
-macro_rules! kernel {
-    ($name:ident, $real:ty, $lanes:expr) => {
-        /// Presses spheres (x, y, h, S) on n × n taxels.
-        #[multiversion(targets(
-            "x86_64+avx512f+avx512bw+avx512dq+avx512vl+avx2+fma",
-            "x86_64+avx2+fma"
-        ))]
-        fn $name(spheres: &[[f64; 4]], places: &[$real], deflections: &mut [$real]) {
-            let n = places.len();
-            let density = 1.0 / (places[1] - places[0]);
-            deflections.fill(0.0);
-            for sphere in spheres {
-                let (x, y, h, s) = (
-                    sphere[0] as $real,
-                    sphere[1] as $real,
-                    sphere[2] as $real,
-                    sphere[3] as $real,
-                );
-                let lift = if h > 0.0 { h } else { 0.0 };
-                for row in 0..n {
-                    let dy = places[row] - y;
-                    let left = s * s - lift * lift - dy * dy;
-                    if left <= 0.0 {
-                        continue;
-                    }
-                    let (middle, spread) = ((x - places[0]) * density, left.sqrt() * density);
-                    let first = (middle - spread).max(0.0) as usize / $lanes;
-                    let last = (((middle + spread).max(0.0) as usize + 1).min(n)).div_ceil($lanes);
-                    for block in first..last {
-                        let start = block * $lanes;
-                        let places = &places[start..start + $lanes];
-                        let taxels = &mut deflections[row * n + start..][..$lanes];
-                        let (mut squares, mut raised) = ([0.0; $lanes], [0.0; $lanes]);
-                        let mut beaten = 0_u32;
-                        for k in 0..$lanes {
-                            let dx = places[k] - x;
-                            squares[k] = (s * s - dy * dy) - dx * dx;
-                            raised[k] = taxels[k];
-                            let bar = (h + raised[k]).max(0.0);
-                            beaten |= u32::from(squares[k] > bar * bar) << k;
-                        }
-                        if beaten == 0 {
-                            continue;
-                        }
-                        for k in 0..$lanes {
-                            let needed = squares[k].sqrt() - h;
-                            let needed = if squares[k] > 0.0 { needed } else { 0.0 };
-                            raised[k] = raised[k].max(needed);
-                        }
-                        taxels.copy_from_slice(&raised);
-                    }
-                }
-            }
-        }
-    };
-}
-
-kernel!(press_f64, f64, 8);
-kernel!(press_f32, f32, 16);
 
 /// Spheres of about a radius, anywhere over n × n taxels.
 fn spheres(n: usize, radius: f64, is_light: bool, touch: u64) -> Vec<[f64; 4]> {

@@ -1,6 +1,8 @@
 //! Where learning could break: C at its ends, wrong labels, classes of two rows and of one in a hundred. Each case has the
 //! behaviour that `guide::limits` states.
 
+mod svm_conditions;
+
 use bubbletouch::random::Seed;
 use bubbletouch::recognition::ClassifierKind;
 use bubbletouch::recognition::class_model::ClassModel;
@@ -9,10 +11,11 @@ use bubbletouch::recognition::dataset::{Dataset, dataset};
 use bubbletouch::recognition::kernel::{Gamma, Kernel};
 use bubbletouch::recognition::linear_svm::{LinearMargin, LinearSvmParams};
 use bubbletouch::recognition::spoiled::mislabelled;
-use bubbletouch::recognition::svm::{BinaryProblem, SvmParams};
+use bubbletouch::recognition::svm::SvmParams;
 use ndarray::{Array1, Array2, array};
 use rand::Rng;
 use rand_distr::StandardNormal;
+use svm_conditions::violation;
 
 const KERNELS: [Kernel; 2] = [
     Kernel::Linear,
@@ -52,55 +55,6 @@ fn five() -> Dataset {
         array![0, 1, 0, 1, 0],
     )
     .unwrap()
-}
-
-fn kernel_value(kernel: Kernel, data: &Dataset, i: usize, j: usize) -> f64 {
-    let (x, z) = (data.records.row(i), data.records.row(j));
-    match kernel {
-        Kernel::Rbf {
-            gamma: Gamma::Value(gamma),
-        } => {
-            let apart = &x - &z;
-            (-gamma * apart.dot(&apart)).exp()
-        }
-        _ => x.dot(&z),
-    }
-}
-
-/// How far the optimality conditions are violated, in units of the decision value, and what f64 can know of them.
-fn violation(params: &SvmParams, data: &Dataset, problem: &BinaryProblem) -> (f64, f64) {
-    let rows = &problem.rows;
-    let coefficients = &problem.solution.coefficients;
-    let (mut worst, mut known): (f64, f64) = (0.0, 0.0);
-    let mut signed_sum = 0.0;
-    for (&row, &coefficient) in rows.iter().zip(coefficients) {
-        let sign = if data.targets[row] == problem.positive {
-            1.0
-        } else {
-            -1.0
-        };
-        let multiplier = sign * coefficient;
-        signed_sum += coefficient;
-        assert!(multiplier >= 0.0 && multiplier <= params.c * (1.0 + 1e-12));
-        let terms = rows.iter().zip(coefficients);
-        let terms: Vec<f64> = terms
-            .map(|(&other, a)| a * kernel_value(params.kernel, data, row, other))
-            .collect();
-        let margin = sign * (terms.iter().sum::<f64>() - problem.solution.rho);
-        let size: f64 = terms.iter().map(|term| term.abs()).sum();
-        known = known.max(16.0 * f64::EPSILON * size);
-        if multiplier < params.c * (1.0 - 1e-12) {
-            worst = worst.max(1.0 - margin);
-        }
-        if multiplier > 0.0 {
-            worst = worst.max(margin - 1.0);
-        }
-    }
-    assert!(
-        signed_sum.abs() <= 1e-12 * params.c * rows.len() as f64,
-        "Σ yα = {signed_sum}"
-    );
-    (worst, known)
 }
 
 #[test]

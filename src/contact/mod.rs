@@ -37,6 +37,7 @@ mod coulomb;
 mod crossing;
 mod damper;
 mod envelope;
+pub mod flat_rows;
 mod friction;
 mod grid_lines;
 mod hold_force;

@@ -24,6 +24,8 @@
 
 mod implicit_euler;
 #[cfg(feature = "rapier")]
+mod rapier_settings;
+#[cfg(feature = "rapier")]
 mod rapier_world;
 mod recording;
 mod rest;
@@ -34,7 +36,9 @@ mod system;
 
 pub use implicit_euler::ImplicitEuler;
 #[cfg(feature = "rapier")]
-pub use rapier_world::{RapierContacts, RapierSettings, RapierWorld};
+pub use rapier_settings::{RapierContacts, RapierJoints, RapierSettings};
+#[cfg(feature = "rapier")]
+pub use rapier_world::RapierWorld;
 pub use recording::{Divergence, DynamicRecording, Steps, run};
 pub use rest::{Rest, rest};
 pub use semi_implicit::SemiImplicit;

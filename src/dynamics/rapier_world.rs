@@ -1,89 +1,18 @@
 //! The same scene in a rigid-body engine: rapier, in f64.
 //!
-//! Each taxel is a ball on a prismatic joint: its motor is the spring and the damper, its limit the stroke. The object is one body with a
-//! ball for each sphere. Both are held on their lines by locked axes as well, so that the solver's iterations are left for what
-//! matters; taxels pass through each other. (Joints by coordinates, rapier's multibodies, are twenty times slower and no more exact.)
+//! Each taxel is a ball on a prismatic joint whose limit is the stroke; what its spring and damper are, [`RapierJoints`] says. The object
+//! is one body with a ball for each sphere; taxels pass through each other. (Joints by coordinates, rapier's multibodies, are twenty
+//! times slower and no more exact.)
 
+use super::rapier_settings::{RapierJoints, RapierSettings};
 use super::state::{Integrator, State};
 use super::system::{Drive, System};
 use crate::error::{Error, Result};
 use glam::DVec3;
 use rapier3d_f64::prelude::{
-    ColliderBuilder, ColliderHandle, Group, IntegrationParameters, InteractionGroups,
-    InteractionTestMode, LockedAxes, MotorModel, PhysicsWorld, PrismaticJointBuilder,
-    RigidBodyBuilder, RigidBodyHandle, SpringCoefficients, Vector,
+    ColliderBuilder, ColliderHandle, Group, InteractionGroups, InteractionTestMode, LockedAxes,
+    MotorModel, PhysicsWorld, PrismaticJointBuilder, RigidBodyBuilder, RigidBodyHandle, Vector,
 };
-
-/// What the engine is told beside the scene.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct RapierSettings {
-    /// Iterations of the solver a step, at least 1. (Each is a small step of its own: the solver is of the TGS kind.)
-    pub solver_iterations: usize,
-    /// Sweeps over all constraints within each iteration, at least 1.
-    pub sweeps: usize,
-    /// Engine steps within each of ours, at least 1.
-    pub substeps: usize,
-    /// What counts as small, metres: penetration that is allowed, and how near pairs are looked at, are multiples of it. (The engine's
-    /// own, 1 m, allows 5 mm of penetration.)
-    pub length_unit: f64,
-    /// How hard contacts are.
-    pub contacts: RapierContacts,
-}
-
-/// How hard the engine's contacts are.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum RapierContacts {
-    /// As the engine comes: springs of 30 Hz, and penetration taken back at 3 units of length a second at most.
-    AsItComes,
-    /// Critically damped springs of 300 / Δt, and penetration taken back as fast as they say. Harder ones gain nothing; softer ones let
-    /// light taxels sink in under springs that are stiff for the step.
-    Hard,
-}
-
-impl RapierSettings {
-    /// As the engine comes, but for the unit of length: the stroke.
-    pub fn as_it_comes(system: &System) -> Self {
-        Self {
-            solver_iterations: 4,
-            sweeps: 1,
-            substeps: 1,
-            length_unit: system.patch.taxels().at(0).stroke,
-            contacts: RapierContacts::AsItComes,
-        }
-    }
-
-    /// Tuned for skin: hard contacts, and ten sweeps, without which light taxels do not carry.
-    pub fn tuned(system: &System) -> Self {
-        Self {
-            sweeps: 10,
-            contacts: RapierContacts::Hard,
-            ..Self::as_it_comes(system)
-        }
-    }
-
-    fn parameters(&self, dt: f64) -> IntegrationParameters {
-        let plain = IntegrationParameters {
-            dt,
-            num_solver_iterations: self.solver_iterations,
-            num_internal_pgs_iterations: self.sweeps,
-            length_unit: self.length_unit,
-            ..IntegrationParameters::default()
-        };
-        match self.contacts {
-            RapierContacts::AsItComes => plain,
-            RapierContacts::Hard => {
-                let softness = SpringCoefficients::new(300.0 / dt, 1.0);
-                IntegrationParameters {
-                    contact_softness: softness,
-                    static_contact_softness: softness,
-                    normalized_max_corrective_velocity: 1e6,
-                    warmstart_joints: true,
-                    ..plain
-                }
-            }
-        }
-    }
-}
 
 /// A scene in the engine.
 pub struct RapierWorld {
@@ -92,6 +21,8 @@ pub struct RapierWorld {
     taxels: Vec<RigidBodyHandle>,
     colliders: Vec<ColliderHandle>,
     object: RigidBodyHandle,
+    /// What the taxels hang on.
+    base: RigidBodyHandle,
     /// The object at a travel of 0.
     origin: DVec3,
     /// Of the last engine step, seconds.
@@ -120,13 +51,10 @@ impl RapierWorld {
         };
         let state = State::start(system);
         let origin = system.pose.translation;
-        let guide = LockedAxes::ROTATION_LOCKED
-            | LockedAxes::TRANSLATION_LOCKED_X
-            | LockedAxes::TRANSLATION_LOCKED_Y;
         let body = match system.drive {
             Drive::Free { mass, .. } => RigidBodyBuilder::dynamic()
                 .additional_mass(mass)
-                .locked_axes(guide),
+                .locked_axes(GUIDE),
             Drive::Imposed(_) => RigidBodyBuilder::kinematic_position_based(),
         };
         let at = engine(origin - state.travel * DVec3::Z);
@@ -136,51 +64,109 @@ impl RapierWorld {
             let ball = ball(sphere.radius, OBJECT, SKIN).translation(engine(center));
             world.insert_collider(ball, Some(object));
         }
-        let ground = world.insert_body(RigidBodyBuilder::fixed());
+        let base = insert_base(&mut world, settings.joints);
         let mut made = Self {
             world,
             settings,
             taxels: Vec::with_capacity(system.n_taxels()),
             colliders: Vec::with_capacity(system.n_taxels()),
             object,
+            base,
             origin,
             dt: 0.0,
             state,
         };
         for taxel in 0..system.n_taxels() {
-            made.insert_taxel(system, taxel, ground, guide);
+            made.insert_taxel(system, taxel);
         }
         Ok(made)
     }
 
-    fn insert_taxel(
-        &mut self,
-        system: &System,
-        taxel: usize,
-        ground: RigidBodyHandle,
-        guide: LockedAxes,
-    ) {
+    fn insert_taxel(&mut self, system: &System, taxel: usize) {
         let properties = system.patch.taxels().at(taxel);
         let center = engine(system.patch.layout().centers()[taxel]);
+        let (axes, springs) = match self.settings.joints {
+            RapierJoints::Motors => (GUIDE, (properties.stiffness, properties.damping)),
+            RapierJoints::SkinSim { .. } => (LockedAxes::ROTATION_LOCKED, (0.0, 0.0)),
+        };
         let body = RigidBodyBuilder::dynamic()
             .translation(center)
             .additional_mass(system.taxel_mass)
             .gravity_scale(0.0)
-            .locked_axes(guide)
+            .locked_axes(axes)
             .can_sleep(false);
         let (handle, collider) = self
             .world
             .insert(body, ball(properties.radius, SKIN, OBJECT));
         let joint = PrismaticJointBuilder::new(Vector::Z)
             .local_anchor1(center)
-            .motor_model(MotorModel::ForceBased)
-            .motor_position(0.0, properties.stiffness, properties.damping)
             .limits([-properties.stroke, FAR]);
-        self.world.insert_impulse_joint(ground, handle, joint);
+        let joint = match springs {
+            (0.0, 0.0) => joint,
+            (stiffness, damping) => joint
+                .motor_model(MotorModel::ForceBased)
+                .motor_position(0.0, stiffness, damping),
+        };
+        self.world.insert_impulse_joint(self.base, handle, joint);
         self.taxels.push(handle);
         self.colliders.push(collider);
     }
+
+    /// How far a taxel is from its rest on the base along z, metres, and how fast it goes that way, m/s; inwards is positive.
+    fn inwards(&self, system: &System, taxel: usize) -> (f64, f64) {
+        let (body, base) = (
+            &self.world.bodies[self.taxels[taxel]],
+            &self.world.bodies[self.base],
+        );
+        let rest = system.patch.layout().centers()[taxel].z + base.translation().z;
+        (
+            rest - body.translation().z,
+            base.linvel().z - body.linvel().z,
+        )
+    }
+
+    /// Springs and dampers as forces that stay the same for a step, on taxels and base.
+    fn push(&mut self, system: &System) {
+        let mut on_base = 0.0;
+        for taxel in 0..self.taxels.len() {
+            let (deflection, velocity) = self.inwards(system, taxel);
+            let properties = system.patch.taxels().at(taxel);
+            let outwards = properties.stiffness * deflection + properties.damping * velocity;
+            on_base -= outwards;
+            self.set_force(self.taxels[taxel], outwards);
+        }
+        self.set_force(self.base, on_base);
+    }
+
+    /// Along z, newtons, in the place of what was there.
+    fn set_force(&mut self, handle: RigidBodyHandle, force: f64) {
+        let body = &mut self.world.bodies[handle];
+        body.reset_forces(false);
+        body.add_force(Vector::new(0.0, 0.0, force), true);
+    }
 }
+
+/// The world itself, or a light body that a joint with no room to move holds in it.
+fn insert_base(world: &mut PhysicsWorld, joints: RapierJoints) -> RigidBodyHandle {
+    let ground = world.insert_body(RigidBodyBuilder::fixed());
+    let RapierJoints::SkinSim { base_mass } = joints else {
+        return ground;
+    };
+    let base = RigidBodyBuilder::dynamic()
+        .additional_mass(base_mass)
+        .gravity_scale(0.0)
+        .locked_axes(LockedAxes::ROTATION_LOCKED)
+        .can_sleep(false);
+    let base = world.insert_body(base);
+    let joint = PrismaticJointBuilder::new(Vector::Z).limits([0.0, 0.0]);
+    world.insert_impulse_joint(ground, base, joint);
+    base
+}
+
+/// Only along z.
+const GUIDE: LockedAxes = LockedAxes::ROTATION_LOCKED
+    .union(LockedAxes::TRANSLATION_LOCKED_X)
+    .union(LockedAxes::TRANSLATION_LOCKED_Y);
 
 /// No taxel swings out so far, metres.
 const FAR: f64 = 1.0;
@@ -199,24 +185,25 @@ impl Integrator for RapierWorld {
                 let object = &mut self.world.bodies[self.object];
                 object.set_next_kinematic_translation(next);
             }
+            if let RapierJoints::SkinSim { .. } = self.settings.joints {
+                self.push(system);
+            }
             self.world.step();
         }
     }
 
     fn state(&mut self, system: &System) -> &State {
-        let state = &mut self.state;
-        let object = &self.world.bodies[self.object];
-        state.travel = self.origin.z - object.translation().z;
-        state.speed = -object.linvel().z;
-        for (taxel, handle) in self.taxels.iter().enumerate() {
-            let body = &self.world.bodies[*handle];
-            let rest = system.patch.layout().centers()[taxel].z;
-            state.deflection[taxel] = rest - body.translation().z;
-            state.velocity[taxel] = -body.linvel().z;
+        for taxel in 0..self.taxels.len() {
+            let (deflection, velocity) = self.inwards(system, taxel);
             let pairs = self.world.contact_pairs_with(self.colliders[taxel]);
             let impulse: f64 = pairs.map(|pair| pair.total_impulse().z.abs()).sum();
-            state.force[taxel] = impulse / self.dt;
+            self.state.deflection[taxel] = deflection;
+            self.state.velocity[taxel] = velocity;
+            self.state.force[taxel] = impulse / self.dt;
         }
+        let object = &self.world.bodies[self.object];
+        self.state.travel = self.origin.z - object.translation().z;
+        self.state.speed = -object.linvel().z;
         &self.state
     }
 }

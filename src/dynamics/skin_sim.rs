@@ -1,5 +1,5 @@
 //! The parameters of SkinSim \[SK\], which the quasi-static model was built to replace: each taxel a body on a spring-loaded joint in a
-//! dynamics engine; reported to be unstable near 280 joints.
+//! dynamics engine; reported to be unstable near 280 joints. Springs and dampers are forces that its plug-in sets before each step.
 
 use crate::world::Taxel;
 
@@ -7,6 +7,8 @@ use crate::world::Taxel;
 pub const TAXEL_MASS: f64 = 1e-3;
 /// k, N/m.
 pub const STIFFNESS: f64 = 16.37;
+/// What the taxels of a patch hang on, kg; its published model builder keeps it "not too small because of stability".
+pub const BASE_MASS: f64 = 0.01;
 /// c, N·s/m.
 pub const DAMPING: f64 = 0.13;
 /// M of the plunger, kg.

@@ -178,6 +178,33 @@ impl<'a> WayChart<'a> {
             draw_line(drawing, points, frame, *line);
             draw_markers(drawing, points, frame, *line);
         }
+        self.let_ask(drawing, frame, (&scale, kinds));
+    }
+
+    /// Every point, with its interval.
+    fn let_ask(
+        &self,
+        drawing: &mut Drawing,
+        frame: Area,
+        (scale, kinds): (&PanelScale, &[ClassifierKind]),
+    ) {
+        for (kind, scores) in &self.lines {
+            let line = kinds.iter().position(|k| k == kind).unwrap_or(0);
+            for (planned, score) in self.way.values.iter().zip(scores) {
+                let at = (scale.x(planned.value), y_at(frame, score.accuracy));
+                let title = format!(
+                    "{}, {} {}",
+                    classifier_name(*kind),
+                    self.way.label,
+                    short_number(planned.value)
+                );
+                let interval = format!(
+                    "accuracy {:.3} ({:.3} to {:.3})",
+                    score.accuracy, score.accuracy_low, score.accuracy_high
+                );
+                drawing.ask(at, line, title, vec![interval]);
+            }
+        }
     }
 }
 

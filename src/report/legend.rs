@@ -1,6 +1,6 @@
 //! What stands above a chart's panels: title, fixed settings, and the legend.
 
-use crate::report::colours::{INK, LINES, MUTED, Rgb};
+use crate::report::colours::{INK, LINES, MUTED, PAPER, Rgb};
 use crate::report::drawing::{Drawing, Point, Stroke, TextStyle};
 use crate::report::text_width::{text_width, wrap};
 
@@ -61,6 +61,10 @@ pub(super) enum Mark {
     Band,
     /// A bar through a marker.
     Whisker,
+    /// A marker with nothing inside.
+    Hollow,
+    /// A cross.
+    Cross,
 }
 
 impl Heading {
@@ -140,6 +144,8 @@ impl LegendEntry {
                     line_colour(number),
                 );
             }
+            Mark::Hollow => draw_hollow(drawing, 0, (x + 6.0, middle)),
+            Mark::Cross => draw_cross(drawing, (x + 6.0, middle)),
             Mark::Front => {
                 let corner = (x + 14.0, middle + 4.0);
                 let steps = [
@@ -179,7 +185,7 @@ impl Mark {
     fn width(&self) -> f64 {
         match self {
             Self::None => 0.0,
-            Self::Point(_) => 18.0,
+            Self::Point(_) | Self::Hollow | Self::Cross => 18.0,
             _ => 34.0,
         }
     }
@@ -200,6 +206,20 @@ fn flow(entries: Vec<LegendEntry>, width: f64) -> Vec<Vec<LegendEntry>> {
         }
     }
     rows
+}
+
+/// The marker of a line with nothing inside: not what it should be.
+pub(super) fn draw_hollow(drawing: &mut Drawing, line: usize, at: Point) {
+    drawing.marker(line, at, MARKER_RADIUS + 0.6, line_colour(line));
+    drawing.marker(line, at, MARKER_RADIUS - 1.6, PAPER);
+}
+
+/// Nothing is left of it.
+pub(super) fn draw_cross(drawing: &mut Drawing, (x, y): Point) {
+    let r = MARKER_RADIUS;
+    let stroke = Stroke::new(INK, 2.0);
+    drawing.line((x - r, y - r), (x + r, y + r), stroke);
+    drawing.line((x - r, y + r), (x + r, y - r), stroke);
 }
 
 /// Colour of a line by its number.

@@ -56,6 +56,7 @@ pub(super) fn method_name(method: ContactMethod, iterations: Option<usize>) -> S
         ContactMethod::ImplicitEuler => "implicit Euler, exact contact",
         ContactMethod::RapierAsItComes => "rapier as it comes",
         ContactMethod::RapierTuned => "rapier tuned",
+        ContactMethod::RapierSkinSim => "rapier as SkinSim's engine",
         ContactMethod::MujocoEuler => "MuJoCo as it comes",
         ContactMethod::MujocoImplicitfast => "MuJoCo, implicitfast",
         ContactMethod::MujocoDiscrete => "MuJoCo, discrete, hard",

@@ -1,29 +1,10 @@
-// What every part of the page uses: the data, elements, numbers as people write them.
+// What every part of the page uses: the data, numbers as people write them.
 
 const study = JSON.parse(document.getElementById("study").textContent);
 const { axes, cells } = study;
 const allCells = cells.accuracy.map((_, place) => place);
 const free = axes.map((_, axis) => axis).filter((axis) => !axes[axis].follows);
 const MINUS = "\u2212";
-
-/** An element with attributes (functions listen) and children. */
-function make(tag, attributes = {}, ...children) {
-  return fit(document.createElement(tag), attributes, children);
-}
-
-/** The same in a picture. */
-function draw(tag, attributes = {}, ...children) {
-  return fit(document.createElementNS("http://www.w3.org/2000/svg", tag), attributes, children);
-}
-
-function fit(element, attributes, children) {
-  for (const [name, value] of Object.entries(attributes)) {
-    if (typeof value === "function") element.addEventListener(name, value);
-    else if (value !== null && value !== undefined) element.setAttribute(name, value);
-  }
-  element.append(...children);
-  return element;
-}
 
 /** Four digits that count, as everywhere in the report. */
 function short(number) {

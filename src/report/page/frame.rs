@@ -1,14 +1,20 @@
 //! What every page has: head, question, contents, sections, foot.
 
+use super::picture::ASKED;
 use crate::report::drawing::escape;
 
 const TEMPLATE: &str = include_str!("page.html");
 const STYLE: &str = include_str!("page.css");
+const ELEMENTS: &str = include_str!("elements.js");
+const POINTS: &str = include_str!("points.js");
+/// Of pages that are pictures, some of which can be asked.
+const PICTURES: [&str; 3] = [ELEMENTS, POINTS, include_str!("asked.js")];
 /// In the order in which each may use what comes before it.
-const SCRIPT: [&str; 10] = [
+const SCRIPT: [&str; 11] = [
+    ELEMENTS,
     include_str!("base.js"),
     include_str!("filter.js"),
-    include_str!("points.js"),
+    POINTS,
     include_str!("axes.js"),
     include_str!("accuracy.js"),
     include_str!("advice.js"),
@@ -100,16 +106,27 @@ impl Page {
     }
 
     fn script(&self) -> String {
-        let Some(data) = &self.data else {
-            return String::new();
-        };
-        // What ends an element of HTML has no place in JSON but within its strings.
-        let data = data.replace('<', "\\u003c");
-        format!(
-            "<script type=\"application/json\" id=\"study\">{data}</script>\n<script>\n(() => {{\n\"use strict\";\n{}}})();\n</script>\n",
-            SCRIPT.join("\n")
-        )
+        let is_asked = format!("class=\"{ASKED}\"");
+        match &self.data {
+            None if !self.sections.iter().any(|s| s.body.contains(&is_asked)) => String::new(),
+            None => in_scope(&PICTURES),
+            Some(data) => {
+                // What ends an element of HTML has no place in JSON but within its strings.
+                let data = data.replace('<', "\\u003c");
+                let data =
+                    format!("<script type=\"application/json\" id=\"study\">{data}</script>");
+                format!("{data}\n{}", in_scope(&SCRIPT))
+            }
+        }
     }
+}
+
+/// Scripts that see each other, and are seen by nothing else.
+fn in_scope(scripts: &[&str]) -> String {
+    format!(
+        "<script>\n(() => {{\n\"use strict\";\n{}}})();\n</script>\n",
+        scripts.join("\n")
+    )
 }
 
 /// The first sentence large, the others as a list; empty if there is none.

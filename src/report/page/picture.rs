@@ -2,6 +2,9 @@
 
 use crate::report::drawing::{Drawing, escape};
 
+/// The class of what a picture says when it is pointed at.
+pub(super) const ASKED: &str = "asked";
+
 /// A picture for the page.
 #[derive(Clone, Debug)]
 pub struct Picture {
@@ -14,9 +17,18 @@ pub struct Picture {
 impl Picture {
     /// An SVG in the page.
     pub fn of(drawing: &Drawing, title: &str) -> Self {
+        let mut element = drawing.svg(title);
+        if !drawing.asked().is_empty() {
+            let points =
+                serde_json::to_string(drawing.asked()).expect("numbers and texts are JSON");
+            // As in the data of a page: nothing in it may end the element.
+            let points = points.replace('<', "\\u003c");
+            element +=
+                &format!("<script type=\"application/json\" class=\"{ASKED}\">{points}</script>");
+        }
         Self {
             title: title.to_owned(),
-            element: drawing.svg(title),
+            element,
         }
     }
 
@@ -42,6 +54,8 @@ pub struct Pictures {
     pub times: Vec<Picture>,
     /// How many charts lie beside the page only.
     pub n_more_charts: usize,
+    /// Names of the charts that were not drawn.
+    pub left_out: Vec<String>,
     /// The confusion matrix of the best cell.
     pub confusion: Option<Picture>,
 }

@@ -135,6 +135,10 @@ impl FrontChart<'_> {
             self.draw_on_front(&mut drawing, point, (place, &y));
         }
         self.draw_numbers(&mut drawing, &places);
+        for point in &self.points {
+            let (title, lines) = self.said_of(point);
+            drawing.ask(at(point), self.colour_of(point), title, lines);
+        }
         for (number, point) in self.front.iter().enumerate() {
             let y = list + LINE * number as f64;
             let number = format!("{}", number + 1);
@@ -206,21 +210,17 @@ impl FrontChart<'_> {
 
     /// `linear SVM …: 0.81 (0.79 to 0.83) at 45 µs`.
     fn line_of(&self, point: &ChartPoint) -> String {
-        let value = match self.kind {
-            ChartKind::Contact if point.value == 0.0 => "no error".to_owned(),
-            ChartKind::Contact => format!("{} mm", to_two_digits(point.value)),
-            ChartKind::Resolution => format!("± {:.4}", point.value),
-            _ => format!(
-                "{:.3} ({:.3} to {:.3})",
-                point.value, point.value_low, point.value_high
-            ),
-        };
-        let time = crate::study::advice::cost_in_words(point.cost_us);
-        let source = match point.source.as_str() {
-            "this run" => String::new(),
-            source => format!(" ({source})"),
-        };
-        format!("{}{source}: {value} at {time}", point.setting)
+        let said = self.kind.at_cost(point);
+        format!("{}{}: {said}", point.setting, source_of(point))
+    }
+
+    /// What a page says of a point: its setting, and a line each of value, time, and what it is.
+    fn said_of(&self, point: &ChartPoint) -> (String, Vec<String>) {
+        let mut lines = vec![self.kind.at_cost(point)];
+        if point.on_front {
+            lines.push("on the front: nothing is both faster and as good".to_owned());
+        }
+        (format!("{}{}", point.setting, source_of(point)), lines)
     }
 
     fn colour_of(&self, point: &ChartPoint) -> usize {
@@ -239,10 +239,12 @@ impl FrontChart<'_> {
     }
 }
 
-/// Millimetres with two digits that say something.
-fn to_two_digits(value: f64) -> String {
-    let digits = (1.0 - value.log10().floor()).clamp(0.0, 9.0) as usize;
-    format!("{value:.digits$}")
+/// Who measured a point, if it was not this run.
+fn source_of(point: &ChartPoint) -> String {
+    match point.source.as_str() {
+        "this run" => String::new(),
+        source => format!(" ({source})"),
+    }
 }
 
 /// The ends of the x axis, for a summary in words.

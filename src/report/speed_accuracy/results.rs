@@ -4,39 +4,128 @@ use super::chart::{draw_front_chart, from_to};
 use super::points::{ChartKind, ChartPoint, points};
 use crate::error::Result;
 use crate::report::folder::Folder;
+use crate::report::page::StudyAbout;
+use crate::report::page::plain::{self, plain_page};
+use crate::report::study_tables::{StudyTables, TableFiles, table_file};
 use crate::report::terminal::{align_right, plain_table};
 use crate::study::advice::cost_in_words;
 use crate::study::speed_accuracy::table::SpeedAccuracyTables;
+use comfy_table::Table;
 use std::path::{Path, PathBuf};
 
 /// Every point of every chart.
 pub const PARETO_FILE: &str = "pareto.csv";
 
-/// Writes tables and charts into `dir` (created if missing); returns the paths, tables first.
+impl StudyTables for SpeedAccuracyTables {
+    const OF_PIECES: &'static [&'static str] =
+        &["contact.csv", "recognition.csv", "resolution.csv"];
+    const OF_ALL: &'static [&'static str] = &[];
+
+    fn files(&self) -> Result<TableFiles> {
+        let mut files = Vec::new();
+        if !self.contact.is_empty() {
+            files.push(table_file("contact.csv", &self.contact)?);
+            files.push(table_file("contact_timing.csv", &self.contact_timing)?);
+        }
+        if !self.recognition.is_empty() {
+            files.push(table_file("recognition.csv", &self.recognition)?);
+            files.push(table_file(
+                "recognition_timing.csv",
+                &self.recognition_timing,
+            )?);
+        }
+        if !self.resolution.is_empty() {
+            files.push(table_file("resolution.csv", &self.resolution)?);
+            files.push(table_file(
+                "resolution_timing.csv",
+                &self.resolution_timing,
+            )?);
+        }
+        Ok(files)
+    }
+}
+
+/// Writes tables, charts and the page into `dir` (created if missing); returns the paths, tables first.
 ///
 /// Everything is drawn before the first file is written, and each file is whole or not there.
-pub fn write_speed_accuracy(dir: &Path, tables: &SpeedAccuracyTables) -> Result<Vec<PathBuf>> {
+pub fn write_speed_accuracy(
+    dir: &Path,
+    tables: &SpeedAccuracyTables,
+    about: &StudyAbout,
+) -> Result<Vec<PathBuf>> {
     let mut folder = Folder::new(dir);
-    if !tables.contact.is_empty() {
-        folder.add_table("contact.csv", &tables.contact)?;
-        folder.add_table("contact_timing.csv", &tables.contact_timing)?;
-    }
-    if !tables.recognition.is_empty() {
-        folder.add_table("recognition.csv", &tables.recognition)?;
-        folder.add_table("recognition_timing.csv", &tables.recognition_timing)?;
-    }
-    if !tables.resolution.is_empty() {
-        folder.add_table("resolution.csv", &tables.resolution)?;
-        folder.add_table("resolution_timing.csv", &tables.resolution_timing)?;
-    }
+    let tables_made = tables.files()?;
+    let mut files: Vec<&str> = tables_made.iter().map(|(name, _)| *name).collect();
+    folder.add_files(tables_made);
     let points = points(tables);
     folder.add_table(PARETO_FILE, &points)?;
+    files.push(PARETO_FILE);
+    let mut drawn = Vec::new();
     for kind in ChartKind::ALL {
         if let Some(drawing) = draw_front_chart(kind, &points) {
             folder.add_chart(kind.name(), kind.title(), &drawing)?;
+            drawn.push((kind.name().to_owned(), kind.title().to_owned(), drawing));
         }
     }
+    let note =
+        "What no other setting of its chart beats, cheapest first; pareto.csv has every point.";
+    let found = vec![
+        plain::answer(&sentences(&points)),
+        plain::charts(&drawn),
+        plain::table("fronts", "Fronts", note, &fronts_table(&points)),
+    ];
+    folder.add("report.html", plain_page(about, found, &files));
     folder.write()
+}
+
+/// The two ends of each front.
+fn sentences(points: &[ChartPoint]) -> Vec<String> {
+    let of_kind = |kind: ChartKind| {
+        let front = front_of(points, kind);
+        let (first, last) = (front.first()?, front.last()?);
+        let end = |point: &ChartPoint| format!("{} ({})", point.setting, kind.at_cost(point));
+        let n = points.iter().filter(|point| point.chart == kind).count();
+        let about = match kind {
+            ChartKind::Contact => "Contact, from the fastest to the most accurate",
+            ChartKind::Decision => "Decisions, from the fastest to the best",
+            ChartKind::Training => "Training, from the fastest to the best",
+            // Each group has a front of its own.
+            ChartKind::Resolution => return None,
+        };
+        Some(format!(
+            "{about} of {n} settings: {} … {}.",
+            end(first),
+            end(last)
+        ))
+    };
+    ChartKind::ALL.into_iter().filter_map(of_kind).collect()
+}
+
+/// What no other point of a chart beats, cheapest first.
+fn front_of(points: &[ChartPoint], kind: ChartKind) -> Vec<&ChartPoint> {
+    let of_kind = points
+        .iter()
+        .filter(|point| point.chart == kind && point.on_front);
+    let mut front: Vec<&ChartPoint> = of_kind.collect();
+    front.sort_by(|a, b| a.cost_us.total_cmp(&b.cost_us));
+    front
+}
+
+fn fronts_table(points: &[ChartPoint]) -> Table {
+    let mut table = plain_table(200);
+    table.set_header(["chart", "on the front", "cost", "value", "measured by"]);
+    for kind in ChartKind::ALL {
+        for point in front_of(points, kind) {
+            table.add_row([
+                kind.value_name().to_owned(),
+                point.setting.clone(),
+                cost_in_words(point.cost_us),
+                kind.value_words(point),
+                point.source.clone(),
+            ]);
+        }
+    }
+    table
 }
 
 /// The fronts, a line a point. Lines are at most about `width` letters long.
@@ -48,8 +137,7 @@ pub fn speed_accuracy_summary(tables: &SpeedAccuracyTables, width: usize) -> Str
         let Some(range) = from_to(&of_kind) else {
             continue;
         };
-        let mut front: Vec<&ChartPoint> = of_kind.iter().filter(|p| p.on_front).copied().collect();
-        front.sort_by(|a, b| a.cost_us.total_cmp(&b.cost_us));
+        let front = front_of(&points, kind);
         let mut table = plain_table(width);
         table.set_header(["on the front", "cost", kind.value_name()]);
         for point in front {

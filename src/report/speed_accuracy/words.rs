@@ -1,8 +1,9 @@
 //! Charts and settings as a reader meets them.
 
-use super::points::ChartKind;
+use super::points::{ChartKind, ChartPoint};
 use crate::report::axis::{classifier_name, ensemble_name};
-use crate::study::speed_accuracy::table::{ChainCell, ContactCell, ContactWay};
+use crate::study::advice::cost_in_words;
+use crate::study::speed_accuracy::table::{ChainCell, ContactCell, ContactWay, Touched};
 
 impl ChartKind {
     /// File name without ending.
@@ -66,6 +67,33 @@ impl ChartKind {
     }
 }
 
+impl ChartKind {
+    /// A value in words: `0.08 mm`, `0.81 (0.79 to 0.83)`.
+    pub(super) fn value_words(self, point: &ChartPoint) -> String {
+        match self {
+            Self::Contact if point.value == 0.0 => "no error".to_owned(),
+            Self::Contact => format!("{} mm", to_two_digits(point.value)),
+            Self::Resolution => format!("± {:.4}", point.value),
+            _ => format!(
+                "{:.3} ({:.3} to {:.3})",
+                point.value, point.value_low, point.value_high
+            ),
+        }
+    }
+
+    /// `0.08 mm at 7.1 µs`.
+    pub(super) fn at_cost(self, point: &ChartPoint) -> String {
+        let time = cost_in_words(point.cost_us);
+        format!("{} at {time}", self.value_words(point))
+    }
+}
+
+/// Millimetres with two digits that say something.
+fn to_two_digits(value: f64) -> String {
+    let digits = (1.0 - value.log10().floor()).clamp(0.0, 9.0) as usize;
+    format!("{value:.digits$}")
+}
+
 /// A way to evaluate contact: what has one colour in the chart.
 pub(super) fn way_name(way: ContactWay) -> &'static str {
     match way {
@@ -77,16 +105,22 @@ pub(super) fn way_name(way: ContactWay) -> &'static str {
         ContactWay::SemiImplicit => "semi-implicit Euler",
         ContactWay::ImplicitEuler => "implicit Euler",
         ContactWay::Rapier => "rapier, tuned",
+        ContactWay::RowsInDoubles => "flat rows in doubles, pose given",
+        ContactWay::RowsInSingles => "flat rows in singles, pose given",
     }
 }
 
-/// `packed spheres within 0.2 mm`, `implicit Euler, steps of 1 ms`.
+/// `packed spheres within 0.2 mm`, `packed spheres, scans within 0.2 mm`, `implicit Euler, steps of 1 ms`.
 pub(super) fn contact_setting(cell: &ContactCell) -> String {
     let way = way_name(cell.way);
+    let scan = match cell.touched {
+        Touched::Object => "",
+        Touched::Scan => ", scans",
+    };
     match (cell.tolerance_mm, cell.dt_ms) {
-        (_, Some(dt)) => format!("{way}, steps of {dt} ms"),
-        (Some(mm), None) => format!("{way} within {mm} mm"),
-        (None, None) => way.to_owned(),
+        (_, Some(dt)) => format!("{way}{scan}, steps of {dt} ms"),
+        (Some(mm), None) => format!("{way}{scan} within {mm} mm"),
+        (None, None) => format!("{way}{scan}"),
     }
 }
 

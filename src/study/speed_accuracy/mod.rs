@@ -1,11 +1,12 @@
 //! A study of its own kind: what does accuracy cost, for every choice there is here?
 //!
 //! A file with a `[speed_accuracy]` table is such a study: [`SpeedAccuracyStudySpec`] (as written) → [`SpeedAccuracyPlan`] (checked, SI) →
-//! [`measure_speed_accuracy`] → [`table::SpeedAccuracyTables`]. It has three parts, each left out where its table is:
+//! [`SpeedAccuracyStudy`] → [`table::SpeedAccuracyTables`]. It has three parts, each left out where its table is:
 //!
 //! - **contact**: time of a touch against its deflection error, of models of objects (packed spheres, a sphere a vertex, the mesh itself,
-//!   solids by their distance functions), of time steps, and of methods whose taxels have mass. Exact contact says what is right. Rows
-//!   that other programs left in a file of [`peers`](ContactSpec::peers) stand beside ours.
+//!   solids by their distance functions), of singles, of time steps, and of methods whose taxels have mass. Exact contact says what is
+//!   right. [Scans](ContactSpec::scans) that a study names are touched beside its objects. Rows that other programs left in a file of
+//!   [`peers`](ContactSpec::peers) stand beside ours.
 //! - **recognition**: share of right answers against the time of a decision (touch, compress, classify: one touch at a time on one thread) and
 //!   of a training (one thread), over pitch, detail of the objects, ensemble, ratio and classifier. Learned from objects of that
 //!   detail, tested on other touches of the exact ones.
@@ -19,15 +20,18 @@ mod engines;
 mod peers;
 mod plan;
 mod recognition;
+mod recognition_part;
 mod resolution;
 mod runner;
+mod single_contact;
 mod solid_contact;
 mod spec;
 mod subject;
 pub mod table;
 
 pub use plan::{ContactPlan, RecognitionSweep, ResolutionPlan, SpeedAccuracyPlan};
-pub use runner::measure_speed_accuracy;
+pub use runner::SpeedAccuracyStudy;
 pub use spec::{
-    ContactSpec, RecognitionSweepSpec, ResolutionSpec, SpeedAccuracySpec, SpeedAccuracyStudySpec,
+    ContactSpec, RecognitionSweepSpec, ResolutionSpec, ScansSpec, SpeedAccuracySpec,
+    SpeedAccuracyStudySpec,
 };

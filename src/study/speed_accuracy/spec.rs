@@ -63,6 +63,19 @@ pub struct ContactSpec {
     /// A table that other programs wrote (`benches/peers/contact.py`), beside the study's file; left out where it is not.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub peers: Option<PathBuf>,
+    /// Closed meshes that are touched beside the study's objects.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub scans: Option<ScansSpec>,
+}
+
+/// `[speed_accuracy.contact.scans]`: rows and points of their own in the part on contact, and in no other.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ScansSpec {
+    /// A folder of PLY, OBJ or STL meshes in metres; left out, and said so, where it is not. `--objects` names another.
+    pub meshes: PathBuf,
+    /// Those of the folder that are touched: file names without ending. (To pack a mesh takes from seconds to a minute.)
+    pub names: Vec<String>,
 }
 
 /// `[speed_accuracy.recognition]`

@@ -24,6 +24,20 @@ pub enum ContactWay {
     ImplicitEuler,
     /// Taxels as bodies in rapier, tuned for skin.
     Rapier,
+    /// [Rows of a flat patch](crate::contact::flat_rows) in doubles on packed spheres, the pose given.
+    RowsInDoubles,
+    /// The same in singles.
+    RowsInSingles,
+}
+
+/// Whose an object is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Touched {
+    /// The study's.
+    Object,
+    /// One of the meshes that are touched [beside](crate::study::speed_accuracy::ScansSpec) them.
+    Scan,
 }
 
 /// A way and an object: a row of `contact.csv` begins with it, and one of `contact_timing.csv`.
@@ -35,6 +49,8 @@ pub struct ContactCell {
     pub tolerance_mm: Option<f64>,
     /// Of the time steps, ms.
     pub dt_ms: Option<f64>,
+    /// Whose it is that is touched.
+    pub touched: Touched,
     /// What is touched.
     pub object: String,
     /// 0 for meshes and solids themselves.
@@ -168,7 +184,7 @@ pub struct PeerRow {
 }
 
 /// All result tables.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct SpeedAccuracyTables {
     /// A row a way and object.
     pub contact: Vec<(ContactCell, ContactScore)>,

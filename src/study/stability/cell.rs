@@ -149,16 +149,20 @@ fn integrator(
             Ok(Box::new(SemiImplicit::new(system, stiffness)))
         }
         #[cfg(feature = "rapier")]
-        (ContactMethod::RapierAsItComes | ContactMethod::RapierTuned, _) => {
+        (method, _) if method.is_engine() => {
             use crate::dynamics::{RapierSettings, RapierWorld};
-            let settings = match cell.method {
-                ContactMethod::RapierTuned => RapierSettings::tuned(system),
-                _ => RapierSettings::as_it_comes(system),
-            };
-            let solver_iterations = cell.solver_iterations.unwrap_or(settings.solver_iterations);
-            let settings = RapierSettings {
-                solver_iterations,
-                ..settings
+            // The plan gives an engine its iterations.
+            let n = cell.solver_iterations.unwrap_or(1);
+            let settings = match method {
+                ContactMethod::RapierSkinSim => RapierSettings::skin_sim(system, n),
+                ContactMethod::RapierTuned => RapierSettings {
+                    solver_iterations: n,
+                    ..RapierSettings::tuned(system)
+                },
+                _ => RapierSettings {
+                    solver_iterations: n,
+                    ..RapierSettings::as_it_comes(system)
+                },
             };
             Ok(Box::new(RapierWorld::new(system, settings)?))
         }

@@ -34,8 +34,8 @@ pub struct StabilityPart {
 const MOST_TAXELS: usize = 256;
 
 impl StabilityPlan {
-    /// Checks a study; the error names `place` (the file) and the first key that is out of its range.
-    pub fn new(place: &str, spec: StabilityStudySpec) -> Result<Self> {
+    /// Checks a study that lies in `folder`; the error names `place` (the file) and the first key that is out of its range.
+    pub fn new(place: &str, folder: &Path, spec: StabilityStudySpec) -> Result<Self> {
         let check = Check { place };
         let wanted = &spec.stability;
         let millimetres = "a positive number of millimetres";
@@ -54,10 +54,7 @@ impl StabilityPlan {
         Ok(Self {
             pitch: pitch * MM,
             parts,
-            peers: wanted.peers.as_ref().map(|path| {
-                let folder = Path::new(place).parent().unwrap_or(Path::new(""));
-                folder.join(path)
-            }),
+            peers: wanted.peers.as_ref().map(|path| folder.join(path)),
             spec,
         })
     }
@@ -99,7 +96,7 @@ impl PartCheck<'_> {
         let stroke = self.positive("stroke_mm", &Axis::One(part.stroke_mm))?[0];
         let stiffnesses = self.positive("stiffness_n_per_m", &part.stiffness_n_per_m)?;
         let taxel_masses = self.positive("taxel_mass_kg", &part.taxel_mass_kg)?;
-        let object_masses = self.object_masses()?;
+        let masses = self.object_masses()?;
         let dts = self.positive("dt_s", &part.dt_s)?;
         let iterations = self.key("solver_iterations");
         let iterations = self.check.counts(&iterations, &part.solver_iterations)?;
@@ -108,7 +105,7 @@ impl PartCheck<'_> {
             for iterations in of_method(method, &iterations) {
                 for &taxels in &sides {
                     for &stiffness_n_per_m in &stiffnesses {
-                        for &object_mass_kg in &object_masses {
+                        for object_mass_kg in masses.iter().map(|mass| mass.on(taxels)) {
                             for &taxel_mass_kg in &taxel_masses {
                                 cells.extend(dts.iter().map(|&dt_s| StabilityCell {
                                     part: self.number + 1,
@@ -146,19 +143,52 @@ impl PartCheck<'_> {
         }
     }
 
-    fn object_masses(&self) -> Result<Vec<Option<f64>>> {
-        let key = self.key("object_mass_kg");
-        match (&self.part.object_mass_kg, self.part.scene) {
-            (None, StabilityScene::Press) => Ok(vec![None]),
-            (Some(_), StabilityScene::Press) => {
-                let allowed = "no such key: the ball's motion is imposed";
-                Err(self.check.error(&key, "a mass", allowed))
+    fn object_masses(&self) -> Result<Vec<ObjectMass>> {
+        let part = self.part;
+        let (given, per_taxel) = (&part.object_mass_kg, &part.object_mass_per_taxel_kg);
+        let (one, other) = ("object_mass_kg", "object_mass_per_taxel_kg");
+        let refuse = |name: &str, given: &str, allowed: &str| {
+            Err(self.check.error(&self.key(name), given, allowed))
+        };
+        match (given, per_taxel, part.scene) {
+            (None, None, StabilityScene::Press) => Ok(vec![ObjectMass::None]),
+            (Some(_), _, StabilityScene::Press) => {
+                refuse(one, "a mass", "no such key: the ball's motion is imposed")
             }
-            (None, _) => Err(self.check.error(&key, "none", "a mass: the ball is free")),
-            (Some(axis), _) => {
-                let masses = self.positive("object_mass_kg", axis)?;
-                Ok(masses.into_iter().map(Some).collect())
+            (None, Some(_), StabilityScene::Press) => {
+                refuse(other, "a mass", "no such key: the ball's motion is imposed")
             }
+            (None, None, _) => refuse(one, "none", "a mass: the ball is free"),
+            (Some(_), Some(_), _) => refuse(other, "a mass", "one of this key and object_mass_kg"),
+            (Some(axis), None, _) => {
+                let masses = self.positive(one, axis)?;
+                Ok(masses.into_iter().map(ObjectMass::Of).collect())
+            }
+            (None, Some(axis), _) => {
+                let masses = self.positive(other, axis)?;
+                Ok(masses.into_iter().map(ObjectMass::PerTaxel).collect())
+            }
+        }
+    }
+}
+
+/// M, kg.
+#[derive(Clone, Copy)]
+enum ObjectMass {
+    /// Its motion is imposed.
+    None,
+    Of(f64),
+    /// Over the number of taxels.
+    PerTaxel(f64),
+}
+
+impl ObjectMass {
+    /// On so many taxels a side.
+    fn on(self, taxels: usize) -> Option<f64> {
+        match self {
+            Self::None => None,
+            Self::Of(mass) => Some(mass),
+            Self::PerTaxel(mass) => Some((taxels * taxels) as f64 * mass),
         }
     }
 }

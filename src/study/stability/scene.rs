@@ -22,6 +22,8 @@ const LEAST_HOLD: f64 = 0.2;
 const DECAY: f64 = 10.0;
 /// A hold takes at least so many steps.
 const LEAST_HOLD_STEPS: f64 = 5.0;
+/// Travel within which taxels are met, in strokes: all are within 1.25 of them; much further, the ball would be behind the substrate.
+const REACH: f64 = 1.5;
 /// A free ball is watched at least so long, seconds.
 const LEAST_TIME: f64 = 0.5;
 
@@ -137,7 +139,7 @@ impl CellScene {
             Drive::Free { .. } => *pose,
             Drive::Imposed(_) => Pose::from_translation(pose.translation + APPROACH * DVec3::Z),
         };
-        let reach = APPROACH + 2.0 * self.taxel.stroke;
+        let reach = APPROACH + REACH * self.taxel.stroke;
         System::new(
             patch,
             cell.taxel_mass_kg,
@@ -161,7 +163,7 @@ impl CellScene {
             travel: 0.0,
         };
         let (k, m) = (taxel.stiffness, cell.taxel_mass_kg);
-        let reach = 2.0 * taxel.stroke;
+        let reach = REACH * taxel.stroke;
         let system = System::new(
             &cradle.patch,
             m,
@@ -217,7 +219,7 @@ impl CellScene {
         let drive = Drive::Imposed(VelocityPlan::new(high, phases)?);
         let taxel = Taxel { damping, ..taxel };
         let cradle = Cradle::new(cell.taxels, pitch, taxel)?;
-        let reach = APPROACH + 2.0 * taxel.stroke;
+        let reach = APPROACH + REACH * taxel.stroke;
         let system = System::new(&cradle.patch, m, &cradle.ball, high, drive.clone(), reach)?;
         let deepest = APPROACH + depth;
         let deflection = system

@@ -52,9 +52,12 @@ pub struct StabilityPartSpec {
     /// Axis: M of the ball; needed where it is free, not there where its motion is imposed.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub object_mass_kg: Option<Axis<f64>>,
+    /// In its place: M over the number of taxels, so that each carries the same on all arrays.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub object_mass_per_taxel_kg: Option<Axis<f64>>,
     /// Axis: Δt.
     pub dt_s: Axis<f64>,
-    /// Axis: iterations of an engine's solver a step.
+    /// Axis: iterations of an engine's solver a step; of [`RapierSkinSim`](ContactMethod::RapierSkinSim), sweeps.
     #[serde(default = "default_iterations")]
     pub solver_iterations: Axis<usize>,
 }
@@ -89,6 +92,9 @@ pub enum ContactMethod {
     RapierAsItComes,
     /// rapier tuned for skin. Only with the feature `rapier`; left out without it.
     RapierTuned,
+    /// rapier told what SkinSim tells its engine: springs and dampers as forces, taxels on a light base, rigid contacts. Only with the
+    /// feature `rapier`; left out without it.
+    RapierSkinSim,
     /// MuJoCo as it comes: Euler's integrator, soft contacts. Only in [`peers`](StabilitySpec::peers), as the next two.
     MujocoEuler,
     /// MuJoCo with its integrator `implicitfast`, soft contacts.
@@ -113,7 +119,10 @@ impl ContactMethod {
 
     /// Whether solver iterations mean something to it.
     pub fn is_engine(self) -> bool {
-        matches!(self, Self::RapierAsItComes | Self::RapierTuned)
+        matches!(
+            self,
+            Self::RapierAsItComes | Self::RapierTuned | Self::RapierSkinSim
+        )
     }
 }
 

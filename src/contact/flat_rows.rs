@@ -1,0 +1,115 @@
+//! The press of a flat square patch in doubles and in singles, to say what singles would cost and gain. Nothing else uses it: the presses
+//! of studies and scenes are in doubles.
+//!
+//! Spheres in the patch's frame, rows of the footprint, blocks of a register of 512 bits, no root where no deflection is beaten.
+//! Coordinates are from the middle of the patch, so that singles are as good as they can be.
+
+use multiversion::multiversion;
+
+macro_rules! kernel {
+    ($name:ident, $real:ty, $lanes:expr, $doc:expr) => {
+        #[doc = $doc]
+        ///
+        /// Spheres are (x, y, h, S) in metres, S with the taxels' radius; taxels stand at all pairs of `places`, ascending and equally far
+        /// apart, at least two and a whole number of blocks of them. Deflections (n × n, rows by y) are written, metres: not cut at a stroke.
+        #[multiversion(targets(
+            "x86_64+avx512f+avx512bw+avx512dq+avx512vl+avx2+fma",
+            "x86_64+avx2+fma"
+        ))]
+        pub fn $name(spheres: &[[f64; 4]], places: &[$real], deflections: &mut [$real]) {
+            let n = places.len();
+            let density = 1.0 / (places[1] - places[0]);
+            deflections.fill(0.0);
+            for sphere in spheres {
+                let (x, y, h, s) = (
+                    sphere[0] as $real,
+                    sphere[1] as $real,
+                    sphere[2] as $real,
+                    sphere[3] as $real,
+                );
+                let lift = if h > 0.0 { h } else { 0.0 };
+                for row in 0..n {
+                    let dy = places[row] - y;
+                    let left = s * s - lift * lift - dy * dy;
+                    if left <= 0.0 {
+                        continue;
+                    }
+                    let (middle, spread) = ((x - places[0]) * density, left.sqrt() * density);
+                    let first = (middle - spread).max(0.0) as usize / $lanes;
+                    let last = (((middle + spread).max(0.0) as usize + 1).min(n)).div_ceil($lanes);
+                    for block in first..last {
+                        let start = block * $lanes;
+                        let places = &places[start..start + $lanes];
+                        let taxels = &mut deflections[row * n + start..][..$lanes];
+                        let (mut squares, mut raised) = ([0.0; $lanes], [0.0; $lanes]);
+                        let mut beaten = 0_u32;
+                        for k in 0..$lanes {
+                            let dx = places[k] - x;
+                            squares[k] = (s * s - dy * dy) - dx * dx;
+                            raised[k] = taxels[k];
+                            let bar = (h + raised[k]).max(0.0);
+                            beaten |= u32::from(squares[k] > bar * bar) << k;
+                        }
+                        if beaten == 0 {
+                            continue;
+                        }
+                        for k in 0..$lanes {
+                            let needed = squares[k].sqrt() - h;
+                            let needed = if squares[k] > 0.0 { needed } else { 0.0 };
+                            raised[k] = raised[k].max(needed);
+                        }
+                        taxels.copy_from_slice(&raised);
+                    }
+                }
+            }
+        }
+    };
+}
+
+kernel!(
+    press_f64,
+    f64,
+    8,
+    "Presses spheres in doubles, eight taxels at once."
+);
+kernel!(
+    press_f32,
+    f32,
+    16,
+    "Presses spheres in singles, sixteen taxels at once."
+);
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn both_are_the_formula() {
+        let places: Vec<f64> = (0..32).map(|k| 2e-3 * (f64::from(k) - 15.5)).collect();
+        let singles: Vec<f32> = places.iter().map(|&place| place as f32).collect();
+        let spheres = [
+            [3e-3, -1e-3, 0.02, 0.022],
+            [-8e-3, 5e-3, 0.007, 0.01],
+            [0.0, 0.0, 0.05, 0.04],
+        ];
+        let (mut exact, mut rounded) = (vec![1.0; 32 * 32], vec![1.0; 32 * 32]);
+        press_f64(&spheres, &places, &mut exact);
+        press_f32(&spheres, &singles, &mut rounded);
+        let mut n_touched = 0;
+        for (taxel, (exact, rounded)) in exact.iter().zip(&rounded).enumerate() {
+            let (x, y) = (places[taxel % 32], places[taxel / 32]);
+            let needed = spheres.iter().map(|[cx, cy, h, s]| {
+                let left = s * s - (cx - x).powi(2) - (cy - y).powi(2);
+                if left > 0.0 { left.sqrt() - h } else { 0.0 }
+            });
+            let needed = needed.fold(0.0, f64::max);
+            n_touched += usize::from(needed > 0.0);
+            assert!((exact - needed).abs() < 1e-16, "{exact} {needed}");
+            assert!(
+                (f64::from(*rounded) - needed).abs() < 1e-7,
+                "{rounded} {needed}"
+            );
+        }
+        assert!(n_touched > 30, "{n_touched}");
+    }
+}
