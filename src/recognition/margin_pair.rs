@@ -3,7 +3,7 @@
 use ndarray::Array2;
 
 use crate::recognition::dual::DualSolution;
-use crate::recognition::row_products::Rows;
+use crate::recognition::row_products::{Rows, multiply};
 use crate::recognition::scalar::Scalar;
 use crate::recognition::smo::{Part, Reached, Room, Smo, extremes, gather};
 use crate::recognition::transposed::write_columns;
@@ -28,6 +28,26 @@ pub(crate) struct PairGoal {
     pub tolerance: f64,
     /// Iterations after which a solve is left as it is; `None`: after those that count as unsolvable.
     pub most_iterations: Option<u64>,
+}
+
+/// What pairs need in turn, so that its memory is asked for once.
+pub(crate) struct Scratch<'r, T> {
+    /// The rows of both classes that take part.
+    rows: [Vec<&'r [T]>; 2],
+    /// New products across.
+    across: Vec<T>,
+    /// Rows by how far they are beyond something, with their class and number.
+    violating: Vec<(f64, (usize, usize))>,
+}
+
+impl<T> Default for Scratch<'_, T> {
+    fn default() -> Self {
+        Self {
+            rows: [Vec::new(), Vec::new()],
+            across: Vec::new(),
+            violating: Vec::new(),
+        }
+    }
 }
 
 /// Two classes, the first of them positive.
@@ -73,31 +93,48 @@ impl<T: Scalar> MarginPair<T> {
 
     /// Lets rows of both classes take part, with coefficients of 0. `products` are `w·x` of all rows of both, none before
     /// the first solution; the rows of a class lie among all from `starts` on.
-    pub fn join(&mut self, joining: &Sides, products: [&[T]; 2], all: Rows<T>, starts: [usize; 2]) {
+    pub fn join<'r>(
+        &mut self,
+        joining: &Sides,
+        products: [&[T]; 2],
+        (all, starts): (Rows<'r, T>, [usize; 2]),
+        scratch: &mut Scratch<'r, T>,
+    ) {
         let before = self.rows.each_ref().map(Vec::len);
         self.take_in(joining, products);
-        let [first, second]: Sides = [0, 1].map(|side| {
-            let rows = self.rows[side].iter();
-            rows.map(|row| starts[side] + row).collect()
-        });
-        // The new rows of the first meet all of the second, the old ones its new ones.
-        let (old, new) = first.split_at(before[0]);
-        let below = all.products(new, &second);
-        let right = all.products(old, &second[before[1]..]);
-        let mut across = Vec::with_capacity(first.len() * second.len());
-        for row in 0..old.len() {
-            across.extend_from_slice(&self.across[0][row * before[1]..][..before[1]]);
-            across.extend(right.row(row));
+        let Scratch { rows, across, .. } = scratch;
+        for (side, to) in rows.iter_mut().enumerate() {
+            to.clear();
+            to.extend(
+                self.rows[side]
+                    .iter()
+                    .map(|row| all.row(starts[side] + row)),
+            );
         }
-        across.extend(&below);
-        self.across[1].resize(across.len(), T::zero());
-        let rows: Vec<&[T]> = across.chunks_exact(second.len().max(1)).collect();
-        write_columns(&rows, &mut self.across[1], first.len());
-        self.across[0] = across;
+        let [first, second] = &*rows;
+        // The new rows of the first meet all of the second, the old ones its new ones.
+        let n_new = second.len() - before[1];
+        across.resize(first.len() * second.len(), T::zero());
+        let (right, below) = across.split_at_mut(before[0] * n_new);
+        multiply(&first[..before[0]], &second[before[1]..], right);
+        let below = &mut below[..(first.len() - before[0]) * second.len()];
+        multiply(&first[before[0]..], second, below);
+        let old = std::mem::take(&mut self.across[0]);
+        let mut to = Vec::with_capacity(first.len() * second.len());
+        for row in 0..before[0] {
+            to.extend_from_slice(&old[row * before[1]..][..before[1]]);
+            to.extend_from_slice(&right[row * n_new..][..n_new]);
+        }
+        to.extend_from_slice(below);
+        self.across[1].resize(to.len(), T::zero());
+        let whole: Vec<&[T]> = to.chunks_exact(second.len().max(1)).collect();
+        write_columns(&whole, &mut self.across[1], first.len());
+        self.across[0] = to;
     }
 
     fn take_in(&mut self, joining: &Sides, products: [&[T]; 2]) {
-        let (mut beta, mut f) = (Vec::new(), Vec::new());
+        let n = self.beta.len() + joining[0].len() + joining[1].len();
+        let (mut beta, mut f) = (Vec::with_capacity(n), Vec::with_capacity(n));
         let mut start = 0;
         for (side, joining) in joining.iter().enumerate() {
             let end = start + self.rows[side].len();
@@ -168,11 +205,17 @@ impl<T: Scalar> MarginPair<T> {
     ///
     /// All rows hold within the tolerance when none that does not take part is further than half of it beyond the middle of
     /// what the others leave open.
-    pub fn joining(&self, products: [&[T]; 2], goal: PairGoal) -> Option<Sides> {
+    pub fn joining(
+        &self,
+        products: [&[T]; 2],
+        goal: PairGoal,
+        scratch: &mut Scratch<T>,
+    ) -> Option<Sides> {
         let (highest, lowest) = extremes(&self.beta, &self.is_positive(), &self.f, goal.c);
         let middle = (highest + lowest) / 2.0;
         // By how much a row is beyond, least first.
-        let mut violating: Vec<(f64, (usize, usize))> = Vec::new();
+        let violating = &mut scratch.violating;
+        violating.clear();
         for (number, products) in products.into_iter().enumerate() {
             let takes_part = &self.takes_part[number];
             // f lies beyond the middle by more than half the tolerance where w·x is less than this, by its sign.
@@ -192,8 +235,8 @@ impl<T: Scalar> MarginPair<T> {
         if (self.beta.len() + n_joining) as f64 > MOST_SHARE * n_all {
             return Some([0, 1].map(|side| self.outside(side).collect()));
         }
-        let mut joining = [Vec::new(), Vec::new()];
-        for (side, row) in smallest(violating, n_joining) {
+        let mut joining = [0, 1].map(|_| Vec::with_capacity(n_joining));
+        for &(_, (side, row)) in smallest(violating, n_joining) {
             joining[side].push(row);
         }
         Some(joining)
@@ -225,21 +268,25 @@ impl<T: Scalar> MarginPair<T> {
 }
 
 /// The n rows of either class that are nearest to the other when `w·x` of all rows of both are these.
-pub(crate) fn nearest<T: Scalar>(products: [&[T]; 2], n: usize) -> Sides {
+pub(crate) fn nearest<T: Scalar>(products: [&[T]; 2], n: usize, scratch: &mut Scratch<T>) -> Sides {
     [0, 1].map(|side| {
         let products = products[side].iter().enumerate();
-        let distances = products.map(|(row, product)| (SIGNS[side] * product.wide(), row));
-        smallest(distances.collect(), n)
+        let distances = &mut scratch.violating;
+        distances.clear();
+        distances
+            .extend(products.map(|(row, product)| (SIGNS[side] * product.wide(), (side, row))));
+        let nearest = smallest(distances, n).iter();
+        nearest.map(|&(_, (_, row))| row).collect()
     })
 }
 
-/// What belongs to the n smallest values, in no order; of equal values the first.
-fn smallest<K: Ord + Copy>(mut values: Vec<(f64, K)>, n: usize) -> Vec<K> {
-    if n < values.len() {
-        values.select_nth_unstable_by(n, |a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
-        values.truncate(n);
+/// The n smallest values, in no order, and what they belong to; of equal values the first.
+fn smallest<K: Ord + Copy>(values: &mut [(f64, K)], n: usize) -> &[(f64, K)] {
+    if n >= values.len() {
+        return values;
     }
-    values.into_iter().map(|(_, of)| of).collect()
+    values.select_nth_unstable_by(n, |a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+    &values[..n]
 }
 
 fn whole_row<T>(products: &Array2<T>, row: usize) -> &[T] {

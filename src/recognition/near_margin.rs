@@ -18,7 +18,7 @@ use ndarray::{Array2, Axis};
 use crate::recognition::between::pairs;
 use crate::recognition::dual::DualSolution;
 use crate::recognition::few_dimensions::spanned;
-use crate::recognition::margin_pair::{MarginPair, PairGoal, Sides, nearest};
+use crate::recognition::margin_pair::{MarginPair, PairGoal, Scratch, Sides, nearest};
 use crate::recognition::packed::Packed;
 use crate::recognition::row_products::multiply;
 use crate::recognition::scalar::Scalar;
@@ -78,6 +78,7 @@ pub(crate) struct NearMargin<'c, 'a, T> {
     classes: &'c Classes<'a, T>,
     pairs: Vec<MarginPair<T>>,
     room: Room<T>,
+    scratch: Scratch<'c, T>,
     round: Round<T>,
 }
 
@@ -86,17 +87,17 @@ pub(crate) struct NearMargin<'c, 'a, T> {
 struct Round<T> {
     /// The hyperplanes' normals.
     normals: Vec<T>,
-    /// `w·x` of all rows of the first class and of the second.
+    /// `w·x` of all rows of both classes, class by class.
     products: Vec<T>,
-    /// Where the products of each pair begin, those of its second class, and where they end.
-    places: Vec<[usize; 3]>,
+    /// Where the products of both classes of each pair lie.
+    places: Vec<[Range<usize>; 2]>,
 }
 
 impl<T> Round<T> {
     /// `w·x` of all rows of both classes of the pair that came so late.
     fn products(&self, number: usize) -> [&[T]; 2] {
-        let [first, second, end] = self.places[number];
-        [&self.products[first..second], &self.products[second..end]]
+        let places = self.places[number].each_ref();
+        places.map(|place| &self.products[place.clone()])
     }
 }
 
@@ -108,6 +109,7 @@ impl<'c, 'a, T: Scalar> NearMargin<'c, 'a, T> {
             classes,
             pairs: pairs.iter().map(pair).collect(),
             room: Room::new(),
+            scratch: Scratch::default(),
             round: Round::default(),
         };
         for (pair, rows) in rows.iter().enumerate() {
@@ -141,7 +143,7 @@ impl<'c, 'a, T: Scalar> NearMargin<'c, 'a, T> {
             tolerance,
             most_iterations: None,
         };
-        self.settle(goal, usize::MAX, |pair, _| pair.solution())
+        self.settle(goal, usize::MAX, |pair, _, _| pair.solution())
     }
 
     /// The rows of all pairs that are near the margin for this C, roughly.
@@ -151,8 +153,8 @@ impl<'c, 'a, T: Scalar> NearMargin<'c, 'a, T> {
             tolerance: ROUGH_TOLERANCE,
             most_iterations: Some(ROUGH_ITERATIONS),
         };
-        self.settle(goal, FEW_ROUNDS, |_, products| {
-            nearest(products, ROWS_NEAR_MARGIN)
+        self.settle(goal, FEW_ROUNDS, |_, products, scratch| {
+            nearest(products, ROWS_NEAR_MARGIN, scratch)
         })
     }
 
@@ -162,7 +164,7 @@ impl<'c, 'a, T: Scalar> NearMargin<'c, 'a, T> {
         &mut self,
         goal: PairGoal,
         most_rounds: usize,
-        mut settled: impl FnMut(&mut MarginPair<T>, [&[T]; 2]) -> R,
+        mut settled: impl FnMut(&mut MarginPair<T>, [&[T]; 2], &mut Scratch<'c, T>) -> R,
     ) -> Vec<R> {
         let mut results = Vec::new();
         results.resize_with(self.pairs.len(), || None);
@@ -180,10 +182,11 @@ impl<'c, 'a, T: Scalar> NearMargin<'c, 'a, T> {
             self.solve_round(&open, now);
             for (number, &pair) in open.iter().enumerate() {
                 let products = self.round.products(number);
-                let joining = self.pairs[pair].joining(products, now);
+                let joining = self.pairs[pair].joining(products, now, &mut self.scratch);
                 let is_settled = joining.is_none() && now.tolerance == goal.tolerance;
                 if is_settled || n_rounds == most_rounds {
-                    results[pair] = Some(settled(&mut self.pairs[pair], products));
+                    results[pair] =
+                        Some(settled(&mut self.pairs[pair], products, &mut self.scratch));
                     continue;
                 }
                 still_open.push(pair);
@@ -201,38 +204,36 @@ impl<'c, 'a, T: Scalar> NearMargin<'c, 'a, T> {
         let n_features = self.classes.sorted.centre().len();
         let mut round = std::mem::take(&mut self.round);
         round.normals.clear();
-        round.places.clear();
-        let mut end = 0;
         let mut sums = vec![0.0; n_features];
         for &pair in pairs {
             self.pairs[pair].solve(&self.classes.within, &mut self.room, goal);
             sums.fill(0.0);
             self.add_normal(pair, &mut sums);
             round.normals.extend(sums.iter().map(|&sum| T::of(sum)));
-            let [first, second] = self.classes.sizes(self.pairs[pair].classes());
-            round.places.push([end, end + first, end + first + second]);
-            end += first + second;
         }
-        round.products.resize(end, T::zero());
-        // Of each class the normals of its pairs, and where their products go.
-        let mut of_classes: Vec<(Vec<&[T]>, Vec<&mut [T]>)> = Vec::new();
-        of_classes.resize_with(self.classes.within.len(), Default::default);
-        let mut products = &mut round.products[..];
-        for (number, &pair) in pairs.iter().enumerate() {
-            let normal = &round.normals[number * n_features..][..n_features];
-            for class in self.pairs[pair].classes() {
-                let (own, later) = products.split_at_mut(self.classes.sorted.ranges()[class].len());
-                of_classes[class].0.push(normal);
-                of_classes[class].1.push(own);
-                products = later;
+        round.places.clear();
+        round.places.resize(pairs.len(), [0..0, 0..0]);
+        let points = self.classes.sorted.points().in_place();
+        let (mut normals, mut rows) = (Vec::new(), Vec::new());
+        let mut end = 0;
+        for (class, range) in self.classes.sorted.ranges().iter().enumerate() {
+            normals.clear();
+            let start = end;
+            for (number, &pair) in pairs.iter().enumerate() {
+                let classes = self.pairs[pair].classes();
+                if let Some(side) = classes.iter().position(|&own| own == class) {
+                    normals.push(&round.normals[number * n_features..][..n_features]);
+                    round.places[number][side] = end..end + range.len();
+                    end += range.len();
+                }
             }
-        }
-        let rows = self.classes.sorted.points().in_place();
-        for (range, (normals, mut products)) in self.classes.sorted.ranges().iter().zip(of_classes)
-        {
+            if end > round.products.len() {
+                round.products.resize(end, T::zero());
+            }
             if !normals.is_empty() {
-                let rows: Vec<&[T]> = range.clone().map(|row| rows.row(row)).collect();
-                multiply(&normals, &rows, &mut products);
+                rows.clear();
+                rows.extend(range.clone().map(|row| points.row(row)));
+                multiply(&normals, &rows, &mut round.products[start..end]);
             }
         }
         self.round = round;
@@ -249,10 +250,11 @@ impl<'c, 'a, T: Scalar> NearMargin<'c, 'a, T> {
 
     /// Lets rows of both classes of a pair take part, which came so late in the last round.
     fn join(&mut self, pair: usize, joining: &Sides, number: Option<usize>) {
-        let starts = self.classes.starts(self.pairs[pair].classes());
+        let classes: &'c Classes<'a, T> = self.classes;
+        let starts = classes.starts(self.pairs[pair].classes());
         let products = number.map_or([&[][..]; 2], |number| self.round.products(number));
-        let all = self.classes.sorted.points().in_place();
-        self.pairs[pair].join(joining, products, all, starts);
+        let all = (classes.sorted.points().in_place(), starts);
+        self.pairs[pair].join(joining, products, all, &mut self.scratch);
     }
 }
 
@@ -303,7 +305,8 @@ impl<'a, T: Scalar> PairsNearMargin<'a, T> {
             rows.map(|row| self.along_means[[row, a]] - self.along_means[[row, b]])
                 .collect()
         });
-        nearest(along.each_ref().map(Vec::as_slice), ROWS_ALONG_MEANS)
+        let along = along.each_ref().map(Vec::as_slice);
+        nearest(along, ROWS_ALONG_MEANS, &mut Scratch::default())
     }
 }
 

@@ -17,25 +17,13 @@ pub(crate) struct Rows<'a, T> {
 }
 
 impl<'a, T: Scalar> Rows<'a, T> {
-    /// Products of some rows with others, by number: rows.len() × others.len().
-    pub fn products(self, rows: &[usize], others: &[usize]) -> Array2<T> {
-        let mut products = Array2::zeros((rows.len(), others.len()));
-        let to = products.as_slice_mut().expect("a new array is contiguous");
-        let mut to: Vec<&mut [T]> = to.chunks_exact_mut(others.len().max(1)).collect();
-        let [rows, others] = [rows, others].map(|of| {
-            let rows = of.iter().map(|&row| self.row(row));
-            rows.collect::<Vec<&[T]>>()
-        });
-        multiply(&rows, &others, &mut to);
-        products
-    }
-
     /// Adds rows, by number, each times a weight; in f64, since large weights may all but cancel.
     pub fn add_weighted(self, sums: &mut [f64], rows: impl Iterator<Item = (usize, f64)>) {
-        let mut rows: Vec<(&[T], f64)> = rows
-            .filter(|(_, weight)| *weight != 0.0)
-            .map(|(row, weight)| (self.row(row), weight))
-            .collect();
+        let rows = rows.filter(|(_, weight)| *weight != 0.0);
+        let mut weighing: Vec<(&[T], f64)> =
+            Vec::with_capacity(rows.size_hint().1.unwrap_or(0) + 4);
+        weighing.extend(rows.map(|(row, weight)| (self.row(row), weight)));
+        let mut rows = weighing;
         // Rows that weigh nothing fill up the last four.
         let n_fours = rows.len().div_ceil(4);
         if let Some(&(first, _)) = rows.first() {
@@ -53,8 +41,8 @@ impl<'a, T: Scalar> Rows<'a, T> {
     }
 }
 
-/// Products of rows with others, all equally long: those of each row into a slice.
-pub(crate) fn multiply<T: Scalar>(rows: &[&[T]], others: &[&[T]], to: &mut [&mut [T]]) {
+/// Products of rows with others, all equally long: rows.len() × others.len(), row by row.
+pub(crate) fn multiply<T: Scalar>(rows: &[&[T]], others: &[&[T]], to: &mut [T]) {
     if T::products_in_place(rows, others, to) {
         return;
     }
@@ -64,11 +52,9 @@ pub(crate) fn multiply<T: Scalar>(rows: &[&[T]], others: &[&[T]], to: &mut [&mut
             .expect("whole rows were copied")
     };
     let products = whole(rows).dot(&whole(others).t());
-    for (to, products) in to.iter_mut().zip(products.rows()) {
-        to.iter_mut()
-            .zip(products)
-            .for_each(|(to, &from)| *to = from);
-    }
+    to.iter_mut()
+        .zip(&products)
+        .for_each(|(to, &from)| *to = from);
 }
 
 /// Four rows at once: the sums are read and written a quarter as often.
@@ -119,8 +105,10 @@ mod tests {
     ) {
         let n_features = values.len() / 11;
         let all = Rows { values, n_features };
-        let products = all.products(rows, others);
-        assert_eq!(products.dim(), expected.dim());
+        let [left, right] = [rows, others].map(|of| of.iter().map(|&row| all.row(row)));
+        let (left, right): (Vec<&[T]>, Vec<&[T]>) = (left.collect(), right.collect());
+        let mut products = vec![T::one(); left.len() * right.len()];
+        multiply(&left, &right, &mut products);
         for (product, expected) in products.iter().zip(expected) {
             assert!((product.wide() - expected).abs() <= tolerance);
         }

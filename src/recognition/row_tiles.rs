@@ -7,11 +7,7 @@
 /// processor has not got the instructions.
 #[cfg(target_arch = "x86_64")]
 #[multiversion::multiversion(targets("x86_64+avx512f", "x86_64+avx2+fma"))]
-pub(crate) fn products_in_place(
-    rows: &[&[f32]],
-    others: &[&[f32]],
-    products: &mut [&mut [f32]],
-) -> bool {
+pub(crate) fn products_in_place(rows: &[&[f32]], others: &[&[f32]], products: &mut [f32]) -> bool {
     multiversion::target::match_target! {
         "x86_64+avx512f" => {
             avx512::products(rows, others, products);
@@ -29,7 +25,7 @@ pub(crate) fn products_in_place(
 }
 
 #[cfg(not(target_arch = "x86_64"))]
-pub(crate) fn products_in_place(_: &[&[f32]], _: &[&[f32]], _: &mut [&mut [f32]]) -> bool {
+pub(crate) fn products_in_place(_: &[&[f32]], _: &[&[f32]], _: &mut [f32]) -> bool {
     false
 }
 
@@ -42,10 +38,10 @@ const DEPTH: usize = 512;
 #[cfg(target_arch = "x86_64")]
 fn by_tiles<'r, const N: usize, const M: usize>(
     (rows, others): (&[&'r [f32]], &[&'r [f32]]),
-    products: &mut [&mut [f32]],
+    products: &mut [f32],
     tile: impl Fn([&'r [f32]; N], [&'r [f32]; M]) -> [[f32; M]; N],
 ) {
-    products.iter_mut().for_each(|row| row.fill(0.0));
+    products.fill(0.0);
     let n_features = rows.first().map_or(0, |row| row.len());
     for start in (0..n_features).step_by(DEPTH) {
         let piece = start..n_features.min(start + DEPTH);
@@ -54,7 +50,8 @@ fn by_tiles<'r, const N: usize, const M: usize>(
             let left = std::array::from_fn(|at| row(rows, i + at));
             for j in (0..others.len()).step_by(M) {
                 let tile = tile(left, std::array::from_fn(|at| row(others, j + at)));
-                for (to, tile) in products[i..].iter_mut().zip(&tile) {
+                for (at, tile) in tile.iter().enumerate().take(rows.len() - i) {
+                    let to = &mut products[(i + at) * others.len()..][..others.len()];
                     let both = to[j..].iter_mut().zip(tile);
                     both.for_each(|(to, &product)| *to += product);
                 }
@@ -79,7 +76,7 @@ mod avx512 {
     const N: usize = 4;
 
     #[target_feature(enable = "avx512f")]
-    pub fn products(rows: &[&[f32]], others: &[&[f32]], products: &mut [&mut [f32]]) {
+    pub fn products(rows: &[&[f32]], others: &[&[f32]], products: &mut [f32]) {
         super::by_tiles((rows, others), products, |left, right| tile(left, right));
     }
 
@@ -172,7 +169,7 @@ mod avx2 {
     const M: usize = 3;
 
     #[target_feature(enable = "avx2,fma")]
-    pub fn products(rows: &[&[f32]], others: &[&[f32]], products: &mut [&mut [f32]]) {
+    pub fn products(rows: &[&[f32]], others: &[&[f32]], products: &mut [f32]) {
         super::by_tiles((rows, others), products, |left, right| tile(left, right));
     }
 

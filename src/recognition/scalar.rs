@@ -19,7 +19,7 @@ pub(crate) trait Scalar: NdFloat + Default {
     fn exponentials(distances: &mut [Self], gamma: f64);
     /// Products of some rows with others, all equally long, where they lie: row by row into `products`; `false`, and nothing
     /// written, where there is no fast way.
-    fn products_in_place(_: &[&[Self]], _: &[&[Self]], _: &mut [&mut [Self]]) -> bool {
+    fn products_in_place(_: &[&[Self]], _: &[&[Self]], _: &mut [Self]) -> bool {
         false
     }
     /// The solver's [first pass](passes::step_along).
@@ -86,11 +86,7 @@ impl Scalar for f32 {
         exponentials_f32(distances, gamma as f32);
     }
 
-    fn products_in_place(
-        rows: &[&[Self]],
-        others: &[&[Self]],
-        products: &mut [&mut [Self]],
-    ) -> bool {
+    fn products_in_place(rows: &[&[Self]], others: &[&[Self]], products: &mut [Self]) -> bool {
         row_tiles::products_in_place(rows, others, products)
     }
 

@@ -190,7 +190,7 @@ impl<'a, G> Smo<'a, G> {
             let mut all = Variables::<T>::new(&self.beta, self.is_positive, &self.f, c);
             let first_look = if round == 0 { SHRINK_PERIOD } else { 0 };
             let stop = run(self.gram, &mut all, search, first_look);
-            self.beta = all.beta.clone();
+            self.beta.copy_from_slice(&all.beta);
             if let Stop::Shrink(indices) = &stop {
                 let part = self.gram.part(indices);
                 let tolerance = search.tolerance;
