@@ -31,15 +31,17 @@ pub enum Error {
         /// What the system answered.
         source: std::io::Error,
     },
-    /// Some cells of a study failed; what the others found is written. The command exits with code 1.
-    #[error("{path}: {n_failed} of {n_cells} cells failed; the file says why, and the same command tries them again", path = path.display())]
+    /// Some cells or pieces of a study failed; what the others found is written. The command exits with code 1.
+    #[error("{path}: {n_failed} of {n_all} {what} failed; the file says why, and the same command tries them again", path = path.display())]
     Cells {
         /// The table of failures.
         path: PathBuf,
-        /// Cells that failed, counted once a trial.
+        /// What a study of this kind is made of: `cells` or `pieces`.
+        what: &'static str,
+        /// Those that failed; cells are counted once a trial.
         n_failed: usize,
-        /// All cells, counted once a trial.
-        n_cells: usize,
+        /// All, counted in the same way.
+        n_all: usize,
     },
 }
 

@@ -253,9 +253,12 @@ fn keys_that_are_out_of_range_are_named_with_their_way() {
     let imbalance = QUICK.replace("values = [1.0, 10.0, 30.0]", "values = [1.0, 10.0, 1000.0]");
     case.file("imbalance.toml", &imbalance);
     for (arguments, said) in [
-        (&["run", "unlike.toml"][..], "way detail at 1, key touches"),
         (
-            &["run", "imbalance.toml"],
+            &["run", "unlike.toml", "--fail-fast"][..],
+            "way detail at 1, key touches",
+        ),
+        (
+            &["run", "imbalance.toml", "--fail-fast"],
             "way imbalance at 1000, key recognition.class_imbalance",
         ),
         (

@@ -117,7 +117,7 @@ fn read_study(input: &[u8]) -> Result<()> {
         StudyKind::SpeedAccuracy => SpeedAccuracyStudySpec::parse(PLACE, text).map(drop),
         StudyKind::Stability => {
             let spec = StabilityStudySpec::parse(PLACE, text)?;
-            StabilityPlan::new(PLACE, spec).map(drop)
+            StabilityPlan::new(PLACE, Path::new(""), spec).map(drop)
         }
     }
 }

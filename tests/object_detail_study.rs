@@ -195,7 +195,7 @@ fn a_mesh_that_cannot_be_packed_is_named_with_what_it_lacks() {
         let triangles = closed.triangles()[1..].to_vec();
         let open = TriangleMesh::new("open", closed.vertices().to_vec(), triangles).unwrap();
         case.file("meshes/open.ply", ply(&open));
-        let output = case.run(&["run", "study.toml", "--out", "1"]);
+        let output = case.run(&["run", "study.toml", "--out", "1", "--fail-fast"]);
         assert_eq!(output.status.code(), Some(2));
         let said = String::from_utf8(output.stderr).unwrap();
         assert!(

@@ -4,7 +4,8 @@ mod report_synthetic;
 
 use bubbletouch::report::csv_tables::{TABLE_FILES, read_tables, to_csv, write_tables};
 use bubbletouch::report::page::ReportPage;
-use bubbletouch::report::results::write_all;
+use bubbletouch::report::results::{MOST_CHARTS, write_all};
+use bubbletouch::sensing::Ensemble;
 use bubbletouch::study::table::{Cell, Comparison, Tables};
 use report_synthetic::{about, add_headlines, cell, noise_cells, quickstart_cells, tables};
 use std::collections::BTreeMap;
@@ -74,6 +75,60 @@ fn a_row_is_the_cell_then_the_score_and_nothing_stands_for_absent() {
         String::from_utf8(to_csv(&[comparison]).unwrap()).unwrap(),
         "cell,best_cell,n_trials,difference,difference_low,difference_high,p_value,p_holm\n3,1,1,-0.25,,,,\n"
     );
+}
+
+#[test]
+fn the_first_charts_are_drawn_and_the_page_says_which_are_left_out() {
+    // Along x the ratio, pitches as lines, noise in panels: what is left makes 30 charts.
+    let mut cells = Vec::new();
+    for noise in 0..2 {
+        for smoothing in 0..15 {
+            for ratio in [4.0, 16.0] {
+                for pitch_mm in [2.0, 4.0] {
+                    for ensemble in [Ensemble::Gaussian, Ensemble::Sbhe] {
+                        cells.push(Cell {
+                            noise_std: 0.05 * f64::from(noise),
+                            smoothing_mm: f64::from(smoothing),
+                            ratio,
+                            pitch_mm,
+                            ensemble,
+                            ..cell()
+                        });
+                    }
+                }
+            }
+        }
+    }
+    let made = tables(cells, 1, 8);
+    let dir = tempfile::tempdir().unwrap();
+    let drawn = |name: &str, all_charts| {
+        let folder = dir.path().join(name);
+        let page = ReportPage {
+            all_charts,
+            ..about()
+        };
+        write_all(&folder, &made, &page).unwrap();
+        let names = contents(&folder);
+        let of_ending = |ending: &str| {
+            let is_chart =
+                |name: &&String| name.starts_with("accuracy_by") && name.ends_with(ending);
+            names.keys().filter(is_chart).cloned().collect::<Vec<_>>()
+        };
+        let html = String::from_utf8(names["report.html"].clone()).unwrap();
+        (of_ending(".svg"), of_ending(".png"), html)
+    };
+    let (first, png, html) = drawn("first", false);
+    assert_eq!((first.len(), png.len()), (MOST_CHARTS, MOST_CHARTS));
+    let (all, png, all_html) = drawn("all", true);
+    assert!(all.len() > MOST_CHARTS + 1 && first.iter().all(|name| all.contains(name)));
+    assert_eq!(png.len(), MOST_CHARTS);
+    let n_left_out = all.len() - MOST_CHARTS;
+    let said = format!("{n_left_out} more, from accuracy_by_");
+    assert!(
+        html.contains(&said) && html.contains("--all-charts"),
+        "{said}"
+    );
+    assert!(!all_html.contains("--all-charts"));
 }
 
 #[test]

@@ -10,6 +10,7 @@ use bubbletouch::study::stability::{
 };
 use command::Case;
 use std::fs;
+use std::path::Path;
 
 const QUICK: &str = r#"
 question = "What breaks?"
@@ -215,7 +216,7 @@ fn keys_that_are_out_of_range_are_named_with_their_part() {
         assert!(QUICK.contains(old), "{old}");
         let text = QUICK.replacen(old, new, 1);
         let plan = StabilityStudySpec::parse("study.toml", &text)
-            .and_then(|spec| StabilityPlan::new("study.toml", spec));
+            .and_then(|spec| StabilityPlan::new("study.toml", Path::new(""), spec));
         let error = plan.unwrap_err().to_string();
         assert!(
             error.contains(said) && error.starts_with("study.toml"),

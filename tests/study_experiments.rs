@@ -92,7 +92,7 @@ fn every_experiment_can_run() {
         if StudyKind::of(&text) == StudyKind::Stability {
             let spec = StabilityStudySpec::parse(&place, &text).unwrap();
             assert!(!spec.question.is_empty() && !spec.expected.is_empty());
-            let plan = StabilityPlan::new(&place, spec).unwrap();
+            let plan = StabilityPlan::new(&place, path.parent().unwrap(), spec).unwrap();
             assert!(plan.n_cells() > 1, "{place} compares something");
             continue;
         }

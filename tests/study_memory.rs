@@ -194,6 +194,11 @@ fn a_damaged_file_is_named_and_can_be_pruned() {
         bytes[middle] ^= 4;
         fs::write(&kept.path, bytes).unwrap();
     }
+    // A list reads what stands around frames only, unless it is asked to check them.
+    let (said, _) = case.succeeds(&["cache", "list"]);
+    assert!(!said.contains("damaged"), "{said}");
+    let (said, _) = case.succeeds(&["cache", "list", "--check"]);
+    assert_eq!(said.matches("damaged").count(), 4, "{said}");
     let output = case.run(&["run", "few.toml", "--quiet", "--fresh"]);
     let said = String::from_utf8(output.stderr).unwrap();
     assert_eq!(output.status.code(), Some(2), "{said}");

@@ -2,14 +2,15 @@
 #![cfg(unix)]
 
 mod command;
+mod faults;
 
 use command::Case;
+use faults::{full_disk, keys, said, sha256, signal, start};
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use std::collections::BTreeSet;
 use std::fs;
 use std::path::Path;
-use std::process::{Child, Command, Output, Stdio};
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
@@ -64,12 +65,6 @@ fn case() -> Case {
     case
 }
 
-fn start(case: &Case, arguments: &[&str]) -> Child {
-    let mut command = case.command(arguments);
-    command.stdout(Stdio::null()).stderr(Stdio::piped());
-    command.spawn().unwrap()
-}
-
 fn assert_same_tables(case: &Case, folder: &str) {
     for name in REPEATABLE {
         let read = |folder: &str| fs::read(case.path(folder).join(name)).unwrap();
@@ -77,29 +72,11 @@ fn assert_same_tables(case: &Case, folder: &str) {
     }
 }
 
-/// Keys of a journal in their order; of an unfinished last line nothing.
-fn keys(journal: &Path) -> Vec<String> {
-    let text = fs::read_to_string(journal).unwrap_or_default();
-    let whole = text
-        .split_inclusive('\n')
-        .filter(|line| line.ends_with('\n'));
-    let key = |line: &str| {
-        let value: serde_json::Value =
-            serde_json::from_str(line.split_once(' ').unwrap().1).unwrap();
-        value["key"].as_str().unwrap().to_owned()
-    };
-    whole.map(key).collect()
-}
-
 fn cell_keys(journal: &Path) -> Vec<String> {
     keys(journal)
         .into_iter()
         .filter(|key| key.starts_with("cell "))
         .collect()
-}
-
-fn said(output: &Output) -> String {
-    String::from_utf8_lossy(&output.stderr).into_owned()
 }
 
 #[test]
@@ -183,17 +160,7 @@ fn a_disk_that_is_full_ends_a_run_and_one_with_room_goes_on() {
     let case = case();
     for kilobytes in [0, 2, 5, 9] {
         let folder = format!("full_{kilobytes}");
-        // A file may grow no further, and who tries is told rather than killed.
-        let script = format!(
-            "ulimit -f {kilobytes}; trap '' XFSZ; exec {} run study.toml --out {folder}",
-            env!("CARGO_BIN_EXE_bubbletouch")
-        );
-        let mut bash = Command::new("bash");
-        let output = bash
-            .args(["-c", &script])
-            .current_dir(case.folder())
-            .output()
-            .unwrap();
+        let output = full_disk(&case, kilobytes, &["run", "study.toml", "--out", &folder]);
         assert_eq!(output.status.code(), Some(1), "{}", said(&output));
         assert!(said(&output).contains("write failed"), "{}", said(&output));
         assert!(!case.path(&folder).join("accuracy.csv").exists());
@@ -205,19 +172,15 @@ fn a_disk_that_is_full_ends_a_run_and_one_with_room_goes_on() {
 #[test]
 fn ctrl_c_ends_a_run_within_two_seconds_and_says_how_to_go_on() {
     let case = case();
-    for signal in ["INT", "TERM"] {
-        let folder = format!("stopped_{signal}");
+    for name in ["INT", "TERM"] {
+        let folder = format!("stopped_{name}");
         let run = start(&case, &["run", "study.toml", "--out", &folder]);
         let journal = case.path(&folder).join("journal.jsonl");
         while cell_keys(&journal).is_empty() {
             sleep(Duration::from_millis(5));
         }
         let asked = Instant::now();
-        let id = run.id().to_string();
-        Command::new("kill")
-            .args(["-s", signal, &id])
-            .status()
-            .unwrap();
+        signal(&run, name);
         let output = run.wait_with_output().unwrap();
         assert!(asked.elapsed() < Duration::from_secs(2));
         assert_eq!(output.status.code(), Some(130));
@@ -241,12 +204,8 @@ fn a_signal_ends_a_run_though_nobody_reads_what_it_says() {
         sleep(Duration::from_millis(5));
     }
     drop(run.stderr.take());
-    let id = run.id().to_string();
     let asked = Instant::now();
-    Command::new("kill")
-        .args(["-s", "TERM", &id])
-        .status()
-        .unwrap();
+    signal(&run, "TERM");
     while run.try_wait().unwrap().is_none() {
         assert!(asked.elapsed() < Duration::from_secs(2), "it hangs");
         sleep(Duration::from_millis(5));
@@ -423,16 +382,16 @@ fn results_verify_until_a_number_in_them_is_changed() {
     // Who changes the manifest too is found out by running cells again.
     let manifest = case.path("whole/manifest.json");
     let said_before = fs::read_to_string(&manifest).unwrap();
-    let sum = |path: &Path| {
-        let output = Command::new("sha256sum").arg(path).output().unwrap();
-        String::from_utf8(output.stdout).unwrap()[..64].to_owned()
-    };
     let value: serde_json::Value = serde_json::from_str(&said_before).unwrap();
     let old = value["tables_sha256"]["accuracy.csv"]
         .as_str()
         .unwrap()
         .to_owned();
-    fs::write(&manifest, said_before.replace(&old, &sum(&path))).unwrap();
+    fs::write(
+        &manifest,
+        said_before.replace(&old, &sha256(&fs::read(&path).unwrap())),
+    )
+    .unwrap();
     let output = case.run(&["verify", "whole", "--cells", "64"]);
     assert_eq!(output.status.code(), Some(2));
     assert!(said(&output).contains("again it is"), "{}", said(&output));

@@ -209,7 +209,7 @@ fn a_study_of_a_body_is_run_and_not_planned() {
     }
     let away = STUDY.replace("at_mm = [30.0, 0.0, -100.0]", "at_mm = [900.0, 900.0, 0.0]");
     case.file("away.toml", away);
-    let output = case.run(&["run", "away.toml", "--out", "1"]);
+    let output = case.run(&["run", "away.toml", "--out", "1", "--fail-fast"]);
     let said = String::from_utf8(output.stderr).unwrap();
     assert!(
         output.status.code() == Some(2) && said.contains("scene ball, approach: no contact"),

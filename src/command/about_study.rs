@@ -2,10 +2,9 @@
 
 use super::study_args::{LoadedStudy, StudyArgs};
 use bubbletouch::Result;
-use bubbletouch::report::page::{Limit, ReportPage, Snapshots, StudyAbout};
+use bubbletouch::report::page::{Limit, ReportPage, Snapshots};
 use bubbletouch::study::provenance::{Manifest, PROGRAM};
 use bubbletouch::study::{Outcome, Samples, StudySpec};
-use std::time::Instant;
 
 /// What a page says without the study's objects.
 pub fn page_of_spec(spec: &StudySpec, name: &str) -> ReportPage {
@@ -39,22 +38,6 @@ pub fn add_touches(page: &mut ReportPage, loaded: &LoadedStudy) -> Result<()> {
         &samples.caption,
     ));
     Ok(())
-}
-
-/// What the page of a study that is not of recognition says; the question and the expectation are the study's.
-pub fn study_about(
-    args: &StudyArgs,
-    (question, expected): (&str, &str),
-    start: Instant,
-) -> Result<StudyAbout> {
-    Ok(StudyAbout {
-        name: args.name()?,
-        question: question.to_owned(),
-        expected: expected.to_owned(),
-        wall_s: start.elapsed().as_secs_f64(),
-        command: command_line(args),
-        program: PROGRAM.to_owned(),
-    })
 }
 
 /// Adds what a manifest knows.

@@ -3,7 +3,7 @@
 use super::memory_args::bytes;
 use bubbletouch::Result;
 use bubbletouch::study::memory::Bytes;
-use bubbletouch::study::{CachedTouches, TouchCache};
+use bubbletouch::study::{CachedTouches, FrameFacts, TouchCache};
 use comfy_table::{Table, presets::NOTHING};
 use std::path::PathBuf;
 use std::time::SystemTime;
@@ -20,6 +20,9 @@ enum Action {
     List {
         #[command(flatten)]
         place: Place,
+        /// Read every byte, and say which files are damaged
+        #[arg(long)]
+        check: bool,
     },
     /// Remove what was used longest ago; damaged files too
     Prune {
@@ -46,12 +49,22 @@ impl Place {
 
 pub fn cache(args: &Args) -> Result<()> {
     match &args.action {
-        Action::List { place } => list(place),
+        Action::List { place, check } => list(place, reading(*check)),
         Action::Prune { place, keep_gib } => prune(place, *keep_gib),
     }
 }
 
-fn list(place: &Place) -> Result<()> {
+/// How it is found out what a file holds.
+type Reading = fn(&CachedTouches) -> Result<FrameFacts>;
+
+fn reading(is_checked: bool) -> Reading {
+    match is_checked {
+        true => CachedTouches::checked_facts,
+        false => CachedTouches::facts,
+    }
+}
+
+fn list(place: &Place, facts: Reading) -> Result<()> {
     let all = place.cache().list()?;
     if all.is_empty() {
         println!("{}: no touches are kept", place.results.display());
@@ -61,7 +74,7 @@ fn list(place: &Place) -> Result<()> {
     table.load_preset(NOTHING);
     table.set_header(["name", "what", "size", "took", "last used"]);
     for touches in &all {
-        let (what, cost) = match touches.facts() {
+        let (what, cost) = match facts(touches) {
             Ok(facts) => (facts.what, format!("{:.0} s", facts.cpu_s)),
             Err(_) => ("damaged".to_owned(), String::new()),
         };

@@ -4,8 +4,6 @@ use bubbletouch::report::progress::to_stderr;
 use bubbletouch::report::progress_json::JsonLines;
 use bubbletouch::study::progress::{Progress, Silent};
 use std::io::stdout;
-use std::path::Path;
-use std::time::Instant;
 
 #[derive(Clone, Copy, Debug, Default, clap::Args)]
 pub struct Listener {
@@ -39,14 +37,6 @@ impl Listener {
             (_, true) => self.progress().finish(text),
             _ => eprintln!("{text}"),
         }
-    }
-
-    /// Ends a run that has written its folder; whether a person wants to read what was found.
-    pub fn wrote(&self, folder: &Path, progress: &dyn Progress, start: Instant) -> bool {
-        progress.advance(1);
-        progress.finish(&format!("{:.1} s", start.elapsed().as_secs_f64()));
-        self.finished(serde_json::json!({ "event": "finished", "folder": folder }));
-        self.is_person()
     }
 
     /// Says, to a program, what came of a run.

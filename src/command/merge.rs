@@ -1,12 +1,13 @@
 //! `bubbletouch merge`: the shards of a study put together.
 
+use super::any_study::{EndedRun, RunManner, end, load_study};
 use super::listener::Listener;
 use super::memory_args::MemoryArgs;
-use super::output::{output_folder, packings_beside};
-use super::run::{FinishedStudy, failures, identity, results_folder, seconds_since};
+use super::output::output_folder;
+use super::run::results_folder;
 use super::study_args::StudyArgs;
+use bubbletouch::study::Part;
 use bubbletouch::study::journal::{Identity, JOURNAL_FILE, Journal};
-use bubbletouch::study::{Manner, Part, n_left, run_with};
 use bubbletouch::{Error, Result};
 use std::path::{Path, PathBuf};
 use std::time::SystemTime;
@@ -30,64 +31,51 @@ pub struct Args {
 pub fn merge(args: &Args) -> Result<()> {
     let started = SystemTime::now();
     let folder = results_folder(&args.study, args.out.as_deref())?;
-    let loaded = args.study.load(Some(&packings_beside(&folder)))?;
-    let identity = identity(&loaded);
+    let study = load_study(&args.study, &folder, Some(&args.memory))?;
+    let identity = study.identity();
     output_folder(&folder)?;
-    let mut journal = Journal::open(&folder.join(JOURNAL_FILE), &identity)?;
+    let mut journal = Journal::open(&folder.join(JOURNAL_FILE), identity)?;
     let folders = std::iter::once(&folder).chain(&args.from);
     let mut n_journals = 0;
     for folder in folders {
         for path in shard_journals(folder)? {
-            take(&mut journal, &path, &identity)?;
+            take(&mut journal, &path, identity)?;
             n_journals += 1;
         }
     }
     journal.sync()?;
-    let n_left = n_left(&loaded.plan, &loaded.sweep, Part::All, &journal);
+    let (n_all, n_left) = (study.n_all(), study.n_left(Part::All, &journal));
     if n_left > 0 {
-        let n_all = loaded.n_evaluations();
+        let units = study.units();
         return Err(Error::input(
             folder.display(),
-            format!("{n_left} of {n_all} cells are in none of the {n_journals} journals"),
+            format!("{n_left} of {n_all} {units} are in none of the {n_journals} journals"),
             "the journals of all shards, each run to its end (or bubbletouch run, which does here what is left)",
         ));
     }
-    let room = args.memory.room(&loaded, &folder)?;
-    let manner = Manner {
+    let progress = args.listener.progress();
+    let manner = RunManner {
         journal: &journal,
         fail_fast: false,
         retries: false,
         part: Part::All,
-        storage: &room.storage,
-        at_once: room.at_once,
+        progress: progress.as_ref(),
     };
-    let progress = args.listener.progress();
-    let touched = loaded.touched.as_ref();
-    let outcome = run_with(
-        &loaded.plan,
-        &loaded.sweep,
-        touched,
-        progress.as_ref(),
-        manner,
-    )?;
-    let finished = FinishedStudy {
+    let outcome = study.run(&manner)?;
+    let ended = EndedRun {
         args: &args.study,
         folder: &folder,
-        loaded: &loaded,
-        identity: &identity,
-        outcome: &outcome,
         started,
-        n_before: loaded.n_evaluations(),
+        n_before: n_all,
+        progress: progress.as_ref(),
     };
-    progress.stage("report", 1);
-    finished.write()?;
-    progress.advance(1);
-    progress.finish(&format!(
-        "{n_journals} shards, {:.1} s",
-        seconds_since(started)
-    ));
-    finished.tell(args.listener);
-    failures(&outcome, &folder)
+    let what = format!("{n_journals} shards, ");
+    end(
+        study.as_ref(),
+        outcome.as_ref(),
+        &ended,
+        (args.listener, &what),
+    )
 }
 
 /// Journals of shards in a folder, by name.

@@ -2,6 +2,8 @@
 
 mod about_study;
 mod advise;
+mod any_study;
+mod breaking_points_kind;
 mod cache;
 mod classify;
 mod compare;
@@ -9,32 +11,35 @@ mod features;
 mod listener;
 mod memory_args;
 mod merge;
+mod object_detail_kind;
 mod objects;
 mod objects_pack;
 mod objects_show;
 mod output;
+mod piece_kind;
+mod piece_rows;
 mod plan;
 mod press;
 mod press_place;
 mod press_poses;
+mod recognition_study;
+mod reconstruction_kind;
 mod recording;
 mod report;
 mod run;
-mod run_breaking_points;
-mod run_object_detail;
-mod run_reconstruction;
-mod run_speed_accuracy;
-mod run_stability;
-mod run_whole_body;
 mod shell;
 mod simulate;
 mod slurm;
 mod slurm_jobs;
+mod speed_accuracy_kind;
+mod stability_kind;
 mod study_args;
 mod study_folder;
 mod touches;
 mod verify;
+mod verify_cells;
 mod which_object;
+mod whole_body_kind;
 
 use bubbletouch::Result;
 use clap::{Parser, Subcommand};
@@ -61,11 +66,11 @@ enum Command {
     Merge(merge::Args),
     /// Run a study as an array of Slurm jobs, and the merge after them; what failed is submitted again by the same command
     Slurm(slurm::Args),
-    /// Write the charts and the page of a folder of results again, from its tables
+    /// Write the charts and the page of a folder of results again, from its tables (of studies that recognise)
     Report(report::Args),
     /// Say what moved between two folders of results, and whether chance explains it
     Compare(compare::Args),
-    /// Run a few cells of a folder of results again, and say whether they are the same bytes
+    /// Run a few cells or pieces of a folder of results again, and say whether they are the same bytes
     Verify(verify::Args),
     /// List or remove the touches that studies keep beside their results
     Cache(cache::Args),

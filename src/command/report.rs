@@ -1,4 +1,4 @@
-//! `bubbletouch report`: the page of a folder of results again, from its tables.
+//! `bubbletouch report`: the page of a folder of results of recognition again, from its tables.
 
 use super::about_study::{add_manifest, add_touches, page_of_spec};
 use super::output::packings_beside;
@@ -6,6 +6,7 @@ use super::study_args::StudyArgs;
 use bubbletouch::report::csv_tables::{LIMITS_FILE, read_rows, read_tables};
 use bubbletouch::report::page::ReportPage;
 use bubbletouch::report::results::write_page;
+use bubbletouch::study::StudyKind;
 use bubbletouch::study::provenance::Manifest;
 use bubbletouch::{Error, Result};
 use std::path::{Path, PathBuf};
@@ -14,15 +15,37 @@ use std::path::{Path, PathBuf};
 pub struct Args {
     /// A folder that `bubbletouch run` wrote
     results: PathBuf,
+    /// Draw every static chart of a study of recognition; without it the first 24
+    #[arg(long)]
+    all_charts: bool,
 }
 
 pub fn report(args: &Args) -> Result<()> {
     let folder = &args.results;
+    check_kind(folder)?;
     let tables = read_tables(folder)?;
-    let page = about(folder)?;
+    let mut page = about(folder)?;
+    page.all_charts = args.all_charts;
     write_page(folder, &tables, &page)?;
     println!("Wrote {}", folder.join("report.html").display());
     Ok(())
+}
+
+/// An error if the folder is of a study that does not recognise.
+fn check_kind(folder: &Path) -> Result<()> {
+    let path = folder.join("study.toml");
+    let text = std::fs::read_to_string(&path).unwrap_or_default();
+    match StudyKind::of(&text) {
+        StudyKind::Recognition => Ok(()),
+        kind => Err(Error::input(
+            path.display(),
+            kind.words(),
+            format!(
+                "{} (of any other, bubbletouch run draws again what is finished)",
+                StudyKind::Recognition.words()
+            ),
+        )),
+    }
 }
 
 /// What the folder says of itself: its study, its manifest, and the touches of its study, made again.
@@ -32,6 +55,7 @@ fn about(folder: &Path) -> Result<ReportPage> {
         objects: None,
         seed: None,
         threads: None,
+        paths_from: None,
     };
     let manifest = Manifest::read(folder)?;
     let name = match &manifest {

@@ -1,11 +1,12 @@
 //! `bubbletouch slurm`: the shards of a study as an array of jobs, and their merge after them.
 
-use super::output::{output_folder, packings_beside};
-use super::run::{identity, results_folder};
+use super::any_study::{AnyStudy, load_study};
+use super::output::output_folder;
+use super::run::results_folder;
 use super::slurm_jobs::{Job, queued_shards, submit};
-use super::study_args::{LoadedStudy, StudyArgs};
-use bubbletouch::study::journal::{Identity, JOURNAL_FILE, Journal};
-use bubbletouch::study::{Part, Shard, n_left};
+use super::study_args::StudyArgs;
+use bubbletouch::study::journal::{JOURNAL_FILE, Journal};
+use bubbletouch::study::{Part, Shard};
 use bubbletouch::{Error, Result};
 use std::path::{Path, PathBuf};
 
@@ -35,15 +36,14 @@ pub fn slurm(args: &Args) -> Result<()> {
         return Err(Error::input("--array", 0, "at least 1 job"));
     }
     let folder = results_folder(&args.study, args.out.as_deref())?;
-    let loaded = args.study.load(Some(&packings_beside(&folder)))?;
+    let study = load_study(&args.study, &folder, None)?;
     output_folder(&folder)?;
-    let jobs = Jobs::new(args, &loaded, &folder)?;
+    let jobs = Jobs::new(args, &folder)?;
     let queued = queued_shards(&jobs.name("shards"))?;
-    let identity = identity(&loaded);
     let mut missing = Vec::new();
     for shard in Shard::all(args.array) {
         let is_queued = queued.contains(&shard.index());
-        if !is_queued && !is_done(&loaded, &identity, &folder, shard)? {
+        if !is_queued && !is_done(study.as_ref(), &folder, shard)? {
             missing.push(shard.index());
         }
     }
@@ -70,14 +70,14 @@ pub fn slurm(args: &Args) -> Result<()> {
     Ok(())
 }
 
-/// Whether a shard's journal says what came of all its cells.
-fn is_done(loaded: &LoadedStudy, identity: &Identity, folder: &Path, shard: Shard) -> Result<bool> {
+/// Whether a shard's journal says what came of all its work.
+fn is_done(study: &dyn AnyStudy, folder: &Path, shard: Shard) -> Result<bool> {
     let path = folder.join(shard.file_name(JOURNAL_FILE));
     let Some((begun, journal)) = Journal::read(&path)? else {
         return Ok(false);
     };
-    begun.check_same(identity, &path.display().to_string())?;
-    Ok(n_left(&loaded.plan, &loaded.sweep, Part::Shard(shard), &journal) == 0)
+    begun.check_same(study.identity(), &path.display().to_string())?;
+    Ok(study.n_left(Part::Shard(shard), &journal) == 0)
 }
 
 /// What the jobs of a study have in common.
@@ -90,7 +90,7 @@ struct Jobs<'a> {
 }
 
 impl<'a> Jobs<'a> {
-    fn new(args: &'a Args, loaded: &LoadedStudy, folder: &Path) -> Result<Self> {
+    fn new(args: &'a Args, folder: &Path) -> Result<Self> {
         let absolute = |path: &Path| {
             let absolute = std::path::absolute(path);
             absolute.map_err(|e| Error::io(path, "read", e))
@@ -110,7 +110,7 @@ impl<'a> Jobs<'a> {
             .collect();
         Ok(Self {
             args,
-            study: loaded.name.clone(),
+            study: args.study.name()?,
             program: quoted(&program.to_string_lossy()),
             arguments: words.join(" "),
         })

@@ -30,6 +30,9 @@ pub struct StudyArgs {
     /// Threads; all cores when left out. Results are the same at any number
     #[arg(long, value_name = "N")]
     pub threads: Option<usize>,
+    /// The folder that paths in the study are relative to; its file's when left out.
+    #[arg(skip)]
+    pub paths_from: Option<PathBuf>,
 }
 
 /// A study whose objects are built and whose touches are drawn.
@@ -54,7 +57,14 @@ impl StudyArgs {
             objects: None,
             seed: None,
             threads: None,
+            paths_from: None,
         }
+    }
+
+    /// The folder that paths in the study are relative to.
+    pub fn folder(&self) -> PathBuf {
+        let of_file = self.study.parent().unwrap_or(Path::new(""));
+        self.paths_from.clone().unwrap_or(of_file.to_owned())
     }
 
     /// The name of the study: its file's name without the ending.
@@ -133,15 +143,15 @@ impl StudyArgs {
         }
         let mut spec = WholeBodyStudySpec::parse(&place, &self.text()?)?;
         spec.seed = self.seed.unwrap_or(spec.seed);
-        let folder = self.study.parent().unwrap_or(Path::new(""));
-        WholeBodyPlan::new(&place, folder, spec)
+        WholeBodyPlan::new(&place, &self.folder(), spec)
     }
 
     /// Reads and checks a study of where contact methods break; it has no objects and nothing random to replace.
     pub fn stability_plan(&self) -> Result<StabilityPlan> {
         set_threads(self.threads)?;
         let place = self.study.display().to_string();
-        StabilityPlan::new(&place, StabilityStudySpec::parse(&place, &self.text()?)?)
+        let spec = StabilityStudySpec::parse(&place, &self.text()?)?;
+        StabilityPlan::new(&place, &self.folder(), spec)
     }
 
     /// Reads and checks a study of what accuracy costs.
@@ -158,8 +168,7 @@ impl StudyArgs {
             (Some(folder), Some(scans)) => scans.meshes.clone_from(folder),
             _ => self.replace_objects(&mut spec.objects),
         }
-        let folder = self.study.parent().unwrap_or(Path::new(""));
-        SpeedAccuracyPlan::new(&place, folder, spec)
+        SpeedAccuracyPlan::new(&place, &self.folder(), spec)
     }
 
     fn replace_objects(&self, objects: &mut ObjectsSpec) {

@@ -56,7 +56,7 @@ impl StudyFolder {
     }
 
     /// Removes the journal: the next run starts from nothing.
-    pub fn forget(self) -> Result<()> {
+    pub fn forget(&self) -> Result<()> {
         remove(&self.path)
     }
 }
@@ -71,7 +71,7 @@ fn end_well_on_signals(journal: &Arc<Journal>) -> Result<()> {
     let set = ctrlc::set_handler(move || {
         let synced = journal.stop();
         let mut said =
-            "\nstopped: every finished cell is kept; the same command goes on from there"
+            "\nstopped: all that is finished is kept; the same command goes on from there"
                 .to_owned();
         if let Err(error) = synced {
             said += &format!("\nerror: {error}");

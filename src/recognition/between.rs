@@ -2,14 +2,14 @@
 
 use std::ops::Range;
 
-use ndarray::{Array2, ArrayView2, s};
+use ndarray::ArrayViewMut2;
 
 use crate::recognition::packed::Packed;
 use crate::recognition::scalar::Scalar;
 use crate::recognition::sorted::Sorted;
 
 /// Rows of a group of classes, at least, while classes last: enough that a product's time goes into its multiplications.
-pub(crate) const GROUP_ROWS: usize = 512;
+const GROUP_ROWS: usize = 512;
 
 /// The classes whose rows these are, in groups of about [`GROUP_ROWS`] rows.
 pub(crate) fn groups(ranges: &[Range<usize>]) -> Vec<Range<usize>> {
@@ -33,51 +33,80 @@ pub(crate) fn pairs(
     own.flat_map(move |a| other.clone().filter(move |&b| b > a).map(move |b| (a, b)))
 }
 
-/// Kernel values between the rows of a group of classes and those of others, group by group.
-pub(crate) struct Between<'a, T> {
+/// A group of classes: its rows, and their kernel values.
+pub(crate) struct Group<'a, T> {
     sorted: &'a Sorted<T>,
-    columns: Range<usize>,
-    packed: Packed<'a, T>,
     rows: Range<usize>,
-    values: Array2<T>,
+    /// Those of its rows with each other, row by row.
+    own: Vec<T>,
 }
 
-impl<'a, T: Scalar> Between<'a, T> {
-    /// None yet, of this group with any.
-    pub fn new(sorted: &'a Sorted<T>, own: &Range<usize>) -> Self {
-        let columns = sorted.rows_of(own);
+impl<'a, T: Scalar> Group<'a, T> {
+    /// Of these classes.
+    pub fn new(sorted: &'a Sorted<T>, classes: &Range<usize>) -> Self {
+        let rows = sorted.rows_of(classes);
+        let points = sorted.points().range(rows.clone());
+        let mut own = points.packed().own_products();
+        points.apply(own.view_mut(), points, &sorted.kernel());
         Self {
             sorted,
-            packed: sorted.points().range(columns.clone()).packed(),
-            columns,
-            rows: 0..0,
-            values: Array2::zeros((0, 0)),
+            rows,
+            own: own.into_raw_vec_and_offset().0,
         }
     }
 
-    /// Those with another group or the same, in the memory of the last ones where they are as many.
-    pub fn compute(&mut self, other: &Range<usize>) {
-        self.rows = self.sorted.rows_of(other);
-        let size = (self.rows.len(), self.columns.len());
-        if self.values.dim() != size {
-            self.values = Array2::zeros(size);
-        }
-        let points = self.sorted.points();
-        let rows = points.range(self.rows.clone());
-        if self.rows == self.columns {
-            self.packed.multiply_own(self.values.view_mut());
-        } else {
-            self.packed.multiply(rows.values, self.values.view_mut());
-        }
-        let columns = points.range(self.columns.clone());
-        rows.apply(self.values.view_mut(), columns, &self.sorted.kernel());
+    /// Its rows, packed for products with those of others.
+    pub fn packed(&self) -> Packed<'a, T> {
+        self.sorted.points().range(self.rows.clone()).packed()
     }
 
-    /// Those of some of the other group's rows with some of the own group's.
-    pub fn part(&self, rows: &Range<usize>, columns: &Range<usize>) -> ArrayView2<'_, T> {
-        let within =
-            |of: &Range<usize>, all: &Range<usize>| of.start - all.start..of.end - all.start;
-        self.values
-            .slice(s![within(rows, &self.rows), within(columns, &self.columns)])
+    /// Bytes that the kernel values of groups take, with those between two of them.
+    pub fn bytes(sorted: &Sorted<T>, groups: &[Range<usize>]) -> usize {
+        let sizes = || groups.iter().map(|group| sorted.rows_of(group).len());
+        let squares: usize = sizes().map(|n| n * n).sum();
+        let largest = sizes().max().unwrap_or(0);
+        (squares + largest * largest) * size_of::<T>()
+    }
+
+    /// Kernel values of another group's rows with these, which are [`packed`](Self::packed): row by row, in the memory of the
+    /// last ones.
+    pub fn with(&self, packed: &Packed<T>, other: &Self, values: &mut Vec<T>) {
+        let size = (other.rows.len(), self.rows.len());
+        values.resize(size.0 * size.1, T::zero());
+        let values = ArrayViewMut2::from_shape(size, values);
+        let mut values = values.expect("room for all values was made");
+        let [own, others] =
+            [self, other].map(|group| self.sorted.points().range(group.rows.clone()));
+        packed.multiply(others.values, values.view_mut());
+        others.apply(values, own, &self.sorted.kernel());
+    }
+
+    /// Of kernel values with this group those of some rows with some of its own, row by row; all rows begin with `first`.
+    fn part<'v>(
+        &self,
+        (values, first): (&'v [T], usize),
+        rows: &Range<usize>,
+        columns: &Range<usize>,
+    ) -> Vec<&'v [T]> {
+        let columns = columns.start - self.rows.start..columns.end - self.rows.start;
+        let width = self.rows.len();
+        let rows = rows.start - first..rows.end - first;
+        rows.map(|row| &values[row * width..][columns.clone()])
+            .collect()
+    }
+
+    /// Kernel values of some of its rows with others of its, row by row.
+    pub fn own_part(&self, rows: &Range<usize>, columns: &Range<usize>) -> Vec<&[T]> {
+        self.part((&self.own, self.rows.start), rows, columns)
+    }
+
+    /// Kernel values of another group's rows with its own, of those that [`with`](Self::with) gave.
+    pub fn part_with<'v>(
+        &self,
+        other: &Self,
+        values: &'v [T],
+        (rows, columns): (&Range<usize>, &Range<usize>),
+    ) -> Vec<&'v [T]> {
+        self.part((values, other.rows.start), rows, columns)
     }
 }

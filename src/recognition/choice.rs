@@ -3,11 +3,12 @@
 use ndarray::{Array1, Array2, ArrayView1};
 use serde::{Deserialize, Serialize};
 
-use crate::recognition::dataset::{Dataset, check_features, check_labels, distinct, rows};
+use crate::recognition::dataset::{Dataset, check_labels, distinct, rows};
+use crate::recognition::extent::Extent;
 use crate::recognition::grid::Grid;
 use crate::recognition::kernel::{Gamma, Kernel, KernelFunction};
 use crate::recognition::scalar::Scalar;
-use crate::recognition::sorted::{Sorted, centre, farthest};
+use crate::recognition::sorted::Sorted;
 use crate::recognition::split::Split;
 use crate::recognition::svm::{Solver, SvmParams};
 use crate::recognition::training::Goal;
@@ -61,12 +62,12 @@ pub fn choose(
 ) -> Result<Chosen> {
     let path = ascending(&candidates.c);
     params.check(&path)?;
-    check_features(training.records.view())?;
+    let extent = Extent::of(training.records.view())?;
     check_labels(training.records.nrows(), training.targets.view())?;
     check_folds(training, folds)?;
-    let kernels = kernels(params, training, &candidates.gamma_scales)?;
+    let kernels = kernels(params, (training, &extent), &candidates.gamma_scales)?;
     let (counts, n_capped) = match params.solver {
-        Solver::Smo => on_one_matrix(params, training, folds, &kernels, &path)?,
+        Solver::Smo => on_one_matrix(params, (training, &extent), folds, &kernels, &path)?,
         _ => one_by_one(params, training, folds, &kernels, &path)?,
     };
     let n_validated: usize = folds.iter().map(|fold| fold.test.len()).sum();
@@ -156,16 +157,22 @@ fn gamma_of(kernel: &KernelFunction) -> Option<f64> {
 }
 
 /// The kernel with every γ that is asked for, ascending.
-fn kernels(params: &SvmParams, training: &Dataset, scales: &[f64]) -> Result<Vec<KernelFunction>> {
+fn kernels(
+    params: &SvmParams,
+    (training, extent): (&Dataset, &Extent),
+    scales: &[f64],
+) -> Result<Vec<KernelFunction>> {
     if scales.is_empty() || params.kernel == Kernel::Linear {
-        return Ok(vec![params.kernel.resolve(training.records.view())?]);
+        return Ok(vec![
+            params.kernel.resolve(training.records.view(), extent)?,
+        ]);
     }
     let unit = Gamma::Scale.resolve(training.records.view())?;
     ascending(scales)
         .into_iter()
         .map(|scale| {
             let kernel = params.kernel.with_gamma(Gamma::Value(scale * unit));
-            kernel.resolve(training.records.view())
+            kernel.resolve(training.records.view(), extent)
         })
         .collect()
 }
@@ -210,24 +217,57 @@ fn rows_exist(training: &Dataset, part: &[usize]) -> Result<()> {
 /// Validation rows recognised (kernels.len() × path.len()), and capped solves.
 fn on_one_matrix(
     params: &SvmParams,
-    training: &Dataset,
+    (training, extent): (&Dataset, &Extent),
     folds: &[Split],
     kernels: &[KernelFunction],
     path: &[f64],
 ) -> Result<(Array2<usize>, usize)> {
-    let centre = centre(training.records.view(), &kernels[0]);
+    let centre = extent.centre(&kernels[0]);
     let n_rows = training.records.nrows();
-    let farthest = farthest(training.records.view(), centre.view());
-    let is_double = kernels
-        .iter()
-        .any(|&kernel| params.wants_double(n_rows, kernel, path, farthest));
-    let size = if is_double {
-        size_of::<f64>()
-    } else {
-        size_of::<f32>()
+    let wants_double = |farthest: f64| {
+        let mut kernels = kernels.iter();
+        kernels.any(|&kernel| params.wants_double(n_rows, kernel, path, farthest))
     };
+    let data = (training, centre.view());
+    if !wants_double(0.0) {
+        let sorted = by_fold::<f32>(data, folds, kernels[0]);
+        if !wants_double(sorted.farthest()) {
+            return grid(params, &sorted, folds, kernels, path);
+        }
+    }
+    grid(
+        params,
+        &by_fold::<f64>(data, folds, kernels[0]),
+        folds,
+        kernels,
+        path,
+    )
+}
+
+/// Rows by class, and within a class by fold: what a fold trains on then lies in few runs.
+fn by_fold<T: Scalar>(
+    (training, centre): (&Dataset, ArrayView1<f64>),
+    folds: &[Split],
+    kernel: KernelFunction,
+) -> Sorted<T> {
+    let classes = distinct(training.targets.view());
+    let mut fold_of = vec![0; training.targets.len()];
+    for (number, fold) in folds.iter().enumerate() {
+        fold.test.iter().for_each(|&row| fold_of[row] = number);
+    }
+    Sorted::within_classes(training, &classes, kernel, centre, |row| fold_of[row])
+}
+
+fn grid<T: Scalar>(
+    params: &SvmParams,
+    sorted: &Sorted<T>,
+    folds: &[Split],
+    kernels: &[KernelFunction],
+    path: &[f64],
+) -> Result<(Array2<usize>, usize)> {
     // Three matrices at most: products, the kernel made of them, and the part that a fold trains on.
-    let most = (params.memory_bytes / (3 * size)).isqrt();
+    let most = (params.memory_bytes / (3 * size_of::<T>())).isqrt();
+    let n_rows = sorted.points().len();
     if n_rows > most {
         return Err(Error::input(
             "training rows",
@@ -235,39 +275,17 @@ fn on_one_matrix(
             format!("at most {most} fit in memory; let fewer touches take part in the choice"),
         ));
     }
-    Ok(if is_double {
-        grid::<f64>(params, (training, centre.view()), folds, kernels, path)
-    } else {
-        grid::<f32>(params, (training, centre.view()), folds, kernels, path)
-    })
-}
-
-fn grid<T: Scalar>(
-    params: &SvmParams,
-    (training, centre): (&Dataset, ArrayView1<f64>),
-    folds: &[Split],
-    kernels: &[KernelFunction],
-    path: &[f64],
-) -> (Array2<usize>, usize) {
-    let classes = distinct(training.targets.view());
-    // By fold within a class: what a fold trains on then lies in few runs.
-    let mut fold_of = vec![0; training.targets.len()];
-    for (number, fold) in folds.iter().enumerate() {
-        fold.test.iter().for_each(|&row| fold_of[row] = number);
-    }
-    let by_fold = |row: usize| fold_of[row];
-    let sorted = Sorted::<T>::within_classes(training, &classes, kernels[0], centre, by_fold);
     let goal = Goal {
         path,
         tolerance: params.tolerance,
         memory: params.memory_bytes,
     };
     let grid = Grid {
-        sorted: &sorted,
+        sorted,
         folds,
         multiclass: params.multiclass,
     };
-    grid.n_correct(kernels, goal)
+    Ok(grid.n_correct(kernels, goal))
 }
 
 /// The same by training a model for each fold and candidate: for solvers that share nothing, and as an oracle.
@@ -333,8 +351,10 @@ mod tests {
                     tolerance: 1e-8,
                     ..SvmParams::default()
                 };
-                let kernels = kernels(&params, &data, &[0.3, 3.0]).unwrap();
-                let fast = on_one_matrix(&params, &data, &folds, &kernels, &path).unwrap();
+                let extent = Extent::of(data.records.view()).unwrap();
+                let kernels = kernels(&params, (&data, &extent), &[0.3, 3.0]).unwrap();
+                let fast =
+                    on_one_matrix(&params, (&data, &extent), &folds, &kernels, &path).unwrap();
                 let slow = one_by_one(&params, &data, &folds, &kernels, &path).unwrap();
                 assert_eq!(fast, slow, "{kernel:?} {multiclass:?}");
                 assert_eq!(fast.0.nrows(), if kernel == Kernel::Linear { 1 } else { 2 });

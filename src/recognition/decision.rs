@@ -1,5 +1,7 @@
 //! The decision functions of all binary problems, by matrix products.
 
+use std::borrow::Cow;
+
 use ndarray::{Array1, Array2, ArrayView2, Axis, s};
 
 use crate::recognition::class_weights::ClassWeights;
@@ -46,9 +48,12 @@ struct Support<T> {
 }
 
 impl<T: Scalar> DecisionFunctions<T> {
-    /// Those of the problems that these rows were trained for.
-    pub fn new(sorted: &Sorted<T>, problems: &[BinaryProblem]) -> Self {
+    /// Those of the problems that these rows were trained for. Rows that are given away become the support vectors where they
+    /// lie.
+    pub fn new(rows: Cow<Sorted<T>>, problems: &[BinaryProblem]) -> Self {
+        let sorted = rows.as_ref();
         let classes = || sorted.classes_and_ranges();
+        let centre = sorted.centre().to_owned();
         let (rho, sums) = match sorted.kernel() {
             KernelFunction::Linear => {
                 let about_centre = problems.iter().map(|p| sorted.rho_about_centre(p));
@@ -67,10 +72,13 @@ impl<T: Scalar> DecisionFunctions<T> {
                     ClassWeights::new(sorted, class, rows, problems).of_support(&mut support)
                 });
                 let weights: Vec<_> = weights.collect();
-                let vectors = sorted.points().select(&support);
                 let rho = problems.iter().map(|p| p.solution.rho).collect();
                 let are_pairs = problems.iter().all(|p| p.negative.is_some());
                 let pairs = are_pairs.then(|| Pairs::new(&weights, &rho));
+                let vectors = match rows {
+                    Cow::Borrowed(sorted) => sorted.points().select(&support),
+                    Cow::Owned(sorted) => sorted.into_points().keep(&support),
+                };
                 let support = Support {
                     kernel,
                     vectors,
@@ -80,7 +88,6 @@ impl<T: Scalar> DecisionFunctions<T> {
                 (rho, Sums::Support(support))
             }
         };
-        let centre = sorted.centre().to_owned();
         Self { centre, rho, sums }
     }
 

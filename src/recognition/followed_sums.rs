@@ -5,7 +5,7 @@
 
 use std::ops::Range;
 
-use ndarray::Array2;
+use ndarray::{Array2, ArrayView2};
 
 use crate::recognition::scalar::Scalar;
 
@@ -13,13 +13,13 @@ use crate::recognition::scalar::Scalar;
 pub(crate) fn class_sums<T: Scalar>(
     classes: &[Range<usize>],
     is_training: &[bool],
-    rows: &Array2<T>,
+    rows: ArrayView2<T>,
 ) -> Array2<T> {
     let mut sums = Array2::zeros((classes.len(), rows.ncols()));
     for (range, mut sums) in classes.iter().zip(sums.rows_mut()) {
         let own = range.clone().filter(|&at| is_training[at]);
         let to = sums.as_slice_mut().expect("a new array is contiguous");
-        add_rows(to, own.map(|at| (row(rows, at), T::one())).collect());
+        add_rows(to, own.map(|at| (row(&rows, at), T::one())).collect());
     }
     sums
 }
@@ -46,7 +46,8 @@ impl<T: Scalar> Sums<T> {
             *class == positive || negative.is_none_or(|negative| *class == negative)
         };
         let classes = (0..of_classes.nrows()).filter(takes_part);
-        let weigh = |class: usize| (row(of_classes, class), sign(class == positive));
+        let of_classes = of_classes.view();
+        let weigh = |class: usize| (row(&of_classes, class), sign(class == positive));
         add_rows(&mut values, classes.map(weigh).collect());
         Self {
             values,
@@ -67,7 +68,7 @@ impl<T: Scalar> Sums<T> {
 
     /// Goes on to the coefficients of another C, and adds up what differs from the last ones in proportion to C: those at
     /// their bounds do not. Starts again unless that is less than half the work: sums that are followed round more than once.
-    pub fn follow(&mut self, rows: &Array2<T>, places: &[usize], (beta, c): (&[f64], f64)) {
+    pub fn follow(&mut self, rows: ArrayView2<T>, places: &[usize], (beta, c): (&[f64], f64)) {
         let ratio = c / self.c;
         let rest = |(&beta, &last): (&f64, &f64)| {
             let stays = beta.abs() == c && last.abs() == self.c;
@@ -87,7 +88,7 @@ impl<T: Scalar> Sums<T> {
         }
         let change = places.iter().zip(change).filter(|(_, beta)| **beta != 0.0);
         let width = rows.ncols();
-        let rows = rows.as_slice().expect("rows lie one by one");
+        let rows = rows.to_slice().expect("rows lie one by one");
         let row = |at: usize| &rows[at * width..][..width];
         let weigh = |(&at, &beta): (&usize, &f64)| (row(at), T::of(beta));
         add_rows(&mut self.values, change.map(weigh).collect());
@@ -96,9 +97,10 @@ impl<T: Scalar> Sums<T> {
     }
 }
 
-fn row<T>(rows: &Array2<T>, at: usize) -> &[T] {
-    let row = rows.row(at).to_slice();
-    row.expect("a new array is stored row by row")
+fn row<'a, T>(rows: &ArrayView2<'a, T>, at: usize) -> &'a [T] {
+    let width = rows.ncols();
+    let rows = rows.to_slice().expect("rows lie one by one");
+    &rows[at * width..][..width]
 }
 
 /// Adds rows times their weights; rows may be longer than the sums.
@@ -133,7 +135,7 @@ mod tests {
         let rows = Array2::from_shape_fn((9, 21), |(i, j)| ((i * 5 + j * 3) as f64 * 1.7).sin());
         // One row of each of two classes is not trained on.
         let is_training: Vec<bool> = (0..9).map(|at| at != 2 && at != 6).collect();
-        let of_classes = class_sums(&[0..4, 4..6, 6..9], &is_training, &rows);
+        let of_classes = class_sums(&[0..4, 4..6, 6..9], &is_training, rows.view());
         let pair: Vec<usize> = (0..4).chain(6..9).collect();
         for (problem, places) in [((0, Some(2)), pair), ((1, None), (0..9).collect())] {
             let sign = |&at: &usize| match at {
@@ -162,7 +164,7 @@ mod tests {
                 };
                 let beta: Vec<f64> = signs.iter().enumerate().map(beta).collect();
                 sums.truncate(21 - number);
-                sums.follow(&rows, &places, (&beta, c));
+                sums.follow(rows.view(), &places, (&beta, c));
                 assert_eq!(sums.values().len(), 21 - number);
                 for (column, sum) in sums.values().iter().enumerate() {
                     let each = places

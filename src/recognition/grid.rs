@@ -6,6 +6,7 @@
 //! [judged](crate::recognition::judgement) by their own class's problems first.
 
 use std::ops::Range;
+use std::rc::Rc;
 
 use ndarray::{Array2, ArrayView2, s};
 
@@ -21,6 +22,9 @@ use crate::recognition::training::Goal;
 
 /// Folds whose solutions are held at once: as many as are usual, so that many take no more memory.
 const FOLDS_AT_ONCE: usize = 8;
+
+/// Neighbouring classes whose pairs with as many others come together: of 140 rows each, kernel values of 5 MB.
+const CLASSES_AT_ONCE: usize = 8;
 
 /// Training rows and their division into folds.
 pub(crate) struct Grid<'a, T> {
@@ -63,6 +67,7 @@ impl<T: Scalar> Grid<'_, T> {
         let mut counts = Array2::zeros((kernels.len(), goal.path.len()));
         let mut n_capped = 0;
         let mut values = Array2::zeros(products.dim());
+        let mut columns = Vec::new();
         for (kernel, mut counts) in kernels.iter().zip(counts.rows_mut()) {
             // Class by class, so that rows are still in the cache.
             for range in self.sorted.ranges() {
@@ -74,10 +79,11 @@ impl<T: Scalar> Grid<'_, T> {
             for folds in folds.chunks(FOLDS_AT_ONCE) {
                 for judgement in self.judge(folds, values.view(), goal) {
                     n_capped += judgement.n_capped();
-                    for (count, n_right) in counts
-                        .iter_mut()
-                        .zip(judgement.n_right(values.view(), goal.path))
-                    {
+                    for (count, n_right) in counts.iter_mut().zip(judgement.n_right(
+                        values.view(),
+                        goal.path,
+                        &mut columns,
+                    )) {
                         *count += n_right;
                     }
                 }
@@ -128,10 +134,10 @@ impl<T: Scalar> Grid<'_, T> {
         let mut judgements: Vec<Judgement<'_>> = folds.iter().map(judgement).collect();
         let mut room = Room::new();
         let mut values = Vec::new();
-        for problem in self.multiclass.problems(ranges.len()) {
+        for problem in self.problems() {
             let block = self.block(problem, kernel.reborrow(), &mut values);
             // The fold before, and its solutions.
-            let mut last: Option<(&Fold, Vec<Vec<f64>>)> = None;
+            let mut last: Option<(&Fold, Vec<Rc<[f64]>>)> = None;
             for (fold, judgement) in folds.iter().zip(&mut judgements) {
                 let (positive, negative) = problem;
                 let takes_part = |class: usize| fold.is_class[class];
@@ -144,6 +150,14 @@ impl<T: Scalar> Grid<'_, T> {
             }
         }
         judgements
+    }
+
+    /// All problems; pairs of neighbouring classes come together, so that their part of the kernel stays in the cache.
+    fn problems(&self) -> Vec<(usize, Option<usize>)> {
+        let mut problems = self.multiclass.problems(self.sorted.ranges().len());
+        let group = |class: usize| class / CLASSES_AT_ONCE;
+        problems.sort_by_key(|&(a, b)| (group(a), b.map(group)));
+        problems
     }
 
     /// The rows of a problem, and their part of the kernel; `values` is room for it.
@@ -177,10 +191,10 @@ impl<T: Scalar> Grid<'_, T> {
 fn solve<T: Scalar>(
     block: &Block<T>,
     fold: &Fold,
-    last: Option<&(&Fold, Vec<Vec<f64>>)>,
+    last: Option<&(&Fold, Vec<Rc<[f64]>>)>,
     goal: Goal,
     room: &mut Room<T>,
-) -> (Vec<Solved>, Vec<Vec<f64>>) {
+) -> (Vec<Solved>, Vec<Rc<[f64]>>) {
     let places: Vec<usize> = (0..block.rows.len())
         .filter(|&at| fold.is_training[block.rows[at]])
         .collect();
@@ -197,7 +211,7 @@ fn solve<T: Scalar>(
         smo = smo.at_bounds(goal.path[0]);
     }
     let mut path: Vec<Solved> = Vec::new();
-    let mut solutions: Vec<Vec<f64>> = Vec::new();
+    let mut solutions: Vec<Rc<[f64]>> = Vec::new();
     for (number, &c) in goal.path.iter().enumerate() {
         let seed = || {
             let (before, solutions) = last.filter(|_| is_pair)?;
@@ -216,9 +230,10 @@ fn solve<T: Scalar>(
         for (&at, &value) in places.iter().zip(&solution.coefficients) {
             beta[at] = value;
         }
+        let beta: Rc<[f64]> = beta.into();
         let is_new = solutions.last() != Some(&beta);
         path.push(Solved {
-            beta: is_new.then(|| beta.clone()),
+            beta: is_new.then(|| Rc::clone(&beta)),
             rho: solution.rho,
             is_capped: solution.is_capped,
         });

@@ -6,8 +6,9 @@
 //! at small C: rows are kept in the order of the last C at which they do, so that those still open are the first ones.
 
 use std::ops::Range;
+use std::rc::Rc;
 
-use ndarray::{Array2, ArrayView2};
+use ndarray::ArrayView2;
 
 use crate::recognition::followed_sums::{Sums, add_rows, class_sums};
 use crate::recognition::scalar::Scalar;
@@ -18,7 +19,7 @@ use crate::recognition::voting::Ballot;
 /// What validation needs of a problem's solution.
 pub(crate) struct Solved {
     /// β of the problem's rows; `None` where it is that of the last C.
-    pub beta: Option<Vec<f64>>,
+    pub beta: Option<Rc<[f64]>>,
     /// ρ.
     pub rho: f64,
     /// Whether the solver stopped at its cap.
@@ -132,8 +133,13 @@ impl<'a> Judgement<'a> {
         }
     }
 
-    /// Rows recognised, by C, on the kernel values of all rows.
-    pub fn n_right<T: Scalar>(&self, kernel: ArrayView2<T>, path: &[f64]) -> Vec<usize> {
+    /// Rows recognised, by C, on the kernel values of all rows; `room` is for some of these.
+    pub fn n_right<T: Scalar>(
+        &self,
+        kernel: ArrayView2<T>,
+        path: &[f64],
+        room: &mut Vec<T>,
+    ) -> Vec<usize> {
         let mut open: Vec<usize> = (0..self.rows.len())
             .filter(|&at| self.n_open[at] > 0)
             .collect();
@@ -141,7 +147,7 @@ impl<'a> Judgement<'a> {
         let n_at = |number: usize| open.partition_point(|&at| self.n_open[at] > number);
         let n_at: Vec<usize> = (0..self.n_path).map(n_at).collect();
         let rows: Vec<usize> = open.iter().map(|&at| self.rows[at].0).collect();
-        let ballots = self.ballots(columns(kernel, &rows), &n_at, path);
+        let ballots = self.ballots(columns(kernel, &rows, room), &n_at, path);
         let right = |(&n, ballot): (&usize, Ballot)| {
             let winners = ballot.winners().into_iter().zip(&open[..n]);
             let right = winners.filter(|(winner, at)| *winner == self.rows[**at].1);
@@ -151,10 +157,15 @@ impl<'a> Judgement<'a> {
     }
 
     /// The votes of all problems on the first so many columns, by C.
-    fn ballots<T: Scalar>(&self, columns: Array2<T>, n_at: &[usize], path: &[f64]) -> Vec<Ballot> {
+    fn ballots<T: Scalar>(
+        &self,
+        columns: ArrayView2<T>,
+        n_at: &[usize],
+        path: &[f64],
+    ) -> Vec<Ballot> {
         let ballot = |&n: &usize| Ballot::new(self.ranges.len(), n, self.multiclass);
         let mut ballots: Vec<Ballot> = n_at.iter().map(ballot).collect();
-        let of_classes = class_sums(self.ranges, self.is_training, &columns);
+        let of_classes = class_sums(self.ranges, self.is_training, columns);
         for solved in &self.problems {
             let (positive, negative) = solved.problem;
             let places: Vec<usize> = match negative {
@@ -179,7 +190,7 @@ impl<'a> Judgement<'a> {
                 }
                 sums.truncate(n);
                 if let Some(beta) = &at.beta {
-                    sums.follow(&columns, &places, (beta, path[number]));
+                    sums.follow(columns, &places, (beta, path[number]));
                 }
                 ballots[number].take(solved.problem, sums.values(), at.rho);
             }
@@ -188,21 +199,26 @@ impl<'a> Judgement<'a> {
     }
 }
 
-/// Columns of a symmetric matrix: its rows, transposed.
-fn columns<T: Scalar>(symmetric: ArrayView2<T>, columns: &[usize]) -> Array2<T> {
-    let mut to = Array2::zeros((symmetric.nrows(), columns.len()));
+/// Columns of a symmetric matrix: its rows, transposed into `to`.
+fn columns<'a, T: Scalar>(
+    symmetric: ArrayView2<T>,
+    columns: &[usize],
+    to: &'a mut Vec<T>,
+) -> ArrayView2<'a, T> {
     let row = |&row: &usize| symmetric.row(row).to_slice();
     let row = |at| row(at).expect("a kernel is stored row by row");
     let rows: Vec<&[T]> = columns.iter().map(row).collect();
-    let values = to.as_slice_mut().expect("a new array is contiguous");
-    write_columns(&rows, values, columns.len());
-    to
+    let size = (symmetric.nrows(), columns.len());
+    to.resize(size.0 * size.1, T::zero());
+    write_columns(&rows, to, columns.len());
+    ArrayView2::from_shape(size, to).expect("columns fill the room")
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::recognition::voting::first_maximum;
+    use ndarray::Array2;
 
     const N: usize = 60;
     const C: [f64; 3] = [0.1, 1.0, 10.0];
@@ -248,11 +264,11 @@ mod tests {
                     None => (0..N).collect(),
                 };
                 let path = path(&members, &own, &is_training);
-                let mut beta: &Vec<f64> = path[0].beta.as_ref().unwrap();
+                let mut beta = path[0].beta.as_ref().unwrap();
                 for (solved, scores) in path.iter().zip(&mut scores) {
                     beta = solved.beta.as_ref().unwrap_or(beta);
                     for (&(row, _), scores) in rows.iter().zip(scores) {
-                        let terms = members.iter().zip(beta);
+                        let terms = members.iter().zip(&beta[..]);
                         let value: f64 = terms.map(|(&at, beta)| beta * kernel[[at, row]]).sum();
                         match negative {
                             None => scores[positive] = value - solved.rho,
@@ -275,7 +291,7 @@ mod tests {
                 })
                 .collect();
             assert_eq!(
-                judgement.n_right(kernel.view(), &C),
+                judgement.n_right(kernel.view(), &C, &mut Vec::new()),
                 expected,
                 "{multiclass:?}"
             );

@@ -3,6 +3,7 @@
 use ndarray::{ArrayView1, ArrayView2};
 use serde::{Deserialize, Serialize};
 
+use crate::recognition::extent::Extent;
 use crate::{Error, Result};
 
 /// The width parameter γ of a kernel, in inverse squared feature units.
@@ -50,8 +51,12 @@ impl Kernel {
         }
     }
 
-    /// The kernel with γ as a number, taken from the training features (n_rows × m).
-    pub(crate) fn resolve(&self, features: ArrayView2<f64>) -> Result<KernelFunction> {
+    /// The kernel with γ as a number, taken from the training features (n_rows × m) of this extent.
+    pub(crate) fn resolve(
+        &self,
+        features: ArrayView2<f64>,
+        extent: &Extent,
+    ) -> Result<KernelFunction> {
         let function = match *self {
             Self::Linear => KernelFunction::Linear,
             Self::Rbf { gamma } => KernelFunction::Rbf {
@@ -76,7 +81,7 @@ impl Kernel {
                 }
             }
         };
-        function.check(features)?;
+        function.check(extent.largest_norm)?;
         Ok(function)
     }
 }
@@ -94,10 +99,9 @@ impl Gamma {
                 // Two plain passes; ndarray's own variance divides at every value.
                 let n = features.len() as f64;
                 let mean = features.sum() / n;
-                // Row by row, so that few additions wait for each other.
-                let of_row = |row: ArrayView1<f64>| {
-                    let moved = &row - mean;
-                    moved.dot(&moved)
+                let of_row = |row: ArrayView1<f64>| match row.as_slice() {
+                    Some(row) => squares_about(mean, row),
+                    None => squares_about(mean, &row.to_vec()),
                 };
                 let squares: f64 = features.rows().into_iter().map(of_row).sum();
                 let scale = features.ncols() as f64 * squares / n;
@@ -105,6 +109,20 @@ impl Gamma {
             }
         }
     }
+}
+
+/// `Σ (x − mean)²`.
+#[multiversion::multiversion(targets("x86_64+avx512f", "x86_64+avx2+fma"))]
+fn squares_about(mean: f64, values: &[f64]) -> f64 {
+    let (lanes, last) = values.as_chunks::<8>();
+    let mut squares = [0.0; 8];
+    for values in lanes {
+        for lane in 0..8 {
+            squares[lane] += (values[lane] - mean) * (values[lane] - mean);
+        }
+    }
+    let last = last.iter().map(|value| (value - mean) * (value - mean));
+    squares.iter().sum::<f64>() + last.sum::<f64>()
 }
 
 /// A kernel with every parameter a number.
@@ -116,11 +134,9 @@ pub(crate) enum KernelFunction {
 }
 
 impl KernelFunction {
-    /// Refuses features (n_rows × m) so large that some kernel value is infinite. None exceeds those of a row with itself,
-    /// nor a squared distance four times the largest squared norm.
-    fn check(&self, features: ArrayView2<f64>) -> Result<()> {
-        let norms = features.rows().into_iter().map(|row| row.dot(&row));
-        let norm = norms.fold(0.0, f64::max);
+    /// Refuses rows whose largest squared norm is so large that some kernel value is infinite. None exceeds those of a row
+    /// with itself, nor a squared distance four times the largest squared norm.
+    fn check(&self, norm: f64) -> Result<()> {
         let largest = match *self {
             Self::Linear | Self::Rbf { .. } => 4.0 * norm,
             Self::Polynomial {
@@ -171,7 +187,8 @@ mod tests {
                 coef0,
                 degree,
             };
-            assert!(kernel.resolve(features.view()).is_err());
+            let extent = Extent::of(features.view()).unwrap();
+            assert!(kernel.resolve(features.view(), &extent).is_err());
         }
     }
 }

@@ -1,11 +1,12 @@
 //! Two classes, solved on the rows that take part.
 
-use ndarray::{Array2, s};
+use ndarray::Array2;
 
 use crate::recognition::dual::DualSolution;
-use crate::recognition::row_products::Rows;
+use crate::recognition::row_products::{Rows, multiply};
 use crate::recognition::scalar::Scalar;
-use crate::recognition::smo::{Part, Room, Smo, extremes, gather};
+use crate::recognition::smo::{Part, Reached, Room, Smo, extremes, gather};
+use crate::recognition::transposed::write_columns;
 
 /// Rows that join in a round, at least, while rows violate.
 const FEWEST_JOINING: usize = 24;
@@ -29,6 +30,26 @@ pub(crate) struct PairGoal {
     pub most_iterations: Option<u64>,
 }
 
+/// What pairs need in turn, so that its memory is asked for once.
+pub(crate) struct Scratch<'r, T> {
+    /// The rows of both classes that take part.
+    rows: [Vec<&'r [T]>; 2],
+    /// New products across.
+    across: Vec<T>,
+    /// Rows by how far they are beyond something, with their class and number.
+    violating: Vec<(f64, (usize, usize))>,
+}
+
+impl<T> Default for Scratch<'_, T> {
+    fn default() -> Self {
+        Self {
+            rows: [Vec::new(), Vec::new()],
+            across: Vec::new(),
+            violating: Vec::new(),
+        }
+    }
+}
+
 /// Two classes, the first of them positive.
 pub(crate) struct MarginPair<T> {
     classes: [usize; 2],
@@ -36,13 +57,17 @@ pub(crate) struct MarginPair<T> {
     rows: Sides,
     /// Whether each row of each class takes part.
     takes_part: [Vec<bool>; 2],
-    /// Products of the second's rows with the first's.
-    across: Array2<T>,
+    /// Products of the first's rows with the second's, and of the second's with the first's, row by row.
+    across: [Vec<T>; 2],
     /// Coefficients of the first's rows, then of the second's.
     beta: Vec<f64>,
-    /// The C that they belong to; 0 before the first.
+    /// y − w·x of the same rows, about.
+    f: Vec<f64>,
+    /// The C that the coefficients belong to; 0 before the first.
     c: f64,
     n_iterations: u64,
+    /// Whether the last solve ended within its tolerance.
+    is_solved: bool,
 }
 
 impl<T: Scalar> MarginPair<T> {
@@ -52,10 +77,12 @@ impl<T: Scalar> MarginPair<T> {
             classes,
             rows: [Vec::new(), Vec::new()],
             takes_part: sizes.map(|n| vec![false; n]),
-            across: Array2::zeros((0, 0)),
+            across: [Vec::new(), Vec::new()],
             beta: Vec::new(),
+            f: Vec::new(),
             c: 0.0,
             n_iterations: 0,
+            is_solved: false,
         }
     }
 
@@ -64,92 +91,106 @@ impl<T: Scalar> MarginPair<T> {
         self.classes
     }
 
-    /// Lets rows of both classes take part, with coefficients of 0. The rows of a class lie among all from `starts` on.
-    pub fn join(&mut self, joining: &Sides, all: Rows<T>, starts: [usize; 2]) {
-        let before = self.across.dim();
-        self.take_in(joining);
-        let [first, second]: Sides = [0, 1].map(|side| {
-            let rows = self.rows[side].iter();
-            rows.map(|row| starts[side] + row).collect()
-        });
-        let mut across = Array2::zeros((second.len(), first.len()));
-        across
-            .slice_mut(s![..before.0, ..before.1])
-            .assign(&self.across);
-        let (old, new) = second.split_at(before.0);
-        across
-            .slice_mut(s![..before.0, before.1..])
-            .assign(&all.products(old, &first[before.1..]));
-        across
-            .slice_mut(s![before.0.., ..])
-            .assign(&all.products(new, &first));
-        self.across = across;
+    /// Lets rows of both classes take part, with coefficients of 0. `products` are `w·x` of all rows of both, none before
+    /// the first solution; the rows of a class lie among all from `starts` on.
+    pub fn join<'r>(
+        &mut self,
+        joining: &Sides,
+        products: [&[T]; 2],
+        (all, starts): (Rows<'r, T>, [usize; 2]),
+        scratch: &mut Scratch<'r, T>,
+    ) {
+        let before = self.rows.each_ref().map(Vec::len);
+        self.take_in(joining, products);
+        let Scratch { rows, across, .. } = scratch;
+        for (side, to) in rows.iter_mut().enumerate() {
+            to.clear();
+            to.extend(
+                self.rows[side]
+                    .iter()
+                    .map(|row| all.row(starts[side] + row)),
+            );
+        }
+        let [first, second] = &*rows;
+        // The new rows of the first meet all of the second, the old ones its new ones.
+        let n_new = second.len() - before[1];
+        across.resize(first.len() * second.len(), T::zero());
+        let (right, below) = across.split_at_mut(before[0] * n_new);
+        multiply(&first[..before[0]], &second[before[1]..], right);
+        let below = &mut below[..(first.len() - before[0]) * second.len()];
+        multiply(&first[before[0]..], second, below);
+        let old = std::mem::take(&mut self.across[0]);
+        let mut to = Vec::with_capacity(first.len() * second.len());
+        for row in 0..before[0] {
+            to.extend_from_slice(&old[row * before[1]..][..before[1]]);
+            to.extend_from_slice(&right[row * n_new..][..n_new]);
+        }
+        to.extend_from_slice(below);
+        self.across[1].resize(to.len(), T::zero());
+        let whole: Vec<&[T]> = to.chunks_exact(second.len().max(1)).collect();
+        write_columns(&whole, &mut self.across[1], first.len());
+        self.across[0] = to;
     }
 
-    fn take_in(&mut self, joining: &Sides) {
-        let mut beta = self.beta.iter().copied();
-        let mut grown = Vec::new();
+    fn take_in(&mut self, joining: &Sides, products: [&[T]; 2]) {
+        let n = self.beta.len() + joining[0].len() + joining[1].len();
+        let (mut beta, mut f) = (Vec::with_capacity(n), Vec::with_capacity(n));
+        let mut start = 0;
         for (side, joining) in joining.iter().enumerate() {
-            grown.extend(beta.by_ref().take(self.rows[side].len()));
-            grown.resize(grown.len() + joining.len(), 0.0);
-            self.rows[side].extend(joining);
+            let end = start + self.rows[side].len();
+            beta.extend_from_slice(&self.beta[start..end]);
+            f.extend_from_slice(&self.f[start..end]);
+            start = end;
             for &row in joining {
+                beta.push(0.0);
+                let product = products[side].get(row).map_or(0.0, |value| value.wide());
+                f.push(SIGNS[side] - product);
                 self.takes_part[side][row] = true;
             }
+            self.rows[side].extend(joining);
         }
-        self.beta = grown;
+        (self.beta, self.f) = (beta, f);
     }
 
     /// Solves on the rows that take part, from the last solution. `within` holds the products within each class; rows of the
     /// Gram matrix are written into the memory of the last one.
-    pub fn solve(
-        &mut self,
-        within: &[Array2<T>],
-        room: &mut Room<T>,
-        goal: PairGoal,
-    ) -> DualSolution {
-        let beta = std::mem::take(&mut self.beta);
+    pub fn solve(&mut self, within: &[Array2<T>], room: &mut Room<T>, goal: PairGoal) {
+        let (beta, f) = (std::mem::take(&mut self.beta), std::mem::take(&mut self.f));
         let [first, second] = &self.rows;
         let within = self.classes.map(|class| &within[class]);
         let diagonal = |side: usize| {
-            self.rows[side]
-                .iter()
-                .map(move |&row| within[side][[row, row]])
+            let rows = self.rows[side].iter();
+            rows.map(move |&row| within[side][[row, row]])
         };
-        let across = self.across.as_slice().expect("a new array is contiguous");
         let write = |i: usize, to: &mut [T]| {
             let (left, right) = to.split_at_mut(first.len());
             if i < first.len() {
                 gather(left, whole_row(within[0], first[i]), first);
-                for (to, row) in right
-                    .iter_mut()
-                    .zip(across.chunks_exact(first.len().max(1)))
-                {
-                    *to = row[i];
-                }
+                right.copy_from_slice(&self.across[0][i * second.len()..][..second.len()]);
             } else {
                 let i = i - first.len();
-                left.copy_from_slice(&across[i * first.len()..][..first.len()]);
+                left.copy_from_slice(&self.across[1][i * first.len()..][..first.len()]);
                 gather(right, whole_row(within[1], second[i]), second);
             }
         };
         let mut gram = Part::new(diagonal(0).chain(diagonal(1)), write, room);
         let is_positive = self.is_positive();
-        let mut smo = Smo::resume(&mut gram, &is_positive, beta, self.c);
+        let mut smo = Smo::going_on(&mut gram, &is_positive, (beta, f), self.c);
         if let Some(most_iterations) = goal.most_iterations {
             smo = smo.of_at_most(most_iterations);
         }
-        let solution = smo.solve(goal.c, goal.tolerance);
-        self.beta.clone_from(&solution.coefficients);
+        let reached = smo.reach(goal.c, goal.tolerance, || None);
+        (self.beta, self.f) = smo.into_variables();
         self.c = goal.c;
-        self.n_iterations += solution.n_iterations.unwrap_or(0);
-        solution
+        self.n_iterations += reached.n_iterations;
+        self.is_solved = reached.is_solved;
     }
 
     fn is_positive(&self) -> Vec<bool> {
         let n_first = self.rows[0].len();
-        let n = n_first + self.rows[1].len();
-        (0..n).map(|i| i < n_first).collect()
+        (0..n_first + self.rows[1].len())
+            .map(|i| i < n_first)
+            .collect()
     }
 
     /// The rows that weigh in the solution, by the place of their class and their number within it, with their coefficients.
@@ -164,18 +205,25 @@ impl<T: Scalar> MarginPair<T> {
     ///
     /// All rows hold within the tolerance when none that does not take part is further than half of it beyond the middle of
     /// what the others leave open.
-    pub fn joining(&self, products: &[Vec<T>; 2], goal: PairGoal) -> Option<Sides> {
-        let f = |side: usize, row: usize| SIGNS[side] - products[side][row].wide();
-        let own: Vec<f64> = self.weighing().map(|(side, row, _)| f(side, row)).collect();
-        let (highest, lowest) = extremes(&self.beta, &self.is_positive(), &own, goal.c);
+    pub fn joining(
+        &self,
+        products: [&[T]; 2],
+        goal: PairGoal,
+        scratch: &mut Scratch<T>,
+    ) -> Option<Sides> {
+        let (highest, lowest) = extremes(&self.beta, &self.is_positive(), &self.f, goal.c);
         let middle = (highest + lowest) / 2.0;
         // By how much a row is beyond, least first.
-        let mut violating: Vec<(f64, (usize, usize))> = Vec::new();
-        for side in [0, 1] {
-            for row in self.outside(side) {
-                let excess = SIGNS[side] * (f(side, row) - middle) - goal.tolerance / 2.0;
-                if excess > 0.0 {
-                    violating.push((-excess, (side, row)));
+        let violating = &mut scratch.violating;
+        violating.clear();
+        for (number, products) in products.into_iter().enumerate() {
+            let takes_part = &self.takes_part[number];
+            // f lies beyond the middle by more than half the tolerance where w·x is less than this, by its sign.
+            let bound = T::of(SIGNS[number] * (SIGNS[number] - middle) - goal.tolerance / 2.0);
+            let sign = T::of(SIGNS[number]);
+            for (row, (&product, &takes_part)) in products.iter().zip(takes_part).enumerate() {
+                if sign * product < bound && !takes_part {
+                    violating.push(((sign * product - bound).wide(), (number, row)));
                 }
             }
         }
@@ -187,8 +235,8 @@ impl<T: Scalar> MarginPair<T> {
         if (self.beta.len() + n_joining) as f64 > MOST_SHARE * n_all {
             return Some([0, 1].map(|side| self.outside(side).collect()));
         }
-        let mut joining = [Vec::new(), Vec::new()];
-        for (side, row) in smallest(violating, n_joining) {
+        let mut joining = [0, 1].map(|_| Vec::with_capacity(n_joining));
+        for &(_, (side, row)) in smallest(violating, n_joining) {
             joining[side].push(row);
         }
         Some(joining)
@@ -200,37 +248,45 @@ impl<T: Scalar> MarginPair<T> {
         (0..takes_part.len()).filter(|&row| !takes_part[row])
     }
 
-    /// The solution in terms of all rows of both classes.
-    pub fn of_all_rows(&mut self, solution: DualSolution) -> DualSolution {
+    /// The last solution in terms of all rows of both classes.
+    pub fn solution(&mut self) -> DualSolution {
         let n_first = self.takes_part[0].len();
         let mut coefficients = vec![0.0; n_first + self.takes_part[1].len()];
         for (side, row, beta) in self.weighing() {
             coefficients[side * n_first + row] = beta;
         }
+        let reached = Reached {
+            is_solved: self.is_solved,
+            n_iterations: std::mem::take(&mut self.n_iterations),
+        };
+        let variables = (&self.beta[..], &self.is_positive()[..], &self.f[..]);
         DualSolution {
             coefficients,
-            n_iterations: Some(std::mem::take(&mut self.n_iterations)),
-            ..solution
+            ..reached.solution(variables, self.c)
         }
     }
 }
 
 /// The n rows of either class that are nearest to the other when `w·x` of all rows of both are these.
-pub(crate) fn nearest<T: Scalar>(products: &[Vec<T>; 2], n: usize) -> Sides {
+pub(crate) fn nearest<T: Scalar>(products: [&[T]; 2], n: usize, scratch: &mut Scratch<T>) -> Sides {
     [0, 1].map(|side| {
         let products = products[side].iter().enumerate();
-        let distances = products.map(|(row, product)| (SIGNS[side] * product.wide(), row));
-        smallest(distances.collect(), n)
+        let distances = &mut scratch.violating;
+        distances.clear();
+        distances
+            .extend(products.map(|(row, product)| (SIGNS[side] * product.wide(), (side, row))));
+        let nearest = smallest(distances, n).iter();
+        nearest.map(|&(_, (_, row))| row).collect()
     })
 }
 
-/// What belongs to the n smallest values, in no order; of equal values the first.
-fn smallest<K: Ord + Copy>(mut values: Vec<(f64, K)>, n: usize) -> Vec<K> {
-    if n < values.len() {
-        values.select_nth_unstable_by(n, |a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
-        values.truncate(n);
+/// The n smallest values, in no order, and what they belong to; of equal values the first.
+fn smallest<K: Ord + Copy>(values: &mut [(f64, K)], n: usize) -> &[(f64, K)] {
+    if n >= values.len() {
+        return values;
     }
-    values.into_iter().map(|(_, of)| of).collect()
+    values.select_nth_unstable_by(n, |a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+    &values[..n]
 }
 
 fn whole_row<T>(products: &Array2<T>, row: usize) -> &[T] {

@@ -52,6 +52,7 @@ pub mod dataset;
 mod decision;
 pub mod decision_tree;
 pub mod dual;
+mod extent;
 pub mod features;
 mod few_dimensions;
 mod followed_sums;

@@ -15,10 +15,12 @@ use std::ops::Range;
 
 use ndarray::{Array2, Axis};
 
+use crate::recognition::between::pairs;
 use crate::recognition::dual::DualSolution;
 use crate::recognition::few_dimensions::spanned;
-use crate::recognition::margin_pair::{MarginPair, PairGoal, Sides, nearest};
+use crate::recognition::margin_pair::{MarginPair, PairGoal, Scratch, Sides, nearest};
 use crate::recognition::packed::Packed;
+use crate::recognition::row_products::multiply;
 use crate::recognition::scalar::Scalar;
 use crate::recognition::smo::{Dense, Room};
 use crate::recognition::sorted::Sorted;
@@ -29,6 +31,11 @@ const FEW_DIMENSIONS: usize = 64;
 const FEW_ROUNDS: usize = 2;
 /// The tolerance in the few dimensions: at 0.5 the rows found are no longer those of the solution.
 const ROUGH_TOLERANCE: f64 = 0.1;
+/// Classes whose pairs with as many others are solved together. Fewer leave the tiles of their products unfilled, more do not
+/// stay in the cache.
+const CLASSES_AT_ONCE: usize = 8;
+/// Tolerances of the first rounds, if larger than what is asked for.
+const ROUND_TOLERANCES: [f64; 2] = [0.1, 0.01];
 /// Iterations of a solve in the few dimensions, at most: classes that all features part may overlap there.
 const ROUGH_ITERATIONS: u64 = 1000;
 /// Rows of each class that a pair starts with in the few dimensions.
@@ -36,53 +43,77 @@ const ROWS_ALONG_MEANS: usize = 16;
 /// Rows of each class that a pair starts with in all dimensions.
 const ROWS_NEAR_MARGIN: usize = 24;
 
-/// All pairs of classes, each with the rows it is solved on.
-pub(crate) struct NearMargin<'a, T> {
+/// The rows of all classes, as their pairs need them.
+pub(crate) struct Classes<'a, T> {
     sorted: &'a Sorted<T>,
-    /// The rows of each class, packed.
-    packed: Vec<Packed<'a, T>>,
     /// Products within each class.
     within: Vec<Array2<T>>,
-    pairs: Vec<MarginPair<T>>,
-    room: Room<T>,
 }
 
-/// What a round found for a pair.
-struct Round<T> {
-    pair: usize,
-    solution: DualSolution,
-    /// `w·x` of all rows of both classes.
-    products: [Vec<T>; 2],
-}
-
-impl<'a, T: Scalar> NearMargin<'a, T> {
-    /// All pairs of the classes, not solved yet, on the rows that are near the margin for this C.
-    pub fn new(sorted: &'a Sorted<T>, c: f64) -> Self {
-        let directions = spanned(sorted.points().all().values, FEW_DIMENSIONS);
-        let few = sorted.along(directions.view());
-        let near = NearMargin::of_rows(&few, near_means(&few)).near_margin(c);
-        Self::of_rows(sorted, near)
+impl<'a, T: Scalar> Classes<'a, T> {
+    pub fn new(sorted: &'a Sorted<T>) -> Self {
+        let within = |range: &Range<usize>| {
+            let own = sorted.points().range(range.clone());
+            own.packed().own_products()
+        };
+        Self {
+            sorted,
+            within: sorted.ranges().iter().map(within).collect(),
+        }
     }
 
-    /// All pairs of the classes, on these rows.
-    fn of_rows(sorted: &'a Sorted<T>, rows: Vec<Sides>) -> Self {
-        let sizes = |pair: [usize; 2]| pair.map(|class| sorted.ranges()[class].len());
-        let pairs = sorted.all_pairs().map(|(a, b)| [a, b]);
-        let ranges = sorted.ranges().iter();
-        let packed: Vec<Packed<T>> = ranges
-            .map(|range| sorted.points().range(range.clone()).packed())
-            .collect();
+    /// Where the rows of two classes begin.
+    fn starts(&self, classes: [usize; 2]) -> [usize; 2] {
+        classes.map(|class| self.sorted.ranges()[class].start)
+    }
+
+    /// How many rows two classes have.
+    fn sizes(&self, classes: [usize; 2]) -> [usize; 2] {
+        classes.map(|class| self.sorted.ranges()[class].len())
+    }
+}
+
+/// Some pairs of classes, each with the rows it is solved on.
+pub(crate) struct NearMargin<'c, 'a, T> {
+    classes: &'c Classes<'a, T>,
+    pairs: Vec<MarginPair<T>>,
+    room: Room<T>,
+    scratch: Scratch<'c, T>,
+    round: Round<T>,
+}
+
+/// What a round found, of one pair after another.
+#[derive(Default)]
+struct Round<T> {
+    /// The hyperplanes' normals.
+    normals: Vec<T>,
+    /// `w·x` of all rows of both classes, class by class.
+    products: Vec<T>,
+    /// Where the products of both classes of each pair lie.
+    places: Vec<[Range<usize>; 2]>,
+}
+
+impl<T> Round<T> {
+    /// `w·x` of all rows of both classes of the pair that came so late.
+    fn products(&self, number: usize) -> [&[T]; 2] {
+        let places = self.places[number].each_ref();
+        places.map(|place| &self.products[place.clone()])
+    }
+}
+
+impl<'c, 'a, T: Scalar> NearMargin<'c, 'a, T> {
+    /// These pairs of classes, not solved yet, on these rows.
+    pub fn new(classes: &'c Classes<'a, T>, pairs: &[(usize, usize)], rows: &[Sides]) -> Self {
+        let pair = |&(a, b): &(usize, usize)| MarginPair::new([a, b], classes.sizes([a, b]));
         let mut all = Self {
-            sorted,
-            within: packed.iter().map(Packed::own_products).collect(),
-            packed,
-            pairs: pairs
-                .map(|pair| MarginPair::new(pair, sizes(pair)))
-                .collect(),
+            classes,
+            pairs: pairs.iter().map(pair).collect(),
             room: Room::new(),
+            scratch: Scratch::default(),
+            round: Round::default(),
         };
         for (pair, rows) in rows.iter().enumerate() {
-            all.join(pair, rows);
+            all.join(pair, rows, None);
         }
         all
     }
@@ -92,12 +123,14 @@ impl<'a, T: Scalar> NearMargin<'a, T> {
     pub fn most_bytes(sorted: &Sorted<T>) -> usize {
         let sizes = || sorted.ranges().iter().map(Range::len);
         let within: usize = sizes().map(|n| n * n).sum();
-        let across = (sorted.points().len().pow(2) - within) / 2;
         let largest = sizes().max().unwrap_or(0);
-        let normals = sorted.all_pairs().count() * (sorted.centre().len() + 2 * largest);
+        let n_pairs = CLASSES_AT_ONCE.pow(2);
+        // Both ways.
+        let across = n_pairs * 2 * largest.pow(2);
+        let normals = n_pairs * (sorted.centre().len() + 2 * largest);
         let few = sorted.points().len() * FEW_DIMENSIONS;
         let packed = |n| Packed::<T>::bytes(n, sorted.centre().len() + FEW_DIMENSIONS);
-        (within + across + normals + few) * size_of::<T>()
+        (2 * within + across + normals + few) * size_of::<T>()
             + sizes().map(packed).sum::<usize>()
             + Dense::<T>::bytes(2 * largest)
     }
@@ -110,30 +143,28 @@ impl<'a, T: Scalar> NearMargin<'a, T> {
             tolerance,
             most_iterations: None,
         };
-        self.settle(goal, usize::MAX, |pair, round| {
-            pair.of_all_rows(round.solution)
-        })
+        self.settle(goal, usize::MAX, |pair, _, _| pair.solution())
     }
 
     /// The rows of all pairs that are near the margin for this C, roughly.
-    fn near_margin(mut self, c: f64) -> Vec<Sides> {
+    pub fn near_margin(mut self, c: f64) -> Vec<Sides> {
         let goal = PairGoal {
             c,
             tolerance: ROUGH_TOLERANCE,
             most_iterations: Some(ROUGH_ITERATIONS),
         };
-        self.settle(goal, FEW_ROUNDS, |_, round| {
-            nearest(&round.products, ROWS_NEAR_MARGIN)
+        self.settle(goal, FEW_ROUNDS, |_, products, scratch| {
+            nearest(products, ROWS_NEAR_MARGIN, scratch)
         })
     }
 
     /// Solves all pairs in rounds, until no row violates the optimality conditions or the rounds are over; what is made of
-    /// each pair's last round.
+    /// each pair after its last round.
     fn settle<R>(
         &mut self,
         goal: PairGoal,
         most_rounds: usize,
-        mut settled: impl FnMut(&mut MarginPair<T>, Round<T>) -> R,
+        mut settled: impl FnMut(&mut MarginPair<T>, [&[T]; 2], &mut Scratch<'c, T>) -> R,
     ) -> Vec<R> {
         let mut results = Vec::new();
         results.resize_with(self.pairs.len(), || None);
@@ -141,16 +172,26 @@ impl<'a, T: Scalar> NearMargin<'a, T> {
         let mut n_rounds = 0;
         while !open.is_empty() {
             n_rounds += 1;
+            // The first solutions are only to show which rows join.
+            let rough = ROUND_TOLERANCES.get(n_rounds - 1).copied().unwrap_or(0.0);
+            let now = PairGoal {
+                tolerance: rough.max(goal.tolerance),
+                ..goal
+            };
             let mut still_open = Vec::new();
-            for round in self.rounds(&open, goal) {
-                let pair = round.pair;
-                let joining = self.pairs[pair].joining(&round.products, goal);
-                match joining.filter(|_| n_rounds < most_rounds) {
-                    Some(joining) => {
-                        still_open.push(pair);
-                        self.join(pair, &joining);
-                    }
-                    None => results[pair] = Some(settled(&mut self.pairs[pair], round)),
+            self.solve_round(&open, now);
+            for (number, &pair) in open.iter().enumerate() {
+                let products = self.round.products(number);
+                let joining = self.pairs[pair].joining(products, now, &mut self.scratch);
+                let is_settled = joining.is_none() && now.tolerance == goal.tolerance;
+                if is_settled || n_rounds == most_rounds {
+                    results[pair] =
+                        Some(settled(&mut self.pairs[pair], products, &mut self.scratch));
+                    continue;
+                }
+                still_open.push(pair);
+                if let Some(joining) = joining {
+                    self.join(pair, &joining, Some(number));
                 }
             }
             open = still_open;
@@ -159,76 +200,120 @@ impl<'a, T: Scalar> NearMargin<'a, T> {
     }
 
     /// Solves some pairs on the rows that take part, and multiplies all their rows with the hyperplanes.
-    fn rounds(&mut self, pairs: &[usize], goal: PairGoal) -> Vec<Round<T>> {
-        let mut normals = Array2::zeros((pairs.len(), self.sorted.centre().len()));
-        let mut rounds = Vec::with_capacity(pairs.len());
-        let mut sums = vec![0.0; normals.ncols()];
-        for (&pair, mut normal) in pairs.iter().zip(normals.rows_mut()) {
-            let solution = self.pairs[pair].solve(&self.within, &mut self.room, goal);
+    fn solve_round(&mut self, pairs: &[usize], goal: PairGoal) {
+        let n_features = self.classes.sorted.centre().len();
+        let mut round = std::mem::take(&mut self.round);
+        round.normals.clear();
+        let mut sums = vec![0.0; n_features];
+        for &pair in pairs {
+            self.pairs[pair].solve(&self.classes.within, &mut self.room, goal);
             sums.fill(0.0);
             self.add_normal(pair, &mut sums);
-            normal
-                .iter_mut()
-                .zip(&sums)
-                .for_each(|(to, &sum)| *to = T::of(sum));
-            rounds.push(Round {
-                pair,
-                solution,
-                products: [Vec::new(), Vec::new()],
-            });
+            round.normals.extend(sums.iter().map(|&sum| T::of(sum)));
         }
-        for (class, range) in self.sorted.ranges().iter().enumerate() {
-            let side = |round: &Round<T>| {
-                let classes = self.pairs[round.pair].classes();
-                classes.iter().position(|&own| own == class)
-            };
-            let own: Vec<usize> = (0..rounds.len())
-                .filter(|&at| side(&rounds[at]).is_some())
-                .collect();
-            let mut products = Array2::zeros((own.len(), range.len()));
-            let own_normals = normals.select(Axis(0), &own);
-            self.packed[class].multiply(own_normals.view(), products.view_mut());
-            for (&at, products) in own.iter().zip(products.rows()) {
-                if let Some(side) = side(&rounds[at]) {
-                    rounds[at].products[side] = products.to_vec();
+        round.places.clear();
+        round.places.resize(pairs.len(), [0..0, 0..0]);
+        let points = self.classes.sorted.points().in_place();
+        let (mut normals, mut rows) = (Vec::new(), Vec::new());
+        let mut end = 0;
+        for (class, range) in self.classes.sorted.ranges().iter().enumerate() {
+            normals.clear();
+            let start = end;
+            for (number, &pair) in pairs.iter().enumerate() {
+                let classes = self.pairs[pair].classes();
+                if let Some(side) = classes.iter().position(|&own| own == class) {
+                    normals.push(&round.normals[number * n_features..][..n_features]);
+                    round.places[number][side] = end..end + range.len();
+                    end += range.len();
                 }
             }
+            if end > round.products.len() {
+                round.products.resize(end, T::zero());
+            }
+            if !normals.is_empty() {
+                rows.clear();
+                rows.extend(range.clone().map(|row| points.row(row)));
+                multiply(&normals, &rows, &mut round.products[start..end]);
+            }
         }
-        rounds
+        self.round = round;
     }
 
     /// Adds a pair's `w = Σ β_i x_i`.
     fn add_normal(&self, pair: usize, sums: &mut [f64]) {
-        let starts = self.starts(pair);
+        let starts = self.classes.starts(self.pairs[pair].classes());
         let rows = self.pairs[pair].weighing();
         let rows = rows.map(|(side, row, beta)| (starts[side] + row, beta));
-        self.sorted.points().in_place().add_weighted(sums, rows);
+        let points = self.classes.sorted.points();
+        points.in_place().add_weighted(sums, rows);
     }
 
-    /// Lets rows of both classes of a pair take part.
-    fn join(&mut self, pair: usize, joining: &Sides) {
-        let starts = self.starts(pair);
-        self.pairs[pair].join(joining, self.sorted.points().in_place(), starts);
-    }
-
-    /// Where the rows of a pair's classes begin.
-    fn starts(&self, pair: usize) -> [usize; 2] {
-        let classes = self.pairs[pair].classes();
-        classes.map(|class| self.sorted.ranges()[class].start)
+    /// Lets rows of both classes of a pair take part, which came so late in the last round.
+    fn join(&mut self, pair: usize, joining: &Sides, number: Option<usize>) {
+        let classes: &'c Classes<'a, T> = self.classes;
+        let starts = classes.starts(self.pairs[pair].classes());
+        let products = number.map_or([&[][..]; 2], |number| self.round.products(number));
+        let all = (classes.sorted.points().in_place(), starts);
+        self.pairs[pair].join(joining, products, all, &mut self.scratch);
     }
 }
 
-/// The rows of all pairs that are nearest to the other class along the line between the means.
-fn near_means<T: Scalar>(sorted: &Sorted<T>) -> Vec<Sides> {
-    let along = along_means(sorted);
-    let both = |(a, b): (usize, usize)| {
-        let along_both = [a, b].map(|own| {
-            let rows = sorted.ranges()[own].clone();
-            rows.map(|row| along[[row, a]] - along[[row, b]]).collect()
+/// All pairs of classes, solved in turn.
+pub(crate) struct PairsNearMargin<'a, T> {
+    few: Classes<'a, T>,
+    all: Classes<'a, T>,
+    along_means: Array2<T>,
+}
+
+impl<'a, T: Scalar> PairsNearMargin<'a, T> {
+    /// Of these rows, and of the same in [`few_dimensions`].
+    pub fn new(sorted: &'a Sorted<T>, few: &'a Sorted<T>) -> Self {
+        Self {
+            along_means: along_means(few),
+            few: Classes::new(few),
+            all: Classes::new(sorted),
+        }
+    }
+
+    /// Pairs of some classes, in turn all: so few that what is known of them stays in the cache.
+    pub fn blocks(&self) -> impl Iterator<Item = Vec<(usize, usize)>> {
+        let n = self.all.within.len();
+        let groups: Vec<Range<usize>> = (0..n)
+            .step_by(CLASSES_AT_ONCE)
+            .map(|start| start..n.min(start + CLASSES_AT_ONCE))
+            .collect();
+        let mut blocks = Vec::new();
+        for (at, own) in groups.iter().enumerate() {
+            for other in &groups[at..] {
+                blocks.push(pairs(own.clone(), other.clone()).collect());
+            }
+        }
+        blocks.into_iter()
+    }
+
+    /// Some pairs, not solved yet, on the rows that are near the margin for this C.
+    pub fn near(&self, pairs: &[(usize, usize)], c: f64) -> NearMargin<'_, 'a, T> {
+        let rows: Vec<Sides> = pairs.iter().map(|&pair| self.near_means(pair)).collect();
+        let rows = NearMargin::new(&self.few, pairs, &rows).near_margin(c);
+        NearMargin::new(&self.all, pairs, &rows)
+    }
+
+    /// The rows of a pair that are nearest to the other class along the line between the means.
+    fn near_means(&self, (a, b): (usize, usize)) -> Sides {
+        let along: [Vec<T>; 2] = [a, b].map(|own| {
+            let rows = self.few.sorted.ranges()[own].clone();
+            rows.map(|row| self.along_means[[row, a]] - self.along_means[[row, b]])
+                .collect()
         });
-        nearest(&along_both, ROWS_ALONG_MEANS)
-    };
-    sorted.all_pairs().map(both).collect()
+        let along = along.each_ref().map(Vec::as_slice);
+        nearest(along, ROWS_ALONG_MEANS, &mut Scratch::default())
+    }
+}
+
+/// The rows in the few dimensions that some of them span.
+pub(crate) fn few_dimensions<T: Scalar>(sorted: &Sorted<T>) -> Sorted<T> {
+    let directions = spanned(sorted.points().all().values, FEW_DIMENSIONS);
+    sorted.along(directions.view())
 }
 
 /// Products of all rows with the means of the classes: n_rows × n_classes.

@@ -63,11 +63,13 @@ impl<'a, T: Scalar> Packed<'a, T> {
         let Some(panels) = &self.panels else {
             return false;
         };
+        let left = in_place(&left);
+        let left: Vec<&[T]> = (0..to.nrows()).map(|row| left.row(row)).collect();
         let rows = to.rows_mut().into_iter();
         let mut rows: Vec<&mut [T]> = rows
             .map(|row| row.into_slice().expect("rows of products are contiguous"))
             .collect();
-        T::multiply(panels, in_place(&left), wanted, &mut rows)
+        T::multiply(panels, &left, wanted, &mut rows)
     }
 }
 

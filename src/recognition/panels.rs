@@ -15,11 +15,11 @@ const TILE_ROWS: usize = 8;
 const PANEL_LANES: usize = 3;
 /// Packed rows of a panel.
 const PANEL_ROWS: usize = PANEL_LANES * LANES;
-/// Features that pass at once: the rows of a tile then take 8 kB.
-const DEPTH: usize = 256;
+/// Features that pass at once: the rows of a tile then take 16 kB.
+const DEPTH: usize = 512;
 /// Panels that the tiles of all rows meet before the next: 600 kB.
 #[cfg(target_arch = "x86_64")]
-const PANELS_AT_ONCE: usize = 12;
+const PANELS_AT_ONCE: usize = 6;
 
 /// Which products of rows with packed rows are wanted.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -90,7 +90,7 @@ impl Panels {
     }
 
     /// Products of `left` with the packed rows, row by row into `to`; `false`, and nothing written, without the instructions.
-    pub fn multiply(&self, left: Rows<f32>, wanted: Wanted, to: &mut [&mut [f32]]) -> bool {
+    pub fn multiply(&self, left: &[&[f32]], wanted: Wanted, to: &mut [&mut [f32]]) -> bool {
         multiply(self, left, wanted, to)
     }
 }
@@ -107,7 +107,7 @@ fn is_supported() -> bool {
 
 #[cfg(target_arch = "x86_64")]
 #[multiversion::multiversion(targets("x86_64+avx512f"))]
-fn multiply(panels: &Panels, left: Rows<f32>, wanted: Wanted, to: &mut [&mut [f32]]) -> bool {
+fn multiply(panels: &Panels, left: &[&[f32]], wanted: Wanted, to: &mut [&mut [f32]]) -> bool {
     multiversion::target::match_target! {
         "x86_64+avx512f" => {
             avx512::multiply(panels, left, wanted, to);
@@ -121,7 +121,7 @@ fn multiply(panels: &Panels, left: Rows<f32>, wanted: Wanted, to: &mut [&mut [f3
 }
 
 #[cfg(not(target_arch = "x86_64"))]
-fn multiply(_: &Panels, _: Rows<f32>, _: Wanted, _: &mut [&mut [f32]]) -> bool {
+fn multiply(_: &Panels, _: &[&[f32]], _: Wanted, _: &mut [&mut [f32]]) -> bool {
     false
 }
 
@@ -130,14 +130,13 @@ mod avx512 {
     use std::arch::x86_64::{_mm512_fmadd_ps, _mm512_set1_ps, _mm512_setzero_ps};
 
     use super::{DEPTH, LANES, PANEL_LANES, PANEL_ROWS, PANELS_AT_ONCE, Panels, TILE_ROWS, Wanted};
-    use crate::recognition::row_products::Rows;
     use crate::recognition::vector_registers::{load, store};
 
-    /// The products of a tile's rows with the rows of a panel.
-    type Tile<const WIDTH: usize> = [[[f32; LANES]; WIDTH]; TILE_ROWS];
+    /// The products of so many rows with the rows of a panel.
+    type Tile<const ROWS: usize, const WIDTH: usize> = [[[f32; LANES]; WIDTH]; ROWS];
 
     #[target_feature(enable = "avx512f")]
-    pub fn multiply(panels: &Panels, left: Rows<f32>, wanted: Wanted, to: &mut [&mut [f32]]) {
+    pub fn multiply(panels: &Panels, left: &[&[f32]], wanted: Wanted, to: &mut [&mut [f32]]) {
         if panels.n_features == 0 {
             to.iter_mut().for_each(|row| row.fill(0.0));
         }
@@ -153,17 +152,18 @@ mod avx512 {
                     };
                     for at in 0..n {
                         rows[at][..piece.1]
-                            .copy_from_slice(&left.row(first + at)[piece.0..][..piece.1]);
+                            .copy_from_slice(&left[first + at][piece.0..][..piece.1]);
                     }
                     let to = &mut to[first..first + n];
                     for panel in first_panel..last_panel.min(first_panel + PANELS_AT_ONCE) {
                         let (start, width) = panels.place(panel, piece);
                         let values = &panels.values[start..][..width * piece.1];
                         let columns = (panel * PANEL_ROWS, piece.0 == 0);
-                        match width {
-                            PANEL_LANES => put(tile::<PANEL_LANES>(&rows, values), to, columns),
-                            2 => put(tile::<2>(&rows, values), to, columns),
-                            _ => put(tile::<1>(&rows, values), to, columns),
+                        // The last rows are few: less is computed for nothing.
+                        match n {
+                            1..=2 => write_tile::<2>(&rows, (values, width), to, columns),
+                            3..=4 => write_tile::<4>(&rows, (values, width), to, columns),
+                            _ => write_tile::<TILE_ROWS>(&rows, (values, width), to, columns),
                         }
                     }
                 }
@@ -171,31 +171,46 @@ mod avx512 {
         }
     }
 
-    /// The products of a piece of a tile's rows with a panel that is so many registers wide.
+    /// Writes the products of a piece of a tile's first rows with a panel.
+    #[target_feature(enable = "avx512f")]
+    fn write_tile<const ROWS: usize>(
+        rows: &[[f32; DEPTH]; TILE_ROWS],
+        (panel, width): (&[[f32; LANES]], usize),
+        to: &mut [&mut [f32]],
+        columns: (usize, bool),
+    ) {
+        match width {
+            PANEL_LANES => put(tile::<ROWS, PANEL_LANES>(rows, panel), to, columns),
+            2 => put(tile::<ROWS, 2>(rows, panel), to, columns),
+            _ => put(tile::<ROWS, 1>(rows, panel), to, columns),
+        }
+    }
+
+    /// The products of a piece of a tile's first rows with a panel that is so many registers wide.
     ///
     /// Loops, not closures: a function of the standard library that calls a closure has not got its vector instructions.
     #[target_feature(enable = "avx512f")]
-    fn tile<const WIDTH: usize>(
+    fn tile<const ROWS: usize, const WIDTH: usize>(
         rows: &[[f32; DEPTH]; TILE_ROWS],
         panel: &[[f32; LANES]],
-    ) -> Tile<WIDTH> {
+    ) -> Tile<ROWS, WIDTH> {
         let panel = panel.as_chunks::<WIDTH>().0;
         let panel = &panel[..panel.len().min(DEPTH)];
-        let mut sums = [[_mm512_setzero_ps(); WIDTH]; TILE_ROWS];
+        let mut sums = [[_mm512_setzero_ps(); WIDTH]; ROWS];
         for at in 0..panel.len() {
             let mut own = [_mm512_setzero_ps(); WIDTH];
             for j in 0..WIDTH {
                 own[j] = load(&panel[at][j]);
             }
-            for i in 0..TILE_ROWS {
+            for i in 0..ROWS {
                 let value = _mm512_set1_ps(rows[i][at]);
                 for j in 0..WIDTH {
                     sums[i][j] = _mm512_fmadd_ps(value, own[j], sums[i][j]);
                 }
             }
         }
-        let mut tile = [[[0.0; LANES]; WIDTH]; TILE_ROWS];
-        for i in 0..TILE_ROWS {
+        let mut tile = [[[0.0; LANES]; WIDTH]; ROWS];
+        for i in 0..ROWS {
             for j in 0..WIDTH {
                 tile[i][j] = store(sums[i][j]);
             }
@@ -205,8 +220,8 @@ mod avx512 {
 
     /// Writes a tile's products from a column on if they are the first piece's, else adds them.
     #[target_feature(enable = "avx512f")]
-    fn put<const WIDTH: usize>(
-        tile: Tile<WIDTH>,
+    fn put<const ROWS: usize, const WIDTH: usize>(
+        tile: Tile<ROWS, WIDTH>,
         to: &mut [&mut [f32]],
         (column, is_first): (usize, bool),
     ) {
@@ -264,10 +279,11 @@ mod tests {
             };
             let mut to = vec![vec![7.0; n_right]; n_left];
             let mut slices: Vec<&mut [f32]> = to.iter_mut().map(Vec::as_mut_slice).collect();
-            assert!(panels.multiply(rows(&left), Wanted::All, &mut slices));
+            let left: Vec<&[f32]> = (0..n_left).map(|row| rows(&left).row(row)).collect();
+            assert!(panels.multiply(&left, Wanted::All, &mut slices));
             for (i, found) in to.iter().enumerate() {
                 for (j, &found) in found.iter().enumerate() {
-                    let expected = product(&row(&left, i), &row(&right, j));
+                    let expected = product(left[i], &row(&right, j));
                     assert!(
                         (f64::from(found) - expected).abs() <= 1e-6 * m as f64,
                         "{n_left} {n_right} {m}: {i} {j}"
@@ -291,7 +307,8 @@ mod tests {
         };
         let mut to = vec![vec![0.0; n]; n];
         let mut slices: Vec<&mut [f32]> = to.iter_mut().map(Vec::as_mut_slice).collect();
-        assert!(panels.multiply(rows, Wanted::UpToOwn, &mut slices));
+        let left: Vec<&[f32]> = (0..n).map(|row| rows.row(row)).collect();
+        assert!(panels.multiply(&left, Wanted::UpToOwn, &mut slices));
         for (i, found) in to.iter().enumerate() {
             for (j, &found) in found.iter().enumerate().take(i + 1) {
                 let expected = product(rows.row(i), rows.row(j));

@@ -9,6 +9,9 @@ use crate::recognition::packed::Packed;
 use crate::recognition::row_products::Rows;
 use crate::recognition::scalar::Scalar;
 
+/// Values looked at side by side.
+const LANES: usize = 8;
+
 /// Rows (n × m) moved to a centre, with their squared norms.
 ///
 /// The linear and the RBF kernel may be taken about any centre: a constant added to all features changes no RBF distance,
@@ -33,14 +36,27 @@ impl<T: Scalar> Points<T> {
         rows: impl ExactSizeIterator<Item = ArrayView1<'a, f64>>,
         centre: ArrayView1<f64>,
     ) -> Self {
+        Self::of_rows_and(rows, centre, |_| ())
+    }
+
+    /// The same, and what each row's move tells.
+    pub fn of_rows_and<'a>(
+        rows: impl ExactSizeIterator<Item = ArrayView1<'a, f64>>,
+        centre: ArrayView1<f64>,
+        mut told: impl FnMut(Moved),
+    ) -> Self {
         let n_rows = rows.len();
         let mut values = Array2::zeros((n_rows, centre.len()));
         let mut norms = Vec::with_capacity(n_rows);
         let centre = centre.to_vec();
         for (mut to, row) in values.rows_mut().into_iter().zip(rows) {
             let own = to.as_slice_mut().expect("a new array is stored row by row");
-            move_row(own, row, &centre);
-            norms.push(to.dot(&to));
+            let moved = match row.as_slice() {
+                Some(row) => move_row(own, row, &centre),
+                None => move_row(own, &row.to_vec(), &centre),
+            };
+            norms.push(T::of(moved.norm));
+            told(moved);
         }
         let norms = norms.into();
         Self { values, norms }
@@ -82,6 +98,25 @@ impl<T: Scalar> Points<T> {
         Self {
             values: self.rows(rows),
             norms: self.norms.select(Axis(0), rows),
+        }
+    }
+
+    /// Some rows, by ascending number, in the memory of all.
+    pub fn keep(self, rows: &[usize]) -> Self {
+        let n_features = self.values.ncols();
+        let norms = self.norms.select(Axis(0), rows);
+        let mut values = self.values.into_raw_vec_and_offset().0;
+        for (to, &row) in rows.iter().enumerate() {
+            if to != row {
+                let from = row * n_features..(row + 1) * n_features;
+                values.copy_within(from, to * n_features);
+            }
+        }
+        values.truncate(rows.len() * n_features);
+        let values = Array2::from_shape_vec((rows.len(), n_features), values);
+        Self {
+            values: values.expect("whole rows were kept"),
+            norms,
         }
     }
 
@@ -169,17 +204,44 @@ impl<'a, T: Scalar> PointsView<'a, T> {
     }
 }
 
+/// What there is to tell of a row x less the centre c.
+pub(crate) struct Moved {
+    /// `|x − c|²`.
+    pub norm: f64,
+    /// `(x − c)·c`. Far from the origin, `x·c − c·c` would be two large numbers less each other.
+    pub along_centre: f64,
+}
+
 /// A row less the centre. Over slices: a walk over ndarray's views is not always made vector instructions of.
-pub(crate) fn move_row<T: Scalar>(to: &mut [T], row: ArrayView1<f64>, centre: &[f64]) {
-    let both = to.iter_mut().zip(centre);
-    match row.as_slice() {
-        Some(row) => both
-            .zip(row)
-            .for_each(|((to, &centre), &x)| *to = T::of(x - centre)),
-        None => both
-            .zip(row)
-            .for_each(|((to, &centre), &x)| *to = T::of(x - centre)),
+#[multiversion::multiversion(targets("x86_64+avx512f", "x86_64+avx2+fma"))]
+fn move_row<T: Scalar>(to: &mut [T], row: &[f64], centre: &[f64]) -> Moved {
+    let (to, last_to) = to.as_chunks_mut::<LANES>();
+    let (row, last_row) = row.as_chunks::<LANES>();
+    let (centre, last_centre) = centre.as_chunks::<LANES>();
+    let n = to.len();
+    let (row, centre) = (&row[..n], &centre[..n]);
+    // Each lane keeps its own; they meet at the end.
+    let (mut squares, mut products) = ([0.0; LANES], [0.0; LANES]);
+    for at in 0..n {
+        for lane in 0..LANES {
+            let moved = row[at][lane] - centre[at][lane];
+            to[at][lane] = T::of(moved);
+            squares[lane] += moved * moved;
+            products[lane] += moved * centre[at][lane];
+        }
     }
+    let (mut norm, mut along_centre) = (0.0, 0.0);
+    for lane in 0..LANES {
+        norm += squares[lane];
+        along_centre += products[lane];
+    }
+    for at in 0..last_to.len() {
+        let moved = last_row[at] - last_centre[at];
+        last_to[at] = T::of(moved);
+        norm += moved * moved;
+        along_centre += moved * last_centre[at];
+    }
+    Moved { norm, along_centre }
 }
 
 fn polynomial<T: Scalar>(product: T, gamma: f64, coef0: f64, degree: i32) -> T {
@@ -239,6 +301,17 @@ mod tests {
         let origin = Array1::zeros(3);
         let [a, b] = [a, b].map(|rows| Points::<T>::new(rows.view(), origin.view()));
         a.all().kernel(b.all(), kernel)
+    }
+
+    #[test]
+    fn rows_that_are_kept_are_those_that_are_selected() {
+        let rows = Array2::from_shape_fn((6, 3), |(i, j)| (i * 3 + j) as f64);
+        let points = Points::<f64>::new(rows.view(), Array1::zeros(3).view());
+        for some in [&[0, 1, 2, 3, 4, 5][..], &[1, 2, 5], &[0, 4], &[]] {
+            let (kept, selected) = (points.clone().keep(some), points.select(some));
+            assert_eq!(kept.values, selected.values);
+            assert_eq!(kept.norms, selected.norms);
+        }
     }
 
     #[test]

@@ -17,32 +17,13 @@ pub(crate) struct Rows<'a, T> {
 }
 
 impl<'a, T: Scalar> Rows<'a, T> {
-    /// Products of some rows with others, by number: rows.len() × others.len().
-    pub fn products(self, rows: &[usize], others: &[usize]) -> Array2<T> {
-        let mut products = Array2::zeros((rows.len(), others.len()));
-        let to = products.as_slice_mut().expect("a new array is contiguous");
-        if T::products_in_place(self, rows, others, to) {
-            products
-        } else {
-            self.select(rows).dot(&self.select(others).t())
-        }
-    }
-
-    fn select(self, rows: &[usize]) -> Array2<T> {
-        let mut values = Vec::with_capacity(rows.len() * self.n_features);
-        for &row in rows {
-            values.extend_from_slice(self.row(row));
-        }
-        Array2::from_shape_vec((rows.len(), self.n_features), values)
-            .expect("whole rows were copied")
-    }
-
     /// Adds rows, by number, each times a weight; in f64, since large weights may all but cancel.
     pub fn add_weighted(self, sums: &mut [f64], rows: impl Iterator<Item = (usize, f64)>) {
-        let mut rows: Vec<(&[T], f64)> = rows
-            .filter(|(_, weight)| *weight != 0.0)
-            .map(|(row, weight)| (self.row(row), weight))
-            .collect();
+        let rows = rows.filter(|(_, weight)| *weight != 0.0);
+        let mut weighing: Vec<(&[T], f64)> =
+            Vec::with_capacity(rows.size_hint().1.unwrap_or(0) + 4);
+        weighing.extend(rows.map(|(row, weight)| (self.row(row), weight)));
+        let mut rows = weighing;
         // Rows that weigh nothing fill up the last four.
         let n_fours = rows.len().div_ceil(4);
         if let Some(&(first, _)) = rows.first() {
@@ -58,6 +39,22 @@ impl<'a, T: Scalar> Rows<'a, T> {
     pub fn row(self, row: usize) -> &'a [T] {
         &self.values[row * self.n_features..][..self.n_features]
     }
+}
+
+/// Products of rows with others, all equally long: rows.len() × others.len(), row by row.
+pub(crate) fn multiply<T: Scalar>(rows: &[&[T]], others: &[&[T]], to: &mut [T]) {
+    if T::products_in_place(rows, others, to) {
+        return;
+    }
+    let whole = |rows: &[&[T]]| {
+        let n_features = rows.first().map_or(0, |row| row.len());
+        Array2::from_shape_vec((rows.len(), n_features), rows.concat())
+            .expect("whole rows were copied")
+    };
+    let products = whole(rows).dot(&whole(others).t());
+    to.iter_mut()
+        .zip(&products)
+        .for_each(|(to, &from)| *to = from);
 }
 
 /// Four rows at once: the sums are read and written a quarter as often.
@@ -108,12 +105,12 @@ mod tests {
     ) {
         let n_features = values.len() / 11;
         let all = Rows { values, n_features };
-        let copied = all.select(rows).dot(&all.select(others).t());
-        for products in [all.products(rows, others), copied] {
-            assert_eq!(products.dim(), expected.dim());
-            for (product, expected) in products.iter().zip(expected) {
-                assert!((product.wide() - expected).abs() <= tolerance);
-            }
+        let [left, right] = [rows, others].map(|of| of.iter().map(|&row| all.row(row)));
+        let (left, right): (Vec<&[T]>, Vec<&[T]>) = (left.collect(), right.collect());
+        let mut products = vec![T::one(); left.len() * right.len()];
+        multiply(&left, &right, &mut products);
+        for (product, expected) in products.iter().zip(expected) {
+            assert!((product.wide() - expected).abs() <= tolerance);
         }
     }
 

@@ -3,36 +3,29 @@
 //! Written with the processor's vector instructions: the compiler makes them of plain loops over a tile's sums, too, but not
 //! in every build, and a build where it does not is ten times slower.
 
-use crate::recognition::row_products::Rows;
-
-/// Products of some rows with others, by number, row by row into `products`; `false`, and nothing written, where the
+/// Products of some rows with others, all equally long, row by row into `products`; `false`, and nothing written, where the
 /// processor has not got the instructions.
 #[cfg(target_arch = "x86_64")]
 #[multiversion::multiversion(targets("x86_64+avx512f", "x86_64+avx2+fma"))]
-pub(crate) fn products_in_place(
-    all: Rows<f32>,
-    rows: &[usize],
-    others: &[usize],
-    products: &mut [f32],
-) -> bool {
+pub(crate) fn products_in_place(rows: &[&[f32]], others: &[&[f32]], products: &mut [f32]) -> bool {
     multiversion::target::match_target! {
         "x86_64+avx512f" => {
-            avx512::products(all, rows, others, products);
+            avx512::products(rows, others, products);
             true
         }
         "x86_64+avx2+fma" => {
-            avx2::products(all, rows, others, products);
+            avx2::products(rows, others, products);
             true
         }
         _ => {
-            let _ = (all, rows, others, products);
+            let _ = (rows, others, products);
             false
         }
     }
 }
 
 #[cfg(not(target_arch = "x86_64"))]
-pub(crate) fn products_in_place(_: Rows<f32>, _: &[usize], _: &[usize], _: &mut [f32]) -> bool {
+pub(crate) fn products_in_place(_: &[&[f32]], _: &[&[f32]], _: &mut [f32]) -> bool {
     false
 }
 
@@ -43,16 +36,16 @@ const DEPTH: usize = 512;
 /// Goes over all tiles of N rows with M others: `tile` gives the products of one. What the last few lack is made up by their
 /// last row.
 #[cfg(target_arch = "x86_64")]
-fn by_tiles<const N: usize, const M: usize>(
-    all: Rows<f32>,
-    (rows, others): (&[usize], &[usize]),
+fn by_tiles<'r, const N: usize, const M: usize>(
+    (rows, others): (&[&'r [f32]], &[&'r [f32]]),
     products: &mut [f32],
-    tile: impl Fn([&[f32]; N], [&[f32]; M]) -> [[f32; M]; N],
+    tile: impl Fn([&'r [f32]; N], [&'r [f32]; M]) -> [[f32; M]; N],
 ) {
     products.fill(0.0);
-    for start in (0..all.n_features).step_by(DEPTH) {
-        let piece = start..all.n_features.min(start + DEPTH);
-        let row = |of: &[usize], at: usize| &all.row(of[at.min(of.len() - 1)])[piece.clone()];
+    let n_features = rows.first().map_or(0, |row| row.len());
+    for start in (0..n_features).step_by(DEPTH) {
+        let piece = start..n_features.min(start + DEPTH);
+        let row = |of: &[&'r [f32]], at: usize| &of[at.min(of.len() - 1)][piece.clone()];
         for i in (0..rows.len()).step_by(N) {
             let left = std::array::from_fn(|at| row(rows, i + at));
             for j in (0..others.len()).step_by(M) {
@@ -75,7 +68,6 @@ mod avx512 {
         _mm512_unpacklo_pd, _mm512_unpacklo_ps,
     };
 
-    use crate::recognition::row_products::Rows;
     use crate::recognition::vector_registers::{load, store};
 
     /// Values in a vector register.
@@ -84,10 +76,8 @@ mod avx512 {
     const N: usize = 4;
 
     #[target_feature(enable = "avx512f")]
-    pub fn products(all: Rows<f32>, rows: &[usize], others: &[usize], products: &mut [f32]) {
-        super::by_tiles(all, (rows, others), products, |left, right| {
-            tile(left, right)
-        });
+    pub fn products(rows: &[&[f32]], others: &[&[f32]], products: &mut [f32]) {
+        super::by_tiles((rows, others), products, |left, right| tile(left, right));
     }
 
     /// All products of a few rows with a few others. Each lane keeps its own sums; they meet at the end.
@@ -171,8 +161,6 @@ mod avx2 {
         _mm256_setzero_ps,
     };
 
-    use crate::recognition::row_products::Rows;
-
     /// Values in a vector register.
     const LANES: usize = 8;
     /// Rows multiplied with [`M`] others at once: their sums and what is read of the rows fill 16 vector registers.
@@ -181,10 +169,8 @@ mod avx2 {
     const M: usize = 3;
 
     #[target_feature(enable = "avx2,fma")]
-    pub fn products(all: Rows<f32>, rows: &[usize], others: &[usize], products: &mut [f32]) {
-        super::by_tiles(all, (rows, others), products, |left, right| {
-            tile(left, right)
-        });
+    pub fn products(rows: &[&[f32]], others: &[&[f32]], products: &mut [f32]) {
+        super::by_tiles((rows, others), products, |left, right| tile(left, right));
     }
 
     /// All products of a few rows with a few others. Each lane keeps its own sums; they meet at the end.

@@ -10,16 +10,16 @@ use crate::recognition::smo::passes::{self, Down};
 use crate::recognition::smo::passes_512;
 
 /// f32 or f64: what a Gram matrix holds.
-pub(crate) trait Scalar: NdFloat {
+pub(crate) trait Scalar: NdFloat + Default {
     /// The nearest value.
     fn of(value: f64) -> Self;
     /// The same value.
     fn wide(self) -> f64;
     /// `exp(−γ · distance)` in place of each squared distance.
     fn exponentials(distances: &mut [Self], gamma: f64);
-    /// Products of some rows with others, by number, where they lie: row by row into `products`; `false`, and nothing
+    /// Products of some rows with others, all equally long, where they lie: row by row into `products`; `false`, and nothing
     /// written, where there is no fast way.
-    fn products_in_place(_: Rows<Self>, _: &[usize], _: &[usize], _: &mut [Self]) -> bool {
+    fn products_in_place(_: &[&[Self]], _: &[&[Self]], _: &mut [Self]) -> bool {
         false
     }
     /// The solver's [first pass](passes::step_along).
@@ -52,7 +52,7 @@ pub(crate) trait Scalar: NdFloat {
         None
     }
     /// Products of rows with packed rows, row by row; `false`, and nothing written, where there is no fast way.
-    fn multiply(_: &Panels, _: Rows<Self>, _: Wanted, _: &mut [&mut [Self]]) -> bool {
+    fn multiply(_: &Panels, _: &[&[Self]], _: Wanted, _: &mut [&mut [Self]]) -> bool {
         false
     }
 }
@@ -86,20 +86,15 @@ impl Scalar for f32 {
         exponentials_f32(distances, gamma as f32);
     }
 
-    fn products_in_place(
-        all: Rows<Self>,
-        rows: &[usize],
-        others: &[usize],
-        products: &mut [Self],
-    ) -> bool {
-        row_tiles::products_in_place(all, rows, others, products)
+    fn products_in_place(rows: &[&[Self]], others: &[&[Self]], products: &mut [Self]) -> bool {
+        row_tiles::products_in_place(rows, others, products)
     }
 
     fn panels(rows: Rows<Self>, n_rows: usize) -> Option<Panels> {
         Panels::new(rows, n_rows)
     }
 
-    fn multiply(panels: &Panels, left: Rows<Self>, wanted: Wanted, to: &mut [&mut [Self]]) -> bool {
+    fn multiply(panels: &Panels, left: &[&[Self]], wanted: Wanted, to: &mut [&mut [Self]]) -> bool {
         panels.multiply(left, wanted, to)
     }
 

@@ -2,16 +2,17 @@
 
 use std::ops::Range;
 
-use ndarray::{Array1, Array2, ArrayView1, ArrayView2, Axis};
+use ndarray::{Array1, ArrayView1, ArrayView2};
 
 use crate::recognition::between::pairs;
 use crate::recognition::dataset::Dataset;
 use crate::recognition::kernel::KernelFunction;
-use crate::recognition::points::{Points, move_row};
+use crate::recognition::points::Points;
 use crate::recognition::scalar::Scalar;
 use crate::recognition::svm::BinaryProblem;
 
 /// Training rows sorted by class, about their centre.
+#[derive(Clone)]
 pub(crate) struct Sorted<T> {
     points: Points<T>,
     /// The original number of each sorted row.
@@ -23,6 +24,8 @@ pub(crate) struct Sorted<T> {
     classes: Vec<usize>,
     kernel: KernelFunction,
     centre: Array1<f64>,
+    /// The square of the largest distance of a row from it.
+    farthest: f64,
     /// `(x − c)·c` per sorted row, for ρ about the origin with a linear kernel; empty for the others.
     centre_products: Vec<f64>,
 }
@@ -58,14 +61,17 @@ impl<T: Scalar> Sorted<T> {
         for (at, &row) in order.iter().enumerate() {
             place[row] = at;
         }
-        let rows = || order.iter().map(|&row| data.records.row(row));
-        let centre_products = match kernel {
-            // Row by row: far from the origin, x·c − c·c would be two large numbers less each other.
-            KernelFunction::Linear => about(rows(), centre, |moved| moved.dot(&centre)).collect(),
-            _ => Vec::new(),
-        };
+        let rows = order.iter().map(|&row| data.records.row(row));
+        let (mut centre_products, mut farthest) = (Vec::new(), 0.0_f64);
+        let points = Points::of_rows_and(rows, centre, |moved| {
+            farthest = farthest.max(moved.norm);
+            if kernel == KernelFunction::Linear {
+                centre_products.push(moved.along_centre);
+            }
+        });
         Self {
-            points: Points::of_rows(rows(), centre),
+            points,
+            farthest,
             order,
             place,
             ranges,
@@ -86,6 +92,7 @@ impl<T: Scalar> Sorted<T> {
             classes: self.classes.clone(),
             kernel: self.kernel,
             centre: Array1::zeros(directions.nrows()),
+            farthest: self.farthest,
             centre_products: Vec::new(),
         }
     }
@@ -93,6 +100,11 @@ impl<T: Scalar> Sorted<T> {
     /// The rows, class by class.
     pub fn points(&self) -> &Points<T> {
         &self.points
+    }
+
+    /// The rows alone.
+    pub fn into_points(self) -> Points<T> {
+        self.points
     }
 
     /// The original number of each sorted row.
@@ -113,6 +125,11 @@ impl<T: Scalar> Sorted<T> {
     /// What was subtracted from every row.
     pub fn centre(&self) -> ArrayView1<'_, f64> {
         self.centre.view()
+    }
+
+    /// The square of the largest distance of a row from the centre.
+    pub fn farthest(&self) -> f64 {
+        self.farthest
     }
 
     /// ρ of a problem's decision function about the centre.
@@ -169,47 +186,5 @@ impl<T: Scalar> Sorted<T> {
             .clone()
             .chain(self.ranges[b].clone())
             .collect()
-    }
-
-    /// Kernel values within each class.
-    pub fn within(&self) -> Vec<Array2<T>> {
-        let within = |range: &Range<usize>| {
-            let own = self.points.range(range.clone());
-            own.own_kernel(&self.kernel)
-        };
-        self.ranges.iter().map(within).collect()
-    }
-}
-
-/// What a function gives for each row (m) less the centre (m).
-fn about<'a, V>(
-    rows: impl Iterator<Item = ArrayView1<'a, f64>>,
-    centre: ArrayView1<f64>,
-    value: impl Fn(&Array1<f64>) -> V,
-) -> impl Iterator<Item = V> {
-    let mut moved = Array1::zeros(centre.len());
-    let centre = centre.to_vec();
-    rows.map(move |row| {
-        let to = moved.as_slice_mut().expect("a new array is contiguous");
-        move_row(to, row, &centre);
-        value(&moved)
-    })
-}
-
-/// The square of the largest distance of a row from the centre.
-pub(crate) fn farthest(features: ArrayView2<f64>, centre: ArrayView1<f64>) -> f64 {
-    let norms = about(features.rows().into_iter(), centre, |moved| {
-        moved.dot(moved)
-    });
-    norms.fold(0.0, f64::max)
-}
-
-/// Where kernels are taken about: the mean of the rows where that changes nothing but rounding, else the origin.
-pub(crate) fn centre(features: ArrayView2<f64>, kernel: &KernelFunction) -> Array1<f64> {
-    match kernel {
-        KernelFunction::Linear | KernelFunction::Rbf { .. } => {
-            features.sum_axis(Axis(0)) / features.nrows() as f64
-        }
-        KernelFunction::Polynomial { .. } => Array1::zeros(features.ncols()),
     }
 }

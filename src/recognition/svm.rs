@@ -1,16 +1,19 @@
 //! Soft-margin support vector machines for many classes: parameters and training.
 
+use std::borrow::Cow;
+
 use linfa::traits::Fit;
-use ndarray::{Array1, Array2};
+use ndarray::{Array1, Array2, ArrayView1};
 use serde::{Deserialize, Serialize};
 
-use crate::recognition::dataset::{Dataset, check_features, check_labels, distinct};
+use crate::recognition::dataset::{Dataset, check_labels, distinct};
 use crate::recognition::decision::DecisionFunctions;
 use crate::recognition::dual::DualSolution;
+use crate::recognition::extent::Extent;
 use crate::recognition::kernel::{Kernel, KernelFunction};
 use crate::recognition::linfa_solver;
 use crate::recognition::scalar::Scalar;
-use crate::recognition::sorted::{Sorted, centre, farthest};
+use crate::recognition::sorted::Sorted;
 use crate::recognition::svm_model::{Decision, SvmModel};
 use crate::recognition::training::Goal;
 use crate::{Error, Result};
@@ -107,6 +110,14 @@ impl Default for SvmParams {
     }
 }
 
+/// Rows, their classes, the kernel, and where it is taken about.
+type Sorting<'a> = (
+    &'a Dataset,
+    &'a [usize],
+    KernelFunction,
+    ArrayView1<'a, f64>,
+);
+
 /// A binary problem of a multi-class SVM and its solution.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BinaryProblem {
@@ -140,7 +151,7 @@ impl SvmParams {
     /// As [`train`](Self::train).
     pub fn train_path(&self, data: &Dataset, path: &[f64]) -> Result<Vec<SvmModel>> {
         self.check(path)?;
-        check_features(data.records.view())?;
+        let extent = Extent::of(data.records.view())?;
         check_labels(data.records.nrows(), data.targets.view())?;
         let classes = distinct(data.targets.view());
         if classes.len() < 2 {
@@ -150,13 +161,15 @@ impl SvmParams {
                 "at least two classes are needed",
             ));
         }
-        let kernel = self.kernel.resolve(data.records.view())?;
+        let kernel = self.kernel.resolve(data.records.view(), &extent)?;
         let mut ascending = path.to_vec();
         ascending.sort_by(f64::total_cmp);
         ascending.dedup();
+        let centre = extent.centre(&kernel);
+        let sorting = (data, &classes[..], kernel, centre.view());
         let trained = match self.solver {
-            Solver::Smo => self.train_smo(data, &classes, kernel, &ascending),
-            Solver::Linfa => self.train_linfa(data, &classes, kernel, &ascending)?,
+            Solver::Smo => self.train_smo(sorting, &ascending),
+            Solver::Linfa => self.train_linfa(sorting, &ascending)?,
             Solver::CoordinateDescent => return Err(coordinate_descent_is_linear_only()),
         };
         if ascending == path {
@@ -166,22 +179,17 @@ impl SvmParams {
         Ok(path.iter().map(|&c| trained[at(c)].clone()).collect())
     }
 
-    fn train_smo(
-        &self,
-        data: &Dataset,
-        classes: &[usize],
-        kernel: KernelFunction,
-        path: &[f64],
-    ) -> Vec<SvmModel> {
-        let centre = centre(data.records.view(), &kernel);
-        let farthest = farthest(data.records.view(), centre.view());
-        if self.wants_double(data.records.nrows(), kernel, path, farthest) {
-            let sorted = Sorted::<f64>::new(data, classes, kernel, centre.view());
-            self.solve_sorted(&sorted, path)
-        } else {
-            let sorted = Sorted::<f32>::new(data, classes, kernel, centre.view());
-            self.solve_sorted(&sorted, path)
+    fn train_smo(&self, sorting: Sorting, path: &[f64]) -> Vec<SvmModel> {
+        let (data, classes, kernel, centre) = sorting;
+        let n_rows = data.records.nrows();
+        if !self.wants_double(n_rows, kernel, path, 0.0) {
+            let sorted = Sorted::<f32>::new(data, classes, kernel, centre);
+            if !self.wants_double(n_rows, kernel, path, sorted.farthest()) {
+                return self.solve_sorted(sorted, path);
+            }
         }
+        let sorted = Sorted::<f64>::new(data, classes, kernel, centre);
+        self.solve_sorted(sorted, path)
     }
 
     /// Whether f32 kernel values would not do for rows of which the farthest is so far from the centre (squared): few rows (then f64 costs nothing), a tolerance near f32's rounding, or
@@ -209,7 +217,7 @@ impl SvmParams {
             || largest > SINGLE_MOST
     }
 
-    fn solve_sorted<T: Scalar>(&self, sorted: &Sorted<T>, path: &[f64]) -> Vec<SvmModel>
+    fn solve_sorted<T: Scalar>(&self, sorted: Sorted<T>, path: &[f64]) -> Vec<SvmModel>
     where
         Decision: From<DecisionFunctions<T>>,
     {
@@ -222,21 +230,21 @@ impl SvmParams {
             Multiclass::OneVsOne => sorted.one_vs_one(goal),
             _ => sorted.one_vs_rest(goal),
         };
-        trained
-            .into_iter()
-            .map(|problems| SvmModel::new(sorted, self.multiclass, problems))
-            .collect()
+        let mut trained = trained.into_iter();
+        // The last model may have the rows.
+        let last = trained.next_back();
+        let mut models: Vec<SvmModel> = trained
+            .map(|problems| SvmModel::new(Cow::Borrowed(&sorted), self.multiclass, problems))
+            .collect();
+        models.extend(
+            last.map(|problems| SvmModel::new(Cow::Owned(sorted), self.multiclass, problems)),
+        );
+        models
     }
 
-    fn train_linfa(
-        &self,
-        data: &Dataset,
-        classes: &[usize],
-        kernel: KernelFunction,
-        path: &[f64],
-    ) -> Result<Vec<SvmModel>> {
-        let centre = centre(data.records.view(), &kernel);
-        let sorted = Sorted::<f64>::new(data, classes, kernel, centre.view());
+    fn train_linfa(&self, sorting: Sorting, path: &[f64]) -> Result<Vec<SvmModel>> {
+        let (data, classes, kernel, centre) = sorting;
+        let sorted = Sorted::<f64>::new(data, classes, kernel, centre);
         path.iter()
             .map(|&c| {
                 let problems = linfa_solver::solve_all(
@@ -246,7 +254,8 @@ impl SvmParams {
                     self.multiclass,
                     (c, self.tolerance),
                 )?;
-                Ok(SvmModel::new(&sorted, self.multiclass, problems))
+                let sorted = Cow::Borrowed(&sorted);
+                Ok(SvmModel::new(sorted, self.multiclass, problems))
             })
             .collect()
     }

@@ -5,6 +5,8 @@
 //! trained in. Labels of one-vs-one SVMs with a kernel need the second product only where no class wins all its pairs
 //! (`unbeaten`).
 
+use std::borrow::Cow;
+
 use linfa::traits::PredictInplace;
 use ndarray::{Array1, Array2, ArrayBase, ArrayView2, Data, Ix2};
 
@@ -45,8 +47,9 @@ impl From<DecisionFunctions<f64>> for Decision {
 }
 
 impl SvmModel {
+    /// Of the rows that it was trained on.
     pub(crate) fn new<T: Scalar>(
-        sorted: &Sorted<T>,
+        sorted: Cow<Sorted<T>>,
         multiclass: Multiclass,
         problems: Vec<BinaryProblem>,
     ) -> Self

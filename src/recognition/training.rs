@@ -1,20 +1,21 @@
 //! Many binary problems from one set of rows: what they share is computed once.
 //!
 //! One-vs-one needs every block of kernel values between two classes exactly once, and every block within a class for all
-//! its pairs: rows are sorted by class, blocks within classes are kept, and the block between two classes is written by a
-//! matrix product to where the solver reads it. So n rows of k classes take about n²/k values in memory, not n².
+//! its pairs: rows are sorted by class, blocks within classes are kept, and of a pair's the solver reads what it asks
+//! for. So n rows of k classes take about n²/k values in memory, not n².
 //! One-vs-rest shares the whole matrix. All C of a path are solved while a problem's Gram matrix is at hand, each from the last.
 
 use std::ops::Range;
 
-use crate::recognition::between::{Between, GROUP_ROWS, groups, pairs};
+use crate::recognition::between::{Group, groups, pairs};
 use crate::recognition::dual::DualSolution;
 use crate::recognition::kernel::KernelFunction;
-use crate::recognition::near_margin::NearMargin;
+use crate::recognition::near_margin::{NearMargin, PairsNearMargin, few_dimensions};
 use crate::recognition::scalar::Scalar;
-use crate::recognition::smo::{Cached, Dense, Gram, Smo};
+use crate::recognition::smo::{Cached, Dense, Gram, Room, Smo, part_of_blocks};
 use crate::recognition::sorted::Sorted;
 use crate::recognition::svm::BinaryProblem;
+use crate::recognition::transposed::write_columns;
 
 /// Features from which on one-vs-one linear SVMs are solved on the rows near their margins.
 const SCREENING_FROM_FEATURES: usize = 128;
@@ -46,13 +47,10 @@ impl<T: Scalar> Sorted<T> {
         problems
     }
 
-    /// Whether the blocks within classes, those between two groups and the largest pair fit.
+    /// Whether the blocks within groups of classes, those between two groups and the largest pair fit.
     fn fits(&self, memory: usize) -> bool {
-        let sizes = || self.ranges().iter().map(Range::len);
-        let largest = sizes().max().unwrap_or(0);
-        let within: usize = sizes().map(|n| n * n).sum();
-        (within + (GROUP_ROWS + largest).pow(2)) * size_of::<T>() + Dense::<T>::bytes(2 * largest)
-            <= memory
+        let largest = self.ranges().iter().map(Range::len).max().unwrap_or(0);
+        Group::bytes(self, &groups(self.ranges())) + Dense::<T>::bytes(2 * largest) <= memory
     }
 
     /// Whether products take so long that hyperplanes should say which are needed.
@@ -65,38 +63,48 @@ impl<T: Scalar> Sorted<T> {
     }
 
     fn pairs_near_margin(&self, goal: Goal, problems: &mut [Vec<BinaryProblem>]) {
-        let mut near_margin = NearMargin::new(self, goal.path[0]);
-        for (&c, problems) in goal.path.iter().zip(problems) {
-            let solutions = near_margin.solve(c, goal.tolerance);
-            for ((a, b), solution) in self.all_pairs().zip(solutions) {
-                let sides = (self.classes()[a], Some(self.classes()[b]));
-                problems.push(self.problem(&self.pair_rows(a, b), sides, solution));
+        let few = few_dimensions(self);
+        let all = PairsNearMargin::new(self, &few);
+        for pairs in all.blocks() {
+            let mut near_margin = all.near(&pairs, goal.path[0]);
+            for (&c, problems) in goal.path.iter().zip(&mut *problems) {
+                let solutions = near_margin.solve(c, goal.tolerance);
+                for (&(a, b), solution) in pairs.iter().zip(solutions) {
+                    let sides = (self.classes()[a], Some(self.classes()[b]));
+                    problems.push(self.problem(&self.pair_rows(a, b), sides, solution));
+                }
             }
         }
+        in_order(problems);
     }
 
     fn pairs_from_blocks(&self, goal: Goal, problems: &mut [Vec<BinaryProblem>]) {
-        let within = self.within();
-        let groups = groups(self.ranges());
-        let mut gram = Dense::default();
+        let classes = groups(self.ranges());
+        let groups: Vec<Group<T>> = classes.iter().map(|own| Group::new(self, own)).collect();
+        let (mut between, mut above, mut room) = (Vec::new(), Vec::new(), Room::new());
         for (at, own) in groups.iter().enumerate() {
-            let mut between = Between::new(self, own);
-            for other in &groups[at..] {
-                between.compute(other);
-                for (a, b) in pairs(own.clone(), other.clone()) {
-                    let [first, second] = [a, b].map(|class| self.ranges()[class].clone());
-                    gram.of_blocks(
-                        within[a].view(),
-                        within[b].view(),
-                        between.part(&second, &first),
-                    );
+            let packed = own.packed();
+            for (number, other) in groups.iter().enumerate().skip(at) {
+                if number > at {
+                    own.with(&packed, other, &mut between);
+                }
+                for (a, b) in pairs(classes[at].clone(), classes[number].clone()) {
+                    let [first, second] = [a, b].map(|class| &self.ranges()[class]);
+                    let below = if number > at {
+                        own.part_with(other, &between, (second, first))
+                    } else {
+                        own.own_part(second, first)
+                    };
+                    above.resize(first.len() * second.len(), T::zero());
+                    write_columns(&below, &mut above, second.len());
+                    let across = [above.chunks_exact(second.len()).collect(), below];
+                    let within = [own.own_part(first, first), other.own_part(second, second)];
+                    let mut gram = part_of_blocks(&within, &across, &mut room);
                     self.solve_pair(&mut gram, (a, b), goal, problems);
                 }
             }
         }
-        for problems in problems {
-            problems.sort_by_key(|problem| (problem.positive, problem.negative));
-        }
+        in_order(problems);
     }
 
     fn pairs_from_rows(&self, goal: Goal, problems: &mut [Vec<BinaryProblem>]) {
@@ -194,5 +202,12 @@ impl<T: Scalar> Sorted<T> {
             rows: rows.iter().map(|&row| self.order()[row]).collect(),
             solution,
         }
+    }
+}
+
+/// Sorts the problems of each C by their classes.
+fn in_order(problems: &mut [Vec<BinaryProblem>]) {
+    for problems in problems {
+        problems.sort_by_key(|problem| (problem.positive, problem.negative));
     }
 }

@@ -6,18 +6,26 @@ use crate::report::axis::{classifier_name, short_number};
 use crate::report::folder::Folder;
 use crate::report::page::StudyAbout;
 use crate::report::page::plain::{self, plain_page};
+use crate::report::study_tables::{StudyTables, TableFiles, table_file};
 use crate::report::terminal::{align_right, plain_table};
 use crate::study::breaking_points::PlannedWay;
 use crate::study::breaking_points::table::{BreakingPoint, BreakingPointsTables, Side};
 use comfy_table::Table;
 use std::path::{Path, PathBuf};
 
-const FILES: [&str; 4] = [
-    "accuracy.csv",
-    "summary.csv",
-    "breaking_points.csv",
-    "timing.csv",
-];
+impl StudyTables for BreakingPointsTables {
+    const OF_PIECES: &'static [&'static str] = &["accuracy.csv", "summary.csv"];
+    const OF_ALL: &'static [&'static str] = &["breaking_points.csv"];
+
+    fn files(&self) -> Result<TableFiles> {
+        Ok(vec![
+            table_file("accuracy.csv", &self.accuracy)?,
+            table_file("summary.csv", &self.summary)?,
+            table_file("breaking_points.csv", &self.breaking_points)?,
+            table_file("timing.csv", &self.timing)?,
+        ])
+    }
+}
 
 /// Writes tables, charts and the page into `dir` (created if missing); returns the paths, tables first.
 ///
@@ -29,11 +37,9 @@ pub fn write_breaking_points(
     about: &StudyAbout,
 ) -> Result<Vec<PathBuf>> {
     let mut folder = Folder::new(dir);
-    let [accuracy, summary, breaks, timing] = FILES;
-    folder.add_table(accuracy, &tables.accuracy)?;
-    folder.add_table(summary, &tables.summary)?;
-    folder.add_table(breaks, &tables.breaking_points)?;
-    folder.add_table(timing, &tables.timing)?;
+    let files = tables.files()?;
+    let names: Vec<&str> = files.iter().map(|(name, _)| *name).collect();
+    folder.add_files(files);
     let drawn = draw_breaking_points(ways, tables);
     for (name, title, drawing) in &drawn {
         folder.add_chart(name, title, drawing)?;
@@ -50,7 +56,7 @@ pub fn write_breaking_points(
             &breaks_table(tables, 200),
         ),
     ];
-    folder.add("report.html", plain_page(about, found, &FILES));
+    folder.add("report.html", plain_page(about, found, &names));
     folder.write()
 }
 

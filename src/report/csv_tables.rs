@@ -27,8 +27,11 @@ pub const TABLE_FILES: [&str; 10] = [
     "stages.csv",
     "confused.csv",
     "published.csv",
-    "failures.csv",
+    FAILURES_FILE,
 ];
+
+/// What failed, and why.
+pub const FAILURES_FILE: &str = "failures.csv";
 
 /// The table of variance components, of studies that have them.
 pub const VARIANCE_FILE: &str = "variance.csv";

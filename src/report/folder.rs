@@ -4,6 +4,7 @@ use crate::error::{Error, Result};
 use crate::files::write_bytes;
 use crate::report::csv_tables::to_csv;
 use crate::report::drawing::Drawing;
+use crate::report::study_tables::TableFiles;
 use serde::Serialize;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -33,6 +34,13 @@ impl<'a> Folder<'a> {
         let csv = to_csv(rows).map_err(failed)?;
         self.add(name, csv);
         Ok(())
+    }
+
+    /// Adds the tables of a study.
+    pub fn add_files(&mut self, tables: TableFiles) {
+        let tables = tables.into_iter();
+        self.files
+            .extend(tables.map(|(name, content)| (name.to_owned(), content)));
     }
 
     /// Adds a chart as PNG and as SVG; its name has no ending.

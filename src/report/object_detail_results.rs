@@ -8,10 +8,32 @@ use crate::report::axis::{classifier_name, short_number};
 use crate::report::folder::Folder;
 use crate::report::page::StudyAbout;
 use crate::report::page::plain::{self, plain_page};
+use crate::report::study_tables::{StudyTables, TableFiles, table_file};
 use crate::report::terminal::{align_right, plain_table, wrap};
 use crate::study::object_detail::table::{DetailRecognition, DetailSummary, ObjectDetailTables};
 use comfy_table::Table;
 use std::path::{Path, PathBuf};
+
+impl StudyTables for ObjectDetailTables {
+    const OF_PIECES: &'static [&'static str] =
+        &["object_detail.csv", "object_detail_recognition.csv"];
+    const OF_ALL: &'static [&'static str] = &["object_detail_summary.csv"];
+
+    fn files(&self) -> Result<TableFiles> {
+        let mut files = vec![
+            table_file("object_detail.csv", &self.detail)?,
+            table_file("object_detail_summary.csv", &self.summary)?,
+            table_file("timing.csv", &self.timing)?,
+        ];
+        if !self.recognition.is_empty() {
+            files.push(table_file(
+                "object_detail_recognition.csv",
+                &self.recognition,
+            )?);
+        }
+        Ok(files)
+    }
+}
 
 /// Writes tables, charts and the page into `dir` (created if missing); returns the paths, tables first.
 ///
@@ -22,15 +44,9 @@ pub fn write_object_detail(
     about: &StudyAbout,
 ) -> Result<Vec<PathBuf>> {
     let mut folder = Folder::new(dir);
-    let [detail, summary, timing, recognition] = FILES;
-    folder.add_table(detail, &tables.detail)?;
-    folder.add_table(summary, &tables.summary)?;
-    folder.add_table(timing, &tables.timing)?;
-    let mut n_files = 3;
-    if !tables.recognition.is_empty() {
-        folder.add_table(recognition, &tables.recognition)?;
-        n_files = 4;
-    }
+    let files = tables.files()?;
+    let names: Vec<&str> = files.iter().map(|(name, _)| *name).collect();
+    folder.add_files(files);
     let drawn = draw_object_detail_charts(tables);
     for (name, title, drawing) in &drawn {
         folder.add_chart(name, title, drawing)?;
@@ -42,7 +58,7 @@ pub fn write_object_detail(
         plain::charts(&drawn),
         plain::table("recognition", "Recognition", LEARNED, &learned),
     ];
-    folder.add("report.html", plain_page(about, found, &FILES[..n_files]));
+    folder.add("report.html", plain_page(about, found, &names));
     folder.write()
 }
 
@@ -77,13 +93,6 @@ fn sentences(tables: &ObjectDetailTables) -> Vec<String> {
     }
     sentences
 }
-
-const FILES: [&str; 4] = [
-    "object_detail.csv",
-    "object_detail_summary.csv",
-    "timing.csv",
-    "object_detail_recognition.csv",
-];
 
 const NOTE: &str = "Medians over objects; error is the mean over touched taxels of |deflection − that of the exact mesh|, worst \
     that of the worst object, − offset with the best constant depth taken off, × packing the ratio of that to the packing's.";

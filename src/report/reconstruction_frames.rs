@@ -11,7 +11,14 @@ use crate::study::reconstruction::SampleFrames;
 use crate::study::reconstruction::table::{ReconstructionCell, ReconstructionTables};
 use ndarray::Array2;
 
-/// A row a touch: as it was, as it was read, and as the best cells of about a quarter and of the fewest measurements found it.
+/// The cells whose frames are drawn: at the loudest noise, the best of about a quarter and of the fewest measurements.
+pub fn shown_cells(tables: &ReconstructionTables) -> Vec<&ReconstructionCell> {
+    let levels = tables.reconstruction.iter().map(|(cell, _)| cell.noise_std);
+    let loudest = levels.max_by(f64::total_cmp);
+    loudest.map_or_else(Vec::new, |level| chosen(tables, level))
+}
+
+/// A row a touch: as it was, as it was read, and as [`shown_cells`] found it.
 pub fn draw_samples(
     tables: &ReconstructionTables,
     samples: &SampleFrames,
@@ -23,7 +30,7 @@ pub fn draw_samples(
     let Some((level, noisy)) = loudest else {
         return snapshots(&[], pitch_mm, quantity, "");
     };
-    let shown = chosen(tables, *level);
+    let shown = shown_cells(tables);
     let mut frames = Vec::new();
     for (row, name) in samples.names.iter().enumerate() {
         let grid = |frames: &Array2<f64>| {
@@ -34,11 +41,14 @@ pub fn draw_samples(
         frames.push(("full, noisy".to_owned(), grid(noisy)));
         for cell in &shown {
             let title = format!("{} of m = {}", solver_name(cell.solver), cell.measurements);
-            frames.push((title, grid(&samples.reconstructed[cell.cell])));
+            frames.push((title, grid(&samples.reconstructed[&cell.cell])));
         }
     }
     let words: Vec<String> = shown.iter().map(|cell| cell_words(cell)).collect();
-    let unit = tables.reconstruction[0].0.noise_unit;
+    let Some((first, _)) = tables.reconstruction.first() else {
+        return snapshots(&[], pitch_mm, quantity, "");
+    };
+    let unit = first.noise_unit;
     let caption = format!("{}; {}", noise_words(*level, unit), words.join("; "));
     snapshots(&frames, pitch_mm, quantity, &caption)
 }

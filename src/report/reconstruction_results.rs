@@ -7,6 +7,7 @@ use crate::report::page::plain::{charts, plain_page};
 use crate::report::page::{Picture, Section, StudyAbout, figure};
 use crate::report::reconstruction_charts::draw_reconstruction_charts;
 use crate::report::reconstruction_text::reconstruction_sections;
+use crate::report::study_tables::{StudyTables, TableFiles, table_file};
 use crate::study::reconstruction::table::ReconstructionTables;
 use std::path::{Path, PathBuf};
 
@@ -16,6 +17,20 @@ const FILES: [&str; 4] = [
     "timing.csv",
     "pareto.csv",
 ];
+
+impl StudyTables for ReconstructionTables {
+    const OF_PIECES: &'static [&'static str] = &["reconstruction.csv", "ensembles.csv"];
+    const OF_ALL: &'static [&'static str] = &[];
+
+    fn files(&self) -> Result<TableFiles> {
+        Ok(vec![
+            table_file(FILES[0], &self.reconstruction)?,
+            table_file(FILES[1], &self.ensembles)?,
+            table_file(FILES[2], &self.timing)?,
+            table_file(FILES[3], &self.pareto)?,
+        ])
+    }
+}
 
 /// Writes tables, charts, the picture of sample frames and the page into `dir` (created if missing); returns the paths, tables first.
 ///
@@ -27,11 +42,7 @@ pub fn write_reconstruction(
     about: &StudyAbout,
 ) -> Result<Vec<PathBuf>> {
     let mut folder = Folder::new(dir);
-    let [cells, ensembles, timing, pareto] = FILES;
-    folder.add_table(cells, &tables.reconstruction)?;
-    folder.add_table(ensembles, &tables.ensembles)?;
-    folder.add_table(timing, &tables.timing)?;
-    folder.add_table(pareto, &tables.pareto)?;
+    folder.add_files(tables.files()?);
     let drawn = draw_reconstruction_charts(tables);
     for (name, title, drawing) in &drawn {
         folder.add_chart(name, title, drawing)?;

@@ -3,7 +3,7 @@
 use crate::error::Result;
 use crate::report::answer::Answer;
 use crate::report::chart::{chart_title, draw_chart};
-use crate::report::chart_plan::plan_charts;
+use crate::report::chart_plan::{ChartPlan, plan_charts};
 use crate::report::confusion_picture::confusion_picture;
 use crate::report::csv_tables::{LIMITS_FILE, add_tables};
 use crate::report::drawing::Drawing;
@@ -14,8 +14,9 @@ use crate::report::snapshots::snapshots;
 use crate::study::table::{Cell, Tables};
 use std::path::{Path, PathBuf};
 
-/// Charts in the page and as PNG, at most; all are written as SVG. A thousand would make the page too heavy for a phone.
-const MOST_IN_PAGE: usize = 24;
+/// Static charts that are drawn, unless all are asked for; of all, those in the page (for readers without script) and as PNG. More: a page
+/// too heavy for a phone, and minutes for what the page shows anyway when it is asked.
+pub const MOST_CHARTS: usize = 24;
 
 /// Writes tables, charts, pictures and the page into `dir` (created if missing); returns the paths in the order of
 /// writing, tables first.
@@ -43,8 +44,16 @@ fn add_page(folder: &mut Folder, tables: &Tables, about: &ReportPage) -> Result<
         pictures.times.push(Picture::of(&drawing, &title));
         folder.add_chart(&name, &title, &drawing)?;
     }
-    for (name, title, drawing) in draw_charts(tables) {
-        if pictures.charts.len() < MOST_IN_PAGE {
+    let mut plans = plans(tables);
+    let n_drawn = match about.all_charts {
+        true => plans.len(),
+        false => MOST_CHARTS.min(plans.len()),
+    };
+    let left_out = plans.split_off(n_drawn).into_iter();
+    pictures.left_out = left_out.map(|plan| plan.name).collect();
+    for plan in &plans {
+        let (name, title, drawing) = draw(plan, tables);
+        if pictures.charts.len() < MOST_CHARTS {
             pictures.charts.push(Picture::of(&drawing, &title));
             folder.add_chart(&name, &title, &drawing)?;
         } else {
@@ -71,31 +80,29 @@ fn add_page(folder: &mut Folder, tables: &Tables, about: &ReportPage) -> Result<
 
 /// Seconds to draw and write all of it for these cells, as on one core of a 2-core x86-64 server.
 pub fn planned_s(cells: &[&Cell]) -> f64 {
-    let n_charts = plan_charts(cells).len();
-    let n_rasters = n_charts.min(MOST_IN_PAGE) as f64;
-    REST_S + RASTER_S * n_rasters + VECTORS_S * n_charts as f64
+    let n_charts = plan_charts(cells).len().min(MOST_CHARTS);
+    REST_S + CHART_S * n_charts as f64
 }
 
-/// Seconds for a chart's PNG.
-const RASTER_S: f64 = 0.1;
-/// Seconds for a chart's SVG.
-const VECTORS_S: f64 = 0.02;
+/// Seconds for a chart's PNG and SVG.
+const CHART_S: f64 = 0.12;
 /// Seconds for tables, touches, the confusion matrix and the page.
 const REST_S: f64 = 0.3;
 
 /// Every chart of a study: file name without ending, title, drawing.
 pub fn draw_charts(tables: &Tables) -> Vec<(String, String, Drawing)> {
+    let plans = plans(tables);
+    plans.iter().map(|plan| draw(plan, tables)).collect()
+}
+
+fn plans(tables: &Tables) -> Vec<ChartPlan> {
     let cells: Vec<&Cell> = tables.summary.iter().map(|(cell, _)| cell).collect();
-    let plans = plan_charts(&cells).into_iter();
-    plans
-        .map(|plan| {
-            (
-                plan.name.clone(),
-                chart_title(&plan),
-                draw_chart(&plan, tables),
-            )
-        })
-        .collect()
+    plan_charts(&cells)
+}
+
+fn draw(plan: &ChartPlan, tables: &Tables) -> (String, String, Drawing) {
+    let drawing = draw_chart(plan, tables);
+    (plan.name.clone(), chart_title(plan), drawing)
 }
 
 /// Accuracy against the time to train and to decide, for a study that asks for it or compares classifiers: as

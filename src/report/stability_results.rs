@@ -6,6 +6,7 @@ use crate::error::Result;
 use crate::report::folder::Folder;
 use crate::report::page::StudyAbout;
 use crate::report::page::plain::{self, plain_page};
+use crate::report::study_tables::{StudyTables, TableFiles, table_file};
 use crate::report::terminal::{align_right, plain_table, wrap};
 use crate::study::stability::table::StabilityTables;
 use crate::study::stability::{StabilityScene, TOLERANCE};
@@ -13,6 +14,19 @@ use comfy_table::Table;
 use std::path::{Path, PathBuf};
 
 const FILES: [&str; 3] = ["stability.csv", "stability_summary.csv", "timing.csv"];
+
+impl StudyTables for StabilityTables {
+    const OF_PIECES: &'static [&'static str] = &["stability.csv"];
+    const OF_ALL: &'static [&'static str] = &["stability_summary.csv"];
+
+    fn files(&self) -> Result<TableFiles> {
+        Ok(vec![
+            table_file(FILES[0], &self.stability)?,
+            table_file(FILES[1], &self.summary)?,
+            table_file(FILES[2], &self.timing)?,
+        ])
+    }
+}
 
 /// Writes tables, maps and the page into `dir` (created if missing); returns the paths, tables first.
 ///
@@ -23,10 +37,7 @@ pub fn write_stability(
     about: &StudyAbout,
 ) -> Result<Vec<PathBuf>> {
     let mut folder = Folder::new(dir);
-    let [cells, summary, timing] = FILES;
-    folder.add_table(cells, &tables.stability)?;
-    folder.add_table(summary, &tables.summary)?;
-    folder.add_table(timing, &tables.timing)?;
+    folder.add_files(tables.files()?);
     let mut maps = draw_stability_maps(tables);
     maps.extend(draw_joints(tables));
     for (name, title, drawing) in &maps {

@@ -4,11 +4,12 @@ use crate::error::Result;
 use crate::report::folder::Folder;
 use crate::report::page::plain::{charts, plain_page};
 use crate::report::page::{Picture, Section, StudyAbout, figure};
+use crate::report::study_tables::{StudyTables, TableFiles, table_file};
 use crate::report::whole_body_charts::draw_whole_body_charts;
 use crate::report::whole_body_picture::whole_body_picture;
 use crate::report::whole_body_text::{bars_table, recognition_table, scenes_table};
+use crate::study::whole_body::BodyPicture;
 use crate::study::whole_body::table::WholeBodyTables;
-use crate::study::whole_body::{BodyOutcome, BodyPicture};
 use std::path::{Path, PathBuf};
 
 /// File names of the tables, in the order in which they are written.
@@ -20,25 +21,34 @@ pub const WHOLE_BODY_FILES: [&str; 5] = [
     "timing.csv",
 ];
 
+impl StudyTables for WholeBodyTables {
+    const OF_PIECES: &'static [&'static str] = &["whole_body.csv", "recognition.csv", "sensed.csv"];
+    const OF_ALL: &'static [&'static str] = &[];
+
+    fn files(&self) -> Result<TableFiles> {
+        Ok(vec![
+            table_file(WHOLE_BODY_FILES[0], &self.bars)?,
+            table_file(WHOLE_BODY_FILES[1], &self.cases)?,
+            table_file(WHOLE_BODY_FILES[2], &self.recognition)?,
+            table_file(WHOLE_BODY_FILES[3], &self.sensed)?,
+            table_file(WHOLE_BODY_FILES[4], &self.timing)?,
+        ])
+    }
+}
+
 /// Writes tables, charts, a picture and the page into `dir` (created if missing); returns the paths, tables first.
 ///
 /// Everything is drawn before the first file is written, and each file is whole or not there.
 pub fn write_whole_body(
     dir: &Path,
-    outcome: &BodyOutcome,
+    (tables, picture): (&WholeBodyTables, Option<&BodyPicture>),
     about: &StudyAbout,
 ) -> Result<Vec<PathBuf>> {
-    let tables = &outcome.tables;
     let mut folder = Folder::new(dir);
-    let [bars, cases, recognition, sensed, timing] = WHOLE_BODY_FILES;
-    folder.add_table(bars, &tables.bars)?;
-    folder.add_table(cases, &tables.cases)?;
-    folder.add_table(recognition, &tables.recognition)?;
-    folder.add_table(sensed, &tables.sensed)?;
-    folder.add_table(timing, &tables.timing)?;
+    folder.add_files(tables.files()?);
     let mut found: Vec<Section> = Vec::new();
     found.extend(bars_table(tables).map(|table| table.section("bars")));
-    if let Some(scene) = most_touched(outcome) {
+    if let Some(scene) = picture {
         let drawn = whole_body_picture(scene)?;
         let png = drawn.png()?;
         let title = format!("The scene {}, and the pressure on each patch", scene.scene);
@@ -68,8 +78,4 @@ pub fn whole_body_summary(tables: &WholeBodyTables, width: usize) -> String {
         .flatten()
         .map(|table| table.text(width))
         .collect()
-}
-
-fn most_touched(outcome: &BodyOutcome) -> Option<&BodyPicture> {
-    outcome.pictures.iter().max_by_key(|scene| scene.n_patches)
 }

@@ -9,7 +9,7 @@
 //! | `objects.csv` | one row an object: number, name |
 //! | `cell.toml` | the settings of the cell and the trial |
 
-use super::frames::FrameStorage;
+use super::frames::{FrameStorage, KeyedTouches};
 use super::measurement::measure_group;
 use super::plan::Plan;
 use super::progress::Progress;
@@ -75,7 +75,7 @@ pub fn cell_features(
         sweep.labels.len() as u64,
     );
     let storage = FrameStorage::in_memory();
-    let frames = storage.frames(touched, (patch, group.frames), progress)?;
+    let frames = storage.frames(&KeyedTouches::new(touched), (patch, group.frames), progress)?;
     // As the run does it: nested measurements are the leading ones of the largest m.
     let n_projected = group
         .projected()

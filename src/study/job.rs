@@ -1,5 +1,6 @@
 //! One group of cells in one trial: measured once, family by family evaluated.
 
+use super::attempt::attempt;
 use super::evaluation::Trial;
 use super::finished::Finished;
 use super::frames::Frames;
@@ -9,7 +10,6 @@ use super::sweep::Group;
 use super::table::Cell;
 use crate::error::Result;
 use rayon::prelude::*;
-use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::time::Instant;
 
 /// A group in a trial, and those of its families that are to be evaluated.
@@ -113,22 +113,10 @@ impl<'a> Job<'a> {
             tested: measurements,
             number: self.trial,
         };
-        if manner.fail_fast {
-            return trial.evaluate(family).map(Finished::Scored);
-        }
-        // A defect in one classifier is no reason to lose a night's work on the others.
-        let result = catch_unwind(AssertUnwindSafe(|| trial.evaluate(family)));
+        let result = attempt(manner.fail_fast, || trial.evaluate(family))?;
         Ok(match result {
-            Ok(Ok(evaluations)) => Finished::Scored(evaluations),
-            Ok(Err(error)) => Finished::Failed(error.to_string()),
-            Err(panic) => Finished::Failed(format!("a defect of the program: {}", words(&*panic))),
+            Ok(evaluations) => Finished::Scored(evaluations),
+            Err(said) => Finished::Failed(said),
         })
     }
-}
-
-/// What a panic said.
-fn words(panic: &(dyn std::any::Any + Send)) -> &str {
-    let text = panic.downcast_ref::<&str>().copied();
-    let text = text.or_else(|| panic.downcast_ref::<String>().map(String::as_str));
-    text.unwrap_or("it did not say why")
 }

@@ -7,6 +7,7 @@
 //! projection is drawn from its own named stream, and sums are taken in a fixed order.
 
 pub mod advice;
+mod attempt;
 mod axis;
 pub mod breaking_points;
 mod check;
@@ -31,6 +32,7 @@ mod packing_cache;
 mod packings;
 mod pareto;
 mod part;
+pub mod pieces;
 mod plan;
 mod plan_human;
 mod plan_learning;
@@ -73,13 +75,15 @@ pub use estimate::Estimate;
 pub use evaluation::CONFIDENCE;
 pub use feature_files::{FeatureSet, cell_features, read_features, write_features, write_npy};
 pub use frames::{
-    CachedTouches, FrameFacts, FrameStorage, FrameWriter, Frames, KeptFrames, TouchCache,
+    CachedTouches, FrameFacts, FrameStorage, FrameWriter, Frames, KeptFrames, KeyedTouches,
+    TouchCache,
 };
 pub use human_touches::{HumanTouches, RecordedTouch, record_touch};
 pub use imperfection::{IMPERFECTIONS, Imperfection, Strengths, TestedOn};
 pub use kind::StudyKind;
 pub use object_files::{
-    MeshUse, NamedMesh, load_mesh, load_named_meshes, load_objects, read_mesh_file,
+    MeshUse, NamedMesh, file_content, load_mesh, load_named_meshes, load_objects, objects_content,
+    read_mesh_file,
 };
 pub use packing_cache::{CachedPacking, PackingCache};
 pub(crate) use pareto::{Choice, unbeaten};

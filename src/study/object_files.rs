@@ -1,12 +1,13 @@
 //! Objects from where a study finds them: built-in sets, TOML files, folders of meshes.
 
+use super::content_hash::ContentHash;
 use super::packings::pack_within;
 use super::spec::{ModelSpec, ObjectsSpec};
 use crate::error::{Error, Result};
 use crate::mesh::{LengthUnit, MeshFile, MeshFormat, Surface, TriangleMesh};
 use crate::objects::{Catalogue, Entry, MeshModel, Object, vertex_spheres};
 use rayon::prelude::*;
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fs::File;
 use std::io::BufReader;
 use std::path::{Path, PathBuf};
@@ -62,6 +63,35 @@ fn entries(set: &str) -> Result<Vec<Entry>> {
     let text = std::fs::read_to_string(set)
         .map_err(|e| Error::input(set, format!("cannot be read ({e})"), "a file of objects"))?;
     Ok(Catalogue::parse(set, set, &text)?.entries().to_vec())
+}
+
+/// SHA-256 of what each object of a study is made from, by its name: of a mesh its file, of a solid its parts.
+///
+/// # Errors
+/// As of [`load_objects`].
+pub fn objects_content(spec: &ObjectsSpec) -> Result<BTreeMap<String, String>> {
+    let mut content = BTreeMap::new();
+    for set in &spec.sets {
+        for entry in set_entries(set, spec.names.as_deref())? {
+            let hash = ContentHash::default().bytes(format!("{:?}", entry.solid));
+            content.insert(entry.name, hash.hex());
+        }
+    }
+    if let Some(folder) = &spec.meshes {
+        for path in mesh_paths(folder, spec)? {
+            content.insert(stem(&path), file_content(&path)?);
+        }
+    }
+    Ok(content)
+}
+
+/// SHA-256 of a file.
+///
+/// # Errors
+/// It cannot be read.
+pub fn file_content(path: &Path) -> Result<String> {
+    let bytes = std::fs::read(path).map_err(|e| Error::io(path, "read", e))?;
+    Ok(ContentHash::default().bytes(bytes).hex())
 }
 
 /// What a PLY, OBJ or STL file holds, in metres.

@@ -6,7 +6,7 @@ use chrono::{DateTime, SecondsFormat, Utc};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::fs;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::time::SystemTime;
 
 /// Program and version.
@@ -36,6 +36,9 @@ pub struct Manifest {
     /// The command that makes the folder again; empty in manifests of earlier versions.
     #[serde(default)]
     pub command: String,
+    /// The folder of the study's file, to which paths in it are relative; empty in manifests of earlier versions.
+    #[serde(default)]
+    pub paths_from: PathBuf,
     /// Program and version.
     pub program: String,
     /// Hash of its sources.
@@ -63,9 +66,9 @@ pub struct Manifest {
     pub n_finished_before: usize,
     /// Root of all randomness.
     pub seed: u64,
-    /// Cells of the study.
+    /// Cells of the study, or pieces of its work.
     pub n_cells: usize,
-    /// Trials of each.
+    /// Trials of each; a piece holds its trials.
     pub n_trials: usize,
     /// Cells that failed, counted once a trial.
     pub n_failed: usize,
@@ -80,8 +83,8 @@ pub struct Manifest {
     pub methods: BTreeMap<String, String>,
 }
 
-/// The methods, by table and columns. Everything is at 95 %.
-const METHODS: [(&str, &str); 5] = [
+/// The methods of recognition, by table and columns. Everything is at 95 %.
+pub const RECOGNITION_METHODS: [(&str, &str); 5] = [
     (
         "accuracy.csv, summary.csv: accuracy_low, accuracy_high",
         "Wilson score interval of the test rows of one trial",
@@ -111,11 +114,13 @@ pub struct RunFacts {
     pub study: String,
     /// The command that makes the folder again.
     pub command: String,
+    /// The folder of the study's file.
+    pub paths_from: PathBuf,
     /// When it began.
     pub started: SystemTime,
     /// Root of all randomness.
     pub seed: u64,
-    /// Cells of the study.
+    /// Cells of the study, or pieces of its work.
     pub n_cells: usize,
     /// Trials of each.
     pub n_trials: usize,
@@ -125,6 +130,8 @@ pub struct RunFacts {
     pub n_failed: usize,
     /// SHA-256 of the tables that hold no times, by their file's name.
     pub tables_sha256: BTreeMap<String, String>,
+    /// How intervals and p-values are made, by table and columns.
+    pub methods: Vec<(&'static str, &'static str)>,
 }
 
 impl Manifest {
@@ -134,6 +141,7 @@ impl Manifest {
         Self {
             study: facts.study,
             command: facts.command,
+            paths_from: facts.paths_from,
             program: identity.program.clone(),
             source: identity.source.clone(),
             commit: COMMIT.to_owned(),
@@ -153,9 +161,11 @@ impl Manifest {
             study_sha256: study.hex(),
             objects_sha256: identity.objects.clone(),
             tables_sha256: facts.tables_sha256,
-            methods: METHODS
+            methods: facts
+                .methods
+                .into_iter()
                 .map(|(columns, method)| (columns.to_owned(), method.to_owned()))
-                .into(),
+                .collect(),
         }
     }
 

@@ -1,7 +1,7 @@
 //! Runs a plan: simulate each array once, measure each group once a trial, evaluate every cell that is not done yet.
 
 use super::finished::{Finished, Measuring, Simulated};
-use super::frames::{FrameStorage, Frames};
+use super::frames::{FrameStorage, Frames, KeyedTouches};
 use super::job::{FinishedFamily, Job};
 use super::journal::Journal;
 use super::memory::AtOnce;
@@ -98,6 +98,7 @@ pub fn run_with(
         plan,
         sweep,
         touched,
+        keyed: &KeyedTouches::new(touched),
         progress,
         manner,
     };
@@ -139,6 +140,8 @@ pub struct Run<'a> {
     pub plan: &'a Plan,
     pub sweep: &'a Sweep,
     pub touched: &'a dyn TouchSet,
+    /// The same with their key.
+    pub keyed: &'a KeyedTouches<'a>,
     pub progress: &'a dyn Progress,
     pub manner: Manner<'a>,
 }
@@ -185,7 +188,7 @@ impl<'a> Run<'a> {
         self.progress.stage(&name, n_touches as u64);
         let storage = self.manner.storage;
         let meter = TouchMeter::new(self, patch, n_frames);
-        let frames = storage.frames(self.touched, (patch, n_frames), &meter)?;
+        let frames = storage.frames(self.keyed, (patch, n_frames), &meter)?;
         let simulated = Simulated {
             n_missed: frames.facts.n_missed,
             n_saturated: frames.facts.n_saturated,

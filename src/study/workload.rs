@@ -1,6 +1,7 @@
 //! The work of a run in planned processor-seconds: what a listener needs to say how long it still takes.
 
 use super::estimate::{family_s, measure_s, touch_s};
+use super::frames::KeyedTouches;
 use super::job::Job;
 use super::plan::Plan;
 use super::progress::{Progress, Silent};
@@ -19,6 +20,7 @@ pub fn workload(plan: &Plan, sweep: &Sweep, touched: &dyn TouchSet, manner: Mann
         plan,
         sweep,
         touched,
+        keyed: &KeyedTouches::new(touched),
         progress: &Silent,
         manner,
     };

@@ -7,7 +7,6 @@ use super::row_sums::weighted_sum;
 use crate::recognition::kernel::KernelFunction;
 use crate::recognition::points::Points;
 use crate::recognition::scalar::Scalar;
-use crate::recognition::transposed::write_columns;
 
 /// K of one binary problem, n × n, symmetric and positive semidefinite. Rows are padded to whole lanes with zeros.
 pub(crate) trait Gram<T> {
@@ -67,35 +66,6 @@ impl<T: Scalar> Dense<T> {
         self.diagonal
             .extend((0..n).map(|i| self.values[i * self.stride + i]));
         self.diagonal.resize(self.stride, T::zero());
-    }
-
-    /// K of two classes from its blocks: within the first, within the second, and between them (second × first).
-    pub fn of_blocks(
-        &mut self,
-        first: ArrayView2<T>,
-        second: ArrayView2<T>,
-        across: ArrayView2<T>,
-    ) {
-        let n_first = first.nrows();
-        self.refill(n_first + second.nrows(), |i, row| {
-            let (left, right) = row.split_at_mut(n_first);
-            match i.checked_sub(n_first) {
-                None => copy(left, first.row(i)),
-                Some(i) => {
-                    copy(left, across.row(i));
-                    copy(right, second.row(i));
-                }
-            }
-        });
-        self.mirror(n_first);
-    }
-
-    /// Copies what is left of the diagonal block of the rows from `n_first` on to above it.
-    fn mirror(&mut self, n_first: usize) {
-        let (above, below) = self.values.split_at_mut(n_first * self.stride);
-        let rows = below.chunks_exact(self.stride).map(|row| &row[..n_first]);
-        let rows: Vec<&[T]> = rows.collect();
-        write_columns(&rows, &mut above[n_first..], self.stride);
     }
 
     /// A whole matrix.

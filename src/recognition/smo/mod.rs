@@ -22,7 +22,7 @@ mod start;
 mod variables;
 
 pub(crate) use gram::{Cached, Dense, Gram, gather};
-pub(crate) use part::{Part, Room, part_of};
+pub(crate) use part::{Part, Room, part_of, part_of_blocks};
 pub(crate) use runs::Runs;
 pub(crate) use variables::extremes;
 
@@ -55,6 +55,8 @@ pub(crate) struct Smo<'a, G> {
     f: Vec<f64>,
     /// The C that β belongs to; 0 before the first.
     c: f64,
+    /// Whether f is summed from β, or only about what it is.
+    is_summed: bool,
     /// Iterations after which it counts as not solved.
     most_iterations: u64,
 }
@@ -62,16 +64,10 @@ pub(crate) struct Smo<'a, G> {
 impl<'a, G> Smo<'a, G> {
     /// A problem that is not solved yet.
     pub fn new(gram: &'a mut G, is_positive: &'a [bool]) -> Self {
+        let f = is_positive.iter().map(|&own| sign(own)).collect();
         Self {
-            gram,
-            beta: vec![0.0; is_positive.len()],
-            f: is_positive
-                .iter()
-                .map(|&is_positive| sign(is_positive))
-                .collect(),
-            is_positive,
-            c: 0.0,
-            most_iterations: MOST_ITERATIONS.max(100 * is_positive.len() as u64),
+            is_summed: true,
+            ..Self::going_on(gram, is_positive, (vec![0.0; is_positive.len()], f), 0.0)
         }
     }
 
@@ -83,23 +79,27 @@ impl<'a, G> Smo<'a, G> {
         }
     }
 
-    /// A problem that goes on from β, which belongs to c; from nothing if c is 0.
-    pub fn resume<T: Scalar>(
+    /// A problem that goes on from β and about what its f is; they belong to c, which is 0 where there is none yet.
+    pub fn going_on(
         gram: &'a mut G,
         is_positive: &'a [bool],
-        beta: Vec<f64>,
+        (beta, f): (Vec<f64>, Vec<f64>),
         c: f64,
-    ) -> Self
-    where
-        G: Gram<T>,
-    {
-        let mut smo = Self {
+    ) -> Self {
+        Self {
+            gram,
+            is_positive,
             beta,
+            f,
             c,
-            ..Self::new(gram, is_positive)
-        };
-        smo.refresh();
-        smo
+            is_summed: false,
+            most_iterations: MOST_ITERATIONS.max(100 * is_positive.len() as u64),
+        }
+    }
+
+    /// β, and f of it.
+    pub fn into_variables(self) -> (Vec<f64>, Vec<f64>) {
+        (self.beta, self.f)
     }
 
     /// Sums f again in f64.
@@ -111,6 +111,7 @@ impl<'a, G> Smo<'a, G> {
         for ((f, product), &is_positive) in self.f.iter_mut().zip(products).zip(self.is_positive) {
             *f = sign(is_positive) - product;
         }
+        self.is_summed = true;
     }
 
     /// Solves for this C, starting from the solution of the last one, to a violation of the optimality conditions of at most
@@ -132,7 +133,28 @@ impl<'a, G> Smo<'a, G> {
     where
         G: Gram<T>,
     {
+        let reached = self.reach(c, tolerance, other);
+        let variables = (&self.beta[..], self.is_positive, &self.f[..]);
+        DualSolution {
+            coefficients: self.beta.clone(),
+            ..reached.solution(variables, c)
+        }
+    }
+
+    /// [`solve_or_from`](Self::solve_or_from), without what a solution says.
+    pub fn reach<T: Scalar>(
+        &mut self,
+        c: f64,
+        tolerance: f64,
+        other: impl FnOnce() -> Option<Vec<f64>>,
+    ) -> Reached
+    where
+        G: Gram<T>,
+    {
         let mut search = Search::new(self.most_iterations, tolerance);
+        if !self.is_summed && self.violation(c) <= tolerance {
+            self.refresh();
+        }
         // Where no multiplier was kept down by its bound, a larger C changes nothing: β stays as it is.
         let stays = self.c <= c && self.violation(c) <= tolerance;
         if !stays {
@@ -143,13 +165,9 @@ impl<'a, G> Smo<'a, G> {
         }
         let is_solved = stays || self.violation(c) <= tolerance || self.search(c, &mut search);
         self.c = c;
-        DualSolution {
-            rho: rho(&self.beta, self.is_positive, &self.f, c),
-            is_capped: !is_solved,
-            objective: self.objective(),
-            violation: Some(self.violation(c).max(0.0)),
-            n_iterations: Some(search.n_iterations),
-            coefficients: self.beta.clone(),
+        Reached {
+            is_solved,
+            n_iterations: search.n_iterations,
         }
     }
 
@@ -159,14 +177,8 @@ impl<'a, G> Smo<'a, G> {
         linear - 0.5 * quadratic
     }
 
-    /// How far the optimality conditions for a C are violated; below 0 when they hold with room to spare, infinite when
-    /// kernel values have left nothing to go by.
     fn violation(&self, c: f64) -> f64 {
-        if !all_finite(&self.f) {
-            return f64::INFINITY;
-        }
-        let (highest, lowest) = extremes(&self.beta, self.is_positive, &self.f, c);
-        highest - lowest
+        violation(&self.beta, self.is_positive, &self.f, c)
     }
 
     /// Whether it ended within the tolerance.
@@ -178,7 +190,7 @@ impl<'a, G> Smo<'a, G> {
             let mut all = Variables::<T>::new(&self.beta, self.is_positive, &self.f, c);
             let first_look = if round == 0 { SHRINK_PERIOD } else { 0 };
             let stop = run(self.gram, &mut all, search, first_look);
-            self.beta = all.beta.clone();
+            self.beta.copy_from_slice(&all.beta);
             if let Stop::Shrink(indices) = &stop {
                 let part = self.gram.part(indices);
                 let tolerance = search.tolerance;
@@ -224,6 +236,39 @@ fn solve_part<T: Scalar>(
             Stop::Done => return solved,
         }
     }
+}
+
+/// How a search ended.
+pub(crate) struct Reached {
+    /// Whether within its tolerance.
+    pub is_solved: bool,
+    pub n_iterations: u64,
+}
+
+impl Reached {
+    /// What is to be said of a solution, but its coefficients: of β, the signs of its rows, and f of it.
+    pub fn solution(self, variables: (&[f64], &[bool], &[f64]), c: f64) -> DualSolution {
+        let (beta, is_positive, f) = variables;
+        let (linear, quadratic) = linear_and_quadratic(beta, is_positive, f);
+        DualSolution {
+            coefficients: Vec::new(),
+            rho: rho(beta, is_positive, f, c),
+            is_capped: !self.is_solved,
+            objective: linear - 0.5 * quadratic,
+            violation: Some(violation(beta, is_positive, f, c).max(0.0)),
+            n_iterations: Some(self.n_iterations),
+        }
+    }
+}
+
+/// How far the optimality conditions for a C are violated; below 0 when they hold with room to spare, infinite when kernel
+/// values have left nothing to go by.
+fn violation(beta: &[f64], is_positive: &[bool], f: &[f64], c: f64) -> f64 {
+    if !all_finite(f) {
+        return f64::INFINITY;
+    }
+    let (highest, lowest) = extremes(beta, is_positive, f, c);
+    highest - lowest
 }
 
 /// How far the search may go, and has gone.

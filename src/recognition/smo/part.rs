@@ -53,6 +53,36 @@ pub(crate) fn part_of<'a, T: Scalar>(
     Part::new(diagonal, write, room)
 }
 
+/// K of two classes from the rows of its blocks: within each, and across, those of the first with the second and of the second
+/// with the first.
+pub(crate) fn part_of_blocks<'a, T: Scalar>(
+    within: &'a [Vec<&[T]>; 2],
+    across: &'a [Vec<&[T]>; 2],
+    room: &'a mut Room<T>,
+) -> Part<'a, T, impl Fn(usize, &mut [T])> {
+    let n_first = within[0].len();
+    let diagonal = within.iter().flat_map(|block| {
+        let rows = block.iter().enumerate();
+        rows.map(|(at, row)| row[at])
+    });
+    let write = move |i: usize, to: &mut [T]| {
+        let (left, right) = to.split_at_mut(n_first);
+        let (side, row) = if i < n_first {
+            (0, i)
+        } else {
+            (1, i - n_first)
+        };
+        let (own, other) = if side == 0 {
+            (left, right)
+        } else {
+            (right, left)
+        };
+        own.copy_from_slice(within[side][row]);
+        other.copy_from_slice(across[side][row]);
+    };
+    Part::new(diagonal, write, room)
+}
+
 impl<'a, T: Scalar, F: Fn(usize, &mut [T])> Part<'a, T, F> {
     /// Of as many rows as the diagonal has values.
     pub fn new(diagonal: impl Iterator<Item = T>, write: F, room: &'a mut Room<T>) -> Self {

@@ -10,7 +10,8 @@ pub(super) fn weighted_sum<'a, T: Scalar>(
 ) -> Vec<f64> {
     let mut sums = vec![0.0; n];
     let weighing = beta.iter().enumerate().filter(|(_, beta)| **beta != 0.0);
-    let rows: Vec<(&[T], f64)> = weighing.map(|(j, &beta)| (row(j), beta)).collect();
+    let mut rows: Vec<(&[T], f64)> = Vec::with_capacity(beta.len());
+    rows.extend(weighing.map(|(j, &beta)| (row(j), beta)));
     let (fours, last) = rows.as_chunks::<4>();
     fours.iter().for_each(|four| add_four(&mut sums, four));
     last.iter()

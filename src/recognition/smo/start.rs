@@ -98,7 +98,9 @@ mod tests {
         assert_eq!(smo.beta.iter().filter(|beta| **beta == 0.0).count(), 5);
         assert!(smo.beta.iter().sum::<f64>().abs() < 1e-12);
         let (beta, f) = (smo.beta.clone(), smo.f.clone());
-        let resumed = Smo::resume(&mut gram, &is_positive, beta, 0.1);
+        let mut resumed = Smo::going_on(&mut gram, &is_positive, (beta, Vec::new()), 0.1);
+        resumed.f = vec![0.0; f.len()];
+        resumed.refresh();
         for (f, expected) in f.iter().zip(&resumed.f) {
             assert!((f - expected).abs() < 1e-12, "{f} {expected}");
         }

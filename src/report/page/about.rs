@@ -22,6 +22,8 @@ pub struct ReportPage {
     pub snapshots: Option<Snapshots>,
     /// Sample touches for the page; if there are none, those of the picture.
     pub gallery: Vec<Snapshots>,
+    /// Whether all static charts are drawn, however many they are.
+    pub all_charts: bool,
     /// Whether accuracy is charted against time; `None` leaves it to the number of classifiers.
     pub pareto: Option<bool>,
     /// Seconds from start to end, if known.

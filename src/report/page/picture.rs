@@ -54,6 +54,8 @@ pub struct Pictures {
     pub times: Vec<Picture>,
     /// How many charts lie beside the page only.
     pub n_more_charts: usize,
+    /// Names of the charts that were not drawn.
+    pub left_out: Vec<String>,
     /// The confusion matrix of the best cell.
     pub confusion: Option<Picture>,
 }

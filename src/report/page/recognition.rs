@@ -105,7 +105,10 @@ fn charts(tables: &Tables, pictures: &Pictures, is_live: bool) -> [Section; 2] {
     let accuracy = "<p class=\"quiet\">Points are means over trials; intervals are 95 % Wilson intervals at the test decisions of one trial.</p>";
     let accuracy = match without.is_empty() && !is_live {
         true => String::new(),
-        false => format!("{accuracy}{}", live("accuracy", is_live, &without)),
+        false => {
+            let live = live("accuracy", is_live, &without);
+            format!("{accuracy}{live}{}", not_drawn(&pictures.left_out))
+        }
     };
     let without = figures(&pictures.times);
     let times = match tables.pareto.is_empty() || (without.is_empty() && !is_live) {
@@ -116,6 +119,20 @@ fn charts(tables: &Tables, pictures: &Pictures, is_live: bool) -> [Section; 2] {
         Section::new("accuracy", "Accuracy", accuracy),
         Section::new("pareto", "Accuracy against time", times),
     ]
+}
+
+/// Which charts have no file, and how they get one.
+fn not_drawn(left_out: &[String]) -> String {
+    let (Some(first), Some(last)) = (left_out.first(), left_out.last()) else {
+        return String::new();
+    };
+    format!(
+        "<p class=\"quiet\">Of the files of charts only the first are drawn. {} more, from {} to {}, are left out; with script this page shows \
+         every cell, and <code>bubbletouch report FOLDER --all-charts</code> draws all files.</p>",
+        left_out.len(),
+        escape(first),
+        escape(last)
+    )
 }
 
 /// The first pictures, as many as are not too heavy, and how many are left out.

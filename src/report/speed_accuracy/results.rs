@@ -6,6 +6,7 @@ use crate::error::Result;
 use crate::report::folder::Folder;
 use crate::report::page::StudyAbout;
 use crate::report::page::plain::{self, plain_page};
+use crate::report::study_tables::{StudyTables, TableFiles, table_file};
 use crate::report::terminal::{align_right, plain_table};
 use crate::study::advice::cost_in_words;
 use crate::study::speed_accuracy::table::SpeedAccuracyTables;
@@ -14,6 +15,35 @@ use std::path::{Path, PathBuf};
 
 /// Every point of every chart.
 pub const PARETO_FILE: &str = "pareto.csv";
+
+impl StudyTables for SpeedAccuracyTables {
+    const OF_PIECES: &'static [&'static str] =
+        &["contact.csv", "recognition.csv", "resolution.csv"];
+    const OF_ALL: &'static [&'static str] = &[];
+
+    fn files(&self) -> Result<TableFiles> {
+        let mut files = Vec::new();
+        if !self.contact.is_empty() {
+            files.push(table_file("contact.csv", &self.contact)?);
+            files.push(table_file("contact_timing.csv", &self.contact_timing)?);
+        }
+        if !self.recognition.is_empty() {
+            files.push(table_file("recognition.csv", &self.recognition)?);
+            files.push(table_file(
+                "recognition_timing.csv",
+                &self.recognition_timing,
+            )?);
+        }
+        if !self.resolution.is_empty() {
+            files.push(table_file("resolution.csv", &self.resolution)?);
+            files.push(table_file(
+                "resolution_timing.csv",
+                &self.resolution_timing,
+            )?);
+        }
+        Ok(files)
+    }
+}
 
 /// Writes tables, charts and the page into `dir` (created if missing); returns the paths, tables first.
 ///
@@ -24,22 +54,9 @@ pub fn write_speed_accuracy(
     about: &StudyAbout,
 ) -> Result<Vec<PathBuf>> {
     let mut folder = Folder::new(dir);
-    let mut files: Vec<&str> = Vec::new();
-    if !tables.contact.is_empty() {
-        folder.add_table("contact.csv", &tables.contact)?;
-        folder.add_table("contact_timing.csv", &tables.contact_timing)?;
-        files.extend(["contact.csv", "contact_timing.csv"]);
-    }
-    if !tables.recognition.is_empty() {
-        folder.add_table("recognition.csv", &tables.recognition)?;
-        folder.add_table("recognition_timing.csv", &tables.recognition_timing)?;
-        files.extend(["recognition.csv", "recognition_timing.csv"]);
-    }
-    if !tables.resolution.is_empty() {
-        folder.add_table("resolution.csv", &tables.resolution)?;
-        folder.add_table("resolution_timing.csv", &tables.resolution_timing)?;
-        files.extend(["resolution.csv", "resolution_timing.csv"]);
-    }
+    let tables_made = tables.files()?;
+    let mut files: Vec<&str> = tables_made.iter().map(|(name, _)| *name).collect();
+    folder.add_files(tables_made);
     let points = points(tables);
     folder.add_table(PARETO_FILE, &points)?;
     files.push(PARETO_FILE);

@@ -2,13 +2,14 @@
 //!
 //! A file with `[[breaking_points]]` tables is such a study: a recognition study without axes of its own (but that of its
 //! classifiers), and ways to drive it, one key or a few at a time. [`BreakingPointsSpec`] (as written) →
-//! [`BreakingPointsPlan`] (checked: each value of each way is a recognition [`Plan`](super::Plan)) → [`find_breaking_points`] →
+//! [`BreakingPointsPlan`] (checked: each value of each way is a recognition [`Plan`](super::Plan)) → [`BreakingPointsStudy`] →
 //! [`table::BreakingPointsTables`].
 //!
 //! A way **breaks** a classifier where its mean accuracy, going outwards from its best, first falls to half of the best:
 //! between two values where a straight line on the axis' scale says so. The interval of that place is from repeated draws of
 //! all accuracies out of what their test rows leave open (`half`).
 
+mod driven;
 mod half;
 mod plan;
 mod runner;
@@ -16,7 +17,7 @@ mod scale;
 mod spec;
 pub mod table;
 
+pub use driven::{BreakingPointsStudy, DrivenRows};
 pub use plan::{BreakingPointsPlan, PlannedValue, PlannedWay};
-pub use runner::find_breaking_points;
 pub use scale::WayScale;
 pub use spec::{BreakingPointsSpec, DrivenAs, DrivenTouches, WaySpec};

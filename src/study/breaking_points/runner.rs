@@ -1,7 +1,7 @@
-//! Runs a study of breaking points: every value of every way on all threads.
+//! What happens at a value of a way, and where the values of a way break it.
 
 use super::half::Curve;
-use super::plan::{BreakingPointsPlan, PlannedValue, PlannedWay};
+use super::plan::{PlannedValue, PlannedWay};
 use super::table::{BreakingPoint, BreakingPointsTables, Side, WayCell};
 use crate::error::{Error, Result};
 use crate::objects::Object;
@@ -20,61 +20,33 @@ use crate::study::summary::score;
 use crate::study::sweep::Sweep;
 use crate::study::table::{Cell, CellScore};
 use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
 use std::path::Path;
 
-/// Goes every way of a study. Packings are looked for and kept in the folder `packings`, if one is given. The tables but for times
-/// are the same bytes at any number of threads.
-///
-/// # Errors
-/// Objects that are not there, or too few touches for a value: named with its way. What a stage refuses.
-pub fn find_breaking_points(
-    plan: &BreakingPointsPlan,
-    packings: Option<&Path>,
-    progress: &dyn Progress,
-) -> Result<BreakingPointsTables> {
-    let sets = ObjectSets::load(plan, packings, progress)?;
-    progress.stage("drive", plan.n_values() as u64);
-    let ways = plan.ways.iter();
-    let values: Vec<_> = ways
-        .flat_map(|way| way.values.iter().map(move |value| (way, value)))
-        .collect();
-    let evaluated = values
-        .par_iter()
-        // One at a time: values of one way may all be slow.
-        .with_max_len(1)
-        .map(|(way, value)| {
-            let found = evaluate(value, &sets)
-                .map_err(|error| error.under(format!("way {} at {}, ", way.name, value.value)))?;
-            progress.advance(1);
-            Ok(found)
-        })
-        .collect::<Result<Vec<_>>>()?;
-    let mut tables = BreakingPointsTables::default();
-    let mut evaluated = evaluated.into_iter();
-    for way in &plan.ways {
-        let values = evaluated.by_ref().take(way.values.len()).collect();
-        add_way(&mut tables, way, values, plan.spec.seed)?;
+/// What says which objects some values touch, each once.
+pub(super) fn object_specs<'a>(
+    values: impl Iterator<Item = &'a PlannedValue>,
+) -> Vec<&'a ObjectsSpec> {
+    let plans = values.flat_map(|value| [Some(&value.learned), value.tested.as_ref()]);
+    let mut specs: Vec<&ObjectsSpec> = Vec::new();
+    for plan in plans.flatten() {
+        if !specs.contains(&&plan.spec.objects) {
+            specs.push(&plan.spec.objects);
+        }
     }
-    Ok(tables)
+    specs
 }
 
 /// The objects that ways touch, by what says so.
-struct ObjectSets(Vec<(ObjectsSpec, Vec<Object>)>);
+pub(super) struct ObjectSets(Vec<(ObjectsSpec, Vec<Object>)>);
 
 impl ObjectSets {
-    fn load(
-        plan: &BreakingPointsPlan,
+    pub fn load<'a>(
+        values: impl Iterator<Item = &'a PlannedValue>,
         packings: Option<&Path>,
         progress: &dyn Progress,
     ) -> Result<Self> {
-        let values = plan.ways.iter().flat_map(|way| &way.values);
-        let plans = values.flat_map(|value| [Some(&value.learned), value.tested.as_ref()]);
-        let mut specs: Vec<&ObjectsSpec> = Vec::new();
-        for plan in plans.flatten() {
-            if !specs.contains(&&plan.spec.objects) {
-                specs.push(&plan.spec.objects);
-            }
-        }
+        let specs = object_specs(values);
         progress.stage("objects", specs.len() as u64);
         let sets = specs.into_iter().map(|spec| {
             let objects = load_objects(spec, packings)?;
@@ -127,13 +99,21 @@ impl<'a> World<'a> {
 }
 
 /// What was found at a value.
-struct Evaluated {
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub(super) struct Evaluated {
+    pub way: String,
+    value: f64,
     n_objects: usize,
     /// The trials of each classifier.
     classifiers: Vec<(ClassifierKind, Vec<Evaluation>)>,
 }
 
-fn evaluate(value: &PlannedValue, sets: &ObjectSets) -> Result<Evaluated> {
+/// Learns and tests at a value, in all trials.
+pub(super) fn evaluate(
+    way: &PlannedWay,
+    value: &PlannedValue,
+    sets: &ObjectSets,
+) -> Result<Evaluated> {
     let learned = World::new(&value.learned, sets)?;
     let tested = value.tested.as_ref().map(|plan| World::new(plan, sets));
     let tested = tested.transpose()?;
@@ -161,10 +141,17 @@ fn evaluate(value: &PlannedValue, sets: &ObjectSets) -> Result<Evaluated> {
             .iter_mut()
             .zip(evaluated.collect::<Result<Vec<_>>>()?)
         {
-            rows.1.extend(evaluations);
+            // Which objects are confused is in no table.
+            rows.1
+                .extend(evaluations.into_iter().map(|evaluation| Evaluation {
+                    confusion: Vec::new(),
+                    ..evaluation
+                }));
         }
     }
     Ok(Evaluated {
+        way: way.name.clone(),
+        value: value.value,
         n_objects: learned.touched.len(),
         classifiers,
     })
@@ -193,7 +180,7 @@ fn check_alike(learned: &World, tested: &World) -> Result<()> {
 }
 
 /// The rows of a way, value by value, and where it breaks each classifier.
-fn add_way(
+pub(super) fn add_way(
     tables: &mut BreakingPointsTables,
     way: &PlannedWay,
     evaluated: Vec<Evaluated>,
@@ -202,12 +189,13 @@ fn add_way(
     let n_objects = evaluated.first().map_or(0, |value| value.n_objects);
     let mut curves: Vec<(ClassifierKind, Vec<CellScore>)> = Vec::new();
     let mut bootstrap = Bootstrap::default();
-    for (planned, found) in way.values.iter().zip(evaluated) {
+    let values: Vec<f64> = evaluated.iter().map(|found| found.value).collect();
+    for found in evaluated {
         for (place, (classifier, trials)) in found.classifiers.into_iter().enumerate() {
             let cell = WayCell {
                 way: way.name.clone(),
                 touches: way.touches,
-                value: planned.value,
+                value: found.value,
                 classifier,
             };
             let scores = trials.iter().map(|trial| &trial.score);
@@ -226,7 +214,8 @@ fn add_way(
     let seed = Seed::new(seed).named("breaking points").named(&way.name);
     for (number, (classifier, scores)) in curves.iter().enumerate() {
         let seed = seed.numbered(number as u64);
-        let found = breaking_points(way, (*classifier, scores), n_objects, &seed);
+        let curve = (*classifier, &values[..], &scores[..]);
+        let found = breaking_points(way, curve, n_objects, &seed);
         tables.breaking_points.extend(found);
     }
     Ok(())
@@ -235,15 +224,14 @@ fn add_way(
 /// One row a side of the best of a curve.
 fn breaking_points(
     way: &PlannedWay,
-    (classifier, scores): (ClassifierKind, &[CellScore]),
+    (classifier, values, scores): (ClassifierKind, &[f64], &[CellScore]),
     n_objects: usize,
     seed: &Seed,
 ) -> Vec<BreakingPoint> {
-    let values: Vec<f64> = way.values.iter().map(|planned| planned.value).collect();
     let accuracy: Vec<f64> = scores.iter().map(|score| score.accuracy).collect();
     let n_test: Vec<usize> = scores.iter().map(|score| score.n_test).collect();
     let curve = Curve {
-        values: &values,
+        values,
         accuracy: &accuracy,
         n_test: &n_test,
         scale: way.scale,

@@ -104,9 +104,11 @@ impl FrameFile {
         let io = |error| Error::io(path, "read", error);
         let mut file = File::open(path).map_err(io)?;
         let parts = Parts::read(&mut file).map_err(io)?;
-        let Some(parts) = parts else {
+        let parts = parts.ok_or_else(|| damaged(path))?;
+        let n_bytes = file.metadata().map_err(io)?.len();
+        if crc_of(&mut file, n_bytes - 20).map_err(io)? != parts.crc {
             return Err(damaged(path));
-        };
+        }
         Ok(Self {
             path: path.to_owned(),
             file: Mutex::new(file),
@@ -114,6 +116,17 @@ impl FrameFile {
             facts: parts.facts,
             is_passing: false,
         })
+    }
+
+    /// What stands around the frames of a file, which are not read.
+    ///
+    /// # Errors
+    /// It cannot be read, or is damaged there.
+    pub fn facts_of(path: &Path) -> Result<FrameFacts> {
+        let io = |error| Error::io(path, "read", error);
+        let mut file = File::open(path).map_err(io)?;
+        let parts = Parts::read(&mut file).map_err(io)?;
+        Ok(parts.ok_or_else(|| damaged(path))?.facts)
     }
 
     pub fn facts(&self) -> &FrameFacts {
@@ -175,10 +188,12 @@ fn damaged(path: &Path) -> Error {
 struct Parts {
     offsets: Vec<u64>,
     facts: FrameFacts,
+    /// Of all that comes before it.
+    crc: u32,
 }
 
 impl Parts {
-    /// `None` if the file is not whole.
+    /// `None` if they are not those of a whole file.
     fn read(file: &mut File) -> std::io::Result<Option<Self>> {
         let n_bytes = file.metadata()?.len();
         if n_bytes < MAGIC.len() as u64 + 8 + TAIL {
@@ -196,7 +211,7 @@ impl Parts {
         let Some(around) = around.filter(|&bytes| bytes <= room) else {
             return Ok(None);
         };
-        if &tail[20..] != MAGIC || crc_of(file, n_bytes - 20)? != crc {
+        if &tail[20..] != MAGIC {
             return Ok(None);
         }
         let mut bytes = vec![0; around as usize];
@@ -207,7 +222,11 @@ impl Parts {
         let offsets: Vec<u64> = offsets.chunks_exact(8).map(offset).collect();
         let facts: Option<FrameFacts> = serde_json::from_slice(facts).ok();
         Ok(facts
-            .map(|facts| Self { offsets, facts })
+            .map(|facts| Self {
+                offsets,
+                facts,
+                crc,
+            })
             .filter(Self::is_sound))
     }
 

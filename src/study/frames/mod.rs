@@ -11,7 +11,7 @@ pub use cache::{CachedTouches, TouchCache};
 pub(super) use coding::most_bytes;
 pub use kept::{FrameWriter, KeptFrames};
 pub(super) use making::{Making, Press, made_at_once};
-pub use storage::FrameStorage;
+pub use storage::{FrameStorage, KeyedTouches};
 
 use serde::{Deserialize, Serialize};
 

@@ -11,9 +11,28 @@ use crate::study::provenance::SOURCE;
 use crate::study::runner::describe;
 use crate::study::touch_set::TouchSet;
 use crate::world::Patch;
+use std::sync::OnceLock;
 
 /// Processor-seconds from which on touches are worth a file: reading them back takes less than a tenth.
 const WORTH_KEEPING_S: f64 = 2.0;
+
+/// Touches and their key, which is computed once: when a cache first asks for it.
+pub struct KeyedTouches<'a> {
+    touched: &'a dyn TouchSet,
+    key: OnceLock<String>,
+}
+
+impl<'a> KeyedTouches<'a> {
+    /// The key is not computed yet.
+    pub fn new(touched: &'a dyn TouchSet) -> Self {
+        let key = OnceLock::new();
+        Self { touched, key }
+    }
+
+    fn key(&self) -> &str {
+        self.key.get_or_init(|| self.touched.key())
+    }
+}
 
 /// How frames are kept.
 #[derive(Clone, Debug)]
@@ -45,10 +64,11 @@ impl FrameStorage {
     /// A file of the cache cannot be read or written, or is damaged.
     pub fn frames(
         &self,
-        touched: &dyn TouchSet,
+        touches: &KeyedTouches,
         (patch, n_frames): (&Patch, usize),
         progress: &dyn Progress,
     ) -> Result<Frames> {
+        let touched = touches.touched;
         let n_taxels = patch.grid.n_taxels();
         let n_touches = touched.labels().len();
         let what = what(n_touches, patch, n_frames);
@@ -57,7 +77,7 @@ impl FrameStorage {
         let Some(cache) = &self.cache else {
             return simulate(in_memory());
         };
-        let key = key(touched, patch, n_frames);
+        let key = key(touches, patch, n_frames);
         if let Some(file) = cache.open(&key)? {
             progress.advance(n_touches as u64);
             return Ok(Frames {
@@ -85,10 +105,10 @@ impl FrameStorage {
 }
 
 /// SHA-256 of all that frames depend on, the program's own source included.
-fn key(touched: &dyn TouchSet, patch: &Patch, n_frames: usize) -> String {
+fn key(touches: &KeyedTouches, patch: &Patch, n_frames: usize) -> String {
     let hash = ContentHash::default().bytes("touches 1\n").bytes(SOURCE);
     let hash = hash.bytes(format!("\n{patch:?}\n{n_frames} frames\n"));
-    hash.bytes(touched.key()).hex()
+    hash.bytes(touches.key()).hex()
 }
 
 fn what(n_touches: usize, patch: &Patch, n_frames: usize) -> String {

@@ -1,7 +1,7 @@
 //! A third kind of study: how detailed must an object be, so that the skin feels no difference, and what does detail cost?
 //!
 //! A file with an `[object_detail]` table is such a study: [`ObjectDetailStudySpec`] (as written) → [`ObjectDetailPlan`]
-//! (checked, SI) → [`measure_detail`] → [`table::ObjectDetailTables`].
+//! (checked, SI) → [`ObjectDetailStudy`] → [`table::ObjectDetailTables`].
 //!
 //! Each mesh is touched exactly ([`MeshModel`](crate::objects::MeshModel)); then sphere models of it are read with the patch
 //! at the very same places:
@@ -18,6 +18,7 @@ mod deflection;
 mod plan;
 mod recognition;
 mod runner;
+mod score;
 mod spec;
 mod summary;
 pub mod table;
@@ -25,5 +26,5 @@ mod variants;
 
 pub(in crate::study) use deflection::{Reading, Truth};
 pub use plan::{ObjectDetailPlan, RecognitionPlan};
-pub use runner::measure_detail;
+pub use runner::{DetailRows, ObjectDetailStudy};
 pub use spec::{DetailMethod, DetailRecognitionSpec, ObjectDetailSpec, ObjectDetailStudySpec};

@@ -3,8 +3,11 @@
 //! Every model of an object is touched as a study touches that has no other: in the same places, as far past its own first
 //! contact. The leading touches train, the others test.
 
+use super::deflection::Truth;
 use super::plan::{ObjectDetailPlan, RecognitionPlan};
-use super::table::{DetailCell, DetailRecognition, DetailScore};
+use super::score::own_contact_error_mm;
+use super::spec::DetailMethod;
+use super::table::DetailRecognition;
 use super::variants::Variant;
 use crate::error::Result;
 use crate::objects::Object;
@@ -20,7 +23,6 @@ use crate::study::progress::Silent;
 use crate::study::simulation::{draw_touches, simulate_array};
 use crate::world::{Patch, Placement};
 use ndarray::{Array1, Array2, Axis, concatenate, s};
-use rayon::prelude::*;
 
 /// Makes measurements of models, for learning.
 pub(super) struct Sensor<'a> {
@@ -31,14 +33,16 @@ pub(super) struct Sensor<'a> {
     seed: Seed,
 }
 
-/// One level of all objects.
-struct Level<'a> {
-    cell: &'a DetailCell,
-    /// Mean deflection error of each object past its own contact, mm.
-    errors: Vec<f64>,
-    /// Measurements of each object.
-    objects: Vec<&'a Array2<f64>>,
+/// What was felt of the models of an object, the mesh itself first.
+pub(super) struct Felt {
+    /// n_touches × m each.
+    measurements: Vec<Array2<f64>>,
+    /// Mean deflection errors past their own contact.
+    own_contact_errors_mm: Vec<f64>,
 }
+
+/// Measurements of one level of each object.
+struct Level<'a>(Vec<&'a Array2<f64>>);
 
 impl<'a> Sensor<'a> {
     /// For a study in which something learns.
@@ -63,7 +67,7 @@ impl<'a> Sensor<'a> {
 
     /// Measurements of each model of an object (n_touches × m), in their order; the first is the mesh itself, and all are
     /// touched in the same places of its rest poses.
-    pub(super) fn measure(&self, name: &str, variants: &[Variant]) -> Result<Vec<Array2<f64>>> {
+    pub(super) fn measure(&self, name: &str, variants: &[Variant], truth: &Truth) -> Result<Felt> {
         let object = |variant: &Variant| Object::of_one_part(name, variant.model.clone());
         let mut touched = draw_touches(vec![object(&variants[0])], &self.placement, &self.seed)?;
         let measured = variants.iter().map(|variant| {
@@ -71,41 +75,37 @@ impl<'a> Sensor<'a> {
             let frames = simulate_array(&touched, &self.patch, 1, &Silent);
             Ok(self.projection.measure(frames.kept.to_array()?.view()))
         });
-        measured.collect()
-    }
-
-    /// A row a level and classifier, from what was felt of the models of each object. `rows` are theirs in the same order, the
-    /// meshes themselves first.
-    pub(super) fn recognise(
-        &self,
-        rows: &[(DetailCell, DetailScore)],
-        objects: &[Vec<Array2<f64>>],
-    ) -> Result<Vec<DetailRecognition>> {
-        let n_levels = objects.first().map_or(0, Vec::len);
-        let of_level = |level: usize| rows.iter().skip(level).step_by(n_levels);
-        let levels = (0..n_levels).map(|level| Level {
-            cell: &rows[level].0,
-            errors: of_level(level)
-                .map(|(_, score)| score.error_own_contact_mm)
-                .collect(),
-            objects: objects.iter().map(|felt| &felt[level]).collect(),
-        });
-        let levels: Vec<Level> = levels.collect();
-        let Some(truth) = levels.first() else {
-            return Ok(Vec::new());
-        };
-        let kinds = &self.plan.classifiers;
-        let cells = levels
+        let measurements = measured.collect::<Result<_>>()?;
+        let errors = variants
             .iter()
-            .flat_map(|level| kinds.iter().map(move |&kind| (level, kind)));
-        let cells: Vec<_> = cells.collect();
-        cells
-            .into_par_iter()
-            .map(|(level, kind)| self.row(level, truth, kind))
-            .collect()
+            .map(|variant| own_contact_error_mm(truth, variant));
+        Ok(Felt {
+            measurements,
+            own_contact_errors_mm: errors.collect(),
+        })
     }
 
-    fn row(&self, level: &Level, truth: &Level, kind: ClassifierKind) -> Result<DetailRecognition> {
+    /// What learns.
+    pub(super) fn kinds(&self) -> &[ClassifierKind] {
+        &self.plan.classifiers
+    }
+
+    /// What a classifier learns from a level, by its number, from what was felt of the models of each object.
+    pub(super) fn row(
+        &self,
+        objects: &[Felt],
+        (number, (method, tolerance_mm)): (usize, (DetailMethod, Option<f64>)),
+        kind: ClassifierKind,
+    ) -> Result<DetailRecognition> {
+        let level = |number: usize| {
+            Level(
+                objects
+                    .iter()
+                    .map(|felt| &felt.measurements[number])
+                    .collect(),
+            )
+        };
+        let (truth, level) = (level(0), level(number));
         let n_training = self.plan.n_training;
         let (features, labels) = level.rows(0, n_training)?;
         let n_rows = labels.len();
@@ -120,15 +120,18 @@ impl<'a> Sensor<'a> {
                 .count();
             Ok((right, Interval::wilson(right, labels.len(), CONFIDENCE)?))
         };
-        let (on_mesh, on_mesh_interval) = accuracy(truth)?;
-        let (on_itself, on_itself_interval) = accuracy(level)?;
-        let n_test = level.objects.len() * self.plan.n_test;
-        let mut errors = level.errors.clone();
+        let (on_mesh, on_mesh_interval) = accuracy(&truth)?;
+        let (on_itself, on_itself_interval) = accuracy(&level)?;
+        let n_test = objects.len() * self.plan.n_test;
+        let errors = objects
+            .iter()
+            .map(|felt| felt.own_contact_errors_mm[number]);
+        let mut errors: Vec<f64> = errors.collect();
         Ok(DetailRecognition {
-            method: level.cell.method,
-            tolerance_mm: level.cell.tolerance_mm,
+            method,
+            tolerance_mm,
             classifier: kind,
-            n_objects: level.objects.len(),
+            n_objects: objects.len(),
             n_training: n_rows,
             n_test,
             n_measurements: self.projection.n_measurements(),
@@ -148,7 +151,7 @@ impl Level<'_> {
     /// The touches `first..last` of every object, and its number as their label.
     fn rows(&self, first: usize, last: usize) -> Result<(Array2<f64>, Array1<usize>)> {
         let views: Vec<_> = self
-            .objects
+            .0
             .iter()
             .map(|rows| rows.slice(s![first..last, ..]))
             .collect();

@@ -2,169 +2,244 @@
 
 use super::deflection::Truth;
 use super::plan::ObjectDetailPlan;
-use super::recognition::Sensor;
+use super::recognition::{Felt, Sensor};
+use super::score::{cell, score, truth};
 use super::spec::DetailMethod;
 use super::summary::summary;
-use super::table::{DetailCell, DetailScore, DetailTime, ObjectDetailTables};
-use super::variants::{Variant, variants};
+use super::table::{DetailCell, DetailRecognition, DetailScore, DetailTime, ObjectDetailTables};
+use super::variants::{Variant, levels, variants};
 use crate::error::{Error, Result};
 use crate::mesh::Surface;
-use crate::objects::{Model, Object};
-use crate::packing::{Body, PackingError, packing_error};
-use crate::random::Seed;
 use crate::study::object_files::NamedMesh;
-use crate::study::progress::Progress;
-use crate::study::simulation::draw_touches;
-use ndarray::Array2;
+use crate::study::pieces::{NamedPiece, PieceRows, PieceStudy, PiecesLeft};
 use rayon::prelude::*;
-use std::path::Path;
+use serde::{Deserialize, Serialize};
+use std::path::PathBuf;
 
-/// Runs a study on meshes; packings are looked for and kept in the folder `packings`, if one is given. The tables but for
-/// times are the same bytes at any number of threads.
-///
-/// # Errors
-/// A mesh that cannot be packed, named by its file; a folder that cannot be written.
-pub fn measure_detail(
-    plan: &ObjectDetailPlan,
-    meshes: Vec<NamedMesh>,
-    packings: Option<&Path>,
-    progress: &dyn Progress,
-) -> Result<ObjectDetailTables> {
-    let sensor = Sensor::of(plan)?;
-    if sensor.is_some() && meshes.len() < 2 {
-        return Err(Error::input(
-            "object_detail.recognition",
-            format!("{} meshes", meshes.len()),
-            "at least 2 objects to tell apart",
-        ));
-    }
-    progress.stage("models", (meshes.len() * plan.n_models()) as u64);
-    let measured = meshes
-        .into_par_iter()
-        .map(|named| Measured::new(plan, named, packings, sensor.as_ref(), progress))
-        .collect::<Result<Vec<_>>>()?;
-    let mut tables = ObjectDetailTables::default();
-    progress.stage("time touches", measured.len() as u64);
-    for object in &measured {
-        for (variant, score) in object.variants.iter().zip(&object.scores) {
-            let cell = cell(&object.name, variant);
-            let time = DetailTime {
-                us_per_touch: 1e6 * object.truth.seconds_per_touch(&variant.model),
-                prepare_s: variant.prepare_s,
-                was_kept: variant.was_kept,
-            };
-            tables.detail.push((cell.clone(), score.clone()));
-            tables.timing.push((cell, time));
-        }
-        progress.advance(1);
-    }
-    tables.summary = summary(&tables.detail);
-    if let Some(sensor) = sensor {
-        progress.stage("recognise", 1);
-        let objects = measured.into_iter().map(|object| object.felt);
-        tables.recognition = sensor.recognise(&tables.detail, &objects.collect::<Vec<_>>())?;
-        progress.advance(1);
-    }
-    Ok(tables)
+/// A study of object detail and its meshes.
+pub struct ObjectDetailStudy {
+    /// What to run.
+    pub plan: ObjectDetailPlan,
+    /// Each is an object.
+    pub meshes: Vec<NamedMesh>,
+    /// Where packings are looked for and kept, if anywhere.
+    pub packings: Option<PathBuf>,
 }
 
-/// An object, its models and how near they are.
-struct Measured {
-    name: String,
+/// What pieces of the study found.
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
+pub struct DetailRows {
+    detail: Vec<(DetailCell, DetailScore)>,
+    prepared: Vec<Prepared>,
+    /// Of each object's models, in their order: microseconds a touch.
+    touch_us: Vec<(String, Vec<f64>)>,
+    recognition: Vec<DetailRecognition>,
+}
+
+/// What it took to make a model.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+struct Prepared {
+    prepare_s: f64,
+    was_kept: bool,
+}
+
+impl PieceRows for DetailRows {
+    fn append(&mut self, next: Self) {
+        self.detail.extend(next.detail);
+        self.prepared.extend(next.prepared);
+        self.touch_us.extend(next.touch_us);
+        self.recognition.extend(next.recognition);
+    }
+}
+
+impl PieceStudy for ObjectDetailStudy {
+    type Rows = DetailRows;
+    type Tables = ObjectDetailTables;
+
+    /// Of each object its models and their times; then each level and classifier, which all need all objects.
+    fn pieces(&self) -> Vec<NamedPiece> {
+        let mut pieces = Vec::new();
+        for (group, mesh) in self.meshes.iter().enumerate() {
+            let names = [models_name(mesh), times_name(mesh)];
+            pieces.extend(names.map(|name| NamedPiece { name, group }));
+        }
+        let group = self.meshes.len();
+        let names = self.recognition_names().into_iter();
+        pieces.extend(names.map(|name| NamedPiece { name, group }));
+        pieces
+    }
+
+    fn measure(&self, left: &PiecesLeft<DetailRows>) -> Result<()> {
+        let learned = left.of(self.recognition_names(), String::clone);
+        let sensor = match learned.is_empty() {
+            true => None,
+            false => Sensor::of(&self.plan)?,
+        };
+        if sensor.is_some() && self.meshes.len() < 2 {
+            return Err(Error::input(
+                "object_detail.recognition",
+                format!("{} meshes", self.meshes.len()),
+                "at least 2 objects to tell apart",
+            ));
+        }
+        let is_needed = |mesh: &&NamedMesh| {
+            sensor.is_some() || left.has(&models_name(mesh)) || left.has(&times_name(mesh))
+        };
+        let needed: Vec<&NamedMesh> = self.meshes.iter().filter(is_needed).collect();
+        let n_models = left.of(needed.iter(), |mesh| models_name(mesh)).len();
+        left.progress.stage("models", n_models as u64);
+        let measured = needed
+            .into_par_iter()
+            .map(|mesh| self.object(mesh, sensor.as_ref(), &learned, left))
+            .collect::<Result<Vec<_>>>()?;
+        let timed = measured.iter().flatten();
+        let timed = left.of(timed, |object| times_name(object.mesh));
+        left.progress.stage("time touches", timed.len() as u64);
+        for object in timed {
+            left.finish(&times_name(object.mesh), || Ok(object.times()))?;
+        }
+        let felt = measured.into_iter().map(|object| object?.felt);
+        let (Some(sensor), Some(felt)) = (sensor, felt.collect::<Option<Vec<_>>>()) else {
+            return Ok(());
+        };
+        left.progress.stage("recognise", learned.len() as u64);
+        let kinds = sensor.kinds();
+        let levels = levels(&self.plan).into_iter().enumerate();
+        let cells = levels.flat_map(|level| kinds.iter().map(move |&kind| (level, kind)));
+        let cells: Vec<_> = cells.zip(self.recognition_names()).collect();
+        cells
+            .par_iter()
+            .try_for_each(|&(((number, level), kind), ref name)| {
+                left.finish(name, || {
+                    Ok(DetailRows {
+                        recognition: vec![sensor.row(&felt, (number, level), kind)?],
+                        ..DetailRows::default()
+                    })
+                })
+            })
+    }
+
+    fn tables(&self, rows: DetailRows) -> Result<ObjectDetailTables> {
+        let mut tables = ObjectDetailTables {
+            summary: summary(&rows.detail),
+            ..ObjectDetailTables::default()
+        };
+        for (object, us) in &rows.touch_us {
+            let made = rows.detail.iter().zip(&rows.prepared);
+            let of_object = made.filter(|((cell, _), _)| cell.object == *object);
+            let times = of_object.zip(us).map(|(((cell, _), made), &us_per_touch)| {
+                let time = DetailTime {
+                    us_per_touch,
+                    prepare_s: made.prepare_s,
+                    was_kept: made.was_kept,
+                };
+                (cell.clone(), time)
+            });
+            tables.timing.extend(times);
+        }
+        tables.recognition = rows.recognition;
+        tables.detail = rows.detail;
+        Ok(tables)
+    }
+}
+
+fn models_name(mesh: &NamedMesh) -> String {
+    format!("models of {}", mesh.name)
+}
+
+fn times_name(mesh: &NamedMesh) -> String {
+    format!("times of {}", mesh.name)
+}
+
+impl ObjectDetailStudy {
+    /// Level by level, of each every classifier; none if nothing learns.
+    fn recognition_names(&self) -> Vec<String> {
+        let kinds = self.plan.recognition.iter();
+        let kinds: Vec<_> = kinds.flat_map(|plan| &plan.classifiers).collect();
+        let of_level = |(method, tolerance_mm): (DetailMethod, Option<f64>)| {
+            let within = tolerance_mm.map_or(String::new(), |mm| format!(" within {mm} mm"));
+            let names = kinds.iter();
+            let names = names.map(move |kind| format!("{kind:?} from {method:?}{within}"));
+            names.collect::<Vec<_>>()
+        };
+        levels(&self.plan).into_iter().flat_map(of_level).collect()
+    }
+
+    /// Makes an object's models and keeps how near they are; if they cannot be made, all fails that needs them, `learned` too.
+    fn object<'a>(
+        &self,
+        mesh: &'a NamedMesh,
+        sensor: Option<&Sensor>,
+        learned: &[String],
+        left: &PiecesLeft<DetailRows>,
+    ) -> Result<Option<Measured<'a>>> {
+        let mut names = vec![models_name(mesh), times_name(mesh)];
+        names.extend_from_slice(learned);
+        let measured = left.prepare(&names, || Measured::new(self, mesh))?;
+        let Some(mut measured) = measured else {
+            return Ok(None);
+        };
+        left.finish(&names[0], || Ok(measured.models(&self.plan)))?;
+        if let Some(sensor) = sensor {
+            let Measured {
+                variants, truth, ..
+            } = &measured;
+            let felt = left.prepare(learned, || sensor.measure(&mesh.name, variants, truth))?;
+            measured.felt = felt;
+        }
+        Ok(Some(measured))
+    }
+}
+
+/// An object and its models.
+struct Measured<'a> {
+    mesh: &'a NamedMesh,
+    surface: Surface,
     truth: Truth,
     variants: Vec<Variant>,
-    scores: Vec<DetailScore>,
-    /// Measurements of each variant, for learning; none if nothing learns.
-    felt: Vec<Array2<f64>>,
+    /// What learning needs of each variant; none if nothing learns, or it cannot be had.
+    felt: Option<Felt>,
 }
 
-impl Measured {
-    fn new(
-        plan: &ObjectDetailPlan,
-        NamedMesh { name, place, mesh }: NamedMesh,
-        packings: Option<&Path>,
-        sensor: Option<&Sensor>,
-        progress: &dyn Progress,
-    ) -> Result<Self> {
-        let surface = Surface::new(mesh);
-        let variants = variants(plan, &place, &surface, packings)?;
+impl<'a> Measured<'a> {
+    fn new(study: &ObjectDetailStudy, mesh: &'a NamedMesh) -> Result<Self> {
+        let surface = Surface::new(mesh.mesh.clone());
+        let packings = study.packings.as_deref();
+        let variants = variants(&study.plan, &mesh.place, &surface, packings)?;
         // The first of them is the mesh itself.
-        let truth = truth(plan, &name, &variants[0].model)?;
-        let n_points = plan.spec.object_detail.surface_points;
-        let scores = variants.iter().map(|variant| {
-            let score = score(variant, &surface, &truth, n_points);
-            progress.advance(1);
-            score
-        });
-        let scores = scores.collect();
-        let felt = sensor.map(|sensor| sensor.measure(&name, &variants));
+        let truth = truth(&study.plan, &mesh.name, &variants[0].model)?;
         Ok(Self {
-            scores,
-            felt: felt.transpose()?.unwrap_or_default(),
-            name,
+            mesh,
+            surface,
             truth,
             variants,
+            felt: None,
         })
     }
-}
 
-/// The touches that every study would draw for an object of this name, felt exactly.
-fn truth(plan: &ObjectDetailPlan, name: &str, mesh: &Model) -> Result<Truth> {
-    let object = Object::of_one_part(name, mesh.clone());
-    let seed = Seed::new(plan.spec.seed);
-    let touched = draw_touches(vec![object], &plan.placement, &seed)?;
-    Ok(Truth::new(&touched[0], &plan.patch))
-}
-
-fn cell(object: &str, variant: &Variant) -> DetailCell {
-    DetailCell {
-        object: object.to_owned(),
-        method: variant.method,
-        tolerance_mm: variant.tolerance_mm,
-        n_spheres: variant.model.n_spheres(),
+    fn models(&self, plan: &ObjectDetailPlan) -> DetailRows {
+        let n_points = plan.spec.object_detail.surface_points;
+        let detail = self.variants.iter().map(|variant| {
+            let score = score(variant, &self.surface, &self.truth, n_points);
+            (cell(&self.mesh.name, variant), score)
+        });
+        let prepared = self.variants.iter().map(|variant| Prepared {
+            prepare_s: variant.prepare_s,
+            was_kept: variant.was_kept,
+        });
+        DetailRows {
+            detail: detail.collect(),
+            prepared: prepared.collect(),
+            ..DetailRows::default()
+        }
     }
-}
 
-fn score(variant: &Variant, surface: &Surface, truth: &Truth, n_points: usize) -> DetailScore {
-    const MM: f64 = 1e3;
-    let model = &variant.model;
-    // An open surface has no inside that could hide a part of it.
-    let body = match surface.is_closed() {
-        true => Body::Solid,
-        false => Body::Sheet,
-    };
-    let apart = model
-        .spheres()
-        .map(|spheres| packing_error(surface, body, spheres, n_points));
-    let apart = apart.unwrap_or(PackingError {
-        protrusion: Default::default(),
-        gap: Default::default(),
-        n_points,
-        buried_share: 0.0,
-    });
-    let (protrusion, gap) = (apart.protrusion, apart.gap);
-    let error = truth.error(model, 0.0);
-    let offset = match variant.method {
-        DetailMethod::Mesh => 0.0,
-        _ => truth.best_offset(model),
-    };
-    let after = truth.error(model, offset);
-    DetailScore {
-        surface_error_mm: MM * (protrusion.mean + gap.mean),
-        protrusion_mean_mm: MM * protrusion.mean,
-        protrusion_p95_mm: MM * protrusion.p95,
-        protrusion_max_mm: MM * protrusion.max,
-        gap_mean_mm: MM * gap.mean,
-        gap_p95_mm: MM * gap.p95,
-        gap_max_mm: MM * gap.max,
-        n_touches: truth.n_met(),
-        n_missed: truth.n_missed,
-        n_taxels: truth.n_touched,
-        error_mm: MM * error.mean,
-        error_p95_mm: MM * error.p95,
-        offset_mm: MM * offset,
-        error_after_offset_mm: MM * after.mean,
-        error_after_offset_p95_mm: MM * after.p95,
-        error_own_contact_mm: MM * truth.error_past_own_contact(model),
+    fn times(&self) -> DetailRows {
+        let models = self.variants.iter().map(|variant| &variant.model);
+        let us = models.map(|model| 1e6 * self.truth.seconds_per_touch(model));
+        DetailRows {
+            touch_us: vec![(self.mesh.name.clone(), us.collect())],
+            ..DetailRows::default()
+        }
     }
 }

@@ -57,12 +57,7 @@ pub(super) fn variants(
         })?);
     }
     let packing = DetailMethod::Packing;
-    let as_many = [
-        DetailMethod::DecimatedVertexSpheres,
-        DetailMethod::MedialSpheres,
-    ];
-    let as_many = as_many.map(|method| is_wanted(method).then_some(method));
-    let as_many: Vec<DetailMethod> = as_many.into_iter().flatten().collect();
+    let as_many = as_many(plan);
     if !is_wanted(packing) && as_many.is_empty() {
         return Ok(found);
     }
@@ -86,6 +81,32 @@ pub(super) fn variants(
         }
     }
     Ok(found)
+}
+
+/// The methods of a plan whose models have as many spheres as a packing.
+fn as_many(plan: &ObjectDetailPlan) -> Vec<DetailMethod> {
+    let methods = [
+        DetailMethod::DecimatedVertexSpheres,
+        DetailMethod::MedialSpheres,
+    ];
+    let wanted = &plan.spec.object_detail.methods;
+    let methods = methods.into_iter();
+    methods.filter(|method| wanted.contains(method)).collect()
+}
+
+/// Methods and tolerances (mm, as written) of the models of every mesh, in the order of [`variants`].
+pub(super) fn levels(plan: &ObjectDetailPlan) -> Vec<(DetailMethod, Option<f64>)> {
+    let wanted = &plan.spec.object_detail;
+    let is_wanted = |method: &DetailMethod| wanted.methods.contains(method);
+    let mut levels = vec![(DetailMethod::Mesh, None)];
+    let vertices = Some(DetailMethod::VertexSpheres).filter(is_wanted);
+    levels.extend(vertices.map(|method| (method, None)));
+    for &mm in &wanted.tolerances_mm {
+        let packing = Some(DetailMethod::Packing).filter(is_wanted);
+        let methods = packing.into_iter().chain(as_many(plan));
+        levels.extend(methods.map(|method| (method, Some(mm))));
+    }
+    levels
 }
 
 /// `n` of the places of `vertices` (all, if there are fewer; never fewer than two), each the farthest from those before it,

@@ -112,7 +112,7 @@ pub struct EnsembleStatistics {
 }
 
 /// All result tables of a reconstruction study.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct ReconstructionTables {
     /// One row a cell.
     pub reconstruction: Vec<(ReconstructionCell, ReconstructionScore)>,

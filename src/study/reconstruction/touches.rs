@@ -5,7 +5,7 @@ use super::score::{Truth, square_errors};
 use crate::error::Result;
 use crate::random::Seed;
 use crate::recognition::split::{Split, stratified_hold_out};
-use crate::sensing::{Dictionary, Ensemble};
+use crate::sensing::{Basis, Dictionary, Ensemble};
 use crate::signal::{Chain, Noise, NoiseUnit};
 use crate::study::frames::Frames;
 use crate::study::measurement::{Reading, TouchToRead, measure, touches_to_read};
@@ -13,6 +13,7 @@ use crate::study::progress::Progress;
 use crate::study::simulation::{TouchedObject, simulate_array, touch_labels};
 use ndarray::{Array1, Array2, Axis};
 use rayon::prelude::*;
+use std::collections::BTreeMap;
 
 /// Test frames that are kept for the eye.
 const N_SAMPLES: usize = 3;
@@ -26,8 +27,8 @@ pub struct SampleFrames {
     pub clean: Array2<f64>,
     /// At each level of the noise axis.
     pub noisy: Vec<(f64, Array2<f64>)>,
-    /// As each cell reconstructed them.
-    pub reconstructed: Vec<Array2<f64>>,
+    /// As cells reconstructed them, by their numbers.
+    pub reconstructed: BTreeMap<usize, Array2<f64>>,
 }
 
 /// Frames of all touches, split.
@@ -98,12 +99,13 @@ impl Touches {
     pub(super) fn learn(
         &self,
         plan: &ReconstructionPlan,
+        bases: &[Basis],
         progress: &dyn Progress,
     ) -> Result<Vec<Dictionary>> {
         let grid = (plan.patch.grid.ny, plan.patch.grid.nx);
         let atoms = plan.spec.reconstruction.atoms;
         let seed = Seed::new(plan.spec.seed).named("dictionary");
-        plan.dictionaries
+        bases
             .par_iter()
             .map(|&basis| {
                 let learned = Dictionary::learned(basis, grid, self.train.view(), atoms, &seed);
@@ -113,17 +115,18 @@ impl Touches {
             .collect()
     }
 
-    pub(super) fn samples(&self, reconstructed: Vec<Array2<f64>>) -> SampleFrames {
+    /// Those of some test frames that are for the eye.
+    pub(super) fn pick(&self, frames: &Array2<f64>) -> Array2<f64> {
         let rows: Vec<usize> = self.shown.iter().map(|(row, _)| *row).collect();
-        let pick = |frames: &Array2<f64>| frames.select(Axis(0), &rows);
+        frames.select(Axis(0), &rows)
+    }
+
+    pub(super) fn samples(&self, reconstructed: BTreeMap<usize, Array2<f64>>) -> SampleFrames {
+        let levels = self.noisy.iter();
         SampleFrames {
             names: self.shown.iter().map(|(_, name)| name.clone()).collect(),
-            clean: pick(&self.test),
-            noisy: self
-                .noisy
-                .iter()
-                .map(|n| (n.level, pick(&n.frames)))
-                .collect(),
+            clean: self.pick(&self.test),
+            noisy: levels.map(|n| (n.level, self.pick(&n.frames))).collect(),
             reconstructed,
         }
     }

@@ -13,9 +13,10 @@ use crate::objects::Model;
 use crate::quantile::quantile;
 use crate::random::Seed;
 use crate::study::object_detail::Truth;
-use crate::study::progress::Progress;
+use crate::study::pieces::{NamedPiece, PiecesLeft};
 use crate::world::Placement;
 use rayon::prelude::*;
+use std::collections::BTreeMap;
 use std::path::Path;
 use std::time::Instant;
 
@@ -32,67 +33,141 @@ struct Ready<'a> {
     models: Vec<(ContactWay, Option<Tolerance>, Model)>,
 }
 
-/// Fills the tables of contact: models on all threads, times on one.
-pub(super) fn measure_contact(
-    plan: &SpeedAccuracyPlan,
-    contact: &ContactPlan,
-    (subjects, scans, packings): (&[Subject], &[Subject], Option<&Path>),
-    progress: &dyn Progress,
-    tables: &mut SpeedAccuracyTables,
-) -> Result<()> {
-    let chosen = spread_evenly(subjects, contact.spec.objects);
-    let chosen: Vec<(Touched, &Subject)> = chosen
-        .into_iter()
-        .map(|subject| (Touched::Object, subject))
-        .chain(scans.iter().map(|scan| (Touched::Scan, scan)))
-        .collect();
-    progress.stage("models", chosen.len() as u64);
-    let ready = chosen
-        .into_par_iter()
-        // One at a time: to pack a mesh takes from seconds to a minute.
-        .with_max_len(1)
-        .map(|touched| {
-            let ready = prepare(plan, contact, touched, packings);
-            progress.advance(1);
-            ready
-        })
-        .collect::<Result<Vec<_>>>()?;
-    progress.stage("time touches", ready.len() as u64);
-    for object in &ready {
-        measure_models(plan, object, tables);
-        progress.advance(1);
-    }
-    let objects: Vec<&Ready> = ready
-        .iter()
-        .filter(|ready| ready.touched == Touched::Object)
-        .collect();
-    let stepped = spread_evenly(&objects, contact.spec.stepped_objects);
-    let methods = StepMethod::built();
-    let n_runs = stepped.len() * methods.len() * contact.dts.len();
-    progress.stage("step through time", n_runs as u64);
-    // Methods and steps outside, so that the tables go by them.
-    for &method in &methods {
-        for (&dt, &dt_ms) in contact.dts.iter().zip(&contact.spec.dt_ms) {
-            for object in &stepped {
-                let (_, tolerance, model) = middle_packing(object);
-                let stepper = Stepper {
-                    patch: &plan.patch,
-                    model,
-                    method,
-                    dt,
-                };
-                let cell = ContactCell {
-                    way: method.way(),
-                    tolerance_mm: tolerance.map(|tolerance| tolerance.mm),
-                    dt_ms: Some(dt_ms),
-                    ..cell(object, model)
-                };
-                measure_stepped(cell, &stepper, object, contact.spec.stepped_touches, tables)?;
-                progress.advance(1);
-            }
+/// Contact of some of the objects.
+pub(super) struct ContactPart<'a> {
+    plan: &'a SpeedAccuracyPlan,
+    contact: &'a ContactPlan,
+    /// Objects of the study, then scans.
+    chosen: Vec<(Touched, &'a Subject)>,
+    packings: Option<&'a Path>,
+}
+
+/// An object stepped through time: a method, its time step (seconds, and as written), and the number of the object.
+type StepRun = (StepMethod, f64, f64, usize);
+
+impl<'a> ContactPart<'a> {
+    pub fn new(
+        plan: &'a SpeedAccuracyPlan,
+        contact: &'a ContactPlan,
+        (subjects, scans): (&'a [Subject], &'a [Subject]),
+        packings: Option<&'a Path>,
+    ) -> Self {
+        let objects = spread_evenly(subjects, contact.spec.objects).into_iter();
+        let objects = objects.map(|subject| (Touched::Object, subject));
+        let scans = scans.iter().map(|scan| (Touched::Scan, scan));
+        Self {
+            plan,
+            contact,
+            chosen: objects.chain(scans).collect(),
+            packings,
         }
     }
-    Ok(())
+
+    /// An object's models, and each of its ways through time, share the object's models.
+    pub fn pieces(&self) -> Vec<NamedPiece> {
+        let models = (0..self.chosen.len()).map(|object| (self.models_name(object), object));
+        let steps = self.steps().into_iter();
+        let steps = steps.map(|run| (self.step_name(&run), run.3));
+        let pieces = models.chain(steps);
+        pieces
+            .map(|(name, group)| NamedPiece { name, group })
+            .collect()
+    }
+
+    fn models_name(&self, object: usize) -> String {
+        let (touched, subject) = self.chosen[object];
+        let whose = match touched {
+            Touched::Object => "",
+            Touched::Scan => "scan ",
+        };
+        format!("contact with {whose}{}", subject.name())
+    }
+
+    fn step_name(&self, (method, _, dt_ms, object): &StepRun) -> String {
+        let name = self.chosen[*object].1.name();
+        format!("{method:?} of {dt_ms} ms with {name}")
+    }
+
+    /// Methods and steps outside, so that the tables go by them. Scans are not stepped.
+    fn steps(&self) -> Vec<StepRun> {
+        let is_object = |&object: &usize| self.chosen[object].0 == Touched::Object;
+        let objects: Vec<usize> = (0..self.chosen.len()).filter(is_object).collect();
+        let stepped = spread_evenly(&objects, self.contact.spec.stepped_objects);
+        let dts = || self.contact.dts.iter().zip(&self.contact.spec.dt_ms);
+        let mut runs = Vec::new();
+        for method in StepMethod::built() {
+            for (&dt, &dt_ms) in dts() {
+                runs.extend(stepped.iter().map(|&&object| (method, dt, dt_ms, object)));
+            }
+        }
+        runs
+    }
+
+    /// Models on all threads, times on one.
+    pub fn measure(&self, left: &PiecesLeft<SpeedAccuracyTables>) -> Result<()> {
+        let timed = left.of(0..self.chosen.len(), |&object| self.models_name(object));
+        let steps = left.of(self.steps(), |run| self.step_name(run));
+        let is_needed =
+            |object: &usize| timed.contains(object) || steps.iter().any(|run| run.3 == *object);
+        let needed: Vec<usize> = (0..self.chosen.len()).filter(is_needed).collect();
+        let progress = left.progress;
+        progress.stage("models", needed.len() as u64);
+        let ready = needed
+            .into_par_iter()
+            // One at a time: to pack a mesh takes from seconds to a minute.
+            .with_max_len(1)
+            .map(|object| {
+                let steps = steps.iter().filter(|run| run.3 == object);
+                let mut names: Vec<String> = steps.map(|run| self.step_name(run)).collect();
+                names.push(self.models_name(object));
+                let ready = left.prepare(&names, || {
+                    prepare(self.plan, self.contact, self.chosen[object], self.packings)
+                })?;
+                progress.advance(1);
+                Ok(ready.map(|ready| (object, ready)))
+            })
+            .collect::<Result<Vec<_>>>()?;
+        let ready: BTreeMap<usize, Ready> = ready.into_iter().flatten().collect();
+        progress.stage("time touches", timed.len() as u64);
+        for object in timed
+            .iter()
+            .filter_map(|object| ready.get_key_value(object))
+        {
+            left.finish(&self.models_name(*object.0), || {
+                let mut tables = SpeedAccuracyTables::default();
+                measure_models(self.plan, object.1, &mut tables);
+                Ok(tables)
+            })?;
+        }
+        progress.stage("step through time", steps.len() as u64);
+        for run in &steps {
+            if let Some(object) = ready.get(&run.3) {
+                left.finish(&self.step_name(run), || self.step(run, object))?;
+            }
+        }
+        Ok(())
+    }
+
+    fn step(&self, run: &StepRun, object: &Ready) -> Result<SpeedAccuracyTables> {
+        let &(method, dt, dt_ms, _) = run;
+        let (_, tolerance, model) = middle_packing(object);
+        let stepper = Stepper {
+            patch: &self.plan.patch,
+            model,
+            method,
+            dt,
+        };
+        let cell = ContactCell {
+            way: method.way(),
+            tolerance_mm: tolerance.map(|tolerance| tolerance.mm),
+            dt_ms: Some(dt_ms),
+            ..cell(object, model)
+        };
+        let mut tables = SpeedAccuracyTables::default();
+        let n_touches = self.contact.spec.stepped_touches;
+        measure_stepped(cell, &stepper, object, n_touches, &mut tables)?;
+        Ok(tables)
+    }
 }
 
 fn prepare<'a>(

@@ -1,7 +1,7 @@
 //! A study of its own kind: what does accuracy cost, for every choice there is here?
 //!
 //! A file with a `[speed_accuracy]` table is such a study: [`SpeedAccuracyStudySpec`] (as written) → [`SpeedAccuracyPlan`] (checked, SI) →
-//! [`measure_speed_accuracy`] → [`table::SpeedAccuracyTables`]. It has three parts, each left out where its table is:
+//! [`SpeedAccuracyStudy`] → [`table::SpeedAccuracyTables`]. It has three parts, each left out where its table is:
 //!
 //! - **contact**: time of a touch against its deflection error, of models of objects (packed spheres, a sphere a vertex, the mesh itself,
 //!   solids by their distance functions), of singles, of time steps, and of methods whose taxels have mass. Exact contact says what is
@@ -20,6 +20,7 @@ mod engines;
 mod peers;
 mod plan;
 mod recognition;
+mod recognition_part;
 mod resolution;
 mod runner;
 mod single_contact;
@@ -29,7 +30,7 @@ mod subject;
 pub mod table;
 
 pub use plan::{ContactPlan, RecognitionSweep, ResolutionPlan, SpeedAccuracyPlan};
-pub use runner::measure_speed_accuracy;
+pub use runner::SpeedAccuracyStudy;
 pub use spec::{
     ContactSpec, RecognitionSweepSpec, ResolutionSpec, ScansSpec, SpeedAccuracySpec,
     SpeedAccuracyStudySpec,

@@ -1,6 +1,8 @@
 //! A study of speed against accuracy that can run: every key checked, every unit SI.
 
-use super::spec::{ContactSpec, RecognitionSweepSpec, ResolutionSpec, SpeedAccuracyStudySpec};
+use super::spec::{
+    ContactSpec, RecognitionSweepSpec, ResolutionSpec, ScansSpec, SpeedAccuracyStudySpec,
+};
 use crate::error::Result;
 use crate::study::axis::Axis;
 use crate::study::check::{Check, not_negative, positive};
@@ -69,6 +71,11 @@ pub struct ResolutionPlan {
 }
 
 impl SpeedAccuracyPlan {
+    /// What is touched beside the objects in the part on contact, if anything is.
+    pub fn scans(&self) -> Option<&ScansSpec> {
+        self.contact.as_ref()?.spec.scans.as_ref()
+    }
+
     /// Checks a study that lies in `folder`; the error names `place` (the file) and the first key that is out of its range.
     pub fn new(place: &str, folder: &Path, spec: SpeedAccuracyStudySpec) -> Result<Self> {
         let check = Check { place };

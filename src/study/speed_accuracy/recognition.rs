@@ -1,119 +1,46 @@
 //! The part on recognition: what each chain from touch to answer costs, and how often it is right.
 
-use super::plan::{RecognitionSweep, SpeedAccuracyPlan, Tolerance};
-use super::subject::{Subject, spread_evenly};
+use super::plan::{RecognitionSweep, Tolerance};
+use super::recognition_part::RecognitionPart;
 use super::table::{ChainCell, ChainScore, ChainTime, SpeedAccuracyTables};
 use crate::error::{Error, Result};
-use crate::objects::{Model, Object};
 use crate::random::Seed;
 use crate::recognition::ClassifierKind;
 use crate::recognition::classifier::Classifier;
 use crate::recognition::dataset::{Dataset, dataset};
 use crate::recognition::interval::Interval;
-use crate::sensing::Projection;
+use crate::sensing::{Ensemble, Projection};
 use crate::signal::{Chain, Noise, NoiseUnit, SignalStep};
 use crate::study::CONFIDENCE;
 use crate::study::frames::KeptFrames;
 use crate::study::measurement::{Reading, TouchToRead, measure, touches_to_read};
+use crate::study::pieces::PiecesLeft;
 use crate::study::plan::millimetres;
-use crate::study::progress::{Progress, Silent};
-use crate::study::simulation::{TouchedObject, draw_touches, simulate_array};
-use crate::world::{Patch, Placement};
+use crate::study::simulation::TouchedObject;
+use crate::world::Patch;
 use ndarray::{Array1, Array2, ArrayView2, Axis};
-use rayon::prelude::*;
-use std::path::Path;
 use std::time::Instant;
 
-/// Objects of one detail: what is touched, in places that all details share.
-type Details = Vec<Model>;
-
-/// Fills the tables of recognition. Touches are made on all threads; fits and decisions are timed on one.
-pub(super) fn measure_recognition(
-    plan: &SpeedAccuracyPlan,
-    sweep: &RecognitionSweep,
-    (subjects, packings): (&[Subject], Option<&Path>),
-    progress: &dyn Progress,
-    tables: &mut SpeedAccuracyTables,
-) -> Result<()> {
-    let chosen = spread_evenly(subjects, sweep.spec.objects);
-    if chosen.len() < 2 {
-        let given = format!("{} objects", chosen.len());
-        return Err(Error::input(&plan.place, given, "at least 2 to tell apart"));
-    }
-    let finest = plan.levels[plan.levels.len() - 1];
-    progress.stage("objects", (1 + sweep.levels.len()) as u64);
-    let build = |make: &(dyn Fn(&Subject) -> Result<Model> + Sync)| -> Result<Details> {
-        let models = chosen
-            .par_iter()
-            .with_max_len(1)
-            .map(|subject| make(subject));
-        let models = models.collect::<Result<Vec<_>>>();
-        progress.advance(1);
-        models
-    };
-    let exact = build(&|subject| subject.exact(finest))?;
-    let mut levels = Vec::new();
-    for &level in &sweep.levels {
-        let models = build(&|subject| subject.packed(level, packings))?;
-        levels.push((level, models));
-    }
-    let seed = Seed::new(plan.spec.seed);
-    let placement = Placement {
-        per_object: Some(sweep.spec.training_touches + sweep.spec.test_touches),
-        ..plan.placement.clone()
-    };
-    let objects = |models: &Details| -> Vec<Object> {
-        let pairs = chosen.iter().zip(models);
-        pairs
-            .map(|(subject, model)| Object::of_one_part(subject.name(), model.clone()))
-            .collect()
-    };
-    let exact = draw_touches(objects(&exact), &placement, &seed)?;
-    let n_chains = sweep.spec.ensemble.len() * sweep.spec.ratio.len() * sweep.spec.classifier.len();
-    let n_cells = sweep.patches.len() * levels.len() * n_chains;
-    progress.stage("recognise", n_cells as u64);
-    let one_thread = one_thread()?;
-    for patch in &sweep.patches {
-        let truth = simulate_array(&exact, patch, 1, &Silent).kept;
-        for (level, models) in &levels {
-            let mut touched = exact.clone();
-            for (touched, object) in touched.iter_mut().zip(objects(models)) {
-                touched.object = object;
-            }
-            let learned = simulate_array(&touched, patch, 1, &Silent).kept;
-            let bench = Bench {
-                sweep,
-                patch,
-                level: *level,
-                touched: &touched,
-                learned: &learned,
-                tested: &truth,
-                seed,
-                one_thread: &one_thread,
-            };
-            bench.run(progress, tables)?;
-        }
-    }
-    Ok(())
-}
-
-fn one_thread() -> Result<rayon::ThreadPool> {
+/// A pool of one thread, to time on.
+pub(super) fn one_thread() -> Result<rayon::ThreadPool> {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build();
     pool.map_err(|error| Error::input("threads", error, "a system that can start one"))
 }
 
 /// All chains on one array and detail.
 pub(super) struct Bench<'a> {
+    pub part: &'a RecognitionPart<'a>,
+    pub number: (usize, usize),
     pub sweep: &'a RecognitionSweep,
     pub patch: &'a Patch,
-    level: Tolerance,
+    pub level: Tolerance,
     pub touched: &'a [TouchedObject],
     /// A frame a touch, of this detail.
     pub learned: &'a KeptFrames,
     /// The same touches of the exact objects.
-    tested: &'a KeptFrames,
-    seed: Seed,
-    one_thread: &'a rayon::ThreadPool,
+    pub tested: &'a KeptFrames,
+    pub seed: Seed,
+    pub one_thread: &'a rayon::ThreadPool,
 }
 
 /// Noise and a projection, ready for one touch after the other.
@@ -122,54 +49,92 @@ pub(super) struct Front {
     pub projection: Projection,
 }
 
+/// Measurements of all touches, of the detail and of the exact objects, and what one takes.
+struct Compressed {
+    learned: Array2<f64>,
+    tested: Array2<f64>,
+    project_us: f64,
+}
+
 impl Bench<'_> {
-    fn run(&self, progress: &dyn Progress, tables: &mut SpeedAccuracyTables) -> Result<()> {
+    /// Does the chains that are left.
+    pub fn run(&self, left: &PiecesLeft<SpeedAccuracyTables>) -> Result<()> {
         let spec = &self.sweep.spec;
         let sense_us = self.one_thread.install(|| self.time_presses());
         for &ensemble in &spec.ensemble {
             for &ratio in &spec.ratio {
-                let n_taxels = self.patch.grid.n_taxels();
-                let measurements = ((n_taxels as f64 / ratio).round() as usize).max(1);
-                let size = (self.patch.grid.ny, self.patch.grid.nx);
-                let stream = self.seed.named("speed accuracy projection");
-                let noise = Noise {
-                    std: spec.noise_std_full_scale,
-                    unit: NoiseUnit::FullScale,
+                let name = |kind| self.part.chain_name(self.number, (ensemble, ratio), kind);
+                let kinds = left.of(spec.classifier.iter(), |kind| name(**kind));
+                if kinds.is_empty() {
+                    continue;
+                }
+                let names: Vec<String> = kinds.iter().map(|kind| name(**kind)).collect();
+                let Some(before) = left.prepare(&names, || self.compress(ensemble, ratio))? else {
+                    continue;
                 };
-                let front = Front {
-                    chain: Chain::new(&[SignalStep::Noise(noise)], self.patch)?,
-                    projection: Projection::new(ensemble, size, measurements, &stream)?,
-                };
-                let learned = self.measured(&front, self.learned)?;
-                let tested = self.measured(&front, self.tested)?;
-                let project_us = self.one_thread.install(|| self.time_front(&front))?;
-                for &classifier in &spec.classifier {
-                    let cell = ChainCell {
-                        pitch_mm: millimetres(self.patch.grid.pitch),
-                        n_taxels,
-                        tolerance_mm: self.level.mm,
-                        ensemble,
-                        ratio,
-                        measurements,
-                        classifier,
-                    };
-                    let rows = (learned.view(), tested.view());
-                    let (score, [classify_us, fit_s]) =
-                        self.one_thread.install(|| self.learn(classifier, rows))?;
-                    let time = ChainTime {
-                        sense_us,
-                        project_us,
-                        classify_us,
-                        decision_us: sense_us + project_us + classify_us,
-                        fit_s,
-                    };
-                    tables.recognition.push((cell.clone(), score));
-                    tables.recognition_timing.push((cell, time));
-                    progress.advance(1);
+                for &&classifier in &kinds {
+                    left.finish(&name(classifier), || {
+                        self.chain((ensemble, ratio), classifier, &before, sense_us)
+                    })?;
                 }
             }
         }
         Ok(())
+    }
+
+    /// What comes before every classifier.
+    fn compress(&self, ensemble: Ensemble, ratio: f64) -> Result<Compressed> {
+        let n_taxels = self.patch.grid.n_taxels();
+        let measurements = ((n_taxels as f64 / ratio).round() as usize).max(1);
+        let size = (self.patch.grid.ny, self.patch.grid.nx);
+        let stream = self.seed.named("speed accuracy projection");
+        let noise = Noise {
+            std: self.sweep.spec.noise_std_full_scale,
+            unit: NoiseUnit::FullScale,
+        };
+        let front = Front {
+            chain: Chain::new(&[SignalStep::Noise(noise)], self.patch)?,
+            projection: Projection::new(ensemble, size, measurements, &stream)?,
+        };
+        Ok(Compressed {
+            learned: self.measured(&front, self.learned)?,
+            tested: self.measured(&front, self.tested)?,
+            project_us: self.one_thread.install(|| self.time_front(&front))?,
+        })
+    }
+
+    fn chain(
+        &self,
+        (ensemble, ratio): (Ensemble, f64),
+        classifier: ClassifierKind,
+        before: &Compressed,
+        sense_us: f64,
+    ) -> Result<SpeedAccuracyTables> {
+        let cell = ChainCell {
+            pitch_mm: millimetres(self.patch.grid.pitch),
+            n_taxels: self.patch.grid.n_taxels(),
+            tolerance_mm: self.level.mm,
+            ensemble,
+            ratio,
+            measurements: before.learned.ncols(),
+            classifier,
+        };
+        let rows = (before.learned.view(), before.tested.view());
+        let (score, [classify_us, fit_s]) =
+            self.one_thread.install(|| self.learn(classifier, rows))?;
+        let project_us = before.project_us;
+        let time = ChainTime {
+            sense_us,
+            project_us,
+            classify_us,
+            decision_us: sense_us + project_us + classify_us,
+            fit_s,
+        };
+        Ok(SpeedAccuracyTables {
+            recognition: vec![(cell.clone(), score)],
+            recognition_timing: vec![(cell, time)],
+            ..SpeedAccuracyTables::default()
+        })
     }
 
     /// Each touch is noisy in its own way, by its name.

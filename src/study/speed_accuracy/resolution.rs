@@ -8,7 +8,8 @@ use crate::objects::Object;
 use crate::random::Seed;
 use crate::recognition::comparison::{TrialSize, compare};
 use crate::recognition::interval::Interval;
-use crate::study::progress::{Progress, Silent};
+use crate::study::pieces::{NamedPiece, PiecesLeft};
+use crate::study::progress::Silent;
 use crate::study::spec::StudySpec;
 use crate::study::table::{Tables, TrialScore};
 use crate::study::{CONFIDENCE, Plan, Sweep, draw_touches, run};
@@ -31,26 +32,62 @@ classifier = "linear_svm"
 test_fraction = 0.25
 "#;
 
-/// Fills the tables of what studies resolve; objects have the coarsest detail.
-pub(super) fn measure_resolution(
-    plan: &SpeedAccuracyPlan,
-    resolution: &ResolutionPlan,
-    (subjects, packings): (&[Subject], Option<&Path>),
-    progress: &dyn Progress,
-    tables: &mut SpeedAccuracyTables,
-) -> Result<()> {
-    let spec = &resolution.spec;
-    progress.stage("studies", spec.touches.len() as u64);
-    let coarsest: Tolerance = plan.levels[0];
-    let objects = subjects
-        .par_iter()
-        .map(|subject| {
-            let model = subject.packed(coarsest, packings)?;
-            Ok(Object::of_one_part(subject.name(), model))
+/// Studies of several sizes; objects have the coarsest detail.
+pub(super) struct ResolutionPart<'a> {
+    plan: &'a SpeedAccuracyPlan,
+    resolution: &'a ResolutionPlan,
+    subjects: &'a [Subject],
+    packings: Option<&'a Path>,
+}
+
+impl<'a> ResolutionPart<'a> {
+    pub fn new(
+        plan: &'a SpeedAccuracyPlan,
+        resolution: &'a ResolutionPlan,
+        (subjects, packings): (&'a [Subject], Option<&'a Path>),
+    ) -> Self {
+        Self {
+            plan,
+            resolution,
+            subjects,
+            packings,
+        }
+    }
+
+    /// A study a number of touches; all numbers of trials are of the same.
+    pub fn pieces(&self) -> Vec<NamedPiece> {
+        let touches = self.resolution.spec.touches.iter();
+        NamedPiece::each_alone(touches.map(|&touches| name(touches)))
+    }
+
+    pub fn measure(&self, left: &PiecesLeft<SpeedAccuracyTables>) -> Result<()> {
+        let all = self.resolution.spec.touches.iter();
+        let wanted = left.of(all, |touches| name(**touches));
+        if wanted.is_empty() {
+            return Ok(());
+        }
+        left.progress.stage("studies", wanted.len() as u64);
+        let names: Vec<String> = wanted.iter().map(|touches| name(**touches)).collect();
+        let coarsest: Tolerance = self.plan.levels[0];
+        let objects = left.prepare(&names, || {
+            let subjects = self.subjects.par_iter();
+            let objects = subjects.map(|subject| {
+                let model = subject.packed(coarsest, self.packings)?;
+                Ok(Object::of_one_part(subject.name(), model))
+            });
+            objects.collect::<Result<Vec<_>>>()
+        })?;
+        let Some(objects) = objects else {
+            return Ok(());
+        };
+        wanted.into_iter().try_for_each(|&touches| {
+            left.finish(&name(touches), || self.study(touches, objects.clone()))
         })
-        .collect::<Result<Vec<_>>>()?;
-    let most = spec.trials.iter().copied().max().unwrap_or(2);
-    for &touches in &spec.touches {
+    }
+
+    fn study(&self, touches: usize, objects: Vec<Object>) -> Result<SpeedAccuracyTables> {
+        let (plan, spec) = (self.plan, &self.resolution.spec);
+        let most = spec.trials.iter().copied().max().unwrap_or(2);
         let mut study = StudySpec::parse(&plan.place, STUDY)?;
         study.seed = plan.spec.seed;
         study.trials = most;
@@ -60,24 +97,23 @@ pub(super) fn measure_resolution(
         study.touches.per_object = Some(touches);
         study.sensing.ratio = Some(crate::study::Axis::Many(spec.ratio.to_vec()));
         let study = Plan::new(&plan.place, study)?;
-        let touched = draw_touches(
-            objects.clone(),
-            &study.placement,
-            &Seed::new(plan.spec.seed),
-        )?;
+        let touched = draw_touches(objects, &study.placement, &Seed::new(plan.spec.seed))?;
         let sweep = Sweep::new(&study, &touched)?;
         let found = run(&study, &sweep, &touched, &Silent)?.tables;
+        let mut tables = SpeedAccuracyTables::default();
         for &trials in &spec.trials {
             let size = StudySize { touches, trials };
             let cpu_s = cost(&found, trials, most);
-            tables
-                .resolution
-                .push((size.clone(), resolved(&found, trials)?));
+            let resolved = resolved(&found, trials)?;
+            tables.resolution.push((size.clone(), resolved));
             tables.resolution_timing.push((size, StudyTime { cpu_s }));
         }
-        progress.advance(1);
+        Ok(tables)
     }
-    Ok(())
+}
+
+fn name(touches: usize) -> String {
+    format!("a study of {touches} touches an object")
 }
 
 /// What the leading trials of a study of two cells say.

@@ -184,7 +184,7 @@ pub struct PeerRow {
 }
 
 /// All result tables.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct SpeedAccuracyTables {
     /// A row a way and object.
     pub contact: Vec<(ContactCell, ContactScore)>,

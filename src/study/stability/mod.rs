@@ -1,7 +1,7 @@
 //! A fourth kind of study: where does each way to simulate contact break?
 //!
 //! A file with a `[stability]` table is such a study: [`StabilityStudySpec`] (as written) → [`StabilityPlan`] (checked, SI) →
-//! [`measure_stability`] → [`table::StabilityTables`].
+//! [`run_whole_study`](super::pieces::run_whole_study) → [`table::StabilityTables`].
 //!
 //! A ball comes down on a **cradle**, a square patch whose taxels it meets nearly all at once (all within a quarter of their stroke), in
 //! one of three [scenes](StabilityScene). Every scene has a moment at which the exact answer is known without any time stepping (the
@@ -26,7 +26,6 @@ pub mod table;
 
 pub use cell::{LEAST_STEPS, Outcome, TOLERANCE};
 pub use plan::{StabilityPart, StabilityPlan};
-pub use runner::measure_stability;
 pub use spec::{
     ContactMethod, StabilityPartSpec, StabilityScene, StabilitySpec, StabilityStudySpec,
 };

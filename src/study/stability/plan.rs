@@ -34,8 +34,8 @@ pub struct StabilityPart {
 const MOST_TAXELS: usize = 256;
 
 impl StabilityPlan {
-    /// Checks a study; the error names `place` (the file) and the first key that is out of its range.
-    pub fn new(place: &str, spec: StabilityStudySpec) -> Result<Self> {
+    /// Checks a study that lies in `folder`; the error names `place` (the file) and the first key that is out of its range.
+    pub fn new(place: &str, folder: &Path, spec: StabilityStudySpec) -> Result<Self> {
         let check = Check { place };
         let wanted = &spec.stability;
         let millimetres = "a positive number of millimetres";
@@ -54,10 +54,7 @@ impl StabilityPlan {
         Ok(Self {
             pitch: pitch * MM,
             parts,
-            peers: wanted.peers.as_ref().map(|path| {
-                let folder = Path::new(place).parent().unwrap_or(Path::new(""));
-                folder.join(path)
-            }),
+            peers: wanted.peers.as_ref().map(|path| folder.join(path)),
             spec,
         })
     }

@@ -4,36 +4,79 @@ use super::cell::measure;
 use super::peers::join_peers;
 use super::plan::StabilityPlan;
 use super::summary::summary;
-use super::table::StabilityTables;
+use super::table::{StabilityCell, StabilityTables};
 use crate::error::Result;
-use crate::study::progress::Progress;
+use crate::study::pieces::{NamedPiece, PieceRows, PieceStudy, PiecesLeft};
 use rayon::prelude::*;
 
-/// Runs a study. The tables but for times are the same bytes at any number of threads.
-///
-/// # Errors
-/// A scene that cannot be built: a cradle too deep for its ball; a file of peers that cannot be read.
-pub fn measure_stability(plan: &StabilityPlan, progress: &dyn Progress) -> Result<StabilityTables> {
-    progress.stage("stability", plan.n_cells() as u64);
-    let cells = plan.parts.iter();
-    let cells = cells.flat_map(|part| part.cells.iter().map(|cell| (cell, part.stroke)));
-    let cells: Vec<_> = cells.collect();
-    let measured = cells
-        .par_iter()
-        // One at a time: a cell takes from microseconds to a minute.
-        .with_max_len(1)
-        .map(|(cell, stroke)| {
-            let found = measure(cell, plan.pitch, *stroke);
-            progress.advance(1);
-            found
-        })
-        .collect::<Result<Vec<_>>>()?;
-    let mut tables = StabilityTables::default();
-    for ((cell, _), (score, time)) in cells.into_iter().zip(measured) {
-        tables.stability.push((cell.clone(), score));
-        tables.timing.push((cell.clone(), time));
+impl StabilityPlan {
+    /// All cells, each with its name as a piece and its stroke.
+    fn named_cells(&self) -> impl Iterator<Item = (String, &StabilityCell, f64)> {
+        let cells = self.parts.iter();
+        let cells = cells.flat_map(|part| part.cells.iter().map(|cell| (cell, part.stroke)));
+        cells.map(|(cell, stroke)| (name(cell), cell, stroke))
     }
-    join_peers(plan, &mut tables)?;
-    tables.summary = summary(&tables.stability);
-    Ok(tables)
+}
+
+/// By its settings: which cells there are depends on what the program was built with.
+fn name(cell: &StabilityCell) -> String {
+    let StabilityCell {
+        part,
+        scene,
+        method,
+        taxels,
+        stiffness_n_per_m,
+        taxel_mass_kg,
+        dt_s,
+        ..
+    } = cell;
+    let iterations = cell.solver_iterations;
+    let iterations = iterations.map_or(String::new(), |n| format!(" of {n} iterations"));
+    let ball = cell.object_mass_kg;
+    let ball = ball.map_or(String::new(), |mass| format!(", ball of {mass} kg"));
+    format!(
+        "part {part}: {scene:?} by {method:?}{iterations}, {taxels} taxels a side of {stiffness_n_per_m} N/m and {taxel_mass_kg} \
+         kg{ball}, steps of {dt_s} s"
+    )
+}
+
+impl PieceStudy for StabilityPlan {
+    type Rows = StabilityTables;
+    type Tables = StabilityTables;
+
+    fn pieces(&self) -> Vec<NamedPiece> {
+        NamedPiece::each_alone(self.named_cells().map(|(name, ..)| name))
+    }
+
+    fn measure(&self, left: &PiecesLeft<StabilityTables>) -> Result<()> {
+        let cells = left.of(self.named_cells(), |(name, ..)| name.clone());
+        left.progress.stage("stability", cells.len() as u64);
+        cells
+            .par_iter()
+            // One at a time: a cell takes from microseconds to a minute.
+            .with_max_len(1)
+            .try_for_each(|(name, cell, stroke)| {
+                left.finish(name, || {
+                    let (score, time) = measure(cell, self.pitch, *stroke)?;
+                    Ok(StabilityTables {
+                        stability: vec![((*cell).clone(), score)],
+                        timing: vec![((*cell).clone(), time)],
+                        ..StabilityTables::default()
+                    })
+                })
+            })
+    }
+
+    fn tables(&self, mut tables: StabilityTables) -> Result<StabilityTables> {
+        join_peers(self, &mut tables)?;
+        tables.summary = summary(&tables.stability);
+        Ok(tables)
+    }
+}
+
+impl PieceRows for StabilityTables {
+    fn append(&mut self, next: Self) {
+        self.stability.extend(next.stability);
+        self.timing.extend(next.timing);
+    }
 }

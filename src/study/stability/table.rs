@@ -94,7 +94,7 @@ pub struct StabilitySummary {
 }
 
 /// All result tables of a study of stability.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct StabilityTables {
     /// One row a cell, in the order of the plan.
     pub stability: Vec<(StabilityCell, StabilityScore)>,

@@ -1,7 +1,7 @@
 //! A fourth kind of study: a whole body of skin. What does a step cost, and is the way from touch to answer within its millisecond?
 //!
 //! A file with a `[whole_body]` table is such a study: [`WholeBodyStudySpec`] (as written) → [`WholeBodyPlan`] (checked, SI) →
-//! [`measure_body`] → [`table::WholeBodyTables`].
+//! [`run_whole_study`](super::pieces::run_whole_study) → [`table::WholeBodyTables`].
 //!
 //! 1. **Scenes**: an object goes along its path on a robot that is covered in skin ([`CoveredRobot`](crate::whole_body::CoveredRobot)).
 //!    Each step is pressed, what is touched is compressed ([`Columns`](crate::sensing::Columns)), and a linear SVM says what it is.
@@ -17,6 +17,7 @@ mod drive;
 mod ladders;
 mod objects;
 mod path;
+mod picture;
 mod plan;
 mod recognition;
 mod runner;
@@ -25,8 +26,8 @@ mod spec;
 pub mod table;
 
 pub use path::Path;
+pub use picture::{BodyPicture, picture_body};
 pub use plan::{ObjectPlan, PlacePlan, RecognitionPlan, ScenePlan, WholeBodyPlan};
-pub use runner::{BodyOutcome, BodyPicture, measure_body};
 pub use spec::{
     BodyPartSpec, BodyRecognitionSpec, BodySceneSpec, BodySensingSpec, LaddersSpec, WholeBodySpec,
     WholeBodyStudySpec,

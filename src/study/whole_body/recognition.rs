@@ -92,7 +92,7 @@ pub(super) fn learn(
 }
 
 /// `sbhe_32`, `sparse`.
-fn name_of(ensemble: Ensemble, block: Option<usize>) -> String {
+pub(super) fn name_of(ensemble: Ensemble, block: Option<usize>) -> String {
     match (ensemble, block) {
         (Ensemble::Sbhe, Some(block)) => format!("sbhe_{block}"),
         _ => "sparse".to_owned(),

@@ -153,7 +153,7 @@ pub struct Bar {
 }
 
 /// All result tables of a study of a whole body.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct WholeBodyTables {
     /// One row a scene or rung.
     pub cases: Vec<(BodyCase, BodyCount)>,

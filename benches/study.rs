@@ -1,0 +1,234 @@
+//! What the engine of studies costs a cell, drawing and learning apart: `cargo bench --bench study`.
+//!
+//! 1. **Pieces**: 10,000 pieces that do nothing but give a row, with a journal on disk; then the same study again, of which all is done.
+//! 2. **Cells**: a recognition study of 12,000 cells on one thread, with a journal on disk. Its touches, measurements and fits say what
+//!    they take; what is left of the time is the engine's: laying out, journal, tables.
+
+use bubbletouch::Result;
+use bubbletouch::random::Seed;
+use bubbletouch::study::journal::{Identity, JOURNAL_FILE, Journal};
+use bubbletouch::study::memory::AtOnce;
+use bubbletouch::study::pieces::{
+    NamedPiece, PieceManner, PieceRows, PieceStudy, PiecesLeft, n_pieces_left, run_pieces,
+};
+use bubbletouch::study::progress::{Progress, Silent};
+use bubbletouch::study::time_left::Piece;
+use bubbletouch::study::{
+    FrameStorage, Manner, Part, Plan, StudySpec, Sweep, TouchSet, TouchedObject, draw_touches,
+    load_objects, n_left, run_with,
+};
+use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
+use std::path::Path;
+use std::sync::Mutex;
+use std::time::Instant;
+
+const N_PIECES: usize = 10_000;
+
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
+struct Row {
+    number: usize,
+    value: f64,
+    text: String,
+}
+
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
+struct Rows {
+    rows: Vec<(Row, Row)>,
+}
+
+impl PieceRows for Rows {
+    fn append(&mut self, next: Self) {
+        self.rows.extend(next.rows);
+    }
+}
+
+/// Pieces that do nothing.
+struct Nothing;
+
+fn name(number: usize) -> String {
+    format!("piece number {number} of a study that does nothing")
+}
+
+impl PieceStudy for Nothing {
+    type Rows = Rows;
+    type Tables = Rows;
+
+    fn pieces(&self) -> Vec<NamedPiece> {
+        NamedPiece::each_alone((0..N_PIECES).map(name))
+    }
+
+    fn measure(&self, left: &PiecesLeft<Rows>) -> Result<()> {
+        let numbers = left.of(0..N_PIECES, |&number| name(number));
+        numbers.par_iter().try_for_each(|&number| {
+            left.finish(&name(number), || {
+                let row = Row {
+                    number,
+                    value: (number as f64).sqrt(),
+                    text: "as long as words in tables are".to_owned(),
+                };
+                let rows = vec![(row.clone(), row)];
+                Ok(Rows { rows })
+            })
+        })
+    }
+
+    fn tables(&self, rows: Rows) -> Result<Rows> {
+        Ok(rows)
+    }
+}
+
+/// Two objects on an array of 64 taxels, in 12,000 ways.
+const STUDY: &str = r#"
+question = "What does the engine cost?"
+trials = 1
+
+[objects]
+sets = ["cans"]
+names = ["can_54x57.2", "can_157.2x109.5"]
+surface_error_mm = 4.0
+
+[skin]
+pitch_mm = 8.0
+taxels = 8
+stroke_mm = 5.0
+
+[touches]
+per_object = 8
+offset_x_mm = { uniform = [-5.0, 5.0] }
+depth_mm = 3.0
+
+[signal]
+noise_std_full_scale = [0.01, 0.02, 0.03, 0.04, 0.05, 0.06, 0.07, 0.08, 0.09, 0.1, 0.11, 0.12, 0.13, 0.14, 0.15, 0.16, 0.17, 0.18, 0.19, 0.2]
+smoothing_mm = [0.0, 4.0, 8.0, 12.0, 16.0]
+
+[sensing]
+ensemble = ["gaussian", "sbhe", "sparse", "subsample"]
+measurements = [2, 3, 4, 5, 6]
+
+[recognition]
+classifier = ["naive_bayes", "k_nearest", "linear_svm"]
+n_neighbours = 1
+features = ["raw", "unit_norm"]
+test_fraction = 0.5
+"#;
+
+/// Adds up what work says that it took.
+#[derive(Default)]
+struct Worked(Mutex<f64>);
+
+impl Progress for Worked {
+    fn stage(&self, _name: &str, _total: u64) {}
+    fn advance(&self, _n: u64) {}
+    fn finish(&self, _message: &str) {}
+
+    fn worked(&self, _piece: &Piece, took_s: f64) {
+        *self.0.lock().expect("no thread panics") += took_s;
+    }
+}
+
+/// Lines up what was measured: microseconds each.
+fn say(what: &str, seconds: f64, n: usize) {
+    println!("{what:<58} {:>8.1} µs", 1e6 * seconds / n as f64);
+}
+
+fn journal(folder: &Path, name: &str) -> Result<Journal> {
+    let identity = Identity::new(name.to_owned(), Default::default());
+    Journal::open(&folder.join(format!("{name}_{JOURNAL_FILE}")), &identity)
+}
+
+fn time_pieces(folder: &Path) -> Result<()> {
+    for what in ["done and kept", "read and put into rows"] {
+        let start = Instant::now();
+        let journal = journal(folder, "pieces")?;
+        let manner = PieceManner {
+            journal: &journal,
+            fail_fast: false,
+            retries: true,
+            part: Part::All,
+            progress: &Silent,
+        };
+        let finished = run_pieces(&Nothing, &manner)?;
+        journal.sync()?;
+        assert_eq!(finished.rows.rows.len(), N_PIECES);
+        let seconds = start.elapsed().as_secs_f64();
+        say(&format!("a piece, {what}"), seconds, N_PIECES);
+    }
+    let journal = journal(folder, "pieces")?;
+    let start = Instant::now();
+    assert_eq!(n_pieces_left(&Nothing, Part::All, &journal), 0);
+    let seconds = start.elapsed().as_secs_f64();
+    say("a piece, seen to be done", seconds, N_PIECES);
+    Ok(())
+}
+
+fn time_cells(folder: &Path) -> Result<()> {
+    let start = Instant::now();
+    let plan = Plan::new("study", StudySpec::parse("study", STUDY)?)?;
+    let objects = load_objects(&plan.spec.objects, None)?;
+    let touched = draw_touches(objects, &plan.placement, &Seed::new(plan.spec.seed))?;
+    let sweep = Sweep::new(&plan, &touched)?;
+    let n_cells = sweep.n_cells();
+    println!("{n_cells} cells of {} classes", touched.class_names().len());
+    say("a cell, planned", start.elapsed().as_secs_f64(), n_cells);
+    for what in ["done and kept", "read and tabulated"] {
+        let (seconds, worked) = time_run(folder, (&plan, &sweep, &touched))?;
+        say(
+            &format!("a cell, {what}: touch, measure, learn"),
+            worked,
+            n_cells,
+        );
+        say(
+            &format!("a cell, {what}: the engine"),
+            seconds - worked,
+            n_cells,
+        );
+    }
+    let journal = journal(folder, "cells")?;
+    let start = Instant::now();
+    assert_eq!(n_left(&plan, &sweep, Part::All, &journal), 0);
+    say(
+        "a cell, seen to be done",
+        start.elapsed().as_secs_f64(),
+        n_cells,
+    );
+    Ok(())
+}
+
+/// Seconds of a run on this thread, and those that its work says it took.
+fn time_run(
+    folder: &Path,
+    (plan, sweep, touched): (&Plan, &Sweep, &Vec<TouchedObject>),
+) -> Result<(f64, f64)> {
+    let start = Instant::now();
+    let journal = journal(folder, "cells")?;
+    let worked = Worked::default();
+    let manner = Manner {
+        journal: &journal,
+        fail_fast: false,
+        retries: true,
+        part: Part::All,
+        storage: &FrameStorage::in_memory(),
+        at_once: AtOnce::ALL,
+    };
+    let outcome = run_with(plan, sweep, touched, &worked, manner)?;
+    journal.sync()?;
+    assert_eq!(outcome.tables.summary.len(), sweep.n_cells());
+    assert!(
+        outcome.tables.failures.is_empty(),
+        "{:?}",
+        outcome.tables.failures[0]
+    );
+    let worked = *worked.0.lock().expect("no thread panics");
+    Ok((start.elapsed().as_secs_f64(), worked))
+}
+
+fn main() -> Result<()> {
+    let alone = rayon::ThreadPoolBuilder::new().num_threads(1).build();
+    let alone = alone.expect("a thread can be had");
+    let folder = tempfile::tempdir().expect("a folder can be made");
+    alone.install(|| {
+        time_pieces(folder.path())?;
+        time_cells(folder.path())
+    })
+}

@@ -1,0 +1,52 @@
+//! Studies of where recognition breaks.
+
+use super::piece_kind::{KindFacts, PieceKind};
+use super::study_args::StudyArgs;
+use bubbletouch::Result;
+use bubbletouch::report::breaking_points_results::{
+    breaking_points_summary, write_breaking_points,
+};
+use bubbletouch::report::page::StudyAbout;
+use bubbletouch::study::breaking_points::BreakingPointsStudy;
+use bubbletouch::study::breaking_points::table::BreakingPointsTables;
+use std::path::{Path, PathBuf};
+
+pub struct BreakingPointsKind(BreakingPointsStudy);
+
+impl PieceKind for BreakingPointsKind {
+    type Study = BreakingPointsStudy;
+
+    fn load(args: &StudyArgs, packings: PathBuf) -> Result<Self> {
+        Ok(Self(BreakingPointsStudy {
+            plan: args.breaking_points_plan()?,
+            packings: Some(packings),
+        }))
+    }
+
+    fn study(&self) -> &BreakingPointsStudy {
+        &self.0
+    }
+
+    fn facts(&self) -> Result<KindFacts> {
+        let spec = &self.0.plan.spec;
+        Ok(KindFacts {
+            toml: spec.to_toml(),
+            asked: [spec.question.clone(), spec.expected.clone()],
+            seed: spec.seed,
+            content: self.0.content()?,
+        })
+    }
+
+    fn write(
+        &self,
+        tables: &BreakingPointsTables,
+        folder: &Path,
+        about: &StudyAbout,
+    ) -> Result<()> {
+        write_breaking_points(folder, &self.0.plan.ways, tables, about).map(drop)
+    }
+
+    fn words(&self, tables: &BreakingPointsTables, width: usize) -> String {
+        breaking_points_summary(tables, width)
+    }
+}

@@ -1,0 +1,196 @@
+//! Studies that are made of pieces: what a kind has to say of itself, and all that follows from it.
+
+use super::about_study::command_line;
+use super::any_study::{AnyOutcome, AnyStudy, EndedRun, RunManner, seconds_since};
+use super::output::{packings_beside, terminal_width};
+use super::piece_rows::{compare, draw};
+use super::study_args::StudyArgs;
+use bubbletouch::files::write_bytes;
+use bubbletouch::report::csv_tables::{FAILURES_FILE, to_csv};
+use bubbletouch::report::page::StudyAbout;
+use bubbletouch::report::progress;
+use bubbletouch::report::study_tables::StudyTables;
+use bubbletouch::study::Part;
+use bubbletouch::study::journal::{Identity, Journal};
+use bubbletouch::study::pieces::{
+    FinishedPieces, PieceFailure, PieceManner, PieceStudy, n_pieces_left, run_pieces,
+};
+use bubbletouch::study::provenance::{MANIFEST_FILE, Manifest, PROGRAM, RunFacts};
+use bubbletouch::{Error, Result};
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+
+/// A kind of study that is made of pieces.
+pub trait PieceKind: Sized {
+    /// What runs.
+    type Study: PieceStudy<Tables: StudyTables>;
+
+    /// Reads and checks a study, and loads its objects; packings are kept in a folder.
+    fn load(args: &StudyArgs, packings: PathBuf) -> Result<Self>;
+    /// What runs.
+    fn study(&self) -> &Self::Study;
+    /// What its file says, and what that is about.
+    fn facts(&self) -> Result<KindFacts>;
+    /// Writes tables, charts and page.
+    fn write(&self, tables: &Tables<Self>, folder: &Path, about: &StudyAbout) -> Result<()>;
+    /// What a person reads at the end, in lines of about `width` letters.
+    fn words(&self, tables: &Tables<Self>, width: usize) -> String;
+}
+
+/// What a study's file says, and what that is about.
+pub struct KindFacts {
+    /// The study with every default spelt out, as TOML.
+    pub toml: String,
+    /// What it asks, and what was expected.
+    pub asked: [String; 2],
+    /// Root of all randomness.
+    pub seed: u64,
+    /// SHA-256 of what the study's text does not say: objects and other files, by name.
+    pub content: BTreeMap<String, String>,
+}
+
+/// The tables of a kind.
+pub type Tables<K> = <<K as PieceKind>::Study as PieceStudy>::Tables;
+
+/// The rows of a kind.
+type Rows<K> = <<K as PieceKind>::Study as PieceStudy>::Rows;
+
+/// A loaded study.
+pub struct PieceRun<K> {
+    kind: K,
+    facts: KindFacts,
+    identity: Identity,
+    n_pieces: usize,
+}
+
+impl<K: PieceKind> PieceRun<K> {
+    pub fn load(args: &StudyArgs, folder: &Path) -> Result<Self> {
+        let kind = K::load(args, packings_beside(folder))?;
+        let facts = kind.facts()?;
+        Ok(Self {
+            identity: Identity::new(facts.toml.clone(), facts.content.clone()),
+            n_pieces: kind.study().pieces().len(),
+            facts,
+            kind,
+        })
+    }
+}
+
+impl<K: PieceKind> AnyStudy for PieceRun<K> {
+    fn identity(&self) -> &Identity {
+        &self.identity
+    }
+
+    fn units(&self) -> &'static str {
+        "pieces"
+    }
+
+    fn n_all(&self) -> usize {
+        self.n_pieces
+    }
+
+    fn n_left(&self, part: Part, journal: &Journal) -> usize {
+        n_pieces_left(self.kind.study(), part, journal)
+    }
+
+    fn run<'a>(&'a self, manner: &RunManner<'a>) -> Result<Box<dyn AnyOutcome + 'a>> {
+        let manner = PieceManner {
+            journal: manner.journal,
+            fail_fast: manner.fail_fast,
+            retries: manner.retries,
+            part: manner.part,
+            progress: manner.progress,
+        };
+        let study = self.kind.study();
+        let FinishedPieces { rows, failures, .. } = run_pieces(study, &manner)?;
+        Ok(Box::new(PieceOutcome {
+            run: self,
+            tables: study.tables(rows)?,
+            failures,
+        }))
+    }
+
+    fn verify(&self, folder: &Path, n: usize, seed: u64) -> Result<String> {
+        let chosen = draw(&self.kind.study().pieces(), folder, (n, seed))?;
+        let progress = progress::to_stderr();
+        let manner = PieceManner {
+            journal: &Journal::none(),
+            fail_fast: true,
+            retries: false,
+            part: Part::Holding(&chosen),
+            progress: progress.as_ref(),
+        };
+        let study = self.kind.study();
+        let again = study.tables(run_pieces(study, &manner)?.rows)?;
+        progress.finish("");
+        // What other programs left stands in some tables, and no piece made it.
+        let of_others = study.tables(Rows::<K>::default())?;
+        let n_rows = compare(folder, &again, &of_others)?;
+        Ok(format!(
+            "{} of {} pieces ran again, and their {n_rows} rows without times are the same bytes",
+            chosen.len(),
+            self.n_pieces,
+        ))
+    }
+}
+
+/// What came of all pieces.
+struct PieceOutcome<'a, K: PieceKind> {
+    run: &'a PieceRun<K>,
+    tables: Tables<K>,
+    failures: Vec<PieceFailure>,
+}
+
+impl<K: PieceKind> AnyOutcome for PieceOutcome<'_, K> {
+    fn n_failed(&self) -> usize {
+        self.failures.len()
+    }
+
+    fn write(&self, ended: &EndedRun) -> Result<()> {
+        let (kind, folder) = (&self.run.kind, ended.folder);
+        let KindFacts {
+            toml, asked, seed, ..
+        } = &self.run.facts;
+        let [question, expected] = asked.clone();
+        let about = StudyAbout {
+            name: ended.args.name()?,
+            question,
+            expected,
+            wall_s: seconds_since(ended.started),
+            command: command_line(ended.args),
+            program: PROGRAM.to_owned(),
+        };
+        kind.write(&self.tables, folder, &about)?;
+        let failures = folder.join(FAILURES_FILE);
+        let rows = to_csv(&self.failures)
+            .map_err(|error| Error::io(&failures, "write", std::io::Error::other(error)))?;
+        write_bytes(&failures, &rows)?;
+        write_bytes(&folder.join("study.toml"), toml.as_bytes())?;
+        let facts = RunFacts {
+            study: about.name,
+            command: about.command,
+            paths_from: ended.args.folder(),
+            started: ended.started,
+            seed: *seed,
+            n_cells: self.run.n_pieces,
+            n_trials: 1,
+            n_finished_before: ended.n_before,
+            n_failed: self.failures.len(),
+            tables_sha256: self.tables.repeatable_hashes()?,
+            methods: Vec::new(),
+        };
+        let manifest = Manifest::new(&self.run.identity, facts).to_json();
+        write_bytes(&folder.join(MANIFEST_FILE), manifest.as_bytes())
+    }
+
+    fn tell(&self, folder: &Path) {
+        let kind = &self.run.kind;
+        println!("{}\n", self.run.facts.asked[0]);
+        println!("{}", kind.words(&self.tables, terminal_width()));
+        let page = folder.join("report.html");
+        match page.exists() {
+            true => println!("Results in {}; open {}", folder.display(), page.display()),
+            false => println!("Results in {}", folder.display()),
+        }
+    }
+}

@@ -1,0 +1,169 @@
+//! Studies that recognise objects, loaded.
+
+use super::about_study::{add_manifest, add_touches, command_line, limits, page_of_spec};
+use super::any_study::{AnyOutcome, AnyStudy, EndedRun, RunManner, seconds_since};
+use super::memory_args::{MemoryArgs, Room};
+use super::output::{packings_beside, terminal_width};
+use super::study_args::{LoadedStudy, StudyArgs};
+use super::verify_cells::verify_cells;
+use bubbletouch::Result;
+use bubbletouch::files::write_bytes;
+use bubbletouch::report::csv_tables::repeatable_hashes;
+use bubbletouch::report::{headlines, results, terminal};
+use bubbletouch::study::journal::{Identity, Journal};
+use bubbletouch::study::provenance::{MANIFEST_FILE, Manifest, RECOGNITION_METHODS, RunFacts};
+use bubbletouch::study::time_left::{Piece, Work};
+use bubbletouch::study::{FrameStorage, Manner, Outcome, Part, n_left, run_with, workload};
+use std::path::Path;
+use std::time::Instant;
+
+pub struct RecognitionStudy {
+    loaded: LoadedStudy,
+    identity: Identity,
+    room: Room,
+}
+
+impl RecognitionStudy {
+    pub fn load(args: &StudyArgs, folder: &Path, memory: Option<&MemoryArgs>) -> Result<Self> {
+        let loaded = args.load(Some(&packings_beside(folder)))?;
+        let room = match memory {
+            Some(memory) => memory.room(&loaded, folder)?,
+            // It does not run here.
+            None => Room {
+                storage: FrameStorage::in_memory(),
+                at_once: bubbletouch::study::memory::AtOnce::ALL,
+            },
+        };
+        Ok(Self {
+            identity: Identity::new(loaded.plan.spec.to_toml(), loaded.touched.content()),
+            loaded,
+            room,
+        })
+    }
+
+    /// What is done when all cells are there; a shard does nothing then.
+    fn report_work(&self, part: Part) -> Piece {
+        let cells: Vec<_> = self.loaded.sweep.cells().collect();
+        Piece {
+            kind: Work::Report,
+            place: 0,
+            planned_s: match part {
+                Part::Shard(_) => 0.0,
+                _ => results::planned_s(&cells),
+            },
+        }
+    }
+}
+
+impl AnyStudy for RecognitionStudy {
+    fn identity(&self) -> &Identity {
+        &self.identity
+    }
+
+    fn units(&self) -> &'static str {
+        "cells"
+    }
+
+    fn n_all(&self) -> usize {
+        self.loaded.n_evaluations()
+    }
+
+    fn n_left(&self, part: Part, journal: &Journal) -> usize {
+        n_left(&self.loaded.plan, &self.loaded.sweep, part, journal)
+    }
+
+    fn run<'a>(&'a self, manner: &RunManner<'a>) -> Result<Box<dyn AnyOutcome + 'a>> {
+        let LoadedStudy {
+            plan,
+            touched,
+            sweep,
+            ..
+        } = &self.loaded;
+        let progress = manner.progress;
+        let manner = Manner {
+            journal: manner.journal,
+            fail_fast: manner.fail_fast,
+            retries: manner.retries,
+            part: manner.part,
+            storage: &self.room.storage,
+            at_once: self.room.at_once,
+        };
+        let report = self.report_work(manner.part);
+        let work = workload(plan, sweep, touched.as_ref(), manner);
+        progress.expect(&[&work[..], &[report]].concat());
+        Ok(Box::new(RecognitionOutcome {
+            study: self,
+            outcome: run_with(plan, sweep, touched.as_ref(), progress, manner)?,
+            report,
+        }))
+    }
+
+    fn verify(&self, folder: &Path, n: usize, draw: u64) -> Result<String> {
+        verify_cells(&self.loaded, &self.room, folder, (n, draw))
+    }
+}
+
+struct RecognitionOutcome<'a> {
+    study: &'a RecognitionStudy,
+    outcome: Outcome,
+    report: Piece,
+}
+
+impl RecognitionOutcome<'_> {
+    fn manifest(&self, ended: &EndedRun) -> Result<Manifest> {
+        let loaded = &self.study.loaded;
+        let facts = RunFacts {
+            study: loaded.name.clone(),
+            command: command_line(ended.args),
+            paths_from: ended.args.folder(),
+            started: ended.started,
+            seed: loaded.plan.spec.seed,
+            n_cells: loaded.sweep.n_cells(),
+            n_trials: loaded.plan.spec.trials,
+            n_finished_before: ended.n_before,
+            n_failed: self.n_failed(),
+            tables_sha256: repeatable_hashes(&self.outcome.tables)?,
+            methods: RECOGNITION_METHODS.into(),
+        };
+        Ok(Manifest::new(&self.study.identity, facts))
+    }
+}
+
+impl AnyOutcome for RecognitionOutcome<'_> {
+    fn n_failed(&self) -> usize {
+        self.outcome.tables.failures.len()
+    }
+
+    fn write(&self, ended: &EndedRun) -> Result<()> {
+        let start = Instant::now();
+        let (loaded, folder) = (&self.study.loaded, ended.folder);
+        let manifest = self.manifest(ended)?;
+        let spec = &loaded.plan.spec;
+        let mut page = page_of_spec(spec, &loaded.name);
+        page.limits = limits(loaded, &self.outcome);
+        add_touches(&mut page, loaded)?;
+        add_manifest(&mut page, manifest.clone());
+        page.wall_s = Some(seconds_since(ended.started));
+        results::write_all(folder, &self.outcome.tables, &page)?;
+        write_bytes(&folder.join("study.toml"), spec.to_toml().as_bytes())?;
+        write_bytes(&folder.join(MANIFEST_FILE), manifest.to_json().as_bytes())?;
+        let took_s = start.elapsed().as_secs_f64();
+        ended.progress.worked(&self.report, took_s);
+        Ok(())
+    }
+
+    fn tell(&self, folder: &Path) {
+        let tables = &self.outcome.tables;
+        let table = folder.join("summary.csv").display().to_string();
+        println!(
+            "{}",
+            terminal::summary_table(tables, terminal_width(), &table)
+        );
+        print!("{}", headlines::text(tables, terminal_width()));
+        println!(
+            "Results in {}; open {}",
+            folder.display(),
+            folder.join("report.html").display()
+        );
+    }
+}

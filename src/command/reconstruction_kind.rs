@@ -1,0 +1,65 @@
+//! Studies that reconstruct frames.
+
+use super::piece_kind::{KindFacts, PieceKind};
+use super::study_args::StudyArgs;
+use bubbletouch::Result;
+use bubbletouch::random::Seed;
+use bubbletouch::report::page::StudyAbout;
+use bubbletouch::report::reconstruction_frames::{draw_samples, shown_cells};
+use bubbletouch::report::reconstruction_results::write_reconstruction;
+use bubbletouch::report::reconstruction_text::reconstruction_summary;
+use bubbletouch::study::reconstruction::ReconstructionStudy;
+use bubbletouch::study::reconstruction::table::ReconstructionTables;
+use bubbletouch::study::{draw_touches, load_objects, millimetres, objects_content};
+use std::path::{Path, PathBuf};
+
+pub struct ReconstructionKind(ReconstructionStudy);
+
+impl PieceKind for ReconstructionKind {
+    type Study = ReconstructionStudy;
+
+    fn load(args: &StudyArgs, packings: PathBuf) -> Result<Self> {
+        let plan = args.reconstruction_plan()?;
+        let objects = load_objects(&plan.spec.objects, Some(&packings))?;
+        let touched = draw_touches(objects, &plan.placement, &Seed::new(plan.spec.seed))?;
+        Ok(Self(ReconstructionStudy::new(plan, touched)))
+    }
+
+    fn study(&self) -> &ReconstructionStudy {
+        &self.0
+    }
+
+    fn facts(&self) -> Result<KindFacts> {
+        let spec = &self.0.plan.spec;
+        Ok(KindFacts {
+            toml: spec.to_toml(),
+            asked: [spec.question.clone(), spec.expected.clone()],
+            seed: spec.seed,
+            content: objects_content(&self.0.plan.spec.objects)?,
+        })
+    }
+
+    fn write(
+        &self,
+        tables: &ReconstructionTables,
+        folder: &Path,
+        about: &StudyAbout,
+    ) -> Result<()> {
+        let plan = &self.0.plan;
+        let samples = self.0.samples(&shown_cells(tables))?;
+        let grid = plan.patch.grid;
+        let (shape, pitch_mm) = ((grid.ny, grid.nx), millimetres(grid.pitch));
+        let frames = draw_samples(tables, &samples, shape, pitch_mm, plan.quantity())?;
+        write_reconstruction(folder, tables, &frames, about).map(drop)
+    }
+
+    fn words(&self, tables: &ReconstructionTables, width: usize) -> String {
+        let n_objects = self.0.touched.len();
+        let summary = reconstruction_summary(tables, width);
+        // Told after the frames were drawn: their numbers are known.
+        let (n_train, n_test) = self.0.n_touches().unwrap_or_default();
+        format!(
+            "{n_objects} objects; dictionaries learned from {n_train} clean training touches, tested on {n_test} others\n\n{summary}"
+        )
+    }
+}

@@ -1,0 +1,54 @@
+//! Studies of what accuracy costs.
+
+use super::piece_kind::{KindFacts, PieceKind};
+use super::study_args::StudyArgs;
+use bubbletouch::Result;
+use bubbletouch::report::page::StudyAbout;
+use bubbletouch::report::speed_accuracy::{speed_accuracy_summary, write_speed_accuracy};
+use bubbletouch::study::speed_accuracy::SpeedAccuracyStudy;
+use bubbletouch::study::speed_accuracy::table::SpeedAccuracyTables;
+use std::path::{Path, PathBuf};
+
+pub struct SpeedAccuracyKind(SpeedAccuracyStudy);
+
+impl PieceKind for SpeedAccuracyKind {
+    type Study = SpeedAccuracyStudy;
+
+    fn load(args: &StudyArgs, packings: PathBuf) -> Result<Self> {
+        let plan = args.speed_accuracy_plan()?;
+        Ok(Self(SpeedAccuracyStudy::new(plan, Some(packings))?))
+    }
+
+    fn study(&self) -> &SpeedAccuracyStudy {
+        &self.0
+    }
+
+    fn facts(&self) -> Result<KindFacts> {
+        let spec = &self.0.plan.spec;
+        Ok(KindFacts {
+            toml: spec.to_toml(),
+            asked: [spec.question.clone(), spec.expected.clone()],
+            seed: spec.seed,
+            content: self.0.content()?,
+        })
+    }
+
+    fn write(&self, tables: &SpeedAccuracyTables, folder: &Path, about: &StudyAbout) -> Result<()> {
+        write_speed_accuracy(folder, tables, about).map(drop)
+    }
+
+    fn words(&self, tables: &SpeedAccuracyTables, width: usize) -> String {
+        let mut words = speed_accuracy_summary(tables, width);
+        let Some(contact) = &self.0.plan.contact else {
+            return words;
+        };
+        if let Some(path) = contact.peers.as_ref().filter(|path| !path.exists()) {
+            words += &format!("Without other programs: there is no {}\n", path.display());
+        }
+        if let Some(scans) = self.0.plan.scans().filter(|s| !s.meshes.is_dir()) {
+            let folder = scans.meshes.display();
+            words += &format!("Without scans: there is no folder {folder}; --objects names one\n");
+        }
+        words
+    }
+}

@@ -1,0 +1,52 @@
+//! Studies of where contact methods break.
+
+use super::piece_kind::{KindFacts, PieceKind};
+use super::study_args::StudyArgs;
+use bubbletouch::report::page::StudyAbout;
+use bubbletouch::report::stability_results::{stability_summary, write_stability};
+use bubbletouch::study::stability::StabilityPlan;
+use bubbletouch::study::stability::table::StabilityTables;
+use bubbletouch::{Error, Result};
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+
+pub struct StabilityKind(StabilityPlan);
+
+impl PieceKind for StabilityKind {
+    type Study = StabilityPlan;
+
+    fn load(args: &StudyArgs, _packings: PathBuf) -> Result<Self> {
+        if args.objects.is_some() || args.seed.is_some() {
+            let allowed = "neither: nothing is drawn at random, and a ball is what touches";
+            return Err(Error::input("--objects, --seed", "given", allowed));
+        }
+        Ok(Self(args.stability_plan()?))
+    }
+
+    fn study(&self) -> &StabilityPlan {
+        &self.0
+    }
+
+    /// Nothing is drawn at random, and no object is loaded.
+    fn facts(&self) -> Result<KindFacts> {
+        let spec = &self.0.spec;
+        Ok(KindFacts {
+            toml: spec.to_toml(),
+            asked: [spec.question.clone(), spec.expected.clone()],
+            seed: 0,
+            content: BTreeMap::new(),
+        })
+    }
+
+    fn write(&self, tables: &StabilityTables, folder: &Path, about: &StudyAbout) -> Result<()> {
+        write_stability(folder, tables, about).map(drop)
+    }
+
+    fn words(&self, tables: &StabilityTables, width: usize) -> String {
+        let mut words = stability_summary(tables, width);
+        if !cfg!(feature = "rapier") {
+            words += "Without rapier's rows: this command was built without --features rapier\n";
+        }
+        words
+    }
+}

@@ -1,0 +1,50 @@
+//! Studies of a whole body of skin.
+
+use super::piece_kind::{KindFacts, PieceKind};
+use super::study_args::StudyArgs;
+use bubbletouch::Result;
+use bubbletouch::report::page::StudyAbout;
+use bubbletouch::report::whole_body_results::{whole_body_summary, write_whole_body};
+use bubbletouch::study::file_content;
+use bubbletouch::study::whole_body::table::WholeBodyTables;
+use bubbletouch::study::whole_body::{WholeBodyPlan, picture_body};
+use std::path::{Path, PathBuf};
+
+pub struct WholeBodyKind {
+    plan: WholeBodyPlan,
+    /// The robot's file.
+    robot: PathBuf,
+}
+
+impl PieceKind for WholeBodyKind {
+    type Study = WholeBodyPlan;
+
+    fn load(args: &StudyArgs, _packings: PathBuf) -> Result<Self> {
+        let plan = args.whole_body_plan()?;
+        let robot = args.folder().join(&plan.spec.whole_body.robot);
+        Ok(Self { plan, robot })
+    }
+
+    fn study(&self) -> &WholeBodyPlan {
+        &self.plan
+    }
+
+    fn facts(&self) -> Result<KindFacts> {
+        let spec = &self.plan.spec;
+        Ok(KindFacts {
+            toml: spec.to_toml(),
+            asked: [spec.question.clone(), spec.expected.clone()],
+            seed: spec.seed,
+            content: [("robot".to_owned(), file_content(&self.robot)?)].into(),
+        })
+    }
+
+    fn write(&self, tables: &WholeBodyTables, folder: &Path, about: &StudyAbout) -> Result<()> {
+        let picture = picture_body(&self.plan, tables)?;
+        write_whole_body(folder, (tables, picture.as_ref()), about).map(drop)
+    }
+
+    fn words(&self, tables: &WholeBodyTables, width: usize) -> String {
+        whole_body_summary(tables, width)
+    }
+}

@@ -1,0 +1,34 @@
+//! Pieces: a study's work in named parts that know nothing of each other.
+//!
+//! Every kind of study but recognition (whose cells share more) is a [`PieceStudy`]: it says which pieces there are, measures those that
+//! are left, and makes its tables of their rows. The engine does all else: it keeps each piece in the [journal](super::journal) as soon as
+//! it is finished and reads it from there when the study goes on, records what fails, and deals pieces out to shards.
+
+mod left;
+mod piece_study;
+mod record;
+
+pub use left::PiecesLeft;
+pub use piece_study::{
+    FinishedPieces, PieceFailure, PieceManner, PieceStudy, n_pieces_left, run_pieces,
+    run_whole_study,
+};
+pub use record::PieceRows;
+
+/// A piece of a study's work.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct NamedPiece {
+    /// What it is called; no two pieces of a study share a name.
+    pub name: String,
+    /// Number of its group, from 0 without gaps: pieces of a group share what has to be made before them, so that one shard does all of
+    /// them as long as there is a group for every shard.
+    pub group: usize,
+}
+
+impl NamedPiece {
+    /// Pieces that share nothing: each a group of its own.
+    pub fn each_alone(names: impl IntoIterator<Item = String>) -> Vec<Self> {
+        let names = names.into_iter().enumerate();
+        names.map(|(group, name)| Self { name, group }).collect()
+    }
+}

@@ -1,0 +1,158 @@
+//! Runs a study piece by piece.
+
+use super::NamedPiece;
+use super::left::PiecesLeft;
+use super::record::{PieceResult, PieceRows, in_journal};
+use crate::error::Result;
+use crate::study::journal::Journal;
+use crate::study::part::Part;
+use crate::study::progress::Progress;
+use serde::{Deserialize, Serialize};
+
+/// A study that is ready to run, in pieces.
+pub trait PieceStudy {
+    /// What a piece finds.
+    type Rows: PieceRows;
+    /// What the rows of all pieces make.
+    type Tables;
+
+    /// All pieces, in the order of their rows.
+    fn pieces(&self) -> Vec<NamedPiece>;
+
+    /// Does every piece that is left, in any order and on any threads; what several need is made for those that are left only.
+    ///
+    /// # Errors
+    /// Those of [`PiecesLeft::finish`]; what no piece can do without.
+    fn measure(&self, left: &PiecesLeft<Self::Rows>) -> Result<()>;
+
+    /// The tables of the rows of all pieces, but for those that failed.
+    ///
+    /// # Errors
+    /// A file that tables need cannot be read.
+    fn tables(&self, rows: Self::Rows) -> Result<Self::Tables>;
+}
+
+/// How a run goes about its pieces.
+#[derive(Clone, Copy)]
+pub struct PieceManner<'a> {
+    /// Where finished pieces are looked for and kept.
+    pub journal: &'a Journal,
+    /// Whether the first piece that fails ends the run.
+    pub fail_fast: bool,
+    /// Whether pieces that failed in an earlier run are tried again.
+    pub retries: bool,
+    /// Which pieces to do: [`Part::Holding`] names them by (number, 0).
+    pub part: Part<'a>,
+    /// What is told how far the run is.
+    pub progress: &'a dyn Progress,
+}
+
+/// A piece that failed: a row of `failures.csv`.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct PieceFailure {
+    /// The piece.
+    pub piece: String,
+    /// What went wrong.
+    pub error: String,
+}
+
+/// What came of all pieces, in this run and those before it.
+#[derive(Clone, Debug)]
+pub struct FinishedPieces<R> {
+    /// Rows of those that did not fail, in the order of pieces.
+    pub rows: R,
+    /// Those that failed, in the same order.
+    pub failures: Vec<PieceFailure>,
+    /// Pieces that nobody has done: those of other shards.
+    pub n_left: usize,
+    /// All pieces.
+    pub n_pieces: usize,
+}
+
+/// Does what a journal has not yet of a study's pieces. The rows but for times are the same as if all were done at once.
+///
+/// # Errors
+/// The journal cannot be written; what a piece fails of, if the first to fail ends the run; what no piece can do without.
+pub fn run_pieces<S: PieceStudy>(
+    study: &S,
+    manner: &PieceManner,
+) -> Result<FinishedPieces<S::Rows>> {
+    let pieces = study.pieces();
+    let is_in = is_in(&pieces, manner.part);
+    let known = |piece: &NamedPiece| in_journal::<S::Rows>(manner.journal, &piece.name);
+    let mut before: Vec<Option<PieceResult<S::Rows>>> = pieces.iter().map(known).collect();
+    let is_left = |(number, piece): (usize, &NamedPiece)| {
+        let is_left = match &before[number] {
+            None => true,
+            Some(Err(_)) => manner.retries,
+            Some(Ok(_)) => false,
+        };
+        (is_left && is_in(number)).then(|| piece.name.clone())
+    };
+    let left = pieces.iter().enumerate().filter_map(is_left);
+    let left: Vec<String> = left.collect();
+    let mut now = Default::default();
+    if !left.is_empty() {
+        let left = PiecesLeft::new(manner.journal, manner.fail_fast, manner.progress, left);
+        study.measure(&left)?;
+        now = left.into_results();
+    }
+    let mut finished = FinishedPieces {
+        rows: S::Rows::default(),
+        failures: Vec::new(),
+        n_left: 0,
+        n_pieces: pieces.len(),
+    };
+    for (piece, before) in pieces.iter().zip(&mut before) {
+        let result = match now.remove(&piece.name) {
+            Some(Some(result)) => Some(result),
+            Some(None) => Some(Err("a defect of the program: it was passed over".to_owned())),
+            None => before.take(),
+        };
+        match result {
+            Some(Ok(rows)) => finished.rows.append(rows),
+            Some(Err(error)) => finished.failures.push(PieceFailure {
+                piece: piece.name.clone(),
+                error,
+            }),
+            None => finished.n_left += 1,
+        }
+    }
+    Ok(finished)
+}
+
+/// Runs a whole study at once, keeps nothing, and ends at the first piece that fails.
+///
+/// # Errors
+/// What a piece fails of.
+pub fn run_whole_study<S: PieceStudy>(study: &S, progress: &dyn Progress) -> Result<S::Tables> {
+    let manner = PieceManner {
+        journal: &Journal::none(),
+        fail_fast: true,
+        retries: false,
+        part: Part::All,
+        progress,
+    };
+    study.tables(run_pieces(study, &manner)?.rows)
+}
+
+/// Pieces of a part of which a journal does not say what came of them.
+pub fn n_pieces_left<S: PieceStudy>(study: &S, part: Part, journal: &Journal) -> usize {
+    let pieces = study.pieces();
+    let is_in = is_in(&pieces, part);
+    let is_left = |(number, piece): &(usize, &NamedPiece)| {
+        is_in(*number) && in_journal::<S::Rows>(journal, &piece.name).is_none()
+    };
+    pieces.iter().enumerate().filter(is_left).count()
+}
+
+/// Whether a piece, by its number, belongs to a part.
+fn is_in<'a>(pieces: &'a [NamedPiece], part: Part<'a>) -> impl Fn(usize) -> bool + 'a {
+    let groups = pieces.iter().map(|piece| piece.group);
+    let n_groups = groups.max().map_or(0, |last| last + 1);
+    move |number| match part {
+        Part::All => true,
+        Part::Shard(shard) => shard.takes((pieces[number].group, n_groups), number),
+        Part::Holding(numbers) => numbers.contains(&(number, 0)),
+    }
+}
