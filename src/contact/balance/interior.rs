@@ -168,8 +168,8 @@ impl Problem {
             (0..6).map(|k| along[k] * vectors[k][i]).sum::<f64>() - self.weight[i]
         });
         for (slope, force) in self.slopes.iter().zip(&at.forces) {
-            for k in 0..6 {
-                left[k] += force * slope[k];
+            for (left, slope) in left.iter_mut().zip(slope) {
+                *left += force * slope;
             }
         }
         left
@@ -197,8 +197,8 @@ impl Problem {
     ) {
         rows.clear();
         let (values, vectors) = &self.curvature;
-        for k in 0..6 {
-            rows.add(values[k], &vectors[k], 0.0);
+        for (value, vector) in values.iter().zip(vectors) {
+            rows.add(*value, vector, 0.0);
         }
         for (i, spring) in self.springs.iter().enumerate() {
             let (mut mean, mut all, mut push) = ([0.0; 6], 0.0, 0.0);
@@ -214,8 +214,8 @@ impl Problem {
                 let (weight, ask) = asked(j);
                 all += weight;
                 push += ask;
-                for k in 0..6 {
-                    mean[k] += weight * self.slopes[j][k];
+                for (sum, slope) in mean.iter_mut().zip(&self.slopes[j]) {
+                    *sum += weight * slope;
                 }
             }
             mean = mean.map(|x| x / all);
@@ -377,8 +377,8 @@ impl Inside {
     }
 
     fn go(&mut self, step: &Step, share: f64) {
-        for k in 0..6 {
-            self.motion[k] += share * step.motion[k];
+        for (motion, change) in self.motion.iter_mut().zip(&step.motion) {
+            *motion += share * change;
         }
         for (values, changes) in [
             (&mut self.inwards, &step.inwards),
