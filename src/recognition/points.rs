@@ -5,12 +5,10 @@ use std::ops::Range;
 use ndarray::{Array1, Array2, ArrayView1, ArrayView2, ArrayViewMut2, Axis, s};
 
 use crate::recognition::kernel::KernelFunction;
+use crate::recognition::moved_row::{Moved, move_row};
 use crate::recognition::packed::Packed;
 use crate::recognition::row_products::Rows;
 use crate::recognition::scalar::Scalar;
-
-/// Values looked at side by side.
-const LANES: usize = 8;
 
 /// Rows (n × m) moved to a centre, with their squared norms.
 ///
@@ -202,46 +200,6 @@ impl<'a, T: Scalar> PointsView<'a, T> {
             } => products.mapv_inplace(|value| polynomial(value, gamma, coef0, degree)),
         }
     }
-}
-
-/// What there is to tell of a row x less the centre c.
-pub(crate) struct Moved {
-    /// `|x − c|²`.
-    pub norm: f64,
-    /// `(x − c)·c`. Far from the origin, `x·c − c·c` would be two large numbers less each other.
-    pub along_centre: f64,
-}
-
-/// A row less the centre. Over slices: a walk over ndarray's views is not always made vector instructions of.
-#[multiversion::multiversion(targets("x86_64+avx512f", "x86_64+avx2+fma"))]
-fn move_row<T: Scalar>(to: &mut [T], row: &[f64], centre: &[f64]) -> Moved {
-    let (to, last_to) = to.as_chunks_mut::<LANES>();
-    let (row, last_row) = row.as_chunks::<LANES>();
-    let (centre, last_centre) = centre.as_chunks::<LANES>();
-    let n = to.len();
-    let (row, centre) = (&row[..n], &centre[..n]);
-    // Each lane keeps its own; they meet at the end.
-    let (mut squares, mut products) = ([0.0; LANES], [0.0; LANES]);
-    for at in 0..n {
-        for lane in 0..LANES {
-            let moved = row[at][lane] - centre[at][lane];
-            to[at][lane] = T::of(moved);
-            squares[lane] += moved * moved;
-            products[lane] += moved * centre[at][lane];
-        }
-    }
-    let (mut norm, mut along_centre) = (0.0, 0.0);
-    for lane in 0..LANES {
-        norm += squares[lane];
-        along_centre += products[lane];
-    }
-    for at in 0..last_to.len() {
-        let moved = last_row[at] - last_centre[at];
-        last_to[at] = T::of(moved);
-        norm += moved * moved;
-        along_centre += moved * last_centre[at];
-    }
-    Moved { norm, along_centre }
 }
 
 fn polynomial<T: Scalar>(product: T, gamma: f64, coef0: f64, degree: i32) -> T {

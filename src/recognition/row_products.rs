@@ -43,7 +43,7 @@ impl<'a, T: Scalar> Rows<'a, T> {
 
 /// Products of rows with others, all equally long: rows.len() × others.len(), row by row.
 pub(crate) fn multiply<T: Scalar>(rows: &[&[T]], others: &[&[T]], to: &mut [T]) {
-    if T::products_in_place(rows, others, to) {
+    if to.is_empty() || T::products_in_place(rows, others, to) {
         return;
     }
     let whole = |rows: &[&[T]]| {

@@ -9,8 +9,9 @@ use std::ops::Range;
 
 use crate::recognition::between::{Group, groups, pairs};
 use crate::recognition::dual::DualSolution;
+use crate::recognition::first_rows::{PairsNearMargin, few_dimensions};
 use crate::recognition::kernel::KernelFunction;
-use crate::recognition::near_margin::{NearMargin, PairsNearMargin, few_dimensions};
+use crate::recognition::near_margin::NearMargin;
 use crate::recognition::scalar::Scalar;
 use crate::recognition::smo::{Cached, Dense, Gram, Room, Smo, part_of_blocks};
 use crate::recognition::sorted::Sorted;

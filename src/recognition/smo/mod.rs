@@ -16,6 +16,7 @@ mod part;
 pub(crate) mod passes;
 #[cfg(target_arch = "x86_64")]
 pub(crate) mod passes_512;
+mod reached;
 mod row_sums;
 mod runs;
 mod start;
@@ -23,14 +24,15 @@ mod variables;
 
 pub(crate) use gram::{Cached, Dense, Gram, gather};
 pub(crate) use part::{Part, Room, part_of, part_of_blocks};
+pub(crate) use reached::Reached;
 pub(crate) use runs::Runs;
 pub(crate) use variables::extremes;
 
-use crate::recognition::dataset::all_finite;
 use crate::recognition::dual::DualSolution;
 use crate::recognition::scalar::Scalar;
 use passes::select_up;
-use variables::{Variables, linear_and_quadratic, rho};
+use reached::violation;
+use variables::{Variables, linear_and_quadratic};
 
 /// Iterations after which a problem counts as not solved, as in LIBSVM; or 100 a row, if that is more.
 const MOST_ITERATIONS: u64 = 10_000_000;
@@ -236,39 +238,6 @@ fn solve_part<T: Scalar>(
             Stop::Done => return solved,
         }
     }
-}
-
-/// How a search ended.
-pub(crate) struct Reached {
-    /// Whether within its tolerance.
-    pub is_solved: bool,
-    pub n_iterations: u64,
-}
-
-impl Reached {
-    /// What is to be said of a solution, but its coefficients: of β, the signs of its rows, and f of it.
-    pub fn solution(self, variables: (&[f64], &[bool], &[f64]), c: f64) -> DualSolution {
-        let (beta, is_positive, f) = variables;
-        let (linear, quadratic) = linear_and_quadratic(beta, is_positive, f);
-        DualSolution {
-            coefficients: Vec::new(),
-            rho: rho(beta, is_positive, f, c),
-            is_capped: !self.is_solved,
-            objective: linear - 0.5 * quadratic,
-            violation: Some(violation(beta, is_positive, f, c).max(0.0)),
-            n_iterations: Some(self.n_iterations),
-        }
-    }
-}
-
-/// How far the optimality conditions for a C are violated; below 0 when they hold with room to spare, infinite when kernel
-/// values have left nothing to go by.
-fn violation(beta: &[f64], is_positive: &[bool], f: &[f64], c: f64) -> f64 {
-    if !all_finite(f) {
-        return f64::INFINITY;
-    }
-    let (highest, lowest) = extremes(beta, is_positive, f, c);
-    highest - lowest
 }
 
 /// How far the search may go, and has gone.

@@ -1,0 +1,100 @@
+//! The rows that pairs of classes are first solved on, [near their margins](crate::recognition::near_margin).
+//!
+//! They are found where it costs little: in the few dimensions that some of the rows span, by a few
+//! rounds of the same, to a rough tolerance. Those begin with the rows nearest to the other class along the line between
+//! the means. Of 6,000 touches of 43 objects in 1,024 features, 66 % of the rows that support a pair are among the 32 of
+//! either class that are nearest along that line, 84 % among the 24 that are nearest to the margin in 64 dimensions.
+
+use std::ops::Range;
+
+use ndarray::{Array2, Axis};
+
+use crate::recognition::between::pairs;
+use crate::recognition::few_dimensions::spanned;
+use crate::recognition::margin_pair::{Scratch, Sides, nearest};
+use crate::recognition::near_margin::{Classes, NearMargin};
+use crate::recognition::scalar::Scalar;
+use crate::recognition::sorted::Sorted;
+
+/// Dimensions in which the first rows are looked for. More find them better and cost more.
+pub(crate) const FEW_DIMENSIONS: usize = 64;
+/// Classes whose pairs with as many others are solved together. Fewer leave the tiles of their products unfilled, more do not
+/// stay in the cache.
+pub(crate) const CLASSES_AT_ONCE: usize = 8;
+/// Rows of each class that a pair starts with in the few dimensions.
+const ROWS_ALONG_MEANS: usize = 16;
+
+/// All pairs of classes, solved in turn.
+pub(crate) struct PairsNearMargin<'a, T> {
+    few: Classes<'a, T>,
+    all: Classes<'a, T>,
+    along_means: Array2<T>,
+}
+
+impl<'a, T: Scalar> PairsNearMargin<'a, T> {
+    /// Of these rows, and of the same in [`few_dimensions`].
+    pub fn new(sorted: &'a Sorted<T>, few: &'a Sorted<T>) -> Self {
+        Self {
+            along_means: along_means(few),
+            few: Classes::new(few),
+            all: Classes::new(sorted),
+        }
+    }
+
+    /// Pairs of some classes, in turn all: so few that what is known of them stays in the cache.
+    pub fn blocks(&self) -> impl Iterator<Item = Vec<(usize, usize)>> {
+        let n = self.all.sorted.ranges().len();
+        let groups: Vec<Range<usize>> = (0..n)
+            .step_by(CLASSES_AT_ONCE)
+            .map(|start| start..n.min(start + CLASSES_AT_ONCE))
+            .collect();
+        let mut blocks = Vec::new();
+        for (at, own) in groups.iter().enumerate() {
+            for other in &groups[at..] {
+                blocks.push(pairs(own.clone(), other.clone()).collect());
+            }
+        }
+        blocks.into_iter()
+    }
+
+    /// Some pairs, not solved yet, on the rows that are near the margin for this C.
+    pub fn near(&self, pairs: &[(usize, usize)], c: f64) -> NearMargin<'_, 'a, T> {
+        let rows: Vec<Sides> = pairs.iter().map(|&pair| self.near_means(pair)).collect();
+        let rows = NearMargin::new(&self.few, pairs, &rows).near_margin(c);
+        NearMargin::new(&self.all, pairs, &rows)
+    }
+
+    /// The rows of a pair that are nearest to the other class along the line between the means.
+    fn near_means(&self, (a, b): (usize, usize)) -> Sides {
+        let along: [Vec<T>; 2] = [a, b].map(|own| {
+            let rows = self.few.sorted.ranges()[own].clone();
+            rows.map(|row| self.along_means[[row, a]] - self.along_means[[row, b]])
+                .collect()
+        });
+        let along = along.each_ref().map(Vec::as_slice);
+        nearest(along, ROWS_ALONG_MEANS, &mut Scratch::default())
+    }
+}
+
+/// The rows in the few dimensions that some of them span.
+pub(crate) fn few_dimensions<T: Scalar>(sorted: &Sorted<T>) -> Sorted<T> {
+    let directions = spanned(sorted.points().all().values, FEW_DIMENSIONS);
+    sorted.along(directions.view())
+}
+
+/// Products of all rows with the means of the classes: n_rows × n_classes.
+fn along_means<T: Scalar>(sorted: &Sorted<T>) -> Array2<T> {
+    let mut means = Array2::zeros((sorted.ranges().len(), sorted.centre().len()));
+    for (range, mut mean) in sorted.ranges().iter().zip(means.rows_mut()) {
+        let n = T::of(range.len() as f64);
+        mean.assign(
+            &(sorted
+                .points()
+                .range(range.clone())
+                .values
+                .sum_axis(Axis(0))
+                / n),
+        );
+    }
+    sorted.points().all().values.dot(&means.t())
+}
