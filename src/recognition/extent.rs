@@ -68,8 +68,8 @@ fn add_row(sums: &mut [f64], row: &[f64]) -> f64 {
         }
     }
     let mut norm = 0.0;
-    for lane in 0..LANES {
-        norm += squares[lane];
+    for square in squares {
+        norm += square;
     }
     for at in 0..last_sums.len() {
         last_sums[at] += last[at];
