@@ -53,7 +53,8 @@ impl<T: Scalar> Points<T> {
                 Some(row) => move_row(own, row, &centre),
                 None => move_row(own, &row.to_vec(), &centre),
             };
-            norms.push(T::of(moved.norm));
+            // Of what is kept, and rounded like products: distances come from both.
+            norms.push(to.dot(&to));
             told(moved);
         }
         let norms = norms.into();
