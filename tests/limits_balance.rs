@@ -86,11 +86,9 @@ fn assert_rests(rest: &Balance, weight: f64, case: &str) {
     }
 }
 
-/// Ties that hold nearly everywhere at once may end `Unsettled`: counted, never hidden, and no more often than this.
-fn assert_few(faults: &[String], most: usize) {
-    let is_told = |fault: &String| fault.contains("outcome: Unsettled");
+fn assert_none(faults: &[String]) {
     assert!(
-        faults.iter().all(is_told) && faults.len() <= most,
+        faults.is_empty(),
         "{} faults:\n{}",
         faults.len(),
         faults.join("\n")
@@ -127,7 +125,7 @@ fn a_million_metres_from_the_origin_objects_rest_as_at_it() {
 #[test]
 fn neighbours_a_trillion_times_as_stiff_share_a_load_as_they_must() {
     let mut faults = Vec::new();
-    for case in 0..20 {
+    for case in 0..40 {
         let mut rng = rng("stiffness ratios", case);
         let n = 24;
         let grid = bed(n, 1.0);
@@ -153,7 +151,7 @@ fn neighbours_a_trillion_times_as_stiff_share_a_load_as_they_must() {
         let about = format!("case {case}, {mass} kg on {soft} N/m and {:e}", 1e12 * soft);
         faults.extend(fault(&rest, mass * G).map(|fault| format!("{about}: {fault}")));
     }
-    assert_few(&faults, 5);
+    assert_none(&faults);
 }
 
 #[test]
@@ -177,15 +175,7 @@ fn a_ball_rests_on_a_pattern_of_springs_at_the_height_of_the_formula() {
             let body = FreeObject::new(&ball, mass, DVec3::ZERO).unwrap();
             let rest = settle(&skin, &body, &height(0.05));
             let case = format!("{mass} kg on {soft} N/m");
-            // Springs so stiff that the last bit of the ball's place is more than its weight: it lies on them, and says so.
-            if 1e12 * soft * f64::EPSILON * 0.021 > 1e-6 * mass * G {
-                let is_on_top = (rest.pose.translation.z - 0.021).abs() < 1e-4;
-                assert!(
-                    is_on_top && rest.outcome == Outcome::Unsettled,
-                    "{case}: {rest:?}"
-                );
-                continue;
-            }
+            // Also on springs so stiff that the last bit of the ball's place is more than its weight: the forces are known all the same.
             assert_rests(&rest, mass * G, &case);
             let (mut low, mut high) = (0.015, 0.025);
             for _ in 0..200 {
@@ -244,7 +234,7 @@ fn what_balances_on_an_edge_or_a_point_does_not_stay_there() {
 fn a_thin_sheet_that_falls_from_any_height_is_caught() {
     let mut faults = Vec::new();
     let skin = bed(32, 100.0);
-    for case in 0..40 {
+    for case in 0..60 {
         let mut rng = rng("sheets", case);
         let thickness = 10f64.powf(rng.gen_range(-5.0..-3.0));
         let square = (0..21).flat_map(|i| (0..21).map(move |j| (i, j)));
@@ -270,7 +260,7 @@ fn a_thin_sheet_that_falls_from_any_height_is_caught() {
             "{about}: {rest:?}"
         );
     }
-    assert_few(&faults, 4);
+    assert_none(&faults);
 }
 
 #[test]
@@ -280,18 +270,11 @@ fn stops_carry_what_saturated_springs_do_not() {
     let skin = bed(n, 10.0);
     let springs = (n * n) as f64 * 10.0 * TAXEL.stroke;
     let foot = union(skin.layout().centers().iter().copied(), 3e-3);
-    let mut n_unsettled = 0;
     for mass in [100.0, 1e4, 1e6] {
         for off in [0.0, 3e-3] {
             let body = FreeObject::new(&foot, mass, DVec3::new(off, -0.5 * off, 0.01)).unwrap();
             let rest = settle(&skin, &body, &height(0.02));
             let case = format!("{mass} kg, {off} m off the middle");
-            if rest.outcome == Outcome::Unsettled {
-                // A hundred stops at once: counted, and not far from balance.
-                assert!(rest.imbalance < 1e-3, "{case}: {rest:?}");
-                n_unsettled += 1;
-                continue;
-            }
             assert_rests(&rest, mass * G, &case);
             assert!(rest.force.z > 50.0 * springs);
             assert!(rest.n_saturated >= 3, "{case}: {rest:?}");
@@ -300,7 +283,6 @@ fn stops_carry_what_saturated_springs_do_not() {
             assert!((most - TAXEL.stroke).abs() < 1e-8, "{case}: {most}");
         }
     }
-    assert!(n_unsettled <= 3, "{n_unsettled} of 6");
 }
 
 #[test]
@@ -385,5 +367,5 @@ fn balls_of_all_sizes_rest_at_the_height_of_the_formula_or_fall_between_the_taxe
             assert!(error.abs() < known, "{case}: {error}");
         }
     }
-    assert_few(&faults, 0);
+    assert_none(&faults);
 }

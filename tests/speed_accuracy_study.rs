@@ -94,6 +94,13 @@ fn every_point_is_a_row_fronts_are_fronts_and_threads_change_no_byte_but_times()
         fine < coarse && fine > 0.0 && fine < 0.2 && coarse < 1.0,
         "{fine} {coarse}"
     );
+    // Singles are as right as doubles, beside the error of the model.
+    let [doubles, singles] =
+        [ContactWay::RowsInDoubles, ContactWay::RowsInSingles].map(|way| mean(way, Some(0.2)));
+    assert!(
+        (doubles - fine).abs() < 1e-9 && (singles - doubles).abs() < 1e-4,
+        "{doubles} {singles} {fine}"
+    );
     // Steps of the quasi-static model end where one evaluation does.
     let stepped = mean(ContactWay::TimeSteps, Some(0.2));
     assert!((stepped - fine).abs() < fine, "{stepped} {fine}");
@@ -117,6 +124,8 @@ fn every_point_is_a_row_fronts_are_fronts_and_threads_change_no_byte_but_times()
         let svg = fs::read_to_string(case.path("1").join(format!("{}.svg", kind.name()))).unwrap();
         assert!(svg.contains("Pareto front"));
     }
+    let page = fs::read_to_string(case.path("1/report.html")).unwrap();
+    assert!(page.contains("class=\"asked\"") && page.contains("Contact, from the fastest"));
     let n_decisions = points.iter().filter(|p| p.chart == ChartKind::Decision);
     assert_eq!(n_decisions.count(), 2 * 2 * 2 * 2);
     let peer = points

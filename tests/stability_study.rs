@@ -115,6 +115,53 @@ fn ours_is_right_everywhere_the_others_break_where_they_must_and_threads_change_
     assert!(svg.contains("limit of an explicit spring") && svg.contains("M : m"));
 }
 
+/// Plungers whose taxels carry the same on all arrays.
+const JOINTS: &str = r#"
+question = "How many joints?"
+
+[[stability.parts]]
+scene = "plunger"
+methods = ["quasi_static", "implicit_euler", "rapier_tuned", "rapier_skin_sim"]
+taxels = [4, 6, 8]
+stroke_mm = 20.0
+stiffness_n_per_m = 16.37
+object_mass_per_taxel_kg = 3.5e-3
+taxel_mass_kg = [1e-3, 1e-5]
+dt_s = 2e-3
+"#;
+
+#[test]
+fn a_ladder_of_joints_carries_the_same_on_each_and_is_charted() {
+    let case = Case::new();
+    case.file("study.toml", JOINTS);
+    case.succeeds(&["run", "study.toml", "--out", "out"]);
+    let path = case.path("out/stability.csv");
+    let cells: Vec<StabilityCell> = read_rows(&path).unwrap();
+    let scores: Vec<StabilityScore> = read_rows(&path).unwrap();
+    for (cell, score) in cells.iter().zip(&scores) {
+        let about = format!("{cell:?} {score:?}");
+        let carried = cell.object_mass_kg.unwrap() / (cell.taxels * cell.taxels) as f64;
+        assert!((carried / 3.5e-3 - 1.0).abs() < 1e-12, "{about}");
+        let is_right = score.outcome == Outcome::Right;
+        match cell.method {
+            ContactMethod::QuasiStatic | ContactMethod::ImplicitEuler => {
+                assert!(is_right, "{about}");
+            }
+            // Dampers as forces gain energy beyond Δt = 2 m / c = 0.15 ms of the lighter taxels, whatever the solver.
+            ContactMethod::RapierSkinSim if cell.taxel_mass_kg == 1e-5 => {
+                assert!(!is_right, "{about}");
+            }
+            _ => {}
+        }
+    }
+    let n_methods = if cfg!(feature = "rapier") { 4 } else { 2 };
+    assert_eq!(cells.len(), n_methods * 3 * 2);
+    let svg = fs::read_to_string(case.path("out/stability_joints.svg")).unwrap();
+    assert!(svg.contains("joints") && svg.contains("unstable near 280"));
+    let page = fs::read_to_string(case.path("out/report.html")).unwrap();
+    assert!(page.contains("class=\"asked\"") && page.contains("16 joints"));
+}
+
 #[test]
 fn keys_that_are_out_of_range_are_named_with_their_part() {
     assert_eq!(StudyKind::of(QUICK), StudyKind::Stability);
@@ -143,6 +190,11 @@ fn keys_that_are_out_of_range_are_named_with_their_part() {
             "stroke_mm = 20.0",
             "stroke_mm = 0.0",
             "key stability.parts[3].stroke_mm: 0",
+        ),
+        (
+            "object_mass_kg = 1.0\n",
+            "object_mass_kg = 1.0\nobject_mass_per_taxel_kg = 1.0\n",
+            "key stability.parts[3].object_mass_per_taxel_kg: a mass; one of this key and",
         ),
         (
             "object_mass_kg = 1.0\n",

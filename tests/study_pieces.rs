@@ -6,13 +6,12 @@ mod faults;
 mod kinds;
 
 use command::Case;
-use faults::{full_disk, keys, said, signal, start};
+use faults::{full_disk, keys, pieces, said, signal, start};
 use kinds::Kind;
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use std::collections::BTreeSet;
 use std::fs;
-use std::path::Path;
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
@@ -21,12 +20,6 @@ struct Faults {
     kind: Kind,
     case: Case,
     took: Duration,
-}
-
-/// Names of the pieces that a journal holds, as often as it does.
-fn pieces(journal: &Path) -> Vec<String> {
-    let keys = keys(journal).into_iter();
-    keys.filter(|key| key.starts_with("piece ")).collect()
 }
 
 impl Faults {

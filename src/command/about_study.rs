@@ -5,6 +5,7 @@ use bubbletouch::Result;
 use bubbletouch::report::page::{Limit, ReportPage, Snapshots};
 use bubbletouch::study::provenance::{Manifest, PROGRAM};
 use bubbletouch::study::{Outcome, Samples, StudySpec};
+use std::path::Path;
 
 /// What a page says without the study's objects.
 pub fn page_of_spec(spec: &StudySpec, name: &str) -> ReportPage {
@@ -128,7 +129,17 @@ pub fn limits(loaded: &LoadedStudy, outcome: &Outcome) -> Vec<Limit> {
 
 /// The command that makes a study's folder again.
 pub fn command_line(args: &StudyArgs) -> String {
-    let mut command = format!("bubbletouch run {}", args.study.display());
+    line_of("run", args)
+}
+
+/// The command that puts the shards of a study together, told where they were written as they were.
+pub fn merge_line(args: &StudyArgs, out: Option<&Path>) -> String {
+    let out = out.map(|folder| format!(" --out {}", folder.display()));
+    line_of("merge", args) + &out.unwrap_or_default()
+}
+
+fn line_of(subcommand: &str, args: &StudyArgs) -> String {
+    let mut command = format!("bubbletouch {subcommand} {}", args.study.display());
     if let Some(objects) = &args.objects {
         command += &format!(" --objects {}", objects.display());
     }

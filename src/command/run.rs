@@ -1,5 +1,6 @@
 //! `bubbletouch run`: a study from its file to its folder of results.
 
+use super::about_study::merge_line;
 use super::any_study::{EndedRun, RunManner, end, failures, load_study, seconds_since};
 use super::listener::Listener;
 use super::memory_args::MemoryArgs;
@@ -85,9 +86,9 @@ pub fn run(args: &Args) -> Result<()> {
     kept.journal.sync()?;
     if let Some(shard) = args.shard {
         progress.finish(&format!("{:.1} s", seconds_since(started)));
-        let study_file = args.study.study.display();
+        let merge = merge_line(&args.study, args.out.as_deref());
         args.listener.remark(&format!(
-            "shard {shard} is done; when all are, put them together: bubbletouch merge {study_file}"
+            "shard {shard} is done; when all are, put them together: {merge}"
         ));
         return failures(study.as_ref(), outcome.as_ref(), &folder);
     }

@@ -67,7 +67,10 @@ fn add_row(sums: &mut [f64], row: &[f64]) -> f64 {
             squares[lane] += row[at][lane] * row[at][lane];
         }
     }
-    let mut norm: f64 = squares.iter().sum();
+    let mut norm = 0.0;
+    for square in squares {
+        norm += square;
+    }
     for at in 0..last_sums.len() {
         last_sums[at] += last[at];
         norm += last[at] * last[at];

@@ -221,7 +221,7 @@ pub(super) fn break_words(row: &BreakingPoint) -> Option<String> {
 }
 
 /// Three digits: interpolated places have no more.
-fn short_number_rounded(value: f64) -> String {
+pub(super) fn short_number_rounded(value: f64) -> String {
     let digits = 10f64.powi(2 - value.abs().max(f64::MIN_POSITIVE).log10().floor() as i32);
     short_number((value * digits).round() / digits)
 }

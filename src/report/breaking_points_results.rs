@@ -1,6 +1,6 @@
 //! The folder of a study of breaking points, and what it prints at its end.
 
-use super::breaking_points_charts::{break_words, draw_breaking_points};
+use super::breaking_points_charts::{break_words, draw_breaking_points, short_number_rounded};
 use crate::error::Result;
 use crate::report::axis::{classifier_name, short_number};
 use crate::report::folder::Folder;
@@ -46,53 +46,50 @@ pub fn write_breaking_points(
     }
     let note = "Each setting alone is driven to its ends; the interval is that of the place where accuracy is half of its best.";
     let found = vec![
-        plain::answer(&sentences(tables)),
+        plain::answer(&sentences(ways, tables)),
+        // The first is all others in one.
+        plain::charts(&drawn[1..]),
         plain::table(
             "breaks",
             "Breaking points",
             note,
             &breaks_table(tables, 200),
         ),
-        // The first is all others in one.
-        plain::charts(&drawn[1..]),
     ];
     folder.add("report.html", plain_page(about, found, &names));
     folder.write()
 }
 
-/// How many settings break recognition, then those that do, each with the classifier that stands it longest.
-fn sentences(tables: &BreakingPointsTables) -> Vec<String> {
-    let rows = &tables.breaking_points;
-    let mut ways: Vec<&str> = rows.iter().map(|row| row.way.as_str()).collect();
-    ways.dedup();
-    let breaks_all = |way: &&&str| {
-        let mut of_way = rows.iter().filter(|row| row.way == **way).peekable();
-        of_way.peek().is_some() && {
-            let kinds: Vec<_> = of_way.clone().map(|row| row.classifier).collect();
-            kinds.iter().all(|kind| {
-                let mut of_kind = of_way.clone().filter(|row| row.classifier == *kind);
-                of_kind.any(|row| row.is_reached)
-            })
-        }
+/// How many settings break recognition, where each does, and which do not.
+fn sentences(ways: &[PlannedWay], tables: &BreakingPointsTables) -> Vec<String> {
+    let place = |row: &BreakingPoint| {
+        let at = short_number_rounded(row.breaks_at?);
+        Some(format!("{at} ({})", classifier_name(row.classifier)))
     };
-    let broken: Vec<&&str> = ways.iter().filter(breaks_all).collect();
+    let (mut said, mut unbroken) = (Vec::new(), Vec::new());
+    for way in ways {
+        let rows = tables.breaking_points.iter();
+        let rows = rows.filter(|row| row.way == way.name);
+        let places: Vec<String> = rows.filter_map(place).collect();
+        match places.is_empty() {
+            true => unbroken.push(way.label.as_str()),
+            false => said.push(format!(
+                "{}: half of the best at {}.",
+                way.label,
+                places.join(", ")
+            )),
+        }
+    }
     let first = format!(
-        "{} of {} settings, driven to their ends, take every classifier to half of its best or below.",
-        broken.len(),
+        "{} of {} settings, driven to their ends, take a classifier to half of its best accuracy or below.",
+        said.len(),
         ways.len()
     );
-    let sentence = |row: &BreakingPoint| {
-        let place = break_words(row)?;
-        let kind = classifier_name(row.classifier);
-        let best = format!("{:.3} at {}", row.best, short_number(row.best_at));
-        Some(format!(
-            "{}, {kind}: half of its best ({best}) at {place}.",
-            row.way
-        ))
-    };
-    std::iter::once(first)
-        .chain(rows.iter().filter_map(sentence))
-        .collect()
+    said.insert(0, first);
+    if !unbroken.is_empty() {
+        said.push(format!("Nowhere: {}.", unbroken.join("; ")));
+    }
+    said
 }
 
 /// A line a way, classifier and side. Lines are at most about `width` letters long.

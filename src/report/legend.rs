@@ -137,12 +137,8 @@ impl LegendEntry {
         match self.mark {
             Mark::None => {}
             Mark::Point(number) => {
-                drawing.marker(
-                    number,
-                    (x + 6.0, middle),
-                    MARKER_RADIUS,
-                    line_colour(number),
-                );
+                let at = (x + 6.0, middle);
+                drawing.marker(number, at, MARKER_RADIUS, point_colour(number));
             }
             Mark::Hollow => draw_hollow(drawing, 0, (x + 6.0, middle)),
             Mark::Cross => draw_cross(drawing, (x + 6.0, middle)),
@@ -210,7 +206,7 @@ fn flow(entries: Vec<LegendEntry>, width: f64) -> Vec<Vec<LegendEntry>> {
 
 /// The marker of a line with nothing inside: not what it should be.
 pub(super) fn draw_hollow(drawing: &mut Drawing, line: usize, at: Point) {
-    drawing.marker(line, at, MARKER_RADIUS + 0.6, line_colour(line));
+    drawing.marker(line, at, MARKER_RADIUS + 0.6, point_colour(line));
     drawing.marker(line, at, MARKER_RADIUS - 1.6, PAPER);
 }
 
@@ -225,6 +221,11 @@ pub(super) fn draw_cross(drawing: &mut Drawing, (x, y): Point) {
 /// Colour of a line by its number.
 pub(super) fn line_colour(line: usize) -> Rgb {
     LINES[line % LINES.len()]
+}
+
+/// Colour of points without a line: beyond the palette, shapes come again in other colours.
+pub(super) fn point_colour(number: usize) -> Rgb {
+    line_colour(number + 3 * (number / LINES.len()))
 }
 
 /// Beyond the palette, colours come again with dashes.

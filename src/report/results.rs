@@ -41,7 +41,7 @@ pub fn write_page(dir: &Path, tables: &Tables, about: &ReportPage) -> Result<Vec
 fn add_page(folder: &mut Folder, tables: &Tables, about: &ReportPage) -> Result<()> {
     let mut pictures = Pictures::default();
     for (name, title, drawing) in draw_pareto_charts(tables, about.pareto) {
-        pictures.times.push(Picture::of(&drawing, &title));
+        pictures.times.push(light_picture(&drawing, &title)?);
         folder.add_chart(&name, &title, &drawing)?;
     }
     let mut plans = plans(tables);
@@ -76,6 +76,19 @@ fn add_page(folder: &mut Folder, tables: &Tables, about: &ReportPage) -> Result<
     }
     folder.add("report.html", page(about, tables, &pictures)?);
     Ok(())
+}
+
+/// Letters of a picture that stays an SVG in the page: a point a cell of ten thousand is megabytes.
+const LIGHT: usize = 500_000;
+
+/// A drawing for the page, as SVG if that is light.
+fn light_picture(drawing: &Drawing, title: &str) -> Result<Picture> {
+    let picture = Picture::of(drawing, title);
+    if picture.element.len() <= LIGHT {
+        return Ok(picture);
+    }
+    let size = (drawing.width() as usize, drawing.height() as usize);
+    Ok(Picture::of_png(&drawing.png()?, size, title))
 }
 
 /// Seconds to draw and write all of it for these cells, as on one core of a 2-core x86-64 server.

@@ -182,7 +182,7 @@ impl Ladder<'_> {
         let y = LogScale::over(all().map(|rung| rung.seconds), bottom, area.y);
         if is_first {
             draw_axes(drawing, area, (x, &x.ticks()), (y, &y.ticks()));
-            let beside = (area.x - 48.0, area.y + area.height / 2.0);
+            let beside = (area.x - 55.0, area.y + area.height / 2.0);
             let style = TextStyle::new(13).align(Align::Middle).angle(-90.0);
             drawing.text(beside, "computing a simulated second, s", style);
         } else {

@@ -58,3 +58,9 @@ pub fn sha256(bytes: &[u8]) -> String {
     let digest = Sha256::digest(bytes);
     digest.iter().map(|byte| format!("{byte:02x}")).collect()
 }
+
+/// Names of the pieces that a journal holds, as often as it does.
+pub fn pieces(journal: &Path) -> Vec<String> {
+    let keys = keys(journal).into_iter();
+    keys.filter(|key| key.starts_with("piece ")).collect()
+}

@@ -28,143 +28,28 @@ impl Kind {
     }
 
     pub const STABILITY: Self = Self {
-        study: r#"
-question = "What breaks?"
-
-[[stability.parts]]
-scene = "rest"
-methods = ["quasi_static", "implicit_euler", "semi_implicit"]
-taxels = 8
-stiffness_n_per_m = [1e1, 1e5]
-object_mass_kg = [1e-3, 1e3]
-taxel_mass_kg = 1e-2
-dt_s = [1e-3, 1e-1]
-
-[[stability.parts]]
-scene = "press"
-methods = ["quasi_static", "implicit_euler", "semi_implicit"]
-taxels = 8
-stiffness_n_per_m = 1e3
-taxel_mass_kg = [1e-6, 1e-2]
-dt_s = [1e-4, 1e-1]
-"#,
+        study: include_str!("stability.toml"),
         repeatable: &["stability.csv", "stability_summary.csv"],
         times: "timing.csv",
         change: ("[1e1, 1e5]", "[1e1, 1e4]", "stability.parts: was"),
     };
 
     pub const BREAKING_POINTS: Self = Self {
-        study: r#"
-question = "What breaks?"
-trials = 2
-
-[objects]
-sets = ["cans"]
-surface_error_mm = 2.0
-
-[skin]
-pitch_mm = 8.0
-size_mm = 128.0
-stroke_mm = 5.0
-
-[touches]
-per_object = 24
-offset_x_mm = { uniform = [-5.0, 5.0] }
-depth_mm = { uniform = [2.0, 4.0] }
-
-[sensing]
-ratio = 4
-
-[recognition]
-classifier = ["linear_svm", "k_nearest"]
-
-[[breaking_points]]
-name = "noise"
-label = "noise (share of full scale)"
-keys = ["signal.noise_std_full_scale"]
-values = [0.0, 0.005, 0.05, 0.5, 10.0]
-
-[[breaking_points]]
-name = "place"
-label = "test touches off the middle, up to (mm)"
-keys = ["touches.offset_x_mm", "touches.offset_y_mm"]
-values = [0.0, 5.0, 20.0, 80.0]
-as = "half_width"
-touches = "test"
-"#,
+        study: include_str!("breaking_points.toml"),
         repeatable: &["accuracy.csv", "summary.csv", "breaking_points.csv"],
         times: "timing.csv",
         change: ("trials = 2", "trials = 3", "trials: was 2, is 3"),
     };
 
     pub const RECONSTRUCTION: Self = Self {
-        study: r#"
-question = "What comes back?"
-seed = 7
-
-[objects]
-sets = ["household"]
-names = ["mug", "banana", "scissors", "power_drill"]
-surface_error_mm = 2.0
-
-[skin]
-pitch_mm = 4.0
-taxels = 16
-stroke_mm = 5.0
-
-[touches]
-per_object = 20
-offset_x_mm = { uniform = [-8.0, 8.0] }
-depth_mm = { uniform = [2.0, 4.0] }
-
-[signal]
-noise_std_full_scale = [0.0, 0.1]
-
-[sensing]
-ensemble = ["sbhe", "identity"]
-ratio = [4, 16]
-
-[reconstruction]
-solver = ["omp", "lmmse"]
-dictionary = ["dct", "pca"]
-atoms = 40
-isometry_sparsity = 4
-isometry_subsets = 30
-"#,
+        study: include_str!("reconstruction.toml"),
         repeatable: &["reconstruction.csv", "ensembles.csv"],
         times: "timing.csv",
         change: ("ratio = [4, 16]", "ratio = [4, 8]", "sensing.ratio: was"),
     };
 
     pub const OBJECT_DETAIL: Self = Self {
-        study: r#"
-question = "How many spheres?"
-seed = 7
-
-[objects]
-meshes = "meshes"
-
-[skin]
-pitch_mm = 2.0
-taxels = 16
-stroke_mm = 5.0
-
-[touches]
-per_object = 6
-offset_x_mm = { uniform = [-4.0, 4.0] }
-depth_mm = 3.0
-
-[object_detail]
-tolerances_mm = [2.0]
-methods = ["packing", "decimated_vertex_spheres"]
-surface_points = 500
-
-[object_detail.recognition]
-training_touches = 10
-test_touches = 6
-measurements = 16
-classifiers = ["linear_svm"]
-"#,
+        study: include_str!("object_detail.toml"),
         repeatable: &[
             "object_detail.csv",
             "object_detail_recognition.csv",
@@ -179,55 +64,7 @@ classifiers = ["linear_svm"]
     };
 
     pub const WHOLE_BODY: Self = Self {
-        study: r#"
-question = "What does a post of skin cost?"
-seed = 7
-
-[whole_body]
-robot = "robots/post.urdf"
-pitch_mm = 3.0
-patch_mm = 60.0
-steps = 10
-surface_error_mm = 1.0
-
-[[whole_body.scenes]]
-name = "nothing"
-object = "tennis_ball"
-link = "base"
-at_mm = [500.0, 0.0, 0.0]
-
-[[whole_body.scenes]]
-name = "ball"
-object = "tennis_ball"
-link = "base"
-at_mm = [60.0, 0.0, 100.0]
-depth_mm = 1.5
-moves_mm = [0.0, 0.0, 2.0]
-period_ms = 40.0
-
-[whole_body.sensing]
-measurements = 64
-ensembles = ["sbhe"]
-sbhe_blocks = [32, 256]
-
-[whole_body.recognition]
-objects = ["tennis_ball", "cracker_box"]
-link = "base"
-at_mm = [60.0, 0.0, 100.0]
-offset_mm = 3.0
-yaw_deg = 10.0
-depth_mm = [1.0, 1.8]
-training_touches = 10
-test_touches = 5
-
-[whole_body.ladders]
-taxels = [2000, 20000]
-touched_at_taxels = [200]
-touched = [100, 400]
-taxels_at_touch = 30000
-spheres = [200, 600]
-touched_at_spheres = 400
-"#,
+        study: include_str!("whole_body.toml"),
         repeatable: &["whole_body.csv", "recognition.csv", "sensed.csv"],
         times: "timing.csv",
         change: (
@@ -238,50 +75,7 @@ touched_at_spheres = 400
     };
 
     pub const SPEED_ACCURACY: Self = Self {
-        study: r#"
-question = "What does accuracy cost?"
-
-[objects]
-sets = ["cans"]
-
-[skin]
-pitch_mm = 4.0
-taxels = 16
-stroke_mm = 5.0
-
-[touches]
-offset_x_mm = { uniform = [-10.0, 10.0] }
-tilt_x_deg = { uniform = [-5.0, 5.0] }
-depth_mm = 3.0
-
-[speed_accuracy]
-tolerances_mm = [0.5, 1.0]
-
-[speed_accuracy.contact]
-objects = 3
-touches = 3
-stepped_objects = 1
-stepped_touches = 1
-dt_ms = [10.0]
-
-[speed_accuracy.recognition]
-objects = 4
-pitch_mm = [4.0, 8.0]
-size_mm = 64.0
-tolerances_mm = [1.0]
-ensemble = ["gaussian"]
-ratio = [4.0, 16.0]
-classifier = ["linear_svm", "k_nearest"]
-noise_std_full_scale = 0.01
-training_touches = 10
-test_touches = 6
-timed_touches = 5
-
-[speed_accuracy.resolution]
-touches = [8, 12]
-trials = [2, 3]
-ratio = [4.0, 16.0]
-"#,
+        study: include_str!("speed_accuracy.toml"),
         repeatable: &["contact.csv", "recognition.csv", "resolution.csv"],
         times: "recognition_timing.csv",
         change: (
@@ -293,35 +87,7 @@ ratio = [4.0, 16.0]
 }
 
 /// A way whose last value leaves nothing to learn from.
-pub const IMBALANCED: &str = r#"
-question = "What if some values cannot be?"
-trials = 1
-
-[objects]
-sets = ["cans"]
-surface_error_mm = 2.0
-
-[skin]
-pitch_mm = 8.0
-size_mm = 128.0
-stroke_mm = 5.0
-
-[touches]
-per_object = 12
-depth_mm = { uniform = [2.0, 4.0] }
-
-[sensing]
-ratio = 4
-
-[recognition]
-classifier = "linear_svm"
-
-[[breaking_points]]
-name = "imbalance"
-label = "class imbalance"
-keys = ["recognition.class_imbalance"]
-values = [1.0, 2.0, 4.0, 1000.0]
-"#;
+pub const IMBALANCED: &str = include_str!("imbalanced.toml");
 
 const ROBOT: &str = r#"<robot name="post">
   <link name="base">

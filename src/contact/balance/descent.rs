@@ -1,6 +1,7 @@
 //! Down the energy to a pose at rest.
 
 use super::fall::{Fall, fall};
+use super::finish::Held;
 use super::free_object::{FreeObject, PlacedSkin};
 use super::loads::{Multipliers, Smoothness};
 use super::model::{Scene, Step};
@@ -33,23 +34,23 @@ const SAME_PLACE: f64 = 1e-15;
 
 /// One object on its way down.
 pub(super) struct Descent<'a> {
-    balancer: &'a mut Balancer,
+    pub balancer: &'a mut Balancer,
     object: &'a FreeObject<'a>,
-    skins: &'a [PlacedSkin<'a>],
+    pub skins: &'a [PlacedSkin<'a>],
     /// m g, newtons.
-    weight: DVec3,
+    pub weight: DVec3,
     /// Rotations count by how far they move a point this far from the centre of mass, metres.
-    arm: f64,
+    pub arm: f64,
     /// No step is longer, metres.
-    farthest: f64,
+    pub farthest: f64,
     start: DVec3,
-    center: DVec3,
-    rotation: DQuat,
+    pub center: DVec3,
+    pub rotation: DQuat,
     smoothness: Smoothness,
     /// What is known of the forces inside taxels; better from round to round.
     pub multipliers: Multipliers,
     /// The longest step that is trusted now, metres.
-    reach: f64,
+    pub reach: f64,
     n_steps: usize,
 }
 
@@ -144,8 +145,7 @@ impl<'a> Descent<'a> {
                 self.smoothness.stop_stiffness *= 5.0;
             }
             looseness = now;
-            let behind = std::mem::take(&mut self.balancer.now.pairs.behind);
-            self.look(&behind);
+            self.look_again();
         }
         let is_tight = self.looseness() <= 1e3 * TIGHT;
         match self.imbalance() <= PROMISED && is_tight {
@@ -214,13 +214,7 @@ impl<'a> Descent<'a> {
     /// Goes a step if it leads down; how much of the promised gain it brought, `None` if it was not gone.
     fn attempt(&mut self, step: &Step, slope: f64) -> Option<f64> {
         let (center, rotation) = (self.center, self.rotation);
-        let [x, y, z, turn_x, turn_y, turn_z] = step.motion;
-        let (shift, turn) = (
-            DVec3::new(x, y, z),
-            DVec3::new(turn_x, turn_y, turn_z) / self.arm,
-        );
-        self.center = center + shift;
-        self.rotation = (DQuat::from_scaled_axis(turn) * rotation).normalize();
+        let shift = self.go(&step.motion);
         let before = self.balancer.now.loads.elastic;
         std::mem::swap(&mut self.balancer.now, &mut self.balancer.next);
         let behind = std::mem::take(&mut self.balancer.next.pairs.behind);
@@ -241,6 +235,18 @@ impl<'a> Descent<'a> {
         std::mem::swap(&mut self.balancer.now, &mut self.balancer.next);
         (self.center, self.rotation) = (center, rotation);
         None
+    }
+
+    /// Moves the object; its way, metres.
+    pub(super) fn go(&mut self, motion: &Six) -> DVec3 {
+        let [x, y, z, turn_x, turn_y, turn_z] = *motion;
+        let (shift, turn) = (
+            DVec3::new(x, y, z),
+            DVec3::new(turn_x, turn_y, turn_z) / self.arm,
+        );
+        self.center += shift;
+        self.rotation = (DQuat::from_scaled_axis(turn) * self.rotation).normalize();
+        shift
     }
 
     /// Falls towards the next skin, not deeper into it than to where it is no worse off; whether there is one.
@@ -275,9 +281,20 @@ impl<'a> Descent<'a> {
         let pose = self.pose();
         let mut now = std::mem::take(&mut self.balancer.now);
         // Of far steps not all is foreseen: that would be most spheres.
-        let step = self.reach.min(NEARBY * self.farthest);
+        let step = self.reach.min(self.nearby());
         now.look(self.object, &self.scene(), &pose, step, behind);
         self.balancer.now = now;
+    }
+
+    /// Looks at the pose with what was behind taxels before.
+    pub(super) fn look_again(&mut self) {
+        let behind = std::mem::take(&mut self.balancer.now.pairs.behind);
+        self.look(&behind);
+    }
+
+    /// Steps up to this, metres, are foreseen with all contacts that they make.
+    pub(super) fn nearby(&self) -> f64 {
+        NEARBY * self.farthest
     }
 
     fn pose(&self) -> Pose {
@@ -294,8 +311,13 @@ impl<'a> Descent<'a> {
         self.balancer.now.looseness(self.skins)
     }
 
-    fn imbalance(&self) -> f64 {
+    pub(super) fn imbalance(&self) -> f64 {
         let (force, torque) = self.balancer.now.wrench(self.skins);
+        self.imbalance_of(force, torque)
+    }
+
+    /// What is left of a force (N) and a torque (N·m) with the weight: see [`Balance::imbalance`].
+    pub(super) fn imbalance_of(&self, force: DVec3, torque: DVec3) -> f64 {
         let weight = self.weight.length();
         let of_force = (force + self.weight).length() / weight;
         of_force.max(torque.length() / (weight * self.object.radius))
@@ -312,18 +334,30 @@ impl<'a> Descent<'a> {
         }
     }
 
-    /// What there is to say of the pose that it has come to.
-    pub fn balance(&self, outcome: Outcome) -> Balance {
+    /// What there is to say of the pose that it has come to, and of what holds it there, if that is known better than by deflections.
+    pub fn balance(&self, outcome: Outcome, held: Option<Held>) -> Balance {
         let now = &self.balancer.now;
-        let (force, torque) = now.wrench(self.skins);
+        let by_deflections = || {
+            let (force, torque) = now.wrench(self.skins);
+            Held {
+                force,
+                torque,
+                n_saturated: now.loads.carrying().filter(|load| load.stop > 0.0).count(),
+            }
+        };
+        let Held {
+            force,
+            torque,
+            n_saturated,
+        } = held.unwrap_or_else(by_deflections);
         Balance {
             pose: self.pose(),
             outcome,
             force,
             torque,
-            imbalance: self.imbalance(),
+            imbalance: self.imbalance_of(force, torque),
             n_touched: now.loads.carrying().count(),
-            n_saturated: now.loads.carrying().filter(|load| load.stop > 0.0).count(),
+            n_saturated,
             n_grazing: now.n_grazing(),
             n_steps: self.n_steps,
         }

@@ -8,6 +8,9 @@
 //! Two things make E rough, and both are kept exactly: a taxel between two spheres (`tied_max`), and the rigid stop of a
 //! taxel at its stroke. Both are constraints with multipliers: the shares of the spheres, and the force of the stop.
 //!
+//! Where both are so many, or springs so unlike, that this does not get there, an interior-point method ends it (`finish`): there the
+//! forces are unknowns of their own.
+//!
 //! # Sources
 //!
 //! - `[MS]` Moré, Sorensen, *Computing a trust region step*, 1983.
@@ -16,7 +19,10 @@
 mod descent;
 mod energy;
 mod fall;
+mod finish;
 mod free_object;
+mod graded_rows;
+mod interior;
 mod loads;
 mod model;
 mod pairs;

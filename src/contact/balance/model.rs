@@ -184,13 +184,18 @@ impl Model {
 }
 
 /// How a sphere moves when the object goes along or turns about each of the axes; per metre.
-fn ways(axes: &[DVec3; 3], from_center: DVec3, arm: f64) -> [DVec3; 6] {
+pub(super) fn ways(axes: &[DVec3; 3], from_center: DVec3, arm: f64) -> [DVec3; 6] {
     let [x, y, z] = *axes;
     let turn = |axis: DVec3| axis.cross(from_center) / arm;
     [x, y, z, turn(x), turn(y), turn(z)]
 }
 
-fn add_curvature(hessian: &mut SixBySix, force: f64, ways: &[DVec3; 6], curvature: DMat3) {
+pub(super) fn add_curvature(
+    hessian: &mut SixBySix,
+    force: f64,
+    ways: &[DVec3; 6],
+    curvature: DMat3,
+) {
     let bent = ways.map(|way| curvature * way);
     for (row, way) in hessian.iter_mut().zip(ways) {
         for (entry, bent) in row.iter_mut().zip(&bent) {
@@ -200,7 +205,13 @@ fn add_curvature(hessian: &mut SixBySix, force: f64, ways: &[DVec3; 6], curvatur
 }
 
 /// Second order of a rotation θ, which takes r to r + θ × r + ½ θ × (θ × r): a·½ θ × (θ × r) = ½ ((a·θ)(r·θ) − (a·r) θ²).
-fn add_turning(hessian: &mut SixBySix, force: f64, axes: &[DVec3; 3], r: DVec3, a: DVec3) {
+pub(super) fn add_turning(
+    hessian: &mut SixBySix,
+    force: f64,
+    axes: &[DVec3; 3],
+    r: DVec3,
+    a: DVec3,
+) {
     for i in 0..3 {
         for j in 0..3 {
             let both = 0.5 * (a.dot(axes[i]) * r.dot(axes[j]) + r.dot(axes[i]) * a.dot(axes[j]));

@@ -96,8 +96,14 @@ impl Balancer {
         };
         let skins: Vec<PlacedSkin> = skins.iter().map(near).collect();
         let mut descent = Descent::new(self, object, &skins, gravity, &from_there(start));
-        let outcome = descent.run();
-        let mut balance = descent.balance(outcome);
+        let (outcome, held) = match descent.run() {
+            Outcome::Unsettled => match descent.finish() {
+                Some(held) => (Outcome::Settled, Some(held)),
+                None => (Outcome::Unsettled, None),
+            },
+            outcome => (outcome, None),
+        };
+        let mut balance = descent.balance(outcome, held);
         self.multipliers = descent.multipliers;
         balance.pose.translation += origin;
         Ok(balance)

@@ -2,10 +2,10 @@
 
 use super::points::{ChartKind, ChartPoint};
 use crate::report::chart;
-use crate::report::colours::INK;
+use crate::report::colours::{INK, PAPER};
 use crate::report::drawing::{Align, Area, Drawing, Point, Stroke, TextStyle};
 use crate::report::legend::{
-    Heading, LEFT, LegendEntry, MARKER_RADIUS, Mark, RIGHT, dashes, line_colour,
+    Heading, LEFT, LegendEntry, MARKER_RADIUS, Mark, RIGHT, dashes, point_colour,
 };
 use crate::report::log_scale::{LogScale, draw_y_ticks};
 use crate::report::pareto_chart::{draw_steps, paler};
@@ -115,12 +115,9 @@ impl FrontChart<'_> {
         };
         for point in self.points.iter().filter(|point| !point.on_front) {
             let colour = self.colour_of(point);
-            drawing.marker(
-                colour,
-                at(point),
-                0.8 * MARKER_RADIUS,
-                paler(line_colour(colour)),
-            );
+            let pale = paler(point_colour(colour));
+            drawing.marker(colour, at(point), 0.8 * MARKER_RADIUS, pale);
+            draw_inside(&mut drawing, point, (colour, at(point)));
         }
         let places: Vec<Point> = self.front.iter().map(|point| at(point)).collect();
         let mut fronts: Vec<_> = self.front.iter().map(|point| point.front()).collect();
@@ -185,9 +182,10 @@ impl FrontChart<'_> {
     fn draw_on_front(&self, drawing: &mut Drawing, point: &ChartPoint, (at, y): (Point, &YScale)) {
         let colour = self.colour_of(point);
         let ends = [point.value_low, point.value_high].map(|value| (at.0, y.place(value)));
-        drawing.line(ends[0], ends[1], Stroke::new(line_colour(colour), 1.5));
+        drawing.line(ends[0], ends[1], Stroke::new(point_colour(colour), 1.5));
         drawing.marker(colour, at, MARKER_RADIUS + 2.4, INK);
-        drawing.marker(colour, at, MARKER_RADIUS, line_colour(colour));
+        drawing.marker(colour, at, MARKER_RADIUS, point_colour(colour));
+        draw_inside(drawing, point, (colour, at));
     }
 
     /// Each on the side where no point can be, of those that would touch, the later are left out.
@@ -233,9 +231,20 @@ impl FrontChart<'_> {
         let mut entries: Vec<LegendEntry> = groups
             .map(|(number, group)| LegendEntry::new((*group).to_owned(), Mark::Point(number)))
             .collect();
+        if self.points.iter().any(|point| point.is_of_scans()) {
+            let text = "hollow: on scans, with a front of their own".to_owned();
+            entries.push(LegendEntry::new(text, Mark::Hollow));
+        }
         let front = "Pareto front: nothing is both faster and as good";
         entries.push(LegendEntry::new(front.to_owned(), Mark::Front));
         entries
+    }
+}
+
+/// Nothing, where scans were touched.
+fn draw_inside(drawing: &mut Drawing, point: &ChartPoint, (colour, at): (usize, Point)) {
+    if point.is_of_scans() {
+        drawing.marker(colour, at, 0.35 * MARKER_RADIUS, PAPER);
     }
 }
 

@@ -41,21 +41,30 @@ pub struct ChartPoint {
     /// Upper end.
     pub value_high: f64,
     /// Whether no other point of the chart beats it: at most as dear, at least as good, and better in one of both. (Widths of different
-    /// intervals do not compare: each group of that chart has a front of its own.)
+    /// intervals do not compare: each group of that chart has a front of its own. Nor do touches of scans with those of objects.)
     pub on_front: bool,
 }
 
 impl ChartPoint {
-    /// What it is compared within: its chart, and where groups do not compare, its group.
+    /// What it is compared within: its chart, and where groups do not compare, its group; what touched scans and what touched the study's
+    /// objects do not either.
     pub fn front(&self) -> (ChartKind, String) {
         match self.chart {
             ChartKind::Resolution => (self.chart, self.group.clone()),
+            _ if self.is_of_scans() => (self.chart, SCANS.to_owned()),
             _ => (self.chart, String::new()),
         }
+    }
+
+    /// Whether it is of meshes that were touched beside the study's objects.
+    pub fn is_of_scans(&self) -> bool {
+        self.chart == ChartKind::Contact && self.setting.contains(SCANS)
     }
 }
 
 const HERE: &str = "this run";
+/// What a setting says that touched scans.
+pub(super) const SCANS: &str = ", scans";
 
 impl ChartKind {
     /// All, in the order of the files.

@@ -81,7 +81,9 @@ pub fn write_speed_accuracy(
 /// The two ends of each front.
 fn sentences(points: &[ChartPoint]) -> Vec<String> {
     let of_kind = |kind: ChartKind| {
-        let front = front_of(points, kind);
+        let mut front = front_of(points, kind);
+        // Of what was touched beside, the table and the chart tell.
+        front.retain(|point| !point.is_of_scans());
         let (first, last) = (front.first()?, front.last()?);
         let end = |point: &ChartPoint| format!("{} ({})", point.setting, kind.at_cost(point));
         let n = points.iter().filter(|point| point.chart == kind).count();

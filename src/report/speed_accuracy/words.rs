@@ -1,6 +1,6 @@
 //! Charts and settings as a reader meets them.
 
-use super::points::{ChartKind, ChartPoint};
+use super::points::{ChartKind, ChartPoint, SCANS};
 use crate::report::axis::{classifier_name, ensemble_name};
 use crate::study::advice::cost_in_words;
 use crate::study::speed_accuracy::table::{ChainCell, ContactCell, ContactWay, Touched};
@@ -115,7 +115,7 @@ pub(super) fn contact_setting(cell: &ContactCell) -> String {
     let way = way_name(cell.way);
     let scan = match cell.touched {
         Touched::Object => "",
-        Touched::Scan => ", scans",
+        Touched::Scan => SCANS,
     };
     match (cell.tolerance_mm, cell.dt_ms) {
         (_, Some(dt)) => format!("{way}{scan}, steps of {dt} ms"),
