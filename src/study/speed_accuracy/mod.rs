@@ -15,6 +15,7 @@
 //! The [report](crate::report::speed_accuracy) makes points of these tables, and charts of the points.
 
 mod contact;
+mod contact_models;
 mod decision_times;
 mod engines;
 mod peers;
