@@ -13,6 +13,7 @@ use super::study_args::StudyArgs;
 use super::whole_body_kind::WholeBodyKind;
 use bubbletouch::report::csv_tables::FAILURES_FILE;
 use bubbletouch::study::journal::{Identity, Journal};
+use bubbletouch::study::pieces::PieceManner;
 use bubbletouch::study::progress::Progress;
 use bubbletouch::study::{Part, StudyKind};
 use bubbletouch::{Error, Result};
@@ -30,24 +31,9 @@ pub trait AnyStudy {
     /// Of a part, those of which a journal does not say what came of them.
     fn n_left(&self, part: Part, journal: &Journal) -> usize;
     /// Does what is left.
-    fn run<'a>(&'a self, manner: &RunManner<'a>) -> Result<Box<dyn AnyOutcome + 'a>>;
+    fn run<'a>(&'a self, manner: &PieceManner<'a>) -> Result<Box<dyn AnyOutcome + 'a>>;
     /// Runs some of its work again, drawn at random, and says what it was, or which row of a folder is not the same.
     fn verify(&self, folder: &Path, n: usize, draw: u64) -> Result<String>;
-}
-
-/// How a run goes about its work.
-#[derive(Clone, Copy)]
-pub struct RunManner<'a> {
-    /// Where finished work is looked for and kept.
-    pub journal: &'a Journal,
-    /// Whether the first failure ends the run.
-    pub fail_fast: bool,
-    /// Whether what failed in an earlier run is tried again.
-    pub retries: bool,
-    /// The part of the work to do.
-    pub part: Part<'a>,
-    /// What is told how far the run is.
-    pub progress: &'a dyn Progress,
 }
 
 /// What came of a study.
@@ -77,11 +63,10 @@ pub fn load_study(
     memory: Option<&MemoryArgs>,
 ) -> Result<Box<dyn AnyStudy>> {
     let kind = args.kind()?;
-    if kind == StudyKind::Recognition {
-        return Ok(Box::new(RecognitionStudy::load(args, folder, memory)?));
-    }
-    let given = memory.into_iter().flat_map(MemoryArgs::given);
-    if let Some((option, _)) = given.into_iter().find(|(_, is_given)| *is_given) {
+    let mut given = memory.into_iter().flat_map(MemoryArgs::given);
+    if kind != StudyKind::Recognition
+        && let Some((option, _)) = given.find(|(_, is_given)| *is_given)
+    {
         let allowed = format!(
             "no such option: it is for {}",
             StudyKind::Recognition.words()
@@ -89,7 +74,7 @@ pub fn load_study(
         return Err(Error::input(option, kind.words(), allowed));
     }
     Ok(match kind {
-        StudyKind::Recognition => unreachable!("it was loaded above"),
+        StudyKind::Recognition => Box::new(RecognitionStudy::load(args, folder, memory)?),
         StudyKind::Reconstruction => Box::new(PieceRun::<ReconstructionKind>::load(args, folder)?),
         StudyKind::ObjectDetail => Box::new(PieceRun::<ObjectDetailKind>::load(args, folder)?),
         StudyKind::WholeBody => Box::new(PieceRun::<WholeBodyKind>::load(args, folder)?),

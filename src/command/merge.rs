@@ -1,6 +1,6 @@
 //! `bubbletouch merge`: the shards of a study put together.
 
-use super::any_study::{EndedRun, RunManner, end, load_study};
+use super::any_study::{EndedRun, end, load_study};
 use super::listener::Listener;
 use super::memory_args::MemoryArgs;
 use super::output::output_folder;
@@ -8,6 +8,7 @@ use super::run::results_folder;
 use super::study_args::StudyArgs;
 use bubbletouch::study::Part;
 use bubbletouch::study::journal::{Identity, JOURNAL_FILE, Journal};
+use bubbletouch::study::pieces::PieceManner;
 use bubbletouch::{Error, Result};
 use std::path::{Path, PathBuf};
 use std::time::SystemTime;
@@ -54,7 +55,7 @@ pub fn merge(args: &Args) -> Result<()> {
         ));
     }
     let progress = args.listener.progress();
-    let manner = RunManner {
+    let manner = PieceManner {
         journal: &journal,
         fail_fast: false,
         retries: false,

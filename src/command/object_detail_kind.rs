@@ -35,7 +35,7 @@ impl PieceKind for ObjectDetailKind {
             toml: spec.to_toml(),
             asked: [spec.question.clone(), spec.expected.clone()],
             seed: spec.seed,
-            content: objects_content(&self.0.plan.spec.objects)?,
+            content: objects_content(&spec.objects)?,
         })
     }
 

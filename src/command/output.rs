@@ -53,3 +53,9 @@ pub fn terminal_width() -> usize {
         _ => 100,
     }
 }
+
+/// Tells a person where the results of a study are.
+pub fn tell_where(folder: &Path) {
+    let page = folder.join("report.html");
+    println!("Results in {}; open {}", folder.display(), page.display());
+}

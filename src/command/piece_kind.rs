@@ -1,12 +1,13 @@
 //! Studies that are made of pieces: what a kind has to say of itself, and all that follows from it.
 
 use super::about_study::command_line;
-use super::any_study::{AnyOutcome, AnyStudy, EndedRun, RunManner, seconds_since};
-use super::output::{packings_beside, terminal_width};
+use super::any_study::{AnyOutcome, AnyStudy, EndedRun, seconds_since};
+use super::output::{packings_beside, tell_where, terminal_width};
 use super::piece_rows::{compare, draw};
 use super::study_args::StudyArgs;
+use bubbletouch::Result;
 use bubbletouch::files::write_bytes;
-use bubbletouch::report::csv_tables::{FAILURES_FILE, to_csv};
+use bubbletouch::report::csv_tables::{FAILURES_FILE, csv_content};
 use bubbletouch::report::page::StudyAbout;
 use bubbletouch::report::progress;
 use bubbletouch::report::study_tables::StudyTables;
@@ -16,7 +17,6 @@ use bubbletouch::study::pieces::{
     FinishedPieces, PieceFailure, PieceManner, PieceStudy, n_pieces_left, run_pieces,
 };
 use bubbletouch::study::provenance::{MANIFEST_FILE, Manifest, PROGRAM, RunFacts};
-use bubbletouch::{Error, Result};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
@@ -93,16 +93,9 @@ impl<K: PieceKind> AnyStudy for PieceRun<K> {
         n_pieces_left(self.kind.study(), part, journal)
     }
 
-    fn run<'a>(&'a self, manner: &RunManner<'a>) -> Result<Box<dyn AnyOutcome + 'a>> {
-        let manner = PieceManner {
-            journal: manner.journal,
-            fail_fast: manner.fail_fast,
-            retries: manner.retries,
-            part: manner.part,
-            progress: manner.progress,
-        };
+    fn run<'a>(&'a self, manner: &PieceManner<'a>) -> Result<Box<dyn AnyOutcome + 'a>> {
         let study = self.kind.study();
-        let FinishedPieces { rows, failures, .. } = run_pieces(study, &manner)?;
+        let FinishedPieces { rows, failures, .. } = run_pieces(study, manner)?;
         Ok(Box::new(PieceOutcome {
             run: self,
             tables: study.tables(rows)?,
@@ -162,9 +155,7 @@ impl<K: PieceKind> AnyOutcome for PieceOutcome<'_, K> {
         };
         kind.write(&self.tables, folder, &about)?;
         let failures = folder.join(FAILURES_FILE);
-        let rows = to_csv(&self.failures)
-            .map_err(|error| Error::io(&failures, "write", std::io::Error::other(error)))?;
-        write_bytes(&failures, &rows)?;
+        write_bytes(&failures, &csv_content(&failures, &self.failures)?)?;
         write_bytes(&folder.join("study.toml"), toml.as_bytes())?;
         let facts = RunFacts {
             study: about.name,
@@ -187,10 +178,6 @@ impl<K: PieceKind> AnyOutcome for PieceOutcome<'_, K> {
         let kind = &self.run.kind;
         println!("{}\n", self.run.facts.asked[0]);
         println!("{}", kind.words(&self.tables, terminal_width()));
-        let page = folder.join("report.html");
-        match page.exists() {
-            true => println!("Results in {}; open {}", folder.display(), page.display()),
-            false => println!("Results in {}", folder.display()),
-        }
+        tell_where(folder);
     }
 }

@@ -1,9 +1,9 @@
 //! Studies that recognise objects, loaded.
 
 use super::about_study::{add_manifest, add_touches, command_line, limits, page_of_spec};
-use super::any_study::{AnyOutcome, AnyStudy, EndedRun, RunManner, seconds_since};
+use super::any_study::{AnyOutcome, AnyStudy, EndedRun, seconds_since};
 use super::memory_args::{MemoryArgs, Room};
-use super::output::{packings_beside, terminal_width};
+use super::output::{packings_beside, tell_where, terminal_width};
 use super::study_args::{LoadedStudy, StudyArgs};
 use super::verify_cells::verify_cells;
 use bubbletouch::Result;
@@ -11,6 +11,8 @@ use bubbletouch::files::write_bytes;
 use bubbletouch::report::csv_tables::repeatable_hashes;
 use bubbletouch::report::{headlines, results, terminal};
 use bubbletouch::study::journal::{Identity, Journal};
+use bubbletouch::study::memory::AtOnce;
+use bubbletouch::study::pieces::PieceManner;
 use bubbletouch::study::provenance::{MANIFEST_FILE, Manifest, RECOGNITION_METHODS, RunFacts};
 use bubbletouch::study::time_left::{Piece, Work};
 use bubbletouch::study::{FrameStorage, Manner, Outcome, Part, n_left, run_with, workload};
@@ -31,7 +33,7 @@ impl RecognitionStudy {
             // It does not run here.
             None => Room {
                 storage: FrameStorage::in_memory(),
-                at_once: bubbletouch::study::memory::AtOnce::ALL,
+                at_once: AtOnce::ALL,
             },
         };
         Ok(Self {
@@ -72,7 +74,7 @@ impl AnyStudy for RecognitionStudy {
         n_left(&self.loaded.plan, &self.loaded.sweep, part, journal)
     }
 
-    fn run<'a>(&'a self, manner: &RunManner<'a>) -> Result<Box<dyn AnyOutcome + 'a>> {
+    fn run<'a>(&'a self, manner: &PieceManner<'a>) -> Result<Box<dyn AnyOutcome + 'a>> {
         let LoadedStudy {
             plan,
             touched,
@@ -160,10 +162,6 @@ impl AnyOutcome for RecognitionOutcome<'_> {
             terminal::summary_table(tables, terminal_width(), &table)
         );
         print!("{}", headlines::text(tables, terminal_width()));
-        println!(
-            "Results in {}; open {}",
-            folder.display(),
-            folder.join("report.html").display()
-        );
+        tell_where(folder);
     }
 }

@@ -1,11 +1,12 @@
 //! `bubbletouch run`: a study from its file to its folder of results.
 
 use super::about_study::merge_line;
-use super::any_study::{EndedRun, RunManner, end, failures, load_study, seconds_since};
+use super::any_study::{EndedRun, end, failures, load_study, seconds_since};
 use super::listener::Listener;
 use super::memory_args::MemoryArgs;
 use super::study_args::StudyArgs;
 use super::study_folder::{Start, StudyFolder};
+use bubbletouch::study::pieces::PieceManner;
 use bubbletouch::study::{Part, Shard};
 use bubbletouch::{Error, Result};
 use std::path::{Path, PathBuf};
@@ -75,7 +76,7 @@ pub fn run(args: &Args) -> Result<()> {
         args.listener.remark(&going_on);
     }
     let progress = args.listener.progress();
-    let manner = RunManner {
+    let manner = PieceManner {
         journal: &kept.journal,
         fail_fast: args.fail_fast,
         retries: true,

@@ -3,7 +3,7 @@
 use super::memory_args::Room;
 use super::study_args::LoadedStudy;
 use bubbletouch::random::Seed;
-use bubbletouch::report::csv_tables::{read_tables, to_csv};
+use bubbletouch::report::csv_tables::{csv_content, read_tables};
 use bubbletouch::report::progress;
 use bubbletouch::study::journal::Journal;
 use bubbletouch::study::table::Tables;
@@ -68,8 +68,7 @@ fn rows(tables: &Tables, chosen: &BTreeSet<(usize, usize)>) -> Result<Vec<String
     let rows: Vec<_> = rows
         .filter(|(cell, score)| chosen.contains(&(cell.cell, score.trial)))
         .collect();
-    let bytes =
-        to_csv(&rows).map_err(|e| Error::io("accuracy.csv", "write", std::io::Error::other(e)))?;
+    let bytes = csv_content(Path::new("accuracy.csv"), &rows)?;
     let text = String::from_utf8_lossy(&bytes);
     Ok(text.lines().skip(1).map(str::to_owned).collect())
 }

@@ -91,31 +91,23 @@ impl RapierSettings {
             length_unit: self.length_unit,
             ..IntegrationParameters::default()
         };
-        match self.contacts {
-            RapierContacts::AsItComes => plain,
-            RapierContacts::Hard => {
-                let softness = SpringCoefficients::new(300.0 / dt, 1.0);
-                IntegrationParameters {
-                    contact_softness: softness,
-                    static_contact_softness: softness,
-                    normalized_max_corrective_velocity: 1e6,
-                    warmstart_joints: true,
-                    ..plain
-                }
-            }
+        let (softness, corrective_velocity) = match self.contacts {
+            RapierContacts::AsItComes => return plain,
+            RapierContacts::Hard => (SpringCoefficients::new(300.0 / dt, 1.0), 1e6),
             RapierContacts::Ode => {
                 // ω Δt = 2 ζ e / (1 − e) gives the ERP e; so large a ζ makes the CFM 1e-4 of the mass at the contact.
                 let damping_ratio = 100.0;
                 let turns = 0.25 * damping_ratio / std::f64::consts::PI;
                 let softness = SpringCoefficients::new(turns / dt, damping_ratio);
-                IntegrationParameters {
-                    contact_softness: softness,
-                    static_contact_softness: softness,
-                    normalized_max_corrective_velocity: 100.0 / self.length_unit,
-                    warmstart_joints: true,
-                    ..plain
-                }
+                (softness, 100.0 / self.length_unit)
             }
+        };
+        IntegrationParameters {
+            contact_softness: softness,
+            static_contact_softness: softness,
+            normalized_max_corrective_velocity: corrective_velocity,
+            warmstart_joints: true,
+            ..plain
         }
     }
 }

@@ -127,6 +127,14 @@ pub fn to_csv<R: Serialize>(rows: &[R]) -> std::result::Result<Vec<u8>, csv::Err
     writer.into_inner().map_err(|e| e.into_error().into())
 }
 
+/// The same for a file.
+///
+/// # Errors
+/// A row that has no such form; the error names the file.
+pub fn csv_content<R: Serialize>(path: &Path, rows: &[R]) -> Result<Vec<u8>> {
+    to_csv(rows).map_err(|error| Error::io(path, "write", std::io::Error::other(error)))
+}
+
 /// Reads a table whose rows are a [`Cell`] followed by `R`.
 pub fn read_cell_rows<R: DeserializeOwned>(path: &Path) -> Result<Vec<(Cell, R)>> {
     // Each line is read twice, once for either half: through one struct with two flattened halves, serde would take an

@@ -2,7 +2,7 @@
 
 use crate::error::{Error, Result};
 use crate::files::write_bytes;
-use crate::report::csv_tables::to_csv;
+use crate::report::csv_tables::csv_content;
 use crate::report::drawing::Drawing;
 use crate::report::study_tables::TableFiles;
 use serde::Serialize;
@@ -30,8 +30,7 @@ impl<'a> Folder<'a> {
 
     /// Adds a table as CSV; the error names the file.
     pub fn add_table(&mut self, name: &str, rows: &[impl Serialize]) -> Result<()> {
-        let failed = |e| Error::io(self.path.join(name), "write", std::io::Error::other(e));
-        let csv = to_csv(rows).map_err(failed)?;
+        let csv = csv_content(&self.path.join(name), rows)?;
         self.add(name, csv);
         Ok(())
     }

@@ -1,10 +1,11 @@
 //! The tables of a study as files, and which of them come out again.
 
-use crate::error::{Error, Result};
-use crate::report::csv_tables::to_csv;
+use crate::error::Result;
+use crate::report::csv_tables::csv_content;
 use crate::study::ContentHash;
 use serde::Serialize;
 use std::collections::BTreeMap;
+use std::path::Path;
 
 /// Names and contents of tables, in the order of writing.
 pub type TableFiles = Vec<(&'static str, Vec<u8>)>;
@@ -43,6 +44,5 @@ pub(super) fn table_file(
     name: &'static str,
     rows: &[impl Serialize],
 ) -> Result<(&'static str, Vec<u8>)> {
-    let failed = |error| Error::io(name, "write", std::io::Error::other(error));
-    Ok((name, to_csv(rows).map_err(failed)?))
+    Ok((name, csv_content(Path::new(name), rows)?))
 }

@@ -61,8 +61,8 @@ pub(super) struct Solution {
     pub inwards: Vec<f64>,
 }
 
-/// A point inside: all forces and gaps above zero.
-struct Inside {
+/// A point inside, where all forces and gaps are above zero; or a step from one.
+struct Variables {
     motion: Six,
     /// u of each taxel.
     inwards: Vec<f64>,
@@ -70,16 +70,6 @@ struct Inside {
     forces: Vec<f64>,
     gaps: Vec<f64>,
     /// The same of stops.
-    stops: Vec<f64>,
-    rooms: Vec<f64>,
-}
-
-/// A step from such a point.
-struct Step {
-    motion: Six,
-    inwards: Vec<f64>,
-    forces: Vec<f64>,
-    gaps: Vec<f64>,
     stops: Vec<f64>,
     rooms: Vec<f64>,
 }
@@ -117,14 +107,14 @@ impl Problem {
         least.1.filter(|_| least.0 <= GOOD)
     }
 
-    fn start(&self) -> Inside {
+    fn start(&self) -> Variables {
         let n = self.springs.len().max(1) as f64;
         let deepest = |spring: &Spring| {
             let all = self.deflections[spring.pairs.clone()].iter();
             all.copied().fold(f64::NEG_INFINITY, f64::max)
         };
         let n_pairs = self.deflections.len();
-        let mut at = Inside {
+        let mut at = Variables {
             motion: [0.0; 6],
             inwards: Vec::new(),
             forces: vec![1.0 / n; n_pairs],
@@ -145,7 +135,7 @@ impl Problem {
     }
 
     /// How far from the solution: what is left of the balance, of gaps, and of products.
-    fn error(&self, at: &Inside) -> f64 {
+    fn error(&self, at: &Variables) -> f64 {
         let mut worst = norm(&self.unbalanced(at));
         for (i, spring) in self.springs.iter().enumerate() {
             let pull = self.pull(at, i);
@@ -161,7 +151,7 @@ impl Problem {
     }
 
     /// B d − w + Σ λ g.
-    fn unbalanced(&self, at: &Inside) -> Six {
+    fn unbalanced(&self, at: &Variables) -> Six {
         let (values, vectors) = &self.curvature;
         let along: Six = std::array::from_fn(|k| values[k] * dot(&vectors[k], &at.motion));
         let mut left: Six = std::array::from_fn(|i| {
@@ -176,21 +166,21 @@ impl Problem {
     }
 
     /// k u − Σ λ + τ.
-    fn pull(&self, at: &Inside, i: usize) -> f64 {
+    fn pull(&self, at: &Variables, i: usize) -> f64 {
         let spring = &self.springs[i];
         let pushed: f64 = at.forces[spring.pairs.clone()].iter().sum();
         spring.stiffness * at.inwards[i] - pushed + at.stops[i]
     }
 
     /// u − δ − g·d, less the gap.
-    fn gap_error(&self, at: &Inside, i: usize, j: usize) -> f64 {
+    fn gap_error(&self, at: &Variables, i: usize, j: usize) -> f64 {
         at.inwards[i] - self.deflections[j] - dot(&self.slopes[j], &at.motion) - at.gaps[j]
     }
 
     /// Lays and factorises the rows of a step whose products aim at `of_pair` and `of_stop` above their own.
     fn lay(
         &self,
-        at: &Inside,
+        at: &Variables,
         rows: &mut GradedRows,
         of_pair: impl Fn(usize) -> f64,
         of_stop: impl Fn(usize) -> f64,
@@ -238,7 +228,7 @@ impl Problem {
     }
 
     /// k + φ of a taxel, φ the weight of its stop; and what its own equation asks for.
-    fn firm(&self, at: &Inside, i: usize, of_stop: &impl Fn(usize) -> f64) -> (f64, f64) {
+    fn firm(&self, at: &Variables, i: usize, of_stop: &impl Fn(usize) -> f64) -> (f64, f64) {
         let spring = &self.springs[i];
         let stop = at.stops[i] / at.rooms[i];
         let product = of_stop(i) - at.stops[i] * at.rooms[i];
@@ -249,14 +239,14 @@ impl Problem {
 
     fn step(
         &self,
-        at: &Inside,
+        at: &Variables,
         rows: &GradedRows,
         of_pair: impl Fn(usize) -> f64,
         of_stop: impl Fn(usize) -> f64,
-    ) -> Step {
+    ) -> Variables {
         let motion = rows.solve(&self.unbalanced(at).map(|x| -x));
         let (n, n_pairs) = (self.springs.len(), self.deflections.len());
-        let mut step = Step {
+        let mut step = Variables {
             motion,
             inwards: vec![0.0; n],
             forces: vec![0.0; n_pairs],
@@ -290,7 +280,7 @@ impl Problem {
         step
     }
 
-    fn solution(&self, at: &Inside) -> Solution {
+    fn solution(&self, at: &Variables) -> Solution {
         Solution {
             motion: at.motion,
             forces: at.forces.clone(),
@@ -339,7 +329,7 @@ impl Problem {
     }
 }
 
-impl Inside {
+impl Variables {
     fn mean_product(&self) -> f64 {
         let pairs = self.forces.iter().zip(&self.gaps);
         let stops = self.stops.iter().zip(&self.rooms);
@@ -347,7 +337,7 @@ impl Inside {
         sum / (self.forces.len() + self.stops.len()).max(1) as f64
     }
 
-    fn mean_product_after(&self, step: &Step, share: f64) -> f64 {
+    fn mean_product_after(&self, step: &Variables, share: f64) -> f64 {
         let both = |a: &[f64], da: &[f64], b: &[f64], db: &[f64]| -> f64 {
             (0..a.len())
                 .map(|k| (a[k] + share * da[k]) * (b[k] + share * db[k]))
@@ -359,7 +349,7 @@ impl Inside {
     }
 
     /// The share of a step, at most 1, that stays inside; of the way to the first edge so much.
-    fn room_for(&self, step: &Step, nearly: f64) -> f64 {
+    fn room_for(&self, step: &Variables, nearly: f64) -> f64 {
         let mut share: f64 = 1.0;
         for (values, changes) in [
             (&self.forces, &step.forces),
@@ -376,7 +366,7 @@ impl Inside {
         share
     }
 
-    fn go(&mut self, step: &Step, share: f64) {
+    fn go(&mut self, step: &Variables, share: f64) {
         for (motion, change) in self.motion.iter_mut().zip(&step.motion) {
             *motion += share * change;
         }

@@ -9,15 +9,15 @@
 //! between two values where a straight line on the axis' scale says so. The interval of that place is from repeated draws of
 //! all accuracies out of what their test rows leave open (`half`).
 
-mod driven;
 mod half;
 mod plan;
 mod runner;
 mod scale;
 mod spec;
 pub mod table;
+mod value;
 
-pub use driven::{BreakingPointsStudy, DrivenRows};
 pub use plan::{BreakingPointsPlan, PlannedValue, PlannedWay};
+pub use runner::{BreakingPointsStudy, DrivenRows};
 pub use scale::WayScale;
 pub use spec::{BreakingPointsSpec, DrivenAs, DrivenTouches, WaySpec};

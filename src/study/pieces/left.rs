@@ -55,10 +55,7 @@ impl<'a, R: PieceRows> PiecesLeft<'a, R> {
             return Ok(());
         }
         let result = attempt(self.fail_fast, measure)?;
-        keep(self.journal, name, &result)?;
-        self.results().insert(name.to_owned(), Some(result));
-        self.progress.advance(1);
-        Ok(())
+        self.keep(name, result)
     }
 
     /// What several pieces need first; if it cannot be had, all of them fail of it.
@@ -73,20 +70,16 @@ impl<'a, R: PieceRows> PiecesLeft<'a, R> {
         match attempt(self.fail_fast, make)? {
             Ok(made) => Ok(Some(made)),
             Err(said) => {
-                for name in names {
-                    self.fail(name, &said)?;
+                for name in names.iter().filter(|name| self.has(name)) {
+                    self.keep(name, Err(said.clone()))?;
                 }
                 Ok(None)
             }
         }
     }
 
-    fn fail(&self, name: &str, said: &str) -> Result<()> {
-        if !self.has(name) {
-            return Ok(());
-        }
-        let result = Err(said.to_owned());
-        keep::<R>(self.journal, name, &result)?;
+    fn keep(&self, name: &str, result: PieceResult<R>) -> Result<()> {
+        keep(self.journal, name, &result)?;
         self.results().insert(name.to_owned(), Some(result));
         self.progress.advance(1);
         Ok(())

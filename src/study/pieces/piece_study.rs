@@ -32,7 +32,7 @@ pub trait PieceStudy {
     fn tables(&self, rows: Self::Rows) -> Result<Self::Tables>;
 }
 
-/// How a run goes about its pieces.
+/// How a run goes about its pieces; of a study that recognises, about its cells.
 #[derive(Clone, Copy)]
 pub struct PieceManner<'a> {
     /// Where finished pieces are looked for and kept.

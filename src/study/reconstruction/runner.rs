@@ -105,11 +105,18 @@ impl ReconstructionStudy {
     /// As of a run.
     pub fn samples(&self, cells: &[&ReconstructionCell]) -> Result<SampleFrames> {
         let touches = self.frames(&Silent)?;
+        let bases = self.plan.dictionaries.iter().copied();
+        let is_shown = |basis: &Basis| cells.iter().any(|cell| cell.dictionary == *basis);
+        let bases: Vec<Basis> = bases.filter(is_shown).collect();
+        let dictionaries = touches.learn(&self.plan, &bases, &Silent)?;
         let mut reconstructed = BTreeMap::new();
         for cell in cells {
-            let dictionaries = touches.learn(&self.plan, &[cell.dictionary], &Silent)?;
+            let mut of_cell = dictionaries.iter();
+            let Some(dictionary) = of_cell.find(|found| found.basis() == cell.dictionary) else {
+                continue;
+            };
             let projection = self.plan.projection(cell.ensemble, cell.measurements)?;
-            let sensed = SensedDictionary::new(&projection, &dictionaries[0])?;
+            let sensed = SensedDictionary::new(&projection, dictionary)?;
             let levels = touches.noisy.iter();
             let mut of_level = levels.filter(|noisy| noisy.level == cell.noise_std);
             let Some(noisy) = of_level.next() else {

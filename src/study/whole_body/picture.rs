@@ -42,19 +42,35 @@ pub fn picture_body(plan: &WholeBodyPlan, tables: &WholeBodyTables) -> Result<Op
         return Ok(None);
     }
     let covered = CoveredRobot::new(&plan.robot, plan.taxel, plan.pitch, plan.side)?;
-    let drawn = scenes
-        .into_iter()
-        .map(|scene| picture(plan, scene, &covered))
-        .collect::<Result<Vec<_>>>()?;
-    Ok(drawn.into_iter().max_by_key(|picture| picture.n_patches))
+    let begun = scenes.into_iter().map(|scene| {
+        let n_patches = n_patches(plan, scene, &covered)?;
+        Ok((scene, n_patches))
+    });
+    let begun = begun.collect::<Result<Vec<_>>>()?;
+    let most = begun.into_iter().max_by_key(|&(_, n_patches)| n_patches);
+    most.map(|(scene, n_patches)| picture(plan, (scene, n_patches), &covered))
+        .transpose()
 }
 
-fn picture(plan: &WholeBodyPlan, scene: &ScenePlan, covered: &CoveredRobot) -> Result<BodyPicture> {
+/// Patches that are touched as a scene begins.
+fn n_patches(plan: &WholeBodyPlan, scene: &ScenePlan, covered: &CoveredRobot) -> Result<usize> {
     let object = scene.object.build(plan.surface_error)?;
     let posture = Posture::new(plan, covered, &scene.positions)?;
     let mut drive = begin(scene, &posture, &object)?;
     let path = drive.path;
-    let n_patches = drive.probe(&path).n_patches;
+    Ok(drive.probe(&path).n_patches)
+}
+
+fn picture(
+    plan: &WholeBodyPlan,
+    (scene, n_patches): (&ScenePlan, usize),
+    covered: &CoveredRobot,
+) -> Result<BodyPicture> {
+    let object = scene.object.build(plan.surface_error)?;
+    let posture = Posture::new(plan, covered, &scene.positions)?;
+    let mut drive = begin(scene, &posture, &object)?;
+    let path = drive.path;
+    drive.probe(&path);
     let body = covered.body();
     let mut pressures = vec![0.0; body.patches().len()];
     let mut touched = Vec::new();
