@@ -113,19 +113,28 @@ impl Error {
 const LETTERS: usize = 500;
 /// Lines that are shown.
 const LINES: usize = 25;
+/// Bytes of all of them, about.
+const BYTES: usize = 2000;
 
 /// A text that a person can read to its end.
 fn shortened(text: String) -> String {
-    let is_long = |line: &str| line.len() > LETTERS && line.chars().nth(LETTERS).is_some();
-    if text.len() <= LETTERS || (text.lines().count() <= LINES && !text.lines().any(is_long)) {
+    if text.len() <= LETTERS {
         return text;
     }
-    let line = |line: &str| match is_long(line) {
-        true => line.chars().take(LETTERS).chain(['…']).collect(),
-        false => line.to_owned(),
-    };
-    let mut lines: Vec<String> = text.lines().take(LINES).map(line).collect();
-    let n_more = text.lines().count().saturating_sub(LINES);
+    let mut lines: Vec<String> = Vec::new();
+    let mut n_bytes = 0;
+    for line in text.lines().take(LINES) {
+        if n_bytes > BYTES {
+            break;
+        }
+        let mut shown: String = line.chars().take(LETTERS).collect();
+        if shown.len() < line.len() {
+            shown.push('…');
+        }
+        n_bytes += shown.len();
+        lines.push(shown);
+    }
+    let n_more = text.lines().count() - lines.len();
     if n_more > 0 {
         lines.push(format!("  … and {n_more} more lines"));
     }
@@ -148,5 +157,8 @@ mod tests {
         let lines = said(&"line\n".repeat(10_000));
         assert_eq!(lines.matches("line\n").count(), LINES);
         assert!(lines.contains("and 9975 more lines"), "{lines}");
+        let long_lines = said(&("-".repeat(300) + "\n").repeat(20));
+        assert!(long_lines.len() < BYTES + 400, "{long_lines}");
+        assert!(long_lines.contains("and 13 more lines"), "{long_lines}");
     }
 }

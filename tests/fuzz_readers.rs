@@ -148,8 +148,8 @@ fn scenes() {
             "true",
         ],
         n_inputs: 300,
-        // What a scene names is read with it: a robot, packed objects, and the taxels of its skin.
-        most_bytes: (TREE, 512 << 20),
+        // What a scene names is read with it: a robot, packed objects, and the taxels of its skin, at most four million of 200 bytes.
+        most_bytes: (TREE, 900 << 20),
         // A patch may ask for four million taxels, about a microsecond each.
         least_s: 10.0,
         read: &|input| {
