@@ -84,10 +84,9 @@ impl<T: Scalar> Sorted<T> {
         let groups: Vec<Group<T>> = classes.iter().map(|own| Group::new(self, own)).collect();
         let (mut between, mut above, mut room) = (Vec::new(), Vec::new(), Room::new());
         for (at, own) in groups.iter().enumerate() {
-            let packed = own.packed();
             for (number, other) in groups.iter().enumerate().skip(at) {
                 if number > at {
-                    own.with(&packed, other, &mut between);
+                    own.with(other, &mut between);
                 }
                 for (a, b) in pairs(classes[at].clone(), classes[number].clone()) {
                     let [first, second] = [a, b].map(|class| &self.ranges()[class]);
