@@ -123,11 +123,12 @@ impl<T: Scalar> Sorted<T> {
         problems: &mut [Vec<BinaryProblem>],
     ) {
         let n_first = self.ranges()[a].len();
-        let is_positive: Vec<bool> = (0..gram.len()).map(|i| i < n_first).collect();
+        let mut labels = vec![1.0; n_first];
+        labels.resize(gram.len(), -1.0);
         let sides = (self.classes()[a], Some(self.classes()[b]));
         self.solve(
             gram,
-            (&is_positive, &self.pair_rows(a, b)),
+            (&labels, &self.pair_rows(a, b)),
             sides,
             goal,
             problems,
@@ -158,8 +159,9 @@ impl<T: Scalar> Sorted<T> {
     ) {
         let rows: Vec<usize> = (0..self.points().len()).collect();
         for (range, &class) in self.ranges().iter().zip(self.classes()) {
-            let is_positive: Vec<bool> = rows.iter().map(|row| range.contains(row)).collect();
-            self.solve(gram, (&is_positive, &rows), (class, None), goal, problems);
+            let mut labels = vec![-1.0; rows.len()];
+            labels[range.clone()].fill(1.0);
+            self.solve(gram, (&labels, &rows), (class, None), goal, problems);
             // Back into the order of the training rows, which all these problems share.
             for problem in problems.iter_mut().filter_map(|path| path.last_mut()) {
                 let mut coefficients = vec![0.0; rows.len()];
@@ -176,12 +178,12 @@ impl<T: Scalar> Sorted<T> {
     fn solve<G: Gram<T>>(
         &self,
         gram: &mut G,
-        (is_positive, rows): (&[bool], &[usize]),
+        (labels, rows): (&[f64], &[usize]),
         sides: (usize, Option<usize>),
         goal: Goal,
         problems: &mut [Vec<BinaryProblem>],
     ) {
-        let mut smo = Smo::new(gram, is_positive);
+        let mut smo = Smo::new(gram, labels);
         for (&c, problems) in goal.path.iter().zip(problems) {
             let solution = smo.solve(c, goal.tolerance);
             problems.push(self.problem(rows, sides, solution));

@@ -2,11 +2,13 @@
 
 use ndarray::{Array2, ArrayView1, ArrayView2, Axis};
 
+use super::curvatures::{self, InverseCurvatures};
 use super::passes::padded;
 use super::row_sums::weighted_sum;
 use crate::recognition::kernel::KernelFunction;
 use crate::recognition::points::Points;
 use crate::recognition::scalar::Scalar;
+use crate::recognition::transposed::write_columns;
 
 /// K of one binary problem, n × n, symmetric and positive semidefinite. Rows are padded to whole lanes with zeros.
 pub(crate) trait Gram<T> {
@@ -16,6 +18,8 @@ pub(crate) trait Gram<T> {
     fn rows(&mut self, i: usize, j: usize) -> (&[T], &[T]);
     /// Row i and the diagonal, padded like a row.
     fn row_and_diagonal(&mut self, i: usize) -> (&[T], &[T]);
+    /// `1 / (K_ii + K_jj − 2 K_ij)` for each j, padded like a row, and the smallest curvature that counts.
+    fn inverse_curvatures(&mut self, i: usize) -> (&[T], T);
     /// `K β`, summed in f64 (n values).
     fn times(&mut self, beta: &[f64]) -> Vec<f64>;
     /// Whether a part of this many rows would fit in memory.
@@ -32,9 +36,10 @@ pub(crate) struct Dense<T> {
     /// n rows of `stride` values.
     values: Vec<T>,
     diagonal: Vec<T>,
+    inverses: InverseCurvatures<T>,
 }
 
-impl<T> Default for Dense<T> {
+impl<T: Scalar> Default for Dense<T> {
     /// No rows yet.
     fn default() -> Self {
         Self {
@@ -42,6 +47,7 @@ impl<T> Default for Dense<T> {
             stride: 0,
             values: Vec::new(),
             diagonal: Vec::new(),
+            inverses: InverseCurvatures::new(),
         }
     }
 }
@@ -66,6 +72,7 @@ impl<T: Scalar> Dense<T> {
         self.diagonal
             .extend((0..n).map(|i| self.values[i * self.stride + i]));
         self.diagonal.resize(self.stride, T::zero());
+        self.inverses.renew(n, &self.diagonal);
     }
 
     /// A whole matrix.
@@ -73,7 +80,26 @@ impl<T: Scalar> Dense<T> {
         self.refill(whole.nrows(), |i, to| copy(to, whole.row(i)));
     }
 
-    fn at(&self, i: usize) -> &[T] {
+    /// A symmetric matrix of two groups of rows: those within each, and those of the first with the second, row by row.
+    pub fn of_blocks(&mut self, [own, others]: [ArrayView2<T>; 2], between: &[T]) {
+        let (first, second) = (own.nrows(), others.nrows());
+        let across: Vec<&[T]> = between.chunks_exact(second.max(1)).collect();
+        self.refill(first + second, |at, to| {
+            let (left, right) = to.split_at_mut(first);
+            if at < first {
+                copy(left, own.row(at));
+                right.copy_from_slice(across[at]);
+            } else {
+                copy(right, others.row(at - first));
+            }
+        });
+        let below = &mut self.values[first * self.stride..];
+        write_columns(&across, below, self.stride);
+    }
+
+    /// A row.
+    #[inline(always)]
+    pub fn row(&self, i: usize) -> &[T] {
         &self.values[i * self.stride..(i + 1) * self.stride]
     }
 }
@@ -93,16 +119,23 @@ impl<T: Scalar> Gram<T> for Dense<T> {
 
     #[inline(always)]
     fn rows(&mut self, i: usize, j: usize) -> (&[T], &[T]) {
-        (self.at(i), self.at(j))
+        (self.row(i), self.row(j))
     }
 
     #[inline(always)]
     fn row_and_diagonal(&mut self, i: usize) -> (&[T], &[T]) {
-        (self.at(i), &self.diagonal)
+        (self.row(i), &self.diagonal)
+    }
+
+    #[inline(always)]
+    fn inverse_curvatures(&mut self, i: usize) -> (&[T], T) {
+        let row = &self.values[i * self.stride..(i + 1) * self.stride];
+        let smallest = self.inverses.smallest();
+        (self.inverses.of_row(i, row, &self.diagonal), smallest)
     }
 
     fn times(&mut self, beta: &[f64]) -> Vec<f64> {
-        weighted_sum(self.n, beta, |j| self.at(j))
+        weighted_sum(self.n, beta, |j| self.row(j))
     }
 
     fn fits(&self, _: usize) -> bool {
@@ -112,7 +145,7 @@ impl<T: Scalar> Gram<T> for Dense<T> {
     fn part(&mut self, indices: &[usize]) -> Self {
         let mut part = Self::default();
         part.refill(indices.len(), |i, to| {
-            gather(to, self.at(indices[i]), indices)
+            gather(to, self.row(indices[i]), indices)
         });
         part
     }
@@ -131,6 +164,8 @@ pub(crate) struct Cached<'a, T> {
     kernel: KernelFunction,
     stride: usize,
     diagonal: Vec<T>,
+    /// The smallest curvature that counts.
+    smallest: T,
     /// Bytes that kept rows, and a part of the matrix, may take.
     limit: usize,
     rows: Vec<Kept<T>>,
@@ -144,6 +179,7 @@ struct Kept<T> {
     row: usize,
     last_asked: u64,
     values: Vec<T>,
+    inverses: Vec<T>,
 }
 
 /// Kernel rows computed at once for a weighted sum.
@@ -159,6 +195,7 @@ impl<'a, T: Scalar> Cached<'a, T> {
             points,
             kernel,
             stride: padded(n),
+            smallest: curvatures::smallest(&diagonal),
             diagonal,
             limit,
             rows: Vec::new(),
@@ -180,7 +217,12 @@ impl<'a, T: Scalar> Cached<'a, T> {
                 values.clear();
                 values.extend(kernel.iter());
                 values.resize(self.stride, T::zero());
-                self.rows[at].row = i;
+                let kept = &mut self.rows[at];
+                kept.inverses.resize(self.stride, T::zero());
+                let row = (&kept.values[..], &self.diagonal[..]);
+                let least = (self.diagonal[i], self.smallest);
+                curvatures::write(&mut kept.inverses, row, least);
+                kept.row = i;
                 self.place[i] = Some(at);
                 at
             }
@@ -191,12 +233,13 @@ impl<'a, T: Scalar> Cached<'a, T> {
 
     /// An empty place, or that of the row that was not asked for the longest.
     fn make_room(&mut self) -> usize {
-        let most = (self.limit / (self.stride * size_of::<T>()).max(1)).max(2);
+        let most = (self.limit / (2 * self.stride * size_of::<T>()).max(1)).max(2);
         if self.rows.len() < most {
             self.rows.push(Kept {
                 row: 0,
                 last_asked: 0,
                 values: Vec::new(),
+                inverses: Vec::new(),
             });
             return self.rows.len() - 1;
         }
@@ -227,6 +270,11 @@ impl<T: Scalar> Gram<T> for Cached<'_, T> {
     fn row_and_diagonal(&mut self, i: usize) -> (&[T], &[T]) {
         let at = self.fetch(i);
         (&self.rows[at].values, &self.diagonal)
+    }
+
+    fn inverse_curvatures(&mut self, i: usize) -> (&[T], T) {
+        let at = self.fetch(i);
+        (&self.rows[at].inverses, self.smallest)
     }
 
     fn times(&mut self, beta: &[f64]) -> Vec<f64> {

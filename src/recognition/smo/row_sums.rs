@@ -20,7 +20,7 @@ pub(super) fn weighted_sum<'a, T: Scalar>(
 }
 
 /// Four rows one after the other: the sums are read and written a quarter as often.
-#[multiversion::multiversion(targets("x86_64+avx2+fma"))]
+#[multiversion::multiversion(targets("x86_64+avx512f", "x86_64+avx2+fma"))]
 fn add_four<T: Scalar>(sums: &mut [f64], rows: &[(&[T], f64); 4]) {
     let n = sums.len();
     let [(a, p), (b, q), (c, r), (d, s)] = *rows;
