@@ -3,6 +3,7 @@
 use std::ops::Range;
 
 use crate::recognition::scalar::Scalar;
+use crate::recognition::svm::Multiclass;
 
 /// Values added up side by side: two vector registers of sixteen f32.
 const LANES: usize = 32;
@@ -29,6 +30,16 @@ impl ClassColumns {
     /// The rows of each class.
     pub fn ranges(&self) -> &[Range<usize>] {
         &self.ranges
+    }
+
+    /// Values that one solution of each problem takes.
+    pub fn n_values(&self, multiclass: Multiclass) -> usize {
+        let n_classes = self.ranges.len();
+        let n_problems_a_class = match multiclass {
+            Multiclass::OneVsOne => n_classes - 1,
+            _ => n_classes,
+        };
+        n_problems_a_class * self.starts[n_classes]
     }
 
     /// The values of a class among all.

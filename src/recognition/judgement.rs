@@ -47,6 +47,8 @@ impl<'a, T: Scalar> Judgement<'a, T> {
         n_path: usize,
     ) -> Self {
         room.clear();
+        // As much as solutions may take, so that it is asked for once.
+        room.reserve(columns.n_values(multiclass) * n_path);
         let n_problems = multiclass.problems(is_class.len()).len();
         Self {
             lost: Array2::from_elem((rows.len(), n_path), (0, 0)),

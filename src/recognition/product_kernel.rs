@@ -44,7 +44,13 @@ impl<'a, T: Scalar> ProductKernel<'a, T> {
 
     /// Writes the kernel values of some rows with others.
     fn write(&self, (rows, others): (&Range<usize>, &Range<usize>), mut to: ArrayViewMut2<T>) {
-        to.assign(&self.products.slice(s![rows.clone(), others.clone()]));
+        let products = self.products.slice(s![rows.clone(), others.clone()]);
+        for (mut to, products) in to.rows_mut().into_iter().zip(products.rows()) {
+            match (to.as_slice_mut(), products.to_slice()) {
+                (Some(to), Some(products)) => to.copy_from_slice(products),
+                _ => to.assign(&products),
+            }
+        }
         let others = self.points.range(others.clone());
         let rows = self.points.range(rows.clone());
         rows.apply(to, others, &self.kernel);

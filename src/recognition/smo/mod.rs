@@ -19,14 +19,12 @@ pub(crate) mod passes;
 pub(crate) mod passes_512;
 mod reached;
 mod row_sums;
-mod runs;
 mod start;
 mod variables;
 
 pub(crate) use gram::{Cached, Dense, Gram, gather};
 pub(crate) use part::{Part, Room, part_of_blocks};
 pub(crate) use reached::Reached;
-pub(crate) use runs::Runs;
 pub(crate) use variables::extremes;
 
 use crate::recognition::dual::DualSolution;

@@ -163,16 +163,22 @@ fn widen((highest, lowest): (&mut f64, &mut f64), beta: f64, y: f64, f: f64, c: 
 /// `Σ y β` and `β K β` of β and its f, of which the dual objective is the first less half the second.
 #[multiversion::multiversion(targets("x86_64+avx512f", "x86_64+avx2+fma"))]
 pub(super) fn linear_and_quadratic(beta: &[f64], y: &[f64], f: &[f64]) -> (f64, f64) {
+    let (beta, last_beta) = beta.as_chunks::<LANES>();
+    let (y, last_y) = y.as_chunks::<LANES>();
+    let (f, last_f) = f.as_chunks::<LANES>();
     let n = beta.len();
     let (y, f) = (&y[..n], &f[..n]);
     // Each lane keeps its own; they meet at the end.
     let (mut linear, mut quadratic) = ([0.0; LANES], [0.0; LANES]);
-    for start in (0..n).step_by(LANES) {
-        for lane in 0..LANES.min(n - start) {
-            let at = start + lane;
-            linear[lane] += beta[at] * y[at];
-            quadratic[lane] += beta[at] * (y[at] - f[at]);
+    for at in 0..n {
+        for lane in 0..LANES {
+            linear[lane] += beta[at][lane] * y[at][lane];
+            quadratic[lane] += beta[at][lane] * (y[at][lane] - f[at][lane]);
         }
+    }
+    for at in 0..last_beta.len() {
+        linear[at] += last_beta[at] * last_y[at];
+        quadratic[at] += last_beta[at] * (last_y[at] - last_f[at]);
     }
     (linear.iter().sum(), quadratic.iter().sum())
 }
@@ -180,20 +186,33 @@ pub(super) fn linear_and_quadratic(beta: &[f64], y: &[f64], f: &[f64]) -> (f64, 
 /// The sum of f over the variables between their bounds, and how many these are.
 #[multiversion::multiversion(targets("x86_64+avx512f", "x86_64+avx2+fma"))]
 fn sum_of_free(beta: &[f64], y: &[f64], f: &[f64], c: f64) -> (f64, f64) {
+    let (beta, last_beta) = beta.as_chunks::<LANES>();
+    let (y, last_y) = y.as_chunks::<LANES>();
+    let (f, last_f) = f.as_chunks::<LANES>();
     let n = beta.len();
     let (y, f) = (&y[..n], &f[..n]);
     // Each lane keeps its own; they meet at the end.
     let (mut sum, mut n_free) = ([0.0; LANES], [0.0; LANES]);
-    for start in (0..n).step_by(LANES) {
-        for lane in 0..LANES.min(n - start) {
-            let at = start + lane;
-            let (low, high) = bounds(y[at], c);
-            let is_free = (beta[at] > low) & (beta[at] < high);
-            sum[lane] += if is_free { f[at] } else { 0.0 };
-            n_free[lane] += if is_free { 1.0 } else { 0.0 };
+    for at in 0..n {
+        for lane in 0..LANES {
+            let is_free = weight_if_free(beta[at][lane], y[at][lane], c);
+            sum[lane] += is_free * f[at][lane];
+            n_free[lane] += is_free;
         }
     }
+    for at in 0..last_beta.len() {
+        let is_free = weight_if_free(last_beta[at], last_y[at], c);
+        sum[at] += is_free * last_f[at];
+        n_free[at] += is_free;
+    }
     (sum.iter().sum(), n_free.iter().sum())
+}
+
+/// 1 for a variable between its bounds, 0 for another.
+#[inline(always)]
+fn weight_if_free(beta: f64, y: f64, c: f64) -> f64 {
+    let (low, high) = bounds(y, c);
+    f64::from(u8::from((beta > low) & (beta < high)))
 }
 
 /// ρ: the mean of −f over the variables between their bounds, or the middle of what the others allow (LIBSVM's rule).
