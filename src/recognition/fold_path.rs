@@ -116,3 +116,70 @@ fn along<T: Scalar>(
 fn difference(a: &[f64], b: &[f64]) -> Vec<f64> {
     a.iter().zip(b).map(|(a, b)| a - b).collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use ndarray::Array2;
+
+    const N: usize = 45;
+    const POSITIVE: Range<usize> = 0..20;
+
+    fn kernel(i: usize, j: usize) -> f64 {
+        let at = |i: usize| (i as f64 * 1.7).sin() + if POSITIVE.contains(&i) { 0.4 } else { 0.0 };
+        (-(at(i) - at(j)).powi(2)).exp()
+    }
+
+    fn gram(rows: &[usize]) -> Dense<f64> {
+        let values = |(i, j): (usize, usize)| kernel(rows[i], rows[j]);
+        let mut gram = Dense::default();
+        gram.of_whole(Array2::from_shape_fn((rows.len(), rows.len()), values).view());
+        gram
+    }
+
+    fn label(at: usize, fold: usize) -> f64 {
+        match (at % 3 == fold, POSITIVE.contains(&at)) {
+            (true, _) => 0.0,
+            (false, true) => 1.0,
+            (false, false) => -1.0,
+        }
+    }
+
+    #[test]
+    fn a_fold_is_solved_as_if_it_had_its_rows_alone_and_f_judges_those_held_out() {
+        let all: Vec<usize> = (0..N).collect();
+        let mut whole = gram(&all);
+        let goal = Goal {
+            path: &[0.05, 1.0, 20.0, 400.0],
+            tolerance: 1e-9,
+            memory: usize::MAX,
+        };
+        let mut last: Option<FoldPath> = None;
+        for fold in 0..3 {
+            let labels: Vec<f64> = all.iter().map(|&at| label(at, fold)).collect();
+            let rows: Vec<usize> = (0..N).filter(|at| at % 3 != fold).collect();
+            let own: Vec<f64> = rows.iter().map(|&at| labels[at]).collect();
+            let mut part = gram(&rows);
+            let mut alone = Smo::new(&mut part, &own);
+            let of_class = FoldPath::of_class(&mut whole, labels.clone(), goal);
+            let path = FoldPath::of_pair(&mut whole, (labels, &POSITIVE), last.as_ref(), goal);
+            for (number, &c) in goal.path.iter().enumerate() {
+                let expected = alone.solve(c, goal.tolerance);
+                for found in [&path.solutions[number], &of_class.solutions[number]] {
+                    assert!((found.rho - expected.rho).abs() < 1e-6, "{fold} {c}");
+                    for at in 0..N {
+                        let terms = rows.iter().zip(&expected.coefficients);
+                        let sum: f64 = terms.map(|(&row, beta)| beta * kernel(row, at)).sum();
+                        let f = label(at, fold) - sum;
+                        assert!((found.f[at] - f).abs() < 1e-6, "{fold} {c} {at}");
+                    }
+                    assert!(
+                        all.iter()
+                            .all(|at| at % 3 != fold || found.beta[*at] == 0.0)
+                    );
+                }
+            }
+            last = Some(path);
+        }
+    }
+}

@@ -8,11 +8,13 @@
 //! - **Shrinking** [Joachims 1999]: variables that sit at a bound and want to stay there are left out, and what remains of
 //!   the Gram matrix is copied together, so that iterations run over short contiguous rows.
 //! - **Warm start along C**: the last solution, stretched by the factor that is best for the objective.
-//! - **Precision**: Gram matrix and f may be f32; whenever the solver believes to be done, f is summed again in f64 and has
-//!   the last word.
+//! - **Precision**: Gram matrix and f may be f32; whenever the solver believes to be done, an f in f64 follows what β has
+//!   changed and has the last word.
 
+mod cached;
 mod curvatures;
 mod gram;
+mod iterations;
 mod part;
 pub(crate) mod passes;
 #[cfg(target_arch = "x86_64")]
@@ -22,14 +24,15 @@ mod row_sums;
 mod start;
 mod variables;
 
-pub(crate) use gram::{Cached, Dense, Gram, gather};
+pub(crate) use cached::Cached;
+pub(crate) use gram::{Dense, Gram, gather};
 pub(crate) use part::{Part, Room, part_of_blocks};
 pub(crate) use reached::Reached;
 pub(crate) use variables::extremes;
 
 use crate::recognition::dual::DualSolution;
 use crate::recognition::scalar::Scalar;
-use passes::select_up;
+use iterations::{SHRINK_PERIOD, Search, Stop, run, solve_part};
 use reached::violation;
 use variables::{Variables, linear_and_quadratic, rho};
 
@@ -37,13 +40,6 @@ use variables::{Variables, linear_and_quadratic, rho};
 const MOST_ITERATIONS: u64 = 10_000_000;
 /// Times that f64 may disagree with a solver that believes to be done.
 const MOST_REFRESHES: usize = 30;
-/// Iterations before a look at which variables to leave out.
-const SHRINK_PERIOD: u64 = 1000;
-/// Rows below which leaving variables out gains less than copying costs.
-const SHRINK_ROWS: usize = 400;
-/// The share of the variables that may remain for the copy to be worth it.
-const SHRINK_SHARE: f64 = 0.7;
-
 /// A binary problem on a Gram matrix, and the solution of the C that it was last solved for.
 pub(crate) struct Smo<'a, G> {
     gram: &'a mut G,
@@ -244,100 +240,6 @@ impl<'a, G> Smo<'a, G> {
             search.tolerance = tolerance;
             beta.into_iter()
                 .for_each(|(at, value)| self.beta[indices[at]] = value);
-        }
-    }
-}
-
-/// Solves on a part of the Gram matrix, and on parts of that. β of the part's variables, by their index in it.
-fn solve_part<T: Scalar>(
-    mut part: Dense<T>,
-    mut variables: Variables<T>,
-    search: &mut Search,
-) -> Vec<(usize, f64)> {
-    let mut indices: Vec<usize> = (0..variables.beta.len()).collect();
-    let mut solved = Vec::new();
-    loop {
-        let stop = run(&mut part, &mut variables, search, SHRINK_PERIOD);
-        let beta = indices.iter().zip(&variables.beta);
-        solved.extend(beta.map(|(&index, &beta)| (index, beta)));
-        match stop {
-            Stop::Shrink(keep) => {
-                part = part.part(&keep);
-                variables = variables.select(&keep);
-                indices = keep.iter().map(|&at| indices[at]).collect();
-            }
-            Stop::Done => return solved,
-        }
-    }
-}
-
-/// How far the search may go, and has gone.
-struct Search {
-    tolerance: f64,
-    most_iterations: u64,
-    n_iterations: u64,
-}
-
-impl Search {
-    fn new(most_iterations: u64, tolerance: f64) -> Self {
-        Self {
-            tolerance,
-            most_iterations,
-            n_iterations: 0,
-        }
-    }
-}
-
-/// Why the iteration stopped.
-enum Stop {
-    /// Within the tolerance, or at the cap.
-    Done,
-    /// Only these variables may still move.
-    Shrink(Vec<usize>),
-}
-
-/// Moves pairs of variables until the optimality conditions hold, iterations run out, or few variables are left to move.
-fn run<T: Scalar, G: Gram<T>>(
-    gram: &mut G,
-    variables: &mut Variables<T>,
-    search: &mut Search,
-    first_look: u64,
-) -> Stop {
-    let Some(mut i) = select_up(&variables.f, &variables.up) else {
-        return Stop::Done;
-    };
-    // A little more than asked, so that f64 agrees.
-    let tolerance = T::of(0.95 * search.tolerance);
-    let mut until_look = first_look;
-    loop {
-        let highest = variables.f[i];
-        let (inverses, smallest_curvature) = gram.inverse_curvatures(i);
-        let state = (&variables.f[..], &variables.low[..]);
-        let down = T::select_down(state, inverses, highest, &mut variables.gains);
-        let Some(j) = down.j.filter(|_| down.violation > tolerance) else {
-            return Stop::Done;
-        };
-        let (row_i, diagonal) = gram.row_and_diagonal(i);
-        let curvature = (diagonal[i] + diagonal[j]).wide() - 2.0 * row_i[j].wide();
-        if until_look == 0 && gram.len() >= SHRINK_ROWS {
-            let keep = variables.worth_keeping(highest, highest - down.violation);
-            let few = SHRINK_SHARE * gram.len() as f64;
-            if (keep.len() as f64) < few && gram.fits(keep.len()) {
-                return Stop::Shrink(keep);
-            }
-            until_look = SHRINK_PERIOD;
-        }
-        if search.n_iterations >= search.most_iterations {
-            return Stop::Done;
-        }
-        search.n_iterations += 1;
-        until_look = until_look.saturating_sub(1);
-        let step = variables.step(i, j, curvature.max(smallest_curvature.wide()));
-        let (row_i, row_j) = gram.rows(i, j);
-        let rows = (row_i, row_j);
-        match T::step_along(&mut variables.f, rows, T::of(step), &variables.up) {
-            Some(next) => i = next,
-            None => return Stop::Done,
         }
     }
 }
