@@ -152,6 +152,7 @@ pub mod sensing;
 pub mod signal;
 mod spelling;
 pub mod study;
+mod toml_text;
 pub mod whole_body;
 pub mod world;
 

@@ -26,8 +26,9 @@ use std::path::{Path, PathBuf};
 
 const PLACE: &str = "input";
 
-/// TOML and XML are read as trees, whose nodes take some hundred bytes each, and two letters of text: `[[[[[`.
-const TREE: usize = 250;
+/// TOML and XML are read as trees. A node takes up to 1.1 kB (a table of TOML has room for eleven entries from its first on),
+/// and two letters of text: `a.a.a.a = 1`, which is 550 bytes for one.
+const TREE: usize = 600;
 
 /// The end of each field of a CSV row takes eight bytes, twice while their list grows, and one letter of text: `,,,,,`.
 const FIELDS: usize = 64;

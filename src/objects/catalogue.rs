@@ -24,6 +24,7 @@ use super::solid_toml::WrittenPart;
 use super::{Hand, Object, Solid, pack};
 use crate::error::{Error, Result};
 use crate::geometry::Pose;
+use crate::toml_text;
 use glam::DQuat;
 use serde::Deserialize;
 use std::collections::BTreeSet;
@@ -80,6 +81,7 @@ impl Catalogue {
 
     /// One set from the text of a catalogue file; errors begin with `place`, the file's name.
     pub fn parse(set: &str, place: &str, text: &str) -> Result<Self> {
+        toml_text::check_brackets(place, text)?;
         let file: File = toml::from_str(text).map_err(|e| unreadable(place, text, &e))?;
         if file.object.is_empty() {
             return Err(Error::input(place, "no objects", "at least one [[object]]"));

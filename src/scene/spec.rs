@@ -5,7 +5,8 @@
 pub use super::numbers::Numbers;
 pub use super::spec_object::*;
 pub use super::spec_patch::*;
-use crate::error::{Error, Result};
+use crate::error::Result;
+use crate::toml_text;
 use crate::world::Interpolation;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -145,7 +146,7 @@ pub struct JointsSpec {
 impl SceneSpec {
     /// Reads a scene; the error names the file, the line and the key.
     pub fn parse(place: &str, text: &str) -> Result<Self> {
-        toml::from_str(text).map_err(|error| Error::toml(place, text, &error))
+        toml_text::read(place, text)
     }
 
     /// Writes the scene with its defaults spelt out.

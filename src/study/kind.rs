@@ -23,7 +23,7 @@ pub enum StudyKind {
 impl StudyKind {
     /// Of a study's text; text that is not TOML is told so by whoever reads the study.
     pub fn of(text: &str) -> Self {
-        let table = text.parse::<toml::Table>().unwrap_or_default();
+        let table = crate::toml_text::table(text).unwrap_or_default();
         match () {
             () if table.contains_key("reconstruction") => Self::Reconstruction,
             () if table.contains_key("object_detail") => Self::ObjectDetail,

@@ -6,13 +6,14 @@ use super::axis::Axis;
 pub use super::spec_human::*;
 pub use super::spec_scene::*;
 pub use super::spec_signal::*;
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::recognition::ClassifierKind;
 use crate::recognition::features::Features;
 use crate::recognition::over_time::OverTime;
 use crate::recognition::scaling::Scaling;
 use crate::recognition::svm::{Multiclass, Solver};
 use crate::sensing::Ensemble;
+use crate::toml_text;
 use serde::{Deserialize, Serialize};
 
 /// The file.
@@ -208,7 +209,7 @@ pub enum GroupSpec {
 impl StudySpec {
     /// Reads a study; the error names the file, the line and the key.
     pub fn parse(place: &str, text: &str) -> Result<Self> {
-        toml::from_str(text).map_err(|error| Error::toml(place, text, &error))
+        toml_text::read(place, text)
     }
 
     /// Writes the study with every default spelt out.

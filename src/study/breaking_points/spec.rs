@@ -1,11 +1,12 @@
 //! A study of breaking points as it is written.
 
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::study::breaking_points::WayScale;
 use crate::study::spec::{
     ObjectsSpec, RecognitionSpec, SensingSpec, SignalSpec, SkinSpec, StudySpec, TouchesSpec,
     default_seed,
 };
+use crate::toml_text;
 use serde::{Deserialize, Serialize};
 
 /// The file.
@@ -92,7 +93,7 @@ pub enum DrivenTouches {
 impl BreakingPointsSpec {
     /// Reads a study; the error names the file, the line and the key.
     pub fn parse(place: &str, text: &str) -> Result<Self> {
-        toml::from_str(text).map_err(|error| Error::toml(place, text, &error))
+        toml_text::read(place, text)
     }
 
     /// Writes the study with every default spelt out.

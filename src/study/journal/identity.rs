@@ -1,6 +1,7 @@
 //! What a study's results depend on.
 
 use crate::error::{Error, Result};
+use crate::toml_text;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
@@ -87,7 +88,7 @@ fn changed(name: &str, ours: Option<&String>, theirs: Option<&String>) -> Option
 /// Every value of a TOML text by its dotted key.
 fn keys(text: &str) -> BTreeMap<String, String> {
     let mut values = BTreeMap::new();
-    if let Ok(table) = text.parse::<toml::Table>() {
+    if let Some(table) = toml_text::table(text) {
         add_keys("", &table, &mut values);
     }
     values

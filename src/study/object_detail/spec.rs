@@ -1,9 +1,10 @@
 //! A study of object detail as it is written.
 
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::recognition::ClassifierKind;
 use crate::sensing::Ensemble;
 use crate::study::spec::{ObjectsSpec, SkinSpec, TouchesSpec, default_seed};
+use crate::toml_text;
 use serde::{Deserialize, Serialize};
 
 /// The file.
@@ -81,7 +82,7 @@ pub enum DetailMethod {
 impl ObjectDetailStudySpec {
     /// Reads a study; the error names the file, the line and the key.
     pub fn parse(place: &str, text: &str) -> Result<Self> {
-        toml::from_str(text).map_err(|error| Error::toml(place, text, &error))
+        toml_text::read(place, text)
     }
 
     /// Writes the study with every default spelt out.

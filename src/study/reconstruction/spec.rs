@@ -1,11 +1,12 @@
 //! A reconstruction study as it is written.
 
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::sensing::{Basis, Effort, Solver};
 use crate::study::Axis;
 use crate::study::spec::{
     ObjectsSpec, SensingSpec, SignalSpec, SkinSpec, TouchesSpec, default_seed,
 };
+use crate::toml_text;
 use serde::{Deserialize, Serialize};
 
 /// The file.
@@ -72,7 +73,7 @@ pub struct ReconstructionSpec {
 impl ReconstructionStudySpec {
     /// Reads a study; the error names the file, the line and the key.
     pub fn parse(place: &str, text: &str) -> Result<Self> {
-        toml::from_str(text).map_err(|error| Error::toml(place, text, &error))
+        toml_text::read(place, text)
     }
 
     /// Writes the study with every default spelt out.

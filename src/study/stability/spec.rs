@@ -1,7 +1,8 @@
 //! A study of stability as it is written.
 
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::study::axis::Axis;
+use crate::toml_text;
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
 
@@ -129,7 +130,7 @@ impl ContactMethod {
 impl StabilityStudySpec {
     /// Reads a study; the error names the file, the line and the key.
     pub fn parse(place: &str, text: &str) -> Result<Self> {
-        toml::from_str(text).map_err(|error| Error::toml(place, text, &error))
+        toml_text::read(place, text)
     }
 
     /// Writes the study with every default spelt out.

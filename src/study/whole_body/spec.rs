@@ -1,8 +1,9 @@
 //! A study of a whole body as it is written.
 
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::sensing::Ensemble;
 use crate::study::spec::default_seed;
+use crate::toml_text;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::path::PathBuf;
@@ -202,7 +203,7 @@ pub struct LaddersSpec {
 impl WholeBodyStudySpec {
     /// Reads a study; the error names the file, the line and the key.
     pub fn parse(place: &str, text: &str) -> Result<Self> {
-        toml::from_str(text).map_err(|error| Error::toml(place, text, &error))
+        toml_text::read(place, text)
     }
 
     /// Writes the study with every default spelt out.
