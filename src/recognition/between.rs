@@ -37,6 +37,8 @@ pub(crate) fn pairs(
 pub(crate) struct Group<'a, T> {
     sorted: &'a Sorted<T>,
     rows: Range<usize>,
+    /// Its rows, packed for products with those of others.
+    packed: Packed<'a, T>,
     /// Those of its rows with each other, row by row.
     own: Vec<T>,
 }
@@ -46,38 +48,37 @@ impl<'a, T: Scalar> Group<'a, T> {
     pub fn new(sorted: &'a Sorted<T>, classes: &Range<usize>) -> Self {
         let rows = sorted.rows_of(classes);
         let points = sorted.points().range(rows.clone());
-        let mut own = points.packed().own_products();
+        let packed = points.packed();
+        let mut own = packed.own_products();
         points.apply(own.view_mut(), points, &sorted.kernel());
         Self {
             sorted,
             rows,
+            packed,
             own: own.into_raw_vec_and_offset().0,
         }
     }
 
-    /// Its rows, packed for products with those of others.
-    pub fn packed(&self) -> Packed<'a, T> {
-        self.sorted.points().range(self.rows.clone()).packed()
-    }
-
-    /// Bytes that the kernel values of groups take, with those between two of them.
+    /// Bytes that groups take, with the kernel values between two of them.
     pub fn bytes(sorted: &Sorted<T>, groups: &[Range<usize>]) -> usize {
         let sizes = || groups.iter().map(|group| sorted.rows_of(group).len());
         let squares: usize = sizes().map(|n| n * n).sum();
         let largest = sizes().max().unwrap_or(0);
-        (squares + largest * largest) * size_of::<T>()
+        let values = (squares + largest * largest) * size_of::<T>();
+        let n_features = sorted.centre().len();
+        let packed = sizes().map(|n| Packed::<T>::bytes(n, n_features));
+        values + packed.sum::<usize>()
     }
 
-    /// Kernel values of another group's rows with these, which are [`packed`](Self::packed): row by row, in the memory of the
-    /// last ones.
-    pub fn with(&self, packed: &Packed<T>, other: &Self, values: &mut Vec<T>) {
+    /// Kernel values of another group's rows with these: row by row, in the memory of the last ones.
+    pub fn with(&self, other: &Self, values: &mut Vec<T>) {
         let size = (other.rows.len(), self.rows.len());
         values.resize(size.0 * size.1, T::zero());
         let values = ArrayViewMut2::from_shape(size, values);
         let mut values = values.expect("room for all values was made");
         let [own, others] =
             [self, other].map(|group| self.sorted.points().range(group.rows.clone()));
-        packed.multiply(others.values, values.view_mut());
+        self.packed.multiply(others.values, values.view_mut());
         others.apply(values, own, &self.sorted.kernel());
     }
 

@@ -1,20 +1,20 @@
 //! Cross-validation of a whole grid of C and kernels on one matrix of products.
 //!
 //! All folds and all candidates are parts of the same n × n products: a kernel is made of them once, and a pair's part of
-//! it is brought together once for all folds. Along C each solution starts from the last, that of a pair at the first C from
-//! all multipliers at their bounds and, from the second fold on, [from that of the fold before](crate::recognition::seed) where that is nearer. Validation rows are
+//! it is brought together once for all folds, which [leave rows out](crate::recognition::fold_path). Along C each solution
+//! starts from the last, that of a pair at the first C from all multipliers at their bounds and, from the second fold on,
+//! [from that of the fold before](crate::recognition::seed) where that is nearer. Validation rows are
 //! [judged](crate::recognition::judgement) by their own class's problems first.
 
-use std::ops::Range;
-use std::rc::Rc;
+use ndarray::Array2;
 
-use ndarray::{Array2, ArrayView2, s};
-
-use crate::recognition::judgement::{Judgement, Solved};
+use crate::recognition::class_columns::ClassColumns;
+use crate::recognition::fold_path::FoldPath;
+use crate::recognition::judgement::Judgement;
 use crate::recognition::kernel::KernelFunction;
+use crate::recognition::product_kernel::ProductKernel;
 use crate::recognition::scalar::Scalar;
-use crate::recognition::seed::moved;
-use crate::recognition::smo::{Room, Runs, Smo, part_of};
+use crate::recognition::smo::Dense;
 use crate::recognition::sorted::Sorted;
 use crate::recognition::split::Split;
 use crate::recognition::svm::Multiclass;
@@ -45,18 +45,6 @@ struct Fold {
     validation: Vec<usize>,
 }
 
-/// A binary problem's part of the kernel, of all folds' rows.
-struct Block<'a, T> {
-    /// The positive class, and the negative one (`None`: all others), by position.
-    problem: (usize, Option<usize>),
-    /// The sorted rows.
-    rows: Vec<usize>,
-    /// Which of them are positive.
-    positive: Range<usize>,
-    /// Their kernel values.
-    kernel: ArrayView2<'a, T>,
-}
-
 impl<T: Scalar> Grid<'_, T> {
     /// Validation rows recognised, over all folds, per kernel and C (kernels.len() × path.len()), and solves stopped at the
     /// iteration cap.
@@ -66,26 +54,20 @@ impl<T: Scalar> Grid<'_, T> {
         let folds: Vec<Fold> = self.folds.iter().map(|split| self.fold(split)).collect();
         let mut counts = Array2::zeros((kernels.len(), goal.path.len()));
         let mut n_capped = 0;
-        let mut values = Array2::zeros(products.dim());
-        let mut columns = Vec::new();
-        for (kernel, mut counts) in kernels.iter().zip(counts.rows_mut()) {
-            // Class by class, so that rows are still in the cache.
-            for range in self.sorted.ranges() {
-                let mut values = values.slice_mut(s![range.clone(), ..]);
-                values.assign(&products.slice(s![range.clone(), ..]));
-                let own = self.sorted.points().range(range.clone());
-                own.apply(values, all, kernel);
-            }
+        let columns = ClassColumns::new(self.sorted.ranges());
+        let (points, ranges) = (self.sorted.points(), self.sorted.ranges());
+        let mut rooms = Vec::new();
+        for (&kernel, mut counts) in kernels.iter().zip(counts.rows_mut()) {
+            let kernel = ProductKernel::new(points, products.view(), kernel, ranges);
             for folds in folds.chunks(FOLDS_AT_ONCE) {
-                for judgement in self.judge(folds, values.view(), goal) {
+                rooms.resize(folds.len(), Vec::new());
+                let judgements = self.judge(folds, (&columns, &mut rooms), &kernel, goal);
+                for (judgement, room) in judgements.into_iter().zip(&mut rooms) {
                     n_capped += judgement.n_capped();
-                    for (count, n_right) in counts.iter_mut().zip(judgement.n_right(
-                        values.view(),
-                        goal.path,
-                        &mut columns,
-                    )) {
-                        *count += n_right;
-                    }
+                    let n_right = judgement.n_right(|row, to| kernel.write_row(row, to));
+                    let both = counts.iter_mut().zip(n_right);
+                    both.for_each(|(count, n_right)| *count += n_right);
+                    *room = judgement.into_room();
                 }
             }
         }
@@ -112,44 +94,68 @@ impl<T: Scalar> Grid<'_, T> {
     }
 
     /// Solves all problems of some folds, and judges their validation rows.
-    fn judge<'f>(
-        &'f self,
-        folds: &'f [Fold],
-        kernel: ArrayView2<T>,
+    fn judge<'c>(
+        &self,
+        folds: &[Fold],
+        (columns, rooms): (&'c ClassColumns, &mut [Vec<T>]),
+        kernel: &ProductKernel<T>,
         goal: Goal,
-    ) -> Vec<Judgement<'f>> {
-        let ranges = self.sorted.ranges();
-        let judgement = |fold: &'f Fold| {
-            let of_class = |row: &usize| ranges.partition_point(|range| range.end <= *row);
-            let rows = fold.validation.iter().map(|row| (*row, of_class(row)));
-            let known = rows.filter(|(_, class)| fold.is_class[*class]).collect();
-            Judgement::new(
-                known,
-                ranges,
-                &fold.is_training,
-                self.multiclass,
-                goal.path.len(),
-            )
-        };
-        let mut judgements: Vec<Judgement<'_>> = folds.iter().map(judgement).collect();
-        let mut room = Room::new();
-        let mut values = Vec::new();
+    ) -> Vec<Judgement<'c, T>> {
+        let folds_and_rooms = folds.iter().zip(rooms);
+        let judgement = |(fold, room)| self.judgement(fold, (columns, room), goal);
+        let mut judgements: Vec<Judgement<T>> = folds_and_rooms.map(judgement).collect();
+        let (mut gram, mut between) = (Dense::default(), Vec::new());
+        if self.multiclass == Multiclass::OneVsRest {
+            kernel.write_all(&mut gram);
+        }
         for problem in self.problems() {
-            let block = self.block(problem, kernel.reborrow(), &mut values);
-            // The fold before, and its solutions.
-            let mut last: Option<(&Fold, Vec<Rc<[f64]>>)> = None;
+            let rows = self.rows(problem);
+            if let (positive, Some(negative)) = problem {
+                kernel.write_pair((positive, negative), &mut between, &mut gram);
+            }
+            // The fold before.
+            let mut last: Option<FoldPath> = None;
             for (fold, judgement) in folds.iter().zip(&mut judgements) {
-                let (positive, negative) = problem;
                 let takes_part = |class: usize| fold.is_class[class];
-                if !takes_part(positive) || !negative.is_none_or(takes_part) {
+                if !takes_part(problem.0) || !problem.1.is_none_or(takes_part) {
                     continue;
                 }
-                let (path, solutions) = solve(&block, fold, last.as_ref(), goal, &mut room);
-                judgement.take(block.problem, &block.rows, block.kernel, path);
-                last = Some((fold, solutions));
+                let path = self.solve((problem, &rows), fold, last.as_ref(), goal, &mut gram);
+                if let (positive, Some(negative)) = problem {
+                    let [first, second] = [positive, negative].map(|at| &columns.ranges()[at]);
+                    let place = |row: usize| match first.contains(&row) {
+                        true => row - first.start,
+                        false => first.len() + row - second.start,
+                    };
+                    for (number, solution) in path.solutions.iter().enumerate() {
+                        let sum = |row: usize| -solution.f[place(row)];
+                        judgement.look((positive, negative), number, (sum, solution.rho));
+                    }
+                }
+                for (number, solution) in path.solutions.iter().enumerate() {
+                    let is_last = number > 0 && path.solutions[number - 1].beta == solution.beta;
+                    judgement.take(problem, solution, is_last);
+                }
+                last = Some(path);
             }
         }
         judgements
+    }
+
+    fn judgement<'c>(
+        &self,
+        fold: &Fold,
+        (columns, room): (&'c ClassColumns, &mut Vec<T>),
+        goal: Goal,
+    ) -> Judgement<'c, T> {
+        let ranges = self.sorted.ranges();
+        let of_class = |row: &usize| ranges.partition_point(|range| range.end <= *row);
+        let rows = fold.validation.iter().map(|row| (*row, of_class(row)));
+        let known = rows.filter(|(_, class)| fold.is_class[*class]).collect();
+        let n_path = goal.path.len();
+        let room = std::mem::take(room);
+        let fold = (known, &fold.is_class[..]);
+        Judgement::new(fold, (columns, room), self.multiclass, n_path)
     }
 
     /// All problems; pairs of neighbouring classes come together, so that their part of the kernel stays in the cache.
@@ -160,100 +166,33 @@ impl<T: Scalar> Grid<'_, T> {
         problems
     }
 
-    /// The rows of a problem, and their part of the kernel; `values` is room for it.
-    fn block<'v>(
+    /// The rows of a problem, ascending.
+    fn rows(&self, (positive, negative): (usize, Option<usize>)) -> Vec<usize> {
+        match negative {
+            Some(negative) => self.sorted.pair_rows(positive, negative),
+            None => (0..self.sorted.points().len()).collect(),
+        }
+    }
+
+    /// Solves a fold's problem for every C.
+    fn solve(
         &self,
-        problem: (usize, Option<usize>),
-        kernel: ArrayView2<'v, T>,
-        values: &'v mut Vec<T>,
-    ) -> Block<'v, T> {
-        let own = self.sorted.ranges()[problem.0].clone();
-        let Some(negative) = problem.1 else {
-            return Block {
-                problem,
-                rows: (0..kernel.nrows()).collect(),
-                positive: own,
-                kernel,
-            };
+        (problem, rows): ((usize, Option<usize>), &[usize]),
+        fold: &Fold,
+        last: Option<&FoldPath>,
+        goal: Goal,
+        gram: &mut Dense<T>,
+    ) -> FoldPath {
+        let own = &self.sorted.ranges()[problem.0];
+        let label = |row: &usize| match (fold.is_training[*row], own.contains(row)) {
+            (false, _) => 0.0,
+            (true, true) => 1.0,
+            (true, false) => -1.0,
         };
-        let rows = self.sorted.pair_rows(problem.0, negative);
-        Block {
-            problem,
-            positive: 0..own.len(),
-            kernel: gather_square(kernel, &rows, values),
-            rows,
+        let labels: Vec<f64> = rows.iter().map(label).collect();
+        match problem.1 {
+            Some(_) => FoldPath::of_pair(gram, (labels, &(0..own.len())), last, goal),
+            None => FoldPath::of_class(gram, labels, goal),
         }
     }
-}
-
-/// Solves a fold's problem for every C: what is needed of the solutions, and β of all rows of the block (0 where a row is not
-/// trained on).
-fn solve<T: Scalar>(
-    block: &Block<T>,
-    fold: &Fold,
-    last: Option<&(&Fold, Vec<Rc<[f64]>>)>,
-    goal: Goal,
-    room: &mut Room<T>,
-) -> (Vec<Solved>, Vec<Rc<[f64]>>) {
-    let places: Vec<usize> = (0..block.rows.len())
-        .filter(|&at| fold.is_training[block.rows[at]])
-        .collect();
-    let is_positive: Vec<bool> = places
-        .iter()
-        .map(|at| block.positive.contains(at))
-        .collect();
-    let mut gram = part_of(&block.kernel, &places, room);
-    let mut smo = Smo::new(&mut gram, &is_positive);
-    // Classes that no hyperplane parts from the rest have values that are equal within the tolerance, and the largest wins:
-    // there the start decides. So one-vs-rest starts from nothing, as training does.
-    let is_pair = block.problem.1.is_some();
-    if is_pair && last.is_none() {
-        smo = smo.at_bounds(goal.path[0]);
-    }
-    let mut path: Vec<Solved> = Vec::new();
-    let mut solutions: Vec<Rc<[f64]>> = Vec::new();
-    for (number, &c) in goal.path.iter().enumerate() {
-        let seed = || {
-            let (before, solutions) = last.filter(|_| is_pair)?;
-            let is_training = |at: usize| fold.is_training[block.rows[at]];
-            let was_training = |at: usize| before.is_training[block.rows[at]];
-            let seed = moved(
-                &solutions[number],
-                (was_training, is_training),
-                &block.positive,
-                block.kernel,
-            )?;
-            Some(places.iter().map(|&at| seed[at]).collect())
-        };
-        let solution = smo.solve_or_from(c, goal.tolerance, seed);
-        let mut beta = vec![0.0; block.rows.len()];
-        for (&at, &value) in places.iter().zip(&solution.coefficients) {
-            beta[at] = value;
-        }
-        let beta: Rc<[f64]> = beta.into();
-        let is_new = solutions.last() != Some(&beta);
-        path.push(Solved {
-            beta: is_new.then(|| Rc::clone(&beta)),
-            rho: solution.rho,
-            is_capped: solution.is_capped,
-        });
-        solutions.push(beta);
-    }
-    (path, solutions)
-}
-
-/// The same rows and columns of a larger matrix, written into `to`.
-fn gather_square<'v, T: Scalar>(
-    whole: ArrayView2<T>,
-    rows: &[usize],
-    to: &'v mut Vec<T>,
-) -> ArrayView2<'v, T> {
-    let n = rows.len();
-    to.resize(n * n, T::zero());
-    let runs = Runs::new(rows);
-    for (&row, to) in rows.iter().zip(to.chunks_exact_mut(n.max(1))) {
-        let from = whole.row(row).to_slice();
-        runs.copy(from.expect("a kernel is stored row by row"), to);
-    }
-    ArrayView2::from_shape((n, n), to).expect("rows fill the values")
 }

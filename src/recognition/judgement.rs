@@ -1,217 +1,219 @@
 //! Which validation rows of a fold are recognised, without all decision values.
 //!
 //! One-vs-one elects the class with most votes. A row that its own class wins in each of that class's problems is recognised,
-//! whatever the others say: every other class has lost one. So of a problem between two classes only the values of their own
-//! rows are needed, until a row loses; the values of all problems are summed for rows that have lost one. Most of those lose
-//! at small C: rows are kept in the order of the last C at which they do, so that those still open are the first ones.
+//! whatever the others say: every other class has lost one. A row whose own class has lost some is not, if another class has
+//! lost fewer. The class that the own one lost to is asked first, and none further than it has lost too many.
 
 use std::ops::Range;
-use std::rc::Rc;
 
-use ndarray::ArrayView2;
+use ndarray::Array2;
 
-use crate::recognition::followed_sums::{Sums, add_rows, class_sums};
+use crate::recognition::class_columns::{ClassColumns, Products};
+use crate::recognition::fold_path::FoldSolution;
 use crate::recognition::scalar::Scalar;
 use crate::recognition::svm::Multiclass;
-use crate::recognition::transposed::write_columns;
-use crate::recognition::voting::Ballot;
 
 /// What validation needs of a problem's solution.
-pub(crate) struct Solved {
-    /// β of the problem's rows; `None` where it is that of the last C.
-    pub beta: Option<Rc<[f64]>>,
-    /// ρ.
-    pub rho: f64,
-    /// Whether the solver stopped at its cap.
-    pub is_capped: bool,
-}
-
-/// A problem of a fold, solved along C.
-struct SolvedProblem {
-    /// The positive class, and the negative one (`None`: all others), by position.
-    problem: (usize, Option<usize>),
-    path: Vec<Solved>,
+struct Solved {
+    /// Where β of the rows of its classes is, as [`ClassColumns::spread_some`] lays it out.
+    beta: Range<usize>,
+    rho: f64,
+    is_capped: bool,
 }
 
 /// The validation rows of a fold, and its problems as they are solved.
-pub(crate) struct Judgement<'a> {
+pub(crate) struct Judgement<'a, T> {
     /// Rows whose class is trained on, ascending, with the position of that class.
     rows: Vec<(usize, usize)>,
-    /// The rows of each class.
-    ranges: &'a [Range<usize>],
-    /// Whether each row is trained on.
-    is_training: &'a [bool],
+    columns: &'a ClassColumns,
+    /// The classes that are trained on.
+    classes: Vec<usize>,
     multiclass: Multiclass,
-    n_path: usize,
-    /// At how many C, from the first on, each row must be looked at in all problems.
-    n_open: Vec<usize>,
-    problems: Vec<SolvedProblem>,
+    /// For each row and C how many problems the row's own class loses, and one that it loses to.
+    lost: Array2<(usize, usize)>,
+    /// In the order of [`Multiclass::problems`], along C; empty where a class is not trained on.
+    problems: Vec<Vec<Solved>>,
+    /// β of all problems.
+    beta: Vec<T>,
 }
 
-impl<'a> Judgement<'a> {
-    /// Of these validation rows, each with the position of its class; all rows of each class, and which of them are trained on;
-    /// along so many C.
+impl<'a, T: Scalar> Judgement<'a, T> {
+    /// Of these validation rows, each with the position of its class, and whether each class is trained on; along so many C.
+    /// The room is for the solutions.
     pub fn new(
-        rows: Vec<(usize, usize)>,
-        ranges: &'a [Range<usize>],
-        is_training: &'a [bool],
+        (rows, is_class): (Vec<(usize, usize)>, &[bool]),
+        (columns, mut room): (&'a ClassColumns, Vec<T>),
         multiclass: Multiclass,
         n_path: usize,
     ) -> Self {
-        let n_open = match multiclass {
-            Multiclass::OneVsOne => 0,
-            _ => n_path,
-        };
+        room.clear();
+        // As much as solutions may take, so that it is asked for once.
+        room.reserve(columns.n_values(multiclass) * n_path);
+        let n_problems = multiclass.problems(is_class.len()).len();
         Self {
-            n_open: vec![n_open; rows.len()],
+            lost: Array2::from_elem((rows.len(), n_path), (0, 0)),
             rows,
-            ranges,
-            is_training,
+            columns,
+            classes: (0..is_class.len()).filter(|at| is_class[*at]).collect(),
             multiclass,
-            n_path,
-            problems: Vec::new(),
+            problems: (0..n_problems).map(|_| Vec::new()).collect(),
+            beta: room,
         }
     }
 
     /// Solves stopped at the iteration cap.
     pub fn n_capped(&self) -> usize {
-        let solved = self.problems.iter().flat_map(|problem| &problem.path);
+        let solved = self.problems.iter().flatten();
         solved.filter(|solved| solved.is_capped).count()
     }
 
-    /// Takes a problem's solutions along C, and opens the rows of its two classes that lose it. `members` are the problem's
-    /// rows, ascending, with their kernel values.
-    pub fn take<T: Scalar>(
-        &mut self,
-        problem: (usize, Option<usize>),
-        members: &[usize],
-        kernel: ArrayView2<T>,
-        path: Vec<Solved>,
-    ) {
-        if let (positive, Some(negative)) = problem {
-            self.open(positive, true, (members, kernel), &path);
-            self.open(negative, false, (members, kernel), &path);
-        }
-        self.problems.push(SolvedProblem { problem, path });
+    /// The room that it was given.
+    pub fn into_room(self) -> Vec<T> {
+        self.beta
     }
 
-    /// Opens the rows of one class of a problem that lose it.
-    fn open<T: Scalar>(
+    /// Takes a problem's solution for the next C; whether β is that of the last.
+    pub fn take(
         &mut self,
-        class: usize,
-        is_positive: bool,
-        (members, kernel): (&[usize], ArrayView2<T>),
-        path: &[Solved],
+        (positive, negative): (usize, Option<usize>),
+        solution: &FoldSolution,
+        is_last: bool,
     ) {
-        let first = self.rows.partition_point(|row| row.1 < class);
-        let own = first..self.rows.partition_point(|row| row.1 <= class);
-        let place = |at: usize| members.partition_point(|&row| row < self.rows[at].0);
-        let places: Vec<usize> = own.clone().map(place).collect();
-        let mut n_open = self.n_open[own].iter_mut();
-        let width = kernel.ncols();
-        let kernel = kernel.to_slice().expect("a kernel is stored row by row");
-        for run in places.chunk_by(|a, b| a + 1 == *b) {
-            let columns = run[0]..run[0] + run.len();
-            let mut values = vec![T::zero(); run.len()];
-            let mut own: Vec<&mut usize> = n_open.by_ref().take(run.len()).collect();
-            for (number, solved) in path.iter().enumerate() {
-                if let Some(beta) = &solved.beta {
-                    let weighing = beta.iter().enumerate().filter(|(_, beta)| **beta != 0.0);
-                    let rows = weighing.map(|(at, &beta)| {
-                        let row = &kernel[at * width..][..width];
-                        (&row[columns.clone()], T::of(beta))
-                    });
-                    values.fill(T::zero());
-                    add_rows(&mut values, rows.collect());
-                }
-                for (n_open, value) in own.iter_mut().zip(&values) {
-                    if (value.wide() > solved.rho) != is_positive {
-                        **n_open = (**n_open).max(number + 1);
-                    }
-                }
-            }
-        }
-    }
-
-    /// Rows recognised, by C, on the kernel values of all rows; `room` is for some of these.
-    pub fn n_right<T: Scalar>(
-        &self,
-        kernel: ArrayView2<T>,
-        path: &[f64],
-        room: &mut Vec<T>,
-    ) -> Vec<usize> {
-        let mut open: Vec<usize> = (0..self.rows.len())
-            .filter(|&at| self.n_open[at] > 0)
-            .collect();
-        open.sort_by_key(|&at| std::cmp::Reverse(self.n_open[at]));
-        let n_at = |number: usize| open.partition_point(|&at| self.n_open[at] > number);
-        let n_at: Vec<usize> = (0..self.n_path).map(n_at).collect();
-        let rows: Vec<usize> = open.iter().map(|&at| self.rows[at].0).collect();
-        let ballots = self.ballots(columns(kernel, &rows, room), &n_at, path);
-        let right = |(&n, ballot): (&usize, Ballot)| {
-            let winners = ballot.winners().into_iter().zip(&open[..n]);
-            let right = winners.filter(|(winner, at)| *winner == self.rows[**at].1);
-            self.rows.len() - n + right.count()
+        let number = match negative {
+            Some(negative) => self.pair(positive, negative),
+            None => positive,
         };
-        n_at.iter().zip(ballots).map(right).collect()
+        let beta = match self.problems[number].last() {
+            Some(last) if is_last => last.beta.clone(),
+            _ => {
+                let start = self.beta.len();
+                let classes = match negative {
+                    Some(negative) => vec![positive, negative],
+                    None => (0..self.columns.ranges().len()).collect(),
+                };
+                self.columns
+                    .spread_some(&classes, &solution.beta, &mut self.beta);
+                start..self.beta.len()
+            }
+        };
+        self.problems[number].push(Solved {
+            beta,
+            rho: solution.rho,
+            is_capped: solution.is_capped,
+        });
     }
 
-    /// The votes of all problems on the first so many columns, by C.
-    fn ballots<T: Scalar>(
-        &self,
-        columns: ArrayView2<T>,
-        n_at: &[usize],
-        path: &[f64],
-    ) -> Vec<Ballot> {
-        let ballot = |&n: &usize| Ballot::new(self.ranges.len(), n, self.multiclass);
-        let mut ballots: Vec<Ballot> = n_at.iter().map(ballot).collect();
-        let of_classes = class_sums(self.ranges, self.is_training, columns);
-        for solved in &self.problems {
-            let (positive, negative) = solved.problem;
-            let places: Vec<usize> = match negative {
-                Some(negative) => {
-                    let own = self.ranges[positive].clone();
-                    own.chain(self.ranges[negative].clone()).collect()
+    /// Notes which rows of two classes lose at one C, by what the decision function of the pair adds up to before ρ.
+    pub fn look(
+        &mut self,
+        (positive, negative): (usize, usize),
+        number: usize,
+        (sum, rho): (impl Fn(usize) -> f64, f64),
+    ) {
+        for (class, rival) in [(positive, negative), (negative, positive)] {
+            let first = self.rows.partition_point(|row| row.1 < class);
+            let own = first..self.rows.partition_point(|row| row.1 <= class);
+            for at in own {
+                if (sum(self.rows[at].0) > rho) != (class == positive) {
+                    let lost = &mut self.lost[[at, number]];
+                    *lost = (lost.0 + 1, rival);
                 }
-                None => (0..columns.nrows()).collect(),
-            };
-            let sign =
-                |&at: &usize| match (self.is_training[at], self.ranges[positive].contains(&at)) {
-                    (false, _) => 0.0,
-                    (true, true) => 1.0,
-                    (true, false) => -1.0,
-                };
-            let beta = places.iter().map(sign).collect();
-            let mut sums = Sums::of_bounds(&of_classes, solved.problem, beta, columns.ncols());
-            for (number, at) in solved.path.iter().enumerate() {
-                let n = n_at[number];
-                if n == 0 {
-                    break;
-                }
-                sums.truncate(n);
-                if let Some(beta) = &at.beta {
-                    sums.follow(columns, &places, (beta, path[number]));
-                }
-                ballots[number].take(solved.problem, sums.values(), at.rho);
             }
         }
-        ballots
+    }
+
+    /// Where the problem of two classes is, the first of which comes first.
+    #[inline(always)]
+    fn pair(&self, first: usize, second: usize) -> usize {
+        let n_classes = self.columns.ranges().len();
+        first * (2 * n_classes - first - 1) / 2 + second - first - 1
+    }
+
+    /// Rows recognised, by C; `write_row` writes the kernel values of a row with all.
+    pub fn n_right(&self, mut write_row: impl FnMut(usize, &mut Vec<T>)) -> Vec<usize> {
+        let mut n_right = vec![0; self.lost.ncols()];
+        let (mut all, mut values) = (Vec::new(), Vec::new());
+        for (&(row, own), lost) in self.rows.iter().zip(self.lost.rows()) {
+            let is_pairs = self.multiclass == Multiclass::OneVsOne;
+            if !is_pairs || lost.iter().any(|lost| lost.0 > 0) {
+                write_row(row, &mut all);
+                self.columns.spread(&all, &mut values);
+            }
+            for (number, (&lost, n_right)) in lost.iter().zip(&mut n_right).enumerate() {
+                let is_right = match lost {
+                    _ if !is_pairs => largest(self, number, &values) == own,
+                    (0, _) => true,
+                    lost => is_elected(self, number, &values, (own, lost)),
+                };
+                *n_right += usize::from(is_right);
+            }
+        }
+        n_right
+    }
+
+    /// Whether the first of two classes wins, which may come after the second.
+    #[inline(always)]
+    fn wins(&self, number: usize, values: &[T], (first, second): (usize, usize)) -> bool {
+        let (positive, negative) = (first.min(second), first.max(second));
+        let solved = &self.problems[self.pair(positive, negative)][number];
+        let own = self.columns.of_class(positive, values);
+        let (left, right) = self.beta[solved.beta.clone()].split_at(own.len());
+        let others = self.columns.of_class(negative, values);
+        let mut products = Products::new();
+        products.add(own, left);
+        products.add(others, right);
+        (products.sum().wide() > solved.rho) == (first == positive)
     }
 }
 
-/// Columns of a symmetric matrix: its rows, transposed into `to`.
-fn columns<'a, T: Scalar>(
-    symmetric: ArrayView2<T>,
-    columns: &[usize],
-    to: &'a mut Vec<T>,
-) -> ArrayView2<'a, T> {
-    let row = |&row: &usize| symmetric.row(row).to_slice();
-    let row = |at| row(at).expect("a kernel is stored row by row");
-    let rows: Vec<&[T]> = columns.iter().map(row).collect();
-    let size = (symmetric.nrows(), columns.len());
-    to.resize(size.0 * size.1, T::zero());
-    write_columns(&rows, to, columns.len());
-    ArrayView2::from_shape(size, to).expect("columns fill the room")
+/// Whether a class has most votes on a row, of equals as the first, given the kernel values with it, in how many problems it
+/// loses and one that it loses to.
+#[multiversion::multiversion(targets("x86_64+avx512f", "x86_64+avx2+fma"))]
+fn is_elected<T: Scalar>(
+    judgement: &Judgement<T>,
+    number: usize,
+    values: &[T],
+    (own, (n_lost, rival)): (usize, (usize, usize)),
+) -> bool {
+    let classes = &judgement.classes[..];
+    for at in 0..=classes.len() {
+        let class = if at == 0 { rival } else { classes[at - 1] };
+        // Which would have as many votes, and come first, or more.
+        let n_allowed = if class < own { n_lost } else { n_lost - 1 };
+        if class == own || (at > 0 && class == rival) {
+            continue;
+        }
+        let mut n_lost = 0;
+        for &other in classes {
+            if other != class && !judgement.wins(number, values, (class, other)) {
+                n_lost += 1;
+                if n_lost > n_allowed {
+                    break;
+                }
+            }
+        }
+        if n_lost <= n_allowed {
+            return false;
+        }
+    }
+    true
+}
+
+/// The class with the largest decision value on a row, of equals the first.
+#[multiversion::multiversion(targets("x86_64+avx512f", "x86_64+avx2+fma"))]
+fn largest<T: Scalar>(judgement: &Judgement<T>, number: usize, values: &[T]) -> usize {
+    let (mut largest, mut winner) = (f64::NEG_INFINITY, 0);
+    for &class in &judgement.classes {
+        let solved = &judgement.problems[class][number];
+        let beta = &judgement.beta[solved.beta.clone()];
+        let mut products = Products::new();
+        products.add(values, beta);
+        let value = products.sum().wide() - solved.rho;
+        if value > largest {
+            (largest, winner) = (value, class);
+        }
+    }
+    winner
 }
 
 #[cfg(test)]
@@ -231,19 +233,14 @@ mod tests {
     }
 
     /// β with no pattern, 0 where a row is not trained on; the last C's again at some C.
-    fn path(members: &[usize], own: &Range<usize>, is_training: &[bool]) -> Vec<Solved> {
+    fn path(members: &[usize], own: &Range<usize>, is_training: &[bool]) -> Vec<Vec<f64>> {
         let beta = |c: f64, at: usize| {
             let size = (c * (0.6 + (at as f64 * 2.3 + c).sin())).clamp(0.0, c);
             let sign = if own.contains(&at) { 1.0 } else { -1.0 };
             if is_training[at] { sign * size } else { 0.0 }
         };
-        let solved = |(number, &c): (usize, &f64)| Solved {
-            beta: (number != 2 || own.start != 16)
-                .then(|| members.iter().map(|&at| beta(c, at)).collect()),
-            rho: 0.03 * c,
-            is_capped: number == 1,
-        };
-        C.iter().enumerate().map(solved).collect()
+        let of_c = |&c: &f64| members.iter().map(|&at| beta(c, at)).collect();
+        C.iter().map(of_c).collect()
     }
 
     #[test]
@@ -252,34 +249,52 @@ mod tests {
         let is_training: Vec<bool> = (0..N).map(|at| at % 4 != 1).collect();
         let class = |at: usize| RANGES.iter().position(|range| range.contains(&at)).unwrap();
         let rows: Vec<(usize, usize)> = (1..N).step_by(4).map(|at| (at, class(at))).collect();
+        let columns = ClassColumns::new(&RANGES);
         for multiclass in [Multiclass::OneVsOne, Multiclass::OneVsRest] {
-            let mut judgement =
-                Judgement::new(rows.clone(), &RANGES, &is_training, multiclass, C.len());
+            let mut judgement = Judgement::new(
+                (rows.clone(), &[true; 4]),
+                (&columns, vec![0.0; 7]),
+                multiclass,
+                C.len(),
+            );
             // Votes of each row, or values, by C.
             let mut scores = vec![vec![[0.0; 4]; rows.len()]; C.len()];
             for (positive, negative) in multiclass.problems(4) {
                 let own = RANGES[positive].clone();
-                let members: Vec<usize> = match negative {
-                    Some(negative) => own.clone().chain(RANGES[negative].clone()).collect(),
-                    None => (0..N).collect(),
+                let classes = match negative {
+                    Some(negative) => vec![positive, negative],
+                    None => vec![0, 1, 2, 3],
                 };
-                let path = path(&members, &own, &is_training);
-                let mut beta = path[0].beta.as_ref().unwrap();
-                for (solved, scores) in path.iter().zip(&mut scores) {
-                    beta = solved.beta.as_ref().unwrap_or(beta);
-                    for (&(row, _), scores) in rows.iter().zip(scores) {
-                        let terms = members.iter().zip(&beta[..]);
-                        let value: f64 = terms.map(|(&at, beta)| beta * kernel[[at, row]]).sum();
+                let members: Vec<usize> =
+                    classes.iter().flat_map(|&at| RANGES[at].clone()).collect();
+                let mut last = Vec::new();
+                for (number, beta) in path(&members, &own, &is_training).iter().enumerate() {
+                    let rho = 0.03 * C[number];
+                    let sum = |row: usize| {
+                        let terms = members.iter().zip(beta);
+                        terms
+                            .map(|(&at, beta)| beta * kernel[[at, row]])
+                            .sum::<f64>()
+                    };
+                    for (&(row, _), scores) in rows.iter().zip(&mut scores[number]) {
                         match negative {
-                            None => scores[positive] = value - solved.rho,
-                            Some(_) if value > solved.rho => scores[positive] += 1.0,
+                            None => scores[positive] = sum(row) - rho,
+                            Some(_) if sum(row) > rho => scores[positive] += 1.0,
                             Some(negative) => scores[negative] += 1.0,
                         }
                     }
+                    if let Some(negative) = negative {
+                        judgement.look((positive, negative), number, (sum, rho));
+                    }
+                    let solution = FoldSolution {
+                        beta: beta.clone(),
+                        f: Vec::new(),
+                        rho,
+                        is_capped: number == 1,
+                    };
+                    judgement.take((positive, negative), &solution, last == *beta);
+                    last.clone_from(beta);
                 }
-                let part = |(i, j): (usize, usize)| kernel[[members[i], members[j]]];
-                let part = Array2::from_shape_fn((members.len(), members.len()), part);
-                judgement.take((positive, negative), &members, part.view(), path);
             }
             let expected: Vec<usize> = scores
                 .iter()
@@ -291,7 +306,7 @@ mod tests {
                 })
                 .collect();
             assert_eq!(
-                judgement.n_right(kernel.view(), &C, &mut Vec::new()),
+                judgement.n_right(|row, to| *to = kernel.row(row).to_vec()),
                 expected,
                 "{multiclass:?}"
             );

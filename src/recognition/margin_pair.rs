@@ -174,23 +174,22 @@ impl<T: Scalar> MarginPair<T> {
             }
         };
         let mut gram = Part::new(diagonal(0).chain(diagonal(1)), write, room);
-        let is_positive = self.is_positive();
-        let mut smo = Smo::going_on(&mut gram, &is_positive, (beta, f), self.c);
+        let labels = self.labels();
+        let mut smo = Smo::going_on(&mut gram, &labels, (beta, f), self.c);
         if let Some(most_iterations) = goal.most_iterations {
             smo = smo.of_at_most(most_iterations);
         }
-        let reached = smo.reach(goal.c, goal.tolerance, || None);
+        let reached = smo.reach(goal.c, goal.tolerance, |_| None);
         (self.beta, self.f) = smo.into_variables();
         self.c = goal.c;
         self.n_iterations += reached.n_iterations;
         self.is_solved = reached.is_solved;
     }
 
-    fn is_positive(&self) -> Vec<bool> {
-        let n_first = self.rows[0].len();
-        (0..n_first + self.rows[1].len())
-            .map(|i| i < n_first)
-            .collect()
+    fn labels(&self) -> Vec<f64> {
+        let mut labels = vec![SIGNS[0]; self.rows[0].len()];
+        labels.resize(labels.len() + self.rows[1].len(), SIGNS[1]);
+        labels
     }
 
     /// The rows that weigh in the solution, by the place of their class and their number within it, with their coefficients.
@@ -211,7 +210,7 @@ impl<T: Scalar> MarginPair<T> {
         goal: PairGoal,
         scratch: &mut Scratch<T>,
     ) -> Option<Sides> {
-        let (highest, lowest) = extremes(&self.beta, &self.is_positive(), &self.f, goal.c);
+        let (highest, lowest) = extremes(&self.beta, &self.labels(), &self.f, goal.c);
         let middle = (highest + lowest) / 2.0;
         // By how much a row is beyond, least first.
         let violating = &mut scratch.violating;
@@ -259,7 +258,7 @@ impl<T: Scalar> MarginPair<T> {
             is_solved: self.is_solved,
             n_iterations: std::mem::take(&mut self.n_iterations),
         };
-        let variables = (&self.beta[..], &self.is_positive()[..], &self.f[..]);
+        let variables = (&self.beta[..], &self.labels()[..], &self.f[..]);
         DualSolution {
             coefficients,
             ..reached.solution(variables, self.c)

@@ -5,6 +5,7 @@
 //! few panels at a time, so that those stay in the second.
 
 use crate::recognition::row_products::Rows;
+use crate::recognition::transposed::write_columns;
 
 /// Values in a vector register.
 const LANES: usize = 16;
@@ -52,15 +53,14 @@ impl Panels {
             values: vec![[0.0; LANES]; rows.n_features * n_rows.div_ceil(LANES)],
         };
         for piece in panels.pieces() {
-            for panel in 0..n_rows.div_ceil(PANEL_ROWS) {
-                let (start, width) = panels.place(panel, piece);
-                let to = &mut panels.values[start..][..width * piece.1];
-                for row in panel * PANEL_ROWS..n_rows.min((panel + 1) * PANEL_ROWS) {
-                    let at = row % PANEL_ROWS;
-                    let to = to.iter_mut().skip(at / LANES).step_by(width);
-                    let from = &rows.row(row)[piece.0..][..piece.1];
-                    to.zip(from).for_each(|(to, &value)| to[at % LANES] = value);
-                }
+            for first in (0..n_rows).step_by(LANES) {
+                let (start, width) = panels.place(first / PANEL_ROWS, piece);
+                let to = panels.values[start..][..width * piece.1].as_flattened_mut();
+                let some = first..n_rows.min(first + LANES);
+                let some: Vec<&[f32]> = some
+                    .map(|row| &rows.row(row)[piece.0..][..piece.1])
+                    .collect();
+                write_columns(&some, &mut to[first % PANEL_ROWS..], width * LANES);
             }
         }
         Some(panels)

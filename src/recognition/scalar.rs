@@ -34,18 +34,11 @@ pub(crate) trait Scalar: NdFloat + Default {
     /// The solver's [second pass](passes::select_down).
     fn select_down(
         f_and_low: (&[Self], &[Self]),
-        row_and_diagonal: (&[Self], &[Self]),
-        highest_and_own: (Self, Self),
-        smallest_curvature: Self,
+        inverses: &[Self],
+        highest: Self,
         gains: &mut [Self],
     ) -> Down<Self> {
-        passes::select_down(
-            f_and_low,
-            row_and_diagonal,
-            highest_and_own,
-            smallest_curvature,
-            gains,
-        )
+        passes::select_down(f_and_low, inverses, highest, gains)
     }
     /// So many rows packed for products with others, where there is a fast way.
     fn panels(_: Rows<Self>, _: usize) -> Option<Panels> {
@@ -111,18 +104,11 @@ impl Scalar for f32 {
     #[cfg(target_arch = "x86_64")]
     fn select_down(
         f_and_low: (&[Self], &[Self]),
-        row_and_diagonal: (&[Self], &[Self]),
-        highest_and_own: (Self, Self),
-        smallest_curvature: Self,
+        inverses: &[Self],
+        highest: Self,
         gains: &mut [Self],
     ) -> Down<Self> {
-        select_down_f32(
-            f_and_low,
-            row_and_diagonal,
-            highest_and_own,
-            smallest_curvature,
-            gains,
-        )
+        select_down_f32(f_and_low, inverses, highest, gains)
     }
 }
 
@@ -139,22 +125,22 @@ fn step_along_f32(f: &mut [f32], rows: (&[f32], &[f32]), step: f32, up: &[f32]) 
 #[multiversion::multiversion(targets("x86_64+avx512f"))]
 fn select_down_f32(
     f_and_low: (&[f32], &[f32]),
-    row_and_diagonal: (&[f32], &[f32]),
-    highest_and_own: (f32, f32),
-    smallest: f32,
+    inverses: &[f32],
+    highest: f32,
     gains: &mut [f32],
 ) -> Down<f32> {
     multiversion::target::match_target! {
         "x86_64+avx512f" => {
-            passes_512::select_down(f_and_low, row_and_diagonal, highest_and_own, smallest, gains)
+            let _ = gains;
+            passes_512::select_down(f_and_low, inverses, highest)
         }
-        _ => passes::select_down(f_and_low, row_and_diagonal, highest_and_own, smallest, gains),
+        _ => passes::select_down(f_and_low, inverses, highest, gains),
     }
 }
 
 /// `exp(−γ d)` by range reduction and the Cephes polynomial of `expf` (Moshier 1989): within 2 units in the last place,
-/// 0 below the smallest normal number. Written without branches, so that it runs eight lanes at a time.
-#[multiversion::multiversion(targets("x86_64+avx2+fma"))]
+/// 0 below the smallest normal number. Written without branches, so that it runs many lanes at a time.
+#[multiversion::multiversion(targets("x86_64+avx512f", "x86_64+avx2+fma"))]
 fn exponentials_f32(distances: &mut [f32], gamma: f32) {
     /// 1.5 · 2²³: adding it rounds to an integer, which then stands in the low bits.
     const ROUND: f32 = 12_582_912.0;

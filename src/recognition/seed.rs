@@ -6,25 +6,22 @@
 
 use std::ops::Range;
 
-use ndarray::ArrayView2;
-
 use crate::recognition::scalar::Scalar;
 
-/// β (of all rows of a problem) for a fold that trains on other rows; `None` where a multiplier finds no row of its class
-/// that has none.
-pub(crate) fn moved<T: Scalar>(
+/// β (of all rows of a problem) for a fold that trains on other rows, whose labels are not 0; `None` where a multiplier finds
+/// no row of its class that has none. `similar` gives the kernel values of a row.
+pub(crate) fn moved<'k, T: Scalar>(
     beta: &[f64],
-    (was_training, is_training): (impl Fn(usize) -> bool, impl Fn(usize) -> bool),
+    (before, labels): (&[f64], &[f64]),
     positive: &Range<usize>,
-    kernel: ArrayView2<T>,
+    similar: impl Fn(usize) -> &'k [T],
 ) -> Option<Vec<f64>> {
     let mut moved = beta.to_vec();
-    let gained = (0..beta.len()).filter(|&at| is_training(at) && !was_training(at));
+    let gained = (0..beta.len()).filter(|&at| labels[at] != 0.0 && before[at] == 0.0);
     let (mut own, mut others): (Vec<usize>, Vec<usize>) =
         gained.partition(|at| positive.contains(at));
-    for lost in (0..beta.len()).filter(|&at| beta[at] != 0.0 && !is_training(at)) {
-        let row = kernel.row(lost);
-        let similar = row.to_slice().expect("kernel values lie row by row");
+    for lost in (0..beta.len()).filter(|&at| beta[at] != 0.0 && labels[at] == 0.0) {
+        let similar = similar(lost);
         let gained = if positive.contains(&lost) {
             &mut own
         } else {
@@ -52,8 +49,13 @@ mod tests {
 
     fn seed(beta: &[f64], was: &[usize], is: &[usize]) -> Option<Vec<f64>> {
         let kernel = Array2::from_shape_fn((8, 8), |(i, j)| -(AT[i] - AT[j]).abs());
-        let fold = (|at: usize| was.contains(&at), |at: usize| is.contains(&at));
-        moved(beta, fold, &(0..4), kernel.view())
+        let labels = |fold: &[usize]| {
+            let sign = |at: usize| if at < 4 { 1.0 } else { -1.0 };
+            let label = |at: usize| if fold.contains(&at) { sign(at) } else { 0.0 };
+            (0..8).map(label).collect::<Vec<f64>>()
+        };
+        let row = |at: usize| &kernel.as_slice().unwrap()[at * 8..][..8];
+        moved(beta, (&labels(was), &labels(is)), &(0..4), row)
     }
 
     #[test]

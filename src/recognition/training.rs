@@ -84,10 +84,9 @@ impl<T: Scalar> Sorted<T> {
         let groups: Vec<Group<T>> = classes.iter().map(|own| Group::new(self, own)).collect();
         let (mut between, mut above, mut room) = (Vec::new(), Vec::new(), Room::new());
         for (at, own) in groups.iter().enumerate() {
-            let packed = own.packed();
             for (number, other) in groups.iter().enumerate().skip(at) {
                 if number > at {
-                    own.with(&packed, other, &mut between);
+                    own.with(other, &mut between);
                 }
                 for (a, b) in pairs(classes[at].clone(), classes[number].clone()) {
                     let [first, second] = [a, b].map(|class| &self.ranges()[class]);
@@ -124,11 +123,12 @@ impl<T: Scalar> Sorted<T> {
         problems: &mut [Vec<BinaryProblem>],
     ) {
         let n_first = self.ranges()[a].len();
-        let is_positive: Vec<bool> = (0..gram.len()).map(|i| i < n_first).collect();
+        let mut labels = vec![1.0; n_first];
+        labels.resize(gram.len(), -1.0);
         let sides = (self.classes()[a], Some(self.classes()[b]));
         self.solve(
             gram,
-            (&is_positive, &self.pair_rows(a, b)),
+            (&labels, &self.pair_rows(a, b)),
             sides,
             goal,
             problems,
@@ -159,8 +159,9 @@ impl<T: Scalar> Sorted<T> {
     ) {
         let rows: Vec<usize> = (0..self.points().len()).collect();
         for (range, &class) in self.ranges().iter().zip(self.classes()) {
-            let is_positive: Vec<bool> = rows.iter().map(|row| range.contains(row)).collect();
-            self.solve(gram, (&is_positive, &rows), (class, None), goal, problems);
+            let mut labels = vec![-1.0; rows.len()];
+            labels[range.clone()].fill(1.0);
+            self.solve(gram, (&labels, &rows), (class, None), goal, problems);
             // Back into the order of the training rows, which all these problems share.
             for problem in problems.iter_mut().filter_map(|path| path.last_mut()) {
                 let mut coefficients = vec![0.0; rows.len()];
@@ -177,12 +178,12 @@ impl<T: Scalar> Sorted<T> {
     fn solve<G: Gram<T>>(
         &self,
         gram: &mut G,
-        (is_positive, rows): (&[bool], &[usize]),
+        (labels, rows): (&[f64], &[usize]),
         sides: (usize, Option<usize>),
         goal: Goal,
         problems: &mut [Vec<BinaryProblem>],
     ) {
-        let mut smo = Smo::new(gram, is_positive);
+        let mut smo = Smo::new(gram, labels);
         for (&c, problems) in goal.path.iter().zip(problems) {
             let solution = smo.solve(c, goal.tolerance);
             problems.push(self.problem(rows, sides, solution));

@@ -1,12 +1,12 @@
 //! Gram matrices as the solver reads them: two rows at a time, the diagonal, a weighted sum of rows, a part.
 
-use ndarray::{Array2, ArrayView1, ArrayView2, Axis};
+use ndarray::{ArrayView1, ArrayView2};
 
+use super::curvatures::InverseCurvatures;
 use super::passes::padded;
 use super::row_sums::weighted_sum;
-use crate::recognition::kernel::KernelFunction;
-use crate::recognition::points::Points;
 use crate::recognition::scalar::Scalar;
+use crate::recognition::transposed::write_columns;
 
 /// K of one binary problem, n × n, symmetric and positive semidefinite. Rows are padded to whole lanes with zeros.
 pub(crate) trait Gram<T> {
@@ -16,6 +16,8 @@ pub(crate) trait Gram<T> {
     fn rows(&mut self, i: usize, j: usize) -> (&[T], &[T]);
     /// Row i and the diagonal, padded like a row.
     fn row_and_diagonal(&mut self, i: usize) -> (&[T], &[T]);
+    /// `1 / (K_ii + K_jj − 2 K_ij)` for each j, padded like a row, and the smallest curvature that counts.
+    fn inverse_curvatures(&mut self, i: usize) -> (&[T], T);
     /// `K β`, summed in f64 (n values).
     fn times(&mut self, beta: &[f64]) -> Vec<f64>;
     /// Whether a part of this many rows would fit in memory.
@@ -32,9 +34,10 @@ pub(crate) struct Dense<T> {
     /// n rows of `stride` values.
     values: Vec<T>,
     diagonal: Vec<T>,
+    inverses: InverseCurvatures<T>,
 }
 
-impl<T> Default for Dense<T> {
+impl<T: Scalar> Default for Dense<T> {
     /// No rows yet.
     fn default() -> Self {
         Self {
@@ -42,6 +45,7 @@ impl<T> Default for Dense<T> {
             stride: 0,
             values: Vec::new(),
             diagonal: Vec::new(),
+            inverses: InverseCurvatures::new(),
         }
     }
 }
@@ -66,6 +70,7 @@ impl<T: Scalar> Dense<T> {
         self.diagonal
             .extend((0..n).map(|i| self.values[i * self.stride + i]));
         self.diagonal.resize(self.stride, T::zero());
+        self.inverses.renew(n, &self.diagonal);
     }
 
     /// A whole matrix.
@@ -73,7 +78,26 @@ impl<T: Scalar> Dense<T> {
         self.refill(whole.nrows(), |i, to| copy(to, whole.row(i)));
     }
 
-    fn at(&self, i: usize) -> &[T] {
+    /// A symmetric matrix of two groups of rows: those within each, and those of the first with the second, row by row.
+    pub fn of_blocks(&mut self, [own, others]: [ArrayView2<T>; 2], between: &[T]) {
+        let (first, second) = (own.nrows(), others.nrows());
+        let across: Vec<&[T]> = between.chunks_exact(second.max(1)).collect();
+        self.refill(first + second, |at, to| {
+            let (left, right) = to.split_at_mut(first);
+            if at < first {
+                copy(left, own.row(at));
+                right.copy_from_slice(across[at]);
+            } else {
+                copy(right, others.row(at - first));
+            }
+        });
+        let below = &mut self.values[first * self.stride..];
+        write_columns(&across, below, self.stride);
+    }
+
+    /// A row.
+    #[inline(always)]
+    pub fn row(&self, i: usize) -> &[T] {
         &self.values[i * self.stride..(i + 1) * self.stride]
     }
 }
@@ -93,16 +117,23 @@ impl<T: Scalar> Gram<T> for Dense<T> {
 
     #[inline(always)]
     fn rows(&mut self, i: usize, j: usize) -> (&[T], &[T]) {
-        (self.at(i), self.at(j))
+        (self.row(i), self.row(j))
     }
 
     #[inline(always)]
     fn row_and_diagonal(&mut self, i: usize) -> (&[T], &[T]) {
-        (self.at(i), &self.diagonal)
+        (self.row(i), &self.diagonal)
+    }
+
+    #[inline(always)]
+    fn inverse_curvatures(&mut self, i: usize) -> (&[T], T) {
+        let row = &self.values[i * self.stride..(i + 1) * self.stride];
+        let smallest = self.inverses.smallest();
+        (self.inverses.of_row(i, row, &self.diagonal), smallest)
     }
 
     fn times(&mut self, beta: &[f64]) -> Vec<f64> {
-        weighted_sum(self.n, beta, |j| self.at(j))
+        weighted_sum(self.n, beta, |j| self.row(j))
     }
 
     fn fits(&self, _: usize) -> bool {
@@ -112,7 +143,7 @@ impl<T: Scalar> Gram<T> for Dense<T> {
     fn part(&mut self, indices: &[usize]) -> Self {
         let mut part = Self::default();
         part.refill(indices.len(), |i, to| {
-            gather(to, self.at(indices[i]), indices)
+            gather(to, self.row(indices[i]), indices)
         });
         part
     }
@@ -122,136 +153,5 @@ impl<T: Scalar> Gram<T> for Dense<T> {
 pub(crate) fn gather<T: Copy>(to: &mut [T], from: &[T], columns: &[usize]) {
     for (to, &column) in to.iter_mut().zip(columns) {
         *to = from[column];
-    }
-}
-
-/// A Gram matrix too large to hold: rows are computed when asked for, and the latest kept.
-pub(crate) struct Cached<'a, T> {
-    points: &'a Points<T>,
-    kernel: KernelFunction,
-    stride: usize,
-    diagonal: Vec<T>,
-    /// Bytes that kept rows, and a part of the matrix, may take.
-    limit: usize,
-    rows: Vec<Kept<T>>,
-    /// Where row i is kept.
-    place: Vec<Option<usize>>,
-    n_asked: u64,
-}
-
-/// A row in the cache.
-struct Kept<T> {
-    row: usize,
-    last_asked: u64,
-    values: Vec<T>,
-}
-
-/// Kernel rows computed at once for a weighted sum.
-const BLOCK: usize = 256;
-
-impl<'a, T: Scalar> Cached<'a, T> {
-    /// K of these points; kept rows take at most `limit` bytes, but two are always kept.
-    pub fn new(points: &'a Points<T>, kernel: KernelFunction, limit: usize) -> Self {
-        let n = points.len();
-        let mut diagonal = points.all().diagonal(&kernel);
-        diagonal.resize(padded(n), T::zero());
-        Self {
-            points,
-            kernel,
-            stride: padded(n),
-            diagonal,
-            limit,
-            rows: Vec::new(),
-            place: vec![None; n],
-            n_asked: 0,
-        }
-    }
-
-    /// Makes sure that row i is kept, and says where.
-    fn fetch(&mut self, i: usize) -> usize {
-        self.n_asked += 1;
-        let at = match self.place[i] {
-            Some(at) => at,
-            None => {
-                let at = self.make_room();
-                let row = self.points.range(i..i + 1);
-                let kernel = row.kernel(self.points.all(), &self.kernel);
-                let values = &mut self.rows[at].values;
-                values.clear();
-                values.extend(kernel.iter());
-                values.resize(self.stride, T::zero());
-                self.rows[at].row = i;
-                self.place[i] = Some(at);
-                at
-            }
-        };
-        self.rows[at].last_asked = self.n_asked;
-        at
-    }
-
-    /// An empty place, or that of the row that was not asked for the longest.
-    fn make_room(&mut self) -> usize {
-        let most = (self.limit / (self.stride * size_of::<T>()).max(1)).max(2);
-        if self.rows.len() < most {
-            self.rows.push(Kept {
-                row: 0,
-                last_asked: 0,
-                values: Vec::new(),
-            });
-            return self.rows.len() - 1;
-        }
-        let mut oldest = 0;
-        for (at, kept) in self.rows.iter().enumerate() {
-            if kept.last_asked < self.rows[oldest].last_asked {
-                oldest = at;
-            }
-        }
-        self.place[self.rows[oldest].row] = None;
-        oldest
-    }
-}
-
-impl<T: Scalar> Gram<T> for Cached<'_, T> {
-    fn len(&self) -> usize {
-        self.points.len()
-    }
-
-    fn rows(&mut self, i: usize, j: usize) -> (&[T], &[T]) {
-        self.fetch(i);
-        let at_j = self.fetch(j);
-        // Row i was asked for last before j, so it was not j's that replaced it.
-        let at_i = self.place[i].unwrap_or(at_j);
-        (&self.rows[at_i].values, &self.rows[at_j].values)
-    }
-
-    fn row_and_diagonal(&mut self, i: usize) -> (&[T], &[T]) {
-        let at = self.fetch(i);
-        (&self.rows[at].values, &self.diagonal)
-    }
-
-    fn times(&mut self, beta: &[f64]) -> Vec<f64> {
-        let mut sums = vec![0.0; self.points.len()];
-        let support: Vec<usize> = (0..beta.len()).filter(|&j| beta[j] != 0.0).collect();
-        for block in support.chunks(BLOCK) {
-            let rows = self.points.select(block);
-            let values: Array2<T> = rows.all().kernel(self.points.all(), &self.kernel);
-            for (row, &j) in values.axis_iter(Axis(0)).zip(block) {
-                for (sum, value) in sums.iter_mut().zip(row) {
-                    *sum += beta[j] * value.wide();
-                }
-            }
-        }
-        sums
-    }
-
-    fn fits(&self, n: usize) -> bool {
-        Dense::<T>::bytes(n) <= self.limit
-    }
-
-    fn part(&mut self, indices: &[usize]) -> Dense<T> {
-        let some = self.points.select(indices);
-        let mut part = Dense::default();
-        part.of_whole(some.all().own_kernel(&self.kernel).view());
-        part
     }
 }

@@ -8,50 +8,43 @@
 //! - **Shrinking** [Joachims 1999]: variables that sit at a bound and want to stay there are left out, and what remains of
 //!   the Gram matrix is copied together, so that iterations run over short contiguous rows.
 //! - **Warm start along C**: the last solution, stretched by the factor that is best for the objective.
-//! - **Precision**: Gram matrix and f may be f32; whenever the solver believes to be done, f is summed again in f64 and has
-//!   the last word.
+//! - **Precision**: Gram matrix and f may be f32; whenever the solver believes to be done, an f in f64 follows what β has
+//!   changed and has the last word.
 
+mod cached;
+mod curvatures;
 mod gram;
+mod iterations;
 mod part;
 pub(crate) mod passes;
 #[cfg(target_arch = "x86_64")]
 pub(crate) mod passes_512;
 mod reached;
 mod row_sums;
-mod runs;
 mod start;
 mod variables;
 
-pub(crate) use gram::{Cached, Dense, Gram, gather};
-pub(crate) use part::{Part, Room, part_of, part_of_blocks};
+pub(crate) use cached::Cached;
+pub(crate) use gram::{Dense, Gram, gather};
+pub(crate) use part::{Part, Room, part_of_blocks};
 pub(crate) use reached::Reached;
-pub(crate) use runs::Runs;
 pub(crate) use variables::extremes;
 
 use crate::recognition::dual::DualSolution;
 use crate::recognition::scalar::Scalar;
-use passes::select_up;
+use iterations::{SHRINK_PERIOD, Search, Stop, run, solve_part};
 use reached::violation;
-use variables::{Variables, linear_and_quadratic};
+use variables::{Variables, linear_and_quadratic, rho};
 
 /// Iterations after which a problem counts as not solved, as in LIBSVM; or 100 a row, if that is more.
 const MOST_ITERATIONS: u64 = 10_000_000;
-/// Curvature along a pair's line, at least, relative to the Gram matrix's largest entry: equal rows with unequal labels
-/// have none.
-const SMALLEST_CURVATURE: f64 = 1e-12;
 /// Times that f64 may disagree with a solver that believes to be done.
 const MOST_REFRESHES: usize = 30;
-/// Iterations before a look at which variables to leave out.
-const SHRINK_PERIOD: u64 = 1000;
-/// Rows below which leaving variables out gains less than copying costs.
-const SHRINK_ROWS: usize = 400;
-/// The share of the variables that may remain for the copy to be worth it.
-const SHRINK_SHARE: f64 = 0.7;
-
 /// A binary problem on a Gram matrix, and the solution of the C that it was last solved for.
 pub(crate) struct Smo<'a, G> {
     gram: &'a mut G,
-    is_positive: &'a [bool],
+    /// The labels: 1, −1, or 0 for a row that takes no part.
+    y: &'a [f64],
     beta: Vec<f64>,
     /// y − Kβ.
     f: Vec<f64>,
@@ -65,11 +58,10 @@ pub(crate) struct Smo<'a, G> {
 
 impl<'a, G> Smo<'a, G> {
     /// A problem that is not solved yet.
-    pub fn new(gram: &'a mut G, is_positive: &'a [bool]) -> Self {
-        let f = is_positive.iter().map(|&own| sign(own)).collect();
+    pub fn new(gram: &'a mut G, y: &'a [f64]) -> Self {
         Self {
             is_summed: true,
-            ..Self::going_on(gram, is_positive, (vec![0.0; is_positive.len()], f), 0.0)
+            ..Self::going_on(gram, y, (vec![0.0; y.len()], y.to_vec()), 0.0)
         }
     }
 
@@ -84,19 +76,29 @@ impl<'a, G> Smo<'a, G> {
     /// A problem that goes on from β and about what its f is; they belong to c, which is 0 where there is none yet.
     pub fn going_on(
         gram: &'a mut G,
-        is_positive: &'a [bool],
+        y: &'a [f64],
         (beta, f): (Vec<f64>, Vec<f64>),
         c: f64,
     ) -> Self {
         Self {
             gram,
-            is_positive,
+            y,
             beta,
             f,
             c,
             is_summed: false,
-            most_iterations: MOST_ITERATIONS.max(100 * is_positive.len() as u64),
+            most_iterations: MOST_ITERATIONS.max(100 * y.len() as u64),
         }
+    }
+
+    /// β, and f of it.
+    pub fn variables(&self) -> (&[f64], &[f64]) {
+        (&self.beta, &self.f)
+    }
+
+    /// ρ of the solution for a C.
+    pub fn rho(&self, c: f64) -> f64 {
+        rho(&self.beta, self.y, &self.f, c)
     }
 
     /// β, and f of it.
@@ -110,10 +112,22 @@ impl<'a, G> Smo<'a, G> {
         G: Gram<T>,
     {
         let products = self.gram.times(&self.beta);
-        for ((f, product), &is_positive) in self.f.iter_mut().zip(products).zip(self.is_positive) {
-            *f = sign(is_positive) - product;
+        for ((f, product), y) in self.f.iter_mut().zip(products).zip(self.y) {
+            *f = y - product;
         }
         self.is_summed = true;
+    }
+
+    /// Takes f, which belongs to another β, to this one.
+    fn follow<T: Scalar>(&mut self, before: &[f64])
+    where
+        G: Gram<T>,
+    {
+        let change: Vec<f64> = self.beta.iter().zip(before).map(|(b, a)| b - a).collect();
+        let products = self.gram.times(&change);
+        for (f, product) in self.f.iter_mut().zip(products) {
+            *f -= product;
+        }
     }
 
     /// Solves for this C, starting from the solution of the last one, to a violation of the optimality conditions of at most
@@ -122,21 +136,21 @@ impl<'a, G> Smo<'a, G> {
     where
         G: Gram<T>,
     {
-        self.solve_or_from(c, tolerance, || None)
+        self.solve_or_from(c, tolerance, |_| None)
     }
 
-    /// [`solve`](Self::solve), or from β of another start that C allows, if the objective is higher there.
+    /// [`solve`](Self::solve), or from another start that C allows, β and its f, if the objective is higher there.
     pub fn solve_or_from<T: Scalar>(
         &mut self,
         c: f64,
         tolerance: f64,
-        other: impl FnOnce() -> Option<Vec<f64>>,
+        other: impl FnOnce(&mut G) -> Option<(Vec<f64>, Vec<f64>)>,
     ) -> DualSolution
     where
         G: Gram<T>,
     {
         let reached = self.reach(c, tolerance, other);
-        let variables = (&self.beta[..], self.is_positive, &self.f[..]);
+        let variables = (&self.beta[..], self.y, &self.f[..]);
         DualSolution {
             coefficients: self.beta.clone(),
             ..reached.solution(variables, c)
@@ -148,7 +162,7 @@ impl<'a, G> Smo<'a, G> {
         &mut self,
         c: f64,
         tolerance: f64,
-        other: impl FnOnce() -> Option<Vec<f64>>,
+        other: impl FnOnce(&mut G) -> Option<(Vec<f64>, Vec<f64>)>,
     ) -> Reached
     where
         G: Gram<T>,
@@ -161,7 +175,7 @@ impl<'a, G> Smo<'a, G> {
         let stays = self.c <= c && self.violation(c) <= tolerance;
         if !stays {
             self.stretch(c);
-            if let Some(other) = other() {
+            if let Some(other) = other(self.gram) {
                 self.prefer(other);
             }
         }
@@ -175,12 +189,12 @@ impl<'a, G> Smo<'a, G> {
 
     /// `Σ y β − ½ β K β`.
     fn objective(&self) -> f64 {
-        let (linear, quadratic) = linear_and_quadratic(&self.beta, self.is_positive, &self.f);
+        let (linear, quadratic) = linear_and_quadratic(&self.beta, self.y, &self.f);
         linear - 0.5 * quadratic
     }
 
     fn violation(&self, c: f64) -> f64 {
-        violation(&self.beta, self.is_positive, &self.f, c)
+        violation(&self.beta, self.y, &self.f, c)
     }
 
     /// Whether it ended within the tolerance.
@@ -189,23 +203,13 @@ impl<'a, G> Smo<'a, G> {
         G: Gram<T>,
     {
         for round in 0..MOST_REFRESHES {
-            let mut all = Variables::<T>::new(&self.beta, self.is_positive, &self.f, c);
-            let first_look = if round == 0 { SHRINK_PERIOD } else { 0 };
-            let stop = run(self.gram, &mut all, search, first_look);
-            self.beta.copy_from_slice(&all.beta);
-            if let Stop::Shrink(indices) = &stop {
-                let part = self.gram.part(indices);
-                let tolerance = search.tolerance;
-                // The first time only roughly: what was left out should be looked at again before much work goes on.
-                if round == 0 {
-                    search.tolerance *= 10.0;
-                }
-                let beta = solve_part(part, all.select(indices), search);
-                search.tolerance = tolerance;
-                beta.into_iter()
-                    .for_each(|(at, value)| self.beta[indices[at]] = value);
+            let before = self.beta.clone();
+            self.search_once(c, search, round == 0);
+            if self.is_summed {
+                self.follow(&before);
+            } else {
+                self.refresh();
             }
-            self.refresh();
             if self.violation(c) <= search.tolerance {
                 return true;
             }
@@ -215,113 +219,27 @@ impl<'a, G> Smo<'a, G> {
         }
         false
     }
-}
 
-/// Solves on a part of the Gram matrix, and on parts of that. β of the part's variables, by their index in it.
-fn solve_part<T: Scalar>(
-    mut part: Dense<T>,
-    mut variables: Variables<T>,
-    search: &mut Search,
-) -> Vec<(usize, f64)> {
-    let mut indices: Vec<usize> = (0..variables.beta.len()).collect();
-    let mut solved = Vec::new();
-    loop {
-        let stop = run(&mut part, &mut variables, search, SHRINK_PERIOD);
-        let beta = indices.iter().zip(&variables.beta);
-        solved.extend(beta.map(|(&index, &beta)| (index, beta)));
-        match stop {
-            Stop::Shrink(keep) => {
-                part = part.part(&keep);
-                variables = variables.select(&keep);
-                indices = keep.iter().map(|&at| indices[at]).collect();
+    /// Searches among all variables, roughly where most are soon left out: what was left out should be looked at again before
+    /// much work goes on.
+    fn search_once<T: Scalar>(&mut self, c: f64, search: &mut Search, is_first: bool)
+    where
+        G: Gram<T>,
+    {
+        let mut all = Variables::<T>::new(&self.beta, self.y, &self.f, c);
+        let first_look = if is_first { SHRINK_PERIOD } else { 0 };
+        let stop = run(self.gram, &mut all, search, first_look);
+        self.beta.copy_from_slice(&all.beta);
+        if let Stop::Shrink(indices) = &stop {
+            let part = self.gram.part(indices);
+            let tolerance = search.tolerance;
+            if is_first {
+                search.tolerance *= 10.0;
             }
-            Stop::Done => return solved,
+            let beta = solve_part(part, all.select(indices), search);
+            search.tolerance = tolerance;
+            beta.into_iter()
+                .for_each(|(at, value)| self.beta[indices[at]] = value);
         }
     }
-}
-
-/// How far the search may go, and has gone.
-struct Search {
-    tolerance: f64,
-    most_iterations: u64,
-    n_iterations: u64,
-}
-
-impl Search {
-    fn new(most_iterations: u64, tolerance: f64) -> Self {
-        Self {
-            tolerance,
-            most_iterations,
-            n_iterations: 0,
-        }
-    }
-}
-
-/// Why the iteration stopped.
-enum Stop {
-    /// Within the tolerance, or at the cap.
-    Done,
-    /// Only these variables may still move.
-    Shrink(Vec<usize>),
-}
-
-/// Moves pairs of variables until the optimality conditions hold, iterations run out, or few variables are left to move.
-fn run<T: Scalar, G: Gram<T>>(
-    gram: &mut G,
-    variables: &mut Variables<T>,
-    search: &mut Search,
-    first_look: u64,
-) -> Stop {
-    let Some(mut i) = select_up(&variables.f, &variables.up) else {
-        return Stop::Done;
-    };
-    let largest = gram
-        .row_and_diagonal(i)
-        .1
-        .iter()
-        .fold(T::zero(), |a, &b| a.max(b));
-    let smallest_curvature = T::of(SMALLEST_CURVATURE) * largest.max(T::min_positive_value());
-    // A little more than asked, so that f64 agrees.
-    let tolerance = T::of(0.95 * search.tolerance);
-    let mut until_look = first_look;
-    loop {
-        let highest = variables.f[i];
-        let (row_i, diagonal) = gram.row_and_diagonal(i);
-        let own = diagonal[i];
-        let down = T::select_down(
-            (&variables.f, &variables.low),
-            (row_i, diagonal),
-            (highest, own),
-            smallest_curvature,
-            &mut variables.gains,
-        );
-        let Some(j) = down.j.filter(|_| down.violation > tolerance) else {
-            return Stop::Done;
-        };
-        let curvature = (own + diagonal[j]).wide() - 2.0 * row_i[j].wide();
-        if until_look == 0 && gram.len() >= SHRINK_ROWS {
-            let keep = variables.worth_keeping(highest, highest - down.violation);
-            let few = SHRINK_SHARE * gram.len() as f64;
-            if (keep.len() as f64) < few && gram.fits(keep.len()) {
-                return Stop::Shrink(keep);
-            }
-            until_look = SHRINK_PERIOD;
-        }
-        if search.n_iterations >= search.most_iterations {
-            return Stop::Done;
-        }
-        search.n_iterations += 1;
-        until_look = until_look.saturating_sub(1);
-        let step = variables.step(i, j, curvature.max(smallest_curvature.wide()));
-        let (row_i, row_j) = gram.rows(i, j);
-        let rows = (row_i, row_j);
-        match T::step_along(&mut variables.f, rows, T::of(step), &variables.up) {
-            Some(next) => i = next,
-            None => return Stop::Done,
-        }
-    }
-}
-
-fn sign(is_positive: bool) -> f64 {
-    if is_positive { 1.0 } else { -1.0 }
 }

@@ -1,11 +1,9 @@
 //! A Gram matrix whose values are held elsewhere: rows are brought together when the solver first asks for them.
 
-use ndarray::ArrayView2;
-
+use super::curvatures::InverseCurvatures;
 use super::gram::{Dense, Gram, gather};
 use super::passes::padded;
 use super::row_sums::weighted_sum;
-use super::runs::Runs;
 use crate::recognition::scalar::Scalar;
 
 /// Room for the rows of parts, one part after another.
@@ -14,14 +12,16 @@ pub(crate) struct Room<T> {
     values: Vec<T>,
     is_here: Vec<bool>,
     diagonal: Vec<T>,
+    inverses: InverseCurvatures<T>,
 }
 
-impl<T> Room<T> {
+impl<T: Scalar> Room<T> {
     pub fn new() -> Self {
         Self {
             values: Vec::new(),
             is_here: Vec::new(),
             diagonal: Vec::new(),
+            inverses: InverseCurvatures::new(),
         }
     }
 }
@@ -32,25 +32,6 @@ pub(crate) struct Part<'a, T, F> {
     stride: usize,
     write: F,
     room: &'a mut Room<T>,
-}
-
-/// The rows and columns of a whole matrix at these indices.
-///
-/// # Panics
-/// When `whole` is not stored row by row.
-pub(crate) fn part_of<'a, T: Scalar>(
-    whole: &'a ArrayView2<T>,
-    rows: &'a [usize],
-    room: &'a mut Room<T>,
-) -> Part<'a, T, impl Fn(usize, &mut [T])> {
-    let width = whole.ncols();
-    let whole = whole.as_slice().expect("a product is stored row by row");
-    let runs = Runs::new(rows);
-    let diagonal = rows.iter().map(|&row| whole[row * width + row]);
-    let write = move |i: usize, to: &mut [T]| {
-        runs.copy(&whole[rows[i] * width..][..width], to);
-    };
-    Part::new(diagonal, write, room)
 }
 
 /// K of two classes from the rows of its blocks: within each, and across, those of the first with the second and of the second
@@ -83,7 +64,7 @@ pub(crate) fn part_of_blocks<'a, T: Scalar>(
     Part::new(diagonal, write, room)
 }
 
-impl<'a, T: Scalar, F: Fn(usize, &mut [T])> Part<'a, T, F> {
+impl<'a, T: Scalar, F: FnMut(usize, &mut [T])> Part<'a, T, F> {
     /// Of as many rows as the diagonal has values.
     pub fn new(diagonal: impl Iterator<Item = T>, write: F, room: &'a mut Room<T>) -> Self {
         room.diagonal.clear();
@@ -96,6 +77,7 @@ impl<'a, T: Scalar, F: Fn(usize, &mut [T])> Part<'a, T, F> {
         if room.values.len() < n * stride {
             room.values.resize(n * stride, T::zero());
         }
+        room.inverses.renew(n, &room.diagonal);
         Self {
             n,
             stride,
@@ -120,7 +102,7 @@ impl<'a, T: Scalar, F: Fn(usize, &mut [T])> Part<'a, T, F> {
     }
 }
 
-impl<T: Scalar, F: Fn(usize, &mut [T])> Gram<T> for Part<'_, T, F> {
+impl<T: Scalar, F: FnMut(usize, &mut [T])> Gram<T> for Part<'_, T, F> {
     fn len(&self) -> usize {
         self.n
     }
@@ -134,6 +116,14 @@ impl<T: Scalar, F: Fn(usize, &mut [T])> Gram<T> for Part<'_, T, F> {
     fn row_and_diagonal(&mut self, i: usize) -> (&[T], &[T]) {
         self.bring(i);
         (self.at(i), &self.room.diagonal)
+    }
+
+    fn inverse_curvatures(&mut self, i: usize) -> (&[T], T) {
+        self.bring(i);
+        let room = &mut *self.room;
+        let row = &room.values[i * self.stride..][..self.stride];
+        let smallest = room.inverses.smallest();
+        (room.inverses.of_row(i, row, &room.diagonal), smallest)
     }
 
     fn times(&mut self, beta: &[f64]) -> Vec<f64> {

@@ -110,19 +110,17 @@ pub(crate) struct Down<T> {
     pub violation: T,
 }
 
-/// The variable to lower when i, whose f is `highest`, is raised. `row` is row i of the Gram matrix; `low` is 0 where a
-/// variable can be lowered and −∞ elsewhere; `gains` is scratch.
+/// The variable to lower when i, whose f is `highest`, is raised. `low` is 0 where a variable can be lowered and −∞ elsewhere;
+/// `inverses` are the inverse curvatures along the lines of i; `gains` is scratch.
 #[multiversion::multiversion(targets("x86_64+avx2+fma"))]
 pub(crate) fn select_down<T: Scalar>(
     (f, low): (&[T], &[T]),
-    (row, diagonal): (&[T], &[T]),
-    (highest, own): (T, T),
-    smallest_curvature: T,
+    inverses: &[T],
+    highest: T,
     gains: &mut [T],
 ) -> Down<T> {
     let n = gains.len();
-    let (f, low, row, diagonal) = (&f[..n], &low[..n], &row[..n], &diagonal[..n]);
-    let two = T::one() + T::one();
+    let (f, low, inverses) = (&f[..n], &low[..n], &inverses[..n]);
     for at in 0..n {
         let difference = highest - f[at] + low[at];
         let difference = if difference > T::zero() {
@@ -130,13 +128,7 @@ pub(crate) fn select_down<T: Scalar>(
         } else {
             T::zero()
         };
-        let curvature = own + diagonal[at] - two * row[at];
-        let curvature = if curvature > smallest_curvature {
-            curvature
-        } else {
-            smallest_curvature
-        };
-        gains[at] = difference * difference / curvature;
+        gains[at] = difference * difference * inverses[at];
     }
     let best = largest(gains);
     let gains = &*gains;
@@ -202,7 +194,7 @@ mod tests {
             .map(|i| if infinite(i, 4) { f64::INFINITY } else { 0.0 })
             .collect();
         let (row_i, row_j) = (values(n, 0.1), values(n, 0.5));
-        let diagonal: Vec<f64> = values(n, 2.0).iter().map(|v| v + 3.0).collect();
+        let inverses: Vec<f64> = values(n, 2.0).iter().map(|v| v + 3.0).collect();
         let mut f = values(n, 0.9);
         let mut plain = f.clone();
 
@@ -220,22 +212,15 @@ mod tests {
         assert_eq!(next, Some(best.1));
         assert_eq!(select_up(&f, &up), next);
 
-        let (highest, i) = best;
-        let down = select_down(
-            (&f, &low),
-            (&row_i, &diagonal),
-            (highest, diagonal[i]),
-            1e-12,
-            &mut vec![0.0; n],
-        );
+        let highest = best.0;
+        let down = select_down((&f, &low), &inverses, highest, &mut vec![0.0; n]);
         let (mut gain, mut at, mut violation) = (0.0, None, 0.0_f64);
         for j in 0..n {
             let difference = highest - f[j] + low[j];
             if difference > 0.0 {
-                let curvature = (diagonal[i] + diagonal[j] - 2.0 * row_i[j]).max(1e-12);
                 violation = violation.max(difference);
-                if difference * difference / curvature > gain {
-                    gain = difference * difference / curvature;
+                if difference * difference * inverses[j] > gain {
+                    gain = difference * difference * inverses[j];
                     at = Some(j);
                 }
             }
@@ -263,18 +248,18 @@ mod tests {
             };
             (0..n).map(mark).collect::<Vec<_>>()
         };
-        let (row_i, row_j, diagonal) = (single(0.1), single(0.5), vec![2.5; n]);
+        let (row_i, row_j) = (single(0.1), single(0.5));
+        let inverses: Vec<f32> = single(2.0).iter().map(|v| v + 3.0).collect();
         for (up, low) in [(marks(3), marks(4)), (marks(1), marks(1))] {
             let (mut f, mut plain) = (single(0.9), single(0.9));
             let next = f32::step_along(&mut f, (&row_i, &row_j), 0.3, &up);
             assert_eq!(next, step_along(&mut plain, (&row_i, &row_j), 0.3, &up));
             assert_eq!(f, plain);
-            let (mut gains, mut expected) = (vec![0.0; n], vec![0.0; n]);
-            let (states, rows, own) = ((&f[..], &low[..]), (&row_i[..], &diagonal[..]), (0.8, 2.5));
-            let found = f32::select_down(states, rows, own, 1e-12, &mut gains);
-            let down = select_down(states, rows, own, 1e-12, &mut expected);
+            let mut gains = vec![0.0; n];
+            let state = (&f[..], &low[..]);
+            let found = f32::select_down(state, &inverses, 0.8, &mut gains);
+            let down = select_down(state, &inverses, 0.8, &mut gains);
             assert_eq!((found.j, found.violation), (down.j, down.violation));
-            assert_eq!(gains, expected);
         }
     }
 
@@ -283,14 +268,7 @@ mod tests {
         let f = vec![1.0_f32; LANES];
         assert_eq!(select_up(&f, &[f32::NEG_INFINITY; LANES]), None);
         let low = [f32::NEG_INFINITY; LANES];
-        let row = [0.0; LANES];
-        let down = select_down(
-            (&f, &low),
-            (&row, &[1.0; LANES]),
-            (1.0, 1.0),
-            1e-12,
-            &mut [0.0; LANES],
-        );
+        let down = select_down((&f, &low), &[1.0; LANES], 1.0, &mut [0.0; LANES]);
         assert!(down.j.is_none() && down.violation == 0.0);
     }
 }

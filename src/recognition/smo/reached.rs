@@ -12,16 +12,16 @@ pub(crate) struct Reached {
 }
 
 impl Reached {
-    /// What is to be said of a solution, but its coefficients: of β, the signs of its rows, and f of it.
-    pub fn solution(self, variables: (&[f64], &[bool], &[f64]), c: f64) -> DualSolution {
-        let (beta, is_positive, f) = variables;
-        let (linear, quadratic) = linear_and_quadratic(beta, is_positive, f);
+    /// What is to be said of a solution, but its coefficients: of β, the labels of its rows, and f of it.
+    pub fn solution(self, variables: (&[f64], &[f64], &[f64]), c: f64) -> DualSolution {
+        let (beta, y, f) = variables;
+        let (linear, quadratic) = linear_and_quadratic(beta, y, f);
         DualSolution {
             coefficients: Vec::new(),
-            rho: rho(beta, is_positive, f, c),
+            rho: rho(beta, y, f, c),
             is_capped: !self.is_solved,
             objective: linear - 0.5 * quadratic,
-            violation: Some(violation(beta, is_positive, f, c).max(0.0)),
+            violation: Some(violation(beta, y, f, c).max(0.0)),
             n_iterations: Some(self.n_iterations),
         }
     }
@@ -29,10 +29,10 @@ impl Reached {
 
 /// How far the optimality conditions for a C are violated; below 0 when they hold with room to spare, infinite when kernel
 /// values have left nothing to go by.
-pub(super) fn violation(beta: &[f64], is_positive: &[bool], f: &[f64], c: f64) -> f64 {
+pub(super) fn violation(beta: &[f64], y: &[f64], f: &[f64], c: f64) -> f64 {
     if !all_finite(f) {
         return f64::INFINITY;
     }
-    let (highest, lowest) = extremes(beta, is_positive, f, c);
+    let (highest, lowest) = extremes(beta, y, f, c);
     highest - lowest
 }

@@ -9,9 +9,14 @@ pub(super) fn weighted_sum<'a, T: Scalar>(
     row: impl Fn(usize) -> &'a [T],
 ) -> Vec<f64> {
     let mut sums = vec![0.0; n];
-    let weighing = beta.iter().enumerate().filter(|(_, beta)| **beta != 0.0);
-    let mut rows: Vec<(&[T], f64)> = Vec::with_capacity(beta.len());
-    rows.extend(weighing.map(|(j, &beta)| (row(j), beta)));
+    // Without branches: which rows weigh has no pattern.
+    let (mut weighing, mut n_weighing) = (vec![0; beta.len()], 0);
+    for (j, &beta) in beta.iter().enumerate() {
+        weighing[n_weighing] = j;
+        n_weighing += usize::from(beta != 0.0);
+    }
+    let weighing = weighing[..n_weighing].iter();
+    let rows: Vec<(&[T], f64)> = weighing.map(|&j| (row(j), beta[j])).collect();
     let (fours, last) = rows.as_chunks::<4>();
     fours.iter().for_each(|four| add_four(&mut sums, four));
     last.iter()
@@ -20,7 +25,7 @@ pub(super) fn weighted_sum<'a, T: Scalar>(
 }
 
 /// Four rows one after the other: the sums are read and written a quarter as often.
-#[multiversion::multiversion(targets("x86_64+avx2+fma"))]
+#[multiversion::multiversion(targets("x86_64+avx512f", "x86_64+avx2+fma"))]
 fn add_four<T: Scalar>(sums: &mut [f64], rows: &[(&[T], f64); 4]) {
     let n = sums.len();
     let [(a, p), (b, q), (c, r), (d, s)] = *rows;

@@ -18,20 +18,21 @@ fn mark<T: Scalar>(can_move: bool) -> T {
 
 /// Notes in which directions all β can move.
 #[multiversion::multiversion(targets("x86_64+avx512f", "x86_64+avx2+fma"))]
-fn mark_all<T: Scalar>(beta: &[f64], is_positive: &[bool], c: f64, up: &mut [T], low: &mut [T]) {
+fn mark_all<T: Scalar>(beta: &[f64], y: &[f64], c: f64, up: &mut [T], low: &mut [T]) {
     let n = beta.len();
-    let (is_positive, up, low) = (&is_positive[..n], &mut up[..n], &mut low[..n]);
+    let (y, up, low) = (&y[..n], &mut up[..n], &mut low[..n]);
     for i in 0..n {
-        let (lowest, highest) = bounds(is_positive[i], c);
+        let (lowest, highest) = bounds(y[i], c);
         up[i] = mark(beta[i] < highest);
         low[i] = mark(beta[i] > lowest);
     }
 }
 
-/// Where a variable may be: between 0 and C for a positive row, between −C and 0 for a negative one.
+/// Where a variable may be: between 0 and C for a positive row, between −C and 0 for a negative one, at 0 for one that takes no
+/// part.
 #[inline(always)]
-fn bounds(is_positive: bool, c: f64) -> (f64, f64) {
-    if is_positive { (0.0, c) } else { (-c, 0.0) }
+fn bounds(y: f64, c: f64) -> (f64, f64) {
+    (c * y.min(0.0), c * y.max(0.0))
 }
 
 /// β and what the passes read of it; slices are padded to whole lanes with variables that cannot move.
@@ -39,7 +40,7 @@ fn bounds(is_positive: bool, c: f64) -> (f64, f64) {
 pub(super) struct Variables<T> {
     /// `β_i = y_i a_i`.
     pub beta: Vec<f64>,
-    is_positive: Vec<bool>,
+    y: Vec<f64>,
     c: f64,
     /// `f_i = y_i − (Kβ)_i`, the gradient of the dual objective along β_i.
     pub f: Vec<T>,
@@ -52,11 +53,11 @@ pub(super) struct Variables<T> {
 }
 
 impl<T: Scalar> Variables<T> {
-    pub fn new(beta: &[f64], is_positive: &[bool], f: &[f64], c: f64) -> Self {
+    pub fn new(beta: &[f64], y: &[f64], f: &[f64], c: f64) -> Self {
         let n = beta.len();
         let mut variables = Self {
             beta: beta.to_vec(),
-            is_positive: is_positive.to_vec(),
+            y: y.to_vec(),
             c,
             f: f.iter().map(|&f| T::of(f)).collect(),
             up: vec![T::neg_infinity(); padded(n)],
@@ -64,22 +65,22 @@ impl<T: Scalar> Variables<T> {
             gains: vec![T::zero(); padded(n)],
         };
         variables.f.resize(padded(n), T::zero());
-        mark_all(beta, is_positive, c, &mut variables.up, &mut variables.low);
+        mark_all(beta, y, c, &mut variables.up, &mut variables.low);
         variables
     }
 
     /// Only the variables at these indices.
     pub fn select(&self, indices: &[usize]) -> Self {
         let beta: Vec<f64> = indices.iter().map(|&i| self.beta[i]).collect();
-        let is_positive: Vec<bool> = indices.iter().map(|&i| self.is_positive[i]).collect();
+        let y: Vec<f64> = indices.iter().map(|&i| self.y[i]).collect();
         let f: Vec<f64> = indices.iter().map(|&i| self.f[i].wide()).collect();
-        Self::new(&beta, &is_positive, &f, self.c)
+        Self::new(&beta, &y, &f, self.c)
     }
 
     /// Notes in which directions β_i can move.
     #[inline(always)]
     fn mark(&mut self, i: usize) {
-        let (lowest, highest) = bounds(self.is_positive[i], self.c);
+        let (lowest, highest) = bounds(self.y[i], self.c);
         self.up[i] = mark(self.beta[i] < highest);
         self.low[i] = mark(self.beta[i] > lowest);
     }
@@ -88,10 +89,7 @@ impl<T: Scalar> Variables<T> {
     #[inline(always)]
     pub fn step(&mut self, i: usize, j: usize, curvature: f64) -> f64 {
         let wanted = (self.f[i].wide() - self.f[j].wide()) / curvature;
-        let (lowest, highest) = (
-            bounds(self.is_positive[j], self.c).0,
-            bounds(self.is_positive[i], self.c).1,
-        );
+        let (lowest, highest) = (bounds(self.y[j], self.c).0, bounds(self.y[i], self.c).1);
         let (room_i, room_j) = (highest - self.beta[i], self.beta[j] - lowest);
         let step = wanted.min(room_i).min(room_j);
         // Exactly on a bound that was reached: rounding must not leave a variable a hair from it.
@@ -130,23 +128,23 @@ impl<T: Scalar> Variables<T> {
 
 /// `(max of f that can be raised, min of f that can be lowered)`, in f64, for any β within its bounds.
 #[multiversion::multiversion(targets("x86_64+avx512f", "x86_64+avx2+fma"))]
-pub(crate) fn extremes(beta: &[f64], is_positive: &[bool], f: &[f64], c: f64) -> (f64, f64) {
+pub(crate) fn extremes(beta: &[f64], y: &[f64], f: &[f64], c: f64) -> (f64, f64) {
     let (beta, last_beta) = beta.as_chunks::<LANES>();
-    let (is_positive, last_is_positive) = is_positive.as_chunks::<LANES>();
+    let (y, last_y) = y.as_chunks::<LANES>();
     let (f, last_f) = f.as_chunks::<LANES>();
     let n = beta.len();
-    let (is_positive, f) = (&is_positive[..n], &f[..n]);
+    let (y, f) = (&y[..n], &f[..n]);
     // Each lane keeps its own; they meet at the end.
     let (mut highest, mut lowest) = ([f64::NEG_INFINITY; LANES], [f64::INFINITY; LANES]);
     for at in 0..n {
         for lane in 0..LANES {
             let both = (&mut highest[lane], &mut lowest[lane]);
-            widen(both, beta[at][lane], is_positive[at][lane], f[at][lane], c);
+            widen(both, beta[at][lane], y[at][lane], f[at][lane], c);
         }
     }
     for at in 0..last_beta.len() {
         let both = (&mut highest[at], &mut lowest[at]);
-        widen(both, last_beta[at], last_is_positive[at], last_f[at], c);
+        widen(both, last_beta[at], last_y[at], last_f[at], c);
     }
     let highest = highest.into_iter().fold(f64::NEG_INFINITY, f64::max);
     (highest, lowest.into_iter().fold(f64::INFINITY, f64::min))
@@ -154,8 +152,8 @@ pub(crate) fn extremes(beta: &[f64], is_positive: &[bool], f: &[f64], c: f64) ->
 
 /// Takes one more variable into the extremes.
 #[inline(always)]
-fn widen((highest, lowest): (&mut f64, &mut f64), beta: f64, is_positive: bool, f: f64, c: f64) {
-    let (low, high) = bounds(is_positive, c);
+fn widen((highest, lowest): (&mut f64, &mut f64), beta: f64, y: f64, f: f64, c: f64) {
+    let (low, high) = bounds(y, c);
     let raised = if beta < high { f } else { f64::NEG_INFINITY };
     let lowered = if beta > low { f } else { f64::INFINITY };
     *highest = if raised > *highest { raised } else { *highest };
@@ -164,36 +162,66 @@ fn widen((highest, lowest): (&mut f64, &mut f64), beta: f64, is_positive: bool, 
 
 /// `Σ y β` and `β K β` of β and its f, of which the dual objective is the first less half the second.
 #[multiversion::multiversion(targets("x86_64+avx512f", "x86_64+avx2+fma"))]
-pub(super) fn linear_and_quadratic(beta: &[f64], is_positive: &[bool], f: &[f64]) -> (f64, f64) {
+pub(super) fn linear_and_quadratic(beta: &[f64], y: &[f64], f: &[f64]) -> (f64, f64) {
+    let (beta, last_beta) = beta.as_chunks::<LANES>();
+    let (y, last_y) = y.as_chunks::<LANES>();
+    let (f, last_f) = f.as_chunks::<LANES>();
     let n = beta.len();
-    let (is_positive, f) = (&is_positive[..n], &f[..n]);
+    let (y, f) = (&y[..n], &f[..n]);
     // Each lane keeps its own; they meet at the end.
     let (mut linear, mut quadratic) = ([0.0; LANES], [0.0; LANES]);
-    for start in (0..n).step_by(LANES) {
-        for lane in 0..LANES.min(n - start) {
-            let at = start + lane;
-            let y = if is_positive[at] { 1.0 } else { -1.0 };
-            linear[lane] += beta[at] * y;
-            quadratic[lane] += beta[at] * (y - f[at]);
+    for at in 0..n {
+        for lane in 0..LANES {
+            linear[lane] += beta[at][lane] * y[at][lane];
+            quadratic[lane] += beta[at][lane] * (y[at][lane] - f[at][lane]);
         }
+    }
+    for at in 0..last_beta.len() {
+        linear[at] += last_beta[at] * last_y[at];
+        quadratic[at] += last_beta[at] * (last_y[at] - last_f[at]);
     }
     (linear.iter().sum(), quadratic.iter().sum())
 }
 
-/// ρ: the mean of −f over the variables between their bounds, or the middle of what the others allow (LIBSVM's rule).
-pub(super) fn rho(beta: &[f64], is_positive: &[bool], f: &[f64], c: f64) -> f64 {
-    let (mut sum, mut n_free) = (0.0, 0_usize);
-    for ((&beta, &is_positive), &f) in beta.iter().zip(is_positive).zip(f) {
-        let (low, high) = bounds(is_positive, c);
-        if beta > low && beta < high {
-            sum += f;
-            n_free += 1;
+/// The sum of f over the variables between their bounds, and how many these are.
+#[multiversion::multiversion(targets("x86_64+avx512f", "x86_64+avx2+fma"))]
+fn sum_of_free(beta: &[f64], y: &[f64], f: &[f64], c: f64) -> (f64, f64) {
+    let (beta, last_beta) = beta.as_chunks::<LANES>();
+    let (y, last_y) = y.as_chunks::<LANES>();
+    let (f, last_f) = f.as_chunks::<LANES>();
+    let n = beta.len();
+    let (y, f) = (&y[..n], &f[..n]);
+    // Each lane keeps its own; they meet at the end.
+    let (mut sum, mut n_free) = ([0.0; LANES], [0.0; LANES]);
+    for at in 0..n {
+        for lane in 0..LANES {
+            let is_free = weight_if_free(beta[at][lane], y[at][lane], c);
+            sum[lane] += is_free * f[at][lane];
+            n_free[lane] += is_free;
         }
     }
-    if n_free > 0 {
-        return -sum / n_free as f64;
+    for at in 0..last_beta.len() {
+        let is_free = weight_if_free(last_beta[at], last_y[at], c);
+        sum[at] += is_free * last_f[at];
+        n_free[at] += is_free;
     }
-    match extremes(beta, is_positive, f, c) {
+    (sum.iter().sum(), n_free.iter().sum())
+}
+
+/// 1 for a variable between its bounds, 0 for another.
+#[inline(always)]
+fn weight_if_free(beta: f64, y: f64, c: f64) -> f64 {
+    let (low, high) = bounds(y, c);
+    f64::from(u8::from((beta > low) & (beta < high)))
+}
+
+/// ρ: the mean of −f over the variables between their bounds, or the middle of what the others allow (LIBSVM's rule).
+pub(super) fn rho(beta: &[f64], y: &[f64], f: &[f64], c: f64) -> f64 {
+    let (sum, n_free) = sum_of_free(beta, y, f, c);
+    if n_free > 0.0 {
+        return -sum / n_free;
+    }
+    match extremes(beta, y, f, c) {
         (highest, lowest) if highest.is_finite() && lowest.is_finite() => -(highest + lowest) / 2.0,
         (highest, _) if highest.is_finite() => -highest,
         (_, lowest) => -lowest,

@@ -1,0 +1,107 @@
+//! The iterations: pairs of variables moved until the optimality conditions hold, or few variables are left to move.
+
+use super::gram::{Dense, Gram};
+use super::passes::select_up;
+use super::variables::Variables;
+use crate::recognition::scalar::Scalar;
+
+/// Iterations before a look at which variables to leave out.
+pub(super) const SHRINK_PERIOD: u64 = 1000;
+/// Rows below which leaving variables out gains less than copying costs.
+const SHRINK_ROWS: usize = 400;
+/// The share of the variables that may remain for the copy to be worth it.
+const SHRINK_SHARE: f64 = 0.7;
+
+/// Solves on a part of the Gram matrix, and on parts of that. β of the part's variables, by their index in it.
+pub(super) fn solve_part<T: Scalar>(
+    mut part: Dense<T>,
+    mut variables: Variables<T>,
+    search: &mut Search,
+) -> Vec<(usize, f64)> {
+    let mut indices: Vec<usize> = (0..variables.beta.len()).collect();
+    let mut solved = Vec::new();
+    loop {
+        let stop = run(&mut part, &mut variables, search, SHRINK_PERIOD);
+        let beta = indices.iter().zip(&variables.beta);
+        solved.extend(beta.map(|(&index, &beta)| (index, beta)));
+        match stop {
+            Stop::Shrink(keep) => {
+                part = part.part(&keep);
+                variables = variables.select(&keep);
+                indices = keep.iter().map(|&at| indices[at]).collect();
+            }
+            Stop::Done => return solved,
+        }
+    }
+}
+
+/// How far the search may go, and has gone.
+pub(super) struct Search {
+    pub tolerance: f64,
+    pub most_iterations: u64,
+    pub n_iterations: u64,
+}
+
+impl Search {
+    pub fn new(most_iterations: u64, tolerance: f64) -> Self {
+        Self {
+            tolerance,
+            most_iterations,
+            n_iterations: 0,
+        }
+    }
+}
+
+/// Why the iteration stopped.
+pub(super) enum Stop {
+    /// Within the tolerance, or at the cap.
+    Done,
+    /// Only these variables may still move.
+    Shrink(Vec<usize>),
+}
+
+/// Moves pairs of variables until the optimality conditions hold, iterations run out, or few variables are left to move.
+pub(super) fn run<T: Scalar, G: Gram<T>>(
+    gram: &mut G,
+    variables: &mut Variables<T>,
+    search: &mut Search,
+    first_look: u64,
+) -> Stop {
+    let Some(mut i) = select_up(&variables.f, &variables.up) else {
+        return Stop::Done;
+    };
+    // A little more than asked, so that f64 agrees.
+    let tolerance = T::of(0.95 * search.tolerance);
+    let mut until_look = first_look;
+    loop {
+        let highest = variables.f[i];
+        let (inverses, smallest_curvature) = gram.inverse_curvatures(i);
+        let state = (&variables.f[..], &variables.low[..]);
+        let down = T::select_down(state, inverses, highest, &mut variables.gains);
+        let Some(j) = down.j.filter(|_| down.violation > tolerance) else {
+            return Stop::Done;
+        };
+        let (row_i, diagonal) = gram.row_and_diagonal(i);
+        let curvature = (diagonal[i] + diagonal[j]).wide() - 2.0 * row_i[j].wide();
+        if until_look == 0 && gram.len() >= SHRINK_ROWS {
+            let keep = variables.worth_keeping(highest, highest - down.violation);
+            let few = SHRINK_SHARE * gram.len() as f64;
+            if (keep.len() as f64) < few && gram.fits(keep.len()) {
+                return Stop::Shrink(keep);
+            }
+            until_look = SHRINK_PERIOD;
+        }
+        if search.n_iterations >= search.most_iterations {
+            return Stop::Done;
+        }
+        search.n_iterations += 1;
+        until_look = until_look.saturating_sub(1);
+        let step = variables.step(i, j, curvature.max(smallest_curvature.wide()));
+        let (row_i, row_j) = gram.rows(i, j);
+        let rows = (row_i, row_j);
+        match T::step_along(&mut variables.f, rows, T::of(step), &variables.up) {
+            Some(next) => i = next,
+            None => return Stop::Done,
+        }
+    }
+}
