@@ -55,11 +55,20 @@ impl Panels {
             for panel in 0..n_rows.div_ceil(PANEL_ROWS) {
                 let (start, width) = panels.place(panel, piece);
                 let to = &mut panels.values[start..][..width * piece.1];
-                for row in panel * PANEL_ROWS..n_rows.min((panel + 1) * PANEL_ROWS) {
-                    let at = row % PANEL_ROWS;
-                    let to = to.iter_mut().skip(at / LANES).step_by(width);
-                    let from = &rows.row(row)[piece.0..][..piece.1];
-                    to.zip(from).for_each(|(to, &value)| to[at % LANES] = value);
+                for at in 0..width {
+                    let first = panel * PANEL_ROWS + at * LANES;
+                    let n_lanes = LANES.min(n_rows - first);
+                    // A row stands in for those that are lacking, and gives way to 0.
+                    let mut lanes = [&rows.row(first)[piece.0..][..piece.1]; LANES];
+                    for (lane, row) in lanes.iter_mut().take(n_lanes).enumerate() {
+                        *row = &rows.row(first + lane)[piece.0..][..piece.1];
+                    }
+                    pack(&lanes, &mut to[at..], width);
+                    if n_lanes < LANES {
+                        for to in to[at..].iter_mut().step_by(width) {
+                            to[n_lanes..].fill(0.0);
+                        }
+                    }
                 }
             }
         }
@@ -92,6 +101,21 @@ impl Panels {
     /// Products of `left` with the packed rows, row by row into `to`; `false`, and nothing written, without the instructions.
     pub fn multiply(&self, left: &[&[f32]], wanted: Wanted, to: &mut [&mut [f32]]) -> bool {
         multiply(self, left, wanted, to)
+    }
+}
+
+/// Writes equally long rows side by side, so many registers apart.
+fn pack(rows: &[&[f32]; LANES], to: &mut [[f32; LANES]], width: usize) {
+    let n = rows[0].len();
+    let mut lanes = *rows;
+    for lane in 0..LANES {
+        lanes[lane] = &rows[lane][..n];
+    }
+    for at in 0..n {
+        let to = &mut to[at * width];
+        for lane in 0..LANES {
+            to[lane] = lanes[lane][at];
+        }
     }
 }
 
