@@ -49,22 +49,28 @@ struct Support<T> {
 
 impl<T: Scalar> DecisionFunctions<T> {
     /// Those of the problems that these rows were trained for. Rows that are given away become the support vectors where they
-    /// lie.
-    pub fn new(rows: Cow<Sorted<T>>, problems: &[BinaryProblem]) -> Self {
+    /// lie; the normals of linear problems' hyperplanes are summed unless they are known.
+    pub fn new(
+        rows: Cow<Sorted<T>>,
+        problems: &[BinaryProblem],
+        normals: Option<Array2<T>>,
+    ) -> Self {
         let sorted = rows.as_ref();
         let classes = || sorted.classes_and_ranges();
         let centre = sorted.centre().to_owned();
         let (rho, sums) = match sorted.kernel() {
             KernelFunction::Linear => {
                 let about_centre = problems.iter().map(|p| sorted.rho_about_centre(p));
-                let mut normals = Array2::zeros((problems.len(), sorted.centre().len()));
-                for (class, rows) in classes() {
-                    ClassWeights::new(sorted, class, rows, problems).add_to(&mut normals, sorted);
-                }
-                (
-                    about_centre.collect(),
-                    Sums::Hyperplanes(normals.mapv(T::of)),
-                )
+                let sum = || {
+                    let mut normals = Array2::zeros((problems.len(), sorted.centre().len()));
+                    for (class, rows) in classes() {
+                        let weights = ClassWeights::new(sorted, class, rows, problems);
+                        weights.add_to(&mut normals, sorted);
+                    }
+                    normals.mapv(T::of)
+                };
+                let normals = normals.unwrap_or_else(sum);
+                (about_centre.collect(), Sums::Hyperplanes(normals))
             }
             kernel => {
                 let mut support = Vec::new();

@@ -11,7 +11,7 @@ use ndarray::{Array2, Axis};
 
 use crate::recognition::between::pairs;
 use crate::recognition::few_dimensions::spanned;
-use crate::recognition::margin_pair::{Scratch, Sides, nearest};
+use crate::recognition::margin_rows::{Ranked, Sides, nearest};
 use crate::recognition::near_margin::{Classes, NearMargin};
 use crate::recognition::scalar::Scalar;
 use crate::recognition::sorted::Sorted;
@@ -72,7 +72,7 @@ impl<'a, T: Scalar> PairsNearMargin<'a, T> {
                 .collect()
         });
         let along = along.each_ref().map(Vec::as_slice);
-        nearest(along, ROWS_ALONG_MEANS, &mut Scratch::default())
+        nearest(along, ROWS_ALONG_MEANS, &mut Ranked::new())
     }
 }
 

@@ -3,9 +3,11 @@
 use ndarray::Array2;
 
 use crate::recognition::dual::DualSolution;
+use crate::recognition::margin_rows::{Ranked, SIGNS, Sides, find_below, smallest};
+use crate::recognition::pair_search::{PairGoal, reach_by_equations};
 use crate::recognition::row_products::{Rows, multiply};
 use crate::recognition::scalar::Scalar;
-use crate::recognition::smo::{Part, Reached, Room, Smo, extremes, gather};
+use crate::recognition::smo::{Part, Reached, Room, extremes, gather};
 use crate::recognition::transposed::write_columns;
 
 /// Rows that join in a round, at least, while rows violate.
@@ -13,21 +15,29 @@ const FEWEST_JOINING: usize = 24;
 /// The share of a pair's rows from which on all take part.
 const MOST_SHARE: f64 = 0.6;
 
-/// y of a pair's first class and of its second.
-const SIGNS: [f64; 2] = [1.0, -1.0];
+/// Products of a class's rows with each other.
+pub(crate) struct Within<T> {
+    products: Array2<T>,
+    diagonal: Vec<T>,
+}
 
-/// Rows of a pair's first class and of its second, by their number within the class.
-pub(crate) type Sides = [Vec<usize>; 2];
+impl<T: Scalar> Within<T> {
+    /// Of n × n products, stored row by row.
+    pub fn new(products: Array2<T>) -> Self {
+        Self {
+            diagonal: products.diag().to_vec(),
+            products,
+        }
+    }
 
-/// What to solve a pair for.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct PairGoal {
-    /// C.
-    pub c: f64,
-    /// The largest violation of the optimality conditions, in units of the decision value.
-    pub tolerance: f64,
-    /// Iterations after which a solve is left as it is; `None`: after those that count as unsolvable.
-    pub most_iterations: Option<u64>,
+    /// The products of one row.
+    fn row(&self, row: usize) -> &[T] {
+        let n = self.diagonal.len();
+        &self
+            .products
+            .as_slice()
+            .expect("a product is stored row by row")[row * n..][..n]
+    }
 }
 
 /// What pairs need in turn, so that its memory is asked for once.
@@ -36,8 +46,10 @@ pub(crate) struct Scratch<'r, T> {
     rows: [Vec<&'r [T]>; 2],
     /// New products across.
     across: Vec<T>,
-    /// Rows by how far they are beyond something, with their class and number.
-    violating: Vec<(f64, (usize, usize))>,
+    /// Rows by how far they are beyond something.
+    pub ranked: Ranked,
+    /// Rows of one class that are below a bound.
+    below: Vec<usize>,
 }
 
 impl<T> Default for Scratch<'_, T> {
@@ -45,7 +57,8 @@ impl<T> Default for Scratch<'_, T> {
         Self {
             rows: [Vec::new(), Vec::new()],
             across: Vec::new(),
-            violating: Vec::new(),
+            ranked: Ranked::new(),
+            below: Vec::new(),
         }
     }
 }
@@ -154,33 +167,30 @@ impl<T: Scalar> MarginPair<T> {
 
     /// Solves on the rows that take part, from the last solution. `within` holds the products within each class; rows of the
     /// Gram matrix are written into the memory of the last one.
-    pub fn solve(&mut self, within: &[Array2<T>], room: &mut Room<T>, goal: PairGoal) {
+    pub fn solve(&mut self, within: &[Within<T>], room: &mut Room<T>, goal: PairGoal) {
         let (beta, f) = (std::mem::take(&mut self.beta), std::mem::take(&mut self.f));
         let [first, second] = &self.rows;
         let within = self.classes.map(|class| &within[class]);
         let diagonal = |side: usize| {
             let rows = self.rows[side].iter();
-            rows.map(move |&row| within[side][[row, row]])
+            rows.map(move |&row| within[side].diagonal[row])
         };
         let write = |i: usize, to: &mut [T]| {
             let (left, right) = to.split_at_mut(first.len());
             if i < first.len() {
-                gather(left, whole_row(within[0], first[i]), first);
+                gather(left, within[0].row(first[i]), first);
                 right.copy_from_slice(&self.across[0][i * second.len()..][..second.len()]);
             } else {
                 let i = i - first.len();
                 left.copy_from_slice(&self.across[1][i * first.len()..][..first.len()]);
-                gather(right, whole_row(within[1], second[i]), second);
+                gather(right, within[1].row(second[i]), second);
             }
         };
         let mut gram = Part::new(diagonal(0).chain(diagonal(1)), write, room);
         let labels = self.labels();
-        let mut smo = Smo::going_on(&mut gram, &labels, (beta, f), self.c);
-        if let Some(most_iterations) = goal.most_iterations {
-            smo = smo.of_at_most(most_iterations);
-        }
-        let reached = smo.reach(goal.c, goal.tolerance, |_| None);
-        (self.beta, self.f) = smo.into_variables();
+        let given = (&labels[..], (beta, f), self.c);
+        let (variables, reached) = reach_by_equations(&mut gram, given, goal);
+        (self.beta, self.f) = variables;
         self.c = goal.c;
         self.n_iterations += reached.n_iterations;
         self.is_solved = reached.is_solved;
@@ -213,16 +223,17 @@ impl<T: Scalar> MarginPair<T> {
         let (highest, lowest) = extremes(&self.beta, &self.labels(), &self.f, goal.c);
         let middle = (highest + lowest) / 2.0;
         // By how much a row is beyond, least first.
-        let violating = &mut scratch.violating;
+        let violating = &mut scratch.ranked;
         violating.clear();
         for (number, products) in products.into_iter().enumerate() {
-            let takes_part = &self.takes_part[number];
             // f lies beyond the middle by more than half the tolerance where w·x is less than this, by its sign.
             let bound = T::of(SIGNS[number] * (SIGNS[number] - middle) - goal.tolerance / 2.0);
             let sign = T::of(SIGNS[number]);
-            for (row, (&product, &takes_part)) in products.iter().zip(takes_part).enumerate() {
-                if sign * product < bound && !takes_part {
-                    violating.push(((sign * product - bound).wide(), (number, row)));
+            find_below(products, sign, bound, &mut scratch.below);
+            for &row in &scratch.below {
+                if !self.takes_part[number][row] {
+                    let beyond = (sign * products[row] - bound).wide();
+                    violating.push((beyond, (number, row)));
                 }
             }
         }
@@ -264,33 +275,4 @@ impl<T: Scalar> MarginPair<T> {
             ..reached.solution(variables, self.c)
         }
     }
-}
-
-/// The n rows of either class that are nearest to the other when `w·x` of all rows of both are these.
-pub(crate) fn nearest<T: Scalar>(products: [&[T]; 2], n: usize, scratch: &mut Scratch<T>) -> Sides {
-    [0, 1].map(|side| {
-        let products = products[side].iter().enumerate();
-        let distances = &mut scratch.violating;
-        distances.clear();
-        distances
-            .extend(products.map(|(row, product)| (SIGNS[side] * product.wide(), (side, row))));
-        let nearest = smallest(distances, n).iter();
-        nearest.map(|&(_, (_, row))| row).collect()
-    })
-}
-
-/// The n smallest values, in no order, and what they belong to; of equal values the first.
-fn smallest<K: Ord + Copy>(values: &mut [(f64, K)], n: usize) -> &[(f64, K)] {
-    if n >= values.len() {
-        return values;
-    }
-    values.select_nth_unstable_by(n, |a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
-    &values[..n]
-}
-
-fn whole_row<T>(products: &Array2<T>, row: usize) -> &[T] {
-    products
-        .row(row)
-        .to_slice()
-        .expect("a product is stored row by row")
 }

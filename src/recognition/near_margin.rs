@@ -10,12 +10,12 @@
 
 use std::ops::Range;
 
-use ndarray::Array2;
-
 use crate::recognition::dual::DualSolution;
 use crate::recognition::first_rows::{CLASSES_AT_ONCE, FEW_DIMENSIONS};
-use crate::recognition::margin_pair::{MarginPair, PairGoal, Scratch, Sides, nearest};
+use crate::recognition::margin_pair::{MarginPair, Scratch, Within};
+use crate::recognition::margin_rows::{Sides, nearest};
 use crate::recognition::packed::Packed;
+use crate::recognition::pair_search::PairGoal;
 use crate::recognition::row_products::multiply;
 use crate::recognition::scalar::Scalar;
 use crate::recognition::smo::{Dense, Room};
@@ -25,8 +25,6 @@ use crate::recognition::sorted::Sorted;
 const FEW_ROUNDS: usize = 2;
 /// The tolerance in the few dimensions: at 0.5 the rows found are no longer those of the solution.
 const ROUGH_TOLERANCE: f64 = 0.1;
-/// Tolerances of the first rounds, if larger than what is asked for: they are only to show which rows join.
-const ROUND_TOLERANCES: [f64; 2] = [0.1, 0.01];
 /// Iterations of a solve in the few dimensions, at most: classes that all features part may overlap there.
 const ROUGH_ITERATIONS: u64 = 1000;
 /// Rows of each class that a pair starts with in all dimensions.
@@ -36,7 +34,7 @@ const ROWS_NEAR_MARGIN: usize = 24;
 pub(crate) struct Classes<'a, T> {
     pub sorted: &'a Sorted<T>,
     /// Products within each class.
-    within: Vec<Array2<T>>,
+    within: Vec<Within<T>>,
 }
 
 impl<'a, T: Scalar> Classes<'a, T> {
@@ -44,7 +42,7 @@ impl<'a, T: Scalar> Classes<'a, T> {
     pub fn new(sorted: &'a Sorted<T>) -> Self {
         let within = |range: &Range<usize>| {
             let own = sorted.points().range(range.clone());
-            own.packed().own_products()
+            Within::new(own.packed().own_products())
         };
         Self {
             sorted,
@@ -71,6 +69,9 @@ pub(crate) struct NearMargin<'c, 'a, T> {
     scratch: Scratch<'c, T>,
     round: Round<T>,
 }
+
+/// What a round found of a pair: the normal of its hyperplane, and `w·x` of all rows of both classes.
+type Found<'f, T> = (&'f [T], [&'f [T]; 2]);
 
 /// What a round found, of one pair after another.
 #[derive(Default)]
@@ -126,14 +127,17 @@ impl<'c, 'a, T: Scalar> NearMargin<'c, 'a, T> {
     }
 
     /// Solves all pairs for this C, starting from the solutions of the last one, to a violation of the optimality conditions
-    /// of at most `tolerance`. Coefficients are those of all rows of the first class, then of the second.
-    pub fn solve(&mut self, c: f64, tolerance: f64) -> Vec<DualSolution> {
+    /// of at most `tolerance`. Coefficients are those of all rows of the first class, then of the second. With each the
+    /// normal of its hyperplane.
+    pub fn solve(&mut self, c: f64, tolerance: f64) -> Vec<(DualSolution, Vec<T>)> {
         let goal = PairGoal {
             c,
             tolerance,
             most_iterations: None,
         };
-        self.settle(goal, usize::MAX, |pair, _, _| pair.solution())
+        self.settle(goal, usize::MAX, |pair, (normal, _), _| {
+            (pair.solution(), normal.to_vec())
+        })
     }
 
     /// The rows of all pairs that are near the margin for this C, roughly.
@@ -143,8 +147,8 @@ impl<'c, 'a, T: Scalar> NearMargin<'c, 'a, T> {
             tolerance: ROUGH_TOLERANCE,
             most_iterations: Some(ROUGH_ITERATIONS),
         };
-        self.settle(goal, FEW_ROUNDS, |_, products, scratch| {
-            nearest(products, ROWS_NEAR_MARGIN, scratch)
+        self.settle(goal, FEW_ROUNDS, |_, (_, products), scratch| {
+            nearest(products, ROWS_NEAR_MARGIN, &mut scratch.ranked)
         })
     }
 
@@ -154,34 +158,31 @@ impl<'c, 'a, T: Scalar> NearMargin<'c, 'a, T> {
         &mut self,
         goal: PairGoal,
         most_rounds: usize,
-        mut settled: impl FnMut(&mut MarginPair<T>, [&[T]; 2], &mut Scratch<'c, T>) -> R,
+        mut settled: impl FnMut(&mut MarginPair<T>, Found<T>, &mut Scratch<'c, T>) -> R,
     ) -> Vec<R> {
         let mut results = Vec::new();
         results.resize_with(self.pairs.len(), || None);
+        let n_features = self.classes.sorted.centre().len();
         let mut open: Vec<usize> = (0..self.pairs.len()).collect();
         let mut n_rounds = 0;
         while !open.is_empty() {
             n_rounds += 1;
-            // The first solutions are only to show which rows join.
-            let rough = ROUND_TOLERANCES.get(n_rounds - 1).copied().unwrap_or(0.0);
-            let now = PairGoal {
-                tolerance: rough.max(goal.tolerance),
-                ..goal
-            };
             let mut still_open = Vec::new();
-            self.solve_round(&open, now);
+            self.solve_round(&open, goal);
             for (number, &pair) in open.iter().enumerate() {
                 let products = self.round.products(number);
-                let joining = self.pairs[pair].joining(products, now, &mut self.scratch);
-                let is_settled = joining.is_none() && now.tolerance == goal.tolerance;
-                if is_settled || n_rounds == most_rounds {
-                    results[pair] =
-                        Some(settled(&mut self.pairs[pair], products, &mut self.scratch));
-                    continue;
-                }
-                still_open.push(pair);
-                if let Some(joining) = joining {
-                    self.join(pair, &joining, Some(number));
+                let joining = self.pairs[pair].joining(products, goal, &mut self.scratch);
+                match joining {
+                    Some(joining) if n_rounds < most_rounds => {
+                        still_open.push(pair);
+                        self.join(pair, &joining, Some(number));
+                    }
+                    _ => {
+                        let normal = &self.round.normals[number * n_features..][..n_features];
+                        let found = (normal, products);
+                        let pair = (&mut self.pairs[pair], &mut results[pair]);
+                        *pair.1 = Some(settled(pair.0, found, &mut self.scratch));
+                    }
                 }
             }
             open = still_open;

@@ -44,20 +44,26 @@ impl<T: Scalar> Points<T> {
         mut told: impl FnMut(Moved),
     ) -> Self {
         let n_rows = rows.len();
-        let mut values = Array2::zeros((n_rows, centre.len()));
-        let mut norms = Vec::with_capacity(n_rows);
         let centre = centre.to_vec();
-        for (mut to, row) in values.rows_mut().into_iter().zip(rows) {
-            let own = to.as_slice_mut().expect("a new array is stored row by row");
+        let mut values = Vec::with_capacity(n_rows * centre.len());
+        let mut norms = Vec::with_capacity(n_rows);
+        for row in rows {
+            // Row by row: memory that is filled first and written later passes twice.
+            let start = values.len();
+            values.resize(start + centre.len(), T::zero());
+            let own = &mut values[start..];
             let moved = match row.as_slice() {
                 Some(row) => move_row(own, row, &centre),
                 None => move_row(own, &row.to_vec(), &centre),
             };
             // Of what is kept, and rounded like products: distances come from both.
-            norms.push(to.dot(&to));
+            let own = ArrayView1::from(&*own);
+            norms.push(own.dot(&own));
             told(moved);
         }
         let norms = norms.into();
+        let values = Array2::from_shape_vec((n_rows, centre.len()), values);
+        let values = values.expect("all rows are as long as the centre");
         Self { values, norms }
     }
 

@@ -58,7 +58,7 @@ pub(crate) fn multiply<T: Scalar>(rows: &[&[T]], others: &[&[T]], to: &mut [T]) 
 }
 
 /// Four rows at once: the sums are read and written a quarter as often.
-#[multiversion::multiversion(targets("x86_64+avx2+fma"))]
+#[multiversion::multiversion(targets("x86_64+avx512f", "x86_64+avx2+fma"))]
 fn add_four<T: Scalar>(sums: &mut [f64], rows: &[(&[T], f64); 4]) {
     let n = sums.len();
     let [(a, p), (b, q), (c, r), (d, s)] = *rows;

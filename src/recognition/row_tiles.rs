@@ -34,26 +34,37 @@ pub(crate) fn products_in_place(_: &[&[f32]], _: &[&[f32]], _: &mut [f32]) -> bo
 const DEPTH: usize = 512;
 
 /// Goes over all tiles of N rows with M others: `tile` gives the products of one. What the last few lack is made up by their
-/// last row.
+/// last row. Loops, not iterators: what the standard library does with closures is not always compiled into one piece with them.
 #[cfg(target_arch = "x86_64")]
 fn by_tiles<'r, const N: usize, const M: usize>(
     (rows, others): (&[&'r [f32]], &[&'r [f32]]),
     products: &mut [f32],
     tile: impl Fn([&'r [f32]; N], [&'r [f32]; M]) -> [[f32; M]; N],
 ) {
-    products.fill(0.0);
     let n_features = rows.first().map_or(0, |row| row.len());
+    if n_features == 0 {
+        products.fill(0.0);
+    }
     for start in (0..n_features).step_by(DEPTH) {
-        let piece = start..n_features.min(start + DEPTH);
-        let row = |of: &[&'r [f32]], at: usize| &of[at.min(of.len() - 1)][piece.clone()];
+        let end = n_features.min(start + DEPTH);
         for i in (0..rows.len()).step_by(N) {
-            let left = std::array::from_fn(|at| row(rows, i + at));
+            let mut left: [&[f32]; N] = [&[]; N];
+            for at in 0..N {
+                left[at] = &rows[(i + at).min(rows.len() - 1)][start..end];
+            }
             for j in (0..others.len()).step_by(M) {
-                let tile = tile(left, std::array::from_fn(|at| row(others, j + at)));
-                for (at, tile) in tile.iter().enumerate().take(rows.len() - i) {
-                    let to = &mut products[(i + at) * others.len()..][..others.len()];
-                    let both = to[j..].iter_mut().zip(tile);
-                    both.for_each(|(to, &product)| *to += product);
+                let mut right: [&[f32]; M] = [&[]; M];
+                for at in 0..M {
+                    right[at] = &others[(j + at).min(others.len() - 1)][start..end];
+                }
+                let tile = tile(left, right);
+                let width = M.min(others.len() - j);
+                for at in 0..N.min(rows.len() - i) {
+                    let to = &mut products[(i + at) * others.len() + j..][..width];
+                    for k in 0..width {
+                        let before = if start == 0 { 0.0 } else { to[k] };
+                        to[k] = before + tile[at][k];
+                    }
                 }
             }
         }
@@ -112,8 +123,14 @@ mod avx512 {
         for i in 0..N {
             for j in 0..N {
                 products[i][j] = sums[i * N + j];
-                for at in n_lanes * LANES..n {
-                    products[i][j] += left[i][at] * right[j][at];
+            }
+        }
+        if n_lanes * LANES < n {
+            for i in 0..N {
+                for j in 0..N {
+                    for at in n_lanes * LANES..n {
+                        products[i][j] += left[i][at] * right[j][at];
+                    }
                 }
             }
         }

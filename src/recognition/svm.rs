@@ -15,7 +15,7 @@ use crate::recognition::linfa_solver;
 use crate::recognition::scalar::Scalar;
 use crate::recognition::sorted::Sorted;
 use crate::recognition::svm_model::{Decision, SvmModel};
-use crate::recognition::training::Goal;
+use crate::recognition::training::{Goal, Trained};
 use crate::{Error, Result};
 
 /// How binary classifiers make one for many classes.
@@ -234,10 +234,10 @@ impl SvmParams {
         // The last model may have the rows.
         let last = trained.next_back();
         let mut models: Vec<SvmModel> = trained
-            .map(|problems| SvmModel::new(Cow::Borrowed(&sorted), self.multiclass, problems))
+            .map(|trained| SvmModel::new(Cow::Borrowed(&sorted), self.multiclass, trained))
             .collect();
         models.extend(
-            last.map(|problems| SvmModel::new(Cow::Owned(sorted), self.multiclass, problems)),
+            last.map(|trained| SvmModel::new(Cow::Owned(sorted), self.multiclass, trained)),
         );
         models
     }
@@ -254,8 +254,15 @@ impl SvmParams {
                     self.multiclass,
                     (c, self.tolerance),
                 )?;
-                let sorted = Cow::Borrowed(&sorted);
-                Ok(SvmModel::new(sorted, self.multiclass, problems))
+                let trained = Trained {
+                    problems,
+                    normals: None,
+                };
+                Ok(SvmModel::new(
+                    Cow::Borrowed(&sorted),
+                    self.multiclass,
+                    trained,
+                ))
             })
             .collect()
     }

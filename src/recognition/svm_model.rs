@@ -16,6 +16,7 @@ use crate::recognition::decision::DecisionFunctions;
 use crate::recognition::scalar::Scalar;
 use crate::recognition::sorted::Sorted;
 use crate::recognition::svm::{BinaryProblem, Multiclass};
+use crate::recognition::training::Trained;
 use crate::recognition::voting::Voting;
 
 /// A trained SVM. Implements linfa's [`PredictInplace`] and so its `Predict`.
@@ -51,7 +52,7 @@ impl SvmModel {
     pub(crate) fn new<T: Scalar>(
         sorted: Cow<Sorted<T>>,
         multiclass: Multiclass,
-        problems: Vec<BinaryProblem>,
+        Trained { problems, normals }: Trained<T>,
     ) -> Self
     where
         Decision: From<DecisionFunctions<T>>,
@@ -59,7 +60,7 @@ impl SvmModel {
         Self {
             n_features: sorted.centre().len(),
             voting: Voting::new(sorted.classes(), multiclass),
-            decision: DecisionFunctions::new(sorted, &problems).into(),
+            decision: DecisionFunctions::new(sorted, &problems, normals).into(),
             problems,
         }
     }

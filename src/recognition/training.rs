@@ -7,6 +7,8 @@
 
 use std::ops::Range;
 
+use ndarray::Array2;
+
 use crate::recognition::between::{Group, groups, pairs};
 use crate::recognition::dual::DualSolution;
 use crate::recognition::first_rows::{PairsNearMargin, few_dimensions};
@@ -23,6 +25,13 @@ const SCREENING_FROM_FEATURES: usize = 128;
 /// Rows a class, on average, below which there is little to leave out.
 const SCREENING_FROM_ROWS: usize = 64;
 
+/// Solved problems.
+pub(crate) struct Trained<T> {
+    pub problems: Vec<BinaryProblem>,
+    /// The normals of their hyperplanes about the centre (n_problems × m), where these were needed to solve them.
+    pub normals: Option<Array2<T>>,
+}
+
 /// What to solve for.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Goal<'a> {
@@ -36,16 +45,17 @@ pub(crate) struct Goal<'a> {
 
 impl<T: Scalar> Sorted<T> {
     /// Solves every pair of classes: for each C of the path, the problems (0, 1), (0, 2), …, (1, 2), ….
-    pub fn one_vs_one(&self, goal: Goal) -> Vec<Vec<BinaryProblem>> {
-        let mut problems = vec![Vec::new(); goal.path.len()];
+    pub fn one_vs_one(&self, goal: Goal) -> Vec<Trained<T>> {
         if self.is_worth_screening(goal.memory) {
-            self.pairs_near_margin(goal, &mut problems);
-        } else if self.fits(goal.memory) {
+            return self.pairs_near_margin(goal);
+        }
+        let mut problems = vec![Vec::new(); goal.path.len()];
+        if self.fits(goal.memory) {
             self.pairs_from_blocks(goal, &mut problems);
         } else {
             self.pairs_from_rows(goal, &mut problems);
         }
-        problems
+        without_normals(problems)
     }
 
     /// Whether the blocks within groups of classes, those between two groups and the largest pair fit.
@@ -63,20 +73,38 @@ impl<T: Scalar> Sorted<T> {
             && most() <= memory
     }
 
-    fn pairs_near_margin(&self, goal: Goal, problems: &mut [Vec<BinaryProblem>]) {
+    fn pairs_near_margin(&self, goal: Goal) -> Vec<Trained<T>> {
         let few = few_dimensions(self);
         let all = PairsNearMargin::new(self, &few);
+        let n_classes = self.classes().len();
+        let mut problems = vec![Vec::new(); goal.path.len()];
+        let shape = (n_classes * (n_classes - 1) / 2, self.centre().len());
+        let mut normals = vec![Array2::zeros(shape); goal.path.len()];
         for pairs in all.blocks() {
             let mut near_margin = all.near(&pairs, goal.path[0]);
-            for (&c, problems) in goal.path.iter().zip(&mut *problems) {
+            for (at, &c) in goal.path.iter().enumerate() {
                 let solutions = near_margin.solve(c, goal.tolerance);
-                for (&(a, b), solution) in pairs.iter().zip(solutions) {
+                for (&(a, b), (solution, normal)) in pairs.iter().zip(solutions) {
                     let sides = (self.classes()[a], Some(self.classes()[b]));
-                    problems.push(self.problem(&self.pair_rows(a, b), sides, solution));
+                    problems[at].push(self.problem(&self.pair_rows(a, b), sides, solution));
+                    // The pairs of the classes before, then those of the first with the others.
+                    let number = a * (2 * n_classes - a - 1) / 2 + (b - a - 1);
+                    let to = normals[at].row_mut(number).into_slice();
+                    to.expect("normals are stored one by one")
+                        .copy_from_slice(&normal);
                 }
             }
         }
-        in_order(problems);
+        in_order(&mut problems);
+        let with_normals = |(problems, normals)| Trained {
+            problems,
+            normals: Some(normals),
+        };
+        problems
+            .into_iter()
+            .zip(normals)
+            .map(with_normals)
+            .collect()
     }
 
     fn pairs_from_blocks(&self, goal: Goal, problems: &mut [Vec<BinaryProblem>]) {
@@ -136,7 +164,7 @@ impl<T: Scalar> Sorted<T> {
     }
 
     /// Solves each class against all others: for each C of the path, one problem a class.
-    pub fn one_vs_rest(&self, goal: Goal) -> Vec<Vec<BinaryProblem>> {
+    pub fn one_vs_rest(&self, goal: Goal) -> Vec<Trained<T>> {
         let mut problems = vec![Vec::new(); goal.path.len()];
         // Twice: as the product leaves it, and as the solver reads it.
         if 2 * Dense::<T>::bytes(self.points().len()) <= goal.memory {
@@ -148,7 +176,7 @@ impl<T: Scalar> Sorted<T> {
             let mut gram = Cached::new(self.points(), self.kernel(), goal.memory);
             self.against_rest(&mut gram, goal, &mut problems);
         }
-        problems
+        without_normals(problems)
     }
 
     fn against_rest<G: Gram<T>>(
@@ -205,6 +233,14 @@ impl<T: Scalar> Sorted<T> {
             solution,
         }
     }
+}
+
+fn without_normals<T>(problems: Vec<Vec<BinaryProblem>>) -> Vec<Trained<T>> {
+    let trained = |problems| Trained {
+        problems,
+        normals: None,
+    };
+    problems.into_iter().map(trained).collect()
 }
 
 /// Sorts the problems of each C by their classes.
