@@ -22,12 +22,24 @@ struct Faults {
     took: Duration,
 }
 
+/// From the first piece on a run says how long it will take, and at its end nothing of what was planned is left.
+fn assert_time_left_ends_at_0(said: &str) {
+    let events = said.lines().map(|line| serde_json::from_str(line).unwrap());
+    let progress = events.filter(|event: &serde_json::Value| event["event"] == "progress");
+    let left: Vec<f64> = progress
+        .map(|event| event["run_left_s"].as_f64().expect("seconds left"))
+        .collect();
+    assert!(left.len() > 1 && left[0] > 0.0, "{left:?}");
+    assert_eq!(left.last(), Some(&0.0), "{left:?}");
+}
+
 impl Faults {
     fn of(kind: Kind) -> Self {
         let case = kind.case();
         let start = Instant::now();
-        case.succeeds(&["run", "study.toml", "--out", "whole"]);
+        let (said, _) = case.succeeds(&["run", "study.toml", "--out", "whole", "--json"]);
         let took = start.elapsed();
+        assert_time_left_ends_at_0(&said);
         let faults = Self { kind, case, took };
         let manifest = fs::read_to_string(faults.case.path("whole/manifest.json")).unwrap();
         let manifest: serde_json::Value = serde_json::from_str(&manifest).unwrap();

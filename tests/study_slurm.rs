@@ -170,13 +170,9 @@ impl Drop for Cluster {
 fn configuration(folder: &Path) -> String {
     let host = fs::read_to_string("/proc/sys/kernel/hostname").unwrap();
     let host = host.trim().split('.').next().unwrap();
-    let port = || {
-        TcpListener::bind("127.0.0.1:0")
-            .unwrap()
-            .local_addr()
-            .unwrap()
-            .port()
-    };
+    // Both held at once, lest they be the same.
+    let free = [(); 2].map(|()| TcpListener::bind("127.0.0.1:0").unwrap());
+    let [ctld, d] = free.map(|listener| listener.local_addr().unwrap().port());
     let cpus = std::thread::available_parallelism().unwrap();
     let folder = folder.display();
     format!(
@@ -184,13 +180,11 @@ fn configuration(folder: &Path) -> String {
          AuthType=auth/munge\nAuthInfo=socket={folder}/munge/socket\nStateSaveLocation={folder}/state\n\
          SlurmdSpoolDir={folder}/spool\nSlurmctldPidFile={folder}/ctld.pid\nSlurmdPidFile={folder}/d.pid\n\
          SlurmctldLogFile={folder}/ctld.log\nSlurmdLogFile={folder}/d.log\n\
-         SlurmctldPort={}\nSlurmdPort={}\nProctrackType=proctrack/linuxproc\nTaskPlugin=task/none\n\
+         SlurmctldPort={ctld}\nSlurmdPort={d}\nProctrackType=proctrack/linuxproc\nTaskPlugin=task/none\n\
          SelectType=select/cons_tres\nSelectTypeParameters=CR_CPU\nReturnToService=2\nMpiDefault=none\n\
          SchedulerParameters=sched_interval=1,batch_sched_delay=0\nKillWait=1\n\
          NodeName={host} NodeAddr=127.0.0.1 CPUs={cpus} State=UNKNOWN\n\
-         PartitionName=test Nodes={host} Default=YES MaxTime=INFINITE State=UP\n",
-        port(),
-        port()
+         PartitionName=test Nodes={host} Default=YES MaxTime=INFINITE State=UP\n"
     )
 }
 

@@ -16,6 +16,8 @@ pub struct BreakingPointsKind(BreakingPointsStudy);
 impl PieceKind for BreakingPointsKind {
     type Study = BreakingPointsStudy;
 
+    const WRITE_S: f64 = 1.0;
+
     fn load(args: &StudyArgs, packings: PathBuf) -> Result<Self> {
         Ok(Self(BreakingPointsStudy {
             plan: args.breaking_points_plan()?,

@@ -15,6 +15,8 @@ pub struct ObjectDetailKind(ObjectDetailStudy);
 impl PieceKind for ObjectDetailKind {
     type Study = ObjectDetailStudy;
 
+    const WRITE_S: f64 = 1.0;
+
     fn load(args: &StudyArgs, packings: PathBuf) -> Result<Self> {
         let plan = args.object_detail_plan()?;
         let meshes = load_named_meshes(plan.meshes(), &plan.spec.objects)?;

@@ -14,16 +14,22 @@ use bubbletouch::report::study_tables::StudyTables;
 use bubbletouch::study::Part;
 use bubbletouch::study::journal::{Identity, Journal};
 use bubbletouch::study::pieces::{
-    FinishedPieces, PieceFailure, PieceManner, PieceStudy, n_pieces_left, run_pieces,
+    FinishedPieces, PieceFailure, PieceManner, PieceStudy, n_pieces_left, pieces_workload,
+    run_pieces,
 };
 use bubbletouch::study::provenance::{MANIFEST_FILE, Manifest, PROGRAM, RunFacts};
+use bubbletouch::study::time_left::{Piece, Work};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
+use std::time::Instant;
 
 /// A kind of study that is made of pieces.
 pub trait PieceKind: Sized {
     /// What runs.
     type Study: PieceStudy<Tables: StudyTables>;
+
+    /// Seconds that [`write`](Self::write) takes, about.
+    const WRITE_S: f64;
 
     /// Reads and checks a study, and loads its objects; packings are kept in a folder.
     fn load(args: &StudyArgs, packings: PathBuf) -> Result<Self>;
@@ -64,6 +70,13 @@ pub struct PieceRun<K> {
 }
 
 impl<K: PieceKind> PieceRun<K> {
+    /// What is done when all pieces are there.
+    const REPORT: Piece = Piece {
+        kind: Work::Report,
+        place: 0,
+        planned_s: K::WRITE_S,
+    };
+
     pub fn load(args: &StudyArgs, folder: &Path) -> Result<Self> {
         let kind = K::load(args, packings_beside(folder))?;
         let facts = kind.facts()?;
@@ -95,6 +108,11 @@ impl<K: PieceKind> AnyStudy for PieceRun<K> {
 
     fn run<'a>(&'a self, manner: &PieceManner<'a>) -> Result<Box<dyn AnyOutcome + 'a>> {
         let study = self.kind.study();
+        let mut work = pieces_workload(study, manner);
+        if !matches!(manner.part, Part::Shard(_)) {
+            work.push(Self::REPORT);
+        }
+        manner.progress.expect(&work);
         let FinishedPieces { rows, failures, .. } = run_pieces(study, manner)?;
         Ok(Box::new(PieceOutcome {
             run: self,
@@ -140,6 +158,7 @@ impl<K: PieceKind> AnyOutcome for PieceOutcome<'_, K> {
     }
 
     fn write(&self, ended: &EndedRun) -> Result<()> {
+        let start = Instant::now();
         let (kind, folder) = (&self.run.kind, ended.folder);
         let KindFacts {
             toml, asked, seed, ..
@@ -171,7 +190,10 @@ impl<K: PieceKind> AnyOutcome for PieceOutcome<'_, K> {
             methods: Vec::new(),
         };
         let manifest = Manifest::new(&self.run.identity, facts).to_json();
-        write_bytes(&folder.join(MANIFEST_FILE), manifest.as_bytes())
+        write_bytes(&folder.join(MANIFEST_FILE), manifest.as_bytes())?;
+        let took_s = start.elapsed().as_secs_f64();
+        ended.progress.worked(&PieceRun::<K>::REPORT, took_s);
+        Ok(())
     }
 
     fn tell(&self, folder: &Path) {

@@ -18,6 +18,8 @@ pub struct ReconstructionKind(ReconstructionStudy);
 impl PieceKind for ReconstructionKind {
     type Study = ReconstructionStudy;
 
+    const WRITE_S: f64 = 1.0;
+
     fn load(args: &StudyArgs, packings: PathBuf) -> Result<Self> {
         let plan = args.reconstruction_plan()?;
         let objects = load_objects(&plan.spec.objects, Some(&packings))?;

@@ -15,6 +15,8 @@ pub struct StabilityKind(StabilityPlan);
 impl PieceKind for StabilityKind {
     type Study = StabilityPlan;
 
+    const WRITE_S: f64 = 1.0;
+
     fn load(args: &StudyArgs, _packings: PathBuf) -> Result<Self> {
         if args.objects.is_some() || args.seed.is_some() {
             let allowed = "neither: nothing is drawn at random, and a ball is what touches";

@@ -19,6 +19,8 @@ pub struct WholeBodyKind {
 impl PieceKind for WholeBodyKind {
     type Study = WholeBodyPlan;
 
+    const WRITE_S: f64 = 1.0;
+
     fn load(args: &StudyArgs, _packings: PathBuf) -> Result<Self> {
         let plan = args.whole_body_plan()?;
         let robot = args.folder().join(&plan.spec.whole_body.robot);

@@ -54,6 +54,11 @@ impl<W: Write + Send> JsonLines<W> {
     }
 }
 
+/// Seconds as they are told.
+fn to_the_millisecond(s: f64) -> f64 {
+    (s * 1e3).round() / 1e3
+}
+
 impl<W: Write> State<W> {
     fn write(&mut self, event: &Value) {
         let _ = writeln!(self.writer, "{event}").and_then(|()| self.writer.flush());
@@ -65,11 +70,11 @@ impl<W: Write> State<W> {
                 "event": "progress",
                 "done": stage.done,
                 "total": stage.total,
-                "elapsed_s": stage.start.elapsed().as_secs_f64(),
+                "elapsed_s": to_the_millisecond(stage.start.elapsed().as_secs_f64()),
             });
             if let Some(times) = clock.times() {
-                event["run_elapsed_s"] = times.elapsed_s.into();
-                event["run_left_s"] = times.left_s.into();
+                event["run_elapsed_s"] = to_the_millisecond(times.elapsed_s).into();
+                event["run_left_s"] = to_the_millisecond(times.left_s).into();
             }
             self.write(&event);
         }

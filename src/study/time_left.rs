@@ -12,6 +12,10 @@ pub enum Work {
     Measure,
     /// A classifier is trained and tested.
     Learn(ClassifierKind),
+    /// A stage of a study in pieces, by number: each piece on a thread of its own.
+    Stage(u8),
+    /// The same of a stage whose pieces come one after the other, each with all threads.
+    OneByOne(u8),
     /// Tables and charts are written, on one thread at the end.
     Report,
 }
@@ -27,6 +31,34 @@ pub struct Piece {
     pub planned_s: f64,
 }
 
+impl Piece {
+    /// Of a stage whose pieces have a thread each.
+    pub fn of_stage(stage: u8, place: usize, planned_s: f64) -> Self {
+        Self {
+            kind: Work::Stage(stage),
+            place,
+            planned_s,
+        }
+    }
+
+    /// Of a stage whose pieces come one after the other: seconds by the clock.
+    pub fn one_by_one(stage: u8, place: usize, planned_wall_s: f64) -> Self {
+        Self {
+            kind: Work::OneByOne(stage),
+            place,
+            planned_s: planned_wall_s * rayon::current_num_threads() as f64,
+        }
+    }
+
+    /// Processor-seconds that so much time by the clock is.
+    pub fn spent_s(&self, wall_s: f64) -> f64 {
+        match self.kind {
+            Work::OneByOne(_) => wall_s * rayon::current_num_threads() as f64,
+            _ => wall_s,
+        }
+    }
+}
+
 /// Planned and spent processor-seconds of a run.
 ///
 /// What is left of a place costs as much more or less than planned as what was done for it; where little was done, as all work
@@ -36,7 +68,7 @@ pub struct TimeLeft {
     n_threads: f64,
     kinds: BTreeMap<Work, Spent>,
     places: BTreeMap<(Work, usize), Spent>,
-    /// Sum of the squares of what pieces took that a thread does alone, and of what they took.
+    /// Of pieces that are told of when they end: sum of what they took times how long that was by the clock, and of what they took.
     alone: [f64; 2],
 }
 
@@ -95,10 +127,13 @@ impl TimeLeft {
             spent.done_s += piece.planned_s;
             spent.took_s += took_s;
         }
-        if matches!(piece.kind, Work::Learn(_)) {
-            self.alone[0] += took_s * took_s;
-            self.alone[1] += took_s;
-        }
+        let wall_s = match piece.kind {
+            Work::Learn(_) | Work::Stage(_) => took_s,
+            Work::OneByOne(_) => took_s / self.n_threads,
+            Work::Touch | Work::Measure | Work::Report => return,
+        };
+        self.alone[0] += wall_s * took_s;
+        self.alone[1] += took_s;
     }
 
     fn spent(&mut self, piece: &Piece) -> [&mut Spent; 2] {
@@ -258,7 +293,7 @@ mod tests {
             Work::Measure => 2.0,
             Work::Learn(ClassifierKind::LinearSvm) => 3.0,
             Work::Learn(_) => 0.5,
-            Work::Report => 1.0,
+            Work::Stage(_) | Work::OneByOne(_) | Work::Report => 1.0,
         };
         let factors: [&dyn Fn(Work) -> f64; 3] = [&right, &slow, &mixed];
         for (number, factor) in factors.into_iter().enumerate() {
@@ -297,6 +332,29 @@ mod tests {
         let left = TimeLeft::new(&work, 2);
         assert_eq!(left.left_s(0.0), 6.5);
         assert_eq!(TimeLeft::new(&[], 2).left_s(3.0), 0.0);
+    }
+
+    #[test]
+    fn pieces_one_by_one_hold_all_threads_and_those_of_a_stage_one_each() {
+        // Four seconds by the clock on all threads, then eight pieces of a second on two threads; twice as slow as planned.
+        let shared = Piece::one_by_one(0, 0, 2.0);
+        let n_threads = rayon::current_num_threads();
+        let alone = Piece::of_stage(1, 0, 0.5);
+        let work = [vec![shared], vec![alone; 4 * n_threads]].concat();
+        let mut left = TimeLeft::new(&work, n_threads);
+        assert!((left.left_s(0.0) - 4.0).abs() < 1e-12);
+        left.worked(&shared, shared.spent_s(4.0));
+        // What is under way is half a piece of the stage before, at most half of what is left.
+        assert!((left.left_s(4.0) - 4.0).abs() < 1.5, "{}", left.left_s(4.0));
+        for done in 1..=4 {
+            (0..n_threads).for_each(|_| left.worked(&alone, alone.spent_s(1.0)));
+            let (now, true_left) = (4.0 + done as f64, 4.0 - done as f64);
+            let told = left.left_s(now);
+            assert!(
+                (told - true_left).abs() <= 0.3 * true_left + 1e-9,
+                "{told} of {true_left}"
+            );
+        }
     }
 
     #[test]

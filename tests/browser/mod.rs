@@ -6,11 +6,10 @@ pub mod shown;
 
 use serde_json::{Value, json};
 use std::io::{BufRead, BufReader, Read, Write};
-use std::net::{TcpListener, TcpStream};
+use std::net::TcpStream;
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
-use std::thread::sleep;
-use std::time::{Duration, Instant};
+use std::time::Instant;
 use tempfile::TempDir;
 
 /// Keys by the code points that WebDriver gives them.
@@ -47,15 +46,7 @@ impl Browser {
             writeln!(out, "SKIPPED: there is no chromium with chromedriver").unwrap();
             return None;
         };
-        let free = TcpListener::bind("127.0.0.1:0").unwrap();
-        let port = free.local_addr().unwrap().port();
-        drop(free);
-        let driver = Command::new(driver)
-            .arg(format!("--port={port}"))
-            .stdout(Stdio::null())
-            .stderr(Stdio::null())
-            .spawn()
-            .unwrap();
+        let (driver, port) = start_driver(&driver);
         let profile = tempfile::tempdir().unwrap();
         let mut browser = Self {
             driver,
@@ -68,14 +59,6 @@ impl Browser {
     }
 
     fn open_session(&mut self, chromium: &Path) {
-        let start = Instant::now();
-        while TcpStream::connect(("127.0.0.1", self.port)).is_err() {
-            assert!(
-                start.elapsed().as_secs() < 60,
-                "chromedriver does not answer"
-            );
-            sleep(Duration::from_millis(50));
-        }
         let mut arguments: Vec<String> = ARGUMENTS.map(str::to_owned).into();
         arguments.push(format!(
             "--user-data-dir={}",
@@ -236,6 +219,32 @@ impl Drop for Browser {
         let _ = self.driver.kill();
         let _ = self.driver.wait();
     }
+}
+
+/// Starts the driver on a port that it chooses itself (a port that we found free could be taken by the time the driver
+/// binds it) and gives that port, which it prints once it listens.
+fn start_driver(program: &Path) -> (Child, u16) {
+    let mut driver = Command::new(program)
+        .arg("--port=0")
+        .stdout(Stdio::piped())
+        .stderr(Stdio::null())
+        .spawn()
+        .unwrap();
+    let mut said = BufReader::new(driver.stdout.take().unwrap()).lines();
+    let started = said
+        .by_ref()
+        .find_map(|line| {
+            Some(
+                line.unwrap()
+                    .split_once("successfully on port ")?
+                    .1
+                    .to_owned(),
+            )
+        })
+        .expect("chromedriver listens");
+    // What it says later is read and dropped, lest it wait for a full pipe.
+    std::thread::spawn(move || said.count());
+    (driver, started.trim_end_matches('.').parse().unwrap())
 }
 
 /// Head and body of an answer; the driver keeps its connections open, so the head says where the body ends.

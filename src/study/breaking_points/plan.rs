@@ -43,6 +43,39 @@ pub struct PlannedValue {
     pub tested: Option<Plan>,
 }
 
+/// Objects that are not counted before they are loaded are as many as this, for the time left.
+const N_OBJECTS: f64 = 30.0;
+/// Processor-seconds to press a taxel, to read one, to project one to a measurement, and to solve for a pair of training touches.
+const PRESS_S: f64 = 4e-9;
+const READ_S: f64 = 3e-8;
+const PROJECT_S: f64 = 7e-11;
+const SOLVE_S: f64 = 6e-9;
+
+impl PlannedValue {
+    /// About what it takes, processor-seconds: enough to say which values take longer than others.
+    pub fn planned_s(&self) -> f64 {
+        let of_plan = |plan: &Plan| {
+            let n_taxels = plan.arrays[0].grid.n_taxels();
+            let m = plan.amounts[0].measurements(n_taxels) as f64;
+            let n_trials = plan.spec.trials as f64;
+            let per_object = plan.placement.per_object.unwrap_or(1) as f64;
+            let n_read = per_object * N_OBJECTS * n_taxels as f64;
+            let learns =
+                plan.train_touches[0].map_or(per_object, |most| per_object.min(most as f64));
+            let pairs = 0.5 * (N_OBJECTS * 2.0 * learns).powi(2);
+            let n_classifiers = plan.classifiers.len() as f64;
+            [
+                n_read * (PRESS_S + n_trials * (READ_S + m * PROJECT_S)),
+                n_trials * n_classifiers * pairs * SOLVE_S,
+            ]
+        };
+        let learned = of_plan(&self.learned);
+        // What is only tested is read, too.
+        let tested = self.tested.as_ref().map_or(0.0, |plan| of_plan(plan)[0]);
+        learned[0] + learned[1] + tested
+    }
+}
+
 impl BreakingPointsPlan {
     /// Checks a study; the error names `place` (the file) and the first key that is out of its range, or the way and the value
     /// at which a key is.

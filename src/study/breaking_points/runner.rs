@@ -6,6 +6,7 @@ use super::value::{Evaluated, ObjectSets, add_way, evaluate, object_specs};
 use crate::error::Result;
 use crate::study::object_files::objects_content;
 use crate::study::pieces::{NamedPiece, PieceRows, PieceStudy, PiecesLeft};
+use crate::study::time_left::Piece;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -60,7 +61,12 @@ impl PieceStudy for BreakingPointsStudy {
     type Tables = BreakingPointsTables;
 
     fn pieces(&self) -> Vec<NamedPiece> {
-        NamedPiece::each_alone(self.named_values().map(|(name, ..)| name))
+        let ways = self.plan.ways.iter();
+        let place = |way: &PlannedWay| ways.clone().position(|other| other.name == way.name);
+        NamedPiece::each_alone(self.named_values().map(|(name, way, value)| {
+            let place = place(way).unwrap_or(0);
+            (name, Piece::of_stage(0, place, value.planned_s()))
+        }))
     }
 
     fn measure(&self, left: &PiecesLeft<DrivenRows>) -> Result<()> {

@@ -12,6 +12,7 @@ use crate::error::{Error, Result};
 use crate::mesh::Surface;
 use crate::study::object_files::NamedMesh;
 use crate::study::pieces::{NamedPiece, PieceRows, PieceStudy, PiecesLeft};
+use crate::study::time_left::Piece;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
@@ -52,6 +53,18 @@ impl PieceRows for DetailRows {
     }
 }
 
+/// Seconds for an object's models, to compare them with its mesh, to feel them, and to time them, and for a classifier: for the time left.
+const MODELS_S: f64 = 30.0;
+const SCORE_S: f64 = 1.0;
+const FEEL_S: f64 = 0.3;
+const TIME_S: f64 = 0.3;
+const RECOGNISE_S: f64 = 0.5;
+
+/// Stages, for the time left.
+const MODELS: u8 = 0;
+const TIMES: u8 = 1;
+const LEARN: u8 = 2;
+
 impl PieceStudy for ObjectDetailStudy {
     type Rows = DetailRows;
     type Tables = ObjectDetailTables;
@@ -60,12 +73,24 @@ impl PieceStudy for ObjectDetailStudy {
     fn pieces(&self) -> Vec<NamedPiece> {
         let mut pieces = Vec::new();
         for (group, mesh) in self.meshes.iter().enumerate() {
-            let names = [models_name(mesh), times_name(mesh)];
-            pieces.extend(names.map(|name| NamedPiece { name, group }));
+            pieces.push(NamedPiece {
+                name: models_name(mesh),
+                group,
+                work: self.score_work(),
+            });
+            pieces.push(NamedPiece {
+                name: times_name(mesh),
+                group,
+                work: self.time_work(),
+            });
         }
         let group = self.meshes.len();
         let names = self.recognition_names().into_iter();
-        pieces.extend(names.map(|name| NamedPiece { name, group }));
+        pieces.extend(names.map(|name| NamedPiece {
+            name,
+            group,
+            work: self.recognition_work(),
+        }));
         pieces
     }
 
@@ -119,6 +144,20 @@ impl PieceStudy for ObjectDetailStudy {
             })
     }
 
+    fn shared_work(&self, left: &PiecesLeft<DetailRows>) -> Vec<Piece> {
+        let learns = self.recognition_names().iter().any(|name| left.has(name));
+        let mut work = Vec::new();
+        for mesh in &self.meshes {
+            if learns {
+                work.push(self.feel_work());
+            }
+            if learns || left.has(&models_name(mesh)) || left.has(&times_name(mesh)) {
+                work.push(self.model_work());
+            }
+        }
+        work
+    }
+
     fn tables(&self, rows: DetailRows) -> Result<ObjectDetailTables> {
         let mut tables = ObjectDetailTables {
             summary: summary(&rows.detail),
@@ -165,6 +204,27 @@ impl ObjectDetailStudy {
         levels(&self.plan).into_iter().flat_map(of_level).collect()
     }
 
+    /// Each kind of work of an object takes about as long for every mesh.
+    fn model_work(&self) -> Piece {
+        Piece::of_stage(MODELS, 0, MODELS_S)
+    }
+
+    fn score_work(&self) -> Piece {
+        Piece::of_stage(MODELS, 1, SCORE_S)
+    }
+
+    fn feel_work(&self) -> Piece {
+        Piece::of_stage(MODELS, 2, FEEL_S)
+    }
+
+    fn time_work(&self) -> Piece {
+        Piece::one_by_one(TIMES, 0, TIME_S)
+    }
+
+    fn recognition_work(&self) -> Piece {
+        Piece::of_stage(LEARN, 0, RECOGNISE_S)
+    }
+
     /// Makes an object's models and keeps how near they are; if they cannot be made, all fails that needs them, `learned` too.
     fn object<'a>(
         &self,
@@ -175,7 +235,9 @@ impl ObjectDetailStudy {
     ) -> Result<Option<Measured<'a>>> {
         let mut names = vec![models_name(mesh), times_name(mesh)];
         names.extend_from_slice(learned);
-        let measured = left.prepare(&names, || Measured::new(self, mesh))?;
+        let measured = left.prepare(&names, || {
+            left.during(&self.model_work(), || Measured::new(self, mesh))
+        })?;
         let Some(mut measured) = measured else {
             return Ok(None);
         };
@@ -184,7 +246,11 @@ impl ObjectDetailStudy {
             let Measured {
                 variants, truth, ..
             } = &measured;
-            let felt = left.prepare(learned, || sensor.measure(&mesh.name, variants, truth))?;
+            let felt = left.prepare(learned, || {
+                left.during(&self.feel_work(), || {
+                    sensor.measure(&mesh.name, variants, truth)
+                })
+            })?;
             measured.felt = felt;
         }
         Ok(Some(measured))

@@ -1,12 +1,15 @@
 //! The pieces that a run does.
 
+use super::NamedPiece;
 use super::record::{PieceResult, PieceRows, keep};
 use crate::error::Result;
 use crate::study::attempt::attempt;
 use crate::study::journal::Journal;
 use crate::study::progress::Progress;
+use crate::study::time_left::Piece;
 use std::collections::BTreeMap;
 use std::sync::{Mutex, MutexGuard};
+use std::time::Instant;
 
 /// The pieces that are left to a run, for whoever measures them.
 pub struct PiecesLeft<'a, R> {
@@ -14,8 +17,10 @@ pub struct PiecesLeft<'a, R> {
     fail_fast: bool,
     /// What is told how far the run is. Each finished piece advances it by one.
     pub progress: &'a dyn Progress,
-    /// By name; none until a piece is finished.
-    results: Mutex<BTreeMap<String, Option<PieceResult<R>>>>,
+    /// What each is planned to take, by name.
+    work: BTreeMap<String, Piece>,
+    /// By name, once it is finished.
+    results: Mutex<BTreeMap<String, PieceResult<R>>>,
 }
 
 impl<'a, R: PieceRows> PiecesLeft<'a, R> {
@@ -24,20 +29,31 @@ impl<'a, R: PieceRows> PiecesLeft<'a, R> {
         journal: &'a Journal,
         fail_fast: bool,
         progress: &'a dyn Progress,
-        names: impl IntoIterator<Item = String>,
+        pieces: impl IntoIterator<Item = NamedPiece>,
     ) -> Self {
-        let results = names.into_iter().map(|name| (name, None)).collect();
+        let pieces = pieces.into_iter();
         Self {
             journal,
             fail_fast,
             progress,
-            results: Mutex::new(results),
+            work: pieces.map(|piece| (piece.name, piece.work)).collect(),
+            results: Mutex::default(),
         }
+    }
+
+    /// What each piece is planned to take.
+    pub(super) fn work(&self) -> impl Iterator<Item = Piece> + '_ {
+        self.work.values().copied()
+    }
+
+    /// How many there are.
+    pub(super) fn n(&self) -> usize {
+        self.work.len()
     }
 
     /// Whether a piece is to be done.
     pub fn has(&self, name: &str) -> bool {
-        self.results().contains_key(name)
+        self.work.contains_key(name)
     }
 
     /// Those of some things whose pieces are to be done.
@@ -51,11 +67,20 @@ impl<'a, R: PieceRows> PiecesLeft<'a, R> {
     /// # Errors
     /// The journal cannot be written; what went wrong, if the first failure ends the run.
     pub fn finish(&self, name: &str, measure: impl FnOnce() -> Result<R>) -> Result<()> {
-        if !self.has(name) {
+        let Some(work) = self.work.get(name) else {
             return Ok(());
-        }
-        let result = attempt(self.fail_fast, measure)?;
+        };
+        let result = self.during(work, || attempt(self.fail_fast, measure))?;
         self.keep(name, result)
+    }
+
+    /// Does some of what the study [shares](super::PieceStudy::shared_work), and tells how long it took.
+    pub fn during<T>(&self, work: &Piece, make: impl FnOnce() -> T) -> T {
+        let start = Instant::now();
+        let made = make();
+        let wall_s = start.elapsed().as_secs_f64();
+        self.progress.worked(work, work.spent_s(wall_s));
+        made
     }
 
     /// What several pieces need first; if it cannot be had, all of them fail of it.
@@ -80,18 +105,21 @@ impl<'a, R: PieceRows> PiecesLeft<'a, R> {
 
     fn keep(&self, name: &str, result: PieceResult<R>) -> Result<()> {
         keep(self.journal, name, &result)?;
-        self.results().insert(name.to_owned(), Some(result));
+        self.results().insert(name.to_owned(), result);
         self.progress.advance(1);
         Ok(())
     }
 
-    /// What came of every piece, by name.
+    /// What came of every piece that was to be done, by name; none of one that was passed over.
     pub(super) fn into_results(self) -> BTreeMap<String, Option<PieceResult<R>>> {
+        let names = self.work.into_keys();
         let results = self.results.into_inner();
-        results.unwrap_or_else(|poisoned| poisoned.into_inner())
+        let mut results = results.unwrap_or_else(|poisoned| poisoned.into_inner());
+        let found = names.map(|name| (results.remove(&name), name));
+        found.map(|(result, name)| (name, result)).collect()
     }
 
-    fn results(&self) -> MutexGuard<'_, BTreeMap<String, Option<PieceResult<R>>>> {
+    fn results(&self) -> MutexGuard<'_, BTreeMap<String, PieceResult<R>>> {
         // What a thread that panicked held is whole: nothing is inserted in parts.
         self.results
             .lock()

@@ -10,25 +10,30 @@ mod record;
 
 pub use left::PiecesLeft;
 pub use piece_study::{
-    FinishedPieces, PieceFailure, PieceManner, PieceStudy, n_pieces_left, run_pieces,
-    run_whole_study,
+    FinishedPieces, PieceFailure, PieceManner, PieceStudy, n_pieces_left, pieces_workload,
+    run_pieces, run_whole_study,
 };
 pub use record::PieceRows;
 
+use super::time_left::Piece;
+
 /// A piece of a study's work.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct NamedPiece {
     /// What it is called; no two pieces of a study share a name.
     pub name: String,
     /// Number of its group, from 0 without gaps: pieces of a group share what has to be made before them, so that one shard does all of
     /// them as long as there is a group for every shard.
     pub group: usize,
+    /// What it is planned to take.
+    pub work: Piece,
 }
 
 impl NamedPiece {
     /// Pieces that share nothing: each a group of its own.
-    pub fn each_alone(names: impl IntoIterator<Item = String>) -> Vec<Self> {
-        let names = names.into_iter().enumerate();
-        names.map(|(group, name)| Self { name, group }).collect()
+    pub fn each_alone(pieces: impl IntoIterator<Item = (String, Piece)>) -> Vec<Self> {
+        let pieces = pieces.into_iter().enumerate();
+        let named = pieces.map(|(group, (name, work))| Self { name, group, work });
+        named.collect()
     }
 }

@@ -7,6 +7,7 @@ use crate::error::Result;
 use crate::study::journal::Journal;
 use crate::study::part::Part;
 use crate::study::progress::Progress;
+use crate::study::time_left::Piece;
 use serde::{Deserialize, Serialize};
 
 /// A study that is ready to run, in pieces.
@@ -24,6 +25,11 @@ pub trait PieceStudy {
     /// # Errors
     /// Those of [`PiecesLeft::finish`]; what no piece can do without.
     fn measure(&self, left: &PiecesLeft<Self::Rows>) -> Result<()>;
+
+    /// What has to be made first for pieces that are left, for the time left: told of by [`PiecesLeft::during`].
+    fn shared_work(&self, _left: &PiecesLeft<Self::Rows>) -> Vec<Piece> {
+        Vec::new()
+    }
 
     /// The tables of the rows of all pieces, but for those that failed.
     ///
@@ -78,25 +84,11 @@ pub fn run_pieces<S: PieceStudy>(
     manner: &PieceManner,
 ) -> Result<FinishedPieces<S::Rows>> {
     let pieces = study.pieces();
-    let is_in = is_in(&pieces, manner.part);
-    let known = |piece: &NamedPiece| in_journal::<S::Rows>(manner.journal, &piece.name);
-    let mut before: Vec<Option<PieceResult<S::Rows>>> = pieces.iter().map(known).collect();
-    let is_left = |(number, piece): (usize, &NamedPiece)| {
-        let is_left = match &before[number] {
-            None => true,
-            Some(Err(_)) => manner.retries,
-            Some(Ok(_)) => false,
-        };
-        (is_left && is_in(number)).then(|| piece.name.clone())
-    };
-    let left = pieces.iter().enumerate().filter_map(is_left);
-    let left: Vec<String> = left.collect();
-    let mut now = Default::default();
-    if !left.is_empty() {
-        let left = PiecesLeft::new(manner.journal, manner.fail_fast, manner.progress, left);
+    let (mut before, left) = before_and_left(&pieces, manner);
+    if left.n() > 0 {
         study.measure(&left)?;
-        now = left.into_results();
     }
+    let mut now = left.into_results();
     let mut finished = FinishedPieces {
         rows: S::Rows::default(),
         failures: Vec::new(),
@@ -119,6 +111,39 @@ pub fn run_pieces<S: PieceStudy>(
         }
     }
     Ok(finished)
+}
+
+/// What came of each piece before a run, and those that it does.
+fn before_and_left<'a, R: PieceRows>(
+    pieces: &[NamedPiece],
+    manner: &PieceManner<'a>,
+) -> (Vec<Option<PieceResult<R>>>, PiecesLeft<'a, R>) {
+    let is_in = is_in(pieces, manner.part);
+    let known = |piece: &NamedPiece| in_journal::<R>(manner.journal, &piece.name);
+    let before: Vec<Option<PieceResult<R>>> = pieces.iter().map(known).collect();
+    let is_left = |(number, _): &(usize, &NamedPiece)| {
+        let is_left = match &before[*number] {
+            None => true,
+            Some(Err(_)) => manner.retries,
+            Some(Ok(_)) => false,
+        };
+        is_left && is_in(*number)
+    };
+    let left = pieces.iter().enumerate().filter(is_left);
+    let left = left.map(|(_, piece)| piece.clone());
+    let left = PiecesLeft::new(manner.journal, manner.fail_fast, manner.progress, left);
+    (before, left)
+}
+
+/// What [`run_pieces`] will do: for [`Progress::expect`]. What a journal has is not done again.
+pub fn pieces_workload<S: PieceStudy>(study: &S, manner: &PieceManner) -> Vec<Piece> {
+    let (_, left) = before_and_left::<S::Rows>(&study.pieces(), manner);
+    let mut work = match left.n() {
+        0 => Vec::new(),
+        _ => study.shared_work(&left),
+    };
+    work.extend(left.work());
+    work
 }
 
 /// Runs a whole study at once, keeps nothing, and ends at the first piece that fails.

@@ -10,6 +10,7 @@ use crate::sensing::{Basis, Ensemble, Reconstructor, SensedDictionary};
 use crate::study::pieces::{NamedPiece, PieceRows, PieceStudy, PiecesLeft};
 use crate::study::progress::{Progress, Silent};
 use crate::study::simulation::TouchedObject;
+use crate::study::time_left::Piece;
 use std::collections::BTreeMap;
 use std::sync::OnceLock;
 
@@ -23,6 +24,16 @@ pub struct ReconstructionStudy {
     frames: OnceLock<Touches>,
 }
 
+/// Stages, for the time left.
+const TOUCHES: u8 = 0;
+const STATISTICS: u8 = 1;
+const CELLS: u8 = 2;
+
+/// Seconds by the clock to make and read a touch's taxel, to learn a dictionary, and for a measurement of a cell, about.
+const TOUCH_S: f64 = 1e-7;
+const LEARN_S: f64 = 1.0;
+const MEASUREMENT_S: f64 = 5e-4;
+
 impl PieceStudy for ReconstructionStudy {
     type Rows = ReconstructionTables;
     type Tables = ReconstructionTables;
@@ -31,11 +42,16 @@ impl PieceStudy for ReconstructionStudy {
     fn pieces(&self) -> Vec<NamedPiece> {
         let mut pieces = Vec::new();
         for (group, measured) in self.measured().into_iter().enumerate() {
-            let dictionaries = self.plan.dictionaries.iter();
-            let statistics = dictionaries.map(|&basis| statistics_name(measured, basis));
-            let cells = self.cells(group).into_iter();
-            let names = statistics.chain(cells.map(|cell| cell_name(measured, &cell)));
-            pieces.extend(names.map(|name| NamedPiece { name, group }));
+            pieces.extend(self.plan.dictionaries.iter().map(|&basis| NamedPiece {
+                name: statistics_name(measured, basis),
+                group,
+                work: self.statistics_work(measured),
+            }));
+            pieces.extend(self.cells(group).iter().map(|cell| NamedPiece {
+                name: cell_name(measured, cell),
+                group,
+                work: self.cell_work(measured, cell),
+            }));
         }
         pieces
     }
@@ -43,13 +59,20 @@ impl PieceStudy for ReconstructionStudy {
     fn measure(&self, left: &PiecesLeft<ReconstructionTables>) -> Result<()> {
         let all: Vec<String> = self.pieces().into_iter().map(|piece| piece.name).collect();
         let names = left.of(all, String::clone);
-        let Some(touches) = left.prepare(&names, || self.frames(left.progress))? else {
+        let Some(touches) = left.prepare(&names, || {
+            left.during(&self.touch_work(), || self.frames(left.progress))
+        })?
+        else {
             return Ok(());
         };
         let bases = self.plan.dictionaries.iter().copied();
         let bases: Vec<Basis> = bases.filter(|&basis| self.needs(left, basis)).collect();
         left.progress.stage("dictionaries", bases.len() as u64);
-        let learn = || touches.learn(&self.plan, &bases, left.progress);
+        let learn = || {
+            left.during(&self.learn_work(bases.len()), || {
+                touches.learn(&self.plan, &bases, left.progress)
+            })
+        };
         let Some(dictionaries) = left.prepare(&names, learn)? else {
             return Ok(());
         };
@@ -64,6 +87,12 @@ impl PieceStudy for ReconstructionStudy {
             on.measure(&dictionaries, left)?;
         }
         Ok(())
+    }
+
+    fn shared_work(&self, left: &PiecesLeft<ReconstructionTables>) -> Vec<Piece> {
+        let bases = self.plan.dictionaries.iter();
+        let n_bases = bases.filter(|&&basis| self.needs(left, basis)).count();
+        vec![self.touch_work(), self.learn_work(n_bases)]
     }
 
     fn tables(&self, mut tables: ReconstructionTables) -> Result<ReconstructionTables> {
@@ -129,6 +158,30 @@ impl ReconstructionStudy {
             reconstructed.insert(cell.cell, found.frames);
         }
         Ok(touches.samples(reconstructed))
+    }
+
+    fn touch_work(&self) -> Piece {
+        let n_touches: usize = self.touched.iter().map(|object| object.touches.len()).sum();
+        let n_taxels = self.plan.patch.grid.n_taxels();
+        Piece::one_by_one(TOUCHES, 0, TOUCH_S * (n_touches * n_taxels) as f64)
+    }
+
+    fn learn_work(&self, n_bases: usize) -> Piece {
+        Piece::one_by_one(TOUCHES, 1, LEARN_S * n_bases as f64)
+    }
+
+    fn statistics_work(&self, measured: Measured) -> Piece {
+        Piece::of_stage(STATISTICS, 0, MEASUREMENT_S * measured.m as f64)
+    }
+
+    /// Alike are the cells of a solver and a dictionary.
+    fn cell_work(&self, measured: Measured, cell: &Wanted) -> Piece {
+        let place_in = |position: Option<usize>| position.unwrap_or(0);
+        let solver = place_in(self.plan.solvers.iter().position(|&s| s == cell.solver));
+        let mut bases = self.plan.dictionaries.iter();
+        let basis = place_in(bases.position(|&basis| basis == cell.dictionary));
+        let place = solver * self.plan.dictionaries.len() + basis;
+        Piece::one_by_one(CELLS, place, MEASUREMENT_S * measured.m as f64)
     }
 
     fn frames(&self, progress: &dyn Progress) -> Result<&Touches> {

@@ -3,12 +3,14 @@
 use super::contact_models::{
     Ready, cell, measure_models, measure_stepped, middle_packing, prepare,
 };
+use super::cost;
 use super::engines::{StepMethod, Stepper};
 use super::plan::{ContactPlan, SpeedAccuracyPlan};
 use super::subject::{Subject, spread_evenly};
 use super::table::{ContactCell, SpeedAccuracyTables, Touched};
 use crate::error::Result;
 use crate::study::pieces::{NamedPiece, PiecesLeft};
+use crate::study::time_left::Piece;
 use rayon::prelude::*;
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -45,13 +47,30 @@ impl<'a> ContactPart<'a> {
 
     /// An object's models, and each of its ways through time, share the object's models.
     pub fn pieces(&self) -> Vec<NamedPiece> {
-        let models = (0..self.chosen.len()).map(|object| (self.models_name(object), object));
+        let models = (0..self.chosen.len()).map(|object| NamedPiece {
+            name: self.models_name(object),
+            group: object,
+            work: self.models_work(object),
+        });
         let steps = self.steps().into_iter();
-        let steps = steps.map(|run| (self.step_name(&run), run.3));
-        let pieces = models.chain(steps);
-        pieces
-            .map(|(name, group)| NamedPiece { name, group })
-            .collect()
+        let steps = steps.map(|run| NamedPiece {
+            name: self.step_name(&run),
+            group: run.3,
+            work: self.step_work(&run),
+        });
+        models.chain(steps).collect()
+    }
+
+    fn prepare_work(&self, object: usize) -> Piece {
+        cost::models(self.chosen[object].0)
+    }
+
+    fn models_work(&self, object: usize) -> Piece {
+        cost::touches(self.chosen[object].0)
+    }
+
+    fn step_work(&self, &(method, dt, ..): &StepRun) -> Piece {
+        cost::steps(method, dt)
     }
 
     fn models_name(&self, object: usize) -> String {
@@ -83,13 +102,26 @@ impl<'a> ContactPart<'a> {
         runs
     }
 
+    /// Objects whose models something needs that is left.
+    fn needed(&self, left: &PiecesLeft<SpeedAccuracyTables>) -> Vec<usize> {
+        let steps = left.of(self.steps(), |run| self.step_name(run));
+        let is_needed = |object: &usize| {
+            left.has(&self.models_name(*object)) || steps.iter().any(|run| run.3 == *object)
+        };
+        (0..self.chosen.len()).filter(is_needed).collect()
+    }
+
+    /// What is made before anything is timed.
+    pub fn shared_work(&self, left: &PiecesLeft<SpeedAccuracyTables>) -> Vec<Piece> {
+        let needed = self.needed(left).into_iter();
+        needed.map(|object| self.prepare_work(object)).collect()
+    }
+
     /// Models on all threads, times on one.
     pub fn measure(&self, left: &PiecesLeft<SpeedAccuracyTables>) -> Result<()> {
         let timed = left.of(0..self.chosen.len(), |&object| self.models_name(object));
         let steps = left.of(self.steps(), |run| self.step_name(run));
-        let is_needed =
-            |object: &usize| timed.contains(object) || steps.iter().any(|run| run.3 == *object);
-        let needed: Vec<usize> = (0..self.chosen.len()).filter(is_needed).collect();
+        let needed = self.needed(left);
         let progress = left.progress;
         progress.stage("models", needed.len() as u64);
         let ready = needed
@@ -100,9 +132,10 @@ impl<'a> ContactPart<'a> {
                 let steps = steps.iter().filter(|run| run.3 == object);
                 let mut names: Vec<String> = steps.map(|run| self.step_name(run)).collect();
                 names.push(self.models_name(object));
-                let ready = left.prepare(&names, || {
-                    prepare(self.plan, self.contact, self.chosen[object], self.packings)
-                })?;
+                let prepare =
+                    || prepare(self.plan, self.contact, self.chosen[object], self.packings);
+                let work = self.prepare_work(object);
+                let ready = left.prepare(&names, || left.during(&work, prepare))?;
                 progress.advance(1);
                 Ok(ready.map(|ready| (object, ready)))
             })

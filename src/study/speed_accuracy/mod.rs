@@ -16,6 +16,7 @@
 
 mod contact;
 mod contact_models;
+mod cost;
 mod decision_times;
 mod engines;
 mod peers;

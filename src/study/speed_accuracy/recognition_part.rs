@@ -1,5 +1,6 @@
 //! The part on recognition in pieces: which chains there are, and the touches that they share.
 
+use super::cost;
 use super::plan::{RecognitionSweep, SpeedAccuracyPlan, Tolerance};
 use super::recognition::{Bench, one_thread};
 use super::subject::{Subject, spread_evenly};
@@ -13,6 +14,7 @@ use crate::study::pieces::{NamedPiece, PiecesLeft};
 use crate::study::plan::millimetres;
 use crate::study::progress::{Progress, Silent};
 use crate::study::simulation::{TouchedObject, draw_touches, simulate_array};
+use crate::study::time_left::Piece;
 use crate::world::Placement;
 use rayon::prelude::*;
 use std::path::Path;
@@ -52,8 +54,8 @@ impl<'a> RecognitionPart<'a> {
     pub fn pieces(&self) -> Vec<NamedPiece> {
         let mut pieces = Vec::new();
         for (group, bench) in self.benches().into_iter().enumerate() {
-            let names = self.names(bench).into_iter();
-            pieces.extend(names.map(|name| NamedPiece { name, group }));
+            let named = self.chains(bench).into_iter();
+            pieces.extend(named.map(|(name, work)| NamedPiece { name, group, work }));
         }
         pieces
     }
@@ -67,19 +69,26 @@ impl<'a> RecognitionPart<'a> {
             .collect()
     }
 
-    /// The chains of a bench.
     fn names(&self, bench: (usize, usize)) -> Vec<String> {
+        let chains = self.chains(bench).into_iter();
+        chains.map(|(name, _)| name).collect()
+    }
+
+    /// The chains of a bench, and what each is planned to take.
+    fn chains(&self, bench: (usize, usize)) -> Vec<(String, Piece)> {
         let spec = &self.sweep.spec;
-        let mut names = Vec::new();
+        let n_taxels = self.sweep.patches[bench.0].grid.n_taxels();
+        let mut chains = Vec::new();
         for &ensemble in &spec.ensemble {
             for &ratio in &spec.ratio {
-                let classifiers = spec.classifier.iter();
-                names.extend(
-                    classifiers.map(|&kind| self.chain_name(bench, (ensemble, ratio), kind)),
-                );
+                let n_measurements = n_taxels as f64 / ratio;
+                chains.extend(spec.classifier.iter().map(|&kind| {
+                    let work = cost::chain(kind, n_measurements);
+                    (self.chain_name(bench, (ensemble, ratio), kind), work)
+                }));
             }
         }
-        names
+        chains
     }
 
     /// What a chain is called as a piece.

@@ -1,5 +1,6 @@
 //! The part on what a study resolves: real studies of several sizes, and the intervals of what they say.
 
+use super::cost;
 use super::plan::{ResolutionPlan, SpeedAccuracyPlan, Tolerance};
 use super::subject::Subject;
 use super::table::{Resolved, SpeedAccuracyTables, StudySize, StudyTime};
@@ -57,7 +58,7 @@ impl<'a> ResolutionPart<'a> {
     /// A study a number of touches; all numbers of trials are of the same.
     pub fn pieces(&self) -> Vec<NamedPiece> {
         let touches = self.resolution.spec.touches.iter();
-        NamedPiece::each_alone(touches.map(|&touches| name(touches)))
+        NamedPiece::each_alone(touches.map(|&touches| (name(touches), cost::study(touches))))
     }
 
     pub fn measure(&self, left: &PiecesLeft<SpeedAccuracyTables>) -> Result<()> {

@@ -10,6 +10,7 @@ use super::table::SpeedAccuracyTables;
 use crate::error::Result;
 use crate::study::objects_content;
 use crate::study::pieces::{NamedPiece, PieceRows, PieceStudy, PiecesLeft};
+use crate::study::time_left::Piece;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
@@ -97,6 +98,11 @@ impl PieceStudy for SpeedAccuracyStudy {
         self.recognition()
             .map_or(Ok(()), |part| part.measure(left))?;
         self.resolution().map_or(Ok(()), |part| part.measure(left))
+    }
+
+    fn shared_work(&self, left: &PiecesLeft<SpeedAccuracyTables>) -> Vec<Piece> {
+        self.contact()
+            .map_or_else(Vec::new, |part| part.shared_work(left))
     }
 
     fn tables(&self, mut tables: SpeedAccuracyTables) -> Result<SpeedAccuracyTables> {

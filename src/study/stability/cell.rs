@@ -91,9 +91,9 @@ pub(super) fn measure(
 }
 
 /// Times of what takes less than this are medians of several, seconds: one alone says what else the machine did.
-const SHORT: f64 = 5e-3;
+pub(super) const SHORT: f64 = 5e-3;
 /// Of so many.
-const N_REPEATS: usize = 9;
+pub(super) const N_REPEATS: usize = 9;
 
 /// The time of something that took `first` seconds.
 fn median_time(first: f64, again: impl Fn() -> Result<End>) -> Result<f64> {

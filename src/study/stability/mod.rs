@@ -16,6 +16,7 @@
 //! Dynamic methods run until the slowest motion of a scene has died out to 5e-5, at least [`LEAST_STEPS`] steps and half a second.
 
 mod cell;
+mod cost;
 mod peers;
 mod plan;
 mod runner;

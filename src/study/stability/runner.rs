@@ -1,12 +1,14 @@
 //! Runs a study of stability: all cells on all threads.
 
 use super::cell::measure;
+use super::cost::planned_s;
 use super::peers::join_peers;
 use super::plan::StabilityPlan;
 use super::summary::summary;
 use super::table::{StabilityCell, StabilityTables};
 use crate::error::Result;
 use crate::study::pieces::{NamedPiece, PieceRows, PieceStudy, PiecesLeft};
+use crate::study::time_left::Piece;
 use rayon::prelude::*;
 
 impl StabilityPlan {
@@ -40,12 +42,20 @@ fn name(cell: &StabilityCell) -> String {
     )
 }
 
+/// What a cell is planned to take. Alike are those of a method on as many taxels.
+fn work(cell: &StabilityCell) -> Piece {
+    let method = cell.method as usize;
+    let iterations = cell.solver_iterations.unwrap_or(0);
+    let place = (method * 10_000 + iterations) * 1000 + cell.taxels;
+    Piece::of_stage(0, place, planned_s(cell))
+}
+
 impl PieceStudy for StabilityPlan {
     type Rows = StabilityTables;
     type Tables = StabilityTables;
 
     fn pieces(&self) -> Vec<NamedPiece> {
-        NamedPiece::each_alone(self.named_cells().map(|(name, ..)| name))
+        NamedPiece::each_alone(self.named_cells().map(|(name, cell, _)| (name, work(cell))))
     }
 
     fn measure(&self, left: &PiecesLeft<StabilityTables>) -> Result<()> {

@@ -162,7 +162,7 @@ impl CellScene {
             gravity: GRAVITY,
             travel: 0.0,
         };
-        let (k, m) = (taxel.stiffness, cell.taxel_mass_kg);
+        let m = cell.taxel_mass_kg;
         let reach = REACH * taxel.stroke;
         let system = System::new(
             &cradle.patch,
@@ -176,13 +176,7 @@ impl CellScene {
         let n_touched = rest.deflection.iter().filter(|d| **d > 0.0).count();
         // What each taxel has to move, itself included.
         let share = mass / n_touched as f64 + m;
-        let damping = match cell.scene {
-            StabilityScene::Plunger => k * skin_sim::DAMPING / skin_sim::STIFFNESS,
-            _ => 2.0 * (k * share).sqrt(),
-        };
-        let end = LEAST_TIME
-            .max(DECAY / slowest(k, damping, share))
-            .max(LEAST_STEPS * cell.dt_s);
+        let (damping, end) = free(cell, share);
         let taxel = Taxel { damping, ..taxel };
         Ok(Self {
             cradle: Cradle::new(cell.taxels, pitch, taxel)?,
@@ -202,13 +196,9 @@ impl CellScene {
 
     fn of_imposed(cell: &StabilityCell, cradle: Cradle, taxel: Taxel, pitch: f64) -> Result<Self> {
         let (k, m) = (taxel.stiffness, cell.taxel_mass_kg);
-        let ratio = skin_sim::DAMPING / (2.0 * (skin_sim::STIFFNESS * skin_sim::TAXEL_MASS).sqrt());
-        let damping = 2.0 * ratio * (k * m).sqrt();
+        let (damping, hold) = imposed(cell, k, m);
         let depth = 0.5 * taxel.stroke;
         let way = (APPROACH + depth) / SPEED;
-        let hold = LEAST_HOLD
-            .max(DECAY / slowest(k, damping, m))
-            .max(LEAST_HOLD_STEPS * cell.dt_s);
         let phase = |duration, speed| Phase {
             duration,
             linear: speed * DVec3::Z,
@@ -248,6 +238,39 @@ impl CellScene {
             drive,
         })
     }
+}
+
+/// When a cell ends, seconds, if all its taxels are touched: the rest that tells is not known before.
+pub(super) fn planned_end(cell: &StabilityCell) -> f64 {
+    let (k, m) = (cell.stiffness_n_per_m, cell.taxel_mass_kg);
+    let n_taxels = (cell.taxels * cell.taxels) as f64;
+    match cell.object_mass_kg {
+        Some(mass) => free(cell, mass / n_taxels + m).1,
+        None => 2.0 * imposed(cell, k, m).1,
+    }
+}
+
+/// The damping of a taxel that has so much mass to move, and when its ball is at rest, N s/m and seconds.
+fn free(cell: &StabilityCell, share: f64) -> (f64, f64) {
+    let k = cell.stiffness_n_per_m;
+    let damping = match cell.scene {
+        StabilityScene::Plunger => k * skin_sim::DAMPING / skin_sim::STIFFNESS,
+        _ => 2.0 * (k * share).sqrt(),
+    };
+    let end = LEAST_TIME
+        .max(DECAY / slowest(k, damping, share))
+        .max(LEAST_STEPS * cell.dt_s);
+    (damping, end)
+}
+
+/// The damping of a taxel under an imposed ball, and how long that holds, N s/m and seconds.
+fn imposed(cell: &StabilityCell, k: f64, m: f64) -> (f64, f64) {
+    let ratio = skin_sim::DAMPING / (2.0 * (skin_sim::STIFFNESS * skin_sim::TAXEL_MASS).sqrt());
+    let damping = 2.0 * ratio * (k * m).sqrt();
+    let hold = LEAST_HOLD
+        .max(DECAY / slowest(k, damping, m))
+        .max(LEAST_HOLD_STEPS * cell.dt_s);
+    (damping, hold)
 }
 
 /// The taxels that are in as far as any share what the stops carry.

@@ -11,6 +11,7 @@ use crate::error::{Error, Result};
 use crate::geometry::Pose;
 use crate::objects::SphereUnion;
 use crate::study::pieces::{NamedPiece, PieceRows, PieceStudy, PiecesLeft};
+use crate::study::time_left::Piece;
 use crate::whole_body::CoveredRobot;
 
 impl WholeBodyPlan {
@@ -26,6 +27,16 @@ impl WholeBodyPlan {
     }
 }
 
+/// Stages, for the time left.
+const LEARN: u8 = 0;
+const PLAY: u8 = 1;
+const CLIMB: u8 = 2;
+
+/// Seconds to cover a robot, for a touch that is learned from or tested, and for a step of a scene, about.
+const COVER_S: f64 = 0.05;
+const TOUCH_S: f64 = 4e-3;
+const SCENE_S: f64 = 1.2e-3;
+
 fn scene_name(scene: &ScenePlan) -> String {
     format!("scene {}", scene.name)
 }
@@ -40,15 +51,24 @@ impl PieceStudy for WholeBodyPlan {
 
     /// Compressions and scenes need all that is learned; rungs need nothing.
     fn pieces(&self) -> Vec<NamedPiece> {
-        let scenes = self.scenes.iter().map(scene_name);
-        let learned = self.compression_names().into_iter().chain(scenes);
-        let learned = learned.map(|name| NamedPiece { name, group: 0 });
+        let names = self.compression_names().into_iter();
+        let compressions = names.map(|name| NamedPiece {
+            name,
+            group: 0,
+            work: Piece::one_by_one(LEARN, 2, 0.0),
+        });
+        let scenes = self.scenes.iter().map(|scene| NamedPiece {
+            name: scene_name(scene),
+            group: 0,
+            work: Piece::one_by_one(PLAY, 0, SCENE_S * self.n_steps() as f64),
+        });
         let rungs = self.rungs();
         let rungs = rungs.iter().enumerate().map(|(number, rung)| NamedPiece {
             name: rung_name(rung),
             group: number + 1,
+            work: Piece::one_by_one(CLIMB, 0, rung.planned_s(self.n_steps())),
         });
-        learned.chain(rungs).collect()
+        compressions.chain(scenes).chain(rungs).collect()
     }
 
     fn measure(&self, left: &PiecesLeft<WholeBodyTables>) -> Result<()> {
@@ -56,11 +76,15 @@ impl PieceStudy for WholeBodyPlan {
         let mut names = left.of(self.compression_names(), String::clone);
         names.extend(scenes.iter().map(|scene| scene_name(scene)));
         if !names.is_empty()
-            && let Some(covered) = left.prepare(&names, || self.cover(left))?
+            && let Some(covered) = left.prepare(&names, || {
+                left.during(&self.cover_work(), || self.cover(left))
+            })?
             && let Some(compressions) = left.prepare(&names, || {
                 let straight = vec![0.0; self.robot.n_positions()];
                 let straight = Posture::new(self, &covered, &straight)?;
-                learn(self, &straight.posed, &straight.links, left.progress)
+                left.during(&self.learn_work(), || {
+                    learn(self, &straight.posed, &straight.links, left.progress)
+                })
             })?
         {
             for (compression, name) in compressions.iter().zip(self.compression_names()) {
@@ -89,6 +113,15 @@ impl PieceStudy for WholeBodyPlan {
         })
     }
 
+    fn shared_work(&self, left: &PiecesLeft<WholeBodyTables>) -> Vec<Piece> {
+        let mut names = self.compression_names();
+        names.extend(self.scenes.iter().map(scene_name));
+        match names.iter().any(|name| left.has(name)) {
+            true => vec![self.cover_work(), self.learn_work()],
+            false => Vec::new(),
+        }
+    }
+
     fn tables(&self, mut tables: WholeBodyTables) -> Result<WholeBodyTables> {
         tables.bars = bars(&tables);
         Ok(tables)
@@ -105,6 +138,16 @@ impl PieceRows for WholeBodyTables {
 }
 
 impl WholeBodyPlan {
+    fn cover_work(&self) -> Piece {
+        Piece::one_by_one(LEARN, 0, COVER_S)
+    }
+
+    fn learn_work(&self) -> Piece {
+        let n_touches = self.recognition.n_training + self.recognition.n_test;
+        let n_touches = n_touches * self.recognition.objects.len();
+        Piece::one_by_one(LEARN, 1, TOUCH_S * n_touches as f64)
+    }
+
     fn cover(&self, left: &PiecesLeft<WholeBodyTables>) -> Result<CoveredRobot> {
         left.progress.stage("cover", 1);
         let covered = CoveredRobot::new(&self.robot, self.taxel, self.pitch, self.side)?;

@@ -1,0 +1,43 @@
+//! What pieces of each part take, about: for the time left. Seconds measured on a 2-core x86-64 server.
+
+use super::engines::StepMethod;
+use super::table::Touched;
+use crate::recognition::ClassifierKind;
+use crate::study::time_left::Piece;
+
+/// Stages.
+const MODELS: u8 = 0;
+const TOUCHES: u8 = 1;
+const STEPS: u8 = 2;
+const CHAINS: u8 = 3;
+const STUDIES: u8 = 4;
+
+/// To make the models of an object or a scan.
+pub(super) fn models(touched: Touched) -> Piece {
+    Piece::of_stage(MODELS, touched as usize, 0.5)
+}
+
+/// To time its touches.
+pub(super) fn touches(touched: Touched) -> Piece {
+    Piece::one_by_one(TOUCHES, touched as usize, 0.1)
+}
+
+/// To step through time, `dt` seconds at once: ours in milliseconds, an engine of rigid bodies in seconds.
+pub(super) fn steps(method: StepMethod, dt: f64) -> Piece {
+    let per_step_s = match method {
+        #[cfg(feature = "rapier")]
+        StepMethod::Rapier => 3e-3,
+        _ => 3e-5,
+    };
+    Piece::one_by_one(STEPS, method as usize, per_step_s / dt)
+}
+
+/// To learn from so many measurements a touch, and to decide.
+pub(super) fn chain(classifier: ClassifierKind, n_measurements: f64) -> Piece {
+    Piece::one_by_one(CHAINS, classifier as usize, 0.03 + 1e-4 * n_measurements)
+}
+
+/// For a study of so many touches an object.
+pub(super) fn study(n_touches: usize) -> Piece {
+    Piece::one_by_one(STUDIES, 0, 0.07 * n_touches as f64)
+}
