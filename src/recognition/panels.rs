@@ -1,8 +1,8 @@
 //! Products of f32 rows with many others that are packed into panels beforehand, near the processor's peak.
 //!
 //! A tile of products stays in vector registers while the features pass by [Goto, van de Geijn 2008]: [`TILE_ROWS`] rows with
-//! one panel of the others. The features pass in pieces of [`DEPTH`], so that the tile's rows stay in the first cache, and a
-//! few panels at a time, so that those stay in the second.
+//! one panel of the others. The features pass in pieces of [`DEPTH`], and a few panels at a time, so that those stay in the
+//! second cache. A tile's rows are read where they lie: they pass in line, so the processor fetches them ahead.
 
 use crate::recognition::row_products::Rows;
 use crate::recognition::transposed::write_columns;
@@ -16,11 +16,11 @@ const TILE_ROWS: usize = 8;
 const PANEL_LANES: usize = 3;
 /// Packed rows of a panel.
 const PANEL_ROWS: usize = PANEL_LANES * LANES;
-/// Features that pass at once: the rows of a tile then take 16 kB.
-const DEPTH: usize = 512;
-/// Panels that the tiles of all rows meet before the next: 600 kB.
+/// Features that pass at once.
+const DEPTH: usize = 1024;
+/// Panels that the tiles of all rows meet before the next, times their features: 600 kB.
 #[cfg(target_arch = "x86_64")]
-const PANELS_AT_ONCE: usize = 6;
+const PANEL_FEATURES_AT_ONCE: usize = 3 * DEPTH;
 
 /// Which products of rows with packed rows are wanted.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -129,7 +129,9 @@ fn multiply(_: &Panels, _: &[&[f32]], _: Wanted, _: &mut [&mut [f32]]) -> bool {
 mod avx512 {
     use std::arch::x86_64::{_mm512_fmadd_ps, _mm512_set1_ps, _mm512_setzero_ps};
 
-    use super::{DEPTH, LANES, PANEL_LANES, PANEL_ROWS, PANELS_AT_ONCE, Panels, TILE_ROWS, Wanted};
+    use super::{
+        LANES, PANEL_FEATURES_AT_ONCE, PANEL_LANES, PANEL_ROWS, Panels, TILE_ROWS, Wanted,
+    };
     use crate::recognition::vector_registers::{load, store};
 
     /// The products of so many rows with the rows of a panel.
@@ -140,22 +142,22 @@ mod avx512 {
         if panels.n_features == 0 {
             to.iter_mut().for_each(|row| row.fill(0.0));
         }
-        let mut rows = Box::new([[0.0; DEPTH]; TILE_ROWS]);
         let n_panels = panels.n_rows.div_ceil(PANEL_ROWS);
         for piece in panels.pieces() {
-            for first_panel in (0..n_panels).step_by(PANELS_AT_ONCE) {
+            let at_once = PANEL_FEATURES_AT_ONCE / piece.1;
+            for first_panel in (0..n_panels).step_by(at_once) {
                 for first in (0..to.len()).step_by(TILE_ROWS) {
                     let n = TILE_ROWS.min(to.len() - first);
                     let last_panel = match wanted {
                         Wanted::All => n_panels,
                         Wanted::UpToOwn => (first + n - 1) / PANEL_ROWS + 1,
                     };
-                    for at in 0..n {
-                        rows[at][..piece.1]
-                            .copy_from_slice(&left[first + at][piece.0..][..piece.1]);
+                    let mut rows: [&[f32]; TILE_ROWS] = [&[]; TILE_ROWS];
+                    for at in 0..TILE_ROWS {
+                        rows[at] = &left[first + at.min(n - 1)][piece.0..][..piece.1];
                     }
                     let to = &mut to[first..first + n];
-                    for panel in first_panel..last_panel.min(first_panel + PANELS_AT_ONCE) {
+                    for panel in first_panel..last_panel.min(first_panel + at_once) {
                         let (start, width) = panels.place(panel, piece);
                         let values = &panels.values[start..][..width * piece.1];
                         let columns = (panel * PANEL_ROWS, piece.0 == 0);
@@ -174,7 +176,7 @@ mod avx512 {
     /// Writes the products of a piece of a tile's first rows with a panel.
     #[target_feature(enable = "avx512f")]
     fn write_tile<const ROWS: usize>(
-        rows: &[[f32; DEPTH]; TILE_ROWS],
+        rows: &[&[f32]; TILE_ROWS],
         (panel, width): (&[[f32; LANES]], usize),
         to: &mut [&mut [f32]],
         columns: (usize, bool),
@@ -191,19 +193,23 @@ mod avx512 {
     /// Loops, not closures: a function of the standard library that calls a closure has not got its vector instructions.
     #[target_feature(enable = "avx512f")]
     fn tile<const ROWS: usize, const WIDTH: usize>(
-        rows: &[[f32; DEPTH]; TILE_ROWS],
+        rows: &[&[f32]; TILE_ROWS],
         panel: &[[f32; LANES]],
     ) -> Tile<ROWS, WIDTH> {
         let panel = panel.as_chunks::<WIDTH>().0;
-        let panel = &panel[..panel.len().min(DEPTH)];
+        let n = panel.len();
+        let mut values: [&[f32]; ROWS] = [&[]; ROWS];
+        for i in 0..ROWS {
+            values[i] = &rows[i][..n];
+        }
         let mut sums = [[_mm512_setzero_ps(); WIDTH]; ROWS];
-        for at in 0..panel.len() {
+        for at in 0..n {
             let mut own = [_mm512_setzero_ps(); WIDTH];
             for j in 0..WIDTH {
                 own[j] = load(&panel[at][j]);
             }
             for i in 0..ROWS {
-                let value = _mm512_set1_ps(rows[i][at]);
+                let value = _mm512_set1_ps(values[i][at]);
                 for j in 0..WIDTH {
                     sums[i][j] = _mm512_fmadd_ps(value, own[j], sums[i][j]);
                 }

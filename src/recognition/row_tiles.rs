@@ -31,7 +31,7 @@ pub(crate) fn products_in_place(_: &[&[f32]], _: &[&[f32]], _: &mut [f32]) -> bo
 
 /// Features that pass at once: the rows of a tile stay in the first cache while the others pass.
 #[cfg(target_arch = "x86_64")]
-const DEPTH: usize = 512;
+const DEPTH: usize = 1024;
 
 /// Goes over all tiles of N rows with M others: `tile` gives the products of one. What the last few lack is made up by their
 /// last row. Loops, not iterators: what the standard library does with closures is not always compiled into one piece with them.
