@@ -22,11 +22,18 @@ struct Faults {
     took: Duration,
 }
 
-/// From the first piece on a run says how long it will take, and at its end nothing of what was planned is left.
-fn assert_time_left_ends_at_0(said: &str) {
+/// No stage goes beyond its total; from the first piece on a run says how long it will take, and at its end nothing of what was
+/// planned is left.
+fn assert_progress_ends(said: &str) {
     let events = said.lines().map(|line| serde_json::from_str(line).unwrap());
     let progress = events.filter(|event: &serde_json::Value| event["event"] == "progress");
+    let progress: Vec<_> = progress.collect();
+    let of = |event: &serde_json::Value, field: &str| event[field].as_u64().expect("a count");
+    for event in &progress {
+        assert!(of(event, "done") <= of(event, "total"), "{event}");
+    }
     let left: Vec<f64> = progress
+        .iter()
         .map(|event| event["run_left_s"].as_f64().expect("seconds left"))
         .collect();
     assert!(left.len() > 1 && left[0] > 0.0, "{left:?}");
@@ -39,7 +46,7 @@ impl Faults {
         let start = Instant::now();
         let (said, _) = case.succeeds(&["run", "study.toml", "--out", "whole", "--json"]);
         let took = start.elapsed();
-        assert_time_left_ends_at_0(&said);
+        assert_progress_ends(&said);
         let faults = Self { kind, case, took };
         let manifest = fs::read_to_string(faults.case.path("whole/manifest.json")).unwrap();
         let manifest: serde_json::Value = serde_json::from_str(&manifest).unwrap();

@@ -62,7 +62,8 @@ impl Piece {
 /// Planned and spent processor-seconds of a run.
 ///
 /// What is left of a place costs as much more or less than planned as what was done for it; where little was done, as all work
-/// of its kind; and a kind that has hardly begun, as all work so far. Threads are as busy as they have been.
+/// of its kind; and a kind that has hardly begun, as the middle one of all kinds so far, so that one that was planned badly does
+/// not spoil the others. Threads are as busy as they have been.
 #[derive(Clone, Debug)]
 pub struct TimeLeft {
     n_threads: f64,
@@ -97,7 +98,7 @@ impl Spent {
     }
 }
 
-/// Share of a kind's planned work that counts as much as the common factor of all work: before that much is done, its own factor
+/// Share of a kind's planned work that counts as much as the middle factor of all kinds: before that much is done, its own factor
 /// is chance.
 const KIND_HESITATION: f64 = 0.02;
 /// The same for a place and the factor of its kind, as a share of one of its pieces.
@@ -145,10 +146,13 @@ impl TimeLeft {
     /// Seconds left when a run has gone on for `elapsed_s`.
     pub fn left_s(&self, elapsed_s: f64) -> f64 {
         let at_once = || self.kinds.iter().filter(|(kind, _)| **kind != Work::Report);
-        let (done_s, took_s) = at_once().fold((0.0, 0.0), |(done, took), (_, spent)| {
-            (done + spent.done_s, took + spent.took_s)
-        });
-        let common = if done_s > 0.0 { took_s / done_s } else { 1.0 };
+        let took_s: f64 = at_once().map(|(_, spent)| spent.took_s).sum();
+        let begun = at_once().filter(|(_, spent)| spent.done_s > 0.0);
+        let common = middle(
+            begun
+                .map(|(_, spent)| spent.took_s / spent.done_s)
+                .collect(),
+        );
         let of_kind = |kind: &Work| {
             let spent = &self.kinds[kind];
             spent.factor(common, KIND_HESITATION * spent.planned_s)
@@ -175,6 +179,15 @@ impl TimeLeft {
         };
         let report_s = self.kinds.get(&Work::Report).map_or(0.0, Spent::left_s);
         left_s / busy + report_s
+    }
+}
+
+/// The middle one of some factors; of an even number the geometric mean of both, of none 1.
+fn middle(mut factors: Vec<f64>) -> f64 {
+    factors.sort_by(f64::total_cmp);
+    match factors.len() {
+        0 => 1.0,
+        n => (factors[(n - 1) / 2] * factors[n / 2]).sqrt(),
     }
 }
 

@@ -12,9 +12,13 @@ const STEPS: u8 = 2;
 const CHAINS: u8 = 3;
 const STUDIES: u8 = 4;
 
-/// To make the models of an object or a scan.
+/// To make the models of an object or a scan, which is packed unless its packing was kept.
 pub(super) fn models(touched: Touched) -> Piece {
-    Piece::of_stage(MODELS, touched as usize, 0.5)
+    let planned_s = match touched {
+        Touched::Object => 0.1,
+        Touched::Scan => 20.0,
+    };
+    Piece::of_stage(MODELS, touched as usize, planned_s)
 }
 
 /// To time its touches.

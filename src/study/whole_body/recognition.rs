@@ -85,8 +85,8 @@ pub(super) fn learn(
         let of_this: Vec<_> = rows.iter().map(|blocks| blocks[number].view()).collect();
         let features = concatenate(Axis(0), &of_this).expect("every block has m columns");
         let name = name_of(ensemble, block);
+        // Each is a piece of its own, which advances once it is kept.
         compressions.push(train(plan, name, columns, &features, n_objects)?);
-        progress.advance(1);
     }
     Ok(compressions)
 }

@@ -33,9 +33,9 @@ const PLAY: u8 = 1;
 const CLIMB: u8 = 2;
 
 /// Seconds to cover a robot, for a touch that is learned from or tested, and for a step of a scene, about.
-const COVER_S: f64 = 0.05;
-const TOUCH_S: f64 = 4e-3;
-const SCENE_S: f64 = 1.2e-3;
+const COVER_S: f64 = 0.5;
+const TOUCH_S: f64 = 7e-4;
+const SCENE_S: f64 = 6e-4;
 
 fn scene_name(scene: &ScenePlan) -> String {
     format!("scene {}", scene.name)
