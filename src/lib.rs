@@ -131,6 +131,18 @@
 //! - `[CoST]` Jung, Poppe, Poel, Heylen, *Touching the void: introducing CoST, corpus of social touch*, ICMI 2014.
 //! - `[FH]` Flash, Hogan, *The coordination of arm movements: an experimentally confirmed mathematical model*, J. Neuroscience 1985.
 //! - `[SBHE]` Gan, Do, Tran, *Fast compressive imaging using scrambled block Hadamard ensemble*, 2008.
+//!
+//! On learning, named by authors and year:
+//!
+//! - Breiman, Friedman, Olshen, Stone, *Classification and regression trees*, 1984.
+//! - Breiman, *Random forests*, Machine Learning 2001.
+//! - DeCoste, Wagstaff, *Alpha seeding for support vector machines*, KDD 2000.
+//! - Fan, Chen, Lin, *Working set selection using second order information for training support vector machines*, JMLR 2005.
+//! - Goto, van de Geijn, *Anatomy of high-performance matrix multiplication*, ACM TOMS 2008.
+//! - Hager, Zhang, *A new conjugate gradient method with guaranteed descent and an efficient line search*, SIAM J. Optim. 2005.
+//! - Joachims, *Making large-scale SVM learning practical*, Advances in Kernel Methods 1999.
+//! - Scheinberg, *An efficient implementation of an active set method for SVMs*, JMLR 2006.
+//! - Wen et al., *Improving efficiency of SVM k-fold cross-validation by alpha seeding*, AAAI 2017.
 #![warn(missing_docs)]
 
 pub mod contact;

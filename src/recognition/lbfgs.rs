@@ -58,7 +58,7 @@ pub(crate) fn minimise(
             let next = &at + &(&direction * step);
             let (next_value, next_gradient) = function(&next);
             let decreases = next_value <= value + SUFFICIENT_DECREASE * step * slope;
-            // Near the bottom rounding hides the decrease of the value, not that of the slope [Hager & Zhang 2005].
+            // Near the bottom rounding hides the decrease of the value, not that of the slope [Hager, Zhang 2005].
             let flattens = next_value <= value + ROUNDING * value.abs()
                 && direction.dot(&next_gradient).abs() <= 0.9 * slope.abs();
             if decreases || flattens {
