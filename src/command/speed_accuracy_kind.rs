@@ -14,7 +14,7 @@ pub struct SpeedAccuracyKind(SpeedAccuracyStudy);
 impl PieceKind for SpeedAccuracyKind {
     type Study = SpeedAccuracyStudy;
 
-    const WRITE_S: f64 = 1.0;
+    const WRITE_S: f64 = 2.0;
 
     fn load(args: &StudyArgs, packings: PathBuf) -> Result<Self> {
         let plan = args.speed_accuracy_plan()?;

@@ -11,14 +11,15 @@ use crate::recognition::smo::Gram;
 /// Ways to go at most: each ends at the optimum or with one variable fewer.
 const MOST_WAYS: usize = 12;
 /// Free variables beyond which pairs of variables are faster than equations.
-const MOST_FREE: usize = 128;
-/// What is left of a row's own kernel value when the rows before are taken from it, at least: less is rounding.
+const MOST_FREE: usize = 384;
+/// What is left of a row's own kernel value when the rows before are taken from it, at least, as a share of the largest: less is
+/// rounding, the row depends on those before, and its variable stays where it is.
 const SMALLEST_PIVOT: f64 = 1e-5;
 /// Values handled side by side: four registers, so that no addition waits for the one before.
 const LANES: usize = 32;
 
 /// Moves the free variables to their optimum, with f: β of the problem's rows, and `f = y − Kβ`. How many ways it took; 0
-/// where the equations say nothing: with too many free variables, or some whose rows depend on each other.
+/// where there are too few or too many free variables.
 pub(crate) fn settle_free<T: Scalar, G: Gram<T>>(
     gram: &mut G,
     labels: &[f64],
@@ -99,14 +100,12 @@ impl Equations {
         }
     }
 
-    /// Δ, whose sum is 0; `None` where rows depend on each other.
+    /// Δ, whose sum is 0, and 0 where a row depends on those before; `None` where nothing can move.
     fn solve(&mut self) -> Option<Vec<f64>> {
         let n = self.n;
         self.inverse.clear();
         self.inverse.resize(n, 0.0);
-        if !eliminate(&mut self.values, self.width, &mut self.inverse) {
-            return None;
-        }
+        eliminate(&mut self.values, self.width, &mut self.inverse);
         let (mut for_f, mut for_one) = (vec![0.0; n], vec![0.0; n]);
         for j in (0..n).rev() {
             let row = self.values[j * self.width..][..self.width].as_flattened();
@@ -125,10 +124,10 @@ impl Equations {
     }
 }
 
-/// Makes a symmetric matrix, given right of its diagonal, and what stands beside it triangular, row by row; whether all pivots are
-/// large enough.
+/// Makes a symmetric matrix, given right of its diagonal, and what stands beside it triangular, row by row; 1 over the pivots, 0
+/// for one that is too small.
 #[multiversion::multiversion(targets("x86_64+avx512f", "x86_64+avx2+fma"))]
-fn eliminate(values: &mut [[f64; LANES]], width: usize, inverse: &mut [f64]) -> bool {
+fn eliminate(values: &mut [[f64; LANES]], width: usize, inverse: &mut [f64]) {
     let mut largest = 0.0_f64;
     for j in 0..inverse.len() {
         largest = largest.max(values[j * width + j / LANES][j % LANES]);
@@ -150,12 +149,9 @@ fn eliminate(values: &mut [[f64; LANES]], width: usize, inverse: &mut [f64]) -> 
             values[i * width + at] = own;
         }
         let pivot = values[i * width + piece][lane];
-        if pivot.is_nan() || pivot <= SMALLEST_PIVOT * largest {
-            return false;
-        }
-        inverse[i] = 1.0 / pivot;
+        let is_independent = pivot > SMALLEST_PIVOT * largest;
+        inverse[i] = if is_independent { 1.0 / pivot } else { 0.0 };
     }
-    true
 }
 
 #[cfg(test)]
@@ -224,17 +220,26 @@ mod tests {
     }
 
     #[test]
-    fn rows_that_depend_on_each_other_are_left_alone() {
-        // Twenty rows of three features: no equations for more than three free ones.
+    fn of_rows_that_depend_on_each_other_some_move_and_the_objective_rises() {
+        // Twenty rows of three features: no equations for more than four free ones.
         let (kernel, labels) = problem(20, 3, 0.0);
         let mut gram = Dense::<f64>::default();
         gram.of_whole(kernel.view());
         let y = |i: usize| if labels[i] > 0.0 { 1.0 } else { -1.0 };
-        let given: Vec<f64> = (0..20).map(|i| 0.1 * y(i)).collect();
-        let product = kernel.dot(&Array1::from(given.clone()));
-        let given_f: Vec<f64> = (0..20).map(|i| y(i) - product[i]).collect();
-        let (mut beta, mut f) = (given.clone(), given_f.clone());
-        assert_eq!(settle_free(&mut gram, &labels, (&mut beta, &mut f), 1.0), 0);
-        assert_eq!((beta, f), (given, given_f));
+        let mut beta: Vec<f64> = (0..20).map(|i| 0.1 * y(i)).collect();
+        let f_of = |beta: &[f64]| -> Vec<f64> {
+            let product = kernel.dot(&Array1::from(beta.to_vec()));
+            (0..20).map(|i| y(i) - product[i]).collect()
+        };
+        let mut f = f_of(&beta);
+        let before = objective(&beta, &f, &labels);
+        let n_ways = settle_free(&mut gram, &labels, (&mut beta, &mut f), 1.0);
+        assert!(n_ways > 0);
+        assert!(objective(&beta, &f, &labels) > before + 1e-6);
+        assert!(beta.iter().sum::<f64>().abs() < 1e-12);
+        for (i, (found, expected)) in f.iter().zip(f_of(&beta)).enumerate() {
+            assert!((found - expected).abs() < 1e-10);
+            assert!((0.0..=1.0).contains(&(y(i) * beta[i])));
+        }
     }
 }

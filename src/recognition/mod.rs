@@ -82,6 +82,8 @@ pub mod over_time;
 mod packed;
 mod pair_search;
 mod panels;
+#[cfg(target_arch = "x86_64")]
+mod panels_512;
 mod points;
 mod product_kernel;
 pub mod random_forest;

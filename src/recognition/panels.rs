@@ -1,26 +1,22 @@
 //! Products of f32 rows with many others that are packed into panels beforehand, near the processor's peak.
 //!
-//! A tile of products stays in vector registers while the features pass by [Goto, van de Geijn 2008]: [`TILE_ROWS`] rows with
+//! A tile of products stays in vector registers while the features pass by [Goto, van de Geijn 2008]: a few rows with
 //! one panel of the others. The features pass in pieces of [`DEPTH`], and a few panels at a time, so that those stay in the
 //! second cache. A tile's rows are read where they lie: they pass in line, so the processor fetches them ahead.
 
+#[cfg(target_arch = "x86_64")]
+use crate::recognition::panels_512;
 use crate::recognition::row_products::Rows;
 use crate::recognition::transposed::write_columns;
 
 /// Values in a vector register.
-const LANES: usize = 16;
-/// Rows of a tile. With [`PANEL_LANES`], its sums fill 24 of 32 vector registers.
-#[cfg(target_arch = "x86_64")]
-const TILE_ROWS: usize = 8;
+pub(super) const LANES: usize = 16;
 /// Registers across a panel.
-const PANEL_LANES: usize = 3;
+pub(super) const PANEL_LANES: usize = 3;
 /// Packed rows of a panel.
-const PANEL_ROWS: usize = PANEL_LANES * LANES;
+pub(super) const PANEL_ROWS: usize = PANEL_LANES * LANES;
 /// Features that pass at once.
-const DEPTH: usize = 1024;
-/// Panels that the tiles of all rows meet before the next, times their features: 600 kB.
-#[cfg(target_arch = "x86_64")]
-const PANEL_FEATURES_AT_ONCE: usize = 3 * DEPTH;
+pub(super) const DEPTH: usize = 1024;
 
 /// Which products of rows with packed rows are wanted.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -34,11 +30,11 @@ pub(crate) enum Wanted {
 /// Rows packed into panels, for products with others.
 #[derive(Clone, Debug)]
 pub(crate) struct Panels {
-    n_rows: usize,
-    n_features: usize,
+    pub(super) n_rows: usize,
+    pub(super) n_features: usize,
     /// For each piece of features, for each panel, for each feature: its values in all rows of the panel. The last panel is as
     /// wide as it must be; 0 stands for rows that it lacks.
-    values: Vec<[f32; LANES]>,
+    pub(super) values: Vec<[f32; LANES]>,
 }
 
 impl Panels {
@@ -72,7 +68,7 @@ impl Panels {
     }
 
     /// The pieces that features pass in: the first of each, and how many.
-    fn pieces(&self) -> Vec<(usize, usize)> {
+    pub(super) fn pieces(&self) -> Vec<(usize, usize)> {
         let starts = (0..self.n_features).step_by(DEPTH);
         starts
             .map(|start| (start, DEPTH.min(self.n_features - start)))
@@ -80,7 +76,7 @@ impl Panels {
     }
 
     /// Where a panel's piece starts, and how many registers it is wide.
-    fn place(&self, panel: usize, (feature, n): (usize, usize)) -> (usize, usize) {
+    pub(super) fn place(&self, panel: usize, (feature, n): (usize, usize)) -> (usize, usize) {
         let lanes = self.n_rows.div_ceil(LANES);
         let before = panel * PANEL_LANES;
         (
@@ -110,7 +106,7 @@ fn is_supported() -> bool {
 fn multiply(panels: &Panels, left: &[&[f32]], wanted: Wanted, to: &mut [&mut [f32]]) -> bool {
     multiversion::target::match_target! {
         "x86_64+avx512f" => {
-            avx512::multiply(panels, left, wanted, to);
+            panels_512::multiply(panels, left, wanted, to);
             true
         }
         _ => {
@@ -123,127 +119,6 @@ fn multiply(panels: &Panels, left: &[&[f32]], wanted: Wanted, to: &mut [&mut [f3
 #[cfg(not(target_arch = "x86_64"))]
 fn multiply(_: &Panels, _: &[&[f32]], _: Wanted, _: &mut [&mut [f32]]) -> bool {
     false
-}
-
-#[cfg(target_arch = "x86_64")]
-mod avx512 {
-    use std::arch::x86_64::{_mm512_fmadd_ps, _mm512_set1_ps, _mm512_setzero_ps};
-
-    use super::{
-        LANES, PANEL_FEATURES_AT_ONCE, PANEL_LANES, PANEL_ROWS, Panels, TILE_ROWS, Wanted,
-    };
-    use crate::recognition::vector_registers::{load, store};
-
-    /// The products of so many rows with the rows of a panel.
-    type Tile<const ROWS: usize, const WIDTH: usize> = [[[f32; LANES]; WIDTH]; ROWS];
-
-    #[target_feature(enable = "avx512f")]
-    pub fn multiply(panels: &Panels, left: &[&[f32]], wanted: Wanted, to: &mut [&mut [f32]]) {
-        if panels.n_features == 0 {
-            to.iter_mut().for_each(|row| row.fill(0.0));
-        }
-        let n_panels = panels.n_rows.div_ceil(PANEL_ROWS);
-        for piece in panels.pieces() {
-            let at_once = PANEL_FEATURES_AT_ONCE / piece.1;
-            for first_panel in (0..n_panels).step_by(at_once) {
-                for first in (0..to.len()).step_by(TILE_ROWS) {
-                    let n = TILE_ROWS.min(to.len() - first);
-                    let last_panel = match wanted {
-                        Wanted::All => n_panels,
-                        Wanted::UpToOwn => (first + n - 1) / PANEL_ROWS + 1,
-                    };
-                    let mut rows: [&[f32]; TILE_ROWS] = [&[]; TILE_ROWS];
-                    for at in 0..TILE_ROWS {
-                        rows[at] = &left[first + at.min(n - 1)][piece.0..][..piece.1];
-                    }
-                    let to = &mut to[first..first + n];
-                    for panel in first_panel..last_panel.min(first_panel + at_once) {
-                        let (start, width) = panels.place(panel, piece);
-                        let values = &panels.values[start..][..width * piece.1];
-                        let columns = (panel * PANEL_ROWS, piece.0 == 0);
-                        // The last rows are few: less is computed for nothing.
-                        match n {
-                            1..=2 => write_tile::<2>(&rows, (values, width), to, columns),
-                            3..=4 => write_tile::<4>(&rows, (values, width), to, columns),
-                            _ => write_tile::<TILE_ROWS>(&rows, (values, width), to, columns),
-                        }
-                    }
-                }
-            }
-        }
-    }
-
-    /// Writes the products of a piece of a tile's first rows with a panel.
-    #[target_feature(enable = "avx512f")]
-    fn write_tile<const ROWS: usize>(
-        rows: &[&[f32]; TILE_ROWS],
-        (panel, width): (&[[f32; LANES]], usize),
-        to: &mut [&mut [f32]],
-        columns: (usize, bool),
-    ) {
-        match width {
-            PANEL_LANES => put(tile::<ROWS, PANEL_LANES>(rows, panel), to, columns),
-            2 => put(tile::<ROWS, 2>(rows, panel), to, columns),
-            _ => put(tile::<ROWS, 1>(rows, panel), to, columns),
-        }
-    }
-
-    /// The products of a piece of a tile's first rows with a panel that is so many registers wide.
-    ///
-    /// Loops, not closures: a function of the standard library that calls a closure has not got its vector instructions.
-    #[target_feature(enable = "avx512f")]
-    fn tile<const ROWS: usize, const WIDTH: usize>(
-        rows: &[&[f32]; TILE_ROWS],
-        panel: &[[f32; LANES]],
-    ) -> Tile<ROWS, WIDTH> {
-        let panel = panel.as_chunks::<WIDTH>().0;
-        let n = panel.len();
-        let mut values: [&[f32]; ROWS] = [&[]; ROWS];
-        for i in 0..ROWS {
-            values[i] = &rows[i][..n];
-        }
-        let mut sums = [[_mm512_setzero_ps(); WIDTH]; ROWS];
-        for at in 0..n {
-            let mut own = [_mm512_setzero_ps(); WIDTH];
-            for j in 0..WIDTH {
-                own[j] = load(&panel[at][j]);
-            }
-            for i in 0..ROWS {
-                let value = _mm512_set1_ps(values[i][at]);
-                for j in 0..WIDTH {
-                    sums[i][j] = _mm512_fmadd_ps(value, own[j], sums[i][j]);
-                }
-            }
-        }
-        let mut tile = [[[0.0; LANES]; WIDTH]; ROWS];
-        for i in 0..ROWS {
-            for j in 0..WIDTH {
-                tile[i][j] = store(sums[i][j]);
-            }
-        }
-        tile
-    }
-
-    /// Writes a tile's products from a column on if they are the first piece's, else adds them.
-    #[target_feature(enable = "avx512f")]
-    fn put<const ROWS: usize, const WIDTH: usize>(
-        tile: Tile<ROWS, WIDTH>,
-        to: &mut [&mut [f32]],
-        (column, is_first): (usize, bool),
-    ) {
-        for (to, tile) in to.iter_mut().zip(&tile) {
-            let to = &mut to[column..];
-            let n = to.len().min(WIDTH * LANES);
-            let (to, from) = (&mut to[..n], &tile.as_flattened()[..n]);
-            if is_first {
-                to.copy_from_slice(from);
-            } else {
-                for at in 0..n {
-                    to[at] += from[at];
-                }
-            }
-        }
-    }
 }
 
 #[cfg(test)]

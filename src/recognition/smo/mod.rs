@@ -8,6 +8,8 @@
 //! - **Shrinking** [Joachims 1999]: variables that sit at a bound and want to stay there are left out, and what remains of
 //!   the Gram matrix is copied together, so that iterations run over short contiguous rows.
 //! - **Warm start along C**: the last solution, stretched by the factor that is best for the objective.
+//! - **Legs**: where pairs of variables need many iterations, the free ones are taken to their optimum
+//!   [by equations](crate::recognition::free_variables) every now and then.
 //! - **Precision**: Gram matrix and f may be f32; whenever the solver believes to be done, an f in f64 follows what β has
 //!   changed and has the last word.
 
@@ -31,6 +33,7 @@ pub(crate) use reached::Reached;
 pub(crate) use variables::extremes;
 
 use crate::recognition::dual::DualSolution;
+use crate::recognition::free_variables::settle_free;
 use crate::recognition::scalar::Scalar;
 use iterations::{SHRINK_PERIOD, Search, Stop, run, solve_part};
 use reached::violation;
@@ -38,6 +41,9 @@ use variables::{Variables, linear_and_quadratic, rho};
 
 /// Iterations after which a problem counts as not solved, as in LIBSVM; or 100 a row, if that is more.
 const MOST_ITERATIONS: u64 = 10_000_000;
+/// Iterations after which the free variables are taken to their optimum by equations, at least, and for each row.
+const FEWEST_OF_LEG: u64 = 10_000;
+const ROWS_OF_LEG: u64 = 50;
 /// Times that f64 may disagree with a solver that believes to be done.
 const MOST_REFRESHES: usize = 30;
 /// A binary problem on a Gram matrix, and the solution of the C that it was last solved for.
@@ -202,9 +208,14 @@ impl<'a, G> Smo<'a, G> {
     where
         G: Gram<T>,
     {
-        for round in 0..MOST_REFRESHES {
+        let most_iterations = search.most_iterations;
+        let leg = FEWEST_OF_LEG.max(ROWS_OF_LEG * self.y.len() as u64);
+        let (mut n_refreshes, mut is_first) = (0, true);
+        while n_refreshes < MOST_REFRESHES {
             let before = self.beta.clone();
-            self.search_once(c, search, round == 0);
+            search.most_iterations = most_iterations.min(search.n_iterations + leg);
+            self.search_once(c, search, is_first);
+            is_first = false;
             if self.is_summed {
                 self.follow(&before);
             } else {
@@ -213,8 +224,15 @@ impl<'a, G> Smo<'a, G> {
             if self.violation(c) <= search.tolerance {
                 return true;
             }
-            if search.n_iterations >= search.most_iterations {
+            if search.n_iterations >= most_iterations {
                 return false;
+            }
+            if search.n_iterations >= search.most_iterations {
+                // Pairs of variables go to and fro; the equations of the free ones take a shorter way.
+                search.n_iterations +=
+                    settle_free(self.gram, self.y, (&mut self.beta, &mut self.f), c);
+            } else {
+                n_refreshes += 1;
             }
         }
         false

@@ -39,7 +39,7 @@ impl Rung {
     /// Seconds that a rung of so many steps takes, about.
     pub fn planned_s(&self, n_steps: usize) -> f64 {
         let per_touched = 0.3 + 0.7e-3 * self.n_spheres as f64;
-        n_steps as f64 * (4e-4 + 5e-8 * self.n_touched as f64 * per_touched)
+        n_steps as f64 * (1.2e-4 + 1.7e-8 * self.n_touched as f64 * per_touched)
     }
 }
 
