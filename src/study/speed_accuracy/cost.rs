@@ -43,5 +43,5 @@ pub(super) fn chain(classifier: ClassifierKind, n_measurements: f64) -> Piece {
 
 /// For a study of so many touches an object.
 pub(super) fn study(n_touches: usize) -> Piece {
-    Piece::one_by_one(STUDIES, 0, 0.11 * n_touches as f64)
+    Piece::one_by_one(STUDIES, 0, 0.08 * n_touches as f64)
 }
