@@ -14,8 +14,7 @@ use bubbletouch::report::study_tables::StudyTables;
 use bubbletouch::study::Part;
 use bubbletouch::study::journal::{Identity, Journal};
 use bubbletouch::study::pieces::{
-    FinishedPieces, PieceFailure, PieceManner, PieceStudy, n_pieces_left, pieces_workload,
-    run_pieces,
+    FinishedPieces, PieceFailure, PieceManner, PieceStudy, PiecesRun, n_pieces_left, run_pieces,
 };
 use bubbletouch::study::provenance::{MANIFEST_FILE, Manifest, PROGRAM, RunFacts};
 use bubbletouch::study::time_left::{Piece, Work};
@@ -108,12 +107,13 @@ impl<K: PieceKind> AnyStudy for PieceRun<K> {
 
     fn run<'a>(&'a self, manner: &PieceManner<'a>) -> Result<Box<dyn AnyOutcome + 'a>> {
         let study = self.kind.study();
-        let mut work = pieces_workload(study, manner);
+        let pieces = PiecesRun::new(study, manner);
+        let mut work = pieces.workload();
         if !matches!(manner.part, Part::Shard(_)) {
             work.push(Self::REPORT);
         }
         manner.progress.expect(&work);
-        let FinishedPieces { rows, failures, .. } = run_pieces(study, manner)?;
+        let FinishedPieces { rows, failures, .. } = pieces.run()?;
         Ok(Box::new(PieceOutcome {
             run: self,
             tables: study.tables(rows)?,

@@ -10,8 +10,8 @@ mod record;
 
 pub use left::PiecesLeft;
 pub use piece_study::{
-    FinishedPieces, PieceFailure, PieceManner, PieceStudy, n_pieces_left, pieces_workload,
-    run_pieces, run_whole_study,
+    FinishedPieces, PieceFailure, PieceManner, PieceStudy, PiecesRun, n_pieces_left, run_pieces,
+    run_whole_study,
 };
 pub use record::PieceRows;
 

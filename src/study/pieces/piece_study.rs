@@ -75,42 +75,87 @@ pub struct FinishedPieces<R> {
     pub n_pieces: usize,
 }
 
-/// Does what a journal has not yet of a study's pieces. The rows but for times are the same as if all were done at once.
+/// A run of a study's pieces that has read its journal.
+pub struct PiecesRun<'a, S: PieceStudy> {
+    study: &'a S,
+    pieces: Vec<NamedPiece>,
+    /// What came of each before.
+    before: Vec<Option<PieceResult<S::Rows>>>,
+    left: PiecesLeft<'a, S::Rows>,
+}
+
+/// [`PiecesRun::run`] at once.
 ///
 /// # Errors
-/// The journal cannot be written; what a piece fails of, if the first to fail ends the run; what no piece can do without.
+/// Those of it.
 pub fn run_pieces<S: PieceStudy>(
     study: &S,
     manner: &PieceManner,
 ) -> Result<FinishedPieces<S::Rows>> {
-    let pieces = study.pieces();
-    let (mut before, left) = before_and_left(&pieces, manner);
-    if left.n() > 0 {
-        study.measure(&left)?;
-    }
-    let mut now = left.into_results();
-    let mut finished = FinishedPieces {
-        rows: S::Rows::default(),
-        failures: Vec::new(),
-        n_left: 0,
-        n_pieces: pieces.len(),
-    };
-    for (piece, before) in pieces.iter().zip(&mut before) {
-        let result = match now.remove(&piece.name) {
-            Some(Some(result)) => Some(result),
-            Some(None) => Some(Err("a defect of the program: it was passed over".to_owned())),
-            None => before.take(),
-        };
-        match result {
-            Some(Ok(rows)) => finished.rows.append(rows),
-            Some(Err(error)) => finished.failures.push(PieceFailure {
-                piece: piece.name.clone(),
-                error,
-            }),
-            None => finished.n_left += 1,
+    PiecesRun::new(study, manner).run()
+}
+
+impl<'a, S: PieceStudy> PiecesRun<'a, S> {
+    /// Of this study.
+    pub fn new(study: &'a S, manner: &PieceManner<'a>) -> Self {
+        let pieces = study.pieces();
+        let (before, left) = before_and_left(&pieces, manner);
+        Self {
+            study,
+            pieces,
+            before,
+            left,
         }
     }
-    Ok(finished)
+
+    /// What it will do: for [`Progress::expect`]. What a journal has is not done again.
+    pub fn workload(&self) -> Vec<Piece> {
+        let mut work = match self.left.n() {
+            0 => Vec::new(),
+            _ => self.study.shared_work(&self.left),
+        };
+        work.extend(self.left.work());
+        work
+    }
+
+    /// Does what the journal has not yet. The rows but for times are the same as if all were done at once.
+    ///
+    /// # Errors
+    /// The journal cannot be written; what a piece fails of, if the first to fail ends the run; what no piece can do without.
+    pub fn run(self) -> Result<FinishedPieces<S::Rows>> {
+        let Self {
+            study,
+            pieces,
+            before,
+            left,
+        } = self;
+        if left.n() > 0 {
+            study.measure(&left)?;
+        }
+        let mut now = left.into_results();
+        let mut finished = FinishedPieces {
+            rows: S::Rows::default(),
+            failures: Vec::new(),
+            n_left: 0,
+            n_pieces: pieces.len(),
+        };
+        for (piece, before) in pieces.iter().zip(before) {
+            let result = match now.remove(&piece.name) {
+                Some(Some(result)) => Some(result),
+                Some(None) => Some(Err("a defect of the program: it was passed over".to_owned())),
+                None => before,
+            };
+            match result {
+                Some(Ok(rows)) => finished.rows.append(rows),
+                Some(Err(error)) => finished.failures.push(PieceFailure {
+                    piece: piece.name.clone(),
+                    error,
+                }),
+                None => finished.n_left += 1,
+            }
+        }
+        Ok(finished)
+    }
 }
 
 /// What came of each piece before a run, and those that it does.
@@ -133,17 +178,6 @@ fn before_and_left<'a, R: PieceRows>(
     let left = left.map(|(_, piece)| piece.clone());
     let left = PiecesLeft::new(manner.journal, manner.fail_fast, manner.progress, left);
     (before, left)
-}
-
-/// What [`run_pieces`] will do: for [`Progress::expect`]. What a journal has is not done again.
-pub fn pieces_workload<S: PieceStudy>(study: &S, manner: &PieceManner) -> Vec<Piece> {
-    let (_, left) = before_and_left::<S::Rows>(&study.pieces(), manner);
-    let mut work = match left.n() {
-        0 => Vec::new(),
-        _ => study.shared_work(&left),
-    };
-    work.extend(left.work());
-    work
 }
 
 /// Runs a whole study at once, keeps nothing, and ends at the first piece that fails.
