@@ -18,9 +18,11 @@ use crate::recognition::sorted::Sorted;
 
 /// Dimensions in which the first rows are looked for. More find them better and cost more.
 pub(crate) const FEW_DIMENSIONS: usize = 64;
-/// Classes whose pairs with as many others are solved together. Fewer leave the tiles of their products unfilled, more do not
-/// stay in the cache.
+/// Classes whose pairs with [`OTHERS_AT_ONCE`] others are solved together. Fewer leave the tiles of their products unfilled,
+/// more do not stay in the cache.
 pub(crate) const CLASSES_AT_ONCE: usize = 8;
+/// See [`CLASSES_AT_ONCE`]: so few that their rows near margins stay in the second cache while the pairs of one class pass.
+pub(crate) const OTHERS_AT_ONCE: usize = 4;
 /// Rows of each class that a pair starts with in the few dimensions.
 const ROWS_ALONG_MEANS: usize = 16;
 
@@ -41,39 +43,52 @@ impl<'a, T: Scalar> PairsNearMargin<'a, T> {
         }
     }
 
-    /// Pairs of some classes, in turn all: so few that what is known of them stays in the cache.
+    /// Pairs of some classes with a few others, in turn all: so few that what is known of them stays in the cache.
     pub fn blocks(&self) -> impl Iterator<Item = Vec<(usize, usize)>> {
         let n = self.all.sorted.ranges().len();
-        let groups: Vec<Range<usize>> = (0..n)
-            .step_by(CLASSES_AT_ONCE)
-            .map(|start| start..n.min(start + CLASSES_AT_ONCE))
-            .collect();
-        let mut blocks = Vec::new();
-        for (at, own) in groups.iter().enumerate() {
-            for other in &groups[at..] {
-                blocks.push(pairs(own.clone(), other.clone()).collect());
-            }
-        }
-        blocks.into_iter()
+        let some = move |start, at_once| start..n.min(start + at_once);
+        let own = (0..n).step_by(CLASSES_AT_ONCE);
+        own.flat_map(move |start| {
+            let others = (start..n).step_by(OTHERS_AT_ONCE);
+            others.map(move |other| {
+                to_and_fro(some(start, CLASSES_AT_ONCE), some(other, OTHERS_AT_ONCE))
+            })
+        })
     }
 
     /// Some pairs, not solved yet, on the rows that are near the margin for this C.
     pub fn near(&self, pairs: &[(usize, usize)], c: f64) -> NearMargin<'_, 'a, T> {
-        let rows: Vec<Sides> = pairs.iter().map(|&pair| self.near_means(pair)).collect();
+        let mut ranked = Ranked::new();
+        let rows = pairs.iter().map(|&pair| self.near_means(pair, &mut ranked));
+        let rows: Vec<Sides> = rows.collect();
         let rows = NearMargin::new(&self.few, pairs, &rows).near_margin(c);
         NearMargin::new(&self.all, pairs, &rows)
     }
 
     /// The rows of a pair that are nearest to the other class along the line between the means.
-    fn near_means(&self, (a, b): (usize, usize)) -> Sides {
+    fn near_means(&self, (a, b): (usize, usize), ranked: &mut Ranked) -> Sides {
         let along: [Vec<T>; 2] = [a, b].map(|own| {
             let rows = self.few.sorted.ranges()[own].clone();
             rows.map(|row| self.along_means[[row, a]] - self.along_means[[row, b]])
                 .collect()
         });
         let along = along.each_ref().map(Vec::as_slice);
-        nearest(along, ROWS_ALONG_MEANS, &mut Ranked::new())
+        nearest(along, ROWS_ALONG_MEANS, ranked)
     }
+}
+
+/// The pairs of some classes with others that come after them: with the others there and back in turn, so that the rows of the
+/// last are still in the cache.
+fn to_and_fro(own: Range<usize>, others: Range<usize>) -> Vec<(usize, usize)> {
+    let mut all = Vec::new();
+    for a in own {
+        let start = all.len();
+        all.extend(pairs(a..a + 1, others.clone()));
+        if a % 2 == 1 {
+            all[start..].reverse();
+        }
+    }
+    all
 }
 
 /// The rows in the few dimensions that some of them span.

@@ -3,7 +3,7 @@
 use ndarray::Array2;
 
 use crate::recognition::dual::DualSolution;
-use crate::recognition::margin_rows::{Ranked, SIGNS, Sides, find_below, smallest};
+use crate::recognition::margin_rows::{Ranked, RankedRow, SIGNS, Sides, find_below, smallest};
 use crate::recognition::pair_search::{PairGoal, reach_by_equations};
 use crate::recognition::row_products::{Rows, multiply};
 use crate::recognition::scalar::Scalar;
@@ -233,7 +233,7 @@ impl<T: Scalar> MarginPair<T> {
             for &row in &scratch.below {
                 if !self.takes_part[number][row] {
                     let beyond = (sign * products[row] - bound).wide();
-                    violating.push((beyond, (number, row)));
+                    violating.push(RankedRow::new(beyond, (number, row)));
                 }
             }
         }
@@ -246,7 +246,8 @@ impl<T: Scalar> MarginPair<T> {
             return Some([0, 1].map(|side| self.outside(side).collect()));
         }
         let mut joining = [0, 1].map(|_| Vec::with_capacity(n_joining));
-        for &(_, (side, row)) in smallest(violating, n_joining) {
+        for row in smallest(violating, n_joining) {
+            let (side, row) = row.place();
             joining[side].push(row);
         }
         Some(joining)

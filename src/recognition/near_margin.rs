@@ -11,12 +11,12 @@
 use std::ops::Range;
 
 use crate::recognition::dual::DualSolution;
-use crate::recognition::first_rows::{CLASSES_AT_ONCE, FEW_DIMENSIONS};
+use crate::recognition::first_rows::{CLASSES_AT_ONCE, FEW_DIMENSIONS, OTHERS_AT_ONCE};
 use crate::recognition::margin_pair::{MarginPair, Scratch, Within};
 use crate::recognition::margin_rows::{Sides, nearest};
 use crate::recognition::packed::Packed;
 use crate::recognition::pair_search::PairGoal;
-use crate::recognition::row_products::multiply;
+use crate::recognition::row_products::{multiply, own_products};
 use crate::recognition::scalar::Scalar;
 use crate::recognition::smo::{Dense, Room};
 use crate::recognition::sorted::Sorted;
@@ -41,8 +41,9 @@ impl<'a, T: Scalar> Classes<'a, T> {
     /// Of these rows.
     pub fn new(sorted: &'a Sorted<T>) -> Self {
         let within = |range: &Range<usize>| {
-            let own = sorted.points().range(range.clone());
-            Within::new(own.packed().own_products())
+            let points = sorted.points().in_place();
+            let own: Vec<&[T]> = range.clone().map(|row| points.row(row)).collect();
+            Within::new(own_products(&own))
         };
         Self {
             sorted,
@@ -115,7 +116,7 @@ impl<'c, 'a, T: Scalar> NearMargin<'c, 'a, T> {
         let sizes = || sorted.ranges().iter().map(Range::len);
         let within: usize = sizes().map(|n| n * n).sum();
         let largest = sizes().max().unwrap_or(0);
-        let n_pairs = CLASSES_AT_ONCE.pow(2);
+        let n_pairs = CLASSES_AT_ONCE * OTHERS_AT_ONCE;
         // Both ways.
         let across = n_pairs * 2 * largest.pow(2);
         let normals = n_pairs * (sorted.centre().len() + 2 * largest);

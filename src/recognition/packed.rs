@@ -6,9 +6,7 @@ use ndarray::{Array2, ArrayView2, ArrayViewMut2};
 use crate::recognition::panels::{Panels, Wanted};
 use crate::recognition::row_products::Rows;
 use crate::recognition::scalar::Scalar;
-
-/// Rows and columns mirrored at once: a cache line of f32.
-const TILE: usize = 16;
+use crate::recognition::transposed::mirror;
 
 /// Rows (n × m) that others are multiplied with.
 #[derive(Clone, Debug)]
@@ -77,20 +75,6 @@ fn in_place<'a, T>(rows: &ArrayView2<'a, T>) -> Rows<'a, T> {
     Rows {
         values: rows.to_slice().expect("rows are stored one by one"),
         n_features: rows.ncols(),
-    }
-}
-
-/// Copies what is below the diagonal to above it, in tiles that stay in the cache.
-fn mirror<T: Copy>(square: &mut ArrayViewMut2<T>) {
-    let n = square.nrows();
-    for top in (0..n).step_by(TILE) {
-        for left in (0..=top).step_by(TILE) {
-            for i in top..n.min(top + TILE) {
-                for j in left..i.min(left + TILE) {
-                    square[[j, i]] = square[[i, j]];
-                }
-            }
-        }
     }
 }
 

@@ -61,13 +61,22 @@ fn by_tiles<'r, const N: usize, const M: usize>(
                 let width = M.min(others.len() - j);
                 for at in 0..N.min(rows.len() - i) {
                     let to = &mut products[(i + at) * others.len() + j..][..width];
-                    for k in 0..width {
-                        let before = if start == 0 { 0.0 } else { to[k] };
-                        to[k] = before + tile[at][k];
+                    match to.first_chunk_mut::<M>() {
+                        Some(to) if start == 0 => *to = tile[at],
+                        _ => put(to, &tile[at], start == 0),
                     }
                 }
             }
         }
+    }
+}
+
+/// Writes a tile's products if they are those of the first features, else adds them.
+#[cfg(target_arch = "x86_64")]
+fn put(to: &mut [f32], products: &[f32], is_first: bool) {
+    for (to, product) in to.iter_mut().zip(products) {
+        let before = if is_first { 0.0 } else { *to };
+        *to = before + product;
     }
 }
 
