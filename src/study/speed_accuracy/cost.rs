@@ -16,14 +16,14 @@ const STUDIES: u8 = 4;
 pub(super) fn models(touched: Touched) -> Piece {
     let planned_s = match touched {
         Touched::Object => 0.1,
-        Touched::Scan => 20.0,
+        Touched::Scan => 30.0,
     };
     Piece::of_stage(MODELS, touched as usize, planned_s)
 }
 
 /// To time its touches.
 pub(super) fn touches(touched: Touched) -> Piece {
-    Piece::one_by_one(TOUCHES, touched as usize, 0.1)
+    Piece::one_by_one(TOUCHES, touched as usize, 0.065)
 }
 
 /// To step through time, `dt` seconds at once: ours in milliseconds, an engine of rigid bodies in seconds.
@@ -38,7 +38,7 @@ pub(super) fn steps(method: StepMethod, dt: f64) -> Piece {
 
 /// To learn from so many measurements a touch, and to decide.
 pub(super) fn chain(classifier: ClassifierKind, n_measurements: f64) -> Piece {
-    Piece::one_by_one(CHAINS, classifier as usize, 0.03 + 1e-4 * n_measurements)
+    Piece::one_by_one(CHAINS, classifier as usize, 0.04 + 4e-4 * n_measurements)
 }
 
 /// For a study of so many touches an object.

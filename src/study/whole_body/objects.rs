@@ -9,21 +9,25 @@ use crate::study::plan::MM;
 use glam::DVec3;
 
 impl ObjectPlan {
-    /// Its spheres, metres: of a built-in object with the middle of its box at the origin.
+    /// Its spheres, metres.
     pub(super) fn build(&self, surface_error: f64) -> Result<SphereUnion> {
+        pack(&self.solid()?, surface_error)
+    }
+
+    /// Its longest way along an axis, metres.
+    pub(super) fn length(&self) -> Result<f64> {
+        Ok(self.solid()?.bounds().size().max_element())
+    }
+
+    /// Metres: a built-in object with the middle of its box at the origin.
+    fn solid(&self) -> Result<Solid> {
         match self {
             Self::BuiltIn(name) => {
                 let solid = Catalogue::builtin()?.object(name)?.solid.clone();
                 let middle = solid.bounds().center();
-                pack(
-                    &solid.moved(&Pose::from_translation(-middle)),
-                    surface_error,
-                )
+                Ok(solid.moved(&Pose::from_translation(-middle)))
             }
-            Self::Parts(parts) => {
-                let parts = parts.iter().map(part).collect::<Result<_>>()?;
-                pack(&Solid::new(parts)?, surface_error)
-            }
+            Self::Parts(parts) => Solid::new(parts.iter().map(part).collect::<Result<_>>()?),
         }
     }
 }

@@ -32,10 +32,12 @@ const LEARN: u8 = 0;
 const PLAY: u8 = 1;
 const CLIMB: u8 = 2;
 
-/// Seconds to cover a robot, for a touch that is learned from or tested, and for a step of a scene, about.
+/// Seconds to cover a robot, for a touch that is learned from or tested, and for a step of a scene with an object of no size, about.
 const COVER_S: f64 = 0.5;
 const TOUCH_S: f64 = 7e-4;
-const SCENE_S: f64 = 6e-4;
+const SCENE_S: f64 = 5e-5;
+/// What a step of a scene takes for each metre of its object: a longer one touches more.
+const SCENE_S_PER_M: f64 = 1.7e-3;
 
 fn scene_name(scene: &ScenePlan) -> String {
     format!("scene {}", scene.name)
@@ -60,7 +62,7 @@ impl PieceStudy for WholeBodyPlan {
         let scenes = self.scenes.iter().map(|scene| NamedPiece {
             name: scene_name(scene),
             group: 0,
-            work: Piece::one_by_one(PLAY, 0, SCENE_S * self.n_steps() as f64),
+            work: self.scene_work(scene),
         });
         let rungs = self.rungs();
         let rungs = rungs.iter().enumerate().map(|(number, rung)| NamedPiece {
@@ -146,6 +148,13 @@ impl WholeBodyPlan {
         let n_touches = self.recognition.n_training + self.recognition.n_test;
         let n_touches = n_touches * self.recognition.objects.len();
         Piece::one_by_one(LEARN, 1, TOUCH_S * n_touches as f64)
+    }
+
+    /// An object that cannot be made fails when its scene begins.
+    fn scene_work(&self, scene: &ScenePlan) -> Piece {
+        let length = scene.object.length().unwrap_or(0.0);
+        let step_s = SCENE_S + SCENE_S_PER_M * length;
+        Piece::one_by_one(PLAY, 0, step_s * self.n_steps() as f64)
     }
 
     fn cover(&self, left: &PiecesLeft<WholeBodyTables>) -> Result<CoveredRobot> {
