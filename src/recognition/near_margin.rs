@@ -110,8 +110,8 @@ impl<'c, 'a, T: Scalar> NearMargin<'c, 'a, T> {
         all
     }
 
-    /// Bytes that the products take when all rows of all pairs take part, with the hyperplanes of a round, packed rows, and all
-    /// rows in few dimensions.
+    /// Bytes that the products take when all rows of all pairs take part, with the hyperplanes of a round, the rows of a pair and
+    /// the directions of few dimensions, and all rows along them.
     pub fn most_bytes(sorted: &Sorted<T>) -> usize {
         let sizes = || sorted.ranges().iter().map(Range::len);
         let within: usize = sizes().map(|n| n * n).sum();
@@ -121,9 +121,9 @@ impl<'c, 'a, T: Scalar> NearMargin<'c, 'a, T> {
         let across = n_pairs * 2 * largest.pow(2);
         let normals = n_pairs * (sorted.centre().len() + 2 * largest);
         let few = sorted.points().len() * FEW_DIMENSIONS;
-        let packed = |n| Packed::<T>::bytes(n, sorted.centre().len() + FEW_DIMENSIONS);
+        let n_copied = 2 * largest + FEW_DIMENSIONS;
         (2 * within + across + normals + few) * size_of::<T>()
-            + sizes().map(packed).sum::<usize>()
+            + Packed::<T>::bytes(n_copied, sorted.centre().len())
             + Dense::<T>::bytes(2 * largest)
     }
 

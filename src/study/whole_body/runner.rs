@@ -22,6 +22,13 @@ impl WholeBodyPlan {
         compressions.map(name).collect()
     }
 
+    /// What needs all that is learned.
+    fn learned_names(&self) -> Vec<String> {
+        let mut names = self.compression_names();
+        names.extend(self.scenes.iter().map(scene_name));
+        names
+    }
+
     fn rungs(&self) -> Vec<Rung> {
         self.ladders.as_ref().map_or_else(Vec::new, rungs)
     }
@@ -75,8 +82,7 @@ impl PieceStudy for WholeBodyPlan {
 
     fn measure(&self, left: &PiecesLeft<WholeBodyTables>) -> Result<()> {
         let scenes = left.of(&self.scenes, |scene| scene_name(scene));
-        let mut names = left.of(self.compression_names(), String::clone);
-        names.extend(scenes.iter().map(|scene| scene_name(scene)));
+        let names = left.of(self.learned_names(), String::clone);
         if !names.is_empty()
             && let Some(covered) = left.prepare(&names, || {
                 left.during(&self.cover_work(), || self.cover(left))
@@ -116,9 +122,7 @@ impl PieceStudy for WholeBodyPlan {
     }
 
     fn shared_work(&self, left: &PiecesLeft<WholeBodyTables>) -> Vec<Piece> {
-        let mut names = self.compression_names();
-        names.extend(self.scenes.iter().map(scene_name));
-        match names.iter().any(|name| left.has(name)) {
+        match self.learned_names().iter().any(|name| left.has(name)) {
             true => vec![self.cover_work(), self.learn_work()],
             false => Vec::new(),
         }
