@@ -14,9 +14,9 @@ use crate::recognition::dual::DualSolution;
 use crate::recognition::first_rows::{CLASSES_AT_ONCE, FEW_DIMENSIONS, OTHERS_AT_ONCE};
 use crate::recognition::margin_pair::{MarginPair, Scratch, Within};
 use crate::recognition::margin_rows::{Sides, nearest};
-use crate::recognition::packed::Packed;
+use crate::recognition::packed::{Packed, own_products};
 use crate::recognition::pair_search::PairGoal;
-use crate::recognition::row_products::{multiply, own_products};
+use crate::recognition::row_products::multiply;
 use crate::recognition::scalar::Scalar;
 use crate::recognition::smo::{Dense, Room};
 use crate::recognition::sorted::Sorted;
@@ -41,9 +41,8 @@ impl<'a, T: Scalar> Classes<'a, T> {
     /// Of these rows.
     pub fn new(sorted: &'a Sorted<T>) -> Self {
         let within = |range: &Range<usize>| {
-            let points = sorted.points().in_place();
-            let own: Vec<&[T]> = range.clone().map(|row| points.row(row)).collect();
-            Within::new(own_products(&own))
+            let own = sorted.points().range(range.clone());
+            Within::new(own_products(own.values))
         };
         Self {
             sorted,

@@ -6,7 +6,11 @@ use ndarray::{Array2, ArrayView2, ArrayViewMut2};
 use crate::recognition::panels::{Panels, Wanted};
 use crate::recognition::row_products::Rows;
 use crate::recognition::scalar::Scalar;
-use crate::recognition::transposed::mirror;
+
+/// Rows and columns mirrored at once: a cache line of f32.
+const TILE: usize = 16;
+/// Rows whose products with each other and the ones before are computed at once, where they lie.
+const ROWS_AT_ONCE: usize = 32;
 
 /// Rows (n × m) that others are multiplied with.
 #[derive(Clone, Debug)]
@@ -71,10 +75,46 @@ impl<'a, T: Scalar> Packed<'a, T> {
     }
 }
 
+/// Products of rows with each other: n × n, symmetric. Of so few rows that packing them takes longer than it saves; they are
+/// packed where they cannot be multiplied where they lie.
+pub(crate) fn own_products<T: Scalar>(rows: ArrayView2<T>) -> Array2<T> {
+    let n = rows.nrows();
+    let all: Vec<&[T]> = (0..n).map(|row| in_place(&rows).row(row)).collect();
+    let mut products = Array2::zeros((n, n));
+    let mut some = Vec::new();
+    for start in (0..n).step_by(ROWS_AT_ONCE) {
+        let end = n.min(start + ROWS_AT_ONCE);
+        some.resize((end - start) * end, T::zero());
+        if !T::products_in_place(&all[start..end], &all[..end], &mut some) {
+            return Packed::new(rows).own_products();
+        }
+        for (row, some) in (start..end).zip(some.chunks_exact(end)) {
+            let to = products.row_mut(row).into_slice();
+            to.expect("a square is stored row by row")[..end].copy_from_slice(some);
+        }
+    }
+    mirror(&mut products.view_mut());
+    products
+}
+
 fn in_place<'a, T>(rows: &ArrayView2<'a, T>) -> Rows<'a, T> {
     Rows {
         values: rows.to_slice().expect("rows are stored one by one"),
         n_features: rows.ncols(),
+    }
+}
+
+/// Copies what is below the diagonal to above it, in tiles that stay in the cache.
+fn mirror<T: Copy>(square: &mut ArrayViewMut2<T>) {
+    let n = square.nrows();
+    for top in (0..n).step_by(TILE) {
+        for left in (0..=top).step_by(TILE) {
+            for i in top..n.min(top + TILE) {
+                for j in left..i.min(left + TILE) {
+                    square[[j, i]] = square[[i, j]];
+                }
+            }
+        }
     }
 }
 
@@ -88,7 +128,13 @@ mod tests {
     }
 
     fn assert_products<T: Scalar>(tolerance: f64) {
-        for (n_left, n, m) in [(5, 70, 33), (20, 1, 600), (1, 17, 1)] {
+        for (n_left, n, m) in [
+            (5, 70, 33),
+            (20, 1, 600),
+            (1, 17, 1),
+            (2, 32, 21),
+            (3, 33, 4),
+        ] {
             let (left, right) = (rows::<T>(n_left, m), rows::<T>(n, m));
             // Sums of m products below 1, each addition rounded.
             let tolerance = tolerance * (m as f64 / 100.0).max(1.0);
@@ -100,10 +146,11 @@ mod tests {
             for ((i, j), expected) in expected.indexed_iter() {
                 assert!((to[[i, j + 2]] - *expected).wide().abs() < tolerance);
             }
-            let own = packed.own_products();
-            for ((i, j), expected) in right.dot(&right.t()).indexed_iter() {
-                assert!((own[[i, j]] - *expected).wide().abs() < tolerance);
-                assert_eq!(own[[i, j]], own[[j, i]]);
+            for own in [packed.own_products(), own_products(right.view())] {
+                for ((i, j), expected) in right.dot(&right.t()).indexed_iter() {
+                    assert!((own[[i, j]] - *expected).wide().abs() < tolerance);
+                    assert_eq!(own[[i, j]], own[[j, i]]);
+                }
             }
         }
     }
@@ -112,5 +159,20 @@ mod tests {
     fn products_are_those_of_ndarray_in_both_precisions() {
         assert_products::<f32>(1e-4);
         assert_products::<f64>(1e-12);
+    }
+
+    #[test]
+    fn products_of_rows_with_each_other_are_those_with_others() {
+        let m = 21;
+        for n in [0, 1, 4, 32, 33, 70] {
+            let rows = rows::<f32>(n, m);
+            let own = own_products(rows.view());
+            for ((i, j), &product) in own.indexed_iter() {
+                let both = rows.row(i).into_iter().zip(rows.row(j));
+                let expected: f32 = both.map(|(a, b)| a * b).sum();
+                assert!((product - expected).abs() < 1e-5, "{n}: {i} {j}");
+                assert_eq!(product, own[[j, i]]);
+            }
+        }
     }
 }

@@ -6,10 +6,6 @@
 use ndarray::Array2;
 
 use crate::recognition::scalar::Scalar;
-use crate::recognition::transposed::mirror;
-
-/// Rows whose products with each other and the ones before are computed at once.
-const ROWS_AT_ONCE: usize = 32;
 
 /// Rows of a matrix, one after the other.
 #[derive(Clone, Copy)]
@@ -59,25 +55,6 @@ pub(crate) fn multiply<T: Scalar>(rows: &[&[T]], others: &[&[T]], to: &mut [T]) 
     to.iter_mut()
         .zip(&products)
         .for_each(|(to, &from)| *to = from);
-}
-
-/// Products of rows with each other, all equally long: n × n, symmetric. Only those of each with itself and the ones before it
-/// are computed.
-pub(crate) fn own_products<T: Scalar>(rows: &[&[T]]) -> Array2<T> {
-    let n = rows.len();
-    let mut products = Array2::zeros((n, n));
-    let mut some = Vec::new();
-    for start in (0..n).step_by(ROWS_AT_ONCE) {
-        let end = n.min(start + ROWS_AT_ONCE);
-        some.resize((end - start) * end, T::zero());
-        multiply(&rows[start..end], &rows[..end], &mut some);
-        for (row, some) in (start..end).zip(some.chunks_exact(end)) {
-            let to = products.row_mut(row).into_slice();
-            to.expect("a square is stored row by row")[..end].copy_from_slice(some);
-        }
-    }
-    mirror(&mut products.view_mut());
-    products
 }
 
 /// Four rows at once: the sums are read and written a quarter as often.
@@ -134,21 +111,6 @@ mod tests {
         multiply(&left, &right, &mut products);
         for (product, expected) in products.iter().zip(expected) {
             assert!((product.wide() - expected).abs() <= tolerance);
-        }
-    }
-
-    #[test]
-    fn products_of_rows_with_each_other_are_those_with_others() {
-        let m = 21;
-        for n in [0, 1, 4, 32, 33, 70] {
-            let values: Vec<f32> = values(n, m).iter().map(|&value| value as f32).collect();
-            let rows: Vec<&[f32]> = values.chunks_exact(m).collect();
-            let own = own_products(&rows);
-            for ((i, j), &product) in own.indexed_iter() {
-                let expected: f32 = rows[i].iter().zip(rows[j]).map(|(a, b)| a * b).sum();
-                assert!((product - expected).abs() < 1e-5, "{n}: {i} {j}");
-                assert_eq!(product, own[[j, i]]);
-            }
         }
     }
 

@@ -1,8 +1,6 @@
 //! Rows written as columns, several rows at once.
 
-use ndarray::ArrayViewMut2;
-
-/// Rows transposed, or rows and columns mirrored, at once: a cache line of f32.
+/// Rows transposed at once: a cache line of f32.
 const TILE: usize = 16;
 
 /// Writes equally long rows as columns side by side: value `j` of row `i` to `j · stride + i`.
@@ -29,20 +27,6 @@ fn write_tile<T: Copy>(rows: &[&[T]; TILE], to: &mut [T], stride: usize) {
         let to = &mut to[j * stride..][..TILE];
         for i in 0..TILE {
             to[i] = columns[i][j];
-        }
-    }
-}
-
-/// Copies what is below the diagonal to above it, in tiles that stay in the cache.
-pub(crate) fn mirror<T: Copy>(square: &mut ArrayViewMut2<T>) {
-    let n = square.nrows();
-    for top in (0..n).step_by(TILE) {
-        for left in (0..=top).step_by(TILE) {
-            for i in top..n.min(top + TILE) {
-                for j in left..i.min(left + TILE) {
-                    square[[j, i]] = square[[i, j]];
-                }
-            }
         }
     }
 }
