@@ -15,8 +15,6 @@ use crate::recognition::training::Goal;
 pub(crate) struct FoldPath {
     /// 1 for positive rows, −1 for negative ones, 0 for those that are held out.
     labels: Vec<f64>,
-    /// The Gram matrix times the labels.
-    sums: Vec<f64>,
     /// By C.
     pub solutions: Vec<FoldSolution>,
 }
@@ -34,43 +32,42 @@ pub(crate) struct FoldSolution {
 }
 
 impl FoldPath {
-    /// Of a fold with these labels, one a row of the Gram matrix; those of `positive` are of the positive class.
+    /// Tells of one fold after the other, given the labels of each, one a row of the Gram matrix; those of `positive` are of
+    /// the positive class.
     pub fn of_pair<T: Scalar>(
         gram: &mut Dense<T>,
-        (labels, positive): (Vec<f64>, &Range<usize>),
-        last: Option<&Self>,
+        (folds, positive): (Vec<Vec<f64>>, &Range<usize>),
         goal: Goal,
-    ) -> Self {
-        let sums = match last {
-            None => gram.times(&labels),
-            Some(last) => {
-                let change = gram.times(&difference(&labels, &last.labels));
-                let sums = last.sums.iter().zip(change);
-                sums.map(|(sum, change)| sum + change).collect()
-            }
-        };
-        let smo = Smo::new(gram, &labels).at_bounds(goal.path[0], &sums);
-        let seed = |gram: &mut Dense<T>, number: usize| {
-            let last = last.filter(|_| number > 0)?;
-            last.moved(number, (&labels, positive), gram)
-        };
-        let solutions = along(smo, goal, seed);
-        Self {
-            labels,
-            sums,
-            solutions,
+        mut told: impl FnMut(&Self),
+    ) {
+        let n = gram.len();
+        let label = |at: usize| if positive.contains(&at) { 1.0 } else { -1.0 };
+        let all: Vec<f64> = (0..n).map(label).collect();
+        let sums = sums_of_folds(gram, &all, &folds);
+        let mut last: Option<Self> = None;
+        for (labels, sums) in folds.into_iter().zip(sums) {
+            let smo = Smo::new(gram, &labels).at_bounds(goal.path[0], &sums);
+            let seed = |gram: &mut Dense<T>, number: usize| {
+                let last = last.as_ref().filter(|_| number > 0)?;
+                last.moved(number, (&labels, positive), gram)
+            };
+            let solutions = along(smo, goal, seed);
+            told(last.insert(Self { labels, solutions }));
         }
     }
 
-    /// Of a fold of a class against all others. Classes that no hyperplane parts from the rest have values that are equal
+    /// The same for a class against all others. Classes that no hyperplane parts from the rest have values that are equal
     /// within the tolerance, and the largest wins: there the start decides. So it starts from nothing, as training does.
-    pub fn of_class<T: Scalar>(gram: &mut Dense<T>, labels: Vec<f64>, goal: Goal) -> Self {
-        let smo = Smo::new(gram, &labels);
-        let solutions = along(smo, goal, |_, _| None);
-        Self {
-            labels,
-            sums: Vec::new(),
-            solutions,
+    pub fn of_class<T: Scalar>(
+        gram: &mut Dense<T>,
+        folds: Vec<Vec<f64>>,
+        goal: Goal,
+        mut told: impl FnMut(&Self),
+    ) {
+        for labels in folds {
+            let smo = Smo::new(gram, &labels);
+            let solutions = along(smo, goal, |_, _| None);
+            told(&Self { labels, solutions });
         }
     }
 
@@ -111,6 +108,20 @@ fn along<T: Scalar>(
         }
     };
     path.map(solution).collect()
+}
+
+/// The Gram matrix times the labels of each fold, which are those of all rows but for 0 where the fold holds a row out.
+fn sums_of_folds<T: Scalar>(gram: &mut Dense<T>, all: &[f64], folds: &[Vec<f64>]) -> Vec<Vec<f64>> {
+    let held_out: Vec<Vec<f64>> = folds.iter().map(|labels| difference(all, labels)).collect();
+    // Rows that one fold holds out, as is usual, are in the sum of what folds hold out already.
+    let rest = held_out.iter().fold(all.to_vec(), |a, b| difference(&a, b));
+    let of_held_out: Vec<Vec<f64>> = held_out.iter().map(|rows| gram.times(rows)).collect();
+    let mut of_all = gram.times(&rest);
+    for sums in &of_held_out {
+        of_all.iter_mut().zip(sums).for_each(|(a, b)| *a += b);
+    }
+    let of_fold = of_held_out.iter().map(|sums| difference(&of_all, sums));
+    of_fold.collect()
 }
 
 fn difference(a: &[f64], b: &[f64]) -> Vec<f64> {
@@ -154,32 +165,56 @@ mod tests {
             tolerance: 1e-9,
             memory: usize::MAX,
         };
-        let mut last: Option<FoldPath> = None;
-        for fold in 0..3 {
-            let labels: Vec<f64> = all.iter().map(|&at| label(at, fold)).collect();
-            let rows: Vec<usize> = (0..N).filter(|at| at % 3 != fold).collect();
-            let own: Vec<f64> = rows.iter().map(|&at| labels[at]).collect();
-            let mut part = gram(&rows);
-            let mut alone = Smo::new(&mut part, &own);
-            let of_class = FoldPath::of_class(&mut whole, labels.clone(), goal);
-            let path = FoldPath::of_pair(&mut whole, (labels, &POSITIVE), last.as_ref(), goal);
-            for (number, &c) in goal.path.iter().enumerate() {
-                let expected = alone.solve(c, goal.tolerance);
-                for found in [&path.solutions[number], &of_class.solutions[number]] {
-                    assert!((found.rho - expected.rho).abs() < 1e-6, "{fold} {c}");
-                    for at in 0..N {
-                        let terms = rows.iter().zip(&expected.coefficients);
-                        let sum: f64 = terms.map(|(&row, beta)| beta * kernel(row, at)).sum();
-                        let f = label(at, fold) - sum;
-                        assert!((found.f[at] - f).abs() < 1e-6, "{fold} {c} {at}");
-                    }
-                    assert!(
-                        all.iter()
-                            .all(|at| at % 3 != fold || found.beta[*at] == 0.0)
-                    );
+        let folds: Vec<Vec<f64>> = (0..3)
+            .map(|fold| all.iter().map(|&at| label(at, fold)).collect())
+            .collect();
+        let mut fold = 0;
+        FoldPath::of_pair(&mut whole, (folds.clone(), &POSITIVE), goal, |path| {
+            assert_is_alone(path, fold, goal);
+            fold += 1;
+        });
+        FoldPath::of_class(&mut whole, folds, goal, |path| {
+            assert_is_alone(path, fold - 3, goal);
+            fold += 1;
+        });
+        assert_eq!(fold, 6);
+    }
+
+    /// A fold's solutions are those of its rows alone.
+    fn assert_is_alone(path: &FoldPath, fold: usize, goal: Goal) {
+        let rows: Vec<usize> = (0..N).filter(|at| at % 3 != fold).collect();
+        let own: Vec<f64> = rows.iter().map(|&at| label(at, fold)).collect();
+        let mut part = gram(&rows);
+        let mut alone = Smo::new(&mut part, &own);
+        for (found, &c) in path.solutions.iter().zip(goal.path) {
+            let expected = alone.solve(c, goal.tolerance);
+            assert!((found.rho - expected.rho).abs() < 1e-6, "{fold} {c}");
+            for at in 0..N {
+                let terms = rows.iter().zip(&expected.coefficients);
+                let sum: f64 = terms.map(|(&row, beta)| beta * kernel(row, at)).sum();
+                let f = label(at, fold) - sum;
+                assert!((found.f[at] - f).abs() < 1e-6, "{fold} {c} {at}");
+                assert!(at % 3 != fold || found.beta[at] == 0.0);
+            }
+        }
+    }
+
+    #[test]
+    fn sums_of_folds_are_the_gram_matrix_times_their_labels() {
+        let mut whole = gram(&(0..N).collect::<Vec<_>>());
+        let label = |at: usize| if POSITIVE.contains(&at) { 1.0 } else { -1.0 };
+        let all: Vec<f64> = (0..N).map(label).collect();
+        // Rows that one fold holds out, that two do and that none does.
+        for held_out in [[0, 1, 2], [0, 1, 1], [0, 0, 0]] {
+            let kept = |fold: usize, at: usize| f64::from(u8::from(at % 3 != held_out[fold]));
+            let labels = |fold: usize| (0..N).map(|at| all[at] * kept(fold, at)).collect();
+            let folds: Vec<Vec<f64>> = (0..3).map(labels).collect();
+            let found = sums_of_folds(&mut whole, &all, &folds);
+            for (found, labels) in found.iter().zip(&folds) {
+                for (found, expected) in found.iter().zip(whole.times(labels)) {
+                    assert!((found - expected).abs() < 1e-12, "{found} {expected}");
                 }
             }
-            last = Some(path);
         }
     }
 }

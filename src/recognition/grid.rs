@@ -1,14 +1,15 @@
 //! Cross-validation of a whole grid of C and kernels on one matrix of products.
 //!
-//! All folds and all candidates are parts of the same n × n products: a kernel is made of them once, and a pair's part of
-//! it is brought together once for all folds, which [leave rows out](crate::recognition::fold_path). Along C each solution
-//! starts from the last, that of a pair at the first C from all multipliers at their bounds and, from the second fold on,
+//! All folds and all candidates share the products of rows with each other: a pair's part of a kernel is made of them once for
+//! all folds, which [leave rows out](crate::recognition::fold_path). Along C each solution starts from the last, that of a pair
+//! at the first C from all multipliers at their bounds and, from the second fold on,
 //! [from that of the fold before](crate::recognition::seed) where that is nearer. Validation rows are
 //! [judged](crate::recognition::judgement) by their own class's problems first.
 
 use ndarray::Array2;
 
 use crate::recognition::class_columns::ClassColumns;
+use crate::recognition::class_products::ClassProducts;
 use crate::recognition::fold_path::FoldPath;
 use crate::recognition::judgement::Judgement;
 use crate::recognition::kernel::KernelFunction;
@@ -49,24 +50,33 @@ impl<T: Scalar> Grid<'_, T> {
     /// Validation rows recognised, over all folds, per kernel and C (kernels.len() × path.len()), and solves stopped at the
     /// iteration cap.
     pub fn n_correct(&self, kernels: &[KernelFunction], goal: Goal) -> (Array2<usize>, usize) {
-        let all = self.sorted.points().all();
-        let products = all.packed().own_products();
+        let (points, ranges) = (self.sorted.points(), self.sorted.ranges());
+        let products = ClassProducts::new(points.all(), ranges);
         let folds: Vec<Fold> = self.folds.iter().map(|split| self.fold(split)).collect();
         let mut counts = Array2::zeros((kernels.len(), goal.path.len()));
         let mut n_capped = 0;
-        let columns = ClassColumns::new(self.sorted.ranges());
-        let (points, ranges) = (self.sorted.points(), self.sorted.ranges());
-        let mut rooms = Vec::new();
+        let columns = ClassColumns::new(ranges);
+        let (mut rooms, mut later_room) = (Vec::new(), Vec::new());
         for (&kernel, mut counts) in kernels.iter().zip(counts.rows_mut()) {
-            let kernel = ProductKernel::new(points, products.view(), kernel, ranges);
+            let kernel = ProductKernel::new(points, &products, kernel);
             for folds in folds.chunks(FOLDS_AT_ONCE) {
                 rooms.resize(folds.len(), Vec::new());
                 let judgements = self.judge(folds, (&columns, &mut rooms), &kernel, goal);
+                for class in 0..ranges.len() {
+                    let doubtful = judgements.iter().flat_map(|some| some.doubtful(class));
+                    let mut doubtful: Vec<usize> = doubtful.collect();
+                    doubtful.sort_unstable();
+                    doubtful.dedup();
+                    let later = kernel.later(class, doubtful, later_room);
+                    for judgement in &judgements {
+                        let write = |row, to: &mut _| kernel.write_row((class, row), &later, to);
+                        let both = counts.iter_mut().zip(judgement.n_right(class, write));
+                        both.for_each(|(count, n_right)| *count += n_right);
+                    }
+                    later_room = later.into_room();
+                }
                 for (judgement, room) in judgements.into_iter().zip(&mut rooms) {
                     n_capped += judgement.n_capped();
-                    let n_right = judgement.n_right(|row, to| kernel.write_row(row, to));
-                    let both = counts.iter_mut().zip(n_right);
-                    both.for_each(|(count, n_right)| *count += n_right);
                     *room = judgement.into_room();
                 }
             }
@@ -104,39 +114,31 @@ impl<T: Scalar> Grid<'_, T> {
         let folds_and_rooms = folds.iter().zip(rooms);
         let judgement = |(fold, room)| self.judgement(fold, (columns, room), goal);
         let mut judgements: Vec<Judgement<T>> = folds_and_rooms.map(judgement).collect();
-        let (mut gram, mut between) = (Dense::default(), Vec::new());
+        let mut gram = Dense::default();
         if self.multiclass == Multiclass::OneVsRest {
             kernel.write_all(&mut gram);
         }
         for problem in self.problems() {
-            let rows = self.rows(problem);
             if let (positive, Some(negative)) = problem {
-                kernel.write_pair((positive, negative), &mut between, &mut gram);
+                kernel.write_pair((positive, negative), &mut gram);
             }
-            // The fold before.
-            let mut last: Option<FoldPath> = None;
-            for (fold, judgement) in folds.iter().zip(&mut judgements) {
-                let takes_part = |class: usize| fold.is_class[class];
-                if !takes_part(problem.0) || !problem.1.is_none_or(takes_part) {
-                    continue;
+            let takes_part = |fold: &Fold, class: usize| fold.is_class[class];
+            let both = folds.iter().zip(&mut judgements).filter(|(fold, _)| {
+                takes_part(fold, problem.0) && problem.1.is_none_or(|class| takes_part(fold, class))
+            });
+            let (folds, judgements): (Vec<&Fold>, Vec<_>) = both.unzip();
+            let labels = self.labels(problem, &folds);
+            let mut judgements = judgements.into_iter();
+            let judge = |path: &FoldPath| {
+                let judgement = judgements.next().expect("each fold has one");
+                take(judgement, problem, path, columns);
+            };
+            match problem.1 {
+                Some(_) => {
+                    let positive = 0..self.sorted.ranges()[problem.0].len();
+                    FoldPath::of_pair(&mut gram, (labels, &positive), goal, judge);
                 }
-                let path = self.solve((problem, &rows), fold, last.as_ref(), goal, &mut gram);
-                if let (positive, Some(negative)) = problem {
-                    let [first, second] = [positive, negative].map(|at| &columns.ranges()[at]);
-                    let place = |row: usize| match first.contains(&row) {
-                        true => row - first.start,
-                        false => first.len() + row - second.start,
-                    };
-                    for (number, solution) in path.solutions.iter().enumerate() {
-                        let sum = |row: usize| -solution.f[place(row)];
-                        judgement.look((positive, negative), number, (sum, solution.rho));
-                    }
-                }
-                for (number, solution) in path.solutions.iter().enumerate() {
-                    let is_last = number > 0 && path.solutions[number - 1].beta == solution.beta;
-                    judgement.take(problem, solution, is_last);
-                }
-                last = Some(path);
+                None => FoldPath::of_class(&mut gram, labels, goal, judge),
             }
         }
         judgements
@@ -166,33 +168,46 @@ impl<T: Scalar> Grid<'_, T> {
         problems
     }
 
-    /// The rows of a problem, ascending.
-    fn rows(&self, (positive, negative): (usize, Option<usize>)) -> Vec<usize> {
-        match negative {
-            Some(negative) => self.sorted.pair_rows(positive, negative),
-            None => (0..self.sorted.points().len()).collect(),
-        }
-    }
-
-    /// Solves a fold's problem for every C.
-    fn solve(
+    /// The labels of a problem's rows in each fold, 0 where it holds a row out.
+    fn labels(
         &self,
-        (problem, rows): ((usize, Option<usize>), &[usize]),
-        fold: &Fold,
-        last: Option<&FoldPath>,
-        goal: Goal,
-        gram: &mut Dense<T>,
-    ) -> FoldPath {
-        let own = &self.sorted.ranges()[problem.0];
-        let label = |row: &usize| match (fold.is_training[*row], own.contains(row)) {
-            (false, _) => 0.0,
-            (true, true) => 1.0,
-            (true, false) => -1.0,
+        (positive, negative): (usize, Option<usize>),
+        folds: &[&Fold],
+    ) -> Vec<Vec<f64>> {
+        let ranges = self.sorted.ranges();
+        let all = 0..self.sorted.points().len();
+        let rows = match negative {
+            Some(negative) => ranges[positive].clone().chain(ranges[negative].clone()),
+            None => all.chain(0..0),
         };
-        let labels: Vec<f64> = rows.iter().map(label).collect();
-        match problem.1 {
-            Some(_) => FoldPath::of_pair(gram, (labels, &(0..own.len())), last, goal),
-            None => FoldPath::of_class(gram, labels, goal),
+        let label = |fold: &Fold, row: usize| match fold.is_training[row] {
+            false => 0.0,
+            true if ranges[positive].contains(&row) => 1.0,
+            true => -1.0,
+        };
+        let of_fold = |fold: &&Fold| rows.clone().map(|row| label(fold, row)).collect();
+        folds.iter().map(of_fold).collect()
+    }
+}
+
+/// Judges the validation rows of a fold by its solutions of a problem.
+fn take<T: Scalar>(
+    judgement: &mut Judgement<T>,
+    problem: (usize, Option<usize>),
+    path: &FoldPath,
+    columns: &ClassColumns,
+) {
+    for (number, solution) in path.solutions.iter().enumerate() {
+        if let (positive, Some(negative)) = problem {
+            let [first, second] = [positive, negative].map(|at| &columns.ranges()[at]);
+            let place = |row: usize| match first.contains(&row) {
+                true => row - first.start,
+                false => first.len() + row - second.start,
+            };
+            let sum = |row: usize| -solution.f[place(row)];
+            judgement.look((positive, negative), number, (sum, solution.rho));
         }
+        let is_last = number > 0 && path.solutions[number - 1].beta == solution.beta;
+        judgement.take(problem, solution, is_last);
     }
 }

@@ -1,40 +1,39 @@
 //! Which validation rows of a fold are recognised, without all decision values.
 //!
-//! One-vs-one elects the class with most votes. A row that its own class wins in each of that class's problems is recognised,
-//! whatever the others say: every other class has lost one. A row whose own class has lost some is not, if another class has
-//! lost fewer. The class that the own one lost to is asked first, and none further than it has lost too many.
+//! What its own class's problems say of a row is noted as they are solved; rows that are in doubt then are
+//! [put to the vote](crate::recognition::election) of all.
 
 use std::ops::Range;
 
 use ndarray::Array2;
 
-use crate::recognition::class_columns::{ClassColumns, Products};
+use crate::recognition::class_columns::ClassColumns;
 use crate::recognition::fold_path::FoldSolution;
 use crate::recognition::scalar::Scalar;
 use crate::recognition::svm::Multiclass;
 
 /// What validation needs of a problem's solution.
-struct Solved {
+pub(super) struct Solved {
     /// Where β of the rows of its classes is, as [`ClassColumns::spread_some`] lays it out.
-    beta: Range<usize>,
-    rho: f64,
+    pub(super) beta: Range<usize>,
+    pub(super) rho: f64,
     is_capped: bool,
 }
 
 /// The validation rows of a fold, and its problems as they are solved.
 pub(crate) struct Judgement<'a, T> {
     /// Rows whose class is trained on, ascending, with the position of that class.
-    rows: Vec<(usize, usize)>,
-    columns: &'a ClassColumns,
+    pub(super) rows: Vec<(usize, usize)>,
+    pub(super) columns: &'a ClassColumns,
     /// The classes that are trained on.
-    classes: Vec<usize>,
-    multiclass: Multiclass,
+    pub(super) classes: Vec<usize>,
+    pub(super) multiclass: Multiclass,
     /// For each row and C how many problems the row's own class loses, and one that it loses to.
-    lost: Array2<(usize, usize)>,
+    pub(super) lost: Array2<(usize, usize)>,
     /// In the order of [`Multiclass::problems`], along C; empty where a class is not trained on.
-    problems: Vec<Vec<Solved>>,
+    pub(super) problems: Vec<Vec<Solved>>,
     /// β of all problems.
-    beta: Vec<T>,
+    pub(super) beta: Vec<T>,
 }
 
 impl<'a, T: Scalar> Judgement<'a, T> {
@@ -111,9 +110,7 @@ impl<'a, T: Scalar> Judgement<'a, T> {
         (sum, rho): (impl Fn(usize) -> f64, f64),
     ) {
         for (class, rival) in [(positive, negative), (negative, positive)] {
-            let first = self.rows.partition_point(|row| row.1 < class);
-            let own = first..self.rows.partition_point(|row| row.1 <= class);
-            for at in own {
+            for at in self.of_class(class) {
                 if (sum(self.rows[at].0) > rho) != (class == positive) {
                     let lost = &mut self.lost[[at, number]];
                     *lost = (lost.0 + 1, rival);
@@ -124,96 +121,27 @@ impl<'a, T: Scalar> Judgement<'a, T> {
 
     /// Where the problem of two classes is, the first of which comes first.
     #[inline(always)]
-    fn pair(&self, first: usize, second: usize) -> usize {
+    pub(super) fn pair(&self, first: usize, second: usize) -> usize {
         let n_classes = self.columns.ranges().len();
         first * (2 * n_classes - first - 1) / 2 + second - first - 1
     }
 
-    /// Rows recognised, by C; `write_row` writes the kernel values of a row with all.
-    pub fn n_right(&self, mut write_row: impl FnMut(usize, &mut Vec<T>)) -> Vec<usize> {
-        let mut n_right = vec![0; self.lost.ncols()];
-        let (mut all, mut values) = (Vec::new(), Vec::new());
-        for (&(row, own), lost) in self.rows.iter().zip(self.lost.rows()) {
-            let is_pairs = self.multiclass == Multiclass::OneVsOne;
-            if !is_pairs || lost.iter().any(|lost| lost.0 > 0) {
-                write_row(row, &mut all);
-                self.columns.spread(&all, &mut values);
-            }
-            for (number, (&lost, n_right)) in lost.iter().zip(&mut n_right).enumerate() {
-                let is_right = match lost {
-                    _ if !is_pairs => largest(self, number, &values) == own,
-                    (0, _) => true,
-                    lost => is_elected(self, number, &values, (own, lost)),
-                };
-                *n_right += usize::from(is_right);
-            }
-        }
-        n_right
+    /// The rows of a class whose kernel values with all are asked for, ascending: their own class has lost some problem.
+    pub fn doubtful(&self, class: usize) -> impl Iterator<Item = usize> + '_ {
+        let own = self.of_class(class).filter(|&at| self.is_doubtful(at));
+        own.map(|at| self.rows[at].0)
     }
 
-    /// Whether the first of two classes wins, which may come after the second.
-    #[inline(always)]
-    fn wins(&self, number: usize, values: &[T], (first, second): (usize, usize)) -> bool {
-        let (positive, negative) = (first.min(second), first.max(second));
-        let solved = &self.problems[self.pair(positive, negative)][number];
-        let own = self.columns.of_class(positive, values);
-        let (left, right) = self.beta[solved.beta.clone()].split_at(own.len());
-        let others = self.columns.of_class(negative, values);
-        let mut products = Products::new();
-        products.add(own, left);
-        products.add(others, right);
-        (products.sum().wide() > solved.rho) == (first == positive)
+    pub(super) fn is_doubtful(&self, at: usize) -> bool {
+        let is_pairs = self.multiclass == Multiclass::OneVsOne;
+        !is_pairs || self.lost.row(at).iter().any(|lost| lost.0 > 0)
     }
-}
 
-/// Whether a class has most votes on a row, of equals as the first, given the kernel values with it, in how many problems it
-/// loses and one that it loses to.
-#[multiversion::multiversion(targets("x86_64+avx512f", "x86_64+avx2+fma"))]
-fn is_elected<T: Scalar>(
-    judgement: &Judgement<T>,
-    number: usize,
-    values: &[T],
-    (own, (n_lost, rival)): (usize, (usize, usize)),
-) -> bool {
-    let classes = &judgement.classes[..];
-    for at in 0..=classes.len() {
-        let class = if at == 0 { rival } else { classes[at - 1] };
-        // Which would have as many votes, and come first, or more.
-        let n_allowed = if class < own { n_lost } else { n_lost - 1 };
-        if class == own || (at > 0 && class == rival) {
-            continue;
-        }
-        let mut n_lost = 0;
-        for &other in classes {
-            if other != class && !judgement.wins(number, values, (class, other)) {
-                n_lost += 1;
-                if n_lost > n_allowed {
-                    break;
-                }
-            }
-        }
-        if n_lost <= n_allowed {
-            return false;
-        }
+    /// Where the rows of a class are.
+    pub(super) fn of_class(&self, class: usize) -> Range<usize> {
+        let first = self.rows.partition_point(|row| row.1 < class);
+        first..self.rows.partition_point(|row| row.1 <= class)
     }
-    true
-}
-
-/// The class with the largest decision value on a row, of equals the first.
-#[multiversion::multiversion(targets("x86_64+avx512f", "x86_64+avx2+fma"))]
-fn largest<T: Scalar>(judgement: &Judgement<T>, number: usize, values: &[T]) -> usize {
-    let (mut largest, mut winner) = (f64::NEG_INFINITY, 0);
-    for &class in &judgement.classes {
-        let solved = &judgement.problems[class][number];
-        let beta = &judgement.beta[solved.beta.clone()];
-        let mut products = Products::new();
-        products.add(values, beta);
-        let value = products.sum().wide() - solved.rho;
-        if value > largest {
-            (largest, winner) = (value, class);
-        }
-    }
-    winner
 }
 
 #[cfg(test)]
@@ -305,11 +233,17 @@ mod tests {
                         .count()
                 })
                 .collect();
-            assert_eq!(
-                judgement.n_right(|row, to| *to = kernel.row(row).to_vec()),
-                expected,
-                "{multiclass:?}"
-            );
+            let mut found = vec![0; C.len()];
+            for class in 0..4 {
+                let doubtful: Vec<usize> = judgement.doubtful(class).collect();
+                let n_right = judgement.n_right(class, |row, to| {
+                    assert!(doubtful.contains(&row));
+                    *to = kernel.row(row).to_vec();
+                });
+                let both = found.iter_mut().zip(n_right);
+                both.for_each(|(sum, n_right)| *sum += n_right);
+            }
+            assert_eq!(found, expected, "{multiclass:?}");
             assert!(
                 expected.iter().all(|&n| n > 3 && n < rows.len()),
                 "{expected:?}"

@@ -60,6 +60,15 @@ impl<'a, T: Scalar> Packed<'a, T> {
         }
     }
 
+    /// `z_i · z_j` of all these for j up to i: row i into as many values as are given, at least up to its own; some of the others
+    /// are written, too. `false`, and nothing written, where there is no fast way.
+    pub fn multiply_up_to_own(&self, to: &mut [&mut [T]]) -> bool {
+        let all = in_place(&self.rows);
+        let rows: Vec<&[T]> = (0..self.rows.nrows()).map(|row| all.row(row)).collect();
+        let multiply = |panels| T::multiply(panels, &rows, Wanted::UpToOwn, to);
+        self.panels.as_ref().is_some_and(multiply)
+    }
+
     fn by_panels(&self, left: ArrayView2<T>, wanted: Wanted, to: &mut ArrayViewMut2<T>) -> bool {
         assert_eq!(to.dim(), (left.nrows(), self.rows.nrows()));
         let Some(panels) = &self.panels else {
@@ -105,7 +114,7 @@ fn in_place<'a, T>(rows: &ArrayView2<'a, T>) -> Rows<'a, T> {
 }
 
 /// Copies what is below the diagonal to above it, in tiles that stay in the cache.
-fn mirror<T: Copy>(square: &mut ArrayViewMut2<T>) {
+pub(crate) fn mirror<T: Copy>(square: &mut ArrayViewMut2<T>) {
     let n = square.nrows();
     for top in (0..n).step_by(TILE) {
         for left in (0..=top).step_by(TILE) {

@@ -193,10 +193,11 @@ impl<'a, T: Scalar> PointsView<'a, T> {
         match *kernel {
             KernelFunction::Linear => {}
             KernelFunction::Rbf { gamma } => {
-                let norms = others.norms.to_vec();
+                let norms = others.norms.to_slice();
+                let norms = norms.expect("norms are stored one by one");
                 for (mut row, &norm) in products.rows_mut().into_iter().zip(self.norms) {
                     let row = row.as_slice_mut().expect("rows of products are contiguous");
-                    distances(row, norm, &norms);
+                    distances(row, norm, norms);
                     T::exponentials(row, gamma);
                 }
             }

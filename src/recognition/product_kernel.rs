@@ -1,85 +1,128 @@
 //! Kernel values made of the products of all rows when they are asked for: those within classes once, those between two when
 //! their pair is solved, those of a row when it is judged.
 
-use std::ops::Range;
+use ndarray::{Array2, ArrayViewMut2, s};
 
-use ndarray::{Array2, ArrayView2, ArrayViewMut2, s};
-
+use crate::recognition::class_products::ClassProducts;
 use crate::recognition::kernel::KernelFunction;
+use crate::recognition::packed::mirror;
 use crate::recognition::points::Points;
 use crate::recognition::scalar::Scalar;
 use crate::recognition::smo::Dense;
+use crate::recognition::transposed::write_some_columns;
 
 /// A kernel on rows whose products are known.
 pub(crate) struct ProductKernel<'a, T> {
     points: &'a Points<T>,
-    /// n × n.
-    products: ArrayView2<'a, T>,
+    products: &'a ClassProducts<T>,
     kernel: KernelFunction,
-    /// The rows of each class, and their kernel values with each other.
-    classes: Vec<(Range<usize>, Array2<T>)>,
+    /// Values of the rows of each class with each other.
+    within: Vec<Array2<T>>,
 }
 
 impl<'a, T: Scalar> ProductKernel<'a, T> {
-    /// Of rows whose products are these (n × n), and the rows of each class.
+    /// Of rows whose products are these.
     pub fn new(
         points: &'a Points<T>,
-        products: ArrayView2<'a, T>,
+        products: &'a ClassProducts<T>,
         kernel: KernelFunction,
-        ranges: &[Range<usize>],
     ) -> Self {
         let mut own = Self {
             points,
             products,
             kernel,
-            classes: Vec::new(),
+            within: Vec::new(),
         };
-        for range in ranges {
+        for (class, range) in products.ranges().iter().enumerate() {
             let mut values = Array2::zeros((range.len(), range.len()));
-            own.write((range, range), values.view_mut());
-            own.classes.push((range.clone(), values));
+            own.write((class, class), values.view_mut());
+            own.within.push(values);
         }
         own
     }
 
-    /// Writes the kernel values of some rows with others.
-    fn write(&self, (rows, others): (&Range<usize>, &Range<usize>), mut to: ArrayViewMut2<T>) {
-        let products = self.products.slice(s![rows.clone(), others.clone()]);
-        for (mut to, products) in to.rows_mut().into_iter().zip(products.rows()) {
-            match (to.as_slice_mut(), products.to_slice()) {
-                (Some(to), Some(products)) => to.copy_from_slice(products),
-                _ => to.assign(&products),
-            }
+    /// Writes the kernel values of the rows of a class with those of one that is not after it.
+    fn write(&self, (class, other): (usize, usize), mut to: ArrayViewMut2<T>) {
+        let ranges = self.products.ranges();
+        let (rows, others) = (ranges[class].clone(), ranges[other].clone());
+        for (row, mut to) in rows.clone().zip(to.rows_mut()) {
+            let to = to.as_slice_mut().expect("rows of values are contiguous");
+            to.copy_from_slice(&self.products.of_row(class, row)[others.clone()]);
         }
-        let others = self.points.range(others.clone());
-        let rows = self.points.range(rows.clone());
+        let (rows, others) = (self.points.range(rows), self.points.range(others));
         rows.apply(to, others, &self.kernel);
     }
 
     /// Those of all rows with each other.
     pub fn write_all(&self, to: &mut Dense<T>) {
-        let all = 0..self.points.len();
-        let mut values = Array2::zeros(self.products.dim());
-        self.write((&all, &all), values.view_mut());
+        let n = self.points.len();
+        let mut values = Array2::zeros((n, n));
+        for (class, range) in self.products.ranges().iter().enumerate() {
+            let products = self.products.of_class(class);
+            let own = s![range.clone(), ..range.end];
+            values.slice_mut(own).assign(&products);
+        }
+        mirror(&mut values.view_mut());
+        let all = self.points.all();
+        all.apply(values.view_mut(), all, &self.kernel);
         to.of_whole(values.view());
     }
 
-    /// Those of the rows of two classes with each other; `between` is room for some of them.
-    pub fn write_pair(&self, (a, b): (usize, usize), between: &mut Vec<T>, to: &mut Dense<T>) {
-        let [(first, own), (second, others)] = [a, b].map(|class| &self.classes[class]);
-        let size = (first.len(), second.len());
-        between.resize(size.0 * size.1, T::zero());
-        let values = ArrayViewMut2::from_shape(size, &mut between[..]);
-        self.write((first, second), values.expect("room for all was made"));
-        to.of_blocks([own.view(), others.view()], between);
+    /// Those of the rows of two classes with each other, of which the first comes first.
+    pub fn write_pair(&self, (first, second): (usize, usize), to: &mut Dense<T>) {
+        let within = [first, second].map(|class| self.within[class].view());
+        to.of_blocks(within, |below| self.write((second, first), below));
     }
 
-    /// Those of a row with all.
-    pub fn write_row(&self, row: usize, to: &mut Vec<T>) {
-        to.resize(self.points.len(), T::zero());
+    /// Products of some rows of a class, ascending, with those of all classes after it.
+    pub fn later(&self, class: usize, rows: Vec<usize>, room: Vec<T>) -> Later<T> {
+        let ranges = self.products.ranges();
+        let own = &ranges[class];
+        let (n_later, mut values) = (self.points.len() - own.end, room);
+        values.resize(rows.len() * n_later, T::zero());
+        let places: Vec<usize> = rows.iter().map(|row| row - own.start).collect();
+        let later = (class + 1..ranges.len())
+            .flat_map(|class| ranges[class].clone().map(move |row| (class, row)));
+        let later = later.map(|(class, row)| &self.products.of_row(class, row)[own.clone()]);
+        let later: Vec<&[T]> = later.collect();
+        write_some_columns(&later, &places, &mut values, n_later);
+        Later {
+            rows,
+            n_later,
+            values,
+        }
+    }
+
+    /// Kernel values of a row of a class with all, given its products with [later](Self::later) classes.
+    pub fn write_row(&self, (class, row): (usize, usize), later: &Later<T>, to: &mut Vec<T>) {
+        to.clear();
+        to.extend_from_slice(self.products.of_row(class, row));
+        to.extend_from_slice(later.of_row(row));
         let values = ArrayViewMut2::from_shape((1, to.len()), &mut to[..]);
-        let rows = (&(row..row + 1), &(0..self.points.len()));
-        self.write(rows, values.expect("room for all was made"));
+        let values = values.expect("a row has a value with each");
+        let row = self.points.range(row..row + 1);
+        row.apply(values, self.points.all(), &self.kernel);
+    }
+}
+
+/// Products of some rows of a class with those of all later classes.
+pub(crate) struct Later<T> {
+    /// Ascending.
+    rows: Vec<usize>,
+    n_later: usize,
+    /// Row by row.
+    values: Vec<T>,
+}
+
+impl<T> Later<T> {
+    fn of_row(&self, row: usize) -> &[T] {
+        let at = self.rows.partition_point(|&before| before < row);
+        &self.values[at * self.n_later..][..self.n_later]
+    }
+
+    /// The room that it was given.
+    pub fn into_room(self) -> Vec<T> {
+        self.values
     }
 }
 
@@ -95,27 +138,34 @@ mod tests {
         let points = Points::<f64>::new(rows.view(), Array1::zeros(4).view());
         let kernel = KernelFunction::Rbf { gamma: 0.3 };
         let expected = points.all().own_kernel(&kernel);
-        let products = points.all().packed().own_products();
         let ranges = [0..9, 9..10, 10..23];
-        let found = ProductKernel::new(&points, products.view(), kernel, &ranges);
-        let mut values = Vec::new();
+        let products = ClassProducts::new(points.all(), &ranges);
+        let found = ProductKernel::new(&points, &products, kernel);
         let mut gram = Dense::default();
         for (a, b) in [(0, 1), (0, 2), (1, 2)] {
-            found.write_pair((a, b), &mut values, &mut gram);
+            found.write_pair((a, b), &mut gram);
             let rows: Vec<usize> = ranges[a].clone().chain(ranges[b].clone()).collect();
             assert_eq!(gram.len(), rows.len());
             for (i, &row) in rows.iter().enumerate() {
                 for (j, &other) in rows.iter().enumerate() {
-                    assert_eq!(gram.row(i)[j], expected[[row, other]]);
+                    assert!((gram.row(i)[j] - expected[[row, other]]).abs() < 1e-14);
                 }
                 assert!(gram.row(i)[rows.len()..].iter().all(|value| *value == 0.0));
             }
         }
         found.write_all(&mut gram);
-        for row in 0..23 {
-            found.write_row(row, &mut values);
-            assert_eq!(values, expected.row(row).to_vec());
-            assert_eq!(gram.row(row)[..23], values);
+        let (mut values, mut room) = (Vec::new(), Vec::new());
+        for (class, range) in ranges.iter().enumerate() {
+            let some: Vec<usize> = range.clone().step_by(2).collect();
+            let later = found.later(class, some.clone(), room);
+            for row in some {
+                found.write_row((class, row), &later, &mut values);
+                assert_eq!(gram.row(row)[..23], values);
+                for (value, expected) in values.iter().zip(expected.row(row)) {
+                    assert!((value - expected).abs() < 1e-14);
+                }
+            }
+            room = later.into_room();
         }
     }
 }

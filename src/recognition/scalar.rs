@@ -5,9 +5,11 @@ use ndarray::NdFloat;
 use crate::recognition::panels::{Panels, Wanted};
 use crate::recognition::row_products::Rows;
 use crate::recognition::row_tiles;
-use crate::recognition::smo::passes::{self, Down};
+use crate::recognition::smo::Gram;
+use crate::recognition::smo::iterations::{Search, Stop, run_plain};
 #[cfg(target_arch = "x86_64")]
 use crate::recognition::smo::passes_512;
+use crate::recognition::smo::variables::Variables;
 
 /// f32 or f64: what a Gram matrix holds.
 pub(crate) trait Scalar: NdFloat + Default {
@@ -22,23 +24,14 @@ pub(crate) trait Scalar: NdFloat + Default {
     fn products_in_place(_: &[&[Self]], _: &[&[Self]], _: &mut [Self]) -> bool {
         false
     }
-    /// The solver's [first pass](passes::step_along).
-    fn step_along(
-        f: &mut [Self],
-        rows: (&[Self], &[Self]),
-        step: Self,
-        up: &[Self],
-    ) -> Option<usize> {
-        passes::step_along(f, rows, step, up)
-    }
-    /// The solver's [second pass](passes::select_down).
-    fn select_down(
-        f_and_low: (&[Self], &[Self]),
-        inverses: &[Self],
-        highest: Self,
-        gains: &mut [Self],
-    ) -> Down<Self> {
-        passes::select_down(f_and_low, inverses, highest, gains)
+    /// The solver's [iterations](run_plain).
+    fn run<G: Gram<Self>>(
+        gram: &mut G,
+        variables: &mut Variables<Self>,
+        search: &mut Search,
+        first_look: u64,
+    ) -> Stop {
+        run_plain(gram, variables, search, first_look)
     }
     /// So many rows packed for products with others, where there is a fast way.
     fn panels(_: Rows<Self>, _: usize) -> Option<Panels> {
@@ -92,49 +85,27 @@ impl Scalar for f32 {
     }
 
     #[cfg(target_arch = "x86_64")]
-    fn step_along(
-        f: &mut [Self],
-        rows: (&[Self], &[Self]),
-        step: Self,
-        up: &[Self],
-    ) -> Option<usize> {
-        step_along_f32(f, rows, step, up)
-    }
-
-    #[cfg(target_arch = "x86_64")]
-    fn select_down(
-        f_and_low: (&[Self], &[Self]),
-        inverses: &[Self],
-        highest: Self,
-        gains: &mut [Self],
-    ) -> Down<Self> {
-        select_down_f32(f_and_low, inverses, highest, gains)
+    fn run<G: Gram<Self>>(
+        gram: &mut G,
+        variables: &mut Variables<Self>,
+        search: &mut Search,
+        first_look: u64,
+    ) -> Stop {
+        run_f32(gram, variables, search, first_look)
     }
 }
 
 #[cfg(target_arch = "x86_64")]
 #[multiversion::multiversion(targets("x86_64+avx512f"))]
-fn step_along_f32(f: &mut [f32], rows: (&[f32], &[f32]), step: f32, up: &[f32]) -> Option<usize> {
+fn run_f32<G: Gram<f32>>(
+    gram: &mut G,
+    variables: &mut Variables<f32>,
+    search: &mut Search,
+    first_look: u64,
+) -> Stop {
     multiversion::target::match_target! {
-        "x86_64+avx512f" => passes_512::step_along(f, rows, step, up),
-        _ => passes::step_along(f, rows, step, up),
-    }
-}
-
-#[cfg(target_arch = "x86_64")]
-#[multiversion::multiversion(targets("x86_64+avx512f"))]
-fn select_down_f32(
-    f_and_low: (&[f32], &[f32]),
-    inverses: &[f32],
-    highest: f32,
-    gains: &mut [f32],
-) -> Down<f32> {
-    multiversion::target::match_target! {
-        "x86_64+avx512f" => {
-            let _ = gains;
-            passes_512::select_down(f_and_low, inverses, highest)
-        }
-        _ => passes::select_down(f_and_low, inverses, highest, gains),
+        "x86_64+avx512f" => passes_512::run(gram, variables, search, first_look),
+        _ => run_plain(gram, variables, search, first_look),
     }
 }
 

@@ -17,6 +17,23 @@ pub(crate) fn write_columns<T: Copy>(rows: &[&[T]], to: &mut [T], stride: usize)
     }
 }
 
+/// Writes some values of each row as columns side by side: value `places[j]` of row `i` to `j · stride + i`.
+pub(crate) fn write_some_columns<T: Copy>(
+    rows: &[&[T]],
+    places: &[usize],
+    to: &mut [T],
+    stride: usize,
+) {
+    for (number, tile) in rows.chunks(TILE).enumerate() {
+        for (j, &place) in places.iter().enumerate() {
+            let to = &mut to[j * stride + number * TILE..][..tile.len()];
+            for (to, row) in to.iter_mut().zip(tile) {
+                *to = row[place];
+            }
+        }
+    }
+}
+
 fn write_tile<T: Copy>(rows: &[&[T]; TILE], to: &mut [T], stride: usize) {
     let n = rows[0].len();
     let mut columns = *rows;
@@ -47,6 +64,12 @@ mod tests {
                 let (j, i) = (at / stride, at % stride);
                 let expected = if i < n { i * m + j } else { usize::MAX };
                 assert_eq!(value, expected, "{n} {m}: {i} {j}");
+            }
+            let places: Vec<usize> = (0..m).step_by(2).collect();
+            let mut some = vec![usize::MAX; places.len() * stride];
+            write_some_columns(&rows, &places, &mut some, stride);
+            for (some, every) in some.chunks(stride).zip(to.chunks(stride).step_by(2)) {
+                assert_eq!(some, every, "{n} {m}");
             }
         }
     }

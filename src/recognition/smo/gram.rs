@@ -1,6 +1,6 @@
 //! Gram matrices as the solver reads them: two rows at a time, the diagonal, a weighted sum of rows, a part.
 
-use ndarray::{ArrayView1, ArrayView2};
+use ndarray::{ArrayView1, ArrayView2, ArrayViewMut2, s};
 
 use super::curvatures::InverseCurvatures;
 use super::passes::padded;
@@ -78,21 +78,32 @@ impl<T: Scalar> Dense<T> {
         self.refill(whole.nrows(), |i, to| copy(to, whole.row(i)));
     }
 
-    /// A symmetric matrix of two groups of rows: those within each, and those of the first with the second, row by row.
-    pub fn of_blocks(&mut self, [own, others]: [ArrayView2<T>; 2], between: &[T]) {
-        let (first, second) = (own.nrows(), others.nrows());
-        let across: Vec<&[T]> = between.chunks_exact(second.max(1)).collect();
-        self.refill(first + second, |at, to| {
-            let (left, right) = to.split_at_mut(first);
-            if at < first {
-                copy(left, own.row(at));
-                right.copy_from_slice(across[at]);
-            } else {
-                copy(right, others.row(at - first));
+    /// A symmetric matrix of two groups of rows: those within each, and those of the second with the first, which `write`
+    /// writes.
+    pub fn of_blocks(
+        &mut self,
+        [own, others]: [ArrayView2<T>; 2],
+        write: impl FnOnce(ArrayViewMut2<T>),
+    ) {
+        let n_first = own.nrows();
+        self.refill(n_first + others.nrows(), |at, to| {
+            let (left, right) = to.split_at_mut(n_first);
+            match at.checked_sub(n_first) {
+                None => copy(left, own.row(at)),
+                Some(at) => copy(right, others.row(at)),
             }
         });
-        let below = &mut self.values[first * self.stride..];
-        write_columns(&across, below, self.stride);
+        let (above, below) =
+            self.values[..self.n * self.stride].split_at_mut(n_first * self.stride);
+        let shape = (others.nrows(), self.stride);
+        let both = ArrayViewMut2::from_shape(shape, &mut *below);
+        let both = both.expect("there is room for all rows");
+        write(both.slice_move(s![.., ..n_first]));
+        let rows = below.chunks_exact(self.stride.max(1));
+        let rows: Vec<&[T]> = rows.map(|row| &row[..n_first]).collect();
+        if n_first > 0 {
+            write_columns(&rows, &mut above[n_first..], self.stride);
+        }
     }
 
     /// A row.

@@ -1,7 +1,7 @@
 //! The iterations: pairs of variables moved until the optimality conditions hold, or few variables are left to move.
 
 use super::gram::{Dense, Gram};
-use super::passes::select_up;
+use super::passes::{Down, select_down, select_up, step_along};
 use super::variables::Variables;
 use crate::recognition::scalar::Scalar;
 
@@ -36,7 +36,7 @@ pub(super) fn solve_part<T: Scalar>(
 }
 
 /// How far the search may go, and has gone.
-pub(super) struct Search {
+pub(crate) struct Search {
     pub tolerance: f64,
     pub most_iterations: u64,
     pub n_iterations: u64,
@@ -53,7 +53,7 @@ impl Search {
 }
 
 /// Why the iteration stopped.
-pub(super) enum Stop {
+pub(crate) enum Stop {
     /// Within the tolerance, or at the cap.
     Done,
     /// Only these variables may still move.
@@ -63,6 +63,35 @@ pub(super) enum Stop {
 /// Moves pairs of variables until the optimality conditions hold, iterations run out, or few variables are left to move.
 pub(super) fn run<T: Scalar, G: Gram<T>>(
     gram: &mut G,
+    variables: &mut Variables<T>,
+    search: &mut Search,
+    first_look: u64,
+) -> Stop {
+    T::run(gram, variables, search, first_look)
+}
+
+/// The same with the two passes of any processor.
+pub(crate) fn run_plain<T: Scalar, G: Gram<T>>(
+    gram: &mut G,
+    variables: &mut Variables<T>,
+    search: &mut Search,
+    first_look: u64,
+) -> Stop {
+    let passes = (select_down::<T>, step_along::<T>);
+    run_with((gram, passes), variables, search, first_look)
+}
+
+/// The same with these passes: what finds the variable to lower, given f, marks, inverse curvatures, the highest f and scratch;
+/// and what takes a step, given f, two rows, its length and marks, and finds the next variable to raise.
+#[inline(always)]
+pub(super) fn run_with<T: Scalar, G: Gram<T>>(
+    (gram, (select_down, step_along)): (
+        &mut G,
+        (
+            impl Fn((&[T], &[T]), &[T], T, &mut [T]) -> Down<T>,
+            impl Fn(&mut [T], (&[T], &[T]), T, &[T]) -> Option<usize>,
+        ),
+    ),
     variables: &mut Variables<T>,
     search: &mut Search,
     first_look: u64,
@@ -77,7 +106,7 @@ pub(super) fn run<T: Scalar, G: Gram<T>>(
         let highest = variables.f[i];
         let (inverses, smallest_curvature) = gram.inverse_curvatures(i);
         let state = (&variables.f[..], &variables.low[..]);
-        let down = T::select_down(state, inverses, highest, &mut variables.gains);
+        let down = select_down(state, inverses, highest, &mut variables.gains);
         let Some(j) = down.j.filter(|_| down.violation > tolerance) else {
             return Stop::Done;
         };
@@ -99,9 +128,37 @@ pub(super) fn run<T: Scalar, G: Gram<T>>(
         let step = variables.step(i, j, curvature.max(smallest_curvature.wide()));
         let (row_i, row_j) = gram.rows(i, j);
         let rows = (row_i, row_j);
-        match T::step_along(&mut variables.f, rows, T::of(step), &variables.up) {
+        match step_along(&mut variables.f, rows, T::of(step), &variables.up) {
             Some(next) => i = next,
             None => return Stop::Done,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use ndarray::Array2;
+
+    #[test]
+    fn the_passes_of_the_processor_go_the_same_way_to_the_bit() {
+        let n = 150;
+        let sign = |i: usize| if i.is_multiple_of(2) { 1.0 } else { -1.0 };
+        let at = |i: usize| (i as f64 * 1.7).sin() + 0.2 * sign(i);
+        let y: Vec<f64> = (0..n).map(sign).collect();
+        let mut gram = Dense::default();
+        for (gamma, c) in [(0.1, 1.0), (3.0, 10.0), (300.0, 0.1)] {
+            let kernel = |(i, j): (usize, usize)| (-gamma * (at(i) - at(j)).powi(2)).exp() as f32;
+            gram.of_whole(Array2::from_shape_fn((n, n), kernel).view());
+            let start = Variables::<f32>::new(&vec![0.0; n], &y, &y, c);
+            let (mut found, mut expected) = (start.clone(), start);
+            let (mut search, mut plain) = (Search::new(100_000, 1e-4), Search::new(100_000, 1e-4));
+            run(&mut gram, &mut found, &mut search, 1);
+            run_plain(&mut gram, &mut expected, &mut plain, 1);
+            assert!(search.n_iterations > 10);
+            assert_eq!(search.n_iterations, plain.n_iterations);
+            assert_eq!(found.beta, expected.beta);
+            assert_eq!(found.f, expected.f);
         }
     }
 }

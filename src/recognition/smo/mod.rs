@@ -16,7 +16,7 @@
 mod cached;
 mod curvatures;
 mod gram;
-mod iterations;
+pub(crate) mod iterations;
 mod part;
 pub(crate) mod passes;
 #[cfg(target_arch = "x86_64")]
@@ -24,7 +24,7 @@ pub(crate) mod passes_512;
 mod reached;
 mod row_sums;
 mod start;
-mod variables;
+pub(crate) mod variables;
 
 pub(crate) use cached::Cached;
 pub(crate) use gram::{Dense, Gram, gather};

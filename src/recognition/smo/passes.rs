@@ -230,40 +230,6 @@ mod tests {
     }
 
     #[test]
-    fn the_passes_of_the_processor_find_the_same_to_the_bit() {
-        let n = 7 * LANES;
-        let single = |salt: f64| {
-            values(n, salt)
-                .iter()
-                .map(|v| *v as f32)
-                .collect::<Vec<_>>()
-        };
-        let marks = |every: usize| {
-            let mark = |i: usize| {
-                if i.is_multiple_of(every) {
-                    f32::NEG_INFINITY
-                } else {
-                    0.0
-                }
-            };
-            (0..n).map(mark).collect::<Vec<_>>()
-        };
-        let (row_i, row_j) = (single(0.1), single(0.5));
-        let inverses: Vec<f32> = single(2.0).iter().map(|v| v + 3.0).collect();
-        for (up, low) in [(marks(3), marks(4)), (marks(1), marks(1))] {
-            let (mut f, mut plain) = (single(0.9), single(0.9));
-            let next = f32::step_along(&mut f, (&row_i, &row_j), 0.3, &up);
-            assert_eq!(next, step_along(&mut plain, (&row_i, &row_j), 0.3, &up));
-            assert_eq!(f, plain);
-            let mut gains = vec![0.0; n];
-            let state = (&f[..], &low[..]);
-            let found = f32::select_down(state, &inverses, 0.8, &mut gains);
-            let down = select_down(state, &inverses, 0.8, &mut gains);
-            assert_eq!((found.j, found.violation), (down.j, down.violation));
-        }
-    }
-
-    #[test]
     fn nothing_is_found_where_nothing_can_move() {
         let f = vec![1.0_f32; LANES];
         assert_eq!(select_up(&f, &[f32::NEG_INFINITY; LANES]), None);

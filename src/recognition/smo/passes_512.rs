@@ -7,10 +7,30 @@ use std::arch::x86_64::{
     _mm512_sub_ps,
 };
 
+use super::gram::Gram;
+use super::iterations::{Search, Stop, run_with};
 use super::passes::{Down, LANES};
+use super::variables::Variables;
 use crate::recognition::vector_registers::{load, store};
 
+/// See [`run`](super::iterations::run): the passes become one function with it.
+#[target_feature(enable = "avx512f")]
+pub(crate) fn run<G: Gram<f32>>(
+    gram: &mut G,
+    variables: &mut Variables<f32>,
+    search: &mut Search,
+    first_look: u64,
+) -> Stop {
+    let select = |state: (&[f32], &[f32]), inverses: &[f32], highest, _: &mut [f32]| {
+        select_down(state, inverses, highest)
+    };
+    let step =
+        |f: &mut [f32], rows: (&[f32], &[f32]), step, up: &[f32]| step_along(f, rows, step, up);
+    run_with((gram, (select, step)), variables, search, first_look)
+}
+
 /// See [`step_along`](super::passes::step_along).
+#[inline]
 #[target_feature(enable = "avx512f")]
 pub(crate) fn step_along(
     f: &mut [f32],
@@ -35,6 +55,7 @@ pub(crate) fn step_along(
 }
 
 /// See [`select_down`](super::passes::select_down).
+#[inline]
 #[target_feature(enable = "avx512f")]
 pub(crate) fn select_down((f, low): (&[f32], &[f32]), inverses: &[f32], highest: f32) -> Down<f32> {
     let f = lanes(f);

@@ -37,7 +37,7 @@ fn bounds(y: f64, c: f64) -> (f64, f64) {
 
 /// β and what the passes read of it; slices are padded to whole lanes with variables that cannot move.
 #[derive(Clone, Debug)]
-pub(super) struct Variables<T> {
+pub(crate) struct Variables<T> {
     /// `β_i = y_i a_i`.
     pub beta: Vec<f64>,
     y: Vec<f64>,
