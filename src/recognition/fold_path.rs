@@ -120,6 +120,7 @@ fn difference(a: &[f64], b: &[f64]) -> Vec<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::recognition::fit_progress::FitProgress;
     use ndarray::Array2;
 
     const N: usize = 45;
@@ -153,6 +154,7 @@ mod tests {
             path: &[0.05, 1.0, 20.0, 400.0],
             tolerance: 1e-9,
             memory: usize::MAX,
+            progress: FitProgress::default(),
         };
         let mut last: Option<FoldPath> = None;
         for fold in 0..3 {

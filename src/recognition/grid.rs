@@ -61,6 +61,11 @@ impl<T: Scalar> Grid<'_, T> {
             let kernel = ProductKernel::new(points, products.view(), kernel, ranges);
             for folds in folds.chunks(FOLDS_AT_ONCE) {
                 rooms.resize(folds.len(), Vec::new());
+                let share = folds.len() as f64 / (self.folds.len() * kernels.len()) as f64;
+                let goal = Goal {
+                    progress: goal.progress.part(share),
+                    ..goal
+                };
                 let judgements = self.judge(folds, (&columns, &mut rooms), &kernel, goal);
                 for (judgement, room) in judgements.into_iter().zip(&mut rooms) {
                     n_capped += judgement.n_capped();
@@ -108,7 +113,8 @@ impl<T: Scalar> Grid<'_, T> {
         if self.multiclass == Multiclass::OneVsRest {
             kernel.write_all(&mut gram);
         }
-        for problem in self.problems() {
+        let problems = self.problems();
+        for &problem in &problems {
             let rows = self.rows(problem);
             if let (positive, Some(negative)) = problem {
                 kernel.write_pair((positive, negative), &mut between, &mut gram);
@@ -138,6 +144,7 @@ impl<T: Scalar> Grid<'_, T> {
                 }
                 last = Some(path);
             }
+            goal.progress.done(1, problems.len());
         }
         judgements
     }
