@@ -16,7 +16,7 @@ pub struct BreakingPointsKind(BreakingPointsStudy);
 impl PieceKind for BreakingPointsKind {
     type Study = BreakingPointsStudy;
 
-    const WRITE_S: f64 = 5.0;
+    const WRITE_S: f64 = 6.0;
 
     fn load(args: &StudyArgs, packings: PathBuf) -> Result<Self> {
         Ok(Self(BreakingPointsStudy {

@@ -122,3 +122,32 @@ pub fn dispatch() -> Result<()> {
         Some(Command::Man(args)) => shell::man(&args),
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::CommandLine;
+    use clap::{Command, CommandFactory};
+    use std::collections::BTreeSet;
+
+    /// Clap asserts this itself, but only in builds with debug assertions.
+    fn names_are_unique(command: &Command) {
+        let own = command.get_arguments().map(clap::Arg::get_id);
+        let mut seen = BTreeSet::new();
+        for id in own.chain(command.get_groups().map(clap::ArgGroup::get_id)) {
+            assert!(seen.insert(id), "{}: '{id}' twice", command.get_name());
+        }
+        command.get_subcommands().for_each(names_are_unique);
+    }
+
+    #[test]
+    fn no_subcommand_has_two_options_or_groups_of_one_name() {
+        let command = CommandLine::command();
+        assert!(command.get_subcommands().count() > 10);
+        names_are_unique(&command);
+    }
+
+    #[test]
+    fn clap_finds_no_fault_with_any_subcommand() {
+        CommandLine::command().debug_assert();
+    }
+}

@@ -15,6 +15,7 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 #[derive(clap::Args)]
+#[group(id = "Poses", multiple = true)]
 pub struct Args {
     /// Instead of one place: press the object at every pose of a CSV file, to the depth past first contact or, without one, where
     /// it is. Columns x, y, z in metres and qw, qx, qy, qz: the object in the patch frame (taxels rest in the plane z = 0, axes

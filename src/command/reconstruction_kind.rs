@@ -18,7 +18,7 @@ pub struct ReconstructionKind(ReconstructionStudy);
 impl PieceKind for ReconstructionKind {
     type Study = ReconstructionStudy;
 
-    const WRITE_S: f64 = 1.0;
+    const WRITE_S: f64 = 6.0;
 
     fn load(args: &StudyArgs, packings: PathBuf) -> Result<Self> {
         let plan = args.reconstruction_plan()?;

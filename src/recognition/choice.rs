@@ -5,6 +5,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::recognition::dataset::{Dataset, check_labels, distinct, rows};
 use crate::recognition::extent::Extent;
+use crate::recognition::fit_progress::FitProgress;
 use crate::recognition::grid::Grid;
 use crate::recognition::kernel::{Gamma, Kernel, KernelFunction};
 use crate::recognition::scalar::Scalar;
@@ -60,15 +61,32 @@ pub fn choose(
     folds: &[Split],
     candidates: &Candidates,
 ) -> Result<Chosen> {
+    choose_telling(params, training, folds, candidates, FitProgress::default())
+}
+
+/// [`choose`], and says while it goes on how much of it is done.
+pub(crate) fn choose_telling(
+    params: &SvmParams,
+    training: &Dataset,
+    folds: &[Split],
+    candidates: &Candidates,
+    progress: FitProgress,
+) -> Result<Chosen> {
     let path = ascending(&candidates.c);
     params.check(&path)?;
     let extent = Extent::of(training.records.view())?;
     check_labels(training.records.nrows(), training.targets.view())?;
     check_folds(training, folds)?;
     let kernels = kernels(params, (training, &extent), &candidates.gamma_scales)?;
+    let goal = Goal {
+        path: &path,
+        tolerance: params.tolerance,
+        memory: params.memory_bytes,
+        progress,
+    };
     let (counts, n_capped) = match params.solver {
-        Solver::Smo => on_one_matrix(params, (training, &extent), folds, &kernels, &path)?,
-        _ => one_by_one(params, training, folds, &kernels, &path)?,
+        Solver::Smo => on_one_matrix(params, (training, &extent), folds, &kernels, goal)?,
+        _ => one_by_one(params, training, folds, &kernels, goal)?,
     };
     let n_validated: usize = folds.iter().map(|fold| fold.test.len()).sum();
     let tried = counts
@@ -220,28 +238,23 @@ fn on_one_matrix(
     (training, extent): (&Dataset, &Extent),
     folds: &[Split],
     kernels: &[KernelFunction],
-    path: &[f64],
+    goal: Goal,
 ) -> Result<(Array2<usize>, usize)> {
     let centre = extent.centre(&kernels[0]);
     let n_rows = training.records.nrows();
     let wants_double = |farthest: f64| {
         let mut kernels = kernels.iter();
-        kernels.any(|&kernel| params.wants_double(n_rows, kernel, path, farthest))
+        kernels.any(|&kernel| params.wants_double(n_rows, kernel, goal.path, farthest))
     };
     let data = (training, centre.view());
     if !wants_double(0.0) {
         let sorted = by_fold::<f32>(data, folds, kernels[0]);
         if !wants_double(sorted.farthest()) {
-            return grid(params, &sorted, folds, kernels, path);
+            return grid(params, &sorted, folds, kernels, goal);
         }
     }
-    grid(
-        params,
-        &by_fold::<f64>(data, folds, kernels[0]),
-        folds,
-        kernels,
-        path,
-    )
+    let sorted = by_fold::<f64>(data, folds, kernels[0]);
+    grid(params, &sorted, folds, kernels, goal)
 }
 
 /// Rows by class, and within a class by fold: what a fold trains on then lies in few runs.
@@ -263,7 +276,7 @@ fn grid<T: Scalar>(
     sorted: &Sorted<T>,
     folds: &[Split],
     kernels: &[KernelFunction],
-    path: &[f64],
+    goal: Goal,
 ) -> Result<(Array2<usize>, usize)> {
     // Three matrices at most: products, the kernel made of them, and the part that a fold trains on.
     let most = (params.memory_bytes / (3 * size_of::<T>())).isqrt();
@@ -275,11 +288,6 @@ fn grid<T: Scalar>(
             format!("at most {most} fit in memory; let fewer touches take part in the choice"),
         ));
     }
-    let goal = Goal {
-        path,
-        tolerance: params.tolerance,
-        memory: params.memory_bytes,
-    };
     let grid = Grid {
         sorted,
         folds,
@@ -294,9 +302,9 @@ fn one_by_one(
     training: &Dataset,
     folds: &[Split],
     kernels: &[KernelFunction],
-    path: &[f64],
+    goal: Goal,
 ) -> Result<(Array2<usize>, usize)> {
-    let mut counts = Array2::zeros((kernels.len(), path.len()));
+    let mut counts = Array2::zeros((kernels.len(), goal.path.len()));
     let mut n_capped = 0;
     for fold in folds {
         let fitting = rows(training, &fold.train)?;
@@ -306,12 +314,13 @@ fn one_by_one(
                 Some(gamma) => params.kernel.with_gamma(Gamma::Value(gamma)),
                 None => params.kernel,
             };
-            let models = SvmParams { kernel, ..*params }.train_path(&fitting, path)?;
+            let models = SvmParams { kernel, ..*params }.train_path(&fitting, goal.path)?;
             for (count, model) in counts.iter_mut().zip(models) {
                 let labels = model.labels(held_out.records.view())?;
                 *count += n_equal(&labels, &held_out.targets);
                 n_capped += model.n_capped();
             }
+            goal.progress.done(1, folds.len() * kernels.len());
         }
     }
     Ok((counts, n_capped))
@@ -324,6 +333,7 @@ mod tests {
     use crate::recognition::dataset::dataset;
     use crate::recognition::split::stratified_k_fold;
     use crate::recognition::svm::Multiclass;
+    use std::cell::Cell;
 
     /// Three overlapping classes.
     fn overlapping(n: usize) -> Dataset {
@@ -353,9 +363,19 @@ mod tests {
                 };
                 let extent = Extent::of(data.records.view()).unwrap();
                 let kernels = kernels(&params, (&data, &extent), &[0.3, 3.0]).unwrap();
-                let fast =
-                    on_one_matrix(&params, (&data, &extent), &folds, &kernels, &path).unwrap();
-                let slow = one_by_one(&params, &data, &folds, &kernels, &path).unwrap();
+                let done = Cell::new(0.0);
+                let add = |share: f64| done.set(done.get() + share);
+                let goal = Goal {
+                    path: &path,
+                    tolerance: params.tolerance,
+                    memory: params.memory_bytes,
+                    progress: FitProgress::to(&add),
+                };
+                let rows = (&data, &extent);
+                let fast = on_one_matrix(&params, rows, &folds, &kernels, goal).unwrap();
+                assert!((done.get() - 1.0).abs() < 1e-9, "{done:?}");
+                let slow = one_by_one(&params, &data, &folds, &kernels, goal).unwrap();
+                assert!((done.get() - 2.0).abs() < 1e-9, "{done:?}");
                 assert_eq!(fast, slow, "{kernel:?} {multiclass:?}");
                 assert_eq!(fast.0.nrows(), if kernel == Kernel::Linear { 1 } else { 2 });
             }

@@ -6,7 +6,7 @@
 //! [from that of the fold before](crate::recognition::seed) where that is nearer. Validation rows are
 //! [judged](crate::recognition::judgement) by their own class's problems first.
 
-use ndarray::Array2;
+use ndarray::{Array2, ArrayViewMut1};
 
 use crate::recognition::class_columns::ClassColumns;
 use crate::recognition::class_products::ClassProducts;
@@ -61,19 +61,14 @@ impl<T: Scalar> Grid<'_, T> {
             let kernel = ProductKernel::new(points, &products, kernel);
             for folds in folds.chunks(FOLDS_AT_ONCE) {
                 rooms.resize(folds.len(), Vec::new());
+                let share = folds.len() as f64 / (self.folds.len() * kernels.len()) as f64;
+                let goal = Goal {
+                    progress: goal.progress.part(share),
+                    ..goal
+                };
                 let judgements = self.judge(folds, (&columns, &mut rooms), &kernel, goal);
                 for class in 0..ranges.len() {
-                    let doubtful = judgements.iter().flat_map(|some| some.doubtful(class));
-                    let mut doubtful: Vec<usize> = doubtful.collect();
-                    doubtful.sort_unstable();
-                    doubtful.dedup();
-                    let later = kernel.later(class, doubtful, later_room);
-                    for judgement in &judgements {
-                        let write = |row, to: &mut _| kernel.write_row((class, row), &later, to);
-                        let both = counts.iter_mut().zip(judgement.n_right(class, write));
-                        both.for_each(|(count, n_right)| *count += n_right);
-                    }
-                    later_room = later.into_room();
+                    later_room = count_right(class, &judgements, &kernel, later_room, &mut counts);
                 }
                 for (judgement, room) in judgements.into_iter().zip(&mut rooms) {
                     n_capped += judgement.n_capped();
@@ -118,7 +113,8 @@ impl<T: Scalar> Grid<'_, T> {
         if self.multiclass == Multiclass::OneVsRest {
             kernel.write_all(&mut gram);
         }
-        for problem in self.problems() {
+        let problems = self.problems();
+        for &problem in &problems {
             if let (positive, Some(negative)) = problem {
                 kernel.write_pair((positive, negative), &mut gram);
             }
@@ -140,6 +136,7 @@ impl<T: Scalar> Grid<'_, T> {
                 }
                 None => FoldPath::of_class(&mut gram, labels, goal, judge),
             }
+            goal.progress.done(1, problems.len());
         }
         judgements
     }
@@ -188,6 +185,27 @@ impl<T: Scalar> Grid<'_, T> {
         let of_fold = |fold: &&Fold| rows.clone().map(|row| label(fold, row)).collect();
         folds.iter().map(of_fold).collect()
     }
+}
+
+/// Adds the rows of a class that are recognised in each fold, by C; returns the room that it was given.
+fn count_right<T: Scalar>(
+    class: usize,
+    judgements: &[Judgement<T>],
+    kernel: &ProductKernel<T>,
+    room: Vec<T>,
+    counts: &mut ArrayViewMut1<usize>,
+) -> Vec<T> {
+    let doubtful = judgements.iter().flat_map(|some| some.doubtful(class));
+    let mut doubtful: Vec<usize> = doubtful.collect();
+    doubtful.sort_unstable();
+    doubtful.dedup();
+    let later = kernel.later(class, doubtful, room);
+    for judgement in judgements {
+        let write = |row, to: &mut _| kernel.write_row((class, row), &later, to);
+        let both = counts.iter_mut().zip(judgement.n_right(class, write));
+        both.for_each(|(count, n_right)| *count += n_right);
+    }
+    later.into_room()
 }
 
 /// Judges the validation rows of a fold by its solutions of a problem.

@@ -59,6 +59,7 @@ mod extent;
 pub mod features;
 mod few_dimensions;
 mod first_rows;
+pub(crate) mod fit_progress;
 mod fold_path;
 mod free_variables;
 pub mod fusion;

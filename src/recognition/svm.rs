@@ -10,6 +10,7 @@ use crate::recognition::dataset::{Dataset, check_labels, distinct};
 use crate::recognition::decision::DecisionFunctions;
 use crate::recognition::dual::DualSolution;
 use crate::recognition::extent::Extent;
+use crate::recognition::fit_progress::FitProgress;
 use crate::recognition::kernel::{Kernel, KernelFunction};
 use crate::recognition::linfa_solver;
 use crate::recognition::scalar::Scalar;
@@ -150,6 +151,16 @@ impl SvmParams {
     /// # Errors
     /// As [`train`](Self::train).
     pub fn train_path(&self, data: &Dataset, path: &[f64]) -> Result<Vec<SvmModel>> {
+        self.train_path_telling(data, path, FitProgress::default())
+    }
+
+    /// [`train_path`](Self::train_path), and says while it goes on how much of it is done.
+    pub(crate) fn train_path_telling(
+        &self,
+        data: &Dataset,
+        path: &[f64],
+        progress: FitProgress,
+    ) -> Result<Vec<SvmModel>> {
         self.check(path)?;
         let extent = Extent::of(data.records.view())?;
         check_labels(data.records.nrows(), data.targets.view())?;
@@ -167,8 +178,14 @@ impl SvmParams {
         ascending.dedup();
         let centre = extent.centre(&kernel);
         let sorting = (data, &classes[..], kernel, centre.view());
+        let goal = Goal {
+            path: &ascending,
+            tolerance: self.tolerance,
+            memory: self.memory_bytes,
+            progress,
+        };
         let trained = match self.solver {
-            Solver::Smo => self.train_smo(sorting, &ascending),
+            Solver::Smo => self.train_smo(sorting, goal),
             Solver::Linfa => self.train_linfa(sorting, &ascending)?,
             Solver::CoordinateDescent => return Err(coordinate_descent_is_linear_only()),
         };
@@ -179,17 +196,17 @@ impl SvmParams {
         Ok(path.iter().map(|&c| trained[at(c)].clone()).collect())
     }
 
-    fn train_smo(&self, sorting: Sorting, path: &[f64]) -> Vec<SvmModel> {
+    fn train_smo(&self, sorting: Sorting, goal: Goal) -> Vec<SvmModel> {
         let (data, classes, kernel, centre) = sorting;
         let n_rows = data.records.nrows();
-        if !self.wants_double(n_rows, kernel, path, 0.0) {
+        if !self.wants_double(n_rows, kernel, goal.path, 0.0) {
             let sorted = Sorted::<f32>::new(data, classes, kernel, centre);
-            if !self.wants_double(n_rows, kernel, path, sorted.farthest()) {
-                return self.solve_sorted(sorted, path);
+            if !self.wants_double(n_rows, kernel, goal.path, sorted.farthest()) {
+                return self.solve_sorted(sorted, goal);
             }
         }
         let sorted = Sorted::<f64>::new(data, classes, kernel, centre);
-        self.solve_sorted(sorted, path)
+        self.solve_sorted(sorted, goal)
     }
 
     /// Whether f32 kernel values would not do for rows of which the farthest is so far from the centre (squared): few rows (then f64 costs nothing), a tolerance near f32's rounding, or
@@ -217,15 +234,10 @@ impl SvmParams {
             || largest > SINGLE_MOST
     }
 
-    fn solve_sorted<T: Scalar>(&self, sorted: Sorted<T>, path: &[f64]) -> Vec<SvmModel>
+    fn solve_sorted<T: Scalar>(&self, sorted: Sorted<T>, goal: Goal) -> Vec<SvmModel>
     where
         Decision: From<DecisionFunctions<T>>,
     {
-        let goal = Goal {
-            path,
-            tolerance: self.tolerance,
-            memory: self.memory_bytes,
-        };
         let trained = match self.multiclass {
             Multiclass::OneVsOne => sorted.one_vs_one(goal),
             _ => sorted.one_vs_rest(goal),

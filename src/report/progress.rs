@@ -64,6 +64,11 @@ impl Progress for Bar {
 
     fn worked(&self, piece: &Piece, took_s: f64) {
         self.clock.worked(piece, took_s);
+        if let Ok(current) = self.current.lock()
+            && let Some(bar) = current.as_ref()
+        {
+            bar.tick();
+        }
     }
 }
 

@@ -79,6 +79,15 @@ impl<W: Write> State<W> {
             self.write(&event);
         }
     }
+
+    fn tell_progress_now_and_then(&mut self, clock: &RunClock) {
+        if let Some(stage) = &mut self.stage
+            && stage.told.elapsed() >= INTERVAL
+        {
+            stage.told = Instant::now();
+            self.tell_progress(clock);
+        }
+    }
 }
 
 impl<W: Write + Send> Progress for JsonLines<W> {
@@ -104,10 +113,7 @@ impl<W: Write + Send> Progress for JsonLines<W> {
             return;
         };
         stage.done += n;
-        if stage.told.elapsed() >= INTERVAL {
-            stage.told = Instant::now();
-            state.tell_progress(&self.clock);
-        }
+        state.tell_progress_now_and_then(&self.clock);
     }
 
     fn expect(&self, work: &[Piece]) {
@@ -116,6 +122,9 @@ impl<W: Write + Send> Progress for JsonLines<W> {
 
     fn worked(&self, piece: &Piece, took_s: f64) {
         self.clock.worked(piece, took_s);
+        if let Ok(mut state) = self.state.lock() {
+            state.tell_progress_now_and_then(&self.clock);
+        }
     }
 
     fn finish(&self, message: &str) {
@@ -154,5 +163,23 @@ mod tests {
         assert_eq!(events[2]["event"], "stage");
         assert_eq!(events[3]["done"], 0);
         assert_eq!(events[4]["text"], "done");
+    }
+
+    #[test]
+    fn a_long_piece_is_told_of_before_any_step_of_its_stage_is_done() {
+        let lines = JsonLines::to(Vec::new());
+        let half = Piece::of_stage(0, 0, 1.0);
+        lines.expect(&[half, half]);
+        lines.stage("learn", 1);
+        lines.worked(&half, 1.0);
+        std::thread::sleep(INTERVAL);
+        lines.worked(&half, 1.0);
+        let text = String::from_utf8(lines.into_inner().unwrap()).unwrap();
+        let last: Value = serde_json::from_str(text.lines().last().unwrap()).unwrap();
+        assert_eq!(text.lines().count(), 2);
+        assert_eq!(
+            (&last["done"], &last["run_left_s"]),
+            (&json!(0), &json!(0.0))
+        );
     }
 }

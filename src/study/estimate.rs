@@ -105,7 +105,7 @@ impl Estimate {
             measure_s: n_trials as f64 * sweep.groups.iter().map(read_s).sum::<f64>(),
             recognise_s: n_trials as f64
                 * fits()
-                    .map(|cell| recognise_s(plan, cell, n_objects, n_touches))
+                    .map(|cell| learning(plan, cell, n_objects, n_touches).total_s())
                     .sum::<f64>(),
             n_threads,
         }
@@ -140,15 +140,33 @@ pub(super) fn measure_s(
     n_read * (SIGNAL_TAXEL_S + PROJECT_S * n_measurements as f64)
 }
 
+/// Processor-seconds of what is done for one C of a family in one trial.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Learning {
+    /// To choose C and γ by cross-validation.
+    pub choose_s: f64,
+    /// To train on all training rows.
+    pub train_s: f64,
+    /// To predict every test touch.
+    pub predict_s: f64,
+}
+
+impl Learning {
+    /// All of it.
+    pub fn total_s(&self) -> f64 {
+        self.choose_s + self.train_s + self.predict_s
+    }
+}
+
 /// Processor-seconds to fit and test a family in one trial.
 pub(super) fn family_s(plan: &Plan, family: &[Cell], n_objects: usize, n_touches: usize) -> f64 {
     let fits = family.chunk_by(|a, b| a.c == b.c);
-    fits.map(|cells| recognise_s(plan, &cells[0], n_objects, n_touches))
+    fits.map(|cells| learning(plan, &cells[0], n_objects, n_touches).total_s())
         .sum()
 }
 
 /// The fits of a family with one C in one trial, and the prediction of every test touch.
-fn recognise_s(plan: &Plan, cell: &Cell, n_objects: usize, n_touches: usize) -> f64 {
+pub(super) fn learning(plan: &Plan, cell: &Cell, n_objects: usize, n_touches: usize) -> Learning {
     let m = cell.n_features() as f64;
     let n_train = (cell.train_touches * n_objects) as f64;
     let n_test = (n_touches as f64 - n_train).max(0.0);
@@ -181,7 +199,11 @@ fn recognise_s(plan: &Plan, cell: &Cell, n_objects: usize, n_touches: usize) -> 
         }
         _ => n_objects as f64,
     };
-    fit(1.0) + choose_s + PREDICT_S * n_test * predicted_per_row * m
+    Learning {
+        choose_s,
+        train_s: fit(1.0),
+        predict_s: PREDICT_S * n_test * predicted_per_row * m,
+    }
 }
 
 /// One fit with so many training touches an object.

@@ -1,5 +1,6 @@
 //! A family of cells in one trial: fit on training rows once for each C, score test touches once, decide for each k.
 
+use super::estimate::learning;
 use super::measurement::Measurements;
 use super::plan::Plan;
 use super::sweep::Sweep;
@@ -8,6 +9,7 @@ use super::training::{Fitted, Training};
 use crate::error::Result;
 use crate::random::Seed;
 use crate::recognition::dataset::{Dataset, dataset};
+use crate::recognition::fit_progress::FitProgress;
 use crate::recognition::fusion::{fuse_rows, fuse_scores};
 use crate::recognition::interval::Interval;
 use crate::recognition::metrics::ConfusionMatrix;
@@ -57,12 +59,23 @@ struct ScoredTouches<'a> {
 impl Trial<'_> {
     /// Fits and scores the cells of a [family](super::sweep::Group::families) on their leading measurements, in their order.
     pub fn evaluate(&self, family: &[Cell]) -> Result<Vec<Evaluation>> {
+        self.evaluate_telling(family, FitProgress::default())
+    }
+
+    /// [`evaluate`](Self::evaluate), and says while it goes on how much of it is done, by the seconds that it is planned to take.
+    pub(super) fn evaluate_telling(
+        &self,
+        family: &[Cell],
+        progress: FitProgress,
+    ) -> Result<Vec<Evaluation>> {
         let split = self.sweep.split(self.plan, &family[0], self.number)?;
         let training = self.training(&family[0], &split)?;
         let test = rows(&family[0], (self.tested, &split.test), &self.sweep.labels)?;
         let same_fit: Vec<&[Cell]> = family.chunk_by(|a, b| a.c == b.c).collect();
         let penalties: Vec<Option<f64>> = same_fit.iter().map(|cells| cells[0].c).collect();
-        let fitted = training.train_all(&penalties)?;
+        let labels = &self.sweep.labels;
+        let planned = learning(self.plan, &family[0], self.n_objects(), labels.len());
+        let fitted = training.train_all(&penalties, (progress, &planned))?;
         let mut evaluations = Vec::with_capacity(family.len());
         for (fitted, cells) in fitted.iter().zip(same_fit) {
             let start = Instant::now();
@@ -92,8 +105,7 @@ impl Trial<'_> {
         let predict_s = scored.score_s + start.elapsed().as_secs_f64();
         let truth = rows.groups.iter().map(|group| truth[group[0]]).collect();
         let truth: Array1<usize> = truth;
-        let n_objects = self.sweep.labels.iter().max().map_or(0, |last| last + 1);
-        let matrix = ConfusionMatrix::new(truth.view(), predicted.view(), n_objects)?;
+        let matrix = ConfusionMatrix::new(truth.view(), predicted.view(), self.n_objects())?;
         let (split, projection) = self.plan.repeats.numbers(self.number);
         let interval = Interval::wilson(matrix.n_correct(), matrix.n_rows(), CONFIDENCE)?;
         Ok(Evaluation {
@@ -126,6 +138,10 @@ impl Trial<'_> {
                 .map(|((object, predicted), &count)| (object, predicted, count))
                 .collect(),
         })
+    }
+
+    fn n_objects(&self) -> usize {
+        self.sweep.labels.iter().max().map_or(0, |last| last + 1)
     }
 
     fn training(&self, cell: &Cell, split: &Split) -> Result<Training<'_>> {

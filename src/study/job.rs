@@ -8,9 +8,10 @@ use super::measurement::{Measurements, measure_group};
 use super::runner::Run;
 use super::sweep::Group;
 use super::table::Cell;
+use super::workload::LearningMeter;
 use crate::error::Result;
+use crate::recognition::fit_progress::FitProgress;
 use rayon::prelude::*;
-use std::time::Instant;
 
 /// A group in a trial, and those of its families that are to be evaluated.
 pub struct Job<'a> {
@@ -87,19 +88,23 @@ impl<'a> Job<'a> {
         family: &'a [Cell],
         measured: std::result::Result<&Measurements, &String>,
     ) -> Result<FinishedFamily<'a>> {
-        let start = Instant::now();
+        let meter = LearningMeter::new(&self.run, family);
         let finished = match measured {
-            Ok(measured) => self.evaluate(family, measured)?,
+            Ok(measured) => self.evaluate(family, measured, &meter)?,
             Err(said) => Finished::Failed(said.clone()),
         };
-        let took_s = start.elapsed().as_secs_f64();
-        self.run.progress.worked(&self.run.learning(family), took_s);
+        meter.finish();
         finished.keep(self.run.manner.journal, family, self.trial)?;
         self.run.progress.advance(family.len() as u64);
         Ok((family, self.trial, finished))
     }
 
-    fn evaluate(&self, family: &[Cell], measurements: &Measurements) -> Result<Finished> {
+    fn evaluate(
+        &self,
+        family: &[Cell],
+        measurements: &Measurements,
+        meter: &LearningMeter,
+    ) -> Result<Finished> {
         let Run {
             plan,
             sweep,
@@ -113,7 +118,9 @@ impl<'a> Job<'a> {
             tested: measurements,
             number: self.trial,
         };
-        let result = attempt(manner.fail_fast, || trial.evaluate(family))?;
+        let told = |share: f64| meter.advance(share);
+        let evaluate = || trial.evaluate_telling(family, FitProgress::to(&told));
+        let result = attempt(manner.fail_fast, evaluate)?;
         Ok(match result {
             Ok(evaluations) => Finished::Scored(evaluations),
             Err(said) => Finished::Failed(said),

@@ -106,8 +106,12 @@ pub fn run_with(
     let mut arrays = Vec::new();
     let mut new = Vec::new();
     for array in 0..plan.arrays.len() {
-        for (place, &n_frames) in plan.frames.iter().enumerate() {
-            let Some((simulated, finished, stages)) = run.on_array(array, n_frames)? else {
+        let mut on_array: Vec<Option<OnArray>> = plan.frames.iter().map(|_| None).collect();
+        for place in costliest_first(&plan.frames) {
+            on_array[place] = run.on_array(array, plan.frames[place])?;
+        }
+        for (place, found) in on_array.into_iter().enumerate() {
+            let Some((simulated, finished, stages)) = found else {
                 continue;
             };
             new.extend(finished);
@@ -132,6 +136,14 @@ pub fn run_with(
         arrays,
         n_left,
     })
+}
+
+/// The places of numbers of frames, most frames first: what learns from them takes longest, and how much longer than planned is
+/// then known early.
+fn costliest_first(frames: &[usize]) -> Vec<usize> {
+    let mut places: Vec<usize> = (0..frames.len()).collect();
+    places.sort_by_key(|&place| std::cmp::Reverse(frames[place]));
+    places
 }
 
 /// What every job of a run shares.
@@ -302,5 +314,16 @@ fn stage_time(stage: &str, patch: &Patch, n_touches: usize, cpu_s: f64) -> Stage
         n_touches,
         cpu_s,
         us_per_touch: 1e6 * cpu_s / n_touches.max(1) as f64,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn touches_of_most_frames_are_learned_from_first() {
+        assert_eq!(costliest_first(&[1, 4, 2]), [1, 2, 0]);
+        assert_eq!(costliest_first(&[]), [0; 0]);
     }
 }

@@ -61,9 +61,10 @@ impl Piece {
 
 /// Planned and spent processor-seconds of a run.
 ///
-/// What is left of a place costs as much more or less than planned as what was done for it; where little was done, as all work
-/// of its kind; and a kind that has hardly begun, as the middle one of all kinds so far, so that one that was planned badly does
-/// not spoil the others. Threads are as busy as they have been.
+/// What is left of a place costs as much more or less than planned as what was done for it; where little was done, as the
+/// geometric mean of the places of its kind, each of which counts the same however much is done there: a few large pieces that
+/// were planned badly do not speak for all. A kind that has hardly begun costs as the middle one of all kinds so far. Threads are
+/// as busy as they have been.
 #[derive(Clone, Debug)]
 pub struct TimeLeft {
     n_threads: f64,
@@ -89,6 +90,17 @@ impl Spent {
         (self.planned_s - self.done_s).max(0.0)
     }
 
+    /// What a piece was planned to take, on average.
+    fn piece_s(&self) -> f64 {
+        self.planned_s / self.n_pieces.max(1) as f64
+    }
+
+    /// Whether so much is done that it says something of what is left.
+    fn has_begun(&self) -> bool {
+        let enough_s = (HESITATION * self.piece_s()).min(LEAST_SHARE * self.planned_s);
+        self.done_s > 0.0 && self.done_s >= enough_s
+    }
+
     /// What a planned second takes, where `prior` counts as much as `weight_s` planned seconds.
     fn factor(&self, prior: f64, weight_s: f64) -> f64 {
         match self.done_s + weight_s {
@@ -98,11 +110,12 @@ impl Spent {
     }
 }
 
-/// Share of a kind's planned work that counts as much as the middle factor of all kinds: before that much is done, its own factor
-/// is chance.
-const KIND_HESITATION: f64 = 0.02;
-/// The same for a place and the factor of its kind, as a share of one of its pieces.
-const PLACE_HESITATION: f64 = 0.3;
+/// Share of one of a place's pieces that counts as much as the factor of its kind, and makes the place count in that: before that
+/// much is done, its own factor is chance. Of a kind it is the share of a place that counts as the middle factor of all kinds.
+const HESITATION: f64 = 0.3;
+/// The same for the factor of a place within its kind, which so is never 0; and the share of a kind that makes it count in the
+/// middle of all kinds, if a piece of it takes longer.
+const LEAST_SHARE: f64 = 0.02;
 
 impl TimeLeft {
     /// Of a run with this work.
@@ -147,23 +160,13 @@ impl TimeLeft {
     pub fn left_s(&self, elapsed_s: f64) -> f64 {
         let at_once = || self.kinds.iter().filter(|(kind, _)| **kind != Work::Report);
         let took_s: f64 = at_once().map(|(_, spent)| spent.took_s).sum();
-        let begun = at_once().filter(|(_, spent)| spent.done_s > 0.0);
-        let common = middle(
-            begun
-                .map(|(_, spent)| spent.took_s / spent.done_s)
-                .collect(),
-        );
-        let of_kind = |kind: &Work| {
-            let spent = &self.kinds[kind];
-            spent.factor(common, KIND_HESITATION * spent.planned_s)
-        };
+        let of_kinds = self.factors();
         let places = self
             .places
             .iter()
             .filter(|((kind, _), _)| *kind != Work::Report);
         let left = places.map(|((kind, _), spent)| {
-            let piece_s = spent.planned_s / spent.n_pieces.max(1) as f64;
-            spent.left_s() * spent.factor(of_kind(kind), PLACE_HESITATION * piece_s)
+            spent.left_s() * spent.factor(of_kinds[kind], HESITATION * spent.piece_s())
         });
         let left_s: f64 = left.sum();
         // Each thread is somewhere within a piece that nobody has heard of yet; a second is longer within a long one. What they
@@ -179,6 +182,28 @@ impl TimeLeft {
         };
         let report_s = self.kinds.get(&Work::Report).map_or(0.0, Spent::left_s);
         left_s / busy + report_s
+    }
+
+    /// What a planned second of each kind takes.
+    fn factors(&self) -> BTreeMap<Work, f64> {
+        let kinds = self.kinds.iter().filter(|(kind, _)| **kind != Work::Report);
+        let begun = kinds.filter(|(_, spent)| spent.has_begun());
+        let common = begun.map(|(_, spent)| spent.took_s / spent.done_s);
+        let common = middle(common.collect()).max(f64::MIN_POSITIVE);
+        // Of each kind the sum of weights, and of weighted logarithms.
+        let prior = [HESITATION, HESITATION * common.ln()];
+        let mut sums: BTreeMap<Work, [f64; 2]> = BTreeMap::new();
+        for ((kind, _), spent) in &self.places {
+            let sum = sums.entry(*kind).or_insert(prior);
+            if spent.done_s > 0.0 {
+                let piece_s = spent.piece_s();
+                let weight = (spent.done_s / (HESITATION * piece_s)).min(1.0);
+                sum[0] += weight;
+                sum[1] += weight * spent.factor(common, LEAST_SHARE * piece_s).ln();
+            }
+        }
+        let mean = |(kind, [weight, sum]): (Work, [f64; 2])| (kind, (sum / weight).exp());
+        sums.into_iter().map(mean).collect()
     }
 }
 
@@ -368,6 +393,38 @@ mod tests {
                 "{told} of {true_left}"
             );
         }
+    }
+
+    #[test]
+    fn one_large_piece_that_was_planned_badly_does_not_speak_for_all() {
+        let learn = |place: usize, planned_s: f64| {
+            piece(Work::Learn(ClassifierKind::LinearSvm), place, planned_s)
+        };
+        let work = [learn(0, 10.0), learn(1, 1.0), learn(2, 1.0), learn(3, 10.0)];
+        let mut left = TimeLeft::new(&work, 1);
+        let took_s = [50.0, 1.0, 1.0];
+        let done = work.iter().zip(took_s);
+        done.for_each(|(piece, took_s)| left.worked(piece, took_s));
+        // Together they took 4.3 times as long as planned, the middle one as long.
+        let left_s = left.left_s(took_s.iter().sum());
+        assert!((10.0..25.0).contains(&left_s), "{left_s}");
+    }
+
+    #[test]
+    fn a_kind_of_which_only_the_setting_up_is_done_says_nothing_of_others() {
+        let work = [
+            piece(Work::Touch, 0, 1.0),
+            piece(Work::Learn(ClassifierKind::LinearSvm), 0, 10.0),
+            piece(Work::Learn(ClassifierKind::RbfSvm), 1, 10.0),
+        ];
+        let mut left = TimeLeft::new(&work, 1);
+        left.worked(&work[0], 1.0);
+        let before_s = left.left_s(1.0);
+        let begun = piece(Work::Learn(ClassifierKind::LinearSvm), 0, 1e-3);
+        left.worked(&begun, 0.3);
+        assert!((before_s - 20.0).abs() < 1e-9, "{before_s}");
+        let after_s = left.left_s(1.3);
+        assert!((after_s - before_s).abs() < 0.1 * before_s, "{after_s}");
     }
 
     #[test]

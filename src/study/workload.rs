@@ -11,8 +11,9 @@ use super::table::Cell;
 use super::time_left::{Piece, Work};
 use super::touch_set::TouchSet;
 use crate::world::Patch;
+use std::cell;
 use std::sync::Mutex;
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 /// What [`run_with`](super::run_with) will do: for [`Progress::expect`]. What a journal has is not done again.
 pub fn workload(plan: &Plan, sweep: &Sweep, touched: &dyn TouchSet, manner: Manner) -> Vec<Piece> {
@@ -122,5 +123,98 @@ impl Progress for TouchMeter<'_> {
 
     fn finish(&self, message: &str) {
         self.progress.finish(message);
+    }
+}
+
+/// How often a family's fits are told of, at most.
+const LEARNING_TOLD_EVERY: Duration = Duration::from_millis(100);
+
+/// Tells the fits of a family as they go on, in shares of what they were planned to take: of one thread.
+pub struct LearningMeter<'a> {
+    progress: &'a dyn Progress,
+    /// The family in one trial.
+    piece: Piece,
+    /// When it was last told of.
+    told: cell::Cell<Instant>,
+    told_share: cell::Cell<f64>,
+    done_share: cell::Cell<f64>,
+}
+
+impl<'a> LearningMeter<'a> {
+    /// Of a family that begins.
+    pub fn new(run: &Run<'a>, family: &[Cell]) -> Self {
+        Self {
+            progress: run.progress,
+            piece: run.learning(family),
+            told: cell::Cell::new(Instant::now()),
+            told_share: cell::Cell::new(0.0),
+            done_share: cell::Cell::new(0.0),
+        }
+    }
+
+    /// A further share is done.
+    pub fn advance(&self, share: f64) {
+        self.done_share.set(self.done_share.get() + share);
+        if self.told.get().elapsed() >= LEARNING_TOLD_EVERY {
+            self.tell();
+        }
+    }
+
+    /// All of it is done.
+    pub fn finish(self) {
+        self.done_share.set(1.0);
+        self.tell();
+    }
+
+    fn tell(&self) {
+        let took_s = self.told.replace(Instant::now()).elapsed().as_secs_f64();
+        let done_share = self.done_share.get();
+        let piece = Piece {
+            planned_s: (done_share - self.told_share.replace(done_share)) * self.piece.planned_s,
+            ..self.piece
+        };
+        self.progress.worked(&piece, took_s);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Planned and spent seconds, as they are told.
+    #[derive(Default)]
+    struct Listener(Mutex<Vec<[f64; 2]>>);
+
+    impl Progress for Listener {
+        fn stage(&self, _name: &str, _total: u64) {}
+        fn advance(&self, _n: u64) {}
+        fn finish(&self, _message: &str) {}
+        fn worked(&self, piece: &Piece, took_s: f64) {
+            self.0.lock().unwrap().push([piece.planned_s, took_s]);
+        }
+    }
+
+    #[test]
+    fn a_fit_is_told_of_now_and_then_and_in_the_end_as_a_whole() {
+        let listener = Listener::default();
+        let start = Instant::now();
+        let meter = LearningMeter {
+            progress: &listener,
+            piece: Piece::of_stage(0, 0, 8.0),
+            told: cell::Cell::new(start),
+            told_share: cell::Cell::new(0.0),
+            done_share: cell::Cell::new(0.0),
+        };
+        std::thread::sleep(LEARNING_TOLD_EVERY);
+        meter.advance(0.25);
+        meter.advance(0.125);
+        meter.finish();
+        let told = listener.0.into_inner().unwrap();
+        let planned_s: Vec<f64> = told.iter().map(|told| told[0]).collect();
+        let took_s: f64 = told.iter().map(|told| told[1]).sum();
+        assert_eq!(planned_s.iter().sum::<f64>(), 8.0);
+        assert_eq!(planned_s[0], 2.0);
+        assert!(took_s >= LEARNING_TOLD_EVERY.as_secs_f64());
+        assert!(took_s <= start.elapsed().as_secs_f64());
     }
 }

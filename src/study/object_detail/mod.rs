@@ -23,6 +23,7 @@ mod spec;
 mod summary;
 pub mod table;
 mod variants;
+mod work;
 
 pub(in crate::study) use deflection::{Reading, Truth};
 pub use plan::{ObjectDetailPlan, RecognitionPlan};

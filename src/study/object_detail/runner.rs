@@ -53,18 +53,6 @@ impl PieceRows for DetailRows {
     }
 }
 
-/// Seconds for an object's models, to compare them with its mesh, to feel them, and to time them, and for a classifier: for the time left.
-const MODELS_S: f64 = 30.0;
-const SCORE_S: f64 = 1.0;
-const FEEL_S: f64 = 0.3;
-const TIME_S: f64 = 0.3;
-const RECOGNISE_S: f64 = 0.5;
-
-/// Stages, for the time left.
-const MODELS: u8 = 0;
-const TIMES: u8 = 1;
-const LEARN: u8 = 2;
-
 impl PieceStudy for ObjectDetailStudy {
     type Rows = DetailRows;
     type Tables = ObjectDetailTables;
@@ -152,7 +140,7 @@ impl PieceStudy for ObjectDetailStudy {
                 work.push(self.feel_work());
             }
             if learns || left.has(&models_name(mesh)) || left.has(&times_name(mesh)) {
-                work.push(self.model_work());
+                work.push(self.model_work(mesh));
             }
         }
         work
@@ -204,27 +192,6 @@ impl ObjectDetailStudy {
         levels(&self.plan).into_iter().flat_map(of_level).collect()
     }
 
-    /// Each kind of work of an object takes about as long for every mesh.
-    fn model_work(&self) -> Piece {
-        Piece::of_stage(MODELS, 0, MODELS_S)
-    }
-
-    fn score_work(&self) -> Piece {
-        Piece::of_stage(MODELS, 1, SCORE_S)
-    }
-
-    fn feel_work(&self) -> Piece {
-        Piece::of_stage(MODELS, 2, FEEL_S)
-    }
-
-    fn time_work(&self) -> Piece {
-        Piece::one_by_one(TIMES, 0, TIME_S)
-    }
-
-    fn recognition_work(&self) -> Piece {
-        Piece::of_stage(LEARN, 0, RECOGNISE_S)
-    }
-
     /// Makes an object's models and keeps how near they are; if they cannot be made, all fails that needs them, `learned` too.
     fn object<'a>(
         &self,
@@ -236,7 +203,7 @@ impl ObjectDetailStudy {
         let mut names = vec![models_name(mesh), times_name(mesh)];
         names.extend_from_slice(learned);
         let measured = left.prepare(&names, || {
-            left.during(&self.model_work(), || Measured::new(self, mesh))
+            left.during(&self.model_work(mesh), || Measured::new(self, mesh))
         })?;
         let Some(mut measured) = measured else {
             return Ok(None);
