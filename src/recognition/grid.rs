@@ -6,7 +6,7 @@
 //! [from that of the fold before](crate::recognition::seed) where that is nearer. Validation rows are
 //! [judged](crate::recognition::judgement) by their own class's problems first.
 
-use ndarray::{Array2, ArrayViewMut1};
+use ndarray::Array2;
 
 use crate::recognition::class_columns::ClassColumns;
 use crate::recognition::class_products::ClassProducts;
@@ -67,11 +67,16 @@ impl<T: Scalar> Grid<'_, T> {
                     ..goal
                 };
                 let judgements = self.judge(folds, (&columns, &mut rooms), &kernel, goal);
-                for class in 0..ranges.len() {
-                    later_room = count_right(class, &judgements, &kernel, later_room, &mut counts);
-                }
                 for (judgement, room) in judgements.into_iter().zip(&mut rooms) {
                     n_capped += judgement.n_capped();
+                    for class in 0..ranges.len() {
+                        let doubtful = judgement.doubtful(class).collect();
+                        let later = kernel.later(class, doubtful, later_room);
+                        let write = |row, to: &mut _| kernel.write_row((class, row), &later, to);
+                        let both = counts.iter_mut().zip(judgement.n_right(class, write));
+                        both.for_each(|(count, n_right)| *count += n_right);
+                        later_room = later.into_room();
+                    }
                     *room = judgement.into_room();
                 }
             }
@@ -185,27 +190,6 @@ impl<T: Scalar> Grid<'_, T> {
         let of_fold = |fold: &&Fold| rows.clone().map(|row| label(fold, row)).collect();
         folds.iter().map(of_fold).collect()
     }
-}
-
-/// Adds the rows of a class that are recognised in each fold, by C; returns the room that it was given.
-fn count_right<T: Scalar>(
-    class: usize,
-    judgements: &[Judgement<T>],
-    kernel: &ProductKernel<T>,
-    room: Vec<T>,
-    counts: &mut ArrayViewMut1<usize>,
-) -> Vec<T> {
-    let doubtful = judgements.iter().flat_map(|some| some.doubtful(class));
-    let mut doubtful: Vec<usize> = doubtful.collect();
-    doubtful.sort_unstable();
-    doubtful.dedup();
-    let later = kernel.later(class, doubtful, room);
-    for judgement in judgements {
-        let write = |row, to: &mut _| kernel.write_row((class, row), &later, to);
-        let both = counts.iter_mut().zip(judgement.n_right(class, write));
-        both.for_each(|(count, n_right)| *count += n_right);
-    }
-    later.into_room()
 }
 
 /// Judges the validation rows of a fold by its solutions of a problem.

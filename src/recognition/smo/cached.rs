@@ -16,7 +16,6 @@ pub(crate) struct Cached<'a, T> {
     stride: usize,
     diagonal: Vec<T>,
     inverses: InverseCurvatures<T>,
-    smallest: T,
     /// Bytes that kept rows, and a part of the matrix, may take.
     limit: usize,
     rows: Vec<Kept<T>>,
@@ -47,7 +46,6 @@ impl<'a, T: Scalar> Cached<'a, T> {
             points,
             kernel,
             stride: padded(n),
-            smallest: inverses.smallest(),
             inverses,
             diagonal,
             limit,
@@ -119,12 +117,10 @@ impl<T: Scalar> Gram<T> for Cached<'_, T> {
         (&self.rows[at].values, &self.diagonal)
     }
 
-    fn inverse_curvatures(&mut self, i: usize) -> (&[T], T) {
+    fn inverse_curvatures(&mut self, i: usize) -> &[T] {
         let at = self.fetch(i);
-        let inverses = self
-            .inverses
-            .of_row(i, &self.rows[at].values, &self.diagonal);
-        (inverses, self.smallest)
+        self.inverses
+            .of_row(i, &self.rows[at].values, &self.diagonal)
     }
 
     fn times(&mut self, beta: &[f64]) -> Vec<f64> {

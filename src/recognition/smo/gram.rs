@@ -16,8 +16,8 @@ pub(crate) trait Gram<T> {
     fn rows(&mut self, i: usize, j: usize) -> (&[T], &[T]);
     /// Row i and the diagonal, padded like a row.
     fn row_and_diagonal(&mut self, i: usize) -> (&[T], &[T]);
-    /// `1 / (K_ii + K_jj − 2 K_ij)` for each j, padded like a row, and the smallest curvature that counts.
-    fn inverse_curvatures(&mut self, i: usize) -> (&[T], T);
+    /// `1 / (K_ii + K_jj − 2 K_ij)` for each j, padded like a row; at most that of the smallest curvature that counts.
+    fn inverse_curvatures(&mut self, i: usize) -> &[T];
     /// `K β`, summed in f64 (n values).
     fn times(&mut self, beta: &[f64]) -> Vec<f64>;
     /// Whether a part of this many rows would fit in memory.
@@ -137,10 +137,9 @@ impl<T: Scalar> Gram<T> for Dense<T> {
     }
 
     #[inline(always)]
-    fn inverse_curvatures(&mut self, i: usize) -> (&[T], T) {
+    fn inverse_curvatures(&mut self, i: usize) -> &[T] {
         let row = &self.values[i * self.stride..(i + 1) * self.stride];
-        let smallest = self.inverses.smallest();
-        (self.inverses.of_row(i, row, &self.diagonal), smallest)
+        self.inverses.of_row(i, row, &self.diagonal)
     }
 
     fn times(&mut self, beta: &[f64]) -> Vec<f64> {

@@ -104,14 +104,13 @@ pub(super) fn run_with<T: Scalar, G: Gram<T>>(
     let mut until_look = first_look;
     loop {
         let highest = variables.f[i];
-        let (inverses, smallest_curvature) = gram.inverse_curvatures(i);
+        let inverses = gram.inverse_curvatures(i);
         let state = (&variables.f[..], &variables.low[..]);
         let down = select_down(state, inverses, highest, &mut variables.gains);
         let Some(j) = down.j.filter(|_| down.violation > tolerance) else {
             return Stop::Done;
         };
-        let (row_i, diagonal) = gram.row_and_diagonal(i);
-        let curvature = (diagonal[i] + diagonal[j]).wide() - 2.0 * row_i[j].wide();
+        let inverse = inverses[j].wide();
         if until_look == 0 && gram.len() >= SHRINK_ROWS {
             let keep = variables.worth_keeping(highest, highest - down.violation);
             let few = SHRINK_SHARE * gram.len() as f64;
@@ -125,10 +124,13 @@ pub(super) fn run_with<T: Scalar, G: Gram<T>>(
         }
         search.n_iterations += 1;
         until_look = until_look.saturating_sub(1);
-        let step = variables.step(i, j, curvature.max(smallest_curvature.wide()));
-        let (row_i, row_j) = gram.rows(i, j);
-        let rows = (row_i, row_j);
-        match step_along(&mut variables.f, rows, T::of(step), &variables.up) {
+        let step = variables.step(i, j, inverse);
+        match step_along(
+            &mut variables.f,
+            gram.rows(i, j),
+            T::of(step),
+            &variables.up,
+        ) {
             Some(next) => i = next,
             None => return Stop::Done,
         }

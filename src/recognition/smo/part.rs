@@ -118,12 +118,11 @@ impl<T: Scalar, F: FnMut(usize, &mut [T])> Gram<T> for Part<'_, T, F> {
         (self.at(i), &self.room.diagonal)
     }
 
-    fn inverse_curvatures(&mut self, i: usize) -> (&[T], T) {
+    fn inverse_curvatures(&mut self, i: usize) -> &[T] {
         self.bring(i);
         let room = &mut *self.room;
         let row = &room.values[i * self.stride..][..self.stride];
-        let smallest = room.inverses.smallest();
-        (room.inverses.of_row(i, row, &room.diagonal), smallest)
+        room.inverses.of_row(i, row, &room.diagonal)
     }
 
     fn times(&mut self, beta: &[f64]) -> Vec<f64> {

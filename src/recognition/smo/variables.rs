@@ -77,18 +77,24 @@ impl<T: Scalar> Variables<T> {
         Self::new(&beta, &y, &f, self.c)
     }
 
-    /// Notes in which directions β_i can move.
+    /// Notes in which directions β_i can move, where that is new: what was just written piecemeal is slow to read as a whole.
     #[inline(always)]
     fn mark(&mut self, i: usize) {
         let (lowest, highest) = bounds(self.y[i], self.c);
-        self.up[i] = mark(self.beta[i] < highest);
-        self.low[i] = mark(self.beta[i] > lowest);
+        let (up, low) = (mark(self.beta[i] < highest), mark(self.beta[i] > lowest));
+        if self.up[i] != up {
+            self.up[i] = up;
+        }
+        if self.low[i] != low {
+            self.low[i] = low;
+        }
     }
 
-    /// Raises β_i and lowers β_j by as much: to the optimum along that line, or to the first bound. How much it was.
+    /// Raises β_i and lowers β_j by as much: to the optimum along that line, given the inverse of its curvature, or to the first
+    /// bound. How much it was.
     #[inline(always)]
-    pub fn step(&mut self, i: usize, j: usize, curvature: f64) -> f64 {
-        let wanted = (self.f[i].wide() - self.f[j].wide()) / curvature;
+    pub fn step(&mut self, i: usize, j: usize, inverse: f64) -> f64 {
+        let wanted = (self.f[i].wide() - self.f[j].wide()) * inverse;
         let (lowest, highest) = (bounds(self.y[j], self.c).0, bounds(self.y[i], self.c).1);
         let (room_i, room_j) = (highest - self.beta[i], self.beta[j] - lowest);
         let step = wanted.min(room_i).min(room_j);
