@@ -48,7 +48,7 @@ impl FoldPath {
         for (labels, sums) in folds.into_iter().zip(sums) {
             let smo = Smo::new(gram, &labels).at_bounds(goal.path[0], &sums);
             let seed = |gram: &mut Dense<T>, number: usize| {
-                let last = last.as_ref().filter(|_| number > 0)?;
+                let last = last.as_ref()?;
                 last.moved(number, (&labels, positive), gram)
             };
             let solutions = along(smo, goal, seed);
