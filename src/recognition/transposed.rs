@@ -17,19 +17,32 @@ pub(crate) fn write_columns<T: Copy>(rows: &[&[T]], to: &mut [T], stride: usize)
     }
 }
 
-/// Writes some values of each row as columns side by side: value `places[j]` of row `i` to `j · stride + i`.
+/// Writes some values of equally long rows as columns side by side: value `places[j]` of row `i` to `j · stride + i`.
 pub(crate) fn write_some_columns<T: Copy>(
     rows: &[&[T]],
     places: &[usize],
     to: &mut [T],
     stride: usize,
 ) {
-    for (number, tile) in rows.chunks(TILE).enumerate() {
+    let (tiles, last) = rows.as_chunks::<TILE>();
+    for (number, tile) in tiles.iter().enumerate() {
+        let n = tile[0].len();
+        let mut columns = *tile;
+        for i in 0..TILE {
+            columns[i] = &tile[i][..n];
+        }
         for (j, &place) in places.iter().enumerate() {
-            let to = &mut to[j * stride + number * TILE..][..tile.len()];
-            for (to, row) in to.iter_mut().zip(tile) {
-                *to = row[place];
+            assert!(place < n);
+            let to = &mut to[j * stride + number * TILE..][..TILE];
+            for i in 0..TILE {
+                to[i] = columns[i][place];
             }
+        }
+    }
+    let first = rows.len() - last.len();
+    for (i, row) in last.iter().enumerate() {
+        for (j, &place) in places.iter().enumerate() {
+            to[j * stride + first + i] = row[place];
         }
     }
 }
