@@ -123,6 +123,10 @@ impl<T: Scalar> Gram<T> for Cached<'_, T> {
             .of_row(i, &self.rows[at].values, &self.diagonal)
     }
 
+    fn smallest_curvature(&self) -> T {
+        self.inverses.smallest()
+    }
+
     fn times(&mut self, beta: &[f64]) -> Vec<f64> {
         let mut sums = vec![0.0; self.points.len()];
         let support: Vec<usize> = (0..beta.len()).filter(|&j| beta[j] != 0.0).collect();

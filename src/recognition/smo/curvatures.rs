@@ -47,6 +47,11 @@ impl<T: Scalar> InverseCurvatures<T> {
         self.smallest = smallest(diagonal);
     }
 
+    /// The smallest curvature that counts.
+    pub fn smallest(&self) -> T {
+        self.smallest
+    }
+
     /// Those along the lines of i and each other, given row i and the diagonal.
     #[inline(always)]
     pub fn of_row(&mut self, i: usize, row: &[T], diagonal: &[T]) -> &[T] {

@@ -18,6 +18,8 @@ pub(crate) trait Gram<T> {
     fn row_and_diagonal(&mut self, i: usize) -> (&[T], &[T]);
     /// `1 / (K_ii + K_jj − 2 K_ij)` for each j, padded like a row; at most that of the smallest curvature that counts.
     fn inverse_curvatures(&mut self, i: usize) -> &[T];
+    /// The smallest curvature that counts.
+    fn smallest_curvature(&self) -> T;
     /// `K β`, summed in f64 (n values).
     fn times(&mut self, beta: &[f64]) -> Vec<f64>;
     /// Whether a part of this many rows would fit in memory.
@@ -140,6 +142,11 @@ impl<T: Scalar> Gram<T> for Dense<T> {
     fn inverse_curvatures(&mut self, i: usize) -> &[T] {
         let row = &self.values[i * self.stride..(i + 1) * self.stride];
         self.inverses.of_row(i, row, &self.diagonal)
+    }
+
+    #[inline(always)]
+    fn smallest_curvature(&self) -> T {
+        self.inverses.smallest()
     }
 
     fn times(&mut self, beta: &[f64]) -> Vec<f64> {

@@ -110,7 +110,6 @@ pub(super) fn run_with<T: Scalar, G: Gram<T>>(
         let Some(j) = down.j.filter(|_| down.violation > tolerance) else {
             return Stop::Done;
         };
-        let inverse = inverses[j].wide();
         if until_look == 0 && gram.len() >= SHRINK_ROWS {
             let keep = variables.worth_keeping(highest, highest - down.violation);
             let few = SHRINK_SHARE * gram.len() as f64;
@@ -124,7 +123,9 @@ pub(super) fn run_with<T: Scalar, G: Gram<T>>(
         }
         search.n_iterations += 1;
         until_look = until_look.saturating_sub(1);
-        let step = variables.step(i, j, inverse);
+        let (row_i, diagonal) = gram.row_and_diagonal(i);
+        let curvature = (diagonal[i] + diagonal[j]).wide() - 2.0 * row_i[j].wide();
+        let step = variables.step(i, j, curvature.max(gram.smallest_curvature().wide()));
         match step_along(
             &mut variables.f,
             gram.rows(i, j),

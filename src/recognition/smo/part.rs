@@ -125,6 +125,10 @@ impl<T: Scalar, F: FnMut(usize, &mut [T])> Gram<T> for Part<'_, T, F> {
         room.inverses.of_row(i, row, &room.diagonal)
     }
 
+    fn smallest_curvature(&self) -> T {
+        self.room.inverses.smallest()
+    }
+
     fn times(&mut self, beta: &[f64]) -> Vec<f64> {
         (0..beta.len())
             .filter(|&j| beta[j] != 0.0)

@@ -90,11 +90,10 @@ impl<T: Scalar> Variables<T> {
         }
     }
 
-    /// Raises β_i and lowers β_j by as much: to the optimum along that line, given the inverse of its curvature, or to the first
-    /// bound. How much it was.
+    /// Raises β_i and lowers β_j by as much: to the optimum along that line, or to the first bound. How much it was.
     #[inline(always)]
-    pub fn step(&mut self, i: usize, j: usize, inverse: f64) -> f64 {
-        let wanted = (self.f[i].wide() - self.f[j].wide()) * inverse;
+    pub fn step(&mut self, i: usize, j: usize, curvature: f64) -> f64 {
+        let wanted = (self.f[i].wide() - self.f[j].wide()) / curvature;
         let (lowest, highest) = (bounds(self.y[j], self.c).0, bounds(self.y[i], self.c).1);
         let (room_i, room_j) = (highest - self.beta[i], self.beta[j] - lowest);
         let step = wanted.min(room_i).min(room_j);
