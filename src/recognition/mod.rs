@@ -39,6 +39,7 @@
 
 use serde::{Deserialize, Serialize};
 
+mod active_set;
 mod between;
 pub mod bootstrap;
 pub mod choice;
@@ -56,12 +57,13 @@ pub mod decision_tree;
 pub mod dual;
 mod election;
 mod extent;
+mod factors;
 pub mod features;
 mod few_dimensions;
 mod first_rows;
 pub(crate) mod fit_progress;
 mod fold_path;
-mod free_variables;
+mod free_factor;
 pub mod fusion;
 mod grid;
 pub mod interval;

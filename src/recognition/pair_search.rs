@@ -1,10 +1,10 @@
-//! The solver of a pair near its margin: pairs of variables, and the equations of those that are free.
+//! The solver of a pair near its margin: pairs of variables, then equations of those that are free.
 
-use crate::recognition::free_variables::settle_free;
+use crate::recognition::active_set::{ActiveSetGoal, settle};
 use crate::recognition::scalar::Scalar;
 use crate::recognition::smo::{Gram, Reached, Smo};
 
-/// The violation of the optimality conditions from which on the free variables are found by equations.
+/// The violation of the optimality conditions from which on the way goes by equations.
 const EQUATIONS_FROM: f64 = 0.03;
 
 /// What to solve a pair for.
@@ -22,7 +22,7 @@ pub(crate) struct PairGoal {
 pub(crate) type State = (Vec<f64>, Vec<f64>);
 
 /// Goes from a state, with the labels of its rows and the C that it belongs to, to what is asked for: roughly by pairs of
-/// variables, then by the equations of the free ones, and by pairs where those left something.
+/// variables, then by equations, and by pairs where those left something.
 pub(crate) fn reach_by_equations<T: Scalar, G: Gram<T>>(
     gram: &mut G,
     (labels, state, c): (&[f64], State, f64),
@@ -36,7 +36,12 @@ pub(crate) fn reach_by_equations<T: Scalar, G: Gram<T>>(
         ..goal
     };
     let ((mut beta, mut f), first) = reach(gram, (labels, state, c), rough);
-    let n_ways = settle_free(gram, labels, (&mut beta, &mut f), goal.c);
+    let by_equations = ActiveSetGoal {
+        c: goal.c,
+        tolerance: goal.tolerance,
+        most_ways: labels.len() as u64,
+    };
+    let n_ways = settle(gram, labels, (&mut beta, &mut f), by_equations);
     let (state, last) = reach(gram, (labels, (beta, f), goal.c), goal);
     let n_iterations = first.n_iterations + n_ways + last.n_iterations;
     let reached = Reached {

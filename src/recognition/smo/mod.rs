@@ -8,8 +8,8 @@
 //! - **Shrinking** [Joachims 1999]: variables that sit at a bound and want to stay there are left out, and what remains of
 //!   the Gram matrix is copied together, so that iterations run over short contiguous rows.
 //! - **Warm start along C**: the last solution, stretched by the factor that is best for the objective.
-//! - **Legs**: where pairs of variables need many iterations, the free ones are taken to their optimum
-//!   [by equations](crate::recognition::free_variables) every now and then.
+//! - **Legs**: where pairs of variables need many iterations, the way goes on
+//!   [by equations](crate::recognition::active_set) every now and then.
 //! - **Precision**: Gram matrix and f may be f32; whenever the solver believes to be done, an f in f64 follows what β has
 //!   changed and has the last word.
 
@@ -32,8 +32,8 @@ pub(crate) use part::{Part, Room, part_of_blocks};
 pub(crate) use reached::Reached;
 pub(crate) use variables::extremes;
 
+use crate::recognition::active_set::{ActiveSetGoal, settle};
 use crate::recognition::dual::DualSolution;
-use crate::recognition::free_variables::settle_free;
 use crate::recognition::scalar::Scalar;
 use iterations::{SHRINK_PERIOD, Search, Stop, run, solve_part};
 use reached::violation;
@@ -41,9 +41,9 @@ use variables::{Variables, linear_and_quadratic, rho};
 
 /// Iterations after which a problem counts as not solved, as in LIBSVM; or 100 a row, if that is more.
 const MOST_ITERATIONS: u64 = 10_000_000;
-/// Iterations after which the free variables are taken to their optimum by equations, at least, and for each row.
+/// Iterations after which the way goes on by equations, at least, and for each row.
 const FEWEST_OF_LEG: u64 = 10_000;
-const ROWS_OF_LEG: u64 = 50;
+const ROWS_OF_LEG: u64 = 20;
 /// Times that f64 may disagree with a solver that believes to be done.
 const MOST_REFRESHES: usize = 30;
 /// A binary problem on a Gram matrix, and the solution of the C that it was last solved for.
@@ -228,9 +228,14 @@ impl<'a, G> Smo<'a, G> {
                 return false;
             }
             if search.n_iterations >= search.most_iterations {
-                // Pairs of variables go to and fro; the equations of the free ones take a shorter way.
-                search.n_iterations +=
-                    settle_free(self.gram, self.y, (&mut self.beta, &mut self.f), c);
+                // Pairs of variables go to and fro; equations take a shorter way.
+                let goal = ActiveSetGoal {
+                    c,
+                    tolerance: search.tolerance,
+                    most_ways: self.y.len() as u64,
+                };
+                let variables = (&mut self.beta[..], &mut self.f[..]);
+                search.n_iterations += settle(self.gram, self.y, variables, goal);
             } else {
                 n_refreshes += 1;
             }
