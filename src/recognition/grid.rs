@@ -10,7 +10,7 @@ use ndarray::Array2;
 
 use crate::recognition::class_columns::ClassColumns;
 use crate::recognition::class_products::ClassProducts;
-use crate::recognition::fold_path::FoldPath;
+use crate::recognition::fold_path::{FoldPath, FoldSolution};
 use crate::recognition::judgement::Judgement;
 use crate::recognition::kernel::KernelFunction;
 use crate::recognition::product_kernel::ProductKernel;
@@ -199,7 +199,8 @@ fn take<T: Scalar>(
     path: &FoldPath,
     columns: &ClassColumns,
 ) {
-    for (number, solution) in path.solutions.iter().enumerate() {
+    let mut last: Option<&FoldSolution> = None;
+    for solution in &path.solutions {
         if let (positive, Some(negative)) = problem {
             let [first, second] = [positive, negative].map(|at| &columns.ranges()[at]);
             let place = |row: usize| match first.contains(&row) {
@@ -207,9 +208,11 @@ fn take<T: Scalar>(
                 false => first.len() + row - second.start,
             };
             let sum = |row: usize| -solution.f[place(row)];
-            judgement.look((positive, negative), number, (sum, solution.rho));
+            let numbers = solution.numbers.clone();
+            judgement.look((positive, negative), numbers, (sum, solution.rho));
         }
-        let is_last = number > 0 && path.solutions[number - 1].beta == solution.beta;
+        let is_last = last.is_some_and(|last| last.beta == solution.beta);
         judgement.take(problem, solution, is_last);
+        last = Some(solution);
     }
 }

@@ -20,7 +20,8 @@ pub(crate) fn moved<'k, T: Scalar>(
     let gained = (0..beta.len()).filter(|&at| labels[at] != 0.0 && before[at] == 0.0);
     let (mut own, mut others): (Vec<usize>, Vec<usize>) =
         gained.partition(|at| positive.contains(at));
-    for lost in (0..beta.len()).filter(|&at| beta[at] != 0.0 && labels[at] == 0.0) {
+    // Labels first: those that are 0 lie side by side, while multipliers that are not have no pattern.
+    for lost in (0..beta.len()).filter(|&at| labels[at] == 0.0 && beta[at] != 0.0) {
         let similar = similar(lost);
         let gained = if positive.contains(&lost) {
             &mut own
