@@ -84,12 +84,11 @@ impl FoldPath {
         let FoldSolution { beta, f, .. } = &self.solutions[number.min(last)];
         let folds = (&self.labels[..], labels);
         let moved = moved(beta, folds, positive, |row| gram.row(row))?;
-        let change = gram.times(&difference(&moved, beta));
-        let mut f = f.clone();
+        let mut moved_f = gram.times(&difference(&moved, beta));
         for at in 0..f.len() {
-            f[at] += (labels[at] - self.labels[at]) - change[at];
+            moved_f[at] = f[at] + ((labels[at] - self.labels[at]) - moved_f[at]);
         }
-        Some((moved, f))
+        Some((moved, moved_f))
     }
 }
 

@@ -17,17 +17,15 @@ pub(crate) fn moved<'k, T: Scalar>(
     similar: impl Fn(usize) -> &'k [T],
 ) -> Option<Vec<f64>> {
     let mut moved = beta.to_vec();
-    let gained = (0..beta.len()).filter(|&at| labels[at] != 0.0 && before[at] == 0.0);
-    let (mut own, mut others): (Vec<usize>, Vec<usize>) =
-        gained.partition(|at| positive.contains(at));
+    let side = |at: usize| usize::from(positive.contains(&at));
+    let mut gained = [0; 2].map(|_| Vec::with_capacity(beta.len()));
+    for at in (0..beta.len()).filter(|&at| before[at] == 0.0 && labels[at] != 0.0) {
+        gained[side(at)].push(at);
+    }
     // Labels first: those that are 0 lie side by side, while multipliers that are not have no pattern.
     for lost in (0..beta.len()).filter(|&at| labels[at] == 0.0 && beta[at] != 0.0) {
         let similar = similar(lost);
-        let gained = if positive.contains(&lost) {
-            &mut own
-        } else {
-            &mut others
-        };
+        let gained = &mut gained[side(lost)];
         let mut nearest = (T::neg_infinity(), None);
         for (number, &at) in gained.iter().enumerate() {
             if similar[at] > nearest.0 {
