@@ -7,7 +7,7 @@
 use std::ops::Range;
 
 use crate::recognition::scalar::Scalar;
-use crate::recognition::seed::moved;
+use crate::recognition::seed::Exchange;
 use crate::recognition::smo::{Dense, Gram, Smo};
 use crate::recognition::training::Goal;
 
@@ -49,9 +49,14 @@ impl FoldPath {
         let mut last: Option<Self> = None;
         for (labels, sums) in folds.into_iter().zip(sums) {
             let smo = Smo::new(gram, &labels).at_bounds(goal.path[0], &sums);
+            let exchange = |last: Self| {
+                let exchange = Exchange::new((&last.labels, &labels), positive);
+                (last, exchange)
+            };
+            let last_and_exchange = last.take().map(exchange);
             let seed = |gram: &mut Dense<T>, number: usize| {
-                let last = last.as_ref()?;
-                last.moved(number, (&labels, positive), gram)
+                let (last, exchange) = last_and_exchange.as_ref()?;
+                last.moved(number, (&labels, exchange), gram)
             };
             let solutions = along(smo, goal, seed);
             told(last.insert(Self { labels, solutions }));
@@ -77,16 +82,16 @@ impl FoldPath {
     fn moved<T: Scalar>(
         &self,
         number: usize,
-        (labels, positive): (&[f64], &Range<usize>),
+        (labels, exchange): (&[f64], &Exchange),
         gram: &mut Dense<T>,
     ) -> Option<(Vec<f64>, Vec<f64>)> {
         let last = self.solutions.len() - 1;
         let FoldSolution { beta, f, .. } = &self.solutions[number.min(last)];
-        let folds = (&self.labels[..], labels);
-        let moved = moved(beta, folds, positive, |row| gram.row(row))?;
+        let moved = exchange.moved(beta, |row| gram.row(row))?;
         let mut moved_f = gram.times(&difference(&moved, beta));
-        for at in 0..f.len() {
-            moved_f[at] = f[at] + ((labels[at] - self.labels[at]) - moved_f[at]);
+        let both = labels.iter().zip(&self.labels);
+        for ((moved, f), (label, before)) in moved_f.iter_mut().zip(f).zip(both) {
+            *moved = f + ((label - before) - *moved);
         }
         Some((moved, moved_f))
     }

@@ -249,3 +249,30 @@ pub(super) fn rho(beta: &[f64], y: &[f64], f: &[f64], c: f64) -> f64 {
         (_, lowest) => -lowest,
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn extremes_are_those_of_all_that_can_move_however_many_there_are() {
+        let c = 2.0;
+        for n in [0, 1, 7, 63, 64, 65, 150] {
+            let y: Vec<f64> = (0..n).map(|i| [1.0, -1.0, 0.0][i % 3]).collect();
+            let beta = |i: usize| c * y[i] * [0.0, 0.3, 1.0, 1.0][i / 3 % 4];
+            let beta: Vec<f64> = (0..n).map(beta).collect();
+            let f: Vec<f64> = (0..n).map(|i| (i as f64 * 1.7).sin()).collect();
+            let (mut highest, mut lowest) = (f64::NEG_INFINITY, f64::INFINITY);
+            for i in 0..n {
+                let (low, high) = bounds(y[i], c);
+                if beta[i] < high {
+                    highest = highest.max(f[i]);
+                }
+                if beta[i] > low {
+                    lowest = lowest.min(f[i]);
+                }
+            }
+            assert_eq!(extremes(&beta, &y, &f, c), (highest, lowest), "{n}");
+        }
+    }
+}
