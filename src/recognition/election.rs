@@ -2,7 +2,8 @@
 //!
 //! One-vs-one elects the class with most votes. A row that its own class wins in each of that class's problems is recognised,
 //! whatever the others say: every other class has lost one. A row whose own class has lost some is not, if another class has
-//! lost fewer. The class that the own one lost to is asked first, and none further than it has lost too many.
+//! lost fewer. The class that the own one lost to is asked first, and none further than it has lost too many; whether to the
+//! own one is asked before the others, as most have.
 
 use crate::recognition::class_columns::Products;
 use crate::recognition::judgement::Judgement;
@@ -25,8 +26,10 @@ impl<T: Scalar> Judgement<'_, T> {
                 write_row(row, &mut all);
                 self.columns.spread(&all, &mut values);
             }
+            let mut is_right = false;
             for (number, (&lost, n_right)) in lost.iter().zip(&mut n_right).enumerate() {
-                let is_right = match lost {
+                is_right = match lost {
+                    _ if self.is_as_before(at, number) => is_right,
                     _ if self.multiclass != Multiclass::OneVsOne => {
                         largest(self, number, &values) == class
                     }
@@ -71,8 +74,9 @@ fn is_elected<T: Scalar>(
         if class == own || (at > 0 && class == rival) {
             continue;
         }
+        let others = classes.iter().filter(|&&other| other != own);
         let mut n_lost = 0;
-        for &other in classes {
+        for &other in std::iter::once(&own).chain(others) {
             if other != class && !judgement.wins(number, values, (class, other)) {
                 n_lost += 1;
                 if n_lost > n_allowed {

@@ -7,7 +7,7 @@
 use std::ops::Range;
 
 use crate::recognition::scalar::Scalar;
-use crate::recognition::seed::moved;
+use crate::recognition::seed::Exchange;
 use crate::recognition::smo::{Dense, Gram, Smo};
 use crate::recognition::training::Goal;
 
@@ -15,12 +15,14 @@ use crate::recognition::training::Goal;
 pub(crate) struct FoldPath {
     /// 1 for positive rows, −1 for negative ones, 0 for those that are held out.
     labels: Vec<f64>,
-    /// By C.
+    /// By C, as far as a larger C changes them.
     pub solutions: Vec<FoldSolution>,
 }
 
-/// The solution of a fold's problem for one C.
+/// The solution of a fold's problem for one C, or for several that it is the same for.
 pub(crate) struct FoldSolution {
+    /// Which these are, by number.
+    pub numbers: Range<usize>,
     /// β of all rows of the problem.
     pub beta: Vec<f64>,
     /// `y − Kβ` of all rows, y being 0 where a row is held out.
@@ -47,9 +49,14 @@ impl FoldPath {
         let mut last: Option<Self> = None;
         for (labels, sums) in folds.into_iter().zip(sums) {
             let smo = Smo::new(gram, &labels).at_bounds(goal.path[0], &sums);
+            let exchange = |last: Self| {
+                let exchange = Exchange::new((&last.labels, &labels), positive);
+                (last, exchange)
+            };
+            let last_and_exchange = last.take().map(exchange);
             let seed = |gram: &mut Dense<T>, number: usize| {
-                let last = last.as_ref()?;
-                last.moved(number, (&labels, positive), gram)
+                let (last, exchange) = last_and_exchange.as_ref()?;
+                last.moved(number, (&labels, exchange), gram)
             };
             let solutions = along(smo, goal, seed);
             told(last.insert(Self { labels, solutions }));
@@ -75,39 +82,47 @@ impl FoldPath {
     fn moved<T: Scalar>(
         &self,
         number: usize,
-        (labels, positive): (&[f64], &Range<usize>),
+        (labels, exchange): (&[f64], &Exchange),
         gram: &mut Dense<T>,
     ) -> Option<(Vec<f64>, Vec<f64>)> {
-        let FoldSolution { beta, f, .. } = &self.solutions[number];
-        let folds = (&self.labels[..], labels);
-        let moved = moved(beta, folds, positive, |row| gram.row(row))?;
-        let change = gram.times(&difference(&moved, beta));
-        let mut f = f.clone();
-        for at in 0..f.len() {
-            f[at] += (labels[at] - self.labels[at]) - change[at];
+        let last = self.solutions.len() - 1;
+        let FoldSolution { beta, f, .. } = &self.solutions[number.min(last)];
+        let moved = exchange.moved(beta, |row| gram.row(row))?;
+        let mut moved_f = gram.times(&difference(&moved, beta));
+        let both = labels.iter().zip(&self.labels);
+        for ((moved, f), (label, before)) in moved_f.iter_mut().zip(f).zip(both) {
+            *moved = f + ((label - before) - *moved);
         }
-        Some((moved, f))
+        Some((moved, moved_f))
     }
 }
 
-/// Solves for every C.
+/// Solves for every C, ascending, until a solution holds for all larger ones.
 fn along<T: Scalar>(
     mut smo: Smo<Dense<T>>,
     goal: Goal,
     seed: impl Fn(&mut Dense<T>, usize) -> Option<(Vec<f64>, Vec<f64>)>,
 ) -> Vec<FoldSolution> {
-    let path = goal.path.iter().enumerate();
-    let solution = |(number, &c): (usize, &f64)| {
+    let n_path = goal.path.len();
+    let mut solutions = Vec::with_capacity(n_path);
+    for (number, &c) in goal.path.iter().enumerate() {
         let reached = smo.reach(c, goal.tolerance, |gram| seed(gram, number));
         let (beta, f) = smo.variables();
-        FoldSolution {
+        // Where no multiplier is kept down by its bound, a larger C changes nothing.
+        let holds_for_larger = reached.is_solved && beta.iter().all(|beta| beta.abs() < c);
+        let end = if holds_for_larger { n_path } else { number + 1 };
+        solutions.push(FoldSolution {
+            numbers: number..end,
             rho: smo.rho(c),
             is_capped: !reached.is_solved,
             beta: beta.to_vec(),
             f: f.to_vec(),
+        });
+        if end == n_path {
+            break;
         }
-    };
-    path.map(solution).collect()
+    }
+    solutions
 }
 
 /// The Gram matrix times the labels of each fold, which are those of all rows but for 0 where the fold holds a row out.
@@ -137,13 +152,13 @@ mod tests {
     const N: usize = 45;
     const POSITIVE: Range<usize> = 0..20;
 
-    fn kernel(i: usize, j: usize) -> f64 {
+    fn kernel(gamma: f64, i: usize, j: usize) -> f64 {
         let at = |i: usize| (i as f64 * 1.7).sin() + if POSITIVE.contains(&i) { 0.4 } else { 0.0 };
-        (-(at(i) - at(j)).powi(2)).exp()
+        (-gamma * (at(i) - at(j)).powi(2)).exp()
     }
 
-    fn gram(rows: &[usize]) -> Dense<f64> {
-        let values = |(i, j): (usize, usize)| kernel(rows[i], rows[j]);
+    fn gram(gamma: f64, rows: &[usize]) -> Dense<f64> {
+        let values = |(i, j): (usize, usize)| kernel(gamma, rows[i], rows[j]);
         let mut gram = Dense::default();
         gram.of_whole(Array2::from_shape_fn((rows.len(), rows.len()), values).view());
         gram
@@ -160,7 +175,6 @@ mod tests {
     #[test]
     fn a_fold_is_solved_as_if_it_had_its_rows_alone_and_f_judges_those_held_out() {
         let all: Vec<usize> = (0..N).collect();
-        let mut whole = gram(&all);
         let goal = Goal {
             path: &[0.05, 1.0, 20.0, 400.0],
             tolerance: 1e-9,
@@ -170,30 +184,42 @@ mod tests {
         let folds: Vec<Vec<f64>> = (0..3)
             .map(|fold| all.iter().map(|&at| label(at, fold)).collect())
             .collect();
-        let mut fold = 0;
-        FoldPath::of_pair(&mut whole, (folds.clone(), &POSITIVE), goal, |path| {
-            assert_is_alone(path, fold, goal);
-            fold += 1;
-        });
-        FoldPath::of_class(&mut whole, folds, goal, |path| {
-            assert_is_alone(path, fold - 3, goal);
-            fold += 1;
-        });
-        assert_eq!(fold, 6);
+        // A kernel that leaves the classes mixed, and one by which each row is alone: then a large C bounds no multiplier.
+        for gamma in [1.0, 1e6] {
+            let mut whole = gram(gamma, &all);
+            let mut fold = 0;
+            let mut check = |path: &FoldPath| {
+                assert_is_alone((gamma, path), fold % 3, goal);
+                assert_eq!(path.solutions.len() < goal.path.len(), gamma > 1.0);
+                fold += 1;
+            };
+            FoldPath::of_pair(&mut whole, (folds.clone(), &POSITIVE), goal, &mut check);
+            FoldPath::of_class(&mut whole, folds.clone(), goal, &mut check);
+            assert_eq!(fold, 6);
+        }
     }
 
     /// A fold's solutions are those of its rows alone.
-    fn assert_is_alone(path: &FoldPath, fold: usize, goal: Goal) {
+    fn assert_is_alone((gamma, path): (f64, &FoldPath), fold: usize, goal: Goal) {
         let rows: Vec<usize> = (0..N).filter(|at| at % 3 != fold).collect();
         let own: Vec<f64> = rows.iter().map(|&at| label(at, fold)).collect();
-        let mut part = gram(&rows);
+        let mut part = gram(gamma, &rows);
         let mut alone = Smo::new(&mut part, &own);
-        for (found, &c) in path.solutions.iter().zip(goal.path) {
+        let numbers = path
+            .solutions
+            .iter()
+            .flat_map(|found| found.numbers.clone());
+        assert!(numbers.eq(0..goal.path.len()));
+        for (number, &c) in goal.path.iter().enumerate() {
+            let holds = |found: &&FoldSolution| found.numbers.contains(&number);
+            let found = path.solutions.iter().find(holds).unwrap();
             let expected = alone.solve(c, goal.tolerance);
             assert!((found.rho - expected.rho).abs() < 1e-6, "{fold} {c}");
             for at in 0..N {
                 let terms = rows.iter().zip(&expected.coefficients);
-                let sum: f64 = terms.map(|(&row, beta)| beta * kernel(row, at)).sum();
+                let sum: f64 = terms
+                    .map(|(&row, beta)| beta * kernel(gamma, row, at))
+                    .sum();
                 let f = label(at, fold) - sum;
                 assert!((found.f[at] - f).abs() < 1e-6, "{fold} {c} {at}");
                 assert!(at % 3 != fold || found.beta[at] == 0.0);
@@ -203,7 +229,7 @@ mod tests {
 
     #[test]
     fn sums_of_folds_are_the_gram_matrix_times_their_labels() {
-        let mut whole = gram(&(0..N).collect::<Vec<_>>());
+        let mut whole = gram(1.0, &(0..N).collect::<Vec<_>>());
         let label = |at: usize| if POSITIVE.contains(&at) { 1.0 } else { -1.0 };
         let all: Vec<f64> = (0..N).map(label).collect();
         // Rows that one fold holds out, that two do and that none does.

@@ -10,9 +10,10 @@ use ndarray::Array2;
 
 use crate::recognition::class_columns::ClassColumns;
 use crate::recognition::class_products::ClassProducts;
-use crate::recognition::fold_path::FoldPath;
+use crate::recognition::fold_path::{FoldPath, FoldSolution};
 use crate::recognition::judgement::Judgement;
 use crate::recognition::kernel::KernelFunction;
+use crate::recognition::later_products::LaterProducts;
 use crate::recognition::product_kernel::ProductKernel;
 use crate::recognition::scalar::Scalar;
 use crate::recognition::smo::Dense;
@@ -56,7 +57,7 @@ impl<T: Scalar> Grid<'_, T> {
         let mut counts = Array2::zeros((kernels.len(), goal.path.len()));
         let mut n_capped = 0;
         let columns = ClassColumns::new(ranges);
-        let (mut rooms, mut later_room) = (Vec::new(), Vec::new());
+        let (mut rooms, mut later) = (Vec::new(), LaterProducts::new(&products));
         for (&kernel, mut counts) in kernels.iter().zip(counts.rows_mut()) {
             let kernel = ProductKernel::new(points, &products, kernel);
             for folds in folds.chunks(FOLDS_AT_ONCE) {
@@ -67,15 +68,18 @@ impl<T: Scalar> Grid<'_, T> {
                     ..goal
                 };
                 let judgements = self.judge(folds, (&columns, &mut rooms), &kernel, goal);
+                for class in 0..ranges.len() {
+                    let doubtful = judgements.iter().map(|judgement| judgement.doubtful(class));
+                    later.gather(class, doubtful.flatten());
+                }
                 for (judgement, room) in judgements.into_iter().zip(&mut rooms) {
                     n_capped += judgement.n_capped();
                     for class in 0..ranges.len() {
-                        let doubtful = judgement.doubtful(class).collect();
-                        let later = kernel.later(class, doubtful, later_room);
-                        let write = |row, to: &mut _| kernel.write_row((class, row), &later, to);
+                        let write = |row, to: &mut _| {
+                            kernel.write_row((class, row), later.of_row(row), to);
+                        };
                         let both = counts.iter_mut().zip(judgement.n_right(class, write));
                         both.for_each(|(count, n_right)| *count += n_right);
-                        later_room = later.into_room();
                     }
                     *room = judgement.into_room();
                 }
@@ -199,7 +203,8 @@ fn take<T: Scalar>(
     path: &FoldPath,
     columns: &ClassColumns,
 ) {
-    for (number, solution) in path.solutions.iter().enumerate() {
+    let mut last: Option<&FoldSolution> = None;
+    for solution in &path.solutions {
         if let (positive, Some(negative)) = problem {
             let [first, second] = [positive, negative].map(|at| &columns.ranges()[at]);
             let place = |row: usize| match first.contains(&row) {
@@ -207,9 +212,11 @@ fn take<T: Scalar>(
                 false => first.len() + row - second.start,
             };
             let sum = |row: usize| -solution.f[place(row)];
-            judgement.look((positive, negative), number, (sum, solution.rho));
+            let numbers = solution.numbers.clone();
+            judgement.look((positive, negative), numbers, (sum, solution.rho));
         }
-        let is_last = number > 0 && path.solutions[number - 1].beta == solution.beta;
+        let is_last = last.is_some_and(|last| last.beta == solution.beta);
         judgement.take(problem, solution, is_last);
+        last = Some(solution);
     }
 }

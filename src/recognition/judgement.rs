@@ -13,6 +13,7 @@ use crate::recognition::scalar::Scalar;
 use crate::recognition::svm::Multiclass;
 
 /// What validation needs of a problem's solution.
+#[derive(Clone, PartialEq)]
 pub(super) struct Solved {
     /// Where β of the rows of its classes is, as [`ClassColumns::spread_some`] lays it out.
     pub(super) beta: Range<usize>,
@@ -34,6 +35,8 @@ pub(crate) struct Judgement<'a, T> {
     pub(super) problems: Vec<Vec<Solved>>,
     /// β of all problems.
     pub(super) beta: Vec<T>,
+    /// Whether any problem's solution is another than for the C before, by C.
+    is_new: Vec<bool>,
 }
 
 impl<'a, T: Scalar> Judgement<'a, T> {
@@ -57,6 +60,7 @@ impl<'a, T: Scalar> Judgement<'a, T> {
             multiclass,
             problems: (0..n_problems).map(|_| Vec::new()).collect(),
             beta: room,
+            is_new: vec![false; n_path],
         }
     }
 
@@ -71,7 +75,7 @@ impl<'a, T: Scalar> Judgement<'a, T> {
         self.beta
     }
 
-    /// Takes a problem's solution for the next C; whether β is that of the last.
+    /// Takes a problem's solution for the next C; whether β is that of the last one.
     pub fn take(
         &mut self,
         (positive, negative): (usize, Option<usize>),
@@ -95,25 +99,30 @@ impl<'a, T: Scalar> Judgement<'a, T> {
                 start..self.beta.len()
             }
         };
-        self.problems[number].push(Solved {
+        let solved = Solved {
             beta,
             rho: solution.rho,
             is_capped: solution.is_capped,
-        });
+        };
+        let numbers = &solution.numbers;
+        self.is_new[numbers.start] |= self.problems[number].last() != Some(&solved);
+        self.problems[number].resize(numbers.end, solved);
     }
 
-    /// Notes which rows of two classes lose at one C, by what the decision function of the pair adds up to before ρ.
+    /// Notes which rows of two classes lose at some C, by what the decision function of the pair adds up to before ρ.
     pub fn look(
         &mut self,
         (positive, negative): (usize, usize),
-        number: usize,
+        numbers: Range<usize>,
         (sum, rho): (impl Fn(usize) -> f64, f64),
     ) {
         for (class, rival) in [(positive, negative), (negative, positive)] {
             for at in self.of_class(class) {
                 if (sum(self.rows[at].0) > rho) != (class == positive) {
-                    let lost = &mut self.lost[[at, number]];
-                    *lost = (lost.0 + 1, rival);
+                    for number in numbers.clone() {
+                        let lost = &mut self.lost[[at, number]];
+                        *lost = (lost.0 + 1, rival);
+                    }
                 }
             }
         }
@@ -130,6 +139,12 @@ impl<'a, T: Scalar> Judgement<'a, T> {
     pub fn doubtful(&self, class: usize) -> impl Iterator<Item = usize> + '_ {
         let own = self.of_class(class).filter(|&at| self.is_doubtful(at));
         own.map(|at| self.rows[at].0)
+    }
+
+    /// Whether all problems say the same of a row as at the C before.
+    pub(super) fn is_as_before(&self, at: usize, number: usize) -> bool {
+        let lost = self.lost.row(at);
+        number > 0 && !self.is_new[number] && lost[number] == lost[number - 1]
     }
 
     pub(super) fn is_doubtful(&self, at: usize) -> bool {
@@ -151,7 +166,7 @@ mod tests {
     use ndarray::Array2;
 
     const N: usize = 60;
-    const C: [f64; 3] = [0.1, 1.0, 10.0];
+    const C: [f64; 4] = [0.1, 1.0, 10.0, 10.0];
     const RANGES: [Range<usize>; 4] = [0..16, 16..30, 30..44, 44..60];
 
     /// Four classes that overlap on a line.
@@ -212,9 +227,10 @@ mod tests {
                         }
                     }
                     if let Some(negative) = negative {
-                        judgement.look((positive, negative), number, (sum, rho));
+                        judgement.look((positive, negative), number..number + 1, (sum, rho));
                     }
                     let solution = FoldSolution {
+                        numbers: number..number + 1,
                         beta: beta.clone(),
                         f: Vec::new(),
                         rho,

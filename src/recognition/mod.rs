@@ -70,6 +70,7 @@ pub mod interval;
 mod judgement;
 pub mod k_nearest;
 pub mod kernel;
+mod later_products;
 pub(crate) mod lbfgs;
 pub mod linear_model;
 pub mod linear_svm;

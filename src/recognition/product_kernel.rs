@@ -9,7 +9,6 @@ use crate::recognition::packed::mirror;
 use crate::recognition::points::Points;
 use crate::recognition::scalar::Scalar;
 use crate::recognition::smo::Dense;
-use crate::recognition::transposed::write_some_columns;
 
 /// A kernel on rows whose products are known.
 pub(crate) struct ProductKernel<'a, T> {
@@ -74,30 +73,11 @@ impl<'a, T: Scalar> ProductKernel<'a, T> {
         to.of_blocks(within, |below| self.write((second, first), below));
     }
 
-    /// Products of some rows of a class, ascending, with those of all classes after it.
-    pub fn later(&self, class: usize, rows: Vec<usize>, room: Vec<T>) -> Later<T> {
-        let ranges = self.products.ranges();
-        let own = &ranges[class];
-        let (n_later, mut values) = (self.points.len() - own.end, room);
-        values.resize(rows.len() * n_later, T::zero());
-        let places: Vec<usize> = rows.iter().map(|row| row - own.start).collect();
-        let later = (class + 1..ranges.len())
-            .flat_map(|class| ranges[class].clone().map(move |row| (class, row)));
-        let later = later.map(|(class, row)| &self.products.of_row(class, row)[own.clone()]);
-        let later: Vec<&[T]> = later.collect();
-        write_some_columns(&later, &places, &mut values, n_later);
-        Later {
-            rows,
-            n_later,
-            values,
-        }
-    }
-
-    /// Kernel values of a row of a class with all, given its products with [later](Self::later) classes.
-    pub fn write_row(&self, (class, row): (usize, usize), later: &Later<T>, to: &mut Vec<T>) {
+    /// Kernel values of a row of a class with all, given its products with those of later classes.
+    pub fn write_row(&self, (class, row): (usize, usize), later: &[T], to: &mut Vec<T>) {
         to.clear();
         to.extend_from_slice(self.products.of_row(class, row));
-        to.extend_from_slice(later.of_row(row));
+        to.extend_from_slice(later);
         let values = ArrayViewMut2::from_shape((1, to.len()), &mut to[..]);
         let values = values.expect("a row has a value with each");
         let row = self.points.range(row..row + 1);
@@ -105,30 +85,10 @@ impl<'a, T: Scalar> ProductKernel<'a, T> {
     }
 }
 
-/// Products of some rows of a class with those of all later classes.
-pub(crate) struct Later<T> {
-    /// Ascending.
-    rows: Vec<usize>,
-    n_later: usize,
-    /// Row by row.
-    values: Vec<T>,
-}
-
-impl<T> Later<T> {
-    fn of_row(&self, row: usize) -> &[T] {
-        let at = self.rows.partition_point(|&before| before < row);
-        &self.values[at * self.n_later..][..self.n_later]
-    }
-
-    /// The room that it was given.
-    pub fn into_room(self) -> Vec<T> {
-        self.values
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::recognition::later_products::LaterProducts;
     use crate::recognition::smo::Gram;
     use ndarray::Array1;
 
@@ -154,18 +114,17 @@ mod tests {
             }
         }
         found.write_all(&mut gram);
-        let (mut values, mut room) = (Vec::new(), Vec::new());
+        let mut values = Vec::new();
+        let mut later = LaterProducts::new(&products);
         for (class, range) in ranges.iter().enumerate() {
-            let some: Vec<usize> = range.clone().step_by(2).collect();
-            let later = found.later(class, some.clone(), room);
-            for row in some {
-                found.write_row((class, row), &later, &mut values);
+            later.gather(class, range.clone());
+            for row in range.clone() {
+                found.write_row((class, row), later.of_row(row), &mut values);
                 assert_eq!(gram.row(row)[..23], values);
                 for (value, expected) in values.iter().zip(expected.row(row)) {
                     assert!((value - expected).abs() < 1e-14);
                 }
             }
-            room = later.into_room();
         }
     }
 }

@@ -8,35 +8,51 @@ use std::ops::Range;
 
 use crate::recognition::scalar::Scalar;
 
-/// β (of all rows of a problem) for a fold that trains on other rows, whose labels are not 0; `None` where a multiplier finds
-/// no row of its class that has none. `similar` gives the kernel values of a row.
-pub(crate) fn moved<'k, T: Scalar>(
-    beta: &[f64],
-    (before, labels): (&[f64], &[f64]),
-    positive: &Range<usize>,
-    similar: impl Fn(usize) -> &'k [T],
-) -> Option<Vec<f64>> {
-    let mut moved = beta.to_vec();
-    let gained = (0..beta.len()).filter(|&at| labels[at] != 0.0 && before[at] == 0.0);
-    let (mut own, mut others): (Vec<usize>, Vec<usize>) =
-        gained.partition(|at| positive.contains(at));
-    for lost in (0..beta.len()).filter(|&at| beta[at] != 0.0 && labels[at] == 0.0) {
-        let similar = similar(lost);
-        let gained = if positive.contains(&lost) {
-            &mut own
-        } else {
-            &mut others
-        };
-        let mut nearest = (T::neg_infinity(), None);
-        for (number, &at) in gained.iter().enumerate() {
-            if similar[at] > nearest.0 {
-                nearest = (similar[at], Some(number));
+/// The rows of a problem that one fold trains on and another does not.
+pub(crate) struct Exchange {
+    /// For each class those that are lost and those that are gained, ascending.
+    sides: [(Vec<usize>, Vec<usize>); 2],
+}
+
+impl Exchange {
+    /// From a fold to another, by the labels of all rows, which are 0 where a fold holds one out.
+    pub fn new((before, labels): (&[f64], &[f64]), positive: &Range<usize>) -> Self {
+        let mut sides = [(); 2].map(|()| (Vec::new(), Vec::new()));
+        for (at, (before, label)) in before.iter().zip(labels).enumerate() {
+            let (lost, gained) = &mut sides[usize::from(positive.contains(&at))];
+            match (*before != 0.0, *label != 0.0) {
+                (true, false) => lost.push(at),
+                (false, true) => gained.push(at),
+                _ => (),
             }
         }
-        moved[gained.swap_remove(nearest.1?)] = beta[lost];
-        moved[lost] = 0.0;
+        Self { sides }
     }
-    Some(moved)
+
+    /// β of the one fold for the other; `None` where a multiplier finds no row of its class that has none. `similar` gives the
+    /// kernel values of a row.
+    pub fn moved<'k, T: Scalar>(
+        &self,
+        beta: &[f64],
+        similar: impl Fn(usize) -> &'k [T],
+    ) -> Option<Vec<f64>> {
+        let mut moved = beta.to_vec();
+        for (lost, gained) in &self.sides {
+            let mut gained = gained.clone();
+            for &lost in lost.iter().filter(|&&at| beta[at] != 0.0) {
+                let similar = similar(lost);
+                let mut nearest = (T::neg_infinity(), None);
+                for (number, &at) in gained.iter().enumerate() {
+                    if similar[at] > nearest.0 {
+                        nearest = (similar[at], Some(number));
+                    }
+                }
+                moved[gained.swap_remove(nearest.1?)] = beta[lost];
+                moved[lost] = 0.0;
+            }
+        }
+        Some(moved)
+    }
 }
 
 #[cfg(test)]
@@ -55,7 +71,8 @@ mod tests {
             (0..8).map(label).collect::<Vec<f64>>()
         };
         let row = |at: usize| &kernel.as_slice().unwrap()[at * 8..][..8];
-        moved(beta, (&labels(was), &labels(is)), &(0..4), row)
+        let exchange = Exchange::new((&labels(was), &labels(is)), &(0..4));
+        exchange.moved(beta, row)
     }
 
     #[test]

@@ -125,11 +125,14 @@ impl<'a, G> Smo<'a, G> {
     }
 
     /// Takes f, which belongs to another β, to this one.
-    fn follow<T: Scalar>(&mut self, before: &[f64])
+    fn follow<T: Scalar>(&mut self, before: Vec<f64>)
     where
         G: Gram<T>,
     {
-        let change: Vec<f64> = self.beta.iter().zip(before).map(|(b, a)| b - a).collect();
+        let mut change = before;
+        for (change, beta) in change.iter_mut().zip(&self.beta) {
+            *change = beta - *change;
+        }
         let products = self.gram.times(&change);
         for (f, product) in self.f.iter_mut().zip(products) {
             *f -= product;
@@ -217,7 +220,7 @@ impl<'a, G> Smo<'a, G> {
             self.search_once(c, search, is_first);
             is_first = false;
             if self.is_summed {
-                self.follow(&before);
+                self.follow(before);
             } else {
                 self.refresh();
             }

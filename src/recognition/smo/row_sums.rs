@@ -15,12 +15,12 @@ pub(super) fn weighted_sum<'a, T: Scalar>(
         weighing[n_weighing] = j;
         n_weighing += usize::from(beta != 0.0);
     }
-    let weighing = weighing[..n_weighing].iter();
-    let rows: Vec<(&[T], f64)> = weighing.map(|&j| (row(j), beta[j])).collect();
-    let (fours, last) = rows.as_chunks::<4>();
-    fours.iter().for_each(|four| add_four(&mut sums, four));
+    let (fours, last) = weighing[..n_weighing].as_chunks::<4>();
+    for four in fours {
+        add_four(&mut sums, &four.map(|j| (row(j), beta[j])));
+    }
     last.iter()
-        .for_each(|&(row, beta)| add_row(&mut sums, row, beta));
+        .for_each(|&j| add_row(&mut sums, row(j), beta[j]));
     sums
 }
 

@@ -5,6 +5,9 @@ use crate::recognition::scalar::Scalar;
 
 /// Variables looked at side by side.
 const LANES: usize = 8;
+/// Variables whose extremes are looked for side by side: so many that the compiler makes a loop of them, which it turns into
+/// vectors as it is; eight, written out one after the other, become vectors with much shuffling.
+const EXTREMES_LANES: usize = 64;
 
 /// 0 where β can move, −∞ elsewhere.
 #[inline(always)]
@@ -55,16 +58,18 @@ pub(crate) struct Variables<T> {
 impl<T: Scalar> Variables<T> {
     pub fn new(beta: &[f64], y: &[f64], f: &[f64], c: f64) -> Self {
         let n = beta.len();
+        let mut own_f = Vec::with_capacity(padded(n));
+        own_f.extend(f.iter().map(|&f| T::of(f)));
+        own_f.resize(padded(n), T::zero());
         let mut variables = Self {
             beta: beta.to_vec(),
             y: y.to_vec(),
             c,
-            f: f.iter().map(|&f| T::of(f)).collect(),
+            f: own_f,
             up: vec![T::neg_infinity(); padded(n)],
             low: vec![T::neg_infinity(); padded(n)],
             gains: vec![T::zero(); padded(n)],
         };
-        variables.f.resize(padded(n), T::zero());
         mark_all(beta, y, c, &mut variables.up, &mut variables.low);
         variables
     }
@@ -134,35 +139,47 @@ impl<T: Scalar> Variables<T> {
 /// `(max of f that can be raised, min of f that can be lowered)`, in f64, for any β within its bounds.
 #[multiversion::multiversion(targets("x86_64+avx512f", "x86_64+avx2+fma"))]
 pub(crate) fn extremes(beta: &[f64], y: &[f64], f: &[f64], c: f64) -> (f64, f64) {
-    let (beta, last_beta) = beta.as_chunks::<LANES>();
-    let (y, last_y) = y.as_chunks::<LANES>();
-    let (f, last_f) = f.as_chunks::<LANES>();
-    let n = beta.len();
-    let (y, f) = (&y[..n], &f[..n]);
-    // Each lane keeps its own; they meet at the end.
-    let (mut highest, mut lowest) = ([f64::NEG_INFINITY; LANES], [f64::INFINITY; LANES]);
-    for at in 0..n {
-        for lane in 0..LANES {
-            let both = (&mut highest[lane], &mut lowest[lane]);
-            widen(both, beta[at][lane], y[at][lane], f[at][lane], c);
+    // Each lane keeps its own; halves meet halves at the end.
+    let mut highest = [f64::NEG_INFINITY; EXTREMES_LANES];
+    let mut lowest = [f64::INFINITY; EXTREMES_LANES];
+    let chunks = beta.chunks(EXTREMES_LANES).zip(y.chunks(EXTREMES_LANES));
+    for ((beta, y), f) in chunks.zip(f.chunks(EXTREMES_LANES)) {
+        let n = beta.len();
+        let (y, f) = (&y[..n], &f[..n]);
+        let (highest, lowest) = (&mut highest[..n], &mut lowest[..n]);
+        for at in 0..n {
+            let (low, high) = bounds(y[at], c);
+            let raised = if beta[at] < high {
+                f[at]
+            } else {
+                f64::NEG_INFINITY
+            };
+            let lowered = if beta[at] > low { f[at] } else { f64::INFINITY };
+            highest[at] = larger(raised, highest[at]);
+            lowest[at] = smaller(lowered, lowest[at]);
         }
     }
-    for at in 0..last_beta.len() {
-        let both = (&mut highest[at], &mut lowest[at]);
-        widen(both, last_beta[at], last_y[at], last_f[at], c);
+    let mut width = EXTREMES_LANES / 2;
+    while width > 0 {
+        for lane in 0..width {
+            highest[lane] = larger(highest[lane + width], highest[lane]);
+            lowest[lane] = smaller(lowest[lane + width], lowest[lane]);
+        }
+        width /= 2;
     }
-    let highest = highest.into_iter().fold(f64::NEG_INFINITY, f64::max);
-    (highest, lowest.into_iter().fold(f64::INFINITY, f64::min))
+    (highest[0], lowest[0])
 }
 
-/// Takes one more variable into the extremes.
+/// The first if it is larger than the second, which is a number.
 #[inline(always)]
-fn widen((highest, lowest): (&mut f64, &mut f64), beta: f64, y: f64, f: f64, c: f64) {
-    let (low, high) = bounds(y, c);
-    let raised = if beta < high { f } else { f64::NEG_INFINITY };
-    let lowered = if beta > low { f } else { f64::INFINITY };
-    *highest = if raised > *highest { raised } else { *highest };
-    *lowest = if lowered < *lowest { lowered } else { *lowest };
+fn larger(a: f64, b: f64) -> f64 {
+    if a > b { a } else { b }
+}
+
+/// The first if it is smaller than the second, which is a number.
+#[inline(always)]
+fn smaller(a: f64, b: f64) -> f64 {
+    if a < b { a } else { b }
 }
 
 /// `Σ y β` and `β K β` of β and its f, of which the dual objective is the first less half the second.
@@ -230,5 +247,32 @@ pub(super) fn rho(beta: &[f64], y: &[f64], f: &[f64], c: f64) -> f64 {
         (highest, lowest) if highest.is_finite() && lowest.is_finite() => -(highest + lowest) / 2.0,
         (highest, _) if highest.is_finite() => -highest,
         (_, lowest) => -lowest,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn extremes_are_those_of_all_that_can_move_however_many_there_are() {
+        let c = 2.0;
+        for n in [0, 1, 7, 63, 64, 65, 150] {
+            let y: Vec<f64> = (0..n).map(|i| [1.0, -1.0, 0.0][i % 3]).collect();
+            let beta = |i: usize| c * y[i] * [0.0, 0.3, 1.0, 1.0][i / 3 % 4];
+            let beta: Vec<f64> = (0..n).map(beta).collect();
+            let f: Vec<f64> = (0..n).map(|i| (i as f64 * 1.7).sin()).collect();
+            let (mut highest, mut lowest) = (f64::NEG_INFINITY, f64::INFINITY);
+            for i in 0..n {
+                let (low, high) = bounds(y[i], c);
+                if beta[i] < high {
+                    highest = highest.max(f[i]);
+                }
+                if beta[i] > low {
+                    lowest = lowest.min(f[i]);
+                }
+            }
+            assert_eq!(extremes(&beta, &y, &f, c), (highest, lowest), "{n}");
+        }
     }
 }
