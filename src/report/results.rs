@@ -99,8 +99,8 @@ pub fn planned_s(cells: &[&Cell]) -> f64 {
 
 /// Seconds for a chart's PNG and SVG.
 const CHART_S: f64 = 0.12;
-/// Seconds for tables, touches, the confusion matrix, Pareto charts and the page (1.3 to 1.8 measured).
-const REST_S: f64 = 1.4;
+/// Seconds for tables, touches, the confusion matrix, Pareto charts and the page (1.0 to 2.5 measured).
+const REST_S: f64 = 1.9;
 
 /// Every chart of a study: file name without ending, title, drawing.
 pub fn draw_charts(tables: &Tables) -> Vec<(String, String, Drawing)> {

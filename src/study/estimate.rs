@@ -42,11 +42,17 @@ pub struct Estimate {
 }
 
 /// Seconds to bring one sphere to the patch and decide whether it reaches the skin.
-pub(super) const PLACE_SPHERE_S: f64 = 1.2e-8;
+pub(super) const PLACE_SPHERE_S: f64 = 6e-9;
 /// The same for one triangle of a mesh: most are never looked at.
 pub(super) const PLACE_TRIANGLE_S: f64 = 1.5e-8;
+/// What each frame after the first of a touch takes, as a share of the first: fewer spheres are looked at.
+const LATER_FRAME: f64 = 0.25;
 /// Seconds to clear, count and store one taxel.
 const CLEAR_TAXEL_S: f64 = 2e-9;
+/// Seconds to read one taxel where neither noise nor smoothing touches it.
+const READ_TAXEL_S: f64 = 4.5e-9;
+/// Share of the taxels that a touch reaches, about: where there is no noise, no others are projected.
+const TOUCHED_SHARE: f64 = 0.1;
 /// Seconds to draw noise for one taxel and to smooth it.
 const SIGNAL_TAXEL_S: f64 = 2.5e-8;
 /// Seconds for one multiply-add of a projection.
@@ -58,9 +64,13 @@ const KERNEL_ELEMENT_S: f64 = 1e-9;
 /// Seconds for one multiply-add of the matrix product that brings wider features down to that many.
 const REDUCE_ELEMENT_S: f64 = 5e-11;
 /// Seconds of our solvers for one entry of a binary problem's kernel matrix.
-const OWN_ENTRY_S: f64 = 4e-9;
+const OWN_ENTRY_S: f64 = 1.3e-9;
+/// The same of a linear SVM, and for each of its measurements up to so many: no hyperplane may part the classes.
+const OWN_LINEAR_ENTRY_S: f64 = 2e-9;
+const OWN_LINEAR_ELEMENT_S: f64 = 8e-12;
+const OWN_LINEAR_ELEMENTS: f64 = 256.0;
 /// Seconds for one multiply-add of the kernel matrix that all their problems share.
-const GRAM_ELEMENT_S: f64 = 2.2e-11;
+const GRAM_ELEMENT_S: f64 = 1.6e-11;
 /// Seconds of a logistic regression for one measurement of a training row and one object.
 const LOGISTIC_S: f64 = 1.5e-7;
 /// Seconds to scale and to store one measurement of a training row, for nearest neighbours.
@@ -80,9 +90,10 @@ impl Estimate {
         let n_touches = sweep.labels.len();
         let n_threads = rayon::current_num_threads();
         let n_trials = plan.spec.trials;
-        let n_presses = plan.frames.iter().sum::<usize>();
+        let frames = || plan.frames.iter();
         let arrays = plan.arrays.iter();
-        let simulate_s = arrays.map(|patch| touch_s(patch, touched, n_touches, n_presses));
+        let simulate_s =
+            arrays.flat_map(|patch| frames().map(|&n| touch_s(patch, touched, n_touches, n)));
         let read_s = |g: &Group| -> f64 {
             let projected = g.projected().into_iter();
             projected.map(|m| measure_s(plan, g, n_touches, m)).sum()
@@ -125,7 +136,8 @@ pub(super) fn touch_s(
     n_frames: usize,
 ) -> f64 {
     let clear_s = CLEAR_TAXEL_S * (n_touches * patch.grid.n_taxels()) as f64;
-    n_frames as f64 * (touched.place_s() + clear_s)
+    let n_placed = 1.0 + LATER_FRAME * (n_frames as f64 - 1.0);
+    n_placed * touched.place_s() + n_frames as f64 * clear_s
 }
 
 /// Processor-seconds to read and project all frames of a group once.
@@ -137,7 +149,12 @@ pub(super) fn measure_s(
 ) -> f64 {
     let n_taxels = plan.arrays[group.array].grid.n_taxels();
     let n_read = (n_touches * group.frames * n_taxels) as f64;
-    n_read * (SIGNAL_TAXEL_S + PROJECT_S * n_measurements as f64)
+    let is_quiet = group.condition.noise == 0.0 && group.condition.smoothing == 0.0;
+    let (signal_s, share) = match is_quiet {
+        true => (READ_TAXEL_S, TOUCHED_SHARE),
+        false => (SIGNAL_TAXEL_S, 1.0),
+    };
+    n_read * (signal_s + share * PROJECT_S * n_measurements as f64)
 }
 
 /// Processor-seconds of what is done for one C of a family in one trial.
@@ -218,20 +235,32 @@ fn fit_s(plan: &Plan, cell: &Cell, n_objects: usize, touches: f64) -> f64 {
         ClassifierKind::DecisionTree => TREE_S * n_train * m,
         ClassifierKind::RandomForest => FOREST_S * n_train * m.sqrt(),
         ClassifierKind::LinearSvm | ClassifierKind::RbfSvm | ClassifierKind::PolynomialSvm => {
-            let recognition = &plan.spec.recognition;
-            let (n_problems, rows) = match recognition.multiclass {
-                Multiclass::OneVsOne => (n_objects * (n_objects - 1.0) / 2.0, 2.0 * touches),
-                Multiclass::OneVsRest | Multiclass::CrammerSinger => (n_objects, n_train),
-            };
-            let entries = n_problems * rows * rows;
-            match recognition.solver {
-                Solver::Linfa => {
-                    let products_s = KERNEL_ELEMENT_S * m.min(rows) + REDUCE_ELEMENT_S * m;
-                    entries * (SOLVE_ENTRY_S + products_s)
-                }
-                _ => entries * OWN_ENTRY_S + GRAM_ELEMENT_S * n_train * n_train * m,
-            }
+            svm_s(plan, cell, n_objects, touches)
         }
+    }
+}
+
+/// One fit of an SVM with so many training touches of each of so many objects.
+fn svm_s(plan: &Plan, cell: &Cell, n_objects: f64, touches: f64) -> f64 {
+    let m = cell.n_features() as f64;
+    let n_train = touches * n_objects;
+    let recognition = &plan.spec.recognition;
+    let (n_problems, rows) = match recognition.multiclass {
+        Multiclass::OneVsOne => (n_objects * (n_objects - 1.0) / 2.0, 2.0 * touches),
+        Multiclass::OneVsRest | Multiclass::CrammerSinger => (n_objects, n_train),
+    };
+    let entries = n_problems * rows * rows;
+    let products_s = GRAM_ELEMENT_S * n_train * n_train * m;
+    match (recognition.solver, cell.classifier) {
+        (Solver::Linfa, _) => {
+            let own_products_s = KERNEL_ELEMENT_S * m.min(rows) + REDUCE_ELEMENT_S * m;
+            entries * (SOLVE_ENTRY_S + own_products_s)
+        }
+        (_, ClassifierKind::LinearSvm) => {
+            let element_s = OWN_LINEAR_ELEMENT_S * m.min(OWN_LINEAR_ELEMENTS);
+            entries * (OWN_LINEAR_ENTRY_S + element_s) + products_s
+        }
+        _ => entries * OWN_ENTRY_S + products_s,
     }
 }
 

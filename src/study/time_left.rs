@@ -111,8 +111,10 @@ impl Spent {
 }
 
 /// Share of one of a place's pieces that counts as much as the factor of its kind, and makes the place count in that: before that
-/// much is done, its own factor is chance. Of a kind it is the share of a place that counts as the middle factor of all kinds.
+/// much is done, its own factor is chance.
 const HESITATION: f64 = 0.3;
+/// Places of a kind that the middle factor of all kinds counts as much as, in the factor of the kind.
+const PRIOR_PLACES: f64 = 0.5;
 /// The same for the factor of a place within its kind, which so is never 0; and the share of a kind that makes it count in the
 /// middle of all kinds, if a piece of it takes longer.
 const LEAST_SHARE: f64 = 0.02;
@@ -191,7 +193,7 @@ impl TimeLeft {
         let common = begun.map(|(_, spent)| spent.took_s / spent.done_s);
         let common = middle(common.collect()).max(f64::MIN_POSITIVE);
         // Of each kind the sum of weights, and of weighted logarithms.
-        let prior = [HESITATION, HESITATION * common.ln()];
+        let prior = [PRIOR_PLACES, PRIOR_PLACES * common.ln()];
         let mut sums: BTreeMap<Work, [f64; 2]> = BTreeMap::new();
         for ((kind, _), spent) in &self.places {
             let sum = sums.entry(*kind).or_insert(prior);
