@@ -103,6 +103,15 @@ fn a_wrong_type_is_named_with_its_line() {
 }
 
 #[test]
+fn an_object_to_show_that_is_not_there_is_refused_before_the_study_runs() {
+    Case::new().refuses(
+        "[sensing]",
+        "[report]\nsamples = [\"mug\", \"kettle\"]\n\n[sensing]",
+        &["report.samples", "kettle", "mug, banana, scissors"],
+    );
+}
+
+#[test]
 fn a_file_that_is_not_toml_is_refused() {
     Case::new().refuses("[skin]", "[skin", &["study.toml:10"]);
 }

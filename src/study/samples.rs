@@ -187,6 +187,19 @@ fn loudest_group<'a>(plan: &Plan, sweep: &'a Sweep) -> Option<&'a Group> {
     })
 }
 
+/// Whether those that the study names are among its classes: asked before it runs, since samples are drawn when it is over.
+pub(super) fn check_samples(plan: &Plan, classes: &[&str]) -> Result<()> {
+    let mut named = plan.spec.report.samples.iter().flatten();
+    match named.find(|name| !classes.contains(&name.as_str())) {
+        None => Ok(()),
+        Some(name) => Err(Error::input(
+            "key report.samples",
+            name,
+            format!("of what the study tells apart: {}", classes.join(", ")),
+        )),
+    }
+}
+
 fn chosen<'a>(plan: &Plan, touched: &'a [TouchedObject]) -> Result<Vec<&'a TouchedObject>> {
     if let Some(names) = &plan.spec.report.samples {
         return names

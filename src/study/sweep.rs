@@ -12,6 +12,7 @@ use super::imperfection::{Imperfection, TestedOn};
 use super::plan::{Plan, millimetres};
 use super::plan_signal::Condition;
 use super::published::check_published;
+use super::samples::check_samples;
 use super::splits::{check_folds, check_fused_touches, check_imbalance, draw_split, train_touches};
 use super::table::Cell;
 use super::touch_set::TouchSet;
@@ -79,8 +80,9 @@ impl Group {
 }
 
 impl Sweep {
-    /// Lays out splits and cells; the error says which objects or touches are too few.
+    /// Lays out splits and cells; the error says which objects or touches are too few, or shown without being there.
     pub fn new(plan: &Plan, touched: &dyn TouchSet) -> Result<Self> {
+        check_samples(plan, &touched.class_names())?;
         let n_classes = touched.class_names().len();
         if n_classes < 2 {
             let (place, given, allowed) = match plan.human_touch {
