@@ -313,7 +313,7 @@ fn a_choice_by_some_of_the_touches_does_not_see_the_others() {
 }
 
 #[test]
-fn frames_take_memory_and_time_in_proportion() {
+fn frames_take_memory_and_measuring_in_proportion_and_less_to_be_made() {
     let estimate = |frames: usize| {
         let text = with(&format!("frames = {frames}"), "");
         // So many that they take more than the report.
@@ -321,7 +321,9 @@ fn frames_take_memory_and_time_in_proportion() {
         Study::new(&many).estimate()
     };
     let (one, four) = (estimate(1), estimate(4));
-    assert!(four.simulate_s > 3.9 * one.simulate_s);
+    // What comes near the skin is found once a touch.
+    let made = four.simulate_s / one.simulate_s;
+    assert!((1.5..3.9).contains(&made), "{made}");
     assert!(four.measure_s > 3.9 * one.measure_s);
     let frames = 4.0 * 6.0 * 60_000.0 * 256.0;
     assert!(four.memory_bytes - one.memory_bytes >= 3.0 * frames);
