@@ -45,7 +45,7 @@ pub struct Estimate {
 pub(super) const PLACE_SPHERE_S: f64 = 6e-9;
 /// The same for one triangle of a mesh: most are never looked at.
 pub(super) const PLACE_TRIANGLE_S: f64 = 1.5e-8;
-/// What each frame after the first of a touch takes, as a share of the first: fewer spheres are looked at.
+/// What each frame after the first of a touch takes to be made, as a share of the first (measured).
 const LATER_FRAME: f64 = 0.25;
 /// Seconds to clear, count and store one taxel.
 const CLEAR_TAXEL_S: f64 = 2e-9;
