@@ -8,7 +8,7 @@
 
 use crate::recognition::free_factor::FreeFactor;
 use crate::recognition::scalar::Scalar;
-use crate::recognition::smo::{Gram, extremes};
+use crate::recognition::smo::{Gram, bounds, violation};
 
 /// Free variables whose equations are solved, at most; others wait until it is their turn.
 const MOST_FREE: usize = 384;
@@ -157,15 +157,12 @@ impl<'a> ActiveSet<'a> {
 
     /// Takes f to β.
     fn follow<T: Scalar, G: Gram<T>>(&mut self, gram: &mut G) {
-        for (f, product) in self.f.iter_mut().zip(gram.times(&self.changes)) {
-            *f -= product;
-        }
+        gram.take_times(&self.changes, self.f);
         self.changes.fill(0.0);
     }
 
     fn violation(&self) -> f64 {
-        let (highest, lowest) = extremes(self.beta, self.labels, self.f, self.c);
-        highest - lowest
+        violation(self.beta, self.labels, self.f, self.c)
     }
 
     /// The variables without equations that are farthest beyond the level, if any is farther than all that have them.
@@ -209,16 +206,10 @@ impl<'a> ActiveSet<'a> {
     }
 }
 
-/// Where a variable may be, by its label: between 0 and C for a positive row, between −C and 0 for a negative one, at 0 for one
-/// that takes no part.
-fn bounds(label: f64, c: f64) -> (f64, f64) {
-    (c * label.min(0.0), c * label.max(0.0))
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::recognition::smo::{Dense, Smo};
+    use crate::recognition::smo::{Dense, Smo, extremes};
     use ndarray::{Array1, Array2};
 
     /// Products of n rows of m features with no pattern, the first half apart from the others.

@@ -2,8 +2,9 @@
 
 use super::human_touches::{HumanTouches, record_touch};
 use super::plan::{Plan, millimetres};
-use super::samples::Samples;
+use super::samples::{Samples, named_samples};
 use super::sweep::Sweep;
+use super::touch_set::TouchSet;
 use crate::contact::SkinWorkspace;
 use crate::error::{Error, Result};
 use crate::signal::Quantity;
@@ -77,13 +78,6 @@ pub fn human_samples(plan: &Plan, sweep: &Sweep, touches: &HumanTouches) -> Resu
 
 /// Labels of the kinds to show.
 fn chosen(plan: &Plan, touches: &HumanTouches) -> Result<Vec<usize>> {
-    let kinds = &touches.plan.kinds;
-    let Some(names) = &plan.spec.report.samples else {
-        return Ok((0..kinds.len()).collect());
-    };
-    let label = |name: &String| {
-        let found = kinds.iter().position(|kind| kind.name() == name);
-        found.ok_or_else(|| Error::input("key report.samples", name, "names of the study's kinds"))
-    };
-    names.iter().map(label).collect()
+    let named = named_samples(plan, &touches.class_names())?;
+    Ok(named.unwrap_or_else(|| (0..touches.plan.kinds.len()).collect()))
 }

@@ -187,32 +187,28 @@ fn loudest_group<'a>(plan: &Plan, sweep: &'a Sweep) -> Option<&'a Group> {
     })
 }
 
-/// Whether those that the study names are among its classes: asked before it runs, since samples are drawn when it is over.
-pub(super) fn check_samples(plan: &Plan, classes: &[&str]) -> Result<()> {
-    let mut named = plan.spec.report.samples.iter().flatten();
-    match named.find(|name| !classes.contains(&name.as_str())) {
-        None => Ok(()),
-        Some(name) => Err(Error::input(
-            "key report.samples",
-            name,
-            format!("of what the study tells apart: {}", classes.join(", ")),
-        )),
-    }
+/// Labels of those that the study names for its picture; `None` where it names none.
+///
+/// # Errors
+/// A name of none of these classes.
+pub(super) fn named_samples(plan: &Plan, classes: &[&str]) -> Result<Option<Vec<usize>>> {
+    let label = |name: &String| {
+        let found = classes.iter().position(|class| class == name);
+        found.ok_or_else(|| {
+            let allowed = format!("of what the study tells apart: {}", classes.join(", "));
+            Error::input("key report.samples", name, allowed)
+        })
+    };
+    let names = plan.spec.report.samples.as_ref();
+    names
+        .map(|names| names.iter().map(label).collect())
+        .transpose()
 }
 
 fn chosen<'a>(plan: &Plan, touched: &'a [TouchedObject]) -> Result<Vec<&'a TouchedObject>> {
-    if let Some(names) = &plan.spec.report.samples {
-        return names
-            .iter()
-            .map(|name| {
-                touched
-                    .iter()
-                    .find(|t| t.object.name == *name)
-                    .ok_or_else(|| {
-                        Error::input("key report.samples", name, "names of the study's objects")
-                    })
-            })
-            .collect();
+    let names: Vec<&str> = touched.iter().map(|t| t.object.name.as_str()).collect();
+    if let Some(labels) = named_samples(plan, &names)? {
+        return Ok(labels.into_iter().map(|label| &touched[label]).collect());
     }
     let n = N_SAMPLES.min(touched.len());
     Ok((0..n).map(|k| &touched[k * touched.len() / n]).collect())

@@ -12,7 +12,7 @@ use super::imperfection::{Imperfection, TestedOn};
 use super::plan::{Plan, millimetres};
 use super::plan_signal::Condition;
 use super::published::check_published;
-use super::samples::check_samples;
+use super::samples::named_samples;
 use super::splits::{check_folds, check_fused_touches, check_imbalance, draw_split, train_touches};
 use super::table::Cell;
 use super::touch_set::TouchSet;
@@ -82,8 +82,10 @@ impl Group {
 impl Sweep {
     /// Lays out splits and cells; the error says which objects or touches are too few, or shown without being there.
     pub fn new(plan: &Plan, touched: &dyn TouchSet) -> Result<Self> {
-        check_samples(plan, &touched.class_names())?;
-        let n_classes = touched.class_names().len();
+        let classes = touched.class_names();
+        // Asked before it runs: samples are drawn when it is over.
+        named_samples(plan, &classes)?;
+        let n_classes = classes.len();
         if n_classes < 2 {
             let (place, given, allowed) = match plan.human_touch {
                 Some(_) => ("key human_touch.kinds", "kind", "kinds"),

@@ -113,11 +113,11 @@ impl Spent {
 /// Share of one of a place's pieces that counts as much as the factor of its kind, and makes the place count in that: before that
 /// much is done, its own factor is chance.
 const HESITATION: f64 = 0.3;
-/// Places of a kind that the middle factor of all kinds counts as much as, in the factor of the kind.
-const PRIOR_PLACES: f64 = 0.5;
 /// The same for the factor of a place within its kind, which so is never 0; and the share of a kind that makes it count in the
 /// middle of all kinds, if a piece of it takes longer.
 const LEAST_SHARE: f64 = 0.02;
+/// Places of a kind that the middle factor of all kinds counts as much as, in the factor of the kind.
+const PRIOR_PLACES: f64 = 0.5;
 
 impl TimeLeft {
     /// Of a run with this work.

@@ -22,6 +22,12 @@ pub(crate) trait Gram<T> {
     fn smallest_curvature(&self) -> T;
     /// `K β`, summed in f64 (n values).
     fn times(&mut self, beta: &[f64]) -> Vec<f64>;
+    /// Takes `K β` from f.
+    fn take_times(&mut self, beta: &[f64], f: &mut [f64]) {
+        for (f, product) in f.iter_mut().zip(self.times(beta)) {
+            *f -= product;
+        }
+    }
     /// Whether a part of this many rows would fit in memory.
     fn fits(&self, n: usize) -> bool;
     /// The rows and columns at these indices.

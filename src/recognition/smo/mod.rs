@@ -29,14 +29,13 @@ pub(crate) mod variables;
 pub(crate) use cached::Cached;
 pub(crate) use gram::{Dense, Gram, gather};
 pub(crate) use part::{Part, Room, part_of_blocks};
-pub(crate) use reached::Reached;
-pub(crate) use variables::extremes;
+pub(crate) use reached::{Reached, violation};
+pub(crate) use variables::{bounds, extremes};
 
 use crate::recognition::active_set::{ActiveSetGoal, settle};
 use crate::recognition::dual::DualSolution;
 use crate::recognition::scalar::Scalar;
 use iterations::{SHRINK_PERIOD, Search, Stop, run, solve_part};
-use reached::violation;
 use variables::{Variables, linear_and_quadratic, rho};
 
 /// Iterations after which a problem counts as not solved, as in LIBSVM; or 100 a row, if that is more.
@@ -133,10 +132,7 @@ impl<'a, G> Smo<'a, G> {
         for (change, beta) in change.iter_mut().zip(&self.beta) {
             *change = beta - *change;
         }
-        let products = self.gram.times(&change);
-        for (f, product) in self.f.iter_mut().zip(products) {
-            *f -= product;
-        }
+        self.gram.take_times(&change, &mut self.f);
     }
 
     /// Solves for this C, starting from the solution of the last one, to a violation of the optimality conditions of at most

@@ -29,7 +29,7 @@ impl Reached {
 
 /// How far the optimality conditions for a C are violated; below 0 when they hold with room to spare, infinite when kernel
 /// values have left nothing to go by.
-pub(super) fn violation(beta: &[f64], y: &[f64], f: &[f64], c: f64) -> f64 {
+pub(crate) fn violation(beta: &[f64], y: &[f64], f: &[f64], c: f64) -> f64 {
     if !all_finite(f) {
         return f64::INFINITY;
     }

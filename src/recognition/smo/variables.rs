@@ -34,7 +34,7 @@ fn mark_all<T: Scalar>(beta: &[f64], y: &[f64], c: f64, up: &mut [T], low: &mut 
 /// Where a variable may be: between 0 and C for a positive row, between −C and 0 for a negative one, at 0 for one that takes no
 /// part.
 #[inline(always)]
-fn bounds(y: f64, c: f64) -> (f64, f64) {
+pub(crate) fn bounds(y: f64, c: f64) -> (f64, f64) {
     (c * y.min(0.0), c * y.max(0.0))
 }
 
