@@ -45,13 +45,14 @@ impl RecognitionStudy {
 
     /// What is done when all cells are there; a shard does nothing then.
     fn report_work(&self, part: Part) -> Piece {
-        let cells: Vec<_> = self.loaded.sweep.cells().collect();
+        let LoadedStudy { plan, sweep, .. } = &self.loaded;
+        let cells: Vec<_> = sweep.cells().collect();
         Piece {
             kind: Work::Report,
             place: 0,
             planned_s: match part {
                 Part::Shard(_) => 0.0,
-                _ => results::planned_s(&cells),
+                _ => results::planned_s(&cells, plan.spec.report.pareto),
             },
         }
     }
@@ -92,6 +93,8 @@ impl AnyStudy for RecognitionStudy {
         };
         let report = self.report_work(manner.part);
         let work = workload(plan, sweep, touched.as_ref(), manner);
+        // Here, so that the time left speaks of work that is planned.
+        touched.prepare();
         progress.expect(&[&work[..], &[report]].concat());
         Ok(Box::new(RecognitionOutcome {
             study: self,

@@ -34,6 +34,13 @@ impl Model {
         }
     }
 
+    /// Sorts its spheres into [clusters](SphereUnion::clusters) now, which the first touch would do; the tree of a mesh is there.
+    pub fn prepare(&self) {
+        if let Self::Spheres(spheres) = self {
+            spheres.clusters();
+        }
+    }
+
     /// The box around it, metres.
     pub fn bounds(&self) -> Aabb {
         match self {

@@ -42,7 +42,7 @@ pub fn write_breaking_points(
     folder.add_files(files);
     let drawn = draw_breaking_points(ways, tables);
     for (name, title, drawing) in &drawn {
-        folder.add_chart(name, title, drawing)?;
+        folder.add_chart(name, title, drawing);
     }
     let note = "Each setting alone is driven to its ends; the interval is that of the place where accuracy is half of its best.";
     let found = vec![

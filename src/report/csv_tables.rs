@@ -42,12 +42,11 @@ pub const LIMITS_FILE: &str = "limits.csv";
 pub fn repeatable_hashes(tables: &Tables) -> Result<BTreeMap<String, String>> {
     let mut folder = Folder::new(Path::new(""));
     add_tables(&mut folder, tables)?;
-    let files = folder
-        .files()
-        .filter(|(name, _)| !TIME_TABLES.contains(name));
+    let files = folder.into_files()?.into_iter();
+    let repeatable = files.filter(|(name, _)| !TIME_TABLES.contains(&name.as_str()));
     let hash = |content: &[u8]| ContentHash::default().bytes(content).hex();
-    Ok(files
-        .map(|(name, content)| (name.to_owned(), hash(content)))
+    Ok(repeatable
+        .map(|(name, content)| (name, hash(&content)))
         .collect())
 }
 

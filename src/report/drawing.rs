@@ -7,7 +7,7 @@
 use crate::error::Result;
 use crate::report::colours::{INK, PAPER, Rgb};
 use crate::report::picture::Picture;
-use crate::report::raster::rasterise;
+use crate::report::raster::ToRaster;
 use kuva::backend::svg::SvgBackend;
 use kuva::render::color::Color;
 use kuva::render::render::{PathData, Primitive, Scene, TextAnchor, TextSpan, build_path};
@@ -298,7 +298,12 @@ impl Drawing {
 
     /// The drawing as pixels, two a pixel of its own each way.
     pub fn picture(&self) -> Result<Picture> {
-        rasterise(&self.scene)
+        self.to_raster().picture()
+    }
+
+    /// The same, to be made elsewhere.
+    pub(super) fn to_raster(&self) -> ToRaster {
+        ToRaster::new(&self.scene)
     }
 }
 

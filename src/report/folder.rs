@@ -4,7 +4,9 @@ use crate::error::{Error, Result};
 use crate::files::write_bytes;
 use crate::report::csv_tables::csv_content;
 use crate::report::drawing::Drawing;
+use crate::report::raster::ToRaster;
 use crate::report::study_tables::TableFiles;
+use rayon::prelude::*;
 use serde::Serialize;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -12,8 +14,14 @@ use std::path::{Path, PathBuf};
 /// Files that will stand in a folder, in the order of writing.
 pub(super) struct Folder<'a> {
     path: &'a Path,
-    /// Name and content.
-    files: Vec<(String, Vec<u8>)>,
+    /// By name.
+    files: Vec<(String, Content)>,
+}
+
+enum Content {
+    Bytes(Vec<u8>),
+    /// A PNG that is still to be drawn.
+    Png(Box<ToRaster>),
 }
 
 impl<'a> Folder<'a> {
@@ -25,7 +33,14 @@ impl<'a> Folder<'a> {
 
     /// Adds a file by its name in the folder.
     pub fn add(&mut self, name: impl Into<String>, content: impl Into<Vec<u8>>) {
-        self.files.push((name.into(), content.into()));
+        let content = Content::Bytes(content.into());
+        self.files.push((name.into(), content));
+    }
+
+    /// Adds a drawing as PNG; its pixels are made with all others, on all threads.
+    pub fn add_png(&mut self, name: impl Into<String>, drawing: &Drawing) {
+        let content = Content::Png(Box::new(drawing.to_raster()));
+        self.files.push((name.into(), content));
     }
 
     /// Adds a table as CSV; the error names the file.
@@ -37,30 +52,34 @@ impl<'a> Folder<'a> {
 
     /// Adds the tables of a study.
     pub fn add_files(&mut self, tables: TableFiles) {
-        let tables = tables.into_iter();
-        self.files
-            .extend(tables.map(|(name, content)| (name.to_owned(), content)));
+        for (name, content) in tables {
+            self.add(name, content);
+        }
     }
 
     /// Adds a chart as PNG and as SVG; its name has no ending.
-    pub fn add_chart(&mut self, name: &str, title: &str, drawing: &Drawing) -> Result<()> {
-        self.add(format!("{name}.png"), drawing.png()?);
+    pub fn add_chart(&mut self, name: &str, title: &str, drawing: &Drawing) {
+        self.add_png(format!("{name}.png"), drawing);
         self.add(format!("{name}.svg"), drawing.svg(title));
-        Ok(())
     }
 
-    /// Names and contents.
-    pub fn files(&self) -> impl Iterator<Item = (&str, &[u8])> {
-        let files = self.files.iter();
-        files.map(|(name, content)| (name.as_str(), content.as_slice()))
+    /// Every file whole: name and content.
+    pub fn into_files(self) -> Result<Vec<(String, Vec<u8>)>> {
+        let whole = |(name, content)| match content {
+            Content::Bytes(bytes) => Ok((name, bytes)),
+            Content::Png(raster) => Ok((name, raster.picture()?.png()?)),
+        };
+        self.files.into_par_iter().map(whole).collect()
     }
 
     /// Makes the folder if it is missing and writes every file whole; returns their paths. The error says if a file is in
     /// the way.
     pub fn write(self) -> Result<Vec<PathBuf>> {
-        make_folder(self.path)?;
-        let written = self.files.into_iter().map(|(name, content)| {
-            let path = self.path.join(name);
+        let path = self.path;
+        let files = self.into_files()?;
+        make_folder(path)?;
+        let written = files.into_iter().map(|(name, content)| {
+            let path = path.join(name);
             write_bytes(&path, &content)?;
             Ok(path)
         });

@@ -49,7 +49,7 @@ pub fn write_object_detail(
     folder.add_files(files);
     let drawn = draw_object_detail_charts(tables);
     for (name, title, drawing) in &drawn {
-        folder.add_chart(name, title, drawing)?;
+        folder.add_chart(name, title, drawing);
     }
     let learned = recognition_table(&tables.recognition, WIDE);
     let found = vec![

@@ -69,10 +69,9 @@ impl Cost {
     }
 }
 
-/// Whether a study gets charts of accuracy against time: as it asks, else if it sweeps three classifiers or more.
-pub fn is_wanted(tables: &Tables, asked: Option<bool>) -> bool {
-    let cells: Vec<&Cell> = tables.pareto.iter().map(|(cell, _)| cell).collect();
-    let n_kinds = Levels::of(Axis::Classifier, &cells).values.len();
+/// Whether a study of these cells gets charts of accuracy against time: as it asks, else if it sweeps three classifiers or more.
+pub fn is_wanted(cells: &[&Cell], asked: Option<bool>) -> bool {
+    let n_kinds = Levels::of(Axis::Classifier, cells).values.len();
     !cells.is_empty() && asked.unwrap_or(n_kinds >= MANY_CLASSIFIERS)
 }
 

@@ -6,7 +6,7 @@ use crate::study::time_left::Piece;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressState, ProgressStyle};
 use std::io::{IsTerminal, Write};
 use std::sync::{Arc, Mutex};
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 /// The listener that suits standard error: a bar, or plain lines if it is not a terminal.
 pub fn to_stderr() -> Box<dyn Progress> {
@@ -17,6 +17,9 @@ pub fn to_stderr() -> Box<dyn Progress> {
         Box::new(Lines::to(std::io::stderr()))
     }
 }
+
+/// How often a bar is drawn while its stage does not advance.
+const TICK: Duration = Duration::from_millis(250);
 
 /// A bar of the stage with its rate, and the time left: of the whole run where it has said what it will do, else of the stage.
 #[derive(Default)]
@@ -39,7 +42,7 @@ impl Progress for Bar {
             bar.set_style(style.with_key("left", left).progress_chars("=> "));
         }
         bar.set_message(name.to_owned());
-        bar.tick();
+        bar.enable_steady_tick(TICK);
         if let Ok(mut current) = self.current.lock() {
             *current = Some(bar);
         }
@@ -64,11 +67,6 @@ impl Progress for Bar {
 
     fn worked(&self, piece: &Piece, took_s: f64) {
         self.clock.worked(piece, took_s);
-        if let Ok(current) = self.current.lock()
-            && let Some(bar) = current.as_ref()
-        {
-            bar.tick();
-        }
     }
 }
 

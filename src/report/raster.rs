@@ -4,22 +4,34 @@ use super::picture::Picture;
 use crate::error::{Error, Result};
 use kuva::render::render::{Primitive, Scene};
 
-/// Draws a scene on white with two picture elements a pixel.
+/// How much larger a scene is drawn than it is.
 ///
-/// kuva draws turned text and slanted lines jagged, so it draws at twice that size and each element becomes the mean of
-/// four.
-pub(super) fn rasterise(scene: &Scene) -> Result<Picture> {
-    const SCALE: u32 = 4;
-    let mut large = Scene::new(scene.width, scene.height);
-    let elements = scene.elements.iter().cloned();
-    large.elements = elements
-        .map(|element| scale_dashes(element, SCALE))
-        .collect();
-    let large = kuva::RasterBackend::new()
-        .with_scale(SCALE as f32)
-        .render_scene(&large)
-        .map_err(|said| unfit(&said))?;
-    halve_png(&large).map_err(|said| unfit(&said))
+/// kuva draws turned text and slanted lines jagged, so it draws at twice the size of two picture elements a pixel, and each
+/// element becomes the mean of four.
+const SCALE: u32 = 4;
+
+/// A scene that will be pixels on white, two picture elements a pixel.
+pub(super) struct ToRaster(Scene);
+
+impl ToRaster {
+    /// A copy of a scene.
+    pub fn new(scene: &Scene) -> Self {
+        let mut large = Scene::new(scene.width, scene.height);
+        let elements = scene.elements.iter().cloned();
+        large.elements = elements
+            .map(|element| scale_dashes(element, SCALE))
+            .collect();
+        Self(large)
+    }
+
+    /// The pixels: a tenth of a second's work.
+    pub fn picture(&self) -> Result<Picture> {
+        let large = kuva::RasterBackend::new()
+            .with_scale(SCALE as f32)
+            .render_scene(&self.0)
+            .map_err(|said| unfit(&said))?;
+        halve_png(&large).map_err(|said| unfit(&said))
+    }
 }
 
 /// kuva scales everything in a raster but the dashes.

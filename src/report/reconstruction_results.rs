@@ -45,7 +45,7 @@ pub fn write_reconstruction(
     folder.add_files(tables.files()?);
     let drawn = draw_reconstruction_charts(tables);
     for (name, title, drawing) in &drawn {
-        folder.add_chart(name, title, drawing)?;
+        folder.add_chart(name, title, drawing);
     }
     // As SVG, noisy taxels would be megabytes.
     let png = samples.png()?;

@@ -42,7 +42,7 @@ fn add_page(folder: &mut Folder, tables: &Tables, about: &ReportPage) -> Result<
     let mut pictures = Pictures::default();
     for (name, title, drawing) in draw_pareto_charts(tables, about.pareto) {
         pictures.times.push(light_picture(&drawing, &title)?);
-        folder.add_chart(&name, &title, &drawing)?;
+        folder.add_chart(&name, &title, &drawing);
     }
     let mut plans = plans(tables);
     let n_drawn = match about.all_charts {
@@ -55,7 +55,7 @@ fn add_page(folder: &mut Folder, tables: &Tables, about: &ReportPage) -> Result<
         let (name, title, drawing) = draw(plan, tables);
         if pictures.charts.len() < MOST_CHARTS {
             pictures.charts.push(Picture::of(&drawing, &title));
-            folder.add_chart(&name, &title, &drawing)?;
+            folder.add_chart(&name, &title, &drawing);
         } else {
             pictures.n_more_charts += 1;
             folder.add(format!("{name}.svg"), drawing.svg(&title));
@@ -65,14 +65,14 @@ fn add_page(folder: &mut Folder, tables: &Tables, about: &ReportPage) -> Result<
         && let Some(drawing) = confusion_picture(tables, answer.best.0.cell)
     {
         let picture = Picture::of(&drawing, "Confusion matrix of the best cell");
-        folder.add("confusion.png", drawing.png()?);
+        folder.add_png("confusion.png", &drawing);
         folder.add("confusion.svg", picture.element.clone());
         pictures.confusion = Some(picture);
     }
     if let Some(set) = &about.snapshots {
         let drawing = snapshots(&set.frames, set.pitch_mm, set.quantity, &set.caption)?;
         // As SVG, ten thousand noisy taxels would be a megabyte.
-        folder.add("snapshots.png", drawing.png()?);
+        folder.add_png("snapshots.png", &drawing);
     }
     folder.add("report.html", page(about, tables, &pictures)?);
     Ok(())
@@ -91,16 +91,26 @@ fn light_picture(drawing: &Drawing, title: &str) -> Result<Picture> {
     Ok(Picture::of_png(&drawing.png()?, size, title))
 }
 
-/// Seconds to draw and write all of it for these cells, as on one core of a 2-core x86-64 server.
-pub fn planned_s(cells: &[&Cell]) -> f64 {
+/// Seconds by the clock to draw and write all of it for these cells, where accuracy against time is charted or not, or as the
+/// classifiers say.
+pub fn planned_s(cells: &[&Cell], pareto: Option<bool>) -> f64 {
     let n_charts = plan_charts(cells).len().min(MOST_CHARTS);
-    REST_S + CHART_S * n_charts as f64
+    let n_costs = match is_wanted(cells, pareto) {
+        true => COSTS.len(),
+        false => 0,
+    };
+    // With the confusion matrix and the sample touches.
+    let n_pictures = n_charts + n_costs + 2;
+    let n_in_turn = n_pictures.div_ceil(rayon::current_num_threads());
+    REST_S + PICTURE_S * n_in_turn as f64
 }
 
-/// Seconds for a chart's PNG and SVG.
-const CHART_S: f64 = 0.12;
-/// Seconds for tables, touches, the confusion matrix, Pareto charts and the page (1.0 to 2.5 measured).
-const REST_S: f64 = 1.9;
+/// Seconds for one picture's PNG and SVG on one core of a 2-core x86-64 server.
+const PICTURE_S: f64 = 0.36;
+/// Seconds for tables and the page.
+const REST_S: f64 = 0.05;
+/// What accuracy is charted against.
+const COSTS: [Cost; 2] = [Cost::Training, Cost::Prediction];
 
 /// Every chart of a study: file name without ending, title, drawing.
 pub fn draw_charts(tables: &Tables) -> Vec<(String, String, Drawing)> {
@@ -121,12 +131,13 @@ fn draw(plan: &ChartPlan, tables: &Tables) -> (String, String, Drawing) {
 /// Accuracy against the time to train and to decide, for a study that asks for it or compares classifiers: as
 /// [`draw_charts`].
 pub fn draw_pareto_charts(tables: &Tables, asked: Option<bool>) -> Vec<(String, String, Drawing)> {
-    if !is_wanted(tables, asked) {
+    let cells: Vec<&Cell> = tables.pareto.iter().map(|(cell, _)| cell).collect();
+    if !is_wanted(&cells, asked) {
         return Vec::new();
     }
     let draw = |cost: Cost| {
         let drawing = draw_pareto(tables, cost);
         (cost.name().to_owned(), cost.title().to_owned(), drawing)
     };
-    [Cost::Training, Cost::Prediction].map(draw).into()
+    COSTS.map(draw).into()
 }

@@ -7,8 +7,19 @@ use std::time::Instant;
 /// Starts when a run says what it will do; runs that never say have no time left to tell.
 #[derive(Debug, Default)]
 pub struct RunClock {
-    state: Mutex<Option<(Instant, TimeLeft)>>,
+    state: Mutex<Option<Running>>,
 }
+
+#[derive(Debug)]
+struct Running {
+    start: Instant,
+    /// When work was last told of.
+    told: Instant,
+    left: TimeLeft,
+}
+
+/// Of the time in which nothing was told, the share that is left at least: what takes longer than planned is not over yet.
+const OVERDUE: f64 = 0.2;
 
 /// What the clock shows, seconds.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -23,29 +34,43 @@ impl RunClock {
     /// See [`Progress::expect`](crate::study::progress::Progress::expect).
     pub fn expect(&self, work: &[Piece]) {
         if let Ok(mut state) = self.state.lock() {
-            let left = TimeLeft::new(work, rayon::current_num_threads());
-            *state = Some((Instant::now(), left));
+            let now = Instant::now();
+            *state = Some(Running {
+                start: now,
+                told: now,
+                left: TimeLeft::new(work, rayon::current_num_threads()),
+            });
         }
     }
 
     /// See [`Progress::worked`](crate::study::progress::Progress::worked).
     pub fn worked(&self, piece: &Piece, took_s: f64) {
         if let Ok(mut state) = self.state.lock()
-            && let Some((_, left)) = state.as_mut()
+            && let Some(running) = state.as_mut()
         {
-            left.worked(piece, took_s);
+            running.told = Instant::now();
+            running.left.worked(piece, took_s);
         }
     }
 
     /// What it shows now.
     pub fn times(&self) -> Option<RunTimes> {
         let state = self.state.lock().ok()?;
-        let (start, left) = state.as_ref()?;
-        let elapsed_s = start.elapsed().as_secs_f64();
-        Some(RunTimes {
+        state.as_ref().map(|running| running.at(Instant::now()))
+    }
+}
+
+impl Running {
+    /// What was left when work was last told of runs down from then on.
+    fn at(&self, now: Instant) -> RunTimes {
+        let silent_s = now.duration_since(self.told).as_secs_f64();
+        let elapsed_s = now.duration_since(self.start).as_secs_f64();
+        let left_s = self.left.left_s(elapsed_s - silent_s);
+        let runs_down_s = (left_s - silent_s).max(OVERDUE * silent_s);
+        RunTimes {
             elapsed_s,
-            left_s: left.left_s(elapsed_s),
-        })
+            left_s: runs_down_s.min(left_s),
+        }
     }
 }
 
@@ -64,6 +89,7 @@ pub fn in_words(seconds: f64) -> String {
 mod tests {
     use super::*;
     use crate::study::time_left::Work;
+    use std::time::Duration;
 
     #[test]
     fn a_clock_knows_nothing_until_it_is_told_what_to_expect() {
@@ -76,9 +102,32 @@ mod tests {
         clock.worked(&report, 1.0);
         assert_eq!(clock.times(), None);
         clock.expect(&[report]);
-        assert_eq!(clock.times().map(|times| times.left_s), Some(5.0));
+        let left_s = clock.times().unwrap().left_s;
+        assert!((4.0..=5.0).contains(&left_s), "{left_s}");
         clock.worked(&report, 3.0);
         assert_eq!(clock.times().map(|times| times.left_s), Some(0.0));
+    }
+
+    #[test]
+    fn what_is_left_runs_down_while_nothing_is_told_but_not_to_nothing() {
+        let half = Piece::one_by_one(0, 0, 10.0);
+        let start = Instant::now();
+        let after = |seconds: u64| start + Duration::from_secs(seconds);
+        let mut running = Running {
+            start,
+            told: start,
+            left: TimeLeft::new(&[half, half], rayon::current_num_threads()),
+        };
+        let left_s = |running: &Running, seconds| running.at(after(seconds)).left_s;
+        assert_eq!(left_s(&running, 0), 20.0);
+        assert_eq!(left_s(&running, 8), 12.0);
+        assert_eq!(left_s(&running, 30), 30.0 * OVERDUE);
+        running.told = after(30);
+        running.left.worked(&half, half.spent_s(30.0));
+        let told_s = left_s(&running, 30);
+        assert!(told_s > 20.0, "{told_s}");
+        assert_eq!(left_s(&running, 35), told_s - 5.0);
+        assert_eq!(running.at(after(35)).elapsed_s, 35.0);
     }
 
     #[test]

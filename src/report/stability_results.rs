@@ -41,7 +41,7 @@ pub fn write_stability(
     let mut maps = draw_stability_maps(tables);
     maps.extend(draw_joints(tables));
     for (name, title, drawing) in &maps {
-        folder.add_chart(name, title, drawing)?;
+        folder.add_chart(name, title, drawing);
     }
     let found = vec![
         plain::answer(&sentences(tables)),

@@ -59,7 +59,7 @@ pub fn write_whole_body(
     found.extend(scenes_table(tables).map(|table| table.section("scenes")));
     let drawn = draw_whole_body_charts(tables);
     for (name, title, drawing) in &drawn {
-        folder.add_chart(name, title, drawing)?;
+        folder.add_chart(name, title, drawing);
     }
     found.push(charts(&drawn));
     found.extend(recognition_table(tables).map(|table| table.section("recognition")));

@@ -63,8 +63,8 @@ impl Piece {
 ///
 /// What is left of a place costs as much more or less than planned as what was done for it; where little was done, as the
 /// geometric mean of the places of its kind, each of which counts the same however much is done there: a few large pieces that
-/// were planned badly do not speak for all. A kind that has hardly begun costs as the middle one of all kinds so far. Threads are
-/// as busy as they have been.
+/// were planned badly do not speak for all. A kind that has hardly begun costs as the middle one of all kinds so far and of one that
+/// costs as planned. Threads are as busy as they have been.
 #[derive(Clone, Debug)]
 pub struct TimeLeft {
     n_threads: f64,
@@ -113,8 +113,8 @@ impl Spent {
 /// Share of one of a place's pieces that counts as much as the factor of its kind, and makes the place count in that: before that
 /// much is done, its own factor is chance.
 const HESITATION: f64 = 0.3;
-/// The same for the factor of a place within its kind, which so is never 0; and the share of a kind that makes it count in the
-/// middle of all kinds, if a piece of it takes longer.
+/// The same for the factor of a place within its kind, which so is never 0; the share of a kind that makes it count in the
+/// middle of all kinds, if a piece of it takes longer; and the share of a run's work that threads count as busy for beforehand.
 const LEAST_SHARE: f64 = 0.02;
 /// Places of a kind that the middle factor of all kinds counts as much as, in the factor of the kind.
 const PRIOR_PLACES: f64 = 0.5;
@@ -144,9 +144,9 @@ impl TimeLeft {
             spent.took_s += took_s;
         }
         let wall_s = match piece.kind {
-            Work::Learn(_) | Work::Stage(_) => took_s,
+            Work::Measure | Work::Learn(_) | Work::Stage(_) => took_s,
             Work::OneByOne(_) => took_s / self.n_threads,
-            Work::Touch | Work::Measure | Work::Report => return,
+            Work::Touch | Work::Report => return,
         };
         self.alone[0] += wall_s * took_s;
         self.alone[1] += took_s;
@@ -177,9 +177,15 @@ impl TimeLeft {
             true => self.alone[0] / self.alone[1],
             false => 0.0,
         };
-        let under_way_s = (0.5 * self.n_threads * usual_s).min(0.5 * left_s);
+        let not_told_s = (self.n_threads * elapsed_s - took_s).max(0.0);
+        let under_way_s = (0.5 * self.n_threads * usual_s)
+            .min(0.5 * left_s)
+            .min(not_told_s);
+        // As if all had been busy for a while before the run began: what its very first pieces tell is chance.
+        let planned_s: f64 = at_once().map(|(_, spent)| spent.planned_s).sum();
+        let before_s = LEAST_SHARE * planned_s / self.n_threads;
         let busy = match took_s > 0.0 && elapsed_s > 0.0 {
-            true => (took_s + under_way_s) / elapsed_s,
+            true => (took_s + under_way_s + self.n_threads * before_s) / (elapsed_s + before_s),
             false => self.n_threads,
         };
         let report_s = self.kinds.get(&Work::Report).map_or(0.0, Spent::left_s);
@@ -191,7 +197,8 @@ impl TimeLeft {
         let kinds = self.kinds.iter().filter(|(kind, _)| **kind != Work::Report);
         let begun = kinds.filter(|(_, spent)| spent.has_begun());
         let common = begun.map(|(_, spent)| spent.took_s / spent.done_s);
-        let common = middle(common.collect()).max(f64::MIN_POSITIVE);
+        // With the plan itself as one of them.
+        let common = middle(common.chain([1.0]).collect()).max(f64::MIN_POSITIVE);
         // Of each kind the sum of weights, and of weighted logarithms.
         let prior = [PRIOR_PLACES, PRIOR_PLACES * common.ln()];
         let mut sums: BTreeMap<Work, [f64; 2]> = BTreeMap::new();

@@ -16,6 +16,7 @@ use crate::objects::Model;
 use crate::random::Seed;
 use crate::world::Patch;
 use ndarray::Array1;
+use rayon::prelude::*;
 use std::collections::BTreeMap;
 
 /// Touches of several classes: objects, or kinds of touch. They follow each other class by class.
@@ -28,6 +29,9 @@ pub trait TouchSet: Sync {
 
     /// Group of every touch, for splits that keep groups together; the error says that these touches have no such groups.
     fn group_keys(&self, kind: GroupSpec) -> Result<Array1<usize>>;
+
+    /// Makes what all touches need on all threads now; the first touches would make it one after the other.
+    fn prepare(&self) {}
 
     /// Makes all touches on an array, F frames each; the same bytes at any number of threads.
     ///
@@ -70,6 +74,10 @@ impl TouchSet for Vec<TouchedObject> {
 
     fn group_keys(&self, kind: GroupSpec) -> Result<Array1<usize>> {
         group_keys(self, kind)
+    }
+
+    fn prepare(&self) {
+        self.par_iter().for_each(|t| t.object.model.prepare());
     }
 
     fn simulate(

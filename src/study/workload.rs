@@ -126,8 +126,9 @@ impl Progress for TouchMeter<'_> {
     }
 }
 
-/// How often a family's fits are told of, at most.
-const LEARNING_TOLD_EVERY: Duration = Duration::from_millis(100);
+/// How often a family's fits are told of, at most. What they need first is no share of them, so that one that is told of early seems to
+/// take long.
+const LEARNING_TOLD_EVERY: Duration = Duration::from_secs(1);
 
 /// Tells the fits of a family as they go on, in shares of what they were planned to take: of one thread.
 pub struct LearningMeter<'a> {

@@ -63,7 +63,7 @@ pub fn write_speed_accuracy(
     let mut drawn = Vec::new();
     for kind in ChartKind::ALL {
         if let Some(drawing) = draw_front_chart(kind, &points) {
-            folder.add_chart(kind.name(), kind.title(), &drawing)?;
+            folder.add_chart(kind.name(), kind.title(), &drawing);
             drawn.push((kind.name().to_owned(), kind.title().to_owned(), drawing));
         }
     }

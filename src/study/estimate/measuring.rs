@@ -1,0 +1,82 @@
+//! What it takes to read and to project frames.
+
+use crate::random::Seed;
+use crate::sensing::Ensemble;
+use crate::signal::SignalStep;
+use crate::study::plan::Plan;
+use crate::study::runner::signal_steps;
+use crate::study::sweep::Group;
+use crate::world::Patch;
+
+/// Seconds to fetch one taxel and to hand on what it reads.
+const READ_TAXEL_S: f64 = 1e-9;
+/// Seconds to draw noise for one taxel.
+const NOISE_S: f64 = 7e-9;
+/// Seconds for one tap of a smoothing kernel along one axis, and the same at the other side.
+const SMOOTHING_TAP_S: f64 = 6e-10;
+/// Seconds to follow one taxel around its loop of hysteresis.
+const HYSTERESIS_S: f64 = 1.4e-8;
+/// Seconds to draw how far one taxel's zero has wandered, once a touch.
+const DRIFT_S: f64 = 1.7e-8;
+/// Seconds to read one taxel a little later than the one before.
+const SCAN_S: f64 = 5e-9;
+/// Seconds to clip and round what one taxel reads.
+const QUANTISATION_S: f64 = 3e-9;
+/// Seconds for what costs little: crosstalk, gains, faults, forces.
+const LIGHT_STEP_S: f64 = 3e-10;
+/// Seconds for one multiply-add of a stored matrix.
+const DENSE_S: f64 = 5.8e-11;
+/// Seconds for one entry of a sparse matrix that is not zero.
+const SPARSE_S: f64 = 2.7e-10;
+/// Seconds of one taxel in the transform of scrambled blocks.
+const HADAMARD_S: f64 = 2e-9;
+/// Seconds of one taxel where each is read once at most.
+const PICKED_S: f64 = 5e-10;
+
+/// Processor-seconds to read and project all frames of a group once.
+pub(in crate::study) fn measure_s(
+    plan: &Plan,
+    group: &Group,
+    n_touches: usize,
+    n_measurements: usize,
+) -> f64 {
+    let patch = &plan.arrays[group.array];
+    let n_taxels = patch.grid.n_taxels();
+    let n_read = (n_touches * group.frames * n_taxels) as f64;
+    let steps = signal_steps(plan, group, &Seed::new(0));
+    let steps = steps.iter().map(|step| step_s(step, patch, group.frames));
+    let project_s = project_s(group.ensemble, n_measurements, n_taxels);
+    n_read * (READ_TAXEL_S + steps.sum::<f64>() + project_s)
+}
+
+/// Seconds of a step of the signal, for one taxel of one frame; none of what has no strength.
+fn step_s(step: &SignalStep, patch: &Patch, n_frames: usize) -> f64 {
+    let if_any = |strength: f64, seconds: f64| if strength > 0.0 { seconds } else { 0.0 };
+    match step {
+        SignalStep::Noise(noise) => if_any(noise.std, NOISE_S),
+        SignalStep::Smoothing { width } => {
+            let taps = 2.0 * (1.0 + 4.0 * width / patch.grid.pitch);
+            if_any(*width, SMOOTHING_TAP_S * taps)
+        }
+        SignalStep::Hysteresis { width } => if_any(*width, HYSTERESIS_S),
+        SignalStep::Drift(drift) => if_any(drift.std, DRIFT_S / n_frames as f64),
+        SignalStep::Scan { seconds } => if_any(*seconds, SCAN_S),
+        SignalStep::Quantisation { bits } => if_any(f64::from(*bits), QUANTISATION_S),
+        SignalStep::Force
+        | SignalStep::Crosstalk { .. }
+        | SignalStep::Gain(_)
+        | SignalStep::Faults(_) => LIGHT_STEP_S,
+    }
+}
+
+/// Seconds to project one taxel of one frame.
+fn project_s(ensemble: Ensemble, n_measurements: usize, n_taxels: usize) -> f64 {
+    let m = n_measurements as f64;
+    match ensemble {
+        Ensemble::Gaussian | Ensemble::Bernoulli => DENSE_S * m,
+        // m rows of √n entries each.
+        Ensemble::Sparse => SPARSE_S * m / (n_taxels as f64).sqrt(),
+        Ensemble::Sbhe => HADAMARD_S,
+        Ensemble::BlockAverage | Ensemble::Subsample | Ensemble::Identity => PICKED_S,
+    }
+}
