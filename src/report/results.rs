@@ -106,7 +106,7 @@ pub fn planned_s(cells: &[&Cell], pareto: Option<bool>) -> f64 {
 }
 
 /// Seconds for one picture's PNG and SVG on one core of a 2-core x86-64 server.
-const PICTURE_S: f64 = 0.36;
+const PICTURE_S: f64 = 0.33;
 /// Seconds for tables and the page.
 const REST_S: f64 = 0.05;
 /// What accuracy is charted against.

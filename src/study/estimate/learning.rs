@@ -13,16 +13,16 @@ const KERNEL_ELEMENT_S: f64 = 1e-9;
 const REDUCE_ELEMENT_S: f64 = 5e-11;
 /// Seconds of our solvers for one row of a binary problem and for one entry of its kernel matrix, an RBF one, times C to this power where
 /// C is above 1; and for one entry of a polynomial one.
-const RBF_ROW_S: f64 = 1e-7;
-const RBF_ENTRY_S: f64 = 6e-10;
-const RBF_HARDER_WITH_C: f64 = 0.15;
+const RBF_ROW_S: f64 = 8e-8;
+const RBF_ENTRY_S: f64 = 5e-10;
+const RBF_HARDER_WITH_C: f64 = 0.25;
 const POLYNOMIAL_ENTRY_S: f64 = 5e-9;
 /// Seconds of a linear SVM for one row of a binary problem, for one entry of its kernel matrix, and for each entry and measurement up to
 /// as many as half its rows (no hyperplane may part more rows than that); all times C to this power where C is above 1.
-const LINEAR_ROW_S: f64 = 1.7e-7;
-const LINEAR_ENTRY_S: f64 = 4e-10;
-const LINEAR_ELEMENT_S: f64 = 1.6e-11;
-const LINEAR_HARDER_WITH_C: f64 = 0.3;
+const LINEAR_ROW_S: f64 = 1.35e-7;
+const LINEAR_ENTRY_S: f64 = 3.2e-10;
+const LINEAR_ELEMENT_S: f64 = 1.3e-11;
+const LINEAR_HARDER_WITH_C: f64 = 0.4;
 /// What a solution takes that goes on from that of a smaller C, as a share of one from nothing, on average.
 const ON_A_PATH: f64 = 0.7;
 /// Seconds for one multiply-add of the kernel matrix that all their problems share.

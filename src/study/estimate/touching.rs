@@ -10,7 +10,7 @@ pub(in crate::study) const PLACE_TRIANGLE_S: f64 = 2.5e-8;
 /// What each frame after the first of a touch takes to be made, as a share of the first (measured).
 const LATER_FRAME: f64 = 0.25;
 /// Seconds to clear, count and store one taxel.
-const CLEAR_TAXEL_S: f64 = 3.5e-9;
+const CLEAR_TAXEL_S: f64 = 4.5e-9;
 
 /// Processor-seconds to make all touches on an array, so many frames each.
 pub(in crate::study) fn touch_s(
