@@ -93,8 +93,10 @@ impl AnyStudy for RecognitionStudy {
         };
         let report = self.report_work(manner.part);
         let work = workload(plan, sweep, touched.as_ref(), manner);
-        // Here, so that the time left speaks of work that is planned.
-        touched.prepare();
+        // Before the clock starts, so that the time left speaks of work that is planned.
+        if work.iter().any(|piece| piece.kind == Work::Touch) {
+            touched.prepare();
+        }
         progress.expect(&[&work[..], &[report]].concat());
         Ok(Box::new(RecognitionOutcome {
             study: self,

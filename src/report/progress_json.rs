@@ -192,6 +192,25 @@ mod tests {
     }
 
     #[test]
+    fn a_long_piece_is_told_of_before_any_step_of_its_stage_is_done() {
+        let written = Written::default();
+        let lines = JsonLines::to(written.clone());
+        let half = Piece::of_stage(0, 0, 1.0);
+        lines.expect(&[half, half]);
+        lines.stage("learn", 1);
+        lines.worked(&half, 1.0);
+        lines.worked(&half, 1.0);
+        thread::sleep(2 * INTERVAL);
+        let events = written.events();
+        let last = events.last().unwrap();
+        assert!(events.len() >= 2, "{events:?}");
+        assert_eq!(
+            (&last["done"], &last["run_left_s"]),
+            (&json!(0), &json!(0.0))
+        );
+    }
+
+    #[test]
     fn a_stage_is_told_of_all_the_while_until_nobody_listens() {
         let written = Written::default();
         let lines = JsonLines::to(written.clone());

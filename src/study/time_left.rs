@@ -113,9 +113,11 @@ impl Spent {
 /// Share of one of a place's pieces that counts as much as the factor of its kind, and makes the place count in that: before that
 /// much is done, its own factor is chance.
 const HESITATION: f64 = 0.3;
-/// The same for the factor of a place within its kind, which so is never 0; the share of a kind that makes it count in the
-/// middle of all kinds, if a piece of it takes longer; and the share of a run's work that threads count as busy for beforehand.
+/// The same for the factor of a place within its kind, which so is never 0; and the share of a kind that makes it count in the
+/// middle of all kinds, if a piece of it takes longer.
 const LEAST_SHARE: f64 = 0.02;
+/// Share of a run's work for which all threads count as busy before it began.
+const BUSY_BEFORE: f64 = 0.02;
 /// Places of a kind that the middle factor of all kinds counts as much as, in the factor of the kind.
 const PRIOR_PLACES: f64 = 0.5;
 
@@ -181,9 +183,9 @@ impl TimeLeft {
         let under_way_s = (0.5 * self.n_threads * usual_s)
             .min(0.5 * left_s)
             .min(not_told_s);
-        // As if all had been busy for a while before the run began: what its very first pieces tell is chance.
+        // What the very first pieces tell is chance.
         let planned_s: f64 = at_once().map(|(_, spent)| spent.planned_s).sum();
-        let before_s = LEAST_SHARE * planned_s / self.n_threads;
+        let before_s = BUSY_BEFORE * planned_s / self.n_threads;
         let busy = match took_s > 0.0 && elapsed_s > 0.0 {
             true => (took_s + under_way_s + self.n_threads * before_s) / (elapsed_s + before_s),
             false => self.n_threads,

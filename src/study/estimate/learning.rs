@@ -128,10 +128,7 @@ pub(in crate::study) fn learning(
 fn predict_row_s(plan: &Plan, cell: &Cell, n_objects: f64) -> f64 {
     let m = cell.n_features() as f64;
     let n_train = cell.train_touches as f64 * n_objects;
-    let n_problems = match plan.spec.recognition.multiclass {
-        Multiclass::OneVsOne => n_objects * (n_objects - 1.0) / 2.0,
-        Multiclass::OneVsRest | Multiclass::CrammerSinger => n_objects,
-    };
+    let n_problems = n_problems(plan, n_objects);
     match cell.classifier {
         ClassifierKind::KNearest => n_train * (NEAREST_S + DISTANCE_ELEMENT_S * m),
         ClassifierKind::RbfSvm | ClassifierKind::PolynomialSvm => {
@@ -140,6 +137,14 @@ fn predict_row_s(plan: &Plan, cell: &Cell, n_objects: f64) -> f64 {
         }
         ClassifierKind::LinearSvm => n_problems * (PREDICT_S * m + VOTE_S),
         _ => PREDICT_S * n_objects * m,
+    }
+}
+
+/// Binary problems that tell so many objects apart.
+fn n_problems(plan: &Plan, n_objects: f64) -> f64 {
+    match plan.spec.recognition.multiclass {
+        Multiclass::OneVsOne => n_objects * (n_objects - 1.0) / 2.0,
+        Multiclass::OneVsRest | Multiclass::CrammerSinger => n_objects,
     }
 }
 
@@ -191,27 +196,24 @@ fn svm(plan: &Plan, cell: &Cell, n_objects: f64, touches: f64) -> Fit {
     let m = cell.n_features() as f64;
     let n_train = touches * n_objects;
     let recognition = &plan.spec.recognition;
-    let (n_problems, rows) = match recognition.multiclass {
-        Multiclass::OneVsOne => (n_objects * (n_objects - 1.0) / 2.0, 2.0 * touches),
-        Multiclass::OneVsRest | Multiclass::CrammerSinger => (n_objects, n_train),
+    let n_problems = n_problems(plan, n_objects);
+    let rows = match recognition.multiclass {
+        Multiclass::OneVsOne => 2.0 * touches,
+        Multiclass::OneVsRest | Multiclass::CrammerSinger => n_train,
     };
-    let entries = n_problems * rows * rows;
     if recognition.solver == Solver::Linfa {
         let own_products_s = KERNEL_ELEMENT_S * m.min(rows) + REDUCE_ELEMENT_S * m;
-        return Fit::apart(entries * (SOLVE_ENTRY_S + own_products_s));
+        return Fit::apart(n_problems * rows * rows * (SOLVE_ENTRY_S + own_products_s));
     }
-    let harder = |power: f64| typical_c(plan, cell).max(1.0).powf(power);
-    let solve_s = match cell.classifier {
+    let (row_s, entry_s, harder_with_c) = match cell.classifier {
         ClassifierKind::LinearSvm => {
             let entry_s = LINEAR_ENTRY_S + LINEAR_ELEMENT_S * m.min(0.5 * rows);
-            harder(LINEAR_HARDER_WITH_C) * n_problems * rows * (LINEAR_ROW_S + rows * entry_s)
+            (LINEAR_ROW_S, entry_s, LINEAR_HARDER_WITH_C)
         }
-        ClassifierKind::PolynomialSvm => POLYNOMIAL_ENTRY_S * entries,
-        _ => {
-            let row_s = RBF_ROW_S + rows * RBF_ENTRY_S;
-            harder(RBF_HARDER_WITH_C) * n_problems * rows * row_s
-        }
+        ClassifierKind::PolynomialSvm => (0.0, POLYNOMIAL_ENTRY_S, 0.0),
+        _ => (RBF_ROW_S, RBF_ENTRY_S, RBF_HARDER_WITH_C),
     };
+    let harder = typical_c(plan, cell).max(1.0).powf(harder_with_c);
     let values_s = match cell.classifier {
         ClassifierKind::LinearSvm => 0.0,
         _ => KERNEL_VALUE_S * 0.5 * n_train * n_train,
@@ -219,7 +221,7 @@ fn svm(plan: &Plan, cell: &Cell, n_objects: f64, touches: f64) -> Fit {
     Fit {
         products_s: GRAM_ELEMENT_S * n_train * n_train * m,
         values_s,
-        solve_s,
+        solve_s: harder * n_problems * rows * (row_s + rows * entry_s),
     }
 }
 
