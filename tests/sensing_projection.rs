@@ -130,6 +130,31 @@ fn a_frame_has_the_same_measurements_in_every_batch() {
 }
 
 #[test]
+fn taxels_that_read_nothing_change_no_bit() {
+    // A frame of ones among them makes every taxel count.
+    for ensemble in ENSEMBLES {
+        for (grid, m) in [((64, 64), 70), ((31, 17), 100), ((5, 7), 35), ((9, 9), 1)] {
+            let projection = projection(ensemble, grid, m);
+            let n = grid.0 * grid.1;
+            for (above, from) in [(0.0, 0), (0.9, 0), (0.0, n / 2), (0.99, n / 3), (1.0, 0)] {
+                let mut frames = frames(6, n);
+                for ((_, taxel), value) in frames.indexed_iter_mut() {
+                    if *value <= above || taxel < from {
+                        *value = 0.0;
+                    }
+                }
+                let touched = s![..5, ..];
+                let apart = projection.measure(frames.slice(touched));
+                frames.row_mut(5).fill(1.0);
+                let together = projection.measure(frames.view());
+                let what = format!("{ensemble:?}, {grid:?}, over {above} from {from}");
+                assert_eq!(bits(apart.view()), bits(together.slice(touched)), "{what}");
+            }
+        }
+    }
+}
+
+#[test]
 fn memory_layout_changes_nothing() {
     for ensemble in ENSEMBLES {
         let projection = projection(ensemble, (16, 16), 40);

@@ -14,7 +14,7 @@ use crate::recognition::split::Split;
 use crate::sensing::Projection;
 use crate::signal::{Chain, Recording, Scratch};
 use crate::world::Taxel;
-use ndarray::{Array1, Array2, ArrayViewMut2, Axis, s};
+use ndarray::{Array1, Array2, ArrayView2, ArrayViewMut2, Axis, s};
 use rand::Rng;
 use rayon::prelude::*;
 use std::time::Instant;
@@ -207,9 +207,9 @@ pub fn measure(
         .axis_chunks_iter_mut(Axis(0), block * n_frames.max(1))
         .into_par_iter()
         .zip(touches.par_chunks(block))
-        .map_init(Scratch::default, |scratch, (out, touches)| {
+        .map_init(Working::default, |working, (out, touches)| {
             let start = Instant::now();
-            measure_block(reading, (frames, n_frames), touches, scratch, out)?;
+            measure_block(reading, (frames, n_frames), touches, working, out)?;
             Ok(start.elapsed().as_secs_f64())
         })
         .collect::<Result<Vec<_>>>()?
@@ -218,23 +218,37 @@ pub fn measure(
     Ok((values, cpu_s))
 }
 
+/// What a thread works in, for one block after the other.
+#[derive(Debug, Default)]
+struct Working {
+    /// Frames of a block.
+    frames: Vec<f64>,
+    /// Those of a touch, after what came before it.
+    with_history: Vec<f64>,
+    rates: Vec<f64>,
+    scratch: Scratch,
+}
+
 /// Reads some touches, F frames each.
 fn measure_block(
     reading: Reading,
     (kept, n_frames): (&KeptFrames, usize),
     touches: &[TouchToRead],
-    scratch: &mut Scratch,
+    working: &mut Working,
     out: ArrayViewMut2<f64>,
 ) -> Result<()> {
     let n_taxels = kept.n_taxels();
-    let mut frames = Array2::zeros((touches.len() * n_frames, n_taxels));
-    let all = frames
-        .as_slice_mut()
-        .expect("rows of a new array are contiguous");
-    let (mut rates, mut with_history) = (Vec::new(), Vec::new());
+    let Working {
+        frames,
+        with_history,
+        rates,
+        scratch,
+    } = working;
+    // Whatever is there of another block is read over.
+    frames.resize(touches.len() * n_frames * n_taxels, 0.0);
     for (touch, frames) in touches
         .iter()
-        .zip(all.chunks_exact_mut(n_frames * n_taxels))
+        .zip(frames.chunks_exact_mut(n_frames * n_taxels))
     {
         for (frame, row) in frames.chunks_exact_mut(n_taxels).enumerate() {
             kept.read(touch.number * n_frames + frame, row)?;
@@ -243,7 +257,7 @@ fn measure_block(
             .before
             .filter(|_| reading.chains[touch.skin].remembers());
         let Some(before) = before else {
-            reading.read(touch, (frames, 0), &mut rates, scratch);
+            reading.read(touch, (frames, 0), rates, scratch);
             continue;
         };
         // The deepest frame of the touch before, and the skin let go.
@@ -252,10 +266,12 @@ fn measure_block(
         let deepest = (before + 1) * n_frames - 1;
         kept.read(deepest, &mut with_history[..n_taxels])?;
         with_history.extend_from_slice(frames);
-        reading.read(touch, (&mut with_history, 2), &mut rates, scratch);
+        reading.read(touch, (with_history, 2), rates, scratch);
         frames.copy_from_slice(&with_history[2 * n_taxels..]);
     }
-    reading.projection.measure_into(frames.view(), out);
+    let shape = (touches.len() * n_frames, n_taxels);
+    let frames = ArrayView2::from_shape(shape, frames).expect("whole frames");
+    reading.projection.measure_into(frames, out);
     Ok(())
 }
 
