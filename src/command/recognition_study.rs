@@ -151,7 +151,8 @@ impl AnyOutcome for RecognitionOutcome<'_> {
         add_touches(&mut page, loaded)?;
         add_manifest(&mut page, manifest.clone());
         page.wall_s = Some(seconds_since(ended.started));
-        results::write_all(folder, &self.outcome.tables, &page)?;
+        let told = (ended.progress, &self.report);
+        results::write_all_telling(folder, &self.outcome.tables, &page, told)?;
         write_bytes(&folder.join("study.toml"), spec.to_toml().as_bytes())?;
         write_bytes(&folder.join(MANIFEST_FILE), manifest.to_json().as_bytes())?;
         let took_s = start.elapsed().as_secs_f64();

@@ -15,7 +15,7 @@ pub struct StabilityKind(StabilityPlan);
 impl PieceKind for StabilityKind {
     type Study = StabilityPlan;
 
-    const WRITE_S: f64 = 1.0;
+    const WRITE_S: f64 = 2.0;
 
     fn load(args: &StudyArgs, _packings: PathBuf) -> Result<Self> {
         if args.objects.is_some() || args.seed.is_some() {

@@ -10,6 +10,7 @@ use rayon::prelude::*;
 use serde::Serialize;
 use std::fs;
 use std::path::{Path, PathBuf};
+use std::time::Instant;
 
 /// Files that will stand in a folder, in the order of writing.
 pub(super) struct Folder<'a> {
@@ -23,6 +24,18 @@ enum Content {
     /// A PNG that is still to be drawn.
     Png(Box<ToRaster>),
 }
+
+/// A picture that is drawn.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Drawn {
+    /// How much of all pictures that is.
+    pub share: f64,
+    /// Of the seconds by the clock that all of them take, those that it took.
+    pub wall_s: f64,
+}
+
+/// Who is told of pictures, from any thread.
+pub type Told<'a> = dyn Fn(Drawn) + Sync + 'a;
 
 impl<'a> Folder<'a> {
     /// No files yet, for the folder at `path`, which need not exist.
@@ -65,9 +78,24 @@ impl<'a> Folder<'a> {
 
     /// Every file whole: name and content.
     pub fn into_files(self) -> Result<Vec<(String, Vec<u8>)>> {
+        self.into_files_telling(&|_| ())
+    }
+
+    /// The same; each picture tells what share it was of the time by the clock that all of them take, and how long that was.
+    fn into_files_telling(self, told: &Told) -> Result<Vec<(String, Vec<u8>)>> {
+        let is_png = |(_, content): &&(String, Content)| matches!(content, Content::Png(_));
+        let n_pngs = self.files.iter().filter(is_png).count();
+        let share = 1.0 / n_pngs.max(1) as f64;
+        let n_in_turn = n_pngs.div_ceil(rayon::current_num_threads());
         let whole = |(name, content)| match content {
             Content::Bytes(bytes) => Ok((name, bytes)),
-            Content::Png(raster) => Ok((name, raster.picture()?.png()?)),
+            Content::Png(raster) => {
+                let start = Instant::now();
+                let png = raster.picture()?.png()?;
+                let wall_s = start.elapsed().as_secs_f64() * n_in_turn as f64 * share;
+                told(Drawn { share, wall_s });
+                Ok((name, png))
+            }
         };
         self.files.into_par_iter().map(whole).collect()
     }
@@ -75,8 +103,13 @@ impl<'a> Folder<'a> {
     /// Makes the folder if it is missing and writes every file whole; returns their paths. The error says if a file is in
     /// the way.
     pub fn write(self) -> Result<Vec<PathBuf>> {
+        self.write_telling(&|_| ())
+    }
+
+    /// The same, and says when pictures are drawn.
+    pub fn write_telling(self, told: &Told) -> Result<Vec<PathBuf>> {
         let path = self.path;
-        let files = self.into_files()?;
+        let files = self.into_files_telling(told)?;
         make_folder(path)?;
         let written = files.into_iter().map(|(name, content)| {
             let path = path.join(name);

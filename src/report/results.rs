@@ -11,7 +11,9 @@ use crate::report::folder::Folder;
 use crate::report::page::{Picture, Pictures, ReportPage, page};
 use crate::report::pareto_chart::{Cost, draw_pareto, is_wanted};
 use crate::report::snapshots::snapshots;
+use crate::study::progress::{Progress, Silent};
 use crate::study::table::{Cell, Tables};
+use crate::study::time_left::{Piece, Work};
 use std::path::{Path, PathBuf};
 
 /// Static charts that are drawn, unless all are asked for; of all, those in the page (for readers without script) and as PNG. More: a page
@@ -24,11 +26,29 @@ pub const MOST_CHARTS: usize = 24;
 /// Everything is drawn before the first file is written, and each file is whole or not there. Files of other names in the
 /// folder are left alone.
 pub fn write_all(dir: &Path, tables: &Tables, about: &ReportPage) -> Result<Vec<PathBuf>> {
+    let work = Piece {
+        kind: Work::Report,
+        place: 0,
+        planned_s: 0.0,
+    };
+    write_all_telling(dir, tables, about, (&Silent, &work))
+}
+
+/// As [`write_all`]; `progress` is told, of what was planned for `work`, what is done as pictures are drawn.
+pub fn write_all_telling(
+    dir: &Path,
+    tables: &Tables,
+    about: &ReportPage,
+    (progress, work): (&dyn Progress, &Piece),
+) -> Result<Vec<PathBuf>> {
     let mut folder = Folder::new(dir);
     add_tables(&mut folder, tables)?;
     folder.add_table(LIMITS_FILE, &about.limits)?;
     add_page(&mut folder, tables, about)?;
-    folder.write()
+    folder.write_telling(&|drawn| {
+        let planned_s = drawn.share * (work.planned_s - REST_S).max(0.0);
+        progress.worked(&Piece { planned_s, ..*work }, drawn.wall_s);
+    })
 }
 
 /// Writes charts, pictures and the page into a folder that has the tables; as [`write_all`].

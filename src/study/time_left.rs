@@ -63,8 +63,8 @@ impl Piece {
 ///
 /// What is left of a place costs as much more or less than planned as what was done for it; where little was done, as the
 /// geometric mean of the places of its kind, each of which counts the same however much is done there: a few large pieces that
-/// were planned badly do not speak for all. A kind that has hardly begun costs as the middle one of all kinds so far and of one that
-/// costs as planned. Threads are as busy as they have been.
+/// were planned badly do not speak for all. A kind that has hardly begun, and the report, costs as the middle one of all kinds so far and of
+/// one that costs as planned. Threads are as busy as they have been.
 #[derive(Clone, Debug)]
 pub struct TimeLeft {
     n_threads: f64,
@@ -118,6 +118,9 @@ const HESITATION: f64 = 0.3;
 const LEAST_SHARE: f64 = 0.02;
 /// Share of a run's work for which all threads count as busy before it began.
 const BUSY_BEFORE: f64 = 0.02;
+/// Processor-seconds after which what was told speaks for what is still unknown as much as the plan does: what a run does first is slow
+/// because memory is new and caches are cold.
+const SETTING_UP_S: f64 = 1.0;
 /// Places of a kind that the middle factor of all kinds counts as much as, in the factor of the kind.
 const PRIOR_PLACES: f64 = 0.5;
 
@@ -164,7 +167,8 @@ impl TimeLeft {
     pub fn left_s(&self, elapsed_s: f64) -> f64 {
         let at_once = || self.kinds.iter().filter(|(kind, _)| **kind != Work::Report);
         let took_s: f64 = at_once().map(|(_, spent)| spent.took_s).sum();
-        let of_kinds = self.factors();
+        let common = self.common_factor();
+        let of_kinds = self.factors(common);
         let places = self
             .places
             .iter()
@@ -190,17 +194,26 @@ impl TimeLeft {
             true => (took_s + under_way_s + self.n_threads * before_s) / (elapsed_s + before_s),
             false => self.n_threads,
         };
-        let report_s = self.kinds.get(&Work::Report).map_or(0.0, Spent::left_s);
+        let report = self.kinds.get(&Work::Report);
+        let report_s = report.map_or(0.0, |spent| {
+            spent.left_s() * spent.factor(common, HESITATION * spent.piece_s())
+        });
         left_s / busy + report_s
     }
 
-    /// What a planned second of each kind takes.
-    fn factors(&self) -> BTreeMap<Work, f64> {
+    /// What a planned second takes, of work of which nothing is known: as the middle of the kinds so far and of the plan itself, the
+    /// nearer to the plan the less is done.
+    fn common_factor(&self) -> f64 {
         let kinds = self.kinds.iter().filter(|(kind, _)| **kind != Work::Report);
         let begun = kinds.filter(|(_, spent)| spent.has_begun());
-        let common = begun.map(|(_, spent)| spent.took_s / spent.done_s);
-        // With the plan itself as one of them.
-        let common = middle(common.chain([1.0]).collect()).max(f64::MIN_POSITIVE);
+        let factors = begun.map(|(_, spent)| spent.took_s / spent.done_s);
+        let middle = middle(factors.chain([1.0]).collect()).max(f64::MIN_POSITIVE);
+        let took_s: f64 = self.kinds.values().map(|spent| spent.took_s).sum();
+        middle.powf(took_s / (took_s + SETTING_UP_S))
+    }
+
+    /// What a planned second of each kind takes.
+    fn factors(&self, common: f64) -> BTreeMap<Work, f64> {
         // Of each kind the sum of weights, and of weighted logarithms.
         let prior = [PRIOR_PLACES, PRIOR_PLACES * common.ln()];
         let mut sums: BTreeMap<Work, [f64; 2]> = BTreeMap::new();
@@ -442,9 +455,20 @@ mod tests {
     fn nothing_is_left_at_the_end_but_the_report() {
         let work = [piece(Work::Touch, 0, 4.0), piece(Work::Report, 0, 1.5)];
         let mut left = TimeLeft::new(&work, 1);
-        left.worked(&work[0], 9.0);
-        assert_eq!(left.left_s(9.0), 1.5);
+        left.worked(&work[0], 4.0);
+        assert_eq!(left.left_s(4.0), 1.5);
+        // Where all else took nine times as long as planned, it may take about three times as long; until some of it is told.
+        let mut slow = TimeLeft::new(&work, 1);
+        slow.worked(&work[0], 36.0);
+        let slow_s = slow.left_s(36.0);
+        assert!((4.0..4.5).contains(&slow_s), "{slow_s}");
+        let half = piece(Work::Report, 0, 0.75);
+        slow.worked(&half, 0.75);
+        let half_s = slow.left_s(36.75);
+        assert!((0.75..1.5).contains(&half_s), "{half_s}");
+        slow.worked(&half, 0.75);
+        assert_eq!(slow.left_s(37.5), 0.0);
         left.worked(&work[1], 1.0);
-        assert_eq!(left.left_s(10.0), 0.0);
+        assert_eq!(left.left_s(5.0), 0.0);
     }
 }
