@@ -17,7 +17,7 @@ use bubbletouch::study::pieces::{
     FinishedPieces, PieceFailure, PieceManner, PieceStudy, PiecesRun, n_pieces_left, run_pieces,
 };
 use bubbletouch::study::provenance::{MANIFEST_FILE, Manifest, PROGRAM, RunFacts};
-use bubbletouch::study::time_left::{Piece, Work};
+use bubbletouch::study::time_left::Piece;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -70,11 +70,7 @@ pub struct PieceRun<K> {
 
 impl<K: PieceKind> PieceRun<K> {
     /// What is done when all pieces are there.
-    const REPORT: Piece = Piece {
-        kind: Work::Report,
-        place: 0,
-        planned_s: K::WRITE_S,
-    };
+    const REPORT: Piece = Piece::report(K::WRITE_S);
 
     pub fn load(args: &StudyArgs, folder: &Path) -> Result<Self> {
         let kind = K::load(args, packings_beside(folder))?;

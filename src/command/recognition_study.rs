@@ -47,14 +47,10 @@ impl RecognitionStudy {
     fn report_work(&self, part: Part) -> Piece {
         let LoadedStudy { plan, sweep, .. } = &self.loaded;
         let cells: Vec<_> = sweep.cells().collect();
-        Piece {
-            kind: Work::Report,
-            place: 0,
-            planned_s: match part {
-                Part::Shard(_) => 0.0,
-                _ => results::planned_s(&cells, plan.spec.report.pareto),
-            },
-        }
+        Piece::report(match part {
+            Part::Shard(_) => 0.0,
+            _ => results::planned_s(&cells, plan.spec.report.pareto),
+        })
     }
 }
 

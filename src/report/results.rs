@@ -13,7 +13,7 @@ use crate::report::pareto_chart::{Cost, draw_pareto, is_wanted};
 use crate::report::snapshots::snapshots;
 use crate::study::progress::{Progress, Silent};
 use crate::study::table::{Cell, Tables};
-use crate::study::time_left::{Piece, Work};
+use crate::study::time_left::Piece;
 use std::path::{Path, PathBuf};
 
 /// Static charts that are drawn, unless all are asked for; of all, those in the page (for readers without script) and as PNG. More: a page
@@ -26,12 +26,7 @@ pub const MOST_CHARTS: usize = 24;
 /// Everything is drawn before the first file is written, and each file is whole or not there. Files of other names in the
 /// folder are left alone.
 pub fn write_all(dir: &Path, tables: &Tables, about: &ReportPage) -> Result<Vec<PathBuf>> {
-    let work = Piece {
-        kind: Work::Report,
-        place: 0,
-        planned_s: 0.0,
-    };
-    write_all_telling(dir, tables, about, (&Silent, &work))
+    write_all_telling(dir, tables, about, (&Silent, &Piece::report(0.0)))
 }
 
 /// As [`write_all`]; `progress` is told, of what was planned for `work`, what is done as pictures are drawn.

@@ -3,7 +3,7 @@
 use super::estimate::learning;
 use super::measurement::Measurements;
 use super::plan::Plan;
-use super::sweep::Sweep;
+use super::sweep::{Group, Sweep};
 use super::table::{Cell, TrialScore, TrialTime};
 use super::training::{Fitted, Training};
 use crate::error::Result;
@@ -71,7 +71,7 @@ impl Trial<'_> {
         let split = self.sweep.split(self.plan, &family[0], self.number)?;
         let training = self.training(&family[0], &split)?;
         let test = rows(&family[0], (self.tested, &split.test), &self.sweep.labels)?;
-        let same_fit: Vec<&[Cell]> = family.chunk_by(|a, b| a.c == b.c).collect();
+        let same_fit: Vec<&[Cell]> = Group::fits(family).collect();
         let penalties: Vec<Option<f64>> = same_fit.iter().map(|cells| cells[0].c).collect();
         let labels = &self.sweep.labels;
         let planned = learning(self.plan, &family[0], self.n_objects(), labels.len());

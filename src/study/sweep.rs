@@ -67,6 +67,11 @@ impl Group {
         self.cells.chunk_by(move |a, b| family(a) == family(b))
     }
 
+    /// The cells of a family by fit: those with the same C, of which the first speaks for all.
+    pub fn fits(family: &[Cell]) -> impl Iterator<Item = &[Cell]> {
+        family.chunk_by(|a, b| a.c == b.c)
+    }
+
     /// The measurements that serve every cell: of the largest m if smaller ones are its prefixes, else one set per m.
     pub fn projected(&self) -> Vec<usize> {
         let mut counts: Vec<usize> = self.cells.iter().map(|c| c.measurements).collect();

@@ -32,6 +32,15 @@ pub struct Piece {
 }
 
 impl Piece {
+    /// Tables and charts at the end: seconds by the clock.
+    pub const fn report(planned_s: f64) -> Self {
+        Self {
+            kind: Work::Report,
+            place: 0,
+            planned_s,
+        }
+    }
+
     /// Of a stage whose pieces have a thread each.
     pub fn of_stage(stage: u8, place: usize, planned_s: f64) -> Self {
         Self {

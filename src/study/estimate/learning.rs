@@ -3,6 +3,7 @@
 use crate::recognition::ClassifierKind;
 use crate::recognition::svm::{Multiclass, Solver};
 use crate::study::plan::{Plan, SplitKind};
+use crate::study::sweep::Group;
 use crate::study::table::Cell;
 
 /// Seconds of linfa's solver for one entry of a binary problem's kernel matrix: iterations apart from products.
@@ -76,7 +77,7 @@ pub(in crate::study) fn family_s(
     n_objects: usize,
     n_touches: usize,
 ) -> f64 {
-    let fits = family.chunk_by(|a, b| a.c == b.c);
+    let fits = Group::fits(family);
     fits.map(|cells| learning(plan, &cells[0], n_objects, n_touches).total_s())
         .sum()
 }

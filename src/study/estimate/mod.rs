@@ -59,26 +59,20 @@ impl Estimate {
             let projected = g.projected().into_iter();
             projected.map(|m| measure_s(plan, g, n_touches, m)).sum()
         };
-        // Of the cells that share a fit, the first.
-        let fits = || {
-            let families = sweep.groups.iter().flat_map(Group::families);
-            families.flat_map(|family| family.chunk_by(|a, b| a.c == b.c).map(|cells| &cells[0]))
-        };
+        let families = || sweep.groups.iter().flat_map(Group::families);
         let n_objects = touched.class_names().len();
+        let recognise_s = families().map(|family| family_s(plan, family, n_objects, n_touches));
         Self {
             n_objects,
             n_touches,
             n_arrays: plan.arrays.len(),
             n_cells: sweep.n_cells(),
             n_trials,
-            n_fits: fits().count(),
+            n_fits: families().flat_map(Group::fits).count(),
             memory_bytes: memory.most_bytes,
             simulate_s: simulate_s.sum(),
             measure_s: n_trials as f64 * sweep.groups.iter().map(read_s).sum::<f64>(),
-            recognise_s: n_trials as f64
-                * fits()
-                    .map(|cell| learning(plan, cell, n_objects, n_touches).total_s())
-                    .sum::<f64>(),
+            recognise_s: n_trials as f64 * recognise_s.sum::<f64>(),
             n_threads,
         }
     }
