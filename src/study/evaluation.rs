@@ -1,4 +1,4 @@
-//! A family of cells in one trial: fit on training rows once for each C, score test touches once, decide for each k.
+//! A family of cells in one trial: fit on training rows once for each C, answer to test touches once, decide for each k.
 
 use super::estimate::learning;
 use super::measurement::Measurements;
@@ -14,7 +14,7 @@ use crate::recognition::fusion::{fuse_rows, fuse_scores};
 use crate::recognition::interval::Interval;
 use crate::recognition::metrics::ConfusionMatrix;
 use crate::recognition::split::Split;
-use ndarray::{Array1, ArrayView2, Axis};
+use ndarray::{Array1, Array2, Axis};
 use serde::{Deserialize, Serialize};
 use std::time::Instant;
 
@@ -47,17 +47,47 @@ pub struct Trial<'a> {
     pub number: usize,
 }
 
-/// Test touches, scored by one fit.
-struct ScoredTouches<'a> {
+/// Test touches, answered by one fit.
+struct AnsweredTouches<'a> {
     fitted: &'a Fitted,
     test: &'a Dataset,
-    scores: ArrayView2<'a, f64>,
-    score_s: f64,
+    answers: Answers,
+    answer_s: f64,
     n_train: usize,
 }
 
+/// What a fit says of each touch.
+enum Answers {
+    /// Its label: all that is needed where touches are decided on one by one, and less work.
+    Labels(Array1<usize>),
+    /// Its scores, n × n_scores.
+    Scores(Array2<f64>),
+}
+
+impl Answers {
+    /// To test touches of the cells of one fit.
+    fn new(fitted: &Fitted, test: &Dataset, cells: &[Cell]) -> Result<Self> {
+        let features = test.records.view();
+        Ok(match cells.iter().all(|cell| cell.fused_touches == 1) {
+            true => Self::Labels(fitted.classifier.labels(features)?),
+            false => Self::Scores(fitted.classifier.scores(features)?),
+        })
+    }
+
+    /// One label for each group of touches.
+    fn decide(&self, fitted: &Fitted, groups: &[Vec<usize>]) -> Array1<usize> {
+        match self {
+            Self::Labels(labels) => groups.iter().map(|group| labels[group[0]]).collect(),
+            Self::Scores(scores) => {
+                let fused = fuse_scores(scores.view(), groups);
+                fitted.classifier.labels_of_scores(fused.view())
+            }
+        }
+    }
+}
+
 impl Trial<'_> {
-    /// Fits and scores the cells of a [family](super::sweep::Group::families) on their leading measurements, in their order.
+    /// Fits and tests the cells of a [family](super::sweep::Group::families) on their leading measurements, in their order.
     pub fn evaluate(&self, family: &[Cell]) -> Result<Vec<Evaluation>> {
         self.evaluate_telling(family, FitProgress::default())
     }
@@ -79,30 +109,28 @@ impl Trial<'_> {
         let mut evaluations = Vec::with_capacity(family.len());
         for (fitted, cells) in fitted.iter().zip(same_fit) {
             let start = Instant::now();
-            let scores = fitted.classifier.scores(test.records.view())?;
-            let scored = ScoredTouches {
+            let answered = AnsweredTouches {
                 fitted,
                 test: &test,
-                scores: scores.view(),
-                score_s: start.elapsed().as_secs_f64(),
+                answers: Answers::new(fitted, &test, cells)?,
+                answer_s: start.elapsed().as_secs_f64(),
                 n_train: split.train.len(),
             };
             for cell in cells {
-                evaluations.push(self.decide(cell, &scored)?);
+                evaluations.push(self.decide(cell, &answered)?);
             }
         }
         Ok(evaluations)
     }
 
     /// One label for each group of the cell's k test touches.
-    fn decide(&self, cell: &Cell, scored: &ScoredTouches) -> Result<Evaluation> {
-        let truth = &scored.test.targets;
+    fn decide(&self, cell: &Cell, answered: &AnsweredTouches) -> Result<Evaluation> {
+        let truth = &answered.test.targets;
         let seed = self.seed("fused_touches");
         let rows = fuse_rows(truth.view(), cell.fused_touches, &seed);
         let start = Instant::now();
-        let fused = fuse_scores(scored.scores, &rows.groups);
-        let predicted = scored.fitted.classifier.labels_of_scores(fused.view());
-        let predict_s = scored.score_s + start.elapsed().as_secs_f64();
+        let predicted = answered.answers.decide(answered.fitted, &rows.groups);
+        let predict_s = answered.answer_s + start.elapsed().as_secs_f64();
         let truth = rows.groups.iter().map(|group| truth[group[0]]).collect();
         let truth: Array1<usize> = truth;
         let matrix = ConfusionMatrix::new(truth.view(), predicted.view(), self.n_objects())?;
@@ -113,7 +141,7 @@ impl Trial<'_> {
                 trial: self.number,
                 split,
                 projection,
-                n_train: scored.n_train,
+                n_train: answered.n_train,
                 n_test: matrix.n_rows(),
                 n_left_out: rows.n_left_out,
                 n_correct: matrix.n_correct(),
@@ -121,15 +149,15 @@ impl Trial<'_> {
                 accuracy_low: interval.low,
                 accuracy_high: interval.high,
                 macro_f1: matrix.macro_f1(),
-                c_used: scored.fitted.c,
-                gamma_used: scored.fitted.gamma,
-                n_capped: scored.fitted.classifier.n_capped(),
+                c_used: answered.fitted.c,
+                gamma_used: answered.fitted.gamma,
+                n_capped: answered.fitted.classifier.n_capped(),
             },
             time: TrialTime {
                 trial: self.number,
-                fit_s: scored.fitted.fit_s,
+                fit_s: answered.fitted.fit_s,
                 predict_s,
-                predict_us_per_touch: 1e6 * predict_s / scored.test.targets.len() as f64,
+                predict_us_per_touch: 1e6 * predict_s / answered.test.targets.len() as f64,
             },
             confusion: matrix
                 .counts
