@@ -45,11 +45,16 @@ impl RecognitionStudy {
 
     /// What is done when all cells are there; a shard does nothing then.
     fn report_work(&self, part: Part) -> Piece {
-        let LoadedStudy { plan, sweep, .. } = &self.loaded;
+        let LoadedStudy {
+            plan,
+            sweep,
+            touched,
+            ..
+        } = &self.loaded;
         let cells: Vec<_> = sweep.cells().collect();
         Piece::report(match part {
             Part::Shard(_) => 0.0,
-            _ => results::planned_s(&cells, plan.spec.report.pareto),
+            _ => results::planned_s(&cells, plan.spec.report.pareto, touched.samples_s()),
         })
     }
 }

@@ -25,6 +25,16 @@ enum Content {
     Png(Box<ToRaster>),
 }
 
+impl Content {
+    /// That of a picture that is still to be drawn.
+    fn area(&self) -> Option<f64> {
+        match self {
+            Self::Bytes(_) => None,
+            Self::Png(raster) => Some(raster.area()),
+        }
+    }
+}
+
 /// A picture that is drawn.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Drawn {
@@ -81,19 +91,21 @@ impl<'a> Folder<'a> {
         self.into_files_telling(&|_| ())
     }
 
-    /// The same; each picture tells what share it was of the time by the clock that all of them take, and how long that was.
+    /// The same; each picture tells what share it was of the time by the clock that all of them take (the larger the more), and how long that was.
     fn into_files_telling(self, told: &Told) -> Result<Vec<(String, Vec<u8>)>> {
-        let is_png = |(_, content): &&(String, Content)| matches!(content, Content::Png(_));
-        let n_pngs = self.files.iter().filter(is_png).count();
-        let share = 1.0 / n_pngs.max(1) as f64;
-        let n_in_turn = n_pngs.div_ceil(rayon::current_num_threads());
+        let areas = self.files.iter().filter_map(|(_, content)| content.area());
+        let areas: Vec<f64> = areas.collect();
+        let all: f64 = areas.iter().sum();
+        let at_once = rayon::current_num_threads().min(areas.len()).max(1) as f64;
         let whole = |(name, content)| match content {
             Content::Bytes(bytes) => Ok((name, bytes)),
             Content::Png(raster) => {
                 let start = Instant::now();
                 let png = raster.picture()?.png()?;
-                let wall_s = start.elapsed().as_secs_f64() * n_in_turn as f64 * share;
-                told(Drawn { share, wall_s });
+                told(Drawn {
+                    share: raster.area() / all,
+                    wall_s: start.elapsed().as_secs_f64() / at_once,
+                });
                 Ok((name, png))
             }
         };

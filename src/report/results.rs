@@ -41,8 +41,8 @@ pub fn write_all_telling(
     folder.add_table(LIMITS_FILE, &about.limits)?;
     add_page(&mut folder, tables, about)?;
     folder.write_telling(&|drawn| {
-        let planned_s = drawn.share * (work.planned_s - REST_S).max(0.0);
-        progress.worked(&Piece { planned_s, ..*work }, drawn.wall_s);
+        let pictures = Piece::report((work.planned_s - REST_S).max(0.0));
+        progress.worked(&pictures.share(drawn.share), drawn.wall_s);
     })
 }
 
@@ -107,8 +107,8 @@ fn light_picture(drawing: &Drawing, title: &str) -> Result<Picture> {
 }
 
 /// Seconds by the clock to draw and write all of it for these cells, where accuracy against time is charted or not, or as the
-/// classifiers say.
-pub fn planned_s(cells: &[&Cell], pareto: Option<bool>) -> f64 {
+/// classifiers say, and [samples of touches](crate::study::TouchSet::samples) take so many processor-seconds more.
+pub fn planned_s(cells: &[&Cell], pareto: Option<bool>, samples_s: f64) -> f64 {
     let n_charts = plan_charts(cells).len().min(MOST_CHARTS);
     let n_costs = match is_wanted(cells, pareto) {
         true => COSTS.len(),
@@ -116,8 +116,9 @@ pub fn planned_s(cells: &[&Cell], pareto: Option<bool>) -> f64 {
     };
     // With the confusion matrix and the sample touches.
     let n_pictures = n_charts + n_costs + 2;
-    let n_in_turn = n_pictures.div_ceil(rayon::current_num_threads());
-    REST_S + PICTURE_S * n_in_turn as f64
+    let n_threads = rayon::current_num_threads();
+    let n_in_turn = n_pictures.div_ceil(n_threads);
+    REST_S + PICTURE_S * n_in_turn as f64 + samples_s / n_threads as f64
 }
 
 /// Seconds for one picture's PNG and SVG on one core of a 2-core x86-64 server.

@@ -9,6 +9,7 @@ use crate::contact::SkinWorkspace;
 use crate::error::{Error, Result};
 use crate::signal::Quantity;
 use ndarray::{Array1, Array2};
+use rayon::prelude::*;
 
 /// Frames of a strip: a row of the picture.
 const N_FRAMES: usize = 4;
@@ -32,15 +33,20 @@ pub fn human_samples(plan: &Plan, sweep: &Sweep, touches: &HumanTouches) -> Resu
     let grid = patch.grid;
     let skin = touches.plan.skin(&patch)?;
     let interval = touches.plan.interval;
-    let mut workspace = SkinWorkspace::new();
     let mut frames = Vec::new();
     for label in chosen(plan, touches)? {
-        let recorded = touches.of(label).iter().take(N_LOOKED_AT).map(|touch| {
-            let mut rows = Array2::zeros((touches.plan.n_frames, grid.n_taxels()));
-            record_touch(&skin, touch, interval, rows.view_mut(), &mut workspace);
-            rows
-        });
-        let firmest = recorded.max_by(|a, b| a.sum().total_cmp(&b.sum()));
+        let first: Vec<_> = touches.of(label).iter().take(N_LOOKED_AT).collect();
+        let recorded = first
+            .par_iter()
+            .map_init(SkinWorkspace::new, |room, touch| {
+                let mut rows = Array2::zeros((touches.plan.n_frames, grid.n_taxels()));
+                record_touch(&skin, touch, interval, rows.view_mut(), room);
+                rows
+            });
+        let recorded: Vec<_> = recorded.collect();
+        let firmest = recorded
+            .into_iter()
+            .max_by(|a, b| a.sum().total_cmp(&b.sum()));
         let Some(rows) = firmest else { continue };
         let is_touched = |frame: &usize| rows.row(*frame).iter().any(|&d| d > 0.0);
         let touched: Vec<usize> = (0..rows.nrows()).filter(is_touched).collect();

@@ -4,10 +4,11 @@ use super::attempt::attempt;
 use super::evaluation::Trial;
 use super::finished::Finished;
 use super::frames::Frames;
-use super::measurement::{Measurements, measure_group};
+use super::measurement::{BlockTold, Measurements, measure_group_telling};
 use super::runner::Run;
 use super::sweep::Group;
 use super::table::Cell;
+use super::time_left::Piece;
 use super::workload::LearningMeter;
 use crate::error::Result;
 use crate::recognition::fit_progress::FitProgress;
@@ -38,7 +39,8 @@ impl<'a> Job<'a> {
         let mut finished = Vec::new();
         let mut measure_s = 0.0;
         for (n_measurements, families) in self.batches() {
-            let (measured, cpu_s) = match self.measure(frames, n_measurements) {
+            let piece = self.measuring(n_measurements, &families);
+            let (measured, cpu_s) = match self.measure(frames, n_measurements, &piece) {
                 Ok(measured) => {
                     let cpu_s = measured.cpu_s;
                     (Ok(measured), cpu_s)
@@ -47,8 +49,6 @@ impl<'a> Job<'a> {
                 Err(error) => (Err(error.to_string()), 0.0),
             };
             measure_s += cpu_s;
-            let piece = self.measuring(n_measurements, &families);
-            self.run.progress.worked(&piece, cpu_s);
             for families in families.chunks(self.run.manner.at_once.families) {
                 let families = families.par_iter();
                 let results = families.map(|family| self.finish(family, measured.as_ref()));
@@ -71,16 +71,25 @@ impl<'a> Job<'a> {
         projected.filter_map(served).collect()
     }
 
-    fn measure(&self, frames: &Frames, n_measurements: usize) -> Result<Measurements> {
+    /// Measures, and tells of it bit by bit.
+    fn measure(
+        &self,
+        frames: &Frames,
+        n_measurements: usize,
+        piece: &Piece,
+    ) -> Result<Measurements> {
         let Run {
             plan,
             sweep,
             touched,
+            progress,
             ..
         } = self.run;
         let touches = (touched, frames);
         let trial = (self.trial, &sweep.splits[self.trial]);
-        measure_group(plan, self.group, touches, trial, n_measurements)
+        let told = |share: f64, cpu_s: f64| progress.worked(&piece.share(share), cpu_s);
+        let wanted = (n_measurements, &told as &BlockTold);
+        measure_group_telling(plan, self.group, touches, trial, wanted)
     }
 
     fn finish(

@@ -132,6 +132,10 @@ pub fn touches_of_study(
     touches
 }
 
+/// Who is told, from any thread, of a block of frames that is measured: what share of all frames it is, and the processor-seconds that
+/// it took.
+pub type BlockTold<'a> = dyn Fn(f64, f64) + Sync + 'a;
+
 /// Reads and projects all frames of a group in one trial, to a number of measurements among
 /// [`Group::projected`](super::Group::projected).
 ///
@@ -140,9 +144,23 @@ pub fn touches_of_study(
 pub fn measure_group(
     plan: &Plan,
     group: &Group,
+    touches: (&dyn TouchSet, &Frames),
+    trial: (usize, &Split),
+    n_measurements: usize,
+) -> Result<Measurements> {
+    measure_group_telling(plan, group, touches, trial, (n_measurements, &|_, _| ()))
+}
+
+/// The same, and tells of each block.
+///
+/// # Errors
+/// Those of [`measure_group`].
+pub fn measure_group_telling(
+    plan: &Plan,
+    group: &Group,
     (touched, frames): (&dyn TouchSet, &Frames),
     (trial, split): (usize, &Split),
-    n_measurements: usize,
+    (n_measurements, told): (usize, &BlockTold),
 ) -> Result<Measurements> {
     let patch = &plan.arrays[group.array];
     let seed = Seed::new(plan.spec.seed);
@@ -171,7 +189,7 @@ pub fn measure_group(
     for &touch in &split.test {
         touches[touch].skin = skins.len() - 1;
     }
-    let (values, cpu_s) = measure(reading, (&frames.kept, n_frames), &touches)?;
+    let (values, cpu_s) = measure_telling(reading, (&frames.kept, n_frames), &touches, told)?;
     let ones = Array2::ones((1, patch.grid.n_taxels()));
     Ok(Measurements {
         values,
@@ -197,12 +215,22 @@ fn skins(plan: &Plan, group: &Group, trial: u64) -> Vec<Seed> {
 /// Frames that are in a file cannot be read.
 pub fn measure(
     reading: Reading,
-    (frames, n_frames): (&KeptFrames, usize),
+    frames: (&KeptFrames, usize),
     touches: &[TouchToRead],
 ) -> Result<(Array2<f64>, f64)> {
+    measure_telling(reading, frames, touches, &|_, _| ())
+}
+
+fn measure_telling(
+    reading: Reading,
+    (frames, n_frames): (&KeptFrames, usize),
+    touches: &[TouchToRead],
+    told: &BlockTold,
+) -> Result<(Array2<f64>, f64)> {
+    let n_touches = touches.len();
     let block = (BLOCK / n_frames.max(1)).max(1);
     let n_measurements = reading.projection.n_measurements();
-    let mut values = Array2::zeros((touches.len() * n_frames, n_measurements));
+    let mut values = Array2::zeros((n_touches * n_frames, n_measurements));
     let cpu_s = values
         .axis_chunks_iter_mut(Axis(0), block * n_frames.max(1))
         .into_par_iter()
@@ -210,7 +238,9 @@ pub fn measure(
         .map_init(Working::default, |working, (out, touches)| {
             let start = Instant::now();
             measure_block(reading, (frames, n_frames), touches, working, out)?;
-            Ok(start.elapsed().as_secs_f64())
+            let cpu_s = start.elapsed().as_secs_f64();
+            told(touches.len() as f64 / n_touches as f64, cpu_s);
+            Ok(cpu_s)
         })
         .collect::<Result<Vec<_>>>()?
         .iter()

@@ -50,6 +50,11 @@ pub trait TouchSet: Sync {
     /// A few touches for the eye.
     fn samples(&self, plan: &Plan, sweep: &Sweep) -> Result<Samples>;
 
+    /// About how many processor-seconds more these take to make and to draw than four frames of objects.
+    fn samples_s(&self) -> f64 {
+        0.0
+    }
+
     /// About how long one core takes to bring what touches to an array, once each touch; seconds.
     fn place_s(&self) -> f64;
 

@@ -93,10 +93,7 @@ impl<'a> TouchMeter<'a> {
         let all = run.touching(patch, n_frames);
         Self {
             progress: run.progress,
-            piece: Piece {
-                planned_s: all.planned_s / run.sweep.labels.len().max(1) as f64,
-                ..all
-            },
+            piece: all.share(1.0 / run.sweep.labels.len().max(1) as f64),
             told: Mutex::new(Instant::now()),
         }
     }
@@ -112,12 +109,7 @@ impl Progress for TouchMeter<'_> {
         if let Ok(mut told) = self.told.lock() {
             let took_s = told.elapsed().as_secs_f64() * rayon::current_num_threads() as f64;
             *told = Instant::now();
-            let planned_s = n as f64 * self.piece.planned_s;
-            let piece = Piece {
-                planned_s,
-                ..self.piece
-            };
-            self.progress.worked(&piece, took_s);
+            self.progress.worked(&self.piece.share(n as f64), took_s);
         }
     }
 
@@ -170,11 +162,8 @@ impl<'a> LearningMeter<'a> {
     fn tell(&self) {
         let took_s = self.told.replace(Instant::now()).elapsed().as_secs_f64();
         let done_share = self.done_share.get();
-        let piece = Piece {
-            planned_s: (done_share - self.told_share.replace(done_share)) * self.piece.planned_s,
-            ..self.piece
-        };
-        self.progress.worked(&piece, took_s);
+        let share = done_share - self.told_share.replace(done_share);
+        self.progress.worked(&self.piece.share(share), took_s);
     }
 }
 

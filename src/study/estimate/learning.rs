@@ -19,15 +19,18 @@ const RBF_ENTRY_S: f64 = 5e-10;
 const RBF_HARDER_WITH_C: f64 = 0.25;
 const POLYNOMIAL_ENTRY_S: f64 = 5e-9;
 /// Seconds of a linear SVM for one row of a binary problem, for one entry of its kernel matrix, and for each entry and measurement up to
-/// as many as half its rows (no hyperplane may part more rows than that); all times C to this power where C is above 1.
+/// as many as half its rows (no hyperplane may part more rows than that) and as this; all times C to this power where C is above 1.
 const LINEAR_ROW_S: f64 = 1.35e-7;
 const LINEAR_ENTRY_S: f64 = 3.2e-10;
 const LINEAR_ELEMENT_S: f64 = 1.3e-11;
+const LINEAR_MOST_ELEMENTS: f64 = 256.0;
 const LINEAR_HARDER_WITH_C: f64 = 0.4;
 /// What a solution takes that goes on from that of a smaller C, as a share of one from nothing, on average.
 const ON_A_PATH: f64 = 0.7;
 /// Seconds for one multiply-add of the kernel matrix that all their problems share.
 const GRAM_ELEMENT_S: f64 = 1.6e-11;
+/// The same for one measurement of a row of a binary problem, where linear SVMs make those products only that lie near their margins.
+const NEAR_MARGIN_S: f64 = 1.3e-9;
 /// Seconds to make a value of a kernel that is not linear of a product.
 const KERNEL_VALUE_S: f64 = 1.2e-9;
 /// Seconds for one multiply-add of a pair's decision, over the training rows of its two classes.
@@ -208,19 +211,24 @@ fn svm(plan: &Plan, cell: &Cell, n_objects: f64, touches: f64) -> Fit {
     }
     let (row_s, entry_s, harder_with_c) = match cell.classifier {
         ClassifierKind::LinearSvm => {
-            let entry_s = LINEAR_ENTRY_S + LINEAR_ELEMENT_S * m.min(0.5 * rows);
+            let n_elements = m.min(0.5 * rows).min(LINEAR_MOST_ELEMENTS);
+            let entry_s = LINEAR_ENTRY_S + LINEAR_ELEMENT_S * n_elements;
             (LINEAR_ROW_S, entry_s, LINEAR_HARDER_WITH_C)
         }
         ClassifierKind::PolynomialSvm => (0.0, POLYNOMIAL_ENTRY_S, 0.0),
         _ => (RBF_ROW_S, RBF_ENTRY_S, RBF_HARDER_WITH_C),
     };
     let harder = typical_c(plan, cell).max(1.0).powf(harder_with_c);
-    let values_s = match cell.classifier {
-        ClassifierKind::LinearSvm => 0.0,
-        _ => KERNEL_VALUE_S * 0.5 * n_train * n_train,
+    let all_products_s = GRAM_ELEMENT_S * n_train * n_train * m;
+    let (products_s, values_s) = match cell.classifier {
+        ClassifierKind::LinearSvm => {
+            let near_margin_s = NEAR_MARGIN_S * n_problems * rows * m;
+            (all_products_s.min(near_margin_s), 0.0)
+        }
+        _ => (all_products_s, KERNEL_VALUE_S * 0.5 * n_train * n_train),
     };
     Fit {
-        products_s: GRAM_ELEMENT_S * n_train * n_train * m,
+        products_s,
         values_s,
         solve_s: harder * n_problems * rows * (row_s + rows * entry_s),
     }

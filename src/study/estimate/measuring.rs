@@ -45,7 +45,7 @@ pub(in crate::study) fn measure_s(
     let n_read = (n_touches * group.frames * n_taxels) as f64;
     let steps = signal_steps(plan, group, &Seed::new(0));
     let steps = steps.iter().map(|step| step_s(step, patch, group.frames));
-    let project_s = project_s(group.ensemble, n_measurements, n_taxels);
+    let project_s = project_s(group.ensemble, n_measurements as f64, n_taxels);
     n_read * (READ_TAXEL_S + steps.sum::<f64>() + project_s)
 }
 
@@ -69,9 +69,8 @@ fn step_s(step: &SignalStep, patch: &Patch, n_frames: usize) -> f64 {
     }
 }
 
-/// Seconds to project one taxel of one frame.
-fn project_s(ensemble: Ensemble, n_measurements: usize, n_taxels: usize) -> f64 {
-    let m = n_measurements as f64;
+/// Seconds to project one taxel of one frame to m measurements.
+pub(in crate::study) fn project_s(ensemble: Ensemble, m: f64, n_taxels: usize) -> f64 {
     match ensemble {
         Ensemble::Gaussian | Ensemble::Bernoulli => DENSE_S * m,
         // m rows of √n entries each.

@@ -59,31 +59,26 @@ struct Compressed {
 impl Bench<'_> {
     /// Does the chains that are left.
     pub fn run(&self, left: &PiecesLeft<SpeedAccuracyTables>) -> Result<()> {
-        let spec = &self.sweep.spec;
         let sense_us = self.one_thread.install(|| self.time_presses());
-        for &ensemble in &spec.ensemble {
-            for &ratio in &spec.ratio {
-                let name = |kind| self.part.chain_name(self.number, (ensemble, ratio), kind);
-                let kinds = left.of(spec.classifier.iter(), |kind| name(**kind));
-                if kinds.is_empty() {
-                    continue;
-                }
-                let names: Vec<String> = kinds.iter().map(|kind| name(**kind)).collect();
-                let Some(before) = left.prepare(&names, || self.compress(ensemble, ratio))? else {
-                    continue;
-                };
-                for &&classifier in &kinds {
-                    left.finish(&name(classifier), || {
-                        self.chain((ensemble, ratio), classifier, &before, sense_us)
-                    })?;
-                }
+        for (front, kinds) in self.part.fronts_left(self.number, left) {
+            let name = |kind| self.part.chain_name(self.number, front, kind);
+            let names: Vec<String> = kinds.iter().map(|&kind| name(kind)).collect();
+            let work = self.part.front_work(self.number, front);
+            let compress = || left.during(&work, || self.compress(front));
+            let Some(before) = left.prepare(&names, compress)? else {
+                continue;
+            };
+            for classifier in kinds {
+                left.finish(&name(classifier), || {
+                    self.chain(front, classifier, &before, sense_us)
+                })?;
             }
         }
         Ok(())
     }
 
     /// What comes before every classifier.
-    fn compress(&self, ensemble: Ensemble, ratio: f64) -> Result<Compressed> {
+    fn compress(&self, (ensemble, ratio): (Ensemble, f64)) -> Result<Compressed> {
         let n_taxels = self.patch.grid.n_taxels();
         let measurements = ((n_taxels as f64 / ratio).round() as usize).max(1);
         let size = (self.patch.grid.ny, self.patch.grid.nx);

@@ -74,21 +74,71 @@ impl<'a> RecognitionPart<'a> {
         chains.map(|(name, _)| name).collect()
     }
 
+    /// Ensembles and ratios.
+    fn fronts(&self) -> impl Iterator<Item = (Ensemble, f64)> {
+        let spec = &self.sweep.spec;
+        let ratios = |&ensemble: &Ensemble| spec.ratio.iter().map(move |&ratio| (ensemble, ratio));
+        spec.ensemble.iter().flat_map(ratios)
+    }
+
     /// The chains of a bench, and what each is planned to take.
     fn chains(&self, bench: (usize, usize)) -> Vec<(String, Piece)> {
-        let spec = &self.sweep.spec;
-        let n_taxels = self.sweep.patches[bench.0].grid.n_taxels();
+        let n_taxels = self.n_taxels(bench) as f64;
         let mut chains = Vec::new();
-        for &ensemble in &spec.ensemble {
-            for &ratio in &spec.ratio {
-                let n_measurements = n_taxels as f64 / ratio;
-                chains.extend(spec.classifier.iter().map(|&kind| {
-                    let work = cost::chain(kind, n_measurements);
-                    (self.chain_name(bench, (ensemble, ratio), kind), work)
-                }));
-            }
+        for front in self.fronts() {
+            let kinds = self.sweep.spec.classifier.iter();
+            chains.extend(kinds.map(|&kind| {
+                let work = cost::chain(kind, n_taxels / front.1);
+                (self.chain_name(bench, front, kind), work)
+            }));
         }
         chains
+    }
+
+    /// What chains of a bench that are left need first: ensembles and ratios, and the classifiers that wait for each.
+    pub fn fronts_left(
+        &self,
+        bench: (usize, usize),
+        left: &PiecesLeft<SpeedAccuracyTables>,
+    ) -> Vec<((Ensemble, f64), Vec<ClassifierKind>)> {
+        let kinds_left = |front| {
+            let kinds = self.sweep.spec.classifier.iter().copied();
+            let kinds = left.of(kinds, |&kind| self.chain_name(bench, front, kind));
+            (!kinds.is_empty()).then_some((front, kinds))
+        };
+        self.fronts().filter_map(kinds_left).collect()
+    }
+
+    /// What the chains that are left share.
+    pub fn shared_work(&self, left: &PiecesLeft<SpeedAccuracyTables>) -> Vec<Piece> {
+        let mut work = Vec::new();
+        for bench in self.benches() {
+            let fronts = self.fronts_left(bench, left);
+            if !fronts.is_empty() {
+                work.push(cost::bench());
+            }
+            let fronts = fronts.into_iter();
+            work.extend(fronts.map(|(front, _)| self.front_work(bench, front)));
+        }
+        work
+    }
+
+    /// What comes before every classifier.
+    pub fn front_work(&self, bench: (usize, usize), (ensemble, ratio): (Ensemble, f64)) -> Piece {
+        let n_taxels = self.n_taxels(bench);
+        let n_touches = self.chosen.len() * self.touches_per_object();
+        let n_timed = self.sweep.spec.timed_touches.min(n_touches);
+        let projection = (ensemble, n_taxels as f64 / ratio);
+        cost::front(projection, n_taxels, (n_touches, n_timed))
+    }
+
+    fn n_taxels(&self, bench: (usize, usize)) -> usize {
+        self.sweep.patches[bench.0].grid.n_taxels()
+    }
+
+    /// To learn from and to test.
+    fn touches_per_object(&self) -> usize {
+        self.sweep.spec.training_touches + self.sweep.spec.test_touches
     }
 
     /// What a chain is called as a piece.
@@ -132,13 +182,15 @@ impl<'a> RecognitionPart<'a> {
                 let Some(models) = &built.levels[level] else {
                     continue;
                 };
-                let tested =
-                    tested.get_or_insert_with(|| simulate_array(&built.exact, patch, 1, &Silent));
                 let mut touched = built.exact.clone();
                 for (touched, object) in touched.iter_mut().zip(self.objects(models)) {
                     touched.object = object;
                 }
-                let learned = simulate_array(&touched, patch, 1, &Silent).kept;
+                let simulate = |touched| simulate_array(touched, patch, 1, &Silent);
+                let (tested, learned) = left.during(&cost::bench(), || {
+                    let tested = tested.get_or_insert_with(|| simulate(&built.exact));
+                    (tested, simulate(&touched).kept)
+                });
                 let bench = Bench {
                     part: self,
                     number: (array, level),
@@ -178,7 +230,7 @@ impl<'a> RecognitionPart<'a> {
         let levels = self.sweep.levels.iter().zip(needed).map(packed);
         let levels = levels.collect::<Result<_>>()?;
         let placement = Placement {
-            per_object: Some(self.sweep.spec.training_touches + self.sweep.spec.test_touches),
+            per_object: Some(self.touches_per_object()),
             ..self.plan.placement.clone()
         };
         let seed = Seed::new(self.plan.spec.seed);

@@ -101,8 +101,11 @@ impl PieceStudy for SpeedAccuracyStudy {
     }
 
     fn shared_work(&self, left: &PiecesLeft<SpeedAccuracyTables>) -> Vec<Piece> {
-        self.contact()
-            .map_or_else(Vec::new, |part| part.shared_work(left))
+        let parts = [
+            self.contact().map(|part| part.shared_work(left)),
+            self.recognition().map(|part| part.shared_work(left)),
+        ];
+        parts.into_iter().flatten().flatten().collect()
     }
 
     fn tables(&self, mut tables: SpeedAccuracyTables) -> Result<SpeedAccuracyTables> {
