@@ -4,8 +4,9 @@ use super::piece_kind::{KindFacts, PieceKind};
 use super::study_args::StudyArgs;
 use bubbletouch::Result;
 use bubbletouch::report::breaking_points_results::{
-    breaking_points_summary, write_breaking_points,
+    breaking_points_folder, breaking_points_summary,
 };
+use bubbletouch::report::folder::Folder;
 use bubbletouch::report::page::StudyAbout;
 use bubbletouch::study::breaking_points::BreakingPointsStudy;
 use bubbletouch::study::breaking_points::table::BreakingPointsTables;
@@ -39,13 +40,13 @@ impl PieceKind for BreakingPointsKind {
         })
     }
 
-    fn write(
+    fn folder<'a>(
         &self,
         tables: &BreakingPointsTables,
-        folder: &Path,
+        folder: &'a Path,
         about: &StudyAbout,
-    ) -> Result<()> {
-        write_breaking_points(folder, &self.0.plan.ways, tables, about).map(drop)
+    ) -> Result<Folder<'a>> {
+        breaking_points_folder(folder, &self.0.plan.ways, tables, about)
     }
 
     fn words(&self, tables: &BreakingPointsTables, width: usize) -> String {

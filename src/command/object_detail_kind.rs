@@ -3,7 +3,8 @@
 use super::piece_kind::{KindFacts, PieceKind};
 use super::study_args::StudyArgs;
 use bubbletouch::Result;
-use bubbletouch::report::object_detail_results::{object_detail_summary, write_object_detail};
+use bubbletouch::report::folder::Folder;
+use bubbletouch::report::object_detail_results::{object_detail_folder, object_detail_summary};
 use bubbletouch::report::page::StudyAbout;
 use bubbletouch::study::object_detail::ObjectDetailStudy;
 use bubbletouch::study::object_detail::table::ObjectDetailTables;
@@ -41,8 +42,13 @@ impl PieceKind for ObjectDetailKind {
         })
     }
 
-    fn write(&self, tables: &ObjectDetailTables, folder: &Path, about: &StudyAbout) -> Result<()> {
-        write_object_detail(folder, tables, about).map(drop)
+    fn folder<'a>(
+        &self,
+        tables: &ObjectDetailTables,
+        folder: &'a Path,
+        about: &StudyAbout,
+    ) -> Result<Folder<'a>> {
+        object_detail_folder(folder, tables, about)
     }
 
     fn words(&self, tables: &ObjectDetailTables, width: usize) -> String {

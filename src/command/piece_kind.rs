@@ -8,6 +8,7 @@ use super::study_args::StudyArgs;
 use bubbletouch::Result;
 use bubbletouch::files::write_bytes;
 use bubbletouch::report::csv_tables::{FAILURES_FILE, csv_content};
+use bubbletouch::report::folder::Folder;
 use bubbletouch::report::page::StudyAbout;
 use bubbletouch::report::progress;
 use bubbletouch::report::study_tables::StudyTables;
@@ -27,7 +28,7 @@ pub trait PieceKind: Sized {
     /// What runs.
     type Study: PieceStudy<Tables: StudyTables>;
 
-    /// Seconds that [`write`](Self::write) takes, about.
+    /// Seconds to make and to write the files of [`folder`](Self::folder), about.
     const WRITE_S: f64;
 
     /// Reads and checks a study, and loads its objects; packings are kept in a folder.
@@ -36,8 +37,13 @@ pub trait PieceKind: Sized {
     fn study(&self) -> &Self::Study;
     /// What its file says, and what that is about.
     fn facts(&self) -> Result<KindFacts>;
-    /// Writes tables, charts and page.
-    fn write(&self, tables: &Tables<Self>, folder: &Path, about: &StudyAbout) -> Result<()>;
+    /// Tables, charts and page, for a folder.
+    fn folder<'a>(
+        &self,
+        tables: &Tables<Self>,
+        folder: &'a Path,
+        about: &StudyAbout,
+    ) -> Result<Folder<'a>>;
     /// What a person reads at the end, in lines of about `width` letters.
     fn words(&self, tables: &Tables<Self>, width: usize) -> String;
 }
@@ -168,7 +174,11 @@ impl<K: PieceKind> AnyOutcome for PieceOutcome<'_, K> {
             command: command_line(ended.args),
             program: PROGRAM.to_owned(),
         };
-        kind.write(&self.tables, folder, &about)?;
+        let made = kind.folder(&self.tables, folder, &about)?;
+        made.write_telling(&|drawn| {
+            let work = PieceRun::<K>::REPORT.share(drawn.share);
+            ended.progress.worked(&work, drawn.wall_s);
+        })?;
         let failures = folder.join(FAILURES_FILE);
         write_bytes(&failures, &csv_content(&failures, &self.failures)?)?;
         write_bytes(&folder.join("study.toml"), toml.as_bytes())?;

@@ -4,9 +4,10 @@ use super::piece_kind::{KindFacts, PieceKind};
 use super::study_args::StudyArgs;
 use bubbletouch::Result;
 use bubbletouch::random::Seed;
+use bubbletouch::report::folder::Folder;
 use bubbletouch::report::page::StudyAbout;
 use bubbletouch::report::reconstruction_frames::{draw_samples, shown_cells};
-use bubbletouch::report::reconstruction_results::write_reconstruction;
+use bubbletouch::report::reconstruction_results::reconstruction_folder;
 use bubbletouch::report::reconstruction_text::reconstruction_summary;
 use bubbletouch::study::reconstruction::ReconstructionStudy;
 use bubbletouch::study::reconstruction::table::ReconstructionTables;
@@ -41,18 +42,18 @@ impl PieceKind for ReconstructionKind {
         })
     }
 
-    fn write(
+    fn folder<'a>(
         &self,
         tables: &ReconstructionTables,
-        folder: &Path,
+        folder: &'a Path,
         about: &StudyAbout,
-    ) -> Result<()> {
+    ) -> Result<Folder<'a>> {
         let plan = &self.0.plan;
         let samples = self.0.samples(&shown_cells(tables))?;
         let grid = plan.patch.grid;
         let (shape, pitch_mm) = ((grid.ny, grid.nx), millimetres(grid.pitch));
         let frames = draw_samples(tables, &samples, shape, pitch_mm, plan.quantity())?;
-        write_reconstruction(folder, tables, &frames, about).map(drop)
+        reconstruction_folder(folder, tables, &frames, about)
     }
 
     fn words(&self, tables: &ReconstructionTables, width: usize) -> String {

@@ -3,8 +3,9 @@
 use super::piece_kind::{KindFacts, PieceKind};
 use super::study_args::StudyArgs;
 use bubbletouch::Result;
+use bubbletouch::report::folder::Folder;
 use bubbletouch::report::page::StudyAbout;
-use bubbletouch::report::speed_accuracy::{speed_accuracy_summary, write_speed_accuracy};
+use bubbletouch::report::speed_accuracy::{speed_accuracy_folder, speed_accuracy_summary};
 use bubbletouch::study::speed_accuracy::SpeedAccuracyStudy;
 use bubbletouch::study::speed_accuracy::table::SpeedAccuracyTables;
 use std::path::{Path, PathBuf};
@@ -35,8 +36,13 @@ impl PieceKind for SpeedAccuracyKind {
         })
     }
 
-    fn write(&self, tables: &SpeedAccuracyTables, folder: &Path, about: &StudyAbout) -> Result<()> {
-        write_speed_accuracy(folder, tables, about).map(drop)
+    fn folder<'a>(
+        &self,
+        tables: &SpeedAccuracyTables,
+        folder: &'a Path,
+        about: &StudyAbout,
+    ) -> Result<Folder<'a>> {
+        speed_accuracy_folder(folder, tables, about)
     }
 
     fn words(&self, tables: &SpeedAccuracyTables, width: usize) -> String {

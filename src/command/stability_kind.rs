@@ -2,8 +2,9 @@
 
 use super::piece_kind::{KindFacts, PieceKind};
 use super::study_args::StudyArgs;
+use bubbletouch::report::folder::Folder;
 use bubbletouch::report::page::StudyAbout;
-use bubbletouch::report::stability_results::{stability_summary, write_stability};
+use bubbletouch::report::stability_results::{stability_folder, stability_summary};
 use bubbletouch::study::stability::StabilityPlan;
 use bubbletouch::study::stability::table::StabilityTables;
 use bubbletouch::{Error, Result};
@@ -40,8 +41,13 @@ impl PieceKind for StabilityKind {
         })
     }
 
-    fn write(&self, tables: &StabilityTables, folder: &Path, about: &StudyAbout) -> Result<()> {
-        write_stability(folder, tables, about).map(drop)
+    fn folder<'a>(
+        &self,
+        tables: &StabilityTables,
+        folder: &'a Path,
+        about: &StudyAbout,
+    ) -> Result<Folder<'a>> {
+        stability_folder(folder, tables, about)
     }
 
     fn words(&self, tables: &StabilityTables, width: usize) -> String {

@@ -3,8 +3,9 @@
 use super::piece_kind::{KindFacts, PieceKind};
 use super::study_args::StudyArgs;
 use bubbletouch::Result;
+use bubbletouch::report::folder::Folder;
 use bubbletouch::report::page::StudyAbout;
-use bubbletouch::report::whole_body_results::{whole_body_summary, write_whole_body};
+use bubbletouch::report::whole_body_results::{whole_body_folder, whole_body_summary};
 use bubbletouch::study::file_content;
 use bubbletouch::study::whole_body::table::WholeBodyTables;
 use bubbletouch::study::whole_body::{WholeBodyPlan, picture_body};
@@ -41,9 +42,14 @@ impl PieceKind for WholeBodyKind {
         })
     }
 
-    fn write(&self, tables: &WholeBodyTables, folder: &Path, about: &StudyAbout) -> Result<()> {
+    fn folder<'a>(
+        &self,
+        tables: &WholeBodyTables,
+        folder: &'a Path,
+        about: &StudyAbout,
+    ) -> Result<Folder<'a>> {
         let picture = picture_body(&self.plan, tables)?;
-        write_whole_body(folder, (tables, picture.as_ref()), about).map(drop)
+        whole_body_folder(folder, (tables, picture.as_ref()), about)
     }
 
     fn words(&self, tables: &WholeBodyTables, width: usize) -> String {

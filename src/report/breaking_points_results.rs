@@ -11,7 +11,7 @@ use crate::report::terminal::{align_right, plain_table};
 use crate::study::breaking_points::PlannedWay;
 use crate::study::breaking_points::table::{BreakingPoint, BreakingPointsTables, Side};
 use comfy_table::Table;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 impl StudyTables for BreakingPointsTables {
     const OF_PIECES: &'static [&'static str] = &["accuracy.csv", "summary.csv"];
@@ -27,15 +27,16 @@ impl StudyTables for BreakingPointsTables {
     }
 }
 
-/// Writes tables, charts and the page into `dir` (created if missing); returns the paths, tables first.
+/// Tables, charts and the page, tables first, for the folder `dir`: nothing is written yet.
 ///
-/// Everything is drawn before the first file is written, and each file is whole or not there.
-pub fn write_breaking_points(
-    dir: &Path,
+/// # Errors
+/// What cannot be drawn, or written as a table.
+pub fn breaking_points_folder<'a>(
+    dir: &'a Path,
     ways: &[PlannedWay],
     tables: &BreakingPointsTables,
     about: &StudyAbout,
-) -> Result<Vec<PathBuf>> {
+) -> Result<Folder<'a>> {
     let mut folder = Folder::new(dir);
     let files = tables.files()?;
     let names: Vec<&str> = files.iter().map(|(name, _)| *name).collect();
@@ -57,7 +58,7 @@ pub fn write_breaking_points(
         ),
     ];
     folder.add("report.html", plain_page(about, found, &names));
-    folder.write()
+    Ok(folder)
 }
 
 /// How many settings break recognition, where each does, and which do not.

@@ -12,8 +12,8 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-/// Files that will stand in a folder, in the order of writing.
-pub(super) struct Folder<'a> {
+/// Files that will stand in a folder, in the order of writing; nothing is there before [`Folder::write`].
+pub struct Folder<'a> {
     path: &'a Path,
     /// By name.
     files: Vec<(String, Content)>,
@@ -49,45 +49,45 @@ pub type Told<'a> = dyn Fn(Drawn) + Sync + 'a;
 
 impl<'a> Folder<'a> {
     /// No files yet, for the folder at `path`, which need not exist.
-    pub fn new(path: &'a Path) -> Self {
+    pub(super) fn new(path: &'a Path) -> Self {
         let files = Vec::new();
         Self { path, files }
     }
 
     /// Adds a file by its name in the folder.
-    pub fn add(&mut self, name: impl Into<String>, content: impl Into<Vec<u8>>) {
+    pub(super) fn add(&mut self, name: impl Into<String>, content: impl Into<Vec<u8>>) {
         let content = Content::Bytes(content.into());
         self.files.push((name.into(), content));
     }
 
     /// Adds a drawing as PNG; its pixels are made with all others, on all threads.
-    pub fn add_png(&mut self, name: impl Into<String>, drawing: &Drawing) {
+    pub(super) fn add_png(&mut self, name: impl Into<String>, drawing: &Drawing) {
         let content = Content::Png(Box::new(drawing.to_raster()));
         self.files.push((name.into(), content));
     }
 
     /// Adds a table as CSV; the error names the file.
-    pub fn add_table(&mut self, name: &str, rows: &[impl Serialize]) -> Result<()> {
+    pub(super) fn add_table(&mut self, name: &str, rows: &[impl Serialize]) -> Result<()> {
         let csv = csv_content(&self.path.join(name), rows)?;
         self.add(name, csv);
         Ok(())
     }
 
     /// Adds the tables of a study.
-    pub fn add_files(&mut self, tables: TableFiles) {
+    pub(super) fn add_files(&mut self, tables: TableFiles) {
         for (name, content) in tables {
             self.add(name, content);
         }
     }
 
     /// Adds a chart as PNG and as SVG; its name has no ending.
-    pub fn add_chart(&mut self, name: &str, title: &str, drawing: &Drawing) {
+    pub(super) fn add_chart(&mut self, name: &str, title: &str, drawing: &Drawing) {
         self.add_png(format!("{name}.png"), drawing);
         self.add(format!("{name}.svg"), drawing.svg(title));
     }
 
     /// Every file whole: name and content.
-    pub fn into_files(self) -> Result<Vec<(String, Vec<u8>)>> {
+    pub(super) fn into_files(self) -> Result<Vec<(String, Vec<u8>)>> {
         self.into_files_telling(&|_| ())
     }
 
@@ -112,13 +112,20 @@ impl<'a> Folder<'a> {
         self.files.into_par_iter().map(whole).collect()
     }
 
-    /// Makes the folder if it is missing and writes every file whole; returns their paths. The error says if a file is in
-    /// the way.
+    /// Makes the folder if it is missing and writes every file whole; returns their paths.
+    ///
+    /// Everything is drawn before the first file is written.
+    ///
+    /// # Errors
+    /// A picture that cannot be drawn; a file that is in the folder's way or cannot be written.
     pub fn write(self) -> Result<Vec<PathBuf>> {
         self.write_telling(&|_| ())
     }
 
     /// The same, and says when pictures are drawn.
+    ///
+    /// # Errors
+    /// Those of [`write`](Self::write).
     pub fn write_telling(self, told: &Told) -> Result<Vec<PathBuf>> {
         let path = self.path;
         let files = self.into_files_telling(told)?;

@@ -20,7 +20,7 @@ pub mod confusion_picture;
 pub mod csv_tables;
 pub mod drawing;
 pub mod fit_picture;
-mod folder;
+pub mod folder;
 pub mod frame_files;
 pub mod headlines;
 pub mod heat_map;

@@ -12,7 +12,7 @@ use crate::report::study_tables::{StudyTables, TableFiles, table_file};
 use crate::report::terminal::{align_right, plain_table, wrap};
 use crate::study::object_detail::table::{DetailRecognition, DetailSummary, ObjectDetailTables};
 use comfy_table::Table;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 impl StudyTables for ObjectDetailTables {
     const OF_PIECES: &'static [&'static str] =
@@ -35,14 +35,15 @@ impl StudyTables for ObjectDetailTables {
     }
 }
 
-/// Writes tables, charts and the page into `dir` (created if missing); returns the paths, tables first.
+/// Tables, charts and the page, tables first, for the folder `dir`: nothing is written yet.
 ///
-/// Everything is drawn before the first file is written, and each file is whole or not there.
-pub fn write_object_detail(
-    dir: &Path,
+/// # Errors
+/// What cannot be drawn, or written as a table.
+pub fn object_detail_folder<'a>(
+    dir: &'a Path,
     tables: &ObjectDetailTables,
     about: &StudyAbout,
-) -> Result<Vec<PathBuf>> {
+) -> Result<Folder<'a>> {
     let mut folder = Folder::new(dir);
     let files = tables.files()?;
     let names: Vec<&str> = files.iter().map(|(name, _)| *name).collect();
@@ -59,7 +60,7 @@ pub fn write_object_detail(
         plain::table("recognition", "Recognition", LEARNED, &learned),
     ];
     folder.add("report.html", plain_page(about, found, &names));
-    folder.write()
+    Ok(folder)
 }
 
 /// The most exact model, and what each takes to be within half a millimetre.

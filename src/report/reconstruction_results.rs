@@ -9,7 +9,7 @@ use crate::report::reconstruction_charts::draw_reconstruction_charts;
 use crate::report::reconstruction_text::reconstruction_sections;
 use crate::report::study_tables::{StudyTables, TableFiles, table_file};
 use crate::study::reconstruction::table::ReconstructionTables;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 const FILES: [&str; 4] = [
     "reconstruction.csv",
@@ -32,15 +32,16 @@ impl StudyTables for ReconstructionTables {
     }
 }
 
-/// Writes tables, charts, the picture of sample frames and the page into `dir` (created if missing); returns the paths, tables first.
+/// Tables, charts, the picture of sample frames and the page, tables first, for the folder `dir`: nothing is written yet.
 ///
-/// Everything is drawn before the first file is written, and each file is whole or not there.
-pub fn write_reconstruction(
-    dir: &Path,
+/// # Errors
+/// What cannot be drawn, or written as a table.
+pub fn reconstruction_folder<'a>(
+    dir: &'a Path,
     tables: &ReconstructionTables,
     samples: &Drawing,
     about: &StudyAbout,
-) -> Result<Vec<PathBuf>> {
+) -> Result<Folder<'a>> {
     let mut folder = Folder::new(dir);
     folder.add_files(tables.files()?);
     let drawn = draw_reconstruction_charts(tables);
@@ -60,5 +61,5 @@ pub fn write_reconstruction(
     found.push(charts(&drawn));
     found.push(Section::new("frames", "Sample frames", frames));
     folder.add("report.html", plain_page(about, found, &FILES));
-    folder.write()
+    Ok(folder)
 }

@@ -11,7 +11,7 @@ use crate::report::terminal::{align_right, plain_table, wrap};
 use crate::study::stability::table::StabilityTables;
 use crate::study::stability::{StabilityScene, TOLERANCE};
 use comfy_table::Table;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 const FILES: [&str; 3] = ["stability.csv", "stability_summary.csv", "timing.csv"];
 
@@ -28,14 +28,15 @@ impl StudyTables for StabilityTables {
     }
 }
 
-/// Writes tables, maps and the page into `dir` (created if missing); returns the paths, tables first.
+/// Tables, maps and the page, tables first, for the folder `dir`: nothing is written yet.
 ///
-/// Everything is drawn before the first file is written, and each file is whole or not there.
-pub fn write_stability(
-    dir: &Path,
+/// # Errors
+/// What cannot be drawn, or written as a table.
+pub fn stability_folder<'a>(
+    dir: &'a Path,
     tables: &StabilityTables,
     about: &StudyAbout,
-) -> Result<Vec<PathBuf>> {
+) -> Result<Folder<'a>> {
     let mut folder = Folder::new(dir);
     folder.add_files(tables.files()?);
     let mut maps = draw_stability_maps(tables);
@@ -54,7 +55,7 @@ pub fn write_stability(
         plain::charts(&maps),
     ];
     folder.add("report.html", plain_page(about, found, &FILES));
-    folder.write()
+    Ok(folder)
 }
 
 /// How often each method is right, the best first.

@@ -10,7 +10,7 @@ use crate::report::whole_body_picture::whole_body_picture;
 use crate::report::whole_body_text::{bars_table, recognition_table, scenes_table};
 use crate::study::whole_body::BodyPicture;
 use crate::study::whole_body::table::WholeBodyTables;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 /// File names of the tables, in the order in which they are written.
 pub const WHOLE_BODY_FILES: [&str; 5] = [
@@ -36,14 +36,15 @@ impl StudyTables for WholeBodyTables {
     }
 }
 
-/// Writes tables, charts, a picture and the page into `dir` (created if missing); returns the paths, tables first.
+/// Tables, charts, a picture and the page, tables first, for the folder `dir`: nothing is written yet.
 ///
-/// Everything is drawn before the first file is written, and each file is whole or not there.
-pub fn write_whole_body(
-    dir: &Path,
+/// # Errors
+/// What cannot be drawn, or written as a table.
+pub fn whole_body_folder<'a>(
+    dir: &'a Path,
     (tables, picture): (&WholeBodyTables, Option<&BodyPicture>),
     about: &StudyAbout,
-) -> Result<Vec<PathBuf>> {
+) -> Result<Folder<'a>> {
     let mut folder = Folder::new(dir);
     folder.add_files(tables.files()?);
     let mut found: Vec<Section> = Vec::new();
@@ -64,7 +65,7 @@ pub fn write_whole_body(
     found.push(charts(&drawn));
     found.extend(recognition_table(tables).map(|table| table.section("recognition")));
     folder.add("report.html", plain_page(about, found, &WHOLE_BODY_FILES));
-    folder.write()
+    Ok(folder)
 }
 
 /// Scenes, recognition and bars as text; lines are at most about `width` letters long.

@@ -10,4 +10,4 @@ mod words;
 
 pub use chart::draw_front_chart;
 pub use points::{ChartKind, ChartPoint, points};
-pub use results::{PARETO_FILE, speed_accuracy_summary, write_speed_accuracy};
+pub use results::{PARETO_FILE, speed_accuracy_folder, speed_accuracy_summary};

@@ -11,7 +11,7 @@ use crate::report::terminal::{align_right, plain_table};
 use crate::study::advice::cost_in_words;
 use crate::study::speed_accuracy::table::SpeedAccuracyTables;
 use comfy_table::Table;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 /// Every point of every chart.
 pub const PARETO_FILE: &str = "pareto.csv";
@@ -45,14 +45,15 @@ impl StudyTables for SpeedAccuracyTables {
     }
 }
 
-/// Writes tables, charts and the page into `dir` (created if missing); returns the paths, tables first.
+/// Tables, charts and the page, tables first, for the folder `dir`: nothing is written yet.
 ///
-/// Everything is drawn before the first file is written, and each file is whole or not there.
-pub fn write_speed_accuracy(
-    dir: &Path,
+/// # Errors
+/// What cannot be drawn, or written as a table.
+pub fn speed_accuracy_folder<'a>(
+    dir: &'a Path,
     tables: &SpeedAccuracyTables,
     about: &StudyAbout,
-) -> Result<Vec<PathBuf>> {
+) -> Result<Folder<'a>> {
     let mut folder = Folder::new(dir);
     let tables_made = tables.files()?;
     let mut files: Vec<&str> = tables_made.iter().map(|(name, _)| *name).collect();
@@ -75,7 +76,7 @@ pub fn write_speed_accuracy(
         plain::table("fronts", "Fronts", note, &fronts_table(&points)),
     ];
     folder.add("report.html", plain_page(about, found, &files));
-    folder.write()
+    Ok(folder)
 }
 
 /// The two ends of each front.
