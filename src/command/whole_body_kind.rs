@@ -20,7 +20,7 @@ pub struct WholeBodyKind {
 impl PieceKind for WholeBodyKind {
     type Study = WholeBodyPlan;
 
-    const WRITE_S: f64 = 2.0;
+    const WRITE_S: f64 = 2.3;
 
     fn load(args: &StudyArgs, _packings: PathBuf) -> Result<Self> {
         let plan = args.whole_body_plan()?;

@@ -57,6 +57,11 @@ impl Spent {
         self.mixed(prior, HESITATION * self.piece_s())
     }
 
+    /// The same, where `prior` counts as much as a whole piece: of work that several threads have begun before any is told of.
+    pub fn cautious_factor(&self, prior: f64) -> f64 {
+        self.mixed(prior, self.piece_s())
+    }
+
     /// What a planned second took, where `prior` counts as much as `weight_s` planned seconds.
     fn mixed(&self, prior: f64, weight_s: f64) -> f64 {
         match self.done_s + weight_s {
