@@ -91,7 +91,8 @@ impl<'a> Folder<'a> {
         self.into_files_telling(&|_| ())
     }
 
-    /// The same; each picture tells what share it was of the time by the clock that all of them take (the larger the more), and how long that was.
+    /// The same; each picture tells what share it was of the time by the clock that all of them take (the larger the more), and how long
+    /// that was.
     fn into_files_telling(self, told: &Told) -> Result<Vec<(String, Vec<u8>)>> {
         let areas = self.files.iter().filter_map(|(_, content)| content.area());
         let areas: Vec<f64> = areas.collect();

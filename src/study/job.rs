@@ -46,7 +46,11 @@ impl<'a> Job<'a> {
                     (Ok(measured), cpu_s)
                 }
                 Err(error) if self.run.manner.fail_fast => return Err(error),
-                Err(error) => (Err(error.to_string()), 0.0),
+                Err(error) => {
+                    // Nobody waits for the rest of it.
+                    self.run.progress.worked(&piece, 0.0);
+                    (Err(error.to_string()), 0.0)
+                }
             };
             measure_s += cpu_s;
             for families in families.chunks(self.run.manner.at_once.families) {
