@@ -1,6 +1,7 @@
 //! A study within a ceiling of memory, and touches that are kept from one run to the next.
 
 mod command;
+mod kinds;
 mod study;
 
 use bubbletouch::study::memory::{AtOnce, MemoryPlan};
@@ -9,8 +10,10 @@ use bubbletouch::study::{
     FrameStorage, Manner, Outcome, Part, TouchCache, journal::Journal, run_with,
 };
 use command::Case;
+use kinds::Kind;
 use std::fs;
 use std::path::Path;
+use std::time::{Duration, Instant};
 use study::Study;
 
 /// Touches that remember the one before, so that frames are read out of their order too.
@@ -277,4 +280,237 @@ fn a_ceiling_too_low_is_refused_with_what_it_takes() {
         assert_eq!(output.status.code(), Some(2), "{bad}");
     }
     assert!(!case.path("results").exists());
+}
+
+/// Which kind of touch is it? In few frames on few taxels.
+const HUMAN: &str = r#"
+question = "?"
+
+[human_touch]
+per_kind = 8
+frames_hz = 20.0
+duration_s = 4.0
+
+[skin]
+pitch_mm = 8.0
+taxels = 8
+stroke_mm = 4.0
+
+[sensing]
+ratio = 4
+
+[recognition]
+classifier = "k_nearest"
+"#;
+
+/// Refused within the time that a plan takes, with exit code 2 and this.
+fn assert_refused_at_once(case: &Case, arguments: &[&str], said: &[&str]) {
+    let start = Instant::now();
+    let output = case.run(arguments);
+    let error = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(2), "{arguments:?}: {error}");
+    assert!(start.elapsed() < Duration::from_secs(10), "{arguments:?}");
+    for words in said {
+        assert!(error.contains(words), "{arguments:?}: {error}");
+    }
+}
+
+#[test]
+fn touches_that_memory_cannot_hold_are_refused_before_any_is_drawn() {
+    let case = Case::new();
+    case.file("fits.toml", HUMAN);
+    case.succeeds(&["plan", "fits.toml"]);
+    let human = |n: &str| HUMAN.replace("per_kind = 8", &format!("per_kind = {n}"));
+    case.file("huge.toml", human("99999999999"));
+    case.file("many.toml", human("9000000"));
+    let objects = SMALL.replace("per_object = 12", "per_object = 9000000");
+    case.file("objects.toml", objects);
+    let commands: [&[&str]; 2] = [&["plan"], &["run", "--out", "out"]];
+    for command in commands {
+        let with = |file: &'static str| [command, &[file, "--memory-gib", "3"][..]].concat();
+        let key = "key human_touch.per_kind: ";
+        let huge = [key, "99999999999", "at most 10000000"];
+        assert_refused_at_once(&case, &with("huge.toml"), &huge);
+        let many = [key, "9000000", "54000000 touches", "GiB", "3.0 GiB"];
+        assert_refused_at_once(&case, &with("many.toml"), &many);
+        let objects = [
+            "key touches.per_object: 9000000",
+            "144000000 touches",
+            "3.0 GiB",
+        ];
+        assert_refused_at_once(&case, &with("objects.toml"), &objects);
+    }
+}
+
+/// Cells of so many values on each of three axes, in as many groups as cells of two of them.
+fn cells(values: [usize; 3]) -> String {
+    let [noise, smoothing, ratio] = values.map(|n| {
+        let values: Vec<String> = (1..=n)
+            .map(|k| format!("{}", 1.0 + k as f64 / 64.0))
+            .collect();
+        format!("[{}]", values.join(", "))
+    });
+    let study = HUMAN.replace("ratio = 4", &format!("ratio = {ratio}"));
+    study.replace(
+        "[sensing]",
+        &format!("[signal]\nnoise_std_mm = {noise}\nsmoothing_mm = {smoothing}\n\n[sensing]"),
+    )
+}
+
+#[test]
+fn a_study_is_planned_in_time_that_grows_as_its_cells_do_and_more_than_a_million_are_refused() {
+    let case = Case::new();
+    // Ratios near 1 name few different m of 64 taxels.
+    case.file("large.toml", cells([500, 400, 1]));
+    let start = Instant::now();
+    let (said, _) = case.succeeds(&["plan", "large.toml"]);
+    assert!(said.contains("200000 × 1 trials"), "{said}");
+    // With every group counting all cells before it, minutes.
+    assert!(start.elapsed() < Duration::from_secs(20));
+    case.file("huge.toml", cells([1000, 1001, 1]));
+    case.file("endless.toml", cells([10_000, 10_000, 30]));
+    for command in ["plan", "run"] {
+        let huge = ["huge.toml: 1001000 configurations", "at most 1000000"];
+        assert_refused_at_once(&case, &[command, "huge.toml"], &huge);
+        let endless = ["configurations", "at most 1000000"];
+        assert_refused_at_once(&case, &[command, "endless.toml"], &endless);
+    }
+}
+
+#[test]
+fn counts_that_no_memory_holds_are_refused_before_it_is_taken_in_studies_of_every_kind() {
+    const MANY: &str = "99999999999";
+    let cases = [
+        (
+            Kind::STABILITY,
+            "taxels = 8",
+            "taxels",
+            "stability.parts[1].taxels",
+        ),
+        (
+            Kind::RECONSTRUCTION,
+            "isometry_subsets = 30",
+            "isometry_subsets",
+            "reconstruction.isometry_subsets",
+        ),
+        (
+            Kind::RECONSTRUCTION,
+            "per_object = 20",
+            "per_object",
+            "touches.per_object",
+        ),
+        (
+            Kind::OBJECT_DETAIL,
+            "surface_points = 500",
+            "surface_points",
+            "object_detail.surface_points",
+        ),
+        (
+            Kind::OBJECT_DETAIL,
+            "training_touches = 10",
+            "training_touches",
+            "object_detail.recognition.training_touches",
+        ),
+        (
+            Kind::OBJECT_DETAIL,
+            "test_touches = 6",
+            "test_touches",
+            "object_detail.recognition.test_touches",
+        ),
+        (
+            Kind::SPEED_ACCURACY,
+            "\ntouches = 3",
+            "\ntouches",
+            "speed_accuracy.contact.touches",
+        ),
+        (
+            Kind::SPEED_ACCURACY,
+            "stepped_touches = 1",
+            "stepped_touches",
+            "speed_accuracy.contact.stepped_touches",
+        ),
+        (
+            Kind::SPEED_ACCURACY,
+            "training_touches = 10",
+            "training_touches",
+            "speed_accuracy.recognition.training_touches",
+        ),
+        (
+            Kind::SPEED_ACCURACY,
+            "touches = [8, 12]",
+            "touches",
+            "speed_accuracy.resolution.touches",
+        ),
+        (
+            Kind::SPEED_ACCURACY,
+            "trials = [2, 3]",
+            "trials",
+            "speed_accuracy.resolution.trials",
+        ),
+        (Kind::WHOLE_BODY, "steps = 10", "steps", "whole_body.steps"),
+        (
+            Kind::WHOLE_BODY,
+            "measurements = 64",
+            "measurements",
+            "whole_body.sensing.measurements",
+        ),
+        (
+            Kind::WHOLE_BODY,
+            "training_touches = 10",
+            "training_touches",
+            "whole_body.recognition.training_touches",
+        ),
+        (
+            Kind::WHOLE_BODY,
+            "test_touches = 5",
+            "test_touches",
+            "whole_body.recognition.test_touches",
+        ),
+        (
+            Kind::WHOLE_BODY,
+            "\ntaxels = [2000, 20000]",
+            "\ntaxels",
+            "whole_body.ladders.taxels",
+        ),
+        (
+            Kind::WHOLE_BODY,
+            "spheres = [200, 600]",
+            "spheres",
+            "whole_body.ladders.spheres",
+        ),
+        (
+            Kind::WHOLE_BODY,
+            "taxels_at_touch = 30000",
+            "taxels_at_touch",
+            "whole_body.ladders.taxels_at_touch",
+        ),
+        (
+            Kind::BREAKING_POINTS,
+            "per_object = 24",
+            "per_object",
+            "touches.per_object",
+        ),
+        (Kind::BREAKING_POINTS, "trials = 2", "trials", "trials"),
+    ];
+    for (kind, line, name, key) in cases {
+        let case = kind.case();
+        assert!(kind.study.contains(line), "{line}");
+        let is_list = line.contains('[');
+        let many = if is_list {
+            format!("[{MANY}]")
+        } else {
+            MANY.to_owned()
+        };
+        let study = kind.study.replacen(line, &format!("{name} = {many}"), 1);
+        case.file("study.toml", study);
+        let key = format!("key {key}: {MANY}");
+        let run = ["run", "study.toml", "--out", "out"];
+        // Of taxels a side it is all that is allowed that is said.
+        let key = if name == "taxels" {
+            "stability.parts[1].taxels"
+        } else {
+            &key
+        };
+        assert_refused_at_once(&case, &run, &[key]);
+    }
 }

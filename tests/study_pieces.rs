@@ -170,6 +170,43 @@ impl Faults {
         );
     }
 
+    fn refuses_a_journal_that_names_no_study(&self) {
+        let whole = fs::read_to_string(self.case.path("whole/journal.jsonl")).unwrap();
+        let rest = whole.split_once('\n').unwrap().1;
+        fs::create_dir(self.case.path("nameless")).unwrap();
+        let journal = self.case.file("nameless/journal.jsonl", rest);
+        let output = self.case.run(&["run", "study.toml", "--out", "nameless"]);
+        assert_eq!(output.status.code(), Some(2));
+        let error = said(&output);
+        assert!(
+            error.contains("journal.jsonl: line 1: is no record of a study")
+                && error.contains("--fresh"),
+            "{error}"
+        );
+        assert!(rest == fs::read_to_string(journal).unwrap());
+    }
+
+    fn keeps_its_work_when_there_is_more_of_it(&self) {
+        let mut more = self.kind.study.to_owned();
+        for (old, new) in self.kind.more {
+            assert!(more.contains(old), "{old}");
+            more = more.replacen(old, new, 1);
+        }
+        self.case.file("more.toml", more);
+        self.case.succeeds(&["run", "more.toml", "--out", "fresh"]);
+        fs::create_dir(self.case.path("grown")).unwrap();
+        let journals = ["whole", "grown"].map(|name| self.case.path(name).join("journal.jsonl"));
+        fs::copy(&journals[0], &journals[1]).unwrap();
+        let (_, error) = self.case.succeeds(&["run", "more.toml", "--out", "grown"]);
+        let (n_before, n_all) = (self.n_pieces(), pieces(&journals[1]).len());
+        let going_on = format!("going on: {n_before} of {n_all} pieces");
+        assert!(n_before < n_all && error.contains(&going_on), "{error}");
+        for name in self.kind.repeatable {
+            let read = |folder: &str| fs::read(self.case.path(folder).join(name)).unwrap();
+            assert!(read("fresh") == read("grown"), "{name}");
+        }
+    }
+
     fn is_the_same_in_shards(&self) {
         for shard in ["2/3", "1/3", "3/3"] {
             let early = self.case.run(&["merge", "study.toml", "--out", "parts"]);
@@ -219,6 +256,8 @@ fn goes_through_all_faults(kind: Kind) {
     faults.ends_on_a_full_disk_and_goes_on_where_there_is_room();
     faults.tells_a_second_run_of_the_first();
     faults.refuses_a_changed_study();
+    faults.refuses_a_journal_that_names_no_study();
+    faults.keeps_its_work_when_there_is_more_of_it();
     faults.is_the_same_in_shards();
     faults.verifies_until_a_number_is_changed();
 }

@@ -249,15 +249,15 @@ fn a_changed_study_is_refused_with_what_changed_and_fresh_keeps_the_old_beside_t
     case.file(
         "study.toml",
         STUDY
-            .replace("trials = 2", "trials = 3")
-            .replace("\"naive_bayes\"", "\"k_nearest\""),
+            .replace("stroke_mm = 5.0", "stroke_mm = 4.0")
+            .replace("per_object = 32", "per_object = 40"),
     );
     let output = case.run(&["run", "study.toml", "--out", "whole"]);
     assert_eq!(output.status.code(), Some(2));
     let error = said(&output);
     for expected in [
-        "trials: was 2, is 3",
-        "recognition.classifier: was",
+        "skin.stroke_mm: was 5.0, is 4.0",
+        "touches.per_object: was 32, is 40",
         "--fresh",
     ] {
         assert!(error.contains(expected), "{error}");
@@ -269,6 +269,155 @@ fn a_changed_study_is_refused_with_what_changed_and_fresh_keeps_the_old_beside_t
     assert!(old != fs::read(case.path("whole/accuracy.csv")).unwrap());
     case.succeeds(&["run", "study.toml", "--out", "whole", "--fresh"]);
     assert!(case.path("whole.2/journal.jsonl").exists());
+}
+
+/// A study that has run in `whole`, and its journal's lines.
+fn lines_of(case: &Case, folder: &str) -> Vec<String> {
+    let text = fs::read_to_string(case.path(folder).join("journal.jsonl")).unwrap();
+    text.split_inclusive('\n').map(str::to_owned).collect()
+}
+
+/// A journal's line with something replaced, and the checksum that then is right.
+fn forged(line: &str, old: &str, new: &str) -> String {
+    let json = line.trim_end().split_once(' ').unwrap().1;
+    assert!(json.contains(old), "{json}");
+    let json = json.replace(old, new);
+    let mut sum = !0u32;
+    for &byte in json.as_bytes() {
+        sum ^= u32::from(byte);
+        for _ in 0..8 {
+            sum = (sum >> 1) ^ (0xedb8_8320 & 0u32.wrapping_sub(sum & 1));
+        }
+    }
+    format!("{:08x} {json}\n", !sum)
+}
+
+#[test]
+fn a_journal_whose_lines_are_of_no_study_or_of_another_is_refused_and_stays_as_it_is() {
+    let case = case();
+    let other = STUDY.replace("stroke_mm = 5.0", "stroke_mm = 4.0");
+    case.file("other.toml", &other);
+    case.succeeds(&["run", "other.toml", "--out", "other"]);
+    let (ours, theirs) = (lines_of(&case, "whole"), lines_of(&case, "other"));
+    let n = ours.len();
+    let header = forged(&ours[0], "stroke_mm = 5.0", "stroke_mm = 4.0");
+    let journals = [
+        (ours[1..].concat(), "line 1: is no record of a study"),
+        (theirs[1..].concat(), "line 1: is no record of a study"),
+        (
+            [&ours[..], &theirs[1..]].concat().concat(),
+            &format!("line {}: is of another study than line 1", n + 1),
+        ),
+        (
+            [&ours[..], &ours[..]].concat().concat(),
+            &format!(
+                "line {}: is of another study than line 1, or begins one anew",
+                n + 1
+            ),
+        ),
+    ];
+    let refused = |study: &str, content: &str, expected: &str| {
+        let journal = case.file("whole/journal.jsonl", content);
+        let output = case.run(&["run", study, "--out", "whole"]);
+        assert_eq!(output.status.code(), Some(2), "{expected}");
+        let error = said(&output);
+        assert!(error.contains(expected), "{error}");
+        assert!(error.contains("--fresh"), "{error}");
+        assert!(content == fs::read_to_string(journal).unwrap());
+    };
+    for (content, expected) in &journals {
+        refused("study.toml", content, expected);
+    }
+    // A first line that was made to fit another study does not fit what follows it.
+    let [forged, honest] = [&header, &ours[0]].map(|first| first.clone() + &ours[1..].concat());
+    refused("other.toml", &forged, "line 1: names another study");
+    refused("other.toml", &honest, "skin.stroke_mm: was 5.0, is 4.0");
+    // Shards are asked the same.
+    fs::create_dir(case.path("parts")).unwrap();
+    case.file("parts/journal.1-of-1.jsonl", ours[1..].concat());
+    let merge = case.run(&["merge", "study.toml", "--out", "parts"]);
+    assert_eq!(merge.status.code(), Some(2));
+    let error = said(&merge);
+    assert!(error.contains("line 1: is no record of a study"), "{error}");
+    // What stands there twice counts once.
+    let twice = [&ours[..], &ours[1..]].concat().concat();
+    case.file("whole/journal.jsonl", twice);
+    case.succeeds(&["run", "study.toml", "--out", "whole"]);
+    let (said_of, _) = case.succeeds(&["verify", "whole", "--cells", "3"]);
+    assert!(said_of.contains("3 of 64 rows"), "{said_of}");
+}
+
+/// Runs a longer study in a copy of what the study left, and from nothing: the same tables, and so much was finished before.
+fn assert_grows(case: &Case, (more, n_before, n_all): (&str, usize, usize)) {
+    case.file("more.toml", more);
+    case.succeeds(&[
+        "run",
+        "more.toml",
+        "--out",
+        "fresh",
+        "--fresh",
+        "--threads",
+        "3",
+    ]);
+    for threads in ["1", "3"] {
+        let folder = format!("grown_{threads}_{n_all}");
+        fs::create_dir(case.path(&folder)).unwrap();
+        let journal = case.path(&folder).join("journal.jsonl");
+        fs::copy(case.path("whole/journal.jsonl"), journal).unwrap();
+        let run = ["run", "more.toml", "--out", &folder, "--threads", threads];
+        let (_, error) = case.succeeds(&run);
+        let going_on = format!("going on: {n_before} of {n_all} cells");
+        assert!(error.contains(&going_on), "{error}");
+        for name in REPEATABLE.iter().chain(&["limits.csv"]) {
+            let read = |folder: &str| fs::read(case.path(folder).join(name)).unwrap();
+            assert!(read("fresh") == read(&folder), "{folder}/{name}");
+        }
+        case.succeeds(&["verify", &folder, "--cells", "20"]);
+    }
+}
+
+#[test]
+fn a_study_that_has_more_trials_and_values_keeps_its_cells_and_comes_out_as_if_run_at_once() {
+    let case = case();
+    let more = STUDY
+        .replace("trials = 2", "trials = 3")
+        .replace("What is left", "How much is left")
+        .replace("[4.0, 8.0]", "[16.0, 4.0, 8.0]")
+        .replace(
+            "[0.05, 0.2]",
+            "[0.05, 0.1, 0.2]\nsteps = [\"crosstalk\", \"noise\"]\ncrosstalk = [0.1, 0.0]",
+        )
+        .replace("ratio = [4, 16]", "ratio = [2, 4, 16]")
+        .replace("[\"linear_svm\",", "[\"k_nearest\", \"linear_svm\",")
+        + "fused_touches = [2, 1]\n";
+    assert_grows(&case, (&more, 64, 3 * 3 * 3 * 2 * 3 * 3 * 2 * 2));
+    // Fewer are no less the same.
+    let fewer = STUDY.replace("[0.05, 0.2]", "0.2");
+    assert_grows(&case, (&fewer, 32, 32));
+}
+
+#[test]
+fn a_c_more_trains_only_those_again_that_start_from_one_another() {
+    let case = case();
+    let more = STUDY.to_owned() + "c = [0.1, 1.0]\n";
+    assert_grows(&case, (&more, 32, 96));
+}
+
+#[test]
+fn other_words_refuse_nothing_and_train_nothing() {
+    let case = case();
+    let n_lines = lines_of(&case, "whole").len();
+    let words = STUDY.replace("What is left", "Expected or not: what is left")
+        + "\n[report]\nsamples = [\"mug\"]\n";
+    case.file(
+        "words.toml",
+        "expected = \"All of it.\"\n".to_owned() + &words,
+    );
+    let (_, error) = case.succeeds(&["run", "words.toml", "--out", "whole"]);
+    assert!(error.contains("going on: 64 of 64 cells"), "{error}");
+    assert_eq!(lines_of(&case, "whole").len(), n_lines);
+    let page = fs::read_to_string(case.path("whole/report.html")).unwrap();
+    assert!(page.contains("Expected or not"));
 }
 
 /// Five training touches an object are too few for 25 neighbours, twenty are not.

@@ -31,10 +31,14 @@ pub struct MemoryArgs {
 impl CeilingArgs {
     /// What a study may hold at once.
     pub fn plan(&self, loaded: &LoadedStudy) -> Result<MemoryPlan> {
-        let given = self.memory_gib.map(|gib| bytes("--memory-gib", gib));
-        let ceiling = given.transpose()?.or_else(machine_memory);
         let n_classes = loaded.touched.class_names().len();
-        MemoryPlan::new(&loaded.plan, &loaded.sweep, n_classes, ceiling)
+        MemoryPlan::new(&loaded.plan, &loaded.sweep, n_classes, self.bytes()?)
+    }
+
+    /// Most bytes to take: what was asked for, or what the machine has, if it tells.
+    pub fn bytes(&self) -> Result<Option<u64>> {
+        let given = self.memory_gib.map(|gib| bytes("--memory-gib", gib));
+        Ok(given.transpose()?.or_else(machine_memory))
     }
 }
 
@@ -47,6 +51,11 @@ pub struct Room {
 }
 
 impl MemoryArgs {
+    /// Most bytes to take.
+    pub fn bytes(&self) -> Result<Option<u64>> {
+        self.ceiling.bytes()
+    }
+
     /// The room of a study whose results go to a folder.
     pub fn room(&self, loaded: &LoadedStudy, folder: &Path) -> Result<Room> {
         let memory = self.ceiling.plan(loaded)?;

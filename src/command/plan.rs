@@ -14,7 +14,7 @@ pub struct Args {
 }
 
 pub fn plan(args: &Args) -> Result<()> {
-    let loaded = args.study.load(None)?;
+    let loaded = args.study.load_within(None, args.ceiling.bytes()?)?;
     let memory = args.ceiling.plan(&loaded)?;
     let estimate = Estimate::new(
         &loaded.plan,

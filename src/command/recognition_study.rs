@@ -11,7 +11,7 @@ use bubbletouch::files::write_bytes;
 use bubbletouch::report::csv_tables::repeatable_hashes;
 use bubbletouch::report::{headlines, results, terminal};
 use bubbletouch::study::journal::{Identity, Journal};
-use bubbletouch::study::memory::AtOnce;
+use bubbletouch::study::memory::{AtOnce, machine_memory};
 use bubbletouch::study::pieces::PieceManner;
 use bubbletouch::study::provenance::{MANIFEST_FILE, Manifest, RECOGNITION_METHODS, RunFacts};
 use bubbletouch::study::time_left::{Piece, Work};
@@ -27,7 +27,8 @@ pub struct RecognitionStudy {
 
 impl RecognitionStudy {
     pub fn load(args: &StudyArgs, folder: &Path, memory: Option<&MemoryArgs>) -> Result<Self> {
-        let loaded = args.load(Some(&packings_beside(folder)))?;
+        let ceiling = memory.map_or_else(|| Ok(machine_memory()), MemoryArgs::bytes)?;
+        let loaded = args.load_within(Some(&packings_beside(folder)), ceiling)?;
         let room = match memory {
             Some(memory) => memory.room(&loaded, folder)?,
             // It does not run here.

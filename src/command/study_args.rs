@@ -2,6 +2,7 @@
 
 use bubbletouch::random::Seed;
 use bubbletouch::study::breaking_points::{BreakingPointsPlan, BreakingPointsSpec};
+use bubbletouch::study::memory::{check_touches, machine_memory};
 use bubbletouch::study::object_detail::{ObjectDetailPlan, ObjectDetailStudySpec};
 use bubbletouch::study::reconstruction::{ReconstructionPlan, ReconstructionStudySpec};
 use bubbletouch::study::speed_accuracy::{SpeedAccuracyPlan, SpeedAccuracyStudySpec};
@@ -180,12 +181,25 @@ impl StudyArgs {
 
     /// Reads and checks the study, builds its objects (packed ones are kept in `packings`), draws its touches and lays out its cells.
     pub fn load(&self, packings: Option<&Path>) -> Result<LoadedStudy> {
+        self.load_within(packings, machine_memory())
+    }
+
+    /// The same within so many bytes (`None`: no limit); an error before touches are drawn that would take more.
+    pub fn load_within(
+        &self,
+        packings: Option<&Path>,
+        ceiling: Option<u64>,
+    ) -> Result<LoadedStudy> {
         let plan = self.plan()?;
         let seed = Seed::new(plan.spec.seed);
         let touched: Box<dyn TouchSet> = match &plan.human_touch {
-            Some(human) => Box::new(HumanTouches::draw(human, &seed)?),
+            Some(human) => {
+                check_touches(&plan, human.kinds.len(), ceiling)?;
+                Box::new(HumanTouches::draw(human, &seed)?)
+            }
             None => {
                 let objects = load_objects(&plan.spec.objects, packings)?;
+                check_touches(&plan, objects.len(), ceiling)?;
                 Box::new(draw_touches(objects, &plan.placement, &seed)?)
             }
         };

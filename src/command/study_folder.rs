@@ -44,10 +44,7 @@ impl StudyFolder {
             shard.file_name(JOURNAL_FILE)
         });
         let path = folder.join(name);
-        if start == Start::Demonstration
-            && let Ok(Some((begun, _))) = Journal::read(&path)
-            && begun != *identity
-        {
+        if start == Start::Demonstration && !is_of(&path, identity) {
             remove(&path)?;
         }
         let journal = Arc::new(Journal::open(&path, identity)?);
@@ -58,6 +55,15 @@ impl StudyFolder {
     /// Removes the journal: the next run starts from nothing.
     pub fn forget(&self) -> Result<()> {
         remove(&self.path)
+    }
+}
+
+/// Whether a journal is of a study, or there is none.
+fn is_of(path: &Path, identity: &Identity) -> bool {
+    match Journal::read(path) {
+        Ok(Some((begun, _))) => begun.differences(identity).is_empty(),
+        Ok(None) => true,
+        Err(_) => false,
     }
 }
 

@@ -1,6 +1,7 @@
 //! Checks of single keys: each error names the file and the key, what was given and what is allowed.
 
 use super::axis::Axis;
+use super::memory::{check_memory, machine_memory};
 use crate::error::{Error, Result};
 
 pub fn positive(value: f64) -> bool {
@@ -13,6 +14,12 @@ pub fn not_negative(value: f64) -> bool {
 
 /// Values of one axis, at most: more is a slip, and each would be compared with all others.
 const MOST_VALUES: usize = 10_000;
+
+/// What a key may count, at most: what is counted is in memory at once, or takes for ever.
+const MOST_COUNTED: usize = 100_000_000;
+
+/// Configurations of a study, at most: all are laid out before the first runs.
+const MOST_CONFIGURATIONS: f64 = 1e6;
 
 /// Checks of one file's keys.
 pub struct Check<'a> {
@@ -39,10 +46,39 @@ impl Check<'_> {
     }
 
     pub fn positive_count(&self, key: &str, count: usize) -> Result<usize> {
-        if count > 0 {
-            return Ok(count);
+        self.count(key, count, MOST_COUNTED)
+    }
+
+    /// From 1 to so many.
+    pub fn count(&self, key: &str, count: usize, most: usize) -> Result<usize> {
+        match count {
+            0 => Err(self.error(key, 0, "at least 1")),
+            count if count <= most => Ok(count),
+            count => Err(self.error(key, count, format!("at most {most}"))),
         }
-        Err(self.error(key, 0, "at least 1"))
+    }
+
+    /// So many configurations, the product of all axes, can be laid out.
+    pub fn configurations(&self, n: f64) -> Result<()> {
+        if n <= MOST_CONFIGURATIONS {
+            return Ok(());
+        }
+        // Beyond that, not every digit is known.
+        let given = if n < 1e15 {
+            format!("{n:.0} configurations")
+        } else {
+            format!("{n:.1e} configurations")
+        };
+        let allowed = format!(
+            "at most {MOST_CONFIGURATIONS}, all combinations of the values of its axes: fewer values, or several studies"
+        );
+        Err(Error::input(self.place, given, allowed))
+    }
+
+    /// So many bytes are within the machine's memory; what takes them is said in words.
+    pub fn memory(&self, key: &str, given: impl ToString, bytes: f64, what: &str) -> Result<()> {
+        check_memory(bytes, machine_memory(), what)
+            .map_err(|allowed| self.error(key, given, allowed))
     }
 
     /// An axis has values, and none twice: a repeated value would only repeat cells.

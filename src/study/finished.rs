@@ -1,35 +1,70 @@
-//! What a run keeps of its work: the cells of a family in a trial, and what happened while an array's touches were made.
+//! What a journal keeps of a recognition study: what came of each cell in a trial, and how an array's touches were made.
 
+use super::cell_content::cell_names;
 use super::evaluation::Evaluation;
 use super::journal::Journal;
+use super::plan::Plan;
 use super::table::Cell;
+use crate::error::Result;
+use crate::world::Patch;
 use serde::{Deserialize, Serialize};
 
-/// What came of a [family](super::sweep::Group::families) in a trial.
+/// What came of a cell in a trial.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Finished {
-    /// One evaluation a cell.
-    Scored(Vec<Evaluation>),
-    /// What went wrong, for all its cells.
+    /// Its evaluation.
+    Scored(Box<Evaluation>),
+    /// What went wrong.
     Failed(String),
 }
 
 impl Finished {
-    /// What a journal has of a family.
-    pub fn in_journal(journal: &Journal, family: &[Cell], trial: usize) -> Option<Self> {
-        journal.get(&key(family, trial))
+    /// What a journal has of the cells of a [family](super::sweep::Group::families), in their order.
+    pub fn in_journal(
+        journal: &Journal,
+        plan: &Plan,
+        (family, trial): (&[Cell], usize),
+    ) -> Vec<Option<Self>> {
+        if journal.n_before() == 0 {
+            return vec![None; family.len()];
+        }
+        let names = cell_names(plan, family).into_iter();
+        let found = names.map(|name| journal.get(&key(&name, trial)));
+        found
+            .map(|found| found.filter(|found| Self::is_of(found, trial)))
+            .collect()
     }
 
-    /// Keeps it.
-    pub fn keep(&self, journal: &Journal, family: &[Cell], trial: usize) -> crate::Result<()> {
-        journal.keep(&key(family, trial), self)
+    /// Keeps what came of the cells of a family, but for those of which the journal has as much.
+    ///
+    /// # Errors
+    /// The journal cannot be written.
+    pub fn keep_all(
+        all: &[Self],
+        journal: &Journal,
+        plan: &Plan,
+        (family, trial): (&[Cell], usize),
+    ) -> Result<()> {
+        let before = Self::in_journal(journal, plan, (family, trial));
+        for ((finished, before), name) in all.iter().zip(before).zip(cell_names(plan, family)) {
+            if !matches!(before, Some(Self::Scored(_))) {
+                journal.keep(&key(&name, trial), finished)?;
+            }
+        }
+        Ok(())
+    }
+
+    fn is_of(&self, trial: usize) -> bool {
+        match self {
+            Self::Scored(evaluation) => evaluation.score.trial == trial,
+            Self::Failed(_) => true,
+        }
     }
 }
 
-/// A family goes by its first cell.
-fn key(family: &[Cell], trial: usize) -> String {
-    format!("cell {}, trial {trial}", family[0].cell)
+fn key(name: &str, trial: usize) -> String {
+    format!("cell {name}, trial {trial}")
 }
 
 /// What happened while the touches of an array were made, read in so many frames each.
@@ -44,13 +79,13 @@ pub struct Simulated {
 }
 
 impl Simulated {
-    /// What a journal has of an array by its number.
-    pub fn in_journal(journal: &Journal, array: usize, n_frames: usize) -> Option<Self> {
+    /// What a journal has of an array.
+    pub fn in_journal(journal: &Journal, array: &Patch, n_frames: usize) -> Option<Self> {
         journal.get(&array_key(array, n_frames))
     }
 
     /// Keeps it.
-    pub fn keep(&self, journal: &Journal, array: usize, n_frames: usize) -> crate::Result<()> {
+    pub fn keep(&self, journal: &Journal, array: &Patch, n_frames: usize) -> Result<()> {
         journal.keep(&array_key(array, n_frames), self)
     }
 }
@@ -69,9 +104,9 @@ impl Measuring {
     pub fn kept_with_earlier(
         self,
         journal: &Journal,
-        array: usize,
+        array: &Patch,
         n_frames: usize,
-    ) -> crate::Result<Self> {
+    ) -> Result<Self> {
         let key = format!("{}, measured", array_key(array, n_frames));
         let before: Self = journal.get(&key).unwrap_or_default();
         let sum = Self {
@@ -85,6 +120,8 @@ impl Measuring {
     }
 }
 
-fn array_key(array: usize, n_frames: usize) -> String {
-    format!("array {array}, {n_frames} frames")
+fn array_key(array: &Patch, n_frames: usize) -> String {
+    let grid = &array.grid;
+    let (nx, ny, pitch) = (grid.nx, grid.ny, grid.pitch);
+    format!("array {nx}x{ny} at {pitch} m, {n_frames} frames")
 }

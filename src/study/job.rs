@@ -26,8 +26,8 @@ pub struct Job<'a> {
     pub families: Vec<&'a [Cell]>,
 }
 
-/// A family of cells, what came of it, and in which trial.
-pub type FinishedFamily<'a> = (&'a [Cell], usize, Finished);
+/// A cell, in which trial, and what came of it.
+pub type FinishedCell<'a> = (&'a Cell, usize, Finished);
 
 impl<'a> Job<'a> {
     /// Measures, then evaluates the families, and keeps each as soon as it is finished; with them the processor-seconds of
@@ -35,7 +35,7 @@ impl<'a> Job<'a> {
     ///
     /// # Errors
     /// The journal cannot be written; what a cell fails of, if the first to fail ends the run.
-    pub fn run(&self, frames: &Frames) -> Result<(Vec<FinishedFamily<'a>>, f64)> {
+    pub fn run(&self, frames: &Frames) -> Result<(Vec<FinishedCell<'a>>, f64)> {
         let mut finished = Vec::new();
         let mut measure_s = 0.0;
         for (n_measurements, families) in self.batches() {
@@ -56,7 +56,7 @@ impl<'a> Job<'a> {
             for families in families.chunks(self.run.manner.at_once.families) {
                 let families = families.par_iter();
                 let results = families.map(|family| self.finish(family, measured.as_ref()));
-                finished.extend(results.collect::<Result<Vec<_>>>()?);
+                finished.extend(results.collect::<Result<Vec<_>>>()?.into_iter().flatten());
             }
         }
         Ok((finished, measure_s))
@@ -100,16 +100,20 @@ impl<'a> Job<'a> {
         &self,
         family: &'a [Cell],
         measured: std::result::Result<&Measurements, &String>,
-    ) -> Result<FinishedFamily<'a>> {
+    ) -> Result<Vec<FinishedCell<'a>>> {
         let meter = LearningMeter::new(&self.run, family);
         let finished = match measured {
             Ok(measured) => self.evaluate(family, measured, &meter)?,
-            Err(said) => Finished::Failed(said.clone()),
+            Err(said) => vec![Finished::Failed(said.clone()); family.len()],
         };
         meter.finish();
-        finished.keep(self.run.manner.journal, family, self.trial)?;
+        let Run { manner, plan, .. } = self.run;
+        Finished::keep_all(&finished, manner.journal, plan, (family, self.trial))?;
         self.run.progress.advance(family.len() as u64);
-        Ok((family, self.trial, finished))
+        let cells = family.iter().zip(finished);
+        Ok(cells
+            .map(|(cell, finished)| (cell, self.trial, finished))
+            .collect())
     }
 
     fn evaluate(
@@ -117,7 +121,7 @@ impl<'a> Job<'a> {
         family: &[Cell],
         measurements: &Measurements,
         meter: &LearningMeter,
-    ) -> Result<Finished> {
+    ) -> Result<Vec<Finished>> {
         let Run {
             plan,
             sweep,
@@ -135,8 +139,11 @@ impl<'a> Job<'a> {
         let evaluate = || trial.evaluate_telling(family, FitProgress::to(&told));
         let result = attempt(manner.fail_fast, evaluate)?;
         Ok(match result {
-            Ok(evaluations) => Finished::Scored(evaluations),
-            Err(said) => Finished::Failed(said),
+            Ok(evaluations) => {
+                let evaluations = evaluations.into_iter().map(Box::new);
+                evaluations.map(Finished::Scored).collect()
+            }
+            Err(said) => vec![Finished::Failed(said); family.len()],
         })
     }
 }

@@ -35,6 +35,88 @@ impl StudyKind {
         }
     }
 
+    /// Keys, with all below them, that may change while finished work is kept: they are words, or they say which work there is and
+    /// not what comes of any of it, since each piece of work goes by all that it depends on.
+    pub(crate) fn may_change(self) -> &'static [&'static str] {
+        match self {
+            Self::Recognition => &[
+                "question",
+                "expected",
+                "report",
+                "trials",
+                "skin.pitch_mm",
+                "skin.size_mm",
+                "skin.taxels",
+                "touches.frames",
+                "signal.steps",
+                "signal.combine",
+                "signal.noise_std_full_scale",
+                "signal.noise_std_mm",
+                "signal.noise_std_n",
+                "signal.smoothing_mm",
+                "signal.hysteresis_full_scale",
+                "signal.crosstalk",
+                "signal.gain_std",
+                "signal.drift_std_full_scale",
+                "signal.dead_fraction",
+                "signal.stuck_fraction",
+                "signal.scan_time_ms",
+                "signal.adc_bits",
+                "signal.tested_on",
+                "sensing.ensemble",
+                "sensing.ratio",
+                "sensing.measurements",
+                "recognition.features",
+                "recognition.over_time",
+                "recognition.classifier",
+                "recognition.c",
+                "recognition.train_touches",
+                "recognition.mislabelled_fraction",
+                "recognition.class_imbalance",
+                "recognition.fused_touches",
+            ],
+            Self::Reconstruction => &[
+                "question",
+                "expected",
+                "signal.noise_std_full_scale",
+                "signal.noise_std_mm",
+                "signal.noise_std_n",
+                "sensing.ensemble",
+                "sensing.ratio",
+                "sensing.measurements",
+                "reconstruction.solver",
+                "reconstruction.dictionary",
+            ],
+            Self::ObjectDetail => &[
+                "question",
+                "expected",
+                "object_detail.recognition.classifiers",
+            ],
+            Self::WholeBody => &[
+                "question",
+                "expected",
+                "whole_body.scenes",
+                "whole_body.ladders.taxels",
+                "whole_body.ladders.touched_at_taxels",
+                "whole_body.ladders.touched",
+                "whole_body.ladders.spheres",
+            ],
+            Self::Stability => &["question", "expected", "stability.parts"],
+            Self::BreakingPoints => &["question", "expected", "breaking_points"],
+            Self::SpeedAccuracy => &[
+                "question",
+                "expected",
+                "speed_accuracy.contact.dt_ms",
+                "speed_accuracy.recognition.pitch_mm",
+                "speed_accuracy.recognition.tolerances_mm",
+                "speed_accuracy.recognition.ensemble",
+                "speed_accuracy.recognition.ratio",
+                "speed_accuracy.recognition.classifier",
+                "speed_accuracy.resolution.touches",
+            ],
+        }
+    }
+
     /// In words: `a study that …`.
     pub fn words(self) -> &'static str {
         match self {

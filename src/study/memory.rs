@@ -26,6 +26,11 @@ const TEST_BYTES: f64 = 20.0;
 /// Bytes of a score, and of its share in what is fused.
 const SCORE_BYTES: f64 = 16.0;
 
+/// Bytes of a touch: where it is, its label, how it is read.
+const TOUCH_BYTES: f64 = 400.0;
+/// Bytes of a touch in the split of a trial.
+const SPLIT_BYTES: f64 = 8.0;
+
 /// How many pieces of work are in memory at the same time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct AtOnce {
@@ -225,6 +230,39 @@ pub fn machine_memory() -> Option<u64> {
 /// Most bytes that this process has held so far; `None` where the system does not tell.
 pub fn peak_memory() -> Option<u64> {
     kilobytes("/proc/self/status", "VmHWM")
+}
+
+/// What is allowed in place of something that takes more bytes than the ceiling (`None`: there is none).
+pub(super) fn check_memory(
+    bytes: f64,
+    ceiling: Option<u64>,
+    what: &str,
+) -> std::result::Result<(), String> {
+    match ceiling.map(|ceiling| ceiling as f64) {
+        Some(ceiling) if bytes > ceiling => Err(format!(
+            "fewer: {what} would take {}, and there are {}",
+            Bytes(bytes),
+            Bytes(ceiling)
+        )),
+        _ => Ok(()),
+    }
+}
+
+/// An error unless the touches of a study of so many classes, with a split a trial, are within `ceiling` bytes (`None`: no ceiling).
+/// To be asked before any is drawn.
+///
+/// # Errors
+/// They take more; the error names the key that says how many they are.
+pub fn check_touches(plan: &Plan, n_classes: usize, ceiling: Option<u64>) -> Result<()> {
+    let (key, n_each) = match &plan.human_touch {
+        Some(human) => ("human_touch.per_kind", human.per_kind as f64),
+        None => ("touches.per_object", plan.placement.n_touches()),
+    };
+    let n_touches = n_each * n_classes as f64;
+    let bytes = n_touches * (TOUCH_BYTES + SPLIT_BYTES * plan.spec.trials as f64);
+    let what = format!("{n_touches} touches and their splits");
+    check_memory(bytes, ceiling, &what)
+        .map_err(|allowed| Error::input(format!("key {key}"), n_each, allowed))
 }
 
 /// A line `Key:  123 kB` of a file, in bytes.

@@ -10,6 +10,7 @@ pub mod advice;
 mod attempt;
 mod axis;
 pub mod breaking_points;
+mod cell_content;
 mod check;
 mod compare_runs;
 mod content_hash;

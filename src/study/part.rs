@@ -1,7 +1,7 @@
 //! Which work of a study a run does, and what of it was done before.
 
 use super::finished::Finished;
-use super::job::FinishedFamily;
+use super::job::FinishedCell;
 use super::journal::Journal;
 use super::plan::Plan;
 use super::shard::Shard;
@@ -51,32 +51,38 @@ pub fn pieces<'a>(
 
 /// Cells of a part, counted once a trial, of which a journal does not say what came of them.
 pub fn n_left(plan: &Plan, sweep: &Sweep, part: Part, journal: &Journal) -> usize {
-    let is_left = |family: &[Cell], trial| Finished::in_journal(journal, family, trial).is_none();
+    let left_of = |family: &[Cell], trial| {
+        let before = Finished::in_journal(journal, plan, (family, trial));
+        before.iter().filter(|before| before.is_none()).count()
+    };
     let of_piece = |(_, trial, families): (&Group, usize, Vec<&[Cell]>)| -> usize {
-        let left = families.iter().filter(|family| is_left(family, trial));
-        left.map(|family| family.len()).sum()
+        families.iter().map(|family| left_of(family, trial)).sum()
     };
     pieces(plan, sweep, part).into_iter().map(of_piece).sum()
 }
 
-/// Every finished family, from this run or from earlier ones, and how many cells are left.
+/// Every finished cell, from this run or from earlier ones, and how many are left.
 pub fn with_what_was_done_before<'a>(
     plan: &Plan,
     sweep: &'a Sweep,
     journal: &Journal,
-    mut finished: Vec<FinishedFamily<'a>>,
-) -> (Vec<FinishedFamily<'a>>, usize) {
-    let number = |(family, trial, _): &FinishedFamily| (family[0].cell, *trial);
+    mut finished: Vec<FinishedCell<'a>>,
+) -> (Vec<FinishedCell<'a>>, usize) {
+    let number = |(cell, trial, _): &FinishedCell| (cell.cell, *trial);
     let now: BTreeSet<(usize, usize)> = finished.iter().map(number).collect();
     let mut n_left = 0;
     for trial in 0..plan.spec.trials {
         for family in sweep.groups.iter().flat_map(Group::families) {
+            // A family is evaluated as a whole.
             if now.contains(&(family[0].cell, trial)) {
                 continue;
             }
-            match Finished::in_journal(journal, family, trial) {
-                Some(before) => finished.push((family, trial, before)),
-                None => n_left += family.len(),
+            let before = Finished::in_journal(journal, plan, (family, trial));
+            for (cell, before) in family.iter().zip(before) {
+                match before {
+                    Some(before) => finished.push((cell, trial, before)),
+                    None => n_left += 1,
+                }
             }
         }
     }

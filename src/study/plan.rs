@@ -15,12 +15,15 @@ use crate::recognition::over_time::OverTime;
 use crate::sensing::Ensemble;
 use crate::signal::NoiseUnit;
 use crate::world::{Patch, Placement};
+use std::collections::HashSet;
 
 /// Metres in a millimetre.
 pub(super) const MM: f64 = 1e-3;
 
 /// Trials of a study, at most: each has its split in memory before the first runs.
-const MOST_TRIALS: usize = 100_000;
+pub(super) const MOST_TRIALS: usize = 100_000;
+/// Frames a touch, at most: more is a rate or a number in the wrong unit.
+pub(super) const MOST_FRAMES: usize = 10_000;
 
 /// Millimetres as people write them: 2, not 2.0000000000000004.
 pub fn millimetres(metres: f64) -> f64 {
@@ -125,11 +128,7 @@ impl Plan {
     /// Checks a study; the error names `place` (the file) and the first key that is out of its range.
     pub fn new(place: &str, mut spec: StudySpec) -> Result<Self> {
         let check = Check { place };
-        check.positive_count("trials", spec.trials)?;
-        if spec.trials > MOST_TRIALS {
-            let allowed = format!("at most {MOST_TRIALS}");
-            return Err(check.error("trials", spec.trials, allowed));
-        }
+        check.count("trials", spec.trials, MOST_TRIALS)?;
         if spec.human_touch.is_none() {
             check.objects(&spec.objects)?;
         }
@@ -153,6 +152,9 @@ impl Plan {
             Some(human) => vec![human.n_frames],
             None => check.counts("touches.frames", &spec.touches.frames)?,
         };
+        for &count in &frames {
+            check.count("touches.frames", count, MOST_FRAMES)?;
+        }
         let over_time = check.over_time(&spec.recognition, &frames)?;
         check.kinds(&spec)?;
         let features = check.list("recognition.features", spec.recognition.features.values())?;
@@ -170,7 +172,7 @@ impl Plan {
         let split = check.split(&spec)?;
         let repeats = check.repeats(&spec)?;
         let speed = check.speed(&spec.touches)?;
-        Ok(Self {
+        let plan = Self {
             arrays,
             placement,
             human_touch,
@@ -197,7 +199,61 @@ impl Plan {
             split,
             repeats,
             spec,
-        })
+        };
+        check.configurations(plan.n_cells())?;
+        Ok(plan)
+    }
+
+    /// How many cells the study has, counted without laying any out.
+    pub fn n_cells(&self) -> f64 {
+        let product = |lengths: &[usize]| lengths.iter().map(|&n| n as f64).product::<f64>();
+        let conditions = self.n_conditions() * self.tested_on.len() as f64;
+        let sensed = self.n_sensed();
+        let penalties = |kind: &ClassifierKind| match kind.has_c() {
+            true => self.penalties.len(),
+            false => 1,
+        };
+        let fits: usize = self.classifiers.iter().map(penalties).sum();
+        let others = product(&[
+            self.frames.len(),
+            self.over_time.len(),
+            self.features.len(),
+            self.train_touches.len(),
+            self.class_imbalance.len(),
+            self.mislabelled.len(),
+            self.fused_touches.len(),
+        ]);
+        conditions * sensed * fits as f64 * others
+    }
+
+    /// Arrays × ensembles × m; of more than a million, also those are counted that name the same m twice.
+    fn n_sensed(&self) -> f64 {
+        let lengths = [self.arrays.len(), self.ensembles.len(), self.amounts.len()];
+        let most: f64 = lengths.iter().map(|&n| n as f64).product();
+        if most > 1e6 {
+            return most;
+        }
+        let on_array = |patch: &Patch| -> usize {
+            let counts = self.ensembles.iter();
+            counts
+                .map(|&ensemble| self.measurement_counts(patch, ensemble).len())
+                .sum()
+        };
+        self.arrays.iter().map(on_array).sum::<usize>() as f64
+    }
+
+    /// The m axis on an array; a ratio axis can name the same m twice on a small one.
+    pub(super) fn measurement_counts(&self, patch: &Patch, ensemble: Ensemble) -> Vec<usize> {
+        let n_taxels = patch.grid.n_taxels();
+        if ensemble == Ensemble::Identity {
+            return vec![n_taxels];
+        }
+        let mut named = HashSet::new();
+        let counts = self
+            .amounts
+            .iter()
+            .map(|amount| amount.measurements(n_taxels));
+        counts.filter(|&m| named.insert(m)).collect()
     }
 }
 

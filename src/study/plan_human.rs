@@ -1,10 +1,12 @@
 //! Which kind of touch: the checks of `[human_touch]`.
 
 use super::check::{Check, positive};
-use super::plan::MM;
+use super::plan::{MM, MOST_FRAMES};
 use super::spec::{ObjectsSpec, StudySpec, TouchesSpec};
 use crate::error::Result;
-use crate::world::{Layout, Patch, Placement, RestPoses, SkinPatch, Spread, Taxels, TouchKind};
+use crate::world::{
+    Layout, MOST_TOUCHES, Patch, Placement, RestPoses, SkinPatch, Spread, Taxels, TouchKind,
+};
 
 /// Human touches of a study.
 #[derive(Clone, Debug, PartialEq)]
@@ -20,9 +22,6 @@ pub struct HumanTouchPlan {
     /// F, frames a touch.
     pub n_frames: usize,
 }
-
-/// Frames a touch, at most: more is a rate in the wrong unit.
-const MOST_FRAMES: f64 = 10_000.0;
 
 impl HumanTouchPlan {
     /// An array bent around the arm: rows are rings, columns run along it, the middle is at +x.
@@ -80,13 +79,13 @@ impl Check<'_> {
             |name: &str, value: f64| self.value(&key(name), value, positive, "a positive number");
         let frames_hz = number("frames_hz", human.frames_hz)?;
         let n_frames = (number("duration_s", human.duration_s)? * frames_hz).round() + 1.0;
-        if !(2.0..=MOST_FRAMES).contains(&n_frames) {
+        if !(2.0..=MOST_FRAMES as f64).contains(&n_frames) {
             let allowed = format!("2 to {MOST_FRAMES} frames in duration_s at frames_hz");
             return Err(self.error("human_touch", format!("{n_frames} frames a touch"), allowed));
         }
         let plan = HumanTouchPlan {
             kinds: self.list(&key("kinds"), human.kinds.clone())?,
-            per_kind: self.positive_count(&key("per_kind"), human.per_kind)?,
+            per_kind: self.count(&key("per_kind"), human.per_kind, MOST_TOUCHES)?,
             surface: number("arm_radius_mm", human.arm_radius_mm)? * MM,
             interval: 1.0 / frames_hz,
             n_frames: n_frames as usize,

@@ -1,10 +1,11 @@
 //! What touches what: the checks of `[objects]`, `[skin]` and `[touches]`.
 
+use super::axis::Axis;
 use super::check::{Check, not_negative, positive};
 use super::plan::MM;
 use super::spec::{ModelSpec, ObjectsSpec, RangeSpec, RestSpec, SkinSpec, SpreadSpec, TouchesSpec};
 use crate::error::Result;
-use crate::world::{Grid, Patch, Placement, RestPoses, Spread, Taxel};
+use crate::world::{Grid, MOST_TOUCHES, Patch, Placement, RestPoses, Spread, Taxel};
 
 /// How far spheres may be from a solid's surface, unless a study says: mm.
 const SURFACE_ERROR_MM: f64 = 0.25;
@@ -33,6 +34,10 @@ impl ObjectsSpec {
     pub(super) fn surface_error(&self) -> f64 {
         self.surface_error_mm.unwrap_or(SURFACE_ERROR_MM) * MM
     }
+}
+
+fn axis_length<T: Clone>(axis: &Option<Axis<T>>) -> usize {
+    axis.as_ref().map_or(0, |axis| axis.values().len())
 }
 
 impl Check<'_> {
@@ -81,6 +86,9 @@ impl Check<'_> {
             not_negative,
             "zero or a positive number",
         )?;
+        let sizes = [axis_length(&skin.size_mm), axis_length(&skin.taxels)];
+        let n_sizes = sizes.into_iter().max().unwrap_or(1);
+        self.configurations(pitches.len() as f64 * n_sizes as f64)?;
         let mut arrays = Vec::new();
         for &pitch_mm in &pitches {
             let radius_mm = skin.taxel_radius_mm.unwrap_or(0.5 * pitch_mm);
@@ -190,7 +198,7 @@ impl Check<'_> {
             "positive numbers of millimetres",
         )?;
         if let Some(count) = touches.per_object {
-            self.positive_count("touches.per_object", count)?;
+            self.count("touches.per_object", count, MOST_TOUCHES)?;
         }
         Ok(Placement {
             rest: match touches.rest {

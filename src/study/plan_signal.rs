@@ -190,6 +190,17 @@ fn key(imperfection: Imperfection) -> String {
 }
 
 impl Plan {
+    /// How many conditions of the signal there are.
+    pub(super) fn n_conditions(&self) -> f64 {
+        let imperfections = self.imperfections.iter().map(|(_, values)| values.len());
+        let axes = [self.noise.len(), self.smoothing.len()].into_iter();
+        let lengths = axes.chain(imperfections).map(|n| n as f64);
+        match self.combine {
+            CombineSpec::All => lengths.product(),
+            CombineSpec::OneAtATime => 1.0 + lengths.map(|n| n - 1.0).sum::<f64>(),
+        }
+    }
+
     /// Every condition of the signal that the study asks for: all combinations of its axes, or each axis alone.
     pub fn conditions(&self) -> Vec<Condition> {
         let first = Condition {

@@ -3,6 +3,7 @@
 use super::spec::PublishedSpec;
 use super::table::{Cell, CellScore, Published};
 use crate::error::{Error, Result};
+use std::collections::BTreeSet;
 use toml::{Table, Value};
 
 /// Numbers this close, relative to the larger, are the same setting: a ratio of 100 on 4,096 taxels is 41 measurements, which
@@ -24,18 +25,23 @@ fn check(claim: &PublishedSpec, cells: &[&Cell]) -> Result<()> {
         let allowed = "a share of test touches, 0 to 1";
         return Err(Error::input(place("accuracy"), claim.accuracy, allowed));
     }
-    let rows: Vec<Table> = cells.iter().map(|cell| columns(cell)).collect();
+    // One after the other: of many cells, all rows at once would be gigabytes.
+    let rows = || cells.iter().map(|cell| columns(cell));
     for (key, wanted) in &claim.at {
-        let mut values: Vec<&Value> = Vec::new();
-        for value in rows.iter().filter_map(|row| row.get(column(key))) {
+        let of_key = || rows().filter_map(|mut row| row.remove(column(key)));
+        if of_key().any(|value| agree(&value, wanted)) {
+            continue;
+        }
+        let mut values: Vec<Value> = Vec::new();
+        for value in of_key() {
             if !values.contains(&value) {
                 values.push(value);
             }
         }
-        if values.iter().any(|value| agree(value, wanted)) {
-            continue;
-        }
-        let known: Vec<String> = rows.iter().flat_map(Table::keys).cloned().collect();
+        let known: BTreeSet<String> = rows()
+            .flat_map(|row| row.into_iter().map(|(k, _)| k))
+            .collect();
+        let known = known.into_iter().collect();
         let (given, allowed) = match values.is_empty() {
             true => ("is no setting of this study".to_owned(), words(known)),
             false => {
@@ -45,7 +51,7 @@ fn check(claim: &PublishedSpec, cells: &[&Cell]) -> Result<()> {
         };
         return Err(Error::input(place(key), given, allowed));
     }
-    match rows.iter().any(|row| is_about(claim, row)) {
+    match rows().any(|row| is_about(claim, &row)) {
         true => Ok(()),
         false => Err(Error::input(
             place("all keys together"),

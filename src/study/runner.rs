@@ -2,7 +2,7 @@
 
 use super::finished::{Finished, Measuring, Simulated};
 use super::frames::{FrameStorage, Frames, KeyedTouches};
-use super::job::{FinishedFamily, Job};
+use super::job::{FinishedCell, Job};
 use super::journal::Journal;
 use super::memory::AtOnce;
 use super::part::{Part, pieces, with_what_was_done_before};
@@ -20,6 +20,7 @@ use crate::random::Seed;
 use crate::signal::{Noise, SignalStep};
 use crate::world::Patch;
 use rayon::prelude::*;
+use std::collections::BTreeMap;
 
 /// What a study found.
 #[derive(Clone, Debug)]
@@ -105,10 +106,13 @@ pub fn run_with(
     let mut tables = Tables::default();
     let mut arrays = Vec::new();
     let mut new = Vec::new();
+    let mut jobs = run.jobs();
     for array in 0..plan.arrays.len() {
         let mut on_array: Vec<Option<OnArray>> = plan.frames.iter().map(|_| None).collect();
         for place in costliest_first(&plan.frames) {
-            on_array[place] = run.on_array(array, plan.frames[place])?;
+            let n_frames = plan.frames[place];
+            let jobs = jobs.remove(&(array, n_frames)).unwrap_or_default();
+            on_array[place] = run.on_array(&plan.arrays[array], n_frames, &jobs)?;
         }
         for (place, found) in on_array.into_iter().enumerate() {
             let Some((simulated, finished, stages)) = found else {
@@ -158,25 +162,28 @@ pub struct Run<'a> {
     pub manner: Manner<'a>,
 }
 
-/// What came of an array: its touches, its families, and what they cost.
-type OnArray<'a> = (Simulated, Vec<FinishedFamily<'a>>, [StageTime; 2]);
+/// What came of an array: its touches, its cells, and what they cost.
+type OnArray<'a> = (Simulated, Vec<FinishedCell<'a>>, [StageTime; 2]);
 
 impl<'a> Run<'a> {
     /// Does what is to be done on an array read in so many frames a touch; `None` if it is another shard's.
-    fn on_array(&self, array: usize, n_frames: usize) -> Result<Option<OnArray<'a>>> {
-        let jobs = self.jobs(array, n_frames);
+    fn on_array(
+        &self,
+        patch: &Patch,
+        n_frames: usize,
+        jobs: &[Job<'a>],
+    ) -> Result<Option<OnArray<'a>>> {
         let journal = self.manner.journal;
-        let known = Simulated::in_journal(journal, array, n_frames);
+        let known = Simulated::in_journal(journal, patch, n_frames);
         let is_all = matches!(self.manner.part, Part::All);
         if jobs.is_empty() && known.is_none() && !is_all {
             return Ok(None);
         }
         let (simulated, finished, measuring) = match known {
             Some(known) if jobs.is_empty() => (known, Vec::new(), Measuring::default()),
-            _ => self.evaluate(array, n_frames, &jobs)?,
+            _ => self.evaluate(patch, n_frames, jobs)?,
         };
-        let measuring = measuring.kept_with_earlier(journal, array, n_frames)?;
-        let patch = &self.plan.arrays[array];
+        let measuring = measuring.kept_with_earlier(journal, patch, n_frames)?;
         let stages = [
             ("simulate", self.sweep.labels.len(), simulated.cpu_s),
             ("measure", measuring.n_measured, measuring.cpu_s),
@@ -190,11 +197,10 @@ impl<'a> Run<'a> {
     /// Makes the touches of an array and evaluates jobs on them.
     fn evaluate(
         &self,
-        array: usize,
+        patch: &Patch,
         n_frames: usize,
         jobs: &[Job<'a>],
-    ) -> Result<(Simulated, Vec<FinishedFamily<'a>>, Measuring)> {
-        let patch = &self.plan.arrays[array];
+    ) -> Result<(Simulated, Vec<FinishedCell<'a>>, Measuring)> {
         let n_touches = self.sweep.labels.len();
         let name = in_frames(&format!("touch {}", describe(patch)), n_frames);
         self.progress.stage(&name, n_touches as u64);
@@ -206,7 +212,7 @@ impl<'a> Run<'a> {
             n_saturated: frames.facts.n_saturated,
             cpu_s: frames.facts.cpu_s,
         };
-        simulated.keep(self.manner.journal, array, n_frames)?;
+        simulated.keep(self.manner.journal, patch, n_frames)?;
         let (finished, cpu_s) = self.recognise(jobs, patch, &frames)?;
         let measuring = Measuring {
             n_measured: jobs.len() * n_touches,
@@ -215,22 +221,23 @@ impl<'a> Run<'a> {
         Ok((simulated, finished, measuring))
     }
 
-    /// Families of an array that are to be done, by trial and group.
-    pub fn jobs(&self, array: usize, n_frames: usize) -> Vec<Job<'a>> {
-        let mut jobs = Vec::new();
+    /// Families that are to be done, by trial and group, of each array and number of frames.
+    pub fn jobs(&self) -> BTreeMap<(usize, usize), Vec<Job<'a>>> {
+        let mut jobs: BTreeMap<_, Vec<Job>> = BTreeMap::new();
         for (group, trial, families) in pieces(self.plan, self.sweep, self.manner.part) {
-            if (group.array, group.frames) != (array, n_frames) {
-                continue;
-            }
-            let is_left =
-                |family: &&[Cell]| match Finished::in_journal(self.manner.journal, family, trial) {
+            let is_left = |family: &&[Cell]| {
+                let work = (*family, trial);
+                let before = Finished::in_journal(self.manner.journal, self.plan, work);
+                before.iter().any(|before| match before {
                     None => true,
                     Some(Finished::Failed(_)) => self.manner.retries,
                     Some(Finished::Scored(_)) => false,
-                };
+                })
+            };
             let families: Vec<&[Cell]> = families.into_iter().filter(is_left).collect();
             if !families.is_empty() {
-                jobs.push(Job {
+                let of_array = jobs.entry((group.array, group.frames)).or_default();
+                of_array.push(Job {
                     run: *self,
                     group,
                     trial,
@@ -247,7 +254,7 @@ impl<'a> Run<'a> {
         jobs: &[Job<'a>],
         patch: &Patch,
         frames: &Frames,
-    ) -> Result<(Vec<FinishedFamily<'a>>, f64)> {
+    ) -> Result<(Vec<FinishedCell<'a>>, f64)> {
         if jobs.is_empty() {
             return Ok((Vec::new(), 0.0));
         }

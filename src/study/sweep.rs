@@ -21,7 +21,6 @@ use crate::random::Seed;
 use crate::recognition::split::Split;
 use crate::recognition::spoiled::mislabelled;
 use crate::sensing::Ensemble;
-use crate::world::Patch;
 use ndarray::Array1;
 
 /// Everything that is decided before the first touch is simulated.
@@ -199,8 +198,10 @@ impl Sweep {
 
     fn add_group(&mut self, plan: &Plan, mut group: Group, train_touches: &[usize]) {
         let patch = &plan.arrays[group.array];
-        let first = self.n_cells();
-        for measurements in measurement_counts(plan, patch, group.ensemble) {
+        // Counted from the last group on: all cells would be counted once a group.
+        let last = self.groups.last().and_then(|group| group.cells.last());
+        let first = last.map_or(0, |cell| cell.cell + 1);
+        for measurements in plan.measurement_counts(patch, group.ensemble) {
             for family in families(plan, &group_cell(plan, &group, measurements), train_touches) {
                 group.cells.extend(family_cells(plan, &family));
             }
@@ -216,22 +217,6 @@ impl Sweep {
 fn training_stream(plan: &Plan, trial: usize) -> Seed {
     let seed = Seed::new(plan.spec.seed).named("training rows");
     seed.numbered(trial as u64)
-}
-
-/// The m axis on an array; a ratio axis can name the same m twice on a small one.
-fn measurement_counts(plan: &Plan, patch: &Patch, ensemble: Ensemble) -> Vec<usize> {
-    let n_taxels = patch.grid.n_taxels();
-    if ensemble == Ensemble::Identity {
-        return vec![n_taxels];
-    }
-    let mut counts = Vec::new();
-    for amount in &plan.amounts {
-        let m = amount.measurements(n_taxels);
-        if !counts.contains(&m) {
-            counts.push(m);
-        }
-    }
-    counts
 }
 
 /// Over time × features × classifier × training touches × what spoils them: the first cell of each family with a number of

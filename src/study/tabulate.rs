@@ -1,8 +1,8 @@
-//! Finished families → tables: by cell, then by trial.
+//! Finished cells → tables: by cell, then by trial.
 
 use super::evaluation::Evaluation;
 use super::finished::Finished;
-use super::job::FinishedFamily;
+use super::job::FinishedCell;
 use super::summary::{compare_with_best, most_confused, pareto, summarise};
 use super::table::{Cell, Confusion, Failure, Tables};
 use super::variance_table::variances;
@@ -10,19 +10,14 @@ use crate::error::Result;
 use std::collections::BTreeMap;
 
 /// Fills every table but those of stages and of published numbers; `names` are those of the classes.
-pub fn tabulate(tables: &mut Tables, finished: Vec<FinishedFamily>, names: &[&str]) -> Result<()> {
+pub fn tabulate(tables: &mut Tables, finished: Vec<FinishedCell>, names: &[&str]) -> Result<()> {
     let mut scored: Vec<(Cell, Evaluation)> = Vec::new();
-    for (family, trial, finished) in finished {
+    for (cell, trial, finished) in finished {
         match finished {
-            Finished::Scored(evaluations) => {
-                scored.extend(family.iter().cloned().zip(evaluations));
-            }
+            Finished::Scored(evaluation) => scored.push((cell.clone(), *evaluation)),
             Finished::Failed(error) => {
                 let failure = Failure { trial, error };
-                let cells = family.iter().cloned();
-                tables
-                    .failures
-                    .extend(cells.map(|cell| (cell, failure.clone())));
+                tables.failures.push((cell.clone(), failure));
             }
         }
     }

@@ -25,15 +25,15 @@ pub fn workload(plan: &Plan, sweep: &Sweep, touched: &dyn TouchSet, manner: Mann
         progress: &Silent,
         manner,
     };
+    let jobs = run.jobs();
     let mut work = Vec::new();
     for (array, patch) in plan.arrays.iter().enumerate() {
         for &n_frames in &plan.frames {
-            let jobs = run.jobs(array, n_frames);
-            if jobs.is_empty() {
+            let Some(jobs) = jobs.get(&(array, n_frames)) else {
                 continue;
-            }
+            };
             work.push(run.touching(patch, n_frames));
-            for job in &jobs {
+            for job in jobs {
                 for (n_measurements, families) in job.batches() {
                     work.push(job.measuring(n_measurements, &families));
                     work.extend(families.into_iter().map(|family| run.learning(family)));

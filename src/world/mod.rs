@@ -51,5 +51,5 @@ pub use shear::{Shear, Shears};
 pub(crate) use skin_patch::EvenGrid;
 pub use skin_patch::{SkinPatch, Taxels};
 pub(crate) use taxel_tree::PlacedTaxel;
-pub use touches::{TouchSource, touches};
+pub use touches::{MOST_TOUCHES, TouchSource, touches};
 pub use trajectory::{Phase, VelocityPlan};

@@ -139,6 +139,28 @@ pub struct Touch {
     pub indices: [Option<usize>; 7],
 }
 
+impl Placement {
+    /// Touches of an object that has one resting pose.
+    pub fn n_touches(&self) -> f64 {
+        let spreads = [
+            &self.offset_x,
+            &self.offset_y,
+            &self.yaw,
+            &self.tilt_x,
+            &self.tilt_y,
+            &self.depth,
+        ];
+        let n_values = |spread: &Spread| match spread {
+            Spread::Values(values) => values.len() as f64,
+            Spread::Uniform { .. } => 1.0,
+        };
+        match self.per_object {
+            Some(count) => count as f64,
+            None => spreads.map(n_values).iter().product(),
+        }
+    }
+}
+
 impl Touch {
     /// What this touch shares with others of its group: its value's index on each of these axes. Splits keep whole groups
     /// (an offset, a yaw, a resting pose) out of training.

@@ -12,6 +12,8 @@ pub struct Kind {
     pub times: &'static str,
     /// What of the study is replaced by what, and what is said of that.
     pub change: (&'static str, &'static str, &'static str),
+    /// What of the study is replaced by what that only adds work to it.
+    pub more: &'static [(&'static str, &'static str)],
 }
 
 impl Kind {
@@ -31,7 +33,16 @@ impl Kind {
         study: include_str!("stability.toml"),
         repeatable: &["stability.csv", "stability_summary.csv"],
         times: "timing.csv",
-        change: ("[1e1, 1e5]", "[1e1, 1e4]", "stability.parts: was"),
+        change: (
+            "question = \"What breaks?\"",
+            "question = \"What breaks?\"\n[stability]\npitch_mm = 5.0",
+            "stability.pitch_mm: was 4.0, is 5.0",
+        ),
+        more: &[
+            ("What breaks?", "What breaks first?"),
+            ("[1e1, 1e5]", "[1e1, 1e3, 1e5]"),
+            ("[1e-4, 1e-1]", "[1e-3, 1e-4, 1e-1]"),
+        ],
     };
 
     pub const BREAKING_POINTS: Self = Self {
@@ -39,13 +50,31 @@ impl Kind {
         repeatable: &["accuracy.csv", "summary.csv", "breaking_points.csv"],
         times: "timing.csv",
         change: ("trials = 2", "trials = 3", "trials: was 2, is 3"),
+        more: &[
+            ("What breaks?", "What breaks first?"),
+            (
+                "[0.0, 0.005, 0.05, 0.5, 10.0]",
+                "[0.0, 0.005, 0.05, 0.1, 0.5, 10.0]",
+            ),
+            ("[0.0, 5.0, 20.0, 80.0]", "[0.0, 2.0, 5.0, 20.0, 80.0]"),
+        ],
     };
 
     pub const RECONSTRUCTION: Self = Self {
         study: include_str!("reconstruction.toml"),
         repeatable: &["reconstruction.csv", "ensembles.csv"],
         times: "timing.csv",
-        change: ("ratio = [4, 16]", "ratio = [4, 8]", "sensing.ratio: was"),
+        change: (
+            "atoms = 40",
+            "atoms = 41",
+            "reconstruction.atoms: was 40, is 41",
+        ),
+        more: &[
+            ("What comes back?", "How much comes back?"),
+            ("ratio = [4, 16]", "ratio = [2, 4, 16]"),
+            ("[0.0, 0.1]", "[0.05, 0.0, 0.1]"),
+            ("[\"dct\", \"pca\"]", "[\"haar\", \"dct\", \"pca\"]"),
+        ],
     };
 
     pub const OBJECT_DETAIL: Self = Self {
@@ -61,6 +90,10 @@ impl Kind {
             "tolerances_mm = [3.0]",
             "object_detail.tolerances_mm: was",
         ),
+        more: &[
+            ("How many spheres?", "How many spheres are enough?"),
+            ("[\"linear_svm\"]", "[\"k_nearest\", \"linear_svm\"]"),
+        ],
     };
 
     pub const WHOLE_BODY: Self = Self {
@@ -72,6 +105,14 @@ impl Kind {
             "steps = 11",
             "whole_body.steps: was 10, is 11",
         ),
+        more: &[
+            ("What does a post", "How much does a post"),
+            (
+                "[[whole_body.scenes]]\nname = \"ball\"",
+                "[[whole_body.scenes]]\nname = \"box\"\nobject = \"cracker_box\"\nlink = \"base\"\nat_mm = [60.0, 0.0, 100.0]\ndepth_mm = 1.0\n\n[[whole_body.scenes]]\nname = \"ball\"",
+            ),
+            ("touched = [100, 400]", "touched = [100, 200, 400]"),
+        ],
     };
 
     pub const SPEED_ACCURACY: Self = Self {
@@ -79,10 +120,16 @@ impl Kind {
         repeatable: &["contact.csv", "recognition.csv", "resolution.csv"],
         times: "recognition_timing.csv",
         change: (
-            "dt_ms = [10.0]",
-            "dt_ms = [5.0]",
-            "speed_accuracy.contact.dt_ms: was",
+            "stepped_touches = 1",
+            "stepped_touches = 2",
+            "speed_accuracy.contact.stepped_touches: was 1, is 2",
         ),
+        more: &[
+            ("What does accuracy cost?", "How much does accuracy cost?"),
+            ("dt_ms = [10.0]", "dt_ms = [5.0, 10.0]"),
+            ("[4.0, 16.0]\nclassifier", "[4.0, 8.0, 16.0]\nclassifier"),
+            ("touches = [8, 12]", "touches = [10, 8, 12]"),
+        ],
     };
 }
 

@@ -63,10 +63,18 @@ impl PieceStudy for BreakingPointsStudy {
     fn pieces(&self) -> Vec<NamedPiece> {
         let ways = self.plan.ways.iter();
         let place = |way: &PlannedWay| ways.clone().position(|other| other.name == way.name);
-        NamedPiece::each_alone(self.named_values().map(|(name, way, value)| {
+        let pieces = self.named_values().enumerate();
+        let pieces = pieces.map(|(group, (name, way, value))| {
             let place = place(way).unwrap_or(0);
-            (name, Piece::of_stage(0, place, value.planned_s()))
-        }))
+            let work = Piece::of_stage(0, place, value.planned_s());
+            // The study at this value is all that it depends on.
+            let driven = (
+                &value.learned.spec,
+                value.tested.as_ref().map(|tested| &tested.spec),
+            );
+            NamedPiece::new(name, group, work).made_of(driven)
+        });
+        pieces.collect()
     }
 
     fn measure(&self, left: &PiecesLeft<DrivenRows>) -> Result<()> {

@@ -1,11 +1,19 @@
 //! What a study's results depend on.
 
 use crate::error::{Error, Result};
+use crate::study::content_hash::ContentHash;
+use crate::study::kind::StudyKind;
 use crate::toml_text;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
+/// Hexadecimal digits of what binds a line to its study. Fewer: lines of two studies may be taken for each other's.
+const BINDING_DIGITS: usize = 16;
+
 /// Everything that decides the bytes of a study's tables.
+///
+/// Two of them are the same study if they differ at most in keys that [may change](StudyKind::may_change): axes that only say which work
+/// there is, and words.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Identity {
     /// Program and version.
@@ -39,30 +47,53 @@ impl Identity {
         for (name, ours, theirs) in parts {
             lines.extend(changed(name, Some(ours), Some(theirs)));
         }
-        let (ours, theirs) = (keys(&self.study), keys(&other.study));
-        lines.extend(all_changed("", &ours, &theirs));
+        lines.extend(all_changed("", &self.fixed_keys(), &other.fixed_keys()));
         lines.extend(all_changed("object ", &self.objects, &other.objects));
         lines
     }
 
-    /// An error that says what differs unless the other is the same; `place` is where this one stands.
+    /// An error that says what differs unless the other is the same study; `place` is where this one stands.
     pub fn check_same(&self, other: &Self, place: &str) -> Result<()> {
-        if self == other {
+        let differences = self.differences(other);
+        if differences.is_empty() {
             return Ok(());
         }
-        let differences = self.differences(other);
-        let given = match differences.is_empty() {
-            true => "was begun with another study (it differs in its order only)".to_owned(),
-            false => format!(
+        Err(Error::input(
+            place,
+            format!(
                 "was begun with another study\n  {}",
                 differences.join("\n  ")
             ),
-        };
-        Err(Error::input(
-            place,
-            given,
-            "\n  to go on: the same study, objects and program; --fresh starts over and keeps the old results beside the new",
+            "\n  to go on: the same study, objects and program (axes may have more values or fewer, and words may change); --fresh starts over and keeps the old results beside the new",
         ))
+    }
+
+    /// What every line of a journal carries: the same for the same study, another for every other.
+    pub(super) fn binding(&self) -> String {
+        let Self {
+            program,
+            source,
+            objects,
+            ..
+        } = self;
+        let said = format!("{program:?} {source:?} {:?} {objects:?}", self.fixed_keys());
+        let mut digits = ContentHash::default().bytes(said).hex();
+        digits.truncate(BINDING_DIGITS);
+        digits
+    }
+
+    /// The values of the study's keys, but for those that may change.
+    fn fixed_keys(&self) -> BTreeMap<String, String> {
+        let may_change = StudyKind::of(&self.study).may_change();
+        let is_fixed = |key: &String| {
+            !may_change.iter().any(|name| {
+                let rest = key.strip_prefix(name);
+                rest.is_some_and(|rest| rest.is_empty() || rest.starts_with('.'))
+            })
+        };
+        let mut fixed = keys(&self.study);
+        fixed.retain(|key, _| is_fixed(key));
+        fixed
     }
 }
 
@@ -118,15 +149,15 @@ mod tests {
             Identity::new(study.to_owned(), objects.collect())
         };
         let old = identity(
-            "seed = 1\n[skin]\npitch_mm = [1.0, 2.0]",
+            "question = \"a\"\nseed = 1\n[skin]\npitch_mm = [1.0, 2.0]\nstiffness_n_per_m = 100.0",
             &[("mug", "a1"), ("bowl", "b")],
         );
         let new = identity(
-            "seed = 1\n[skin]\npitch_mm = 2.0\nstroke_mm = 5.0",
+            "question = \"b\"\nseed = 1\n[skin]\npitch_mm = 2.0\nstiffness_n_per_m = 200.0\nstroke_mm = 5.0",
             &[("mug", "a2"), ("bowl", "b")],
         );
         let expected = [
-            "skin.pitch_mm: was [1.0, 2.0], is 2.0",
+            "skin.stiffness_n_per_m: was 100.0, is 200.0",
             "skin.stroke_mm: was nothing, is 5.0",
             "object mug: was a1, is a2",
         ];
@@ -135,5 +166,17 @@ mod tests {
         let said = old.check_same(&new, "results/x").unwrap_err();
         assert_eq!(said.exit_code(), 2);
         assert!(said.to_string().contains(expected[0]), "{said}");
+        assert_ne!(old.binding(), new.binding());
+    }
+
+    #[test]
+    fn words_and_axes_of_a_study_leave_it_the_same() {
+        let identity = |study: &str| Identity::new(study.to_owned(), BTreeMap::new());
+        let old = identity("question = \"a\"\ntrials = 1\n[skin]\npitch_mm = 2.0");
+        let new = identity(
+            "question = \"b\"\ntrials = 2\n[skin]\npitch_mm = [1.0, 2.0]\n[report]\nsamples = [\"mug\"]",
+        );
+        assert!(old.check_same(&new, "x").is_ok());
+        assert_eq!(old.binding(), new.binding());
     }
 }

@@ -1,7 +1,7 @@
 //! The journal of a run: one file, one writer at a time.
 
 use super::identity::Identity;
-use super::line::{Records, decode, encode};
+use super::line::{Decoded, Records, decode, encode};
 use crate::error::{Error, Result};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
@@ -26,6 +26,8 @@ const SYNC_INTERVAL: Duration = Duration::from_millis(100);
 #[derive(Debug, Default)]
 pub struct Journal {
     path: PathBuf,
+    /// What every line is bound to its study with.
+    of: String,
     before: Records,
     writer: Mutex<Option<Writer>>,
 }
@@ -47,20 +49,15 @@ impl Journal {
     /// Opens the journal of this study, or starts one, at `path` in a folder that exists. A torn last line is cut off.
     ///
     /// # Errors
-    /// Another process has it open; it was begun with another identity (the error says what differs); it is damaged before
-    /// its last line; it cannot be read or written.
+    /// Another process has it open; it was begun with another study (the error says what differs); its first line does not say with
+    /// which; it is damaged before its last line, or has lines of two studies; it cannot be read or written.
     pub fn open(path: &Path, identity: &Identity) -> Result<Self> {
-        let (mut file, decoded) = read_locked(path)?;
-        let place = path.display().to_string();
-        if let Some(header) = decoded.records.get(HEADER) {
-            let begun: Identity = serde_json::from_str(header.get()).map_err(|error| {
-                Error::input(
-                    &place,
-                    format!("a first line of another kind ({error})"),
-                    "a journal of this program; --fresh starts over beside it",
-                )
-            })?;
-            begun.check_same(identity, &place)?;
+        let (mut file, bytes) = read_locked(path)?;
+        let decoded = decode(&bytes);
+        let of = identity.binding();
+        if let Some((begun, bound)) = begun_with(path, &decoded)? {
+            begun.check_same(identity, &path.display().to_string())?;
+            check_bound(path, &bound, &of)?;
         }
         let read_error = |e| Error::io(path, "write", e);
         file.set_len(decoded.n_whole as u64).map_err(read_error)?;
@@ -70,13 +67,13 @@ impl Journal {
             synced: Instant::now(),
             is_broken: false,
         };
-        let is_new = decoded.n_whole == 0;
         let journal = Self {
             path: path.to_owned(),
+            of,
             before: decoded.records,
             writer: Mutex::new(Some(writer)),
         };
-        if is_new {
+        if decoded.first.is_none() {
             journal.keep(HEADER, identity)?;
             journal.sync()?;
             sync_folder(path)?;
@@ -84,22 +81,24 @@ impl Journal {
         Ok(journal)
     }
 
-    /// The records that stand in a journal, by key, whoever is writing to it; none where there is no file.
+    /// The records that stand in a journal, by key, whoever is writing to it; none where there is no file, or nothing whole in it.
+    ///
+    /// # Errors
+    /// It cannot be read, or is damaged, as of [`open`](Self::open).
     pub fn read(path: &Path) -> Result<Option<(Identity, Self)>> {
         let bytes = match std::fs::read(path) {
             Ok(bytes) => bytes,
             Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(None),
             Err(error) => return Err(Error::io(path, "read", error)),
         };
-        let records = decode(&bytes).records;
-        let Some(header) = records.get(HEADER) else {
+        let decoded = decode(&bytes);
+        let Some((identity, of)) = begun_with(path, &decoded)? else {
             return Ok(None);
         };
-        let identity = serde_json::from_str(header.get())
-            .map_err(|error| Error::input(path.display(), error, "a journal of this program"))?;
         let journal = Self {
             path: path.to_owned(),
-            before: records,
+            of,
+            before: decoded.records,
             writer: Mutex::new(None),
         };
         Ok(Some((identity, journal)))
@@ -112,7 +111,7 @@ impl Journal {
 
     /// How many records there were when it was opened.
     pub fn n_before(&self) -> usize {
-        self.before.len().saturating_sub(1)
+        self.before.len()
     }
 
     /// Keeps a record: when this returns, the end of the process cannot lose it.
@@ -121,16 +120,21 @@ impl Journal {
         let Some(writer) = guard.as_mut() else {
             return Ok(());
         };
-        let line = encode(key, record).map_err(|e| Error::io(&self.path, "write", e.into()))?;
+        let line =
+            encode(&self.of, key, record).map_err(|e| Error::io(&self.path, "write", e.into()))?;
         writer
             .append(&line)
             .map_err(|e| Error::io(&self.path, "write", e))
     }
 
-    /// Adds what another journal holds and this one did not hold when it was opened.
+    /// Adds what another journal of the same study holds and this one did not hold when it was opened.
+    ///
+    /// # Errors
+    /// Its lines are of another study; this journal cannot be written.
     pub fn take_from(&mut self, other: Self) -> Result<()> {
+        check_bound(&other.path, &other.of, &self.of)?;
         for (key, record) in other.before {
-            if key != HEADER && !self.before.contains_key(&key) {
+            if !self.before.contains_key(&key) {
                 self.keep(&key, &record)?;
                 self.before.insert(key, record);
             }
@@ -188,7 +192,7 @@ impl Writer {
 }
 
 /// Opens a journal, or makes an empty one, for this process alone, and reads it.
-fn read_locked(path: &Path) -> Result<(File, super::line::Decoded)> {
+fn read_locked(path: &Path) -> Result<(File, Vec<u8>)> {
     let options = OpenOptions::new()
         .read(true)
         .write(true)
@@ -207,15 +211,52 @@ fn read_locked(path: &Path) -> Result<(File, super::line::Decoded)> {
     let mut bytes = Vec::new();
     file.read_to_end(&mut bytes)
         .map_err(|e| Error::io(path, "read", e))?;
-    let decoded = decode(&bytes);
-    match decoded.broken {
-        None => Ok((file, decoded)),
-        Some(line) => Err(Error::input(
-            format!("{}: line {line}", path.display()),
-            "does not match its checksum, though lines follow it",
-            "a journal as it was written; --fresh starts over beside it",
+    Ok((file, bytes))
+}
+
+/// The study that a journal was begun with, by its first line, and what binds its lines to it; none where no line is whole.
+fn begun_with(path: &Path, decoded: &Decoded) -> Result<Option<(Identity, String)>> {
+    if let Some(line) = decoded.broken {
+        let given = "does not match its checksum, though lines follow it";
+        return Err(damaged(path, line, given));
+    }
+    if let Some(line) = decoded.foreign {
+        let given = "is of another study than line 1, or begins one anew";
+        return Err(damaged(path, line, given));
+    }
+    let Some(first) = &decoded.first else {
+        return Ok(None);
+    };
+    if first.key != HEADER {
+        let given = "is no record of a study: nothing says which study the finished work is of";
+        return Err(damaged(path, 1, given));
+    }
+    match serde_json::from_str(first.record.get()) {
+        Ok(begun) => Ok(Some((begun, first.of.clone()))),
+        Err(error) => Err(damaged(
+            path,
+            1,
+            &format!("is no record of a study ({error})"),
         )),
     }
+}
+
+/// Lines that are bound to a study are of the study that the first of them names.
+fn check_bound(path: &Path, of: &str, expected: &str) -> Result<()> {
+    match of == expected {
+        true => Ok(()),
+        false => Err(damaged(
+            path,
+            1,
+            "names another study than the one that the lines are of",
+        )),
+    }
+}
+
+fn damaged(path: &Path, line: usize, given: &str) -> Error {
+    let allowed =
+        "a journal as it was written; --fresh starts over and keeps the old results beside the new";
+    Error::input(format!("{}: line {line}", path.display()), given, allowed)
 }
 
 /// A new file is on the disk when its folder is.

@@ -1,8 +1,10 @@
 //! A line of a journal: the checksum of what follows, a space, and JSON.
 //!
 //! ```text
-//! 1c291ca3 {"key":"cell 0, trial 0","record":{…}}
+//! 1c291ca3 {"of":"5d41402abc4b2a76","key":"cell 0, trial 0","record":{…}}
 //! ```
+//!
+//! `of` is the same in every line: what it says of the study ([`Identity`](super::Identity)) keeps lines of two studies apart.
 
 use serde::{Deserialize, Serialize};
 use serde_json::value::RawValue;
@@ -13,52 +15,69 @@ pub type Records = BTreeMap<String, Box<RawValue>>;
 
 #[derive(Serialize)]
 struct Written<'a, R> {
+    of: &'a str,
     key: &'a str,
     record: &'a R,
 }
 
+/// A whole line.
 #[derive(Deserialize)]
-struct Read {
-    key: String,
-    record: Box<RawValue>,
+pub struct Line {
+    /// What binds it to its study; nothing in journals of older programs.
+    #[serde(default)]
+    pub of: String,
+    /// What was kept.
+    pub key: String,
+    /// The same, as JSON.
+    pub record: Box<RawValue>,
 }
 
 /// One line with its end.
-pub fn encode(key: &str, record: &impl Serialize) -> serde_json::Result<String> {
-    let json = serde_json::to_string(&Written { key, record })?;
+pub fn encode(of: &str, key: &str, record: &impl Serialize) -> serde_json::Result<String> {
+    let json = serde_json::to_string(&Written { of, key, record })?;
     Ok(format!("{:08x} {json}\n", crc32fast::hash(json.as_bytes())))
 }
 
 /// What the lines of a file say.
+#[derive(Default)]
 pub struct Decoded {
-    /// Records of the whole lines.
+    /// The first line, if it is whole.
+    pub first: Option<Line>,
+    /// Records of the other whole lines.
     pub records: Records,
     /// Bytes up to the end of the last whole line.
     pub n_whole: usize,
     /// Number from 1 of a line that is broken though others follow it: no interrupted write leaves that behind.
     pub broken: Option<usize>,
+    /// Number from 1 of a line that begins a study anew, or is bound to another one than the first.
+    pub foreign: Option<usize>,
 }
 
-/// Reads lines up to the first that is torn.
+/// Reads lines up to the first that is torn, or foreign.
 pub fn decode(bytes: &[u8]) -> Decoded {
-    let mut decoded = Decoded {
-        records: Records::new(),
-        n_whole: 0,
-        broken: None,
-    };
+    let mut decoded = Decoded::default();
     for (number, line) in bytes.split_inclusive(|&byte| byte == b'\n').enumerate() {
         let Some(read) = decode_line(line) else {
             let is_last = decoded.n_whole + line.len() == bytes.len();
             decoded.broken = (!is_last).then_some(number + 1);
             break;
         };
-        decoded.records.insert(read.key, read.record);
+        match &decoded.first {
+            None => decoded.first = Some(read),
+            Some(first) if read.key == first.key || read.of != first.of => {
+                decoded.foreign = Some(number + 1);
+                break;
+            }
+            Some(_) => {
+                decoded.records.insert(read.key, read.record);
+            }
+        }
         decoded.n_whole += line.len();
     }
     decoded
 }
 
-fn decode_line(line: &[u8]) -> Option<Read> {
+fn decode_line(line: &[u8]) -> Option<Line> {
     let line = std::str::from_utf8(line.strip_suffix(b"\n")?).ok()?;
     let (checksum, json) = line.split_once(' ')?;
     let is_whole = checksum == format!("{:08x}", crc32fast::hash(json.as_bytes()));
@@ -69,9 +88,13 @@ fn decode_line(line: &[u8]) -> Option<Read> {
 mod tests {
     use super::*;
 
+    fn line(of: &str, key: &str, number: usize) -> String {
+        encode(of, key, &(number, 0.1 + number as f64)).unwrap()
+    }
+
     fn file() -> Vec<u8> {
-        let lines = ["a", "b\n\"", "c", "a"].iter().enumerate();
-        let lines = lines.map(|(k, key)| encode(key, &(k, 0.1 + k as f64)).unwrap());
+        let lines = ["study", "a", "b\n\"", "c", "a"].iter().enumerate();
+        let lines = lines.map(|(number, key)| line("1f", key, number));
         lines.collect::<String>().into_bytes()
     }
 
@@ -84,8 +107,10 @@ mod tests {
     fn what_is_written_is_read_and_the_last_of_a_key_counts() {
         let decoded = decode(&file());
         assert_eq!((decoded.n_whole, decoded.broken), (file().len(), None));
-        assert_eq!(number(&decoded, "b\n\""), Some((1, 1.1)));
-        assert_eq!(number(&decoded, "a"), Some((3, 3.1)));
+        assert_eq!(decoded.foreign, None);
+        assert_eq!(decoded.first.as_ref().unwrap().key, "study");
+        assert_eq!(number(&decoded, "b\n\""), Some((2, 2.1)));
+        assert_eq!(number(&decoded, "a"), Some((4, 4.1)));
     }
 
     #[test]
@@ -101,7 +126,8 @@ mod tests {
                 (expected, None),
                 "{n} bytes"
             );
-            assert_eq!(decoded.records.len(), whole);
+            assert_eq!(decoded.first.is_some(), whole > 0);
+            assert_eq!(decoded.records.len(), whole.saturating_sub(1));
         }
     }
 
@@ -114,6 +140,15 @@ mod tests {
             bytes[k] ^= 1;
             let decoded = decode(&bytes);
             assert!(decoded.broken.is_some(), "byte {k}");
+        }
+    }
+
+    #[test]
+    fn a_line_of_another_study_is_told_from_the_others() {
+        for foreign in [line("2e", "d", 5), line("1f", "study", 5)] {
+            let bytes = [file(), foreign.into_bytes(), file()].concat();
+            let decoded = decode(&bytes);
+            assert_eq!((decoded.foreign, decoded.broken), (Some(6), None));
         }
     }
 }

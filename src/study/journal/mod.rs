@@ -2,7 +2,8 @@
 //!
 //! A [`Journal`] is a file of lines beside the tables, one a finished piece of work, each with its checksum. Its first line
 //! is the [`Identity`] of the study: a run on another study, other objects or by another program is refused, with what
-//! differs. A process that is killed loses the work in flight and nothing else: the line that it was writing is recognised as
+//! differs, and so is a journal without such a line or with lines of two studies. What a line keeps goes by all that it depends on, so
+//! that a study with more values on its axes, or more trials, goes on from what is there. A process that is killed loses the work in flight and nothing else: the line that it was writing is recognised as
 //! torn, dropped, and its work done again.
 
 mod identity;

@@ -6,7 +6,7 @@ use crate::recognition::ClassifierKind;
 use crate::sensing::Ensemble;
 use crate::study::check::{Check, positive};
 use crate::study::plan::MM;
-use crate::world::{Patch, Placement};
+use crate::world::{MOST_TOUCHES, Patch, Placement};
 use std::path::{Path, PathBuf};
 
 /// Settings of a study of object detail, ready to run.
@@ -39,6 +39,9 @@ pub struct RecognitionPlan {
     /// What learns.
     pub classifiers: Vec<ClassifierKind>,
 }
+
+/// Points of a mesh, at most: all are in memory at once.
+const MOST_POINTS: usize = 10_000_000;
 
 impl ObjectDetailPlan {
     /// Checks a study; the error names `place` (the file) and the first key that is out of its range.
@@ -75,7 +78,8 @@ impl ObjectDetailPlan {
             let allowed = "packing, vertex_spheres, decimated_vertex_spheres, medial_spheres: the mesh is what they are compared with";
             return Err(check.error(key, "mesh", allowed));
         }
-        check.positive_count("object_detail.surface_points", wanted.surface_points)?;
+        let key = "object_detail.surface_points";
+        check.count(key, wanted.surface_points, MOST_POINTS)?;
         let recognition = wanted.recognition.as_ref();
         let recognition = recognition.map(|wanted| check_recognition(&check, wanted, &patch));
         Ok(Self {
@@ -112,16 +116,22 @@ fn check_recognition(
     patch: &Patch,
 ) -> Result<RecognitionPlan> {
     let key = |name: &str| format!("object_detail.recognition.{name}");
-    let count = |name: &str, count| check.positive_count(&key(name), count);
+    let count = |name: &str, count| check.count(&key(name), count, MOST_TOUCHES);
     let n_measurements = count("measurements", wanted.measurements)?;
     let n_taxels = patch.grid.n_taxels();
     if n_measurements > n_taxels {
         let allowed = format!("at most {n_taxels}, the taxels of the array");
         return Err(check.error(&key("measurements"), n_measurements, allowed));
     }
+    let n_training = count("training_touches", wanted.training_touches)?;
+    let n_test = count("test_touches", wanted.test_touches)?;
+    // Of two objects, the fewest; with more it takes more.
+    let bytes = 16.0 * (n_training + n_test) as f64 * n_measurements as f64;
+    let what = "the measurements of all touches";
+    check.memory(&key("training_touches"), n_training + n_test, bytes, what)?;
     Ok(RecognitionPlan {
-        n_training: count("training_touches", wanted.training_touches)?,
-        n_test: count("test_touches", wanted.test_touches)?,
+        n_training,
+        n_test,
         ensemble: wanted.ensemble,
         n_measurements,
         classifiers: check.list(&key("classifiers"), wanted.classifiers.clone())?,

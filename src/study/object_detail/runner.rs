@@ -61,24 +61,13 @@ impl PieceStudy for ObjectDetailStudy {
     fn pieces(&self) -> Vec<NamedPiece> {
         let mut pieces = Vec::new();
         for (group, mesh) in self.meshes.iter().enumerate() {
-            pieces.push(NamedPiece {
-                name: models_name(mesh),
-                group,
-                work: self.score_work(),
-            });
-            pieces.push(NamedPiece {
-                name: times_name(mesh),
-                group,
-                work: self.time_work(),
-            });
+            let (scores, times) = (self.score_work(), self.time_work());
+            pieces.push(NamedPiece::new(models_name(mesh), group, scores));
+            pieces.push(NamedPiece::new(times_name(mesh), group, times));
         }
         let group = self.meshes.len();
         let names = self.recognition_names().into_iter();
-        pieces.extend(names.map(|name| NamedPiece {
-            name,
-            group,
-            work: self.recognition_work(),
-        }));
+        pieces.extend(names.map(|name| NamedPiece::new(name, group, self.recognition_work())));
         pieces
     }
 

@@ -17,8 +17,8 @@ pub struct PiecesLeft<'a, R> {
     fail_fast: bool,
     /// What is told how far the run is. Each finished piece advances it by one.
     pub progress: &'a dyn Progress,
-    /// What each is planned to take, by name.
-    work: BTreeMap<String, Piece>,
+    /// By name.
+    pieces: BTreeMap<String, NamedPiece>,
     /// By name, once it is finished.
     results: Mutex<BTreeMap<String, PieceResult<R>>>,
 }
@@ -36,24 +36,24 @@ impl<'a, R: PieceRows> PiecesLeft<'a, R> {
             journal,
             fail_fast,
             progress,
-            work: pieces.map(|piece| (piece.name, piece.work)).collect(),
+            pieces: pieces.map(|piece| (piece.name.clone(), piece)).collect(),
             results: Mutex::default(),
         }
     }
 
     /// What each piece is planned to take.
     pub(super) fn work(&self) -> impl Iterator<Item = Piece> + '_ {
-        self.work.values().copied()
+        self.pieces.values().map(|piece| piece.work)
     }
 
     /// How many there are.
     pub(super) fn n(&self) -> usize {
-        self.work.len()
+        self.pieces.len()
     }
 
     /// Whether a piece is to be done.
     pub fn has(&self, name: &str) -> bool {
-        self.work.contains_key(name)
+        self.pieces.contains_key(name)
     }
 
     /// Those of some things whose pieces are to be done.
@@ -67,11 +67,11 @@ impl<'a, R: PieceRows> PiecesLeft<'a, R> {
     /// # Errors
     /// The journal cannot be written; what went wrong, if the first failure ends the run.
     pub fn finish(&self, name: &str, measure: impl FnOnce() -> Result<R>) -> Result<()> {
-        let Some(work) = self.work.get(name) else {
+        let Some(piece) = self.pieces.get(name) else {
             return Ok(());
         };
-        let result = self.during(work, || attempt(self.fail_fast, measure))?;
-        self.keep(name, result)
+        let result = self.during(&piece.work, || attempt(self.fail_fast, measure))?;
+        self.keep(piece, result)
     }
 
     /// Does some of what the study [shares](super::PieceStudy::shared_work), and tells how long it took.
@@ -95,24 +95,24 @@ impl<'a, R: PieceRows> PiecesLeft<'a, R> {
         match attempt(self.fail_fast, make)? {
             Ok(made) => Ok(Some(made)),
             Err(said) => {
-                for name in names.iter().filter(|name| self.has(name)) {
-                    self.keep(name, Err(said.clone()))?;
+                for piece in names.iter().filter_map(|name| self.pieces.get(name)) {
+                    self.keep(piece, Err(said.clone()))?;
                 }
                 Ok(None)
             }
         }
     }
 
-    fn keep(&self, name: &str, result: PieceResult<R>) -> Result<()> {
-        keep(self.journal, name, &result)?;
-        self.results().insert(name.to_owned(), result);
+    fn keep(&self, piece: &NamedPiece, result: PieceResult<R>) -> Result<()> {
+        keep(self.journal, piece, &result)?;
+        self.results().insert(piece.name.clone(), result);
         self.progress.advance(1);
         Ok(())
     }
 
     /// What came of every piece that was to be done, by name; none of one that was passed over.
     pub(super) fn into_results(self) -> BTreeMap<String, Option<PieceResult<R>>> {
-        let names = self.work.into_keys();
+        let names = self.pieces.into_keys();
         let results = self.results.into_inner();
         let mut results = results.unwrap_or_else(|poisoned| poisoned.into_inner());
         let found = names.map(|name| (results.remove(&name), name));

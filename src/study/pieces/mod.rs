@@ -15,13 +15,20 @@ pub use piece_study::{
 };
 pub use record::PieceRows;
 
+use super::content_hash::ContentHash;
 use super::time_left::Piece;
+
+/// Hexadecimal digits of what a piece depends on. Fewer: two of one name may be taken for each other.
+const CONTENT_DIGITS: usize = 16;
 
 /// A piece of a study's work.
 #[derive(Clone, Debug, PartialEq)]
 pub struct NamedPiece {
     /// What it is called; no two pieces of a study share a name.
     pub name: String,
+    /// What its rows depend on beside its name and the keys of the study that [may not change](super::StudyKind::may_change); nothing
+    /// where these say all. Its number is no part of either: a study may have more pieces the next time.
+    pub content: String,
     /// Number of its group, from 0 without gaps: pieces of a group share what has to be made before them, so that one shard does all of
     /// them as long as there is a group for every shard.
     pub group: usize,
@@ -30,10 +37,28 @@ pub struct NamedPiece {
 }
 
 impl NamedPiece {
+    /// A piece whose name says all that it depends on.
+    pub fn new(name: String, group: usize, work: Piece) -> Self {
+        Self {
+            name,
+            content: String::new(),
+            group,
+            work,
+        }
+    }
+
     /// Pieces that share nothing: each a group of its own.
     pub fn each_alone(pieces: impl IntoIterator<Item = (String, Piece)>) -> Vec<Self> {
         let pieces = pieces.into_iter().enumerate();
-        let named = pieces.map(|(group, (name, work))| Self { name, group, work });
+        let named = pieces.map(|(group, (name, work))| Self::new(name, group, work));
         named.collect()
+    }
+
+    /// The same, depending on something more.
+    pub fn made_of(mut self, content: impl std::fmt::Debug) -> Self {
+        let mut digits = ContentHash::default().bytes(format!("{content:?}")).hex();
+        digits.truncate(CONTENT_DIGITS);
+        self.content = digits;
+        self
     }
 }

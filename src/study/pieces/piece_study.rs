@@ -164,7 +164,7 @@ fn before_and_left<'a, R: PieceRows>(
     manner: &PieceManner<'a>,
 ) -> (Vec<Option<PieceResult<R>>>, PiecesLeft<'a, R>) {
     let is_in = is_in(pieces, manner.part);
-    let known = |piece: &NamedPiece| in_journal::<R>(manner.journal, &piece.name);
+    let known = |piece: &NamedPiece| in_journal::<R>(manner.journal, piece);
     let before: Vec<Option<PieceResult<R>>> = pieces.iter().map(known).collect();
     let is_left = |(number, _): &(usize, &NamedPiece)| {
         let is_left = match &before[*number] {
@@ -200,7 +200,7 @@ pub fn n_pieces_left<S: PieceStudy>(study: &S, part: Part, journal: &Journal) ->
     let pieces = study.pieces();
     let is_in = is_in(&pieces, part);
     let is_left = |(number, piece): &(usize, &NamedPiece)| {
-        is_in(*number) && in_journal::<S::Rows>(journal, &piece.name).is_none()
+        is_in(*number) && in_journal::<S::Rows>(journal, piece).is_none()
     };
     pieces.iter().enumerate().filter(is_left).count()
 }

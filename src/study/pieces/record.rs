@@ -1,5 +1,6 @@
 //! What a journal keeps of a piece.
 
+use super::NamedPiece;
 use crate::error::Result;
 use crate::study::journal::Journal;
 use serde::de::DeserializeOwned;
@@ -23,30 +24,38 @@ enum Record {
 }
 
 /// What a journal has of a piece.
-pub fn in_journal<R: PieceRows>(journal: &Journal, name: &str) -> Option<PieceResult<R>> {
-    match journal.get(&key(name))? {
+pub fn in_journal<R: PieceRows>(journal: &Journal, piece: &NamedPiece) -> Option<PieceResult<R>> {
+    match journal.get(&key(piece))? {
         Record::Found(rows) => toml::from_str(&rows).ok().map(Ok),
         Record::Failed(said) => Some(Err(said)),
     }
 }
 
 /// Keeps what came of a piece.
-pub fn keep<R: PieceRows>(journal: &Journal, name: &str, result: &PieceResult<R>) -> Result<()> {
+pub fn keep<R: PieceRows>(
+    journal: &Journal,
+    piece: &NamedPiece,
+    result: &PieceResult<R>,
+) -> Result<()> {
     let record = match result {
         Ok(rows) => Record::Found(toml::to_string(rows).expect("rows of tables have a TOML form")),
         Err(said) => Record::Failed(said.clone()),
     };
-    journal.keep(&key(name), &record)
+    journal.keep(&key(piece), &record)
 }
 
-fn key(name: &str) -> String {
-    format!("piece {name}")
+fn key(NamedPiece { name, content, .. }: &NamedPiece) -> String {
+    match content.is_empty() {
+        true => format!("piece {name}"),
+        false => format!("piece {name} [{content}]"),
+    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::study::journal::{Identity, JOURNAL_FILE};
+    use crate::study::time_left::Piece;
     use rand::{Rng, SeedableRng};
     use rand_chacha::ChaCha8Rng;
 
@@ -103,16 +112,19 @@ mod tests {
         let path = folder.path().join(JOURNAL_FILE);
         let identity = Identity::new("a = 1".to_owned(), Default::default());
         let journal = Journal::open(&path, &identity).unwrap();
-        keep(&journal, "one", &Ok(rows.clone())).unwrap();
-        keep::<Rows>(&journal, "two", &Err("no\nroom".to_owned())).unwrap();
+        let piece = |name: &str| NamedPiece::new(name.to_owned(), 0, Piece::of_stage(0, 0, 1.0));
+        keep(&journal, &piece("one"), &Ok(rows.clone())).unwrap();
+        keep::<Rows>(&journal, &piece("two"), &Err("no\nroom".to_owned())).unwrap();
         drop(journal);
         let journal = Journal::open(&path, &identity).unwrap();
-        let back: Rows = in_journal(&journal, "one").unwrap().unwrap();
+        let back: Rows = in_journal(&journal, &piece("one")).unwrap().unwrap();
         assert_eq!(back.rows, rows.rows);
         let bits = |rows: &Rows| rows.more.iter().map(|n| n.to_bits()).collect::<Vec<_>>();
         assert_eq!(bits(&back), bits(&rows));
-        let failed = in_journal::<Rows>(&journal, "two");
+        let failed = in_journal::<Rows>(&journal, &piece("two"));
         assert_eq!(failed, Some(Err("no\nroom".to_owned())));
-        assert_eq!(in_journal::<Rows>(&journal, "three"), None);
+        assert_eq!(in_journal::<Rows>(&journal, &piece("three")), None);
+        let of_more = piece("one").made_of("more");
+        assert_eq!(in_journal::<Rows>(&journal, &of_more), None);
     }
 }

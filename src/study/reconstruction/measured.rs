@@ -31,15 +31,20 @@ pub(super) fn statistics_name(Measured { ensemble, m }: Measured, basis: Basis) 
     format!("isometry of {ensemble:?}, m = {m}, {basis:?}")
 }
 
-/// What a cell is called as a piece.
-pub(super) fn cell_name(Measured { ensemble, m }: Measured, cell: &Wanted) -> String {
+/// What a cell is called as a piece: by its settings, since its number is another where an axis has more values.
+pub(super) fn cell_name(
+    plan: &ReconstructionPlan,
+    Measured { ensemble, m }: Measured,
+    cell: &Wanted,
+) -> String {
     let Wanted {
-        number,
+        noise,
         dictionary,
         solver,
         ..
     } = cell;
-    format!("cell {number}: {solver:?} in {dictionary:?} of {ensemble:?}, m = {m}")
+    let (level, unit) = (plan.noise[*noise], plan.noise_unit);
+    format!("{solver:?} in {dictionary:?} of {ensemble:?}, m = {m}, noise {level} {unit:?}")
 }
 
 /// All that is made of an ensemble and m.
@@ -91,7 +96,7 @@ impl OnMeasured<'_> {
         let sensed: Vec<SensedDictionary> = sensed.into_iter().flatten().collect();
         for (noise, noisy) in self.touches.noisy.iter().enumerate() {
             let cells = self.cells.iter().filter(|cell| cell.noise == noise);
-            let cells = left.of(cells, |cell| cell_name(self.measured, cell));
+            let cells = left.of(cells, |cell| cell_name(self.plan, self.measured, cell));
             if cells.is_empty() {
                 continue;
             }
@@ -107,7 +112,7 @@ impl OnMeasured<'_> {
                     noisy,
                     touches: self.touches,
                 };
-                left.finish(&cell_name(self.measured, wanted), || {
+                left.finish(&cell_name(self.plan, self.measured, wanted), || {
                     let (score, time) = job.run(plan, measurements.view())?;
                     Ok(ReconstructionTables {
                         reconstruction: vec![(job.cell.clone(), score)],
@@ -123,7 +128,7 @@ impl OnMeasured<'_> {
     /// What is left that is made of a dictionary.
     fn names(&self, basis: Basis, left: &PiecesLeft<ReconstructionTables>) -> Vec<String> {
         let cells = self.cells.iter().filter(|cell| cell.dictionary == basis);
-        let cells = cells.map(|cell| cell_name(self.measured, cell));
+        let cells = cells.map(|cell| cell_name(self.plan, self.measured, cell));
         let names = cells.chain([statistics_name(self.measured, basis)]);
         left.of(names, String::clone)
     }

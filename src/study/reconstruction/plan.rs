@@ -39,6 +39,9 @@ pub struct ReconstructionPlan {
     pub isometry_sparsity: Vec<usize>,
 }
 
+/// Supports that are drawn of each size, at most: all are in memory at once.
+const MOST_SUBSETS: usize = 1_000_000;
+
 impl ReconstructionPlan {
     /// Checks a study; the error names `place` (the file) and the first key that is out of its range.
     pub fn new(place: &str, mut spec: ReconstructionStudySpec) -> Result<Self> {
@@ -65,6 +68,14 @@ impl ReconstructionPlan {
             "between 0 and 1",
         )?;
         let isometry_sparsity = check.isometry(wanted)?;
+        let axes = [
+            ensembles.len(),
+            amounts.len(),
+            noise.len(),
+            dictionaries.len(),
+            solvers.len(),
+        ];
+        check.configurations(axes.iter().map(|&n| n as f64).product())?;
         Ok(Self {
             patch,
             placement,
@@ -201,7 +212,8 @@ impl Check<'_> {
         for &size in &sizes {
             self.positive_count(key, size)?;
         }
-        self.positive_count("reconstruction.isometry_subsets", wanted.isometry_subsets)?;
+        let key = "reconstruction.isometry_subsets";
+        self.count(key, wanted.isometry_subsets, MOST_SUBSETS)?;
         Ok(sizes)
     }
 }

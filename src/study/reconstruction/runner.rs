@@ -46,15 +46,13 @@ impl PieceStudy for ReconstructionStudy {
     fn pieces(&self) -> Vec<NamedPiece> {
         let mut pieces = Vec::new();
         for (group, measured) in self.measured().into_iter().enumerate() {
-            pieces.extend(self.plan.dictionaries.iter().map(|&basis| NamedPiece {
-                name: statistics_name(measured, basis),
-                group,
-                work: Piece::of_stage(STATISTICS, 0, ISOMETRY_S),
+            pieces.extend(self.plan.dictionaries.iter().map(|&basis| {
+                let work = Piece::of_stage(STATISTICS, 0, ISOMETRY_S);
+                NamedPiece::new(statistics_name(measured, basis), group, work)
             }));
-            pieces.extend(self.cells(group).iter().map(|cell| NamedPiece {
-                name: cell_name(measured, cell),
-                group,
-                work: self.cell_work(measured, cell),
+            pieces.extend(self.cells(group).iter().map(|cell| {
+                let name = cell_name(&self.plan, measured, cell);
+                NamedPiece::new(name, group, self.cell_work(measured, cell))
             }));
         }
         pieces
@@ -100,6 +98,7 @@ impl PieceStudy for ReconstructionStudy {
     }
 
     fn tables(&self, mut tables: ReconstructionTables) -> Result<ReconstructionTables> {
+        self.number_cells(&mut tables);
         tables.pareto = pareto(&tables.reconstruction, &tables.timing);
         Ok(tables)
     }
@@ -225,13 +224,42 @@ impl ReconstructionStudy {
         cells
     }
 
+    /// Gives rows the numbers of their cells: those that were finished when axes had other values have others.
+    fn number_cells(&self, tables: &mut ReconstructionTables) {
+        let mut numbers = BTreeMap::new();
+        for (group, measured) in self.measured().into_iter().enumerate() {
+            for cell in self.cells(group) {
+                numbers.insert(cell_name(&self.plan, measured, &cell), cell.number);
+            }
+        }
+        let number = |row: &mut ReconstructionCell| {
+            let measured = Measured {
+                ensemble: row.ensemble,
+                m: row.measurements,
+            };
+            let levels = self.plan.noise.iter();
+            let cell = Wanted {
+                number: row.cell,
+                noise: levels.take_while(|&&level| level != row.noise_std).count(),
+                dictionary: row.dictionary,
+                solver: row.solver,
+            };
+            row.cell = numbers[&cell_name(&self.plan, measured, &cell)];
+        };
+        tables
+            .reconstruction
+            .iter_mut()
+            .for_each(|(row, _)| number(row));
+        tables.timing.iter_mut().for_each(|(row, _)| number(row));
+    }
+
     /// Whether something that is left is made of a dictionary.
     fn needs(&self, left: &PiecesLeft<ReconstructionTables>, basis: Basis) -> bool {
         let mut groups = self.measured().into_iter().enumerate();
         groups.any(|(group, measured)| {
             let cells = self.cells(group);
             let of_basis = cells.iter().filter(|cell| cell.dictionary == basis);
-            let mut names = of_basis.map(|cell| cell_name(measured, cell));
+            let mut names = of_basis.map(|cell| cell_name(&self.plan, measured, cell));
             left.has(&statistics_name(measured, basis)) || names.any(|name| left.has(&name))
         })
     }

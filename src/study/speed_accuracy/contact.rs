@@ -47,17 +47,12 @@ impl<'a> ContactPart<'a> {
 
     /// An object's models, and each of its ways through time, share the object's models.
     pub fn pieces(&self) -> Vec<NamedPiece> {
-        let models = (0..self.chosen.len()).map(|object| NamedPiece {
-            name: self.models_name(object),
-            group: object,
-            work: self.models_work(object),
+        let models = (0..self.chosen.len()).map(|object| {
+            NamedPiece::new(self.models_name(object), object, self.models_work(object))
         });
         let steps = self.steps().into_iter();
-        let steps = steps.map(|run| NamedPiece {
-            name: self.step_name(&run),
-            group: run.3,
-            work: self.step_work(&run),
-        });
+        let steps =
+            steps.map(|run| NamedPiece::new(self.step_name(&run), run.3, self.step_work(&run)));
         models.chain(steps).collect()
     }
 

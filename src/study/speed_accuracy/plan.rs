@@ -6,9 +6,9 @@ use super::spec::{
 use crate::error::Result;
 use crate::study::axis::Axis;
 use crate::study::check::{Check, not_negative, positive};
-use crate::study::plan::MM;
+use crate::study::plan::{MM, MOST_TRIALS};
 use crate::study::spec::SkinSpec;
-use crate::world::{Patch, Placement};
+use crate::world::{MOST_TOUCHES, Patch, Placement};
 use std::path::{Path, PathBuf};
 
 /// Settings of such a study, ready to run.
@@ -143,7 +143,7 @@ fn check_contact(check: &Check, folder: &Path, spec: &ContactSpec) -> Result<Con
         ("stepped_objects", spec.stepped_objects),
         ("stepped_touches", spec.stepped_touches),
     ] {
-        check.positive_count(&key(name), count)?;
+        check.count(&key(name), count, MOST_TOUCHES)?;
     }
     if let Some(scans) = &spec.scans {
         check.list(&key("scans.names"), scans.names.clone())?;
@@ -169,7 +169,7 @@ fn check_recognition(
         ("test_touches", spec.test_touches),
         ("timed_touches", spec.timed_touches),
     ] {
-        check.positive_count(&key(name), count)?;
+        check.count(&key(name), count, MOST_TOUCHES)?;
     }
     if spec.objects < 2 {
         return Err(check.error(&key("objects"), spec.objects, "at least 2 to tell apart"));
@@ -203,6 +203,19 @@ fn check_recognition(
         let allowed = format!("1 to {fewest}, the taxels of the coarsest array");
         return Err(check.error(&key("ratio"), ratio, allowed));
     }
+    let axes = [
+        patches.len(),
+        levels.len(),
+        spec.ensemble.len(),
+        ratios.len(),
+        spec.classifier.len(),
+    ];
+    check.configurations(axes.iter().map(|&n| n as f64).product())?;
+    // Of two objects, the fewest, as they are and in one detail, before they are compressed; with more it takes more.
+    let n_touches = spec.training_touches + spec.test_touches;
+    let bytes = 4.0 * n_touches as f64 * fewest;
+    let what = "the frames of all touches";
+    check.memory(&key("training_touches"), n_touches, bytes, what)?;
     Ok(RecognitionSweep {
         spec: spec.clone(),
         patches,
@@ -214,6 +227,12 @@ fn check_resolution(check: &Check, spec: &ResolutionSpec) -> Result<ResolutionPl
     let key = |name: &str| format!("speed_accuracy.resolution.{name}");
     let touches = Axis::Many(spec.touches.clone());
     let trials = Axis::Many(spec.trials.clone());
+    for &count in &spec.touches {
+        check.count(&key("touches"), count, MOST_TOUCHES)?;
+    }
+    for &count in &spec.trials {
+        check.count(&key("trials"), count, MOST_TRIALS)?;
+    }
     // Fewer leave no test touch in a quarter of them.
     if let Some(few) = check
         .counts(&key("touches"), &touches)?

@@ -55,7 +55,7 @@ impl<'a> RecognitionPart<'a> {
         let mut pieces = Vec::new();
         for (group, bench) in self.benches().into_iter().enumerate() {
             let named = self.chains(bench).into_iter();
-            pieces.extend(named.map(|(name, work)| NamedPiece { name, group, work }));
+            pieces.extend(named.map(|(name, work)| NamedPiece::new(name, group, work)));
         }
         pieces
     }

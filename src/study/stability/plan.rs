@@ -100,6 +100,18 @@ impl PartCheck<'_> {
         let dts = self.positive("dt_s", &part.dt_s)?;
         let iterations = self.key("solver_iterations");
         let iterations = self.check.counts(&iterations, &part.solver_iterations)?;
+        let axes = [
+            sides.len(),
+            stiffnesses.len(),
+            masses.len(),
+            taxel_masses.len(),
+            dts.len(),
+        ];
+        let of_axes: f64 = axes.iter().map(|&n| n as f64).product();
+        let ways = methods.iter().filter(|method| method.is_built());
+        let ways = ways.map(|&method| of_method(method, &iterations).len());
+        self.check
+            .configurations(ways.sum::<usize>() as f64 * of_axes)?;
         let mut cells = Vec::new();
         for method in methods.into_iter().filter(|method| method.is_built()) {
             for iterations in of_method(method, &iterations) {

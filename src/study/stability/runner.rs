@@ -7,6 +7,7 @@ use super::plan::StabilityPlan;
 use super::summary::summary;
 use super::table::{StabilityCell, StabilityTables};
 use crate::error::Result;
+use crate::study::millimetres;
 use crate::study::pieces::{NamedPiece, PieceRows, PieceStudy, PiecesLeft};
 use crate::study::time_left::Piece;
 use rayon::prelude::*;
@@ -16,12 +17,13 @@ impl StabilityPlan {
     fn named_cells(&self) -> impl Iterator<Item = (String, &StabilityCell, f64)> {
         let cells = self.parts.iter();
         let cells = cells.flat_map(|part| part.cells.iter().map(|cell| (cell, part.stroke)));
-        cells.map(|(cell, stroke)| (name(cell), cell, stroke))
+        cells.map(|(cell, stroke)| (name(cell, stroke), cell, stroke))
     }
 }
 
 /// By its settings: which cells there are depends on what the program was built with.
-fn name(cell: &StabilityCell) -> String {
+fn name(cell: &StabilityCell, stroke: f64) -> String {
+    let stroke_mm = millimetres(stroke);
     let StabilityCell {
         part,
         scene,
@@ -38,7 +40,7 @@ fn name(cell: &StabilityCell) -> String {
     let ball = ball.map_or(String::new(), |mass| format!(", ball of {mass} kg"));
     format!(
         "part {part}: {scene:?} by {method:?}{iterations}, {taxels} taxels a side of {stiffness_n_per_m} N/m and {taxel_mass_kg} \
-         kg{ball}, steps of {dt_s} s"
+         kg and a stroke of {stroke_mm} mm{ball}, steps of {dt_s} s"
     )
 }
 

@@ -9,7 +9,7 @@ use crate::geometry::rotation_from_rpy;
 use crate::sensing::Ensemble;
 use crate::study::check::{Check, not_negative, positive};
 use crate::study::plan::MM;
-use crate::world::{Robot, Taxel};
+use crate::world::{MOST_TOUCHES, Robot, Taxel};
 use glam::{DQuat, DVec3};
 use std::path::Path;
 
@@ -102,6 +102,11 @@ pub struct RecognitionPlan {
     pub n_test: usize,
 }
 
+/// Steps of a scene, at most: the time of each is in memory.
+const MOST_STEPS: usize = 10_000_000;
+/// Spheres of a cushion, at most.
+const MOST_SPHERES: usize = 10_000_000;
+
 impl WholeBodyPlan {
     /// Checks a study whose robot lies beside `folder`; the error names `place` (the file) and the first key that is out of its range.
     pub fn new(place: &str, folder: &Path, spec: WholeBodyStudySpec) -> Result<Self> {
@@ -115,6 +120,7 @@ impl WholeBodyPlan {
             .collect::<Result<Vec<_>>>()?;
         let names: Vec<&str> = scenes.iter().map(|scene| scene.name.as_str()).collect();
         check.list("whole_body.scenes", names)?;
+        let compressions = check.compressions(&wanted.sensing)?;
         Ok(Self {
             taxel: check.taxel(wanted)?,
             pitch,
@@ -122,12 +128,15 @@ impl WholeBodyPlan {
             dt: check.length("step_ms", wanted.step_ms)?,
             surface_error: check.length("surface_error_mm", wanted.surface_error_mm)?,
             scenes,
-            compressions: check.compressions(&wanted.sensing)?,
-            recognition: check.body_recognition(&wanted.recognition, &robot)?,
+            recognition: {
+                let n_measured = compressions.len() * wanted.sensing.measurements;
+                check.body_recognition(&wanted.recognition, (&robot, n_measured))?
+            },
+            compressions,
             ladders: check.ladders(wanted.ladders.as_ref())?,
             robot,
             spec: {
-                check.positive_count("whole_body.steps", wanted.steps)?;
+                check.count("whole_body.steps", wanted.steps, MOST_STEPS)?;
                 spec
             },
         })
@@ -268,7 +277,7 @@ impl Check<'_> {
     fn body_recognition(
         &self,
         wanted: &BodyRecognitionSpec,
-        robot: &Robot,
+        (robot, n_measured): (&Robot, usize),
     ) -> Result<RecognitionPlan> {
         let key = |name: &str| format!("whole_body.recognition.{name}");
         let objects = self.list(&key("objects"), wanted.objects.clone())?;
@@ -283,7 +292,13 @@ impl Check<'_> {
         let spread = |name: &str, value| {
             self.value(&key(name), value, not_negative, "zero or a positive number")
         };
-        let count = |name: &str, count| self.positive_count(&key(name), count);
+        let count = |name: &str, count| self.count(&key(name), count, MOST_TOUCHES);
+        let n_training = count("training_touches", wanted.training_touches)?;
+        let n_test = count("test_touches", wanted.test_touches)?;
+        let n_touches = objects.len() * (n_training + n_test);
+        let bytes = 8.0 * n_touches as f64 * n_measured as f64;
+        let what = format!("{n_measured} measurements of each of {n_touches} touches");
+        self.memory(&key("training_touches"), n_training + n_test, bytes, &what)?;
         Ok(RecognitionPlan {
             objects,
             place: PlacePlan {
@@ -295,8 +310,8 @@ impl Check<'_> {
             offset: MM * spread("offset_mm", wanted.offset_mm)?,
             yaw: spread("yaw_deg", wanted.yaw_deg)?.to_radians(),
             depth: [MM * least, MM * most],
-            n_training: count("training_touches", wanted.training_touches)?,
-            n_test: count("test_touches", wanted.test_touches)?,
+            n_training,
+            n_test,
         })
     }
 
@@ -305,6 +320,9 @@ impl Check<'_> {
             return Ok(None);
         };
         let key = |name: &str| format!("whole_body.ladders.{name}");
+        for &count in &rungs.spheres {
+            self.count(&key("spheres"), count, MOST_SPHERES)?;
+        }
         for (name, counts) in [
             ("taxels", &rungs.taxels),
             ("touched_at_taxels", &rungs.touched_at_taxels),

@@ -61,21 +61,15 @@ impl PieceStudy for WholeBodyPlan {
     /// Compressions and scenes need all that is learned; rungs need nothing.
     fn pieces(&self) -> Vec<NamedPiece> {
         let names = self.compression_names().into_iter();
-        let compressions = names.map(|name| NamedPiece {
-            name,
-            group: 0,
-            work: Piece::one_by_one(LEARN, 2, 0.0),
-        });
-        let scenes = self.scenes.iter().map(|scene| NamedPiece {
-            name: scene_name(scene),
-            group: 0,
-            work: self.scene_work(scene),
+        let compressions =
+            names.map(|name| NamedPiece::new(name, 0, Piece::one_by_one(LEARN, 2, 0.0)));
+        let scenes = self.scenes.iter().map(|scene| {
+            NamedPiece::new(scene_name(scene), 0, self.scene_work(scene)).made_of(scene)
         });
         let rungs = self.rungs();
-        let rungs = rungs.iter().enumerate().map(|(number, rung)| NamedPiece {
-            name: rung_name(rung),
-            group: number + 1,
-            work: Piece::one_by_one(CLIMB, 0, rung.planned_s(self.n_steps())),
+        let rungs = rungs.iter().enumerate().map(|(number, rung)| {
+            let work = Piece::one_by_one(CLIMB, 0, rung.planned_s(self.n_steps()));
+            NamedPiece::new(rung_name(rung), number + 1, work).made_of(rung)
         });
         compressions.chain(scenes).chain(rungs).collect()
     }

@@ -1,0 +1,82 @@
+//! What a cell's results depend on, beside what all cells of a study share: its name in a journal.
+//!
+//! Nothing in it says where the cell stands in its study, so that it keeps its name when an axis has more values. Nothing of a cell is
+//! drawn by its number either: streams go by the study's seed, the trial, and what is touched.
+
+use super::content_hash::ContentHash;
+use super::imperfection::{IMPERFECTIONS, TestedOn};
+use super::plan::Plan;
+use super::spec::StepSpec;
+use super::sweep::Group;
+use super::table::Cell;
+use crate::recognition::ClassifierKind;
+
+/// Hexadecimal digits of a name. Fewer: two cells may be taken for each other.
+const DIGITS: usize = 24;
+
+/// The names of the cells of a [family](Group::families), in their order.
+pub fn cell_names(plan: &Plan, family: &[Cell]) -> Vec<String> {
+    let steps = active_steps(plan, &family[0]);
+    let path = solved_together(family);
+    let name = |cell: &Cell| {
+        let said = format!("{:?} {steps:?} {path:?}", settings(plan, cell));
+        let mut digits = ContentHash::default().bytes(said).hex();
+        digits.truncate(DIGITS);
+        digits
+    };
+    family.iter().map(name).collect()
+}
+
+/// A cell without its number, and with all that is left out said: an axis that a study does not have is one whose value does nothing.
+fn settings(plan: &Plan, cell: &Cell) -> Cell {
+    let strength = |imperfection| Some(cell.strengths().of(imperfection).unwrap_or(0.0));
+    let [hysteresis, crosstalk, gain, drift, dead, stuck, scan, _] = IMPERFECTIONS.map(strength);
+    Cell {
+        cell: 0,
+        hysteresis_full_scale: hysteresis,
+        crosstalk,
+        gain_std: gain,
+        drift_std_full_scale: drift,
+        dead_fraction: dead,
+        stuck_fraction: stuck,
+        scan_time_ms: scan,
+        adc_bits: Some(cell.adc_bits.unwrap_or(0)),
+        tested_on: Some(cell.tested_on.unwrap_or(TestedOn::SameSkin)),
+        // All of a split's, which more trials may make fewer in a split of theirs.
+        train_touches: match plan.spec.recognition.train_touches {
+            None => 0,
+            Some(_) => cell.train_touches,
+        },
+        ..cell.clone()
+    }
+}
+
+/// The steps of the signal that do something to the cell, in their order.
+fn active_steps(plan: &Plan, cell: &Cell) -> Vec<StepSpec> {
+    let strengths = cell.strengths();
+    let is_active = |step: &&StepSpec| match step {
+        StepSpec::Force => true,
+        StepSpec::Noise => cell.noise_std != 0.0,
+        StepSpec::Smoothing => cell.smoothing_mm != 0.0,
+        step => strengths
+            .present()
+            .any(|(imperfection, _)| imperfection.step() == **step),
+    };
+    plan.steps.iter().filter(is_active).copied().collect()
+}
+
+/// The C's of which each is solved from where the last one ended: the last digits of a solution depend on them all. None where each fit
+/// stands alone.
+fn solved_together(family: &[Cell]) -> Vec<f64> {
+    let is_path = matches!(
+        family[0].classifier,
+        ClassifierKind::LinearSvm | ClassifierKind::RbfSvm | ClassifierKind::PolynomialSvm
+    );
+    let penalties = Group::fits(family).filter_map(|cells| cells[0].c);
+    let mut penalties: Vec<f64> = penalties.filter(|_| is_path).collect();
+    penalties.sort_by(f64::total_cmp);
+    match penalties.len() {
+        1 => Vec::new(),
+        _ => penalties,
+    }
+}
