@@ -28,7 +28,7 @@ const MM: f64 = 1e-3;
 pub struct Args {
     #[command(flatten)]
     source: Source,
-    /// How far past first contact [default: 3 for objects and meshes; spheres are read where they are]
+    /// How far past first contact; beyond the stroke taxels stay saturated [default: 3 for objects and meshes; spheres are read where they are]
     #[arg(long, value_name = "MM")]
     depth_mm: Option<f64>,
     /// Instead of a depth: until all springs together carry so many newtons

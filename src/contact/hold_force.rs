@@ -37,7 +37,7 @@ impl MovedObject<'_> {
     ///
     /// `poses`: `patch_from_object`, one an object, that of the moved one before any travel; afterwards where the last press found it.
     /// `travels`, metres, ascending: how far back it may go, how far it is, how far ahead it may go. If the force is not
-    /// reached between them it goes to the end on that side. What the workspace holds goes on pushing behind the substrate. Where the force jumps past what is wanted, the upper side of the jump is.
+    /// reached between them it goes to the end on that side. Where the force jumps past what is wanted, the upper side of the jump is.
     ///
     /// # Panics
     /// If there are not as many poses as objects, or not that many objects.

@@ -32,8 +32,8 @@ const MOST_STEPS: f64 = 4096.0;
 ///
 /// `patch_from_objects`: where the objects are before, one an object. `None` where the way misses all of them (the workspace then
 /// holds the last press on it). Taxels of a curved skin come and go along the way: the first travel with this force that steps of
-/// half a stroke find is named. What pushes a taxel goes on pushing it behind the substrate: nothing passes through the skin. Where the force jumps past it (an edge that comes upon a taxel from the side), the
-/// upper side of the jump is.
+/// half a stroke find is named. Where the force jumps past it (an edge that comes upon a taxel from the side), the
+/// upper side of the jump is. What pushes a taxel goes on pushing it behind the substrate: nothing passes through the skin.
 ///
 /// # Errors
 /// A force that is not a positive number; a direction whose length is not one; a patch that carries the force where it is; a force
@@ -70,6 +70,15 @@ pub fn press_skin_to_force(
     pressed
 }
 
+/// A patch on its way along a line past objects.
+struct Way<'a> {
+    patch: &'a SkinPatch,
+    objects: &'a [Model],
+    patch_from_objects: &'a [Pose],
+    direction: DVec3,
+    workspace: &'a mut SkinWorkspace,
+}
+
 impl Way<'_> {
     /// Goes on until the force is felt.
     fn go(&mut self, force: f64) -> Result<Option<SkinPress>> {
@@ -92,18 +101,7 @@ impl Way<'_> {
             counts,
         }))
     }
-}
 
-/// A patch on its way along a line past objects.
-struct Way<'a> {
-    patch: &'a SkinPatch,
-    objects: &'a [Model],
-    patch_from_objects: &'a [Pose],
-    direction: DVec3,
-    workspace: &'a mut SkinWorkspace,
-}
-
-impl Way<'_> {
     /// The travels between which the balls around patch and objects meet; `None` if no travel from 0 on does.
     fn ends(&self) -> Option<[f64; 2]> {
         let tree = self.patch.tree();

@@ -105,8 +105,8 @@ impl SkinWorkspace {
 ///
 /// Each sphere counts as the contact stage's title page says, for each taxel by itself. A mesh counts with all triangles but
 /// those that touch the taxel only behind its substrate (lower than −s − ρ along its axis), unless the substrate is inside
-/// of the mesh there: so what a forearm rests on does not press on its other side. What goes far past the stroke comes behind the
-/// substrate and no longer counts: of a press from the front, ask [`press_skin_to_force`](super::press_skin_to_force). A single part decides each touched
+/// of the mesh there: so what a forearm rests on does not press on its other side. What has gone far past the stroke lies there, too,
+/// unless it is known how it came ([`press_skin_to_force`](super::press_skin_to_force)). A single part decides each touched
 /// taxel; where two need the same, the object that comes first, and of a union the first of its spheres.
 ///
 /// ```

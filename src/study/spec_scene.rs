@@ -81,7 +81,7 @@ pub struct TouchesSpec {
     /// The same about its y axis, degrees.
     #[serde(default = "zero")]
     pub tilt_y_deg: SpreadSpec,
-    /// How far the patch goes past first contact, mm.
+    /// How far the patch goes past first contact, mm; beyond the stroke taxels stay saturated.
     pub depth_mm: SpreadSpec,
     /// Axis: F, frames a touch: it is read at the depths d/F, 2d/F … d, each frame with noise of its own, and the measurements
     /// of all of them are its features.
