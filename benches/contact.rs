@@ -2,7 +2,7 @@
 
 use bubbletouch::contact::balance::{Balancer, FreeObject, PlacedSkin};
 use bubbletouch::contact::{
-    Instructions, SkinWorkspace, Workspace, press_skin, press_to_depth, press_to_travel,
+    Instructions, SkinWorkspace, Workspace, press_at_pose, press_skin, press_to_depth,
 };
 use bubbletouch::geometry::Pose;
 use bubbletouch::mesh::{LengthUnit, MeshFormat, Surface, TriangleMesh};
@@ -314,7 +314,7 @@ fn curved(c: &mut Criterion) {
     }
     let mut workspace = Workspace::new();
     group.bench_function("grid_kernel_4096_taxels_1000_spheres", |b| {
-        b.iter(|| press_to_travel(black_box(&scene), &[down], 0.0, &mut workspace));
+        b.iter(|| press_at_pose(black_box(&scene), &[down], &mut workspace));
     });
     group.finish();
 }

@@ -3,7 +3,7 @@
 //! Bodies are put under the object where it is to be, and stepped three times in 10 ms: fewer do not settle. Scene and all are built outside
 //! the timed part.
 
-use bubbletouch::contact::{Workspace, press_to_travel};
+use bubbletouch::contact::{Workspace, press_at_pose};
 use bubbletouch::dynamics::{Drive, ImplicitEuler, Integrator, SemiImplicit, System, skin_sim};
 use bubbletouch::geometry::Pose;
 use bubbletouch::objects::{Catalogue, Model};
@@ -90,7 +90,7 @@ fn touch(c: &mut Criterion) {
         let pose = pressed(&scene);
         let mut workspace = Workspace::new();
         group.bench_function(BenchmarkId::new("direct", side), |b| {
-            b.iter(|| press_to_travel(black_box(&scene), &[pose], 0.0, &mut workspace));
+            b.iter(|| press_at_pose(black_box(&scene), &[pose], &mut workspace));
         });
         let right = workspace.deflections().to_vec();
         let skin = SkinPatch::from(patch);

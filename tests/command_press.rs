@@ -146,6 +146,41 @@ fn a_built_in_object_is_pressed_to_its_depth() {
 }
 
 #[test]
+fn an_object_that_is_pressed_beyond_the_stroke_stays_felt_and_it_is_said_once() {
+    let stroke = 5e-3;
+    for (object, depths) in [("golf", [5, 20, 30]), ("mug", [5, 10, 150])] {
+        let frames = depths.map(|mm| pressed(&format!("--object {object} --depth-mm {mm}")));
+        for pair in frames.windows(2) {
+            let mut taxels = pair[0].iter().zip(&pair[1]);
+            assert!(taxels.all(|(before, now)| now >= before), "{object}");
+        }
+        let n_saturated = frames[2].iter().filter(|&&d| d == stroke).count();
+        assert!(n_saturated > 300, "{object}: {n_saturated}");
+    }
+    let case = Case::new();
+    case.file("sphere.csv", SPHERE);
+    case.file(
+        "poses.csv",
+        "x,y,z,qw,qx,qy,qz\n0,0,0,1,0,0,0\n0,0,0.1,1,0,0,0\n",
+    );
+    let note = "note: a depth of 3 mm is beyond the stroke of 2 mm: taxels that would go further than it are saturated\n";
+    for (more, is_noted) in [
+        (&["--depth-mm=3"][..], true),
+        (&["--depth-mm=3", "--poses=poses.csv"], true),
+        (&["--depth-mm=2"], false),
+        (&[], false),
+    ] {
+        let (_, said) = case.succeeds(&[&ARRAY[..], more].concat());
+        assert_eq!(
+            said.matches(note).count(),
+            usize::from(is_noted),
+            "{more:?}: {said}"
+        );
+        assert_eq!(said.contains("beyond"), is_noted, "{more:?}: {said}");
+    }
+}
+
+#[test]
 fn spheres_are_read_where_they_are_unless_a_depth_is_asked_for() {
     let case = Case::new();
     case.file("sphere.csv", SPHERE);

@@ -36,6 +36,44 @@ ratio = [4, 16]
 classifier = ["linear_svm", "naive_bayes"]
 "#;
 
+#[test]
+fn touches_beyond_the_stroke_and_listed_values_that_are_mixed_are_said_once() {
+    let case = Case::new();
+    let listed = STUDY.replace(
+        "depth_mm = 3.0",
+        "depth_mm = [1, 2, 3, 30]\nyaw_deg = [0.0]",
+    );
+    case.file(
+        "listed.toml",
+        listed.replace(
+            "per_object = 16\noffset_x_mm = { uniform = [-8.0, 8.0] }\n",
+            "offset_x_mm = { grid = [-8.0, 8.0, 4] }\n",
+        ),
+    );
+    let note = "note: each configuration mixes touches of depth_mm = [1.0, 2.0, 3.0, 30.0]: a list in [touches] is spread over";
+    let (plan, _) = case.succeeds(&["plan", "listed.toml"]);
+    assert_eq!(plan.matches(note).count(), 1, "{plan}");
+    let (_, said) = case.succeeds(&["run", "listed.toml", "--out", "listed"]);
+    assert_eq!(said.matches(note).count(), 1, "{said}");
+    let limits = fs::read_to_string(case.path("listed/limits.csv")).unwrap();
+    assert!(
+        limits.contains("touches that met nothing,0,48,"),
+        "{limits}"
+    );
+    assert!(
+        limits.contains("touches deeper than the stroke,12,48,"),
+        "{limits}"
+    );
+    let page = fs::read_to_string(case.path("listed/report.html")).unwrap();
+    assert!(page.contains("<b>12 of 48</b> touches deeper than the stroke"));
+    // Of a study that has neither, nothing is said.
+    case.file("asked.toml", STUDY);
+    let (plan, _) = case.succeeds(&["plan", "asked.toml"]);
+    let (_, said) = case.succeeds(&["run", "asked.toml", "--out", "asked"]);
+    let limits = fs::read_to_string(case.path("asked/limits.csv")).unwrap();
+    assert!(!plan.contains("mixes") && !said.contains("mixes") && !limits.contains("deeper"));
+}
+
 /// A page without the line that says how long the run took: a manifest knows whole seconds.
 fn but_for_seconds(page: &str) -> String {
     let lines = page.lines().filter(|line| !line.contains("The run took"));

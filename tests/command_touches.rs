@@ -3,7 +3,7 @@
 mod command;
 mod study;
 
-use bubbletouch::contact::{Workspace, press_to_travel};
+use bubbletouch::contact::{Workspace, press_at_pose};
 use bubbletouch::geometry::Pose;
 use bubbletouch::study::progress::Silent;
 use bubbletouch::study::simulate_array;
@@ -188,7 +188,7 @@ fn pressing_at_the_recorded_pose_reproduces_the_frame() {
                 patch: *patch,
                 objects: vec![spheres.clone()],
             };
-            let contact = press_to_travel(&scene, &[pose], 0.0, &mut workspace);
+            let contact = press_at_pose(&scene, &[pose], &mut workspace);
             let row = &files.touches[touch];
             if row.n_touched == 0 {
                 assert!(

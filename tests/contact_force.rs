@@ -5,6 +5,7 @@ use bubbletouch::contact::{
     press_to_force, press_to_travel, spring_load,
 };
 use bubbletouch::geometry::Pose;
+use bubbletouch::mesh::TriangleMesh;
 use bubbletouch::objects::{MeshModel, Model, Sphere, SphereUnion};
 use bubbletouch::world::{Grid, Layout, Patch, Scene, SkinPatch, Taxel, Taxels};
 use glam::{DQuat, DVec3};
@@ -188,32 +189,76 @@ fn what_cannot_be_reached_is_refused_with_the_largest_force() {
         "touch force: 4.5 N; up to 4.000000 N, where all 8 taxels that the object reaches are at their stroke, 5.129 mm past \
          first contact"
     );
-    // A small ball in front of a large one: it is behind the substrate before the large one touches.
-    let wide = Grid {
+    // What all taxels take at their strokes can be reached, and no more.
+    let scene = ball_over(grid, 0.03);
+    let all = press_to_force(&scene, &[Pose::IDENTITY], 4.0, &mut workspace).unwrap();
+    assert_eq!(all.unwrap().n_touched, 8);
+}
+
+/// Meshes as one.
+fn joined(meshes: &[TriangleMesh]) -> TriangleMesh {
+    let (mut corners, mut faces) = (Vec::new(), Vec::new());
+    for mesh in meshes {
+        let before = corners.len() as u32;
+        corners.extend_from_slice(mesh.vertices());
+        faces.extend(
+            mesh.triangles()
+                .iter()
+                .map(|face| face.map(|corner| corner + before)),
+        );
+    }
+    TriangleMesh::new("joined", corners, faces).unwrap()
+}
+
+#[test]
+fn no_part_passes_through_a_skin_on_the_way_to_a_force() {
+    // A small part in front of a large one: it is far behind the substrate before the large one touches.
+    let grid = Grid {
         nx: 40,
         ny: 40,
         pitch: 2e-3,
     };
+    let patch = Patch::new(grid, TAXEL).unwrap();
     let sphere = |z: f64, radius: f64| Sphere {
         center: DVec3::new(1e-3, 1e-3, z),
         radius,
     };
     let lollipop = SphereUnion::new(vec![sphere(0.0, 1.5e-3), sphere(0.1, 0.05)]).unwrap();
-    let patch = Patch::new(wide, TAXEL).unwrap();
-    let scene = Scene::of_one(&patch, &lollipop.into());
-    let n_under = 5.0;
-    let said = message(&scene, 50.0);
-    assert!(
-        said.starts_with("touch force: 50 N; up to ")
-            && said.contains("parts of the object come behind the substrate"),
-        "{said}"
-    );
-    let largest = TAXEL.stiffness * TAXEL.stroke * n_under;
-    assert!(said.contains(&format!("up to {largest:.6} N")), "{said}");
-    // What all taxels take at their strokes can be reached, and no more.
-    let scene = ball_over(grid, 0.03);
-    let all = press_to_force(&scene, &[Pose::IDENTITY], 4.0, &mut workspace).unwrap();
-    assert_eq!(all.unwrap().n_touched, 8);
+    let both = [
+        cuboid(DVec3::splat(1.5e-3)),
+        cuboid(DVec3::splat(0.03)).moved(&Pose::from_translation(0.1 * DVec3::Z)),
+    ];
+    let nail = joined(&both);
+    let (mut workspace, mut on_skin) = (Workspace::new(), SkinWorkspace::new());
+    for object in [lollipop.into(), Model::from(MeshModel::new(nail))] {
+        let scene = Scene::of_one(&patch, &object);
+        let start = [Pose::from_translation(0.01 * DVec3::Z)];
+        for force in [1.0, 50.0] {
+            let pressed = press_to_force(&scene, &start, force, &mut workspace);
+            let pressed = pressed.unwrap().unwrap();
+            let felt = force_of(&workspace);
+            assert!((felt - force).abs() < 1e-9, "{felt} of {force} N");
+            let first = first_contact(&scene, &start, &mut workspace).unwrap();
+            let has_gone_through = pressed.travel - first > 0.04;
+            assert_eq!(has_gone_through, force > 10.0);
+            let skin = SkinPatch::from(patch);
+            let objects = &scene.objects;
+            let found = press_skin_to_force(&skin, objects, &start, DVec3::Z, force, &mut on_skin);
+            let found = found.unwrap().unwrap();
+            assert!((found.travel - pressed.travel).abs() < 1e-12);
+            press_to_travel(&scene, &start, found.travel, &mut workspace);
+            for (a, b) in on_skin.deflections().iter().zip(workspace.deflections()) {
+                assert!((a - b).abs() < 1e-12, "{force} N: {a} {b}");
+            }
+        }
+        let skin = SkinPatch::from(patch);
+        // Afterwards the workspace presses where things are, as any other.
+        let behind = [Pose::from_translation(-0.3 * DVec3::Z)];
+        assert_eq!(
+            press_skin(&skin, &scene.objects, &behind, &mut on_skin).n_touched,
+            0
+        );
+    }
 }
 
 /// A skin, and a ball somewhere in front of it in the direction that comes with it.

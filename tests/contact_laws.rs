@@ -1,10 +1,16 @@
 //! Laws of the contact stage, checked against a slow, obvious oracle.
 
-use bubbletouch::contact::{Workspace, first_contact, press_to_depth, press_to_travel, simulate};
+mod reference_data;
+
+use bubbletouch::contact::{
+    Workspace, first_contact, press_at_pose, press_to_depth, press_to_travel, simulate,
+};
 use bubbletouch::geometry::Pose;
-use bubbletouch::objects::{Model, Sphere, SphereUnion};
+use bubbletouch::mesh::LengthUnit;
+use bubbletouch::objects::{Catalogue, Model, Sphere, SphereUnion};
 use bubbletouch::random::Seed;
-use bubbletouch::world::{Grid, Patch, Phase, Scene, Taxel, VelocityPlan};
+use bubbletouch::study::{MeshUse, ModelSpec, load_mesh};
+use bubbletouch::world::{Grid, Patch, Phase, RestPoses, Scene, Taxel, Touch, VelocityPlan};
 use glam::{DQuat, DVec3};
 use rand::Rng;
 use rand_chacha::ChaCha8Rng;
@@ -45,8 +51,9 @@ fn random_pose(rng: &mut ChaCha8Rng, distance: f64) -> Pose {
     )
 }
 
-/// Every sphere against every taxel, straight from the equations of the contact stage's title page.
-fn oracle(scene: &Scene, poses: &[Pose], travel: f64) -> Vec<f64> {
+/// Every sphere against every taxel, straight from the equations of the contact stage's title page; those with centres lower than
+/// `behind` do not count.
+fn oracle(scene: &Scene, poses: &[Pose], travel: f64, behind: f64) -> Vec<f64> {
     let Patch { grid, taxel } = scene.patch;
     let mut deflections = vec![0.0_f64; grid.n_taxels()];
     for (object, pose) in scene.objects.iter().zip(poses) {
@@ -58,7 +65,7 @@ fn oracle(scene: &Scene, poses: &[Pose], travel: f64) -> Vec<f64> {
                 for column in 0..grid.nx {
                     let (dx, dy) = (c.x - grid.x(column), c.y - grid.y(row));
                     let q = reach * reach - (dx * dx + dy * dy);
-                    if q > 0.0 && h >= -taxel.stroke - taxel.radius {
+                    if q > 0.0 && h >= behind {
                         let deflection = &mut deflections[row * grid.nx + column];
                         *deflection = deflection.max(q.sqrt() - h).min(taxel.stroke);
                     }
@@ -86,9 +93,23 @@ fn the_kernel_agrees_with_every_sphere_against_every_taxel() {
     let (mut n_touched, mut n_saturated) = (0, 0);
     for case in 0..2000 {
         let (scene, poses) = random_scene(&mut rng);
-        let travel = rng.gen_range(-0.03..0.03);
-        let contact = press_to_travel(&scene, &poses, travel, &mut workspace);
-        let expected = oracle(&scene, &poses, travel);
+        // From a press that touches nothing to one a hundred strokes deep, and where it is.
+        let travel = match case % 4 {
+            0 => rng.gen_range(0.0..0.5),
+            1 => 0.0,
+            _ => rng.gen_range(-0.03..0.03),
+        };
+        let (contact, behind) = match case % 4 {
+            1 => {
+                let contact = press_at_pose(&scene, &poses, &mut workspace);
+                (contact, -TAXEL.stroke - TAXEL.radius)
+            }
+            _ => {
+                let contact = press_to_travel(&scene, &poses, travel, &mut workspace);
+                (contact, f64::NEG_INFINITY)
+            }
+        };
+        let expected = oracle(&scene, &poses, travel, behind);
         // The square root turns a rounding of b² into more where a taxel is at the rim of a footprint.
         assert_close(
             workspace.deflections(),
@@ -182,9 +203,9 @@ fn a_rigid_motion_of_the_world_changes_nothing() {
             .iter()
             .map(|pose| patch_from_world.compose(&world.compose(pose)))
             .collect();
-        press_to_travel(&scene, &poses, 0.0, &mut workspace);
+        press_at_pose(&scene, &poses, &mut workspace);
         let here = workspace.deflections().to_vec();
-        press_to_travel(&scene, &moved, 0.0, &mut workspace);
+        press_at_pose(&scene, &moved, &mut workspace);
         // Rounding of 1e-15 in a position is worth more at the vertical flank of a sphere; away from it, 1e-12 holds.
         let n_flank = here
             .iter()
@@ -196,12 +217,17 @@ fn a_rigid_motion_of_the_world_changes_nothing() {
 }
 
 #[test]
-fn the_direct_press_equals_the_time_loop_without_a_damper() {
+fn the_direct_press_equals_the_time_loop_without_a_damper_however_deep() {
     let mut rng = Seed::new(5).rng();
     let mut workspace = Workspace::new();
-    for _ in 0..200 {
-        let (scene, poses) = random_scene(&mut rng);
-        let speed = rng.gen_range(0.001..0.1);
+    let mut n_through = 0;
+    for case in 0..200 {
+        let (scene, mut poses) = random_scene(&mut rng);
+        for pose in &mut poses {
+            pose.translation.z += 0.1;
+        }
+        // Steps of at most 1 mm, to where all is in front and to where all is behind the substrate.
+        let speed = rng.gen_range(0.01..1.0);
         let approach = Phase {
             duration: 0.3,
             linear: DVec3::Z * speed,
@@ -212,18 +238,58 @@ fn the_direct_press_equals_the_time_loop_without_a_damper() {
             .iter()
             .map(|&pose| VelocityPlan::new(pose, vec![]).unwrap())
             .collect();
-        let recording = simulate(&scene, &patch_plan, &fixed, 0.01, 30).unwrap();
-        let last = patch_plan.pose_at(recording.time[29]).inverse();
+        let recording = simulate(&scene, &patch_plan, &fixed, 1e-3, 300).unwrap();
+        let last = patch_plan.pose_at(recording.time[299]).inverse();
         let finals: Vec<Pose> = poses.iter().map(|pose| last.compose(pose)).collect();
-        press_to_travel(&scene, &finals, 0.0, &mut workspace);
+        let counted = press_to_travel(&scene, &finals, 0.0, &mut workspace);
         assert_eq!(
-            recording.deflection.row(29).as_slice().unwrap(),
+            recording.deflection.row(299).as_slice().unwrap(),
             workspace.deflections(),
-            "exactly"
+            "case {case}: exactly"
         );
-        let spring = recording.deflection.row(29).mapv(|d| 100.0 * d);
-        assert_eq!(recording.force.row(29), spring, "a spring alone");
+        let spring = recording.deflection.row(299).mapv(|d| 100.0 * d);
+        assert_eq!(recording.force.row(299), spring, "a spring alone");
+        let there = press_at_pose(&scene, &finals, &mut workspace);
+        n_through += usize::from(there.n_touched < counted.n_touched);
     }
+    assert!(n_through > 50, "some go through for real: {n_through}");
+}
+
+#[test]
+fn what_comes_up_from_behind_or_around_the_patch_does_not_press_in_the_time_loop() {
+    let grid = Grid {
+        nx: 5,
+        ny: 5,
+        pitch: 2e-3,
+    };
+    let ball = Sphere {
+        center: DVec3::ZERO,
+        radius: 0.01,
+    };
+    let scene = Scene {
+        patch: Patch::new(grid, TAXEL).unwrap(),
+        objects: vec![SphereUnion::new(vec![ball]).unwrap().into()],
+    };
+    let still = VelocityPlan::new(Pose::IDENTITY, vec![]).unwrap();
+    let go = |linear: DVec3| Phase {
+        duration: 0.1,
+        linear,
+        angular: DVec3::ZERO,
+    };
+    // Through the skin, 50 mm beyond it, out to its side, and back under it.
+    let way = [go(-DVec3::Z), go(DVec3::X), go(-DVec3::X)];
+    let start = Pose::from_translation(DVec3::new(0.0, 0.0, 0.05));
+    let plan = VelocityPlan::new(start, way.to_vec()).unwrap();
+    let recording = simulate(&scene, &still, &[plan], 1e-3, 300).unwrap();
+    let reads = |frame: usize| recording.deflection.row(frame).sum();
+    assert_eq!(reads(30), 0.0, "still in front");
+    assert_eq!(reads(99), 25.0 * TAXEL.stroke, "gone through");
+    assert_eq!(reads(199), 0.0, "beside");
+    assert_eq!(reads(299), 0.0, "under it again");
+    let below = Pose::from_translation(DVec3::new(0.0, 0.0, -0.05));
+    let up = VelocityPlan::new(below, vec![go(0.4 * DVec3::Z)]).unwrap();
+    let recording = simulate(&scene, &still, &[up], 1e-3, 100).unwrap();
+    assert_eq!(recording.deflection.row(99).sum(), 0.0, "from behind");
 }
 
 #[test]
@@ -280,6 +346,91 @@ fn saturation_is_counted_and_stops_at_the_stroke() {
     assert!(workspace.deflections().iter().all(|&d| d == TAXEL.stroke));
 }
 
+/// Depths from nothing to 200 mm, metres.
+const DEPTHS: [f64; 12] = [
+    0.0, 1e-4, 1e-3, 3e-3, 5e-3, 8e-3, 12e-3, 0.02, 0.03, 0.06, 0.12, 0.2,
+];
+
+/// The object lies as it is modelled; a coarse patch over its middle is pressed deeper and deeper, slightly tilted.
+fn deeper_is_never_less(name: &str, model: &Model, workspace: &mut Workspace) {
+    let grid = Grid {
+        nx: 24,
+        ny: 20,
+        pitch: 5e-3,
+    };
+    let scene = Scene::of_one(&Patch::new(grid, TAXEL).unwrap(), model);
+    let rest = &RestPoses::AsModelled.of(model)[0];
+    let touch = Touch {
+        rest: 0,
+        offset: [1e-3, -2e-3],
+        yaw: 0.3,
+        tilt: [0.05, -0.02],
+        depth: 0.0,
+        indices: [None; 7],
+    };
+    let pose = touch.patch_from_object(rest);
+    let mut before = vec![0.0; grid.n_taxels()];
+    let (mut n_touched, mut n_saturated) = (0, 0);
+    for depth in DEPTHS {
+        let contact = press_to_depth(&scene, &[pose], depth, workspace);
+        let contact = contact.unwrap_or_else(|| panic!("{name} is under the patch"));
+        let now = workspace.deflections();
+        let is_less = now.iter().zip(&before).any(|(now, before)| now < before);
+        assert!(!is_less, "{name}: {depth} m deep");
+        assert!(contact.n_touched >= n_touched && contact.n_saturated >= n_saturated);
+        if depth > TAXEL.stroke {
+            assert!(contact.n_saturated > 0, "{name}: {depth} m deep");
+        }
+        // Slow: only short of the stroke, past it, and at the end.
+        if model.spheres().is_some() && [3e-3, 0.02, 0.2].contains(&depth) {
+            let expected = oracle(&scene, &[pose], contact.travel, f64::NEG_INFINITY);
+            assert_close(now, &expected, 1e-12, name);
+        }
+        (n_touched, n_saturated) = (contact.n_touched, contact.n_saturated);
+        before.copy_from_slice(now);
+    }
+    if rest.height < 0.15 {
+        // It has gone through the skin as a whole.
+        assert_eq!(n_touched, n_saturated, "{name}");
+    }
+}
+
+#[test]
+fn no_object_of_the_catalogue_is_felt_less_the_deeper_it_is_pressed() {
+    let mut workspace = Workspace::new();
+    for object in Catalogue::builtin().unwrap().entries() {
+        let built = object.build(2e-3).unwrap();
+        deeper_is_never_less(&built.name, &built.model, &mut workspace);
+    }
+}
+
+#[test]
+fn no_scanned_object_is_felt_less_the_deeper_it_is_pressed_as_a_mesh_or_as_spheres() {
+    let Some(folder) = reference_data::folder("BUBBLETOUCH_YCB") else {
+        return;
+    };
+    let mut workspace = Workspace::new();
+    let mut n_meshes = 0;
+    for file in std::fs::read_dir(folder).unwrap() {
+        let path = file.unwrap().path();
+        if path.extension().is_none_or(|e| e != "ply") {
+            continue;
+        }
+        for model in [ModelSpec::Mesh, ModelSpec::VertexSpheres] {
+            let how = MeshUse {
+                unit: LengthUnit::default(),
+                model,
+                surface_error: 1e-3,
+                packings: None,
+            };
+            let object = load_mesh(&path, &how).unwrap();
+            deeper_is_never_less(&object.name, &object.model, &mut workspace);
+        }
+        n_meshes += 1;
+    }
+    assert_eq!(n_meshes, 43);
+}
+
 #[test]
 fn an_object_on_the_far_side_of_the_skin_does_not_press() {
     let grid = Grid {
@@ -299,9 +450,9 @@ fn an_object_on_the_far_side_of_the_skin_does_not_press() {
         ],
     };
     let mut workspace = Workspace::new();
-    let behind = press_to_travel(&scene(-0.0061), &[Pose::IDENTITY], 0.0, &mut workspace);
+    let behind = press_at_pose(&scene(-0.0061), &[Pose::IDENTITY], &mut workspace);
     assert_eq!(behind.n_touched, 0);
-    let before = press_to_travel(&scene(-0.0059), &[Pose::IDENTITY], 0.0, &mut workspace);
+    let before = press_at_pose(&scene(-0.0059), &[Pose::IDENTITY], &mut workspace);
     assert_eq!(before.n_saturated, 9);
 }
 

@@ -1,12 +1,13 @@
 //! Laws of contact with a mesh: one taxel and one triangle against a search, a patch against every triangle, closed forms.
 
 use bubbletouch::contact::{
-    Workspace, first_contact, press_to_depth, press_to_travel, stopping_height,
+    Workspace, first_contact, press_at_pose, press_to_depth, press_to_travel, simulate,
+    stopping_height,
 };
 use bubbletouch::geometry::Pose;
 use bubbletouch::mesh::{Triangle, TriangleMesh};
 use bubbletouch::objects::{MeshModel, Model, Sphere, SphereUnion};
-use bubbletouch::world::{Body, Grid, Patch, RestPoses, Scene, Taxel};
+use bubbletouch::world::{Body, Grid, Patch, Phase, RestPoses, Scene, Taxel, VelocityPlan};
 use glam::{DQuat, DVec2, DVec3};
 use rand::Rng;
 
@@ -130,12 +131,13 @@ fn every_triangle(scene: &Scene, poses: &[Pose]) -> Vec<(f64, Vec<f64>)> {
     scene.objects.iter().zip(poses).map(heights).collect()
 }
 
-/// Deflections from those heights, by the words of the contact stage's title page.
-fn deflections(scene: &Scene, heights: &[(f64, Vec<f64>)], travel: f64) -> Vec<f64> {
+/// Deflections from those heights, by the words of the contact stage's title page; meshes that are lower than `behind` do not
+/// count.
+fn deflections(scene: &Scene, heights: &[(f64, Vec<f64>)], travel: f64, behind: f64) -> Vec<f64> {
     let taxel = scene.patch.taxel;
     let mut deflections = vec![0.0_f64; scene.patch.grid.n_taxels()];
     for (top, heights) in heights {
-        if *top >= travel - taxel.stroke - taxel.radius {
+        if *top >= behind {
             for (deflection, height) in deflections.iter_mut().zip(heights) {
                 *deflection = deflection.max(travel - height).min(taxel.stroke);
             }
@@ -219,12 +221,22 @@ fn a_patch_feels_what_every_triangle_does_to_every_taxel() {
         let heights = every_triangle(&scene, &poses);
         let travel = rng.gen_range(-0.03..0.03);
         press_to_travel(&scene, &poses, travel, &mut workspace);
-        let expected = deflections(&scene, &heights, travel);
+        let all = f64::NEG_INFINITY;
+        let expected = deflections(&scene, &heights, travel, all);
         assert_close(
             workspace.deflections(),
             &expected,
             1e-12,
             &format!("case {case}"),
+        );
+        press_at_pose(&scene, &poses, &mut workspace);
+        let behind = -scene.patch.taxel.stroke - scene.patch.taxel.radius;
+        let there = deflections(&scene, &heights, 0.0, behind);
+        assert_close(
+            workspace.deflections(),
+            &there,
+            1e-12,
+            &format!("case {case}, where it is"),
         );
         n_touched += expected.iter().filter(|&&d| d > 0.0).count();
 
@@ -238,10 +250,13 @@ fn a_patch_feels_what_every_triangle_does_to_every_taxel() {
             (first - lowest).abs() < 1e-12,
             "case {case}: {first} {lowest}"
         );
-        let depth = rng.gen_range(0.0..0.02);
+        let depth = match case % 3 {
+            0 => rng.gen_range(0.0..0.2),
+            _ => rng.gen_range(0.0..0.02),
+        };
         let contact = press_to_depth(&scene, &poses, depth, &mut workspace).unwrap();
         assert_eq!(contact.travel, first + depth);
-        let expected = deflections(&scene, &heights, first + depth);
+        let expected = deflections(&scene, &heights, first + depth, all);
         let what = format!("case {case}, depth {depth}");
         assert_close(workspace.deflections(), &expected, 1e-12, &what);
     }
@@ -413,7 +428,7 @@ fn spheres_and_a_mesh_in_one_scene_feel_like_the_larger_of_both() {
 }
 
 #[test]
-fn a_mesh_behind_the_substrate_does_not_count() {
+fn a_mesh_behind_the_substrate_does_not_count_unless_it_was_pressed_through_the_skin() {
     let patch = Patch::new(
         Grid {
             nx: 8,
@@ -428,14 +443,25 @@ fn a_mesh_behind_the_substrate_does_not_count() {
     let mut workspace = Workspace::new();
     let mut n_touched = |height: f64| {
         let pose = Pose::from_translation(DVec3::new(0.0, 0.0, height));
-        press_to_travel(&scene, &[pose], 0.0, &mut workspace).n_touched
+        press_at_pose(&scene, &[pose], &mut workspace).n_touched
     };
     // Its top is at height + 10 mm; the limit is 6 mm behind the skin.
     assert_eq!(n_touched(-0.01601), 0);
     assert_eq!(n_touched(-0.01599), 64);
     let pose = Pose::from_translation(DVec3::new(0.0, 0.0, 0.05));
     let through = press_to_depth(&scene, &[pose], 0.05, &mut workspace).unwrap();
-    assert_eq!(through.n_touched, 0, "the press left it behind");
+    assert_eq!((through.n_touched, through.n_saturated), (64, 64));
+    // In steps of a millimetre, 60 mm on.
+    let down = Phase {
+        duration: 0.1,
+        linear: -DVec3::Z,
+        angular: DVec3::ZERO,
+    };
+    let still = VelocityPlan::new(Pose::IDENTITY, Vec::new()).unwrap();
+    let plan = VelocityPlan::new(pose, vec![down]).unwrap();
+    let recording = simulate(&scene, &still, &[plan], 1e-3, 100).unwrap();
+    let last = recording.deflection.row(99);
+    assert!(last.iter().all(|&deflection| deflection == TAXEL.stroke));
 }
 
 #[test]

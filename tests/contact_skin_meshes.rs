@@ -1,7 +1,7 @@
 //! Laws of contact of skins of any shape with meshes: against every triangle, the grid kernel, and a forearm on a table.
 
 use bubbletouch::contact::{
-    SkinWorkspace, Workspace, press_skin, press_to_travel, spring_load, stopping_height,
+    SkinWorkspace, Workspace, press_at_pose, press_skin, spring_load, stopping_height,
 };
 use bubbletouch::geometry::Pose;
 use bubbletouch::mesh::{Surface, Triangle, TriangleMesh};
@@ -196,7 +196,7 @@ fn a_flat_grid_meets_a_mesh_as_by_the_grid_kernel() {
             patch,
             objects: vec![MeshModel::new(turned).into()],
         };
-        press_to_travel(&scene, &[pose], 0.0, &mut grid_workspace);
+        press_at_pose(&scene, &[pose], &mut grid_workspace);
         let skin = SkinPatch::from(patch);
         press_skin(&skin, &scene.objects, &[pose], &mut workspace);
         let pairs = workspace

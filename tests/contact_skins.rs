@@ -4,7 +4,7 @@ mod counting;
 mod random_scenes;
 
 use bubbletouch::contact::{
-    GRAZING, SkinWorkspace, Workspace, press_skin, press_to_travel, spring_load,
+    GRAZING, SkinWorkspace, Workspace, press_at_pose, press_skin, spring_load,
 };
 use bubbletouch::geometry::Pose;
 use bubbletouch::objects::{Model, Sphere, SphereUnion};
@@ -234,7 +234,7 @@ fn a_flat_grid_is_pressed_exactly_as_by_the_grid_kernel() {
             .unzip();
         let counts = press_skin(&skin, &objects, &poses, &mut workspace);
         let scene = Scene { patch, objects };
-        let expected = press_to_travel(&scene, &poses, 0.0, &mut grid_workspace);
+        let expected = press_at_pose(&scene, &poses, &mut grid_workspace);
         for (got, expected) in workspace
             .deflections()
             .iter()

@@ -4,8 +4,8 @@ mod double_double;
 mod random_scenes;
 
 use bubbletouch::contact::{
-    DamperState, GRAZING, SkinWorkspace, Workspace, press_skin, press_to_depth, press_to_force,
-    press_to_travel, relaxation_factor, simulate, spring_load,
+    DamperState, GRAZING, SkinWorkspace, Workspace, press_at_pose, press_skin, press_to_depth,
+    press_to_force, relaxation_factor, simulate, spring_load,
 };
 use bubbletouch::geometry::Pose;
 use bubbletouch::objects::{Model, Sphere, SphereUnion};
@@ -65,7 +65,7 @@ fn spheres_from_a_micrometre_to_a_kilometre_press_right_to_the_last_digits_of_th
         let object = sphere(center, radius);
         let of_object = object.spheres()[0];
         let scene = scene(object);
-        press_to_travel(&scene, &[Pose::IDENTITY], 0.0, &mut workspace);
+        press_at_pose(&scene, &[Pose::IDENTITY], &mut workspace);
         press_skin(&skin, &scene.objects, &[Pose::IDENTITY], &mut of_skin);
         for (taxel, &place) in skin.layout().centers().iter().enumerate() {
             let exact = exactly_needed(place, TAXEL.radius, &of_object).unwrap_or(0.0);
@@ -137,7 +137,7 @@ fn a_step_of_any_length_takes_the_damper_where_the_closed_form_says() {
             rng.gen_range(-6e-3..6e-3),
             height,
         );
-        press_to_travel(&ball, &[Pose::from_translation(place)], 0.0, &mut workspace);
+        press_at_pose(&ball, &[Pose::from_translation(place)], &mut workspace);
         let is_behind = height < -taxel.stroke - taxel.radius;
         state.step(&taxels, dt, workspace.deflections());
         let left = relaxation_factor(&taxel, dt);
@@ -162,7 +162,8 @@ fn a_step_of_any_length_takes_the_damper_where_the_closed_form_says() {
 }
 
 #[test]
-fn what_jumps_through_the_skin_between_two_frames_is_not_felt() {
+fn what_jumps_through_the_skin_between_two_frames_is_not_felt_and_what_is_seen_to_go_through_stays_felt()
+ {
     // 0.1 m/s over steps of 1 s: from 50 mm above to 50 mm below. Steps of 10 ms feel it.
     let fast = Phase {
         duration: 10.0,
@@ -177,7 +178,19 @@ fn what_jumps_through_the_skin_between_two_frames_is_not_felt() {
     assert!(felt(1.0, 3).deflection.iter().all(|&d| d == 0.0));
     let fine = felt(0.01, 300);
     assert!(fine.n_saturated > 0 && fine.deflection.iter().any(|&d| d == TAXEL.stroke));
-    assert_eq!(fine.deflection.row(299).sum(), 0.0, "behind the substrate");
+    let mut workspace = Workspace::new();
+    let last = Pose::from_translation(DVec3::new(0.0, 0.0, -0.15));
+    press_at_pose(&scene, &[last], &mut workspace);
+    assert_eq!(
+        workspace.deflections().iter().sum::<f64>(),
+        0.0,
+        "behind the substrate"
+    );
+    press_to_depth(&scene, &[Pose::IDENTITY], 0.2, &mut workspace).unwrap();
+    assert_eq!(
+        fine.deflection.row(299).as_slice().unwrap(),
+        workspace.deflections()
+    );
 }
 
 #[test]

@@ -2,7 +2,7 @@
 //!
 //! The scenes are found by BUBBLETOUCH_REFERENCE; without it the test says that it skips.
 
-use bubbletouch::contact::{Workspace, press_to_travel};
+use bubbletouch::contact::{Workspace, press_at_pose};
 use bubbletouch::geometry::Pose;
 use bubbletouch::objects::{Sphere, SphereUnion};
 use bubbletouch::world::{Grid, Patch, Scene, Taxel};
@@ -98,7 +98,7 @@ fn deflections(json: &Value, frame: &Value, spheres: &[Vec<f64>], patch: Patch) 
     }
     let poses = vec![Pose::IDENTITY; objects.len()];
     let mut workspace = Workspace::new();
-    press_to_travel(&Scene { patch, objects }, &poses, 0.0, &mut workspace);
+    press_at_pose(&Scene { patch, objects }, &poses, &mut workspace);
     workspace.deflections().to_vec()
 }
 

@@ -493,6 +493,28 @@ fn a_pushed_object_keeps_to_its_speed_and_its_travel_and_says_what_it_reached() 
 }
 
 #[test]
+fn an_object_that_is_pushed_too_hard_stays_felt_however_far_it_goes() {
+    // Straight down, up to 120 mm, though the ball has 65.
+    let press =
+        "time_s = [0.0, 0.001], force_n = [0.0, 500.0], speed_mm_per_s = 200.0, travel_mm = 120.0";
+    let text = pushed(press, "").replace("[30.0, 0.0, 2.0]", "[0.0, 0.0, 0.0]");
+    let text = text.replace("[0.1, 0.0, -2.0]", "[0.0, 0.0, -1.0]");
+    let (mut before, mut n_through) = (vec![0.0; 24 * 16], 0);
+    for frame in frames(&plan(&text)) {
+        let reading = &frame.patches[0];
+        let Held::Pressed { travel, force, .. } = frame.objects[0].held else {
+            panic!("the ball is pressed")
+        };
+        assert!((force - total(reading)).abs() < 1e-9, "{travel} m");
+        let mut pairs = reading.deflection.iter().zip(&before);
+        assert!(pairs.all(|(now, before)| now >= before), "{travel} m");
+        n_through += usize::from(travel > 0.1 && reading.n_saturated > 100);
+        before.clone_from(&reading.deflection);
+    }
+    assert!(n_through > 20, "{n_through}");
+}
+
+#[test]
 fn a_force_is_held_by_one_object_among_those_that_stand_there() {
     let text = pushed(
         &format!("{CURVE}, speed_mm_per_s = 200.0, travel_mm = 20.0"),

@@ -69,6 +69,26 @@ fn every_frame_is_its_touch_pressed_alone() {
     assert_eq!(frames.facts.n_saturated, n_saturated);
 }
 
+#[test]
+fn frames_without_a_deflection_are_counted_and_none_is_of_a_deep_touch() {
+    let depths = |depths: &str| {
+        let text = STUDY.replace("depth_mm = [2.0, 4.0]", depths);
+        let study = Study::new(&text.replace(", 400.0]", "]"));
+        let patch = study.plan.arrays[0];
+        let frames = simulate_array(&study.touched, &patch, 3, &Silent);
+        let deflection = frames.kept.to_array().unwrap();
+        let empty = deflection.outer_iter().skip(2).step_by(3);
+        let n_empty = empty.filter(|row| row.iter().all(|&d| d == 0.0)).count();
+        assert_eq!(frames.facts.n_missed, n_empty);
+        (n_empty, frames.facts.n_saturated, deflection.nrows() / 3)
+    };
+    let (n_empty, n_saturated, n_touches) = depths("depth_mm = [1e-20, 2.0]");
+    assert!(0 < n_empty && 2 * n_empty <= n_touches, "{n_empty}");
+    assert_eq!(n_saturated, 0);
+    let (n_empty, n_saturated, n_touches) = depths("depth_mm = [10.0, 50.0, 200.0]");
+    assert_eq!((n_empty, n_saturated), (0, n_touches));
+}
+
 /// What the equations of contact give, taxel by taxel and sphere by sphere; `None` if no travel meets the object.
 fn by_the_equations(patch: &Patch, object: &TouchedObject, touch: &Touch) -> Option<Vec<f64>> {
     let pose = touch.patch_from_object(&object.rests[touch.rest]);

@@ -1,7 +1,7 @@
 //! The four hot paths on scenes that are the same everywhere, and how much work each step of them is.
 #![allow(dead_code, reason = "each bench uses some of it")]
 
-use bubbletouch::contact::{Workspace, press_to_depth, press_to_travel};
+use bubbletouch::contact::{Workspace, press_at_pose, press_to_depth};
 use bubbletouch::geometry::Pose;
 use bubbletouch::objects::{Sphere, SphereUnion};
 use bubbletouch::random::Seed;
@@ -96,7 +96,7 @@ pub fn dense_press(n: usize, n_spheres: usize) -> HotPath {
     let mut number = 0;
     let mut step = move || {
         number += 1;
-        press_to_travel(&scene, &[pose(number, 4e-3)], 0.0, &mut workspace).n_touched
+        press_at_pose(&scene, &[pose(number, 4e-3)], &mut workspace).n_touched
     };
     assert_eq!(step(), n * n, "all are touched");
     HotPath {

@@ -4,7 +4,7 @@ use super::study_args::{LoadedStudy, StudyArgs};
 use bubbletouch::Result;
 use bubbletouch::report::page::{Limit, ReportPage, Snapshots};
 use bubbletouch::study::provenance::{Manifest, PROGRAM};
-use bubbletouch::study::{Outcome, Samples, StudySpec};
+use bubbletouch::study::{ArrayOutcome, Outcome, Samples, StudySpec};
 use std::path::Path;
 
 /// What a page says without the study's objects.
@@ -77,7 +77,7 @@ fn gallery(samples: &Samples) -> Vec<Snapshots> {
 
 /// How often limits were reached.
 pub fn limits(loaded: &LoadedStudy, outcome: &Outcome) -> Vec<Limit> {
-    let sum = |count: fn(&bubbletouch::study::ArrayOutcome) -> usize| -> u64 {
+    let sum = |count: fn(&ArrayOutcome) -> usize| -> u64 {
         outcome.arrays.iter().map(|array| count(array) as u64).sum()
     };
     let n_touches = sum(|a| a.n_touches);
@@ -94,7 +94,7 @@ pub fn limits(loaded: &LoadedStudy, outcome: &Outcome) -> Vec<Limit> {
         of,
         meaning: meaning.to_owned(),
     };
-    vec![
+    let mut limits = vec![
         limit(
             "touches that met nothing",
             sum(|a| a.n_missed),
@@ -124,7 +124,20 @@ pub fn limits(loaded: &LoadedStudy, outcome: &Outcome) -> Vec<Limit> {
             outcome.tables.accuracy.len() as u64 + n_failed,
             "failures.csv says why; they are missing in every other table",
         ),
-    ]
+    ];
+    let strokes = outcome.arrays.iter().map(|array| array.patch.taxel.stroke);
+    let n_deep: usize = strokes
+        .map(|stroke| loaded.touched.n_deeper_than(stroke))
+        .sum();
+    if n_deep > 0 {
+        limits.push(limit(
+            "touches deeper than the stroke",
+            n_deep as u64,
+            n_touches,
+            "the patch went on past the depth at which its first taxel was at its stroke: more taxels are saturated, the deeper the more",
+        ));
+    }
+    limits
 }
 
 /// The command that makes a study's folder again.

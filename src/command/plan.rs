@@ -24,5 +24,8 @@ pub fn plan(args: &Args) -> Result<()> {
     );
     println!("{}: {}", loaded.name, loaded.plan.spec.question);
     println!("{estimate}");
+    if let Some(mixed) = args.study.mixed_touches()? {
+        println!("note: {mixed}");
+    }
     Ok(())
 }

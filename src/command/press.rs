@@ -4,7 +4,7 @@ use super::output::terminal_width;
 use super::press_place::Place;
 use super::press_poses::{self, press_poses};
 use super::which_object::spheres_file;
-use bubbletouch::contact::{Contact, Workspace, press_to_depth, press_to_force, press_to_travel};
+use bubbletouch::contact::{Contact, Workspace, press_at_pose, press_to_depth, press_to_force};
 use bubbletouch::geometry::Pose;
 use bubbletouch::mesh::LengthUnit;
 use bubbletouch::objects::{Catalogue, Model};
@@ -12,7 +12,7 @@ use bubbletouch::report::frame_files::write_frame;
 use bubbletouch::report::pressure_map::pressure_text;
 use bubbletouch::report::terminal::Ink;
 use bubbletouch::signal::Quantity;
-use bubbletouch::study::{MeshUse, ModelSpec, load_mesh};
+use bubbletouch::study::{MeshUse, ModelSpec, load_mesh, millimetres};
 use bubbletouch::world::{Grid, Patch, Scene, Taxel};
 use bubbletouch::{Error, Result};
 use ndarray::Array2;
@@ -28,7 +28,7 @@ const MM: f64 = 1e-3;
 pub struct Args {
     #[command(flatten)]
     source: Source,
-    /// How far past first contact [default: 3 for objects and meshes; spheres are read where they are]
+    /// How far past first contact; beyond the stroke taxels stay saturated [default: 3 for objects and meshes; spheres are read where they are]
     #[arg(long, value_name = "MM")]
     depth_mm: Option<f64>,
     /// Instead of a depth: until all springs together carry so many newtons
@@ -118,6 +118,9 @@ pub fn press(args: &Args) -> Result<()> {
     };
     if let Some(path) = &args.many.poses {
         let depth = args.depth_mm.map(positive_depth).transpose()?;
+        if let Some(depth) = depth {
+            note_beyond_stroke(depth, &patch.taxel);
+        }
         return press_poses(&args.many, path, &scene, depth, args.out.as_deref());
     }
     let mut workspace = Workspace::new();
@@ -222,10 +225,11 @@ impl Args {
             return pressed.ok_or_else(not_over);
         }
         let depth_mm = match (self.depth_mm, &self.source.spheres) {
-            (None, Some(_)) => return Ok(press_to_travel(scene, &[pose], 0.0, workspace)),
+            (None, Some(_)) => return Ok(press_at_pose(scene, &[pose], workspace)),
             (depth_mm, _) => depth_mm.unwrap_or(3.0),
         };
         let depth = positive_depth(depth_mm)?;
+        note_beyond_stroke(depth, &scene.patch.taxel);
         press_to_depth(scene, &[pose], depth, workspace).ok_or_else(not_over)
     }
 }
@@ -237,6 +241,17 @@ fn positive_depth(depth_mm: f64) -> Result<f64> {
     }
     let allowed = "a positive number of millimetres";
     Err(Error::input("--depth-mm", depth_mm, allowed))
+}
+
+/// Says that a press goes deeper than its taxels.
+fn note_beyond_stroke(depth: f64, taxel: &Taxel) {
+    if depth > taxel.stroke {
+        eprintln!(
+            "note: a depth of {} mm is beyond the stroke of {} mm: taxels that would go further than it are saturated",
+            millimetres(depth),
+            millimetres(taxel.stroke)
+        );
+    }
 }
 
 fn not_over() -> Error {

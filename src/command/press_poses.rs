@@ -1,7 +1,7 @@
 //! `bubbletouch press --poses`: one object read in many places, and how long each reading takes.
 
 use super::output::check_ending;
-use bubbletouch::contact::{Contact, Workspace, press_to_depth, press_to_travel};
+use bubbletouch::contact::{Contact, Workspace, press_at_pose, press_to_depth};
 use bubbletouch::files::table_error;
 use bubbletouch::geometry::Pose;
 use bubbletouch::quantile::quantile;
@@ -72,7 +72,7 @@ pub fn press_poses(
     let mut frames = Array3::zeros((poses.len(), grid.ny, grid.nx));
     let mut workspace = Workspace::new();
     let press = |pose: &Pose, workspace: &mut Workspace| match depth {
-        None => Some(press_to_travel(scene, &[*pose], 0.0, workspace)),
+        None => Some(press_at_pose(scene, &[*pose], workspace)),
         Some(depth) => press_to_depth(scene, &[*pose], depth, workspace),
     };
     let mut contacts: Vec<Option<Contact>> = Vec::with_capacity(poses.len());

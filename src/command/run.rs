@@ -66,6 +66,9 @@ pub fn run(args: &Args) -> Result<()> {
     let started = SystemTime::now();
     let folder = results_folder(&args.study, args.out.as_deref())?;
     let study = load_study(&args.study, &folder, Some(&args.memory))?;
+    if let Some(mixed) = args.study.mixed_touches()? {
+        args.listener.remark(&format!("note: {mixed}"));
+    }
     let how = (args.start(), args.shard);
     let kept = StudyFolder::open(&folder, study.identity(), how, args.listener)?;
     let n_all = study.n_all();

@@ -9,8 +9,8 @@ use bubbletouch::study::speed_accuracy::{SpeedAccuracyPlan, SpeedAccuracyStudySp
 use bubbletouch::study::stability::{StabilityPlan, StabilityStudySpec};
 use bubbletouch::study::whole_body::{WholeBodyPlan, WholeBodyStudySpec};
 use bubbletouch::study::{
-    HumanTouches, ObjectsSpec, Plan, StudyKind, StudySpec, Sweep, TouchSet, draw_touches,
-    load_objects,
+    HumanTouches, ObjectsSpec, Plan, StudyKind, StudySpec, Sweep, TouchSet, TouchesSpec,
+    draw_touches, load_objects,
 };
 use bubbletouch::{Error, Result};
 use std::path::{Path, PathBuf};
@@ -101,6 +101,14 @@ impl StudyArgs {
     /// What the study asks about.
     pub fn kind(&self) -> Result<StudyKind> {
         Ok(StudyKind::of(&self.text()?))
+    }
+
+    /// What a study of any kind is told that mixes listed values of `[touches]` where an axis may be meant.
+    pub fn mixed_touches(&self) -> Result<Option<String>> {
+        let study: Option<toml::Table> = self.text()?.parse().ok();
+        let touches = study.and_then(|mut study| study.remove("touches"));
+        let touches: Option<TouchesSpec> = touches.and_then(|table| table.try_into().ok());
+        Ok(touches.and_then(|touches| touches.mixed_values()))
     }
 
     /// Reads and checks a study that reconstructs frames.

@@ -15,6 +15,8 @@ pub(super) struct Envelope {
     pub heights: Vec<f64>,
     /// The least of them.
     pub first: f64,
+    /// The meshes that counted in the last step of a time loop, by their number in the scene.
+    counted: Vec<bool>,
 }
 
 impl Envelope {
@@ -25,7 +27,21 @@ impl Envelope {
         self.first = f64::INFINITY;
     }
 
-    /// Lowers the heights to those of a mesh where they are below the limit.
+    /// Whether a mesh counted in the last step.
+    pub fn has_counted(&self, mesh: usize) -> bool {
+        self.counted.get(mesh).is_some_and(|&counted| counted)
+    }
+
+    /// Takes down whether a mesh counts in this step.
+    pub fn count(&mut self, mesh: usize, counts: bool) {
+        if self.counted.len() <= mesh {
+            self.counted.resize(mesh + 1, false);
+        }
+        self.counted[mesh] = counts;
+    }
+
+    /// Lowers the heights to those of a mesh where they are below the limit; whether its box is over the patch and reaches the
+    /// limit.
     pub fn lower(
         &mut self,
         mesh: &MeshModel,
@@ -33,7 +49,7 @@ impl Envelope {
         radius: f64,
         lines: &GridLines,
         limit: Limit,
-    ) {
+    ) -> bool {
         let first = Cell::new(self.first);
         let sweep = Sweep {
             view: MeshView::new(pose, radius, lines),
@@ -43,6 +59,10 @@ impl Envelope {
             heights: Cell::from_mut(&mut self.heights[..]).as_slice_of_cells(),
             first: &first,
         };
+        let [low, high] = sweep.view.turned(&mesh.bounds());
+        if sweep.view.is_beside(low, high) || low.z - radius >= sweep.limit() {
+            return false;
+        }
         mesh.bvh().search_places(
             sweep.limit(),
             |bounds| sweep.bound(bounds),
@@ -52,6 +72,7 @@ impl Envelope {
             },
         );
         self.first = first.get();
+        true
     }
 }
 

@@ -1,6 +1,6 @@
 //! The indentation kernel of a grid patch: only the spheres and triangles that reach the skin, only the taxels under them.
 
-use super::envelope::{Envelope, Limit};
+use super::envelope::Envelope;
 use super::grid_lines::GridLines;
 use super::instructions::{Instructions, for_instructions};
 use super::placed_sphere::PlacedSphere;
@@ -54,7 +54,7 @@ impl Workspace {
         self.sheet.deflections()
     }
 
-    /// Keeps the spheres that can press a taxel on the way to the goal, and returns the travel to first contact if the
+    /// Keeps the spheres that press a taxel on the way to the goal, and returns the travel to first contact if the
     /// goal is a depth (`None` where no travel touches anything).
     pub(super) fn gather(
         &mut self,
@@ -76,13 +76,9 @@ impl Workspace {
             &self.lines,
             goal,
         );
-        let limit = match goal {
-            Goal::Travel(travel) => Limit::Travel(travel),
-            Goal::Depth(depth) => Limit::Past { depth, first },
-        };
         if self
             .envelope
-            .look(scene, patch_from_objects, &self.lines, limit)
+            .look(scene, patch_from_objects, &self.lines, (goal, first))
         {
             first = first.min(self.envelope.first);
         }
@@ -90,21 +86,20 @@ impl Workspace {
     }
 
     /// Indents the patch at a travel, after a depth of at least as much has been gathered for.
-    pub(super) fn indent_past_first(
-        &mut self,
-        scene: &Scene,
-        patch_from_objects: &[Pose],
-        travel: f64,
-    ) -> Contact {
-        self.envelope
-            .leave_out_passed(scene, patch_from_objects, &self.lines, travel);
-        indent(&scene.patch, travel, self)
+    pub(super) fn indent(&mut self, patch: &Patch, travel: f64) -> Contact {
+        let stroke = patch.taxel.stroke;
+        self.push(patch, travel);
+        let [n_touched, n_saturated] = stop_at_stroke(self.instructions, &mut self.sheet, stroke);
+        Contact {
+            travel,
+            n_touched,
+            n_saturated,
+        }
     }
 
-    /// For each taxel that what has been gathered reaches up to `travel`, the travel at which it begins to move, metres;
-    /// nothing counts as behind the substrate.
+    /// For each taxel that what has been gathered reaches up to `travel`, the travel at which it begins to move, metres.
     pub(super) fn starts(&mut self, patch: &Patch, travel: f64) -> &[f64] {
-        self.push(patch, travel, f64::NEG_INFINITY);
+        self.push(patch, travel);
         self.starts.clear();
         self.starts.reserve(patch.grid.n_taxels());
         let Self { sheet, starts, .. } = self;
@@ -115,9 +110,11 @@ impl Workspace {
         &self.starts
     }
 
-    /// What [`starts`](Self::starts) said last.
-    pub(super) fn last_starts(&self) -> &[f64] {
-        &self.starts
+    /// Goes on to the next step of a time loop: a press at a pose, but what counted in the step before also counts behind the
+    /// substrate. Each workspace follows one scene.
+    pub(super) fn follow(&mut self, scene: &Scene, patch_from_objects: &[Pose]) -> Contact {
+        self.gather(scene, patch_from_objects, Goal::Step);
+        self.indent(&scene.patch, 0.0)
     }
 
     /// Leaves all taxels of a patch at rest.
@@ -125,16 +122,14 @@ impl Workspace {
         self.sheet.clear(patch.grid.nx, patch.grid.ny);
     }
 
-    /// Sets the deflections to what the taxels need at a travel, without a stop; spheres whose centres are lower than `behind` do
-    /// not count.
-    fn push(&mut self, patch: &Patch, travel: f64, behind: f64) {
+    /// Sets the deflections to what the taxels need at a travel, without a stop.
+    fn push(&mut self, patch: &Patch, travel: f64) {
         self.touch_nothing(patch);
         raise_all(
             self.instructions,
             &self.search.found,
             &self.lines,
             travel,
-            behind,
             &mut self.sheet,
         );
         if !self.envelope.heights.is_empty() {
@@ -151,39 +146,36 @@ impl Workspace {
 }
 
 for_instructions! {
-    /// Raises the deflections to what the spheres need at a travel; those with their centres lower than `behind` do not count.
+    /// Raises the deflections to what the spheres need at a travel.
     fn raise_all(
         spheres: &[PlacedSphere],
         lines: &GridLines,
         travel: f64,
-        behind: f64,
         sheet: &mut Sheet,
     ) = raise_each
 }
 
 #[inline(always)]
-fn raise_each(
-    spheres: &[PlacedSphere],
-    lines: &GridLines,
-    travel: f64,
-    behind: f64,
-    sheet: &mut Sheet,
-) {
+fn raise_each(spheres: &[PlacedSphere], lines: &GridLines, travel: f64, sheet: &mut Sheet) {
     for sphere in spheres {
         let height = sphere.center.z - travel;
-        if height < sphere.reach && height >= behind {
+        if height < sphere.reach {
             sphere.raise(lines, height, sheet);
         }
     }
 }
 
-/// How far a press goes.
+/// How far a press goes, and what counts on the way.
 #[derive(Clone, Copy)]
 pub(super) enum Goal {
-    /// To this travel, metres.
+    /// To this travel, metres, from the front: all counts.
     Travel(f64),
-    /// To first contact and this far past it, metres.
+    /// To first contact and this far past it, metres, from the front: all counts.
     Depth(f64),
+    /// Nowhere: what lies behind the substrate does not count.
+    Pose,
+    /// Nowhere: what lies behind the substrate counts if it counted in the step before.
+    Step,
 }
 
 /// How far the patch must travel along its axis until the first taxel is touched, metres (negative: it already is);
@@ -203,6 +195,9 @@ pub fn first_contact(
 
 /// Presses until the patch is `depth` metres past first contact; `None` (and zero deflections) where it meets nothing.
 ///
+/// The patch comes from the front and all counts, however deep: past the stroke taxels are saturated. No taxel that is touched
+/// at a depth is deflected less at a larger one.
+///
 /// # Panics
 /// If there are not as many poses as objects.
 pub fn press_to_depth(
@@ -215,10 +210,11 @@ pub fn press_to_depth(
         workspace.touch_nothing(&scene.patch);
         return None;
     };
-    Some(workspace.indent_past_first(scene, patch_from_objects, first + depth))
+    Some(workspace.indent(&scene.patch, first + depth))
 }
 
-/// Presses until the patch has moved `travel` metres along its axis from the pose given (0: right there).
+/// Presses until the patch has moved `travel` metres along its axis from the pose given, from the front: the press of
+/// [`press_to_depth`] with this travel.
 ///
 /// # Panics
 /// If there are not as many poses as objects.
@@ -229,19 +225,21 @@ pub fn press_to_travel(
     workspace: &mut Workspace,
 ) -> Contact {
     workspace.gather(scene, patch_from_objects, Goal::Travel(travel));
-    indent(&scene.patch, travel, workspace)
+    workspace.indent(&scene.patch, travel)
 }
 
-fn indent(patch: &Patch, travel: f64, workspace: &mut Workspace) -> Contact {
-    let taxel = &patch.taxel;
-    workspace.push(patch, travel, -taxel.stroke - taxel.radius);
-    let instructions = workspace.instructions;
-    let [n_touched, n_saturated] = stop_at_stroke(instructions, &mut workspace.sheet, taxel.stroke);
-    Contact {
-        travel,
-        n_touched,
-        n_saturated,
-    }
+/// Presses right at the pose given, with no way to it: what lies behind the substrate does not count (see the
+/// [contact stage](super)).
+///
+/// # Panics
+/// If there are not as many poses as objects.
+pub fn press_at_pose(
+    scene: &Scene,
+    patch_from_objects: &[Pose],
+    workspace: &mut Workspace,
+) -> Contact {
+    workspace.gather(scene, patch_from_objects, Goal::Pose);
+    workspace.indent(&scene.patch, 0.0)
 }
 
 /// How far a taxel of this stroke may be pushed without being saturated: a press to a depth of exactly the stroke saturates

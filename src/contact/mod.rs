@@ -7,15 +7,19 @@
 //! δ*_i = min(s, max(0, max_j δ_ij))
 //! ```
 //!
-//! A sphere whose centre is behind the substrate (`h < −s − ρ`) is on the far side of the skin and does not count.
 //! On a mesh the taxel stays on its substrate's side of every triangle swept by a ball of radius ρ: `swept_triangle` has the
-//! equations of its faces, edges and corners. A mesh that lies behind the substrate as a whole does not count; of one around a
-//! curved skin, that goes for its parts ([`press_skin`]).
+//! equations of its faces, edges and corners.
+//!
+//! **Behind the substrate.** A press comes from the front and stays there: to a depth, a travel or a force all counts, however deep,
+//! so that no taxel is deflected less the deeper it is pressed. At a pose without such a way ([`press_at_pose`], [`press_skin`]) a sphere
+//! whose centre is behind the substrate (`h < −s − ρ`) is on the far side of the skin and does not count, nor a mesh that lies there as
+//! a whole; of one around a curved skin, that goes for its parts. In a time loop, and on the way to a force on a curved skin, what
+//! counted in the step before goes on counting.
 //!
 //! A taxel that would have to go further than its stroke s is saturated: counted in [`Contact`], never hidden.
 //!
 //! A **direct press** ([`press_to_depth`], [`press_to_travel`]) evaluates this once at the final pose. A **time loop**
-//! ([`DamperState`]) adds the damper: a taxel that nothing pushes relaxes, `k δ + c δ̇ = 0`. Without a damper both agree
+//! ([`simulate`], [`DamperState`]) adds the damper: a taxel that nothing pushes relaxes, `k δ + c δ̇ = 0`. Without a damper both agree
 //! exactly, so a scene that has none needs no loop.
 //!
 //! A [`Patch`](crate::world::Patch) is a flat grid, and its kernel goes along rows. A [`SkinPatch`](crate::world::SkinPatch)
@@ -64,7 +68,9 @@ pub use friction::{FrictionLoad, FrictionState, Grip, GripCounts, NormalForce};
 pub(crate) use grid_lines::Lines;
 pub use hold_force::{HeldForce, MovedObject};
 pub(crate) use indentation::saturation_limit;
-pub use indentation::{Contact, Workspace, first_contact, press_to_depth, press_to_travel};
+pub use indentation::{
+    Contact, Workspace, first_contact, press_at_pose, press_to_depth, press_to_travel,
+};
 pub use instructions::Instructions;
 pub(crate) use instructions::for_instructions;
 pub use press_force::press_to_force;

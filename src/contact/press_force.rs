@@ -6,7 +6,7 @@
 
 use super::crossing::{Sample, crossing};
 use super::indentation::Goal;
-use super::{Contact, Workspace, press_to_travel};
+use super::{Contact, Workspace};
 use crate::error::{Error, Result};
 use crate::geometry::Pose;
 use crate::world::{Patch, Scene, Taxel};
@@ -20,8 +20,8 @@ pub(super) const ACCURACY: f64 = 1e-13;
 /// [`press_to_depth`](super::press_to_depth): to the depth of this travel past [`first_contact`](super::first_contact) it is the same press.
 ///
 /// # Errors
-/// A force that is not a positive number; one that is more than what the object can press into the taxels' strokes, or more
-/// than what they carry before parts of the object are behind the substrate. The text says the largest force, and its travel.
+/// A force that is not a positive number; one that is more than what the object can press into the taxels' strokes: the text
+/// says the largest force, and its travel.
 ///
 /// # Panics
 /// If there are not as many poses as objects.
@@ -74,24 +74,11 @@ pub fn press_to_force(
         return Err(too_much(force, largest, &where_to));
     }
     let travel = curve.travel(force.min(largest));
-    let contact = workspace.indent_past_first(scene, patch_from_objects, travel);
-    // Nothing comes behind the substrate before a taxel is at its stroke.
-    let is_light = travel <= first + taxel.stroke;
-    if is_light || taxel.stiffness * total(workspace) >= force * (1.0 - PASSED) {
-        return Ok(Some(contact));
-    }
-    let (largest, travel) = before_passing(scene, patch_from_objects, [first, travel], workspace);
-    let where_to = format!(
-        "{:.3} mm past first contact parts of the object come behind the substrate",
-        1e3 * (travel - first)
-    );
-    Err(too_much(force, largest, &where_to))
+    Ok(Some(workspace.indent(&scene.patch, travel)))
 }
 
 /// What summing thousands of springs rounds a force by, as a share: far above 1e-16, far below what is felt.
 const ROUNDING: f64 = 1e-12;
-/// What a passed part takes away from a force, as a share, at least. Larger: a fault is let through; smaller: rounding is one.
-const PASSED: f64 = 1e-9;
 
 /// F(t) of a patch, up to a travel.
 struct ForceCurve<'a> {
@@ -173,41 +160,4 @@ fn top(scene: &Scene, patch_from_objects: &[Pose]) -> f64 {
         pose.transform_point(bounds.center()).z + 0.5 * bounds.size().length()
     });
     tops.fold(f64::NEG_INFINITY, f64::max)
-}
-
-/// Σ δ of the last press, metres.
-fn total(workspace: &Workspace) -> f64 {
-    workspace.deflections().iter().sum()
-}
-
-/// The force and the travel at which parts of the object begin to come behind the substrate and leave taxels that they have
-/// pushed; between first contact and a travel at which some have.
-fn before_passing(
-    scene: &Scene,
-    patch_from_objects: &[Pose],
-    [first, passed]: [f64; 2],
-    workspace: &mut Workspace,
-) -> (f64, f64) {
-    let Taxel {
-        stiffness, stroke, ..
-    } = scene.patch.taxel;
-    let starts = workspace.last_starts().to_vec();
-    let curve = ForceCurve {
-        starts: &starts,
-        end: passed,
-        taxel: scene.patch.taxel,
-    };
-    let (mut low, mut high) = (first + stroke, passed);
-    let mut largest = 0.0;
-    for _ in 0..60 {
-        let middle = 0.5 * (low + high);
-        press_to_travel(scene, patch_from_objects, middle, workspace);
-        let carried = stiffness * total(workspace);
-        if carried >= curve.at(middle).value * (1.0 - PASSED) {
-            (low, largest) = (middle, carried);
-        } else {
-            high = middle;
-        }
-    }
-    (largest, low)
 }

@@ -2,52 +2,45 @@
 
 use super::envelope::{Envelope, Limit};
 use super::grid_lines::GridLines;
+use super::indentation::Goal;
 use crate::geometry::Pose;
 use crate::objects::{MeshModel, Model};
 use crate::world::Scene;
 use glam::DVec3;
 
 impl Envelope {
-    /// Looks where a scene's meshes stop the taxels, up to a limit; whether there are any.
+    /// Looks where the meshes of a scene that count stop the taxels, up to the goal; whether it has any mesh. `first`: the travel at
+    /// which the spheres touch.
     pub fn look(
         &mut self,
         scene: &Scene,
         patch_from_objects: &[Pose],
         lines: &GridLines,
-        limit: Limit,
+        (goal, first): (Goal, f64),
     ) -> bool {
-        let mut meshes = meshes(scene, patch_from_objects).peekable();
+        let mut meshes = meshes(scene, patch_from_objects).enumerate().peekable();
         let has_meshes = meshes.peek().is_some();
         let n_taxels = scene.patch.grid.n_taxels();
         self.clear(if has_meshes { n_taxels } else { 0 });
         let taxel = &scene.patch.taxel;
-        for (mesh, pose) in meshes {
-            let is_passed = match limit {
-                Limit::Travel(travel) => {
-                    is_behind(mesh, pose, travel - taxel.stroke - taxel.radius)
-                }
-                Limit::Past { .. } => false,
+        let limit = match goal {
+            Goal::Travel(travel) => Limit::Travel(travel),
+            Goal::Depth(depth) => Limit::Past { depth, first },
+            Goal::Pose | Goal::Step => Limit::Travel(0.0),
+        };
+        for (number, (mesh, pose)) in meshes {
+            let is_behind = || is_behind(mesh, pose, -taxel.stroke - taxel.radius);
+            let counts = match goal {
+                Goal::Travel(_) | Goal::Depth(_) => true,
+                Goal::Pose => !is_behind(),
+                Goal::Step => self.has_counted(number) || !is_behind(),
             };
-            if !is_passed {
-                self.lower(mesh, pose, taxel.radius, lines, limit);
+            let can_press = counts && self.lower(mesh, pose, taxel.radius, lines, limit);
+            if matches!(goal, Goal::Step) {
+                self.count(number, can_press);
             }
         }
         has_meshes
-    }
-
-    /// Looks again without the meshes that a travel leaves behind the substrate, if there are any: a press far deeper than
-    /// the stroke through something thin.
-    pub fn leave_out_passed(
-        &mut self,
-        scene: &Scene,
-        patch_from_objects: &[Pose],
-        lines: &GridLines,
-        travel: f64,
-    ) {
-        let behind = travel - scene.patch.taxel.stroke - scene.patch.taxel.radius;
-        if meshes(scene, patch_from_objects).any(|(mesh, pose)| is_behind(mesh, pose, behind)) {
-            self.look(scene, patch_from_objects, lines, Limit::Travel(travel));
-        }
     }
 }
 

@@ -1,6 +1,6 @@
 //! The time loop: a moving patch over moving or fixed objects.
 
-use super::{DamperState, Workspace, press_to_travel};
+use super::{DamperState, Workspace};
 use crate::error::{Error, Result};
 use crate::geometry::Pose;
 use crate::world::{Scene, Taxels, VelocityPlan};
@@ -21,6 +21,9 @@ pub struct Recording {
 
 /// Moves the patch and the objects along their plans from t = 0 and records every `dt` seconds until `n_frames` frames
 /// are made; frame k is at (k + 1) dt.
+///
+/// What comes through the front of the patch goes on pressing behind the substrate, as in a direct press: a sphere, or a mesh, that
+/// lies behind it counts if it counted in the frame before.
 ///
 /// `world_from_objects`: one plan an object; a fixed object's plan has no phases. Any `dt` is stable.
 /// The error names a `dt` that is not positive, or a number of plans that is not the number of objects.
@@ -69,7 +72,7 @@ pub fn simulate(
                 .iter()
                 .map(|plan| plan.pose_at(time).seen_from(&patch)),
         );
-        let contact = press_to_travel(scene, &poses, 0.0, &mut workspace);
+        let contact = workspace.follow(scene, &poses);
         state.step(&taxels, dt, workspace.deflections());
         recording.n_saturated += contact.n_saturated;
         copy_into(&mut recording.deflection, frame, &state.deflection);

@@ -33,7 +33,7 @@ const MOST_STEPS: f64 = 4096.0;
 /// `patch_from_objects`: where the objects are before, one an object. `None` where the way misses all of them (the workspace then
 /// holds the last press on it). Taxels of a curved skin come and go along the way: the first travel with this force that steps of
 /// half a stroke find is named. Where the force jumps past it (an edge that comes upon a taxel from the side), the
-/// upper side of the jump is.
+/// upper side of the jump is. What pushes a taxel goes on pushing it behind the substrate: nothing passes through the skin.
 ///
 /// # Errors
 /// A force that is not a positive number; a direction whose length is not one; a patch that carries the force where it is; a force
@@ -57,6 +57,7 @@ pub fn press_skin_to_force(
             "a vector of length one",
         ));
     }
+    workspace.hold([]);
     let mut way = Way {
         patch,
         objects,
@@ -64,24 +65,9 @@ pub fn press_skin_to_force(
         direction,
         workspace,
     };
-    let Some(ends) = way.ends() else {
-        way.press(0.0);
-        return Ok(None);
-    };
-    let Some([low, high]) = way.bracket(ends, force)? else {
-        return Ok(None);
-    };
-    let travel = crossing(low, high, ACCURACY * force, |travel| {
-        let Sample { value, slope } = way.sample(travel);
-        let value = value - force;
-        Sample { value, slope }
-    });
-    let counts = way.press(travel);
-    Ok(Some(SkinPress {
-        travel,
-        force: way.sample_of_last().value,
-        counts,
-    }))
+    let pressed = way.go(force);
+    workspace.hold([]);
+    pressed
 }
 
 /// A patch on its way along a line past objects.
@@ -94,6 +80,28 @@ struct Way<'a> {
 }
 
 impl Way<'_> {
+    /// Goes on until the force is felt.
+    fn go(&mut self, force: f64) -> Result<Option<SkinPress>> {
+        let Some(ends) = self.ends() else {
+            self.press(0.0);
+            return Ok(None);
+        };
+        let Some([low, high]) = self.bracket(ends, force)? else {
+            return Ok(None);
+        };
+        let travel = crossing(low, high, ACCURACY * force, |travel| {
+            let Sample { value, slope } = self.sample(travel);
+            let value = value - force;
+            Sample { value, slope }
+        });
+        let counts = self.press(travel);
+        Ok(Some(SkinPress {
+            travel,
+            force: self.sample_of_last().value,
+            counts,
+        }))
+    }
+
     /// The travels between which the balls around patch and objects meet; `None` if no travel from 0 on does.
     fn ends(&self) -> Option<[f64; 2]> {
         let tree = self.patch.tree();
@@ -116,6 +124,7 @@ impl Way<'_> {
     /// Two travels, with less than the force at the first and not less at the second; `None` if nothing is touched.
     fn bracket(&mut self, [start, end]: [f64; 2], force: f64) -> Result<Option<[f64; 2]>> {
         let mut largest = (self.sample(start).value, start);
+        self.workspace.hold_touched();
         if largest.0 >= force {
             return Err(Error::input(
                 "touch force",
@@ -137,6 +146,7 @@ impl Way<'_> {
                 largest = (carried, high);
             }
             low = high;
+            self.workspace.hold_touched();
         }
         if largest.0 == 0.0 {
             return Ok(None);

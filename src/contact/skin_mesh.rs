@@ -71,6 +71,13 @@ impl<'a> MeshAt<'a> {
         }
     }
 
+    /// Where a triangle stops a taxel, behind its substrate too.
+    pub fn stop_by(&self, taxel: &PlacedTaxel, triangle: usize) -> Option<Stop> {
+        let turned = AxisView::new(self, taxel).turned(&self.mesh.mesh().triangle(triangle));
+        let height = stopping_height(&turned, taxel.radius, DVec2::ZERO)?;
+        Some(Stop { height, triangle })
+    }
+
     /// The triangle through which a taxel's axis came into the mesh, if the mesh is solid at its substrate: the nearest
     /// triangle behind is seen from outside, and the nearest one ahead from inside.
     fn entered(&self, view: &AxisView) -> Option<Stop> {

@@ -34,6 +34,8 @@ pub struct SkinWorkspace {
     lines: GridLines,
     /// Of the touched taxels, in the same order.
     contacts: Vec<TaxelContact>,
+    /// What goes on pushing its taxel, behind the substrate too; see [`hold`](Self::hold).
+    held: Vec<TaxelContact>,
     /// Of the objects on the way to a force.
     pub(super) poses: Vec<Pose>,
 }
@@ -52,6 +54,23 @@ impl SkinWorkspace {
     /// The touched taxels of the last press, ascending.
     pub fn contacts(&self) -> &[TaxelContact] {
         &self.contacts
+    }
+
+    /// From now on each of these parts pushes its taxel behind the substrate too, until other parts are held: on its way through the
+    /// front of a patch an object goes on pressing what it has pressed.
+    pub(crate) fn hold<'a>(&mut self, contacts: impl IntoIterator<Item = &'a TaxelContact>) {
+        self.held.clear();
+        self.held.extend(contacts);
+    }
+
+    /// Holds what pushes the taxels of the last press.
+    pub(super) fn hold_touched(&mut self) {
+        self.held.clone_from(&self.contacts);
+    }
+
+    /// Whether any part is held.
+    pub(crate) fn holds_any(&self) -> bool {
+        !self.held.is_empty()
     }
 
     /// Makes room for a patch; only what the last press touched is wiped.
@@ -86,7 +105,8 @@ impl SkinWorkspace {
 ///
 /// Each sphere counts as the contact stage's title page says, for each taxel by itself. A mesh counts with all triangles but
 /// those that touch the taxel only behind its substrate (lower than −s − ρ along its axis), unless the substrate is inside
-/// of the mesh there: so what a forearm rests on does not press on its other side. A single part decides each touched
+/// of the mesh there: so what a forearm rests on does not press on its other side. What has gone far past the stroke lies there, too,
+/// unless it is known how it came ([`press_skin_to_force`](super::press_skin_to_force)). A single part decides each touched
 /// taxel; where two need the same, the object that comes first, and of a union the first of its spheres.
 ///
 /// ```
@@ -168,6 +188,34 @@ fn push(
             Model::Mesh(mesh) => push_by_mesh(patch, number, mesh, pose, workspace),
         }
     }
+    push_held(patch, objects, patch_from_objects, workspace);
+}
+
+/// Pushes the taxels by the parts that are held, wherever they are along their axes.
+fn push_held(
+    patch: &SkinPatch,
+    objects: &[Model],
+    patch_from_objects: &[Pose],
+    workspace: &mut SkinWorkspace,
+) {
+    let held = std::mem::take(&mut workspace.held);
+    for contact in &held {
+        let taxel = PlacedTaxel::of(patch.layout(), patch.taxels(), contact.taxel);
+        let pose = &patch_from_objects[contact.object];
+        let needed = match &objects[contact.object] {
+            Model::Spheres(union) => {
+                let Sphere { center, radius } = union.spheres()[contact.part];
+                needed_anywhere(&taxel, pose.transform_point(center), radius).0
+            }
+            Model::Mesh(mesh) => {
+                let stop = MeshAt::new(mesh, pose).stop_by(&taxel, contact.part);
+                stop.map_or(0.0, |stop| -stop.height)
+            }
+        };
+        let deciding = [contact.object, contact.part].map(|number| number as u32);
+        workspace.push(&taxel, needed, deciding);
+    }
+    workspace.held = held;
 }
 
 /// The same as [`push_by_spheres`] to the bit, for taxels in rows: no search, and no look at spheres that are above all of them.
@@ -225,20 +273,26 @@ fn push_by_spheres(
 }
 
 /// How far a sphere (in the patch frame) pushes a taxel, metres; zero or less if it does not.
+#[inline]
+fn needed(taxel: &PlacedTaxel, center: DVec3, radius: f64) -> f64 {
+    match needed_anywhere(taxel, center, radius) {
+        (needed, height) if height >= taxel.behind => needed,
+        _ => 0.0,
+    }
+}
+
+/// The same of a sphere that may be behind the substrate; and its height along the axis, metres.
 ///
 /// The order of the operations is that of the grid kernel, so that both agree to the last bit on a grid.
 #[inline]
-fn needed(taxel: &PlacedTaxel, center: DVec3, radius: f64) -> f64 {
+fn needed_anywhere(taxel: &PlacedTaxel, center: DVec3, radius: f64) -> (f64, f64) {
     let from = taxel.center - center;
     let height = -from.dot(taxel.axis);
     let [dx, dy] = taxel.across.map(|across| from.dot(across));
     let reach = taxel.radius + radius;
     let q = reach * reach - dy * dy - dx * dx;
-    if q > 0.0 && height >= taxel.behind {
-        q.sqrt() - height
-    } else {
-        0.0
-    }
+    let needed = if q > 0.0 { q.sqrt() - height } else { 0.0 };
+    (needed, height)
 }
 
 fn push_by_mesh(

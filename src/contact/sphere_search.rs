@@ -18,14 +18,41 @@ pub(super) struct SphereSearch {
     starts: Vec<f64>,
     /// Spheres that can press, in the patch frame before any travel.
     pub found: Vec<PlacedSphere>,
+    counted: Counted,
+}
+
+/// Which spheres counted in the last step of a time loop.
+#[derive(Clone, Debug, Default)]
+struct Counted {
+    /// Number of the step, from 1.
+    step: u32,
+    /// One a sphere, cluster by cluster, union by union: the last step in which it counted; 0 for none.
+    last: Vec<u32>,
+}
+
+impl Counted {
+    fn next_step(&mut self, n_spheres: usize) {
+        self.step += 1;
+        self.last.resize(n_spheres, 0);
+    }
+
+    /// Whether a sphere counts in this step, and takes it down.
+    fn counts(&mut self, sphere: usize, is_in_front: bool) -> bool {
+        let last = &mut self.last[sphere];
+        let counts = is_in_front || (*last > 0 && *last + 1 == self.step);
+        if counts {
+            *last = self.step;
+        }
+        counts
+    }
 }
 
 /// So many clusters are looked at together.
 const LOOK: usize = 8;
 
 for_instructions! {
-    /// Finds the spheres that can press a taxel on the way to the goal, and returns the travel at which the first taxel is touched;
-    /// infinite if none is, or if the goal is a travel.
+    /// Finds the spheres that count and can press a taxel on the way to the goal, and returns the travel at which the first taxel is
+    /// touched; infinite if none is, or if the goal is no depth.
     ///
     /// For a depth, the cluster that is nearest is looked at beforehand, so that most others need no look to know what is first.
     pub(super) fn search(
@@ -46,15 +73,33 @@ fn run(
     goal: Goal,
 ) -> f64 {
     search.lay(scene, patch_from_objects, lines);
-    let (first, limit) = match goal {
-        Goal::Travel(travel) => (f64::INFINITY, travel),
+    let taxel = &scene.patch.taxel;
+    let behind = -taxel.stroke - taxel.radius;
+    match goal {
+        Goal::Travel(travel) => {
+            search.gather(scene, travel, |_, _| true);
+            f64::INFINITY
+        }
         Goal::Depth(depth) => {
             let first = search.first_touch(scene, lines);
-            (first, first + depth)
+            search.gather(scene, first + depth, |_, _| true);
+            first
         }
-    };
-    search.gather(scene, limit);
-    first
+        Goal::Pose => {
+            search.gather(scene, 0.0, |_, sphere| sphere.center.z >= behind);
+            f64::INFINITY
+        }
+        Goal::Step => {
+            let mut counted = std::mem::take(&mut search.counted);
+            let unions = scene.objects.iter().filter_map(|object| object.spheres());
+            counted.next_step(unions.map(|union| union.clusters().n_spheres()).sum());
+            search.gather(scene, 0.0, |number, sphere| {
+                counted.counts(number, sphere.center.z >= behind)
+            });
+            search.counted = counted;
+            f64::INFINITY
+        }
+    }
 }
 
 impl SphereSearch {
@@ -108,21 +153,32 @@ impl SphereSearch {
         first
     }
 
+    /// Keeps the spheres that press before a travel and count; `counts` is asked by a sphere's number among those of all unions,
+    /// cluster by cluster.
     #[inline(always)]
-    fn gather(&mut self, scene: &Scene, limit: f64) {
+    fn gather(
+        &mut self,
+        scene: &Scene,
+        limit: f64,
+        mut counts: impl FnMut(usize, &PlacedSphere) -> bool,
+    ) {
         let mut found = std::mem::take(&mut self.found);
         found.clear();
+        let mut n_before = 0;
         for (union, view, starts) in self.unions(scene) {
             for (look, starts) in starts.iter().enumerate() {
                 for k in Below::of(starts, limit) {
                     let cluster = union.of(look * LOOK + k);
                     for sphere in Below::of(&view.starts(&cluster), limit) {
-                        if let Some(placed) = view.place(&cluster.at(sphere), limit) {
+                        if let Some(placed) = view.place(&cluster.at(sphere), limit)
+                            && counts(n_before + cluster.first + sphere, &placed)
+                        {
                             found.push(placed);
                         }
                     }
                 }
             }
+            n_before += union.n_spheres();
         }
         self.found = found;
     }

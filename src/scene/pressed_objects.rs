@@ -3,7 +3,7 @@
 use super::frame::{Held, ObjectReading};
 use super::plan::ScenePlan;
 use super::skin_state::{PlacedObjects, SkinState};
-use crate::contact::{HeldForce, MovedObject, SkinWorkspace};
+use crate::contact::{HeldForce, MovedObject, SkinWorkspace, TaxelContact};
 use crate::geometry::Pose;
 
 /// The way of a step is looked at in parts of at most this share of the shortest stroke. Larger: a short peak of the force may be
@@ -23,12 +23,14 @@ pub(super) struct PressedObjects {
 }
 
 /// One of them.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 struct Pressed {
     object: usize,
     now: HeldForce,
     /// N.
     wanted: f64,
+    /// Its contacts with the patch that it is pushed onto: it goes on pressing what it presses, however deep it goes.
+    contacts: Vec<TaxelContact>,
 }
 
 impl PressedObjects {
@@ -39,6 +41,7 @@ impl PressedObjects {
             object,
             now: HeldForce::default(),
             wanted: 0.0,
+            contacts: Vec::new(),
         };
         Self {
             all: pressed.map(at_start).collect(),
@@ -82,6 +85,22 @@ impl PressedObjects {
         }
     }
 
+    /// What a patch, by its number, touches of those that are pushed onto it.
+    pub fn contacts_on<'a>(
+        &'a self,
+        plan: &'a ScenePlan,
+        patch: usize,
+    ) -> impl Iterator<Item = &'a TaxelContact> {
+        let is_on = move |pressed: &&Pressed| {
+            let press = plan.objects[pressed.object].press.as_ref();
+            press.is_some_and(|press| press.patch == patch)
+        };
+        self.all
+            .iter()
+            .filter(is_on)
+            .flat_map(|pressed| &pressed.contacts)
+    }
+
     /// Reports how they are held.
     pub fn read(&self, readings: &mut [ObjectReading]) {
         for pressed in &self.all {
@@ -120,7 +139,12 @@ impl Pressed {
                 false => [back, here, (here + step).min(farthest)],
             };
             poses[self.object] = start;
+            workspace.hold(&self.contacts);
             self.now = moved.hold(poses, travels, self.wanted, workspace);
+            let contacts = workspace.contacts().iter();
+            let its = contacts.filter(|contact| contact.object == self.object);
+            self.contacts.clear();
+            self.contacts.extend(its);
             let is_at_end = [travels[0], travels[2]].contains(&self.now.travel);
             if !is_at_end || self.now.travel == here {
                 break;

@@ -137,6 +137,9 @@ impl<'p> Simulation<'p> {
         }
         let objects = &mut self.objects;
         self.pressed.push(plan, &self.skins, objects, [time, dt]);
+        for (number, skin) in self.skins.iter_mut().enumerate() {
+            skin.hold(self.pressed.contacts_on(plan, number));
+        }
         self.free.settle(plan, &self.skins, &mut self.objects, time)
     }
 

@@ -4,8 +4,8 @@ use super::frame::PatchReading;
 use super::plan_patch::{Mount, PlannedPatch};
 use super::robot_state::RobotState;
 use crate::contact::{
-    DamperState, FrictionState, GripCounts, NormalForce, SkinContact, SkinWorkspace, Wrench,
-    axial_load, deflect_skin, press_skin,
+    DamperState, FrictionState, GripCounts, NormalForce, SkinContact, SkinWorkspace, TaxelContact,
+    Wrench, axial_load, deflect_skin, press_skin,
 };
 use crate::geometry::Pose;
 use crate::objects::Model;
@@ -98,6 +98,11 @@ impl SkinState {
         };
     }
 
+    /// From now on these parts of objects push their taxels behind the substrate too.
+    pub fn hold<'a>(&mut self, contacts: impl IntoIterator<Item = &'a TaxelContact>) {
+        self.workspace.hold(contacts);
+    }
+
     /// Feels for `dt` seconds what is there at their end; for an endless `dt`, as if it had been there for long.
     pub fn step(
         &mut self,
@@ -163,7 +168,7 @@ impl SkinState {
         dt: f64,
         detail: Detail,
     ) {
-        if !objects.can_reach(&patch.skin, &self.pose) {
+        if !self.workspace.holds_any() && !objects.can_reach(&patch.skin, &self.pose) {
             self.counts = SkinContact::default();
             if !self.is_idle {
                 self.damper.step(patch.skin.taxels(), dt, &self.untouched);

@@ -60,7 +60,8 @@ pub struct FreeSpec {
 /// `press = { patch = "palm", direction = [0.0, 0.0, -1.0], force_n = 2.0, speed_mm_per_s = 20.0, travel_mm = 10.0 }`
 ///
 /// From where `at` and `motion` say that it is, the object goes along the direction until the patch feels the force; from step to step
-/// no faster than the speed, never beyond the travel, and back if the force is too much. With a force of zero it goes back to
+/// no faster than the speed, never beyond the travel, and back if the force is too much. It does not pass through the patch: what it has
+/// pressed stays at its stroke, however much more force is wanted. With a force of zero it goes back to
 /// where its motion says.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]

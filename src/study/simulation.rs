@@ -2,7 +2,7 @@
 
 use super::frames::{FrameWriter, Frames, Making, Press};
 use super::progress::Progress;
-use crate::contact::{Workspace, press_to_depth};
+use crate::contact::{Contact, Workspace, press_to_depth};
 use crate::error::Result;
 use crate::objects::Object;
 use crate::random::Seed;
@@ -118,9 +118,7 @@ impl Press for ObjectPress<'_> {
                 *to = from as f32;
             }
         }
-        (
-            contact.is_none(),
-            contact.is_some_and(|c| c.n_saturated > 0),
-        )
+        let reads_any = |count: fn(Contact) -> usize| contact.is_some_and(|c| count(c) > 0);
+        (!reads_any(|c| c.n_touched), reads_any(|c| c.n_saturated))
     }
 }

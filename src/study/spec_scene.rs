@@ -81,7 +81,7 @@ pub struct TouchesSpec {
     /// The same about its y axis, degrees.
     #[serde(default = "zero")]
     pub tilt_y_deg: SpreadSpec,
-    /// How far the patch goes past first contact, mm.
+    /// How far the patch goes past first contact, mm; beyond the stroke taxels stay saturated.
     pub depth_mm: SpreadSpec,
     /// Axis: F, frames a touch: it is read at the depths d/F, 2d/F … d, each frame with noise of its own, and the measurements
     /// of all of them are its features.
@@ -90,6 +90,35 @@ pub struct TouchesSpec {
     /// Approach speed at the moment of reading, mm/s: what the damper feels.
     #[serde(default)]
     pub speed_mm_per_s: f64,
+}
+
+impl TouchesSpec {
+    /// Says which keys have a list of values, which looks like an axis and is none; `None` where no key has.
+    pub fn mixed_values(&self) -> Option<String> {
+        let spreads = [
+            ("offset_x_mm", &self.offset_x_mm),
+            ("offset_y_mm", &self.offset_y_mm),
+            ("yaw_deg", &self.yaw_deg),
+            ("tilt_x_deg", &self.tilt_x_deg),
+            ("tilt_y_deg", &self.tilt_y_deg),
+            ("depth_mm", &self.depth_mm),
+        ];
+        let lists = spreads
+            .into_iter()
+            .filter_map(|(key, spread)| match spread {
+                SpreadSpec::List(values) if values.len() > 1 => Some(format!("{key} = {values:?}")),
+                _ => None,
+            });
+        let lists: Vec<String> = lists.collect();
+        (!lists.is_empty()).then(|| {
+            format!(
+                "each configuration mixes touches of {}: a list in [touches] is spread over the touches of an object, not an axis. \
+                 To compare its values, run a study for each (of depths, frames = F reads a touch at F of them); to mix them without \
+                 this note, write {{ grid = [first, last, count] }} or {{ uniform = [low, high] }}",
+                lists.join(" and ")
+            )
+        })
+    }
 }
 
 /// No touches: those of a study that does not press objects.
@@ -143,7 +172,7 @@ pub enum RestSpec {
 pub enum SpreadSpec {
     /// `yaw_deg = 30.0`
     One(f64),
-    /// `yaw_deg = [0.0, 10.0, 20.0]`
+    /// `yaw_deg = [0.0, 10.0, 20.0]`: all of them in each configuration, as no axis.
     List(Vec<f64>),
     /// `yaw_deg = { grid = [0.0, 50.0, 6] }` or `{ uniform = [0.0, 360.0] }`
     Range(RangeSpec),

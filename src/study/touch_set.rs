@@ -11,6 +11,7 @@ use super::simulation::{TouchedObject, simulate_into, touch_labels};
 use super::spec::GroupSpec;
 use super::splits::group_keys;
 use super::sweep::Sweep;
+use crate::contact::saturation_limit;
 use crate::error::Result;
 use crate::objects::Model;
 use crate::random::Seed;
@@ -49,6 +50,11 @@ pub trait TouchSet: Sync {
 
     /// A few touches for the eye.
     fn samples(&self, plan: &Plan, sweep: &Sweep) -> Result<Samples>;
+
+    /// How many of them go deeper (metres past first contact) than a stroke.
+    fn n_deeper_than(&self, _stroke: f64) -> usize {
+        0
+    }
 
     /// About how many processor-seconds more these take to make and to draw than four frames of objects.
     fn samples_s(&self) -> f64 {
@@ -100,6 +106,12 @@ impl TouchSet for Vec<TouchedObject> {
 
     fn samples(&self, plan: &Plan, sweep: &Sweep) -> Result<Samples> {
         sample_frames(plan, sweep, self)
+    }
+
+    fn n_deeper_than(&self, stroke: f64) -> usize {
+        let touches = self.iter().flat_map(|t| &t.touches);
+        let limit = saturation_limit(stroke);
+        touches.filter(|touch| touch.depth > limit).count()
     }
 
     fn place_s(&self) -> f64 {

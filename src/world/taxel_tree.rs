@@ -56,19 +56,9 @@ struct Node {
 
 impl TaxelTree {
     pub fn new(layout: &Layout, taxels: &Taxels) -> Self {
-        let place = |number: usize| {
-            let frame = layout.frame(number);
-            let taxel = taxels.at(number);
-            PlacedTaxel {
-                number: number as u32,
-                center: layout.centers()[number],
-                across: [frame.x_axis, frame.y_axis],
-                axis: frame.z_axis,
-                radius: taxel.radius,
-                behind: -taxel.stroke - taxel.radius,
-            }
-        };
-        let all: Vec<PlacedTaxel> = (0..layout.n_taxels()).map(place).collect();
+        let all: Vec<PlacedTaxel> = (0..layout.n_taxels())
+            .map(|number| PlacedTaxel::of(layout, taxels, number))
+            .collect();
         let mut tree = Self {
             nodes: Vec::new(),
             depth: all.iter().map(|taxel| -taxel.behind).fold(0.0, f64::max),
@@ -153,6 +143,20 @@ impl Node {
 }
 
 impl PlacedTaxel {
+    /// A taxel of a layout by its number.
+    pub fn of(layout: &Layout, taxels: &Taxels, number: usize) -> Self {
+        let frame = layout.frame(number);
+        let taxel = taxels.at(number);
+        Self {
+            number: number as u32,
+            center: layout.centers()[number],
+            across: [frame.x_axis, frame.y_axis],
+            axis: frame.z_axis,
+            radius: taxel.radius,
+            behind: -taxel.stroke - taxel.radius,
+        }
+    }
+
     /// The box around the stretch from its rest centre back to where its substrate is.
     fn stretch(&self) -> Aabb {
         let end = self.center + self.behind * self.axis;

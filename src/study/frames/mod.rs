@@ -33,7 +33,7 @@ pub struct FrameFacts {
     pub n_taxels: usize,
     /// F, frames a touch.
     pub n_frames: usize,
-    /// Touches that met nothing: their frames are zero.
+    /// Touches that met nothing: no taxel is deflected when they are deepest.
     pub n_missed: usize,
     /// Touches with at least one taxel at its stroke when they are deepest.
     pub n_saturated: usize,

@@ -45,7 +45,7 @@ fn deflection(patch: &Patch, solid: &Solid, rest: DVec3, axis: DVec3) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::contact::{Workspace, press_to_travel};
+    use crate::contact::{Workspace, press_at_pose};
     use crate::objects::{Shape, Sphere, SphereUnion};
     use crate::world::{Grid, Scene, Taxel};
 
@@ -74,7 +74,7 @@ mod tests {
         let ball = SphereUnion::new(vec![ball]).unwrap();
         let scene = Scene::of_one(&patch, &ball.into());
         let mut workspace = Workspace::new();
-        press_to_travel(&scene, &[pose], 0.0, &mut workspace);
+        press_at_pose(&scene, &[pose], &mut workspace);
         let pairs = marched.iter().zip(workspace.deflections());
         let worst = pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
         // A ball that grazes is held by its last steps.
