@@ -23,15 +23,16 @@ pub struct PatchReading {
     pub pose: Pose,
     /// n_taxels, metres.
     pub deflection: Vec<f64>,
-    /// n_taxels, newtons along the axes, never negative; zero on a taxel that only relaxes.
+    /// n_taxels, newtons along the axes, never negative; zero on a taxel that only relaxes. Of a taxel at its stroke that carries a free
+    /// object, with the reaction of its stop; of an imposed object, what stops carry is not known and not counted.
     pub force: Vec<f64>,
     /// Taxels with a force.
     pub n_touched: usize,
-    /// Taxels at their stroke that an object would push further.
+    /// Taxels at their stroke that an object would push further, or whose stop carries a free object.
     pub n_saturated: usize,
     /// Taxels whose contact is grazing: see [`GRAZING`](crate::contact::GRAZING).
     pub n_grazing: usize,
-    /// What the objects put on the patch, in its frame, without what stops carry; friction with it.
+    /// What the objects put on the patch, in its frame, by the forces above; friction with it.
     pub wrench: Wrench,
     /// Of a patch with friction.
     pub friction: Option<FrictionReading>,
@@ -78,7 +79,7 @@ pub enum Held {
     },
     /// Skin: it is at rest.
     AtRest,
-    /// Skin, but no rest was found within the largest number of steps.
+    /// Skin, but no rest was found within the largest number of steps, or none together with the other free objects.
     Unsettled,
     /// Nothing: it left the skin, and touches none any more.
     Escaped {

@@ -6,9 +6,10 @@ use super::plan_object::Movement;
 use super::skin_state::{OUT_OF_REACH, PlacedObjects, SkinState};
 use crate::contact::balance::{Balancer, FreeObject, Outcome, PlacedSkin};
 use crate::contact::{SkinWorkspace, press_skin};
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::geometry::Pose;
 use glam::DVec3;
+use std::collections::BTreeMap;
 
 /// Several free objects are at rest together when none of them moved by more in a round, metres (a turn counts at the object's
 /// farthest point). Smaller: more rounds; larger: what one puts on a taxel of the other is off by as much.
@@ -16,6 +17,9 @@ pub const ROUND_TOLERANCE: f64 = 1e-7;
 
 /// Rounds of a step, at most; steps that end by this are counted.
 pub const MOST_ROUNDS: usize = 20;
+
+/// Forces up to this share of an object's weight carry nothing of it. Smaller: rounding counts; larger: what two objects share is missed.
+const NOTHING: f64 = 1e-9;
 
 /// All free objects of a scene.
 #[derive(Clone, Debug)]
@@ -77,21 +81,66 @@ impl FreeObjects {
             objects.poses[free.object] = free.world_pose();
         }
         for round in 1..=MOST_ROUNDS {
-            let mut farthest: f64 = 0.0;
+            let mut moved = Vec::new();
             let mut n_there = 0;
             for number in 0..self.all.len() {
                 if !self.all[number].is_there() {
                     continue;
                 }
                 n_there += 1;
-                farthest = farthest.max(self.settle_one(number, plan, skins, objects, time)?);
+                if self.settle_one(number, plan, skins, objects, time)? > ROUND_TOLERANCE {
+                    moved.push(number);
+                }
             }
-            if n_there <= 1 || farthest <= ROUND_TOLERANCE {
+            if n_there <= 1 || moved.is_empty() {
                 break;
             }
-            self.n_unfinished += usize::from(round == MOST_ROUNDS);
+            if round == MOST_ROUNDS {
+                self.n_unfinished += 1;
+                for number in moved {
+                    self.all[number].unsettle();
+                }
+            }
+        }
+        self.check_apart(plan, time)
+    }
+
+    /// An error if two of them rest on one taxel. Elsewhere each taxel carries the object that pushes it farthest, and what is a minimum
+    /// of the energy for each of them is one for all; where two push it equally far, they would share its force, which a balance of one
+    /// at a time gives to both.
+    fn check_apart(&self, plan: &ScenePlan, time: f64) -> Result<()> {
+        let mut carried: BTreeMap<(usize, usize), &Free> = BTreeMap::new();
+        for free in self.all.iter().filter(|free| free.is_there()) {
+            let nothing = NOTHING * free.mass * plan.gravity.length();
+            for load in free.balancer.loads() {
+                if load.force <= nothing {
+                    continue;
+                }
+                let Some(other) = carried.insert((load.skin, load.taxel), free) else {
+                    continue;
+                };
+                let [one, other] = [other, free].map(|free| &plan.objects[free.object].name);
+                return Err(Error::input(
+                    format!("{}, objects `{one}` and `{other}`", plan.place),
+                    format!(
+                        "at {time} s both rest on taxel {} of patch `{}`",
+                        load.taxel + 1,
+                        plan.patches[load.skin].skin.name()
+                    ),
+                    "free objects on taxels of their own (each is put to rest by itself, so the force of a taxel that two share would \
+                     count for both), or a scene that ends before (--until-s)",
+                ));
+            }
         }
         Ok(())
+    }
+
+    /// What stops of a patch carry: a taxel and newtons each.
+    pub fn stops(&self, patch: usize) -> impl Iterator<Item = (usize, f64)> {
+        let there = self.all.iter().filter(|free| free.is_there());
+        let loads = there.flat_map(|free| free.balancer.loads());
+        let of_patch = loads.filter(move |load| load.skin == patch && load.stop > 0.0);
+        of_patch.map(|load| (load.taxel, load.stop))
     }
 
     /// How far it went, metres.
@@ -153,6 +202,13 @@ impl FreeObjects {
 }
 
 impl Free {
+    /// It was at rest where the others were before, not where they are.
+    fn unsettle(&mut self) {
+        if self.is_there() {
+            self.held = Held::Unsettled;
+        }
+    }
+
     fn is_there(&self) -> bool {
         !matches!(self.held, Held::Escaped { .. })
     }

@@ -12,7 +12,8 @@
 //!    the same when all rest. A force that is not reached is no error: the object waits at the end of its travel, and each frame
 //!    says what it carries;
 //! 3. free objects go to rest on the skin that is there, each from where it was ([`balance`](crate::contact::balance)); several of them
-//!    in turn, until none moves;
+//!    in turn, until none moves. What carries them is their springs and, at the end of a stroke, the reaction of the rigid stop, which
+//!    follows from the balance and counts in the forces of the patch;
 //! 4. each patch is pressed, unless no object is within its reach: what nothing pushes relaxes
 //!    ([`DamperState`](crate::contact::DamperState)), and the tips of a patch with friction are dragged along
 //!    ([`FrictionState`](crate::contact::FrictionState)), whatever moves, patch or object.
@@ -20,8 +21,8 @@
 //! A scene begins as if it had stood as it does at t = 0 for long. One without dampers, friction, free and pushed objects remembers
 //! nothing, so it is evaluated at its frames only, with the same result.
 //!
-//! What is not modelled: free objects on a skin with friction are refused, since their balance holds no shear forces; objects do not touch each other, only skin (two free ones that share taxels slide into one another,
-//! and what they share is then not carried for both); free objects neither swing nor bounce (\[BT\] is quasi-static); an
+//! What is not modelled: free objects on a skin with friction are refused, since their balance holds no shear forces; objects do not touch each other, only skin (two free ones may
+//! slide into one another; where they come to rest on the same taxel, that is an error that names both); free objects neither swing nor bounce (\[BT\] is quasi-static); an
 //! object that has escaped touches nothing any more.
 //!
 //! ```

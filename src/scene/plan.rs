@@ -20,6 +20,8 @@ const MOST_STEPS: f64 = 1e9;
 /// Robots, skin and objects, and when they are looked at.
 #[derive(Clone, Debug)]
 pub struct ScenePlan {
+    /// Its file's name, for errors.
+    pub place: String,
     /// As it was written, with its duration, and with paths that hold from any folder.
     pub spec: SceneSpec,
     /// Frames a second.
@@ -88,6 +90,7 @@ impl ScenePlan {
                 .map_err(|e| Error::io(folder.join(&path), "read", e))?;
         }
         Ok(Self {
+            place: place.to_owned(),
             output_rate: spec.output_hz,
             spec,
             n_frames: clock.n_frames,

@@ -77,7 +77,8 @@ impl<'p> Simulation<'p> {
         Ok(())
     }
 
-    /// Goes to the next frame; `None` after the last. The error is a pose beyond all numbers.
+    /// Goes to the next frame; `None` after the last. The error is a pose beyond all numbers, or two free objects
+    /// that rest on one taxel.
     pub fn next_frame(&mut self) -> Result<Option<&Frame>> {
         let plan = self.plan;
         if self.next_frame == plan.n_frames {
@@ -157,8 +158,10 @@ impl<'p> Simulation<'p> {
     fn read(&mut self, dt: f64) {
         let plan = self.plan;
         let patches = self.skins.iter_mut().zip(&plan.patches);
-        for ((skin, patch), reading) in patches.zip(&mut self.frame.patches) {
-            skin.step_and_read(patch, &plan.models, &self.objects, dt, reading);
+        let patches = patches.zip(&mut self.frame.patches).enumerate();
+        for (number, ((skin, patch), reading)) in patches {
+            let stops = self.free.stops(number);
+            skin.step_and_read(patch, &plan.models, &self.objects, dt, stops, reading);
         }
         for (reading, &pose) in self.frame.objects.iter_mut().zip(&self.objects.poses) {
             reading.pose = pose;

@@ -114,33 +114,36 @@ impl SkinState {
         self.feel(patch, models, objects, dt, Detail::Deflections);
     }
 
-    /// The same, and reports.
+    /// The same, and reports; `stops`: what stops carry of free objects, a taxel and newtons each.
     pub fn step_and_read(
         &mut self,
         patch: &PlannedPatch,
         models: &[Model],
         objects: &PlacedObjects,
         dt: f64,
+        stops: impl Iterator<Item = (usize, f64)>,
         reading: &mut PatchReading,
     ) {
         self.feel(patch, models, objects, dt, Detail::Contacts);
-        reading.pose = self.pose;
-        reading.deflection.clone_from(&self.damper.deflection);
-        reading.force.clone_from(&self.damper.force);
-        reading.n_touched = self
-            .damper
-            .force
-            .iter()
-            .filter(|&&force| force > 0.0)
-            .count();
-        reading.n_saturated = self.counts.n_saturated;
-        reading.n_grazing = self.counts.n_grazing;
         // Out of reach, the workspace still has what touched it last.
         let contacts = match self.counts.n_touched {
             0 => &[],
             _ => self.workspace.contacts(),
         };
-        let forces = &self.damper.force;
+        reading.pose = self.pose;
+        reading.deflection.clone_from(&self.damper.deflection);
+        reading.force.clone_from(&self.damper.force);
+        reading.n_saturated = self.counts.n_saturated;
+        reading.n_grazing = self.counts.n_grazing;
+        for (taxel, force) in stops {
+            reading.force[taxel] += force;
+            let is_counted = contacts
+                .binary_search_by_key(&taxel, |contact| contact.taxel)
+                .is_ok_and(|at| contacts[at].is_saturated(patch.skin.taxels().at(taxel)));
+            reading.n_saturated += usize::from(!is_counted);
+        }
+        let forces = &reading.force;
+        reading.n_touched = forces.iter().filter(|&&force| force > 0.0).count();
         let load = axial_load(&patch.skin, contacts, |contact| forces[contact.taxel]);
         reading.wrench = on_patch(load.on_object);
         reading.center_of_pressure = load.center_of_pressure;

@@ -335,7 +335,12 @@ impl<'a> Descent<'a> {
     }
 
     /// What there is to say of the pose that it has come to, and of what holds it there, if that is known better than by deflections.
-    pub fn balance(&self, outcome: Outcome, held: Option<Held>) -> Balance {
+    pub fn balance(&mut self, outcome: Outcome, held: Option<Held>) -> Balance {
+        if let Outcome::Escaped { .. } = outcome {
+            self.balancer.carried.clear();
+        } else if held.is_none() {
+            self.balancer.carried = self.balancer.now.carried(self.skins);
+        }
         let now = &self.balancer.now;
         let by_deflections = || {
             let (force, torque) = now.wrench(self.skins);

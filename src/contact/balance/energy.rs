@@ -4,6 +4,7 @@ use super::free_object::{FreeObject, PlacedSkin};
 use super::loads::Loads;
 use super::model::Scene;
 use super::pairs::{Key, Margins, Pairs};
+use super::settle::TaxelLoad;
 use crate::geometry::Pose;
 use glam::DVec3;
 
@@ -61,6 +62,20 @@ impl Energy {
             }
         }
         (force, torque)
+    }
+
+    /// What each taxel carries of the object: of the forces of [`wrench`](Self::wrench), without what other objects have of them.
+    pub fn carried(&self, skins: &[PlacedSkin]) -> Vec<TaxelLoad> {
+        let carried = self.loads.carrying().map(|load| {
+            let is_own = |at: &usize| self.pairs.all[*at].reach.is_some();
+            let own = load.pairs.clone().filter(is_own);
+            let share: f64 = own.map(|at| self.loads.shares[at]).sum();
+            let taxel = skins[load.key.0 as usize].patch.taxels();
+            let taxel = taxel.at(load.key.1 as usize);
+            let force = taxel.stiffness * load.deepest.min(taxel.stroke) + load.stop;
+            TaxelLoad::new(load.key, share * force, load.stop > 0.0, skins)
+        });
+        carried.filter(|load| load.force > 0.0).collect()
     }
 
     /// How far shares and stops are from what they say: spheres that share a taxel should push it equally far, and a stop that

@@ -8,6 +8,7 @@ use super::descent::Descent;
 use super::interior::{Problem, Solution, Spring};
 use super::model::{add_curvature, add_turning, ways};
 use super::pairs::Key;
+use super::settle::TaxelLoad;
 use super::six::{SixBySix, eigen, norm};
 use glam::DVec3;
 use std::collections::BTreeMap;
@@ -204,10 +205,11 @@ impl Descent<'_> {
             .collect()
     }
 
-    /// For the next rest nearby.
+    /// What carries, and the multipliers for the next rest nearby.
     fn remember(&mut self, solution: &Solution) {
         let weight = self.weight.length();
         let (mut stops, mut shares) = (BTreeMap::new(), BTreeMap::new());
+        let mut carried = Vec::new();
         let pairs = self.balancer.now.pairs.all.iter().zip(&solution.forces);
         let pairs: Vec<_> = pairs.collect();
         for (of_taxel, stop) in pairs
@@ -215,6 +217,11 @@ impl Descent<'_> {
             .zip(&solution.stops)
         {
             let key = of_taxel[0].0.key;
+            let own = of_taxel.iter().filter(|(pair, _)| pair.reach.is_some());
+            let force: f64 = own.map(|(_, force)| weight * **force).sum();
+            if force > NOTHING * weight {
+                carried.push(TaxelLoad::new(key, force, *stop > NOTHING, self.skins));
+            }
             if *stop > NOTHING {
                 stops.insert(key, weight * stop);
             }
@@ -232,6 +239,7 @@ impl Descent<'_> {
         }
         self.multipliers.stops = stops;
         self.multipliers.shares = shares;
+        self.balancer.carried = carried;
     }
 
     fn stroke(&self) -> f64 {

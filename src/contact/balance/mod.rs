@@ -32,4 +32,4 @@ mod six;
 mod tied_max;
 
 pub use free_object::{FreeObject, PlacedSkin};
-pub use settle::{Balance, Balancer, Outcome};
+pub use settle::{Balance, Balancer, Outcome, TaxelLoad};

@@ -5,6 +5,7 @@ use super::energy::Energy;
 use super::free_object::{FreeObject, PlacedSkin};
 use super::loads::Multipliers;
 use super::model::Model;
+use super::pairs::Key;
 use crate::error::{Error, Result};
 use crate::geometry::Pose;
 use glam::DVec3;
@@ -47,6 +48,40 @@ pub struct Balance {
     pub n_steps: usize,
 }
 
+/// What one taxel carries of an object.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TaxelLoad {
+    /// The skin's number in the list that the object was put to rest on.
+    pub skin: usize,
+    /// The taxel's number in its layout.
+    pub taxel: usize,
+    /// What the object puts on it along its axis, newtons, above 0.
+    pub force: f64,
+    /// The part of that force which the spring at its stroke does not carry, newtons: the reaction of the stop, the multiplier of
+    /// δ ≤ s in the balance; 0 before the stroke.
+    pub stop: f64,
+}
+
+impl TaxelLoad {
+    /// Of a taxel whose stop carries if `is_stopped`.
+    pub(super) fn new(
+        (skin, taxel): Key,
+        force: f64,
+        is_stopped: bool,
+        skins: &[PlacedSkin],
+    ) -> Self {
+        let (skin, taxel) = (skin as usize, taxel as usize);
+        let spring = skins[skin].patch.taxels().at(taxel);
+        let past = force - spring.stiffness * spring.stroke;
+        Self {
+            skin,
+            taxel,
+            force,
+            stop: if is_stopped { past.max(0.0) } else { 0.0 },
+        }
+    }
+}
+
 /// Finds resting poses, and remembers what it needs to find the next one nearby sooner.
 #[derive(Clone, Debug, Default)]
 pub struct Balancer {
@@ -54,12 +89,19 @@ pub struct Balancer {
     pub(super) next: Energy,
     pub(super) model: Model,
     pub(super) multipliers: Multipliers,
+    pub(super) carried: Vec<TaxelLoad>,
 }
 
 impl Balancer {
     /// A balancer that knows nothing yet.
     pub fn new() -> Self {
         Self::default()
+    }
+
+    /// What carries the object that was put to rest last, taxel by taxel, in the order of skins and taxels; empty of one that escaped.
+    /// Its forces are those of the last [`Balance`]: Σ f n_c / (n_c·n) is the balance's force.
+    pub fn loads(&self) -> &[TaxelLoad] {
+        &self.carried
     }
 
     /// Puts an object to rest from a pose (`world_from_object`), under `gravity` (m/s², in the world).
