@@ -159,7 +159,7 @@ fn a_union_of_posed_parts_packs_within_the_tolerance() {
         let union = pack(&solid, tolerance).unwrap();
         let error = surface_error(&solid, &union, 1. * MM);
         assert!(
-            error.protrusion <= tolerance && error.gap <= tolerance,
+            error.protrusion <= 0.5 * tolerance && error.gap <= tolerance,
             "case {case}: {error:?}"
         );
     }
@@ -178,7 +178,7 @@ fn the_measured_surface_error_sees_a_sphere_that_is_missing_or_too_large() {
     let fewer = bubbletouch::objects::SphereUnion::new(fewer).unwrap();
     assert!(surface_error(&solid, &fewer, 0.2 * MM).gap > 0.2 * MM);
     let mut larger = union.spheres().to_vec();
-    larger[0].radius += 0.1 * MM;
+    larger[0].radius += 0.3 * MM;
     let larger = bubbletouch::objects::SphereUnion::new(larger).unwrap();
     assert!(surface_error(&solid, &larger, 0.2 * MM).protrusion > 0.29 * MM);
 }
@@ -191,7 +191,7 @@ fn simple_shapes_take_few_spheres() {
             .n_spheres()
     };
     assert_eq!(count(Shape::Ball { diameter: 65. * MM }, 0.1 * MM), 1);
-    // A row: each ball covers 2 · 2 · sqrt(0.25 · 5.25) = 4.6 mm of the 90 mm between the ends.
+    // A row: each ball covers 2 · sqrt(0.375 · 10.375) = 3.9 mm of the 90 mm between the ends, which reach 1.6 mm each.
     assert_eq!(
         count(
             Shape::Capsule {
@@ -200,13 +200,13 @@ fn simple_shapes_take_few_spheres() {
             },
             0.25 * MM
         ),
-        21
+        25
     );
     let torus = Shape::Torus {
         ring_diameter: 60. * MM,
         tube_diameter: 10. * MM,
     };
-    assert_eq!(count(torus, 0.25 * MM), 45);
+    assert_eq!(count(torus, 0.25 * MM), 52);
     // Rims of balls of about 1.2 mm, one ball a slice of the barrel.
     assert!(
         count(
@@ -215,7 +215,7 @@ fn simple_shapes_take_few_spheres() {
                 height: 121. * MM
             },
             0.25 * MM
-        ) <= 210
+        ) <= 290
     );
     // 12 edges at 5.66 e, then about 4 A / 8er spheres on 2 · 158 · 210 mm² and the four sides.
     let size = DVec3::new(158., 60., 210.) * MM;

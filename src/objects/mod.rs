@@ -12,6 +12,7 @@
 
 mod block;
 mod catalogue;
+mod fit;
 mod hand;
 mod lathe;
 mod mesh_model;

@@ -1,6 +1,7 @@
 //! Unions of posed shapes: what the catalogue's objects are.
 
 use super::block::Block;
+use super::fit::Fit;
 use super::lathe::Lathe;
 use super::prism::Prism;
 use super::strand::Strand;
@@ -84,15 +85,15 @@ impl Part {
         support + self.pose.translation.dot(direction)
     }
 
-    /// Spheres whose union is the part to the tolerance (metres, positive).
-    pub(super) fn pack(&self, tolerance: f64) -> Vec<Sphere> {
+    /// Spheres whose union is the part.
+    pub(super) fn pack(&self, fit: Fit) -> Vec<Sphere> {
         let mut spheres = Vec::new();
         match &self.kernel {
-            Kernel::Block(block) => block.pack(tolerance, &mut spheres),
-            Kernel::Lathe(lathe) => lathe.pack(tolerance, &mut spheres),
-            Kernel::Prism(prism) => prism.pack(tolerance, &mut spheres),
-            Kernel::Torus(torus) => torus.pack(tolerance, &mut spheres),
-            Kernel::Strand(strand) => strand.pack(tolerance, &mut spheres),
+            Kernel::Block(block) => block.pack(fit, &mut spheres),
+            Kernel::Lathe(lathe) => lathe.pack(fit, &mut spheres),
+            Kernel::Prism(prism) => prism.pack(fit, &mut spheres),
+            Kernel::Torus(torus) => torus.pack(fit, &mut spheres),
+            Kernel::Strand(strand) => strand.pack(fit, &mut spheres),
         }
         for sphere in &mut spheres {
             sphere.center = self.pose.transform_point(sphere.center);

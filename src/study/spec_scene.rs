@@ -25,7 +25,8 @@ pub struct ObjectsSpec {
     /// The unit of the meshes' files; metres when left out.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub mesh_unit: Option<LengthUnit>,
-    /// How far the spheres of a solid, or of a packed mesh, may be from its surface, mm. When left out, 0.25; with
+    /// How far the surface of a solid, or of a packed mesh, may be outside its spheres, mm; they reach at most half of it outside
+    /// the solid, so that the two are equally high on average. When left out, 0.25; with
     /// `model = "packed"` a tenth of the finest pitch, which leaves a mean deflection error of about 2 % of the pitch.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub surface_error_mm: Option<f64>,
