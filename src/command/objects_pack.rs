@@ -14,8 +14,8 @@ const N_POINTS: usize = 100_000;
 
 /// Pack a mesh or a built-in object with few spheres.
 ///
-/// No sphere reaches more than the tolerance outside the object (of a mesh: half of it), and no point of its outer surface is
-/// farther than the tolerance from the spheres. Both are measured and reported.
+/// No sphere reaches more than half the tolerance outside the object, and no point of its outer surface is farther than the
+/// tolerance from the spheres. Both are measured and reported. A ball is one sphere, its own.
 #[derive(clap::Args)]
 pub struct Args {
     #[command(flatten)]

@@ -1,8 +1,11 @@
 //! A box, sharp or with rounded edges: its distance, its surface, its spheres.
 
 use super::Sphere;
+use super::fit::Fit;
 use super::pack::MAX_SPHERES;
-use glam::DVec3;
+use super::surface_patch::{SurfacePatch, frame};
+use crate::geometry::Pose;
+use glam::{DVec2, DVec3};
 
 /// An axis-aligned box about the origin.
 #[derive(Clone, Copy, Debug)]
@@ -28,48 +31,79 @@ impl Block {
 
     /// Corner balls, a row along each edge, then on each face rows that widen towards its middle.
     ///
-    /// A ball of tangent radius r, inflated by e, covers a flat face to 2·sqrt(e(r + e)) around its foot: a square cell of
-    /// half side sqrt(2e(r + e)).
-    pub fn pack(&self, tolerance: f64, spheres: &mut Vec<Sphere>) {
-        let edge = EdgeRow::new(self, tolerance);
-        self.pack_corners(&edge, tolerance, spheres);
+    /// A swollen ball of tangent radius r covers a flat face to sqrt(h(2r + h)) around its foot: a square cell of half side
+    /// sqrt(h(r + h/2)).
+    pub fn pack(&self, fit: Fit, spheres: &mut Vec<Sphere>) {
+        let edge = EdgeRow::new(self, fit);
+        self.pack_corners(&edge, fit, spheres);
         for axis in 0..3 {
-            self.pack_edges(axis, &edge, tolerance, spheres);
-            Face::new(self, axis).pack(edge.width, tolerance, spheres);
+            self.pack_edges(axis, &edge, fit, spheres);
+            Face::new(self, axis).pack(edge.width, fit, spheres);
         }
     }
 
-    fn pack_corners(&self, edge: &EdgeRow, e: f64, spheres: &mut Vec<Sphere>) {
+    fn pack_corners(&self, edge: &EdgeRow, fit: Fit, spheres: &mut Vec<Sphere>) {
         let inner = self.half - DVec3::splat(edge.radius);
+        // A round corner is the ball itself.
+        let corner = if edge.is_round { fit.unswollen() } else { fit };
         for x in both_signs(inner.x) {
             for y in both_signs(inner.y) {
                 for z in both_signs(inner.z) {
-                    spheres.push(Sphere {
-                        center: DVec3::new(x, y, z),
-                        radius: edge.radius + e,
-                    });
+                    spheres.push(corner.swollen(DVec3::new(x, y, z), edge.radius));
                 }
             }
         }
     }
 
-    fn pack_edges(&self, axis: usize, edge: &EdgeRow, e: f64, spheres: &mut Vec<Sphere>) {
+    fn pack_edges(&self, axis: usize, edge: &EdgeRow, fit: Fit, spheres: &mut Vec<Sphere>) {
         let inner = self.half - DVec3::splat(edge.radius);
         let (b, c) = ((axis + 1) % 3, (axis + 2) % 3);
-        for along in cells(self.half[axis] - edge.width, edge.half_spacing) {
+        for along in cells(self.half[axis] - edge.corner, edge.half_spacing) {
             for y in both_signs(inner[b]) {
                 for z in both_signs(inner[c]) {
                     let mut center = DVec3::ZERO;
                     center[axis] = along;
                     center[b] = y;
                     center[c] = z;
-                    spheres.push(Sphere {
-                        center,
-                        radius: edge.radius + e,
-                    });
+                    spheres.push(fit.swollen(center, edge.radius));
                 }
             }
         }
+    }
+
+    /// Six faces; if it is rounded, twelve edges and eight corners.
+    pub fn patches(&self) -> Vec<SurfacePatch> {
+        const SIGNS: [f64; 2] = [-1.0, 1.0];
+        let core = self.half - DVec3::splat(self.rounding);
+        let mut patches = Vec::new();
+        for axis in 0..3 {
+            let (b, c) = ((axis + 1) % 3, (axis + 2) % 3);
+            let [up, right, ahead] = [axis, b, c].map(|k| DVec3::AXES[k]);
+            for sign in SIGNS {
+                let origin = sign * self.half[axis] * up;
+                let half = DVec2::new(core[b], core[c]);
+                patches.push(SurfacePatch::flat(origin, [right, sign * ahead], half));
+            }
+            if self.rounding == 0.0 {
+                continue;
+            }
+            let line = [-core[axis], core[axis]].map(|z| DVec2::new(self.rounding, z));
+            let angles = [0.0, std::f64::consts::FRAC_PI_2];
+            for (y, z) in SIGNS.into_iter().flat_map(|y| SIGNS.map(|z| (y, z))) {
+                let at = y * core[b] * right + z * core[c] * ahead;
+                let pose = Pose::new(frame(y * right, z * ahead), at);
+                if core[axis] > 0.0 {
+                    patches.push(SurfacePatch::turned(line[0], line[1], angles).moved(&pose));
+                }
+                if axis == 2 {
+                    patches.extend(SIGNS.map(|up| {
+                        let sides = DVec3::new(y, z, up);
+                        SurfacePatch::eighth_of_ball(sides * core, self.rounding, sides)
+                    }));
+                }
+            }
+        }
+        patches
     }
 
     pub fn surface_points(&self, spacing: f64, points: &mut Vec<DVec3>) {
@@ -107,29 +141,47 @@ impl Block {
 struct EdgeRow {
     /// Tangent radius; the centres lie this far inside both faces.
     radius: f64,
+    /// Whether the edge is round, and the balls fill it.
+    is_round: bool,
     /// How far from the edge the row covers each face.
     width: f64,
+    /// How far along the edge the ball in the corner covers that strip.
+    corner: f64,
     /// Half the distance between balls along the edge.
     half_spacing: f64,
 }
 
+/// Which share of its reach, squared, a ball in a round edge has for the faces. Smaller: the faces take more spheres; larger: the
+/// edge does, and stands out.
+const ACROSS: f64 = 0.1;
+
 impl EdgeRow {
-    /// At a sharp edge r = 2e covers the most: the edge to 2·sqrt(2)·e each way (2r² + y² ≤ (r + 2e)²), the faces to 4e.
-    fn new(block: &Block, e: f64) -> Self {
-        if block.rounding >= 2.0 * e {
+    /// At a sharp edge r = h covers the most: the edge to sqrt(2)·h each way (2r² + y² ≤ (r + h)²), the faces to 2h.
+    fn new(block: &Block, fit: Fit) -> Self {
+        let h = fit.reach();
+        if block.rounding >= h {
             let radius = block.rounding;
-            let half_spacing = (2.0 * e * (radius + e)).sqrt();
+            // Most of what a ball reaches goes along the edge, and little across the faces beside it: fewer balls, and the edge
+            // itself is as often below the spheres as above them.
+            let square = fit.disc_squared(radius);
+            let across = ACROSS * square;
+            // Not swollen, the ball in the corner reaches the strip's border less far along.
+            let corner = (fit.unswollen().disc_squared(radius) - across).sqrt();
             return Self {
                 radius,
-                width: radius + half_spacing,
-                half_spacing,
+                is_round: true,
+                width: radius + across.sqrt(),
+                corner: radius + corner,
+                half_spacing: (square - across).sqrt(),
             };
         }
-        let radius = (2.0 * e).min(block.half.min_element());
+        let radius = h.min(block.half.min_element());
         Self {
             radius,
+            is_round: false,
             width: 2.0 * radius,
-            half_spacing: ((radius + 2.0 * e).powi(2) - 2.0 * radius * radius).sqrt(),
+            corner: 2.0 * radius,
+            half_spacing: ((radius + h).powi(2) - 2.0 * radius * radius).sqrt(),
         }
     }
 }
@@ -154,31 +206,32 @@ impl Face {
 
     /// Rectangular rows from the border inwards; a plain grid once balls are as large as the box is thick, or when
     /// less than two rows are left. `covered` is the width of the border that the edges' rows cover.
-    fn pack(&self, mut covered: f64, e: f64, spheres: &mut Vec<Sphere>) {
+    fn pack(&self, mut covered: f64, fit: Fit, spheres: &mut Vec<Sphere>) {
+        let h = fit.reach();
         loop {
             let left = self.half.map(|h| h - covered);
             if left[0] <= 0.0 || left[1] <= 0.0 || spheres.len() > MAX_SPHERES {
                 return;
             }
-            // The row whose balls touch the side faces: inset = covered + sqrt(2e(inset + e)).
-            let inset = covered + e + (2.0 * covered * e + 3.0 * e * e).sqrt();
+            // The row whose balls touch the side faces: inset = covered + sqrt(h(inset + h/2)).
+            let inset = covered + 0.5 * h + (covered * h + 0.75 * h * h).sqrt();
             let cell = inset - covered;
             if inset >= self.depth || left[0] <= cell || left[1] <= cell {
-                return self.pack_grid(covered, left, e, spheres);
+                return self.pack_grid(covered, left, fit, spheres);
             }
             let inner = self.half.map(|h| h - inset);
             let sides = left.map(|l| cells(l - 2.0 * cell, cell));
             for x in both_signs(inner[0]) {
                 for y in both_signs(inner[1]) {
-                    self.push([x, y], inset, e, spheres);
+                    self.push([x, y], inset, fit, spheres);
                 }
                 for &y in &sides[1] {
-                    self.push([x, y], inset, e, spheres);
+                    self.push([x, y], inset, fit, spheres);
                 }
             }
             for &x in &sides[0] {
                 for y in both_signs(inner[1]) {
-                    self.push([x, y], inset, e, spheres);
+                    self.push([x, y], inset, fit, spheres);
                 }
             }
             covered += 2.0 * cell;
@@ -186,13 +239,13 @@ impl Face {
     }
 
     /// Equal cells, as many as the outermost and so smallest balls need.
-    fn pack_grid(&self, covered: f64, left: [f64; 2], e: f64, spheres: &mut Vec<Sphere>) {
-        let largest = (2.0 * e * (self.depth + e)).sqrt();
+    fn pack_grid(&self, covered: f64, left: [f64; 2], fit: Fit, spheres: &mut Vec<Sphere>) {
+        let largest = (0.5 * fit.disc_squared(self.depth)).sqrt();
         let mut counts = left.map(|l| (l / largest).ceil());
         let cell = loop {
             let cell = [left[0] / counts[0], left[1] / counts[1]];
             let radius = self.depth.min(covered + cell[0].min(cell[1]));
-            if cell[0].powi(2) + cell[1].powi(2) <= 4.0 * e * (radius + e) {
+            if cell[0].powi(2) + cell[1].powi(2) <= fit.disc_squared(radius) {
                 break cell;
             }
             counts[usize::from(cell[1] > cell[0])] += 1.0;
@@ -200,7 +253,7 @@ impl Face {
         for x in cells(left[0], cell[0]) {
             for y in cells(left[1], cell[1]) {
                 let inset = (self.half[0] - x.abs()).min(self.half[1] - y.abs());
-                self.push([x, y], inset.min(self.depth), e, spheres);
+                self.push([x, y], inset.min(self.depth), fit, spheres);
             }
             if spheres.len() > MAX_SPHERES {
                 return;
@@ -208,16 +261,13 @@ impl Face {
         }
     }
 
-    fn push(&self, [x, y]: [f64; 2], radius: f64, e: f64, spheres: &mut Vec<Sphere>) {
+    fn push(&self, [x, y]: [f64; 2], radius: f64, fit: Fit, spheres: &mut Vec<Sphere>) {
         for height in both_signs(self.depth - radius) {
             let mut center = DVec3::ZERO;
             center[self.axis] = height;
             center[(self.axis + 1) % 3] = x;
             center[(self.axis + 2) % 3] = y;
-            spheres.push(Sphere {
-                center,
-                radius: radius + e,
-            });
+            spheres.push(fit.swollen(center, radius));
         }
     }
 }

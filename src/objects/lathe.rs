@@ -3,8 +3,10 @@
 //! The nearest surface point of a solid of revolution lies in the same half plane, so its distance is the polygon's.
 
 use super::Sphere;
+use super::fit::Fit;
 use super::outline::Outline;
 use super::pack::MAX_SPHERES;
+use super::surface_patch::SurfacePatch;
 use glam::{DVec2, DVec3};
 use std::f64::consts::{PI, TAU};
 
@@ -19,7 +21,7 @@ pub(super) struct Lathe {
 struct Ring {
     /// (distance from the axis, height) of the ball centres.
     center: DVec2,
-    /// Tangent radius; the spheres are larger by the tolerance.
+    /// Tangent radius; the spheres are swollen.
     radius: f64,
     n: f64,
 }
@@ -52,15 +54,21 @@ impl Lathe {
     }
 
     /// Rings until every point of the profile is covered all around.
-    pub fn pack(&self, tolerance: f64, spheres: &mut Vec<Sphere>) {
+    pub fn pack(&self, fit: Fit, spheres: &mut Vec<Sphere>) {
         let mut uncovered = Uncovered::new(&self.outline);
-        while let Some(ring) = self.next_ring(&uncovered, tolerance) {
+        while let Some(ring) = self.next_ring(&uncovered, fit) {
+            let mut farthest = ring.radius;
             for (edge, intervals) in uncovered.intervals.iter_mut().enumerate() {
-                if let Some(covered) = self.covered(&ring, edge, tolerance) {
+                if let Some(covered) = self.covered(&ring, edge, fit) {
+                    for [low, high] in common(intervals, covered) {
+                        let edge = &self.outline.edges[edge];
+                        let distances = [low, high].map(|at| ring.distance(edge.point(at)));
+                        farthest = distances.into_iter().fold(farthest, f64::max);
+                    }
                     subtract(intervals, covered);
                 }
             }
-            ring.push_spheres(tolerance, spheres);
+            ring.push_spheres(farthest, fit, spheres);
             if spheres.len() > MAX_SPHERES {
                 return;
             }
@@ -68,21 +76,21 @@ impl Lathe {
     }
 
     /// The ring that covers an end of the first uncovered interval and, over all edges, the most length a sphere.
-    fn next_ring(&self, uncovered: &Uncovered, e: f64) -> Option<Ring> {
+    fn next_ring(&self, uncovered: &Uncovered, fit: Fit) -> Option<Ring> {
         let (edge, target, step) = uncovered.first_end(&self.outline)?;
         let available = if step > 0.0 {
             self.outline.edges[edge].length - target
         } else {
             target
         };
-        let smallest = 1e-2 * e.min(available);
+        let smallest = 5e-3 * fit.reach().min(available);
         let mut best: Option<(f64, f64, Ring)> = None;
         let mut consider = |ahead: f64| {
-            for ring in self.rings(edge, target + step * ahead, e) {
-                if !self.covers(&ring, edge, target, e) {
+            for ring in self.rings(edge, target + step * ahead, fit) {
+                if !self.covers(&ring, edge, target, fit) {
                     continue;
                 }
-                let gain = self.gain(&ring, uncovered, e) / ring.n;
+                let gain = self.gain(&ring, uncovered, fit) / ring.n;
                 if best.is_none_or(|(most, ..)| gain > most) {
                     best = Some((gain, ahead, ring));
                 }
@@ -106,7 +114,7 @@ impl Lathe {
     }
 
     /// Rings of the largest ball that touches an edge there, with several numbers of balls.
-    fn rings(&self, edge: usize, along: f64, e: f64) -> impl Iterator<Item = Ring> {
+    fn rings(&self, edge: usize, along: f64, fit: Fit) -> impl Iterator<Item = Ring> {
         let foot = self.outline.edges[edge].point(along);
         let inward = self.outline.edges[edge].inward;
         let to_axis = if inward.x < 0.0 {
@@ -120,7 +128,7 @@ impl Lathe {
         if radius == to_axis || center.x < 1e-9 * radius {
             center.x = 0.0;
         }
-        let budget = 4.0 * e * (radius + e);
+        let budget = fit.disc_squared(radius);
         [0.35, 0.5, 0.65, 0.8].into_iter().map(move |share| {
             let sine = (share * budget / (4.0 * foot.x * center.x)).sqrt();
             let n = if sine < 1.0 {
@@ -135,12 +143,12 @@ impl Lathe {
     /// Which interval of an edge a ring covers all around.
     ///
     /// Half-way between two balls the profile point (ρ, z) is `(ρ − ρc)² + (z − zc)² + 4 ρ ρc sin²(π/2n)` from both
-    /// centres, squared: quadratic along an edge, and covered where it is at most `(r + 2e)²`.
-    fn covered(&self, ring: &Ring, edge: usize, e: f64) -> Option<[f64; 2]> {
+    /// centres, squared: quadratic along an edge, and covered where it is at most `(r + h)²`.
+    fn covered(&self, ring: &Ring, edge: usize, fit: Fit) -> Option<[f64; 2]> {
         let edge = &self.outline.edges[edge];
         let from_center = edge.start - ring.center;
         let lag = 2.0 * ring.center.x * (0.5 * PI / ring.n).sin().powi(2);
-        let reach = ring.radius + 2.0 * e;
+        let reach = ring.radius + fit.reach();
         let half_linear = from_center.dot(edge.along) + lag * edge.along.x;
         let constant = from_center.length_squared() + 2.0 * lag * edge.start.x - reach * reach;
         let square = half_linear * half_linear - constant;
@@ -153,19 +161,27 @@ impl Lathe {
         (low < high).then_some([low, high])
     }
 
-    fn covers(&self, ring: &Ring, edge: usize, at: f64, e: f64) -> bool {
+    fn covers(&self, ring: &Ring, edge: usize, at: f64, fit: Fit) -> bool {
         let slack = 1e-9 * self.outline.edges[edge].length;
-        self.covered(ring, edge, e)
+        self.covered(ring, edge, fit)
             .is_some_and(|[low, high]| low <= at + slack && at - slack <= high)
     }
 
-    fn gain(&self, ring: &Ring, uncovered: &Uncovered, e: f64) -> f64 {
+    fn gain(&self, ring: &Ring, uncovered: &Uncovered, fit: Fit) -> f64 {
         let edges = uncovered.intervals.iter().enumerate();
         edges
             .filter(|(_, intervals)| !intervals.is_empty())
-            .filter_map(|(edge, intervals)| Some((self.covered(ring, edge, e)?, intervals)))
-            .map(|(covered, intervals)| overlap(intervals, covered))
+            .filter_map(|(edge, intervals)| Some((self.covered(ring, edge, fit)?, intervals)))
+            .flat_map(|(covered, intervals)| common(intervals, covered))
+            .map(|[start, end]| end - start)
             .sum()
+    }
+
+    pub fn patches(&self) -> Vec<SurfacePatch> {
+        let edges = self.outline.edges.iter();
+        edges
+            .map(|edge| SurfacePatch::turned(edge.start, edge.point(edge.length), [0.0, TAU]))
+            .collect()
     }
 
     pub fn surface_points(&self, spacing: f64, points: &mut Vec<DVec3>) {
@@ -184,13 +200,18 @@ impl Lathe {
 }
 
 impl Ring {
-    fn push_spheres(&self, tolerance: f64, spheres: &mut Vec<Sphere>) {
+    /// From a point of the profile, half-way between two of the balls, to their centres.
+    fn distance(&self, point: DVec2) -> f64 {
+        let apart = 4.0 * point.x * self.center.x * (0.5 * PI / self.n).sin().powi(2);
+        ((point - self.center).length_squared() + apart).sqrt()
+    }
+
+    /// The spheres that cover profile points this far from their centres.
+    fn push_spheres(&self, farthest: f64, fit: Fit, spheres: &mut Vec<Sphere>) {
         spheres.extend((0..self.n as usize).take(MAX_SPHERES + 1).map(|i| {
             let (sin, cos) = (TAU * i as f64 / self.n).sin_cos();
-            Sphere {
-                center: DVec3::new(self.center.x * cos, self.center.x * sin, self.center.y),
-                radius: self.radius + tolerance,
-            }
+            let center = DVec3::new(self.center.x * cos, self.center.x * sin, self.center.y);
+            fit.covering(center, self.radius, farthest)
         }));
     }
 }
@@ -227,9 +248,8 @@ fn subtract(intervals: &mut Vec<[f64; 2]>, [low, high]: [f64; 2]) {
         .collect();
 }
 
-fn overlap(intervals: &[[f64; 2]], [low, high]: [f64; 2]) -> f64 {
-    let common = intervals
-        .iter()
-        .map(|[start, end]| (end.min(high) - start.max(low)).max(0.0));
-    common.sum()
+/// What an interval has in common with others.
+fn common(intervals: &[[f64; 2]], [low, high]: [f64; 2]) -> impl Iterator<Item = [f64; 2]> + '_ {
+    let cut = move |[start, end]: &[f64; 2]| [start.max(low), end.min(high)];
+    intervals.iter().map(cut).filter(|[start, end]| start < end)
 }

@@ -1,8 +1,10 @@
 //! A polygon with a thickness: its distance, its surface, its spheres.
 
 use super::Sphere;
+use super::fit::Fit;
 use super::outline::Outline;
 use super::pack::MAX_SPHERES;
+use super::surface_patch::SurfacePatch;
 use glam::{DVec2, DVec3};
 
 /// A polygon in the plane z = 0, thickened by half the thickness both ways.
@@ -37,9 +39,9 @@ impl Prism {
 
     /// Walls first, by cells of each wall; then what they leave of the two faces, by cells of a square around the outline.
     ///
-    /// A cell holds the ball that touches the surface in its middle; the cell is split until that ball, inflated by e,
-    /// comes within e of its farthest point: |p − c| ≤ r + 2e, which is |p − foot|² ≤ 4e(r + e) on a plane.
-    pub fn pack(&self, tolerance: f64, spheres: &mut Vec<Sphere>) {
+    /// A cell holds the ball that touches the surface in its middle; the cell is split until that ball, swollen, covers its
+    /// farthest point: |p − c| ≤ r + h, which is |p − foot|² ≤ (r + h)² − r² on a plane.
+    pub fn pack(&self, fit: Fit, spheres: &mut Vec<Sphere>) {
         for edge in 0..self.outline.edges.len() {
             let length = self.outline.edges[edge].length;
             // Start from about square cells; walls are much longer than high.
@@ -49,7 +51,7 @@ impl Prism {
                     middle: DVec2::new(length * (i as f64 + 0.5) / n, 0.0),
                     half: DVec2::new(0.5 * length / n, self.half),
                 };
-                self.pack_wall(edge, cell, tolerance, spheres);
+                self.pack_wall(edge, cell, fit, spheres);
             }
         }
         let corners = self.outline.vertices().iter();
@@ -60,11 +62,11 @@ impl Prism {
                 middle: 0.5 * (min + max),
                 half: DVec2::splat(0.5 * (max - min).max_element()),
             };
-            self.pack_face(cell, tolerance, spheres);
+            self.pack_face(cell, fit, spheres);
         }
     }
 
-    fn pack_wall(&self, edge: usize, cell: Cell, e: f64, spheres: &mut Vec<Sphere>) {
+    fn pack_wall(&self, edge: usize, cell: Cell, fit: Fit, spheres: &mut Vec<Sphere>) {
         if spheres.len() > MAX_SPHERES {
             return;
         }
@@ -75,19 +77,17 @@ impl Prism {
             .tangent_radius(edge, foot)
             .min(self.half - cell.middle.y.abs());
         let center = foot + radius * wall.inward;
-        if cell.half.length_squared() <= 4.0 * e * (radius + e) {
-            spheres.push(Sphere {
-                center: center.extend(cell.middle.y),
-                radius: radius + e,
-            });
+        if cell.half.length_squared() <= fit.disc_squared(radius) {
+            let farthest = radius.hypot(cell.half.length());
+            spheres.push(fit.covering(center.extend(cell.middle.y), radius, farthest));
             return;
         }
         for part in cell.split() {
-            self.pack_wall(edge, part, e, spheres);
+            self.pack_wall(edge, part, fit, spheres);
         }
     }
 
-    fn pack_face(&self, cell: Cell, e: f64, spheres: &mut Vec<Sphere>) {
+    fn pack_face(&self, cell: Cell, fit: Fit, spheres: &mut Vec<Sphere>) {
         let inset = -self.outline.distance(cell.middle);
         if -inset > cell.half.length() || spheres.len() > MAX_SPHERES {
             return;
@@ -95,30 +95,27 @@ impl Prism {
         let (center, radius) = if inset > 0.0 {
             (cell.middle, inset.min(self.half))
         } else {
-            self.border_disc(cell.middle, e)
+            self.border_disc(cell.middle, 0.25 * fit.reach())
         };
         let farthest = (cell.middle - center).length() + cell.half.length();
-        if farthest * farthest <= 4.0 * e * (radius + e) {
+        if farthest * farthest <= fit.disc_squared(radius) {
             for z in [self.half - radius, radius - self.half] {
-                spheres.push(Sphere {
-                    center: center.extend(z),
-                    radius: radius + e,
-                });
+                spheres.push(fit.covering(center.extend(z), radius, radius.hypot(farthest)));
             }
             return;
         }
         for part in cell.split() {
-            self.pack_face(part, e, spheres);
+            self.pack_face(part, fit, spheres);
         }
     }
 
-    /// Centre and radius of a small disc inside that touches the outline where it is nearest to a point outside; at a
+    /// Centre and radius of a disc inside, at most `largest`, that touches the outline where it is nearest to a point outside; at a
     /// corner it is the corner itself, radius 0.
-    fn border_disc(&self, point: DVec2, e: f64) -> (DVec2, f64) {
+    fn border_disc(&self, point: DVec2, largest: f64) -> (DVec2, f64) {
         let (edge, foot) = self.outline.nearest(point);
         let step = self
             .half
-            .min(0.5 * e)
+            .min(largest)
             .min(self.outline.tangent_radius(edge, foot));
         let center = foot + step * self.outline.edges[edge].inward;
         // At a corner rounding decides which neighbour the foot lies on; only the distance itself is to be trusted.
@@ -128,6 +125,24 @@ impl Prism {
         } else {
             (foot, 0.0)
         }
+    }
+
+    /// Each wall, and a rectangle around each face: beside the outline it lies outside the prism.
+    pub fn patches(&self) -> Vec<SurfacePatch> {
+        let walls = self.outline.edges.iter().map(|edge| {
+            let middle = edge.point(0.5 * edge.length).extend(0.0);
+            let axes = [edge.along.extend(0.0), DVec3::Z];
+            SurfacePatch::flat(middle, axes, DVec2::new(0.5 * edge.length, self.half))
+        });
+        let corners = self.outline.vertices().iter();
+        let min = corners.clone().copied().fold(DVec2::MAX, DVec2::min);
+        let max = corners.copied().fold(DVec2::MIN, DVec2::max);
+        let middle = 0.5 * (min + max);
+        let face = |up: f64| {
+            let axes = [DVec3::X, up * DVec3::Y];
+            SurfacePatch::flat(middle.extend(up * self.half), axes, 0.5 * (max - min))
+        };
+        walls.chain([face(1.0), face(-1.0)]).collect()
     }
 
     pub fn surface_points(&self, spacing: f64, points: &mut Vec<DVec3>) {

@@ -1,8 +1,11 @@
 //! A ball of changing size swept along a broken line: balls, capsules, handles, bananas.
 
 use super::Sphere;
+use super::fit::Fit;
 use super::pack::MAX_SPHERES;
-use glam::DVec3;
+use super::surface_patch::{SurfacePatch, frame};
+use crate::geometry::Pose;
+use glam::{DVec2, DVec3};
 
 /// The convex hull of each two neighbouring balls, all together.
 #[derive(Clone, Debug)]
@@ -56,12 +59,15 @@ impl Hull {
 
     /// Balls between the two ends, each placed as far ahead as leaves no gap behind it.
     ///
-    /// A ball at t touches the hull at u = t·cos along its side and covers u ± 2·sqrt(e(r + e)).
-    fn pack_between(&self, e: f64, spheres: &mut Vec<Sphere>) {
-        let reach = |t: f64| 2.0 * (e * (self.ball(t).radius + e)).sqrt();
+    /// A ball at t touches the hull at u = t·cos along its side and covers u ± sqrt((r + h)² − r²); the balls of the ends are not
+    /// swollen and reach less far.
+    fn pack_between(&self, fit: Fit, spheres: &mut Vec<Sphere>) {
+        let exact = fit.unswollen();
+        let end = self.length * self.cosine() - exact.disc(self.ball(self.length).radius);
+        let reach = |t: f64| fit.disc(self.ball(t).radius);
         let back = |t: f64| t * self.cosine() - reach(t);
-        let mut covered = reach(0.0);
-        while covered < back(self.length) && spheres.len() <= MAX_SPHERES {
+        let mut covered = exact.disc(self.first.radius);
+        while covered < end && spheres.len() <= MAX_SPHERES {
             let (mut low, mut high) = (0.0, self.length);
             for _ in 0..60 {
                 let middle = 0.5 * (low + high);
@@ -72,10 +78,9 @@ impl Hull {
                 }
             }
             let ball = self.ball(low);
-            spheres.push(Sphere {
-                center: ball.center,
-                radius: ball.radius + e,
-            });
+            let around = (low * self.cosine() - covered)
+                .max(end.min(low * self.cosine() + reach(low)) - low * self.cosine());
+            spheres.push(fit.covering(ball.center, ball.radius, ball.radius.hypot(around)));
             covered = low * self.cosine() + reach(low);
         }
     }
@@ -108,17 +113,32 @@ impl Strand {
         supports.fold(f64::NEG_INFINITY, f64::max)
     }
 
-    /// A row of balls along each hull.
-    pub fn pack(&self, tolerance: f64, spheres: &mut Vec<Sphere>) {
+    /// The balls themselves, and a row of swollen ones along each hull.
+    pub fn pack(&self, fit: Fit, spheres: &mut Vec<Sphere>) {
         let closed = self.balls.len() > 1 && self.balls.first() == self.balls.last();
         let ends = &self.balls[usize::from(closed)..];
-        spheres.extend(ends.iter().map(|b| Sphere {
-            center: b.center,
-            radius: b.radius + tolerance,
-        }));
+        spheres.extend_from_slice(ends);
         for hull in self.hulls() {
-            hull.pack_between(tolerance, spheres);
+            hull.pack_between(fit, spheres);
         }
+    }
+
+    /// All of each ball, and the side of each hull.
+    pub fn patches(&self) -> Vec<SurfacePatch> {
+        let balls = self.balls.iter();
+        let balls = balls.map(|ball| SurfacePatch::ball(ball.center, ball.radius));
+        let sides = self.hulls().map(|hull| {
+            let touched = |t: f64| {
+                let radius = hull.ball(t).radius;
+                DVec2::new(radius * hull.cosine(), t - radius * hull.slope)
+            };
+            let (x, y) = hull.along.any_orthonormal_pair();
+            let (x, y) = if x.cross(y).dot(hull.along) > 0.0 { (x, y) } else { (y, x) };
+            let angles = [0.0, std::f64::consts::TAU];
+            SurfacePatch::turned(touched(0.0), touched(hull.length), angles)
+                .moved(&Pose::new(frame(x, y), hull.first.center))
+        });
+        balls.chain(sides).collect()
     }
 
     pub fn surface_points(&self, spacing: f64, points: &mut Vec<DVec3>) {

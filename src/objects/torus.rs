@@ -1,7 +1,9 @@
 //! A torus about z: its distance, its surface, its spheres.
 
 use super::Sphere;
+use super::fit::Fit;
 use super::pack::MAX_SPHERES;
+use super::surface_patch::SurfacePatch;
 use glam::DVec3;
 
 /// All points within `tube` of the circle of radius `ring` about z.
@@ -25,18 +27,21 @@ impl Torus {
     /// One ring of n tube-sized balls.
     ///
     /// Half-way between two balls a point of the tube at distance ρ from the axis is `tube² + 4 ρ ring sin²(π/2n)` from
-    /// both centres, squared; that is largest on the outer equator and must not exceed `(tube + 2e)²`.
-    pub fn pack(&self, tolerance: f64, spheres: &mut Vec<Sphere>) {
-        let (ring, tube, e) = (self.ring, self.tube, tolerance);
-        let sine = (e * (tube + e) / (ring * (ring + tube))).sqrt().min(1.0);
+    /// both centres, squared; that is largest on the outer equator and must not exceed `(tube + h)²`.
+    pub fn pack(&self, fit: Fit, spheres: &mut Vec<Sphere>) {
+        let (ring, tube) = (self.ring, self.tube);
+        let sine = (0.25 * fit.disc_squared(tube) / (ring * (ring + tube)))
+            .sqrt()
+            .min(1.0);
         let n = (std::f64::consts::FRAC_PI_2 / sine.asin()).ceil();
         spheres.extend((0..n as usize).take(MAX_SPHERES + 1).map(|i| {
             let (sin, cos) = (std::f64::consts::TAU * i as f64 / n).sin_cos();
-            Sphere {
-                center: ring * DVec3::new(cos, sin, 0.0),
-                radius: tube + e,
-            }
+            fit.swollen(ring * DVec3::new(cos, sin, 0.0), tube)
         }));
+    }
+
+    pub fn patches(&self) -> Vec<SurfacePatch> {
+        vec![SurfacePatch::torus(self.ring, self.tube)]
     }
 
     pub fn surface_points(&self, spacing: f64, points: &mut Vec<DVec3>) {

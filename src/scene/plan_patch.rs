@@ -7,6 +7,7 @@ use crate::error::Result;
 use crate::geometry::Pose;
 use crate::random::Seed;
 use crate::spelling::nearest_names;
+use crate::mesh::SizeLimits;
 use crate::study::{positive, read_mesh_file};
 use crate::world::{Grid, Layout, Patch, Shears, SkinPatch, Taxels};
 
@@ -123,11 +124,11 @@ impl Reader<'_> {
             } => Layout::sphere_cap(radius_mm * MM, half_angle_deg.to_radians(), pitch),
             LayoutSpec::Draped {
                 ref mesh,
-                mesh_unit,
+                unit,
                 ..
             } => {
                 let (place, _) = self.open(&format!("{key}.mesh"), mesh)?;
-                let mesh = read_mesh_file(&self.path(mesh), mesh_unit);
+                let mesh = read_mesh_file(&self.path(mesh), unit, &SizeLimits::ANY);
                 let mesh = mesh.and_then(|mesh| mesh.into_mesh(&place));
                 Layout::draped(&self.under(key, mesh)?, pitch, seed)
             }
