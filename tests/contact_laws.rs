@@ -6,7 +6,7 @@ use bubbletouch::contact::{
     Workspace, first_contact, press_at_pose, press_to_depth, press_to_travel, simulate,
 };
 use bubbletouch::geometry::Pose;
-use bubbletouch::mesh::LengthUnit;
+use bubbletouch::mesh::{LengthUnit, SizeLimits};
 use bubbletouch::objects::{Catalogue, Model, Sphere, SphereUnion};
 use bubbletouch::random::Seed;
 use bubbletouch::study::{MeshUse, ModelSpec, load_mesh};
@@ -418,10 +418,11 @@ fn no_scanned_object_is_felt_less_the_deeper_it_is_pressed_as_a_mesh_or_as_spher
         }
         for model in [ModelSpec::Mesh, ModelSpec::VertexSpheres] {
             let how = MeshUse {
-                unit: LengthUnit::default(),
+                unit: Some(LengthUnit::default()),
                 model,
                 surface_error: 1e-3,
                 packings: None,
+                sizes: SizeLimits::ANY,
             };
             let object = load_mesh(&path, &how).unwrap();
             deeper_is_never_less(&object.name, &object.model, &mut workspace);

@@ -1,4 +1,6 @@
 //! A small study of every kind that is made of pieces.
+// Each test file uses its part of this.
+#![allow(dead_code)]
 
 use crate::command::Case;
 use std::fs;
