@@ -19,7 +19,7 @@
 //! A taxel that would have to go further than its stroke s is saturated: counted in [`Contact`], never hidden.
 //!
 //! A **direct press** ([`press_to_depth`], [`press_to_travel`]) evaluates this once at the final pose. A **time loop**
-//! ([`simulate`], [`DamperState`]) adds the damper: a taxel that nothing pushes relaxes, `k δ + c δ̇ = 0`. Without a damper both agree
+//! ([`simulate()`], [`DamperState`]) adds the damper: a taxel that nothing pushes relaxes, `k δ + c δ̇ = 0`. Without a damper both agree
 //! exactly, so a scene that has none needs no loop.
 //!
 //! A [`Patch`](crate::world::Patch) is a flat grid, and its kernel goes along rows. A [`SkinPatch`](crate::world::SkinPatch)
