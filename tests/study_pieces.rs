@@ -360,3 +360,136 @@ fn what_a_whole_group_needs_and_cannot_be_had_fails_its_pieces_and_no_others() {
         "another object is another study"
     );
 }
+
+#[test]
+fn counts_that_no_memory_holds_are_refused_before_it_is_taken_in_studies_of_every_kind() {
+    const MANY: &str = "99999999999";
+    let cases = [
+        (
+            Kind::STABILITY,
+            "taxels = 8",
+            "taxels",
+            "stability.parts[1].taxels",
+        ),
+        (
+            Kind::RECONSTRUCTION,
+            "isometry_subsets = 30",
+            "isometry_subsets",
+            "reconstruction.isometry_subsets",
+        ),
+        (
+            Kind::RECONSTRUCTION,
+            "per_object = 20",
+            "per_object",
+            "touches.per_object",
+        ),
+        (
+            Kind::OBJECT_DETAIL,
+            "surface_points = 500",
+            "surface_points",
+            "object_detail.surface_points",
+        ),
+        (
+            Kind::OBJECT_DETAIL,
+            "training_touches = 10",
+            "training_touches",
+            "object_detail.recognition.training_touches",
+        ),
+        (
+            Kind::OBJECT_DETAIL,
+            "test_touches = 6",
+            "test_touches",
+            "object_detail.recognition.test_touches",
+        ),
+        (
+            Kind::SPEED_ACCURACY,
+            "\ntouches = 3",
+            "\ntouches",
+            "speed_accuracy.contact.touches",
+        ),
+        (
+            Kind::SPEED_ACCURACY,
+            "stepped_touches = 1",
+            "stepped_touches",
+            "speed_accuracy.contact.stepped_touches",
+        ),
+        (
+            Kind::SPEED_ACCURACY,
+            "training_touches = 10",
+            "training_touches",
+            "speed_accuracy.recognition.training_touches",
+        ),
+        (
+            Kind::SPEED_ACCURACY,
+            "touches = [8, 12]",
+            "touches",
+            "speed_accuracy.resolution.touches",
+        ),
+        (
+            Kind::SPEED_ACCURACY,
+            "trials = [2, 3]",
+            "trials",
+            "speed_accuracy.resolution.trials",
+        ),
+        (Kind::WHOLE_BODY, "steps = 10", "steps", "whole_body.steps"),
+        (
+            Kind::WHOLE_BODY,
+            "measurements = 64",
+            "measurements",
+            "whole_body.sensing.measurements",
+        ),
+        (
+            Kind::WHOLE_BODY,
+            "training_touches = 10",
+            "training_touches",
+            "whole_body.recognition.training_touches",
+        ),
+        (
+            Kind::WHOLE_BODY,
+            "test_touches = 5",
+            "test_touches",
+            "whole_body.recognition.test_touches",
+        ),
+        (
+            Kind::WHOLE_BODY,
+            "\ntaxels = [2000, 20000]",
+            "\ntaxels",
+            "whole_body.ladders.taxels",
+        ),
+        (
+            Kind::WHOLE_BODY,
+            "spheres = [200, 600]",
+            "spheres",
+            "whole_body.ladders.spheres",
+        ),
+        (
+            Kind::WHOLE_BODY,
+            "taxels_at_touch = 30000",
+            "taxels_at_touch",
+            "whole_body.ladders.taxels_at_touch",
+        ),
+        (
+            Kind::BREAKING_POINTS,
+            "per_object = 24",
+            "per_object",
+            "touches.per_object",
+        ),
+        (Kind::BREAKING_POINTS, "trials = 2", "trials", "trials"),
+    ];
+    for (kind, line, name, key) in cases {
+        let case = kind.case();
+        assert!(kind.study.contains(line), "{line}");
+        let is_list = line.contains('[');
+        let many = if is_list {
+            format!("[{MANY}]")
+        } else {
+            MANY.to_owned()
+        };
+        let study = kind.study.replacen(line, &format!("{name} = {many}"), 1);
+        case.file("study.toml", study);
+        let output = case.run(&["run", "study.toml", "--out", "out"]);
+        let error = said(&output);
+        assert_eq!(output.status.code(), Some(2), "{key}: {error}");
+        assert!(error.contains(&format!("key {key}: {MANY}")), "{error}");
+    }
+}

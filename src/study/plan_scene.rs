@@ -2,7 +2,7 @@
 
 use super::axis::Axis;
 use super::check::{Check, not_negative, positive};
-use super::plan::MM;
+use super::plan::{MM, millimetres};
 use super::spec::{ModelSpec, ObjectsSpec, RangeSpec, RestSpec, SkinSpec, SpreadSpec, TouchesSpec};
 use crate::error::Result;
 use crate::mesh::SizeLimits;
@@ -93,6 +93,9 @@ impl Check<'_> {
             positive,
             "a positive number of millimetres",
         )?;
+        // Two that tables show alike would be taken for one.
+        let shown = pitches.iter().map(|&mm| millimetres(mm * MM)).collect();
+        self.list("skin.pitch_mm", shown)?;
         let positive_key = |key, value| self.value(key, value, positive, "a positive number");
         let stroke = positive_key("skin.stroke_mm", skin.stroke_mm)? * MM;
         let stiffness = positive_key("skin.stiffness_n_per_m", skin.stiffness_n_per_m)?;

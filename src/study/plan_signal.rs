@@ -2,7 +2,7 @@
 
 use super::check::{Check, not_negative};
 use super::imperfection::{IMPERFECTIONS, Imperfection, Strengths, TestedOn};
-use super::plan::{MM, Plan};
+use super::plan::{MM, Plan, millimetres};
 use super::spec::{CombineSpec, SignalSpec, StepSpec, TouchesSpec};
 use crate::error::Result;
 use crate::signal::NoiseUnit;
@@ -75,6 +75,9 @@ impl Check<'_> {
         };
         let allowed = "zero or a positive number of millimetres";
         let widths = self.axis("signal.smoothing_mm", axis, not_negative, allowed)?;
+        // Two that tables show alike would be taken for one.
+        let shown = widths.iter().map(|&mm| millimetres(mm * MM)).collect();
+        self.list("signal.smoothing_mm", shown)?;
         Ok(widths.iter().map(|width| width * MM).collect())
     }
 

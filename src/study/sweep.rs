@@ -209,6 +209,8 @@ impl Sweep {
         for (number, cell) in group.cells.iter_mut().enumerate() {
             cell.cell = first + number;
         }
+        // Of many groups of few cells, room for more would be most of the memory.
+        group.cells.shrink_to_fit();
         self.groups.push(group);
     }
 }
