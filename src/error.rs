@@ -1,6 +1,7 @@
 //! What can go wrong, in two kinds: the input is bad, or the world failed.
 
 use std::fmt::Display;
+use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
 /// The result of everything that can fail here.
@@ -75,6 +76,19 @@ impl Error {
             action,
             source,
         }
+    }
+
+    /// What is said of a file that a person named and that cannot be read: bad input if it is not there or is a folder; what is
+    /// `allowed` is said then.
+    pub fn unreadable(path: impl AsRef<Path>, allowed: &str, source: std::io::Error) -> Self {
+        let path = path.as_ref();
+        let given = match source.kind() {
+            ErrorKind::NotFound => "is missing",
+            ErrorKind::IsADirectory => "a folder",
+            ErrorKind::NotADirectory => "below a file",
+            _ => return Self::io(path, "read", source),
+        };
+        Self::input(path.display(), given, allowed)
     }
 
     /// An [`Error::Input`] from a TOML file: `file:line:column: what was given; what is allowed`.

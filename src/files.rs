@@ -33,7 +33,18 @@ impl WholeFile {
             }
         };
         let target = partial.as_deref().unwrap_or(path);
-        let file = File::create(target).map_err(|e| Error::io(path, "write", e))?;
+        let file = File::create(target).map_err(|e| match e.kind() {
+            io::ErrorKind::NotFound | io::ErrorKind::NotADirectory => {
+                let folder = path.parent().unwrap_or(Path::new(""));
+                let given = format!("there is no folder {}", folder.display());
+                Error::input(
+                    path.display(),
+                    given,
+                    "a file to write in a folder that is there",
+                )
+            }
+            _ => Error::io(path, "write", e),
+        })?;
         Ok(Self {
             path: path.to_owned(),
             partial,

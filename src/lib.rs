@@ -144,6 +144,8 @@
 //! - Scheinberg, *An efficient implementation of an active set method for SVMs*, JMLR 2006.
 //! - Wen et al., *Improving efficiency of SVM k-fold cross-validation by alpha seeding*, AAAI 2017.
 #![warn(missing_docs)]
+// They panic where nobody reads any more.
+#![cfg_attr(not(test), deny(clippy::print_stdout, clippy::print_stderr))]
 
 pub mod contact;
 pub mod dynamics;

@@ -1,5 +1,8 @@
 //! The `bubbletouch` command.
 
+// They panic where nobody reads any more; `command::streams` does not.
+#![cfg_attr(not(test), deny(clippy::print_stdout, clippy::print_stderr))]
+
 mod command;
 
 use std::process::ExitCode;
@@ -12,7 +15,7 @@ fn main() -> ExitCode {
     match command::dispatch() {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
-            eprintln!("error: {error}");
+            command::streams::note(format_args!("error: {error}"));
             ExitCode::from(error.exit_code())
         }
     }

@@ -17,7 +17,7 @@ pub(crate) fn unreadable(place: &str, error: csv::Error, allowed: impl ToString)
     let text = error.to_string();
     match error.into_kind() {
         csv::ErrorKind::Io(source) if source.kind() != io::ErrorKind::InvalidData => {
-            Error::io(place, "read", source)
+            Error::unreadable(place, &allowed.to_string(), source)
         }
         _ => Error::input(place, text, allowed),
     }

@@ -193,6 +193,168 @@ fn an_output_folder_that_is_a_file_is_refused_and_left_alone() {
 }
 
 #[test]
+fn what_the_user_names_wrongly_is_refused_as_bad_input() {
+    let case = Case::new();
+    for folder in ["empty", "x.ply", "x.csv"] {
+        fs::create_dir(case.path(folder)).unwrap();
+    }
+    case.file("file", "precious");
+    let before = case.names();
+    for (arguments, words) in [
+        ("report empty", &["empty/accuracy.csv", "is missing"][..]),
+        ("compare empty empty", &["empty/accuracy.csv", "is missing"]),
+        ("compare nothere empty", &["nothere/accuracy.csv"]),
+        ("recording nothere.npz", &["nothere.npz", "is missing"]),
+        ("cache list file", &["file"]),
+        ("press --mesh x.ply", &["x.ply: a folder"]),
+        ("press --spheres x.csv", &["x.csv: a folder"]),
+        ("objects mesh x.ply", &["x.ply: a folder"]),
+        (
+            "objects pack x.ply --tolerance-mm 1 --out o.csv",
+            &["x.ply: a folder"],
+        ),
+        (
+            "press --object mug --out no/x.csv",
+            &["no/x.csv", "no folder no"],
+        ),
+        (
+            "press --object mug --out file/x.csv",
+            &["file/x.csv", "no folder file"],
+        ),
+        ("objects mug --out no/x.png", &["no/x.png", "no folder no"]),
+        (
+            "objects pack mug --tolerance-mm 1 --out no/x.csv",
+            &["no/x.csv"],
+        ),
+    ] {
+        let arguments: Vec<&str> = arguments.split(' ').collect();
+        refused(&case.run(&arguments), 2, words);
+    }
+    assert_eq!(case.names(), before, "nothing is written");
+}
+
+#[test]
+fn a_fresh_start_over_a_file_is_refused_and_leaves_it_where_it_is() {
+    let case = Case::new();
+    case.file("study.toml", STUDY);
+    case.file("taken", "precious");
+    let output = case.run(&["run", "study.toml", "--out", "taken", "--fresh"]);
+    refused(&output, 2, &["taken: a file", "a folder"]);
+    assert_eq!(fs::read_to_string(case.path("taken")).unwrap(), "precious");
+    assert_eq!(case.names(), ["study.toml", "taken"]);
+}
+
+#[test]
+fn meshes_that_names_leave_out_are_counted() {
+    let case = Case::new();
+    case.file("study.toml", STUDY);
+    fs::create_dir(case.path("ten")).unwrap();
+    for number in 0..10 {
+        case.file(&format!("ten/{number}.ply"), "ply");
+    }
+    let output = case.run(&["run", "study.toml", "--objects", "ten"]);
+    refused(&output, 2, &["ten: 10 meshes", "objects.names"]);
+    fs::create_dir(case.path("none")).unwrap();
+    let output = case.run(&["run", "study.toml", "--objects", "none"]);
+    refused(&output, 2, &["none: no meshes"]);
+}
+
+#[test]
+#[cfg(unix)]
+fn a_pipe_among_meshes_is_refused_and_not_waited_for() {
+    let case = Case::new();
+    let names = "names = [\"mug\", \"banana\", \"scissors\"]\n";
+    case.file(
+        "study.toml",
+        STUDY
+            .replace(names, "")
+            .replace("surface_error_mm = 1.0", ""),
+    );
+    fs::create_dir(case.path("meshes")).unwrap();
+    let made = Command::new("mkfifo")
+        .arg(case.path("meshes/a.ply"))
+        .status();
+    assert!(made.unwrap().success());
+    for arguments in [
+        &["run", "study.toml", "--objects", "meshes"][..],
+        &["plan", "study.toml", "--objects", "meshes"],
+        &["press", "--mesh", "meshes/a.ply"],
+        &["objects", "mesh", "meshes/a.ply"],
+    ] {
+        let mut child = case
+            .command(arguments)
+            .stderr(std::process::Stdio::piped())
+            .spawn()
+            .unwrap();
+        for _ in 0..300 {
+            if child.try_wait().unwrap().is_some() {
+                break;
+            }
+            std::thread::sleep(std::time::Duration::from_millis(100));
+        }
+        let is_waiting = child.try_wait().unwrap().is_none();
+        child.kill().unwrap();
+        assert!(!is_waiting, "{arguments:?} waits for the pipe");
+        refused(
+            &child.wait_with_output().unwrap(),
+            2,
+            &["meshes/a.ply", "a pipe"],
+        );
+    }
+}
+
+#[test]
+fn numbers_that_no_machine_has_room_for_are_refused_at_once() {
+    let case = Case::new();
+    case.file("study.toml", STUDY);
+    case.file("poses.csv", "x,y,z,qw,qx,qy,qz\n0,0,0,1,0,0,0\n");
+    case.file("tetrahedron.obj", TETRAHEDRON);
+    let start = std::time::Instant::now();
+    for (arguments, words) in [
+        (
+            "run study.toml --threads 10000",
+            &["--threads: 10000", "1 to "][..],
+        ),
+        ("run study.toml --threads 0", &["--threads: 0"]),
+        (
+            "slurm study.toml --array 99999999999",
+            &["--array", "4000000"],
+        ),
+        (
+            "press --object golf --poses poses.csv --repeat 99999999999",
+            &["--repeat: 99999999999", "1000000"],
+        ),
+        (
+            "objects pack mug --tolerance-mm 0.0001 --out o.csv",
+            &["2000000 spheres", "larger"],
+        ),
+        (
+            "objects pack tetrahedron.obj --tolerance-mm 0.0001 --out o.csv",
+            &["1.000e-4 mm", "spheres for 236.6 cm²", "2000000 spheres"],
+        ),
+    ] {
+        let arguments: Vec<&str> = arguments.split(' ').collect();
+        refused(&case.run(&arguments), 2, words);
+    }
+    // What it takes few spheres for is packed, and measured at no more points than there is room for.
+    case.succeeds(&[
+        "objects",
+        "pack",
+        "golf",
+        "--tolerance-mm",
+        "0.0001",
+        "--out",
+        "o.csv",
+    ]);
+    let took = start.elapsed().as_secs_f64();
+    assert!(took < 60.0, "{took} s");
+}
+
+/// The corner of a cube of 0.1 m: (3/2 + √3/2) 0.1² = 0.02366 m² of surface.
+const TETRAHEDRON: &str =
+    "v 0 0 0\nv 0.1 0 0\nv 0 0.1 0\nv 0 0 0.1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n";
+
+#[test]
 fn broken_meshes_are_refused() {
     let case = Case::new();
     let header = |n: usize| {

@@ -5,7 +5,7 @@ mod command;
 use command::Case;
 use std::fs;
 use std::io::Write;
-use std::process::{Command, Stdio};
+use std::process::{Command, Output, Stdio};
 
 const SUBCOMMANDS: [&str; 8] = [
     "run", "merge", "slurm", "compare", "verify", "plan", "simulate", "press",
@@ -168,5 +168,173 @@ fn a_terminal_gets_colours_unless_no_color_is_set() {
             "{command}: {}",
             String::from_utf8_lossy(&output.stdout)
         );
+    }
+}
+
+/// A study, a scene and a folder for each subcommand that says something on standard output; those first that others read.
+const SPEAKERS: [&str; 25] = [
+    "run study.toml --out results/study --threads 2",
+    "run study.toml --out results/json --json --threads 2",
+    "features study.toml --out features",
+    "simulate scene.toml --out scene",
+    "--help",
+    "--version",
+    "help run",
+    "objects --help",
+    "objects",
+    "objects pack golf --tolerance-mm 1 --out o.csv",
+    "objects mesh cube.obj",
+    "press --object golf",
+    "press --object golf --poses poses.csv",
+    "press --object golf --poses poses.csv --json",
+    "completions bash",
+    "man",
+    "man --out pages",
+    "plan study.toml",
+    "recording scene/recording.npz",
+    "recording scene/recording.npz --frame 0",
+    "cache list",
+    "verify results/study --cells 1",
+    "report results/study",
+    "compare results/study results/study --html o.html",
+    "classify features --classifier linear_svm",
+];
+
+fn speaking() -> Case {
+    let case = Case::new();
+    case.file(
+        "study.toml",
+        r#"
+        question = "Who listens?"
+        [objects]
+        sets = ["balls"]
+        names = ["golf", "tennis", "squash"]
+        [skin]
+        pitch_mm = 4.0
+        size_mm = 32.0
+        stroke_mm = 5.0
+        [touches]
+        per_object = 8
+        offset_x_mm = { uniform = [-5.0, 5.0] }
+        depth_mm = 3.0
+        [sensing]
+        ratio = [4, 16]
+        [recognition]
+        classifier = "linear_svm"
+        "#,
+    );
+    case.file(
+        "scene.toml",
+        r#"
+        title = "A ball on a bed"
+        duration_s = 0.0
+        [[patches]]
+        name = "bed"
+        layout = { grid = { nx = 10, ny = 10, pitch_mm = 4.0 } }
+        stroke_mm = 8.0
+        [[objects]]
+        name = "ball"
+        object = "tennis"
+        free = { mass_kg = 0.058 }
+        "#,
+    );
+    case.file("poses.csv", "x,y,z,qw,qx,qy,qz\n0,0,0,1,0,0,0\n");
+    let corner = "v 0 0 0\nv 0.1 0 0\nv 0 0.1 0\nv 0 0 0.1\n";
+    let faces = "f 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n";
+    case.file("cube.obj", corner.to_owned() + faces);
+    case
+}
+
+/// The end of a pipe that nobody reads.
+fn closed_pipe() -> std::io::PipeWriter {
+    std::io::pipe().unwrap().1
+}
+
+fn ended(output: &Output, code: i32, arguments: &str) -> String {
+    let error = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(code), "{arguments}: {error}");
+    assert!(!error.contains("panicked"), "{arguments}: {error}");
+    let n_errors = error.lines().filter(|line| line.starts_with("error:"));
+    assert_eq!(
+        n_errors.count(),
+        usize::from(code != 0),
+        "{arguments}: {error}"
+    );
+    error.into_owned()
+}
+
+#[test]
+fn every_subcommand_does_its_work_and_ends_quietly_where_nobody_reads_what_it_says() {
+    let case = speaking();
+    for arguments in SPEAKERS {
+        let words: Vec<&str> = arguments.split(' ').collect();
+        let output = case
+            .command(&words)
+            .stdout(closed_pipe())
+            .stderr(Stdio::piped())
+            .spawn()
+            .and_then(std::process::Child::wait_with_output);
+        ended(&output.unwrap(), 0, arguments);
+    }
+    for made in [
+        "results/study/report.html",
+        "results/json/report.html",
+        "o.csv",
+        "o.html",
+    ] {
+        assert!(case.path(made).exists(), "{made}");
+    }
+    let advise = ["advise", "results/study", "--accuracy", "0.01"];
+    let output = case.command(&advise).stdout(closed_pipe()).output();
+    ended(&output.unwrap(), 0, "advise");
+}
+
+#[test]
+fn notes_and_errors_that_nobody_reads_change_no_exit_code() {
+    let case = speaking();
+    for (arguments, code) in [
+        ("run study.toml --threads 2", 0),
+        ("press --object golf", 0),
+        ("press --object unicorn", 2),
+        ("press --no-such-option", 2),
+    ] {
+        let words: Vec<&str> = arguments.split(' ').collect();
+        let status = case
+            .command(&words)
+            .stdout(Stdio::null())
+            .stderr(closed_pipe())
+            .status()
+            .unwrap();
+        assert_eq!(status.code(), Some(code), "{arguments}");
+    }
+    assert!(case.path("results/study/report.html").exists());
+}
+
+#[test]
+#[cfg(target_os = "linux")]
+fn a_standard_output_that_is_full_is_an_error_after_the_work_is_done() {
+    let case = speaking();
+    for arguments in SPEAKERS {
+        let words: Vec<&str> = arguments.split(' ').collect();
+        let full = fs::File::options().write(true).open("/dev/full").unwrap();
+        let output = case
+            .command(&words)
+            .stdout(full)
+            .stderr(Stdio::piped())
+            .spawn()
+            .and_then(std::process::Child::wait_with_output);
+        // Says nothing there: its words are progress.
+        let code = i32::from(!arguments.starts_with("features"));
+        let said = ended(&output.unwrap(), code, arguments);
+        let sentence = "error: standard output: write failed: No space left on device";
+        assert!(code == 0 || said.contains(sentence), "{arguments}: {said}");
+    }
+    for made in [
+        "results/study/report.html",
+        "results/json/report.html",
+        "o.csv",
+        "o.html",
+    ] {
+        assert!(case.path(made).exists(), "{made}");
     }
 }

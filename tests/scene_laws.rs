@@ -339,6 +339,121 @@ fn two_free_balls_are_carried_side_by_side() {
 }
 
 #[test]
+fn balls_on_stops_of_one_skin_are_carried_side_by_side() {
+    let plan = two_balls(
+        40.0,
+        "free = { mass_kg = 50.0 }",
+        "free = { mass_kg = 0.058 }",
+    );
+    let frame = &frames(&plan, Stepping::AsNeeded)[0];
+    let [one, other] = [0, 1].map(|object| frame.objects[object].pose.translation);
+    let on_patch = frame.patches[0].wrench;
+    let weights = [-50.0 * 9.81 * DVec3::Z, -0.058 * 9.81 * DVec3::Z];
+    let torque = one.cross(weights[0]) + other.cross(weights[1]);
+    assert!((on_patch.force - weights[0] - weights[1]).length() < 1e-6 * 490.0);
+    assert!((on_patch.torque - torque).length() < 1e-6 * 490.0 * 0.04);
+}
+
+/// What the forces of all patches put on a ball, by geometry alone: Σ f n / (n·axis), n from the ball's middle to the taxel's; and
+/// how many taxels are at their stroke.
+fn carried(plan: &ScenePlan, frame: &Frame) -> (DVec3, usize) {
+    let middle = frame.objects[0].pose.translation;
+    let (mut force, mut n_stopped) = (DVec3::ZERO, 0);
+    for (patch, reading) in plan.patches.iter().zip(&frame.patches) {
+        let layout = patch.skin.layout();
+        for (taxel, f) in reading.force.iter().enumerate() {
+            let axis = reading.pose.rotation * layout.axes()[taxel];
+            let rest = reading.pose.transform_point(layout.centers()[taxel]);
+            let away = rest - reading.deflection[taxel] * axis - middle;
+            force += f * away / away.dot(axis);
+            let stroke = patch.skin.taxels().at(taxel).stroke;
+            n_stopped += usize::from(reading.deflection[taxel] > stroke - 1e-9);
+        }
+    }
+    (force, n_stopped)
+}
+
+#[test]
+fn what_rests_on_stops_is_carried_by_the_forces_of_the_frame_on_flat_and_on_curved_skins() {
+    let bed = r#"
+        title = "A ball on a bed"
+        duration_s = 0.0
+        [[patches]]
+        name = "bed"
+        layout = { grid = { nx = 20, ny = 20, pitch_mm = 4.0 } }
+        stroke_mm = 8.0
+        stiffness_n_per_m = 100.0
+        [[objects]]
+        name = "ball"
+        object = "tennis"
+        at = { position_mm = [0.3, -1.1, 40.0] }
+        free = { mass_kg = 0.45 }
+        "#;
+    let forearms = std::fs::read_to_string(shipped("ball_over_forearm.toml")).unwrap();
+    for (scene, is_flat) in [(bed, true), (&forearms, false)] {
+        let mut most_stopped = 0;
+        for mass in [0.45, 5.0, 50.0, 500.0] {
+            let mut plan = parse(&scene.replace("mass_kg = 0.45", &format!("mass_kg = {mass}")));
+            plan.cut("the test", 0.0).unwrap();
+            let frame = &frames(&plan, Stepping::AsNeeded)[0];
+            let case = format!("{mass} kg, flat: {is_flat}");
+            assert_eq!(frame.objects[0].held, Held::AtRest, "{case}");
+            let weight = mass * 9.81;
+            let (force, n_stopped) = carried(&plan, frame);
+            assert!(
+                (force - weight * DVec3::Z).length() < 1e-6 * weight,
+                "{case}: {force}"
+            );
+            let n_saturated: usize = frame.patches.iter().map(|patch| patch.n_saturated).sum();
+            assert_eq!(n_saturated, n_stopped, "{case}");
+            most_stopped = most_stopped.max(n_stopped);
+            // Together the wrenches of the patches are the weight, at the middle of the ball.
+            let (mut together, mut torque) = (DVec3::ZERO, DVec3::ZERO);
+            for patch in &frame.patches {
+                let force = patch.pose.rotation * patch.wrench.force;
+                together += force;
+                torque +=
+                    patch.pose.rotation * patch.wrench.torque + patch.pose.translation.cross(force);
+            }
+            let middle = frame.objects[0].pose.translation;
+            assert!(
+                (together + weight * DVec3::Z).length() < 1e-6 * weight,
+                "{case}"
+            );
+            let off = (torque - middle.cross(together)).length();
+            assert!(off < 1e-6 * weight * 0.03, "{case}: {off}");
+            if is_flat {
+                let sum: f64 = frame.patches[0].force.iter().sum();
+                assert!((sum - weight).abs() < 1e-6 * weight, "{case}: {sum} N");
+            }
+        }
+        assert!(most_stopped >= 3, "stops carry, too: {most_stopped}");
+    }
+}
+
+#[test]
+fn two_free_balls_that_come_to_rest_on_the_same_taxels_are_refused_by_name() {
+    for masses in [[0.2, 0.2], [0.2, 0.1], [50.0, 0.2]] {
+        let [one, other] = masses.map(|mass| format!("free = {{ mass_kg = {mass} }}"));
+        let plan = two_balls(5.0, &one, &other);
+        let mut simulation = Simulation::new(&plan, Stepping::AsNeeded);
+        let error = simulation.next_frame().unwrap_err();
+        assert_eq!(error.exit_code(), 2);
+        let said = error.to_string();
+        for word in [
+            "test.toml",
+            "`one`",
+            "`other`",
+            "at 0 s",
+            "`bed`",
+            "--until-s",
+        ] {
+            assert!(said.contains(word), "{masses:?}: no '{word}' in: {said}");
+        }
+    }
+}
+
+#[test]
 fn a_free_ball_comes_to_rest_in_the_hollow_that_an_imposed_one_makes() {
     let plan = two_balls(10.0, "", "free = { mass_kg = 0.058 }");
     let mut simulation = Simulation::new(&plan, Stepping::AsNeeded);

@@ -1,5 +1,6 @@
 //! `bubbletouch advise`: which setting to take.
 
+use super::streams::say;
 use bubbletouch::Result;
 use bubbletouch::report::offers::read_offers;
 use bubbletouch::study::advice::{Advice, Wish, advise as choose, cost_in_words};
@@ -46,10 +47,9 @@ pub fn advise(args: &Args) -> Result<()> {
     let offers = read_offers(&args.results)?;
     let advice = choose(&offers, args.wish.wish())?;
     match args.json {
-        true => println!("{}", serde_json::json!(advice)),
-        false => println!("{}", in_words(&advice)),
+        true => say(serde_json::json!(advice)),
+        false => say(in_words(&advice)),
     }
-    Ok(())
 }
 
 fn in_words(advice: &Advice) -> String {

@@ -43,7 +43,7 @@ pub trait AnyOutcome {
     /// Writes tables, charts and page, the study and the manifest.
     fn write(&self, ended: &EndedRun) -> Result<()>;
     /// Says to a person, on standard output, what was found.
-    fn tell(&self, folder: &Path);
+    fn tell(&self, folder: &Path) -> Result<()>;
 }
 
 /// A run that has done its work, and where its files go.
@@ -103,9 +103,9 @@ pub fn end(
         "finished_before": run.n_before,
         "failed": outcome.n_failed(),
         "elapsed_s": elapsed_s,
-    }));
+    }))?;
     if listener.is_person() {
-        outcome.tell(run.folder);
+        outcome.tell(run.folder)?;
     }
     failures(study, outcome, run.folder)
 }

@@ -1,6 +1,7 @@
 //! `bubbletouch cache`: the touches that studies keep beside their results.
 
 use super::memory_args::bytes;
+use super::streams::say;
 use bubbletouch::Result;
 use bubbletouch::study::memory::Bytes;
 use bubbletouch::study::{CachedTouches, FrameFacts, TouchCache};
@@ -67,8 +68,10 @@ fn reading(is_checked: bool) -> Reading {
 fn list(place: &Place, facts: Reading) -> Result<()> {
     let all = place.cache().list()?;
     if all.is_empty() {
-        println!("{}: no touches are kept", place.results.display());
-        return Ok(());
+        return say(format_args!(
+            "{}: no touches are kept",
+            place.results.display()
+        ));
     }
     let mut table = Table::new();
     table.load_preset(NOTHING);
@@ -88,13 +91,12 @@ fn list(place: &Place, facts: Reading) -> Result<()> {
             ago(touches.used),
         ]);
     }
-    println!("{table}");
-    println!(
+    say(table)?;
+    say(format_args!(
         "{} in {}",
         size(&all),
         place.results.join("touches").display()
-    );
-    Ok(())
+    ))
 }
 
 fn prune(place: &Place, keep_gib: Option<f64>) -> Result<()> {
@@ -103,8 +105,11 @@ fn prune(place: &Place, keep_gib: Option<f64>) -> Result<()> {
         Some(gib) => bytes("--keep-gib", gib)?,
     };
     let gone = place.cache().prune(keep)?;
-    println!("removed {} files, {}", gone.len(), size(&gone));
-    Ok(())
+    say(format_args!(
+        "removed {} files, {}",
+        gone.len(),
+        size(&gone)
+    ))
 }
 
 /// The size of some of them in words.

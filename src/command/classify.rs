@@ -1,5 +1,6 @@
 //! `bubbletouch classify`: one classifier on one folder of features, timed.
 
+use super::streams::say;
 use super::study_args::set_threads;
 use bubbletouch::quantile::quantile;
 use bubbletouch::random::Seed;
@@ -145,11 +146,10 @@ pub fn classify(args: &Args) -> Result<()> {
     match args.json {
         true => {
             let json = serde_json::to_string(&findings).expect("findings have a JSON form");
-            println!("{json}");
+            say(json)
         }
-        false => print(&findings),
+        false => tell(&findings),
     }
-    Ok(())
 }
 
 impl Args {
@@ -246,7 +246,7 @@ fn svm_findings(trained: &TrainedClassifier) -> Option<SvmFindings> {
     })
 }
 
-fn print(findings: &Findings) {
+fn tell(findings: &Findings) -> Result<()> {
     let Findings {
         n_train,
         n_test,
@@ -259,33 +259,36 @@ fn print(findings: &Findings) {
         predict_median_s,
         ..
     } = findings;
-    println!(
+    say(format_args!(
         "rows      {n_train} to train on, {n_test} to test, {n_measurements} measurements each"
-    );
-    println!(
+    ))?;
+    say(format_args!(
         "accuracy  {accuracy:.4} ({accuracy_low:.4} to {accuracy_high:.4}): {n_correct} of {n_test}"
-    );
+    ))?;
     if let Some(chosen) = &findings.chosen {
         let best = &chosen.best;
         let gamma = best
             .gamma
             .map_or_else(String::new, |gamma| format!(" and γ = {gamma:.3e}"));
-        println!(
+        say(format_args!(
             "choice    C = {}{gamma}, {:.4} on validation rows, of {} candidates",
             best.c,
             best.accuracy,
             chosen.tried.len()
-        );
+        ))?;
     }
-    println!("training  {fit_median_s:.4} s");
+    say(format_args!("training  {fit_median_s:.4} s"))?;
     let each_us = 1e6 * predict_median_s / *n_test as f64;
-    println!("testing   {predict_median_s:.4} s, {each_us:.1} µs a row");
+    say(format_args!(
+        "testing   {predict_median_s:.4} s, {each_us:.1} µs a row"
+    ))?;
     if let Some(svm) = &findings.svm {
-        println!(
+        say(format_args!(
             "SVM       {} support vectors, {} of {} problems stopped short of the tolerance, dual objective {:.6}",
             svm.n_support_vectors, svm.n_capped, svm.n_problems, svm.dual_objective
-        );
+        ))?;
     }
+    Ok(())
 }
 
 /// A word as studies spell it; the error lists what is allowed.

@@ -1,6 +1,7 @@
 //! `bubbletouch compare`: two folders of results side by side.
 
 use super::output::{check_ending, terminal_width};
+use super::streams::{say, write_out};
 use bubbletouch::Result;
 use bubbletouch::files::{CsvFile, write_bytes};
 use bubbletouch::report::csv_tables::read_tables;
@@ -35,12 +36,6 @@ pub fn compare(args: &Args) -> Result<()> {
     let place = format!("{} and {}: ", args.first.display(), args.second.display());
     let comparison =
         compare_runs(&first.accuracy, &second.accuracy).map_err(|error| error.under(place))?;
-    println!(
-        "First: {}; second: {}.",
-        args.first.display(),
-        args.second.display()
-    );
-    print!("{}", differences_text(&comparison, terminal_width()));
     if let Some(out) = &args.out {
         let mut file = CsvFile::create(out)?;
         for row in &comparison.both {
@@ -53,5 +48,10 @@ pub fn compare(args: &Args) -> Result<()> {
         let page = differences_page(&comparison, (&first, &second), PROGRAM);
         write_bytes(html, page.as_bytes())?;
     }
-    Ok(())
+    say(format_args!(
+        "First: {}; second: {}.",
+        args.first.display(),
+        args.second.display()
+    ))?;
+    write_out(differences_text(&comparison, terminal_width()).as_bytes())
 }

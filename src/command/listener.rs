@@ -1,5 +1,7 @@
 //! Who listens to a run: a person at a terminal, a program, or nobody.
 
+use super::streams::{note, say};
+use bubbletouch::Result;
 use bubbletouch::report::progress::to_stderr;
 use bubbletouch::report::progress_json::JsonLines;
 use bubbletouch::study::progress::{Progress, Silent};
@@ -35,14 +37,15 @@ impl Listener {
         match (self.quiet, self.json) {
             (true, _) => {}
             (_, true) => self.progress().finish(text),
-            _ => eprintln!("{text}"),
+            _ => note(text),
         }
     }
 
     /// Says, to a program, what came of a run.
-    pub fn finished(&self, event: serde_json::Value) {
-        if self.json {
-            println!("{event}");
+    pub fn finished(&self, event: serde_json::Value) -> Result<()> {
+        match self.json {
+            true => say(event),
+            false => Ok(()),
         }
     }
 }

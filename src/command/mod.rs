@@ -33,6 +33,7 @@ mod slurm;
 mod slurm_jobs;
 mod speed_accuracy_kind;
 mod stability_kind;
+pub mod streams;
 mod study_args;
 mod study_folder;
 mod touches;
@@ -98,9 +99,15 @@ enum Command {
     Man(shell::ManArgs),
 }
 
-/// Parses the command line and does what it says.
+/// Parses the command line and does what it says; exits with 2 if it cannot be parsed.
 pub fn dispatch() -> Result<()> {
-    match CommandLine::parse().command {
+    let line = match CommandLine::try_parse() {
+        Ok(line) => line,
+        // --help and --version.
+        Err(asked) if !asked.use_stderr() => return streams::written(asked.print()),
+        Err(wrong) => wrong.exit(),
+    };
+    match line.command {
         None => run::run(&run::Args::quickstart()),
         Some(Command::Run(args)) => run::run(&args),
         Some(Command::Merge(args)) => merge::merge(&args),

@@ -1,6 +1,7 @@
 //! `bubbletouch objects`: what there is to touch, as a list or as pictures.
 
 use super::output::check_ending;
+use super::streams::say;
 use super::which_object::catalogue;
 use super::{objects_pack, objects_show};
 use bubbletouch::Result;
@@ -84,8 +85,7 @@ pub fn objects(args: &Args) -> Result<()> {
     }
     let listed = args.build()?;
     let Some(path) = &args.out else {
-        println!("{}", table(&listed));
-        return Ok(());
+        return say(table(&listed));
     };
     check_ending(path, "png")?;
     let picture = match &listed[..] {
@@ -104,8 +104,7 @@ pub fn objects(args: &Args) -> Result<()> {
 fn report(args: &MeshArgs) -> Result<()> {
     let place = args.file.display().to_string();
     let mesh = read_mesh_file(&args.file, args.unit, &SizeLimits::ANY)?.into_mesh(&place)?;
-    println!("{}", MeshReport::new(&mesh));
-    Ok(())
+    say(MeshReport::new(&mesh))
 }
 
 impl Listed {

@@ -1,6 +1,7 @@
 //! `bubbletouch objects pack`: a mesh or a built-in object as few spheres, and how well they fit.
 
 use super::output::check_ending;
+use super::streams::say;
 use super::which_object::{Loaded, WhichObject};
 use bubbletouch::Result;
 use bubbletouch::files::write_whole;
@@ -11,6 +12,8 @@ use std::path::PathBuf;
 const MM: f64 = 1e-3;
 /// Points of a mesh at which the error is measured.
 const N_POINTS: usize = 100_000;
+/// Points of the box around a solid at which it is measured, at most, about. Larger: gigabytes at tolerances of a micrometre.
+const MOST_POINTS: f64 = 1e6;
 
 /// Pack a mesh or a built-in object with few spheres.
 ///
@@ -34,24 +37,26 @@ pub fn pack(args: &Args) -> Result<()> {
     let tolerance = args.tolerance_mm * MM;
     let (spheres, n_unproved) = object.pack(tolerance)?;
     write_whole(&args.out, |sink| write_spheres(&spheres, sink))?;
-    println!("spheres     {}", spheres.n_spheres());
+    say(format_args!("spheres     {}", spheres.n_spheres()))?;
     match object {
-        Loaded::Solid(solid) => println!("{}", describe_solid(&solid, &spheres, tolerance)),
+        Loaded::Solid(solid) => say(describe_solid(&solid, &spheres, tolerance))?,
         Loaded::Mesh { surface, body } => {
-            println!(
-                "{}",
-                describe(&packing_error(&surface, body, &spheres, N_POINTS))
-            );
+            say(describe(&packing_error(&surface, body, &spheres, N_POINTS)))?;
         }
     }
     if n_unproved > 0 {
-        println!("not proved at {n_unproved} places of the surface");
+        say(format_args!(
+            "not proved at {n_unproved} places of the surface"
+        ))?;
     }
     Ok(())
 }
 
 fn describe_solid(solid: &Solid, spheres: &SphereUnion, tolerance: f64) -> String {
-    let spacing = (solid.bounds().size().length() / 200.0).min(20.0 * tolerance);
+    let size = solid.bounds().size();
+    let around = 2.0 * (size.x * size.y + size.y * size.z + size.z * size.x);
+    let finest = (around / MOST_POINTS).sqrt();
+    let spacing = (size.length() / 200.0).min(20.0 * tolerance).max(finest);
     let error = surface_error(solid, spheres, spacing);
     format!(
         "gap         max {:.4} mm\nprotrusion  max {:.4} mm\nmeasured at {} points of the surface",

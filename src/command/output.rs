@@ -1,5 +1,6 @@
 //! Where results go.
 
+use super::streams::say;
 use bubbletouch::{Error, Result};
 use std::path::{Path, PathBuf};
 
@@ -55,7 +56,11 @@ pub fn terminal_width() -> usize {
 }
 
 /// Tells a person where the results of a study are.
-pub fn tell_where(folder: &Path) {
+pub fn tell_where(folder: &Path) -> Result<()> {
     let page = folder.join("report.html");
-    println!("Results in {}; open {}", folder.display(), page.display());
+    say(format_args!(
+        "Results in {}; open {}",
+        folder.display(),
+        page.display()
+    ))
 }

@@ -4,6 +4,7 @@ use super::about_study::command_line;
 use super::any_study::{AnyOutcome, AnyStudy, EndedRun, seconds_since};
 use super::output::{packings_beside, tell_where, terminal_width};
 use super::piece_rows::{compare, draw};
+use super::streams::say;
 use super::study_args::StudyArgs;
 use bubbletouch::Result;
 use bubbletouch::files::write_bytes;
@@ -202,10 +203,10 @@ impl<K: PieceKind> AnyOutcome for PieceOutcome<'_, K> {
         Ok(())
     }
 
-    fn tell(&self, folder: &Path) {
+    fn tell(&self, folder: &Path) -> Result<()> {
         let kind = &self.run.kind;
-        println!("{}\n", self.run.facts.asked[0]);
-        println!("{}", kind.words(&self.tables, terminal_width()));
-        tell_where(folder);
+        say(format_args!("{}\n", self.run.facts.asked[0]))?;
+        say(kind.words(&self.tables, terminal_width()))?;
+        tell_where(folder)
     }
 }

@@ -1,6 +1,7 @@
 //! `bubbletouch plan`: what a study would do, without doing it.
 
 use super::memory_args::CeilingArgs;
+use super::streams::say;
 use super::study_args::StudyArgs;
 use bubbletouch::Result;
 use bubbletouch::study::Estimate;
@@ -22,10 +23,13 @@ pub fn plan(args: &Args) -> Result<()> {
         &loaded.sweep,
         &memory,
     );
-    println!("{}: {}", loaded.name, loaded.plan.spec.question);
-    println!("{estimate}");
+    say(format_args!(
+        "{}: {}",
+        loaded.name, loaded.plan.spec.question
+    ))?;
+    say(estimate)?;
     if let Some(mixed) = args.study.mixed_touches()? {
-        println!("note: {mixed}");
+        say(format_args!("note: {mixed}"))?;
     }
     Ok(())
 }

@@ -3,6 +3,7 @@
 use super::output::terminal_width;
 use super::press_place::Place;
 use super::press_poses::{self, press_poses};
+use super::streams::{note, write_out};
 use super::which_object::catalogue;
 use bubbletouch::contact::{Contact, Workspace, press_at_pose, press_to_depth, press_to_force};
 use bubbletouch::geometry::Pose;
@@ -133,29 +134,29 @@ pub fn press(args: &Args) -> Result<()> {
         .expect("a press gives one deflection a taxel");
     match &args.out {
         Some(path) => write_frame(path, &frame, &patch.grid)?,
-        None => print!(
-            "{}",
-            pressure_text(
+        None => {
+            let text = pressure_text(
                 &frame,
                 args.pitch_mm,
                 Quantity::Deflection,
                 Ink::of_stdout(),
-                terminal_width()
-            )?
-        ),
+                terminal_width(),
+            )?;
+            write_out(text.as_bytes())?;
+        }
     }
     let deepest = frame.iter().fold(0.0_f64, |a, &b| a.max(b));
     let force = args.force_n.map_or(String::new(), |_| {
         let force = patch.taxel.stiffness * frame.sum();
         format!("; {force:.3} N together")
     });
-    eprintln!(
+    note(format_args!(
         "{} of {} taxels touched, {} saturated; deepest {:.3} mm{force}",
         contact.n_touched,
         frame.len(),
         contact.n_saturated,
         1e3 * deepest
-    );
+    ));
     Ok(())
 }
 

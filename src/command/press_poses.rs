@@ -1,6 +1,7 @@
 //! `bubbletouch press --poses`: one object read in many places, and how long each reading takes.
 
 use super::output::check_ending;
+use super::streams::say;
 use bubbletouch::contact::{Contact, Workspace, press_at_pose, press_to_depth};
 use bubbletouch::files::table_error;
 use bubbletouch::geometry::Pose;
@@ -13,6 +14,9 @@ use ndarray::Array3;
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
 use std::time::Instant;
+
+/// Times of each pose that are kept, at most: their median needs no more.
+const MOST_REPEATS: usize = 1_000_000;
 
 #[derive(clap::Args)]
 #[group(id = "Poses", multiple = true)]
@@ -61,8 +65,9 @@ pub fn press_poses(
     depth: Option<f64>,
     out: Option<&Path>,
 ) -> Result<()> {
-    if args.repeat == 0 {
-        return Err(Error::input("--repeat", 0, "at least 1"));
+    if !(1..=MOST_REPEATS).contains(&args.repeat) {
+        let allowed = format!("1 to {MOST_REPEATS}");
+        return Err(Error::input("--repeat", args.repeat, allowed));
     }
     if let Some(out) = out {
         check_ending(out, "npy")?;
@@ -83,7 +88,7 @@ pub fn press_poses(
         }
     }
     // Round after round: a pose that is pressed again at once is nearer to the processor than a new one.
-    let mut times = vec![Vec::with_capacity(args.repeat); poses.len()];
+    let mut times = vec![Vec::new(); poses.len()];
     for _ in 0..args.repeat {
         for (pose, times) in poses.iter().zip(&mut times) {
             let start = Instant::now();
@@ -103,11 +108,10 @@ pub fn press_poses(
             n_saturated: contact.map_or(0, |contact| contact.n_saturated),
             us: quantile(times, 0.5),
         });
-    tell(args, scene, &readings.collect::<Vec<_>>());
-    Ok(())
+    tell(args, scene, &readings.collect::<Vec<_>>())
 }
 
-fn tell(args: &Args, scene: &Scene, readings: &[Reading]) {
+fn tell(args: &Args, scene: &Scene, readings: &[Reading]) -> Result<()> {
     let model = &scene.objects[0];
     let mut us: Vec<f64> = readings.iter().map(|reading| reading.us).collect();
     let us = quantile(&mut us, 0.5);
@@ -118,14 +122,13 @@ fn tell(args: &Args, scene: &Scene, readings: &[Reading]) {
             "us": us,
             "presses": readings,
         });
-        println!("{said}");
-        return;
+        return say(said);
     }
     let n_missed = readings.iter().filter(|r| r.n_touched == 0).count();
-    println!(
+    say(format_args!(
         "{} poses, {n_missed} without contact; {us:.2} µs a press (median)",
         readings.len()
-    );
+    ))
 }
 
 fn read_poses(path: &Path) -> Result<Vec<Pose>> {

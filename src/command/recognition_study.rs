@@ -4,6 +4,7 @@ use super::about_study::{add_manifest, add_touches, command_line, limits, page_o
 use super::any_study::{AnyOutcome, AnyStudy, EndedRun, seconds_since};
 use super::memory_args::{MemoryArgs, Room};
 use super::output::{packings_beside, tell_where, terminal_width};
+use super::streams::{say, write_out};
 use super::study_args::{LoadedStudy, StudyArgs};
 use super::verify_cells::verify_cells;
 use bubbletouch::Result;
@@ -162,14 +163,11 @@ impl AnyOutcome for RecognitionOutcome<'_> {
         Ok(())
     }
 
-    fn tell(&self, folder: &Path) {
+    fn tell(&self, folder: &Path) -> Result<()> {
         let tables = &self.outcome.tables;
         let table = folder.join("summary.csv").display().to_string();
-        println!(
-            "{}",
-            terminal::summary_table(tables, terminal_width(), &table)
-        );
-        print!("{}", headlines::text(tables, terminal_width()));
-        tell_where(folder);
+        say(terminal::summary_table(tables, terminal_width(), &table))?;
+        write_out(headlines::text(tables, terminal_width()).as_bytes())?;
+        tell_where(folder)
     }
 }

@@ -1,6 +1,7 @@
 //! `bubbletouch recording`: what a file of frames over time holds, as a table, a picture or an animation.
 
 use super::output::{check_ending, terminal_width};
+use super::streams::{note, write_out};
 use bubbletouch::files::write_bytes;
 use bubbletouch::report::heat_map::ColourScale;
 use bubbletouch::report::pressure_map::pressure_text;
@@ -61,8 +62,8 @@ pub fn recording(args: &Args) -> Result<()> {
         (Some(frame), _) => draw_frame(args, &mut file, frame),
         (None, Some(path)) => animate(args, &mut file, path),
         (None, None) => {
-            print!("{}", recording_table(&mut file)?);
-            Ok(())
+            let table = recording_table(&mut file)?;
+            write_out(table.to_string().as_bytes())
         }
     }
 }
@@ -88,19 +89,19 @@ fn draw_frame(args: &Args, file: &mut RecordingFile, frame: usize) -> Result<()>
     let number = chosen_patch(args, file)?;
     let values = file.frame(number, args.quantity, frame)?;
     let patch = &file.header().patches[number];
-    let note = frame_note(file.time(), frame);
+    let said = frame_note(file.time(), frame);
     match (&args.out, patch.grid) {
         (Some(path), _) => {
             let scale = ColourScale::over_values(&values, args.quantity);
             let skin = SkinPicture::new(patch, args.quantity, scale)?;
-            write_bytes(path, &skin.frame(&values, &note)?.png()?)?;
+            write_bytes(path, &skin.frame(&values, &said)?.png()?)?;
         }
         (None, Some(grid)) => {
             let frame = Array2::from_shape_vec((grid.ny, grid.nx), values)
                 .expect("a grid has one value a taxel");
             let (pitch_mm, ink) = (grid.pitch * 1e3, Ink::of_stdout());
             let text = pressure_text(&frame, pitch_mm, args.quantity, ink, terminal_width())?;
-            print!("{text}");
+            write_out(text.as_bytes())?;
         }
         (None, None) => {
             return Err(Error::input(
@@ -113,7 +114,7 @@ fn draw_frame(args: &Args, file: &mut RecordingFile, frame: usize) -> Result<()>
             ));
         }
     }
-    eprintln!("{}: {note}", patch.name);
+    note(format_args!("{}: {said}", patch.name));
     Ok(())
 }
 
@@ -125,12 +126,12 @@ fn animate(args: &Args, file: &mut RecordingFile, path: &Path) -> Result<()> {
     };
     let shown = write_animation(path, file, patch, args.quantity, &playback)?;
     let milliseconds: u64 = shown.iter().map(|frame| frame.milliseconds).sum();
-    eprintln!(
+    note(format_args!(
         "{} of {} frames in {:.1} s, at {} × the speed of the recording",
         shown.len(),
         file.time().len(),
         milliseconds as f64 * 1e-3,
         args.speed
-    );
+    ));
     Ok(())
 }

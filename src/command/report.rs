@@ -2,6 +2,7 @@
 
 use super::about_study::{add_manifest, add_touches, page_of_spec};
 use super::output::packings_beside;
+use super::streams::{note, say};
 use super::study_args::StudyArgs;
 use bubbletouch::report::csv_tables::{LIMITS_FILE, read_rows, read_tables};
 use bubbletouch::report::page::ReportPage;
@@ -27,8 +28,10 @@ pub fn report(args: &Args) -> Result<()> {
     let mut page = about(folder)?;
     page.all_charts = args.all_charts;
     write_page(folder, &tables, &page)?;
-    println!("Wrote {}", folder.join("report.html").display());
-    Ok(())
+    say(format_args!(
+        "Wrote {}",
+        folder.join("report.html").display()
+    ))
 }
 
 /// An error if the folder is of a study that does not recognise.
@@ -67,15 +70,17 @@ fn about(folder: &Path) -> Result<ReportPage> {
     let packings = packings_beside(folder);
     let loaded = study.load(Some(&packings));
     if let Err(error) = loaded.and_then(|loaded| add_touches(&mut page, &loaded)) {
-        eprintln!("note: the page has no sample touches: {error}");
+        note(format_args!(
+            "note: the page has no sample touches: {error}"
+        ));
     }
     let limits = folder.join(LIMITS_FILE);
     match limits.exists() {
         true => page.limits = read_rows(&limits)?,
-        false => eprintln!(
+        false => note(format_args!(
             "note: the page does not say which limits were reached: there is no {}",
             limits.display()
-        ),
+        )),
     }
     if let Some(manifest) = manifest {
         add_manifest(&mut page, manifest);

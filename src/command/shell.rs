@@ -2,12 +2,12 @@
 
 use super::CommandLine;
 use super::output::output_folder;
+use super::streams::{say, write_out};
 use bubbletouch::files::write_bytes;
 use bubbletouch::{Error, Result};
 use clap::{Command, CommandFactory};
 use clap_complete::Shell;
 use clap_mangen::Man;
-use std::io::{self, Write};
 use std::path::PathBuf;
 
 #[derive(clap::Args)]
@@ -30,7 +30,7 @@ pub fn completions(args: &CompletionArgs) -> Result<()> {
     let mut command = CommandLine::command();
     let name = command.get_name().to_owned();
     clap_complete::generate(args.shell, &mut command, name, &mut script);
-    print(&script)
+    write_out(&script)
 }
 
 /// Writes manual pages.
@@ -38,15 +38,18 @@ pub fn man(args: &ManArgs) -> Result<()> {
     let mut command = CommandLine::command().disable_help_subcommand(true);
     command.build();
     let Some(folder) = &args.out else {
-        return print(&page(command)?);
+        return write_out(&page(command)?);
     };
     output_folder(folder)?;
     let pages = pages(command)?;
     for (name, page) in &pages {
         write_bytes(&folder.join(name), page)?;
     }
-    println!("{} pages in {}", pages.len(), folder.display());
-    Ok(())
+    say(format_args!(
+        "{} pages in {}",
+        pages.len(),
+        folder.display()
+    ))
 }
 
 /// Of a command and all that are below it: file name and content.
@@ -65,14 +68,4 @@ fn page(command: Command) -> Result<Vec<u8>> {
     let failed = |error| Error::io("manual page", "write", error);
     Man::new(command).render(&mut page).map_err(failed)?;
     Ok(page)
-}
-
-/// Whoever closes the pipe early has read enough.
-fn print(content: &[u8]) -> Result<()> {
-    match io::stdout().write_all(content) {
-        Err(error) if error.kind() != io::ErrorKind::BrokenPipe => {
-            Err(Error::io("standard output", "write", error))
-        }
-        _ => Ok(()),
-    }
 }

@@ -1,6 +1,7 @@
 //! `bubbletouch simulate`: a scene from its file to its folder of results.
 
 use super::output::output_folder;
+use super::streams::{say, write_out};
 use bubbletouch::Result;
 use bubbletouch::report::progress::to_stderr;
 use bubbletouch::report::scene_files::SceneFiles;
@@ -56,12 +57,14 @@ pub fn simulate(args: &Args) -> Result<()> {
     let each_us = 1e6 * seconds / n_steps as f64;
     progress.finish(&format!("{n_steps} steps, {each_us:.0} µs each"));
     if !args.quiet {
-        print!("{}", scene_table(&plan, &summary));
+        write_out(scene_table(&plan, &summary).as_bytes())?;
         if simulation.n_unfinished() > 0 {
             let n = simulation.n_unfinished();
-            println!("\nFree objects were not at rest together in {n} of {n_steps} steps.");
+            say(format_args!(
+                "\nFree objects were not at rest together in {n} of {n_steps} steps."
+            ))?;
         }
-        println!("\nResults in {}", args.out.display());
+        say(format_args!("\nResults in {}", args.out.display()))?;
     }
     Ok(())
 }

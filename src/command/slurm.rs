@@ -4,11 +4,15 @@ use super::any_study::{AnyStudy, load_study};
 use super::output::output_folder;
 use super::run::results_folder;
 use super::slurm_jobs::{Job, queued_shards, submit};
+use super::streams::say;
 use super::study_args::StudyArgs;
 use bubbletouch::study::journal::{JOURNAL_FILE, Journal};
 use bubbletouch::study::{Part, Shard};
 use bubbletouch::{Error, Result};
 use std::path::{Path, PathBuf};
+
+/// Jobs of an array, at most: what Slurm can be set to.
+const MOST_JOBS: usize = 4_000_000;
 
 #[derive(clap::Args)]
 pub struct Args {
@@ -32,8 +36,9 @@ pub struct Args {
 }
 
 pub fn slurm(args: &Args) -> Result<()> {
-    if args.array == 0 {
-        return Err(Error::input("--array", 0, "at least 1 job"));
+    if !(1..=MOST_JOBS).contains(&args.array) {
+        let allowed = format!("1 to {MOST_JOBS} jobs");
+        return Err(Error::input("--array", args.array, allowed));
     }
     let folder = results_folder(&args.study, args.out.as_deref())?;
     let study = load_study(&args.study, &folder, None)?;
@@ -48,7 +53,11 @@ pub fn slurm(args: &Args) -> Result<()> {
         }
     }
     if !queued.is_empty() {
-        println!("{} of {} shards are in the queue", queued.len(), args.array);
+        say(format_args!(
+            "{} of {} shards are in the queue",
+            queued.len(),
+            args.array
+        ))?;
     }
     if missing.is_empty() && !queued.is_empty() {
         return Ok(());
@@ -57,17 +66,20 @@ pub fn slurm(args: &Args) -> Result<()> {
         true => None,
         false => Some(submit(&jobs.shards(&missing), &folder)?),
     };
-    match &array {
-        Some(id) => println!(
+    let said = say(match &array {
+        Some(id) => format!(
             "submitted {} of {} shards as job {id}",
             missing.len(),
             args.array
         ),
-        None => println!("all {} shards are done", args.array),
-    }
+        None => format!("all {} shards are done", args.array),
+    });
+    // Whatever became of the line: shards without a merge would be lost work.
     let merge = submit(&jobs.merge(array.as_deref()), &folder)?;
-    println!("submitted their merge as job {merge}; the same command submits again what fails");
-    Ok(())
+    said?;
+    say(format_args!(
+        "submitted their merge as job {merge}; the same command submits again what fails"
+    ))
 }
 
 /// Whether a shard's journal says what came of all its work.

@@ -15,6 +15,9 @@ use bubbletouch::study::{
 use bubbletouch::{Error, Result};
 use std::path::{Path, PathBuf};
 
+/// Threads, at most, where there are not more cores: each takes memory of its own, and none is faster than a core.
+const MOST_THREADS: usize = 1024;
+
 /// The study that a bare `bubbletouch` runs; it is part of the command, so that it runs in any folder.
 const QUICKSTART: &str = include_str!("../../experiments/quickstart.toml");
 
@@ -247,8 +250,11 @@ pub fn set_threads(threads: Option<usize>) -> Result<()> {
     let Some(threads) = threads else {
         return Ok(());
     };
-    if threads == 0 {
-        return Err(Error::input("--threads", 0, "at least 1"));
+    let n_cores = std::thread::available_parallelism().map_or(1, usize::from);
+    let most = MOST_THREADS.max(n_cores);
+    if !(1..=most).contains(&threads) {
+        let allowed = format!("1 to {most} (there are {n_cores} cores)");
+        return Err(Error::input("--threads", threads, allowed));
     }
     rayon::ThreadPoolBuilder::new()
         .num_threads(threads)

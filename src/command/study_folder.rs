@@ -2,10 +2,10 @@
 
 use super::listener::Listener;
 use super::output::output_folder;
+use super::streams::note;
 use bubbletouch::study::Shard;
 use bubbletouch::study::journal::{Identity, JOURNAL_FILE, Journal, set_aside};
 use bubbletouch::{Error, Result};
-use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -83,7 +83,7 @@ fn end_well_on_signals(journal: &Arc<Journal>) -> Result<()> {
             said += &format!("\nerror: {error}");
         }
         // Nobody may be left to read it, which must not keep the process from ending.
-        let _ = writeln!(std::io::stderr(), "{said}");
+        note(said);
         std::process::exit(130);
     });
     set.map_err(|error| Error::io("signals", "listen", std::io::Error::other(error)))

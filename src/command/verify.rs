@@ -2,6 +2,7 @@
 
 use super::any_study::load_study;
 use super::memory_args::MemoryArgs;
+use super::streams::say;
 use super::study_args::StudyArgs;
 use bubbletouch::report::csv_tables::sha256_of;
 use bubbletouch::study::provenance::{MANIFEST_FILE, Manifest, SOURCE};
@@ -37,8 +38,7 @@ pub fn verify(args: &Args) -> Result<()> {
     };
     let study = load_study(&study, folder, Some(&args.memory))?;
     let said = study.verify(folder, args.cells, args.draw)?;
-    println!("{}: {said}", folder.display());
-    Ok(())
+    say(format_args!("{}: {said}", folder.display()))
 }
 
 /// An error if a table is not what the manifest says; a note if the program is another.
@@ -59,10 +59,10 @@ fn check_manifest(args: &Args) -> Result<Manifest> {
         }
     }
     if manifest.source != SOURCE {
-        println!(
+        say(format_args!(
             "note: the results were made by {} (commit {}), not by this version",
             manifest.program, manifest.commit
-        );
+        ))?;
     }
     Ok(manifest)
 }

@@ -6,6 +6,7 @@ use super::certificate::{Gaps, gaps};
 use super::sampling::{Sample, SampleTree, Sampling, sample};
 use super::set_cover::{Cover, Lists};
 use super::target::Target;
+use crate::error::Result;
 use crate::random::Seed;
 use glam::DVec3;
 use rand::Rng;
@@ -49,8 +50,11 @@ const MAX_REPAIRS: usize = 40;
 
 /// Balls whose spheres come within `e` of every point of the outer surface, and how many gaps are left: none, unless
 /// [`MAX_REPAIRS`] was reached.
-pub(super) fn cover_surface(target: &Target, watch: &mut dyn FnMut(f64)) -> (Vec<Ball>, usize) {
-    let mut covering = Covering::new(target);
+pub(super) fn cover_surface(
+    target: &Target,
+    watch: &mut dyn FnMut(f64),
+) -> Result<(Vec<Ball>, usize)> {
+    let mut covering = Covering::new(target)?;
     watch(SAMPLING_TIME);
     let n_passes = covering.sampling.effort.n_passes;
     for (number, pass) in PASSES.iter().take(n_passes).enumerate() {
@@ -72,7 +76,7 @@ pub(super) fn cover_surface(target: &Target, watch: &mut dyn FnMut(f64)) -> (Vec
         covering.fill(&gaps.places);
         gaps = covering.gaps_in(&gaps.triangles);
     }
-    (covering.chosen, gaps.places.len())
+    Ok((covering.chosen, gaps.places.len()))
 }
 
 struct Covering<'a> {
@@ -90,16 +94,16 @@ struct Covering<'a> {
 const NOT_HERE: u32 = u32::MAX;
 
 impl<'a> Covering<'a> {
-    fn new(target: &'a Target<'a>) -> Self {
-        let sampling = sample(target);
-        Self {
+    fn new(target: &'a Target<'a>) -> Result<Self> {
+        let sampling = sample(target)?;
+        Ok(Self {
             target,
             tree: SampleTree::new(&sampling.samples),
             chosen: Vec::new(),
             counts: vec![0; sampling.samples.len()],
             row_of: vec![NOT_HERE; sampling.samples.len()],
             sampling,
-        }
+        })
     }
 
     fn gaps(&self) -> Gaps {

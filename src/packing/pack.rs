@@ -22,7 +22,8 @@ pub struct Packing {
 ///
 /// No sphere reaches more than half the tolerance outside the mesh, and every point of the outer surface is within the
 /// tolerance of the spheres; faces that lie inside other parts of the mesh are not outer surface. The same mesh gives the
-/// same spheres. An error for a tolerance that is not positive, and for a [`Body::Solid`] with holes, with faces that
+/// same spheres. An error for a tolerance that is not positive, or so small that it takes more than
+/// two million spheres, and for a [`Body::Solid`] with holes, with faces that
 /// disagree about the outside, or inside out.
 pub fn pack_mesh(surface: &Surface, body: Body, tolerance: f64) -> Result<Packing> {
     pack_mesh_watched(surface, body, tolerance, &mut |_| {})
@@ -36,7 +37,7 @@ pub fn pack_mesh_watched(
     watch: &mut dyn FnMut(f64),
 ) -> Result<Packing> {
     let target = Target::new(surface, body, tolerance)?;
-    let (balls, n_unproved) = cover_surface(&target, watch);
+    let (balls, n_unproved) = cover_surface(&target, watch)?;
     let spheres = balls.iter().map(|ball| ball.sphere(target.e)).collect();
     Ok(Packing {
         spheres: SphereUnion::new(spheres)?,

@@ -2,8 +2,10 @@
 
 use super::ball::{Ball, relief};
 use super::target::Target;
+use crate::error::{Error, Result};
 use crate::geometry::Aabb;
 use crate::mesh::{BoxTree, Triangle};
+use crate::objects::MAX_SPHERES;
 use glam::DVec3;
 
 /// A point that some ball must cover, standing for the surface around it.
@@ -69,9 +71,24 @@ impl Effort {
 }
 
 /// Samples the surface; the same mesh always gives the same samples.
-pub(super) fn sample(target: &Target) -> Sampling {
+///
+/// The error is a tolerance at which it takes more than [`MAX_SPHERES`], about.
+pub(super) fn sample(target: &Target) -> Result<Sampling> {
     let surface = target.surface;
-    let effort = Effort::for_about(&Demand::of(target));
+    let demand = Demand::of(target);
+    let n_spheres = demand.bent.min(demand.flat);
+    if n_spheres > MAX_SPHERES as f64 {
+        return Err(Error::input(
+            "tolerance",
+            format!(
+                "{:.3e} mm, which takes about {n_spheres:.1e} spheres for {:.1} cm² of surface",
+                1e3 * target.e,
+                1e4 * surface.mesh().area()
+            ),
+            format!("a larger one, of at most {MAX_SPHERES} spheres"),
+        ));
+    }
+    let effort = Effort::for_about(&demand);
     let mut sampler = Sampler {
         sizes: Sizes::new(target),
         effort,
@@ -95,7 +112,7 @@ pub(super) fn sample(target: &Target) -> Sampling {
                 sampler.visit(*triangle, normal);
             }
         });
-    sampler.sampling
+    Ok(sampler.sampling)
 }
 
 /// About how many balls it takes to cover a surface.

@@ -50,9 +50,12 @@ pub fn repeatable_hashes(tables: &Tables) -> Result<BTreeMap<String, String>> {
         .collect())
 }
 
+/// What is asked for where a table is missing.
+const A_TABLE: &str = "a table of results as bubbletouch run writes it";
+
 /// SHA-256 of a file as it stands there.
 pub fn sha256_of(path: &Path) -> Result<String> {
-    let content = std::fs::read(path).map_err(|e| Error::io(path, "read", e))?;
+    let content = std::fs::read(path).map_err(|e| Error::unreadable(path, A_TABLE, e))?;
     Ok(ContentHash::default().bytes(content).hex())
 }
 
@@ -145,7 +148,7 @@ pub fn read_cell_rows<R: DeserializeOwned>(path: &Path) -> Result<Vec<(Cell, R)>
 
 /// Reads a table; the error names the file and the line.
 pub fn read_rows<R: DeserializeOwned>(path: &Path) -> Result<Vec<R>> {
-    let file = File::open(path).map_err(|e| Error::io(path, "read", e))?;
+    let file = File::open(path).map_err(|e| Error::unreadable(path, A_TABLE, e))?;
     csv::Reader::from_reader(file)
         .into_deserialize()
         .map(|row| row.map_err(|e| read_error(path, e)))
@@ -160,7 +163,7 @@ fn read_error(path: &Path, error: csv::Error) -> Error {
     };
     let said = error.to_string();
     match error.into_kind() {
-        csv::ErrorKind::Io(source) => Error::io(path, "read", source),
+        csv::ErrorKind::Io(source) => Error::unreadable(path, A_TABLE, source),
         _ => Error::input(place, said, "a result table with this version's columns"),
     }
 }

@@ -114,6 +114,7 @@ pub fn read_mesh_file(
     sizes: &SizeLimits,
 ) -> Result<MeshFile> {
     let format = MeshFormat::of(path)?;
+    check_regular(path)?;
     let place = path.display().to_string();
     let file = File::open(path)
         .map_err(|e| Error::input(&place, format!("cannot be opened ({e})"), "a mesh"))?;
@@ -153,6 +154,18 @@ pub fn load_spheres(
     };
     let spheres = SphereUnion::new(union.spheres().iter().map(scaled).collect());
     spheres.map_err(|error| error.under(format!("{place}: ")))
+}
+
+/// An error if a mesh is a folder, or a pipe or a device, from which nothing may ever come.
+fn check_regular(path: &Path) -> Result<()> {
+    let given = match std::fs::metadata(path) {
+        Ok(meta) if meta.is_dir() => "a folder",
+        Ok(meta) if !meta.is_file() => "a pipe, a socket or a device",
+        // Opening it says what is wrong with others.
+        _ => return Ok(()),
+    };
+    let allowed = "a .ply, .obj or .stl file";
+    Err(Error::input(path.display(), given, allowed))
 }
 
 /// A mesh file as an object; its name is the file's without the ending.
@@ -234,11 +247,25 @@ fn mesh_paths(folder: &Path, spec: &ObjectsSpec) -> Result<Vec<PathBuf>> {
         )
     })?;
     let mut paths: Vec<PathBuf> = Vec::new();
+    let mut n_unwanted = 0;
     for entry in listing {
         let path = entry.map_err(|e| Error::io(folder, "read", e))?.path();
-        if MeshFormat::of(&path).is_ok() && is_wanted(&stem(&path), spec.names.as_deref()) {
-            paths.push(path);
+        if MeshFormat::of(&path).is_err() {
+            continue;
         }
+        if !is_wanted(&stem(&path), spec.names.as_deref()) {
+            n_unwanted += 1;
+            continue;
+        }
+        check_regular(&path)?;
+        paths.push(path);
+    }
+    if paths.is_empty() && n_unwanted > 0 {
+        return Err(Error::input(
+            folder.display(),
+            format!("{n_unwanted} meshes, none of them named in objects.names"),
+            "no objects.names in the study, or names of these files without their endings",
+        ));
     }
     if paths.is_empty() {
         return Err(Error::input(

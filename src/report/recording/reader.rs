@@ -13,6 +13,9 @@ use std::io::{self, BufReader, Read, Seek, SeekFrom};
 use std::path::{Path, PathBuf};
 use zip::ZipArchive;
 
+/// What is asked for where there is none.
+const A_RECORDING: &str = "a whole recording as bubbletouch writes it";
+
 /// An open recording: header and times in memory (8 bytes a frame, 48 a taxel), the rest on disk.
 pub struct RecordingFile {
     path: PathBuf,
@@ -28,14 +31,9 @@ impl RecordingFile {
     /// The error says why the file cannot be read, or which member is missing, damaged or not as `meta` says. Members that do
     /// not belong to a recording are let be.
     pub fn open(path: &Path) -> Result<Self> {
-        let file = File::open(path).map_err(|e| Error::io(path, "read", e))?;
-        let archive = ZipArchive::new(BufReader::new(file)).map_err(|e| {
-            Error::input(
-                path.display(),
-                format!("no .npz: {e}"),
-                "a whole recording as bubbletouch writes it",
-            )
-        })?;
+        let file = File::open(path).map_err(|e| Error::unreadable(path, A_RECORDING, e))?;
+        let archive = ZipArchive::new(BufReader::new(file))
+            .map_err(|e| Error::input(path.display(), format!("no .npz: {e}"), A_RECORDING))?;
         let mut open = Self {
             path: path.to_owned(),
             archive,

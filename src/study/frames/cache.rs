@@ -117,7 +117,10 @@ impl TouchCache {
         let entries = match fs::read_dir(&self.folder) {
             Ok(entries) => entries,
             Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Ok(Vec::new()),
-            Err(error) => return Err(read(error)),
+            Err(error) => {
+                let allowed = "a folder beside whose results touches are kept";
+                return Err(Error::unreadable(&self.folder, allowed, error));
+            }
         };
         let mut all = Vec::new();
         for entry in entries {

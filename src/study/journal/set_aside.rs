@@ -13,6 +13,10 @@ pub fn set_aside(folder: &Path) -> Result<Option<PathBuf>> {
     if !folder.exists() {
         return Ok(None);
     }
+    if !folder.is_dir() {
+        let allowed = "a folder, or a path where one can be made";
+        return Err(Error::input(folder.display(), "a file", allowed));
+    }
     let journal = folder.join(JOURNAL_FILE);
     let _held = match File::open(&journal) {
         Ok(file) => match file.try_lock() {

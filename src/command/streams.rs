@@ -1,0 +1,34 @@
+//! What the command says: results on standard output, notes on standard error. Nothing else here writes to either.
+//!
+//! A reader that closes its pipe has read enough: what is said after that is dropped, the work goes on to its end, and the exit code is
+//! that of the work. A standard output that takes no more for another reason (a full disk) is an error. Notes are never one.
+
+use bubbletouch::{Error, Result};
+use std::fmt::Display;
+use std::io::{self, ErrorKind, Write};
+
+/// Says a line on standard output.
+pub fn say(line: impl Display) -> Result<()> {
+    write_out(format!("{line}\n").as_bytes())
+}
+
+/// Writes to standard output as it is.
+pub fn write_out(content: &[u8]) -> Result<()> {
+    let mut out = io::stdout().lock();
+    written(out.write_all(content).and_then(|()| out.flush()))
+}
+
+/// What came of writing to standard output.
+pub fn written(result: io::Result<()>) -> Result<()> {
+    match result {
+        Err(error) if error.kind() != ErrorKind::BrokenPipe => {
+            Err(Error::io("standard output", "write", error))
+        }
+        _ => Ok(()),
+    }
+}
+
+/// Says a line on standard error; nobody may be left to read it.
+pub fn note(line: impl Display) {
+    let _ = writeln!(io::stderr(), "{line}");
+}
