@@ -34,7 +34,7 @@ pub fn show(args: &Args) -> Result<()> {
     let object = args.object.load()?;
     let spheres = match &args.spheres {
         Some(path) => spheres_file(path)?,
-        None => object.pack(args.tolerance_mm * 1e-3)?.0,
+        None => object.pack(args.tolerance_mm * 1e-3)?,
     };
     let picture = fit_picture(
         &args.object.name(),

@@ -201,6 +201,7 @@ impl Args {
             model: self.model.unwrap_or_default(),
             surface_error: self.surface_error(),
             packings: None,
+            close_holes: None,
         }
     }
 

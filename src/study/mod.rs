@@ -46,6 +46,7 @@ pub mod reconstruction;
 mod repeats;
 mod runner;
 mod samples;
+mod sealed;
 mod shard;
 mod simulation;
 mod spec;
