@@ -5,6 +5,10 @@ use serde::Serialize;
 use std::fs::{self, File};
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicU64, Ordering};
+
+/// Files started by this process: two threads may write the same file.
+static N_STARTED: AtomicU64 = AtomicU64::new(0);
 
 /// A file in the making. [`commit`](Self::commit) puts it in place; dropped before, it leaves nothing behind.
 #[derive(Debug)]
@@ -28,7 +32,8 @@ impl WholeFile {
             Ok(meta) if !meta.is_file() => None,
             _ => {
                 let mut partial = name.to_owned();
-                partial.push(format!(".{}.partial", std::process::id()));
+                let number = N_STARTED.fetch_add(1, Ordering::Relaxed);
+                partial.push(format!(".{}.{number}.partial", std::process::id()));
                 Some(path.with_file_name(partial))
             }
         };

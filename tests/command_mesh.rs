@@ -83,6 +83,41 @@ fn packed_spheres_are_written_and_shown_beside_the_mesh() {
 }
 
 #[test]
+fn a_hole_is_named_with_its_file_and_what_can_be_done() {
+    let case = Case::new();
+    // The top without a small triangle in its middle.
+    let top = "v 0 0 40\nv 0.6364 0 40\nv 0 0.6364 40\n\
+               f 5 6 10 9\nf 6 8 10\nf 8 11 10\nf 8 7 11\nf 7 5 9\nf 7 9 11\n";
+    let cube = cube().replace("f 5 6 8 7\n", top);
+    case.file("cube.obj", cube);
+    let pack = "objects pack cube.obj --unit mm --tolerance-mm 1 --out cube.csv";
+    let pack: Vec<&str> = pack.split(' ').collect();
+    let with = |more: &[&str]| case.run(&[&pack[..], more].concat());
+    let output = with(&[]);
+    let said = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(output.status.code(), Some(2), "{said}");
+    for word in [
+        "cube.obj: a hole 0.90 mm wide",
+        "--close-holes-mm",
+        "--as-sheet",
+    ] {
+        assert!(said.contains(word), "{word}: {said}");
+    }
+    assert!(!case.path("cube.csv").exists());
+    assert_eq!(with(&["--close-holes-mm", "0.8"]).status.code(), Some(2));
+    let output = with(&["--close-holes-mm", "2"]);
+    let said = String::from_utf8(output.stderr).unwrap();
+    assert!(output.status.success(), "{said}");
+    assert!(
+        said.contains("cube.obj: closed 1 hole, 0.90 mm wide"),
+        "{said}"
+    );
+    assert!(with(&["--as-sheet"]).status.success());
+    let both = with(&["--as-sheet", "--close-holes-mm", "1"]);
+    assert_eq!(both.status.code(), Some(2));
+}
+
+#[test]
 fn words_that_no_mesh_has_are_refused() {
     let case = Case::new();
     case.file("cube.obj", cube());

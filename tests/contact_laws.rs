@@ -423,6 +423,7 @@ fn no_scanned_object_is_felt_less_the_deeper_it_is_pressed_as_a_mesh_or_as_spher
                 surface_error: 1e-3,
                 packings: None,
                 sizes: SizeLimits::ANY,
+                close_holes: None,
             };
             let object = load_mesh(&path, &how).unwrap();
             deeper_is_never_less(&object.name, &object.model, &mut workspace);

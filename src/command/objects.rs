@@ -123,6 +123,7 @@ impl Args {
                 model: ModelSpec::VertexSpheres,
                 surface_error: self.surface_error_mm * 1e-3,
                 packings: None,
+                close_holes: None,
             };
             return Ok(vec![Listed {
                 set: "mesh".to_owned(),

@@ -212,6 +212,7 @@ impl Args {
             model: self.model.unwrap_or_default(),
             surface_error: self.surface_error(),
             packings: None,
+            close_holes: None,
         }
     }
 
@@ -262,11 +263,11 @@ fn positive_depth(depth_mm: f64) -> Result<f64> {
 /// Says that a press goes deeper than its taxels.
 fn note_beyond_stroke(depth: f64, taxel: &Taxel) {
     if depth > taxel.stroke {
-        eprintln!(
+        note(format_args!(
             "note: a depth of {} mm is beyond the stroke of {} mm: taxels that would go further than it are saturated",
             millimetres(depth),
             millimetres(taxel.stroke)
-        );
+        ));
     }
 }
 

@@ -1,8 +1,9 @@
 //! Which object a command is about: a mesh file or a built-in one; and its packing, with progress shown.
 
-use bubbletouch::mesh::{LengthUnit, SizeLimits, Surface};
+use super::streams::note;
+use bubbletouch::mesh::{LengthUnit, SizeLimits, Surface, TriangleMesh};
 use bubbletouch::objects::{Catalogue, Solid, SphereUnion};
-use bubbletouch::packing::{Body, pack_mesh_watched};
+use bubbletouch::packing::{Body, error_of_file, pack_mesh_watched};
 use bubbletouch::report::fit_picture::Original;
 use bubbletouch::report::progress::to_stderr;
 use bubbletouch::study::{load_catalogue, read_mesh_file};
@@ -22,11 +23,18 @@ pub struct WhichObject {
     /// Take a mesh as its surface without thickness, holes and all, not as the solid that it encloses
     #[arg(long)]
     as_sheet: bool,
+    /// Close holes of a mesh that are at most this wide, and say so
+    #[arg(long, value_name = "MM", conflicts_with = "as_sheet")]
+    close_holes_mm: Option<f64>,
 }
 
 /// An object before it is packed.
 pub enum Loaded {
-    Mesh { surface: Box<Surface>, body: Body },
+    Mesh {
+        file: String,
+        surface: Box<Surface>,
+        body: Body,
+    },
     Solid(Solid),
 }
 
@@ -54,8 +62,24 @@ impl WhichObject {
             Body::Solid
         };
         let mesh = read_mesh_file(path, self.unit, &SizeLimits::ANY)?.into_mesh(&self.object)?;
-        let surface = Box::new(Surface::new(mesh));
-        Ok(Loaded::Mesh { surface, body })
+        let surface = Box::new(Surface::new(self.closed(mesh)?));
+        Ok(Loaded::Mesh {
+            file: self.object.clone(),
+            surface,
+            body,
+        })
+    }
+
+    /// The mesh without the holes that are to be closed.
+    fn closed(&self, mesh: TriangleMesh) -> Result<TriangleMesh> {
+        let Some(widest_mm) = self.close_holes_mm else {
+            return Ok(mesh);
+        };
+        let closed = mesh
+            .with_holes_closed(widest_mm * 1e-3)
+            .map_err(|error| error.under("--close-holes-mm: "))?;
+        note(format_args!("note: {}: {closed}", self.object));
+        Ok(closed.mesh)
     }
 
     /// Without folders and ending.
@@ -69,11 +93,15 @@ impl WhichObject {
 }
 
 impl Loaded {
-    /// Few spheres within a tolerance (metres) of the object, and at how many places that is not proved.
-    pub fn pack(&self, tolerance: f64) -> Result<(SphereUnion, usize)> {
-        let (surface, body) = match self {
-            Self::Solid(solid) => return Ok((solid.pack(tolerance)?, 0)),
-            Self::Mesh { surface, body } => (surface, *body),
+    /// Few spheres within a tolerance (metres) of the object.
+    pub fn pack(&self, tolerance: f64) -> Result<SphereUnion> {
+        let (file, surface, body) = match self {
+            Self::Solid(solid) => return solid.pack(tolerance),
+            Self::Mesh {
+                file,
+                surface,
+                body,
+            } => (file, surface, *body),
         };
         const STEPS: u64 = 100;
         let progress = to_stderr();
@@ -83,14 +111,16 @@ impl Loaded {
             let now = (share * STEPS as f64) as u64;
             progress.advance(now.saturating_sub(done));
             done = done.max(now);
-        })?;
+        });
+        let advice = "--close-holes-mm WIDTH closes holes up to that width, --as-sheet packs the surface without thickness";
+        let packing = packing.map_err(|error| error_of_file(error, file, advice))?;
         progress.finish("");
-        Ok((packing.spheres, packing.n_unproved))
+        Ok(packing.spheres)
     }
 
     pub fn original(&self) -> Original<'_> {
         match self {
-            Self::Mesh { surface, body } => Original::Mesh(surface, *body),
+            Self::Mesh { surface, body, .. } => Original::Mesh(surface, *body),
             Self::Solid(solid) => Original::Solid(solid),
         }
     }

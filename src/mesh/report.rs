@@ -1,7 +1,7 @@
 //! What is wrong with a mesh, and what it measures. It is looked at, never repaired.
 
-use super::welded::has_equal;
-use super::{Side, TriangleMesh, Welded};
+use super::welded::{Joined, has_equal};
+use super::{Hole, Side, TriangleMesh, Welded};
 use crate::geometry::Aabb;
 use std::collections::BTreeMap;
 use std::fmt;
@@ -63,7 +63,10 @@ impl MeshReport {
             n_crowded_edges: welded.edges().filter(|sides| sides.len() > 2).count(),
             n_pinched_vertices: n_pinched(&welded),
             n_flipped_edges: welded.edges().filter(is_flipped).count(),
-            holes: holes(mesh, &welded),
+            holes: Hole::all(mesh, &welded)
+                .iter()
+                .map(|hole| hole.length)
+                .collect(),
             area: mesh.area(),
             volume: mesh.volume_and_centroid().0,
             bounds: mesh.bounds(),
@@ -162,29 +165,6 @@ impl fmt::Display for MeshReport {
     }
 }
 
-/// Sets of things that are joined two at a time.
-struct Joined(Vec<u32>);
-
-impl Joined {
-    fn of(n: usize) -> Self {
-        Self((0..n as u32).collect())
-    }
-
-    fn root(&mut self, mut thing: u32) -> u32 {
-        while self.0[thing as usize] != thing {
-            let parent = self.0[thing as usize];
-            self.0[thing as usize] = self.0[parent as usize];
-            thing = parent;
-        }
-        thing
-    }
-
-    fn join(&mut self, a: u32, b: u32) {
-        let (a, b) = (self.root(a), self.root(b));
-        self.0[a.max(b) as usize] = a.min(b);
-    }
-}
-
 fn n_components(welded: &Welded, used: &[u32]) -> usize {
     let mut joined = Joined::of(used.last().map_or(0, |&last| last as usize + 1));
     for &[a, b, c] in &welded.corners {
@@ -233,25 +213,4 @@ fn n_pinched(welded: &Welded) -> usize {
         }
     }
     fans.values().filter(|&&n| n > 1).count()
-}
-
-/// Lengths of the connected parts of the border, longest first.
-fn holes(mesh: &TriangleMesh, welded: &Welded) -> Vec<f64> {
-    let borders: Vec<[u32; 2]> = welded
-        .edges()
-        .filter(|sides| sides.len() == 1)
-        .map(|sides| sides[0].edge)
-        .collect();
-    let mut joined = Joined::of(mesh.vertices().len());
-    for &[a, b] in &borders {
-        joined.join(a, b);
-    }
-    let mut lengths: BTreeMap<u32, f64> = BTreeMap::new();
-    for [a, b] in borders {
-        let [from, to] = [a, b].map(|vertex| mesh.vertices()[vertex as usize]);
-        *lengths.entry(joined.root(a)).or_default() += from.distance(to);
-    }
-    let mut lengths: Vec<f64> = lengths.into_values().collect();
-    lengths.sort_by(|a, b| b.total_cmp(a));
-    lengths
 }

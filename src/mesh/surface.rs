@@ -1,9 +1,10 @@
 //! A mesh that answers where its nearest point is, and on which side of it a point lies.
 
+use super::crossings::winding;
 use super::pseudonormals::Pseudonormals;
 use super::welded::Welded;
 use super::winding::WindingTree;
-use super::{Bvh, Closest, TriangleMesh};
+use super::{Bvh, Closest, Triangle, TriangleMesh};
 use crate::geometry::Aabb;
 use glam::DVec3;
 
@@ -15,6 +16,7 @@ pub struct Surface {
     normals: Pseudonormals,
     winding: WindingTree,
     is_closed: bool,
+    is_balanced: bool,
 }
 
 /// Below this cosine between a pseudonormal and the way to the point its sign is not trusted: thin triangles count nothing
@@ -30,6 +32,7 @@ impl Surface {
             normals: Pseudonormals::new(&mesh, &welded),
             winding: WindingTree::new(&bvh),
             is_closed: welded.is_closed(),
+            is_balanced: welded.n_unbalanced() == 0,
             bvh,
             mesh,
         }
@@ -70,9 +73,29 @@ impl Surface {
         self.winding.winding_number(&self.bvh, point)
     }
 
-    /// Whether the winding number exceeds one half. Where parts overlap their union is inside.
+    /// Whether a point is in the [solid](crate::mesh#the-solid-of-a-mesh) of the mesh: its winding number exceeds one half. Exact
+    /// if every edge is passed as often in one direction as in the other.
     pub fn contains(&self, point: DVec3) -> bool {
-        self.winding_number(point) > 0.5
+        match self.is_balanced {
+            true => winding(&self.bvh, point) > 0,
+            false => self.winding_number(point) > 0.5,
+        }
+    }
+
+    /// Whether a face of the mesh may meet this triangle: not said if all are certainly [apart](Triangle::is_apart) from it.
+    pub fn may_cross(&self, triangle: &Triangle) -> bool {
+        let bounds = triangle.bounds();
+        let mut is_crossed = false;
+        let apart = |b: &Aabb| b.min.cmpgt(bounds.max).any() || bounds.min.cmpgt(b.max).any();
+        self.bvh.search(
+            1.0,
+            |b| f64::from(u8::from(apart(b))),
+            |_, face, limit| {
+                is_crossed |= !apart(&face.bounds()) && !face.is_apart(triangle);
+                if is_crossed { f64::NEG_INFINITY } else { limit }
+            },
+        );
+        is_crossed
     }
 
     /// Metres to the nearest point, negative inside: by pseudonormals on a closed mesh, otherwise by winding number.

@@ -59,6 +59,14 @@ impl Welded {
         self.sides.chunk_by(|a, b| a.edge == b.edge)
     }
 
+    /// Edges that are passed more often in one direction than in the other: at holes, and between faces that disagree about
+    /// the outside.
+    pub fn n_unbalanced(&self) -> usize {
+        let sign = |side: &Side| if side.is_forward { 1 } else { -1 };
+        let is_unbalanced = |sides: &&[Side]| sides.iter().map(sign).sum::<i32>() != 0;
+        self.edges().filter(is_unbalanced).count()
+    }
+
     /// Whether every edge has exactly two sides, in opposite directions: closed, orientable and oriented.
     pub fn is_closed(&self) -> bool {
         let closed =
@@ -70,6 +78,29 @@ impl Welded {
 /// Whether a triangle has a corner twice.
 pub(super) fn has_equal([a, b, c]: [u32; 3]) -> bool {
     a == b || b == c || c == a
+}
+
+/// Sets of things that are joined two at a time.
+pub(super) struct Joined(Vec<u32>);
+
+impl Joined {
+    pub fn of(n: usize) -> Self {
+        Self((0..n as u32).collect())
+    }
+
+    pub fn root(&mut self, mut thing: u32) -> u32 {
+        while self.0[thing as usize] != thing {
+            let parent = self.0[thing as usize];
+            self.0[thing as usize] = self.0[parent as usize];
+            thing = parent;
+        }
+        thing
+    }
+
+    pub fn join(&mut self, a: u32, b: u32) {
+        let (a, b) = (self.root(a), self.root(b));
+        self.0[a.max(b) as usize] = a.min(b);
+    }
 }
 
 /// For each vertex the first one at its place.

@@ -1,8 +1,10 @@
 //! Proof that no point of the outer surface is farther than the tolerance from the spheres, or points that are.
 //!
 //! A ball holds a triangle if it holds its corners. So a triangle of the mesh is cut in halves until each piece lies
-//! within the reach of one ball (proved), the middle of a piece lies within the reach of none (disproved), or the piece is
-//! so small that the question is left.
+//! within the reach of one ball (proved), looks into the solid all over (no outer surface), has a middle on the outer
+//! surface that is within the reach of none (disproved), or is so small that the question is left (counted as disproved).
+//! Where parts overlap, a triangle may be outer surface here and lie inside another part there: no few points of it say so,
+//! only pieces that no other face crosses ([`Target::buries`]).
 
 use super::ball::Ball;
 use super::sampling::Sample;
@@ -49,10 +51,10 @@ pub(super) fn gaps(target: &Target, triangles: &[usize], balls: &[Ball]) -> Gaps
     for (&number, near) in triangles.iter().zip(balls_near) {
         let n_before = gaps.places.len();
         gaps_of(
+            target,
             surface.mesh().triangle(number),
             near,
             balls,
-            e,
             &mut gaps.places,
         );
         if gaps.places.len() > n_before {
@@ -69,7 +71,15 @@ fn touches(triangle: &Triangle, ball: &Ball, e: f64) -> bool {
     triangle.0.into_iter().any(is_inside) || is_inside(triangle.closest(ball.center).0)
 }
 
-fn gaps_of(triangle: Triangle, near: Vec<u32>, balls: &[Ball], e: f64, gaps: &mut Vec<Sample>) {
+fn gaps_of(
+    target: &Target,
+    triangle: Triangle,
+    near: Vec<u32>,
+    balls: &[Ball],
+    gaps: &mut Vec<Sample>,
+) {
+    let e = target.e;
+    let normal = triangle.normal().unwrap_or_default();
     let mut waiting = vec![(triangle, near)];
     while let Some((piece, near)) = waiting.pop() {
         let holds = |index: u32, point| {
@@ -81,7 +91,11 @@ fn gaps_of(triangle: Triangle, near: Vec<u32>, balls: &[Ball], e: f64, gaps: &mu
             continue;
         }
         let middle = piece.middle();
-        let is_held = near.iter().any(|&index| holds(index, middle));
+        let is_buried = target.is_buried(middle, normal);
+        if is_buried && target.is_uncrossed(&piece, normal) {
+            continue;
+        }
+        let is_held = is_buried || near.iter().any(|&index| holds(index, middle));
         let is_small = piece.longest_edge_squared() < (SMALLEST * e).powi(2);
         if !is_held || is_small {
             gaps.push(Sample {

@@ -242,21 +242,25 @@ impl<'a> Covering<'a> {
         }
     }
 
-    /// Adds few balls that cover these gaps.
+    /// Adds few balls that cover these gaps, but for those that no ball with its centre in the solid covers.
     fn fill(&mut self, gaps: &[Sample]) {
-        // As points: a margin might leave a gap to no ball at all.
-        let point = |gap: &Sample| Sample {
-            radius: 0.0,
-            ..*gap
-        };
-        let gaps = &gaps.iter().map(point).collect::<Vec<_>>();
-        let tree = SampleTree::new(gaps);
-        let mut balls = self.balls_at(gaps);
-        for ball in &mut balls {
-            if !self.target.holds_center(ball) {
-                *ball = Ball::on_surface(ball.foot);
+        let target = self.target;
+        let held = |ball: Ball| target.holds_center(&ball).then_some(ball);
+        let (mut balls, mut places) = (Vec::new(), Vec::new());
+        for (gap, ball) in gaps.iter().zip(self.balls_at(gaps)) {
+            if let Some(ball) = held(ball).or_else(|| held(Ball::on_surface(ball.foot))) {
+                balls.push(ball);
+                // As a point: a margin might leave a gap to no ball at all.
+                places.push(Sample {
+                    radius: 0.0,
+                    ..*gap
+                });
             }
         }
+        if places.is_empty() {
+            return;
+        }
+        let (gaps, tree) = (&places, SampleTree::new(&places));
         let mut rows_of = Lists::new();
         for ball in &balls {
             let mut rows = Vec::new();

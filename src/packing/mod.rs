@@ -9,15 +9,25 @@
 //!
 //! # The promise
 //!
-//! Let d(c) be the depth of a point c inside the mesh. The sphere (c, d + e/2) reaches at most e/2 outside the mesh, and it is
-//! within e of exactly those points of the surface that are within **d + 3e/2** of c. So
+//! The *solid* of a mesh is where its [winding number](crate::mesh#the-solid-of-a-mesh) exceeds one half: of closed parts that
+//! overlap it is their union. The *outer surface* is its boundary (that of cavities too); faces that look into the solid are
+//! none of it, nor are clefts narrower than a thousandth of the tolerance e.
 //!
-//! - **protrusion**: no sphere reaches more than e/2 outside, by construction, whatever spheres are chosen;
+//! Let d(c) be the distance of a point c of the solid to the nearest face, buried ones included: a ball of that radius lies in
+//! the solid. The sphere (c, d + e/2) reaches at most e/2 outside it, and is within e of exactly those points that are within
+//! **d + 3e/2** of c. So
+//!
+//! - **protrusion**: no point of a sphere is more than e/2 outside the solid, by construction, whatever spheres are chosen
+//!   (that c lies in the solid is asked of each exactly, by counting what a ray crosses);
 //! - **gap**: no point of the outer surface is more than e outside the spheres, by proof: a ball that holds the corners of
-//!   a triangle holds all of it, so triangles are halved until each piece is held by one ball (`certificate`).
+//!   a triangle holds all of it, so triangles are halved until each piece is held by one ball, or proved to look into the
+//!   solid all over (`certificate`). What cannot be proved is an error.
 //!
-//! Faces that lie inside other parts of the mesh are not outer surface; nothing else is exempt. Thin walls, edges and tips
-//! need no care of their own: a ball around a point of the surface (d = 0) always holds what is within 3e/2 of it.
+//! It is not promised that the two surfaces are within e of each other everywhere: spheres may close clefts narrower than e,
+//! and leave hollows inside the solid where nothing touches.
+//!
+//! Thin walls, edges and tips need no care of their own: a ball around a point of the surface (d = 0) always holds what is
+//! within 3e/2 of it.
 //!
 //! Spheres that reached all of e outside would be fewest, but the middle of their surface would lie e/2 outside the mesh; with
 //! half of it outside, their bumps and hollows about cancel, and the skin's error halves for a third more spheres (`ball`).
@@ -64,6 +74,6 @@ mod target;
 
 pub use detail_chain::DetailChain;
 pub use medial_spheres::medial_spheres;
-pub use pack::{Packing, pack_mesh, pack_mesh_watched};
+pub use pack::{Packing, error_of_file, pack_mesh, pack_mesh_watched};
 pub use packing_error::{PackingError, Spread, packing_error};
 pub use target::Body;

@@ -1,8 +1,8 @@
 //! From a mesh to the spheres that stand for it.
 
 use super::cover_surface::cover_surface;
-use super::target::{Body, Target};
-use crate::error::Result;
+use super::target::{Body, MESH, Target};
+use crate::error::{Error, Result};
 use crate::mesh::Surface;
 use crate::objects::SphereUnion;
 
@@ -13,18 +13,17 @@ pub struct Packing {
     pub spheres: SphereUnion,
     /// How far the two surfaces may be apart, metres.
     pub tolerance: f64,
-    /// Places of the outer surface that are not proved to be within the tolerance of the spheres; 0 but for meshes with
-    /// features near the limits of floating-point numbers.
-    pub n_unproved: usize,
 }
 
-/// Packs a mesh with few spheres whose surface is within `tolerance` (metres, positive) of the mesh's outer surface.
+/// Packs a mesh with few spheres within `tolerance` (metres, positive) of the solid that it stands for.
 ///
-/// No sphere reaches more than half the tolerance outside the mesh, and every point of the outer surface is within the
-/// tolerance of the spheres; faces that lie inside other parts of the mesh are not outer surface. The same mesh gives the
-/// same spheres. An error for a tolerance that is not positive, or so small that it takes more than
-/// two million spheres, and for a [`Body::Solid`] with holes, with faces that
-/// disagree about the outside, or inside out.
+/// Proved, as [the module](super#the-promise) says: no sphere reaches more than half the tolerance outside the solid, and every
+/// point of its surface is within the tolerance of the spheres. The same mesh gives the same spheres.
+///
+/// # Errors
+/// A tolerance that is not positive, or so small that it takes more than two million spheres; a [`Body::Solid`] with holes,
+/// with faces that disagree about the outside, or inside out; a surface that cannot be proved to be within the tolerance, for
+/// its features are near the limits of floating-point numbers.
 pub fn pack_mesh(surface: &Surface, body: Body, tolerance: f64) -> Result<Packing> {
     pack_mesh_watched(surface, body, tolerance, &mut |_| {})
 }
@@ -38,10 +37,32 @@ pub fn pack_mesh_watched(
 ) -> Result<Packing> {
     let target = Target::new(surface, body, tolerance)?;
     let (balls, n_unproved) = cover_surface(&target, watch)?;
+    if n_unproved > 0 {
+        return Err(Error::input(
+            MESH,
+            format!(
+                "{n_unproved} places that are not proved to be within {} mm of the spheres",
+                1e3 * tolerance
+            ),
+            "a larger tolerance",
+        ));
+    }
     let spheres = balls.iter().map(|ball| ball.sphere(target.e)).collect();
     Ok(Packing {
         spheres: SphereUnion::new(spheres)?,
         tolerance,
-        n_unproved,
     })
+}
+
+/// An error of [`pack_mesh`] about the mesh itself, under the name of its file, and with what else may be done; another error
+/// as it is.
+pub fn error_of_file(error: Error, file: &str, advice: &str) -> Error {
+    match error {
+        Error::Input {
+            place,
+            given,
+            allowed,
+        } if place == MESH => Error::input(file, given, format!("{allowed} ({advice})")),
+        other => other,
+    }
 }

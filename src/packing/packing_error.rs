@@ -68,7 +68,7 @@ pub fn packing_error(
 fn protrusion(surface: &Surface, tree: &SphereTree, point: DVec3, normal: DVec3) -> f64 {
     let end = tree.end(point, normal);
     match surface.closest(end, f64::INFINITY) {
-        Some(nearest) if surface.is_outside(end, &nearest) => nearest.distance,
+        Some(nearest) if !surface.contains(end) => nearest.distance,
         // The spheres close a narrow cleft here: there is no surface to see.
         _ => 0.0,
     }

@@ -19,7 +19,7 @@ pub(super) struct Sample {
 /// What is to be covered, and what with.
 pub(super) struct Sampling {
     pub effort: Effort,
-    /// Triangles that are not buried inside the mesh.
+    /// Triangles that are not proved to be buried in the solid.
     pub outer: Vec<usize>,
     pub samples: Vec<Sample>,
     pub balls: Vec<Ball>,
@@ -106,13 +106,22 @@ pub(super) fn sample(target: &Target) -> Result<Sampling> {
         .bvh()
         .each_in_box(&surface.bounds(), |number, triangle| {
             if let Some(normal) = triangle.normal()
-                && !target.is_buried(triangle, normal)
+                && !target.buries(triangle, normal)
             {
                 sampler.sampling.outer.push(number);
                 sampler.visit(*triangle, normal);
             }
         });
-    Ok(sampler.sampling)
+    let mut sampling = sampler.sampling;
+    if sampling.samples.is_empty() {
+        // The outer surface is less than what a sample stands for.
+        let first = sampling.outer.first().copied().unwrap_or(0);
+        sampling.samples.push(Sample {
+            position: surface.mesh().triangle(first).middle(),
+            radius: 0.0,
+        });
+    }
+    Ok(sampling)
 }
 
 /// About how many balls it takes to cover a surface.
@@ -192,6 +201,9 @@ impl Sampler<'_> {
             if balls * samples_a_ball > 1.0 || is_long {
                 let [first, second] = triangle.bisected();
                 waiting.extend([second, first]);
+                continue;
+            }
+            if self.sizes.target.is_buried(foot, normal) {
                 continue;
             }
             self.due_samples += balls * samples_a_ball;

@@ -2,13 +2,25 @@
 
 use super::ball::Ball;
 use crate::error::{Error, Result};
-use crate::mesh::{Side, Surface, Triangle, TriangleMesh, Welded};
+use crate::mesh::{Hole, Surface, Triangle, TriangleMesh, Welded};
 use glam::DVec3;
+
+/// What errors about a mesh begin with, where its file is not known.
+pub(super) const MESH: &str = "mesh";
+
+/// How far above a face, as a share of the tolerance, it is asked whether the face lies inside the solid: clefts that are
+/// narrower count as closed. Larger: wider ones do; smaller: rounding decides where faces lie on each other.
+const LIFT: f64 = 1e-3;
+
+/// The same beside the centre of a ball on the surface: what it adds to a protrusion must be less than [`Target::new`]
+/// leaves rounding errors.
+const BESIDE: f64 = 1e-7;
 
 /// What a mesh stands for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Body {
-    /// The solid that it encloses. It must have no holes.
+    /// The [solid](crate::mesh#the-solid-of-a-mesh) that it encloses: of closed parts that overlap their union. It must have no
+    /// holes.
     Solid,
     /// Itself, without thickness: spheres as small as the tolerance, centred on it. Holes stay open; the spheres are many.
     Sheet,
@@ -33,7 +45,7 @@ impl<'a> Target<'a> {
             ));
         }
         if surface.mesh().area() <= 0.0 {
-            return Err(Error::input("mesh", "no face with an area", "at least one"));
+            return Err(Error::input(MESH, "no face with an area", "at least one"));
         }
         if body == Body::Solid {
             check_enclosure(surface.mesh())?;
@@ -70,9 +82,17 @@ impl<'a> Target<'a> {
         Ball::largest(self, nearest.point, inward, 0.0, self.largest_radius())
     }
 
-    /// Whether a ball's centre is inside a solid, or on the surface. Where a mesh cuts through itself, faces may look inwards.
+    /// Whether a ball's centre is in a solid. That of a ball on the surface lies on a face, which need not bound the solid where
+    /// parts overlap.
     pub fn holds_center(&self, ball: &Ball) -> bool {
-        self.body == Body::Sheet || ball.depth == 0.0 || self.surface.contains(ball.center)
+        if self.body == Body::Sheet {
+            return true;
+        }
+        if ball.depth > 0.0 {
+            return self.surface.contains(ball.center);
+        }
+        let lift = BESIDE * self.e * self.normal_at(ball.center);
+        self.surface.contains(ball.center - lift) || self.surface.contains(ball.center + lift)
     }
 
     /// The outward unit normal near a point of the surface; zero where there is none.
@@ -82,14 +102,22 @@ impl<'a> Target<'a> {
         normal.unwrap_or_default().normalize_or_zero()
     }
 
-    /// Whether a face of a solid lies inside other parts of the mesh: its middle and three points near its corners do,
-    /// when they are lifted off it by a thousandth of the tolerance.
-    pub fn is_buried(&self, triangle: &Triangle, normal: DVec3) -> bool {
-        let middle = triangle.middle();
-        let near_corners = triangle.0.map(|corner| corner.lerp(middle, 0.2));
-        let points = [middle, near_corners[0], near_corners[1], near_corners[2]];
-        let lift = normal * (1e-3 * self.e);
-        self.body == Body::Solid && points.iter().all(|&p| self.surface.contains(p + lift))
+    /// Whether a point of a face of a solid looks into the solid: it does when it is lifted off the face by [`LIFT`].
+    pub fn is_buried(&self, point: DVec3, normal: DVec3) -> bool {
+        self.body == Body::Solid && self.surface.contains(point + normal * (LIFT * self.e))
+    }
+
+    /// Whether the winding number is proved to be the same all over a part of a face, when it is lifted off it by [`LIFT`]: no
+    /// face of the mesh crosses it there.
+    pub fn is_uncrossed(&self, piece: &Triangle, normal: DVec3) -> bool {
+        let lift = normal * (LIFT * self.e);
+        let lifted = piece.0.map(|corner| corner + lift);
+        !self.surface.may_cross(&Triangle(lifted))
+    }
+
+    /// Whether a part of a face is proved to look into the solid all over.
+    pub fn buries(&self, piece: &Triangle, normal: DVec3) -> bool {
+        self.is_buried(piece.middle(), normal) && self.is_uncrossed(piece, normal)
     }
 }
 
@@ -98,27 +126,31 @@ impl<'a> Target<'a> {
 /// Weaker than two faces an edge: where four faces meet in one, inside and outside are still known everywhere.
 fn check_enclosure(mesh: &TriangleMesh) -> Result<()> {
     let welded = Welded::new(mesh);
-    let balance = |sides: &[Side]| -> i32 {
-        let signs = sides
-            .iter()
-            .map(|side| if side.is_forward { 1 } else { -1 });
-        signs.sum()
-    };
-    let n_open = welded.edges().filter(|sides| balance(sides) != 0).count();
-    if n_open > 0 {
+    let n_unbalanced = welded.n_unbalanced();
+    if n_unbalanced > 0 {
         return Err(Error::input(
-            "mesh",
-            format!("{n_open} edges at holes or between faces that disagree about the outside"),
+            MESH,
+            not_closed(&Hole::all(mesh, &welded), n_unbalanced),
             "a closed mesh, or its surface packed as a sheet",
         ));
     }
     let (volume, _) = mesh.volume_and_centroid();
     if volume <= 0.0 {
         return Err(Error::input(
-            "mesh",
+            MESH,
             format!("an enclosed volume of {:.3} cm³", 1e6 * volume),
             "faces counter-clockwise seen from outside, around a positive volume",
         ));
     }
     Ok(())
+}
+
+fn not_closed(holes: &[Hole], n_unbalanced: usize) -> String {
+    let widest = holes.iter().map(|hole| hole.width).fold(0.0, f64::max);
+    let widest = format!("{:.2} mm wide", 1e3 * widest);
+    match holes.len() {
+        0 => format!("{n_unbalanced} edges between faces that disagree about the outside"),
+        1 => format!("a hole {widest}"),
+        n => format!("{n} holes, at most {widest}"),
+    }
 }

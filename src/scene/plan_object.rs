@@ -121,6 +121,7 @@ impl Reader<'_> {
                     model: spec.model.unwrap_or_default(),
                     surface_error,
                     packings: None,
+                    close_holes: None,
                 };
                 Ok(self.under(key, load_mesh(&self.path(path), &wanted))?.model)
             }

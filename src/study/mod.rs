@@ -47,6 +47,7 @@ pub mod reconstruction;
 mod repeats;
 mod runner;
 mod samples;
+mod sealed;
 mod shard;
 mod simulation;
 mod spec;

@@ -12,7 +12,7 @@ use crate::objects::{
 use rayon::prelude::*;
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs::File;
-use std::io::BufReader;
+use std::io::{BufReader, Write};
 use std::path::{Path, PathBuf};
 
 /// What a mesh file becomes.
@@ -28,6 +28,8 @@ pub struct MeshUse<'a> {
     pub surface_error: f64,
     /// Where packings are looked for and kept; nowhere if it is `None`.
     pub packings: Option<&'a Path>,
+    /// Holes at most this wide are closed, and that is said, metres; `None` closes none. Of no use to vertex spheres.
+    pub close_holes: Option<f64>,
 }
 
 /// A mesh of a study.
@@ -174,9 +176,9 @@ pub fn load_mesh(path: &Path, wanted: &MeshUse) -> Result<Object> {
     let mesh = read_mesh_file(path, wanted.unit, &wanted.sizes)?;
     let model = match wanted.model {
         ModelSpec::VertexSpheres => vertex_spheres(&place, mesh.vertices())?.into(),
-        ModelSpec::Mesh => MeshModel::new(mesh.into_mesh(&place)?).into(),
+        ModelSpec::Mesh => MeshModel::new(closed(mesh, &place, wanted.close_holes)?).into(),
         ModelSpec::Packed => {
-            let surface = Surface::new(mesh.into_mesh(&place)?);
+            let surface = Surface::new(closed(mesh, &place, wanted.close_holes)?);
             let tolerance = wanted.surface_error;
             pack_within(&place, &surface, tolerance, wanted.packings)?
                 .spheres
@@ -186,12 +188,27 @@ pub fn load_mesh(path: &Path, wanted: &MeshUse) -> Result<Object> {
     Ok(Object::of_one_part(stem(path), model))
 }
 
+/// The triangles of a file, without the holes that are to be closed; which, is said on standard error.
+fn closed(file: MeshFile, place: &str, widest: Option<f64>) -> Result<TriangleMesh> {
+    let mesh = file.into_mesh(place)?;
+    let Some(widest) = widest else {
+        return Ok(mesh);
+    };
+    let closed = mesh.with_holes_closed(widest)?;
+    if !closed.widths.is_empty() {
+        // That nobody reads it changes nothing.
+        let _ = writeln!(std::io::stderr(), "note: {place}: {closed}");
+    }
+    Ok(closed.mesh)
+}
+
 /// The meshes of a study as triangles, by file name.
 pub fn load_named_meshes(folder: &Path, spec: &ObjectsSpec) -> Result<Vec<NamedMesh>> {
     let paths = mesh_paths(folder, spec)?;
     let meshes = paths.par_iter().map(|path| {
         let place = path.display().to_string();
-        let mesh = read_mesh_file(path, spec.unit, &spec.sizes())?.into_mesh(&place)?;
+        let file = read_mesh_file(path, spec.unit, &spec.sizes())?;
+        let mesh = closed(file, &place, spec.close_holes())?;
         Ok(NamedMesh {
             name: stem(path),
             place,
@@ -225,7 +242,15 @@ fn load_meshes(folder: &Path, spec: &ObjectsSpec, packings: Option<&Path>) -> Re
         model: spec.model.unwrap_or_default(),
         surface_error: spec.surface_error(),
         packings,
+        close_holes: spec.close_holes(),
     };
+    if wanted.close_holes.is_some() && wanted.model == ModelSpec::VertexSpheres {
+        return Err(Error::input(
+            "key objects.close_holes_mm",
+            "a study whose meshes become spheres around their vertices",
+            "it only with model = \"packed\" or \"mesh\"",
+        ));
+    }
     mesh_paths(folder, spec)?
         .par_iter()
         .map(|path| load_mesh(path, &wanted))

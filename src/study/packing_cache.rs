@@ -1,19 +1,18 @@
 //! Packings kept in a folder, by what they were made from.
 
 use super::content_hash::ContentHash;
-use crate::error::{Error, Result};
-use crate::files::write_whole;
+use super::sealed::{self, SealedFile, Unsealed};
+use crate::error::Result;
 use crate::mesh::{Surface, TriangleMesh};
-use crate::objects::{read_spheres, write_spheres};
+use crate::objects::{SphereUnion, read_spheres, write_spheres};
 use crate::packing::{Body, Packing, pack_mesh_watched};
-use std::fs::File;
-use std::io::BufReader;
-use std::path::PathBuf;
+use std::io::{BufReader, Read};
+use std::path::{Path, PathBuf};
 
 /// Changes whenever [`pack_mesh`](crate::packing::pack_mesh) gives other spheres for the same mesh.
-const METHOD: &str = "packing 3";
+const METHOD: &str = "packing 4";
 
-/// A folder of packings, one CSV file each, named by the SHA-256 of mesh, body, tolerance and method.
+/// A folder of packings, one CSV file each (and its seal), named by the SHA-256 of mesh, body, tolerance and method.
 #[derive(Clone, Debug)]
 pub struct PackingCache {
     folder: PathBuf,
@@ -22,7 +21,7 @@ pub struct PackingCache {
 /// A packing that a cache gave.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CachedPacking {
-    /// All of it proved, if it was kept.
+    /// The spheres.
     pub packing: Packing,
     /// Whether it was in the cache before.
     pub was_kept: bool,
@@ -45,8 +44,10 @@ impl PackingCache {
     /// [`pack_mesh`](crate::packing::pack_mesh), or what it gave before for the same mesh. `watch` is told now and then which
     /// share of the work is done, about, from 0 to 1.
     ///
-    /// A packing is kept if all of it is proved. Errors also for a kept file that cannot be read, and a folder that cannot
-    /// be written.
+    /// A kept file that is cut, changed or not readable is packed again, and so said on standard error.
+    ///
+    /// # Errors
+    /// As of [`pack_mesh`](crate::packing::pack_mesh), and a folder that cannot be written.
     pub fn pack_mesh(
         &self,
         surface: &Surface,
@@ -55,33 +56,42 @@ impl PackingCache {
         watch: &mut dyn FnMut(f64),
     ) -> Result<CachedPacking> {
         let path = self.path(surface.mesh(), body, tolerance);
-        match File::open(&path) {
-            Ok(file) => {
-                let place = path.display().to_string();
-                let packing = Packing {
-                    spheres: read_spheres(&place, BufReader::new(file))?,
-                    tolerance,
-                    n_unproved: 0,
-                };
-                return Ok(CachedPacking {
-                    packing,
-                    was_kept: true,
-                });
-            }
-            Err(error) if error.kind() != std::io::ErrorKind::NotFound => {
-                return Err(Error::io(&path, "read", error));
-            }
-            Err(_) => {}
+        if let Some(spheres) = kept(&path)? {
+            return Ok(CachedPacking {
+                packing: Packing { spheres, tolerance },
+                was_kept: true,
+            });
         }
         let packing = pack_mesh_watched(surface, body, tolerance, watch)?;
-        if packing.n_unproved == 0 {
-            write_whole(&path, |sink| write_spheres(&packing.spheres, sink))?;
-        }
+        keep(&path, &packing.spheres)?;
         Ok(CachedPacking {
             packing,
             was_kept: false,
         })
     }
+}
+
+/// The spheres of a whole file.
+fn kept(path: &Path) -> Result<Option<SphereUnion>> {
+    let Some(Unsealed { file, n_bytes }) = sealed::open(path, METHOD)? else {
+        return Ok(None);
+    };
+    let place = path.display().to_string();
+    match read_spheres(&place, BufReader::new(file.take(n_bytes))) {
+        Ok(spheres) => Ok(Some(spheres)),
+        Err(error) => {
+            sealed::make_again(path, &format!("not readable ({error})"))?;
+            Ok(None)
+        }
+    }
+}
+
+fn keep(path: &Path, spheres: &SphereUnion) -> Result<()> {
+    let mut bytes = Vec::new();
+    write_spheres(spheres, &mut bytes).expect("memory takes all");
+    let mut file = SealedFile::create(path, METHOD)?;
+    file.write(&bytes)?;
+    file.commit()
 }
 
 fn key(mesh: &TriangleMesh, body: Body, tolerance: f64) -> String {

@@ -4,7 +4,7 @@ use super::packing_cache::{CachedPacking, PackingCache};
 use crate::error::{Error, Result};
 use crate::mesh::Surface;
 use crate::objects::SphereUnion;
-use crate::packing::{Body, pack_mesh};
+use crate::packing::{Body, error_of_file, pack_mesh};
 use std::path::Path;
 
 /// Spheres that stand for a mesh, and where they are from.
@@ -17,8 +17,7 @@ pub(super) struct Packed {
 /// Packs a closed mesh within `tolerance` (metres), or finds what was packed before in `folder` (made if it is missing;
 /// nothing is kept without one).
 ///
-/// The error begins with `place` and says what the mesh lacks, or that a part of it is not proved to be within the
-/// tolerance.
+/// The error begins with `place` and says what the mesh lacks.
 pub(super) fn pack_within(
     place: &str,
     surface: &Surface,
@@ -35,29 +34,10 @@ pub(super) fn pack_within(
             PackingCache::new(folder).pack_mesh(surface, Body::Solid, tolerance, &mut |_| {})
         }
     };
-    let CachedPacking { packing, was_kept } = cached.map_err(|error| match error {
-        // Of the mesh; a kept packing that cannot be read is named by its own file.
-        Error::Input {
-            place: what,
-            given,
-            allowed,
-        } if what == "mesh" => Error::input(
-            place,
-            given,
-            format!("{allowed} (open meshes can be touched with model = \"mesh\")"),
-        ),
-        other => other,
+    let CachedPacking { packing, was_kept } = cached.map_err(|error| {
+        let advice = "a study closes small holes with objects.close_holes_mm; open meshes can be touched with model = \"mesh\"";
+        error_of_file(error, place, advice)
     })?;
-    if packing.n_unproved > 0 {
-        return Err(Error::input(
-            place,
-            format!(
-                "{} places that are not proved to be within {tolerance} m of the spheres",
-                packing.n_unproved
-            ),
-            "a larger tolerance, or model = \"mesh\"",
-        ));
-    }
     Ok(Packed {
         spheres: packing.spheres,
         was_kept,

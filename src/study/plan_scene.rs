@@ -46,6 +46,11 @@ impl ObjectsSpec {
         self.sizes.unwrap_or(SizeLimits::ANY)
     }
 
+    /// The widest holes that are closed, metres.
+    pub(super) fn close_holes(&self) -> Option<f64> {
+        self.close_holes_mm.map(|width| width * MM)
+    }
+
     /// How far spheres may be from a surface, metres.
     pub(super) fn surface_error(&self) -> f64 {
         self.surface_error_mm.unwrap_or(SURFACE_ERROR_MM) * MM
@@ -75,6 +80,17 @@ impl Check<'_> {
                 "model or unit without meshes",
                 "them only beside meshes = \"FOLDER\": solids are spheres within surface_error_mm",
             ));
+        }
+        if let Some(width) = objects.close_holes_mm {
+            let allowed = "a positive number of millimetres";
+            self.value("objects.close_holes_mm", width, positive, allowed)?;
+            if objects.meshes.is_none() {
+                return Err(self.error(
+                    "objects.close_holes_mm",
+                    "no meshes",
+                    "it only beside meshes = \"FOLDER\"",
+                ));
+            }
         }
         if objects.names.as_ref().is_some_and(Vec::is_empty) {
             return Err(self.error(

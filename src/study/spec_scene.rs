@@ -33,6 +33,9 @@ pub struct ObjectsSpec {
     /// `model = "packed"` a tenth of the finest pitch, which leaves a mean deflection error of about 2 % of the pitch.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub surface_error_mm: Option<f64>,
+    /// Holes of the meshes at most this wide are closed before they are packed, or touched as they are, mm; none when left out.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub close_holes_mm: Option<f64>,
 }
 
 /// `[skin]`

@@ -42,7 +42,7 @@ impl CachedTouches {
     /// # Errors
     /// The file cannot be read, or is damaged.
     pub fn checked_facts(&self) -> Result<FrameFacts> {
-        Ok(FrameFile::open(&self.path)?.facts().clone())
+        FrameFile::checked_facts_of(&self.path)
     }
 }
 
@@ -65,13 +65,12 @@ impl TouchCache {
         fs::create_dir_all(&self.folder).map_err(|e| Error::io(&self.folder, "create folder", e))
     }
 
-    /// What is kept under a key; it counts as used now.
+    /// What is kept under a key, if it is whole; it counts as used now.
     pub(super) fn open(&self, key: &str) -> Result<Option<FrameFile>> {
         let path = self.path(key);
-        if !path.exists() {
+        let Some(file) = FrameFile::open(&path)? else {
             return Ok(None);
-        }
-        let file = FrameFile::open(&path)?;
+        };
         // A folder that others own can be read all the same; its order of use then stays as it is.
         let _ = File::options()
             .append(true)

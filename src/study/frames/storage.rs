@@ -58,10 +58,10 @@ impl FrameStorage {
         }
     }
 
-    /// The frames of touches on an array, F each: kept ones, or new ones.
+    /// The frames of touches on an array, F each: kept ones, or new ones; also where those kept are damaged.
     ///
     /// # Errors
-    /// A file of the cache cannot be read or written, or is damaged.
+    /// A file of the cache cannot be read or written.
     pub fn frames(
         &self,
         touches: &KeyedTouches,
