@@ -29,7 +29,7 @@ pub struct Args {
     action: Option<Action>,
     /// Objects by name; all when left out
     names: Vec<String>,
-    /// Only this set: household, balls, boxes or cans
+    /// Only this set: household, balls, boxes, cans or hands
     #[arg(long, value_name = "SET", conflicts_with = "names")]
     set: Option<String>,
     /// A PLY, OBJ or STL mesh in metres instead, as one sphere a vertex

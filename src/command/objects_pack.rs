@@ -14,15 +14,18 @@ const N_POINTS: usize = 100_000;
 
 /// Pack a mesh or a built-in object with few spheres.
 ///
-/// No sphere reaches more than the tolerance outside the object (of a mesh: half of it), and no point of its outer surface is
-/// farther than the tolerance from the spheres. Both are measured and reported.
+/// No sphere reaches more than the surface error outside the object (of a mesh: half of it), and no point of its outer surface is
+/// farther than that from the spheres. Both are measured and reported.
 #[derive(clap::Args)]
 pub struct Args {
     #[command(flatten)]
     object: WhichObject,
     /// How far the two surfaces may be apart
     #[arg(long, value_name = "MM")]
-    tolerance_mm: f64,
+    surface_error_mm: f64,
+    /// The name that it had
+    #[arg(long, hide = true, value_parser = renamed)]
+    tolerance_mm: Option<f64>,
     /// Where the spheres go: columns x, y, z, r in metres
     #[arg(long, value_name = "FILE.csv")]
     out: PathBuf,
@@ -31,7 +34,7 @@ pub struct Args {
 pub fn pack(args: &Args) -> Result<()> {
     check_ending(&args.out, "csv")?;
     let object = args.object.load()?;
-    let tolerance = args.tolerance_mm * MM;
+    let tolerance = args.surface_error_mm * MM;
     let (spheres, n_unproved) = object.pack(tolerance)?;
     write_whole(&args.out, |sink| write_spheres(&spheres, sink))?;
     println!("spheres     {}", spheres.n_spheres());
@@ -48,6 +51,11 @@ pub fn pack(args: &Args) -> Result<()> {
         println!("not proved at {n_unproved} places of the surface");
     }
     Ok(())
+}
+
+/// Refuses an option by a name that it has no more.
+pub fn renamed(_: &str) -> std::result::Result<f64, String> {
+    Err("it is called --surface-error-mm, as in press and in studies".to_owned())
 }
 
 fn describe_solid(solid: &Solid, spheres: &SphereUnion, tolerance: f64) -> String {

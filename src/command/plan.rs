@@ -1,9 +1,10 @@
 //! `bubbletouch plan`: what a study would do, without doing it.
 
+use super::any_study::load_study;
 use super::memory_args::CeilingArgs;
+use super::run::results_folder;
 use super::study_args::StudyArgs;
 use bubbletouch::Result;
-use bubbletouch::study::Estimate;
 
 #[derive(clap::Args)]
 pub struct Args {
@@ -14,15 +15,9 @@ pub struct Args {
 }
 
 pub fn plan(args: &Args) -> Result<()> {
-    let loaded = args.study.load(None)?;
-    let memory = args.ceiling.plan(&loaded)?;
-    let estimate = Estimate::new(
-        &loaded.plan,
-        loaded.touched.as_ref(),
-        &loaded.sweep,
-        &memory,
-    );
-    println!("{}: {}", loaded.name, loaded.plan.spec.question);
-    println!("{estimate}");
+    let folder = results_folder(&args.study, None)?;
+    let study = load_study(&args.study, &folder, None)?;
+    let said = study.plan(&args.ceiling)?;
+    println!("{}: {said}", args.study.name()?);
     Ok(())
 }
