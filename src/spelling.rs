@@ -1,7 +1,13 @@
-//! Names that were perhaps meant.
+//! Names that were perhaps meant, and numbers of things.
 
 /// At most this many are offered: more is a list that nobody reads.
 const OFFERED: usize = 8;
+
+/// A number of things, each called `one`: `1 thread`, `2 threads`.
+pub(crate) fn counted(number: usize, one: &str) -> String {
+    let plural = if number == 1 { "" } else { "s" };
+    format!("{number} {one}{plural}")
+}
 
 /// The error's last part for a name that is not among `names`: those it resembles, else the first few there are.
 pub(crate) fn nearest_names<'a>(name: &str, names: impl IntoIterator<Item = &'a str>) -> String {

@@ -261,10 +261,6 @@ fn keys_that_are_out_of_range_are_named_with_their_way() {
             &["run", "imbalance.toml", "--fail-fast"],
             "way imbalance at 1000, key recognition.class_imbalance",
         ),
-        (
-            &["plan", "unlike.toml"],
-            "a study of where recognition breaks",
-        ),
     ] {
         let output = case.run(arguments);
         let error = String::from_utf8_lossy(&output.stderr).into_owned();

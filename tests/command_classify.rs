@@ -169,14 +169,54 @@ fn a_feature_that_is_no_number_is_named_by_row_and_column() {
 }
 
 #[test]
-fn arrays_of_another_type_or_shape_are_refused_by_name() {
+fn arrays_of_any_type_that_numpy_writes_are_read_as_the_same_numbers() {
     let case = folder();
+    // Halves, so that every type of float holds them, and integers that every type of integer does.
+    let halves = features().mapv(|value| (2.0 * value).round() / 2.0);
+    let whole = halves.mapv(f64::round);
+    let path = |name: &str| case.path(name);
+    let asked = |what: &str| {
+        let said = json(&case, &["--classifier", "linear_svm"]);
+        let svm = said["svm"]["dual_objective"].as_f64();
+        (
+            said["n_correct"].as_u64(),
+            svm.unwrap_or_else(|| panic!("{what}: {said}")),
+        )
+    };
+    write_npy(path("features.npy"), &halves).unwrap();
+    let expected = asked("float64");
+    write_npy(path("features.npy"), &halves.mapv(|value| value as f32)).unwrap();
+    assert_eq!(asked("float32"), expected);
+    write_npy(path("labels.npy"), &labels().mapv(|label| label as i32)).unwrap();
+    write_npy(path("train.npy"), &train().mapv(|row| row as u16)).unwrap();
+    assert_eq!(asked("int32 and uint16"), expected);
+    let mask: Array1<bool> = (0..N_ROWS as i64)
+        .map(|row| test().iter().any(|&tested| tested == row))
+        .collect();
+    write_npy(path("test.npy"), &mask).unwrap();
+    assert_eq!(asked("a mask"), expected);
+    write_npy(path("features.npy"), &whole).unwrap();
+    let expected = asked("whole float64");
+    write_npy(path("features.npy"), &whole.mapv(|value| value as i16)).unwrap();
+    assert_eq!(asked("int16"), expected);
+    let two: Array1<bool> = labels().mapv(|label| label == 1);
+    write_npy(path("labels.npy"), &two.mapv(i64::from)).unwrap();
     write_npy(
-        case.path("features.npy"),
-        &features().mapv(|value| value as f32),
+        path("features.npy"),
+        &whole.mapv(|value| f64::from(value > 0.0)),
     )
     .unwrap();
-    refused(&case, &LINEAR, &["features.npy", "float64"]);
+    let expected = asked("two classes");
+    write_npy(path("labels.npy"), &two).unwrap();
+    write_npy(path("features.npy"), &whole.mapv(|value| value > 0.0)).unwrap();
+    assert_eq!(asked("bool"), expected);
+}
+
+#[test]
+fn arrays_of_another_type_or_shape_are_refused_by_name() {
+    let case = folder();
+    write_npy(case.path("features.npy"), &labels().mapv(|n| n as u64)).unwrap();
+    refused(&case, &LINEAR, &["features.npy", "float64, float32"]);
     write_npy(
         case.path("features.npy"),
         &labels().mapv(|label| label as f64),
@@ -184,12 +224,16 @@ fn arrays_of_another_type_or_shape_are_refused_by_name() {
     .unwrap();
     refused(&case, &LINEAR, &["features.npy", "n × m"]);
     write_npy(case.path("features.npy"), &features()).unwrap();
-    write_npy(
-        case.path("labels.npy"),
-        &labels().mapv(|label| label as i32),
-    )
-    .unwrap();
+    write_npy(case.path("labels.npy"), &labels().mapv(|n| n as f64)).unwrap();
     refused(&case, &LINEAR, &["labels.npy", "int64"]);
+    write_npy(case.path("labels.npy"), &labels()).unwrap();
+    write_npy(case.path("test.npy"), &array![true, false]).unwrap();
+    refused(
+        &case,
+        &LINEAR,
+        &["test.npy", "a mask of 2 rows", "one of 60"],
+    );
+    write_npy(case.path("test.npy"), &test()).unwrap();
     write_npy(case.path("labels.npy"), &array![0_i64, 1, 2]).unwrap();
     refused(&case, &LINEAR, &["3 labels", "each of the 60 rows"]);
     case.file("labels.npy", "0,1,2");

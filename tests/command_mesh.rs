@@ -58,7 +58,7 @@ fn packed_spheres_are_written_and_shown_beside_the_mesh() {
     let case = Case::new();
     case.file("cube.obj", cube());
     let succeeds = |arguments: &str| case.succeeds(&arguments.split(' ').collect::<Vec<_>>());
-    let (said, _) = succeeds("objects pack cube.obj --unit mm --tolerance-mm 1 --out cube.csv");
+    let (said, _) = succeeds("objects pack cube.obj --unit mm --surface-error-mm 1 --out cube.csv");
     let spheres = std::fs::read_to_string(case.path("cube.csv")).unwrap();
     let n_spheres = spheres.lines().count() - 1;
     assert!(
@@ -66,11 +66,11 @@ fn packed_spheres_are_written_and_shown_beside_the_mesh() {
         "{said}"
     );
     succeeds("objects show cube.obj --unit mm --spheres cube.csv --panel-px 200 --out kept.png");
-    succeeds("objects show cube.obj --unit mm --tolerance-mm 1 --panel-px 200 --out made.png");
+    succeeds("objects show cube.obj --unit mm --surface-error-mm 1 --panel-px 200 --out made.png");
     let [kept, made] = ["kept.png", "made.png"].map(|name| std::fs::read(case.path(name)).unwrap());
     assert!(kept.starts_with(b"\x89PNG"));
     assert_eq!(kept, made, "the same spheres, read or made");
-    succeeds("objects show mug --tolerance-mm 2 --panel-px 200 --out mug.png");
+    succeeds("objects show mug --surface-error-mm 2 --panel-px 200 --out mug.png");
     for wrong in [
         "objects show mug --out mug.jpg",
         "objects show mug --panel-px 10 --out other.png",

@@ -126,6 +126,87 @@ fn the_page_comes_again_from_the_tables() {
 }
 
 #[test]
+fn the_page_is_not_drawn_over_from_tables_that_were_changed_or_are_gone() {
+    let case = Case::new();
+    case.file("asked.toml", STUDY);
+    case.succeeds(&["run", "asked.toml", "--out", "found"]);
+    let page = fs::read_to_string(case.path("found/report.html")).unwrap();
+    for name in [
+        "summary.csv",
+        "accuracy.csv",
+        "pareto.csv",
+        "timing.csv",
+        "limits.csv",
+        "failures.csv",
+        "study.toml",
+    ] {
+        let path = case.path("found").join(name);
+        let content = fs::read_to_string(&path).unwrap();
+        let lines: Vec<&str> = content.lines().collect();
+        let cut = lines[..lines.len() / 2].join("\n");
+        let edited = format!("{content} ");
+        for damaged in [Some(cut), Some(edited), None] {
+            let said = match &damaged {
+                Some(text) => {
+                    fs::write(&path, text).unwrap();
+                    "was changed after its run"
+                }
+                None => {
+                    fs::remove_file(&path).unwrap();
+                    "is missing"
+                }
+            };
+            for command in ["report", "verify"] {
+                let output = case.run(&[command, "found"]);
+                let error = String::from_utf8(output.stderr).unwrap();
+                let is_named = error.contains(name) && error.contains(said);
+                // Without its study a folder is of no kind that verify knows; it is refused all the same.
+                assert!(is_named, "{command}, {name}: {error}");
+                assert_eq!(output.status.code(), Some(2), "{command}, {name}: {error}");
+            }
+            let again = fs::read_to_string(case.path("found/report.html")).unwrap();
+            assert!(again == page, "{name}");
+        }
+        fs::write(&path, content).unwrap();
+    }
+    case.succeeds(&["report", "found"]);
+}
+
+#[test]
+fn with_too_few_trials_there_is_no_p_value_and_with_enough_there_is() {
+    let case = Case::new();
+    for (name, trials, status) in [("few", 2, "too_few_trials"), ("many", 4, "tested")] {
+        let study = STUDY.replace("trials = 2", &format!("trials = {trials}"));
+        case.file(&format!("{name}.toml"), &study);
+        case.succeeds(&["run", &format!("{name}.toml"), "--out", name]);
+        let mut table = csv::Reader::from_path(case.path(name).join("comparison.csv")).unwrap();
+        let heads = table.headers().unwrap().clone();
+        let place = |column: &str| heads.iter().position(|head| head == column).unwrap();
+        let (p, p_status) = (place("p_value"), place("p_status"));
+        let needed = place("n_trials_needed");
+        for row in table.records() {
+            let row = row.unwrap();
+            assert_eq!((&row[p_status], &row[needed]), (status, "4"));
+            assert_eq!(row[p].is_empty(), status == "too_few_trials", "{row:?}");
+        }
+    }
+    case.file(
+        "other.toml",
+        STUDY.replace("uniform = [-8.0, 8.0]", "uniform = [-9.0, 9.0]"),
+    );
+    case.succeeds(&["run", "other.toml", "--out", "other"]);
+    let (said, _) = case.succeeds(&["compare", "few", "other"]);
+    assert!(
+        said.contains("No p-values: 2 trials a cell are too few") && said.contains("4 are needed"),
+        "{said}"
+    );
+    assert!(
+        said.contains("too few trials") && !said.contains("One trial"),
+        "{said}"
+    );
+}
+
+#[test]
 fn two_folders_stand_side_by_side_in_a_page() {
     let case = Case::new();
     case.file("asked.toml", STUDY);

@@ -136,6 +136,51 @@ fn the_frames_are_the_librarys_one_folder_an_array() {
 }
 
 #[test]
+fn frames_of_a_cell_are_what_its_identity_measures_and_the_rest_is_the_same() {
+    let case = Case::new();
+    let study = STUDY
+        .replace("per_object = 300", "per_object = 30")
+        .replace("400.0]", "9.0]")
+        .replace("ratio = 4", "ensemble = \"identity\"\nratio = 1")
+        .replace(
+            "[sensing]",
+            "[signal]\nsteps = [\"noise\", \"smoothing\"]\nnoise_std_full_scale = [0.0, 0.1]\nsmoothing_mm = 4.0\n[sensing]",
+        );
+    case.file("study.toml", study);
+    let (_, said) = case.succeeds(&["touches", "study.toml", "--out", "clean"]);
+    assert!(said.contains("without noise"), "{said}");
+    // Array 1 (24 × 24) with noise of 10 % is cell 3.
+    let cell = ["--cell", "3", "--trial", "0"];
+    let (_, said) =
+        case.succeeds(&[&["touches", "study.toml", "--out", "read"], &cell[..]].concat());
+    assert!(said.contains("as cell 3 reads them"), "{said}");
+    case.succeeds(&[&["features", "study.toml", "--out", "features"], &cell[..]].concat());
+    let features: Array2<f64> = read_npy(case.path("features/features.npy")).unwrap();
+    let (clean, read) = (
+        Files::read(&case.path("clean/24x24_at_2_mm")),
+        Files::read(&case.path("read")),
+    );
+    let flat = read.frames.to_shape(features.dim()).unwrap();
+    assert_eq!(
+        flat.mapv(f64::from),
+        features.mapv(|value| f64::from(value as f32))
+    );
+    assert!(read.frames != clean.frames, "noise is in them");
+    for name in [
+        "labels.npy",
+        "poses.npy",
+        "depths.npy",
+        "touches.csv",
+        "objects.csv",
+    ] {
+        let bytes = |folder: &str| std::fs::read(case.path(folder).join(name)).unwrap();
+        assert!(bytes("clean/24x24_at_2_mm") == bytes("read"), "{name}");
+    }
+    let refused = case.run(&["touches", "study.toml", "--out", "x", "--cell", "99"]);
+    assert_eq!(refused.status.code(), Some(2));
+}
+
+#[test]
 fn labels_depths_and_tables_agree_and_are_the_touches_of_the_study() {
     let case = written();
     let study = Study::new(STUDY);

@@ -5,7 +5,9 @@ mod report_synthetic;
 
 use browser::shown::{Shown, show};
 use browser::{ARROW_DOWN, ARROW_RIGHT, Browser};
-use report_synthetic::{about, quickstart_cells, tables};
+use bubbletouch::report::offers::cell_offers;
+use bubbletouch::study::advice::{Cost, Wish, advise, by_condition};
+use report_synthetic::{about, noise_cells, quickstart_cells, tables};
 use serde_json::json;
 use std::thread::sleep;
 use std::time::Duration;
@@ -200,6 +202,72 @@ fn the_confusion_matrix_sorts_and_is_read_by_keyboard() {
             .text(SPOKEN)
             .starts_with(&format!("{first} taken for "))
     );
+    browser.check_quiet();
+}
+
+#[test]
+fn the_page_advises_in_each_condition_what_the_library_advises() {
+    let mut made = tables(noise_cells(), 3, 24);
+    for (cell, row) in &mut made.pareto {
+        row.predict_us_per_decision = 2.0 + 40.0 * row.accuracy + ((cell.cell * 7) % 5) as f64;
+        row.fit_s = 0.01 + 0.001 * ((cell.cell * 11) % 13) as f64;
+    }
+    let Some(Shown { browser, .. }) = show(&made, &about()) else {
+        return;
+    };
+    let offers = cell_offers(&made.pareto, &made.summary, &[]).unwrap();
+    let conditions = by_condition(&offers);
+    assert_eq!(conditions.len(), 5, "noises");
+    let costs = [
+        (Cost::DecisionTime, "time of a decision"),
+        (Cost::TrainingTime, "time to train"),
+        (Cost::Taxels, "taxels"),
+        (Cost::Measurements, "measurements"),
+    ];
+    let mut n_advised = 0;
+    for (cost, name) in costs {
+        browser.choose("#pareto .advice select", name);
+        // Some wishes are not fulfilled in the noisier conditions.
+        for wish in [0.2, 0.35, 0.5, 0.6, 0.7] {
+            browser.run(&format!(
+                "const wish = document.querySelector('#pareto input'); wish.value = {wish}; wish.dispatchEvent(new Event('input'))"
+            ));
+            let advised = conditions.iter().map(|offers| {
+                let advice = advise(offers, Wish::Accuracy(wish), cost);
+                advice.map_or(String::new(), |advice| {
+                    advice.choice.cell.unwrap().to_string()
+                })
+            });
+            let advised: Vec<String> = advised.collect();
+            n_advised += advised.iter().filter(|cell| !cell.is_empty()).count();
+            let on_page =
+                browser.text("return document.querySelector('#pareto .advice').dataset.cell");
+            assert_eq!(on_page, advised.join(","), "{name}, {wish}");
+        }
+    }
+    assert!(n_advised > 20 && n_advised < 100, "{n_advised}");
+    let words = browser.text("return document.querySelector('#pareto .advice').innerText");
+    assert!(words.contains("With noise 20 %:"), "{words}");
+    browser.check_quiet();
+}
+
+#[test]
+fn tables_on_a_phone_show_that_they_scroll_and_the_page_does_not() {
+    let Some(Shown { browser, .. }) = show(&tables(noise_cells(), 3, 24), &about()) else {
+        return;
+    };
+    browser.resize(390, 844);
+    let wide = browser.count("return document.documentElement.scrollWidth");
+    assert_eq!(wide, browser.count("return innerWidth"));
+    let shaded = "return [...document.querySelectorAll('.wide')].filter((box) => box.scrollWidth > box.clientWidth + 1)
+        .map((box) => getComputedStyle(box)).map((style) => [style.backgroundImage.split('linear-gradient').length - 1, style.backgroundAttachment])";
+    let shaded = browser.run(shaded);
+    let shaded = shaded.as_array().unwrap();
+    assert!(shaded.len() > 1, "{shaded:?}");
+    for box_ in shaded {
+        assert_eq!(box_[0], 4, "two covers and two shadows");
+        assert_eq!(box_[1], "local, local, scroll, scroll, scroll");
+    }
     browser.check_quiet();
 }
 

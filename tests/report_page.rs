@@ -4,10 +4,12 @@ mod report_synthetic;
 
 use bubbletouch::report::answer::Answer;
 use bubbletouch::report::headlines;
+use bubbletouch::report::offers::cell_offers;
 use bubbletouch::report::page::{Limit, Picture, Pictures, ReportPage, page};
 use bubbletouch::report::results::draw_charts;
 use bubbletouch::report::terminal::summary_table;
-use bubbletouch::study::table::Tables;
+use bubbletouch::study::advice::{Cost, Wish, advise, by_condition};
+use bubbletouch::study::table::{Cell, Tables};
 use report_synthetic::{
     about, add_headlines, cell, many_cells, noise_cells, quickstart_cells, tables,
 };
@@ -80,7 +82,8 @@ fn the_answer_names_the_best_the_frugal_and_each_effect() {
     made.summary[5].1.accuracy = 0.74;
     let answer = Answer::of(&made).unwrap();
     assert_eq!(answer.best.0.cell, 4);
-    assert_eq!(answer.frugal.0.cell, 5);
+    assert_eq!(answer.findings.len(), 1);
+    assert_eq!(answer.findings[0].frugal.0.cell, 5);
     let sentences = answer.sentences();
     assert!(
         sentences[0].starts_with("Best accuracy 0.76 ["),
@@ -109,6 +112,84 @@ fn the_answer_names_the_best_the_frugal_and_each_effect() {
     }
     assert_eq!(answer.effects.len(), 3);
     assert!(Answer::of(&Tables::default()).is_none());
+}
+
+#[test]
+fn each_condition_has_a_best_of_its_own_and_one_answer_to_fewest_measurements() {
+    // Two noises; in each the most accurate has most measurements, and half as many are as good.
+    let mut cells = Vec::new();
+    for noise_std in [0.0, 0.1] {
+        for measurements in [512, 256, 128] {
+            cells.push(Cell {
+                noise_std,
+                measurements,
+                ratio: 4096.0 / measurements as f64,
+                ..cell()
+            });
+        }
+    }
+    let mut made = tables(cells, 3, 24);
+    for (number, accuracy) in [0.90, 0.895, 0.60, 0.50, 0.495, 0.30]
+        .into_iter()
+        .enumerate()
+    {
+        let score = &mut made.summary[number].1;
+        (score.accuracy, score.accuracy_low, score.accuracy_high) =
+            (accuracy, accuracy - 0.01, accuracy + 0.01);
+        made.pareto[number].1.accuracy = accuracy;
+    }
+    let answer = Answer::of(&made).unwrap();
+    let found: Vec<(&str, usize, usize)> = answer
+        .findings
+        .iter()
+        .map(|f| (&f.condition[..], f.best.0.cell, f.frugal.0.cell))
+        .collect();
+    assert_eq!(found, [("noise 0 %", 0, 1), ("noise 10 %", 3, 4)]);
+    let said = answer.sentences().join("\n");
+    assert!(
+        said.contains("Best accuracy with noise 0 % 0.90 [0.89, 0.91] at"),
+        "{said}"
+    );
+    assert!(
+        said.contains("Best accuracy with noise 10 % 0.50 [0.49, 0.51] at"),
+        "{said}"
+    );
+    assert!(
+        !said.contains("at noise"),
+        "a condition is not chosen: {said}"
+    );
+    let remarks: Vec<&str> = made
+        .summary
+        .iter()
+        .map(|(cell, score)| answer.remark(cell, score))
+        .collect();
+    assert_eq!(remarks, ["best", "as good", "", "best", "as good", ""]);
+    // The sentences, the table of choices and advice name the same cell as of fewest measurements.
+    let html = page(&about(), &made, &Pictures::default()).unwrap();
+    for (condition, cell) in [("noise 0 %", 1), ("noise 10 %", 4)] {
+        let row = html.split("<tr>").find(|row| {
+            row.contains(&format!("<td>{condition}</td>")) && row.contains("fewest measurements")
+        });
+        let row = row.unwrap_or_else(|| panic!("no row for {condition}"));
+        assert!(row.contains(&format!("(cell {cell})")), "{row}");
+    }
+    let offers = cell_offers(&made.pareto, &made.summary, &[]).unwrap();
+    for (offers, finding) in by_condition(&offers).iter().zip(&answer.findings) {
+        let wish = Wish::Accuracy(finding.best.1.accuracy_low);
+        let advice = advise(offers, wish, Cost::Measurements).unwrap();
+        assert_eq!(advice.choice.cell, Some(finding.frugal.0.cell));
+    }
+}
+
+#[test]
+fn too_few_trials_for_a_p_value_are_said_and_no_p_value_is() {
+    let made = tables(noise_cells(), 1, 24);
+    let html = page(&about(), &made, &Pictures::default()).unwrap();
+    assert!(
+        html.contains("No p-values: 1 trial a cell are too few"),
+        "the page says so"
+    );
+    assert!(html.contains("<td>too few trials</td>"));
 }
 
 #[test]

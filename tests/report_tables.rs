@@ -6,7 +6,7 @@ use bubbletouch::report::csv_tables::{TABLE_FILES, read_tables, to_csv, write_ta
 use bubbletouch::report::page::ReportPage;
 use bubbletouch::report::results::{MOST_CHARTS, write_all};
 use bubbletouch::sensing::Ensemble;
-use bubbletouch::study::table::{Cell, Comparison, Tables};
+use bubbletouch::study::table::{Cell, Comparison, PStatus, Tables};
 use report_synthetic::{about, add_headlines, cell, noise_cells, quickstart_cells, tables};
 use std::collections::BTreeMap;
 use std::fs;
@@ -70,11 +70,45 @@ fn a_row_is_the_cell_then_the_score_and_nothing_stands_for_absent() {
         difference_high: None,
         p_value: None,
         p_holm: None,
+        p_status: PStatus::TooFewTrials,
+        n_trials_needed: Some(4),
     };
     assert_eq!(
         String::from_utf8(to_csv(&[comparison]).unwrap()).unwrap(),
-        "cell,best_cell,n_trials,difference,difference_low,difference_high,p_value,p_holm\n3,1,1,-0.25,,,,\n"
+        "cell,best_cell,n_trials,difference,difference_low,difference_high,p_value,p_holm,p_status,\
+         n_trials_needed\n3,1,1,-0.25,,,,,too_few_trials,4\n"
     );
+}
+
+#[test]
+fn a_table_without_rows_has_the_header_of_one_with_rows_and_reads_as_none() {
+    let full = tables(quickstart_cells(), 3, 24);
+    let none = Tables::default();
+    let header = |csv: Vec<u8>| {
+        let text = String::from_utf8(csv).unwrap();
+        assert!(text.ends_with('\n'), "{text:?}");
+        text.lines().next().unwrap().to_owned()
+    };
+    let pairs = [
+        (to_csv(&full.summary), to_csv(&none.summary)),
+        (to_csv(&full.accuracy), to_csv(&none.accuracy)),
+        (to_csv(&full.confusion), to_csv(&none.confusion)),
+        (to_csv(&full.comparison), to_csv(&none.comparison)),
+        (to_csv(&full.pareto), to_csv(&none.pareto)),
+    ];
+    for (full, none) in pairs {
+        let (full, none) = (full.unwrap(), none.unwrap());
+        assert_eq!(none.iter().filter(|&&byte| byte == b'\n').count(), 1);
+        assert_eq!(header(full), header(none));
+    }
+    let folder = tempfile::tempdir().unwrap();
+    write_tables(folder.path(), &none).unwrap();
+    let failures = std::fs::read_to_string(folder.path().join("failures.csv")).unwrap();
+    assert!(
+        failures.ends_with("fused_touches,trial,error\n"),
+        "{failures}"
+    );
+    assert_eq!(read_tables(folder.path()).unwrap(), none);
 }
 
 #[test]

@@ -166,23 +166,33 @@ fn the_advisor_answers_from_what_was_measured_and_says_what_is_nearest() {
         "{said}"
     );
     assert!(
-        said.contains("costs 150 µs more (4.0 times as much)"),
+        said.contains("costs 150 µs a decision more (4.0 times as much)"),
         "{said}"
     );
     assert!(
         said.contains("With the whole interval above: 0.970"),
         "{said}"
     );
-    let (said, _) = case.succeeds(&["advise", "results", "--budget-us", "49", "--json"]);
+    let (said, _) = case.succeeds(&["advise", "results", "--budget", "49", "--json"]);
     let advice: serde_json::Value = serde_json::from_str(&said).unwrap();
-    assert_eq!(advice["choice"]["setting"], "cheap one");
-    assert_eq!(advice["next_up"]["cost_us"], 50.0);
+    assert_eq!(advice["cost"], "decision_time");
+    let answer = &advice["answers"][0];
+    assert_eq!(answer["choice"]["setting"], "cheap one");
+    assert_eq!(answer["next_up"]["costs"]["decision_us"], 50.0);
     for (arguments, wanted) in [
         (
             &["advise", "results", "--accuracy", "0.99"][..],
             "at most 0.970",
         ),
-        (&["advise", "results", "--budget-us", "5"], "at least 0.600"),
+        (&["advise", "results", "--budget", "5"], "at least 0.600"),
+        (
+            &["advise", "results", "--budget", "5", "--cost", "taxels"],
+            "whose cost it says",
+        ),
+        (
+            &["advise", "results", "--budget", "5", "--given", "noise=0"],
+            "made in one condition",
+        ),
         (&["advise", "results", "--accuracy", "1.5"], "at most 1"),
         (
             &["advise", "nowhere", "--accuracy", "0.5"],
@@ -210,8 +220,70 @@ fn the_advisor_reads_a_study_that_recognises_objects() {
          classifier = \"linear_svm\"\n",
     );
     case.succeeds(&["run", "study.toml", "--out", "results"]);
-    let (said, _) = case.succeeds(&["advise", "results", "--budget-us", "1e9"]);
+    let (said, _) = case.succeeds(&["advise", "results", "--budget", "1e9"]);
     assert!(said.contains("Nothing here is more accurate"), "{said}");
+}
+
+#[test]
+fn conditions_of_the_world_are_given_and_never_advised() {
+    let case = Case::new();
+    case.file(
+        "study.toml",
+        "question = \"?\"\n[objects]\nsets = [\"cans\"]\n[skin]\npitch_mm = 8.0\ntaxels = 8\nstroke_mm = 5.0\n[touches]\n\
+         per_object = 16\noffset_x_mm = { uniform = [-9.0, 9.0] }\ndepth_mm = 3.0\n[signal]\nnoise_std_full_scale = [0.0, 0.05, 0.2]\n\
+         smoothing_mm = [0.0, 8.0]\nsteps = [\"noise\", \"smoothing\"]\n[sensing]\nratio = [2, 8]\n[recognition]\n\
+         classifier = \"linear_svm\"\n",
+    );
+    case.succeeds(&["run", "study.toml", "--out", "r"]);
+    let advise = |more: &[&str]| {
+        let (said, _) = case.succeeds(&[&["advise", "r", "--accuracy", "0.1"], more].concat());
+        said
+    };
+    let said = advise(&[]);
+    for noise in ["0 %", "5 %", "20 %"] {
+        let head = format!("With noise {noise}:\n");
+        assert_eq!(said.matches(&head).count(), 1, "{said}");
+    }
+    // Nothing else speaks of noise: it is no part of a setting, and no step up.
+    assert_eq!(said.matches("noise").count(), 3, "{said}");
+    assert!(said.contains("smoothing") && said.contains("compression"));
+    for key in ["noise=0.05", "noise_std=0.05"] {
+        let given = advise(&["--given", key]);
+        assert!(given.starts_with("With noise 5 %:\n"), "{given}");
+        assert_eq!(given.matches("With noise").count(), 1, "{given}");
+        assert!(
+            said.contains(given.trim_end()),
+            "as among all conditions: {given}"
+        );
+    }
+    let worst = advise(&["--worst"]);
+    assert!(
+        worst.starts_with("With the worst of 3 conditions:\n"),
+        "{worst}"
+    );
+    // The fewest measurements, and the fewest taxels: one array has them all.
+    let few = advise(&["--cost", "measurements", "--given", "noise=0"]);
+    assert!(
+        few.contains("8 measurements a decision") && few.contains("m = 8"),
+        "{few}"
+    );
+    let taxels = advise(&["--cost", "taxels", "--given", "noise=0", "--json"]);
+    let taxels: serde_json::Value = serde_json::from_str(&taxels).unwrap();
+    assert_eq!(taxels["answers"][0]["choice"]["costs"]["taxels"], 64.0);
+    for (given, said) in [
+        ("smoothing_mm=0", "is a choice"),
+        ("noise=0.07", "one of 0.0, 0.05, 0.2"),
+        (
+            "gain_std=0.1",
+            "is no condition of this study; one of noise_std",
+        ),
+        ("noise", "a condition and its value"),
+    ] {
+        let output = case.run(&["advise", "r", "--accuracy", "0.1", "--given", given]);
+        let error = String::from_utf8(output.stderr).unwrap();
+        assert_eq!(output.status.code(), Some(2), "{given}: {error}");
+        assert!(error.contains(said), "{given}: {error}");
+    }
 }
 
 #[test]

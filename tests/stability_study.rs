@@ -225,11 +225,9 @@ fn keys_that_are_out_of_range_are_named_with_their_part() {
     }
     let case = Case::new();
     case.file("study.toml", QUICK);
-    for arguments in [
-        &["run", "study.toml", "--seed", "1"][..],
-        &["plan", "study.toml"],
-    ] {
-        assert_eq!(case.run(arguments).status.code(), Some(2), "{arguments:?}");
+    for command in ["run", "plan"] {
+        let output = case.run(&[command, "study.toml", "--seed", "1"]);
+        assert_eq!(output.status.code(), Some(2), "{command}");
     }
 }
 

@@ -194,6 +194,122 @@ fn what_is_kept_together_is_never_on_both_sides() {
     }
 }
 
+/// Poses that are drawn, but for two resting values of a tilt.
+fn with_drawn_poses(keys: &str) -> String {
+    let study = STUDY
+        .replace(
+            "[-6.0, 0.0, 6.0, 400.0]",
+            "{ uniform = [-20.0, 20.0] }\nper_object = 120",
+        )
+        .replace(
+            "offset_y_mm = [0.0, 10.0]",
+            "offset_y_mm = { uniform = [-20.0, 20.0] }",
+        )
+        .replace(
+            "yaw_deg = [0.0, 30.0]",
+            "yaw_deg = { uniform = [0.0, 360.0] }",
+        );
+    study + keys
+}
+
+#[test]
+fn no_test_touch_has_a_training_touch_of_its_object_nearer_than_is_kept_together() {
+    let (near_mm, near_deg) = (6.0, 40.0);
+    for (kind, keys) in [
+        ("pose", "keep_together_mm = 6.0\nkeep_together_deg = 40.0"),
+        ("offset", "keep_together_mm = 1.5"),
+        ("yaw", "keep_together_deg = 1.0\nfolds = 3"),
+    ] {
+        let keys = format!("keep_together = \"{kind}\"\n{keys}\n");
+        let study = Study::new(&with_drawn_poses(&keys));
+        let (near_mm, near_deg) = match kind {
+            "pose" => (near_mm, near_deg),
+            "offset" => (1.5, 0.0),
+            _ => (0.0, 1.0),
+        };
+        let touches: Vec<(usize, &Touch)> = study
+            .touched
+            .iter()
+            .enumerate()
+            .flat_map(|(object, t)| t.touches.iter().map(move |touch| (object, touch)))
+            .collect();
+        let turned = |a: f64, b: f64| {
+            let apart = (a - b).to_degrees().rem_euclid(360.0);
+            apart.min(360.0 - apart)
+        };
+        let is_near = |a: &Touch, b: &Touch| {
+            let apart_mm = |k: usize| 1e3 * (a.offset[k] - b.offset[k]).abs();
+            let offsets = apart_mm(0) < near_mm && apart_mm(1) < near_mm;
+            let yaws = turned(a.yaw, b.yaw) < near_deg;
+            match kind {
+                "pose" => offsets && yaws && a.tilt == b.tilt,
+                "offset" => offsets,
+                _ => yaws,
+            }
+        };
+        for split in &study.sweep.splits {
+            assert_is_a_division(split, touches.len());
+            for &test in &split.test {
+                let (object, touch) = touches[test];
+                let near = split.train.iter().find(|&&row| {
+                    let (other, trained) = touches[row];
+                    other == object && is_near(touch, trained)
+                });
+                assert_eq!(near, None, "{kind}: touch {test}");
+            }
+        }
+        // Not every touch is alone: neighbours there are.
+        let keys = study.sweep.group_keys.as_ref().unwrap();
+        let groups: BTreeSet<usize> = keys.iter().copied().collect();
+        assert!(
+            groups.len() > 6 && groups.len() < touches.len(),
+            "{kind}: {}",
+            groups.len()
+        );
+    }
+    // A random split has such neighbours, so that the law says something.
+    let study = Study::new(&with_drawn_poses(""));
+    let offsets: Vec<[f64; 2]> = study
+        .touched
+        .iter()
+        .flat_map(|t| &t.touches)
+        .map(|touch| touch.offset)
+        .collect();
+    let split = &study.sweep.splits[0];
+    let has_neighbour = split.test.iter().any(|&test| {
+        split.train.iter().any(|&row| {
+            let apart = |k: usize| 1e3 * (offsets[test][k] - offsets[row][k]).abs();
+            test / 120 == row / 120 && apart(0) < 1.5 && apart(1) < 1.5
+        })
+    });
+    assert!(has_neighbour);
+}
+
+#[test]
+fn a_drawn_pose_without_a_distance_and_a_distance_without_a_group_are_refused() {
+    for (keys, said) in [
+        (
+            "keep_together = \"offset\"\n",
+            "key recognition.keep_together_mm: left out, and offset_x is spread uniformly",
+        ),
+        (
+            "keep_together = \"yaw\"\nkeep_together_mm = 2.0\n",
+            "key recognition.keep_together_deg: left out, and yaw is spread uniformly",
+        ),
+        (
+            "keep_together_mm = 2.0\n",
+            "without recognition.keep_together",
+        ),
+        (
+            "keep_together = \"offset\"\nkeep_together_mm = 0.0\n",
+            "key recognition.keep_together_mm: 0; a positive number",
+        ),
+    ] {
+        let error = Study::error(&with_drawn_poses(keys));
+        assert!(error.contains(said), "{error}");
+    }
+}
+
 #[test]
 fn without_keeping_together_offsets_are_on_both_sides() {
     let study = with_recognition("");

@@ -40,6 +40,51 @@ fn assert_progress_ends(said: &str) {
     assert_eq!(left.last(), Some(&0.0), "{left:?}");
 }
 
+/// What a plan says after a word, as numbers and words.
+fn planned(said: &str, word: &str) -> Vec<String> {
+    let line = said
+        .lines()
+        .find(|line| line.trim_start().starts_with(word));
+    let line = line.unwrap_or_else(|| panic!("no line starts with '{word}': {said}"));
+    line.split_whitespace().skip(1).map(str::to_owned).collect()
+}
+
+#[test]
+fn a_study_of_every_kind_is_planned_and_its_plan_counts_its_pieces() {
+    for kind in [
+        Kind::STABILITY,
+        Kind::BREAKING_POINTS,
+        Kind::RECONSTRUCTION,
+        Kind::OBJECT_DETAIL,
+        Kind::WHOLE_BODY,
+        Kind::SPEED_ACCURACY,
+    ] {
+        let case = kind.case();
+        let (said, error) = case.succeeds(&["plan", "study.toml", "--threads", "1"]);
+        assert!(
+            said.starts_with("study: ") && error.is_empty(),
+            "{said}{error}"
+        );
+        assert!(!case.path("results").exists(), "a plan writes nothing");
+        for word in ["objects", "touches", "memory", "time"] {
+            assert!(!planned(&said, word).is_empty(), "{said}");
+        }
+        assert!(
+            planned(&said, "time").join(" ").contains("on 1 thread ("),
+            "{said}"
+        );
+        case.succeeds(&["run", "study.toml", "--out", "whole"]);
+        let n_pieces = pieces(&case.path("whole/journal.jsonl")).len();
+        assert_eq!(
+            planned(&said, "pieces")[0],
+            format!("{n_pieces},"),
+            "{said}"
+        );
+        let refused = case.run(&["plan", "study.toml", "--memory-gib", "1"]);
+        assert_eq!(refused.status.code(), Some(2));
+    }
+}
+
 impl Faults {
     fn of(kind: Kind) -> Self {
         let case = kind.case();

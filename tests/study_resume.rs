@@ -585,7 +585,13 @@ fn two_runs_side_by_side_say_what_moved() {
     assert!(output.contains("16 have the same accuracy"), "{output}");
     let moved = fs::read_to_string(case.path("moved.csv")).unwrap();
     assert_eq!(moved.lines().count(), 1 + 16);
-    assert!(moved.lines().next().unwrap().ends_with("p_value,p_holm"));
+    assert!(
+        moved
+            .lines()
+            .next()
+            .unwrap()
+            .ends_with("p_holm,p_status,n_trials_needed")
+    );
     case.file("other.toml", STUDY.replace("[0.05, 0.2]", "0.7"));
     case.succeeds(&["run", "other.toml", "--out", "other"]);
     let output = case.run(&["compare", "whole", "other"]);

@@ -3,7 +3,7 @@
 mod study;
 
 use bubbletouch::report::csv_tables::{VARIANCE_FILE, read_tables, write_tables};
-use bubbletouch::study::table::{Cell, Source, TrialScore, Variance};
+use bubbletouch::study::table::{Cell, PStatus, Source, TrialScore, Variance};
 use bubbletouch::study::{Outcome, Plan, StudySpec};
 use study::Study;
 
@@ -118,8 +118,13 @@ fn crossed_trials_share_splits_and_projections_and_the_first_is_that_of_trials_o
             "split, projection and noise 0"
         );
     }
-    // Two splits and three projections are few, but not nothing.
-    assert!(crossed.tables.comparison[1].p_value.is_some());
+    // Two splits and three projections are few: an interval, but no p-value below four splits.
+    let compared = crossed.tables.comparison.iter();
+    let compared: Vec<_> = compared.filter(|row| row.cell != row.best_cell).collect();
+    assert_eq!(compared.len(), 1);
+    assert!(compared[0].difference_low.is_some() && compared[0].p_value.is_none());
+    assert_eq!(compared[0].p_status, PStatus::TooFewTrials);
+    assert_eq!(compared[0].n_trials_needed, Some(12));
     assert!(own.tables.variance.is_empty());
 }
 

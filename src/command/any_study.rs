@@ -2,7 +2,7 @@
 
 use super::breaking_points_kind::BreakingPointsKind;
 use super::listener::Listener;
-use super::memory_args::MemoryArgs;
+use super::memory_args::{CeilingArgs, MemoryArgs, not_of_pieces};
 use super::object_detail_kind::ObjectDetailKind;
 use super::piece_kind::PieceRun;
 use super::recognition_study::RecognitionStudy;
@@ -28,6 +28,8 @@ pub trait AnyStudy {
     fn units(&self) -> &'static str;
     /// How many; cells count once a trial.
     fn n_all(&self) -> usize;
+    /// What it asks, and what it will take.
+    fn plan(&self, ceiling: &CeilingArgs) -> Result<String>;
     /// Of a part, those of which a journal does not say what came of them.
     fn n_left(&self, part: Part, journal: &Journal) -> usize;
     /// Does what is left.
@@ -67,11 +69,7 @@ pub fn load_study(
     if kind != StudyKind::Recognition
         && let Some((option, _)) = given.find(|(_, is_given)| *is_given)
     {
-        let allowed = format!(
-            "no such option: it is for {}",
-            StudyKind::Recognition.words()
-        );
-        return Err(Error::input(option, kind.words(), allowed));
+        return Err(not_of_pieces(option, kind));
     }
     Ok(match kind {
         StudyKind::Recognition => Box::new(RecognitionStudy::load(args, folder, memory)?),

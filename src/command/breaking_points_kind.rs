@@ -8,14 +8,19 @@ use bubbletouch::report::breaking_points_results::{
 };
 use bubbletouch::report::folder::Folder;
 use bubbletouch::report::page::StudyAbout;
+use bubbletouch::study::StudyKind;
 use bubbletouch::study::breaking_points::BreakingPointsStudy;
 use bubbletouch::study::breaking_points::table::BreakingPointsTables;
+use bubbletouch::study::breaking_points::{N_OBJECTS, PlannedValue};
+use bubbletouch::study::pieces::Scale;
 use std::path::{Path, PathBuf};
 
 pub struct BreakingPointsKind(BreakingPointsStudy);
 
 impl PieceKind for BreakingPointsKind {
     type Study = BreakingPointsStudy;
+
+    const KIND: StudyKind = StudyKind::BreakingPoints;
 
     const WRITE_S: f64 = 6.0;
 
@@ -28,6 +33,24 @@ impl PieceKind for BreakingPointsKind {
 
     fn study(&self) -> &BreakingPointsStudy {
         &self.0
+    }
+
+    fn scale(&self) -> Scale {
+        let values = || self.0.plan.ways.iter().flat_map(|way| &way.values);
+        let n_taxels = |value: &PlannedValue| value.learned.arrays[0].grid.n_taxels();
+        let per_object = |value: &PlannedValue| value.learned.placement.per_object.unwrap_or(1);
+        let most = values()
+            .map(|value| n_taxels(value) * per_object(value))
+            .max();
+        let touches = values().map(per_object).max().unwrap_or(0);
+        let n_threads = rayon::current_num_threads();
+        Scale {
+            objects: "those of each value".to_owned(),
+            touches: format!("up to {touches} of each object at each value"),
+            n_configurations: values().map(|value| value.learned.classifiers.len()).sum(),
+            // Values are driven on all threads, their frames in single precision.
+            bytes: 4.0 * N_OBJECTS * (n_threads * most.unwrap_or(0)) as f64,
+        }
     }
 
     fn facts(&self) -> Result<KindFacts> {

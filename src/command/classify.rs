@@ -292,7 +292,7 @@ fn tell(findings: &Findings) -> Result<()> {
 }
 
 /// A word as studies spell it; the error lists what is allowed.
-fn word<T: for<'a> Deserialize<'a>>(text: &str) -> std::result::Result<T, String> {
+pub fn word<T: for<'a> Deserialize<'a>>(text: &str) -> std::result::Result<T, String> {
     let deserializer: serde::de::value::StrDeserializer<serde::de::value::Error> =
         text.into_deserializer();
     T::deserialize(deserializer).map_err(|error| error.to_string())

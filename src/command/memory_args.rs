@@ -3,7 +3,7 @@
 use super::output::touches_beside;
 use super::study_args::LoadedStudy;
 use bubbletouch::study::memory::{AtOnce, GIB, MemoryPlan, machine_memory};
-use bubbletouch::study::{FrameStorage, TouchCache};
+use bubbletouch::study::{FrameStorage, StudyKind, TouchCache};
 use bubbletouch::{Error, Result};
 use std::path::Path;
 
@@ -28,7 +28,24 @@ pub struct MemoryArgs {
     cache_gib: Option<f64>,
 }
 
+/// The error for an option that studies of pieces have not.
+pub fn not_of_pieces(option: &str, kind: StudyKind) -> Error {
+    let allowed = format!(
+        "no such option: it is for {}",
+        StudyKind::Recognition.words()
+    );
+    Error::input(option, kind.words(), allowed)
+}
+
 impl CeilingArgs {
+    /// An error if it was given for a study of pieces.
+    pub fn refuse(&self, kind: StudyKind) -> Result<()> {
+        match self.memory_gib {
+            Some(_) => Err(not_of_pieces("--memory-gib", kind)),
+            None => Ok(()),
+        }
+    }
+
     /// What a study may hold at once.
     pub fn plan(&self, loaded: &LoadedStudy) -> Result<MemoryPlan> {
         let n_classes = loaded.touched.class_names().len();
@@ -51,6 +68,14 @@ pub struct Room {
 }
 
 impl MemoryArgs {
+    /// Of what is planned, not run.
+    pub fn within(ceiling: CeilingArgs) -> Self {
+        Self {
+            ceiling,
+            cache_gib: None,
+        }
+    }
+
     /// Most bytes to take.
     pub fn bytes(&self) -> Result<Option<u64>> {
         self.ceiling.bytes()

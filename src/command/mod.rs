@@ -5,6 +5,7 @@ mod advise;
 mod any_study;
 mod breaking_points_kind;
 mod cache;
+mod checked_manifest;
 mod classify;
 mod compare;
 mod features;
@@ -68,6 +69,8 @@ enum Command {
     /// Run a study as an array of Slurm jobs, and the merge after them; what failed is submitted again by the same command
     Slurm(slurm::Args),
     /// Write the charts and the page of a folder of results again, from its tables (of studies that recognise)
+    ///
+    /// A table, or the study, that was changed after its run is refused: manifest.json holds the SHA-256 of each.
     Report(report::Args),
     /// Say what moved between two folders of results, and whether chance explains it
     Compare(compare::Args),
@@ -75,11 +78,14 @@ enum Command {
     Verify(verify::Args),
     /// List or remove the touches that studies keep beside their results
     Cache(cache::Args),
-    /// Say what a study would do: cells, touches, memory and time, without running it
+    /// Say what a study of any kind would do: configurations, touches, memory and time, without running it
     Plan(plan::Args),
     /// Say which setting is the cheapest that is accurate enough, or the most accurate that is cheap enough
     Advise(advise::Args),
     /// Write a study's touches as NumPy files, to train elsewhere
+    ///
+    /// Frames are the deflections of the press: without noise, smoothing and sensor errors. With --cell they are what that cell of the
+    /// study reads, with all of these.
     Touches(touches::Args),
     /// Write what one cell of a study learns from as NumPy files, to train on exactly those rows elsewhere
     Features(features::Args),

@@ -17,17 +17,20 @@ const MOST_POINTS: f64 = 1e6;
 
 /// Pack a mesh or a built-in object with few spheres.
 ///
-/// No sphere reaches more than half the tolerance outside the object, and no point of its outer surface is farther than the
-/// tolerance from the spheres. A ball is one sphere, its own. Of a mesh both are proved, or the command fails; the object is then
-/// the union of its closed parts, and clefts narrower than a thousandth of the tolerance count as closed. Both are also measured
-/// and reported.
+/// No sphere reaches more than half the surface error outside the object, and no point of its outer surface is farther than that
+/// error from the spheres. A ball is one sphere, its own. Of a mesh both are proved, or the command fails; the object is then
+/// the union of its closed parts, and clefts narrower than a thousandth of the surface error count as closed. Both are also
+/// measured and reported.
 #[derive(clap::Args)]
 pub struct Args {
     #[command(flatten)]
     object: WhichObject,
     /// How far the two surfaces may be apart
     #[arg(long, value_name = "MM")]
-    tolerance_mm: f64,
+    surface_error_mm: f64,
+    /// The name that it had
+    #[arg(long, hide = true, value_parser = renamed)]
+    tolerance_mm: Option<f64>,
     /// Where the spheres go: columns x, y, z, r in metres
     #[arg(long, value_name = "FILE.csv")]
     out: PathBuf,
@@ -36,7 +39,7 @@ pub struct Args {
 pub fn pack(args: &Args) -> Result<()> {
     check_ending(&args.out, "csv")?;
     let object = args.object.load()?;
-    let tolerance = args.tolerance_mm * MM;
+    let tolerance = args.surface_error_mm * MM;
     let spheres = object.pack(tolerance)?;
     write_whole(&args.out, |sink| write_spheres(&spheres, sink))?;
     say(format_args!("spheres     {}", spheres.n_spheres()))?;
@@ -47,6 +50,11 @@ pub fn pack(args: &Args) -> Result<()> {
         }
     }
     Ok(())
+}
+
+/// Refuses an option by a name that it has no more.
+pub fn renamed(_: &str) -> std::result::Result<f64, String> {
+    Err("it is called --surface-error-mm, as in press and in studies".to_owned())
 }
 
 fn describe_solid(solid: &Solid, spheres: &SphereUnion, tolerance: f64) -> String {

@@ -1,5 +1,6 @@
 //! `bubbletouch objects show`: an object, the spheres that stand for it, and the error between them, side by side.
 
+use super::objects_pack::renamed;
 use super::output::check_ending;
 use super::which_object::WhichObject;
 use bubbletouch::Result;
@@ -19,9 +20,12 @@ pub struct Args {
     object: WhichObject,
     /// Pack to this surface error
     #[arg(long, value_name = "MM", default_value_t = 0.5)]
-    tolerance_mm: f64,
+    surface_error_mm: f64,
+    /// The name that it had
+    #[arg(long, hide = true, value_parser = renamed)]
+    tolerance_mm: Option<f64>,
     /// Show these spheres instead: a CSV file with columns x, y, z, r
-    #[arg(long, value_name = "FILE.csv", conflicts_with = "tolerance_mm")]
+    #[arg(long, value_name = "FILE.csv", conflicts_with = "surface_error_mm")]
     spheres: Option<PathBuf>,
     /// Unit of the file of spheres: m, cm, mm or in [default: m]
     #[arg(long, value_name = "UNIT", requires = "spheres")]
@@ -39,7 +43,7 @@ pub fn show(args: &Args) -> Result<()> {
     let object = args.object.load()?;
     let spheres = match &args.spheres {
         Some(path) => load_spheres(path, args.spheres_unit, &SizeLimits::ANY)?,
-        None => object.pack(args.tolerance_mm * 1e-3)?,
+        None => object.pack(args.surface_error_mm * 1e-3)?,
     };
     let picture = fit_picture(
         &args.object.name(),

@@ -2,6 +2,7 @@
 
 use super::about_study::command_line;
 use super::any_study::{AnyOutcome, AnyStudy, EndedRun, seconds_since};
+use super::memory_args::CeilingArgs;
 use super::output::{packings_beside, tell_where, terminal_width};
 use super::piece_rows::{compare, draw};
 use super::streams::say;
@@ -13,13 +14,15 @@ use bubbletouch::report::folder::Folder;
 use bubbletouch::report::page::StudyAbout;
 use bubbletouch::report::progress;
 use bubbletouch::report::study_tables::StudyTables;
-use bubbletouch::study::Part;
 use bubbletouch::study::journal::{Identity, Journal};
 use bubbletouch::study::pieces::{
-    FinishedPieces, PieceFailure, PieceManner, PieceStudy, PiecesRun, n_pieces_left, run_pieces,
+    FinishedPieces, PieceEstimate, PieceFailure, PieceManner, PieceStudy, PiecesRun, Scale,
+    n_pieces_left, run_pieces,
 };
+use bubbletouch::study::progress::Silent;
 use bubbletouch::study::provenance::{MANIFEST_FILE, Manifest, PROGRAM, RunFacts};
 use bubbletouch::study::time_left::Piece;
+use bubbletouch::study::{Part, StudyKind};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -29,6 +32,9 @@ pub trait PieceKind: Sized {
     /// What runs.
     type Study: PieceStudy<Tables: StudyTables>;
 
+    /// Which it is.
+    const KIND: StudyKind;
+
     /// Seconds to make and to write the files of [`folder`](Self::folder), about.
     const WRITE_S: f64;
 
@@ -36,6 +42,8 @@ pub trait PieceKind: Sized {
     fn load(args: &StudyArgs, packings: PathBuf) -> Result<Self>;
     /// What runs.
     fn study(&self) -> &Self::Study;
+    /// How large it is.
+    fn scale(&self) -> Scale;
     /// What its file says, and what that is about.
     fn facts(&self) -> Result<KindFacts>;
     /// Tables, charts and page, for a folder.
@@ -102,6 +110,26 @@ impl<K: PieceKind> AnyStudy for PieceRun<K> {
 
     fn n_all(&self) -> usize {
         self.n_pieces
+    }
+
+    fn plan(&self, ceiling: &CeilingArgs) -> Result<String> {
+        ceiling.refuse(K::KIND)?;
+        let study = self.kind.study();
+        let manner = PieceManner {
+            journal: &Journal::none(),
+            fail_fast: true,
+            retries: false,
+            part: Part::All,
+            progress: &Silent,
+        };
+        let mut work = PiecesRun::new(study, &manner).workload();
+        work.push(Self::REPORT);
+        let estimate = PieceEstimate {
+            scale: self.kind.scale(),
+            n_pieces: self.n_pieces,
+            work,
+        };
+        Ok(format!("{}\n{estimate}", self.facts.asked[0]))
     }
 
     fn n_left(&self, part: Part, journal: &Journal) -> usize {
@@ -183,6 +211,7 @@ impl<K: PieceKind> AnyOutcome for PieceOutcome<'_, K> {
         let failures = folder.join(FAILURES_FILE);
         write_bytes(&failures, &csv_content(&failures, &self.failures)?)?;
         write_bytes(&folder.join("study.toml"), toml.as_bytes())?;
+        let hashes = self.tables.hashes()?;
         let facts = RunFacts {
             study: about.name,
             command: about.command,
@@ -193,7 +222,8 @@ impl<K: PieceKind> AnyOutcome for PieceOutcome<'_, K> {
             n_trials: 1,
             n_finished_before: ended.n_before,
             n_failed: self.failures.len(),
-            tables_sha256: self.tables.repeatable_hashes()?,
+            tables_sha256: hashes.repeatable,
+            times_sha256: hashes.times,
             methods: Vec::new(),
         };
         let manifest = Manifest::new(&self.run.identity, facts).to_json();

@@ -1,10 +1,11 @@
 //! `bubbletouch plan`: what a study would do, without doing it.
 
-use super::memory_args::CeilingArgs;
+use super::any_study::load_study;
+use super::memory_args::{CeilingArgs, MemoryArgs};
+use super::run::results_folder;
 use super::streams::say;
 use super::study_args::StudyArgs;
 use bubbletouch::Result;
-use bubbletouch::study::Estimate;
 
 #[derive(clap::Args)]
 pub struct Args {
@@ -15,19 +16,11 @@ pub struct Args {
 }
 
 pub fn plan(args: &Args) -> Result<()> {
-    let loaded = args.study.load_within(None, args.ceiling.bytes()?)?;
-    let memory = args.ceiling.plan(&loaded)?;
-    let estimate = Estimate::new(
-        &loaded.plan,
-        loaded.touched.as_ref(),
-        &loaded.sweep,
-        &memory,
-    );
-    say(format_args!(
-        "{}: {}",
-        loaded.name, loaded.plan.spec.question
-    ))?;
-    say(estimate)?;
+    let folder = results_folder(&args.study, None)?;
+    let memory = MemoryArgs::within(args.ceiling);
+    let study = load_study(&args.study, &folder, Some(&memory))?;
+    let said = study.plan(&args.ceiling)?;
+    say(format_args!("{}: {said}", args.study.name()?))?;
     if let Some(mixed) = args.study.mixed_touches()? {
         say(format_args!("note: {mixed}"))?;
     }

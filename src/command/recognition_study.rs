@@ -2,21 +2,24 @@
 
 use super::about_study::{add_manifest, add_touches, command_line, limits, page_of_spec};
 use super::any_study::{AnyOutcome, AnyStudy, EndedRun, seconds_since};
-use super::memory_args::{MemoryArgs, Room};
+use super::memory_args::{CeilingArgs, MemoryArgs, Room};
 use super::output::{packings_beside, tell_where, terminal_width};
 use super::streams::{say, write_out};
 use super::study_args::{LoadedStudy, StudyArgs};
 use super::verify_cells::verify_cells;
 use bubbletouch::Result;
 use bubbletouch::files::write_bytes;
-use bubbletouch::report::csv_tables::repeatable_hashes;
+use bubbletouch::report::csv_tables::table_hashes;
+use bubbletouch::report::page::Limit;
 use bubbletouch::report::{headlines, results, terminal};
 use bubbletouch::study::journal::{Identity, Journal};
 use bubbletouch::study::memory::{AtOnce, machine_memory};
 use bubbletouch::study::pieces::PieceManner;
 use bubbletouch::study::provenance::{MANIFEST_FILE, Manifest, RECOGNITION_METHODS, RunFacts};
 use bubbletouch::study::time_left::{Piece, Work};
-use bubbletouch::study::{FrameStorage, Manner, Outcome, Part, n_left, run_with, workload};
+use bubbletouch::study::{
+    Estimate, FrameStorage, Manner, Outcome, Part, n_left, run_with, workload,
+};
 use std::path::Path;
 use std::time::Instant;
 
@@ -74,6 +77,18 @@ impl AnyStudy for RecognitionStudy {
         self.loaded.n_evaluations()
     }
 
+    fn plan(&self, ceiling: &CeilingArgs) -> Result<String> {
+        let memory = ceiling.plan(&self.loaded)?;
+        let LoadedStudy {
+            plan,
+            touched,
+            sweep,
+            ..
+        } = &self.loaded;
+        let estimate = Estimate::new(plan, touched.as_ref(), sweep, &memory);
+        Ok(format!("{}\n{estimate}", plan.spec.question))
+    }
+
     fn n_left(&self, part: Part, journal: &Journal) -> usize {
         n_left(&self.loaded.plan, &self.loaded.sweep, part, journal)
     }
@@ -120,8 +135,9 @@ struct RecognitionOutcome<'a> {
 }
 
 impl RecognitionOutcome<'_> {
-    fn manifest(&self, ended: &EndedRun) -> Result<Manifest> {
+    fn manifest(&self, ended: &EndedRun, limits: &[Limit]) -> Result<Manifest> {
         let loaded = &self.study.loaded;
+        let hashes = table_hashes(&self.outcome.tables, limits)?;
         let facts = RunFacts {
             study: loaded.name.clone(),
             command: command_line(ended.args),
@@ -132,7 +148,8 @@ impl RecognitionOutcome<'_> {
             n_trials: loaded.plan.spec.trials,
             n_finished_before: ended.n_before,
             n_failed: self.n_failed(),
-            tables_sha256: repeatable_hashes(&self.outcome.tables)?,
+            tables_sha256: hashes.repeatable,
+            times_sha256: hashes.times,
             methods: RECOGNITION_METHODS.into(),
         };
         Ok(Manifest::new(&self.study.identity, facts))
@@ -147,10 +164,10 @@ impl AnyOutcome for RecognitionOutcome<'_> {
     fn write(&self, ended: &EndedRun) -> Result<()> {
         let start = Instant::now();
         let (loaded, folder) = (&self.study.loaded, ended.folder);
-        let manifest = self.manifest(ended)?;
         let spec = &loaded.plan.spec;
         let mut page = page_of_spec(spec, &loaded.name);
         page.limits = limits(loaded, &self.outcome);
+        let manifest = self.manifest(ended, &page.limits)?;
         add_touches(&mut page, loaded)?;
         add_manifest(&mut page, manifest.clone());
         page.wall_s = Some(seconds_since(ended.started));

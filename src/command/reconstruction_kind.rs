@@ -9,6 +9,8 @@ use bubbletouch::report::page::StudyAbout;
 use bubbletouch::report::reconstruction_frames::{draw_samples, shown_cells};
 use bubbletouch::report::reconstruction_results::reconstruction_folder;
 use bubbletouch::report::reconstruction_text::reconstruction_summary;
+use bubbletouch::study::StudyKind;
+use bubbletouch::study::pieces::Scale;
 use bubbletouch::study::reconstruction::ReconstructionStudy;
 use bubbletouch::study::reconstruction::table::ReconstructionTables;
 use bubbletouch::study::{draw_touches, load_objects, millimetres, objects_content};
@@ -18,6 +20,8 @@ pub struct ReconstructionKind(ReconstructionStudy);
 
 impl PieceKind for ReconstructionKind {
     type Study = ReconstructionStudy;
+
+    const KIND: StudyKind = StudyKind::Reconstruction;
 
     const WRITE_S: f64 = 6.0;
 
@@ -30,6 +34,20 @@ impl PieceKind for ReconstructionKind {
 
     fn study(&self) -> &ReconstructionStudy {
         &self.0
+    }
+
+    fn scale(&self) -> Scale {
+        let plan = &self.0.plan;
+        let n_touches: usize = self.0.touched.iter().map(|t| t.touches.len()).sum();
+        let n_taxels = plan.patch.grid.n_taxels() as f64;
+        // Frames clean, read and reconstructed; one dictionary.
+        let frames = 3.0 * n_touches as f64 * n_taxels;
+        Scale {
+            objects: self.0.touched.len().to_string(),
+            touches: format!("{n_touches} on one array"),
+            n_configurations: self.0.n_cells(),
+            bytes: 8.0 * (frames + n_taxels * n_taxels),
+        }
     }
 
     fn facts(&self) -> Result<KindFacts> {

@@ -1,6 +1,7 @@
 //! `bubbletouch report`: the page of a folder of results of recognition again, from its tables.
 
 use super::about_study::{add_manifest, add_touches, page_of_spec};
+use super::checked_manifest::checked_manifest;
 use super::output::packings_beside;
 use super::streams::{note, say};
 use super::study_args::StudyArgs;
@@ -8,7 +9,7 @@ use bubbletouch::report::csv_tables::{LIMITS_FILE, read_rows, read_tables};
 use bubbletouch::report::page::ReportPage;
 use bubbletouch::report::results::write_page;
 use bubbletouch::study::StudyKind;
-use bubbletouch::study::provenance::Manifest;
+use bubbletouch::study::provenance::{MANIFEST_FILE, Manifest};
 use bubbletouch::{Error, Result};
 use std::path::{Path, PathBuf};
 
@@ -24,8 +25,15 @@ pub struct Args {
 pub fn report(args: &Args) -> Result<()> {
     let folder = &args.results;
     check_kind(folder)?;
+    let manifest = checked_manifest(folder)?;
+    if manifest.is_none() {
+        eprintln!(
+            "note: whether the tables are those of a run is not known: there is no {}",
+            folder.join(MANIFEST_FILE).display()
+        );
+    }
     let tables = read_tables(folder)?;
-    let mut page = about(folder)?;
+    let mut page = about(folder, manifest)?;
     page.all_charts = args.all_charts;
     write_page(folder, &tables, &page)?;
     say(format_args!(
@@ -52,7 +60,7 @@ fn check_kind(folder: &Path) -> Result<()> {
 }
 
 /// What the folder says of itself: its study, its manifest, and the touches of its study, made again.
-fn about(folder: &Path) -> Result<ReportPage> {
+fn about(folder: &Path, manifest: Option<Manifest>) -> Result<ReportPage> {
     let study = StudyArgs {
         study: folder.join("study.toml"),
         objects: None,
@@ -60,7 +68,6 @@ fn about(folder: &Path) -> Result<ReportPage> {
         threads: None,
         paths_from: None,
     };
-    let manifest = Manifest::read(folder)?;
     let name = match &manifest {
         Some(manifest) if !manifest.study.is_empty() => manifest.study.clone(),
         _ => folder_name(folder)?,

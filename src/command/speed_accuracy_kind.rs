@@ -6,6 +6,8 @@ use bubbletouch::Result;
 use bubbletouch::report::folder::Folder;
 use bubbletouch::report::page::StudyAbout;
 use bubbletouch::report::speed_accuracy::{speed_accuracy_folder, speed_accuracy_summary};
+use bubbletouch::study::StudyKind;
+use bubbletouch::study::pieces::{PieceStudy, Scale};
 use bubbletouch::study::speed_accuracy::SpeedAccuracyStudy;
 use bubbletouch::study::speed_accuracy::table::SpeedAccuracyTables;
 use std::path::{Path, PathBuf};
@@ -14,6 +16,8 @@ pub struct SpeedAccuracyKind(SpeedAccuracyStudy);
 
 impl PieceKind for SpeedAccuracyKind {
     type Study = SpeedAccuracyStudy;
+
+    const KIND: StudyKind = StudyKind::SpeedAccuracy;
 
     const WRITE_S: f64 = 2.0;
 
@@ -24,6 +28,36 @@ impl PieceKind for SpeedAccuracyKind {
 
     fn study(&self) -> &SpeedAccuracyStudy {
         &self.0
+    }
+
+    fn scale(&self) -> Scale {
+        let plan = &self.0.plan;
+        let mut touches = Vec::new();
+        let mut bytes = 0.0;
+        if let Some(contact) = &plan.contact {
+            touches.push(format!(
+                "{} of each object in contact",
+                contact.spec.touches
+            ));
+        }
+        if let Some(sweep) = &plan.recognition {
+            let spec = &sweep.spec;
+            let per_object = spec.training_touches + spec.test_touches;
+            touches.push(format!("{per_object} of each in recognition"));
+            let n_taxels = sweep.patches.iter().map(|patch| patch.grid.n_taxels());
+            let n_taxels = n_taxels.max().unwrap_or(0);
+            bytes = 8.0 * (spec.objects * per_object * n_taxels) as f64;
+        }
+        if let Some(resolution) = &plan.resolution {
+            let most = resolution.spec.touches.iter().max().copied();
+            touches.push(format!("up to {} of each in resolution", most.unwrap_or(0)));
+        }
+        Scale {
+            objects: self.0.n_objects().to_string(),
+            touches: touches.join(", "),
+            n_configurations: self.0.pieces().len(),
+            bytes,
+        }
     }
 
     fn facts(&self) -> Result<KindFacts> {

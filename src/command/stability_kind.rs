@@ -5,6 +5,8 @@ use super::study_args::StudyArgs;
 use bubbletouch::report::folder::Folder;
 use bubbletouch::report::page::StudyAbout;
 use bubbletouch::report::stability_results::{stability_folder, stability_summary};
+use bubbletouch::study::StudyKind;
+use bubbletouch::study::pieces::Scale;
 use bubbletouch::study::stability::StabilityPlan;
 use bubbletouch::study::stability::table::StabilityTables;
 use bubbletouch::{Error, Result};
@@ -15,6 +17,8 @@ pub struct StabilityKind(StabilityPlan);
 
 impl PieceKind for StabilityKind {
     type Study = StabilityPlan;
+
+    const KIND: StudyKind = StudyKind::Stability;
 
     const WRITE_S: f64 = 2.0;
 
@@ -28,6 +32,20 @@ impl PieceKind for StabilityKind {
 
     fn study(&self) -> &StabilityPlan {
         &self.0
+    }
+
+    fn scale(&self) -> Scale {
+        // Of a taxel in a thread: the state, its history and an engine's body, bytes.
+        const TAXEL_BYTES: f64 = 2000.0;
+        let cells = || self.0.parts.iter().flat_map(|part| &part.cells);
+        let most = cells().map(|cell| cell.taxels * cell.taxels).max();
+        let n_threads = rayon::current_num_threads();
+        Scale {
+            objects: "a ball and a plunger".to_owned(),
+            touches: format!("one a configuration, on up to {} taxels", most.unwrap_or(0)),
+            n_configurations: self.0.n_cells(),
+            bytes: TAXEL_BYTES * (n_threads * most.unwrap_or(0)) as f64,
+        }
     }
 
     /// Nothing is drawn at random, and no object is loaded.

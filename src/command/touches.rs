@@ -4,7 +4,7 @@ use super::output::{output_folder, packings_beside};
 use super::study_args::StudyArgs;
 use bubbletouch::random::Seed;
 use bubbletouch::report::progress;
-use bubbletouch::study::{load_objects, millimetres, write_touches};
+use bubbletouch::study::{Plan, ReadFrames, load_objects, millimetres, write_touches};
 use bubbletouch::{Error, Result};
 use std::path::PathBuf;
 
@@ -16,23 +16,45 @@ pub struct Args {
     /// if the study has several
     #[arg(long, value_name = "FOLDER")]
     out: PathBuf,
+    /// Frames as this cell of the study reads them (its number in the study's tables), with noise and whatever else its signal has;
+    /// on its array alone, the deepest frame of each touch
+    #[arg(long, value_name = "N")]
+    cell: Option<usize>,
+    /// The trial that they are read in, from 0
+    #[arg(long, value_name = "T", default_value_t = 0, requires = "cell")]
+    trial: usize,
 }
 
 pub fn touches(args: &Args) -> Result<()> {
-    let plan = args.study.plan()?;
-    if plan.human_touch.is_some() {
-        let place = args.study.study.display();
-        let allowed =
-            "a study that presses objects (bubbletouch features writes what others learn from)";
-        return Err(Error::input(place, "a study of human touches", allowed));
-    }
-    let objects = load_objects(&plan.spec.objects, Some(&packings_beside(&args.out)))?;
-    let seed = Seed::new(plan.spec.seed);
+    let packings = packings_beside(&args.out);
     let progress = progress::to_stderr();
+    let (plan, read) = match args.cell {
+        None => (args.study.plan()?, None),
+        Some(cell) => {
+            let loaded = args.study.load(Some(&packings))?;
+            args.check(&loaded.plan)?;
+            let which = (cell, args.trial);
+            let read = ReadFrames::of_cell(
+                &loaded.plan,
+                &loaded.sweep,
+                loaded.touched.as_ref(),
+                which,
+                progress.as_ref(),
+            )?;
+            (loaded.plan, Some(read))
+        }
+    };
+    args.check(&plan)?;
+    let objects = load_objects(&plan.spec.objects, Some(&packings))?;
+    let seed = Seed::new(plan.spec.seed);
     let mut n_touches = 0;
-    for patch in &plan.arrays {
+    let is_written = |array: usize| read.as_ref().is_none_or(|read| read.array == array);
+    let arrays = plan.arrays.iter().enumerate();
+    let arrays = arrays.filter(|(array, _)| is_written(*array));
+    let arrays: Vec<_> = arrays.map(|(_, patch)| patch).collect();
+    for &patch in &arrays {
         let grid = &patch.grid;
-        let folder = match plan.arrays.len() {
+        let folder = match arrays.len() {
             1 => args.out.clone(),
             _ => {
                 let pitch_mm = millimetres(grid.pitch);
@@ -45,11 +67,31 @@ pub fn touches(args: &Args) -> Result<()> {
             &folder,
             &objects,
             &plan.placement,
-            &seed,
-            patch,
+            (&seed, patch),
+            read.as_ref(),
             progress.as_ref(),
         )?;
     }
-    progress.finish(&format!("{n_touches} touches in {}", args.out.display()));
+    let how = match args.cell {
+        None => "without noise (--cell N writes them as cell N of the study reads them)".to_owned(),
+        Some(cell) => format!("as cell {cell} reads them in trial {}", args.trial),
+    };
+    progress.finish(&format!(
+        "{n_touches} touches, {how}, in {}",
+        args.out.display()
+    ));
     Ok(())
+}
+
+impl Args {
+    /// An error for human touches, which no object makes.
+    fn check(&self, plan: &Plan) -> Result<()> {
+        if plan.human_touch.is_none() {
+            return Ok(());
+        }
+        let place = self.study.study.display();
+        let allowed =
+            "a study that presses objects (bubbletouch features writes what others learn from)";
+        Err(Error::input(place, "a study of human touches", allowed))
+    }
 }

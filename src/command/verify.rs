@@ -1,10 +1,10 @@
 //! `bubbletouch verify`: whether a folder of results comes out again.
 
 use super::any_study::load_study;
+use super::checked_manifest::checked_manifest;
 use super::memory_args::MemoryArgs;
 use super::streams::say;
 use super::study_args::StudyArgs;
-use bubbletouch::report::csv_tables::sha256_of;
 use bubbletouch::study::provenance::{MANIFEST_FILE, Manifest, SOURCE};
 use bubbletouch::{Error, Result};
 use std::path::PathBuf;
@@ -41,23 +41,12 @@ pub fn verify(args: &Args) -> Result<()> {
     say(format_args!("{}: {said}", folder.display()))
 }
 
-/// An error if a table is not what the manifest says; a note if the program is another.
+/// An error if a file is not what the manifest says; a note if the program is another.
 fn check_manifest(args: &Args) -> Result<Manifest> {
-    let manifest = Manifest::read(&args.results)?.ok_or_else(|| {
+    let manifest = checked_manifest(&args.results)?.ok_or_else(|| {
         let path = args.results.join(MANIFEST_FILE);
         Error::input(path.display(), "is missing", "the manifest of a run")
     })?;
-    for (name, hash) in &manifest.tables_sha256 {
-        let place = args.results.join(name);
-        if sha256_of(&place)? != *hash {
-            let allowed = "the table that the manifest names by its SHA-256";
-            return Err(Error::input(
-                place.display(),
-                "was changed after its run",
-                allowed,
-            ));
-        }
-    }
     if manifest.source != SOURCE {
         say(format_args!(
             "note: the results were made by {} (commit {}), not by this version",

@@ -64,7 +64,7 @@ fn draw(tables: &Tables, (n, draw): (usize, u64)) -> BTreeSet<(usize, usize)> {
 
 /// Rows of accuracy.csv, those of the chosen cells, as they are written.
 fn rows(tables: &Tables, chosen: &BTreeSet<(usize, usize)>) -> Result<Vec<String>> {
-    let rows = tables.accuracy.iter();
+    let rows = tables.accuracy.iter().cloned();
     let rows: Vec<_> = rows
         .filter(|(cell, score)| chosen.contains(&(cell.cell, score.trial)))
         .collect();

@@ -6,7 +6,9 @@ use bubbletouch::Result;
 use bubbletouch::report::folder::Folder;
 use bubbletouch::report::page::StudyAbout;
 use bubbletouch::report::whole_body_results::{whole_body_folder, whole_body_summary};
+use bubbletouch::study::StudyKind;
 use bubbletouch::study::file_content;
+use bubbletouch::study::pieces::Scale;
 use bubbletouch::study::whole_body::table::WholeBodyTables;
 use bubbletouch::study::whole_body::{WholeBodyPlan, picture_body};
 use std::path::{Path, PathBuf};
@@ -20,6 +22,8 @@ pub struct WholeBodyKind {
 impl PieceKind for WholeBodyKind {
     type Study = WholeBodyPlan;
 
+    const KIND: StudyKind = StudyKind::WholeBody;
+
     const WRITE_S: f64 = 2.3;
 
     fn load(args: &StudyArgs, _packings: PathBuf) -> Result<Self> {
@@ -30,6 +34,27 @@ impl PieceKind for WholeBodyKind {
 
     fn study(&self) -> &WholeBodyPlan {
         &self.plan
+    }
+
+    fn scale(&self) -> Scale {
+        // A taxel's place and what its compressions keep of it, bytes.
+        const TAXEL_BYTES: f64 = 150.0;
+        // Of a body, about, square metres.
+        const AREA: f64 = 2.0;
+        let plan = &self.plan;
+        let learned = &plan.recognition;
+        let n_touches = learned.objects.len() * (learned.n_training + learned.n_test);
+        let n_taxels = AREA / (plan.pitch * plan.pitch);
+        Scale {
+            objects: format!(
+                "{} to tell apart, {} scenes",
+                learned.objects.len(),
+                plan.scenes.len()
+            ),
+            touches: format!("{n_touches} on a body of about {n_taxels:.0} taxels"),
+            n_configurations: plan.compressions.len() + plan.scenes.len(),
+            bytes: TAXEL_BYTES * n_taxels,
+        }
     }
 
     fn facts(&self) -> Result<KindFacts> {

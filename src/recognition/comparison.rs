@@ -117,6 +117,34 @@ pub fn compare_crossed(
     estimate.test(a.len(), confidence).map(Some)
 }
 
+/// How far from none, in standard deviations between trials, a difference is that practically every trial agrees about.
+const AGREED: f64 = 3.0;
+/// Trials that a study may be asked for.
+const MOST_TRIALS: usize = 1000;
+
+/// The fewest trials (of crossed ones: splits) that can tell anything: with them [`compare`] finds even a difference significant of three
+/// times the standard deviation between trials, one that practically every trial agrees about,
+///
+/// `t(J − 1) · sqrt(1/J + n_test/n_train) ≤ 3`
+///
+/// with Student's two-sided quantile t. With three training rows for each test row, these are 4: three trials would need 3.5 standard
+/// deviations, two 11.6. `None` where 1,000 trials are not enough, because the test rows are more than twice the training rows.
+///
+/// # Errors
+/// No training or no test rows, or a confidence outside 0..1.
+pub fn trials_needed(size: TrialSize, confidence: f64) -> Result<Option<usize>> {
+    check(&[], &[], size)?;
+    check_confidence(confidence)?;
+    for n_trials in 2..=MOST_TRIALS {
+        let n = n_trials as f64;
+        let quantile = student(n - 1.0)?.inverse_cdf(0.5 + 0.5 * confidence);
+        if quantile * (1.0 / n + size.overlap()).sqrt() <= AGREED {
+            return Ok(Some(n_trials));
+        }
+    }
+    Ok(None)
+}
+
 impl TrialSize {
     /// n_test / n_train: what trials that share their touches add to the variance of their mean.
     fn overlap(&self) -> f64 {
@@ -140,8 +168,7 @@ struct Estimate {
 impl Estimate {
     fn test(&self, n_trials: usize, confidence: f64) -> Result<Comparison> {
         let (mean, error) = (self.mean, self.variance.sqrt());
-        let student = StudentsT::new(0.0, 1.0, self.freedom)
-            .map_err(|error| Error::input("comparison", error, "at least two trials are needed"))?;
+        let student = student(self.freedom)?;
         let half_width = student.inverse_cdf(0.5 + 0.5 * confidence) * error;
         Ok(Comparison {
             mean_difference: mean,
@@ -153,6 +180,11 @@ impl Estimate {
             n_trials,
         })
     }
+}
+
+fn student(freedom: f64) -> Result<StudentsT> {
+    StudentsT::new(0.0, 1.0, freedom)
+        .map_err(|error| Error::input("comparison", error, "at least two trials are needed"))
 }
 
 fn check(a: &[f64], b: &[f64], size: TrialSize) -> Result<()> {
@@ -202,6 +234,39 @@ mod tests {
         assert!((comparison.interval.high - 0.04867500174424035).abs() < 1e-9);
         assert!((comparison.p_value - 0.12487982574290779).abs() < 1e-9);
         assert_eq!(comparison.n_trials, 5);
+    }
+
+    #[test]
+    fn too_few_trials_are_those_that_miss_three_standard_deviations() {
+        // Differences of mean 0.3 and standard deviation 0.1, far above rounding.
+        let of_trials = |n: usize, size| {
+            let step = 0.1 * ((n - 1) as f64 / n as f64).sqrt();
+            let mut a: Vec<f64> = (0..n)
+                .map(|k| 0.3 + if k % 2 == 0 { step } else { -step })
+                .collect();
+            if n % 2 == 1 {
+                // An odd one in the middle, and the others further out.
+                let wider = 0.1;
+                a = (0..n).map(|k| 0.3 + wider * [1.0, -1.0][k % 2]).collect();
+                a[n - 1] = 0.3;
+            }
+            let test = compare(&a, &vec![0.0; n], size, 0.95).unwrap().unwrap();
+            test.p_value < 0.05
+        };
+        for (n_train, needed) in [(100, 6), (300, 4), (1000, 3)] {
+            let size = TrialSize {
+                n_train,
+                n_test: 100,
+            };
+            assert_eq!(trials_needed(size, 0.95).unwrap(), Some(needed));
+            assert!(of_trials(needed, size), "{needed} of {n_train}");
+            assert!(!of_trials(needed - 1, size), "one less of {n_train}");
+        }
+        let size = TrialSize {
+            n_train: 100,
+            n_test: 300,
+        };
+        assert_eq!(trials_needed(size, 0.95).unwrap(), None);
     }
 
     #[test]

@@ -3,6 +3,7 @@
 use crate::report::axis::{Axis, AxisValue};
 use crate::report::varying::Settings;
 use crate::study::table::{Cell, CellScore, Tables};
+use crate::study::{condition_numbers, most_accurate};
 use std::collections::HashMap;
 
 /// Values up to which a sentence lists them all.
@@ -11,16 +12,64 @@ const MOST_LISTED: usize = 8;
 /// The findings that hold for any study.
 #[derive(Clone, Debug)]
 pub struct Answer {
-    /// The cell with the highest mean accuracy (the first of equals).
+    /// The cell with the highest mean accuracy (the first of equals), whatever its condition: an example to show.
     pub best: (Cell, CellScore),
-    /// The cell with the fewest measurements among those whose mean accuracy reaches the best cell's interval.
-    pub frugal: (Cell, CellScore),
+    /// What is best in each condition of the world, in the order in which cells first have them.
+    pub findings: Vec<Finding>,
     /// What each axis that varies by itself does.
     pub effects: Vec<Effect>,
+    /// The place of each cell's condition among the findings, by the cell's number.
+    finding_of: HashMap<usize, usize>,
     settings: Settings,
     n_cells: usize,
     n_capped: usize,
     n_left_out: usize,
+}
+
+/// What is best in one condition of the world.
+#[derive(Clone, Debug)]
+pub struct Finding {
+    /// The condition in words; empty if the study has one.
+    pub condition: String,
+    /// The cell with the highest mean accuracy (the first of equals).
+    pub best: (Cell, CellScore),
+    /// The cell with the fewest measurements a decision among those whose mean accuracy reaches the best cell's interval; of equals the
+    /// more accurate.
+    pub frugal: (Cell, CellScore),
+}
+
+impl Finding {
+    /// Of the cells of a condition; none of none.
+    fn of(rows: &[&(Cell, CellScore)], settings: &Settings) -> Option<Self> {
+        let best = most_accurate_row(rows)?;
+        let good = rows
+            .iter()
+            .filter(|row| row.1.accuracy >= best.1.accuracy_low);
+        let read = |row: &(Cell, CellScore)| row.0.measurements_of_decision();
+        let frugal = good.fold(best, |frugal, row| {
+            let better = read(row) == read(frugal) && row.1.accuracy > frugal.1.accuracy;
+            match read(row) < read(frugal) || better {
+                true => row,
+                false => frugal,
+            }
+        });
+        Some(Self {
+            condition: settings.condition_words(&best.0),
+            best: best.clone(),
+            frugal: frugal.clone(),
+        })
+    }
+
+    /// Whether a cell is as accurate as its best, for what can be told.
+    pub fn is_as_good(&self, accuracy: f64) -> bool {
+        accuracy >= self.best.1.accuracy_low
+    }
+}
+
+/// The first of the most accurate rows.
+fn most_accurate_row<'a>(rows: &[&'a (Cell, CellScore)]) -> Option<&'a (Cell, CellScore)> {
+    let accuracies = rows.iter().map(|row| row.1.accuracy).enumerate();
+    most_accurate(accuracies).map(|place| rows[place])
 }
 
 /// Mean accuracy at each value of an axis, over those combinations of the other settings that have all of its values.
@@ -38,35 +87,38 @@ impl Answer {
     /// The findings; none for empty tables.
     pub fn of(tables: &Tables) -> Option<Self> {
         let rows = &tables.summary;
-        let first = rows.first()?;
-        let best = rows.iter().fold(first, |best, row| {
-            if row.1.accuracy > best.1.accuracy {
-                row
-            } else {
-                best
-            }
-        });
-        let good = rows
-            .iter()
-            .filter(|row| row.1.accuracy >= best.1.accuracy_low);
-        let frugal = good.fold(best, |frugal, row| {
-            let fewer = row.0.measurements < frugal.0.measurements;
-            let better =
-                row.0.measurements == frugal.0.measurements && row.1.accuracy > frugal.1.accuracy;
-            if fewer || better { row } else { frugal }
-        });
+        let best = most_accurate_row(&rows.iter().collect::<Vec<_>>())?;
         let cells: Vec<&Cell> = rows.iter().map(|row| &row.0).collect();
         let settings = Settings::of(&cells);
+        let conditions = condition_numbers(cells.iter().copied());
+        let n_conditions = conditions.iter().max().map_or(0, |last| last + 1);
+        let mut of_condition = vec![Vec::new(); n_conditions];
+        for (row, &condition) in rows.iter().zip(&conditions) {
+            of_condition[condition].push(row);
+        }
+        let findings = of_condition.iter();
+        let findings = findings.filter_map(|rows| Finding::of(rows, &settings));
         let left_out = tables.accuracy.iter().map(|(_, trial)| trial.n_left_out);
         Some(Self {
             best: best.clone(),
-            frugal: frugal.clone(),
+            findings: findings.collect(),
             effects: effects(rows, &settings),
+            finding_of: cells.iter().map(|c| c.cell).zip(conditions).collect(),
             n_cells: rows.len(),
             n_capped: rows.iter().map(|row| row.1.n_capped).sum(),
             n_left_out: left_out.max().unwrap_or(0),
             settings,
         })
+    }
+
+    /// What is best in the condition of a cell of the study.
+    pub fn finding(&self, cell: &Cell) -> &Finding {
+        &self.findings[self.condition(cell)]
+    }
+
+    /// The place of that among the findings.
+    pub fn condition(&self, cell: &Cell) -> usize {
+        self.finding_of.get(&cell.cell).copied().unwrap_or(0)
     }
 
     /// What varies in the study.
@@ -77,25 +129,15 @@ impl Answer {
     /// The findings, one sentence each, the most important first.
     pub fn sentences(&self) -> Vec<String> {
         let mut sentences = Vec::new();
-        let (best, score) = &self.best;
-        let place = self.place(best);
-        sentences.push(match self.n_cells {
-            1 => format!("Accuracy {}.", accuracy_sentence(score)),
-            _ => format!("Best accuracy {} at {place}.", accuracy_sentence(score)),
-        });
-        let shown = self.settings.shown();
-        if shown.iter().any(|levels| levels.axis == Axis::Measurements) {
-            let (frugal, score) = &self.frugal;
-            sentences.push(match frugal.cell == best.cell {
-                true => {
-                    "No cell with fewer measurements reaches the interval of the best.".to_owned()
-                }
-                false => format!(
-                    "Within the interval of the best with the fewest measurements: {} at {}.",
-                    accuracy_sentence(score),
-                    self.place(frugal)
-                ),
-            });
+        let listed = match self.findings.len() {
+            n if n > MOST_LISTED => {
+                sentences.push(self.range_sentence());
+                &self.findings[..1]
+            }
+            _ => &self.findings[..],
+        };
+        for finding in listed {
+            sentences.extend(self.best_sentences(finding));
         }
         sentences.extend(self.effects.iter().map(Effect::sentence));
         if self.n_left_out > 0 {
@@ -113,11 +155,77 @@ impl Answer {
         sentences
     }
 
-    /// A word beside a cell in a table: `best`, `as good` (reaches the best's interval), or nothing.
+    /// Of very many conditions: where the best cell is most accurate, and where least.
+    fn range_sentence(&self) -> String {
+        let accuracy = |finding: &&Finding| finding.best.1.accuracy;
+        let ends = (
+            self.findings
+                .iter()
+                .max_by(|a, b| accuracy(a).total_cmp(&accuracy(b))),
+            self.findings
+                .iter()
+                .min_by(|a, b| accuracy(a).total_cmp(&accuracy(b))),
+        );
+        let (Some(most), Some(least)) = ends else {
+            return String::new();
+        };
+        format!(
+            "Best accuracy in each of {} conditions: from {} with {} down to {} with {}.",
+            self.findings.len(),
+            accuracy_sentence(&most.best.1),
+            most.condition,
+            accuracy_sentence(&least.best.1),
+            least.condition
+        )
+    }
+
+    /// The most accurate cell of a condition, and the one of fewest measurements.
+    fn best_sentences(&self, finding: &Finding) -> Vec<String> {
+        let Finding {
+            condition,
+            best: (best, score),
+            frugal: (frugal, frugal_score),
+        } = finding;
+        let with = match &condition[..] {
+            "" => String::new(),
+            words => format!(" with {words}"),
+        };
+        let at = |cell: &Cell| match &self.settings.choice_words(cell)[..] {
+            "" => String::new(),
+            words => format!(" at {words}"),
+        };
+        let mut sentences = vec![match self.n_cells {
+            1 => format!("Accuracy {}.", accuracy_sentence(score)),
+            _ => format!(
+                "Best accuracy{with} {}{}.",
+                accuracy_sentence(score),
+                at(best)
+            ),
+        }];
+        let shown = self.settings.shown();
+        if shown.iter().any(|levels| levels.axis == Axis::Measurements) {
+            sentences.push(match frugal.cell == best.cell {
+                true => {
+                    format!(
+                        "No cell with fewer measurements reaches the interval of the best{with}."
+                    )
+                }
+                false => format!(
+                    "Within the interval of the best{with}, with the fewest measurements: {}{}.",
+                    accuracy_sentence(frugal_score),
+                    at(frugal)
+                ),
+            });
+        }
+        sentences
+    }
+
+    /// A word beside a cell in a table: `best` in its condition, `as good` (reaches the interval of that), or nothing.
     pub fn remark(&self, cell: &Cell, score: &CellScore) -> &'static str {
-        if cell.cell == self.best.0.cell {
+        let finding = self.finding(cell);
+        if cell.cell == finding.best.0.cell {
             "best"
-        } else if score.accuracy >= self.best.1.accuracy_low {
+        } else if finding.is_as_good(score.accuracy) {
             "as good"
         } else {
             ""

@@ -7,7 +7,7 @@ use crate::recognition::over_time::OverTime;
 use crate::sensing::{Basis, Ensemble, Solver};
 use crate::signal::NoiseUnit;
 use crate::study::table::Cell;
-use crate::study::{IMPERFECTIONS, Imperfection, TestedOn};
+use crate::study::{IMPERFECTIONS, Imperfection, Role, TestedOn, role_of};
 
 /// A setting that a study can sweep.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -118,6 +118,23 @@ impl Axis {
         }
     }
 
+    /// The column of [`Cell`] that it is; none for [`Signal`](Self::Signal), which stands for several.
+    pub fn column(self) -> Option<&'static str> {
+        match self {
+            Self::Signal => None,
+            Self::Pitch => Some("pitch_mm"),
+            Self::Size => Some("size_mm"),
+            Self::Noise => Some("noise_std"),
+            Self::Smoothing => Some("smoothing_mm"),
+            other => Some(other.word()),
+        }
+    }
+
+    /// Whether it is a condition of the world, not a designer's choice.
+    pub fn is_condition(self) -> bool {
+        self.column().and_then(role_of) == Some(Role::Condition)
+    }
+
     /// The name in a sentence or before a value.
     pub fn name(self) -> &'static str {
         match self {
@@ -225,7 +242,7 @@ impl Axis {
             Self::OverTime => label,
             Self::TestedOn => format!("tested on {label}"),
             Self::Signal => match &label[..] {
-                signal_axis::IDEAL => "an ideal signal".to_owned(),
+                signal_axis::IDEAL => signal_axis::IDEAL_SIGNAL.to_owned(),
                 _ => label,
             },
             _ => format!("{} {label}", self.name()),
@@ -368,6 +385,15 @@ fn noise(cell: &Cell) -> AxisValue {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn every_axis_is_a_choice_or_a_condition() {
+        for axis in AXES {
+            let role = axis.column().and_then(role_of);
+            let is_either = matches!(role, Some(Role::Choice | Role::Condition));
+            assert!(is_either, "{axis:?}: {role:?}");
+        }
+    }
 
     #[test]
     fn numbers_are_written_short_and_true() {

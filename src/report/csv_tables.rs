@@ -1,10 +1,12 @@
 //! Result tables as CSV, out and in.
 //!
 //! Floats are written in the shortest form that reads back as the same bits, so equal tables are equal bytes. An absent
-//! value is an empty field. A table without rows is an empty file.
+//! value is an empty field. A table without rows has its header, but for columns that only some studies have.
 
 use crate::error::{Error, Result};
+use crate::report::csv_header::blank_row;
 use crate::report::folder::Folder;
+use crate::report::page::Limit;
 use crate::study::ContentHash;
 use crate::study::table::{
     Cell, CellScore, Comparison, Confused, Confusion, Failure, Pareto, Published, StageTime,
@@ -38,16 +40,41 @@ pub const VARIANCE_FILE: &str = "variance.csv";
 /// How often limits of the model were reached, beside the tables.
 pub const LIMITS_FILE: &str = "limits.csv";
 
-/// SHA-256 of every table without times, by its file's name: the same for the same study.
-pub fn repeatable_hashes(tables: &Tables) -> Result<BTreeMap<String, String>> {
+/// SHA-256 of tables by their files' names.
+#[derive(Clone, Debug, Default)]
+pub struct TableHashes {
+    /// Of those without times: the same for the same study.
+    pub repeatable: BTreeMap<String, String>,
+    /// Of those with times, which no two runs share.
+    pub times: BTreeMap<String, String>,
+}
+
+impl TableHashes {
+    /// Of files, by the names of those that are the same for the same study.
+    pub fn of<N: Into<String>>(
+        files: impl IntoIterator<Item = (N, Vec<u8>)>,
+        is_repeatable: impl Fn(&str) -> bool,
+    ) -> Self {
+        let mut hashes = Self::default();
+        for (name, content) in files {
+            let name = name.into();
+            let known = match is_repeatable(&name) {
+                true => &mut hashes.repeatable,
+                false => &mut hashes.times,
+            };
+            known.insert(name, ContentHash::default().bytes(content).hex());
+        }
+        hashes
+    }
+}
+
+/// SHA-256 of every table, and of how often limits were reached.
+pub fn table_hashes(tables: &Tables, limits: &[Limit]) -> Result<TableHashes> {
     let mut folder = Folder::new(Path::new(""));
     add_tables(&mut folder, tables)?;
-    let files = folder.into_files()?.into_iter();
-    let repeatable = files.filter(|(name, _)| !TIME_TABLES.contains(&name.as_str()));
-    let hash = |content: &[u8]| ContentHash::default().bytes(content).hex();
-    Ok(repeatable
-        .map(|(name, content)| (name, hash(&content)))
-        .collect())
+    folder.add_table(LIMITS_FILE, limits)?;
+    let files = folder.into_files()?;
+    Ok(TableHashes::of(files, |name| !TIME_TABLES.contains(&name)))
 }
 
 /// What is asked for where a table is missing.
@@ -120,8 +147,17 @@ pub fn read_tables(dir: &Path) -> Result<Tables> {
     })
 }
 
-/// One table as CSV with a header row; a `(Cell, score)` row becomes one line.
-pub fn to_csv<R: Serialize>(rows: &[R]) -> std::result::Result<Vec<u8>, csv::Error> {
+/// One table as CSV with a header row, also where there are no rows; a `(Cell, score)` row becomes one line.
+pub fn to_csv<R: Serialize + DeserializeOwned>(
+    rows: &[R],
+) -> std::result::Result<Vec<u8>, csv::Error> {
+    if rows.is_empty() {
+        let blank: R = blank_row().map_err(std::io::Error::other)?;
+        let mut text = to_csv(&[blank])?;
+        let header = text.iter().position(|&byte| byte == b'\n');
+        text.truncate(header.map_or(0, |end| end + 1));
+        return Ok(text);
+    }
     let mut writer = csv::Writer::from_writer(Vec::new());
     for row in rows {
         writer.serialize(row)?;
@@ -133,7 +169,7 @@ pub fn to_csv<R: Serialize>(rows: &[R]) -> std::result::Result<Vec<u8>, csv::Err
 ///
 /// # Errors
 /// A row that has no such form; the error names the file.
-pub fn csv_content<R: Serialize>(path: &Path, rows: &[R]) -> Result<Vec<u8>> {
+pub fn csv_content<R: Serialize + DeserializeOwned>(path: &Path, rows: &[R]) -> Result<Vec<u8>> {
     to_csv(rows).map_err(|error| Error::io(path, "write", std::io::Error::other(error)))
 }
 

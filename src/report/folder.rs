@@ -8,6 +8,7 @@ use crate::report::raster::ToRaster;
 use crate::report::study_tables::TableFiles;
 use rayon::prelude::*;
 use serde::Serialize;
+use serde::de::DeserializeOwned;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -67,7 +68,11 @@ impl<'a> Folder<'a> {
     }
 
     /// Adds a table as CSV; the error names the file.
-    pub(super) fn add_table(&mut self, name: &str, rows: &[impl Serialize]) -> Result<()> {
+    pub(super) fn add_table(
+        &mut self,
+        name: &str,
+        rows: &[impl Serialize + DeserializeOwned],
+    ) -> Result<()> {
         let csv = csv_content(&self.path.join(name), rows)?;
         self.add(name, csv);
         Ok(())

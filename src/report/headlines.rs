@@ -44,7 +44,7 @@ pub fn published_table(tables: &Tables) -> Option<TextTable> {
     let rows: Vec<Vec<String>> = tables.published.iter().map(row).collect();
     (!rows.is_empty()).then_some(TextTable {
         title: "Beside what was published",
-        note: "Ours: the most accurate of the cells that have the settings of the claim."
+        note: "Ours: the most accurate of the cells that have the settings of the claim, in each condition that these were measured in."
             .to_owned(),
         heads: vec![
             ("published", false),

@@ -17,6 +17,7 @@ pub mod chart;
 pub mod chart_plan;
 pub mod colours;
 pub mod confusion_picture;
+mod csv_header;
 pub mod csv_tables;
 pub mod drawing;
 pub mod fit_picture;

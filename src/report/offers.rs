@@ -1,28 +1,96 @@
-//! What a folder of results offers: settings with their accuracy and what a decision costs, for [`advise`](crate::study::advice::advise).
+//! What a folder of results offers: settings with their accuracy and what they cost, for [`advise`](crate::study::advice::advise).
 
 use crate::error::{Error, Result};
-use crate::report::axis::Axis;
 use crate::report::csv_tables::{read_cell_rows, read_rows};
-use crate::report::speed_accuracy::{ChartKind, ChartPoint, PARETO_FILE};
+use crate::report::speed_accuracy::{
+    CHAINS_FILE, ChartKind, ChartPoint, PARETO_FILE, chain_setting,
+};
 use crate::report::varying::Settings;
-use crate::study::advice::Offer;
+use crate::study::advice::{Costs, Offer};
+use crate::study::speed_accuracy::table::ChainCell;
 use crate::study::table::{Cell, CellScore, Pareto};
+use crate::study::{Role, agree, column_name, one_of, role_of};
+use std::collections::{HashMap, HashSet};
 use std::path::Path;
+use toml::{Table, Value};
 
-/// The settings of a folder: the decisions of a study of what accuracy costs, or the cells of a study that recognises objects.
+/// A condition that advice is given for: `noise=0.05`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Given {
+    /// A column of [`Cell`].
+    column: String,
+    /// Its value.
+    value: Value,
+}
+
+impl Given {
+    /// Reads `key=value`.
+    ///
+    /// # Errors
+    /// Another text.
+    pub fn parse(text: &str) -> Result<Self> {
+        let refuse = || Error::input("--given", text, "a condition and its value: noise=0.05");
+        let (key, value) = text.split_once('=').ok_or_else(refuse)?;
+        let (key, value) = (key.trim(), value.trim());
+        if key.is_empty() || value.is_empty() {
+            return Err(refuse());
+        }
+        let number = value.parse().ok().map(Value::Float);
+        Ok(Self {
+            column: column_name(key).to_owned(),
+            value: number.unwrap_or_else(|| Value::String(value.to_owned())),
+        })
+    }
+
+    /// The cells that have it.
+    ///
+    /// # Errors
+    /// A column that is a choice, or that no cell has; a value that none has.
+    fn filter<'a>(&self, cells: &[&'a Cell]) -> Result<Vec<&'a Cell>> {
+        let Self { column, value } = self;
+        let place = format!("--given {column}");
+        if role_of(column) == Some(Role::Choice) {
+            let allowed = "a condition of the world; choices are what is advised";
+            return Err(Error::input(place, "is a choice", allowed));
+        }
+        let conditions: Vec<Table> = cells.iter().map(|cell| cell.conditions()).collect();
+        let known = conditions.iter().filter_map(|row| row.get(column));
+        let known: Vec<String> = known.map(ToString::to_string).collect();
+        if known.is_empty() {
+            let columns = conditions.iter().flat_map(Table::keys).cloned();
+            let allowed = one_of(columns);
+            return Err(Error::input(
+                place,
+                "is no condition of this study",
+                allowed,
+            ));
+        }
+        let has_it = |row: &Table| row.get(column).is_some_and(|known| agree(known, value));
+        let found = cells.iter().zip(&conditions);
+        let found = found.filter(|(_, row)| has_it(row)).map(|(cell, _)| *cell);
+        let found: Vec<&Cell> = found.collect();
+        match found.is_empty() {
+            true => Err(Error::input(place, value, one_of(known))),
+            false => Ok(found),
+        }
+    }
+}
+
+/// The settings of a folder: the decisions of a study of what accuracy costs, or the cells of a study that recognises objects, those of
+/// given conditions.
 ///
 /// # Errors
-/// A folder without such tables; a table that cannot be read, by its file and line.
-pub fn read_offers(folder: &Path) -> Result<Vec<Offer>> {
+/// A folder without such tables; a table that cannot be read, by its file and line; a condition that the study has not.
+pub fn read_offers(folder: &Path, given: &[Given]) -> Result<Vec<Offer>> {
     let path = folder.join(PARETO_FILE);
     let header = first_line(&path)?;
     let has = |column: &str| header.split(',').any(|name| name == column);
     if has("chart") && has("cost_us") {
-        let points: Vec<ChartPoint> = read_rows(&path)?;
-        let decisions = points
-            .into_iter()
-            .filter(|p| p.chart == ChartKind::Decision);
-        let offers: Vec<Offer> = decisions.map(of_point).collect();
+        if let Some(Given { column, .. }) = given.first() {
+            let allowed = "no such option: the study was made in one condition";
+            return Err(Error::input("--given", column, allowed));
+        }
+        let offers = of_points(&read_rows(&path)?, folder)?;
         return match offers.is_empty() {
             true => Err(refusal(&path, "no decisions")),
             false => Ok(offers),
@@ -33,7 +101,53 @@ pub fn read_offers(folder: &Path) -> Result<Vec<Offer>> {
     }
     let costs = read_cell_rows::<Pareto>(&path)?;
     let scores = read_cell_rows::<CellScore>(&folder.join("summary.csv"))?;
-    of_cells(&costs, &scores, &path)
+    let known: HashSet<usize> = scores.iter().map(|(cell, _)| cell.cell).collect();
+    if let Some((cell, _)) = costs.iter().find(|(cell, _)| !known.contains(&cell.cell)) {
+        let given = format!("cell {} that summary.csv has not", cell.cell);
+        return Err(refusal(&path, &given));
+    }
+    cell_offers(&costs, &scores, given)
+}
+
+/// The cells of a study that recognises objects, those of given conditions; cells without a score are left out.
+///
+/// # Errors
+/// A condition that the study has not.
+pub fn cell_offers(
+    costs: &[(Cell, Pareto)],
+    scores: &[(Cell, CellScore)],
+    given: &[Given],
+) -> Result<Vec<Offer>> {
+    let mut cells: Vec<&Cell> = costs.iter().map(|(cell, _)| cell).collect();
+    let settings = Settings::of(&cells);
+    for given in given {
+        cells = given.filter(&cells)?;
+    }
+    let cells: HashSet<usize> = cells.iter().map(|cell| cell.cell).collect();
+    let scores: HashMap<usize, &CellScore> = scores.iter().map(|(c, s)| (c.cell, s)).collect();
+    let offer = |(cell, row): &(Cell, Pareto)| {
+        let score = scores.get(&cell.cell)?;
+        let setting = match settings.choice_words(cell) {
+            words if words.is_empty() => "the only setting".to_owned(),
+            words => words,
+        };
+        Some(Offer {
+            cell: Some(cell.cell),
+            setting,
+            condition: settings.condition_words(cell),
+            costs: Costs {
+                decision_us: row.predict_us_per_decision,
+                training_s: row.fit_s,
+                taxels: (cell.nx * cell.ny) as f64,
+                measurements: cell.measurements_of_decision() as f64,
+            },
+            accuracy: score.accuracy,
+            accuracy_low: score.accuracy_low,
+            accuracy_high: score.accuracy_high,
+        })
+    };
+    let of_given = costs.iter().filter(|(cell, _)| cells.contains(&cell.cell));
+    Ok(of_given.filter_map(offer).collect())
 }
 
 fn first_line(path: &Path) -> Result<String> {
@@ -49,42 +163,36 @@ fn refusal(path: &Path, given: &str) -> Error {
     Error::input(path.display(), given, allowed)
 }
 
-fn of_point(point: ChartPoint) -> Offer {
-    Offer {
-        setting: point.setting,
-        cost_us: point.cost_us,
-        accuracy: point.value,
-        accuracy_low: point.value_low,
-        accuracy_high: point.value_high,
-    }
-}
-
-fn of_cells(
-    costs: &[(Cell, Pareto)],
-    scores: &[(Cell, CellScore)],
-    path: &Path,
-) -> Result<Vec<Offer>> {
-    let cells: Vec<&Cell> = costs.iter().map(|(cell, _)| cell).collect();
-    let settings = Settings::of(&cells);
-    let axes: Vec<Axis> = settings.varying.iter().map(|levels| levels.axis).collect();
-    let offer = |(cell, row): &(Cell, Pareto)| {
-        let score = scores.iter().find(|(of, _)| of.cell == cell.cell);
-        let Some((_, score)) = score else {
-            let given = format!("cell {} that summary.csv has not", cell.cell);
-            return Err(refusal(path, &given));
-        };
-        let words: Vec<String> = axes.iter().map(|axis| axis.phrase(cell)).collect();
-        let setting = match words.is_empty() {
-            true => "the only setting".to_owned(),
-            false => words.join(", "),
-        };
-        Ok(Offer {
-            setting,
-            cost_us: row.predict_us_per_decision,
-            accuracy: score.accuracy,
-            accuracy_low: score.accuracy_low,
-            accuracy_high: score.accuracy_high,
-        })
+/// The decisions among the points of charts: what training costs stands in another chart, and what is sensed in another table.
+fn of_points(points: &[ChartPoint], folder: &Path) -> Result<Vec<Offer>> {
+    let path = folder.join(CHAINS_FILE);
+    let chains: Vec<ChainCell> = match path.exists() {
+        true => read_rows(&path)?,
+        false => Vec::new(),
     };
-    costs.iter().map(offer).collect()
+    let chains: HashMap<String, &ChainCell> =
+        chains.iter().map(|c| (chain_setting(c), c)).collect();
+    let of_chart = |kind| points.iter().filter(move |point| point.chart == kind);
+    let training: HashMap<&str, f64> = of_chart(ChartKind::Training)
+        .map(|point| (point.setting.as_str(), 1e-6 * point.cost_us))
+        .collect();
+    let offer = |point: &ChartPoint| {
+        let setting = point.setting.as_str();
+        let chain = chains.get(setting);
+        Offer {
+            cell: None,
+            setting: setting.to_owned(),
+            condition: String::new(),
+            costs: Costs {
+                decision_us: point.cost_us,
+                training_s: training.get(setting).copied().unwrap_or(f64::NAN),
+                taxels: chain.map_or(f64::NAN, |chain| chain.n_taxels as f64),
+                measurements: chain.map_or(f64::NAN, |chain| chain.measurements as f64),
+            },
+            accuracy: point.value,
+            accuracy_low: point.value_low,
+            accuracy_high: point.value_high,
+        }
+    };
+    Ok(of_chart(ChartKind::Decision).map(offer).collect())
 }

@@ -2,7 +2,8 @@
 
 use crate::report::terminal::{align, finish, ruled_table, wrap};
 use crate::report::varying::{Levels, Settings, unbroken_parts};
-use crate::study::table::Cell;
+use crate::spelling::counted;
+use crate::study::table::{Cell, PStatus};
 use crate::study::{RunComparison, RunDifference};
 use comfy_table::Table;
 
@@ -46,7 +47,10 @@ pub(super) fn verdict(comparison: &RunComparison) -> Vec<String> {
         comparison.n_first_only, comparison.n_second_only
     )];
     sentences.push(match n_tested {
-        0 => "One trial a cell: no test can tell a difference from chance.".to_owned(),
+        0 => {
+            let row = rows().find(|row| row.p_status == PStatus::TooFewTrials);
+            too_few_words(row.and_then(|row| Some((row.n_trials, row.n_trials_needed?))))
+        }
         _ => format!(
             "Better in the second than chance explains: {}; worse: {} (t-test paired over trials, corrected for their overlap, \
              p < 0.05 after Holm's correction for {n_tested} cells).",
@@ -55,6 +59,19 @@ pub(super) fn verdict(comparison: &RunComparison) -> Vec<String> {
         ),
     });
     sentences
+}
+
+/// That there are no p-values, for so many trials where so many are needed.
+pub(super) fn too_few_words(trials: Option<(usize, usize)>) -> String {
+    match trials {
+        Some((n_trials, needed)) => format!(
+            "No p-values: {} a cell are too few to tell a difference from chance; {needed} are needed.",
+            counted(n_trials, "trial")
+        ),
+        None => {
+            "No p-values: more rows are tested than trained on, or trials are missing.".to_owned()
+        }
+    }
 }
 
 /// The cells that moved most surely, at most so many, in lines of so many letters.
@@ -92,6 +109,10 @@ fn numbers(row: &RunDifference) -> [String; 4] {
         format!("{:.3}", row.first_accuracy),
         format!("{:.3}", row.second_accuracy),
         format!("{:+.3}{interval}", row.difference),
-        row.p_holm.map_or("-".to_owned(), |p| format!("{p:.3}")),
+        match (row.p_holm, row.p_status) {
+            (Some(p), _) => format!("{p:.3}"),
+            (None, PStatus::TooFewTrials) => "too few trials".to_owned(),
+            (None, _) => "-".to_owned(),
+        },
     ]
 }

@@ -6,6 +6,8 @@ use crate::study::table::Cell;
 
 /// A signal that nothing happens to.
 pub(super) const IDEAL: &str = "ideal";
+/// The same in a sentence.
+pub(super) const IDEAL_SIGNAL: &str = "an ideal signal";
 
 /// The place on a chart's axis of no converter: left of 24 bits, as if it had 32.
 const NO_CONVERTER: f64 = -5.0;

@@ -1,10 +1,9 @@
 //! The tables of a study as files, and which of them come out again.
 
 use crate::error::Result;
-use crate::report::csv_tables::csv_content;
-use crate::study::ContentHash;
+use crate::report::csv_tables::{TableHashes, csv_content};
 use serde::Serialize;
-use std::collections::BTreeMap;
+use serde::de::DeserializeOwned;
 use std::path::Path;
 
 /// Names and contents of tables, in the order of writing.
@@ -23,26 +22,21 @@ pub trait StudyTables {
     /// A table that has no such form.
     fn files(&self) -> Result<TableFiles>;
 
-    /// SHA-256 of every table without times, by its file's name: the same for the same study.
+    /// SHA-256 of every table.
     ///
     /// # Errors
     /// As of [`files`](Self::files).
-    fn repeatable_hashes(&self) -> Result<BTreeMap<String, String>> {
+    fn hashes(&self) -> Result<TableHashes> {
         let is_repeatable =
-            |name: &&'static str| Self::OF_PIECES.contains(name) || Self::OF_ALL.contains(name);
-        let files = self.files()?.into_iter();
-        let files = files.filter(|(name, _)| is_repeatable(name));
-        let hash = |content: Vec<u8>| ContentHash::default().bytes(content).hex();
-        Ok(files
-            .map(|(name, content)| (name.to_owned(), hash(content)))
-            .collect())
+            |name: &str| Self::OF_PIECES.contains(&name) || Self::OF_ALL.contains(&name);
+        Ok(TableHashes::of(self.files()?, is_repeatable))
     }
 }
 
 /// One of them.
 pub(super) fn table_file(
     name: &'static str,
-    rows: &[impl Serialize],
+    rows: &[impl Serialize + DeserializeOwned],
 ) -> Result<(&'static str, Vec<u8>)> {
     Ok((name, csv_content(Path::new(name), rows)?))
 }

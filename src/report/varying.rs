@@ -5,6 +5,7 @@
 //! signal that leave their first values one at a time share one place: their cells are told by what happens to the signal.
 
 use crate::report::axis::{AXES, Axis, AxisValue};
+use crate::report::signal_axis::IDEAL_SIGNAL;
 use crate::study::table::Cell;
 use crate::study::{IMPERFECTIONS, Imperfection};
 use std::collections::HashMap;
@@ -160,6 +161,37 @@ impl Settings {
         varying
             .filter(|levels| levels.axis != Axis::Signal)
             .chain(&self.one_at_a_time)
+    }
+
+    /// The axes that vary and are conditions of the world, each by its own.
+    pub fn conditions(&self) -> impl Iterator<Item = &Levels> {
+        let axes = self.single().chain(&self.following);
+        axes.filter(|levels| levels.axis.is_condition())
+    }
+
+    /// The condition of a cell in words; empty if the study has one. Where one thing at a time happens to the signal, that one.
+    pub fn condition_words(&self, cell: &Cell) -> String {
+        let is_ideal = |levels: &&Levels| match levels.axis {
+            Axis::Noise => cell.noise_std == 0.0,
+            Axis::Imperfection(kind) => cell.strengths().of(kind).unwrap_or(0.0) == 0.0,
+            _ => false,
+        };
+        let is_ideal = |levels: &&Levels| self.one_at_a_time.contains(*levels) && is_ideal(levels);
+        let said = self.conditions().filter(|levels| !is_ideal(levels));
+        let mut words: Vec<String> = said.map(|levels| levels.axis.phrase(cell)).collect();
+        if words.is_empty() && self.conditions().next().is_some() {
+            words.push(IDEAL_SIGNAL.to_owned());
+        }
+        words.join(", ")
+    }
+
+    /// The choices of a cell that vary in the study, in words: `classifier RBF SVM, m = 64`; empty if none varies.
+    pub fn choice_words(&self, cell: &Cell) -> String {
+        let mut axes: Vec<&Levels> = self.single().chain(&self.following).collect();
+        axes.retain(|levels| !levels.axis.is_condition());
+        axes.sort_by_key(|levels| place(levels.axis));
+        let words: Vec<String> = axes.iter().map(|levels| levels.axis.phrase(cell)).collect();
+        words.join(", ")
     }
 
     /// The axes that vary, by themselves or with others, in the order of [`AXES`].

@@ -2,7 +2,7 @@
 
 use super::evaluation::CONFIDENCE;
 use super::repeats::Paired;
-use super::table::{Cell, TrialScore};
+use super::table::{Cell, PStatus, TrialScore};
 use crate::error::{Error, Result};
 use crate::recognition::many_tests::holm_of_some;
 use serde::{Deserialize, Serialize};
@@ -25,10 +25,14 @@ pub struct RunDifference {
     pub difference_low: Option<f64>,
     /// Upper end of it; empty with one trial.
     pub difference_high: Option<f64>,
-    /// Two-sided p-value of no difference; empty with one trial.
+    /// Two-sided p-value of no difference; empty where there are too few trials for one.
     pub p_value: Option<f64>,
     /// The same after Holm's correction for all cells that are compared.
     pub p_holm: Option<f64>,
+    /// Why there is a p-value or none.
+    pub p_status: PStatus,
+    /// Trials from which on there is one (with `projections_per_split`: all of so many splits); empty where no number of them is enough.
+    pub n_trials_needed: Option<usize>,
 }
 
 impl RunDifference {
@@ -107,17 +111,19 @@ fn difference(first: &[Row], second: &[Row]) -> Result<RunDifference> {
         ));
     }
     let (ours, theirs) = paired.means();
-    let test = paired.test()?;
+    let tested = paired.tested()?;
     Ok(RunDifference {
         first_cell: first[0].0.cell,
         n_trials: paired.n_trials(),
         first_accuracy: theirs,
         second_accuracy: ours,
         difference: ours - theirs,
-        difference_low: test.map(|t| t.interval.low),
-        difference_high: test.map(|t| t.interval.high),
-        p_value: test.map(|t| t.p_value),
+        difference_low: tested.interval.map(|interval| interval.low),
+        difference_high: tested.interval.map(|interval| interval.high),
+        p_value: tested.p_value,
         p_holm: None,
+        p_status: tested.p_status,
+        n_trials_needed: tested.n_needed,
     })
 }
 

@@ -11,6 +11,7 @@
 
 use super::frames::{FrameStorage, KeyedTouches};
 use super::measurement::measure_group;
+use super::npy_numbers::{read_labels, read_matrix, read_rows};
 use super::plan::Plan;
 use super::progress::Progress;
 use super::runner::describe;
@@ -22,11 +23,10 @@ use crate::error::{Error, Result};
 use crate::files::{write_bytes, write_whole};
 use crate::recognition::dataset::{Dataset, dataset, rows};
 use crate::recognition::split::Split;
-use ndarray::{Array, Array1, Array2, ArrayBase, Data, Dimension};
-use ndarray_npy::{ReadNpyExt, ReadableElement, WritableElement, WriteNpyExt};
+use ndarray::{Array1, ArrayBase, Data, Dimension};
+use ndarray_npy::{WritableElement, WriteNpyExt};
 use serde::Serialize;
-use std::fs::File;
-use std::io::{self, BufReader};
+use std::io;
 use std::path::Path;
 
 /// Labelled measurements and the rows that one trial trains on and tests.
@@ -135,7 +135,9 @@ pub fn write_features(
     Ok(set)
 }
 
-/// Reads a folder that [`write_features`] or another program wrote; only the four arrays are needed.
+/// Reads a folder that [`write_features`] or another program wrote; only the four arrays are needed. Features may be of any type of
+/// float, integer or bool; labels and rows of any type of integer, labels of two classes also bool, and rows also a mask: a
+/// bool for each row of features.
 ///
 /// # Errors
 /// A file that is missing, has another number of dimensions or another type of elements than the table above says; a NaN
@@ -144,12 +146,12 @@ pub fn write_features(
 pub fn read_features(folder: &Path) -> Result<FeatureSet> {
     let file = |name: &str| folder.join(name);
     let path = file("features.npy");
-    let features: Array2<f64> = read_npy(&path, "n × m of float64")?;
+    let features = read_matrix(&path)?;
     let n_rows = features.nrows();
-    let labels = read_indices(&file("labels.npy"), "labels", n_rows)?;
+    let labels = read_labels(&file("labels.npy"), n_rows)?;
     let split = Split {
-        train: read_indices(&file("train.npy"), "rows", n_rows)?,
-        test: read_indices(&file("test.npy"), "rows", n_rows)?,
+        train: read_rows(&file("train.npy"), n_rows)?,
+        test: read_rows(&file("test.npy"), n_rows)?,
     };
     check_split(folder, &split, n_rows)?;
     let data = dataset(
@@ -203,47 +205,6 @@ fn whole_numbers<'a>(numbers: impl IntoIterator<Item = &'a usize>) -> Array1<i64
     numbers.into_iter().map(|&number| number as i64).collect()
 }
 
-fn read_npy<A: ReadableElement, D: Dimension>(path: &Path, what: &str) -> Result<Array<A, D>> {
-    let file = File::open(path).map_err(|error| {
-        Error::input(
-            path.display(),
-            format!("cannot be read ({error})"),
-            format!("a .npy file, {what}"),
-        )
-    })?;
-    Array::read_npy(BufReader::new(file))
-        .map_err(|error| Error::input(path.display(), error, format!("a .npy file, {what}")))
-}
-
-/// Whole numbers from 0 to below `n_rows`.
-fn read_indices(path: &Path, what: &str, n_rows: usize) -> Result<Vec<usize>> {
-    let numbers: Array1<i64> = read_npy(path, "one dimension of int64")?;
-    if numbers.is_empty() {
-        return Err(Error::input(
-            path.display(),
-            format!("no {what}"),
-            "at least one",
-        ));
-    }
-    numbers
-        .iter()
-        .enumerate()
-        .map(|(position, &number)| {
-            let index = usize::try_from(number).ok().filter(|&index| index < n_rows);
-            index.ok_or_else(|| {
-                Error::input(
-                    format!("{}, position {position}", path.display()),
-                    number,
-                    format!(
-                        "0 to {}, as there are {n_rows} rows of features",
-                        n_rows.saturating_sub(1)
-                    ),
-                )
-            })
-        })
-        .collect()
-}
-
 /// Refuses a row that is named twice: a tested row must not have been trained on, and none may count twice.
 fn check_split(folder: &Path, split: &Split, n_rows: usize) -> Result<()> {
     let mut named_in = vec![None; n_rows];
@@ -265,7 +226,8 @@ fn check_split(folder: &Path, split: &Split, n_rows: usize) -> Result<()> {
     Ok(())
 }
 
-fn find(sweep: &Sweep, number: usize) -> Result<(&Group, &Cell)> {
+/// A cell by its number, and its group.
+pub(super) fn find(sweep: &Sweep, number: usize) -> Result<(&Group, &Cell)> {
     sweep
         .groups
         .iter()

@@ -6,9 +6,9 @@ use super::human_samples::human_samples;
 use super::measurement::TouchToRead;
 use super::plan::Plan;
 use super::plan_human::HumanTouchPlan;
+use super::pose_groups::KeepTogether;
 use super::progress::Progress;
 use super::samples::Samples;
-use super::spec::GroupSpec;
 use super::sweep::Sweep;
 use super::touch_set::TouchSet;
 use crate::contact::{SkinWorkspace, press_skin};
@@ -120,7 +120,7 @@ impl TouchSet for HumanTouches {
         labels.collect()
     }
 
-    fn group_keys(&self, _kind: GroupSpec) -> Result<Array1<usize>> {
+    fn group_keys(&self, _together: &KeepTogether) -> Result<Array1<usize>> {
         let allowed = "no such key: human touches have no groups";
         Err(Error::input(
             "key recognition.keep_together",

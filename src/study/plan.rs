@@ -5,8 +5,9 @@
 use super::check::Check;
 use super::imperfection::{Imperfection, TestedOn};
 use super::plan_human::{HumanTouchPlan, no_placement};
+use super::pose_groups::KeepTogether;
 use super::repeats::Repeats;
-use super::spec::{CombineSpec, GroupSpec, StepSpec, StudySpec};
+use super::spec::{CombineSpec, StepSpec, StudySpec};
 use super::training::ChoicePlan;
 use crate::error::Result;
 use crate::recognition::ClassifierKind;
@@ -102,7 +103,7 @@ pub struct SplitPlan {
     /// Hold-out or folds.
     pub kind: SplitKind,
     /// What stays together.
-    pub keep_together: Option<GroupSpec>,
+    pub keep_together: Option<KeepTogether>,
 }
 
 /// The kind of a split.

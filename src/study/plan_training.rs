@@ -1,8 +1,9 @@
 //! Which touches train and which test, and what is wrong with those that train: checks of `[recognition]`.
 
-use super::check::Check;
+use super::check::{Check, positive};
 use super::plan::{SplitKind, SplitPlan};
-use super::spec::StudySpec;
+use super::pose_groups::KeepTogether;
+use super::spec::{RecognitionSpec, StudySpec};
 use crate::error::Result;
 
 impl Check<'_> {
@@ -76,7 +77,31 @@ impl Check<'_> {
         };
         Ok(SplitPlan {
             kind,
-            keep_together: recognition.keep_together,
+            keep_together: self.keep_together(recognition)?,
         })
+    }
+
+    /// What stays together, and how near is together where values are drawn.
+    fn keep_together(&self, recognition: &RecognitionSpec) -> Result<Option<KeepTogether>> {
+        let distance = |key: &str, given: Option<f64>, unit: f64| {
+            let Some(value) = given else {
+                return Ok(None);
+            };
+            let key = format!("recognition.{key}");
+            if recognition.keep_together.is_none() {
+                let allowed = "no such key without recognition.keep_together";
+                return Err(self.error(&key, value, allowed));
+            }
+            let value = self.value(&key, value, positive, "a positive number")?;
+            Ok(Some(unit * value))
+        };
+        let metres = distance("keep_together_mm", recognition.keep_together_mm, 1e-3)?;
+        let degree = std::f64::consts::PI / 180.0;
+        let radians = distance("keep_together_deg", recognition.keep_together_deg, degree)?;
+        Ok(recognition.keep_together.map(|kind| KeepTogether {
+            kind,
+            metres,
+            radians,
+        }))
     }
 }

@@ -78,6 +78,9 @@ pub struct Manifest {
     pub objects_sha256: BTreeMap<String, String>,
     /// SHA-256 of the tables that hold no times, by their file's name.
     pub tables_sha256: BTreeMap<String, String>,
+    /// SHA-256 of those that do, which no two runs share; empty in manifests of earlier versions.
+    #[serde(default)]
+    pub times_sha256: BTreeMap<String, String>,
     /// How the intervals and p-values of the tables are made, by table and columns.
     #[serde(default)]
     pub methods: BTreeMap<String, String>,
@@ -130,6 +133,8 @@ pub struct RunFacts {
     pub n_failed: usize,
     /// SHA-256 of the tables that hold no times, by their file's name.
     pub tables_sha256: BTreeMap<String, String>,
+    /// SHA-256 of those that do.
+    pub times_sha256: BTreeMap<String, String>,
     /// How intervals and p-values are made, by table and columns.
     pub methods: Vec<(&'static str, &'static str)>,
 }
@@ -161,6 +166,7 @@ impl Manifest {
             study_sha256: study.hex(),
             objects_sha256: identity.objects.clone(),
             tables_sha256: facts.tables_sha256,
+            times_sha256: facts.times_sha256,
             methods: facts
                 .methods
                 .into_iter()

@@ -1,14 +1,11 @@
 //! Published accuracies beside ours: which cells a claim is about, and the most accurate of them.
 
+use super::role::{agree, column_name as column, condition_numbers, most_accurate, one_of};
 use super::spec::PublishedSpec;
 use super::table::{Cell, CellScore, Published};
 use crate::error::{Error, Result};
 use std::collections::BTreeSet;
 use toml::{Table, Value};
-
-/// Numbers this close, relative to the larger, are the same setting: a ratio of 100 on 4,096 taxels is 41 measurements, which
-/// are 99.90:1. Larger, and neighbouring settings would be taken for each other; smaller, and that ratio would be refused.
-const SAME_SETTING: f64 = 1e-3;
 
 /// Every claim is an accuracy about at least one cell.
 ///
@@ -26,7 +23,7 @@ fn check(claim: &PublishedSpec, cells: &[&Cell]) -> Result<()> {
         return Err(Error::input(place("accuracy"), claim.accuracy, allowed));
     }
     // One after the other: of many cells, all rows at once would be gigabytes.
-    let rows = || cells.iter().map(|cell| columns(cell));
+    let rows = || cells.iter().map(|cell| cell.columns());
     for (key, wanted) in &claim.at {
         let of_key = || rows().filter_map(|mut row| row.remove(column(key)));
         if of_key().any(|value| agree(&value, wanted)) {
@@ -41,12 +38,12 @@ fn check(claim: &PublishedSpec, cells: &[&Cell]) -> Result<()> {
         let known: BTreeSet<String> = rows()
             .flat_map(|row| row.into_iter().map(|(k, _)| k))
             .collect();
-        let known = known.into_iter().collect();
+        let known: Vec<String> = known.into_iter().collect();
         let (given, allowed) = match values.is_empty() {
-            true => ("is no setting of this study".to_owned(), words(known)),
+            true => ("is no setting of this study".to_owned(), one_of(known)),
             false => {
-                let values = values.iter().map(ToString::to_string).collect();
-                (wanted.to_string(), words(values))
+                let values = values.iter().map(ToString::to_string);
+                (wanted.to_string(), one_of(values))
             }
         };
         return Err(Error::input(place(key), given, allowed));
@@ -61,33 +58,52 @@ fn check(claim: &PublishedSpec, cells: &[&Cell]) -> Result<()> {
     }
 }
 
-/// Each claim beside the cell with the highest mean accuracy (the first of equals) among those it is about.
+/// Each claim beside the cell with the highest mean accuracy (the first of equals) among those it is about; once for each condition
+/// that these cells have.
 pub fn compare_with_published(
     published: &[PublishedSpec],
     summary: &[(Cell, CellScore)],
 ) -> Vec<(Cell, Published)> {
-    let row = |claim: &PublishedSpec| {
-        let matching = || summary.iter().filter(|(c, _)| is_about(claim, &columns(c)));
-        let (cell, score) = matching().reduce(|best, row| {
-            if row.1.accuracy > best.1.accuracy {
-                row
-            } else {
-                best
+    let columns: Vec<Table> = summary.iter().map(|(cell, _)| cell.columns()).collect();
+    let conditions = condition_numbers(summary.iter().map(|(cell, _)| cell));
+    let n_conditions = conditions.iter().max().map_or(0, |last| last + 1);
+    let mut rows = Vec::new();
+    for claim in published {
+        let about = (0..summary.len()).filter(|&place| is_about(claim, &columns[place]));
+        let about: Vec<usize> = about.collect();
+        for condition in 0..n_conditions {
+            let within = about
+                .iter()
+                .copied()
+                .filter(|&place| conditions[place] == condition);
+            let within: Vec<usize> = within.collect();
+            let accuracies = within
+                .iter()
+                .map(|&place| (place, summary[place].1.accuracy));
+            if let Some(best) = most_accurate(accuracies) {
+                rows.push(beside(claim, &summary[best], within.len()));
             }
-        })?;
-        let ours = Published {
-            claim: claim.claim.clone(),
-            source: claim.source.clone(),
-            published_accuracy: claim.accuracy,
-            accuracy: score.accuracy,
-            accuracy_low: score.accuracy_low,
-            accuracy_high: score.accuracy_high,
-            difference: score.accuracy - claim.accuracy,
-            n_matching: matching().count(),
-        };
-        Some((cell.clone(), ours))
+        }
+    }
+    rows
+}
+
+fn beside(
+    claim: &PublishedSpec,
+    (cell, score): &(Cell, CellScore),
+    n_matching: usize,
+) -> (Cell, Published) {
+    let ours = Published {
+        claim: claim.claim.clone(),
+        source: claim.source.clone(),
+        published_accuracy: claim.accuracy,
+        accuracy: score.accuracy,
+        accuracy_low: score.accuracy_low,
+        accuracy_high: score.accuracy_high,
+        difference: score.accuracy - claim.accuracy,
+        n_matching,
     };
-    published.iter().filter_map(row).collect()
+    (cell.clone(), ours)
 }
 
 fn is_about(claim: &PublishedSpec, row: &Table) -> bool {
@@ -96,44 +112,6 @@ fn is_about(claim: &PublishedSpec, row: &Table) -> bool {
         row.get(column(key))
             .is_some_and(|value| agree(value, wanted))
     })
-}
-
-/// The cell as its columns; its number says nothing about it, and an absent C is left out.
-fn columns(cell: &Cell) -> Table {
-    let mut row = Table::try_from(cell).expect("every field of a cell has a TOML form");
-    row.remove("cell");
-    row
-}
-
-fn column(key: &str) -> &str {
-    match key {
-        "noise" => "noise_std",
-        other => other,
-    }
-}
-
-fn agree(value: &Value, wanted: &Value) -> bool {
-    match (number(value), number(wanted)) {
-        (Some(a), Some(b)) => (a - b).abs() <= SAME_SETTING * a.abs().max(b.abs()),
-        _ => value == wanted,
-    }
-}
-
-fn number(value: &Value) -> Option<f64> {
-    value
-        .as_float()
-        .or_else(|| value.as_integer().map(|integer| integer as f64))
-}
-
-/// The values, each once.
-fn words(mut values: Vec<String>) -> String {
-    let mut seen: Vec<String> = Vec::new();
-    values.retain(|value| {
-        let is_new = !seen.contains(value);
-        seen.push(value.clone());
-        is_new
-    });
-    format!("one of {}", values.join(", "))
 }
 
 #[cfg(test)]
@@ -182,25 +160,32 @@ mod tests {
     }
 
     #[test]
-    fn a_claim_stands_beside_the_most_accurate_of_the_cells_with_its_settings() {
+    fn a_claim_stands_beside_the_most_accurate_of_the_cells_with_its_settings_in_each_condition() {
         let summary = summary();
-        for (keys, cell, n_matching) in [
-            ("", 7, 8),
-            ("noise = 0.0", 3, 4),
-            ("noise_std = 0", 3, 4),
-            ("classifier = \"linear_svm\"", 5, 4),
-            ("classifier = \"linear_svm\"\nratio = 64\nnoise = 0.1", 4, 1),
-            ("ratio = 100.0\nc = 1.0", 5, 2), // a ratio as it was asked for
-            ("measurements = 64\nnoise = 0.0", 2, 2),
+        for (keys, cells, n_matching) in [
+            ("", &[3, 7][..], 4),
+            ("noise = 0.0", &[3], 4),
+            ("noise_std = 0", &[3], 4),
+            ("classifier = \"linear_svm\"", &[1, 5], 2),
+            (
+                "classifier = \"linear_svm\"\nratio = 64\nnoise = 0.1",
+                &[4],
+                1,
+            ),
+            ("ratio = 100.0\nc = 1.0", &[1, 5], 1), // a ratio as it was asked for
+            ("measurements = 64\nnoise = 0.0", &[2], 2),
         ] {
-            let cells: Vec<&Cell> = summary.iter().map(|(cell, _)| cell).collect();
+            let all: Vec<&Cell> = summary.iter().map(|(cell, _)| cell).collect();
             let claims = [claim(keys)];
-            check_published(&claims, &cells).unwrap();
+            check_published(&claims, &all).unwrap();
             let found = compare_with_published(&claims, &summary);
-            let (ours, row) = &found[0];
-            assert_eq!((ours.cell, row.n_matching), (cell, n_matching), "{keys}");
-            assert_eq!(row.accuracy, summary[cell].1.accuracy);
-            assert_eq!(row.difference, row.accuracy - 0.9);
+            let of_cells: Vec<usize> = found.iter().map(|(cell, _)| cell.cell).collect();
+            assert_eq!(of_cells, cells, "{keys}");
+            for (cell, row) in found {
+                assert_eq!(row.n_matching, n_matching, "{keys}");
+                assert_eq!(row.accuracy, summary[cell.cell].1.accuracy);
+                assert_eq!(row.difference, row.accuracy - 0.9);
+            }
         }
     }
 

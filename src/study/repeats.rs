@@ -3,9 +3,12 @@
 use super::check::Check;
 use super::evaluation::CONFIDENCE;
 use super::spec::StudySpec;
-use super::table::{Cell, TrialScore};
+use super::table::{Cell, PStatus, TrialScore};
 use crate::error::Result;
-use crate::recognition::comparison::{Comparison, TrialSize, compare, compare_crossed};
+use crate::recognition::comparison::{
+    Comparison, TrialSize, compare, compare_crossed, trials_needed,
+};
+use crate::recognition::interval::Interval;
 use ndarray::Array2;
 use std::collections::BTreeSet;
 
@@ -94,6 +97,18 @@ pub fn accuracies(trials: &[&TrialScore]) -> Option<Array2<f64>> {
     Array2::from_shape_vec((n_splits, n_projections), values).ok()
 }
 
+/// What a test of two cells says.
+pub struct Tested {
+    /// Whether there is a p-value.
+    pub p_status: PStatus,
+    /// It.
+    pub p_value: Option<f64>,
+    /// Of the difference.
+    pub interval: Option<Interval>,
+    /// Trials from which on there is one: where they are crossed, all projections of so many splits.
+    pub n_needed: Option<usize>,
+}
+
 /// Scores of two cells, in the trials that both have.
 pub struct Paired<'a> {
     ours: Vec<&'a TrialScore>,
@@ -134,8 +149,38 @@ impl<'a> Paired<'a> {
         (mean(&self.ours), mean(&self.theirs))
     }
 
+    /// The test of no difference, if there are trials enough for one.
+    pub fn tested(&self) -> Result<Tested> {
+        let n_needed = trials_needed(self.size, CONFIDENCE)?;
+        let mut splits: Vec<usize> = self
+            .ours
+            .iter()
+            .map(|t| t.split.unwrap_or(t.trial))
+            .collect();
+        splits.sort_unstable();
+        splits.dedup();
+        let is_enough = n_needed.is_some_and(|needed| splits.len() >= needed);
+        let n_projections = self
+            .ours
+            .len()
+            .checked_div(splits.len())
+            .unwrap_or(1)
+            .max(1);
+        let test = self.test()?;
+        Ok(Tested {
+            p_status: match (&test, is_enough) {
+                (_, false) => PStatus::TooFewTrials,
+                (None, true) => PStatus::TrialsMissing,
+                (Some(_), true) => PStatus::Tested,
+            },
+            p_value: test.filter(|_| is_enough).map(|test| test.p_value),
+            interval: test.map(|test| test.interval),
+            n_needed: n_needed.map(|n_splits| n_splits * n_projections),
+        })
+    }
+
     /// Ours less theirs; `None` for a single trial, and for crossed trials of which some are missing.
-    pub fn test(&self) -> Result<Option<Comparison>> {
+    fn test(&self) -> Result<Option<Comparison>> {
         let scores = (accuracies(&self.ours), accuracies(&self.theirs));
         let (Some(ours), Some(theirs)) = scores else {
             return Ok(None);

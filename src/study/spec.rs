@@ -153,9 +153,17 @@ pub struct RecognitionSpec {
     /// Instead of `test_fraction`: k of a k-fold split; `trials` is then a multiple of k.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub folds: Option<usize>,
-    /// Touches that share this are never on both sides of the split.
+    /// Touches that share this (`pose`, `offset`, `yaw`, `tilt`, `rest` or `depth`) are never on both sides of the split. Where its
+    /// values are drawn (`{ uniform = … }`), touches of an object that neighbours connect stay together: those nearer than the next
+    /// two keys say, on each drawn axis.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub keep_together: Option<GroupSpec>,
+    /// Drawn offsets and depths nearer than this are neighbours.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub keep_together_mm: Option<f64>,
+    /// Drawn yaws and tilts nearer than this are neighbours.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub keep_together_deg: Option<f64>,
 }
 
 /// `[report]`

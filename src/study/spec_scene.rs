@@ -10,7 +10,7 @@ use std::path::PathBuf;
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ObjectsSpec {
-    /// Sets of solids: built-in names (`household`, `balls`, `boxes`, `cans`) or TOML files.
+    /// Sets of solids: built-in names (`household`, `balls`, `boxes`, `cans`, `hands`) or TOML files.
     #[serde(default)]
     pub sets: Vec<String>,
     /// Only these objects of the sets and meshes; all when left out.

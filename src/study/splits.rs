@@ -1,16 +1,12 @@
 //! Which touches train and which test, trial by trial, and whether they are enough for what is asked of them.
 
 use super::plan::{Plan, SplitKind};
-use super::simulation::TouchedObject;
-use super::spec::GroupSpec;
 use crate::error::{Error, Result};
 use crate::random::Seed;
 use crate::recognition::split::{
     Split, group_hold_out, group_k_fold, stratified_hold_out, stratified_k_fold,
 };
-use crate::world::TouchAxis;
 use ndarray::Array1;
-use std::collections::BTreeMap;
 
 /// The split of all touches in a trial.
 pub fn draw_split(
@@ -114,26 +110,4 @@ fn fewest_per_object<'a>(
         counts.into_iter().min().unwrap_or(0)
     });
     fewest.min().unwrap_or(0)
-}
-
-/// One group number a touch: touches with the same values on the grouping axes share it, whatever their object.
-pub fn group_keys(touched: &[TouchedObject], kind: GroupSpec) -> Result<Array1<usize>> {
-    use TouchAxis::{Depth, OffsetX, OffsetY, Rest, TiltX, TiltY, Yaw};
-    let axes: &[TouchAxis] = match kind {
-        GroupSpec::Pose => &[Rest, OffsetX, OffsetY, Yaw, TiltX, TiltY],
-        GroupSpec::Offset => &[OffsetX, OffsetY],
-        GroupSpec::Yaw => &[Yaw],
-        GroupSpec::Tilt => &[TiltX, TiltY],
-        GroupSpec::Rest => &[Rest],
-        GroupSpec::Depth => &[Depth],
-    };
-    let mut numbers = BTreeMap::new();
-    touched
-        .iter()
-        .flat_map(|t| &t.touches)
-        .map(|touch| {
-            let next = numbers.len();
-            Ok(*numbers.entry(touch.group(axes)?).or_insert(next))
-        })
-        .collect()
 }

@@ -3,6 +3,7 @@
 use super::evaluation::CONFIDENCE;
 use super::pareto::{Choice, unbeaten};
 use super::repeats::{Paired, accuracies};
+use super::role::{condition_numbers, most_accurate};
 use super::table::{
     Cell, CellScore, Comparison, Confused, Confusion, Pareto, TrialScore, TrialTime,
 };
@@ -61,21 +62,20 @@ fn mean(trials: &[Row], value: fn(&TrialScore) -> f64) -> f64 {
     trials.iter().map(|(_, t)| value(t)).sum::<f64>() / trials.len() as f64
 }
 
-/// Every cell against the one with the highest mean accuracy (the first of equals), paired trial by trial.
+/// Every cell against the one with the highest mean accuracy in its condition (the first of equals), paired trial by trial.
 pub fn compare_with_best(rows: &[Row]) -> Result<Vec<Comparison>> {
     let cells: Vec<&[Row]> = rows.chunk_by(|a, b| a.0.cell == b.0.cell).collect();
-    let accuracy = |trials: &[Row]| mean(trials, |t| t.accuracy);
-    let best = cells.iter().copied().reduce(|best, trials| {
-        if accuracy(trials) > accuracy(best) {
-            trials
-        } else {
-            best
-        }
+    let conditions = condition_numbers(cells.iter().map(|trials| &trials[0].0));
+    let n_conditions = conditions.iter().max().map_or(0, |last| last + 1);
+    let mut of_condition: Vec<Vec<(usize, f64)>> = vec![Vec::new(); n_conditions];
+    for (place, trials) in cells.iter().enumerate() {
+        of_condition[conditions[place]].push((place, mean(trials, |t| t.accuracy)));
+    }
+    let best: Vec<Option<usize>> = of_condition.into_iter().map(most_accurate).collect();
+    let compared = cells.iter().zip(&conditions).map(|(trials, &condition)| {
+        let best = best[condition].expect("a condition has the cell that has it");
+        against(trials, cells[best])
     });
-    let Some(best) = best else {
-        return Ok(Vec::new());
-    };
-    let compared = cells.iter().map(|trials| against(trials, best));
     let mut table = compared.collect::<Result<Vec<_>>>()?;
     let is_other = |row: &Comparison| row.cell != row.best_cell;
     let p_values = table
@@ -95,16 +95,18 @@ fn against(trials: &[Row], best: &[Row]) -> Result<Comparison> {
         0 => (mean(trials, |t| t.accuracy), mean(best, |t| t.accuracy)),
         _ => paired.means(),
     };
-    let test = paired.test()?;
+    let tested = paired.tested()?;
     Ok(Comparison {
         cell: trials[0].0.cell,
         best_cell: best[0].0.cell,
         n_trials: paired.n_trials(),
         difference: ours - theirs,
-        difference_low: test.map(|t| t.interval.low),
-        difference_high: test.map(|t| t.interval.high),
-        p_value: test.map(|t| t.p_value),
+        difference_low: tested.interval.map(|interval| interval.low),
+        difference_high: tested.interval.map(|interval| interval.high),
+        p_value: tested.p_value,
         p_holm: None,
+        p_status: tested.p_status,
+        n_trials_needed: tested.n_needed,
     })
 }
 
@@ -172,25 +174,15 @@ pub fn pareto(rows: &[Row], times: &[(Cell, TrialTime)]) -> Vec<(Cell, Pareto)> 
     table
 }
 
-/// For each cell, whether no cell with the same noise and the same imperfections beats it.
+/// For each cell, whether no cell of the same condition beats it.
 fn on_front(table: &[(Cell, Pareto)], cost: fn(&Pareto) -> f64) -> Vec<bool> {
-    let mut worlds = Vec::new();
-    let choices: Vec<Choice> = table
-        .iter()
-        .map(|(cell, row)| {
-            let world = (cell.noise_std, cell.strengths());
-            let known = worlds.iter().position(|known| *known == world);
-            let level = known.unwrap_or(worlds.len());
-            if known.is_none() {
-                worlds.push(world);
-            }
-            Choice {
-                level: level as f64,
-                costs: [-row.accuracy, cost(row)],
-            }
-        })
-        .collect();
-    unbeaten(&choices)
+    let conditions = condition_numbers(table.iter().map(|(cell, _)| cell));
+    let choices = table.iter().zip(conditions);
+    let choices = choices.map(|((_, row), condition)| Choice {
+        level: condition as f64,
+        costs: [-row.accuracy, cost(row)],
+    });
+    unbeaten(&choices.collect::<Vec<_>>())
 }
 
 #[cfg(test)]

@@ -105,7 +105,8 @@ impl Sweep {
         let keys = plan
             .split
             .keep_together
-            .map(|kind| touched.group_keys(kind))
+            .as_ref()
+            .map(|together| touched.group_keys(together))
             .transpose()?;
         let splits = (0..plan.spec.trials)
             .map(|trial| draw_split(plan, &labels, keys.as_ref(), trial))

@@ -96,6 +96,11 @@ impl Cell {
             .map_or(all, |kind| kind.n_features(n_frames, m))
     }
 
+    /// Numbers that are read for one decision: measurements of each frame of each fused touch.
+    pub fn measurements_of_decision(&self) -> usize {
+        self.measurements * self.frames * self.fused_touches
+    }
+
     /// What the skin and its reader do to the signal.
     pub fn strengths(&self) -> Strengths {
         let strength = |imperfection| match imperfection {
@@ -211,8 +216,8 @@ pub struct Confused {
     pub share: f64,
 }
 
-/// A published accuracy beside ours (with the [`Cell`] before it, the most accurate of those it is about: a row of
-/// `published.csv`).
+/// A published accuracy beside ours (with the [`Cell`] before it, the most accurate of those it is about in a condition: a row of
+/// `published.csv`). A claim has a row for each condition that its cells have.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Published {
     /// What was claimed, in words.
@@ -229,16 +234,16 @@ pub struct Published {
     pub accuracy_high: f64,
     /// `accuracy − published_accuracy`.
     pub difference: f64,
-    /// Cells that the claim is about.
+    /// Cells that the claim is about, in this condition.
     pub n_matching: usize,
 }
 
-/// A cell against the best cell, paired over trials: a row of `comparison.csv`.
+/// A cell against the best cell of its condition, paired over trials: a row of `comparison.csv`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Comparison {
     /// Number of the cell.
     pub cell: usize,
-    /// Number of the cell it is compared with: the one with the highest mean accuracy.
+    /// Number of the cell it is compared with: the one with the highest mean accuracy in the same condition.
     pub best_cell: usize,
     /// Trials both have.
     pub n_trials: usize,
@@ -248,11 +253,31 @@ pub struct Comparison {
     pub difference_low: Option<f64>,
     /// Upper end of it; empty with one trial.
     pub difference_high: Option<f64>,
-    /// Two-sided p-value of no difference; empty with one trial.
+    /// Two-sided p-value of no difference; empty where there are too few trials for one.
     pub p_value: Option<f64>,
-    /// The same after Holm's correction for all cells but the best; empty for that one.
+    /// The same after Holm's correction for all cells but the best ones; empty for those.
     #[serde(default)]
     pub p_holm: Option<f64>,
+    /// Why there is a p-value or none.
+    #[serde(default)]
+    pub p_status: PStatus,
+    /// [Trials from which on](crate::recognition::comparison::trials_needed) there is one (with `projections_per_split`: all of so many splits);
+    /// empty where no number of them is enough, because too many rows are tested.
+    #[serde(default)]
+    pub n_trials_needed: Option<usize>,
+}
+
+/// Whether a comparison has a p-value.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum PStatus {
+    /// It has; so have all tables of earlier versions.
+    #[default]
+    Tested,
+    /// Too few trials: the test could call next to no difference significant.
+    TooFewTrials,
+    /// Crossed trials of which some failed.
+    TrialsMissing,
 }
 
 /// What a trial of a cell cost (with the [`Cell`] before it: a row of `timing.csv`).
@@ -270,8 +295,8 @@ pub struct TrialTime {
 
 /// What a cell's accuracy costs (with the [`Cell`] before it: a row of `pareto.csv`).
 ///
-/// A cell is on a front if no cell with the same noise and imperfections is at least as accurate in at most the same time and
-/// better in one of the two. These are the world's doing; all other settings are choices.
+/// A cell is on a front if no cell of the same [condition](crate::study::Role::Condition) is at least as accurate in at most the same
+/// time and better in one of the two.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Pareto {
     /// Mean accuracy over trials.

@@ -3,6 +3,7 @@
 use super::evaluation::Evaluation;
 use super::finished::Finished;
 use super::job::FinishedCell;
+use super::role::most_accurate;
 use super::summary::{compare_with_best, most_confused, pareto, summarise};
 use super::table::{Cell, Confusion, Failure, Tables};
 use super::variance_table::variances;
@@ -52,8 +53,10 @@ fn fill(tables: &mut Tables, scored: Vec<(Cell, Evaluation)>, names: &[&str]) ->
     tables.summary = summarise(&tables.accuracy)?;
     tables.variance = variances(&tables.accuracy)?;
     tables.comparison = compare_with_best(&tables.accuracy)?;
-    if let Some(row) = tables.comparison.first() {
-        tables.confused = most_confused(&tables.confusion, row.best_cell);
+    let accuracies = tables.summary.iter();
+    let accuracies = accuracies.map(|(cell, score)| (cell.cell, score.accuracy));
+    if let Some(best) = most_accurate(accuracies) {
+        tables.confused = most_confused(&tables.confusion, best);
     }
     tables.pareto = pareto(&tables.accuracy, &tables.timing);
     Ok(())

@@ -2,22 +2,33 @@
 //!
 //! | file | holds |
 //! |---|---|
-//! | `frames.npy` | n × ny × nx, f32, metres of deflection |
+//! | `frames.npy` | n × ny × nx, f32, metres of deflection, without noise; or as a cell reads them |
 //! | `labels.npy` | n, i64: the object's number |
 //! | `poses.npy` | n × 7, f64: the object in the patch frame when it is read: x, y, z in metres, quaternion x, y, z, w |
 //! | `depths.npy` | n, f64: metres past first contact |
 //! | `touches.csv` | one row a touch: object, resting pose, offset, yaw, tilts, depth, taxels touched and saturated |
 //! | `objects.csv` | one row an object: number, name, spheres (0 of a mesh), touches |
+//!
+//! Deflections are what the press gives: no noise, no smoothing, none of the sensor errors of `[signal]`. Frames as a cell reads them
+//! ([`ReadFrames`]) have all of these, in metres or, with the step `force`, in newtons; only `frames.npy` differs.
 
+use super::feature_files::find;
+use super::frames::{FrameStorage, KeyedTouches};
+use super::measurement::measure_group;
+use super::plan::Plan;
 use super::progress::Progress;
 use super::runner::describe;
 use super::simulation::touch_stream;
+use super::sweep::{Group, Sweep};
+use super::touch_set::TouchSet;
 use crate::contact::{Workspace, press_to_depth};
 use crate::error::Result;
 use crate::files::{CsvFile, WholeFile};
 use crate::objects::Object;
 use crate::random::Seed;
+use crate::sensing::Ensemble;
 use crate::world::{Patch, Placement, RestPose, Scene, Touch, TouchSource};
+use ndarray::Array2;
 use ndarray_npy::{WritableElement, write_zeroed_npy};
 use rayon::prelude::*;
 use serde::Serialize;
@@ -60,7 +71,65 @@ struct Reading {
     n_saturated: usize,
 }
 
-/// Simulates all touches of an array and writes them into a folder that exists; returns how many.
+/// The deepest frame of every touch as a cell reads it in one trial: what its measurements are made of.
+pub struct ReadFrames {
+    /// The cell's array, by its number in the plan.
+    pub array: usize,
+    /// n_touches · F rows of n_taxels; the deepest frame of a touch is the last of its F.
+    values: Array2<f64>,
+    n_frames: usize,
+}
+
+impl ReadFrames {
+    /// Simulates and reads all touches; held in memory at once.
+    ///
+    /// # Errors
+    /// A cell or a trial that the study does not have; what a signal step refuses.
+    pub fn of_cell(
+        plan: &Plan,
+        sweep: &Sweep,
+        touched: &dyn TouchSet,
+        (cell, trial): (usize, usize),
+        progress: &dyn Progress,
+    ) -> Result<Self> {
+        let (group, cell) = find(sweep, cell)?;
+        let split = sweep.split(plan, cell, trial)?;
+        let patch = &plan.arrays[group.array];
+        let storage = FrameStorage::in_memory();
+        progress.stage(
+            &format!("read {}", describe(patch)),
+            sweep.labels.len() as u64,
+        );
+        let frames =
+            storage.frames(&KeyedTouches::new(touched), (patch, group.frames), progress)?;
+        // What the identity measures are the frames themselves.
+        let identity = Group {
+            ensemble: Ensemble::Identity,
+            ..group.clone()
+        };
+        let n_taxels = patch.grid.n_taxels();
+        let read = measure_group(
+            plan,
+            &identity,
+            (touched, &frames),
+            (trial, &split),
+            n_taxels,
+        )?;
+        Ok(Self {
+            array: group.array,
+            values: read.values,
+            n_frames: group.frames,
+        })
+    }
+
+    fn frame(&self, touch: usize) -> Vec<f32> {
+        let deepest = self.values.row((touch + 1) * self.n_frames - 1);
+        deepest.iter().map(|&value| value as f32).collect()
+    }
+}
+
+/// Simulates all touches of an array and writes them into a folder that exists, with frames as they were `read` if these are given;
+/// returns how many.
 ///
 /// # Errors
 /// What [`TouchSource::new`] refuses; a file that cannot be written.
@@ -68,8 +137,8 @@ pub fn write_touches(
     folder: &Path,
     objects: &[Object],
     placement: &Placement,
-    seed: &Seed,
-    patch: &Patch,
+    (seed, patch): (&Seed, &Patch),
+    read: Option<&ReadFrames>,
     progress: &dyn Progress,
 ) -> Result<usize> {
     let rests: Vec<Vec<RestPose>> = objects
@@ -96,15 +165,18 @@ pub fn write_touches(
         for first in (0..source.n_touches()).step_by(BLOCK) {
             let numbers = first..source.n_touches().min(first + BLOCK);
             let n_block = numbers.len() as u64;
-            let block: Vec<(Touch, Reading)> = numbers
+            let mut block: Vec<(Touch, Reading)> = numbers
                 .into_par_iter()
                 .map_init(Workspace::new, |workspace, number| {
                     let touch = source.touch(number);
-                    let reading = read(&scene, &rests[touch.rest], &touch, workspace);
+                    let reading = pressed(&scene, &rests[touch.rest], &touch, workspace);
                     (touch, reading)
                 })
                 .collect();
-            for (touch, reading) in &block {
+            for (touch, reading) in &mut block {
+                if let Some(read) = read {
+                    reading.frame = read.frame(files.n_written);
+                }
                 files.add(label, &object.name, touch, reading)?;
             }
             progress.advance(n_block);
@@ -115,7 +187,7 @@ pub fn write_touches(
     Ok(n_touches)
 }
 
-fn read(scene: &Scene, rest: &RestPose, touch: &Touch, workspace: &mut Workspace) -> Reading {
+fn pressed(scene: &Scene, rest: &RestPose, touch: &Touch, workspace: &mut Workspace) -> Reading {
     let mut pose = touch.patch_from_object(rest);
     let contact = press_to_depth(scene, &[pose], touch.depth, workspace);
     pose.translation.z -= contact.map_or(0.0, |c| c.travel);

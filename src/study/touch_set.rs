@@ -5,11 +5,10 @@ use super::estimate::{PLACE_SPHERE_S, PLACE_TRIANGLE_S};
 use super::frames::{FrameWriter, Frames};
 use super::measurement::{TouchToRead, touches_of_study};
 use super::plan::Plan;
+use super::pose_groups::KeepTogether;
 use super::progress::Progress;
 use super::samples::{Samples, sample_frames};
 use super::simulation::{TouchedObject, simulate_into, touch_labels};
-use super::spec::GroupSpec;
-use super::splits::group_keys;
 use super::sweep::Sweep;
 use crate::contact::saturation_limit;
 use crate::error::Result;
@@ -29,7 +28,7 @@ pub trait TouchSet: Sync {
     fn labels(&self) -> Array1<usize>;
 
     /// Group of every touch, for splits that keep groups together; the error says that these touches have no such groups.
-    fn group_keys(&self, kind: GroupSpec) -> Result<Array1<usize>>;
+    fn group_keys(&self, together: &KeepTogether) -> Result<Array1<usize>>;
 
     /// Makes what all touches need on all threads now; the first touches would make it one after the other.
     fn prepare(&self) {}
@@ -83,8 +82,8 @@ impl TouchSet for Vec<TouchedObject> {
         touch_labels(self)
     }
 
-    fn group_keys(&self, kind: GroupSpec) -> Result<Array1<usize>> {
-        group_keys(self, kind)
+    fn group_keys(&self, together: &KeepTogether) -> Result<Array1<usize>> {
+        together.groups(self)
     }
 
     fn prepare(&self) {

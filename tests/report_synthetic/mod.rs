@@ -8,8 +8,8 @@ use bubbletouch::sensing::Ensemble;
 use bubbletouch::signal::NoiseUnit;
 use bubbletouch::signal::Quantity;
 use bubbletouch::study::table::{
-    Cell, CellScore, Comparison, Confused, Confusion, Pareto, Published, StageTime, Tables,
-    TrialScore, TrialTime,
+    Cell, CellScore, Comparison, Confused, Confusion, PStatus, Pareto, Published, StageTime,
+    Tables, TrialScore, TrialTime,
 };
 use ndarray::Array2;
 
@@ -375,27 +375,40 @@ fn object_name(object: usize) -> String {
 }
 
 fn add_comparison(tables: &mut Tables, n_trials: usize) {
-    let best = tables.summary.iter().fold(0, |best, (cell, score)| {
-        if score.accuracy > tables.summary[best].1.accuracy {
-            cell.cell
-        } else {
-            best
-        }
-    });
+    let best_of = |noise_std: f64| {
+        let rows = tables.summary.iter();
+        let mut rows = rows.filter(|(cell, _)| cell.noise_std == noise_std);
+        let first = rows.next().expect("the cell itself");
+        let better = |best: &'_ (Cell, CellScore), row: &'_ (Cell, CellScore)| {
+            row.1.accuracy > best.1.accuracy
+        };
+        rows.fold(
+            first,
+            |best, row| if better(best, row) { row } else { best },
+        )
+    };
+    let mut comparison = Vec::new();
     for (cell, score) in &tables.summary {
-        let difference = score.accuracy - tables.summary[best].1.accuracy;
+        let (best, best_score) = best_of(cell.noise_std);
+        let difference = score.accuracy - best_score.accuracy;
         let several = n_trials > 1;
-        tables.comparison.push(Comparison {
+        comparison.push(Comparison {
             cell: cell.cell,
-            best_cell: best,
+            best_cell: best.cell,
             n_trials,
             difference,
             difference_low: several.then_some(difference - 0.01),
             difference_high: several.then_some(difference + 0.01),
             p_value: several.then_some((-100.0 * difference.abs()).exp()),
             p_holm: None,
+            p_status: match several {
+                true => PStatus::Tested,
+                false => PStatus::TooFewTrials,
+            },
+            n_trials_needed: Some(2),
         });
     }
+    tables.comparison = comparison;
 }
 
 fn wilson(p: f64, n: usize) -> (f64, f64) {

@@ -31,6 +31,18 @@ impl Study {
         }
     }
 
+    /// What is said of a study that cannot be laid out.
+    pub fn error(text: &str) -> String {
+        let laid_out = || {
+            let spec = StudySpec::parse("study.toml", text)?;
+            let plan = Plan::new("study.toml", spec)?;
+            let objects = load_objects(&plan.spec.objects, None)?;
+            let touched = draw_touches(objects, &plan.placement, &Seed::new(plan.spec.seed))?;
+            Sweep::new(&plan, &touched).map(|_| ())
+        };
+        laid_out().expect_err("it is refused").to_string()
+    }
+
     pub fn estimate(&self) -> Estimate {
         let memory = MemoryPlan::new(&self.plan, &self.sweep, self.touched.len(), None).unwrap();
         Estimate::new(&self.plan, &self.touched, &self.sweep, &memory)

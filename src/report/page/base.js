@@ -4,6 +4,7 @@ const study = JSON.parse(document.getElementById("study").textContent);
 const { axes, cells } = study;
 const allCells = cells.accuracy.map((_, place) => place);
 const free = axes.map((_, axis) => axis).filter((axis) => !axes[axis].follows);
+const severalConditions = study.conditions.length > 1;
 const MINUS = "\u2212";
 
 /** Four digits that count, as everywhere in the report. */
@@ -38,9 +39,22 @@ function place(cell) {
   return axes.map((axis, number) => axis.phrases[levelOf(number, cell)]).join(" · ");
 }
 
+/** Those of them that a designer decides. */
+function choicesOf(cell) {
+  const phrases = axes.map((axis, number) => (axis.condition ? null : axis.phrases[levelOf(number, cell)]));
+  return phrases.filter((phrase) => phrase !== null).join(" · ");
+}
+
 function accuracyText(cell) {
   const [value, low, high] = [cells.accuracy, cells.low, cells.high].map((column) => column[cell].toFixed(3));
   return `${value} [${low}, ${high}]`;
+}
+
+/** Cells by their condition, in the order of the study's. */
+function byCondition(shown) {
+  const found = study.conditions.map(() => []);
+  for (const cell of shown) found[cells.condition[cell]].push(cell);
+  return found.filter((condition) => condition.length > 0);
 }
 
 /** What a reader wants to know of a cell, a line each. */
@@ -51,10 +65,10 @@ function describe(cell) {
     `n = ${cells.n_test[cell]} test decisions` + (trials > 1 ? `, mean of ${trials} trials` : ""),
   ];
   const difference = cells.difference[cell];
-  if (cell === study.best) lines.push("the best cell");
+  if (cell === cells.best[cell]) lines.push(severalConditions ? "the best cell of its condition" : "the best cell");
   else if (difference !== null) {
     const p = cells.p[cell];
-    lines.push(`${signed(difference, 3)} to the best` + (p === null ? "" : `, ${study.p} ${p < 0.001 ? "< 0.001" : "= " + p.toFixed(3)}`));
+    lines.push(`${signed(difference, 3)} to the best` + (p === null ? (study.too_few_trials ? ", too few trials for p" : "") : `, ${study.p} ${p < 0.001 ? "< 0.001" : "= " + p.toFixed(3)}`));
   }
   if (cells.decide_us[cell] !== null) {
     lines.push(`${duration(1e-6 * cells.decide_us[cell])} a decision, ${duration(cells.fit_s[cell])} to train`);

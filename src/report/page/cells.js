@@ -41,8 +41,8 @@ class CellTable {
   }
 
   rank(cell) {
-    if (cell === study.best) return 0;
-    return cells.accuracy[cell] >= cells.low[study.best] ? 1 : 2;
+    if (cell === cells.best[cell]) return 0;
+    return cells.accuracy[cell] >= cells.low[cells.best[cell]] ? 1 : 2;
   }
 
   head(column, number) {
@@ -83,7 +83,7 @@ class CellTable {
   }
 
   row(cell) {
-    const row = make("tr", { class: cell === study.best ? "best" : null });
+    const row = make("tr", { class: cell === cells.best[cell] ? "best" : null });
     for (const column of this.columns) row.append(make("td", { class: column.setting ? "word" : null }, column.text(cell)));
     return row;
   }

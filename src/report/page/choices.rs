@@ -1,6 +1,7 @@
-//! What to choose: the most accurate cell, and the cheapest of those that reach its interval.
+//! What to choose in each condition of the world: the most accurate cell, and the cheapest of those that reach its interval.
 
-use crate::report::answer::{Answer, accuracy_sentence};
+use crate::report::answer::{Answer, Finding, accuracy_sentence};
+use crate::report::drawing::escape;
 use crate::report::page::frame::unbroken;
 use crate::report::time_scale::time_words;
 use crate::study::table::{Cell, CellScore, Pareto, Tables};
@@ -18,52 +19,66 @@ pub(super) fn choices_html(tables: &Tables, answer: &Answer) -> String {
     let scores: HashMap<usize, &CellScore> =
         tables.summary.iter().map(|(c, s)| (c.cell, s)).collect();
     let costs: HashMap<usize, &Pareto> = tables.pareto.iter().map(|(c, p)| (c.cell, p)).collect();
-    let mut html = "<p class=\"quiet\">“As good” means that the mean accuracy lies within the 95 % interval of the most accurate \
-         cell; noise and imperfections are those of that cell; times are of this machine, its touches measured.</p><div class=\"wide words\" tabindex=\"0\" role=\"region\" \
-         aria-label=\"What to choose\"><table><thead><tr><th scope=\"col\">if you want</th><th scope=\"col\">choose</th>\
+    let has_conditions = answer.findings.len() > 1;
+    let given = match has_conditions {
+        true => "<th scope=\"col\">with</th>",
+        false => "",
+    };
+    let mut html = format!(
+        "<p class=\"quiet\">“As good” means that the mean accuracy lies within the 95 % interval of the most accurate cell of the same \
+         condition: noise and sensor errors are given, not chosen. Times are of this machine, its touches measured.</p>\
+         <div class=\"wide words\" tabindex=\"0\" role=\"region\" aria-label=\"What to choose\"><table><thead><tr>{given}\
+         <th scope=\"col\">if you want</th><th scope=\"col\">choose</th>\
          <th scope=\"col\" class=\"number\">accuracy [95 %]</th><th scope=\"col\" class=\"number\">a decision</th>\
          <th scope=\"col\" class=\"number\">to train</th></tr></thead><tbody>"
-        .to_owned();
-    for (reason, cell) in choices(tables, answer) {
-        let score = scores.get(&cell.cell).map(|score| accuracy_sentence(score));
-        let cost = costs.get(&cell.cell);
-        let decide = cost.map(|cost| time_words(1e-6 * cost.predict_us_per_decision));
-        let fit = cost.map(|cost| time_words(cost.fit_s));
-        let _ = write!(
-            html,
-            "<tr><td>{reason}</td><td>{} (cell {})</td><td class=\"number\">{}</td><td class=\"number\">{}</td>\
-             <td class=\"number\">{}</td></tr>",
-            unbroken(&answer.place(cell)),
-            cell.cell,
-            score.unwrap_or_default(),
-            decide.unwrap_or_default(),
-            fit.unwrap_or_default()
-        );
+    );
+    for finding in &answer.findings {
+        for (reason, cell) in choices(tables, answer, finding) {
+            let score = scores.get(&cell.cell).map(|score| accuracy_sentence(score));
+            let cost = costs.get(&cell.cell);
+            let decide = cost.map(|cost| time_words(1e-6 * cost.predict_us_per_decision));
+            let fit = cost.map(|cost| time_words(cost.fit_s));
+            let given = match has_conditions {
+                true => format!("<td>{}</td>", escape(&finding.condition)),
+                false => String::new(),
+            };
+            let _ = write!(
+                html,
+                "<tr>{given}<td>{reason}</td><td>{} (cell {})</td><td class=\"number\">{}</td><td class=\"number\">{}</td>\
+                 <td class=\"number\">{}</td></tr>",
+                unbroken(&answer.settings().choice_words(cell)),
+                cell.cell,
+                score.unwrap_or_default(),
+                decide.unwrap_or_default(),
+                fit.unwrap_or_default()
+            );
+        }
     }
     html + "</tbody></table></div>"
 }
 
-/// Among cells of the best one's noise and imperfections, which nobody chooses.
-fn choices<'a>(tables: &'a Tables, answer: &'a Answer) -> Vec<Choice<'a>> {
-    let (best, score) = &answer.best;
-    let world = |cell: &Cell| (cell.noise_std, cell.strengths());
+/// Among the cells of a condition.
+fn choices<'a>(tables: &'a Tables, answer: &'a Answer, finding: &'a Finding) -> Vec<Choice<'a>> {
+    let best = &finding.best.0;
+    let is_of_it = |cell: &Cell| std::ptr::eq(answer.finding(cell), finding);
     let good: Vec<&(Cell, Pareto)> = tables
         .pareto
         .iter()
-        .filter(|(cell, row)| row.accuracy >= score.accuracy_low && world(cell) == world(best))
+        .filter(|(cell, row)| finding.is_as_good(row.accuracy) && is_of_it(cell))
         .collect();
-    let cheapest = |cost: fn(&Cell, &Pareto) -> f64| {
-        let costs = good.iter().map(|(cell, row)| (cell, cost(cell, row)));
+    let fastest = |cost: fn(&Pareto) -> f64| {
+        let costs = good.iter().map(|(cell, row)| (cell, cost(row)));
         let found = costs.min_by(|(_, a), (_, b)| a.total_cmp(b));
         found.map(|(cell, _)| cell)
     };
     let mut found = vec![("the highest accuracy", best)];
-    let fastest = cheapest(|_, row| row.predict_us_per_decision);
-    found.extend(fastest.map(|cell| ("as good, fastest to decide", cell)));
-    let trained = cheapest(|_, row| row.fit_s);
-    found.extend(trained.map(|cell| ("as good, fastest to train", cell)));
-    let frugal = cheapest(|cell, _| cell.measurements as f64);
-    let frugal = frugal.filter(|cell| cell.measurements < best.measurements);
-    found.extend(frugal.map(|cell| ("as good, fewest measurements", cell)));
+    let to_decide = fastest(|row| row.predict_us_per_decision);
+    found.extend(to_decide.map(|cell| ("as good, fastest to decide", cell)));
+    let to_train = fastest(|row| row.fit_s);
+    found.extend(to_train.map(|cell| ("as good, fastest to train", cell)));
+    let frugal = &finding.frugal.0;
+    if frugal.cell != best.cell {
+        found.push(("as good, fewest measurements", frugal));
+    }
     found
 }

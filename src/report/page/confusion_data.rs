@@ -37,7 +37,10 @@ pub(super) fn confusion_data(
     let by_cell: HashMap<usize, &[Confusion]> = by_cell.map(|rows| (rows[0].cell, rows)).collect();
     let first = [
         (&answer.best.0, "best"),
-        (&answer.frugal.0, "fewest measurements"),
+        (
+            &answer.finding(&answer.best.0).frugal.0,
+            "fewest measurements",
+        ),
     ];
     by_cell.get(&first[0].0.cell)?;
     let others = tables.summary.iter().map(|(cell, _)| (cell, ""));

@@ -5,8 +5,7 @@ class ParetoChart {
     this.host = host;
     this.cost = 0;
     this.colour = study.start.colour;
-    const kept = axes.map((axis) => axis.labels.map((_, level) => !axis.world || level === axis.base));
-    this.filter = new Filter(kept, () => this.show());
+    this.filter = new Filter(Filter.everything(), () => this.show());
     this.chart = make("div", { class: "panels" });
     this.legend = make("div", { class: "legend" });
     const costs = choice("Time", [[0, "to decide once"], [1, "to train"]], 0, (cost) => {
@@ -28,16 +27,10 @@ class ParetoChart {
     return Math.max(this.cost === 0 ? 1e-6 * cells.decide_us[cell] : cells.fit_s[cell], 1e-9);
   }
 
-  /** The fronts, from left to right: one for each state of the world, since nobody chooses how noisy it is. */
+  /** The fronts, from left to right: one for each condition, since nobody chooses how noisy the world is. */
   fronts(shown) {
-    const worlds = new Map();
-    for (const cell of shown) {
-      const key = free.filter((axis) => axes[axis].world).map((axis) => levelOf(axis, cell)).join();
-      if (!worlds.has(key)) worlds.set(key, []);
-      worlds.get(key).push(cell);
-    }
-    return [...worlds.values()].map((world) => {
-      const order = world.sort((a, b) => this.seconds(a) - this.seconds(b) || cells.accuracy[b] - cells.accuracy[a]);
+    return byCondition(shown).map((condition) => {
+      const order = condition.sort((a, b) => this.seconds(a) - this.seconds(b) || cells.accuracy[b] - cells.accuracy[a]);
       let best = -1;
       return order.filter((cell, place) => {
         const twin = place > 0 && this.seconds(order[place - 1]) === this.seconds(cell) && cells.accuracy[cell] === best;
@@ -110,7 +103,7 @@ class ParetoChart {
         if (present.has(number)) entries.push(legendEntry(label, marker(number, 0, 0)));
       });
     }
-    entries.push(legendEntry("Pareto front: nothing is both faster and as accurate", draw("path", { d: "M-13,5H0V-5H13", class: "front" })));
+    entries.push(legendEntry(severalConditions ? "Pareto front of each condition: nothing is both faster and as accurate" : "Pareto front: nothing is both faster and as accurate", draw("path", { d: "M-13,5H0V-5H13", class: "front" })));
     if (study.chance !== null) entries.push(chanceEntry());
     this.legend.replaceChildren(...entries);
   }

@@ -1,6 +1,7 @@
 //! Where the results come from, for the page.
 
 use crate::report::drawing::escape;
+use crate::spelling::counted;
 use crate::study::provenance::Manifest;
 use std::collections::BTreeMap;
 use std::fmt::Write;
@@ -22,7 +23,11 @@ pub(super) fn provenance_html(manifest: &Manifest) -> String {
         ("Built", format!("{rustc} for {target}")),
         (
             "Machine",
-            format!("{cpu}, {cores} cores, {threads} threads used"),
+            format!(
+                "{cpu}, {}, {} used",
+                counted(*cores, "core"),
+                counted(*threads, "thread")
+            ),
         ),
         (
             "Run (UTC)",

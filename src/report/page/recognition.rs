@@ -11,7 +11,9 @@ use crate::report::page::frame::{Page, Section, sentences_html};
 use crate::report::page::picture::{Picture, Pictures, figures};
 use crate::report::page::provenance::provenance_html;
 use crate::report::page::study_data::StudyData;
-use crate::report::page::tables::{failures_html, limits_html, summary_html, times_html};
+use crate::report::page::tables::{
+    failures_html, limits_html, summary_html, times_html, too_few_trials,
+};
 use crate::report::page::touches::touches_html;
 use crate::study::table::Tables;
 use std::fmt::Write;
@@ -154,8 +156,11 @@ fn gallery(about: &ReportPage) -> Result<String> {
 }
 
 fn cells(tables: &Tables, answer: &Answer, is_live: bool) -> Section {
-    let note = "<p class=\"quiet\">“As good”: the mean accuracy lies within the interval of the best cell. “To the best” and p: a t-test \
-         paired over trials, corrected for their overlap; p (Holm) is corrected for the number of cells too.</p>";
+    let too_few = too_few_trials(tables).map_or(String::new(), |words| format!(" {words}"));
+    let note = format!(
+        "<p class=\"quiet\">“As good”: the mean accuracy lies within the interval of the best cell of the same condition. “To the best” and \
+         p: a t-test paired over trials, corrected for their overlap; p (Holm) is corrected for the number of cells too.{too_few}</p>"
+    );
     let table = live("cells", is_live, &summary_html(tables, answer));
     Section::new("cells", "All cells", format!("{note}{table}"))
 }

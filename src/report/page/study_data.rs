@@ -4,7 +4,7 @@ use crate::report::answer::Answer;
 use crate::report::axis::Axis;
 use crate::report::chart_plan::{ChartPlan, plan_charts};
 use crate::report::page::confusion_data::{ConfusionData, confusion_data};
-use crate::report::page::tables::{p_name, p_value};
+use crate::report::page::tables::{p_name, p_value, too_few_trials};
 use crate::report::varying::Levels;
 use crate::report::x_scale::{Spacing, spacing};
 use crate::study::table::{Cell, CellScore, Tables};
@@ -17,13 +17,15 @@ pub(super) struct StudyData {
     axes: Vec<AxisData>,
     start: Start,
     cells: Columns,
-    /// Place of the best cell.
-    best: usize,
+    /// The conditions of the world in words.
+    conditions: Vec<String>,
     /// Share recognised by guessing, if the number of classes is known.
     chance: Option<f64>,
     confusion: Option<ConfusionData>,
     /// What p-values are called.
     p: &'static str,
+    /// Whether there are none for want of trials.
+    too_few_trials: bool,
 }
 
 /// A setting that varies.
@@ -39,8 +41,8 @@ struct AxisData {
     scale: &'static str,
     /// The value that charts keep where they do not show the axis.
     base: usize,
-    /// Whether it is nobody's choice, as noise is.
-    world: bool,
+    /// Whether it is a condition of the world, as noise is, and nobody's choice.
+    condition: bool,
     /// Whether it varies only because others do.
     follows: bool,
     /// The axis that it can stand for along x.
@@ -61,6 +63,14 @@ struct Start {
 struct Columns {
     cell: Vec<usize>,
     levels: Vec<Vec<usize>>,
+    /// The number of its condition.
+    condition: Vec<usize>,
+    /// The place of the best cell of the same condition.
+    best: Vec<usize>,
+    /// Taxels of the array.
+    taxels: Vec<usize>,
+    /// Measurements a decision.
+    measurements: Vec<usize>,
     accuracy: Vec<f64>,
     low: Vec<f64>,
     high: Vec<f64>,
@@ -103,11 +113,16 @@ impl StudyData {
         Some(Self {
             axes,
             start,
-            cells: Columns::of(tables, &shown),
-            best,
+            cells: Columns::of(tables, answer, &shown),
+            conditions: answer
+                .findings
+                .iter()
+                .map(|finding| finding.condition.clone())
+                .collect(),
             chance: (!names.is_empty()).then(|| 1.0 / names.len() as f64),
             confusion: confusion_data(tables, answer, names),
             p: p_name(tables),
+            too_few_trials: too_few_trials(tables).is_some(),
         })
     }
 
@@ -145,7 +160,7 @@ impl AxisData {
                 Spacing::Words => "words",
             },
             base: levels.values.iter().position(|v| *v == value).unwrap_or(0),
-            world: matches!(axis, Axis::Noise | Axis::Imperfection(_)),
+            condition: axis.is_condition(),
             follows,
             instead,
         }
@@ -171,15 +186,33 @@ impl Start {
 }
 
 impl Columns {
-    fn of(tables: &Tables, axes: &[&Levels]) -> Self {
+    fn of(tables: &Tables, answer: &Answer, axes: &[&Levels]) -> Self {
         let rows = &tables.summary;
         let column =
             |value: fn(&CellScore) -> f64| rows.iter().map(|(_, s)| decimals(value(s))).collect();
         let compared: HashMap<usize, _> = tables.comparison.iter().map(|c| (c.cell, c)).collect();
         let costs: HashMap<usize, _> = tables.pareto.iter().map(|(c, p)| (c.cell, p)).collect();
+        let place: HashMap<usize, usize> = rows
+            .iter()
+            .enumerate()
+            .map(|(place, (cell, _))| (cell.cell, place))
+            .collect();
         let mut columns = Self {
             cell: rows.iter().map(|(cell, _)| cell.cell).collect(),
             levels: axes.iter().map(|levels| places(levels, rows)).collect(),
+            condition: rows
+                .iter()
+                .map(|(cell, _)| answer.condition(cell))
+                .collect(),
+            best: rows
+                .iter()
+                .map(|(cell, _)| place[&answer.finding(cell).best.0.cell])
+                .collect(),
+            taxels: rows.iter().map(|(cell, _)| cell.nx * cell.ny).collect(),
+            measurements: rows
+                .iter()
+                .map(|(cell, _)| cell.measurements_of_decision())
+                .collect(),
             accuracy: column(|s| s.accuracy),
             low: column(|s| s.accuracy_low),
             high: column(|s| s.accuracy_high),

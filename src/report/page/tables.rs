@@ -4,7 +4,8 @@ use crate::report::answer::{Answer, accuracy_sentence};
 use crate::report::axis::{classifier_name, short_number};
 use crate::report::drawing::escape;
 use crate::report::page::about::ReportPage;
-use crate::study::table::{Cell, CellScore, Comparison, Tables};
+use crate::report::run_differences::too_few_words;
+use crate::study::table::{Cell, CellScore, Comparison, PStatus, Tables};
 use std::collections::HashMap;
 use std::fmt::Write;
 
@@ -53,9 +54,12 @@ pub(super) fn summary_html(tables: &Tables, answer: &Answer) -> String {
         let row = comparisons.get(&cell.cell);
         let row = row.filter(|row| row.cell != row.best_cell);
         let difference = row.map_or(String::new(), |row| format!("{:+.3}", row.difference));
-        let p = row
-            .and_then(|row| p_value(row))
-            .map_or(String::new(), p_sentence);
+        let p = match row {
+            Some(row) if row.p_status == PStatus::TooFewTrials => "too few trials".to_owned(),
+            _ => row
+                .and_then(|row| p_value(row))
+                .map_or(String::new(), p_sentence),
+        };
         let _ = write!(
             html,
             "<td>{}</td><td>{:.2}</td><td>{difference}</td><td>{p}</td><td>{remark}</td></tr>",
@@ -69,6 +73,19 @@ pub(super) fn summary_html(tables: &Tables, answer: &Answer) -> String {
 /// A p-value as a page shows it: corrected for the number of cells, but for tables of earlier versions.
 pub(super) fn p_value(row: &Comparison) -> Option<f64> {
     row.p_holm.or(row.p_value)
+}
+
+/// Why a study has no p-values, if it has none for want of trials.
+pub(super) fn too_few_trials(tables: &Tables) -> Option<String> {
+    let of_others = tables
+        .comparison
+        .iter()
+        .filter(|row| row.cell != row.best_cell);
+    let row = of_others
+        .into_iter()
+        .find(|row| row.p_status == PStatus::TooFewTrials)?;
+    let trials = row.n_trials_needed.map(|needed| (row.n_trials, needed));
+    Some(too_few_words(trials))
 }
 
 /// What it is called.

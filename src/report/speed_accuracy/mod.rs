@@ -10,4 +10,6 @@ mod words;
 
 pub use chart::draw_front_chart;
 pub use points::{ChartKind, ChartPoint, points};
+pub(super) use results::CHAINS_FILE;
 pub use results::{PARETO_FILE, speed_accuracy_folder, speed_accuracy_summary};
+pub(super) use words::chain_setting;

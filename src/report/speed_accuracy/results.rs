@@ -15,10 +15,11 @@ use std::path::Path;
 
 /// Every point of every chart.
 pub const PARETO_FILE: &str = "pareto.csv";
+/// Chains from touch to answer, and how often they are right.
+pub(in crate::report) const CHAINS_FILE: &str = "recognition.csv";
 
 impl StudyTables for SpeedAccuracyTables {
-    const OF_PIECES: &'static [&'static str] =
-        &["contact.csv", "recognition.csv", "resolution.csv"];
+    const OF_PIECES: &'static [&'static str] = &["contact.csv", CHAINS_FILE, "resolution.csv"];
     const OF_ALL: &'static [&'static str] = &[];
 
     fn files(&self) -> Result<TableFiles> {
@@ -28,7 +29,7 @@ impl StudyTables for SpeedAccuracyTables {
             files.push(table_file("contact_timing.csv", &self.contact_timing)?);
         }
         if !self.recognition.is_empty() {
-            files.push(table_file("recognition.csv", &self.recognition)?);
+            files.push(table_file(CHAINS_FILE, &self.recognition)?);
             files.push(table_file(
                 "recognition_timing.csv",
                 &self.recognition_timing,

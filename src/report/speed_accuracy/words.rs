@@ -125,7 +125,7 @@ pub(super) fn contact_setting(cell: &ContactCell) -> String {
 }
 
 /// `RBF SVM, SBHE, m = 64, pitch 2 mm, spheres within 0.2 mm`.
-pub(super) fn chain_setting(cell: &ChainCell) -> String {
+pub(in crate::report) fn chain_setting(cell: &ChainCell) -> String {
     format!(
         "{}, {}, m = {}, pitch {} mm, spheres within {} mm",
         classifier_name(cell.classifier),

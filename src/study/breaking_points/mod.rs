@@ -17,7 +17,7 @@ mod spec;
 pub mod table;
 mod value;
 
-pub use plan::{BreakingPointsPlan, PlannedValue, PlannedWay};
+pub use plan::{BreakingPointsPlan, N_OBJECTS, PlannedValue, PlannedWay};
 pub use runner::{BreakingPointsStudy, DrivenRows};
 pub use scale::WayScale;
 pub use spec::{BreakingPointsSpec, DrivenAs, DrivenTouches, WaySpec};

@@ -43,8 +43,8 @@ pub struct PlannedValue {
     pub tested: Option<Plan>,
 }
 
-/// Objects that are not counted before they are loaded are as many as this, for the time left.
-const N_OBJECTS: f64 = 30.0;
+/// Objects that are not counted before they are loaded are as many as this, for estimates.
+pub const N_OBJECTS: f64 = 30.0;
 /// Processor-seconds to press a taxel, to read one, to project one to a measurement, and to solve for a pair of training touches.
 const PRESS_S: f64 = 4e-9;
 const READ_S: f64 = 3e-8;

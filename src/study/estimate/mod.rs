@@ -12,6 +12,7 @@ use super::memory::{Bytes, MemoryPlan};
 use super::plan::Plan;
 use super::sweep::{Group, Sweep};
 use super::touch_set::TouchSet;
+use crate::spelling::counted;
 use std::fmt;
 
 /// Counts, and an estimate of memory and time.
@@ -108,9 +109,9 @@ impl fmt::Display for Estimate {
         writeln!(f, "  memory   at most {}", Bytes(self.memory_bytes))?;
         write!(
             f,
-            "  time     about {} on {} threads (one core: touch {}, measure {}, recognise {})",
+            "  time     about {} on {} (one core: touch {}, measure {}, recognise {})",
             Seconds(self.wall_s()),
-            self.n_threads,
+            counted(self.n_threads, "thread"),
             Seconds(self.simulate_s),
             Seconds(self.measure_s),
             Seconds(self.recognise_s)
@@ -118,7 +119,8 @@ impl fmt::Display for Estimate {
     }
 }
 
-struct Seconds(f64);
+/// Seconds in words.
+pub(super) struct Seconds(pub f64);
 
 impl fmt::Display for Seconds {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {

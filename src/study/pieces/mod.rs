@@ -7,6 +7,7 @@
 mod left;
 mod piece_study;
 mod record;
+mod scale;
 
 pub use left::PiecesLeft;
 pub use piece_study::{
@@ -14,6 +15,7 @@ pub use piece_study::{
     run_whole_study,
 };
 pub use record::PieceRows;
+pub use scale::{PieceEstimate, Scale};
 
 use super::content_hash::ContentHash;
 use super::time_left::Piece;

@@ -122,6 +122,12 @@ impl ReconstructionStudy {
         }
     }
 
+    /// Cells: ensemble, m, noise, dictionary and solver.
+    pub fn n_cells(&self) -> usize {
+        let groups = 0..self.measured().len();
+        groups.map(|group| self.cells(group).len()).sum()
+    }
+
     /// Training touches, and test touches.
     ///
     /// # Errors

@@ -51,6 +51,11 @@ impl SpeedAccuracyStudy {
         Ok(content)
     }
 
+    /// The study's objects; those that are only touched in the part on contact are not counted.
+    pub fn n_objects(&self) -> usize {
+        self.subjects.len()
+    }
+
     fn objects(&self) -> (&[Subject], Option<&Path>) {
         (&self.subjects, self.packings.as_deref())
     }
