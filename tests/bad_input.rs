@@ -210,7 +210,7 @@ fn what_the_user_names_wrongly_is_refused_as_bad_input() {
         ("press --spheres x.csv", &["x.csv: a folder"]),
         ("objects mesh x.ply", &["x.ply: a folder"]),
         (
-            "objects pack x.ply --tolerance-mm 1 --out o.csv",
+            "objects pack x.ply --surface-error-mm 1 --out o.csv",
             &["x.ply: a folder"],
         ),
         (
@@ -223,7 +223,7 @@ fn what_the_user_names_wrongly_is_refused_as_bad_input() {
         ),
         ("objects mug --out no/x.png", &["no/x.png", "no folder no"]),
         (
-            "objects pack mug --tolerance-mm 1 --out no/x.csv",
+            "objects pack mug --surface-error-mm 1 --out no/x.csv",
             &["no/x.csv"],
         ),
     ] {
@@ -325,11 +325,11 @@ fn numbers_that_no_machine_has_room_for_are_refused_at_once() {
             &["--repeat: 99999999999", "1000000"],
         ),
         (
-            "objects pack mug --tolerance-mm 0.0001 --out o.csv",
+            "objects pack mug --surface-error-mm 0.0001 --out o.csv",
             &["2000000 spheres", "larger"],
         ),
         (
-            "objects pack tetrahedron.obj --tolerance-mm 0.0001 --out o.csv",
+            "objects pack tetrahedron.obj --surface-error-mm 0.0001 --out o.csv",
             &["1.000e-4 mm", "spheres for 236.6 cm²", "2000000 spheres"],
         ),
     ] {
@@ -341,7 +341,7 @@ fn numbers_that_no_machine_has_room_for_are_refused_at_once() {
         "objects",
         "pack",
         "golf",
-        "--tolerance-mm",
+        "--surface-error-mm",
         "0.0001",
         "--out",
         "o.csv",

@@ -90,7 +90,7 @@ fn a_hole_is_named_with_its_file_and_what_can_be_done() {
                f 5 6 10 9\nf 6 8 10\nf 8 11 10\nf 8 7 11\nf 7 5 9\nf 7 9 11\n";
     let cube = cube().replace("f 5 6 8 7\n", top);
     case.file("cube.obj", cube);
-    let pack = "objects pack cube.obj --unit mm --tolerance-mm 1 --out cube.csv";
+    let pack = "objects pack cube.obj --unit mm --surface-error-mm 1 --out cube.csv";
     let pack: Vec<&str> = pack.split(' ').collect();
     let with = |more: &[&str]| case.run(&[&pack[..], more].concat());
     let output = with(&[]);

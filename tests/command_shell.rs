@@ -182,7 +182,7 @@ const SPEAKERS: [&str; 25] = [
     "help run",
     "objects --help",
     "objects",
-    "objects pack golf --tolerance-mm 1 --out o.csv",
+    "objects pack golf --surface-error-mm 1 --out o.csv",
     "objects mesh cube.obj",
     "press --object golf",
     "press --object golf --poses poses.csv",

@@ -76,7 +76,7 @@ class Ours:
             return kept, float("nan")
         kept.parent.mkdir(parents=True, exist_ok=True)
         start = time.perf_counter()
-        command = [self.binary, "objects", "pack", str(path), "--tolerance-mm", str(tolerance_mm), "--out", str(kept)]
+        command = [self.binary, "objects", "pack", str(path), "--surface-error-mm", str(tolerance_mm), "--out", str(kept)]
         subprocess.run(command, check=True, capture_output=True)
         return kept, time.perf_counter() - start
 
