@@ -133,7 +133,7 @@ fn what_cannot_be_shown_is_said_and_writes_nothing() {
     case.file("broken.npz", "no zip");
     let before = case.names();
     for (arguments, code, said) in [
-        (&["nowhere.npz"][..], 1, "nowhere.npz: read failed"),
+        (&["nowhere.npz"][..], 2, "nowhere.npz: is missing"),
         (&["broken.npz"], 2, "broken.npz: no .npz"),
         (
             &["touch.npz", "--frame=0"],

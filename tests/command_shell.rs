@@ -183,7 +183,7 @@ const SPEAKERS: [&str; 25] = [
     "objects --help",
     "objects",
     "objects pack golf --surface-error-mm 1 --out o.csv",
-    "objects mesh cube.obj",
+    "objects mesh corner.obj",
     "press --object golf",
     "press --object golf --poses poses.csv",
     "press --object golf --poses poses.csv --json",
@@ -241,7 +241,7 @@ fn speaking() -> Case {
     case.file("poses.csv", "x,y,z,qw,qx,qy,qz\n0,0,0,1,0,0,0\n");
     let corner = "v 0 0 0\nv 0.1 0 0\nv 0 0.1 0\nv 0 0 0.1\n";
     let faces = "f 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n";
-    case.file("cube.obj", corner.to_owned() + faces);
+    case.file("corner.obj", corner.to_owned() + faces);
     case
 }
 

@@ -235,7 +235,12 @@ fn a_table_that_cannot_be_read_is_named_with_its_line() {
     let said = read_tables(dir.path()).unwrap_err();
     assert!(said.to_string().contains("summary.csv: line 3"), "{said}");
     fs::remove_file(&path).unwrap();
-    assert_eq!(read_tables(dir.path()).unwrap_err().exit_code(), 1);
+    let said = read_tables(dir.path()).unwrap_err();
+    assert_eq!(said.exit_code(), 2);
+    assert!(
+        said.to_string().contains("summary.csv: is missing"),
+        "{said}"
+    );
 }
 
 #[test]

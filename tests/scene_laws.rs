@@ -354,10 +354,18 @@ fn balls_on_stops_of_one_skin_are_carried_side_by_side() {
     assert!((on_patch.torque - torque).length() < 1e-6 * 490.0 * 0.04);
 }
 
+/// Of the one sphere of the first object, in the world.
+fn middle_of_ball(plan: &ScenePlan, frame: &Frame) -> DVec3 {
+    let [ball] = plan.models[0].spheres().unwrap().spheres() else {
+        panic!("a ball is one sphere")
+    };
+    frame.objects[0].pose.transform_point(ball.center)
+}
+
 /// What the forces of all patches put on a ball, by geometry alone: Σ f n / (n·axis), n from the ball's middle to the taxel's; and
 /// how many taxels are at their stroke.
 fn carried(plan: &ScenePlan, frame: &Frame) -> (DVec3, usize) {
-    let middle = frame.objects[0].pose.translation;
+    let middle = middle_of_ball(plan, frame);
     let (mut force, mut n_stopped) = (DVec3::ZERO, 0);
     for (patch, reading) in plan.patches.iter().zip(&frame.patches) {
         let layout = patch.skin.layout();
@@ -415,7 +423,7 @@ fn what_rests_on_stops_is_carried_by_the_forces_of_the_frame_on_flat_and_on_curv
                 torque +=
                     patch.pose.rotation * patch.wrench.torque + patch.pose.translation.cross(force);
             }
-            let middle = frame.objects[0].pose.translation;
+            let middle = middle_of_ball(&plan, frame);
             assert!(
                 (together + weight * DVec3::Z).length() < 1e-6 * weight,
                 "{case}"
