@@ -2,6 +2,8 @@
 
 mod command;
 
+use bubbletouch::mesh::LengthUnit;
+use bubbletouch::study::{ModelSpec, ObjectsSpec, load_objects};
 use command::Case;
 
 /// A cube of 40 mm in millimetres, standing on z = 0.
@@ -17,6 +19,13 @@ fn cube() -> String {
         text += &format!("f {quad}\n");
     }
     text
+}
+
+/// Its top lacks a small triangle in the middle, 0.9 mm wide.
+fn cube_with_hole() -> String {
+    let top = "v 0 0 40\nv 0.6364 0 40\nv 0 0.6364 40\n\
+               f 5 6 10 9\nf 6 8 10\nf 8 11 10\nf 8 7 11\nf 7 5 9\nf 7 9 11\n";
+    cube().replace("f 5 6 8 7\n", top)
 }
 
 #[test]
@@ -85,11 +94,7 @@ fn packed_spheres_are_written_and_shown_beside_the_mesh() {
 #[test]
 fn a_hole_is_named_with_its_file_and_what_can_be_done() {
     let case = Case::new();
-    // The top without a small triangle in its middle.
-    let top = "v 0 0 40\nv 0.6364 0 40\nv 0 0.6364 40\n\
-               f 5 6 10 9\nf 6 8 10\nf 8 11 10\nf 8 7 11\nf 7 5 9\nf 7 9 11\n";
-    let cube = cube().replace("f 5 6 8 7\n", top);
-    case.file("cube.obj", cube);
+    case.file("cube.obj", cube_with_hole());
     let pack = "objects pack cube.obj --unit mm --surface-error-mm 1 --out cube.csv";
     let pack: Vec<&str> = pack.split(' ').collect();
     let with = |more: &[&str]| case.run(&[&pack[..], more].concat());
@@ -115,6 +120,35 @@ fn a_hole_is_named_with_its_file_and_what_can_be_done() {
     assert!(with(&["--as-sheet"]).status.success());
     let both = with(&["--as-sheet", "--close-holes-mm", "1"]);
     assert_eq!(both.status.code(), Some(2));
+}
+
+#[test]
+fn a_study_closes_holes_only_where_it_is_told_to() {
+    let case = Case::new();
+    std::fs::create_dir(case.path("meshes")).unwrap();
+    case.file("meshes/cube.obj", cube_with_hole());
+    let load = |model, close_holes_mm| {
+        let spec = ObjectsSpec {
+            meshes: Some(case.path("meshes")),
+            model: Some(model),
+            mesh_unit: Some(LengthUnit::Millimetre),
+            surface_error_mm: Some(1.0),
+            close_holes_mm,
+            ..ObjectsSpec::default()
+        };
+        load_objects(&spec, None).map(|objects| objects[0].model.clone())
+    };
+    let closed = load(ModelSpec::Packed, Some(1.0)).unwrap();
+    assert!(closed.n_spheres() > 10);
+    assert_eq!(load(ModelSpec::Mesh, Some(1.0)).unwrap().n_triangles(), 20);
+    assert_eq!(load(ModelSpec::Mesh, None).unwrap().n_triangles(), 17);
+    for too_narrow in [None, Some(0.8)] {
+        let error = load(ModelSpec::Packed, too_narrow).unwrap_err().to_string();
+        assert!(error.contains("cube.obj: a hole 0.90 mm wide"), "{error}");
+        assert!(error.contains("objects.close_holes_mm"), "{error}");
+    }
+    let error = load(ModelSpec::VertexSpheres, Some(1.0)).unwrap_err();
+    assert!(error.to_string().contains("close_holes_mm"), "{error}");
 }
 
 #[test]
