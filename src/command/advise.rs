@@ -36,6 +36,9 @@ pub struct Args {
     /// Answer in JSON
     #[arg(long)]
     json: bool,
+    /// The name that --budget had
+    #[arg(long, hide = true, value_parser = renamed)]
+    budget_us: Option<f64>,
 }
 
 #[derive(clap::Args)]
@@ -47,9 +50,6 @@ struct WishArgs {
     /// How much it may cost: microseconds a decision, seconds to train, taxels, or measurements a decision
     #[arg(long, value_name = "N")]
     budget: Option<f64>,
-    /// The name that it had
-    #[arg(long, hide = true, value_parser = renamed)]
-    budget_us: Option<f64>,
 }
 
 /// Refuses an option by a name that it has no more.
