@@ -187,6 +187,8 @@ fn nut(hole: f64) -> Solid {
 fn a_nut_has_a_hole_that_no_sphere_closes() {
     for hole in [6.5 * MM, 10. * MM] {
         let solid = nut(hole);
+        // No membrane closes it, either.
+        assert!(solid.distance(DVec3::new(1., 0., 3.25) * MM) > 0.0);
         for tolerance in [0.5 * MM, 0.25 * MM, 0.05 * MM] {
             let union = pack(&solid, tolerance).unwrap();
             let error = surface_error(&solid, &union, 0.1 * MM);
@@ -200,11 +202,19 @@ fn a_nut_has_a_hole_that_no_sphere_closes() {
                 let height = MM * (0.04 * f64::from(k) - 4.0);
                 let at = DVec2::from_angle(f64::from(k)) * free * f64::from(k % 11) / 10.0;
                 let point = at.extend(height);
-                let outside = union.spheres().iter().all(|s| s.center.distance(point) >= s.radius - 1e-12);
+                let outside = union
+                    .spheres()
+                    .iter()
+                    .all(|s| s.center.distance(point) >= s.radius - 1e-12);
                 assert!(outside, "{point} is in a sphere");
             }
             let wall = DVec3::new(5.25 * MM, 0.0, 0.0);
-            assert!(union.spheres().iter().any(|s| s.center.distance(wall) < s.radius));
+            assert!(
+                union
+                    .spheres()
+                    .iter()
+                    .any(|s| s.center.distance(wall) < s.radius)
+            );
         }
     }
 }

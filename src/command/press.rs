@@ -181,8 +181,16 @@ impl Args {
     /// The object and `patch_from_object` before any travel.
     fn placed_object(&self) -> Result<(Model, Pose)> {
         let misplaced = [
-            (self.model.is_some() && self.source.mesh.is_none(), "--model", "--mesh FILE"),
-            (self.unit.is_some() && self.source.object.is_some(), "--unit", "--mesh or --spheres FILE"),
+            (
+                self.model.is_some() && self.source.mesh.is_none(),
+                "--model",
+                "--mesh FILE",
+            ),
+            (
+                self.unit.is_some() && self.source.object.is_some(),
+                "--unit",
+                "--mesh or --spheres FILE",
+            ),
         ];
         if let Some((_, option, beside)) = misplaced.into_iter().find(|(is_so, ..)| *is_so) {
             let given = format!("{option} without {beside}");

@@ -33,10 +33,12 @@ impl SizeLimits {
             smallest: f64::INFINITY,
             largest: ALWAYS_ALLOWED,
         };
-        arrays.into_iter().fold(none, |limits, (side, radius)| Self {
-            smallest: limits.smallest.min(radius),
-            largest: limits.largest.max(MOST_SIDES * side),
-        })
+        arrays
+            .into_iter()
+            .fold(none, |limits, (side, radius)| Self {
+                smallest: limits.smallest.min(radius),
+                largest: limits.largest.max(MOST_SIDES * side),
+            })
     }
 
     /// An error that begins with `place` and names the likely unit, for a box of this size (metres) whose file was read in metres

@@ -179,8 +179,7 @@ impl Covering<'_> {
                 .find(|ball| farthest(ball) <= ball.radius + reach)?;
             ball.farthest = ball.farthest.max(cell.farthest(ball.center));
         }
-        let sphere =
-            |ball: &InnerBall| self.fit.covering(ball.center, ball.radius, ball.farthest);
+        let sphere = |ball: &InnerBall| self.fit.covering(ball.center, ball.radius, ball.farthest);
         Some(self.balls.iter().map(sphere).collect())
     }
 }

@@ -162,7 +162,11 @@ impl Wording {
         }
         if let Some(at) = points.iter().position(|point| !point.is_finite()) {
             let given = format!("point {}, which is not finite", at + 1);
-            return Err(Error::input(self.name("points"), given, "finite coordinates"));
+            return Err(Error::input(
+                self.name("points"),
+                given,
+                "finite coordinates",
+            ));
         }
         match points.windows(2).position(|pair| pair[0] == pair[1]) {
             Some(at) => Err(Error::input(
@@ -231,7 +235,10 @@ impl Shape {
                     return Err(Error::input(
                         wording.name("inner_diameter"),
                         wording.length(*inner_diameter),
-                        format!("less than the outer diameter of {}", wording.length(*outer_diameter)),
+                        format!(
+                            "less than the outer diameter of {}",
+                            wording.length(*outer_diameter)
+                        ),
                     ));
                 }
                 positive("height", *height)

@@ -27,7 +27,13 @@ pub struct Solid {
     parts: Vec<Part>,
     /// What is subtracted from all parts together.
     cuts: Vec<Part>,
+    /// How much larger the cuts are taken, metres.
+    seam: f64,
 }
+
+/// How much larger cuts are taken, in diagonals of the box around the parts: where one ends in a part's surface no membrane without
+/// thickness is left. Smaller: rounding leaves one; larger: walls beside cuts are thinner.
+const SEAM: f64 = 4e-6;
 
 /// The five forms that all shapes come down to.
 #[derive(Clone, Debug)]
@@ -143,16 +149,25 @@ impl Solid {
         Ok(Self {
             parts,
             cuts: Vec::new(),
+            seam: 0.0,
         })
     }
 
     /// What these shapes leave of the solid. An error if they leave nothing of one of its parts' surfaces, as far as points a
     /// hundredth of its size apart can tell.
     pub fn less(self, cuts: Vec<Part>) -> Result<Self> {
-        let solid = Self { cuts, ..self };
-        if solid.surface_points(1e-2 * solid.bounds().size().length()).is_empty() {
+        let seam = SEAM * self.bounds().size().length();
+        let solid = Self { cuts, seam, ..self };
+        if solid
+            .surface_points(1e-2 * solid.bounds().size().length())
+            .is_empty()
+        {
             let given = "shapes that take away all parts";
-            return Err(Error::input("subtract", given, "shapes that leave something"));
+            return Err(Error::input(
+                "subtract",
+                given,
+                "shapes that leave something",
+            ));
         }
         Ok(solid)
     }
@@ -175,9 +190,9 @@ impl Solid {
     /// Metres from a point to the surface, negative inside.
     ///
     /// Exact outside if nothing is subtracted, else never farther than the truth; inside exact for one part of any shape but a
-    /// strand, else never deeper than the truth.
+    /// strand, else never deeper than the truth. What is subtracted is taken larger by 4 millionths of the diagonal of the box.
     pub fn distance(&self, point: DVec3) -> f64 {
-        nearest(&self.parts, point).max(-nearest(&self.cuts, point))
+        nearest(&self.parts, point).max(self.seam - nearest(&self.cuts, point))
     }
 
     /// Minus the distance where all that is subtracted is larger by `growth` (metres).
@@ -222,9 +237,8 @@ impl Solid {
         // A point of a part's surface that lies inside another part, or inside its own strand, is not surface.
         let rounding = 1e-9 * self.bounds().size().length();
         let points = self.parts.iter().flat_map(|p| p.surface_points(spacing));
-        let of_parts = points.filter(|&p| {
-            nearest(&self.parts, p) >= -rounding && nearest(&self.cuts, p) > rounding
-        });
+        let of_parts = points
+            .filter(|&p| nearest(&self.parts, p) >= -rounding && nearest(&self.cuts, p) > rounding);
         let points = self.cuts.iter().flat_map(|p| p.surface_points(spacing));
         let of_cuts = points.filter(|&p| {
             nearest(&self.cuts, p) >= -rounding && nearest(&self.parts, p) < -rounding

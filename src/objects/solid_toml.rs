@@ -62,7 +62,11 @@ impl WrittenPart {
             if value.iter().all(|number| number.is_finite()) {
                 return Ok(value);
             }
-            Err(Error::input(key, format!("{value:?}"), "three finite numbers"))
+            Err(Error::input(
+                key,
+                format!("{value:?}"),
+                "three finite numbers",
+            ))
         };
         let position = moved(&mut self.position_mm, "position_mm")?;
         let rotation = moved(&mut self.rotation_deg, "rotation_deg")?;

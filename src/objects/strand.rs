@@ -133,7 +133,11 @@ impl Strand {
                 DVec2::new(radius * hull.cosine(), t - radius * hull.slope)
             };
             let (x, y) = hull.along.any_orthonormal_pair();
-            let (x, y) = if x.cross(y).dot(hull.along) > 0.0 { (x, y) } else { (y, x) };
+            let (x, y) = if x.cross(y).dot(hull.along) > 0.0 {
+                (x, y)
+            } else {
+                (y, x)
+            };
             let angles = [0.0, std::f64::consts::TAU];
             SurfacePatch::turned(touched(0.0), touched(hull.length), angles)
                 .moved(&Pose::new(frame(x, y), hull.first.center))

@@ -186,7 +186,12 @@ impl SurfacePatch {
                 DVec2::new(tube, away(low.x).max(away(high.x)))
             }
         };
-        let places = [low, DVec2::new(high.x, low.y), DVec2::new(low.x, high.y), high];
+        let places = [
+            low,
+            DVec2::new(high.x, low.y),
+            DVec2::new(low.x, high.y),
+            high,
+        ];
         PatchCell {
             low,
             high,
@@ -207,7 +212,13 @@ impl PatchCell {
     pub fn places(&self) -> [DVec2; 5] {
         let (low, high) = (self.low, self.high);
         let middle = 0.5 * (low + high);
-        [middle, low, DVec2::new(high.x, low.y), DVec2::new(low.x, high.y), high]
+        [
+            middle,
+            low,
+            DVec2::new(high.x, low.y),
+            DVec2::new(low.x, high.y),
+            high,
+        ]
     }
 }
 
@@ -246,7 +257,12 @@ mod tests {
 
     #[test]
     fn the_eighths_of_a_ball_are_on_their_sides() {
-        for sides in [DVec3::ONE, DVec3::NEG_ONE, DVec3::new(1.0, -1.0, 1.0), DVec3::new(1.0, 1.0, -1.0)] {
+        for sides in [
+            DVec3::ONE,
+            DVec3::NEG_ONE,
+            DVec3::new(1.0, -1.0, 1.0),
+            DVec3::new(1.0, 1.0, -1.0),
+        ] {
             let patch = SurfacePatch::eighth_of_ball(DVec3::ZERO, 1.0, sides);
             let (point, _) = patch.at(0.5 * (patch.low + patch.high));
             assert!((point * sides).min_element() > 0.3, "{sides}: {point}");

@@ -74,9 +74,17 @@ impl Reader<'_> {
     fn model(&self, key: &str, spec: &ObjectSpec, finest_mm: f64) -> Result<Model> {
         let has_file = spec.mesh.is_some() || spec.spheres.is_some();
         let misplaced = [
-            (spec.model.is_some() && spec.mesh.is_none(), "model", "mesh = \"FILE\""),
+            (
+                spec.model.is_some() && spec.mesh.is_none(),
+                "model",
+                "mesh = \"FILE\"",
+            ),
             (spec.unit.is_some() && !has_file, "unit", "mesh or spheres"),
-            (spec.objects.is_some() && spec.object.is_none(), "objects", "object = \"NAME\""),
+            (
+                spec.objects.is_some() && spec.object.is_none(),
+                "objects",
+                "object = \"NAME\"",
+            ),
         ];
         if let Some((_, what, beside)) = misplaced.into_iter().find(|(is_so, ..)| *is_so) {
             let given = format!("{what} without {beside}");

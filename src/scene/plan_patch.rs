@@ -5,9 +5,9 @@ use super::reader::{MM, Reader};
 use super::spec::{LayoutSpec, PatchSpec};
 use crate::error::Result;
 use crate::geometry::Pose;
+use crate::mesh::SizeLimits;
 use crate::random::Seed;
 use crate::spelling::nearest_names;
-use crate::mesh::SizeLimits;
 use crate::study::{positive, read_mesh_file};
 use crate::world::{Grid, Layout, Patch, Shears, SkinPatch, Taxels};
 
@@ -122,11 +122,7 @@ impl Reader<'_> {
                 half_angle_deg,
                 ..
             } => Layout::sphere_cap(radius_mm * MM, half_angle_deg.to_radians(), pitch),
-            LayoutSpec::Draped {
-                ref mesh,
-                unit,
-                ..
-            } => {
+            LayoutSpec::Draped { ref mesh, unit, .. } => {
                 let (place, _) = self.open(&format!("{key}.mesh"), mesh)?;
                 let mesh = read_mesh_file(&self.path(mesh), unit, &SizeLimits::ANY);
                 let mesh = mesh.and_then(|mesh| mesh.into_mesh(&place));
