@@ -103,7 +103,7 @@
 //! threads, printing or global state. Threads live in `study`, and in `whole_body` for large touches; files in `study`, `scene`
 //! (what a scene names) and `report`.
 //!
-//! The [`guide`] explains the [statistics](guide::statistics) of a study, how to run one on [many
+//! The [`guide`] explains [objects of your own](guide::own_objects), the [statistics](guide::statistics) of a study, how to run one on [many
 //! machines](guide::many_machines), the [events](guide::events) that a run tells to programs, what a study holds in
 //! [memory and on disk](guide::memory_and_disk), and what happens at the [limits](guide::limits) of every method.
 //!

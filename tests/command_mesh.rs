@@ -101,3 +101,142 @@ fn words_that_no_mesh_has_are_refused() {
     );
     assert!(refused("press --object mug --model mesh").contains("--mesh"));
 }
+
+/// A die of 17 mm, its numbers millimetres.
+fn die() -> String {
+    cube().replace("20", "8.5").replace("40", "17")
+}
+
+fn words(line: &str) -> Vec<&str> {
+    line.split(' ').collect()
+}
+
+#[test]
+fn a_die_of_seventeen_metres_is_refused_everywhere_unless_its_unit_is_given() {
+    let case = Case::new();
+    case.file("die.obj", die());
+    case.file("die.csv", "x,y,z,r\n0,0,20,8.5\n");
+    std::fs::create_dir(case.path("meshes")).unwrap();
+    case.file("meshes/die.obj", die());
+    case.file("meshes/flat.obj", die().replace(" 8.5\n", " 4\n"));
+    let study = "question = \"Which?\"\n[objects]\nmeshes = \"meshes\"\nUNIT\n[skin]\npitch_mm = 2.0\ntaxels = 16\nstroke_mm = 5.0\n\
+                 [touches]\nper_object = 8\nyaw_deg = { uniform = [0.0, 90.0] }\ndepth_mm = 2.0\n[sensing]\nensemble = \"gaussian\"\nratio = 16\n\
+                 [recognition]\nclassifier = \"linear_svm\"\nc = 1.0\n";
+    case.file("without.toml", study.replace("UNIT", ""));
+    case.file("with.toml", study.replace("UNIT", "unit = \"mm\""));
+    let scene = "title = \"A pad\"\ndt_ms = 10.0\noutput_hz = 100.0\nduration_s = 0.1\n[[patches]]\nname = \"pad\"\nlayout = { grid = { nx = 8, ny = 8, pitch_mm = 2.0 } }\n\
+                 stroke_mm = 5.0\nstiffness_n_per_m = 100.0\n[[objects]]\nname = \"die\"\nFILE\nUNIT\nat = { position_mm = [0.0, 0.0, -1.0] }\n";
+    for (name, file) in [
+        ("mesh", "mesh = \"die.obj\""),
+        ("csv", "spheres = \"die.csv\""),
+    ] {
+        let scene = scene.replace("FILE", file);
+        case.file(&format!("{name}_without.toml"), scene.replace("UNIT", ""));
+        case.file(
+            &format!("{name}_with.toml"),
+            scene.replace("UNIT", "unit = \"mm\""),
+        );
+    }
+    for (without, with) in [
+        ("press --mesh die.obj", " --unit mm"),
+        ("press --spheres die.csv --stroke-mm 50", " --unit mm"),
+        ("objects mesh die.obj", " --unit mm"),
+        ("objects --mesh die.obj", " --unit mm"),
+        (
+            "objects pack die.obj --tolerance-mm 1 --out spheres.csv",
+            " --unit mm",
+        ),
+        (
+            "objects show die.obj --tolerance-mm 1 --panel-px 200 --out die.png",
+            " --unit mm",
+        ),
+        (
+            "objects show die.obj --unit mm --spheres die.csv --panel-px 200 --out die.png",
+            " --spheres-unit mm",
+        ),
+        ("run without.toml --out results", ""),
+        ("simulate mesh_without.toml --out simulated_mesh", ""),
+        ("simulate csv_without.toml --out simulated_csv", ""),
+    ] {
+        let output = case.run(&words(without));
+        let said = String::from_utf8(output.stderr).unwrap();
+        assert_eq!(output.status.code(), Some(2), "{without}: {said}");
+        assert!(
+            said.contains("17 m wide, if its unit is the metre; "),
+            "{without}: {said}"
+        );
+        let advice = "in mm it would be 17 mm: give unit = \"mm\" (--unit mm)";
+        assert!(said.contains(advice), "{without}: {said}");
+        case.succeeds(&words(&(without.replace("without", "with") + with)));
+    }
+}
+
+const HARDWARE: &str = include_str!("../src/guide/own_objects.md");
+
+#[test]
+fn own_objects_are_named_by_the_same_option_everywhere() {
+    let case = Case::new();
+    let example = HARDWARE.split("```toml\n").nth(1).unwrap();
+    let example = example.split("```").next().unwrap();
+    case.file("hardware.toml", example);
+    let (said, _) = case.succeeds(&words("objects --objects hardware.toml"));
+    assert!(said.contains(" nut ") && said.contains(" bolt "), "{said}");
+    assert!(!said.contains("mug"), "{said}");
+    case.succeeds(&words(
+        "objects nut bolt --objects hardware.toml --out both.png",
+    ));
+    case.succeeds(&words(
+        "objects show nut --objects hardware.toml --panel-px 200 --out nut.png",
+    ));
+    let pack = "objects pack nut --objects hardware.toml --tolerance-mm 0.1 --out nut.csv";
+    let (said, _) = case.succeeds(&words(pack));
+    assert!(said.contains("gap         max 0.0"), "{said}");
+    // A ring of taxels reads the nut; those over its hole read nothing.
+    let press = "press --objects hardware.toml --object nut --taxels 17x17 --pitch-mm 1 --depth-mm 1 --out nut.npz";
+    let (_, said) = case.succeeds(&words(press));
+    assert!(!said.starts_with("0 of"), "{said}");
+    let press = press.replace("nut.npz", "frame.csv");
+    case.succeeds(&words(&press));
+    let frame = std::fs::read_to_string(case.path("frame.csv")).unwrap();
+    let rows: Vec<Vec<f64>> = frame
+        .lines()
+        .map(|row| row.split(',').filter_map(|n| n.parse().ok()).collect())
+        .collect();
+    let rows = &rows[rows.len() - 17..];
+    assert_eq!(rows[8][8], 0.0, "over the hole");
+    assert!((rows[8][8 + 5] - 1e-3).abs() < 0.3e-3, "{}", rows[8][13]);
+    let scene = "title = \"A pad\"\ndt_ms = 10.0\noutput_hz = 100.0\nduration_s = 0.1\n[[patches]]\nname = \"pad\"\nlayout = { grid = { nx = 8, ny = 8, pitch_mm = 2.0 } }\n\
+                 stroke_mm = 5.0\nstiffness_n_per_m = 100.0\n[[objects]]\nname = \"it\"\nobject = \"nut\"\nobjects = \"hardware.toml\"\n";
+    case.file("scene.toml", scene);
+    case.succeeds(&words("simulate scene.toml --out simulated"));
+    let study = "question = \"Which?\"\n[objects]\nsets = [\"balls\"]\n[skin]\npitch_mm = 1.0\ntaxels = 16\nstroke_mm = 5.0\n\
+                 [touches]\nper_object = 8\nyaw_deg = { uniform = [0.0, 90.0] }\ndepth_mm = 2.0\n[sensing]\nensemble = \"gaussian\"\nratio = 16\n\
+                 [recognition]\nclassifier = \"linear_svm\"\nc = 1.0\n";
+    case.file("study.toml", study);
+    let (said, _) = case.succeeds(&words("plan study.toml --objects hardware.toml"));
+    assert!(said.contains('2'), "{said}");
+    case.succeeds(&words(
+        "run study.toml --objects hardware.toml --out results",
+    ));
+    let confusion = std::fs::read_to_string(case.path("results/confusion.csv")).unwrap();
+    assert!(
+        confusion.contains("bolt") && !confusion.contains("golf"),
+        "{confusion}"
+    );
+    case.file(
+        "wrong.toml",
+        example.replacen("height_mm = 6.8", "height_mm = -2", 1),
+    );
+    for wrong in [
+        "objects --objects wrong.toml",
+        "objects show nut --objects wrong.toml --out wrong.png",
+        "press --object nut --objects wrong.toml",
+        "run study.toml --objects wrong.toml --out other",
+    ] {
+        let output = case.run(&words(wrong));
+        let said = String::from_utf8(output.stderr).unwrap();
+        assert_eq!(output.status.code(), Some(2), "{wrong}: {said}");
+        let expected = "wrong.toml, line 8, object `nut`, part 1 (hexagonal_prism): height_mm = -2; a finite positive length";
+        assert!(said.contains(expected), "{wrong}: {said}");
+    }
+}

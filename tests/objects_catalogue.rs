@@ -305,44 +305,59 @@ fn a_wrong_catalogue_names_file_line_and_object() {
         ),
         (
             good.replace("80", "-80"),
-            "own.toml: object `mug`, part 1 (cylinder): diameter: -0.08 m; a finite positive",
+            "own.toml, line 6, object `mug`, part 1 (cylinder): diameter_mm = -80; a finite positive",
         ),
         (
             good.replace("80", "nan"),
-            "own.toml: object `mug`, part 1 (cylinder): diameter: NaN m; a finite positive",
+            "own.toml, line 6, object `mug`, part 1 (cylinder): diameter_mm = NaN; a finite positive",
+        ),
+        (
+            good.replace("height_mm = 90", "height_mm = -2"),
+            "own.toml, line 7, object `mug`, part 1 (cylinder): height_mm = -2; a finite positive",
+        ),
+        (
+            good.to_string() + "[[object.subtract]]\nshape = \"ball\"\ndiameter_mm = -42.67\n",
+            "own.toml, line 10, object `mug`, subtract 1 (ball): diameter_mm = -42.67; a finite positive",
+        ),
+        (
+            good.to_string() + "[[object.subtract]]\nshape = \"ball\"\ndiameter_mm = 900\n",
+            "own.toml, line 2, object `mug`: subtract: shapes that take away all parts",
         ),
         (
             good.replace("80", "0"),
-            "own.toml: object `mug`, part 1 (cylinder): diameter: 0 m; a finite positive",
+            "own.toml, line 6, object `mug`, part 1 (cylinder): diameter_mm = 0; a finite positive",
         ),
         (
             good.replace("height_mm", "length_mm"),
-            "own.toml: object `mug`, part 1 (cylinder): height_mm: missing",
+            "own.toml, line 5, object `mug`, part 1 (cylinder): height_mm: missing",
         ),
         (
             good.to_string() + "length_mm = 3\n",
-            "own.toml: object `mug`, part 1 (cylinder): length_mm: given for a cylinder",
+            "own.toml, line 8, object `mug`, part 1 (cylinder): length_mm: given for a cylinder",
         ),
         (
             good.to_string() + "position_mm = [0, 0, inf]\n",
-            "own.toml: object `mug`, part 1 (cylinder): position",
+            "own.toml, line 8, object `mug`, part 1 (cylinder): position_mm: [0.0, 0.0, inf]; three finite",
         ),
         (
             good.repeat(2),
-            "own.toml: object `mug`: a name that an earlier object has",
+            "own.toml, line 9, object `mug`: a name that an earlier object has",
         ),
         (
             good.replace("\"mug\"", "\" \""),
-            "own.toml: object ` `: an empty name",
+            "own.toml, line 2, object ` `: an empty name",
         ),
-        (tube, "own.toml: object `mug`, part 1 (tube): wall: "),
+        (
+            tube,
+            "own.toml, line 6, object `mug`, part 1 (tube): inner_diameter_mm = 9; less than the outer diameter of 8",
+        ),
         (
             bow_tie,
-            "own.toml: object `mug`, part 1 (prism): outline: side 1 crosses side 3",
+            "own.toml, line 6, object `mug`, part 1 (prism): outline_mm: side 1 crosses side 3",
         ),
         (
             good[..good.find("[[object.part]]").unwrap()].to_string() + "part = []\n",
-            "own.toml: object `mug`: solid: no parts",
+            "own.toml, line 2, object `mug`: solid: no parts",
         ),
     ];
     for (text, expected) in cases {
@@ -384,5 +399,66 @@ fn an_unusable_surface_error_is_refused() {
             error.to_string().contains("more than 2000000 spheres"),
             "{name}: {error}"
         );
+    }
+}
+
+/// The page about own objects.
+const GUIDE: &str = include_str!("../src/guide/own_objects.md");
+
+#[test]
+fn the_nut_of_the_guide_is_built() {
+    let example = GUIDE.split("```toml\n").nth(1).unwrap();
+    let example = example.split("```").next().unwrap();
+    let catalogue = Catalogue::parse("hardware", "hardware.toml", example).unwrap();
+    let nut = catalogue.object("nut").unwrap();
+    let size = nut.solid.bounds().size();
+    assert!((size.y - 13. * MM).abs() < 1e-12 && (size.z - 6.8 * MM).abs() < 1e-12);
+    for entry in catalogue.entries() {
+        let model = entry.build(0.1 * MM).unwrap().model;
+        let error = surface_error(&entry.solid, model.spheres().unwrap(), 0.2 * MM);
+        assert!(
+            error.protrusion <= 0.05 * MM && error.gap <= 0.1 * MM,
+            "{error:?}"
+        );
+    }
+    // A pin along the hole meets nothing.
+    let model = nut.build(0.1 * MM).unwrap().model;
+    let spheres = model.spheres().unwrap().spheres();
+    let free = spheres
+        .iter()
+        .map(|s| s.center.truncate().length() - s.radius);
+    assert!(free.fold(f64::INFINITY, f64::min) >= 0.0);
+    let wrong = example.replacen("height_mm = 6.8", "height_mm = -2", 1);
+    let error = Catalogue::parse("hardware", "hardware.toml", &wrong).unwrap_err();
+    assert!(GUIDE.contains(&format!("{error}\n")), "{error}");
+}
+
+#[test]
+fn the_guide_has_every_shape_and_every_key() {
+    let listed = |text: &str| -> Vec<String> {
+        let error = Catalogue::parse("own", "own.toml", text)
+            .unwrap_err()
+            .to_string();
+        let names = error.split('`').skip(1).step_by(2);
+        names.map(str::to_owned).collect()
+    };
+    let part = "[[object]]\nname = \"a\"\nsource = \"b\"\n[[object.part]]\n";
+    // What the reader says it expects: after the wrong name come all right ones.
+    let shapes = listed(&format!("{part}shape = \"none\"\n"));
+    let keys = listed(&format!("{part}shape = \"ball\"\nnone = 1\n"));
+    let of_object = listed("[[object]]\nnone = 1\n");
+    assert!(shapes.len() > 11 && keys.len() > 18 && of_object.len() > 4);
+    let is_in = |name: &&String| {
+        GUIDE.contains(&format!("`{name}`")) || GUIDE.contains(&format!("`{name} ="))
+    };
+    let missing: Vec<&String> = keys
+        .iter()
+        .chain(&of_object)
+        .filter(|name| *name != "none")
+        .filter(|n| !is_in(n))
+        .collect();
+    assert!(missing.is_empty(), "{missing:?}");
+    for shape in shapes.iter().filter(|name| *name != "none") {
+        assert!(GUIDE.contains(&format!("| `\"{shape}\"` |")), "{shape}");
     }
 }

@@ -1,10 +1,11 @@
 //! `bubbletouch objects`: what there is to touch, as a list or as pictures.
 
 use super::output::check_ending;
+use super::which_object::catalogue;
 use super::{objects_pack, objects_show};
 use bubbletouch::Result;
 use bubbletouch::files::write_bytes;
-use bubbletouch::mesh::{LengthUnit, MeshReport};
+use bubbletouch::mesh::{LengthUnit, MeshReport, SizeLimits};
 use bubbletouch::objects::{Catalogue, Entry, Object, SphereUnion};
 use bubbletouch::report::object_picture::{contact_sheet, object_picture};
 use bubbletouch::study::{MeshUse, ModelSpec, load_mesh, read_mesh_file};
@@ -29,12 +30,18 @@ pub struct Args {
     action: Option<Action>,
     /// Objects by name; all when left out
     names: Vec<String>,
-    /// Only this set: household, balls, boxes or cans
+    /// Only this set: household, balls, boxes, cans or hands
     #[arg(long, value_name = "SET", conflicts_with = "names")]
     set: Option<String>,
-    /// A PLY, OBJ or STL mesh in metres instead, as one sphere a vertex
+    /// A TOML file of objects instead of the built-in ones
+    #[arg(long, value_name = "FILE.toml", conflicts_with_all = ["set", "mesh"])]
+    objects: Option<PathBuf>,
+    /// A PLY, OBJ or STL mesh instead, as one sphere a vertex
     #[arg(long, value_name = "FILE", conflicts_with_all = ["names", "set"])]
     mesh: Option<PathBuf>,
+    /// Unit of the mesh file: m, cm, mm or in [default: m, and 0.1 mm to 10 m large]
+    #[arg(long, value_name = "UNIT", requires = "mesh")]
+    unit: Option<LengthUnit>,
     /// How far the spheres may be from the surface
     #[arg(long, value_name = "MM", default_value_t = 0.25)]
     surface_error_mm: f64,
@@ -57,9 +64,9 @@ enum Action {
 struct MeshArgs {
     /// A PLY, OBJ or STL file
     file: PathBuf,
-    /// Unit of the file: m, cm, mm or in
-    #[arg(long, value_name = "UNIT", default_value = "m")]
-    unit: LengthUnit,
+    /// Unit of the file: m, cm, mm or in [default: m, and 0.1 mm to 10 m large]
+    #[arg(long, value_name = "UNIT")]
+    unit: Option<LengthUnit>,
 }
 
 /// An object and the set it is from.
@@ -96,7 +103,7 @@ pub fn objects(args: &Args) -> Result<()> {
 
 fn report(args: &MeshArgs) -> Result<()> {
     let place = args.file.display().to_string();
-    let mesh = read_mesh_file(&args.file, args.unit)?.into_mesh(&place)?;
+    let mesh = read_mesh_file(&args.file, args.unit, &SizeLimits::ANY)?.into_mesh(&place)?;
     println!("{}", MeshReport::new(&mesh));
     Ok(())
 }
@@ -112,7 +119,8 @@ impl Args {
     fn build(&self) -> Result<Vec<Listed>> {
         if let Some(path) = &self.mesh {
             let wanted = MeshUse {
-                unit: LengthUnit::Metre,
+                unit: self.unit,
+                sizes: SizeLimits::ANY,
                 model: ModelSpec::VertexSpheres,
                 surface_error: self.surface_error_mm * 1e-3,
                 packings: None,
@@ -122,7 +130,7 @@ impl Args {
                 object: load_mesh(path, &wanted)?,
             }]);
         }
-        let catalogue = Catalogue::builtin()?;
+        let catalogue = catalogue(self.objects.as_deref())?;
         self.chosen(&catalogue)?
             .into_par_iter()
             .map(|entry| {

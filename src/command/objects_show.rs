@@ -1,10 +1,12 @@
 //! `bubbletouch objects show`: an object, the spheres that stand for it, and the error between them, side by side.
 
 use super::output::check_ending;
-use super::which_object::{WhichObject, spheres_file};
+use super::which_object::WhichObject;
 use bubbletouch::Result;
 use bubbletouch::files::write_bytes;
+use bubbletouch::mesh::{LengthUnit, SizeLimits};
 use bubbletouch::report::fit_picture::fit_picture;
+use bubbletouch::study::load_spheres;
 use std::path::PathBuf;
 
 /// Draw an object, its spheres and the error map, side by side.
@@ -18,9 +20,12 @@ pub struct Args {
     /// Pack to this surface error
     #[arg(long, value_name = "MM", default_value_t = 0.5)]
     tolerance_mm: f64,
-    /// Show these spheres instead: a CSV file with columns x, y, z, r in metres
+    /// Show these spheres instead: a CSV file with columns x, y, z, r
     #[arg(long, value_name = "FILE.csv", conflicts_with = "tolerance_mm")]
     spheres: Option<PathBuf>,
+    /// Unit of the file of spheres: m, cm, mm or in [default: m]
+    #[arg(long, value_name = "UNIT", requires = "spheres")]
+    spheres_unit: Option<LengthUnit>,
     /// Where the picture goes
     #[arg(long, value_name = "FILE.png")]
     out: PathBuf,
@@ -33,7 +38,7 @@ pub fn show(args: &Args) -> Result<()> {
     check_ending(&args.out, "png")?;
     let object = args.object.load()?;
     let spheres = match &args.spheres {
-        Some(path) => spheres_file(path)?,
+        Some(path) => load_spheres(path, args.spheres_unit, &SizeLimits::ANY)?,
         None => object.pack(args.tolerance_mm * 1e-3)?.0,
     };
     let picture = fit_picture(

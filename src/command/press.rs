@@ -3,16 +3,16 @@
 use super::output::terminal_width;
 use super::press_place::Place;
 use super::press_poses::{self, press_poses};
-use super::which_object::spheres_file;
+use super::which_object::catalogue;
 use bubbletouch::contact::{Contact, Workspace, press_to_depth, press_to_force, press_to_travel};
 use bubbletouch::geometry::Pose;
-use bubbletouch::mesh::LengthUnit;
-use bubbletouch::objects::{Catalogue, Model};
+use bubbletouch::mesh::{LengthUnit, SizeLimits};
+use bubbletouch::objects::Model;
 use bubbletouch::report::frame_files::write_frame;
 use bubbletouch::report::pressure_map::pressure_text;
 use bubbletouch::report::terminal::Ink;
 use bubbletouch::signal::Quantity;
-use bubbletouch::study::{MeshUse, ModelSpec, load_mesh};
+use bubbletouch::study::{MeshUse, ModelSpec, load_mesh, load_spheres};
 use bubbletouch::world::{Grid, Patch, Scene, Taxel};
 use bubbletouch::{Error, Result};
 use ndarray::Array2;
@@ -28,6 +28,9 @@ const MM: f64 = 1e-3;
 pub struct Args {
     #[command(flatten)]
     source: Source,
+    /// A TOML file of objects instead of the built-in ones, for --object
+    #[arg(long, value_name = "FILE.toml", requires = "object")]
+    objects: Option<PathBuf>,
     /// How far past first contact [default: 3 for objects and meshes; spheres are read where they are]
     #[arg(long, value_name = "MM")]
     depth_mm: Option<f64>,
@@ -46,7 +49,7 @@ pub struct Args {
     /// What a mesh becomes: vertex_spheres, mesh (itself) or packed [default: vertex_spheres]
     #[arg(long, value_name = "MODEL", value_parser = parse_model)]
     model: Option<ModelSpec>,
-    /// Unit of the mesh file: m, cm, mm or in [default: m]
+    /// Unit of the file of the mesh or the spheres: m, cm, mm or in [default: m, and of a size that the array can feel]
     #[arg(long, value_name = "UNIT")]
     unit: Option<LengthUnit>,
     /// How far the spheres of a built-in object, or of a packed mesh, may be from its surface [default: 0.25; of a packed mesh a
@@ -76,13 +79,13 @@ pub struct Args {
 #[derive(clap::Args)]
 #[group(required = true, multiple = false)]
 struct Source {
-    /// A built-in object (bubbletouch objects lists them)
+    /// A built-in object (bubbletouch objects lists them), or one of --objects
     #[arg(long, value_name = "NAME")]
     object: Option<String>,
     /// A PLY, OBJ or STL mesh
     #[arg(long, value_name = "FILE")]
     mesh: Option<PathBuf>,
-    /// Spheres x,y,z,r in metres, in the patch frame: taxels rest in the plane z = 0, axes along +z
+    /// Spheres x,y,z,r, in the patch frame: taxels rest in the plane z = 0, axes along +z
     #[arg(long, value_name = "FILE", conflicts_with = "Place")]
     spheres: Option<PathBuf>,
 }
@@ -173,16 +176,27 @@ impl Args {
 
     /// The object and `patch_from_object` before any travel.
     fn placed_object(&self) -> Result<(Model, Pose)> {
-        if self.source.mesh.is_none() && (self.model.is_some() || self.unit.is_some()) {
-            return Err(Error::input(
-                "press",
-                "--model or --unit without --mesh",
-                "them only beside --mesh FILE",
-            ));
+        let misplaced = [
+            (
+                self.model.is_some() && self.source.mesh.is_none(),
+                "--model",
+                "--mesh FILE",
+            ),
+            (
+                self.unit.is_some() && self.source.object.is_some(),
+                "--unit",
+                "--mesh or --spheres FILE",
+            ),
+        ];
+        if let Some((_, option, beside)) = misplaced.into_iter().find(|(is_so, ..)| *is_so) {
+            let given = format!("{option} without {beside}");
+            let allowed = format!("it only beside {beside}");
+            return Err(Error::input("press", given, allowed));
         }
         let model = match (&self.source.spheres, &self.source.mesh, &self.source.object) {
             (Some(path), _, _) => {
-                return Ok((spheres_file(path)?.into(), Pose::IDENTITY));
+                let spheres = load_spheres(path, self.unit, &self.sizes())?;
+                return Ok((spheres.into(), Pose::IDENTITY));
             }
             (_, Some(path), _) => load_mesh(path, &self.mesh_use())?.model,
             (_, _, Some(name)) => self.build(name)?,
@@ -197,15 +211,24 @@ impl Args {
 
     fn mesh_use(&self) -> MeshUse<'_> {
         MeshUse {
-            unit: self.unit.unwrap_or_default(),
+            unit: self.unit,
+            sizes: self.sizes(),
             model: self.model.unwrap_or_default(),
             surface_error: self.surface_error(),
             packings: None,
         }
     }
 
+    /// What the array can feel.
+    fn sizes(&self) -> SizeLimits {
+        let (nx, ny) = self.taxels;
+        let side = nx.max(ny) as f64 * self.pitch_mm * MM;
+        let radius_mm = self.taxel_radius_mm.unwrap_or(0.5 * self.pitch_mm);
+        SizeLimits::of_arrays([(side, radius_mm * MM)])
+    }
+
     fn build(&self, name: &str) -> Result<Model> {
-        let catalogue = Catalogue::builtin()?;
+        let catalogue = catalogue(self.objects.as_deref())?;
         Ok(catalogue.object(name)?.build(self.surface_error())?.model)
     }
 

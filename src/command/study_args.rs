@@ -21,8 +21,9 @@ const QUICKSTART: &str = include_str!("../../experiments/quickstart.toml");
 pub struct StudyArgs {
     /// The study, a TOML file
     pub study: PathBuf,
-    /// A folder of PLY, OBJ or STL meshes, one object a file; replaces the study's objects, or the folder of its scans
-    #[arg(long, value_name = "FOLDER")]
+    /// A folder of PLY, OBJ or STL meshes, one object a file, or a TOML file of objects; replaces the study's objects, or the folder
+    /// of its scans
+    #[arg(long, value_name = "FOLDER or FILE.toml")]
     pub objects: Option<PathBuf>,
     /// Root of all randomness; replaces the study's
     #[arg(long, value_name = "N")]
@@ -172,9 +173,15 @@ impl StudyArgs {
     }
 
     fn replace_objects(&self, objects: &mut ObjectsSpec) {
-        if let Some(folder) = &self.objects {
-            objects.meshes = Some(folder.clone());
-            objects.sets.clear();
+        let Some(given) = &self.objects else {
+            return;
+        };
+        objects.sets.clear();
+        if given.extension().is_some_and(|ending| ending == "toml") {
+            objects.sets.push(given.display().to_string());
+            objects.meshes = None;
+        } else {
+            objects.meshes = Some(given.clone());
         }
     }
 

@@ -1,23 +1,24 @@
 //! Which object a command is about: a mesh file or a built-in one; and its packing, with progress shown.
 
-use bubbletouch::mesh::{LengthUnit, Surface};
-use bubbletouch::objects::{Catalogue, Solid, SphereUnion, read_spheres};
+use bubbletouch::mesh::{LengthUnit, SizeLimits, Surface};
+use bubbletouch::objects::{Catalogue, Solid, SphereUnion};
 use bubbletouch::packing::{Body, pack_mesh_watched};
 use bubbletouch::report::fit_picture::Original;
 use bubbletouch::report::progress::to_stderr;
-use bubbletouch::study::read_mesh_file;
+use bubbletouch::study::{load_catalogue, read_mesh_file};
 use bubbletouch::{Error, Result};
-use std::fs::File;
-use std::io::BufReader;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 #[derive(clap::Args)]
 pub struct WhichObject {
-    /// A PLY, OBJ or STL file, or the name of a built-in object
+    /// A PLY, OBJ or STL file, or the name of a built-in object or of one of --objects
     object: String,
-    /// Unit of a mesh file: m, cm, mm or in
-    #[arg(long, value_name = "UNIT", default_value = "m")]
-    unit: LengthUnit,
+    /// A TOML file of objects instead of the built-in ones
+    #[arg(long, value_name = "FILE.toml")]
+    objects: Option<PathBuf>,
+    /// Unit of a mesh file: m, cm, mm or in [default: m, and 0.1 mm to 10 m large]
+    #[arg(long, value_name = "UNIT")]
+    unit: Option<LengthUnit>,
     /// Take a mesh as its surface without thickness, holes and all, not as the solid that it encloses
     #[arg(long)]
     as_sheet: bool,
@@ -32,8 +33,16 @@ pub enum Loaded {
 impl WhichObject {
     /// A file goes before a built-in object of the same name.
     pub fn load(&self) -> Result<Loaded> {
+        if self.objects.is_some() {
+            if self.unit.is_some() || self.as_sheet {
+                let given = "--unit or --as-sheet beside --objects";
+                return Err(Error::input("objects", given, "them only for a mesh"));
+            }
+            let catalogue = catalogue(self.objects.as_deref())?;
+            return Ok(Loaded::Solid(catalogue.object(&self.object)?.solid.clone()));
+        }
         let path = Path::new(&self.object);
-        let catalogue = Catalogue::builtin()?;
+        let catalogue = catalogue(None)?;
         if let Ok(entry) = catalogue.object(&self.object)
             && !path.exists()
         {
@@ -44,7 +53,7 @@ impl WhichObject {
         } else {
             Body::Solid
         };
-        let mesh = read_mesh_file(path, self.unit)?.into_mesh(&self.object)?;
+        let mesh = read_mesh_file(path, self.unit, &SizeLimits::ANY)?.into_mesh(&self.object)?;
         let surface = Box::new(Surface::new(mesh));
         Ok(Loaded::Mesh { surface, body })
     }
@@ -87,15 +96,7 @@ impl Loaded {
     }
 }
 
-/// Spheres of a CSV file with columns x, y, z, r in metres.
-pub fn spheres_file(path: &Path) -> Result<SphereUnion> {
-    let place = path.display().to_string();
-    let file = File::open(path).map_err(|error| {
-        Error::input(
-            &place,
-            format!("cannot be opened ({error})"),
-            "a CSV of spheres",
-        )
-    })?;
-    read_spheres(&place, BufReader::new(file))
+/// The objects of a TOML file, or the built-in ones.
+pub fn catalogue(file: Option<&Path>) -> Result<Catalogue> {
+    file.map_or_else(Catalogue::builtin, load_catalogue)
 }

@@ -12,5 +12,8 @@ pub mod events {}
 #[doc = include_str!("limits.md")]
 pub mod limits {}
 
+#[doc = include_str!("own_objects.md")]
+pub mod own_objects {}
+
 #[doc = include_str!("many_machines.md")]
 pub mod many_machines {}

@@ -74,6 +74,12 @@ impl LengthUnit {
         ("in", Self::Inch),
     ];
 
+    /// As people type it.
+    pub fn name(self) -> &'static str {
+        let named = Self::NAMES.iter().find(|(_, unit)| *unit == self);
+        named.expect("every unit has a name").0
+    }
+
     /// One of it in metres.
     pub fn metres(self) -> f64 {
         match self {

@@ -3,7 +3,9 @@
 use super::Sphere;
 use super::fit::Fit;
 use super::pack::MAX_SPHERES;
-use glam::DVec3;
+use super::surface_patch::{SurfacePatch, frame};
+use crate::geometry::Pose;
+use glam::{DVec2, DVec3};
 
 /// An axis-aligned box about the origin.
 #[derive(Clone, Copy, Debug)]
@@ -67,6 +69,41 @@ impl Block {
                 }
             }
         }
+    }
+
+    /// Six faces; if it is rounded, twelve edges and eight corners.
+    pub fn patches(&self) -> Vec<SurfacePatch> {
+        const SIGNS: [f64; 2] = [-1.0, 1.0];
+        let core = self.half - DVec3::splat(self.rounding);
+        let mut patches = Vec::new();
+        for axis in 0..3 {
+            let (b, c) = ((axis + 1) % 3, (axis + 2) % 3);
+            let [up, right, ahead] = [axis, b, c].map(|k| DVec3::AXES[k]);
+            for sign in SIGNS {
+                let origin = sign * self.half[axis] * up;
+                let half = DVec2::new(core[b], core[c]);
+                patches.push(SurfacePatch::flat(origin, [right, sign * ahead], half));
+            }
+            if self.rounding == 0.0 {
+                continue;
+            }
+            let line = [-core[axis], core[axis]].map(|z| DVec2::new(self.rounding, z));
+            let angles = [0.0, std::f64::consts::FRAC_PI_2];
+            for (y, z) in SIGNS.into_iter().flat_map(|y| SIGNS.map(|z| (y, z))) {
+                let at = y * core[b] * right + z * core[c] * ahead;
+                let pose = Pose::new(frame(y * right, z * ahead), at);
+                if core[axis] > 0.0 {
+                    patches.push(SurfacePatch::turned(line[0], line[1], angles).moved(&pose));
+                }
+                if axis == 2 {
+                    patches.extend(SIGNS.map(|up| {
+                        let sides = DVec3::new(y, z, up);
+                        SurfacePatch::eighth_of_ball(sides * core, self.rounding, sides)
+                    }));
+                }
+            }
+        }
+        patches
     }
 
     pub fn surface_points(&self, spacing: f64, points: &mut Vec<DVec3>) {

@@ -1,6 +1,7 @@
 //! The catalogue: named objects, as parametric solids with real dimensions.
 //!
-//! A catalogue file is a list of objects, each a union of parts:
+//! A catalogue file is a list of objects, each a union of parts, less what is subtracted from them
+//! ([all shapes and keys](crate::guide::own_objects)):
 //!
 //! ```toml
 //! [[object]]
@@ -21,7 +22,7 @@
 //! written.
 
 use super::solid_toml::WrittenPart;
-use super::{Hand, Object, Solid, pack};
+use super::{Hand, Object, Part, Solid, pack};
 use crate::error::{Error, Result};
 use crate::geometry::Pose;
 use crate::toml_text;
@@ -29,6 +30,7 @@ use glam::DQuat;
 use serde::Deserialize;
 use std::collections::BTreeSet;
 use std::ops::Range;
+use toml::Spanned;
 
 /// The files of `objects/`, by the name of their set.
 const BUILTIN: [(&str, &str); 4] = [
@@ -89,14 +91,14 @@ impl Catalogue {
         let mut names = BTreeSet::new();
         let mut entries = Vec::new();
         for object in file.object {
-            if !names.insert(object.name.clone()) {
+            if !names.insert(object.name.get_ref().clone()) {
                 return Err(Error::input(
-                    format!("{place}: object `{}`", object.name),
+                    object.place(place, text),
                     "a name that an earlier object has",
                     "a name of its own",
                 ));
             }
-            entries.push(object.entry(set, place)?);
+            entries.push(object.entry(set, place, text)?);
         }
         Ok(Self { entries })
     }
@@ -177,37 +179,83 @@ struct File {
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct WrittenObject {
-    name: String,
+    name: Spanned<String>,
     source: String,
     part: Vec<WrittenPart>,
+    #[serde(default)]
+    subtract: Vec<WrittenPart>,
 }
 
 impl WrittenObject {
-    fn entry(self, set: &str, place: &str) -> Result<Entry> {
-        let place = format!("{place}: object `{}`", self.name);
-        if self.name.trim().is_empty() {
-            return Err(Error::input(place, "an empty name", "a name"));
+    /// `FILE, line LINE, object NAME`, the line that of its name.
+    fn place(&self, place: &str, text: &str) -> String {
+        let line = line_of(text, self.name.span().start);
+        format!("{place}, line {line}, object `{}`", self.name.get_ref())
+    }
+
+    fn entry(self, set: &str, place: &str, text: &str) -> Result<Entry> {
+        let here = self.place(place, text);
+        let name = self.name.into_inner();
+        if name.trim().is_empty() {
+            return Err(Error::input(here, "an empty name", "a name"));
         }
-        let mut parts = Vec::new();
-        for (index, part) in self.part.into_iter().enumerate() {
-            let place = format!("{place}, part {} ({})", index + 1, part.name());
-            parts.push(part.part().map_err(|e| e.under(format!("{place}: ")))?);
-        }
-        let solid = Solid::new(parts).map_err(|e| e.under(format!("{place}: ")))?;
+        let parts = |written: Vec<WrittenPart>, kind: &str| -> Result<Vec<Part>> {
+            let numbered = written.into_iter().enumerate();
+            let part = |(index, part): (usize, WrittenPart)| {
+                part.clone().part().map_err(|error| {
+                    let which = format!("{kind} {} ({})", index + 1, part.name());
+                    let line = |key: &str| line_of(text, part.place(key).start);
+                    of_part(error, |key| {
+                        format!("{place}, line {}, object `{name}`, {which}", line(key))
+                    })
+                })
+            };
+            numbered.map(part).collect()
+        };
+        let solid = Solid::new(parts(self.part, "part")?);
+        let cuts = parts(self.subtract, "subtract")?;
+        let solid = match cuts.is_empty() {
+            true => solid,
+            false => solid.and_then(|solid| solid.less(cuts)),
+        };
+        let solid = solid.map_err(|error| error.under(format!("{here}: ")))?;
         Ok(Entry {
             set: set.to_string(),
-            name: self.name,
+            name,
             source: self.source,
             solid: solid.resting(),
         })
     }
 }
 
+/// What is wrong with a part, with the place of the key that is its error's place.
+fn of_part(error: Error, place: impl Fn(&str) -> String) -> Error {
+    match error {
+        Error::Input {
+            place: key,
+            given,
+            allowed,
+        } => {
+            let given = match given.parse::<f64>() {
+                Ok(_) => format!("{key} = {given}"),
+                Err(_) => format!("{key}: {given}"),
+            };
+            Error::input(place(&key), given, allowed)
+        }
+        other => other,
+    }
+}
+
+/// Counted from 1.
+fn line_of(text: &str, byte: usize) -> usize {
+    1 + text[..byte].matches('\n').count()
+}
+
 /// What the TOML reader says, with line and object.
 fn unreadable(place: &str, text: &str, error: &toml::de::Error) -> Error {
     let place = match error.span() {
         Some(Range { start, .. }) => {
-            let line = 1 + text[..start].matches('\n').count();
+            let line = line_of(text, start);
             match object_around(text, start) {
                 Some(name) => format!("{place}, line {line}, object {name}"),
                 None => format!("{place}, line {line}"),

@@ -6,6 +6,7 @@ use super::Sphere;
 use super::fit::Fit;
 use super::outline::Outline;
 use super::pack::MAX_SPHERES;
+use super::surface_patch::SurfacePatch;
 use glam::{DVec2, DVec3};
 use std::f64::consts::{PI, TAU};
 
@@ -174,6 +175,13 @@ impl Lathe {
             .flat_map(|(covered, intervals)| common(intervals, covered))
             .map(|[start, end]| end - start)
             .sum()
+    }
+
+    pub fn patches(&self) -> Vec<SurfacePatch> {
+        let edges = self.outline.edges.iter();
+        edges
+            .map(|edge| SurfacePatch::turned(edge.start, edge.point(edge.length), [0.0, TAU]))
+            .collect()
     }
 
     pub fn surface_points(&self, spacing: f64, points: &mut Vec<DVec3>) {

@@ -12,6 +12,7 @@
 
 mod block;
 mod catalogue;
+mod difference;
 mod fit;
 mod hand;
 mod lathe;
@@ -28,6 +29,7 @@ mod sphere_csv;
 mod sphere_union;
 mod strand;
 mod surface_error;
+mod surface_patch;
 mod torus;
 mod vertex_spheres;
 

@@ -7,10 +7,13 @@
 //! reach the edge. Each form has its own closed layout of feet (`block`, `lathe`, `strand`, `torus`), or cells that are split
 //! until they are covered (`prism`).
 //!
+//! Where shapes are subtracted, cells of all surfaces are split in that way (`difference`).
+//!
 //! With half of e outside, the spheres' bumps and hollows about cancel (`fit`): the mean of the spheres' surface is the
 //! solid's, as it is for packed meshes ([`crate::packing`]). A ball is its own sphere, and so are the balls of a strand:
 //! nothing of them is swollen.
 
+use super::difference::pack_difference;
 use super::fit::Fit;
 use super::{Solid, Sphere, SphereUnion};
 use crate::error::{Error, Result};
@@ -35,6 +38,9 @@ pub fn pack(solid: &Solid, tolerance: f64) -> Result<SphereUnion> {
     }
     // Leaves rounding errors a place, so that what is promised is kept to the last digit.
     let fit = Fit::within(tolerance * (1.0 - 1e-6));
+    if !solid.cuts().is_empty() {
+        return pack_less(solid, tolerance, fit);
+    }
     let mut kept = Vec::new();
     for (index, part) in solid.parts().iter().enumerate() {
         let spheres = part.pack(fit);
@@ -55,6 +61,20 @@ pub fn pack(solid: &Solid, tolerance: f64) -> Result<SphereUnion> {
         );
     }
     SphereUnion::new(kept)
+}
+
+/// A solid from which something is subtracted.
+fn pack_less(solid: &Solid, tolerance: f64, fit: Fit) -> Result<SphereUnion> {
+    match pack_difference(solid, fit) {
+        Some(spheres) => SphereUnion::new(spheres),
+        None => Err(Error::input(
+            "surface error",
+            format!(
+                "{tolerance} m, which takes more than {MAX_SPHERES} spheres for a solid less other shapes, or walls too thin for it"
+            ),
+            "a larger surface error, or subtracted shapes that leave thicker walls",
+        )),
+    }
 }
 
 /// Whether all surface that a sphere is there for lies inside another part.

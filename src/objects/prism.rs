@@ -4,6 +4,7 @@ use super::Sphere;
 use super::fit::Fit;
 use super::outline::Outline;
 use super::pack::MAX_SPHERES;
+use super::surface_patch::SurfacePatch;
 use glam::{DVec2, DVec3};
 
 /// A polygon in the plane z = 0, thickened by half the thickness both ways.
@@ -124,6 +125,24 @@ impl Prism {
         } else {
             (foot, 0.0)
         }
+    }
+
+    /// Each wall, and a rectangle around each face: beside the outline it lies outside the prism.
+    pub fn patches(&self) -> Vec<SurfacePatch> {
+        let walls = self.outline.edges.iter().map(|edge| {
+            let middle = edge.point(0.5 * edge.length).extend(0.0);
+            let axes = [edge.along.extend(0.0), DVec3::Z];
+            SurfacePatch::flat(middle, axes, DVec2::new(0.5 * edge.length, self.half))
+        });
+        let corners = self.outline.vertices().iter();
+        let min = corners.clone().copied().fold(DVec2::MAX, DVec2::min);
+        let max = corners.copied().fold(DVec2::MIN, DVec2::max);
+        let middle = 0.5 * (min + max);
+        let face = |up: f64| {
+            let axes = [DVec3::X, up * DVec3::Y];
+            SurfacePatch::flat(middle.extend(up * self.half), axes, 0.5 * (max - min))
+        };
+        walls.chain([face(1.0), face(-1.0)]).collect()
     }
 
     pub fn surface_points(&self, spacing: f64, points: &mut Vec<DVec3>) {

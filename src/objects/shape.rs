@@ -70,6 +70,13 @@ pub enum Shape {
         /// Along z.
         thickness: f64,
     },
+    /// A six-sided bar along z with two corners on the x axis: nuts, bolt heads, pencils.
+    HexagonalPrism {
+        /// Distance between opposite sides: the size of its spanner.
+        across_flats: f64,
+        /// Along z.
+        height: f64,
+    },
     /// A ball swept along a broken line, its diameter changing evenly from point to point: handles, rings, bananas.
     Strand {
         /// Where the line goes; closed when the last ball is the first.
@@ -79,16 +86,116 @@ pub enum Shape {
     },
 }
 
+/// How errors name lengths and say how long they are.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Wording {
+    /// `height: -0.002 m`
+    Metres,
+    /// `height_mm: -2`, as the keys of files of objects.
+    MillimetreKeys,
+}
+
+impl Wording {
+    fn name(self, length: &str) -> String {
+        match self {
+            Self::Metres => length.to_owned(),
+            Self::MillimetreKeys => format!("{length}_mm"),
+        }
+    }
+
+    /// Of metres.
+    fn length(self, metres: f64) -> String {
+        match self {
+            Self::Metres => format!("{metres} m"),
+            // As it was written, but for what the conversion to metres and back rounds.
+            Self::MillimetreKeys => format!("{}", (metres * 1e12).round() / 1e9),
+        }
+    }
+
+    fn positive(self, name: &str, metres: f64) -> Result<()> {
+        if metres.is_finite() && metres > 0.0 {
+            return Ok(());
+        }
+        let allowed = "a finite positive length";
+        Err(Error::input(self.name(name), self.length(metres), allowed))
+    }
+
+    /// Largest and smallest included; the largest may be infinite.
+    fn between(self, name: &str, metres: f64, low: f64, high: f64) -> Result<()> {
+        if metres.is_finite() && (low..=high).contains(&metres) {
+            return Ok(());
+        }
+        let low = self.length(low);
+        let allowed = if high.is_infinite() {
+            format!("{low} or more")
+        } else {
+            format!("{low} to {}", self.length(high))
+        };
+        Err(Error::input(self.name(name), self.length(metres), allowed))
+    }
+
+    fn polygon(self, name: &str, corners: &[DVec2]) -> Result<()> {
+        let fault = match corners.iter().position(|corner| !corner.is_finite()) {
+            Some(at) => Some(format!("corner {}, which is not finite", at + 1)),
+            None => polygon_fault(corners),
+        };
+        match fault {
+            Some(given) => Err(Error::input(
+                self.name(name),
+                given,
+                "at least three corners of a polygon that does not cross itself",
+            )),
+            None => Ok(()),
+        }
+    }
+
+    fn strand(self, points: &[DVec3], diameters: &[f64]) -> Result<()> {
+        if points.is_empty() || points.len() != diameters.len() {
+            return Err(Error::input(
+                self.name("diameters"),
+                format!("{} points and {} diameters", points.len(), diameters.len()),
+                "one diameter for each of at least one points",
+            ));
+        }
+        for &diameter in diameters {
+            self.positive("diameters", diameter)?;
+        }
+        if let Some(at) = points.iter().position(|point| !point.is_finite()) {
+            let given = format!("point {}, which is not finite", at + 1);
+            return Err(Error::input(
+                self.name("points"),
+                given,
+                "finite coordinates",
+            ));
+        }
+        match points.windows(2).position(|pair| pair[0] == pair[1]) {
+            Some(at) => Err(Error::input(
+                self.name("points"),
+                format!("point {} as the one before", at + 2),
+                "neighbouring points that differ",
+            )),
+            None => Ok(()),
+        }
+    }
+}
+
 impl Shape {
     /// The error names the first dimension that is out of its range.
     pub fn check(&self) -> Result<()> {
+        self.check_worded(Wording::Metres)
+    }
+
+    /// The error's place is the name of the dimension.
+    pub(super) fn check_worded(&self, wording: Wording) -> Result<()> {
+        let positive = |name, metres| wording.positive(name, metres);
+        let at_least = |name, metres, low| wording.between(name, metres, low, f64::INFINITY);
         match self {
             Shape::Ball { diameter } => positive("diameter", *diameter),
             Shape::Box { size, rounding } => {
-                positive("size x", size.x)?;
-                positive("size y", size.y)?;
-                positive("size z", size.z)?;
-                between("rounding", *rounding, 0.0, 0.5 * size.min_element())
+                for length in size.to_array() {
+                    positive("size", length)?;
+                }
+                wording.between("rounding", *rounding, 0.0, 0.5 * size.min_element())
             }
             Shape::Cylinder { diameter, height } => {
                 positive("diameter", *diameter)?;
@@ -96,16 +203,18 @@ impl Shape {
             }
             Shape::Capsule { diameter, length } => {
                 positive("diameter", *diameter)?;
-                between("length", *length, *diameter, f64::MAX)
+                at_least("length", *length, *diameter)
             }
             Shape::ConeFrustum {
                 bottom_diameter,
                 top_diameter,
                 height,
             } => {
-                between("bottom_diameter", *bottom_diameter, 0.0, f64::MAX)?;
-                between("top_diameter", *top_diameter, 0.0, f64::MAX)?;
-                positive("larger diameter", bottom_diameter.max(*top_diameter))?;
+                at_least("bottom_diameter", *bottom_diameter, 0.0)?;
+                at_least("top_diameter", *top_diameter, 0.0)?;
+                if *bottom_diameter == 0.0 {
+                    positive("top_diameter", *top_diameter)?;
+                }
                 positive("height", *height)
             }
             Shape::Torus {
@@ -113,7 +222,7 @@ impl Shape {
                 tube_diameter,
             } => {
                 positive("tube_diameter", *tube_diameter)?;
-                between("ring_diameter", *ring_diameter, *tube_diameter, f64::MAX)
+                at_least("ring_diameter", *ring_diameter, *tube_diameter)
             }
             Shape::Tube {
                 outer_diameter,
@@ -121,88 +230,42 @@ impl Shape {
                 height,
             } => {
                 positive("inner_diameter", *inner_diameter)?;
-                positive("wall", outer_diameter - inner_diameter)?;
                 positive("outer_diameter", *outer_diameter)?;
+                if inner_diameter >= outer_diameter {
+                    return Err(Error::input(
+                        wording.name("inner_diameter"),
+                        wording.length(*inner_diameter),
+                        format!(
+                            "less than the outer diameter of {}",
+                            wording.length(*outer_diameter)
+                        ),
+                    ));
+                }
                 positive("height", *height)
             }
             Shape::Lathe { profile } => {
-                check_polygon("profile", profile)?;
-                match profile.iter().find(|corner| corner.x < 0.0) {
-                    Some(corner) => Err(Error::input(
-                        "profile",
-                        format!("corner {corner} m left of the axis"),
+                wording.polygon("profile", profile)?;
+                match profile.iter().position(|corner| corner.x < 0.0) {
+                    Some(at) => Err(Error::input(
+                        wording.name("profile"),
+                        format!("corner {} left of the axis", at + 1),
                         "distances from the axis of zero or more",
                     )),
                     None => Ok(()),
                 }
             }
             Shape::Prism { outline, thickness } => {
-                check_polygon("outline", outline)?;
+                wording.polygon("outline", outline)?;
                 positive("thickness", *thickness)
             }
-            Shape::Strand { points, diameters } => check_strand(points, diameters),
+            Shape::HexagonalPrism {
+                across_flats,
+                height,
+            } => {
+                positive("across_flats", *across_flats)?;
+                positive("height", *height)
+            }
+            Shape::Strand { points, diameters } => wording.strand(points, diameters),
         }
     }
-}
-
-fn check_polygon(place: &str, corners: &[DVec2]) -> Result<()> {
-    let fault = match corners.iter().find(|corner| !corner.is_finite()) {
-        Some(corner) => Some(format!("corner {corner}")),
-        None => polygon_fault(corners),
-    };
-    match fault {
-        Some(given) => Err(Error::input(
-            place,
-            given,
-            "at least three corners of a polygon that does not cross itself",
-        )),
-        None => Ok(()),
-    }
-}
-
-fn check_strand(points: &[DVec3], diameters: &[f64]) -> Result<()> {
-    if points.is_empty() || points.len() != diameters.len() {
-        return Err(Error::input(
-            "strand",
-            format!("{} points and {} diameters", points.len(), diameters.len()),
-            "one diameter for each of at least one points",
-        ));
-    }
-    for &diameter in diameters {
-        positive("diameters", diameter)?;
-    }
-    if let Some(point) = points.iter().find(|point| !point.is_finite()) {
-        return Err(Error::input("points", point, "finite coordinates"));
-    }
-    match points.windows(2).find(|pair| pair[0] == pair[1]) {
-        Some(pair) => Err(Error::input(
-            "points",
-            format!("{} m twice in a row", pair[0]),
-            "neighbouring points that differ",
-        )),
-        None => Ok(()),
-    }
-}
-
-fn positive(name: &str, value: f64) -> Result<()> {
-    if value.is_finite() && value > 0.0 {
-        return Ok(());
-    }
-    Err(Error::input(
-        name,
-        format!("{value} m"),
-        "a finite positive length",
-    ))
-}
-
-fn between(name: &str, value: f64, low: f64, high: f64) -> Result<()> {
-    if value.is_finite() && (low..=high).contains(&value) {
-        return Ok(());
-    }
-    let allowed = if high == f64::MAX {
-        format!("{low} m or more")
-    } else {
-        format!("{low} to {high} m")
-    };
-    Err(Error::input(name, format!("{value} m"), allowed))
 }

@@ -1,10 +1,11 @@
-//! Unions of posed shapes: what the catalogue's objects are.
+//! Unions of posed shapes, less other shapes: what the catalogue's objects are.
 
 use super::block::Block;
 use super::fit::Fit;
 use super::lathe::Lathe;
 use super::prism::Prism;
 use super::strand::Strand;
+use super::surface_patch::SurfacePatch;
 use super::torus::Torus;
 use super::{Shape, Sphere, SphereUnion};
 use crate::error::{Error, Result};
@@ -20,11 +21,19 @@ pub struct Part {
     pose: Pose,
 }
 
-/// A union of parts. Invariant: at least one.
+/// A union of parts, less other shapes. Invariant: at least one part.
 #[derive(Clone, Debug)]
 pub struct Solid {
     parts: Vec<Part>,
+    /// What is subtracted from all parts together.
+    cuts: Vec<Part>,
+    /// How much larger the cuts are taken, metres.
+    seam: f64,
 }
+
+/// How much larger cuts are taken, in diagonals of the box around the parts: where one ends in a part's surface no membrane without
+/// thickness is left. Smaller: rounding leaves one; larger: walls beside cuts are thinner.
+const SEAM: f64 = 4e-6;
 
 /// The five forms that all shapes come down to.
 #[derive(Clone, Debug)]
@@ -101,6 +110,19 @@ impl Part {
         spheres
     }
 
+    /// All of the part's surface, in the object's frame.
+    pub(super) fn patches(&self) -> Vec<SurfacePatch> {
+        let patches = match &self.kernel {
+            Kernel::Block(block) => block.patches(),
+            Kernel::Lathe(lathe) => lathe.patches(),
+            Kernel::Prism(prism) => prism.patches(),
+            Kernel::Torus(torus) => torus.patches(),
+            Kernel::Strand(strand) => strand.patches(),
+        };
+        let moved = patches.into_iter().map(|patch| patch.moved(&self.pose));
+        moved.collect()
+    }
+
     /// Points of the part's surface, at most about `spacing` apart, corners and edges among them.
     fn surface_points(&self, spacing: f64) -> Vec<DVec3> {
         let mut points = Vec::new();
@@ -124,7 +146,30 @@ impl Solid {
         if parts.is_empty() {
             return Err(Error::input("solid", "no parts", "at least one part"));
         }
-        Ok(Self { parts })
+        Ok(Self {
+            parts,
+            cuts: Vec::new(),
+            seam: 0.0,
+        })
+    }
+
+    /// What these shapes leave of the solid. An error if they leave nothing of one of its parts' surfaces, as far as points a
+    /// hundredth of its size apart can tell.
+    pub fn less(self, cuts: Vec<Part>) -> Result<Self> {
+        let seam = SEAM * self.bounds().size().length();
+        let solid = Self { cuts, seam, ..self };
+        if solid
+            .surface_points(1e-2 * solid.bounds().size().length())
+            .is_empty()
+        {
+            let given = "shapes that take away all parts";
+            return Err(Error::input(
+                "subtract",
+                given,
+                "shapes that leave something",
+            ));
+        }
+        Ok(solid)
     }
 
     /// A solid of one shape in its own frame.
@@ -137,15 +182,25 @@ impl Solid {
         &self.parts
     }
 
-    /// Metres from a point to the surface, negative inside.
-    ///
-    /// Exact outside; inside exact for one part of any shape but a strand, else never deeper than the truth.
-    pub fn distance(&self, point: DVec3) -> f64 {
-        let distances = self.parts.iter().map(|part| part.distance(point));
-        distances.fold(f64::INFINITY, f64::min)
+    /// What is subtracted, in the order in which it was given.
+    pub fn cuts(&self) -> &[Part] {
+        &self.cuts
     }
 
-    /// The exact box around the solid, metres.
+    /// Metres from a point to the surface, negative inside.
+    ///
+    /// Exact outside if nothing is subtracted, else never farther than the truth; inside exact for one part of any shape but a
+    /// strand, else never deeper than the truth. What is subtracted is taken larger by 4 millionths of the diagonal of the box.
+    pub fn distance(&self, point: DVec3) -> f64 {
+        nearest(&self.parts, point).max(self.seam - nearest(&self.cuts, point))
+    }
+
+    /// Minus the distance where all that is subtracted is larger by `growth` (metres).
+    pub(super) fn depth_with_cuts_grown(&self, point: DVec3, growth: f64) -> f64 {
+        (-nearest(&self.parts, point)).min(nearest(&self.cuts, point) - growth)
+    }
+
+    /// The exact box around the parts, whatever is subtracted from them, metres.
     pub fn bounds(&self) -> Aabb {
         let support = |direction: DVec3| {
             let supports = self.parts.iter().map(|part| part.support(direction));
@@ -163,11 +218,11 @@ impl Solid {
 
     /// The same solid after a rigid motion.
     pub fn moved(&self, motion: &Pose) -> Self {
-        let mut parts = self.parts.clone();
-        for part in &mut parts {
+        let mut solid = self.clone();
+        for part in solid.parts.iter_mut().chain(&mut solid.cuts) {
             part.pose = motion.compose(&part.pose);
         }
-        Self { parts }
+        solid
     }
 
     /// The same solid resting on z = 0, the middle of its box on the z axis.
@@ -180,15 +235,27 @@ impl Solid {
     /// Points of the union's surface, at most about `spacing` (metres) apart.
     pub fn surface_points(&self, spacing: f64) -> Vec<DVec3> {
         // A point of a part's surface that lies inside another part, or inside its own strand, is not surface.
-        let inside = -1e-9 * self.bounds().size().length();
+        let rounding = 1e-9 * self.bounds().size().length();
         let points = self.parts.iter().flat_map(|p| p.surface_points(spacing));
-        points.filter(|&p| self.distance(p) >= inside).collect()
+        let of_parts = points
+            .filter(|&p| nearest(&self.parts, p) >= -rounding && nearest(&self.cuts, p) > rounding);
+        let points = self.cuts.iter().flat_map(|p| p.surface_points(spacing));
+        let of_cuts = points.filter(|&p| {
+            nearest(&self.cuts, p) >= -rounding && nearest(&self.parts, p) < -rounding
+        });
+        of_parts.chain(of_cuts).collect()
     }
 
     /// [`super::pack`] as a method.
     pub fn pack(&self, tolerance: f64) -> Result<SphereUnion> {
         super::pack::pack(self, tolerance)
     }
+}
+
+/// Metres to the nearest of these shapes, negative inside one; infinite without any.
+fn nearest(parts: &[Part], point: DVec3) -> f64 {
+    let distances = parts.iter().map(|part| part.distance(point));
+    distances.fold(f64::INFINITY, f64::min)
 }
 
 fn kernel(shape: &Shape) -> Kernel {
@@ -228,6 +295,15 @@ fn kernel(shape: &Shape) -> Kernel {
             Kernel::Lathe(Lathe::new(&corners.map(DVec2::from)))
         }
         Shape::Lathe { ref profile } => Kernel::Lathe(Lathe::new(profile)),
+        Shape::HexagonalPrism {
+            across_flats,
+            height,
+        } => {
+            let corner = across_flats / 3f64.sqrt();
+            let corners = [0.0, 1.0, 2.0, 3.0, 4.0, 5.0]
+                .map(|k| corner * DVec2::from_angle(k * std::f64::consts::FRAC_PI_3));
+            Kernel::Prism(Prism::new(&corners, height))
+        }
         Shape::Prism {
             ref outline,
             thickness,

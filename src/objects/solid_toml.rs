@@ -1,39 +1,41 @@
 //! Parts as a person writes them: millimetres and degrees.
 
+use super::shape::Wording;
 use super::{Part, Shape};
 use crate::error::{Error, Result};
 use crate::geometry::{Pose, rotation_from_rpy};
 use glam::{DVec2, DVec3};
 use serde::Deserialize;
+use std::ops::Range;
+use toml::Spanned;
 
-/// One `[[object.part]]`: a shape's name, where it is, and the lengths that this shape has and no others.
+/// One `[[object.part]]` or `[[object.subtract]]`: a shape's name, where it is, and the lengths that this shape has and no others.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct WrittenPart {
-    shape: ShapeName,
+    shape: Spanned<ShapeName>,
     /// Where the shape's origin goes.
-    #[serde(default)]
-    position_mm: [f64; 3],
+    position_mm: Option<Spanned<[f64; 3]>>,
     /// Before that the shape turns about the object's fixed x axis, then y, then z (URDF's roll, pitch, yaw).
-    #[serde(default)]
-    rotation_deg: [f64; 3],
-    size_mm: Option<[f64; 3]>,
-    diameter_mm: Option<f64>,
-    height_mm: Option<f64>,
-    length_mm: Option<f64>,
-    bottom_diameter_mm: Option<f64>,
-    top_diameter_mm: Option<f64>,
-    ring_diameter_mm: Option<f64>,
-    tube_diameter_mm: Option<f64>,
-    outer_diameter_mm: Option<f64>,
-    inner_diameter_mm: Option<f64>,
-    thickness_mm: Option<f64>,
-    rounding_mm: Option<f64>,
+    rotation_deg: Option<Spanned<[f64; 3]>>,
+    size_mm: Option<Spanned<[f64; 3]>>,
+    diameter_mm: Option<Spanned<f64>>,
+    height_mm: Option<Spanned<f64>>,
+    length_mm: Option<Spanned<f64>>,
+    bottom_diameter_mm: Option<Spanned<f64>>,
+    top_diameter_mm: Option<Spanned<f64>>,
+    ring_diameter_mm: Option<Spanned<f64>>,
+    tube_diameter_mm: Option<Spanned<f64>>,
+    outer_diameter_mm: Option<Spanned<f64>>,
+    inner_diameter_mm: Option<Spanned<f64>>,
+    across_flats_mm: Option<Spanned<f64>>,
+    thickness_mm: Option<Spanned<f64>>,
+    rounding_mm: Option<Spanned<f64>>,
     /// Corners (diameter, height) of a turned part, as its drawing gives them.
-    profile_mm: Option<Vec<[f64; 2]>>,
-    outline_mm: Option<Vec<[f64; 2]>>,
-    points_mm: Option<Vec<[f64; 3]>>,
-    diameters_mm: Option<Vec<f64>>,
+    profile_mm: Option<Spanned<Vec<[f64; 2]>>>,
+    outline_mm: Option<Spanned<Vec<[f64; 2]>>>,
+    points_mm: Option<Spanned<Vec<[f64; 3]>>>,
+    diameters_mm: Option<Spanned<Vec<f64>>>,
 }
 
 #[derive(Clone, Copy, Debug, Deserialize)]
@@ -48,27 +50,49 @@ enum ShapeName {
     Tube,
     Lathe,
     Prism,
+    HexagonalPrism,
     Strand,
 }
 
 impl WrittenPart {
     /// The same in metres, checked. The error's place is a key.
     pub fn part(mut self) -> Result<Part> {
+        let moved = |value: &mut Option<Spanned<[f64; 3]>>, key: &str| {
+            let value = value.take().map_or([0.0; 3], Spanned::into_inner);
+            if value.iter().all(|number| number.is_finite()) {
+                return Ok(value);
+            }
+            Err(Error::input(
+                key,
+                format!("{value:?}"),
+                "three finite numbers",
+            ))
+        };
+        let position = moved(&mut self.position_mm, "position_mm")?;
+        let rotation = moved(&mut self.rotation_deg, "rotation_deg")?;
         let shape = self.take_shape()?;
-        if let Some(key) = self.first_key_left() {
+        if let Some((key, _)) = self.keys().into_iter().find(|(_, place)| place.is_some()) {
             return Err(Error::input(
                 key,
                 format!("given for a {}", self.name()),
                 "only the lengths that the shape has",
             ));
         }
-        let rotation = rotation_from_rpy(self.rotation_deg.map(f64::to_radians).into());
-        Part::new(shape, Pose::new(rotation, metres3(self.position_mm)))
+        shape.check_worded(Wording::MillimetreKeys)?;
+        let rotation = rotation_from_rpy(rotation.map(f64::to_radians).into());
+        Part::new(shape, Pose::new(rotation, metres3(position)))
+    }
+
+    /// Where in the file the value of a key is; of the shape if the key is missing.
+    pub fn place(&self, key: &str) -> Range<usize> {
+        let keys = self.keys().into_iter();
+        let mut named = keys.filter_map(|(name, place)| (name == key).then_some(place));
+        named.next().flatten().unwrap_or(self.shape.span())
     }
 
     /// The shape's name as it is written.
     pub fn name(&self) -> &'static str {
-        match self.shape {
+        match self.shape.get_ref() {
             ShapeName::Ball => "ball",
             ShapeName::Box => "box",
             ShapeName::Cylinder => "cylinder",
@@ -78,18 +102,19 @@ impl WrittenPart {
             ShapeName::Tube => "tube",
             ShapeName::Lathe => "lathe",
             ShapeName::Prism => "prism",
+            ShapeName::HexagonalPrism => "hexagonal_prism",
             ShapeName::Strand => "strand",
         }
     }
 
     fn take_shape(&mut self) -> Result<Shape> {
-        Ok(match self.shape {
+        Ok(match self.shape.get_ref() {
             ShapeName::Ball => Shape::Ball {
                 diameter: metres(&mut self.diameter_mm, "diameter_mm")?,
             },
             ShapeName::Box => Shape::Box {
                 size: metres3(taken(&mut self.size_mm, "size_mm")?),
-                rounding: self.rounding_mm.take().unwrap_or(0.0) * MM,
+                rounding: self.rounding_mm.take().map_or(0.0, Spanned::into_inner) * MM,
             },
             ShapeName::Cylinder => Shape::Cylinder {
                 diameter: metres(&mut self.diameter_mm, "diameter_mm")?,
@@ -127,6 +152,10 @@ impl WrittenPart {
                     thickness: metres(&mut self.thickness_mm, "thickness_mm")?,
                 }
             }
+            ShapeName::HexagonalPrism => Shape::HexagonalPrism {
+                across_flats: metres(&mut self.across_flats_mm, "across_flats_mm")?,
+                height: metres(&mut self.height_mm, "height_mm")?,
+            },
             ShapeName::Strand => {
                 let points = taken(&mut self.points_mm, "points_mm")?.into_iter();
                 let diameters = taken(&mut self.diameters_mm, "diameters_mm")?.into_iter();
@@ -138,33 +167,39 @@ impl WrittenPart {
         })
     }
 
-    fn first_key_left(&self) -> Option<&'static str> {
-        let keys = [
-            (self.size_mm.is_some(), "size_mm"),
-            (self.diameter_mm.is_some(), "diameter_mm"),
-            (self.height_mm.is_some(), "height_mm"),
-            (self.length_mm.is_some(), "length_mm"),
-            (self.bottom_diameter_mm.is_some(), "bottom_diameter_mm"),
-            (self.top_diameter_mm.is_some(), "top_diameter_mm"),
-            (self.ring_diameter_mm.is_some(), "ring_diameter_mm"),
-            (self.tube_diameter_mm.is_some(), "tube_diameter_mm"),
-            (self.outer_diameter_mm.is_some(), "outer_diameter_mm"),
-            (self.inner_diameter_mm.is_some(), "inner_diameter_mm"),
-            (self.thickness_mm.is_some(), "thickness_mm"),
-            (self.rounding_mm.is_some(), "rounding_mm"),
-            (self.profile_mm.is_some(), "profile_mm"),
-            (self.outline_mm.is_some(), "outline_mm"),
-            (self.points_mm.is_some(), "points_mm"),
-            (self.diameters_mm.is_some(), "diameters_mm"),
-        ];
-        keys.into_iter().find(|(left, _)| *left).map(|(_, key)| key)
+    /// Every key that a shape may have, and where its value is in the file.
+    fn keys(&self) -> Vec<(&'static str, Option<Range<usize>>)> {
+        fn place<T>(value: &Option<Spanned<T>>) -> Option<Range<usize>> {
+            value.as_ref().map(Spanned::span)
+        }
+        vec![
+            ("position_mm", place(&self.position_mm)),
+            ("rotation_deg", place(&self.rotation_deg)),
+            ("size_mm", place(&self.size_mm)),
+            ("diameter_mm", place(&self.diameter_mm)),
+            ("height_mm", place(&self.height_mm)),
+            ("length_mm", place(&self.length_mm)),
+            ("bottom_diameter_mm", place(&self.bottom_diameter_mm)),
+            ("top_diameter_mm", place(&self.top_diameter_mm)),
+            ("ring_diameter_mm", place(&self.ring_diameter_mm)),
+            ("tube_diameter_mm", place(&self.tube_diameter_mm)),
+            ("outer_diameter_mm", place(&self.outer_diameter_mm)),
+            ("inner_diameter_mm", place(&self.inner_diameter_mm)),
+            ("across_flats_mm", place(&self.across_flats_mm)),
+            ("thickness_mm", place(&self.thickness_mm)),
+            ("rounding_mm", place(&self.rounding_mm)),
+            ("profile_mm", place(&self.profile_mm)),
+            ("outline_mm", place(&self.outline_mm)),
+            ("points_mm", place(&self.points_mm)),
+            ("diameters_mm", place(&self.diameters_mm)),
+        ]
     }
 }
 
 /// Metres in a millimetre.
 const MM: f64 = 1e-3;
 
-fn metres(value: &mut Option<f64>, key: &str) -> Result<f64> {
+fn metres(value: &mut Option<Spanned<f64>>, key: &str) -> Result<f64> {
     Ok(taken(value, key)? * MM)
 }
 
@@ -172,8 +207,9 @@ fn metres3(millimetres: [f64; 3]) -> DVec3 {
     DVec3::from(millimetres) * MM
 }
 
-fn taken<T>(value: &mut Option<T>, key: &str) -> Result<T> {
+fn taken<T>(value: &mut Option<Spanned<T>>, key: &str) -> Result<T> {
     value
         .take()
-        .ok_or_else(|| Error::input(key, "missing", "a length that the shape needs"))
+        .map(Spanned::into_inner)
+        .ok_or_else(|| Error::input(key, "missing", "a value for each length of the shape"))
 }

@@ -3,7 +3,9 @@
 use super::Sphere;
 use super::fit::Fit;
 use super::pack::MAX_SPHERES;
-use glam::DVec3;
+use super::surface_patch::{SurfacePatch, frame};
+use crate::geometry::Pose;
+use glam::{DVec2, DVec3};
 
 /// The convex hull of each two neighbouring balls, all together.
 #[derive(Clone, Debug)]
@@ -119,6 +121,28 @@ impl Strand {
         for hull in self.hulls() {
             hull.pack_between(fit, spheres);
         }
+    }
+
+    /// All of each ball, and the side of each hull.
+    pub fn patches(&self) -> Vec<SurfacePatch> {
+        let balls = self.balls.iter();
+        let balls = balls.map(|ball| SurfacePatch::ball(ball.center, ball.radius));
+        let sides = self.hulls().map(|hull| {
+            let touched = |t: f64| {
+                let radius = hull.ball(t).radius;
+                DVec2::new(radius * hull.cosine(), t - radius * hull.slope)
+            };
+            let (x, y) = hull.along.any_orthonormal_pair();
+            let (x, y) = if x.cross(y).dot(hull.along) > 0.0 {
+                (x, y)
+            } else {
+                (y, x)
+            };
+            let angles = [0.0, std::f64::consts::TAU];
+            SurfacePatch::turned(touched(0.0), touched(hull.length), angles)
+                .moved(&Pose::new(frame(x, y), hull.first.center))
+        });
+        balls.chain(sides).collect()
     }
 
     pub fn surface_points(&self, spacing: f64, points: &mut Vec<DVec3>) {

@@ -3,6 +3,7 @@
 use super::Sphere;
 use super::fit::Fit;
 use super::pack::MAX_SPHERES;
+use super::surface_patch::SurfacePatch;
 use glam::DVec3;
 
 /// All points within `tube` of the circle of radius `ring` about z.
@@ -37,6 +38,10 @@ impl Torus {
             let (sin, cos) = (std::f64::consts::TAU * i as f64 / n).sin_cos();
             fit.swollen(ring * DVec3::new(cos, sin, 0.0), tube)
         }));
+    }
+
+    pub fn patches(&self) -> Vec<SurfacePatch> {
+        vec![SurfacePatch::torus(self.ring, self.tube)]
     }
 
     pub fn surface_points(&self, spacing: f64, points: &mut Vec<DVec3>) {

@@ -112,10 +112,16 @@ impl Original<'_> {
     fn describe(&self) -> String {
         match self {
             Self::Mesh(surface, _) => format!("{} triangles", surface.mesh().n_triangles()),
-            Self::Solid(solid) => match solid.parts().len() {
-                1 => "1 shape".to_owned(),
-                n => format!("{n} shapes"),
-            },
+            Self::Solid(solid) => {
+                let parts = match solid.parts().len() {
+                    1 => "1 shape".to_owned(),
+                    n => format!("{n} shapes"),
+                };
+                match solid.cuts().len() {
+                    0 => parts,
+                    n => format!("{parts} less {n}"),
+                }
+            }
         }
     }
 }
@@ -214,8 +220,9 @@ fn signed_millimetres(metres: f64) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::geometry::Pose;
     use crate::mesh::TriangleMesh;
-    use crate::objects::{Shape, Sphere};
+    use crate::objects::{Part, Shape, Sphere};
 
     /// A square of side 2 at z = 0, seen from above.
     fn square() -> Surface {
@@ -264,6 +271,23 @@ mod tests {
                 .first_hit(beside, DVec3::NEG_Z, 6.0)
                 .is_none()
         );
+    }
+
+    #[test]
+    fn a_ray_goes_through_a_hole_that_ends_where_the_solid_does() {
+        let cylinder = |diameter| Shape::Cylinder {
+            diameter,
+            height: 0.5,
+        };
+        let hole = Part::new(cylinder(0.4), Pose::IDENTITY).unwrap();
+        let ring = Solid::of(cylinder(1.0)).unwrap().less(vec![hole]).unwrap();
+        let first_hit = |x: f64| {
+            let start = DVec3::new(x, 0.01, 3.0);
+            Original::Solid(&ring).first_hit(start, DVec3::NEG_Z, 6.0)
+        };
+        assert!(first_hit(0.1).is_none());
+        let (point, _) = first_hit(0.35).unwrap();
+        assert!((point.z - 0.25).abs() < 1e-4, "{point}");
     }
 
     #[test]

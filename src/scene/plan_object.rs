@@ -6,8 +6,9 @@ use super::reader::{MM, Reader};
 use super::spec::{FreeSpec, ObjectSpec};
 use crate::error::Result;
 use crate::geometry::Pose;
-use crate::objects::{Catalogue, Model, read_spheres};
-use crate::study::{MeshUse, load_mesh, positive};
+use crate::mesh::SizeLimits;
+use crate::objects::{Catalogue, Model};
+use crate::study::{MeshUse, load_catalogue, load_mesh, load_spheres, positive};
 use crate::world::{Body, Motion};
 use glam::DVec3;
 
@@ -71,11 +72,25 @@ impl Reader<'_> {
     }
 
     fn model(&self, key: &str, spec: &ObjectSpec, finest_mm: f64) -> Result<Model> {
-        if spec.mesh.is_none() && (spec.model.is_some() || spec.mesh_unit.is_some()) {
-            let given = "model or mesh_unit without mesh";
+        let has_file = spec.mesh.is_some() || spec.spheres.is_some();
+        let misplaced = [
+            (
+                spec.model.is_some() && spec.mesh.is_none(),
+                "model",
+                "mesh = \"FILE\"",
+            ),
+            (spec.unit.is_some() && !has_file, "unit", "mesh or spheres"),
+            (
+                spec.objects.is_some() && spec.object.is_none(),
+                "objects",
+                "object = \"NAME\"",
+            ),
+        ];
+        if let Some((_, what, beside)) = misplaced.into_iter().find(|(is_so, ..)| *is_so) {
+            let given = format!("{what} without {beside}");
             return Err(self
                 .check
-                .error(key, given, "them only beside mesh = \"FILE\""));
+                .error(key, given, format!("it only beside {beside}")));
         }
         let default = || {
             spec.model
@@ -88,20 +103,29 @@ impl Reader<'_> {
         let surface_error = MM * self.check.value(&error_key, error_mm, positive, allowed)?;
         match (&spec.object, &spec.spheres, &spec.mesh) {
             (Some(name), None, None) => {
-                let catalogue = Catalogue::builtin()?;
+                let catalogue = match &spec.objects {
+                    Some(path) => {
+                        let key = &format!("{key}.objects");
+                        self.open(key, path)?;
+                        self.under(key, load_catalogue(&self.path(path)))?
+                    }
+                    None => Catalogue::builtin()?,
+                };
                 let entry = self.under(&format!("{key}.object"), catalogue.object(name))?;
                 Ok(entry.build(surface_error)?.model)
             }
             (None, Some(path), None) => {
                 let key = &format!("{key}.spheres");
-                let (place, file) = self.open(key, path)?;
-                Ok(self.under(key, read_spheres(&place, file))?.into())
+                self.open(key, path)?;
+                let spheres = load_spheres(&self.path(path), spec.unit, &SizeLimits::ANY);
+                Ok(self.under(key, spheres)?.into())
             }
             (None, None, Some(path)) => {
                 let key = &format!("{key}.mesh");
                 self.open(key, path)?;
                 let wanted = MeshUse {
-                    unit: spec.mesh_unit.unwrap_or_default(),
+                    unit: spec.unit,
+                    sizes: SizeLimits::ANY,
                     model: spec.model.unwrap_or_default(),
                     surface_error,
                     packings: None,

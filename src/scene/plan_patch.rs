@@ -5,6 +5,7 @@ use super::reader::{MM, Reader};
 use super::spec::{LayoutSpec, PatchSpec};
 use crate::error::Result;
 use crate::geometry::Pose;
+use crate::mesh::SizeLimits;
 use crate::random::Seed;
 use crate::spelling::nearest_names;
 use crate::study::{positive, read_mesh_file};
@@ -121,13 +122,9 @@ impl Reader<'_> {
                 half_angle_deg,
                 ..
             } => Layout::sphere_cap(radius_mm * MM, half_angle_deg.to_radians(), pitch),
-            LayoutSpec::Draped {
-                ref mesh,
-                mesh_unit,
-                ..
-            } => {
+            LayoutSpec::Draped { ref mesh, unit, .. } => {
                 let (place, _) = self.open(&format!("{key}.mesh"), mesh)?;
-                let mesh = read_mesh_file(&self.path(mesh), mesh_unit);
+                let mesh = read_mesh_file(&self.path(mesh), unit, &SizeLimits::ANY);
                 let mesh = mesh.and_then(|mesh| mesh.into_mesh(&place));
                 Layout::draped(&self.under(key, mesh)?, pitch, seed)
             }

@@ -16,7 +16,10 @@ pub struct ObjectSpec {
     /// A built-in object (`bubbletouch objects` lists them).
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub object: Option<String>,
-    /// Instead: a CSV file of spheres, columns x, y, z, r in metres.
+    /// A TOML file of objects, of which `object` is one; the built-in ones when left out.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub objects: Option<PathBuf>,
+    /// Instead: a CSV file of spheres, columns x, y, z, r.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub spheres: Option<PathBuf>,
     /// Instead: a PLY, OBJ or STL file.
@@ -25,9 +28,9 @@ pub struct ObjectSpec {
     /// What a mesh becomes; spheres around its vertices when left out.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub model: Option<ModelSpec>,
-    /// Unit of a mesh's numbers; metres when left out.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub mesh_unit: Option<LengthUnit>,
+    /// Unit of the numbers of a mesh or of spheres. When left out, metres, and 0.1 mm to 10 m large.
+    #[serde(default, alias = "mesh_unit", skip_serializing_if = "Option::is_none")]
+    pub unit: Option<LengthUnit>,
     /// How far spheres may be from a solid's or packed mesh's surface; 0.25, or packed a tenth of the finest pitch, when left out.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub surface_error_mm: Option<f64>,

@@ -109,9 +109,9 @@ pub enum LayoutSpec {
     Draped {
         /// Its file.
         mesh: PathBuf,
-        /// Unit of the file's numbers; metres when left out.
-        #[serde(default)]
-        mesh_unit: LengthUnit,
+        /// Unit of the file's numbers. When left out, metres, and 0.1 mm to 10 m large.
+        #[serde(default, alias = "mesh_unit", skip_serializing_if = "Option::is_none")]
+        unit: Option<LengthUnit>,
         /// Between neighbours.
         pitch_mm: f64,
     },

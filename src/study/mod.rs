@@ -82,8 +82,8 @@ pub use human_touches::{HumanTouches, RecordedTouch, record_touch};
 pub use imperfection::{IMPERFECTIONS, Imperfection, Strengths, TestedOn};
 pub use kind::StudyKind;
 pub use object_files::{
-    MeshUse, NamedMesh, file_content, load_mesh, load_named_meshes, load_objects, objects_content,
-    read_mesh_file,
+    MeshUse, NamedMesh, file_content, load_catalogue, load_mesh, load_named_meshes, load_objects,
+    load_spheres, objects_content, read_mesh_file,
 };
 pub use packing_cache::{CachedPacking, PackingCache};
 pub(crate) use pareto::{Choice, unbeaten};

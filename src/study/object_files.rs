@@ -4,8 +4,11 @@ use super::content_hash::ContentHash;
 use super::packings::pack_within;
 use super::spec::{ModelSpec, ObjectsSpec};
 use crate::error::{Error, Result};
-use crate::mesh::{LengthUnit, MeshFile, MeshFormat, Surface, TriangleMesh};
-use crate::objects::{Catalogue, Entry, MeshModel, Object, vertex_spheres};
+use crate::geometry::Aabb;
+use crate::mesh::{LengthUnit, MeshFile, MeshFormat, SizeLimits, Surface, TriangleMesh};
+use crate::objects::{
+    Catalogue, Entry, MeshModel, Object, Sphere, SphereUnion, read_spheres, vertex_spheres,
+};
 use rayon::prelude::*;
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs::File;
@@ -15,8 +18,10 @@ use std::path::{Path, PathBuf};
 /// What a mesh file becomes.
 #[derive(Clone, Copy, Debug)]
 pub struct MeshUse<'a> {
-    /// Of the file's numbers.
-    pub unit: LengthUnit,
+    /// Of the file's numbers; metres if it is `None`, and then the object must be as large as `sizes` allow.
+    pub unit: Option<LengthUnit>,
+    /// What can be felt.
+    pub sizes: SizeLimits,
     /// Spheres or triangles.
     pub model: ModelSpec,
     /// How far packed spheres may be from the mesh, metres.
@@ -60,9 +65,17 @@ fn entries(set: &str) -> Result<Vec<Entry>> {
         let builtin = Catalogue::builtin()?;
         return Ok(builtin.set(set)?.into_iter().cloned().collect());
     }
-    let text = std::fs::read_to_string(set)
-        .map_err(|e| Error::input(set, format!("cannot be read ({e})"), "a file of objects"))?;
-    Ok(Catalogue::parse(set, set, &text)?.entries().to_vec())
+    Ok(load_catalogue(Path::new(set))?.entries().to_vec())
+}
+
+/// The objects of a TOML file ([its keys](crate::guide::own_objects)), in a set of the file's name.
+pub fn load_catalogue(path: &Path) -> Result<Catalogue> {
+    let place = path.display().to_string();
+    let text = std::fs::read_to_string(path).map_err(|e| {
+        let given = format!("cannot be read ({e})");
+        Error::input(&place, given, "a TOML file of objects")
+    })?;
+    Catalogue::parse(&place, &place, &text)
 }
 
 /// SHA-256 of what each object of a study is made from, by its name: of a mesh its file, of a solid its parts.
@@ -94,19 +107,58 @@ pub fn file_content(path: &Path) -> Result<String> {
     Ok(ContentHash::default().bytes(bytes).hex())
 }
 
-/// What a PLY, OBJ or STL file holds, in metres.
-pub fn read_mesh_file(path: &Path, unit: LengthUnit) -> Result<MeshFile> {
+/// What a PLY, OBJ or STL file holds, in metres; without a unit its numbers are metres, and must be such as `sizes` allow.
+pub fn read_mesh_file(
+    path: &Path,
+    unit: Option<LengthUnit>,
+    sizes: &SizeLimits,
+) -> Result<MeshFile> {
     let format = MeshFormat::of(path)?;
     let place = path.display().to_string();
     let file = File::open(path)
         .map_err(|e| Error::input(&place, format!("cannot be opened ({e})"), "a mesh"))?;
-    format.read(&place, unit, BufReader::new(file))
+    let mesh = format.read(&place, unit.unwrap_or_default(), BufReader::new(file))?;
+    if unit.is_none() {
+        let vertices = mesh.vertices().iter();
+        let points = vertices.map(|&point| Aabb {
+            min: point,
+            max: point,
+        });
+        if let Some(bounds) = Aabb::around(points) {
+            sizes.check(&place, bounds.size())?;
+        }
+    }
+    Ok(mesh)
+}
+
+/// The spheres of a CSV file with columns x, y, z, r; without a unit its numbers are metres, and must be such as `sizes` allow.
+pub fn load_spheres(
+    path: &Path,
+    unit: Option<LengthUnit>,
+    sizes: &SizeLimits,
+) -> Result<SphereUnion> {
+    let place = path.display().to_string();
+    let file = File::open(path).map_err(|error| {
+        let given = format!("cannot be opened ({error})");
+        Error::input(&place, given, "a CSV of spheres")
+    })?;
+    let union = read_spheres(&place, BufReader::new(file))?;
+    let Some(unit) = unit else {
+        sizes.check(&place, union.bounds().size())?;
+        return Ok(union);
+    };
+    let scaled = |sphere: &Sphere| Sphere {
+        center: unit.metres() * sphere.center,
+        radius: unit.metres() * sphere.radius,
+    };
+    let spheres = SphereUnion::new(union.spheres().iter().map(scaled).collect());
+    spheres.map_err(|error| error.under(format!("{place}: ")))
 }
 
 /// A mesh file as an object; its name is the file's without the ending.
 pub fn load_mesh(path: &Path, wanted: &MeshUse) -> Result<Object> {
     let place = path.display().to_string();
-    let mesh = read_mesh_file(path, wanted.unit)?;
+    let mesh = read_mesh_file(path, wanted.unit, &wanted.sizes)?;
     let model = match wanted.model {
         ModelSpec::VertexSpheres => vertex_spheres(&place, mesh.vertices())?.into(),
         ModelSpec::Mesh => MeshModel::new(mesh.into_mesh(&place)?).into(),
@@ -126,7 +178,7 @@ pub fn load_named_meshes(folder: &Path, spec: &ObjectsSpec) -> Result<Vec<NamedM
     let paths = mesh_paths(folder, spec)?;
     let meshes = paths.par_iter().map(|path| {
         let place = path.display().to_string();
-        let mesh = read_mesh_file(path, spec.mesh_unit.unwrap_or_default())?.into_mesh(&place)?;
+        let mesh = read_mesh_file(path, spec.unit, &spec.sizes())?.into_mesh(&place)?;
         Ok(NamedMesh {
             name: stem(path),
             place,
@@ -155,7 +207,8 @@ fn load_set(set: &str, names: Option<&[String]>, tolerance: f64) -> Result<Vec<O
 
 fn load_meshes(folder: &Path, spec: &ObjectsSpec, packings: Option<&Path>) -> Result<Vec<Object>> {
     let wanted = MeshUse {
-        unit: spec.mesh_unit.unwrap_or_default(),
+        unit: spec.unit,
+        sizes: spec.sizes(),
         model: spec.model.unwrap_or_default(),
         surface_error: spec.surface_error(),
         packings,

@@ -4,6 +4,7 @@ use super::check::{Check, not_negative, positive};
 use super::plan::MM;
 use super::spec::{ModelSpec, ObjectsSpec, RangeSpec, RestSpec, SkinSpec, SpreadSpec, TouchesSpec};
 use crate::error::Result;
+use crate::mesh::SizeLimits;
 use crate::world::{Grid, Patch, Placement, RestPoses, Spread, Taxel};
 
 /// How far spheres may be from a solid's surface, unless a study says: mm.
@@ -27,6 +28,21 @@ impl ObjectsSpec {
         let model = self.model.unwrap_or_default();
         let default = || model.default_surface_error_mm(finest);
         self.surface_error_mm = Some(self.surface_error_mm.unwrap_or_else(default));
+        self.settle_sizes(arrays);
+    }
+
+    /// Says how large objects may be whose files have no unit.
+    pub(super) fn settle_sizes(&mut self, arrays: &[Patch]) {
+        let feels = |patch: &Patch| {
+            let n = patch.grid.nx.max(patch.grid.ny);
+            (n as f64 * patch.grid.pitch, patch.taxel.radius)
+        };
+        self.sizes = Some(SizeLimits::of_arrays(arrays.iter().map(feels)));
+    }
+
+    /// How large objects may be whose files have no unit.
+    pub(super) fn sizes(&self) -> SizeLimits {
+        self.sizes.unwrap_or(SizeLimits::ANY)
     }
 
     /// How far spheres may be from a surface, metres.
@@ -48,10 +64,10 @@ impl Check<'_> {
             let allowed = "a positive number of millimetres";
             self.value("objects.surface_error_mm", error, positive, allowed)?;
         }
-        if objects.meshes.is_none() && (objects.model.is_some() || objects.mesh_unit.is_some()) {
+        if objects.meshes.is_none() && (objects.model.is_some() || objects.unit.is_some()) {
             return Err(self.error(
                 "objects",
-                "model or mesh_unit without meshes",
+                "model or unit without meshes",
                 "them only beside meshes = \"FOLDER\": solids are spheres within surface_error_mm",
             ));
         }

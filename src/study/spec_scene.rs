@@ -2,7 +2,7 @@
 
 use super::axis::Axis;
 use super::spec::one_value;
-use crate::mesh::LengthUnit;
+use crate::mesh::{LengthUnit, SizeLimits};
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
 
@@ -22,9 +22,12 @@ pub struct ObjectsSpec {
     /// What the meshes become; spheres around their vertices when left out.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub model: Option<ModelSpec>,
-    /// The unit of the meshes' files; metres when left out.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub mesh_unit: Option<LengthUnit>,
+    /// The unit of the meshes' files. When left out, metres, and each must be of a size that the arrays can feel.
+    #[serde(default, alias = "mesh_unit", skip_serializing_if = "Option::is_none")]
+    pub unit: Option<LengthUnit>,
+    /// That size: a plan knows the arrays.
+    #[serde(skip)]
+    pub sizes: Option<SizeLimits>,
     /// How far the surface of a solid, or of a packed mesh, may be outside its spheres, mm; they reach at most half of it outside
     /// the solid, so that the two are equally high on average. When left out, 0.25; with
     /// `model = "packed"` a tenth of the finest pitch, which leaves a mean deflection error of about 2 % of the pitch.

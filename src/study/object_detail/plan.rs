@@ -42,7 +42,7 @@ pub struct RecognitionPlan {
 
 impl ObjectDetailPlan {
     /// Checks a study; the error names `place` (the file) and the first key that is out of its range.
-    pub fn new(place: &str, spec: ObjectDetailStudySpec) -> Result<Self> {
+    pub fn new(place: &str, mut spec: ObjectDetailStudySpec) -> Result<Self> {
         let check = Check { place };
         check.objects(&spec.objects)?;
         let meshes = match &spec.objects.meshes {
@@ -57,6 +57,7 @@ impl ObjectDetailPlan {
             return Err(check.error("objects.model", "a model", allowed));
         }
         let patch = check.one_array(&spec.skin, "one pitch and one size")?;
+        spec.objects.settle_sizes(&[patch]);
         if spec.objects.surface_error_mm.is_some() {
             let allowed = "no such key: object_detail.tolerances_mm says how far spheres may be from the meshes";
             return Err(check.error("objects.surface_error_mm", "a surface error", allowed));

@@ -77,7 +77,7 @@ impl SpeedAccuracyPlan {
     }
 
     /// Checks a study that lies in `folder`; the error names `place` (the file) and the first key that is out of its range.
-    pub fn new(place: &str, folder: &Path, spec: SpeedAccuracyStudySpec) -> Result<Self> {
+    pub fn new(place: &str, folder: &Path, mut spec: SpeedAccuracyStudySpec) -> Result<Self> {
         let check = Check { place };
         check.objects(&spec.objects)?;
         if spec.objects.model.is_some() || spec.objects.surface_error_mm.is_some() {
@@ -89,6 +89,7 @@ impl SpeedAccuracyPlan {
             ));
         }
         let patch = check.one_array(&spec.skin, "one pitch and one size")?;
+        spec.objects.settle_sizes(&[patch]);
         let placement = check.placement(&spec.touches)?;
         let wanted = &spec.speed_accuracy;
         let levels = tolerances(

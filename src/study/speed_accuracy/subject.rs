@@ -78,7 +78,8 @@ fn wanted_scans<'a>(
     let scans = scans.filter(|scans| scans.meshes.is_dir())?;
     let wanted = ObjectsSpec {
         names: Some(scans.names.clone()),
-        mesh_unit: objects.mesh_unit,
+        unit: objects.unit,
+        sizes: objects.sizes,
         ..ObjectsSpec::default()
     };
     Some((&scans.meshes, wanted))

@@ -1,0 +1,121 @@
+//! Sizes that tell that a file's numbers are in another unit than they were read in.
+
+use super::LengthUnit;
+use crate::error::{Error, Result};
+use glam::DVec3;
+
+/// How long the longest side of an object's box may be if nobody says which unit its file is in, metres.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SizeLimits {
+    /// At least.
+    pub smallest: f64,
+    /// At most.
+    pub largest: f64,
+}
+
+/// Sides of an array: of an object that is longer, a touch meets less than a hundredth of a face.
+const MOST_SIDES: f64 = 10.0;
+/// Objects of this length are looked at by small arrays, too: furniture, a person's arm; metres.
+const ALWAYS_ALLOWED: f64 = 1.0;
+
+impl SizeLimits {
+    /// Where no array is known: 0.1 mm, which falls between the taxels of every tactile sensor, to 10 m, ten sides of an array of a
+    /// square metre.
+    pub const ANY: Self = Self {
+        smallest: 1e-4,
+        largest: 10.0,
+    };
+
+    /// What arrays of these (longest side, radius of a taxel) can feel: what is smaller than the smallest taxel's radius gives no
+    /// shape, and what is longer than ten sides of the largest array, and than a metre, is a plane.
+    pub fn of_arrays(arrays: impl IntoIterator<Item = (f64, f64)>) -> Self {
+        let none = Self {
+            smallest: f64::INFINITY,
+            largest: ALWAYS_ALLOWED,
+        };
+        arrays
+            .into_iter()
+            .fold(none, |limits, (side, radius)| Self {
+                smallest: limits.smallest.min(radius),
+                largest: limits.largest.max(MOST_SIDES * side),
+            })
+    }
+
+    /// An error that begins with `place` and names the likely unit, for a box of this size (metres) whose file was read in metres
+    /// because nobody gave a unit.
+    pub fn check(&self, place: &str, size: DVec3) -> Result<()> {
+        let length = size.max_element();
+        if (self.smallest..=self.largest).contains(&length) {
+            return Ok(());
+        }
+        let likely = [
+            LengthUnit::Millimetre,
+            LengthUnit::Centimetre,
+            LengthUnit::Inch,
+        ];
+        let is_likely = |unit: &&LengthUnit| (5e-3..=1.0).contains(&(length * unit.metres()));
+        let advice = match likely.iter().find(is_likely) {
+            Some(unit) => {
+                let name = unit.name();
+                let would_be = in_words(length * unit.metres());
+                format!("in {name} it would be {would_be}: give unit = \"{name}\" (--unit {name})")
+            }
+            None => "give unit = \"m\" (--unit m) if it is as large as that".to_owned(),
+        };
+        let [smallest, largest] = [self.smallest, self.largest].map(in_words);
+        Err(Error::input(
+            place,
+            format!("{} wide, if its unit is the metre", in_words(length)),
+            format!("{smallest} to {largest} where no unit is given; {advice}"),
+        ))
+    }
+}
+
+/// With three digits: `17 m`, `17 mm`.
+fn in_words(metres: f64) -> String {
+    let (value, unit) = if metres >= 1.0 {
+        (metres, "m")
+    } else {
+        (metres * 1e3, "mm")
+    };
+    let digits = (2 - value.abs().max(1e-9).log10().floor() as i32).clamp(0, 9);
+    let rounded = format!("{value:.*}", digits as usize);
+    let shown = match rounded.contains('.') {
+        true => rounded.trim_end_matches('0').trim_end_matches('.'),
+        false => &rounded,
+    };
+    format!("{shown} {unit}")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn said(limits: SizeLimits, length: f64) -> String {
+        let error = limits.check("die.obj", DVec3::new(0.1 * length, length, 0.0));
+        error.unwrap_err().to_string()
+    }
+
+    #[test]
+    fn the_likely_unit_is_named() {
+        assert_eq!(
+            said(SizeLimits::ANY, 17.0),
+            "die.obj: 17 m wide, if its unit is the metre; 0.1 mm to 10 m where no unit is given; in mm it would be 17 mm: give \
+             unit = \"mm\" (--unit mm)"
+        );
+        let array = SizeLimits::of_arrays([(0.064, 0.5e-3), (0.128, 1e-3)]);
+        assert_eq!((array.smallest, array.largest), (0.5e-3, 1.28));
+        assert!(said(array, 1.7).contains("in cm it would be 17 mm"));
+        assert!(said(array, 0.02e-3).contains("0.02 mm wide"));
+        assert!(said(array, 5e4).contains("give unit = \"m\""));
+    }
+
+    #[test]
+    fn what_an_array_can_feel_is_allowed() {
+        let small = SizeLimits::of_arrays([(0.016, 1e-3)]);
+        for length in [1e-3, 17e-3, 0.3, 1.0] {
+            small.check("cup", DVec3::splat(length)).unwrap();
+        }
+        assert!(small.check("cup", DVec3::splat(1.01)).is_err());
+    }
+}

@@ -1,0 +1,271 @@
+//! Pieces of the surfaces of forms, each a map from a rectangle: what is cut into cells where no closed layout of spheres is known.
+
+use crate::geometry::Pose;
+use glam::{DMat3, DQuat, DVec2, DVec3};
+use std::f64::consts::{FRAC_PI_2, PI, TAU};
+
+/// A piece of the surface of a form.
+#[derive(Clone, Debug)]
+pub(super) struct SurfacePatch {
+    form: PatchForm,
+    /// Where the patch is, in the frame of what it belongs to.
+    pose: Pose,
+    /// How far the points lie outside the form, metres.
+    offset: f64,
+    /// The corners of its rectangle of parameters.
+    pub low: DVec2,
+    pub high: DVec2,
+}
+
+#[derive(Clone, Copy, Debug)]
+enum PatchForm {
+    /// Parameters x, y: the plane z = 0, outside above.
+    Flat,
+    /// Parameters distance along a line of the half plane (distance from the axis, height), angle about z.
+    Turned { start: DVec2, along: DVec2 },
+    /// Parameters latitude on the tube, angle about z: a torus, and with a ring of 0 a ball.
+    Round { ring: f64, tube: f64 },
+}
+
+/// A rectangle of parameters as a piece of surface: it lies within `bulge` of the hull of its corners.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct PatchCell {
+    pub low: DVec2,
+    pub high: DVec2,
+    /// In the order low, along x, along y, high.
+    pub corners: [DVec3; 4],
+    bulge: f64,
+}
+
+impl SurfacePatch {
+    /// A rectangle about the origin of a plane, `x` and `y` its unit axes, at right angles; outside is where x × y points.
+    pub fn flat(origin: DVec3, [x, y]: [DVec3; 2], half: DVec2) -> Self {
+        Self {
+            form: PatchForm::Flat,
+            offset: 0.0,
+            pose: Pose::new(frame(x, y), origin),
+            low: -half,
+            high: half,
+        }
+    }
+
+    /// A line of the half plane (distance from the axis, height), turned about z by `angles`; outside is on its right.
+    pub fn turned(start: DVec2, end: DVec2, angles: [f64; 2]) -> Self {
+        let length = (end - start).length();
+        let along = (end - start) / length;
+        Self {
+            form: PatchForm::Turned { start, along },
+            offset: 0.0,
+            pose: Pose::IDENTITY,
+            low: DVec2::new(0.0, angles[0]),
+            high: DVec2::new(length, angles[1]),
+        }
+    }
+
+    /// All of a torus about z.
+    pub fn torus(ring: f64, tube: f64) -> Self {
+        Self {
+            form: PatchForm::Round { ring, tube },
+            offset: 0.0,
+            pose: Pose::IDENTITY,
+            low: DVec2::ZERO,
+            high: DVec2::splat(TAU),
+        }
+    }
+
+    /// All of a ball.
+    pub fn ball(center: DVec3, radius: f64) -> Self {
+        Self {
+            pose: Pose::from_translation(center),
+            low: DVec2::new(-FRAC_PI_2, 0.0),
+            high: DVec2::new(FRAC_PI_2, TAU),
+            ..Self::torus(0.0, radius)
+        }
+    }
+
+    /// The eighth of a ball on these sides (1 or −1) of its centre.
+    pub fn eighth_of_ball(center: DVec3, radius: f64, sides: DVec3) -> Self {
+        let axes = [sides.x * DVec3::X, sides.y * DVec3::Y];
+        let is_up = sides.x * sides.y * sides.z > 0.0;
+        let latitude = if is_up { 0.0 } else { -FRAC_PI_2 };
+        Self {
+            pose: Pose::new(frame(axes[0], axes[1]), center),
+            low: DVec2::new(latitude, 0.0),
+            high: DVec2::new(latitude + FRAC_PI_2, FRAC_PI_2),
+            ..Self::torus(0.0, radius)
+        }
+    }
+
+    /// The same after a rigid motion, or with its own z along another axis.
+    pub fn moved(mut self, motion: &Pose) -> Self {
+        self.pose = motion.compose(&self.pose);
+        self
+    }
+
+    /// The same, this far outside.
+    pub fn grown(mut self, offset: f64) -> Self {
+        self.offset = offset;
+        self
+    }
+
+    /// The point of the surface at these parameters, and the unit normal outwards.
+    pub fn at(&self, place: DVec2) -> (DVec3, DVec3) {
+        let turned = |flat: DVec2, angle: f64| {
+            let (sin, cos) = angle.sin_cos();
+            DVec3::new(flat.x * cos, flat.x * sin, flat.y)
+        };
+        let (point, normal) = match self.form {
+            PatchForm::Flat => (place.extend(0.0), DVec3::Z),
+            PatchForm::Turned { start, along } => (
+                turned(start + place.x * along, place.y),
+                turned(-along.perp(), place.y),
+            ),
+            PatchForm::Round { ring, tube } => {
+                let out = DVec2::from_angle(place.x);
+                let point = DVec2::new(ring, 0.0) + tube * out;
+                (turned(point, place.y), turned(out, place.y))
+            }
+        };
+        (
+            self.pose.transform_point(point + self.offset * normal),
+            self.pose.rotation * normal,
+        )
+    }
+
+    /// The whole patch in pieces that turn by an eighth of a circle at most.
+    pub fn cells(&self) -> Vec<PatchCell> {
+        let size = self.high - self.low;
+        let is_angle = match self.form {
+            PatchForm::Flat => [false, false],
+            PatchForm::Turned { .. } => [false, true],
+            PatchForm::Round { .. } => [true, true],
+        };
+        let n = [0, 1].map(|axis| match is_angle[axis] {
+            true => (size[axis] / (0.25 * PI) - 1e-9).ceil().max(1.0),
+            false => 1.0,
+        });
+        let mut cells = Vec::new();
+        for i in 0..n[0] as usize {
+            for j in 0..n[1] as usize {
+                let at = |i: usize, j: usize| {
+                    self.low + size * DVec2::new(i as f64 / n[0], j as f64 / n[1])
+                };
+                cells.push(self.cell(at(i, j), at(i + 1, j + 1)));
+            }
+        }
+        cells
+    }
+
+    /// The two halves of a cell, across its longer side.
+    pub fn halves(&self, cell: &PatchCell) -> [PatchCell; 2] {
+        let [a, b, c, d] = cell.corners;
+        let along_x = a.distance(b).max(c.distance(d));
+        let along_y = a.distance(c).max(b.distance(d));
+        let middle = 0.5 * (cell.low + cell.high);
+        let (mut left, mut right) = (cell.high, cell.low);
+        let axis = usize::from(along_y > along_x);
+        left[axis] = middle[axis];
+        right[axis] = middle[axis];
+        [self.cell(cell.low, left), self.cell(right, cell.high)]
+    }
+
+    /// A map differs from the one that is linear in both parameters and agrees at the corners by at most 1/8 of the squared side
+    /// times the second derivative, summed over both sides; and that one stays in the hull of the corners.
+    fn cell(&self, low: DVec2, high: DVec2) -> PatchCell {
+        let squared = (high - low) * (high - low);
+        let second = match self.form {
+            PatchForm::Flat => DVec2::ZERO,
+            PatchForm::Turned { start, along } => {
+                let away = |at: f64| start.x + at * along.x;
+                DVec2::new(0.0, away(low.x).max(away(high.x)) + self.offset)
+            }
+            PatchForm::Round { ring, tube } => {
+                let tube = tube + self.offset;
+                // Farthest from the axis at an end: the first cells end where the tube's equator is.
+                let away = |latitude: f64| ring + tube * latitude.cos();
+                DVec2::new(tube, away(low.x).max(away(high.x)))
+            }
+        };
+        let places = [
+            low,
+            DVec2::new(high.x, low.y),
+            DVec2::new(low.x, high.y),
+            high,
+        ];
+        PatchCell {
+            low,
+            high,
+            corners: places.map(|place| self.at(place).0),
+            bulge: squared.dot(second) / 8.0,
+        }
+    }
+}
+
+impl PatchCell {
+    /// No point of the cell is farther from a point than this.
+    pub fn farthest(&self, from: DVec3) -> f64 {
+        let distances = self.corners.map(|corner| corner.distance(from));
+        distances.into_iter().fold(0.0, f64::max) + self.bulge
+    }
+
+    /// The parameters of its middle and of its corners.
+    pub fn places(&self) -> [DVec2; 5] {
+        let (low, high) = (self.low, self.high);
+        let middle = 0.5 * (low + high);
+        [
+            middle,
+            low,
+            DVec2::new(high.x, low.y),
+            DVec2::new(low.x, high.y),
+            high,
+        ]
+    }
+}
+
+/// The rotation that takes the axes x and y to these two unit vectors, which are at right angles.
+pub(super) fn frame(x: DVec3, y: DVec3) -> DQuat {
+    DQuat::from_mat3(&DMat3::from_cols(x, y, x.cross(y)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_point_of_a_cell_is_as_near_as_it_says() {
+        let patches = [
+            SurfacePatch::flat(DVec3::X, [DVec3::Y, DVec3::Z], DVec2::new(2.0, 0.5)),
+            SurfacePatch::turned(DVec2::new(1.0, 0.0), DVec2::new(0.2, 2.0), [0.0, TAU]),
+            SurfacePatch::torus(2.0, 0.7),
+            SurfacePatch::ball(DVec3::Y, 1.3),
+            SurfacePatch::eighth_of_ball(DVec3::Z, 0.4, DVec3::new(-1.0, 1.0, 1.0)),
+        ];
+        for patch in &patches {
+            for cell in patch.cells() {
+                let from = 0.3 * cell.corners[0] + 0.4 * cell.corners[3] + DVec3::splat(0.1);
+                for i in 0..=10 {
+                    for j in 0..=10 {
+                        let share = DVec2::new(f64::from(i), f64::from(j)) / 10.0;
+                        let (point, normal) = patch.at(cell.low + share * (cell.high - cell.low));
+                        assert!(point.distance(from) <= cell.farthest(from) + 1e-12);
+                        assert!((normal.length() - 1.0).abs() < 1e-12);
+                    }
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn the_eighths_of_a_ball_are_on_their_sides() {
+        for sides in [
+            DVec3::ONE,
+            DVec3::NEG_ONE,
+            DVec3::new(1.0, -1.0, 1.0),
+            DVec3::new(1.0, 1.0, -1.0),
+        ] {
+            let patch = SurfacePatch::eighth_of_ball(DVec3::ZERO, 1.0, sides);
+            let (point, _) = patch.at(0.5 * (patch.low + patch.high));
+            assert!((point * sides).min_element() > 0.3, "{sides}: {point}");
+        }
+    }
+}
