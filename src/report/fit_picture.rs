@@ -282,8 +282,8 @@ mod tests {
         let hole = Part::new(cylinder(0.4), Pose::IDENTITY).unwrap();
         let ring = Solid::of(cylinder(1.0)).unwrap().less(vec![hole]).unwrap();
         let first_hit = |x: f64| {
-            let start = DVec3::new(x, 0.01, 3.0);
-            Original::Solid(&ring).first_hit(start, DVec3::NEG_Z, 6.0)
+            let start = DVec3::new(x, 0.01, 1.5);
+            Original::Solid(&ring).first_hit(start, DVec3::NEG_Z, 3.0)
         };
         assert!(first_hit(0.1).is_none());
         let (point, _) = first_hit(0.35).unwrap();
