@@ -131,7 +131,7 @@ fn a_study_closes_holes_only_where_it_is_told_to() {
         let spec = ObjectsSpec {
             meshes: Some(case.path("meshes")),
             model: Some(model),
-            mesh_unit: Some(LengthUnit::Millimetre),
+            unit: Some(LengthUnit::Millimetre),
             surface_error_mm: Some(1.0),
             close_holes_mm,
             ..ObjectsSpec::default()
