@@ -493,7 +493,7 @@ fn tables_of_results() {
             let valid = fs::read(&path).unwrap();
             fs::write(&path, content).unwrap();
             let read = read_tables(at.path());
-            let offers = read_offers(at.path());
+            let offers = read_offers(at.path(), &[]);
             fs::write(&path, valid).unwrap();
             offers?;
             compare_runs(&tables.accuracy, &read?.accuracy).map(drop)
