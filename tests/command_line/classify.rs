@@ -1,0 +1,299 @@
+//! `bubbletouch classify`: any folder of features, checked before anything is learnt from it.
+
+use crate::command::Case;
+use bubbletouch::random::Seed;
+use bubbletouch::recognition::ClassifierKind;
+use bubbletouch::recognition::classifier::Classifier;
+use bubbletouch::recognition::dataset::dataset;
+use ndarray::{Array1, Array2, Axis, array};
+use ndarray_npy::{read_npy, write_npy};
+use serde_json::Value;
+
+const N_ROWS: usize = 60;
+
+/// Three overlapping classes of 20 rows, 5 features; every third row is tested.
+fn features() -> Array2<f64> {
+    Array2::from_shape_fn((N_ROWS, 5), |(i, j)| {
+        ((i % 3) * (j + 1) % 4) as f64 + 1.5 * ((i * 5 + j) as f64 * 1.7).sin()
+    })
+}
+
+fn labels() -> Array1<i64> {
+    (0..N_ROWS as i64).map(|row| row % 3).collect()
+}
+
+fn train() -> Array1<i64> {
+    (0..N_ROWS as i64).filter(|row| row / 3 % 3 != 0).collect()
+}
+
+fn test() -> Array1<i64> {
+    (0..N_ROWS as i64).filter(|row| row / 3 % 3 == 0).collect()
+}
+
+fn folder() -> Case {
+    let case = Case::new();
+    write_npy(case.path("features.npy"), &features()).unwrap();
+    write_npy(case.path("labels.npy"), &labels()).unwrap();
+    write_npy(case.path("train.npy"), &train()).unwrap();
+    write_npy(case.path("test.npy"), &test()).unwrap();
+    case
+}
+
+fn json(case: &Case, arguments: &[&str]) -> Value {
+    let (said, _) = case.succeeds(&[&["classify", ".", "--json"], arguments].concat());
+    serde_json::from_str(&said).unwrap()
+}
+
+#[test]
+fn it_says_and_writes_what_the_library_predicts() {
+    let case = folder();
+    for (name, kind) in [
+        ("linear_svm", ClassifierKind::LinearSvm),
+        ("rbf_svm", ClassifierKind::RbfSvm),
+        ("polynomial_svm", ClassifierKind::PolynomialSvm),
+    ] {
+        let said = json(&case, &["--classifier", name, "--predictions", "out.npy"]);
+        let rows = |rows: Array1<i64>| {
+            let rows: Vec<usize> = rows.iter().map(|&row| row as usize).collect();
+            let labels = labels().select(Axis(0), &rows).mapv(|label| label as usize);
+            dataset(features().select(Axis(0), &rows), labels).unwrap()
+        };
+        let trained = Classifier::new(kind)
+            .train(&rows(train()), &Seed::new(0))
+            .unwrap();
+        let tested = rows(test());
+        let expected = trained.labels(tested.records.view()).unwrap();
+        let written: Array1<i64> = read_npy(case.path("out.npy")).unwrap();
+        assert_eq!(written, expected.mapv(|label| label as i64), "{name}");
+        let n_correct = expected.iter().zip(&tested.targets).filter(|(a, b)| a == b);
+        assert_eq!(said["n_correct"], n_correct.count());
+        assert_eq!(
+            (&said["n_train"], &said["n_test"]),
+            (&39.into(), &21.into())
+        );
+        assert_eq!(said["svm"]["n_problems"], 3);
+        assert_eq!(said["svm"]["n_capped"], 0);
+    }
+}
+
+/// The dual objective of one-vs-one SVMs from C = 0 on falls as C grows: more is allowed. So do the support vectors' shares.
+#[test]
+fn the_dual_objective_falls_as_c_grows() {
+    let case = folder();
+    let dual = |c: &str| {
+        let said = json(&case, &["--classifier", "linear_svm", "--c", c]);
+        said["svm"]["dual_objective"].as_f64().unwrap()
+    };
+    let duals = ["0.001", "0.1", "10"].map(dual);
+    assert!(duals[0] > duals[1] && duals[1] > duals[2], "{duals:?}");
+    // At C = 0.001 every multiplier is at most C: three problems of 26 rows.
+    assert!(
+        -duals[0] < 0.001 * 78.0 && -duals[0] > 0.5 * 0.001 * 78.0,
+        "{duals:?}"
+    );
+}
+
+#[test]
+fn options_reach_the_classifier() {
+    let case = folder();
+    let accuracy_of = |arguments: &[&str]| json(&case, arguments)["svm"].clone();
+    let rbf = ["--classifier", "rbf_svm"];
+    let usual = accuracy_of(&rbf);
+    for option in [
+        ["--gamma", "3.5"],
+        ["--c", "0.1"],
+        ["--scaling", "none"],
+        ["--multiclass", "one_vs_rest"],
+        ["--train-rows", "30"],
+    ] {
+        assert_ne!(
+            accuracy_of(&[&rbf[..], &option].concat()),
+            usual,
+            "{option:?}"
+        );
+    }
+    let cubic = ["--classifier", "polynomial_svm"];
+    let usual = accuracy_of(&cubic);
+    for option in [["--degree", "2"], ["--coef0", "0.5"]] {
+        assert_ne!(
+            accuracy_of(&[&cubic[..], &option].concat()),
+            usual,
+            "{option:?}"
+        );
+    }
+    let said = json(&case, &["--classifier", "linear_svm", "--repeat", "3"]);
+    assert_eq!(said["fit_s"].as_array().unwrap().len(), 3);
+    assert_eq!(said["predict_s"].as_array().unwrap().len(), 3);
+}
+
+#[test]
+fn people_get_lines() {
+    let (said, error) = folder().succeeds(&["classify", ".", "--classifier", "linear_svm"]);
+    assert_eq!(error, "");
+    for word in [
+        "39 to train on",
+        "21 to test",
+        "accuracy",
+        "support vectors",
+        "0 of 3",
+    ] {
+        assert!(said.contains(word), "{word}: {said}");
+    }
+}
+
+/// Runs on a folder that must be refused with all of `words`.
+fn refused(case: &Case, arguments: &[&str], words: &[&str]) {
+    let all = [&["classify", "."], arguments].concat();
+    let output = case.run(&[&all[..], &["--predictions", "out.npy"]].concat());
+    let error = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(output.status.code(), Some(2), "{error}");
+    for word in words {
+        assert!(error.contains(word), "no {word:?} in: {error}");
+    }
+    assert!(!case.path("out.npy").exists());
+}
+
+const LINEAR: [&str; 2] = ["--classifier", "linear_svm"];
+
+#[test]
+fn a_feature_that_is_no_number_is_named_by_row_and_column() {
+    let case = folder();
+    for broken in [f64::NAN, f64::INFINITY] {
+        let mut features = features();
+        features[[7, 3]] = broken;
+        write_npy(case.path("features.npy"), &features).unwrap();
+        refused(&case, &LINEAR, &["features, row 7, column 3"]);
+    }
+}
+
+#[test]
+fn arrays_of_any_type_that_numpy_writes_are_read_as_the_same_numbers() {
+    let case = folder();
+    // Halves, so that every type of float holds them, and integers that every type of integer does.
+    let halves = features().mapv(|value| (2.0 * value).round() / 2.0);
+    let whole = halves.mapv(f64::round);
+    let path = |name: &str| case.path(name);
+    let asked = |what: &str| {
+        let said = json(&case, &["--classifier", "linear_svm"]);
+        let svm = said["svm"]["dual_objective"].as_f64();
+        (
+            said["n_correct"].as_u64(),
+            svm.unwrap_or_else(|| panic!("{what}: {said}")),
+        )
+    };
+    write_npy(path("features.npy"), &halves).unwrap();
+    let expected = asked("float64");
+    write_npy(path("features.npy"), &halves.mapv(|value| value as f32)).unwrap();
+    assert_eq!(asked("float32"), expected);
+    write_npy(path("labels.npy"), &labels().mapv(|label| label as i32)).unwrap();
+    write_npy(path("train.npy"), &train().mapv(|row| row as u16)).unwrap();
+    assert_eq!(asked("int32 and uint16"), expected);
+    let mask: Array1<bool> = (0..N_ROWS as i64)
+        .map(|row| test().iter().any(|&tested| tested == row))
+        .collect();
+    write_npy(path("test.npy"), &mask).unwrap();
+    assert_eq!(asked("a mask"), expected);
+    write_npy(path("features.npy"), &whole).unwrap();
+    let expected = asked("whole float64");
+    write_npy(path("features.npy"), &whole.mapv(|value| value as i16)).unwrap();
+    assert_eq!(asked("int16"), expected);
+    let two: Array1<bool> = labels().mapv(|label| label == 1);
+    write_npy(path("labels.npy"), &two.mapv(i64::from)).unwrap();
+    write_npy(
+        path("features.npy"),
+        &whole.mapv(|value| f64::from(value > 0.0)),
+    )
+    .unwrap();
+    let expected = asked("two classes");
+    write_npy(path("labels.npy"), &two).unwrap();
+    write_npy(path("features.npy"), &whole.mapv(|value| value > 0.0)).unwrap();
+    assert_eq!(asked("bool"), expected);
+}
+
+#[test]
+fn arrays_of_another_type_or_shape_are_refused_by_name() {
+    let case = folder();
+    write_npy(case.path("features.npy"), &labels().mapv(|n| n as u64)).unwrap();
+    refused(&case, &LINEAR, &["features.npy", "float64, float32"]);
+    write_npy(
+        case.path("features.npy"),
+        &labels().mapv(|label| label as f64),
+    )
+    .unwrap();
+    refused(&case, &LINEAR, &["features.npy", "n × m"]);
+    write_npy(case.path("features.npy"), &features()).unwrap();
+    write_npy(case.path("labels.npy"), &labels().mapv(|n| n as f64)).unwrap();
+    refused(&case, &LINEAR, &["labels.npy", "int64"]);
+    write_npy(case.path("labels.npy"), &labels()).unwrap();
+    write_npy(case.path("test.npy"), &array![true, false]).unwrap();
+    refused(
+        &case,
+        &LINEAR,
+        &["test.npy", "a mask of 2 rows", "one of 60"],
+    );
+    write_npy(case.path("test.npy"), &test()).unwrap();
+    write_npy(case.path("labels.npy"), &array![0_i64, 1, 2]).unwrap();
+    refused(&case, &LINEAR, &["3 labels", "each of the 60 rows"]);
+    case.file("labels.npy", "0,1,2");
+    refused(&case, &LINEAR, &["labels.npy"]);
+    std::fs::remove_file(case.path("labels.npy")).unwrap();
+    refused(&case, &LINEAR, &["labels.npy", "cannot be read"]);
+}
+
+#[test]
+fn rows_that_are_not_there_or_named_twice_are_refused() {
+    let case = folder();
+    for (file, rows, words) in [
+        (
+            "train.npy",
+            array![1_i64, 60],
+            ["train.npy, position 1: 60", "0 to 59"],
+        ),
+        (
+            "train.npy",
+            array![-1, 4],
+            ["train.npy, position 0: -1", "0 to 59"],
+        ),
+        (
+            "test.npy",
+            array![0, 7, 7],
+            ["test.npy: row 7 twice", "at most once"],
+        ),
+        (
+            "test.npy",
+            array![0, 3],
+            ["row 3, which train.npy names too", "at most once"],
+        ),
+        ("test.npy", array![], ["test.npy: no rows", "at least one"]),
+    ] {
+        write_npy(case.path("train.npy"), &array![1_i64, 2, 3, 4, 5, 6]).unwrap();
+        write_npy(case.path("test.npy"), &array![0_i64]).unwrap();
+        write_npy(case.path(file), &rows).unwrap();
+        refused(&case, &LINEAR, &words);
+    }
+    let mut labels = labels();
+    labels[4] = -2;
+    write_npy(case.path("labels.npy"), &labels).unwrap();
+    refused(&case, &LINEAR, &["labels.npy, position 4: -2"]);
+}
+
+#[test]
+fn options_out_of_range_are_refused() {
+    let case = folder();
+    for (option, value, word) in [
+        ("--classifier", "forest of trees", "linear_svm"),
+        ("--gamma", "wide", "scale"),
+        ("--multiclass", "all", "one_vs_rest"),
+        ("--scaling", "robust", "overall"),
+        ("--repeat", "0", "at least 1"),
+        ("--train-rows", "40", "1 to 39"),
+        ("--train-rows", "0", "1 to 39"),
+        ("--c", "0", "above 0"),
+        ("--tolerance", "0", "above 0"),
+        ("--threads", "0", "at least 1"),
+    ] {
+        let named = option == "--classifier";
+        let first: &[&str] = if named { &[] } else { &LINEAR };
+        refused(&case, &[first, &[option, value]].concat(), &[word]);
+    }
+}

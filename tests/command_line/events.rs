@@ -1,0 +1,181 @@
+//! `--json` and `--quiet`: what programs hear of a run, as the guide says it.
+
+use crate::command::Case;
+use serde_json::Value;
+use std::collections::{BTreeMap, BTreeSet};
+
+const GUIDE: &str = include_str!("../../src/guide/events.md");
+
+const STUDY: &str = r#"
+question = "What is told?"
+trials = 3
+[objects]
+sets = ["household"]
+names = ["mug", "banana", "scissors"]
+surface_error_mm = 1.0
+[skin]
+pitch_mm = [4.0, 8.0]
+size_mm = 64.0
+stroke_mm = 5.0
+[touches]
+per_object = 8
+offset_x_mm = { uniform = [-5.0, 5.0] }
+depth_mm = 3.0
+[sensing]
+ratio = [4, 16]
+[recognition]
+classifier = ["linear_svm", "k_nearest"]
+"#;
+
+/// Event → field → type, from the table of the guide.
+fn schema() -> BTreeMap<String, BTreeMap<String, String>> {
+    let mut schema: BTreeMap<String, BTreeMap<String, String>> = BTreeMap::new();
+    for line in GUIDE.lines().filter(|line| line.starts_with("| `")) {
+        let cells: Vec<&str> = line
+            .split('|')
+            .map(|cell| cell.trim().trim_matches('`'))
+            .collect();
+        let fields = schema.entry(cells[1].to_owned()).or_default();
+        fields.insert(cells[2].to_owned(), cells[3].to_owned());
+    }
+    assert_eq!(schema.len(), 4, "{schema:?}");
+    schema
+}
+
+fn events(text: &str) -> Vec<Value> {
+    text.lines()
+        .map(|line| serde_json::from_str(line).expect(line))
+        .collect()
+}
+
+/// Every field of an event is in the guide with its type.
+fn check(event: &Value, schema: &BTreeMap<String, BTreeMap<String, String>>) {
+    let fields = &schema[event["event"].as_str().unwrap()];
+    for (name, value) in event.as_object().unwrap() {
+        let is_right = match fields.get(name).map(String::as_str) {
+            None => name == "event",
+            Some("string") => value.is_string(),
+            Some("integer") => value.is_u64(),
+            Some("number") => value.as_f64().is_some_and(|number| number >= 0.0),
+            Some(_) => false,
+        };
+        assert!(is_right, "{name} of {event}");
+    }
+}
+
+#[test]
+fn every_line_of_a_run_is_an_event_as_the_guide_has_it() {
+    let case = Case::new();
+    case.file("study.toml", STUDY);
+    let (said, error) = case.succeeds(&["run", "study.toml", "--json"]);
+    assert_eq!(error, "", "nothing for people");
+    let (schema, events) = (schema(), events(&said));
+    events.iter().for_each(|event| check(event, &schema));
+    let of_kind = |kind: &'static str| events.iter().filter(move |event| event["event"] == *kind);
+    let stages: Vec<&str> = of_kind("stage")
+        .map(|event| event["name"].as_str().unwrap())
+        .collect();
+    assert_eq!(
+        stages.len(),
+        5,
+        "touch and recognise on two arrays, and the report: {stages:?}"
+    );
+    let finished = events.last().unwrap();
+    let told: BTreeSet<&str> = finished
+        .as_object()
+        .unwrap()
+        .keys()
+        .map(String::as_str)
+        .collect();
+    let fields = schema["finished"].keys().map(String::as_str);
+    // Pieces are for other kinds of study.
+    let fields = fields.filter(|field| *field != "pieces");
+    assert_eq!(told, fields.chain(["event"]).collect(), "{finished}");
+    assert_eq!(
+        (&finished["cells"], &finished["failed"]),
+        (&24.into(), &0.into())
+    );
+    let progress: Vec<&Value> = of_kind("progress").collect();
+    assert!(progress.iter().all(|event| event["run_left_s"].is_number()));
+    let last = progress.last().unwrap();
+    assert_eq!(last["run_left_s"], 0.0, "the report is written: {last}");
+    let elapsed = progress
+        .iter()
+        .map(|event| event["run_elapsed_s"].as_f64().unwrap());
+    assert!(elapsed.is_sorted());
+    // Once more: all cells are there, and a remark says so.
+    let again = self::events(&case.succeeds(&["run", "study.toml", "--json"]).0);
+    again.iter().for_each(|event| check(event, &schema));
+    assert_eq!(again[0]["event"], "message");
+    assert_eq!(again.last().unwrap()["finished_before"], 24);
+}
+
+#[test]
+fn quiet_says_nothing_but_errors() {
+    let case = Case::new();
+    case.file("study.toml", STUDY);
+    let said = case.succeeds(&["run", "study.toml", "--quiet"]);
+    assert_eq!(said, (String::new(), String::new()));
+    case.file(
+        "study.toml",
+        STUDY.replace("ratio = [4, 16]", "ratio = [4]"),
+    );
+    let refused = case.run(&["run", "study.toml", "--quiet"]);
+    assert_eq!(refused.status.code(), Some(2));
+    assert!(String::from_utf8_lossy(&refused.stderr).contains("sensing.ratio"));
+    assert!(refused.stdout.is_empty());
+}
+
+#[test]
+fn a_shard_is_not_finished_and_its_merge_is() {
+    let case = Case::new();
+    case.file("study.toml", STUDY);
+    let kinds = |said: String| -> Vec<String> {
+        let events = events(&said);
+        events
+            .iter()
+            .map(|event| event["event"].as_str().unwrap().to_owned())
+            .collect()
+    };
+    for shard in ["1/2", "2/2"] {
+        let (said, _) = case.succeeds(&["run", "study.toml", "--json", "--shard", shard]);
+        assert!(!kinds(said).contains(&"finished".to_owned()));
+    }
+    let (said, _) = case.succeeds(&["merge", "study.toml", "--json"]);
+    assert_eq!(kinds(said).last().unwrap(), "finished");
+}
+
+/// How far the estimates of a real run were off. Not a test of this code alone but of the machine too, so by hand:
+/// `cargo test --release --test command_events -- --ignored --nocapture`, on a machine that does nothing else.
+#[test]
+#[ignore = "asserts times"]
+fn the_time_left_of_a_real_run_is_right_within_thirty_percent_after_its_first_tenth() {
+    let case = Case::new();
+    let study = STUDY
+        .replace("trials = 3", "trials = 30")
+        .replace(r#"names = ["mug", "banana", "scissors"]"#, "")
+        .replace("per_object = 8", "per_object = 40")
+        .replace("k_nearest", "random_forest");
+    case.file("study.toml", study);
+    let (said, _) = case.succeeds(&["run", "study.toml", "--json"]);
+    let told: Vec<[f64; 2]> = events(&said)
+        .iter()
+        .filter(|event| event["event"] == "progress")
+        .map(|event| ["run_elapsed_s", "run_left_s"].map(|field| event[field].as_f64().unwrap()))
+        .collect();
+    let total = told.last().unwrap()[0];
+    let after: Vec<(f64, f64)> = told
+        .iter()
+        .filter(|[elapsed, _]| *elapsed > 0.1 * total && *elapsed < 0.95 * total)
+        .map(|[elapsed, left]| (elapsed / total, left / (total - elapsed) - 1.0))
+        .collect();
+    let n_right = after.iter().filter(|(_, error)| error.abs() < 0.3).count();
+    for (place, error) in after.iter().step_by(after.len() / 20 + 1) {
+        println!("at {:3.0} %: {:+.0} %", 100.0 * place, 100.0 * error);
+    }
+    println!(
+        "{total:.1} s; {n_right} of {} estimates within 30 %",
+        after.len()
+    );
+    assert!(10 * n_right >= 8 * after.len());
+}

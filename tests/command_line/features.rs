@@ -1,0 +1,156 @@
+//! `bubbletouch features`: the rows that a study's cell is trained on, and no others.
+
+use crate::command::Case;
+use bubbletouch::random::Seed;
+use bubbletouch::recognition::ClassifierKind;
+use bubbletouch::recognition::classifier::Classifier;
+use bubbletouch::recognition::dataset::dataset;
+use bubbletouch::study::read_features;
+use ndarray::{Array1, Array2, Axis};
+use ndarray_npy::read_npy;
+use std::fs;
+
+/// Two levels of noise, a nested and another ensemble, two m and two training sizes: 16 cells, two trials each.
+const STUDY: &str = r#"
+question = "What does a cell learn from?"
+trials = 2
+
+[objects]
+sets = ["household"]
+names = ["mug", "banana", "scissors"]
+surface_error_mm = 1.0
+
+[skin]
+pitch_mm = 4.0
+taxels = 16
+stroke_mm = 5.0
+
+[touches]
+per_object = 24
+offset_x_mm = { uniform = [-8.0, 8.0] }
+yaw_deg = { uniform = [0.0, 90.0] }
+depth_mm = 3.0
+
+[signal]
+noise_std_full_scale = [0.0, 0.2]
+smoothing_mm = 4.0
+
+[sensing]
+ensemble = ["gaussian", "block_average"]
+measurements = [4, 16]
+
+[recognition]
+classifier = "linear_svm"
+train_touches = [4, 12]
+"#;
+
+fn written(case: &Case, cell: usize, trial: usize) -> std::path::PathBuf {
+    let folder = format!("cell_{cell}_{trial}");
+    let (cell, trial) = (cell.to_string(), trial.to_string());
+    let (said, _) = case.succeeds(&[
+        "features",
+        "study.toml",
+        "--cell",
+        &cell,
+        "--trial",
+        &trial,
+        "--out",
+        &folder,
+    ]);
+    assert_eq!(said, "");
+    case.path(&folder)
+}
+
+#[test]
+fn training_on_the_files_gives_the_accuracy_of_the_run() {
+    let case = Case::new();
+    case.file("study.toml", STUDY);
+    case.succeeds(&["run", "study.toml", "--out", "results"]);
+    let mut table = csv::Reader::from_path(case.path("results/accuracy.csv")).unwrap();
+    let header = table.headers().unwrap().clone();
+    let column = |name: &str| header.iter().position(|column| column == name).unwrap();
+    let (mut n_rows, mut counts) = (0, Vec::new());
+    for row in table.records() {
+        let row = row.unwrap();
+        let number = |name: &str| row[column(name)].parse::<usize>().unwrap();
+        let folder = written(&case, number("cell"), number("trial"));
+        let features: Array2<f64> = read_npy(folder.join("features.npy")).unwrap();
+        let labels: Array1<i64> = read_npy(folder.join("labels.npy")).unwrap();
+        let train: Array1<i64> = read_npy(folder.join("train.npy")).unwrap();
+        let test: Array1<i64> = read_npy(folder.join("test.npy")).unwrap();
+        assert_eq!(features.dim(), (72, number("measurements")));
+        assert_eq!(train.len(), 3 * number("train_touches"));
+        let rows = |rows: &Array1<i64>| {
+            let rows: Vec<usize> = rows.iter().map(|&row| row as usize).collect();
+            let labels = labels.select(Axis(0), &rows).mapv(|label| label as usize);
+            dataset(features.select(Axis(0), &rows), labels).unwrap()
+        };
+        let classifier = Classifier::new(ClassifierKind::LinearSvm);
+        let trained = classifier.train(&rows(&train), &Seed::new(0)).unwrap();
+        let test = rows(&test);
+        let predicted = trained.labels(test.records.view()).unwrap();
+        let pairs = predicted.iter().zip(&test.targets);
+        let n_correct = pairs.filter(|(a, b)| a == b).count();
+        assert_eq!(n_correct, number("n_correct"), "{row:?}");
+        n_rows += 1;
+        counts.push(n_correct);
+    }
+    assert_eq!(n_rows, 32);
+    counts.sort_unstable();
+    counts.dedup();
+    assert!(counts.len() > 4, "cells differ: {counts:?}");
+}
+
+#[test]
+fn the_library_reads_what_the_command_writes_and_threads_change_no_byte() {
+    let case = Case::new();
+    case.file("study.toml", STUDY);
+    for threads in ["1", "3"] {
+        let cell = ["features", "study.toml", "--cell", "9"];
+        case.succeeds(&[&cell[..], &["--threads", threads, "--out", threads]].concat());
+    }
+    let names = [
+        "cell.toml",
+        "features.npy",
+        "labels.npy",
+        "objects.csv",
+        "test.npy",
+        "train.npy",
+    ];
+    for name in names {
+        let read = |folder| fs::read(case.path(folder).join(name)).unwrap();
+        assert!(read("1") == read("3"), "{name}");
+    }
+    assert_eq!(fs::read_dir(case.path("1")).unwrap().count(), names.len());
+    let set = read_features(&case.path("1")).unwrap();
+    assert_eq!(set.data.records.dim().0, 72);
+    assert_eq!(
+        set.training(None).unwrap().records.nrows(),
+        set.split.train.len()
+    );
+    assert_eq!(set.training(Some(5)).unwrap().records.nrows(), 5);
+    let objects = fs::read_to_string(case.path("1/objects.csv")).unwrap();
+    assert_eq!(objects, "label,object\n0,mug\n1,banana\n2,scissors\n");
+    let settings: toml::Table = fs::read_to_string(case.path("1/cell.toml"))
+        .unwrap()
+        .parse()
+        .unwrap();
+    assert_eq!(settings["cell"]["cell"].as_integer(), Some(9));
+    assert_eq!(settings["n_train"].as_integer(), Some(36));
+}
+
+#[test]
+fn a_cell_or_a_trial_that_the_study_has_not_is_refused() {
+    let case = Case::new();
+    case.file("study.toml", STUDY);
+    for (option, allowed) in [("--cell", "0 to 15"), ("--trial", "0 to 1")] {
+        let output = case.run(&["features", "study.toml", option, "16", "--out", "data"]);
+        let error = String::from_utf8(output.stderr).unwrap();
+        assert_eq!(output.status.code(), Some(2), "{error}");
+        assert!(
+            error.contains(": 16; ") && error.contains(allowed),
+            "{error}"
+        );
+        assert!(!case.path("data/features.npy").exists());
+    }
+}

@@ -1,0 +1,20 @@
+//! The command: every subcommand, bad input, the README.
+
+#[path = "../fixtures/command/mod.rs"]
+mod command;
+#[path = "../fixtures/study/mod.rs"]
+mod study;
+
+mod bad_input;
+mod classify;
+mod events;
+mod features;
+mod mesh;
+mod press;
+mod readme;
+mod recording;
+mod report;
+mod shell;
+mod simulate;
+mod surface;
+mod touches;

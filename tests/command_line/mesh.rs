@@ -1,0 +1,309 @@
+//! Meshes from the command line: what is said about one, and pressing and studying one as it is.
+
+use crate::command::Case;
+use bubbletouch::mesh::LengthUnit;
+use bubbletouch::study::{ModelSpec, ObjectsSpec, load_objects};
+
+/// A cube of 40 mm in millimetres, standing on z = 0.
+fn cube() -> String {
+    let mut text = String::new();
+    for corner in 0..8 {
+        let at = |bit: u32| if corner & bit == 0 { -20 } else { 20 };
+        text += &format!("v {} {} {}\n", at(1), at(2), at(4) + 20);
+    }
+    for quad in [
+        "1 5 7 3", "2 4 8 6", "1 2 6 5", "3 7 8 4", "1 3 4 2", "5 6 8 7",
+    ] {
+        text += &format!("f {quad}\n");
+    }
+    text
+}
+
+/// Its top lacks a small triangle in the middle, 0.9 mm wide.
+fn cube_with_hole() -> String {
+    let top = "v 0 0 40\nv 0.6364 0 40\nv 0 0.6364 40\n\
+               f 5 6 10 9\nf 6 8 10\nf 8 11 10\nf 8 7 11\nf 7 5 9\nf 7 9 11\n";
+    cube().replace("f 5 6 8 7\n", top)
+}
+
+#[test]
+fn a_mesh_is_described() {
+    let case = Case::new();
+    case.file("cube.obj", cube());
+    let (said, _) = case.succeeds(&["objects", "mesh", "cube.obj", "--unit", "mm"]);
+    assert!(
+        said.starts_with("size        40.0 × 40.0 × 40.0 mm\n"),
+        "{said}"
+    );
+    assert!(said.contains("\nvolume      64.00 cm³\n"), "{said}");
+    assert!(said.ends_with("\nfaults      none\n"), "{said}");
+}
+
+#[test]
+fn a_pressed_cube_is_flat_under_its_face_and_not_inflated() {
+    let case = Case::new();
+    case.file("cube.obj", cube());
+    let press =
+        "press --mesh cube.obj --unit mm --model mesh --taxels 32x32 --depth-mm 2 --out frame.csv";
+    let (_, error) = case.succeeds(&press.split(' ').collect::<Vec<_>>());
+    // 20 taxels at 2 mm pitch lie under 40 mm; the nearest beside them are 1 mm, one radius, away.
+    assert!(
+        error.starts_with("400 of 1024 taxels touched, 0 saturated; deepest 2.000 mm"),
+        "{error}"
+    );
+    let frame = std::fs::read_to_string(case.path("frame.csv")).unwrap();
+    let deflections: Vec<f64> = frame
+        .split([',', '\n'])
+        .filter_map(|n| n.parse().ok())
+        .collect();
+    let under = deflections.iter().filter(|&&d| (d - 2e-3).abs() < 1e-9);
+    assert_eq!(under.count(), 400);
+}
+
+#[test]
+fn packed_spheres_are_written_and_shown_beside_the_mesh() {
+    let case = Case::new();
+    case.file("cube.obj", cube());
+    let succeeds = |arguments: &str| case.succeeds(&arguments.split(' ').collect::<Vec<_>>());
+    let (said, _) = succeeds("objects pack cube.obj --unit mm --surface-error-mm 1 --out cube.csv");
+    let spheres = std::fs::read_to_string(case.path("cube.csv")).unwrap();
+    let n_spheres = spheres.lines().count() - 1;
+    assert!(
+        said.starts_with(&format!("spheres     {n_spheres}\n")),
+        "{said}"
+    );
+    succeeds("objects show cube.obj --unit mm --spheres cube.csv --panel-px 200 --out kept.png");
+    succeeds("objects show cube.obj --unit mm --surface-error-mm 1 --panel-px 200 --out made.png");
+    let [kept, made] = ["kept.png", "made.png"].map(|name| std::fs::read(case.path(name)).unwrap());
+    assert!(kept.starts_with(b"\x89PNG"));
+    assert_eq!(kept, made, "the same spheres, read or made");
+    succeeds("objects show mug --surface-error-mm 2 --panel-px 200 --out mug.png");
+    for wrong in [
+        "objects show mug --out mug.jpg",
+        "objects show mug --panel-px 10 --out other.png",
+        "objects show cube.obj --spheres none.csv --out other.png",
+    ] {
+        let output = case.run(&wrong.split(' ').collect::<Vec<_>>());
+        assert_eq!(output.status.code(), Some(2), "{wrong}");
+    }
+    assert!(!case.path("other.png").exists());
+}
+
+#[test]
+fn a_hole_is_named_with_its_file_and_what_can_be_done() {
+    let case = Case::new();
+    case.file("cube.obj", cube_with_hole());
+    let pack = "objects pack cube.obj --unit mm --surface-error-mm 1 --out cube.csv";
+    let pack: Vec<&str> = pack.split(' ').collect();
+    let with = |more: &[&str]| case.run(&[&pack[..], more].concat());
+    let output = with(&[]);
+    let said = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(output.status.code(), Some(2), "{said}");
+    for word in [
+        "cube.obj: a hole 0.90 mm wide",
+        "--close-holes-mm",
+        "--as-sheet",
+    ] {
+        assert!(said.contains(word), "{word}: {said}");
+    }
+    assert!(!case.path("cube.csv").exists());
+    assert_eq!(with(&["--close-holes-mm", "0.8"]).status.code(), Some(2));
+    let output = with(&["--close-holes-mm", "2"]);
+    let said = String::from_utf8(output.stderr).unwrap();
+    assert!(output.status.success(), "{said}");
+    assert!(
+        said.contains("cube.obj: closed 1 hole, 0.90 mm wide"),
+        "{said}"
+    );
+    assert!(with(&["--as-sheet"]).status.success());
+    let both = with(&["--as-sheet", "--close-holes-mm", "1"]);
+    assert_eq!(both.status.code(), Some(2));
+}
+
+#[test]
+fn a_study_closes_holes_only_where_it_is_told_to() {
+    let case = Case::new();
+    std::fs::create_dir(case.path("meshes")).unwrap();
+    case.file("meshes/cube.obj", cube_with_hole());
+    let load = |model, close_holes_mm| {
+        let spec = ObjectsSpec {
+            meshes: Some(case.path("meshes")),
+            model: Some(model),
+            unit: Some(LengthUnit::Millimetre),
+            surface_error_mm: Some(1.0),
+            close_holes_mm,
+            ..ObjectsSpec::default()
+        };
+        load_objects(&spec, None).map(|objects| objects[0].model.clone())
+    };
+    let closed = load(ModelSpec::Packed, Some(1.0)).unwrap();
+    assert!(closed.n_spheres() > 10);
+    assert_eq!(load(ModelSpec::Mesh, Some(1.0)).unwrap().n_triangles(), 20);
+    assert_eq!(load(ModelSpec::Mesh, None).unwrap().n_triangles(), 17);
+    for too_narrow in [None, Some(0.8)] {
+        let error = load(ModelSpec::Packed, too_narrow).unwrap_err().to_string();
+        assert!(error.contains("cube.obj: a hole 0.90 mm wide"), "{error}");
+        assert!(error.contains("objects.close_holes_mm"), "{error}");
+    }
+    let error = load(ModelSpec::VertexSpheres, Some(1.0)).unwrap_err();
+    assert!(error.to_string().contains("close_holes_mm"), "{error}");
+}
+
+#[test]
+fn words_that_no_mesh_has_are_refused() {
+    let case = Case::new();
+    case.file("cube.obj", cube());
+    case.file("cube.step", cube());
+    let refused = |arguments: &str| {
+        let output = case.run(&arguments.split(' ').collect::<Vec<_>>());
+        assert_eq!(output.status.code(), Some(2), "{arguments}");
+        String::from_utf8(output.stderr).unwrap()
+    };
+    assert!(refused("objects mesh cube.obj --unit ft").contains("expected one of m, cm, mm, in"));
+    assert!(refused("objects mesh cube.step").contains("a name that ends in .ply, .obj or .stl"));
+    assert!(refused("objects mesh none.stl").contains("none.stl: cannot be opened"));
+    assert!(
+        refused("press --mesh cube.obj --model cage")
+            .contains("expected vertex_spheres, mesh or packed")
+    );
+    assert!(refused("press --object mug --model mesh").contains("--mesh"));
+}
+
+/// A die of 17 mm, its numbers millimetres.
+fn die() -> String {
+    cube().replace("20", "8.5").replace("40", "17")
+}
+
+fn words(line: &str) -> Vec<&str> {
+    line.split(' ').collect()
+}
+
+#[test]
+fn a_die_of_seventeen_metres_is_refused_everywhere_unless_its_unit_is_given() {
+    let case = Case::new();
+    case.file("die.obj", die());
+    case.file("die.csv", "x,y,z,r\n0,0,20,8.5\n");
+    std::fs::create_dir(case.path("meshes")).unwrap();
+    case.file("meshes/die.obj", die());
+    case.file("meshes/flat.obj", die().replace(" 8.5\n", " 4\n"));
+    let study = "question = \"Which?\"\n[objects]\nmeshes = \"meshes\"\nUNIT\n[skin]\npitch_mm = 2.0\ntaxels = 16\nstroke_mm = 5.0\n\
+                 [touches]\nper_object = 8\nyaw_deg = { uniform = [0.0, 90.0] }\ndepth_mm = 2.0\n[sensing]\nensemble = \"gaussian\"\nratio = 16\n\
+                 [recognition]\nclassifier = \"linear_svm\"\nc = 1.0\n";
+    case.file("without.toml", study.replace("UNIT", ""));
+    case.file("with.toml", study.replace("UNIT", "unit = \"mm\""));
+    let scene = "title = \"A pad\"\ndt_ms = 10.0\noutput_hz = 100.0\nduration_s = 0.1\n[[patches]]\nname = \"pad\"\nlayout = { grid = { nx = 8, ny = 8, pitch_mm = 2.0 } }\n\
+                 stroke_mm = 5.0\nstiffness_n_per_m = 100.0\n[[objects]]\nname = \"die\"\nFILE\nUNIT\nat = { position_mm = [0.0, 0.0, -1.0] }\n";
+    for (name, file) in [
+        ("mesh", "mesh = \"die.obj\""),
+        ("csv", "spheres = \"die.csv\""),
+    ] {
+        let scene = scene.replace("FILE", file);
+        case.file(&format!("{name}_without.toml"), scene.replace("UNIT", ""));
+        case.file(
+            &format!("{name}_with.toml"),
+            scene.replace("UNIT", "unit = \"mm\""),
+        );
+    }
+    for (without, with) in [
+        ("press --mesh die.obj", " --unit mm"),
+        ("press --spheres die.csv --stroke-mm 50", " --unit mm"),
+        ("objects mesh die.obj", " --unit mm"),
+        ("objects --mesh die.obj", " --unit mm"),
+        (
+            "objects pack die.obj --surface-error-mm 1 --out spheres.csv",
+            " --unit mm",
+        ),
+        (
+            "objects show die.obj --surface-error-mm 1 --panel-px 200 --out die.png",
+            " --unit mm",
+        ),
+        (
+            "objects show die.obj --unit mm --spheres die.csv --panel-px 200 --out die.png",
+            " --spheres-unit mm",
+        ),
+        ("run without.toml --out results", ""),
+        ("simulate mesh_without.toml --out simulated_mesh", ""),
+        ("simulate csv_without.toml --out simulated_csv", ""),
+    ] {
+        let output = case.run(&words(without));
+        let said = String::from_utf8(output.stderr).unwrap();
+        assert_eq!(output.status.code(), Some(2), "{without}: {said}");
+        assert!(
+            said.contains("17 m wide, if its unit is the metre; "),
+            "{without}: {said}"
+        );
+        let advice = "in mm it would be 17 mm: give unit = \"mm\" (--unit mm)";
+        assert!(said.contains(advice), "{without}: {said}");
+        case.succeeds(&words(&(without.replace("without", "with") + with)));
+    }
+}
+
+const HARDWARE: &str = include_str!("../../src/guide/own_objects.md");
+
+#[test]
+fn own_objects_are_named_by_the_same_option_everywhere() {
+    let case = Case::new();
+    let example = HARDWARE.split("```toml\n").nth(1).unwrap();
+    let example = example.split("```").next().unwrap();
+    case.file("hardware.toml", example);
+    let (said, _) = case.succeeds(&words("objects --objects hardware.toml"));
+    assert!(said.contains(" nut ") && said.contains(" bolt "), "{said}");
+    assert!(!said.contains("mug"), "{said}");
+    case.succeeds(&words(
+        "objects nut bolt --objects hardware.toml --out both.png",
+    ));
+    case.succeeds(&words(
+        "objects show nut --objects hardware.toml --panel-px 200 --out nut.png",
+    ));
+    let pack = "objects pack nut --objects hardware.toml --surface-error-mm 0.1 --out nut.csv";
+    let (said, _) = case.succeeds(&words(pack));
+    assert!(said.contains("gap         max 0.0"), "{said}");
+    // A ring of taxels reads the nut; those over its hole read nothing.
+    let press = "press --objects hardware.toml --object nut --taxels 17x17 --pitch-mm 1 --depth-mm 1 --out nut.npz";
+    let (_, said) = case.succeeds(&words(press));
+    assert!(!said.starts_with("0 of"), "{said}");
+    let press = press.replace("nut.npz", "frame.csv");
+    case.succeeds(&words(&press));
+    let frame = std::fs::read_to_string(case.path("frame.csv")).unwrap();
+    let rows: Vec<Vec<f64>> = frame
+        .lines()
+        .map(|row| row.split(',').filter_map(|n| n.parse().ok()).collect())
+        .collect();
+    let rows = &rows[rows.len() - 17..];
+    assert_eq!(rows[8][8], 0.0, "over the hole");
+    assert!((rows[8][8 + 5] - 1e-3).abs() < 0.3e-3, "{}", rows[8][13]);
+    let scene = "title = \"A pad\"\ndt_ms = 10.0\noutput_hz = 100.0\nduration_s = 0.1\n[[patches]]\nname = \"pad\"\nlayout = { grid = { nx = 8, ny = 8, pitch_mm = 2.0 } }\n\
+                 stroke_mm = 5.0\nstiffness_n_per_m = 100.0\n[[objects]]\nname = \"it\"\nobject = \"nut\"\nobjects = \"hardware.toml\"\n";
+    case.file("scene.toml", scene);
+    case.succeeds(&words("simulate scene.toml --out simulated"));
+    let study = "question = \"Which?\"\n[objects]\nsets = [\"balls\"]\n[skin]\npitch_mm = 1.0\ntaxels = 16\nstroke_mm = 5.0\n\
+                 [touches]\nper_object = 8\nyaw_deg = { uniform = [0.0, 90.0] }\ndepth_mm = 2.0\n[sensing]\nensemble = \"gaussian\"\nratio = 16\n\
+                 [recognition]\nclassifier = \"linear_svm\"\nc = 1.0\n";
+    case.file("study.toml", study);
+    let (said, _) = case.succeeds(&words("plan study.toml --objects hardware.toml"));
+    assert!(said.contains('2'), "{said}");
+    case.succeeds(&words(
+        "run study.toml --objects hardware.toml --out results",
+    ));
+    let confusion = std::fs::read_to_string(case.path("results/confusion.csv")).unwrap();
+    assert!(
+        confusion.contains("bolt") && !confusion.contains("golf"),
+        "{confusion}"
+    );
+    case.file(
+        "wrong.toml",
+        example.replacen("height_mm = 6.8", "height_mm = -2", 1),
+    );
+    for wrong in [
+        "objects --objects wrong.toml",
+        "objects show nut --objects wrong.toml --out wrong.png",
+        "press --object nut --objects wrong.toml",
+        "run study.toml --objects wrong.toml --out other",
+    ] {
+        let output = case.run(&words(wrong));
+        let said = String::from_utf8(output.stderr).unwrap();
+        assert_eq!(output.status.code(), Some(2), "{wrong}: {said}");
+        let expected = "wrong.toml, line 8, object `nut`, part 1 (hexagonal_prism): height_mm = -2; a finite positive length";
+        assert!(said.contains(expected), "{wrong}: {said}");
+    }
+}

@@ -1,0 +1,310 @@
+//! `bubbletouch press`: one reading, as numbers, as arrays, as a picture, and drawn in the terminal.
+
+use crate::command::Case;
+use ndarray::{Array1, Array2, Axis, s};
+use ndarray_npy::NpzReader;
+use std::fs::{self, File};
+
+/// A frame from a CSV file, and how many significant digits its numbers have.
+fn read_csv(case: &Case, name: &str) -> (Array2<f64>, Vec<usize>) {
+    let text = fs::read_to_string(case.path(name)).unwrap();
+    let rows: Vec<Vec<&str>> = text.lines().map(|l| l.split(',').collect()).collect();
+    let digits = |number: &&str| {
+        let mantissa = number.split('e').next().unwrap();
+        mantissa.chars().filter(char::is_ascii_digit).count()
+    };
+    let digits = rows.iter().flatten().map(digits).collect();
+    let values = rows.iter().flatten().map(|v| v.parse().unwrap()).collect();
+    let frame = Array2::from_shape_vec((rows.len(), rows[0].len()), values).unwrap();
+    (frame, digits)
+}
+
+/// Presses with these arguments and reads the frame.
+fn pressed(arguments: &str) -> Array2<f64> {
+    let case = Case::new();
+    let words = arguments.split(' ');
+    let all: Vec<&str> = ["press", "--out", "frame.csv"]
+        .into_iter()
+        .chain(words)
+        .collect();
+    case.succeeds(&all);
+    read_csv(&case, "frame.csv").0
+}
+
+fn deepest(frame: &Array2<f64>) -> f64 {
+    frame.iter().copied().fold(0.0, f64::max)
+}
+
+fn largest_difference(a: &Array2<f64>, b: &Array2<f64>) -> f64 {
+    (a - b).iter().fold(0.0, |largest, d| d.abs().max(largest))
+}
+
+/// A sphere of 30 mm, 29 mm in front of 24 × 10 taxels of 1.5 mm radius at 2.5 mm.
+const SPHERE: &str = "x,y,z,r\n0.004,-0.003,0.029,0.03\n";
+const ARRAY: [&str; 8] = [
+    "press",
+    "--spheres",
+    "sphere.csv",
+    "--taxels",
+    "24x10",
+    "--pitch-mm=2.5",
+    "--taxel-radius-mm=1.5",
+    "--stroke-mm=2",
+];
+
+/// δ = min(s, max(0, √(S² − b²) − h)).
+fn closed_form() -> Array2<f64> {
+    Array2::from_shape_fn((10, 24), |(row, column)| {
+        let x = (column as f64 - 11.5) * 2.5e-3;
+        let y = (row as f64 - 4.5) * 2.5e-3;
+        let reach: f64 = 0.03 + 1.5e-3;
+        let b2 = (x - 0.004).powi(2) + (y + 0.003).powi(2);
+        let height = (reach * reach - b2).max(0.0).sqrt();
+        (height - 0.029).clamp(0.0, 2e-3)
+    })
+}
+
+#[test]
+fn the_csv_of_one_sphere_is_the_closed_form_with_17_digits() {
+    let case = Case::new();
+    case.file("sphere.csv", SPHERE);
+    let (_, said) = case.succeeds(&[&ARRAY[..], &["--out", "frame.csv"]].concat());
+    let (frame, digits) = read_csv(&case, "frame.csv");
+    assert_eq!(frame.dim(), (10, 24), "ny rows of nx columns");
+    assert!(digits.iter().all(|&n| n == 17), "{digits:?}");
+    let expected = closed_form();
+    let difference = largest_difference(&frame, &expected);
+    assert!(difference < 1e-15, "{difference} m");
+    let n_touched = expected.iter().filter(|&&d| d > 0.0).count();
+    let n_saturated = expected.iter().filter(|&&d| d == 2e-3).count();
+    assert!(n_touched > n_saturated && n_saturated > 0);
+    let sentence =
+        format!("{n_touched} of 240 taxels touched, {n_saturated} saturated; deepest 2.000 mm");
+    assert!(said.contains(&sentence), "'{sentence}' is not in: {said}");
+}
+
+#[test]
+fn the_npz_holds_the_numbers_of_the_csv_and_where_the_taxels_are() {
+    let case = Case::new();
+    case.file("sphere.csv", SPHERE);
+    case.succeeds(&[&ARRAY[..], &["--out", "frame.csv"]].concat());
+    case.succeeds(&[&ARRAY[..], &["--out", "frame.npz"]].concat());
+    let mut npz = NpzReader::new(File::open(case.path("frame.npz")).unwrap()).unwrap();
+    let deflection: Array2<f64> = npz.by_name("deflection").unwrap();
+    assert_eq!(deflection, read_csv(&case, "frame.csv").0);
+    let x: Array1<f64> = npz.by_name("x").unwrap();
+    let y: Array1<f64> = npz.by_name("y").unwrap();
+    assert_eq!((x.len(), y.len()), (24, 10));
+    assert!((x[0] + 11.5 * 2.5e-3).abs() < 1e-15 && (x[23] - 11.5 * 2.5e-3).abs() < 1e-15);
+    assert!((y[0] + 4.5 * 2.5e-3).abs() < 1e-15 && (y[9] - 4.5 * 2.5e-3).abs() < 1e-15);
+}
+
+#[test]
+fn the_png_is_a_picture() {
+    let case = Case::new();
+    case.file("sphere.csv", SPHERE);
+    let (said, _) = case.succeeds(&[&ARRAY[..], &["--out", "frame.png"]].concat());
+    assert_eq!(said, "");
+    let file = File::open(case.path("frame.png")).unwrap();
+    let mut picture = png::Decoder::new(std::io::BufReader::new(file))
+        .read_info()
+        .unwrap();
+    let mut pixels = vec![0; picture.output_buffer_size().unwrap()];
+    picture.next_frame(&mut pixels).unwrap();
+    assert!(pixels.iter().any(|&p| p != pixels[0]), "something is drawn");
+}
+
+#[test]
+fn without_a_file_a_map_is_drawn_in_plain_characters_when_piped() {
+    let case = Case::new();
+    case.file("sphere.csv", SPHERE);
+    let (said, _) = case.succeeds(&ARRAY);
+    assert!(said.lines().count() >= 5, "{said}");
+    assert!(said.contains('@'), "the darkest character: {said}");
+    assert!(!said.contains('\u{1b}'), "no escape codes: {said:?}");
+    assert_eq!(case.names(), ["sphere.csv"], "nothing is written");
+}
+
+#[test]
+fn a_built_in_object_is_pressed_to_its_depth() {
+    for depth_mm in [0.5, 3.0, 4.5] {
+        let frame = pressed(&format!("--object mug --depth-mm {depth_mm}"));
+        assert_eq!(frame.dim(), (64, 64));
+        assert!((deepest(&frame) - 1e-3 * depth_mm).abs() < 1e-12);
+    }
+    assert_eq!(
+        pressed("--object mug"),
+        pressed("--object mug --depth-mm 3")
+    );
+    let case = Case::new();
+    let (_, said) = case.succeeds(&["press", "--object", "mug", "--depth-mm", "3"]);
+    assert!(said.contains("deepest 3.000 mm"), "{said}");
+    let stopped = pressed("--object mug --depth-mm 3 --stroke-mm 2");
+    assert_eq!(deepest(&stopped), 2e-3);
+}
+
+#[test]
+fn an_object_that_is_pressed_beyond_the_stroke_stays_felt_and_it_is_said_once() {
+    let stroke = 5e-3;
+    for (object, depths) in [("golf", [5, 20, 30]), ("mug", [5, 10, 150])] {
+        let frames = depths.map(|mm| pressed(&format!("--object {object} --depth-mm {mm}")));
+        for pair in frames.windows(2) {
+            let mut taxels = pair[0].iter().zip(&pair[1]);
+            assert!(taxels.all(|(before, now)| now >= before), "{object}");
+        }
+        let n_saturated = frames[2].iter().filter(|&&d| d == stroke).count();
+        assert!(n_saturated > 300, "{object}: {n_saturated}");
+    }
+    let case = Case::new();
+    case.file("sphere.csv", SPHERE);
+    case.file(
+        "poses.csv",
+        "x,y,z,qw,qx,qy,qz\n0,0,0,1,0,0,0\n0,0,0.1,1,0,0,0\n",
+    );
+    let note = "note: a depth of 3 mm is beyond the stroke of 2 mm: taxels that would go further than it are saturated\n";
+    for (more, is_noted) in [
+        (&["--depth-mm=3"][..], true),
+        (&["--depth-mm=3", "--poses=poses.csv"], true),
+        (&["--depth-mm=2"], false),
+        (&[], false),
+    ] {
+        let (_, said) = case.succeeds(&[&ARRAY[..], more].concat());
+        assert_eq!(
+            said.matches(note).count(),
+            usize::from(is_noted),
+            "{more:?}: {said}"
+        );
+        assert_eq!(said.contains("beyond"), is_noted, "{more:?}: {said}");
+    }
+}
+
+#[test]
+fn spheres_are_read_where_they_are_unless_a_depth_is_asked_for() {
+    let case = Case::new();
+    case.file("sphere.csv", SPHERE);
+    case.succeeds(&[&ARRAY[..], &["--depth-mm=1", "--out", "deep.csv"]].concat());
+    let (frame, _) = read_csv(&case, "deep.csv");
+    assert!((deepest(&frame) - 1e-3).abs() < 1e-15);
+    let clear = "x,y,z,r\n0,0,0.05,0.03\n";
+    case.file("sphere.csv", clear);
+    case.succeeds(&[&ARRAY[..], &["--out", "clear.csv"]].concat());
+    assert_eq!(deepest(&read_csv(&case, "clear.csv").0), 0.0);
+}
+
+/// A small object well inside 40 × 40 taxels of 2 mm.
+const PADLOCK: &str = "--object padlock --taxels 40x40 --depth-mm 2";
+
+/// Whether a frame is another one moved by whole taxels.
+fn is_moved(frame: &Array2<f64>, by: (isize, isize), original: &Array2<f64>) -> bool {
+    let (rows, columns) = frame.dim();
+    frame.indexed_iter().all(|((row, column), &value)| {
+        let from = (row as isize - by.0, column as isize - by.1);
+        let inside =
+            (0..rows as isize).contains(&from.0) && (0..columns as isize).contains(&from.1);
+        let expected = match inside {
+            true => original[[from.0 as usize, from.1 as usize]],
+            false => 0.0,
+        };
+        (value - expected).abs() < 1e-12
+    })
+}
+
+#[test]
+fn an_offset_moves_the_print_by_whole_taxels_exactly_when_it_is_a_multiple_of_the_pitch() {
+    let original = pressed(PADLOCK);
+    let n_touched = original.iter().filter(|&&d| d > 0.0).count();
+    assert!(n_touched > 20, "{n_touched} taxels");
+    // The patch moves along table x and so the print goes the other way; its y axis points against the table's.
+    for (offset, by) in [
+        ("--offset-x-mm 6", (0, -3)),
+        ("--offset-x-mm -4", (0, 2)),
+        ("--offset-y-mm 6", (3, 0)),
+        ("--offset-x-mm 2 --offset-y-mm -2", (-1, -1)),
+    ] {
+        let frame = pressed(&format!("{PADLOCK} {offset}"));
+        assert!(is_moved(&frame, by, &original), "{offset} moves by {by:?}");
+    }
+    for offset in ["--offset-x-mm 1", "--offset-x-mm -2.5", "--offset-y-mm 0.7"] {
+        let frame = pressed(&format!("{PADLOCK} {offset}"));
+        let moves = (-4..=4).flat_map(|row| (-4..=4).map(move |column| (row, column)));
+        for by in moves {
+            assert!(!is_moved(&frame, by, &original), "{offset} moves by {by:?}");
+        }
+    }
+}
+
+#[test]
+fn a_quarter_turn_of_the_object_is_a_quarter_turn_of_the_print() {
+    let original = pressed(PADLOCK);
+    let turned = pressed(&format!("{PADLOCK} --yaw-deg 90"));
+    // Taxel (x, y) of the original is taxel (y, −x) of the turned one.
+    let expected = Array2::from_shape_fn((40, 40), |(row, column)| original[[column, 39 - row]]);
+    assert!(largest_difference(&turned, &expected) < 1e-12);
+    assert!(
+        largest_difference(&turned, &original) > 1e-4,
+        "it is no square"
+    );
+    let back = pressed(&format!("{PADLOCK} --yaw-deg -270"));
+    assert!(largest_difference(&turned, &back) < 1e-12);
+}
+
+#[test]
+fn a_tilted_patch_goes_in_deepest_with_its_lower_side() {
+    let box_under = "--object cracker_box --taxels 40x40 --depth-mm 3";
+    let side = |frame: &Array2<f64>, axis: Axis| -> f64 {
+        let sums = frame.sum_axis(axis);
+        sums.slice(s![20..]).sum() - sums.slice(s![..20]).sum()
+    };
+    let level = pressed(box_under);
+    assert!(side(&level, Axis(0)).abs() < 1e-9 && side(&level, Axis(1)).abs() < 1e-9);
+    for (tilt, axis, sign) in [
+        // A turn about x lowers the side of +y of a patch that faces down; a turn about y, that of −x.
+        ("--tilt-x-deg 5", Axis(1), 1.0),
+        ("--tilt-x-deg -5", Axis(1), -1.0),
+        ("--tilt-y-deg 5", Axis(0), -1.0),
+        ("--tilt-y-deg -5", Axis(0), 1.0),
+    ] {
+        let frame = pressed(&format!("{box_under} {tilt}"));
+        assert!(
+            sign * side(&frame, axis) > 1e-3,
+            "{tilt}: {}",
+            side(&frame, axis)
+        );
+    }
+}
+
+#[test]
+fn the_likeliest_rest_of_a_box_shows_its_largest_face() {
+    let on_end = "--object box_158x60x210 --taxels 64x64 --pitch-mm 4 --depth-mm 3";
+    let area = |frame: &Array2<f64>| frame.iter().filter(|&&d| d > 0.0).count() as f64 * 16.0;
+    let (upright, lying) = (pressed(on_end), pressed(&format!("{on_end} --rest 0")));
+    let tolerance = 0.1;
+    for (frame, face) in [(upright, 158.0 * 60.0), (lying, 158.0 * 210.0)] {
+        let ratio = area(&frame) / face;
+        assert!((ratio - 1.0).abs() < tolerance, "{ratio} of {face} mm²");
+    }
+}
+
+#[test]
+fn a_press_to_a_force_carries_it_and_is_not_beside_a_depth() {
+    for (force, stiffness) in [(5.0, 100.0), (0.02, 16.37)] {
+        let frame = pressed(&format!(
+            "--object mug --force {force} --stiffness-n-per-m {stiffness}"
+        ));
+        assert!((stiffness * frame.sum() - force).abs() < 1e-12 * force);
+    }
+    let case = Case::new();
+    let (_, said) = case.succeeds(&["press", "--object", "mug", "--force-n", "5"]);
+    assert!(said.ends_with("; 5.000 N together\n"), "{said}");
+    let refused = |words: &str| {
+        let output = case.run(&words.split(' ').collect::<Vec<_>>());
+        assert_eq!(output.status.code(), Some(2), "{words}");
+        String::from_utf8(output.stderr).unwrap()
+    };
+    let both = refused("press --object mug --force 5 --depth-mm 3");
+    assert!(both.contains("--depth-mm"), "{both}");
+    let much = refused("press --object golf --force 1e6");
+    assert!(much.contains("touch force: 1000000 N; up to "), "{much}");
+    let none = refused("press --object golf --force 0");
+    assert!(none.contains("touch force: 0 N; a finite"), "{none}");
+}

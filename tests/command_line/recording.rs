@@ -1,0 +1,228 @@
+//! `bubbletouch recording`: what is in a file, as a table, a picture and an animation; and NumPy opens it.
+
+use crate::command::Case;
+use bubbletouch::geometry::Pose;
+use bubbletouch::report::recording::{
+    ForceKind, Forces, PatchFrame, RecordedPatch, RecordingHeader, RecordingWriter,
+};
+use bubbletouch::world::Grid;
+use glam::DVec3;
+use std::fs;
+use std::io::Write;
+use std::process::Command;
+
+/// 30 frames of a grid of 4 × 3 taxels and of a ring of 20, with one object.
+fn recorded() -> Case {
+    let case = Case::new();
+    let grid = Grid {
+        nx: 4,
+        ny: 3,
+        pitch: 2e-3,
+    };
+    let axes: Vec<DVec3> = (0..20)
+        .map(|i| DVec3::new((0.3 * f64::from(i)).cos(), (0.3 * f64::from(i)).sin(), 0.0))
+        .collect();
+    let finger = RecordedPatch {
+        name: "finger".to_owned(),
+        centers: axes.iter().map(|axis| 0.01 * axis).collect(),
+        axes,
+        grid: None,
+        force: ForceKind::Vector,
+    };
+    let header = RecordingHeader {
+        patches: vec![
+            RecordedPatch::of_grid("palm", grid, ForceKind::Normal),
+            finger,
+        ],
+        objects: vec!["mug".to_owned()],
+        about: serde_json::json!({"seed": 2018}),
+        ..RecordingHeader::default()
+    };
+    let mut writer = RecordingWriter::create(&case.path("touch.npz"), header).unwrap();
+    for k in 0..30 {
+        let mut palm = [0.0; 12];
+        palm[k % 12] = 1e-4 * k as f64;
+        let palm = PatchFrame {
+            deflection: &palm,
+            force: Forces::Normal(&palm),
+            pose: Pose::from_translation(DVec3::new(0.0, 0.0, 0.01 * k as f64)),
+        };
+        let finger = PatchFrame {
+            deflection: &[0.0; 20],
+            force: Forces::Vector(&[DVec3::ZERO; 20]),
+            pose: Pose::IDENTITY,
+        };
+        writer
+            .push(0.02 * k as f64, &[palm, finger], &[Pose::IDENTITY])
+            .unwrap();
+    }
+    writer.finish().unwrap();
+    case
+}
+
+#[test]
+fn the_table_says_what_is_in_the_file() {
+    let case = recorded();
+    let (said, error) = case.succeeds(&["recording", "touch.npz"]);
+    assert_eq!(error, "");
+    assert!(
+        said.starts_with("30 frames from 0 s to 0.58 s, one every 20 ms\n"),
+        "{said}"
+    );
+    let row = |name: &str| -> Vec<&str> {
+        let line = said
+            .lines()
+            .find(|line| line.trim_start().starts_with(name))
+            .unwrap();
+        line.split_whitespace().collect()
+    };
+    let palm = [
+        "palm", "12", "4", "×", "3", "at", "2", "mm", "normal", "1", "2.9", "29", "0.0029",
+    ];
+    assert_eq!(row("palm"), palm);
+    assert_eq!(
+        row("finger"),
+        ["finger", "20", "free", "vector", "0", "–", "–", "–"]
+    );
+    assert!(said.contains("objects: mug\n") && said.contains("\"seed\": 2018"));
+}
+
+#[test]
+fn frames_become_pictures_and_grids_are_drawn_here() {
+    let case = recorded();
+    let (said, error) = case.succeeds(&["recording", "touch.npz", "--patch=palm", "--frame=7"]);
+    assert!(
+        said.contains("peak deflection 0.7 mm")
+            && error.contains("palm: t = 0.14 s, frame 7 of 0–29")
+    );
+    for patch in ["palm", "finger"] {
+        let name = format!("{patch}.png");
+        let options = [
+            "--patch",
+            patch,
+            "--frame=3",
+            "--quantity=force",
+            "--out",
+            &name,
+        ];
+        let (said, _) = case.succeeds(&[&["recording", "touch.npz"], &options[..]].concat());
+        assert_eq!(said, "");
+        assert!(fs::read(case.path(&name)).unwrap().starts_with(b"\x89PNG"));
+    }
+    let options = [
+        "--patch=palm",
+        "--animate=film.png",
+        "--fps=10",
+        "--speed=0.5",
+    ];
+    let (said, error) = case.succeeds(&[&["recording", "touch.npz"], &options[..]].concat());
+    assert_eq!(said, "");
+    assert_eq!(
+        error,
+        "13 of 30 frames in 1.2 s, at 0.5 × the speed of the recording\n"
+    );
+    let film = fs::read(case.path("film.png")).unwrap();
+    assert!(film.windows(4).any(|chunk| chunk == b"acTL"));
+}
+
+#[test]
+fn what_cannot_be_shown_is_said_and_writes_nothing() {
+    let case = recorded();
+    case.file("broken.npz", "no zip");
+    let before = case.names();
+    for (arguments, code, said) in [
+        (&["nowhere.npz"][..], 2, "nowhere.npz: is missing"),
+        (&["broken.npz"], 2, "broken.npz: no .npz"),
+        (
+            &["touch.npz", "--frame=0"],
+            2,
+            "2 patches; --patch NAME, one of palm, finger",
+        ),
+        (
+            &["touch.npz", "--frame=0", "--patch=toe"],
+            2,
+            "no patch toe; one of its patches: palm, finger",
+        ),
+        (
+            &["touch.npz", "--frame=30", "--patch=palm"],
+            2,
+            "touch.npz: frame 30; 0 to 29",
+        ),
+        (
+            &["touch.npz", "--frame=0", "--patch=finger"],
+            2,
+            "finger is no grid",
+        ),
+        (
+            &["touch.npz", "--frame=0", "--patch=palm", "--out=a.jpg"],
+            2,
+            "a.jpg: not a .png file",
+        ),
+        (
+            &["touch.npz", "--patch=palm", "--animate=a.png", "--speed=0"],
+            2,
+            "speed 0",
+        ),
+        (
+            &["touch.npz", "--patch=palm", "--animate=a.png", "--fps=90"],
+            2,
+            "90 pictures",
+        ),
+        (&["touch.npz", "--out=a.png"], 2, "--frame"),
+        (
+            &["touch.npz", "--quantity=heat"],
+            2,
+            "expected deflection or force",
+        ),
+    ] {
+        let output = case.run(&[&["recording"], arguments].concat());
+        let error = String::from_utf8(output.stderr).unwrap();
+        assert_eq!(output.status.code(), Some(code), "{arguments:?}: {error}");
+        assert!(error.contains(said), "{arguments:?}: {error}");
+        assert!(output.stdout.is_empty());
+    }
+    assert_eq!(case.names(), before);
+}
+
+const NUMPY: &str = r#"
+import json, numpy
+archive = numpy.load("touch.npz", allow_pickle=False)
+meta = json.loads(archive["meta"].item())
+assert meta["about"]["seed"] == 2018 and meta["objects"] == ["mug"]
+assert meta["patches"][0] == {"name": "palm", "n_taxels": 12, "force": "normal",
+                              "grid": {"nx": 4, "ny": 3, "pitch_m": 0.002}}
+assert archive["time"].dtype == "<f8" and archive["time"].shape == (30,) and archive["time"][29] == 0.58
+palm = archive["palm/deflection"]
+assert palm.dtype == "<f4" and palm.shape == (30, 12) and palm[29, 5] == numpy.float32(29e-4)
+assert (archive["palm/force"] == palm).all()
+assert archive["finger/force"].shape == (30, 20, 3)
+assert archive["palm/pose"].shape == (30, 7)
+assert (archive["palm/pose"][3] == [0, 0, 0.03, 0, 0, 0, 1]).all()
+assert archive["finger/axes"].shape == (20, 3) and archive["mug/pose"].shape == (30, 7)
+numpy.savez("again.npz", **archive)
+print("opened")
+"#;
+
+#[test]
+fn numpy_opens_it_without_pickle_and_what_numpy_saves_is_read() {
+    let case = recorded();
+    let has_numpy = Command::new("python3")
+        .args(["-c", "import numpy"])
+        .output();
+    if !has_numpy.is_ok_and(|output| output.status.success()) {
+        writeln!(std::io::stderr(), "SKIPPED: no python3 with numpy here")
+            .expect("standard error takes a line");
+        return;
+    }
+    let mut python = Command::new("python3");
+    let output = python
+        .args(["-c", NUMPY])
+        .current_dir(case.folder())
+        .output()
+        .unwrap();
+    let error = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success(), "{error}");
+    let [ours, theirs] =
+        ["touch.npz", "again.npz"].map(|name| case.succeeds(&["recording", name]).0);
+    assert_eq!(ours, theirs);
+}

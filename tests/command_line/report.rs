@@ -1,0 +1,235 @@
+//! The command: a folder's page again from its tables, and two folders side by side as a page.
+
+use crate::command::Case;
+use std::fs;
+
+/// A second of work.
+const STUDY: &str = r#"
+question = "What does the page say?"
+trials = 2
+
+[objects]
+sets = ["household"]
+names = ["mug", "banana", "scissors"]
+surface_error_mm = 2.0
+
+[skin]
+pitch_mm = 8.0
+size_mm = 64.0
+stroke_mm = 5.0
+
+[touches]
+per_object = 16
+offset_x_mm = { uniform = [-8.0, 8.0] }
+depth_mm = 3.0
+
+[signal]
+noise_std_full_scale = 0.05
+
+[sensing]
+ensemble = "gaussian"
+ratio = [4, 16]
+
+[recognition]
+classifier = ["linear_svm", "naive_bayes"]
+"#;
+
+#[test]
+fn touches_beyond_the_stroke_and_listed_values_that_are_mixed_are_said_once() {
+    let case = Case::new();
+    let listed = STUDY.replace(
+        "depth_mm = 3.0",
+        "depth_mm = [1, 2, 3, 30]\nyaw_deg = [0.0]",
+    );
+    case.file(
+        "listed.toml",
+        listed.replace(
+            "per_object = 16\noffset_x_mm = { uniform = [-8.0, 8.0] }\n",
+            "offset_x_mm = { grid = [-8.0, 8.0, 4] }\n",
+        ),
+    );
+    let note = "note: each configuration mixes touches of depth_mm = [1.0, 2.0, 3.0, 30.0]: a list in [touches] is spread over";
+    let (plan, _) = case.succeeds(&["plan", "listed.toml"]);
+    assert_eq!(plan.matches(note).count(), 1, "{plan}");
+    let (_, said) = case.succeeds(&["run", "listed.toml", "--out", "listed"]);
+    assert_eq!(said.matches(note).count(), 1, "{said}");
+    let limits = fs::read_to_string(case.path("listed/limits.csv")).unwrap();
+    assert!(
+        limits.contains("touches that met nothing,0,48,"),
+        "{limits}"
+    );
+    assert!(
+        limits.contains("touches deeper than the stroke,12,48,"),
+        "{limits}"
+    );
+    let page = fs::read_to_string(case.path("listed/report.html")).unwrap();
+    assert!(page.contains("<b>12 of 48</b> touches deeper than the stroke"));
+    // Of a study that has neither, nothing is said.
+    case.file("asked.toml", STUDY);
+    let (plan, _) = case.succeeds(&["plan", "asked.toml"]);
+    let (_, said) = case.succeeds(&["run", "asked.toml", "--out", "asked"]);
+    let limits = fs::read_to_string(case.path("asked/limits.csv")).unwrap();
+    assert!(!plan.contains("mixes") && !said.contains("mixes") && !limits.contains("deeper"));
+}
+
+/// A page without the line that says how long the run took: a manifest knows whole seconds.
+fn but_for_seconds(page: &str) -> String {
+    let lines = page.lines().filter(|line| !line.contains("The run took"));
+    lines.collect::<Vec<_>>().join("\n")
+}
+
+#[test]
+fn the_page_comes_again_from_the_tables() {
+    let case = Case::new();
+    case.file("asked.toml", STUDY);
+    case.succeeds(&["run", "asked.toml", "--out", "found"]);
+    let file = case.path("found/report.html");
+    let written = fs::read_to_string(&file).unwrap();
+    for part in [
+        "What does the page say?",
+        "<h1>asked</h1>",
+        "bubbletouch run asked.toml",
+        "<b>0 of 8</b> cells that failed",
+        "alt=\"scissors: largest deflection",
+        "SHA-256 of study.toml",
+    ] {
+        assert!(written.contains(part), "the page has {part}");
+    }
+    fs::remove_file(&file).unwrap();
+    let (said, remarks) = case.succeeds(&["report", "found"]);
+    assert_eq!((&said[..], &remarks[..]), ("Wrote found/report.html\n", ""));
+    let again = fs::read_to_string(&file).unwrap();
+    assert_eq!(but_for_seconds(&again), but_for_seconds(&written));
+    // What an older version did not write is missed aloud.
+    fs::remove_file(case.path("found/limits.csv")).unwrap();
+    fs::remove_file(case.path("found/manifest.json")).unwrap();
+    let (_, remarks) = case.succeeds(&["report", "found"]);
+    assert!(
+        remarks.contains("does not say which limits were reached"),
+        "{remarks}"
+    );
+    assert!(
+        fs::read_to_string(&file)
+            .unwrap()
+            .contains("<h1>found</h1>")
+    );
+    fs::remove_file(case.path("found/summary.csv")).unwrap();
+    let output = case.run(&["report", "found"]);
+    assert!(!output.status.success());
+    let said = String::from_utf8(output.stderr).unwrap();
+    assert!(
+        said.contains("summary.csv") && !said.contains("panicked"),
+        "{said}"
+    );
+}
+
+#[test]
+fn the_page_is_not_drawn_over_from_tables_that_were_changed_or_are_gone() {
+    let case = Case::new();
+    case.file("asked.toml", STUDY);
+    case.succeeds(&["run", "asked.toml", "--out", "found"]);
+    let page = fs::read_to_string(case.path("found/report.html")).unwrap();
+    for name in [
+        "summary.csv",
+        "accuracy.csv",
+        "pareto.csv",
+        "timing.csv",
+        "limits.csv",
+        "failures.csv",
+        "study.toml",
+    ] {
+        let path = case.path("found").join(name);
+        let content = fs::read_to_string(&path).unwrap();
+        let lines: Vec<&str> = content.lines().collect();
+        let cut = lines[..lines.len() / 2].join("\n");
+        let edited = format!("{content} ");
+        for damaged in [Some(cut), Some(edited), None] {
+            let said = match &damaged {
+                Some(text) => {
+                    fs::write(&path, text).unwrap();
+                    "was changed after its run"
+                }
+                None => {
+                    fs::remove_file(&path).unwrap();
+                    "is missing"
+                }
+            };
+            for command in ["report", "verify"] {
+                let output = case.run(&[command, "found"]);
+                let error = String::from_utf8(output.stderr).unwrap();
+                let is_named = error.contains(name) && error.contains(said);
+                // Without its study a folder is of no kind that verify knows; it is refused all the same.
+                assert!(is_named, "{command}, {name}: {error}");
+                assert_eq!(output.status.code(), Some(2), "{command}, {name}: {error}");
+            }
+            let again = fs::read_to_string(case.path("found/report.html")).unwrap();
+            assert!(again == page, "{name}");
+        }
+        fs::write(&path, content).unwrap();
+    }
+    case.succeeds(&["report", "found"]);
+}
+
+#[test]
+fn with_too_few_trials_there_is_no_p_value_and_with_enough_there_is() {
+    let case = Case::new();
+    for (name, trials, status) in [("few", 2, "too_few_trials"), ("many", 4, "tested")] {
+        let study = STUDY.replace("trials = 2", &format!("trials = {trials}"));
+        case.file(&format!("{name}.toml"), &study);
+        case.succeeds(&["run", &format!("{name}.toml"), "--out", name]);
+        let mut table = csv::Reader::from_path(case.path(name).join("comparison.csv")).unwrap();
+        let heads = table.headers().unwrap().clone();
+        let place = |column: &str| heads.iter().position(|head| head == column).unwrap();
+        let (p, p_status) = (place("p_value"), place("p_status"));
+        let needed = place("n_trials_needed");
+        for row in table.records() {
+            let row = row.unwrap();
+            assert_eq!((&row[p_status], &row[needed]), (status, "4"));
+            assert_eq!(row[p].is_empty(), status == "too_few_trials", "{row:?}");
+        }
+    }
+    case.file(
+        "other.toml",
+        STUDY.replace("uniform = [-8.0, 8.0]", "uniform = [-9.0, 9.0]"),
+    );
+    case.succeeds(&["run", "other.toml", "--out", "other"]);
+    let (said, _) = case.succeeds(&["compare", "few", "other"]);
+    assert!(
+        said.contains("No p-values: 2 trials a cell are too few") && said.contains("4 are needed"),
+        "{said}"
+    );
+    assert!(
+        said.contains("too few trials") && !said.contains("One trial"),
+        "{said}"
+    );
+}
+
+#[test]
+fn two_folders_stand_side_by_side_in_a_page() {
+    let case = Case::new();
+    case.file("asked.toml", STUDY);
+    case.file("noisy.toml", STUDY.replace("0.05", "0.4"));
+    for name in ["asked", "noisy"] {
+        let study = format!("{name}.toml");
+        case.succeeds(&["run", &study, "--out", name]);
+    }
+    case.file("same.toml", STUDY);
+    case.succeeds(&["run", "same.toml", "--out", "same"]);
+    case.succeeds(&["compare", "asked", "same", "--html", "moved.html"]);
+    let page = fs::read_to_string(case.path("moved.html")).unwrap();
+    for part in [
+        "4 cells are in both runs",
+        "4 have the same accuracy",
+        "Accuracy of each cell in both runs",
+        "p (Holm)",
+        "First: asked; second: same.",
+    ] {
+        assert!(page.contains(part), "the page has {part}");
+    }
+    assert_eq!(page.matches("<tr>").count(), 1 + 4);
+    let refused = case.run(&["compare", "asked", "same", "--html", "moved.txt"]);
+    assert_eq!(refused.status.code(), Some(2));
+    let apart = case.run(&["compare", "asked", "noisy", "--html", "apart.html"]);
+    assert_eq!(apart.status.code(), Some(2), "no cell has the same noise");
+    assert!(!case.path("apart.html").exists());
+}

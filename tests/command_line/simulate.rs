@@ -1,0 +1,122 @@
+//! `bubbletouch simulate`, from the shipped scenes to the files.
+#![cfg(unix)]
+
+use crate::command::Case;
+use bubbletouch::report::recording::read_recording;
+use bubbletouch::scene::{Frame, ScenePlan, Simulation, Stepping};
+use std::fs;
+use std::path::{Path, PathBuf};
+
+fn scenes() -> Vec<PathBuf> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("experiments/scenes");
+    let paths = fs::read_dir(folder)
+        .unwrap()
+        .map(|entry| entry.unwrap().path());
+    let mut paths: Vec<PathBuf> = paths.collect();
+    paths.sort();
+    assert!(paths.len() >= 5);
+    paths
+}
+
+#[test]
+fn every_shipped_scene_says_what_it_asks_and_runs() {
+    let case = Case::new();
+    for scene in scenes() {
+        let text = fs::read_to_string(&scene).unwrap();
+        for key in ["# Question ", "# Source ", "# Expected ", "# Run time "] {
+            let line = text.lines().find(|line| line.starts_with(key));
+            let said = line.map_or("", |line| line[key.len()..].trim());
+            assert!(!said.is_empty(), "{}: {key}", scene.display());
+        }
+        let stem = scene.file_stem().unwrap().to_str().unwrap();
+        let scene = scene.to_str().unwrap();
+        let (said, _) = case.succeeds(&["simulate", scene, "--out", stem, "--until-s", "0.3"]);
+        assert!(
+            said.contains("deepest (mm)") && said.contains("at the end"),
+            "{said}"
+        );
+        let mut files = fs::read_dir(case.path(stem))
+            .unwrap()
+            .map(|entry| entry.unwrap().file_name().into_string().unwrap())
+            .collect::<Vec<_>>();
+        files.sort();
+        assert_eq!(files, ["recording.npz", "scene.toml", "wrenches.csv"]);
+    }
+}
+
+#[test]
+fn the_files_hold_what_the_library_computes() {
+    let case = Case::new();
+    let scene = &scenes()[0];
+    assert!(scene.ends_with("arm_sweep.toml"));
+    let scene_name = scene.to_str().unwrap();
+    let (said, _) = case.succeeds(&["simulate", scene_name, "--out", "o", "--quiet"]);
+    assert_eq!(said, "");
+    let plan = ScenePlan::read(scene).unwrap();
+    let mut frames: Vec<Frame> = Vec::new();
+    let mut simulation = Simulation::new(&plan, Stepping::AsNeeded);
+    simulation.run(&mut [&mut frames]).unwrap();
+    let recording = read_recording(&case.path("o/recording.npz")).unwrap();
+    assert_eq!(recording.time.len(), frames.len());
+    for (number, frame) in frames.iter().enumerate() {
+        for (stored, reading) in recording.patches.iter().zip(&frame.patches) {
+            for (a, b) in stored
+                .deflection
+                .row(number)
+                .iter()
+                .zip(&reading.deflection)
+            {
+                assert_eq!(*a as f32, *b as f32);
+            }
+        }
+    }
+    let table = fs::read_to_string(case.path("o/wrenches.csv")).unwrap();
+    let mut lines = table.lines();
+    assert!(
+        lines
+            .next()
+            .unwrap()
+            .starts_with("time_s,patch,n_touched,n_saturated,fx_n")
+    );
+    let readings = frames.iter().flat_map(|frame| &frame.patches);
+    for (line, reading) in lines.clone().zip(readings) {
+        let cells: Vec<&str> = line.split(',').collect();
+        assert_eq!(cells[2].parse(), Ok(reading.n_touched));
+        assert_eq!(cells[6].parse(), Ok(reading.wrench.force.z));
+    }
+    assert_eq!(lines.count(), 3 * frames.len());
+    // The resolved scene is the scene, from any folder.
+    let resolved = ScenePlan::read(&case.path("o/scene.toml")).unwrap();
+    let mut again: Vec<Frame> = Vec::new();
+    let mut simulation = Simulation::new(&resolved, Stepping::AsNeeded);
+    simulation.run(&mut [&mut again]).unwrap();
+    assert_eq!(frames, again);
+}
+
+#[test]
+fn a_scene_that_cannot_be_leaves_no_file_and_exits_with_2() {
+    let case = Case::new();
+    let bad = case.file("bad.toml", "title = \"\"\npatches = []\n");
+    let bad = bad.to_str().unwrap();
+    for arguments in [
+        &["simulate", bad, "--out", "o"][..],
+        &["simulate", "missing.toml", "--out", "o"],
+        &[
+            "simulate",
+            scenes()[0].to_str().unwrap(),
+            "--out",
+            "o",
+            "--until-s",
+            "-1",
+        ],
+    ] {
+        let output = case.run(arguments);
+        let said = String::from_utf8(output.stderr).unwrap();
+        assert_eq!(output.status.code(), Some(2), "{said}");
+        assert!(
+            said.starts_with("error: ") && said.lines().count() == 1,
+            "{said}"
+        );
+        assert_eq!(case.names(), ["bad.toml"]);
+    }
+}

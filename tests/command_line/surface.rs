@@ -1,0 +1,213 @@
+//! What the command says when it is asked what it can do and what it would do.
+
+use crate::command::Case;
+
+const STUDY: &str = r#"
+question = "What would it do?"
+trials = 3
+
+[objects]
+sets = ["household"]
+names = ["mug", "banana", "scissors"]
+
+[skin]
+pitch_mm = [2.0, 4.0]
+size_mm = 64.0
+stroke_mm = 5.0
+
+[touches]
+per_object = 20
+offset_x_mm = { uniform = [-5.0, 5.0] }
+depth_mm = 3.0
+
+[sensing]
+ratio = [4, 16, 64]
+
+[recognition]
+classifier = ["linear_svm", "rbf_svm"]
+"#;
+
+/// The words of the line that starts with this one.
+fn line<'a>(said: &'a str, first: &str) -> Vec<&'a str> {
+    said.lines()
+        .map(|line| line.split_whitespace().collect::<Vec<_>>())
+        .find(|words| words.first() == Some(&first))
+        .unwrap_or_else(|| panic!("no line starts with '{first}': {said}"))
+}
+
+#[test]
+fn a_plan_says_cells_touches_memory_and_time_and_writes_nothing() {
+    let case = Case::new();
+    case.file("study.toml", STUDY);
+    let (said, error) = case.succeeds(&["plan", "study.toml", "--threads", "2"]);
+    assert!(said.contains("What would it do?"), "{said}");
+    assert_eq!(line(&said, "objects"), ["objects", "3"]);
+    assert_eq!(
+        line(&said, "touches")[..6],
+        ["touches", "60", "on", "each", "of", "2"]
+    );
+    assert_eq!(
+        line(&said, "cells"),
+        ["cells", "12", "×", "3", "trials", "=", "36", "fits"]
+    );
+    assert_eq!(line(&said, "memory").last(), Some(&"MiB"));
+    assert!(
+        line(&said, "time").join(" ").contains("on 2 threads"),
+        "{said}"
+    );
+    assert_eq!(error, "");
+    assert_eq!(case.names(), ["study.toml"]);
+}
+
+#[test]
+fn a_plan_counts_the_rows_that_a_run_writes() {
+    let case = Case::new();
+    case.file("study.toml", STUDY);
+    case.succeeds(&["run", "study.toml", "--out", "results"]);
+    let table = std::fs::read_to_string(case.path("results/accuracy.csv")).unwrap();
+    assert_eq!(table.lines().count(), 1 + 36);
+}
+
+#[test]
+fn the_objects_are_listed_by_name_set_and_size() {
+    let case = Case::new();
+    let (said, _) = case.succeeds(&["objects"]);
+    let names: Vec<&str> = said
+        .lines()
+        .skip(1)
+        .filter_map(|line| line.split_whitespace().nth(1))
+        .collect();
+    assert!(names.len() >= 60, "{} objects: {said}", names.len());
+    for name in ["mug", "power_drill", "golf", "box_158x60x210"] {
+        assert!(names.contains(&name), "{name} is in {names:?}");
+    }
+    assert!(!said.contains('\u{1b}'), "no escape codes when piped");
+    let (boxes, _) = case.succeeds(&["objects", "box_158x60x210"]);
+    assert_eq!(boxes.lines().count(), 2, "{boxes}");
+    assert!(boxes.contains("158 × 60 × 210"), "{boxes}");
+    let (set, _) = case.succeeds(&["objects", "--set", "cans"]);
+    assert_eq!(set.lines().count(), 1 + 9, "{set}");
+    assert!(case.names().is_empty(), "nothing is written");
+}
+
+#[test]
+fn an_object_and_a_sheet_of_them_are_drawn() {
+    let case = Case::new();
+    case.succeeds(&["objects", "mug", "--out", "mug.png"]);
+    case.succeeds(&["objects", "mug", "banana", "key", "--out", "sheet.png"]);
+    for name in ["mug.png", "sheet.png"] {
+        let file = std::fs::File::open(case.path(name)).unwrap();
+        let mut picture = png::Decoder::new(std::io::BufReader::new(file))
+            .read_info()
+            .unwrap();
+        let mut pixels = vec![0; picture.output_buffer_size().unwrap()];
+        picture.next_frame(&mut pixels).unwrap();
+        assert!(
+            pixels.iter().any(|&p| p != pixels[0]),
+            "{name} shows something"
+        );
+    }
+}
+
+#[test]
+fn every_subcommand_explains_itself() {
+    let case = Case::new();
+    let (said, _) = case.succeeds(&["--help"]);
+    for subcommand in ["run", "plan", "touches", "press", "objects"] {
+        assert!(line(&said, subcommand).len() > 3, "{said}");
+        let (help, _) = case.succeeds(&[subcommand, "--help"]);
+        assert!(
+            help.contains(&format!("Usage: bubbletouch {subcommand}")),
+            "{help}"
+        );
+        let (again, _) = case.succeeds(&["help", subcommand]);
+        assert_eq!(help, again);
+    }
+    let (version, _) = case.succeeds(&["--version"]);
+    assert_eq!(
+        version.trim(),
+        concat!("bubbletouch ", env!("CARGO_PKG_VERSION"))
+    );
+    assert!(case.names().is_empty(), "nothing is written");
+}
+
+#[test]
+fn what_is_misspelt_is_refused_with_a_suggestion() {
+    let case = Case::new();
+    for (arguments, suggestion) in [
+        (&["prees"][..], "press"),
+        (&["press", "--objekt", "mug"], "--object"),
+        (&["run", "study.toml", "--sed", "1"], "--seed"),
+    ] {
+        let output = case.run(arguments);
+        let said = String::from_utf8(output.stderr).unwrap();
+        assert_eq!(output.status.code(), Some(2), "{said}");
+        assert!(said.contains(suggestion), "{said}");
+    }
+    assert!(case.names().is_empty(), "nothing is written");
+}
+
+#[test]
+fn one_thread_is_not_called_threads() {
+    let case = Case::new();
+    case.file("study.toml", STUDY);
+    let (said, _) = case.succeeds(&["plan", "study.toml", "--threads", "1"]);
+    assert!(
+        line(&said, "time").join(" ").contains("on 1 thread ("),
+        "{said}"
+    );
+}
+
+#[test]
+fn an_option_that_has_another_name_now_says_which() {
+    let case = Case::new();
+    for (arguments, name) in [
+        (
+            &[
+                "objects",
+                "pack",
+                "mug",
+                "--tolerance-mm",
+                "1",
+                "--out",
+                "x.csv",
+            ][..],
+            "--surface-error-mm",
+        ),
+        (
+            &[
+                "objects",
+                "show",
+                "mug",
+                "--tolerance-mm",
+                "1",
+                "--out",
+                "x.png",
+            ],
+            "--surface-error-mm",
+        ),
+        (&["advise", "results", "--budget-us", "50"], "--budget"),
+    ] {
+        let output = case.run(arguments);
+        let error = String::from_utf8(output.stderr).unwrap();
+        assert_eq!(output.status.code(), Some(2), "{error}");
+        assert!(error.contains(&format!("it is called {name}")), "{error}");
+        let (help, _) = case.succeeds(&[arguments[0], "--help"]);
+        assert!(
+            !help.contains("tolerance-mm") && !help.contains("budget-us"),
+            "{help}"
+        );
+    }
+    let (help, _) = case.succeeds(&["objects", "--help"]);
+    assert!(help.contains("hands"), "{help}");
+}
+
+#[test]
+fn without_a_subcommand_the_quickstart_is_what_would_run() {
+    // It takes half a minute, so it is only planned here, in a folder that has no experiments.
+    let case = Case::new();
+    let (said, _) = case.succeeds(&["plan", "experiments/quickstart.toml"]);
+    assert!(said.starts_with("quickstart: "), "{said}");
+    let (help, _) = case.succeeds(&["--help"]);
+    assert!(help.contains("experiments/quickstart.toml"), "{help}");
+}

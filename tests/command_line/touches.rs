@@ -1,0 +1,377 @@
+//! `bubbletouch touches`: a data set in files that agree with each other, with the library, and with a small memory.
+
+use crate::command::Case;
+use crate::study::Study;
+use bubbletouch::contact::{Workspace, press_at_pose};
+use bubbletouch::geometry::Pose;
+use bubbletouch::study::progress::Silent;
+use bubbletouch::study::simulate_array;
+use bubbletouch::world::Scene;
+use glam::{DQuat, DVec3};
+use ndarray::{Array1, Array2, Array3};
+use ndarray_npy::{ReadableElement, read_npy};
+use std::io::Write;
+use std::path::Path;
+use std::process::Stdio;
+
+/// Two arrays; some touches are beside them, some saturate a taxel.
+const STUDY: &str = r#"
+question = "What is in the files?"
+
+[objects]
+sets = ["household"]
+names = ["mug", "banana", "scissors"]
+surface_error_mm = 1.0
+
+[skin]
+pitch_mm = [4.0, 2.0]
+size_mm = 48.0
+stroke_mm = 3.0
+
+[touches]
+rest = "stable"
+per_object = 300
+offset_x_mm = [-6.0, 3.0, 400.0]
+offset_y_mm = { uniform = [-8.0, 8.0] }
+yaw_deg = { uniform = [0.0, 360.0] }
+tilt_x_deg = [-5.0, 5.0]
+tilt_y_deg = { uniform = [-5.0, 5.0] }
+depth_mm = { uniform = [1.0, 4.0] }
+
+[sensing]
+ratio = 4
+
+[recognition]
+classifier = "linear_svm"
+"#;
+
+/// A row of `touches.csv`.
+#[derive(serde::Deserialize)]
+struct TouchRow {
+    touch: usize,
+    label: usize,
+    object: String,
+    rest: usize,
+    offset_x_mm: f64,
+    offset_y_mm: f64,
+    yaw_deg: f64,
+    tilt_x_deg: f64,
+    tilt_y_deg: f64,
+    depth_mm: f64,
+    n_touched: usize,
+    n_saturated: usize,
+}
+
+/// A row of `objects.csv`.
+#[derive(serde::Deserialize)]
+struct ObjectRow {
+    label: usize,
+    object: String,
+    n_spheres: usize,
+    n_touches: usize,
+}
+
+/// The files of one array.
+struct Files {
+    frames: Array3<f32>,
+    labels: Array1<i64>,
+    poses: Array2<f64>,
+    depths: Array1<f64>,
+    touches: Vec<TouchRow>,
+    objects: Vec<ObjectRow>,
+}
+
+impl Files {
+    fn read(folder: &Path) -> Self {
+        Self {
+            frames: read_npy(folder.join("frames.npy")).unwrap(),
+            labels: read_npy(folder.join("labels.npy")).unwrap(),
+            poses: read_npy(folder.join("poses.npy")).unwrap(),
+            depths: read_npy(folder.join("depths.npy")).unwrap(),
+            touches: read_csv(&folder.join("touches.csv")),
+            objects: read_csv(&folder.join("objects.csv")),
+        }
+    }
+}
+
+fn read_csv<R: serde::de::DeserializeOwned>(path: &Path) -> Vec<R> {
+    let mut reader = csv::Reader::from_path(path).unwrap();
+    reader.deserialize().map(|row| row.unwrap()).collect()
+}
+
+fn written() -> Case {
+    let case = Case::new();
+    case.file("study.toml", STUDY);
+    let (said, _) = case.succeeds(&["touches", "study.toml", "--out", "data"]);
+    assert_eq!(said, "");
+    case
+}
+
+/// The folders of the study's arrays, in its order.
+const FOLDERS: [&str; 2] = ["data/12x12_at_4_mm", "data/24x24_at_2_mm"];
+
+#[test]
+fn the_frames_are_the_librarys_one_folder_an_array() {
+    let case = written();
+    let study = Study::new(STUDY);
+    for (folder, patch) in FOLDERS.iter().zip(&study.plan.arrays) {
+        let files = Files::read(&case.path(folder));
+        let (ny, nx) = (patch.grid.ny, patch.grid.nx);
+        assert_eq!(files.frames.dim(), (900, ny, nx));
+        let expected = simulate_array(&study.touched, patch, 1, &Silent);
+        let flat = files.frames.to_shape((900, ny * nx)).unwrap();
+        assert_eq!(flat.mapv(f64::from), expected.kept.to_array().unwrap());
+        let n_missed = files.touches.iter().filter(|t| t.n_touched == 0).count();
+        let n_saturated = files.touches.iter().filter(|t| t.n_saturated > 0).count();
+        assert!(n_missed > 0 && n_saturated > 0);
+        assert_eq!(
+            (n_missed, n_saturated),
+            (expected.facts.n_missed, expected.facts.n_saturated)
+        );
+    }
+    assert_eq!(std::fs::read_dir(case.path("data")).unwrap().count(), 2);
+}
+
+#[test]
+fn frames_of_a_cell_are_what_its_identity_measures_and_the_rest_is_the_same() {
+    let case = Case::new();
+    let study = STUDY
+        .replace("per_object = 300", "per_object = 30")
+        .replace("400.0]", "9.0]")
+        .replace("ratio = 4", "ensemble = \"identity\"\nratio = 1")
+        .replace(
+            "[sensing]",
+            "[signal]\nsteps = [\"noise\", \"smoothing\"]\nnoise_std_full_scale = [0.0, 0.1]\nsmoothing_mm = 4.0\n[sensing]",
+        );
+    case.file("study.toml", study);
+    let (_, said) = case.succeeds(&["touches", "study.toml", "--out", "clean"]);
+    assert!(said.contains("without noise"), "{said}");
+    // Array 1 (24 × 24) with noise of 10 % is cell 3.
+    let cell = ["--cell", "3", "--trial", "0"];
+    let (_, said) =
+        case.succeeds(&[&["touches", "study.toml", "--out", "read"], &cell[..]].concat());
+    assert!(said.contains("as cell 3 reads them"), "{said}");
+    case.succeeds(&[&["features", "study.toml", "--out", "features"], &cell[..]].concat());
+    let features: Array2<f64> = read_npy(case.path("features/features.npy")).unwrap();
+    let (clean, read) = (
+        Files::read(&case.path("clean/24x24_at_2_mm")),
+        Files::read(&case.path("read")),
+    );
+    let flat = read.frames.to_shape(features.dim()).unwrap();
+    assert_eq!(
+        flat.mapv(f64::from),
+        features.mapv(|value| f64::from(value as f32))
+    );
+    assert!(read.frames != clean.frames, "noise is in them");
+    for name in [
+        "labels.npy",
+        "poses.npy",
+        "depths.npy",
+        "touches.csv",
+        "objects.csv",
+    ] {
+        let bytes = |folder: &str| std::fs::read(case.path(folder).join(name)).unwrap();
+        assert!(bytes("clean/24x24_at_2_mm") == bytes("read"), "{name}");
+    }
+    let refused = case.run(&["touches", "study.toml", "--out", "x", "--cell", "99"]);
+    assert_eq!(refused.status.code(), Some(2));
+}
+
+#[test]
+fn labels_depths_and_tables_agree_and_are_the_touches_of_the_study() {
+    let case = written();
+    let study = Study::new(STUDY);
+    for folder in FOLDERS {
+        let files = Files::read(&case.path(folder));
+        let mut rows = files.touches.iter();
+        assert_eq!(files.objects.len(), study.touched.len());
+        for (label, (object, row)) in study.touched.iter().zip(&files.objects).enumerate() {
+            assert_eq!((row.label, &row.object), (label, &object.object.name));
+            assert_eq!(row.n_spheres, object.object.model.n_spheres());
+            assert_eq!(row.n_touches, object.touches.len());
+            for touch in &object.touches {
+                let row = rows.next().unwrap();
+                let index = row.touch;
+                assert_eq!(files.labels[index], label as i64);
+                assert_eq!((row.label, &row.object), (label, &object.object.name));
+                assert_eq!(files.depths[index], touch.depth);
+                assert_eq!(row.rest, touch.rest);
+                for (given, expected) in [
+                    (row.offset_x_mm, 1e3 * touch.offset[0]),
+                    (row.offset_y_mm, 1e3 * touch.offset[1]),
+                    (row.yaw_deg, touch.yaw.to_degrees()),
+                    (row.tilt_x_deg, touch.tilt[0].to_degrees()),
+                    (row.tilt_y_deg, touch.tilt[1].to_degrees()),
+                    (row.depth_mm, 1e3 * touch.depth),
+                ] {
+                    assert!((given - expected).abs() < 1e-12, "{given}, {expected}");
+                }
+            }
+        }
+        assert!(rows.next().is_none());
+        let numbers: Vec<usize> = files.touches.iter().map(|row| row.touch).collect();
+        assert_eq!(numbers, (0..900).collect::<Vec<_>>());
+    }
+}
+
+#[test]
+fn pressing_at_the_recorded_pose_reproduces_the_frame() {
+    let case = written();
+    let study = Study::new(STUDY);
+    for (folder, patch) in FOLDERS.iter().zip(&study.plan.arrays) {
+        let files = Files::read(&case.path(folder));
+        let mut workspace = Workspace::new();
+        for (touch, pose) in files.poses.outer_iter().enumerate() {
+            let rotation = DQuat::from_xyzw(pose[3], pose[4], pose[5], pose[6]);
+            assert!((rotation.length() - 1.0).abs() < 1e-12);
+            let pose = Pose::new(rotation, DVec3::new(pose[0], pose[1], pose[2]));
+            let spheres = &study.touched[files.labels[touch] as usize].object.model;
+            let scene = Scene {
+                patch: *patch,
+                objects: vec![spheres.clone()],
+            };
+            let contact = press_at_pose(&scene, &[pose], &mut workspace);
+            let row = &files.touches[touch];
+            if row.n_touched == 0 {
+                assert!(
+                    files
+                        .frames
+                        .index_axis(ndarray::Axis(0), touch)
+                        .iter()
+                        .all(|&d| d == 0.0)
+                );
+                continue;
+            }
+            let frame = files.frames.index_axis(ndarray::Axis(0), touch);
+            for (&written, &pressed) in frame.iter().zip(workspace.deflections()) {
+                // Half a unit in the last place of f32 at the stroke of 3 mm is 1.2e-10.
+                assert!((f64::from(written) - pressed).abs() < 2e-10);
+            }
+            // A taxel that is touched by less than the rounding of a pose may be counted either way.
+            assert!(contact.n_touched.abs_diff(row.n_touched) <= 1);
+            assert_eq!(contact.n_saturated, row.n_saturated);
+        }
+    }
+}
+
+#[test]
+fn the_types_are_as_documented() {
+    fn refuses<A: ReadableElement>(path: &Path) {
+        assert!(read_npy::<_, ndarray::ArrayD<A>>(path).is_err());
+    }
+    let case = written();
+    let folder = case.path(FOLDERS[0]);
+    // Reading as the documented type works above; no other type is taken for it.
+    refuses::<f64>(&folder.join("frames.npy"));
+    refuses::<i32>(&folder.join("labels.npy"));
+    refuses::<f32>(&folder.join("poses.npy"));
+    refuses::<f32>(&folder.join("depths.npy"));
+    assert_eq!(Files::read(&folder).poses.dim(), (900, 7));
+}
+
+#[test]
+fn one_array_needs_no_folder_of_its_own_and_threads_change_no_byte() {
+    let case = Case::new();
+    case.file("study.toml", STUDY.replace("[4.0, 2.0]", "4.0"));
+    for threads in ["1", "3"] {
+        case.succeeds(&[
+            "touches",
+            "study.toml",
+            "--threads",
+            threads,
+            "--out",
+            threads,
+        ]);
+    }
+    let mut names = Vec::new();
+    for entry in std::fs::read_dir(case.path("1")).unwrap() {
+        let name = entry.unwrap().file_name().into_string().unwrap();
+        let read = |folder| std::fs::read(case.path(folder).join(&name)).unwrap();
+        assert!(read("1") == read("3"), "{name}");
+        names.push(name);
+    }
+    names.sort();
+    assert_eq!(
+        names,
+        [
+            "depths.npy",
+            "frames.npy",
+            "labels.npy",
+            "objects.csv",
+            "poses.npy",
+            "touches.csv"
+        ]
+    );
+}
+
+/// Touches of two balls on 16 × 16 taxels.
+fn balls(per_object: usize) -> String {
+    format!(
+        r#"
+question = "How much memory?"
+[objects]
+sets = ["balls"]
+names = ["golf", "baseball"]
+[skin]
+pitch_mm = 4.0
+taxels = 16
+stroke_mm = 5.0
+[touches]
+per_object = {per_object}
+offset_x_mm = {{ uniform = [-10.0, 10.0] }}
+depth_mm = 3.0
+[sensing]
+ratio = 4
+[recognition]
+classifier = "linear_svm"
+"#
+    )
+}
+
+/// The most memory that the command had while it wrote the touches of a study, KiB; `None` where the system does not tell.
+fn peak_memory(text: &str) -> Option<u64> {
+    let case = Case::new();
+    case.file("study.toml", text);
+    let mut child = case
+        .command(&["touches", "study.toml", "--threads", "2", "--out", "data"])
+        .stderr(Stdio::null())
+        .spawn()
+        .unwrap();
+    let status = format!("/proc/{}/status", child.id());
+    let mut peak = None;
+    loop {
+        // The high-water mark only rises; the last one seen is that of the end, but for a millisecond.
+        peak = high_water_mark(&status).max(peak);
+        if let Some(status) = child.try_wait().unwrap() {
+            assert!(status.success());
+            return peak;
+        }
+        std::thread::sleep(std::time::Duration::from_millis(1));
+    }
+}
+
+fn high_water_mark(status: &str) -> Option<u64> {
+    let text = std::fs::read_to_string(status).ok()?;
+    let line = text.lines().find(|line| line.starts_with("VmHWM:"))?;
+    line.split_whitespace().nth(1)?.parse().ok()
+}
+
+#[test]
+fn fifty_thousand_touches_need_no_more_memory_than_five_hundred() {
+    let (few, many) = (balls(250), balls(25_000));
+    let (Some(small), Some(large)) = (peak_memory(&few), peak_memory(&many)) else {
+        writeln!(
+            std::io::stderr(),
+            "SKIPPED: this system has no /proc/<pid>/status with VmHWM"
+        )
+        .expect("standard error takes a line");
+        return;
+    };
+    let grown = large.saturating_sub(small);
+    println!(
+        "{small} KiB for 500 touches, {large} KiB for 50,000: {} bytes a touch",
+        grown * 1024 / 49_500
+    );
+    // Their frames are 50,000 KiB, a list of them would be 8,000; buffers and a peak seen a millisecond late, a few hundred.
+    assert!(grown < 4 * 1024, "{grown} KiB more");
+}

@@ -1,0 +1,369 @@
+//! Where the balance of free objects could break. Each case has the behaviour that `guide::limits` states.
+
+use crate::random_scenes::{TAXEL, direction, rng};
+use bubbletouch::contact::balance::{Balance, Balancer, FreeObject, Outcome, PlacedSkin};
+use bubbletouch::geometry::Pose;
+use bubbletouch::objects::{Sphere, SphereUnion};
+use bubbletouch::world::{Grid, Layout, Patch, SkinPatch, Taxel, Taxels};
+use glam::{DQuat, DVec3};
+use rand::Rng;
+
+const G: f64 = 9.81;
+const DOWN: DVec3 = DVec3::new(0.0, 0.0, -G);
+
+/// n × n taxels, 2 mm apart.
+fn bed(n: usize, stiffness: f64) -> SkinPatch {
+    let grid = Grid {
+        nx: n,
+        ny: n,
+        pitch: 2e-3,
+    };
+    let taxel = Taxel { stiffness, ..TAXEL };
+    SkinPatch::from(Patch::new(grid, taxel).unwrap())
+}
+
+fn union(places: impl IntoIterator<Item = DVec3>, radius: f64) -> SphereUnion {
+    let spheres = places.into_iter().map(|center| Sphere { center, radius });
+    SphereUnion::new(spheres.collect()).unwrap()
+}
+
+fn settle_on(skin: &SkinPatch, at: Pose, object: &FreeObject, start: &Pose) -> Balance {
+    let skins = [PlacedSkin {
+        patch: skin,
+        world_from_patch: at,
+        pushed: &[],
+    }];
+    Balancer::new().settle(object, &skins, DOWN, start).unwrap()
+}
+
+fn settle(skin: &SkinPatch, object: &FreeObject, start: &Pose) -> Balance {
+    settle_on(skin, Pose::IDENTITY, object, start)
+}
+
+fn height(z: f64) -> Pose {
+    Pose::from_translation(DVec3::new(0.0, 0.0, z))
+}
+
+/// How far some spheres push each taxel, straight from the formula, metres; 0 or less for those that they do not.
+fn needed(skin: &SkinPatch, spheres: &SphereUnion, pose: &Pose) -> impl Iterator<Item = f64> {
+    let centers = skin.layout().centers().iter().enumerate();
+    centers.map(|(number, &taxel)| {
+        let radius = skin.taxels().at(number).radius;
+        let of_sphere = |sphere: &Sphere| {
+            let from = pose.transform_point(sphere.center) - taxel;
+            let reach = sphere.radius + radius;
+            let left = reach * reach - from.truncate().length_squared();
+            if left > 0.0 {
+                left.sqrt() - from.z
+            } else {
+                0.0
+            }
+        };
+        spheres.spheres().iter().map(of_sphere).fold(0.0, f64::max)
+    })
+}
+
+/// What all springs carry, newtons.
+fn lift(skin: &SkinPatch, spheres: &SphereUnion, pose: &Pose) -> f64 {
+    let needed = needed(skin, spheres, pose).enumerate();
+    needed
+        .map(|(number, needed)| skin.taxels().at(number).stiffness * needed)
+        .sum()
+}
+
+/// What is wrong with something that should be at rest.
+fn fault(rest: &Balance, weight: f64) -> Option<String> {
+    let is_balanced = rest.imbalance <= 1e-6 && (rest.force.z / weight - 1.0).abs() <= 1e-6;
+    let is_right = rest.outcome == Outcome::Settled && is_balanced;
+    (!is_right).then(|| format!("{rest:?}"))
+}
+
+fn assert_rests(rest: &Balance, weight: f64, case: &str) {
+    if let Some(fault) = fault(rest, weight) {
+        panic!("{case}: {fault}");
+    }
+}
+
+fn assert_none(faults: &[String]) {
+    assert!(
+        faults.is_empty(),
+        "{} faults:\n{}",
+        faults.len(),
+        faults.join("\n")
+    );
+}
+
+#[test]
+fn a_million_metres_from_the_origin_objects_rest_as_at_it() {
+    let places = [-1.0, 0.0, 1.0].map(|x| DVec3::new(0.01 * x, 0.004 * x * x, 0.0));
+    let object = union(places, 0.012);
+    for stiffness in [1.0, 1e2, 1e4, 1e6, 1e8] {
+        let skin = bed(32, stiffness);
+        for mass in [1e-3, 1.0] {
+            let body = FreeObject::new(&object, mass, DVec3::new(0.0, 1.5e-3, 0.0)).unwrap();
+            let here = settle(&skin, &body, &height(0.0625));
+            let far = DVec3::new(1e6, -1e6, 1e6);
+            let there = settle_on(
+                &skin,
+                Pose::from_translation(far),
+                &body,
+                &Pose::from_translation(far + DVec3::new(0.0, 0.0, 0.0625)),
+            );
+            let case = format!("{mass} kg on {stiffness} N/m");
+            assert_rests(&there, mass * G, &case);
+            assert_eq!(there.outcome, here.outcome, "{case}");
+            // A nanometre: what numbers of a million metres can tell apart.
+            let apart = (there.pose.translation - far).distance(here.pose.translation);
+            assert!(apart < 1e-9, "{case}: {apart} m");
+            assert_eq!(there.force, here.force, "{case}");
+        }
+    }
+}
+
+#[test]
+fn neighbours_a_trillion_times_as_stiff_share_a_load_as_they_must() {
+    let mut faults = Vec::new();
+    for case in 0..40 {
+        let mut rng = rng("stiffness ratios", case);
+        let n = 24;
+        let grid = bed(n, 1.0);
+        let soft = 10f64.powf(rng.gen_range(-4.0..-2.0));
+        let taxels = (0..n * n).map(|number| Taxel {
+            stiffness: if (number / n + number % n) % 2 == 0 {
+                soft
+            } else {
+                1e12 * soft
+            },
+            ..TAXEL
+        });
+        let taxels = Taxels::Each(taxels.collect());
+        let skin = SkinPatch::new("mixed", grid.layout().clone(), taxels).unwrap();
+        let radius = rng.gen_range(4e-3..2e-2);
+        let object = union(
+            (0..8).map(|_| 8e-3 * direction(&mut rng).with_z(0.0)),
+            radius,
+        );
+        let mass = 10f64.powf(rng.gen_range(-3.0..1.0));
+        let body = FreeObject::new(&object, mass, DVec3::ZERO).unwrap();
+        let rest = settle(&skin, &body, &height(0.05));
+        let about = format!("case {case}, {mass} kg on {soft} N/m and {:e}", 1e12 * soft);
+        faults.extend(fault(&rest, mass * G).map(|fault| format!("{about}: {fault}")));
+    }
+    assert_none(&faults);
+}
+
+#[test]
+fn a_ball_rests_on_a_pattern_of_springs_at_the_height_of_the_formula() {
+    // By symmetry a ball over the middle of four stiff taxels stays there.
+    for soft in [1e-3, 1.0] {
+        let n = 16;
+        let is_middle = |k: usize| k == 7 || k == 8;
+        let stiffness = |number: usize| match is_middle(number / n) && is_middle(number % n) {
+            true => 1e12 * soft,
+            false => soft,
+        };
+        let taxels = (0..n * n).map(|number| Taxel {
+            stiffness: stiffness(number),
+            ..TAXEL
+        });
+        let taxels = Taxels::Each(taxels.collect());
+        let skin = SkinPatch::new("mixed", bed(n, 1.0).layout().clone(), taxels).unwrap();
+        let ball = union([DVec3::ZERO], 0.02);
+        for mass in [1e-3, 1.0, 1e3] {
+            let body = FreeObject::new(&ball, mass, DVec3::ZERO).unwrap();
+            let rest = settle(&skin, &body, &height(0.05));
+            let case = format!("{mass} kg on {soft} N/m");
+            // Also on springs so stiff that the last bit of the ball's place is more than its weight: the forces are known all the same.
+            assert_rests(&rest, mass * G, &case);
+            let (mut low, mut high) = (0.015, 0.025);
+            for _ in 0..200 {
+                let middle = 0.5 * (low + high);
+                match lift(&skin, &ball, &height(middle)) > mass * G {
+                    true => low = middle,
+                    false => high = middle,
+                }
+            }
+            assert!(
+                (rest.pose.translation.z - low).abs() < 1e-12,
+                "{rest:?}: {low}"
+            );
+            assert!(rest.pose.translation.truncate().length() < 1e-9, "{rest:?}");
+        }
+    }
+}
+
+#[test]
+fn what_balances_on_an_edge_or_a_point_does_not_stay_there() {
+    let skin = bed(48, 200.0);
+    // A tile of spheres, 20 × 20 × 2 mm, and a rod of 30 mm: how high their middles are when they lie.
+    let square = (0..11).flat_map(|i| (0..11).map(move |j| (i, j)));
+    let tile = square.map(|(i, j)| 2e-3 * DVec3::new(f64::from(i) - 5.0, f64::from(j) - 5.0, 0.0));
+    let tile = union(tile, 2e-3);
+    let rod = union(
+        (0..16).map(|k| 2e-3 * DVec3::new(f64::from(k) - 7.5, 0.0, 0.0)),
+        2e-3,
+    );
+    for (object, name) in [(&tile, "tile"), (&rod, "rod")] {
+        let body = FreeObject::new(object, 0.01, DVec3::ZERO).unwrap();
+        for lean in [0.0, 1e-12, -1e-6, 1e-3] {
+            for turn in [0.0, 0.3] {
+                // On its edge or end, exactly upright but for the lean.
+                let upright = DQuat::from_rotation_z(turn)
+                    * DQuat::from_rotation_y(std::f64::consts::FRAC_PI_2 + lean);
+                let start = Pose::new(upright, DVec3::new(0.0, 0.0, 0.02));
+                let rest = settle(&skin, &body, &start);
+                let case = format!("{name}, {lean} off the vertical, turned by {turn}");
+                assert_rests(&rest, 0.01 * G, &case);
+                let flat = match name {
+                    "tile" => rest.pose.rotation * DVec3::Z,
+                    _ => (rest.pose.rotation * DVec3::X).cross(DVec3::Z),
+                };
+                let is_lying = match name {
+                    "tile" => flat.z.abs() > 0.99,
+                    _ => flat.length() > 0.99,
+                };
+                assert!(is_lying, "{case}: {rest:?}");
+            }
+        }
+    }
+}
+
+#[test]
+fn a_thin_sheet_that_falls_from_any_height_is_caught() {
+    let mut faults = Vec::new();
+    let skin = bed(32, 100.0);
+    for case in 0..60 {
+        let mut rng = rng("sheets", case);
+        let thickness = 10f64.powf(rng.gen_range(-5.0..-3.0));
+        let square = (0..21).flat_map(|i| (0..21).map(move |j| (i, j)));
+        let places =
+            square.map(|(i, j)| 1e-3 * DVec3::new(f64::from(i) - 10.0, f64::from(j) - 10.0, 0.0));
+        let sheet = union(places, 0.5 * thickness);
+        let mass = 10f64.powf(rng.gen_range(-4.0..-1.0));
+        let body = FreeObject::new(&sheet, mass, DVec3::ZERO).unwrap();
+        let above = 10f64.powf(rng.gen_range(-1.5..3.0));
+        let turn = DQuat::from_rotation_z(rng.gen_range(0.0..6.0))
+            * DQuat::from_rotation_x(rng.gen_range(-0.3..0.3));
+        let place = DVec3::new(
+            rng.gen_range(-5e-3..5e-3),
+            rng.gen_range(-5e-3..5e-3),
+            above,
+        );
+        let rest = settle(&skin, &body, &Pose::new(turn, place));
+        let about = format!("case {case}: {thickness} m thick, {mass} kg, from {above} m");
+        faults.extend(fault(&rest, mass * G).map(|fault| format!("{about}: {fault}")));
+        let middle = rest.pose.translation.z;
+        assert!(
+            middle > -TAXEL.stroke && middle < 2.0 * TAXEL.radius,
+            "{about}: {rest:?}"
+        );
+    }
+    assert_none(&faults);
+}
+
+#[test]
+fn stops_carry_what_saturated_springs_do_not() {
+    // A flat foot on all 12 × 12 taxels, whose springs carry a hundredth of it or less.
+    let n = 12;
+    let skin = bed(n, 10.0);
+    let springs = (n * n) as f64 * 10.0 * TAXEL.stroke;
+    let foot = union(skin.layout().centers().iter().copied(), 3e-3);
+    for mass in [100.0, 1e4, 1e6] {
+        for off in [0.0, 3e-3] {
+            let body = FreeObject::new(&foot, mass, DVec3::new(off, -0.5 * off, 0.01)).unwrap();
+            let rest = settle(&skin, &body, &height(0.02));
+            let case = format!("{mass} kg, {off} m off the middle");
+            assert_rests(&rest, mass * G, &case);
+            assert!(rest.force.z > 50.0 * springs);
+            assert!(rest.n_saturated >= 3, "{case}: {rest:?}");
+            // The stops are rigid: no taxel is pressed further than its stroke.
+            let most = needed(&skin, &foot, &rest.pose).fold(0.0, f64::max);
+            assert!((most - TAXEL.stroke).abs() < 1e-8, "{case}: {most}");
+        }
+    }
+}
+
+#[test]
+fn a_taxel_exactly_between_three_spheres_carries_what_hangs_on_them() {
+    let layout = Layout::new(vec![DVec3::ZERO], vec![DVec3::Z]).unwrap();
+    let skin = SkinPatch::new("pin", layout, Taxels::Equal(TAXEL)).unwrap();
+    let (radius, beside) = (5e-3, 4e-3);
+    let places = [0.0, 2.0, 4.0].map(|third: f64| {
+        let turn = DQuat::from_rotation_z(third * std::f64::consts::FRAC_PI_3);
+        turn * DVec3::new(beside, 0.0, 0.0)
+    });
+    let mobile = union(places, radius);
+    let reach: f64 = radius + TAXEL.radius;
+    for mass in [1e-4, 1e-3, 1e-2, 0.04] {
+        let body = FreeObject::new(&mobile, mass, DVec3::new(0.0, 0.0, -0.05)).unwrap();
+        for (x, y) in [(0.0, 0.0), (3e-4, -2e-4)] {
+            let start = Pose::from_translation(DVec3::new(x, y, 0.01));
+            let rest = settle(&skin, &body, &start);
+            let case = format!("{mass} kg from {x}, {y}");
+            assert_rests(&rest, mass * G, &case);
+            let deflection = mass * G / TAXEL.stiffness;
+            let exact = (reach * reach - beside * beside).sqrt() - deflection;
+            assert!(
+                (rest.pose.translation.z - exact).abs() < 1e-8,
+                "{case}: {rest:?}"
+            );
+            assert!(
+                rest.pose.translation.truncate().length() < 1e-7,
+                "{case}: {rest:?}"
+            );
+        }
+    }
+}
+
+#[test]
+fn what_starts_inside_the_skin_comes_up_and_what_starts_behind_it_falls() {
+    let skin = bed(32, 100.0);
+    let ball = union([DVec3::ZERO], 0.02);
+    let body = FreeObject::new(&ball, 0.05, DVec3::ZERO).unwrap();
+    let above = settle(&skin, &body, &height(0.05));
+    for start in [0.02, 0.01, 0.0, -0.004, -0.0059] {
+        let rest = settle(&skin, &body, &height(start));
+        assert_rests(&rest, 0.05 * G, &format!("from {start} m"));
+        let apart = (rest.pose.translation.z - above.pose.translation.z).abs();
+        assert!(apart < 1e-6, "from {start} m: {rest:?}");
+    }
+    for start in [-0.0061, -0.03, -10.0] {
+        let rest = settle(&skin, &body, &height(start));
+        let is_gone = matches!(rest.outcome, Outcome::Escaped { .. });
+        assert!(is_gone, "from {start} m: {rest:?}");
+    }
+}
+
+#[test]
+fn balls_of_all_sizes_rest_at_the_height_of_the_formula_or_fall_between_the_taxels() {
+    let mut faults = Vec::new();
+    let skin = bed(16, 100.0);
+    for (exponent, mass) in (-6..=0)
+        .flat_map(|e| [1e-4, 1e-2, 1.0].map(|mass| (e, mass)))
+        .chain([(2, 1e-2), (3, 1e-4)])
+    {
+        let radius = 10f64.powi(exponent);
+        let ball = union([DVec3::ZERO], radius);
+        let body = FreeObject::new(&ball, mass, DVec3::ZERO).unwrap();
+        let rest = settle(&skin, &body, &height(radius + 0.01));
+        let case = format!("{radius} m, {mass} kg");
+        // The holes between taxels are (√2 − 1) mm wide: smaller balls fall through.
+        if radius < 0.4e-3 {
+            let is_gone = matches!(rest.outcome, Outcome::Escaped { .. });
+            assert!(is_gone, "{case}: {rest:?}");
+            continue;
+        }
+        // Much larger than the bed it rolls off, so far that the steps may not be enough.
+        if radius > 0.5 && rest.outcome != Outcome::Settled {
+            continue;
+        }
+        faults.extend(fault(&rest, mass * G).map(|fault| format!("{case}: {fault}")));
+        if rest.n_saturated == 0 && rest.outcome == Outcome::Settled {
+            let error = lift(&skin, &ball, &rest.pose) / (mass * G) - 1.0;
+            // Of a kilometre only 1e-13 m are known.
+            let known = 1e-6 + 256.0 * 100.0 * 4.0 * f64::EPSILON * radius / (mass * G);
+            assert!(error.abs() < known, "{case}: {error}");
+        }
+    }
+    assert_none(&faults);
+}

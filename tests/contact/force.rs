@@ -1,0 +1,408 @@
+//! Laws of touches to a force: against a slow bisection, the press at the travel that is found, and what cannot be reached.
+
+use bubbletouch::contact::{
+    SkinWorkspace, Workspace, first_contact, press_skin, press_skin_to_force, press_to_depth,
+    press_to_force, press_to_travel, spring_load,
+};
+use bubbletouch::geometry::Pose;
+use bubbletouch::mesh::TriangleMesh;
+use bubbletouch::objects::{MeshModel, Model, Sphere, SphereUnion};
+use bubbletouch::world::{Grid, Layout, Patch, Scene, SkinPatch, Taxel, Taxels};
+use glam::{DQuat, DVec3};
+use rand::Rng;
+
+use crate::counting::allocations;
+use crate::mesh_shapes::{cuboid, icosphere};
+use crate::random_scenes::{TAXEL, direction, rng};
+
+/// Spheres a few times as large as the stroke, or a mesh, turned at random somewhere over or beside a grid.
+fn random_scene(name: &str, case: u64) -> (Scene, Vec<Pose>) {
+    let mut rng = rng(name, case);
+    let grid = Grid {
+        nx: rng.gen_range(1..30),
+        ny: rng.gen_range(1..30),
+        pitch: rng.gen_range(0.5e-3..4e-3),
+    };
+    let mut object = |kind: u64| -> Model {
+        let size = rng.gen_range(5e-3..3e-2);
+        match kind % 3 {
+            0 => MeshModel::new(cuboid(size * DVec3::new(1.0, 0.7, 0.4))).into(),
+            1 => MeshModel::new(icosphere(size, 2)).into(),
+            _ => {
+                let spheres = (0..40).map(|_| Sphere {
+                    center: size * direction(&mut rng),
+                    radius: size * rng.gen_range(0.2..0.6),
+                });
+                SphereUnion::new(spheres.collect()).unwrap().into()
+            }
+        }
+    };
+    let objects = vec![object(case), object(case / 3 + 1)];
+    let mut pose = || {
+        let turn = DQuat::from_scaled_axis(rng.gen_range(0.0..6.0) * direction(&mut rng));
+        Pose::new(turn, rng.gen_range(0.0..0.04) * direction(&mut rng))
+    };
+    let poses = vec![pose(), pose()];
+    let patch = Patch::new(grid, TAXEL).unwrap();
+    (Scene { patch, objects }, poses)
+}
+
+fn force_of(workspace: &Workspace) -> f64 {
+    TAXEL.stiffness * workspace.deflections().iter().sum::<f64>()
+}
+
+/// A force that the scene can take, from next to nothing to that of a press three strokes deep; `None` where nothing is met.
+fn reachable_force(scene: &Scene, poses: &[Pose], case: u64) -> Option<f64> {
+    let mut workspace = Workspace::new();
+    let mut rng = rng("share", case);
+    let depth = TAXEL.stroke * 10f64.powf(rng.gen_range(-3.0..0.5));
+    press_to_depth(scene, poses, depth, &mut workspace)?;
+    Some(force_of(&workspace) * rng.gen_range(0.5..1.0))
+}
+
+#[test]
+fn a_touch_to_a_force_is_where_a_slow_bisection_finds_it() {
+    let (mut workspace, mut slow) = (Workspace::new(), Workspace::new());
+    let (mut n_found, mut n_deep) = (0, 0);
+    for case in 0..300 {
+        let (scene, poses) = random_scene("bisection", case);
+        let Some(force) = reachable_force(&scene, &poses, case) else {
+            let missed = press_to_force(&scene, &poses, 1.0, &mut workspace);
+            assert!(missed.unwrap().is_none());
+            assert!(workspace.deflections().iter().all(|&d| d == 0.0));
+            continue;
+        };
+        let first = first_contact(&scene, &poses, &mut slow).unwrap();
+        let contact = press_to_force(&scene, &poses, force, &mut workspace);
+        let contact = contact.unwrap().unwrap();
+        let (mut low, mut high) = (first, first + 4.0 * TAXEL.stroke);
+        while 0.5 * (low + high) > low && 0.5 * (low + high) < high {
+            let middle = 0.5 * (low + high);
+            press_to_travel(&scene, &poses, middle, &mut slow);
+            let carries_less = force_of(&slow) < force;
+            *(if carries_less { &mut low } else { &mut high }) = middle;
+        }
+        let n_touched = contact.n_touched as f64;
+        let last_bit = 1e-17 * TAXEL.stiffness * n_touched;
+        let error = (force_of(&workspace) - force).abs();
+        let place = format!("case {case}: {force} N, error {error}");
+        assert!(error <= 1e-12 * force + 4.0 * last_bit, "{place}");
+        let at_most = 1e-15 + 1e-12 * force / TAXEL.stiffness;
+        assert!((contact.travel - high).abs() <= at_most, "{place}");
+        n_found += 1;
+        n_deep += usize::from(contact.n_saturated > 0);
+    }
+    assert!(n_found > 200 && n_deep > 20, "{n_found} {n_deep}");
+}
+
+#[test]
+fn a_touch_to_a_force_is_the_press_at_its_travel_and_at_its_depth() {
+    let (mut workspace, mut other) = (Workspace::new(), Workspace::new());
+    for case in 0..200 {
+        let (scene, poses) = random_scene("press", case);
+        let Some(force) = reachable_force(&scene, &poses, case) else {
+            continue;
+        };
+        let contact = press_to_force(&scene, &poses, force, &mut workspace).unwrap();
+        let contact = contact.unwrap();
+        let there = press_to_travel(&scene, &poses, contact.travel, &mut other);
+        assert_eq!(contact, there);
+        assert_eq!(workspace.deflections(), other.deflections(), "to the bit");
+        let depth = contact.travel - first_contact(&scene, &poses, &mut other).unwrap();
+        press_to_depth(&scene, &poses, depth, &mut other).unwrap();
+        for (a, b) in workspace.deflections().iter().zip(other.deflections()) {
+            assert!((a - b).abs() < 1e-16, "{a} {b}");
+        }
+    }
+}
+
+#[test]
+fn more_force_goes_further() {
+    let mut workspace = Workspace::new();
+    let mut n_steps = 0;
+    for case in 0..60 {
+        let (scene, poses) = random_scene("monotone", case);
+        let Some(most) = reachable_force(&scene, &poses, case) else {
+            continue;
+        };
+        let mut before = f64::NEG_INFINITY;
+        for k in 1..=20 {
+            let force = most * f64::from(k) / 20.0;
+            let contact = press_to_force(&scene, &poses, force, &mut workspace).unwrap();
+            let travel = contact.unwrap().travel;
+            assert!(travel > before, "case {case}: {force} N");
+            before = travel;
+            n_steps += 1;
+        }
+    }
+    assert!(n_steps > 500, "{n_steps}");
+}
+
+fn ball_over(grid: Grid, radius: f64) -> Scene {
+    let center = DVec3::new(0.0, 0.0, 0.1);
+    let ball = SphereUnion::new(vec![Sphere { center, radius }]).unwrap();
+    let patch = Patch::new(grid, TAXEL).unwrap();
+    Scene::of_one(&patch, &ball.into())
+}
+
+#[test]
+fn a_single_taxel_is_a_spring() {
+    let grid = Grid {
+        nx: 1,
+        ny: 1,
+        pitch: 2e-3,
+    };
+    let scene = ball_over(grid, 0.03);
+    let mut workspace = Workspace::new();
+    for force in [1e-9, 0.1, 0.4, 0.5] {
+        let contact = press_to_force(&scene, &[Pose::IDENTITY], force, &mut workspace).unwrap();
+        let travel = contact.unwrap().travel;
+        let expected = 0.1 - 0.03 - TAXEL.radius + force / TAXEL.stiffness;
+        assert!((travel - expected).abs() < 1e-15, "{travel} {expected}");
+    }
+}
+
+#[test]
+fn what_cannot_be_reached_is_refused_with_the_largest_force() {
+    let grid = Grid {
+        nx: 4,
+        ny: 2,
+        pitch: 2e-3,
+    };
+    let mut workspace = Workspace::new();
+    let mut message = |scene: &Scene, force: f64| {
+        let result = press_to_force(scene, &[Pose::IDENTITY], force, &mut workspace);
+        result.unwrap_err().to_string()
+    };
+    let scene = ball_over(grid, 0.03);
+    for force in [0.0, -1.0, f64::NAN, f64::INFINITY] {
+        assert_eq!(
+            message(&scene, force),
+            format!("touch force: {force} N; a finite positive number")
+        );
+    }
+    assert_eq!(
+        message(&scene, 4.5),
+        "touch force: 4.5 N; up to 4.000000 N, where all 8 taxels that the object reaches are at their stroke, 5.129 mm past \
+         first contact"
+    );
+    // What all taxels take at their strokes can be reached, and no more.
+    let scene = ball_over(grid, 0.03);
+    let all = press_to_force(&scene, &[Pose::IDENTITY], 4.0, &mut workspace).unwrap();
+    assert_eq!(all.unwrap().n_touched, 8);
+}
+
+/// Meshes as one.
+fn joined(meshes: &[TriangleMesh]) -> TriangleMesh {
+    let (mut corners, mut faces) = (Vec::new(), Vec::new());
+    for mesh in meshes {
+        let before = corners.len() as u32;
+        corners.extend_from_slice(mesh.vertices());
+        faces.extend(
+            mesh.triangles()
+                .iter()
+                .map(|face| face.map(|corner| corner + before)),
+        );
+    }
+    TriangleMesh::new("joined", corners, faces).unwrap()
+}
+
+#[test]
+fn no_part_passes_through_a_skin_on_the_way_to_a_force() {
+    // A small part in front of a large one: it is far behind the substrate before the large one touches.
+    let grid = Grid {
+        nx: 40,
+        ny: 40,
+        pitch: 2e-3,
+    };
+    let patch = Patch::new(grid, TAXEL).unwrap();
+    let sphere = |z: f64, radius: f64| Sphere {
+        center: DVec3::new(1e-3, 1e-3, z),
+        radius,
+    };
+    let lollipop = SphereUnion::new(vec![sphere(0.0, 1.5e-3), sphere(0.1, 0.05)]).unwrap();
+    let both = [
+        cuboid(DVec3::splat(1.5e-3)),
+        cuboid(DVec3::splat(0.03)).moved(&Pose::from_translation(0.1 * DVec3::Z)),
+    ];
+    let nail = joined(&both);
+    let (mut workspace, mut on_skin) = (Workspace::new(), SkinWorkspace::new());
+    for object in [lollipop.into(), Model::from(MeshModel::new(nail))] {
+        let scene = Scene::of_one(&patch, &object);
+        let start = [Pose::from_translation(0.01 * DVec3::Z)];
+        for force in [1.0, 50.0] {
+            let pressed = press_to_force(&scene, &start, force, &mut workspace);
+            let pressed = pressed.unwrap().unwrap();
+            let felt = force_of(&workspace);
+            assert!((felt - force).abs() < 1e-9, "{felt} of {force} N");
+            let first = first_contact(&scene, &start, &mut workspace).unwrap();
+            let has_gone_through = pressed.travel - first > 0.04;
+            assert_eq!(has_gone_through, force > 10.0);
+            let skin = SkinPatch::from(patch);
+            let objects = &scene.objects;
+            let found = press_skin_to_force(&skin, objects, &start, DVec3::Z, force, &mut on_skin);
+            let found = found.unwrap().unwrap();
+            assert!((found.travel - pressed.travel).abs() < 1e-12);
+            press_to_travel(&scene, &start, found.travel, &mut workspace);
+            for (a, b) in on_skin.deflections().iter().zip(workspace.deflections()) {
+                assert!((a - b).abs() < 1e-12, "{force} N: {a} {b}");
+            }
+        }
+        let skin = SkinPatch::from(patch);
+        // Afterwards the workspace presses where things are, as any other.
+        let behind = [Pose::from_translation(-0.3 * DVec3::Z)];
+        assert_eq!(
+            press_skin(&skin, &scene.objects, &behind, &mut on_skin).n_touched,
+            0
+        );
+    }
+}
+
+/// A skin, and a ball somewhere in front of it in the direction that comes with it.
+fn random_way(case: u64) -> (SkinPatch, Vec<Model>, Pose, DVec3) {
+    let mut rng = rng("way", case);
+    let layout = match case % 4 {
+        0 => Layout::hexagonal(12, 12, 2e-3),
+        1 => Layout::sphere_cap(0.02, 1.4, 2e-3),
+        2 => Layout::cylinder(0.02, 0.03, 3.0, 2e-3),
+        _ => Layout::disc(0.012, 1.5e-3),
+    };
+    let layout = layout.unwrap();
+    let each = (0..layout.n_taxels()).map(|_| Taxel {
+        stiffness: rng.gen_range(50.0..300.0),
+        stroke: rng.gen_range(3e-3..6e-3),
+        ..TAXEL
+    });
+    let each = Taxels::Each(each.collect());
+    let middle = rng.gen_range(0..layout.n_taxels());
+    let (center, axis) = (layout.centers()[middle], layout.axes()[middle]);
+    let skin = SkinPatch::new("skin", layout, each).unwrap();
+    let way = (axis + 0.4 * direction(&mut rng)).normalize();
+    let radius = rng.gen_range(0.01..0.03);
+    let spheres = vec![Sphere {
+        center: DVec3::ZERO,
+        radius,
+    }];
+    let ball = match case % 2 {
+        0 => SphereUnion::new(spheres).unwrap().into(),
+        _ => MeshModel::new(icosphere(radius, 2)).into(),
+    };
+    let away = radius + rng.gen_range(0.005..0.05);
+    (
+        skin,
+        vec![ball],
+        Pose::from_translation(center + away * way),
+        way,
+    )
+}
+
+#[test]
+fn a_skin_moved_to_a_force_carries_it_and_first_there() {
+    let (mut workspace, mut slow) = (SkinWorkspace::new(), SkinWorkspace::new());
+    let mut n_touched = 0;
+    for case in 0..200 {
+        let (skin, objects, pose, way) = random_way(case);
+        let force = 10f64.powf(rng("force", case).gen_range(-3.0..0.5));
+        let press = press_skin_to_force(&skin, &objects, &[pose], way, force, &mut workspace);
+        let press = press.unwrap().unwrap();
+        assert!((press.force - force).abs() <= 1e-12 * force, "case {case}");
+        let deflections = workspace.deflections().to_vec();
+        let mut force_at = |travel: f64| {
+            let moved = Pose::from_translation(-travel * way).compose(&pose);
+            press_skin(&skin, &objects, &[moved], &mut slow);
+            spring_load(&skin, slow.contacts()).spring_force
+        };
+        for k in 0..100 {
+            let before = press.travel * f64::from(k) / 100.0;
+            assert!(force_at(before) < force, "case {case}: not before");
+        }
+        assert!((force_at(press.travel) - force).abs() <= 1e-12 * force);
+        for (a, b) in deflections.iter().zip(slow.deflections()) {
+            assert!((a - b).abs() < 1e-12, "case {case}: {a} {b}");
+        }
+        n_touched += press.counts.n_touched;
+    }
+    assert!(n_touched > 1_000, "{n_touched}");
+}
+
+#[test]
+fn a_flat_skin_goes_as_far_as_the_grid_kernel() {
+    let (mut workspace, mut grid_workspace) = (SkinWorkspace::new(), Workspace::new());
+    let mut n_found = 0;
+    for case in 0..100 {
+        let (scene, mut poses) = random_scene("both", case);
+        for pose in &mut poses {
+            pose.translation.z += 0.15;
+        }
+        let Some(force) = reachable_force(&scene, &poses, case) else {
+            continue;
+        };
+        let grid = press_to_force(&scene, &poses, force, &mut grid_workspace).unwrap();
+        let skin = SkinPatch::from(scene.patch);
+        let objects = &scene.objects;
+        let found = press_skin_to_force(&skin, objects, &poses, DVec3::Z, force, &mut workspace);
+        let (a, b) = (grid.unwrap(), found.unwrap().unwrap());
+        let at_most = 1e-15 + 1e-12 * force / TAXEL.stiffness;
+        assert!(
+            (a.travel - b.travel).abs() < at_most,
+            "case {case}: {a:?} {b:?}"
+        );
+        assert_eq!(a.n_touched, b.counts.n_touched);
+        n_found += 1;
+    }
+    assert!(n_found > 50, "{n_found}");
+}
+
+#[test]
+fn ways_that_miss_or_cannot_be_gone_are_told_apart() {
+    let grid = Grid {
+        nx: 4,
+        ny: 4,
+        pitch: 2e-3,
+    };
+    let scene = ball_over(grid, 0.03);
+    let skin = SkinPatch::from(scene.patch);
+    let mut workspace = SkinWorkspace::new();
+    let mut press = |pose: Pose, way: DVec3, force: f64| {
+        press_skin_to_force(&skin, &scene.objects, &[pose], way, force, &mut workspace)
+    };
+    let here = Pose::IDENTITY;
+    assert!(press(here, DVec3::X, 1.0).unwrap().is_none());
+    assert!(press(here, -DVec3::Z, 1.0).unwrap().is_none());
+    let deep = Pose::from_translation(-0.071 * DVec3::Z);
+    let mut message = |pose, way, force| press(pose, way, force).unwrap_err().to_string();
+    assert_eq!(
+        message(here, 2.0 * DVec3::Z, 1.0),
+        "touch direction: [0, 0, 2]; a vector of length one"
+    );
+    assert_eq!(
+        message(here, DVec3::Z, 0.0),
+        "touch force: 0 N; a finite positive number"
+    );
+    assert!(message(deep, DVec3::Z, 0.1).ends_with(" N where the patch is"));
+    let said = message(here, DVec3::Z, 9.0);
+    assert!(
+        said.starts_with("touch force: 9 N; up to 8.000000 N, where the patch has gone 7"),
+        "{said}"
+    );
+}
+
+#[test]
+fn touches_to_a_force_after_the_first_allocate_nothing() {
+    let grid = Grid {
+        nx: 32,
+        ny: 32,
+        pitch: 2e-3,
+    };
+    let scene = ball_over(grid, 0.03);
+    let mut workspace = Workspace::new();
+    let mut allocated = |force: f64| {
+        allocations(|| {
+            let contact = press_to_force(&scene, &[Pose::IDENTITY], force, &mut workspace);
+            assert!(contact.unwrap().is_some());
+        })
+    };
+    assert!(allocated(20.0) > 0);
+    let later = (1..50).map(|k| allocated(f64::from(k)));
+    assert_eq!(later.sum::<usize>(), 0);
+}

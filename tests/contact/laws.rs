@@ -1,0 +1,487 @@
+//! Laws of the contact stage, checked against a slow, obvious oracle.
+
+use bubbletouch::contact::{
+    Workspace, first_contact, press_at_pose, press_to_depth, press_to_travel, simulate,
+};
+use bubbletouch::geometry::Pose;
+use bubbletouch::mesh::{LengthUnit, SizeLimits};
+use bubbletouch::objects::{Catalogue, Model, Sphere, SphereUnion};
+use bubbletouch::random::Seed;
+use bubbletouch::study::{MeshUse, ModelSpec, load_mesh};
+use bubbletouch::world::{Grid, Patch, Phase, RestPoses, Scene, Taxel, Touch, VelocityPlan};
+use glam::{DQuat, DVec3};
+use rand::Rng;
+use rand_chacha::ChaCha8Rng;
+
+const TAXEL: Taxel = Taxel {
+    radius: 1e-3,
+    stiffness: 100.0,
+    damping: 0.0,
+    stroke: 5e-3,
+};
+
+fn random_scene(rng: &mut ChaCha8Rng) -> (Scene, Vec<Pose>) {
+    let grid = Grid {
+        nx: rng.gen_range(1..40),
+        ny: rng.gen_range(1..40),
+        pitch: 10f64.powf(rng.gen_range(-3.5..-2.0)),
+    };
+    let scale = 10f64.powf(rng.gen_range(-3.0..-1.0));
+    let objects: Vec<Model> = (0..rng.gen_range(1..4))
+        .map(|_| {
+            let spheres = (0..rng.gen_range(1..60)).map(|_| Sphere {
+                center: scale * DVec3::from(rng.r#gen::<[f64; 3]>()) - DVec3::splat(0.5 * scale),
+                radius: scale * rng.gen_range(0.001..0.5),
+            });
+            SphereUnion::new(spheres.collect()).unwrap().into()
+        })
+        .collect();
+    let poses = objects.iter().map(|_| random_pose(rng, 0.02)).collect();
+    let patch = Patch::new(grid, TAXEL).unwrap();
+    (Scene { patch, objects }, poses)
+}
+
+fn random_pose(rng: &mut ChaCha8Rng, distance: f64) -> Pose {
+    let axis = DVec3::from(rng.r#gen::<[f64; 3]>()) - DVec3::splat(0.5);
+    Pose::new(
+        DQuat::from_scaled_axis(6.0 * axis),
+        distance * (DVec3::from(rng.r#gen::<[f64; 3]>()) - DVec3::splat(0.5)),
+    )
+}
+
+/// Every sphere against every taxel, straight from the equations of the contact stage's title page; those with centres lower than
+/// `behind` do not count.
+fn oracle(scene: &Scene, poses: &[Pose], travel: f64, behind: f64) -> Vec<f64> {
+    let Patch { grid, taxel } = scene.patch;
+    let mut deflections = vec![0.0_f64; grid.n_taxels()];
+    for (object, pose) in scene.objects.iter().zip(poses) {
+        for sphere in object.spheres().unwrap().spheres() {
+            let c = pose.transform_point(sphere.center);
+            let reach = taxel.radius + sphere.radius;
+            let h = c.z - travel;
+            for row in 0..grid.ny {
+                for column in 0..grid.nx {
+                    let (dx, dy) = (c.x - grid.x(column), c.y - grid.y(row));
+                    let q = reach * reach - (dx * dx + dy * dy);
+                    if q > 0.0 && h >= behind {
+                        let deflection = &mut deflections[row * grid.nx + column];
+                        *deflection = deflection.max(q.sqrt() - h).min(taxel.stroke);
+                    }
+                }
+            }
+        }
+    }
+    deflections
+}
+
+fn assert_close(a: &[f64], b: &[f64], tolerance: f64, what: &str) {
+    assert_eq!(a.len(), b.len());
+    for (index, (x, y)) in a.iter().zip(b).enumerate() {
+        assert!(
+            (x - y).abs() <= tolerance,
+            "{what}: taxel {index}: {x} and {y}"
+        );
+    }
+}
+
+#[test]
+fn the_kernel_agrees_with_every_sphere_against_every_taxel() {
+    let mut rng = Seed::new(1).rng();
+    let mut workspace = Workspace::new();
+    let (mut n_touched, mut n_saturated) = (0, 0);
+    for case in 0..2000 {
+        let (scene, poses) = random_scene(&mut rng);
+        // From a press that touches nothing to one a hundred strokes deep, and where it is.
+        let travel = match case % 4 {
+            0 => rng.gen_range(0.0..0.5),
+            1 => 0.0,
+            _ => rng.gen_range(-0.03..0.03),
+        };
+        let (contact, behind) = match case % 4 {
+            1 => {
+                let contact = press_at_pose(&scene, &poses, &mut workspace);
+                (contact, -TAXEL.stroke - TAXEL.radius)
+            }
+            _ => {
+                let contact = press_to_travel(&scene, &poses, travel, &mut workspace);
+                (contact, f64::NEG_INFINITY)
+            }
+        };
+        let expected = oracle(&scene, &poses, travel, behind);
+        // The square root turns a rounding of b² into more where a taxel is at the rim of a footprint.
+        assert_close(
+            workspace.deflections(),
+            &expected,
+            1e-12,
+            &format!("case {case}"),
+        );
+        assert_eq!(
+            contact.n_touched,
+            expected.iter().filter(|&&d| d > 0.0).count()
+        );
+        n_touched += contact.n_touched;
+        n_saturated += contact.n_saturated;
+    }
+    assert!(
+        n_touched > 10_000 && n_saturated > 1_000,
+        "the cases press for real"
+    );
+}
+
+#[test]
+fn what_an_earlier_press_touched_is_wiped() {
+    let mut rng = Seed::new(6).rng();
+    let mut reused = Workspace::new();
+    let grid = Grid {
+        nx: 37,
+        ny: 22,
+        pitch: 2e-3,
+    };
+    let mut n_touched = 0;
+    for case in 0..200 {
+        let (mut scene, poses) = random_scene(&mut rng);
+        scene.patch = Patch::new(grid, TAXEL).unwrap();
+        let depth = rng.gen_range(1e-4..1e-2);
+        let mut fresh = Workspace::new();
+        let contacts = [&mut reused, &mut fresh].map(|w| press_to_depth(&scene, &poses, depth, w));
+        assert_eq!(contacts[0], contacts[1], "case {case}");
+        assert_eq!(reused.deflections(), fresh.deflections(), "case {case}");
+        n_touched += contacts[0].map_or(0, |contact| contact.n_touched);
+    }
+    assert!(n_touched > 1_000, "{n_touched}");
+}
+
+#[test]
+fn first_contact_is_where_the_first_taxel_begins_to_move() {
+    let mut rng = Seed::new(2).rng();
+    let mut workspace = Workspace::new();
+    let mut n_met = 0;
+    for _ in 0..1000 {
+        let (scene, poses) = random_scene(&mut rng);
+        let Some(first) = first_contact(&scene, &poses, &mut workspace) else {
+            let contact = press_to_depth(&scene, &poses, 1e-3, &mut workspace);
+            assert!(contact.is_none() && workspace.deflections().iter().all(|&d| d == 0.0));
+            continue;
+        };
+        n_met += 1;
+        let before = press_to_travel(&scene, &poses, first - 1e-9, &mut workspace);
+        assert_eq!(before.n_touched, 0);
+        let after = press_to_travel(&scene, &poses, first + 1e-9, &mut workspace);
+        assert!(after.n_touched > 0);
+    }
+    assert!(n_met > 300, "{n_met}");
+}
+
+#[test]
+fn the_deepest_taxel_of_a_press_is_at_the_depth() {
+    let mut rng = Seed::new(3).rng();
+    let mut workspace = Workspace::new();
+    for _ in 0..500 {
+        let (scene, poses) = random_scene(&mut rng);
+        let depth = rng.gen_range(1e-4..TAXEL.stroke);
+        if press_to_depth(&scene, &poses, depth, &mut workspace).is_some() {
+            let deepest = workspace
+                .deflections()
+                .iter()
+                .fold(0.0_f64, |a, &b| a.max(b));
+            assert!((deepest - depth).abs() < 1e-15, "{deepest} for {depth}");
+        }
+    }
+}
+
+#[test]
+fn a_rigid_motion_of_the_world_changes_nothing() {
+    let mut rng = Seed::new(4).rng();
+    let mut workspace = Workspace::new();
+    for _ in 0..300 {
+        let (scene, poses) = random_scene(&mut rng);
+        let world = random_pose(&mut rng, 10.0);
+        let patch_from_world = world.inverse();
+        let moved: Vec<Pose> = poses
+            .iter()
+            .map(|pose| patch_from_world.compose(&world.compose(pose)))
+            .collect();
+        press_at_pose(&scene, &poses, &mut workspace);
+        let here = workspace.deflections().to_vec();
+        press_at_pose(&scene, &moved, &mut workspace);
+        // Rounding of 1e-15 in a position is worth more at the vertical flank of a sphere; away from it, 1e-12 holds.
+        let n_flank = here
+            .iter()
+            .zip(workspace.deflections())
+            .filter(|(a, b)| (*a - *b).abs() > 1e-12)
+            .count();
+        assert!(n_flank <= here.len() / 200, "{n_flank} of {}", here.len());
+    }
+}
+
+#[test]
+fn the_direct_press_equals_the_time_loop_without_a_damper_however_deep() {
+    let mut rng = Seed::new(5).rng();
+    let mut workspace = Workspace::new();
+    let mut n_through = 0;
+    for case in 0..200 {
+        let (scene, mut poses) = random_scene(&mut rng);
+        for pose in &mut poses {
+            pose.translation.z += 0.1;
+        }
+        // Steps of at most 1 mm, to where all is in front and to where all is behind the substrate.
+        let speed = rng.gen_range(0.01..1.0);
+        let approach = Phase {
+            duration: 0.3,
+            linear: DVec3::Z * speed,
+            angular: DVec3::ZERO,
+        };
+        let patch_plan = VelocityPlan::new(Pose::IDENTITY, vec![approach]).unwrap();
+        let fixed: Vec<VelocityPlan> = poses
+            .iter()
+            .map(|&pose| VelocityPlan::new(pose, vec![]).unwrap())
+            .collect();
+        let recording = simulate(&scene, &patch_plan, &fixed, 1e-3, 300).unwrap();
+        let last = patch_plan.pose_at(recording.time[299]).inverse();
+        let finals: Vec<Pose> = poses.iter().map(|pose| last.compose(pose)).collect();
+        let counted = press_to_travel(&scene, &finals, 0.0, &mut workspace);
+        assert_eq!(
+            recording.deflection.row(299).as_slice().unwrap(),
+            workspace.deflections(),
+            "case {case}: exactly"
+        );
+        let spring = recording.deflection.row(299).mapv(|d| 100.0 * d);
+        assert_eq!(recording.force.row(299), spring, "a spring alone");
+        let there = press_at_pose(&scene, &finals, &mut workspace);
+        n_through += usize::from(there.n_touched < counted.n_touched);
+    }
+    assert!(n_through > 50, "some go through for real: {n_through}");
+}
+
+#[test]
+fn what_comes_up_from_behind_or_around_the_patch_does_not_press_in_the_time_loop() {
+    let grid = Grid {
+        nx: 5,
+        ny: 5,
+        pitch: 2e-3,
+    };
+    let ball = Sphere {
+        center: DVec3::ZERO,
+        radius: 0.01,
+    };
+    let scene = Scene {
+        patch: Patch::new(grid, TAXEL).unwrap(),
+        objects: vec![SphereUnion::new(vec![ball]).unwrap().into()],
+    };
+    let still = VelocityPlan::new(Pose::IDENTITY, vec![]).unwrap();
+    let go = |linear: DVec3| Phase {
+        duration: 0.1,
+        linear,
+        angular: DVec3::ZERO,
+    };
+    // Through the skin, 50 mm beyond it, out to its side, and back under it.
+    let way = [go(-DVec3::Z), go(DVec3::X), go(-DVec3::X)];
+    let start = Pose::from_translation(DVec3::new(0.0, 0.0, 0.05));
+    let plan = VelocityPlan::new(start, way.to_vec()).unwrap();
+    let recording = simulate(&scene, &still, &[plan], 1e-3, 300).unwrap();
+    let reads = |frame: usize| recording.deflection.row(frame).sum();
+    assert_eq!(reads(30), 0.0, "still in front");
+    assert_eq!(reads(99), 25.0 * TAXEL.stroke, "gone through");
+    assert_eq!(reads(199), 0.0, "beside");
+    assert_eq!(reads(299), 0.0, "under it again");
+    let below = Pose::from_translation(DVec3::new(0.0, 0.0, -0.05));
+    let up = VelocityPlan::new(below, vec![go(0.4 * DVec3::Z)]).unwrap();
+    let recording = simulate(&scene, &still, &[up], 1e-3, 100).unwrap();
+    assert_eq!(recording.deflection.row(99).sum(), 0.0, "from behind");
+}
+
+#[test]
+fn a_ball_pressed_on_the_array_leaves_its_cap() {
+    let grid = Grid {
+        nx: 33,
+        ny: 33,
+        pitch: 1e-3,
+    };
+    let (radius, depth) = (0.05, 2e-3);
+    let ball = Sphere {
+        center: DVec3::new(0.0, 0.0, 0.3),
+        radius,
+    };
+    let scene = Scene {
+        patch: Patch::new(grid, TAXEL).unwrap(),
+        objects: vec![SphereUnion::new(vec![ball]).unwrap().into()],
+    };
+    let mut workspace = Workspace::new();
+    let contact = press_to_depth(&scene, &[Pose::IDENTITY], depth, &mut workspace).unwrap();
+    assert!((contact.travel - (0.3 - radius - TAXEL.radius + depth)).abs() < 1e-15);
+    let reach = radius + TAXEL.radius;
+    for row in 0..33 {
+        for column in 0..33 {
+            let b2 = grid.x(column).powi(2) + grid.y(row).powi(2);
+            let cap = ((reach * reach - b2).sqrt() - reach + depth).max(0.0);
+            let got = workspace.deflections()[row * 33 + column];
+            assert!((got - cap).abs() < 1e-15, "{got} and {cap}");
+        }
+    }
+}
+
+#[test]
+fn saturation_is_counted_and_stops_at_the_stroke() {
+    let grid = Grid {
+        nx: 9,
+        ny: 9,
+        pitch: 2e-3,
+    };
+    let wall = Sphere {
+        center: DVec3::new(0.0, 0.0, 10.0),
+        radius: 10.0,
+    };
+    let scene = Scene {
+        patch: Patch::new(grid, TAXEL).unwrap(),
+        objects: vec![SphereUnion::new(vec![wall]).unwrap().into()],
+    };
+    let mut workspace = Workspace::new();
+    let at_stroke =
+        press_to_depth(&scene, &[Pose::IDENTITY], TAXEL.stroke, &mut workspace).unwrap();
+    assert_eq!(at_stroke.n_saturated, 0);
+    let beyond = press_to_depth(&scene, &[Pose::IDENTITY], 0.02, &mut workspace).unwrap();
+    assert_eq!((beyond.n_touched, beyond.n_saturated), (81, 81));
+    assert!(workspace.deflections().iter().all(|&d| d == TAXEL.stroke));
+}
+
+/// Depths from nothing to 200 mm, metres.
+const DEPTHS: [f64; 12] = [
+    0.0, 1e-4, 1e-3, 3e-3, 5e-3, 8e-3, 12e-3, 0.02, 0.03, 0.06, 0.12, 0.2,
+];
+
+/// The object lies as it is modelled; a coarse patch over its middle is pressed deeper and deeper, slightly tilted.
+fn deeper_is_never_less(name: &str, model: &Model, workspace: &mut Workspace) {
+    let grid = Grid {
+        nx: 24,
+        ny: 20,
+        pitch: 5e-3,
+    };
+    let scene = Scene::of_one(&Patch::new(grid, TAXEL).unwrap(), model);
+    let rest = &RestPoses::AsModelled.of(model)[0];
+    let touch = Touch {
+        rest: 0,
+        offset: [1e-3, -2e-3],
+        yaw: 0.3,
+        tilt: [0.05, -0.02],
+        depth: 0.0,
+        indices: [None; 7],
+    };
+    let pose = touch.patch_from_object(rest);
+    let mut before = vec![0.0; grid.n_taxels()];
+    let (mut n_touched, mut n_saturated) = (0, 0);
+    for depth in DEPTHS {
+        let contact = press_to_depth(&scene, &[pose], depth, workspace);
+        let contact = contact.unwrap_or_else(|| panic!("{name} is under the patch"));
+        let now = workspace.deflections();
+        let is_less = now.iter().zip(&before).any(|(now, before)| now < before);
+        assert!(!is_less, "{name}: {depth} m deep");
+        assert!(contact.n_touched >= n_touched && contact.n_saturated >= n_saturated);
+        if depth > TAXEL.stroke {
+            assert!(contact.n_saturated > 0, "{name}: {depth} m deep");
+        }
+        // Slow: only short of the stroke, past it, and at the end.
+        if model.spheres().is_some() && [3e-3, 0.02, 0.2].contains(&depth) {
+            let expected = oracle(&scene, &[pose], contact.travel, f64::NEG_INFINITY);
+            assert_close(now, &expected, 1e-12, name);
+        }
+        (n_touched, n_saturated) = (contact.n_touched, contact.n_saturated);
+        before.copy_from_slice(now);
+    }
+    if rest.height < 0.15 {
+        // It has gone through the skin as a whole.
+        assert_eq!(n_touched, n_saturated, "{name}");
+    }
+}
+
+#[test]
+fn no_object_of_the_catalogue_is_felt_less_the_deeper_it_is_pressed() {
+    let mut workspace = Workspace::new();
+    for object in Catalogue::builtin().unwrap().entries() {
+        let built = object.build(2e-3).unwrap();
+        deeper_is_never_less(&built.name, &built.model, &mut workspace);
+    }
+}
+
+#[test]
+fn no_scanned_object_is_felt_less_the_deeper_it_is_pressed_as_a_mesh_or_as_spheres() {
+    let Some(folder) = crate::reference_data::folder("BUBBLETOUCH_YCB") else {
+        return;
+    };
+    let mut workspace = Workspace::new();
+    let mut n_meshes = 0;
+    for file in std::fs::read_dir(folder).unwrap() {
+        let path = file.unwrap().path();
+        if path.extension().is_none_or(|e| e != "ply") {
+            continue;
+        }
+        for model in [ModelSpec::Mesh, ModelSpec::VertexSpheres] {
+            let how = MeshUse {
+                unit: Some(LengthUnit::default()),
+                model,
+                surface_error: 1e-3,
+                packings: None,
+                sizes: SizeLimits::ANY,
+                close_holes: None,
+            };
+            let object = load_mesh(&path, &how).unwrap();
+            deeper_is_never_less(&object.name, &object.model, &mut workspace);
+        }
+        n_meshes += 1;
+    }
+    assert_eq!(n_meshes, 43);
+}
+
+#[test]
+fn an_object_on_the_far_side_of_the_skin_does_not_press() {
+    let grid = Grid {
+        nx: 3,
+        ny: 3,
+        pitch: 2e-3,
+    };
+    let scene = |z| Scene {
+        patch: Patch::new(grid, TAXEL).unwrap(),
+        objects: vec![
+            SphereUnion::new(vec![Sphere {
+                center: DVec3::new(0.0, 0.0, z),
+                radius: 0.02,
+            }])
+            .unwrap()
+            .into(),
+        ],
+    };
+    let mut workspace = Workspace::new();
+    let behind = press_at_pose(&scene(-0.0061), &[Pose::IDENTITY], &mut workspace);
+    assert_eq!(behind.n_touched, 0);
+    let before = press_at_pose(&scene(-0.0059), &[Pose::IDENTITY], &mut workspace);
+    assert_eq!(before.n_saturated, 9);
+}
+
+#[test]
+fn spheres_from_a_micrometre_to_a_kilometre_press_to_their_depth() {
+    let grid = Grid {
+        nx: 5,
+        ny: 5,
+        pitch: 1e-3,
+    };
+    let mut workspace = Workspace::new();
+    for exponent in -6..=3 {
+        let radius = 10f64.powi(exponent);
+        let scene = Scene {
+            patch: Patch::new(grid, TAXEL).unwrap(),
+            objects: vec![
+                SphereUnion::new(vec![Sphere {
+                    center: DVec3::ZERO,
+                    radius,
+                }])
+                .unwrap()
+                .into(),
+            ],
+        };
+        press_to_depth(&scene, &[Pose::IDENTITY], 1e-3, &mut workspace).unwrap();
+        let middle = workspace.deflections()[12];
+        assert!(
+            (middle - 1e-3).abs() < 1e-12 * radius.max(1.0),
+            "{radius}: {middle}"
+        );
+    }
+}

@@ -1,0 +1,326 @@
+//! Where contact could break: sizes, places and steps at their ends. Each case has the behaviour that `guide::limits` states.
+
+use crate::double_double::Double;
+use crate::random_scenes::{TAXEL, direction, random_pose, rng};
+use bubbletouch::contact::{
+    DamperState, GRAZING, SkinWorkspace, Workspace, press_at_pose, press_skin, press_to_depth,
+    press_to_force, relaxation_factor, simulate, spring_load,
+};
+use bubbletouch::geometry::Pose;
+use bubbletouch::objects::{Model, Sphere, SphereUnion};
+use bubbletouch::world::{
+    Grid, Layout, Patch, Phase, Scene, SkinPatch, Taxel, Taxels, VelocityPlan,
+};
+use glam::{DQuat, DVec3};
+use rand::Rng;
+
+const GRID: Grid = Grid {
+    nx: 9,
+    ny: 7,
+    pitch: 2e-3,
+};
+
+fn union(spheres: Vec<Sphere>) -> SphereUnion {
+    SphereUnion::new(spheres).unwrap()
+}
+
+fn sphere(center: DVec3, radius: f64) -> SphereUnion {
+    union(vec![Sphere { center, radius }])
+}
+
+fn scene(object: SphereUnion) -> Scene {
+    Scene {
+        patch: Patch::new(GRID, TAXEL).unwrap(),
+        objects: vec![object.into()],
+    }
+}
+
+/// √(S² − b²) − h in twice the digits, of the numbers as they are; none where b ≥ S.
+fn exactly_needed(taxel: DVec3, radius: f64, sphere: &Sphere) -> Option<f64> {
+    let [dx, dy, height] = [0, 1, 2].map(|k| Double::from(sphere.center[k]) - taxel[k].into());
+    let reach = Double::from(radius) + sphere.radius.into();
+    let left = reach * reach - (dx * dx + dy * dy);
+    (left.round() > 0.0).then(|| (left.sqrt() - height).round())
+}
+
+#[test]
+fn spheres_from_a_micrometre_to_a_kilometre_press_right_to_the_last_digits_of_their_size() {
+    let skin = SkinPatch::from(Patch::new(GRID, TAXEL).unwrap());
+    let (mut workspace, mut of_skin) = (Workspace::new(), SkinWorkspace::new());
+    let mut n_touched = [0; 9];
+    for case in 0..4000 {
+        let mut rng = rng("sizes", case);
+        let size = rng.gen_range(-6.0..3.0);
+        let radius = 10f64.powf(size);
+        let reach = radius + TAXEL.radius;
+        // Anywhere on the sphere above a random taxel, and as deep as the stroke or less.
+        let (x, y) = (rng.gen_range(-8e-3..8e-3), rng.gen_range(-6e-3..6e-3));
+        let beside = direction(&mut rng) * rng.gen_range(0.0..0.9) * reach;
+        let height = (reach * reach - beside.truncate().length_squared()).sqrt();
+        let center =
+            DVec3::new(x, y, height - rng.gen_range(0.0..TAXEL.stroke)) + beside.with_z(0.0);
+        let object = sphere(center, radius);
+        let of_object = object.spheres()[0];
+        let scene = scene(object);
+        press_at_pose(&scene, &[Pose::IDENTITY], &mut workspace);
+        press_skin(&skin, &scene.objects, &[Pose::IDENTITY], &mut of_skin);
+        for (taxel, &place) in skin.layout().centers().iter().enumerate() {
+            let exact = exactly_needed(place, TAXEL.radius, &of_object).unwrap_or(0.0);
+            // A last bit of S², seen along the flank: √(S² − b²) = δ + h.
+            let up = (exact + center.z - place.z).max(1e-7 * reach);
+            let rounding = 4.0 * f64::EPSILON * (reach * reach / up + center.length());
+            let exact = exact.clamp(0.0, TAXEL.stroke);
+            for found in [workspace.deflections()[taxel], of_skin.deflections()[taxel]] {
+                let error = (found - exact).abs();
+                assert!(
+                    error <= rounding,
+                    "case {case}, {radius} m: {found} for {exact}"
+                );
+            }
+            n_touched[(size + 6.0) as usize] += usize::from(exact > 0.0);
+        }
+    }
+    assert!(n_touched.iter().all(|&n| n > 100), "{n_touched:?}");
+}
+
+#[test]
+fn a_million_metres_from_the_origin_a_press_is_the_same_to_the_bit() {
+    // The same numbers a million metres away: multiples of 2⁻³⁰ m, so that their places there are exact, too.
+    let exact = |v: DVec3| (v * 2f64.powi(30)).round() / 2f64.powi(30);
+    let still = |pose: Pose| VelocityPlan::new(pose, Vec::new()).unwrap();
+    for case in 0..200 {
+        let mut rng = rng("far away", case);
+        let center = exact(DVec3::new(
+            rng.gen_range(-8e-3..8e-3),
+            rng.gen_range(-6e-3..6e-3),
+            rng.gen_range(8e-3..10e-3),
+        ));
+        let scene = scene(sphere(DVec3::ZERO, 1e-2));
+        let turn = random_pose(&mut rng, 0.0).rotation;
+        let patch = exact(direction(&mut rng));
+        let object = exact(patch + turn * center);
+        let away = 1e6 * direction(&mut rng).round();
+        let [here, there] = [DVec3::ZERO, away].map(|away| {
+            let plans = [patch, object].map(|at| still(Pose::new(turn, at + away)));
+            simulate(&scene, &plans[0], &plans[1..], 1e-3, 1).unwrap()
+        });
+        assert!(here.deflection.iter().any(|&d| d > 0.0), "case {case}");
+        assert_eq!(here, there, "case {case}");
+    }
+}
+
+#[test]
+fn a_step_of_any_length_takes_the_damper_where_the_closed_form_says() {
+    // Objects that jump: each instant is looked at alone, what the damper remembers apart.
+    let taxel = Taxel {
+        damping: 0.3,
+        ..TAXEL
+    };
+    let patch = Patch::new(GRID, taxel).unwrap();
+    let taxels = Taxels::Equal(taxel);
+    let ball = scene(sphere(DVec3::ZERO, 1e-2));
+    let ball = Scene { patch, ..ball };
+    let mut state = DamperState::at_rest(GRID.n_taxels());
+    let mut workspace = Workspace::new();
+    let mut expected = vec![0.0; GRID.n_taxels()];
+    let (mut n_through, mut n_pressed) = (0, 0);
+    for case in 0..3000 {
+        let mut rng = rng("jumps", case);
+        let dt = 10f64.powf(rng.gen_range(-9.0..6.0));
+        // From far above the skin to far below it: twelve strokes either way.
+        let height = rng.gen_range(-0.06..0.06);
+        let place = DVec3::new(
+            rng.gen_range(-8e-3..8e-3),
+            rng.gen_range(-6e-3..6e-3),
+            height,
+        );
+        press_at_pose(&ball, &[Pose::from_translation(place)], &mut workspace);
+        let is_behind = height < -taxel.stroke - taxel.radius;
+        state.step(&taxels, dt, workspace.deflections());
+        let left = relaxation_factor(&taxel, dt);
+        for (number, before) in expected.iter_mut().enumerate() {
+            let (row, column) = (number / GRID.nx, number % GRID.nx);
+            let at = DVec3::new(GRID.x(column), GRID.y(row), 0.0);
+            let moved = Sphere {
+                center: place,
+                radius: 1e-2,
+            };
+            let needed = exactly_needed(at, taxel.radius, &moved).filter(|_| !is_behind);
+            let pushed = needed.unwrap_or(0.0).clamp(0.0, taxel.stroke);
+            n_pressed += usize::from(pushed > 0.0);
+            *before = (*before * left).max(pushed);
+            let error = (state.deflection[number] - *before).abs();
+            assert!(error <= 1e-16, "step {case}, taxel {number}");
+            assert!(state.force[number] >= 0.0 && state.force[number].is_finite());
+        }
+        n_through += usize::from(is_behind);
+    }
+    assert!(n_through > 1000 && n_pressed > 5000);
+}
+
+#[test]
+fn what_jumps_through_the_skin_between_two_frames_is_not_felt_and_what_is_seen_to_go_through_stays_felt()
+ {
+    // 0.1 m/s over steps of 1 s: from 50 mm above to 50 mm below. Steps of 10 ms feel it.
+    let fast = Phase {
+        duration: 10.0,
+        linear: DVec3::new(0.0, 0.0, -0.1),
+        angular: DVec3::ZERO,
+    };
+    let start = Pose::from_translation(DVec3::new(0.0, 0.0, 0.15));
+    let plans = [VelocityPlan::new(start, vec![fast]).unwrap()];
+    let still = VelocityPlan::new(Pose::IDENTITY, Vec::new()).unwrap();
+    let scene = scene(sphere(DVec3::ZERO, 1e-2));
+    let felt = |dt: f64, n_frames| simulate(&scene, &still, &plans, dt, n_frames).unwrap();
+    assert!(felt(1.0, 3).deflection.iter().all(|&d| d == 0.0));
+    let fine = felt(0.01, 300);
+    assert!(fine.n_saturated > 0 && fine.deflection.iter().any(|&d| d == TAXEL.stroke));
+    let mut workspace = Workspace::new();
+    let last = Pose::from_translation(DVec3::new(0.0, 0.0, -0.15));
+    press_at_pose(&scene, &[last], &mut workspace);
+    assert_eq!(
+        workspace.deflections().iter().sum::<f64>(),
+        0.0,
+        "behind the substrate"
+    );
+    press_to_depth(&scene, &[Pose::IDENTITY], 0.2, &mut workspace).unwrap();
+    assert_eq!(
+        fine.deflection.row(299).as_slice().unwrap(),
+        workspace.deflections()
+    );
+}
+
+#[test]
+fn a_thin_needle_or_sheet_presses_as_deep_as_any() {
+    let mut workspace = Workspace::new();
+    for thickness in [1e-6, 1e-5, 1e-4, 1e-3] {
+        let radius = 0.5 * thickness;
+        // Spheres in a row that stands up, 20 mm high.
+        let along = |k: usize| DVec3::new(0.0, 0.0, 20e-3 * k as f64 / 400.0);
+        let needle = (0..=400).map(|k| Sphere {
+            center: along(k),
+            radius,
+        });
+        let scene = scene(union(needle.collect()));
+        press_to_depth(&scene, &[Pose::IDENTITY], 2e-3, &mut workspace).unwrap();
+        let middle = workspace.deflections()[GRID.n_taxels() / 2];
+        assert!((middle - 2e-3).abs() < 1e-15, "{thickness} m: {middle}");
+        // Pressed past the stroke its tip is behind the substrate, the rest of it is not: still saturated.
+        let deep = press_to_depth(&scene, &[Pose::IDENTITY], 10e-3, &mut workspace).unwrap();
+        let middle = workspace.deflections()[GRID.n_taxels() / 2];
+        assert_eq!(
+            (middle, deep.n_saturated),
+            (TAXEL.stroke, 1),
+            "{thickness} m"
+        );
+    }
+}
+
+#[test]
+fn a_saturated_skin_is_counted_and_refuses_more_force_than_its_springs_have() {
+    let n = GRID.n_taxels();
+    let all = n as f64 * TAXEL.stiffness * TAXEL.stroke;
+    let mut workspace = Workspace::new();
+    for radius in [0.5, 10.0, 1e3] {
+        let scene = scene(sphere(DVec3::new(0.0, 0.0, radius + 0.01), radius));
+        let press = |force, workspace: &mut Workspace| {
+            press_to_force(&scene, &[Pose::IDENTITY], force, workspace)
+        };
+        for share in [1e-9, 0.3, 0.999, 1.0] {
+            press(share * all, &mut workspace).unwrap().unwrap();
+            let carried: f64 = workspace.deflections().iter().sum::<f64>() * TAXEL.stiffness;
+            // What a last bit of the object's height is to all springs.
+            let known = n as f64 * TAXEL.stiffness * 8.0 * f64::EPSILON * radius;
+            let error = (carried - share * all).abs();
+            assert!(
+                error <= 1e-12 * share * all + known,
+                "{radius} m, {share}: {error}"
+            );
+        }
+        let error = press(1.001 * all, &mut workspace).unwrap_err().to_string();
+        let most = format!("up to {all:.6} N");
+        assert!(
+            error.contains(&most) && error.contains("at their stroke"),
+            "{error}"
+        );
+        let deep = press_to_depth(&scene, &[Pose::IDENTITY], 0.1, &mut workspace).unwrap();
+        assert_eq!((deep.n_touched, deep.n_saturated), (n, n));
+        let skin = SkinPatch::from(scene.patch);
+        let mut of_skin = SkinWorkspace::new();
+        let pressed = Pose::from_translation(DVec3::new(0.0, 0.0, -deep.travel));
+        press_skin(&skin, &scene.objects, &[pressed], &mut of_skin);
+        let load = spring_load(&skin, of_skin.contacts());
+        assert_eq!(load.saturated_share, 1.0);
+        assert!((load.spring_force / all - 1.0).abs() < 1e-12);
+    }
+}
+
+#[test]
+fn grazing_flanks_push_with_a_bounded_force_and_are_counted() {
+    let layout = Layout::new(vec![DVec3::ZERO], vec![DVec3::Z]).unwrap();
+    let skin = SkinPatch::new("one", layout, Taxels::Equal(TAXEL)).unwrap();
+    let mut workspace = SkinWorkspace::new();
+    let mut n_grazing = 0;
+    for case in 0..2000 {
+        let mut rng = rng("grazing", case);
+        let radius = 10f64.powf(rng.gen_range(-4.0..1.0));
+        let reach = radius + TAXEL.radius;
+        // cos of the contact normal from 1e-8 to 1.
+        let cosine = 10f64.powf(rng.gen_range(-8.0..0.0));
+        let beside = reach * (1.0 - cosine * cosine).sqrt();
+        let deflection = rng.gen_range(1e-6..TAXEL.stroke);
+        let height = reach * cosine - deflection;
+        if height < -TAXEL.stroke - TAXEL.radius {
+            continue;
+        }
+        let flank = Model::from(sphere(DVec3::new(beside, 0.0, height), radius));
+        let counts = press_skin(&skin, &[flank], &[Pose::IDENTITY], &mut workspace);
+        // Rounding may take the shallowest flanks out of reach altogether.
+        let [contact] = workspace.contacts() else {
+            assert!(cosine < 1e-7, "case {case}: {cosine}");
+            continue;
+        };
+        let force = TAXEL.stiffness * contact.deflection;
+        let push = contact.push(force).force;
+        assert!(
+            push.length() <= force / GRAZING * (1.0 + 1e-12),
+            "case {case}"
+        );
+        if cosine > 1.1 * GRAZING {
+            // F = f n_c / (n_c·n): along the axis it is the spring's.
+            assert!((push.z / force - 1.0).abs() < 1e-9, "case {case}: {push}");
+        }
+        assert_eq!(counts.n_grazing, usize::from(contact.cosine < GRAZING));
+        n_grazing += counts.n_grazing;
+    }
+    assert!(n_grazing > 500, "{n_grazing}");
+}
+
+#[test]
+fn a_taxel_exactly_between_two_spheres_is_pushed_as_far_as_each_of_them_needs() {
+    let layout = Layout::new(vec![DVec3::ZERO], vec![DVec3::Z]).unwrap();
+    let skin = SkinPatch::new("one", layout, Taxels::Equal(TAXEL)).unwrap();
+    let mut workspace = SkinWorkspace::new();
+    for case in 0..500 {
+        let mut rng = rng("between", case);
+        let radius = 10f64.powf(rng.gen_range(-3.0..1.0));
+        let reach = radius + TAXEL.radius;
+        let beside = rng.gen_range(0.0..0.99) * reach;
+        let up = (reach * reach - beside * beside).sqrt();
+        let height = up - rng.gen_range(0.0..1.0) * TAXEL.stroke;
+        let turn = DQuat::from_rotation_z(rng.gen_range(0.0..6.0));
+        let at = |x: f64| Sphere {
+            center: turn * DVec3::new(x, 0.0, height),
+            radius,
+        };
+        let pair = union(vec![at(beside), at(-beside)]);
+        let exact = exactly_needed(DVec3::ZERO, TAXEL.radius, &pair.spheres()[0]);
+        let exact = exact.unwrap().clamp(0.0, TAXEL.stroke);
+        press_skin(&skin, &[pair.into()], &[Pose::IDENTITY], &mut workspace);
+        let found = workspace.deflections()[0];
+        assert!(
+            (found - exact).abs() <= 8.0 * f64::EPSILON * reach,
+            "case {case}"
+        );
+    }
+}

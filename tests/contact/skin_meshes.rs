@@ -1,0 +1,317 @@
+//! Laws of contact of skins of any shape with meshes: against every triangle, the grid kernel, and a forearm on a table.
+
+use bubbletouch::contact::{
+    SkinWorkspace, Workspace, press_at_pose, press_skin, spring_load, stopping_height,
+};
+use bubbletouch::geometry::Pose;
+use bubbletouch::mesh::{Surface, Triangle, TriangleMesh};
+use bubbletouch::objects::{MeshModel, Model};
+use bubbletouch::world::{Grid, Layout, Patch, Scene, SkinPatch, Taxel, Taxels};
+use glam::{DQuat, DVec2, DVec3};
+use rand::Rng;
+use std::f64::consts::TAU;
+
+use crate::mesh_shapes::{cuboid, icosphere};
+use crate::random_scenes::{TAXEL, direction, rng};
+
+fn random_turn(rng: &mut impl Rng) -> DQuat {
+    DQuat::from_scaled_axis(rng.gen_range(0.0..3.0) * direction(rng))
+}
+
+/// A crumpled sheet, its triangles turned alike.
+fn sheet(rng: &mut impl Rng, size: f64) -> TriangleMesh {
+    let n = 9_u32;
+    let corner = |i: u32| DVec3::new(f64::from(i % n), f64::from(i / n), 0.0) / f64::from(n);
+    let corners = (0..n * n).map(|i| size * (corner(i) + 0.15 * direction(rng) - 0.5));
+    let cells = (0..n * n).filter(|i| i % n < n - 1 && i / n < n - 1);
+    let faces = cells.flat_map(|i| [[i, i + 1, i + n], [i + 1, i + n + 1, i + n]]);
+    TriangleMesh::new("sheet", corners.collect(), faces.collect()).unwrap()
+}
+
+fn random_mesh(rng: &mut impl Rng, kind: u64) -> TriangleMesh {
+    let size = rng.gen_range(5e-3..4e-2);
+    match kind % 3 {
+        0 => cuboid(size * DVec3::new(1.0, rng.gen_range(0.1..1.0), rng.gen_range(0.05..1.0))),
+        1 => icosphere(size, rng.gen_range(0..3)),
+        _ => sheet(rng, 2.0 * size),
+    }
+}
+
+/// A skin of one taxel each, and a mesh with its pose somewhere on it.
+fn random_scene(case: u64) -> (SkinPatch, TriangleMesh, Pose) {
+    let mut rng = rng("scene", case);
+    let layout = match case % 4 {
+        0 => Layout::cylinder(0.02, 0.05, rng.gen_range(1.0..TAU), 4e-3),
+        1 => Layout::sphere_cap(0.02, 2.0, 4e-3),
+        2 => Layout::hexagonal(10, 10, 4e-3),
+        _ => {
+            let centers: Vec<DVec3> = (0..120).map(|_| 0.02 * direction(&mut rng)).collect();
+            let axes = centers.iter().map(|_| direction(&mut rng)).collect();
+            Layout::new(centers, axes)
+        }
+    };
+    let layout = layout.unwrap();
+    let one = |k: usize| Taxel {
+        radius: 1e-3 + 5e-6 * k as f64,
+        stroke: 7e-3 - 1e-5 * k as f64,
+        ..TAXEL
+    };
+    let taxels = (0..layout.n_taxels()).map(one).collect();
+    let middle = layout.centers()[rng.gen_range(0..layout.n_taxels())];
+    let skin = SkinPatch::new("skin", layout, Taxels::Each(taxels)).unwrap();
+    let mesh = random_mesh(&mut rng, case / 4);
+    let corner = mesh.vertices()[rng.gen_range(0..mesh.vertices().len())];
+    let rotation = random_turn(&mut rng);
+    let shift = rng.gen_range(0.0..5e-3) * direction(&mut rng);
+    let pose = Pose::new(rotation, middle + shift - rotation * corner);
+    (skin, mesh, pose)
+}
+
+/// Whether a triangle is within a taxel's radius of its centre anywhere from its bottom stop upwards. The distance is convex
+/// along the axis: a search for its least value, there or above.
+fn meets_in_front(triangle: &Triangle, radius: f64, behind: f64) -> bool {
+    let distance = |z: f64| {
+        let point = DVec3::new(0.0, 0.0, z);
+        triangle.closest(point).0.distance(point)
+    };
+    let (mut low, mut high) = (behind, behind + 1.0);
+    for _ in 0..150 {
+        let (l, h) = ((2.0 * low + high) / 3.0, (low + 2.0 * high) / 3.0);
+        if distance(l) <= distance(h) {
+            high = h
+        } else {
+            low = l
+        }
+    }
+    distance(low) <= radius
+}
+
+/// Whether the axis comes into the mesh behind the bottom stop, and leaves it ahead: over every triangle.
+fn is_inside(triangles: &[Triangle], behind: f64) -> bool {
+    let rises = triangles.iter().filter_map(|triangle| {
+        let along = triangle.crossed_at(DVec3::new(0.0, 0.0, behind), DVec3::Z)?;
+        Some((along, triangle.normal()?.z))
+    });
+    let (mut ahead, mut back) = ((f64::INFINITY, 0.0), (f64::NEG_INFINITY, 0.0));
+    for (along, rise) in rises {
+        if along >= 0.0 && along < ahead.0 {
+            ahead = (along, rise);
+        }
+        if along <= 0.0 && along > back.0 {
+            back = (along, rise);
+        }
+    }
+    ahead.1 > 0.0 && back.1 < 0.0
+}
+
+/// A taxel against every triangle, in a frame that rests on its centre and looks along its axis.
+fn every_triangle(mesh: &TriangleMesh, center: DVec3, axis: DVec3, taxel: &Taxel) -> f64 {
+    let turn = DQuat::from_rotation_arc(axis, DVec3::Z);
+    let placed = mesh.moved(&Pose::new(turn, turn * -center));
+    let triangles: Vec<Triangle> = (0..placed.n_triangles())
+        .map(|t| placed.triangle(t))
+        .collect();
+    let behind = -taxel.stroke - taxel.radius;
+    if is_inside(&triangles, behind) {
+        return taxel.stroke;
+    }
+    let counting = triangles.iter().filter_map(|triangle| {
+        let height = stopping_height(triangle, taxel.radius, DVec2::ZERO)?;
+        meets_in_front(triangle, taxel.radius, behind).then_some(height)
+    });
+    (-counting.fold(0.0, f64::min)).min(taxel.stroke)
+}
+
+#[test]
+fn every_taxel_stops_where_every_triangle_says() {
+    let mut workspace = SkinWorkspace::new();
+    let (mut n_touched, mut n_saturated, mut n_edges) = (0, 0, 0);
+    for case in 0..120 {
+        let (skin, mesh, pose) = random_scene(case);
+        let model = MeshModel::new(mesh.clone()).into();
+        let counts = press_skin(&skin, &[model], &[pose], &mut workspace);
+        let placed = mesh.moved(&pose);
+        for taxel in 0..skin.n_taxels() {
+            let (center, axis) = (skin.layout().centers()[taxel], skin.layout().axes()[taxel]);
+            let expected = every_triangle(&placed, center, axis, skin.taxels().at(taxel));
+            let got = workspace.deflections()[taxel];
+            // The kernel looks for the inside a hundredth of a radius beside the axis.
+            n_edges += usize::from((got - expected).abs() > 1e-9);
+        }
+        n_touched += counts.n_touched;
+        n_saturated += counts.n_saturated;
+    }
+    assert!(
+        n_touched > 1_000 && n_saturated > 300,
+        "{n_touched} {n_saturated}"
+    );
+    assert!(n_edges < n_touched / 1000, "{n_edges} of {n_touched}");
+}
+
+#[test]
+fn a_contact_lies_on_its_triangle_a_radius_from_the_taxel() {
+    let mut workspace = SkinWorkspace::new();
+    for case in 0..120 {
+        let (skin, mesh, pose) = random_scene(case);
+        let placed = mesh.moved(&pose);
+        press_skin(
+            &skin,
+            &[MeshModel::new(mesh).into()],
+            &[pose],
+            &mut workspace,
+        );
+        for contact in workspace.contacts() {
+            let axis = skin.layout().axes()[contact.taxel];
+            let pushed = skin.layout().centers()[contact.taxel] - contact.needed * axis;
+            let radius = skin.taxels().at(contact.taxel).radius;
+            assert!((pushed.distance(contact.point) - radius).abs() < 1e-9);
+            let on = placed.triangle(contact.part).closest(contact.point).0;
+            assert!(on.distance(contact.point) < 1e-12);
+            assert!((contact.point + radius * contact.normal - pushed).length() < 1e-9);
+        }
+    }
+}
+
+#[test]
+fn a_flat_grid_meets_a_mesh_as_by_the_grid_kernel() {
+    let (mut workspace, mut grid_workspace) = (SkinWorkspace::new(), Workspace::new());
+    let mut n_pressed = 0;
+    for case in 0..200 {
+        let mut rng = rng("grid", case);
+        let grid = Grid {
+            nx: 14,
+            ny: 11,
+            pitch: rng.gen_range(1e-3..4e-3),
+        };
+        let patch = Patch::new(grid, TAXEL).unwrap();
+        let mesh = random_mesh(&mut rng, case);
+        let turned = mesh.moved(&Pose::from_rotation(random_turn(&mut rng)));
+        let lowest = turned.bounds().min.z;
+        // No deeper than the stroke: further on, the grid kernel counts a mesh as a whole, and a skin its parts.
+        let up = TAXEL.radius - rng.gen_range(0.0..TAXEL.stroke);
+        let pose = Pose::from_translation(DVec3::Z * (up - lowest));
+        let scene = Scene {
+            patch,
+            objects: vec![MeshModel::new(turned).into()],
+        };
+        press_at_pose(&scene, &[pose], &mut grid_workspace);
+        let skin = SkinPatch::from(patch);
+        press_skin(&skin, &scene.objects, &[pose], &mut workspace);
+        let pairs = workspace
+            .deflections()
+            .iter()
+            .zip(grid_workspace.deflections());
+        for (got, expected) in pairs {
+            assert!(
+                (got - expected).abs() < 1e-12,
+                "case {case}: {got} {expected}"
+            );
+            n_pressed += usize::from(*got > 0.0);
+        }
+    }
+    assert!(n_pressed > 2_000, "{n_pressed}");
+}
+
+#[test]
+fn balls_as_spheres_and_as_fine_meshes_press_nearly_the_same() {
+    let layout = Layout::sphere_cap(0.02, 1.5, 2e-3).unwrap();
+    let skin = SkinPatch::new("fingertip", layout, Taxels::Equal(TAXEL)).unwrap();
+    let radius = 0.03;
+    let mesh = MeshModel::new(icosphere(radius, 6)).into();
+    let ball = bubbletouch::objects::Sphere {
+        center: DVec3::ZERO,
+        radius,
+    };
+    let ball: Model = bubbletouch::objects::SphereUnion::new(vec![ball])
+        .unwrap()
+        .into();
+    let pose = Pose::from_translation(DVec3::new(0.02, 0.01, 0.043));
+    let [a, b] = [mesh, ball].map(|model: Model| {
+        let mut workspace = SkinWorkspace::new();
+        press_skin(&skin, &[model], &[pose], &mut workspace);
+        let load = spring_load(&skin, workspace.contacts());
+        (workspace.deflections().to_vec(), load)
+    });
+    let largest =
+        a.0.iter()
+            .zip(&b.0)
+            .map(|(a, b)| (a - b).abs())
+            .fold(0.0, f64::max);
+    assert!(largest < 2e-5, "{largest}");
+    assert!(b.1.spring_force > 1.0);
+    let difference = a.1.on_object.force - b.1.on_object.force;
+    assert!(
+        difference.length() < 0.02 * b.1.spring_force,
+        "{difference}"
+    );
+}
+
+/// A closed skin around a forearm, its z axis level.
+fn forearm() -> SkinPatch {
+    let layout = Layout::cylinder(0.03, 0.1, TAU, 5e-3).unwrap();
+    SkinPatch::new("forearm", layout, Taxels::Equal(TAXEL)).unwrap()
+}
+
+#[test]
+fn what_a_forearm_lies_on_does_not_press_its_other_side() {
+    let skin = forearm();
+    let table: Model = MeshModel::new(cuboid(DVec3::new(0.01, 1.0, 1.0))).into();
+    // Its top is at x = −0.029: the taxels there, from x = −0.03 on and 1 mm round, are pushed by up to 2 mm.
+    let pose = Pose::from_translation(DVec3::new(-0.039, 0.0, 0.0));
+    let mut workspace = SkinWorkspace::new();
+    let counts = press_skin(&skin, &[table], &[pose], &mut workspace);
+    assert!(
+        counts.n_touched > 50 && counts.n_saturated == 0,
+        "{counts:?}"
+    );
+    for contact in workspace.contacts() {
+        let axis = skin.layout().axes()[contact.taxel];
+        assert!(axis.x < -0.9, "{axis}");
+        // A taxel that leans by θ to a plane goes back until it is a radius away from it.
+        let needed = (TAXEL.radius - 0.029) / -axis.x + 0.03;
+        assert!((contact.needed - needed).abs() < 1e-12);
+        assert!((contact.normal - DVec3::X).length() < 1e-9);
+    }
+}
+
+#[test]
+fn walls_on_both_sides_of_a_forearm_press_only_their_own_sides() {
+    let skin = forearm();
+    let wall = cuboid(DVec3::new(0.01, 1.0, 1.0));
+    let sides = [-0.039, 0.039].map(|x| wall.moved(&Pose::from_translation(x * DVec3::X)));
+    let corners = sides.iter().flat_map(|side| side.vertices().to_vec());
+    let faces = sides.iter().zip([0, 8]).flat_map(|(side, first)| {
+        let faces = side.triangles().iter();
+        faces
+            .map(move |face| face.map(|corner| corner + first))
+            .collect::<Vec<_>>()
+    });
+    let both = TriangleMesh::new("walls", corners.collect(), faces.collect()).unwrap();
+    let mut workspace = SkinWorkspace::new();
+    let model: Model = MeshModel::new(both).into();
+    let counts = press_skin(&skin, &[model], &[Pose::IDENTITY], &mut workspace);
+    assert!(
+        counts.n_touched > 100 && counts.n_saturated == 0,
+        "{counts:?}"
+    );
+    let load = spring_load(&skin, workspace.contacts());
+    assert!(load.on_object.force.length() < 1e-9 * load.spring_force);
+}
+
+#[test]
+fn a_taxel_whose_substrate_is_inside_of_a_mesh_is_saturated() {
+    let layout = Layout::grid(&Grid {
+        nx: 5,
+        ny: 5,
+        pitch: 2e-3,
+    });
+    let skin = SkinPatch::new("palm", layout.unwrap(), Taxels::Equal(TAXEL)).unwrap();
+    let mut workspace = SkinWorkspace::new();
+    for mesh in [cuboid(DVec3::splat(0.05)), icosphere(0.05, 3)] {
+        assert!(Surface::new(mesh.clone()).contains(DVec3::ZERO));
+        let model: Model = MeshModel::new(mesh).into();
+        let counts = press_skin(&skin, &[model], &[Pose::IDENTITY], &mut workspace);
+        assert_eq!((counts.n_touched, counts.n_saturated), (25, 25));
+        assert!(workspace.contacts().iter().all(|c| c.needed > 0.04));
+    }
+}

@@ -1,0 +1,13 @@
+//! The other kinds of study, each end to end.
+
+#[path = "../fixtures/command/mod.rs"]
+mod command;
+#[path = "../fixtures/mesh_shapes/mod.rs"]
+mod mesh_shapes;
+
+mod breaking_points;
+mod object_detail;
+mod reconstruction;
+mod speed_accuracy;
+mod stability;
+mod whole_body;

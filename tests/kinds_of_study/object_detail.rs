@@ -1,0 +1,364 @@
+//! Packed meshes in studies, and the study of how detailed objects are.
+
+use crate::command::Case;
+use crate::mesh_shapes::{cuboid, icosphere};
+use bubbletouch::mesh::TriangleMesh;
+use bubbletouch::report::csv_tables::read_rows;
+use bubbletouch::study::object_detail::table::{
+    DetailCell, DetailRecognition, DetailScore, DetailSummary, DetailTime,
+};
+use bubbletouch::study::object_detail::{DetailMethod, ObjectDetailPlan, ObjectDetailStudySpec};
+use bubbletouch::study::{Plan, StudyKind, StudySpec};
+use glam::DVec3;
+use std::fmt::Write;
+use std::fs;
+
+const DETAIL: &str = r#"
+question = "How many spheres?"
+seed = 7
+
+[objects]
+meshes = "meshes"
+
+[skin]
+pitch_mm = 2.0
+taxels = 16
+stroke_mm = 5.0
+
+[touches]
+per_object = 8
+offset_x_mm = { uniform = [-4.0, 4.0] }
+tilt_x_deg = { uniform = [-5.0, 5.0] }
+depth_mm = 3.0
+
+[object_detail]
+tolerances_mm = [2.0, 1.0, 0.5]
+methods = ["packing", "vertex_spheres", "decimated_vertex_spheres", "medial_spheres"]
+surface_points = 1000
+
+[object_detail.recognition]
+training_touches = 12
+test_touches = 8
+measurements = 32
+classifiers = ["linear_svm", "k_nearest"]
+"#;
+
+const RECOGNITION: &str = r#"
+question = "Which of two?"
+
+[objects]
+meshes = "meshes"
+model = "packed"
+surface_error_mm = 1.0
+
+[skin]
+pitch_mm = 4.0
+taxels = 8
+stroke_mm = 5.0
+
+[touches]
+per_object = 24
+offset_x_mm = { uniform = [-4.0, 4.0] }
+depth_mm = 3.0
+
+[sensing]
+ensemble = "identity"
+
+[recognition]
+classifier = "linear_svm"
+"#;
+
+fn ply(mesh: &TriangleMesh) -> String {
+    let (vertices, triangles) = (mesh.vertices(), mesh.triangles());
+    let mut text = format!(
+        "ply\nformat ascii 1.0\nelement vertex {}\nproperty double x\nproperty double y\nproperty double z\n\
+        element face {}\nproperty list uchar int vertex_indices\nend_header\n",
+        vertices.len(),
+        triangles.len()
+    );
+    for v in vertices {
+        writeln!(text, "{} {} {}", v.x, v.y, v.z).unwrap();
+    }
+    for [a, b, c] in triangles {
+        writeln!(text, "3 {a} {b} {c}").unwrap();
+    }
+    text
+}
+
+/// A ball and a box, and a study of them.
+fn case(study: &str) -> Case {
+    let case = Case::new();
+    fs::create_dir(case.path("meshes")).unwrap();
+    case.file("meshes/ball.ply", ply(&icosphere(0.03, 2)));
+    let half = DVec3::new(0.02, 0.015, 0.01);
+    case.file("meshes/box.ply", ply(&cuboid(half)));
+    case.file("study.toml", study);
+    case
+}
+
+#[test]
+fn a_study_of_packed_meshes_is_the_same_bytes_at_any_number_of_threads_and_packs_once() {
+    let case = case(RECOGNITION);
+    case.succeeds(&["run", "study.toml", "--threads", "1", "--out", "1"]);
+    let packings = || {
+        let files = fs::read_dir(case.path("packings")).unwrap();
+        let mut files: Vec<_> = files.map(|file| file.unwrap().path()).collect();
+        files.sort();
+        files
+    };
+    let kept = packings();
+    assert_eq!(kept.len(), 2, "a packing each");
+    // A packing that is made again would be written again.
+    let written = || {
+        packings()
+            .iter()
+            .map(|p| p.metadata().unwrap().modified().unwrap())
+            .max()
+    };
+    let before = written();
+    case.succeeds(&["run", "study.toml", "--threads", "2", "--out", "2"]);
+    assert!(packings() == kept && written() == before);
+    // Without what was kept, packings are the same.
+    fs::create_dir(case.path("elsewhere")).unwrap();
+    case.succeeds(&[
+        "run",
+        "study.toml",
+        "--threads",
+        "2",
+        "--out",
+        "elsewhere/3",
+    ]);
+    let read = |folder: &str, name: &str| fs::read(case.path(folder).join(name)).unwrap();
+    for name in ["accuracy.csv", "summary.csv", "confusion.csv", "study.toml"] {
+        assert!(!read("1", name).is_empty());
+        assert!(read("1", name) == read("2", name), "{name}");
+        assert!(
+            read("1", name) == read("elsewhere/3", name),
+            "{name}, packed anew"
+        );
+    }
+    case.succeeds(&[
+        "press",
+        "--mesh",
+        "meshes/box.ply",
+        "--model",
+        "packed",
+        "--out",
+        "a.csv",
+    ]);
+}
+
+#[test]
+fn packed_meshes_are_as_fine_as_a_tenth_of_the_finest_pitch_unless_a_study_says() {
+    let settled = |text: &str| {
+        let spec = StudySpec::parse("study.toml", text).unwrap();
+        Plan::new("study.toml", spec)
+            .unwrap()
+            .spec
+            .objects
+            .surface_error_mm
+    };
+    assert_eq!(settled(RECOGNITION), Some(1.0));
+    let left_out = RECOGNITION.replace("surface_error_mm = 1.0\n", "");
+    assert_eq!(settled(&left_out), Some(0.4));
+    let sweep = left_out.replace("pitch_mm = 4.0", "pitch_mm = [4.0, 2.0]");
+    assert_eq!(settled(&sweep), Some(0.2));
+    let vertices = left_out.replace("model = \"packed\"\n", "");
+    assert_eq!(settled(&vertices), Some(0.25));
+}
+
+#[test]
+fn a_kept_packing_that_is_broken_is_named_by_its_own_file() {
+    let case = case(RECOGNITION);
+    case.succeeds(&["run", "study.toml", "--out", "1"]);
+    let kept = fs::read_dir(case.path("packings")).unwrap().next();
+    let kept = kept.unwrap().unwrap().path();
+    fs::write(&kept, "x,y,z,r\n0,0,zero,1\n").unwrap();
+    let output = case.run(&["run", "study.toml", "--out", "1"]);
+    assert_eq!(output.status.code(), Some(2));
+    let said = String::from_utf8(output.stderr).unwrap();
+    let name = kept.file_name().unwrap().to_str().unwrap();
+    assert!(
+        said.contains(name) && !said.contains("open meshes"),
+        "{said}"
+    );
+}
+
+#[test]
+fn a_mesh_that_cannot_be_packed_is_named_with_what_it_lacks() {
+    for study in [RECOGNITION, DETAIL] {
+        let case = case(study);
+        let closed = cuboid(DVec3::splat(0.02));
+        let triangles = closed.triangles()[1..].to_vec();
+        let open = TriangleMesh::new("open", closed.vertices().to_vec(), triangles).unwrap();
+        case.file("meshes/open.ply", ply(&open));
+        let output = case.run(&["run", "study.toml", "--out", "1", "--fail-fast"]);
+        assert_eq!(output.status.code(), Some(2));
+        let said = String::from_utf8(output.stderr).unwrap();
+        assert!(
+            said.contains("open.ply: 3 edges") && said.contains("a closed mesh"),
+            "{said}"
+        );
+    }
+}
+
+#[test]
+fn detail_tables_are_the_same_bytes_at_any_number_of_threads_and_obey_their_laws() {
+    let case = case(DETAIL);
+    let (said, _) = case.succeeds(&["run", "study.toml", "--threads", "1", "--out", "1"]);
+    assert!(said.contains("decimated"), "{said}");
+    case.succeeds(&["run", "study.toml", "--threads", "2", "--out", "2"]);
+    let read = |folder: &str, name: &str| fs::read(case.path(folder).join(name)).unwrap();
+    for name in [
+        "object_detail.csv",
+        "object_detail_summary.csv",
+        "object_detail_recognition.csv",
+        "study.toml",
+    ] {
+        assert!(!read("1", name).is_empty());
+        assert!(read("1", name) == read("2", name), "{name}");
+    }
+    let cells: Vec<DetailCell> = read_rows(&case.path("1/object_detail.csv")).unwrap();
+    let scores: Vec<DetailScore> = read_rows(&case.path("1/object_detail.csv")).unwrap();
+    assert_eq!(cells.len(), 2 * (1 + 1 + 3 + 3 + 3));
+    for (cell, score) in cells.iter().zip(&scores) {
+        assert!(
+            score.n_touches == 8 && score.n_missed == 0 && score.n_taxels > 100,
+            "{score:?}"
+        );
+        assert!(
+            score.error_after_offset_mm <= score.error_mm,
+            "{cell:?} {score:?}"
+        );
+        match (cell.method, cell.tolerance_mm) {
+            (DetailMethod::Mesh, _) => {
+                assert_eq!((score.error_mm, score.error_p95_mm), (0.0, 0.0), "itself");
+                assert_eq!(score.error_own_contact_mm, 0.0);
+                assert_eq!(cell.n_spheres, 0);
+            }
+            (DetailMethod::Packing, Some(tolerance)) => {
+                let farthest = score.protrusion_max_mm.max(score.gap_max_mm);
+                assert!(farthest <= tolerance, "{cell:?} {score:?}");
+            }
+            _ => assert!(score.surface_error_mm > 0.0),
+        }
+    }
+    let summary: Vec<DetailSummary> = read_rows(&case.path("1/object_detail_summary.csv")).unwrap();
+    let packed: Vec<&DetailSummary> = summary
+        .iter()
+        .filter(|row| row.method == DetailMethod::Packing)
+        .collect();
+    assert_eq!(packed.len(), 3);
+    for pair in packed.windows(2) {
+        assert!(pair[1].tolerance_mm < pair[0].tolerance_mm);
+        assert!(
+            pair[1].error_median_mm <= pair[0].error_median_mm,
+            "finer is no worse"
+        );
+        assert_eq!(pair[1].times_packing, Some(1.0));
+    }
+    let times: Vec<DetailTime> = read_rows(&case.path("1/timing.csv")).unwrap();
+    assert!(times.len() == cells.len() && times.iter().all(|time| time.us_per_touch > 0.0));
+    let again: Vec<DetailTime> = read_rows(&case.path("2/timing.csv")).unwrap();
+    let kept = again.iter().filter(|time| time.was_kept).count();
+    assert_eq!(kept, 2 * 3, "packings of the first run");
+    for chart in ["surface_error_by_spheres", "deflection_error_by_spheres"] {
+        assert!(!read("1", &format!("{chart}.png")).is_empty());
+        let svg = String::from_utf8(read("1", &format!("{chart}.svg"))).unwrap();
+        assert!(svg.contains("spheres an object") && svg.contains(", mm"));
+    }
+}
+
+#[test]
+fn classifiers_that_learned_from_models_are_tested_on_the_meshes() {
+    let case = case(DETAIL);
+    let (said, _) = case.succeeds(&["run", "study.toml", "--out", "1"]);
+    assert!(said.contains("accuracy on meshes"), "{said}");
+    let path = case.path("1/object_detail_recognition.csv");
+    let rows: Vec<DetailRecognition> = read_rows(&path).unwrap();
+    assert_eq!(
+        rows.len(),
+        (1 + 1 + 3 + 3 + 3) * 2,
+        "levels and classifiers"
+    );
+    for row in &rows {
+        assert_eq!((row.n_objects, row.n_training, row.n_test), (2, 24, 16));
+        assert!(row.accuracy_on_mesh_low <= row.accuracy_on_mesh);
+        assert!(row.accuracy_on_mesh <= row.accuracy_on_mesh_high);
+        // A ball and a box feel different however coarse they are, to whoever has learned from the same.
+        assert!(row.accuracy_on_itself >= 0.9, "{row:?}");
+        if row.method == DetailMethod::Mesh {
+            assert_eq!(row.accuracy_on_mesh, row.accuracy_on_itself);
+        }
+    }
+    let svg = fs::read_to_string(case.path("1/recognition_by_deflection_error.svg")).unwrap();
+    assert!(svg.contains("median deflection error past own contact, mm"));
+    fs::remove_file(case.path("meshes/box.ply")).unwrap();
+    let output = case.run(&["run", "study.toml", "--out", "2"]);
+    assert_eq!(output.status.code(), Some(2), "nothing to tell apart");
+}
+
+#[test]
+fn keys_of_a_detail_study_that_are_out_of_range_are_named() {
+    assert_eq!(StudyKind::of(DETAIL), StudyKind::ObjectDetail);
+    for (old, new, said) in [
+        (
+            "[2.0, 1.0, 0.5]",
+            "[]",
+            "key object_detail.tolerances_mm: an empty list",
+        ),
+        (
+            "[2.0, 1.0, 0.5]",
+            "[0.0]",
+            "key object_detail.tolerances_mm: 0",
+        ),
+        ("[2.0, 1.0, 0.5]", "[0.5, 0.5]", "twice"),
+        (
+            "\"packing\", \"vertex",
+            "\"mesh\", \"vertex",
+            "key object_detail.methods: mesh",
+        ),
+        ("\"packing\", \"vertex", "\"magic\", \"vertex", "magic"),
+        (
+            "measurements = 32",
+            "measurements = 100000",
+            "key object_detail.recognition.measurements: 100000",
+        ),
+        (
+            "test_touches = 8",
+            "test_touches = 0",
+            "key object_detail.recognition.test_touches: 0",
+        ),
+        (
+            "meshes = \"meshes\"",
+            "meshes = \"meshes\"\nsurface_error_mm = 1.0",
+            "key objects.surface_error_mm",
+        ),
+        (
+            "points = 1000",
+            "points = 0",
+            "key object_detail.surface_points: 0",
+        ),
+        (
+            "meshes = \"meshes\"",
+            "sets = [\"household\"]",
+            "key objects: sets of solids",
+        ),
+        (
+            "\"meshes\"",
+            "\"meshes\"\nmodel = \"packed\"",
+            "key objects.model",
+        ),
+        ("taxels = 16", "taxels = [16, 32]", "key skin: 2 arrays"),
+    ] {
+        assert!(DETAIL.contains(old), "{old}");
+        let text = DETAIL.replace(old, new);
+        let plan = ObjectDetailStudySpec::parse("study.toml", &text)
+            .and_then(|spec| ObjectDetailPlan::new("study.toml", spec));
+        let error = plan.unwrap_err().to_string();
+        assert!(
+            error.contains(said) && error.starts_with("study.toml"),
+            "{error}"
+        );
+    }
+}

@@ -1,0 +1,271 @@
+//! The study of where contact methods break.
+
+use crate::command::Case;
+use bubbletouch::report::csv_tables::read_rows;
+use bubbletouch::study::StudyKind;
+use bubbletouch::study::stability::table::{StabilityCell, StabilityScore, StabilitySummary};
+use bubbletouch::study::stability::{
+    ContactMethod, Outcome, StabilityPlan, StabilityScene, StabilityStudySpec, TOLERANCE,
+};
+use std::fs;
+use std::path::Path;
+
+const QUICK: &str = r#"
+question = "What breaks?"
+
+[[stability.parts]]
+scene = "rest"
+methods = ["quasi_static", "implicit_euler", "semi_implicit"]
+taxels = 8
+stiffness_n_per_m = [1e1, 1e5]
+object_mass_kg = [1e-3, 1e3]
+taxel_mass_kg = [1e-7, 1e-2]
+dt_s = [1e-3, 1e-1]
+
+[[stability.parts]]
+scene = "press"
+methods = ["quasi_static", "implicit_euler", "semi_implicit"]
+taxels = 8
+stiffness_n_per_m = 1e3
+taxel_mass_kg = [1e-6, 1e-2]
+dt_s = [1e-4, 1e-1]
+
+[[stability.parts]]
+scene = "plunger"
+methods = ["quasi_static", "implicit_euler", "semi_implicit"]
+taxels = 8
+stroke_mm = 20.0
+stiffness_n_per_m = 16.37
+object_mass_kg = 1.0
+taxel_mass_kg = [1e-3, 1e-2]
+dt_s = [5e-4, 5e-2]
+"#;
+
+#[test]
+fn ours_is_right_everywhere_the_others_break_where_they_must_and_threads_change_no_byte() {
+    let case = Case::new();
+    case.file("study.toml", QUICK);
+    let (said, _) = case.succeeds(&["run", "study.toml", "--threads", "1", "--out", "1"]);
+    assert!(said.contains("quasi-static"), "{said}");
+    case.succeeds(&["run", "study.toml", "--threads", "2", "--out", "2"]);
+    let read = |folder: &str, name: &str| fs::read(case.path(folder).join(name)).unwrap();
+    for name in [
+        "stability.csv",
+        "stability_summary.csv",
+        "stability_rest.svg",
+        "stability_press.svg",
+        "stability_plunger.png",
+        "study.toml",
+    ] {
+        assert!(!read("1", name).is_empty());
+        assert!(read("1", name) == read("2", name), "{name}");
+    }
+    let path = case.path("1/stability.csv");
+    let cells: Vec<StabilityCell> = read_rows(&path).unwrap();
+    let scores: Vec<StabilityScore> = read_rows(&path).unwrap();
+    assert_eq!(cells.len(), 3 * (16 + 4 + 4));
+    for (cell, score) in cells.iter().zip(&scores) {
+        let about = format!("{cell:?} {score:?}");
+        match cell.method {
+            ContactMethod::QuasiStatic => {
+                assert_eq!(score.outcome, Outcome::Right, "{about}");
+                assert!(score.force_imbalance.unwrap() <= 1e-6, "{about}");
+                assert!(score.deflection_error.unwrap() <= 1e-6, "{about}");
+            }
+            ContactMethod::ImplicitEuler => assert_eq!(score.outcome, Outcome::Right, "{about}"),
+            _ => {
+                let is_beyond = cell.dt_s > 10.0 * score.explicit_limit_s;
+                let is_press = cell.scene == StabilityScene::Press;
+                assert!(
+                    !(is_beyond && is_press && score.outcome == Outcome::Right),
+                    "{about}"
+                );
+            }
+        }
+        let is_right = score.outcome == Outcome::Right;
+        let errors = [score.force_imbalance, score.deflection_error];
+        assert!(
+            !is_right || errors.iter().all(|e| e.unwrap() <= TOLERANCE),
+            "{about}"
+        );
+    }
+    let explicit = scores.iter().zip(&cells);
+    let explicit = explicit.filter(|(_, cell)| cell.method == ContactMethod::SemiImplicit);
+    let right = explicit
+        .clone()
+        .filter(|(score, _)| score.outcome == Outcome::Right);
+    assert!(right.count() >= 2, "it is no straw man");
+    let broken = explicit.filter(|(score, _)| score.outcome >= Outcome::MissedContact);
+    assert!(broken.count() >= 8);
+    let summary: Vec<StabilitySummary> = read_rows(&case.path("1/stability_summary.csv")).unwrap();
+    assert_eq!(summary.len(), 3 * 3);
+    for row in summary {
+        let kinds = [
+            row.n_right,
+            row.n_inaccurate,
+            row.n_missed_contact,
+            row.n_energy_growth,
+            row.n_not_finite,
+        ];
+        assert_eq!(kinds.iter().sum::<usize>(), row.n_cells);
+    }
+    let svg = String::from_utf8(read("1", "stability_rest.svg")).unwrap();
+    assert!(svg.contains("limit of an explicit spring") && svg.contains("M : m"));
+}
+
+/// Plungers whose taxels carry the same on all arrays.
+const JOINTS: &str = r#"
+question = "How many joints?"
+
+[[stability.parts]]
+scene = "plunger"
+methods = ["quasi_static", "implicit_euler", "rapier_tuned", "rapier_skin_sim"]
+taxels = [4, 6, 8]
+stroke_mm = 20.0
+stiffness_n_per_m = 16.37
+object_mass_per_taxel_kg = 3.5e-3
+taxel_mass_kg = [1e-3, 1e-5]
+dt_s = 2e-3
+"#;
+
+#[test]
+fn a_ladder_of_joints_carries_the_same_on_each_and_is_charted() {
+    let case = Case::new();
+    case.file("study.toml", JOINTS);
+    case.succeeds(&["run", "study.toml", "--out", "out"]);
+    let path = case.path("out/stability.csv");
+    let cells: Vec<StabilityCell> = read_rows(&path).unwrap();
+    let scores: Vec<StabilityScore> = read_rows(&path).unwrap();
+    for (cell, score) in cells.iter().zip(&scores) {
+        let about = format!("{cell:?} {score:?}");
+        let carried = cell.object_mass_kg.unwrap() / (cell.taxels * cell.taxels) as f64;
+        assert!((carried / 3.5e-3 - 1.0).abs() < 1e-12, "{about}");
+        let is_right = score.outcome == Outcome::Right;
+        match cell.method {
+            ContactMethod::QuasiStatic | ContactMethod::ImplicitEuler => {
+                assert!(is_right, "{about}");
+            }
+            // Dampers as forces gain energy beyond Δt = 2 m / c = 0.15 ms of the lighter taxels, whatever the solver.
+            ContactMethod::RapierSkinSim if cell.taxel_mass_kg == 1e-5 => {
+                assert!(!is_right, "{about}");
+            }
+            _ => {}
+        }
+    }
+    let n_methods = if cfg!(feature = "rapier") { 4 } else { 2 };
+    assert_eq!(cells.len(), n_methods * 3 * 2);
+    let svg = fs::read_to_string(case.path("out/stability_joints.svg")).unwrap();
+    assert!(svg.contains("joints") && svg.contains("unstable near 280"));
+    let page = fs::read_to_string(case.path("out/report.html")).unwrap();
+    assert!(page.contains("class=\"asked\"") && page.contains("16 joints"));
+}
+
+#[test]
+fn keys_that_are_out_of_range_are_named_with_their_part() {
+    assert_eq!(StudyKind::of(QUICK), StudyKind::Stability);
+    for (old, new, said) in [
+        (
+            "taxels = 8",
+            "taxels = 5",
+            "key stability.parts[1].taxels: 5; even",
+        ),
+        (
+            "[1e1, 1e5]",
+            "[1e1, 0.0]",
+            "key stability.parts[1].stiffness_n_per_m: 0",
+        ),
+        (
+            "[1e-7, 1e-2]",
+            "[]",
+            "key stability.parts[1].taxel_mass_kg: an empty list",
+        ),
+        (
+            "dt_s = [1e-4, 1e-1]",
+            "dt_s = -1.0",
+            "key stability.parts[2].dt_s: -1",
+        ),
+        (
+            "stroke_mm = 20.0",
+            "stroke_mm = 0.0",
+            "key stability.parts[3].stroke_mm: 0",
+        ),
+        (
+            "object_mass_kg = 1.0\n",
+            "object_mass_kg = 1.0\nobject_mass_per_taxel_kg = 1.0\n",
+            "key stability.parts[3].object_mass_per_taxel_kg: a mass; one of this key and",
+        ),
+        (
+            "object_mass_kg = 1.0\n",
+            "",
+            "key stability.parts[3].object_mass_kg: none",
+        ),
+        (
+            "stiffness_n_per_m = 1e3",
+            "stiffness_n_per_m = 1e3\nobject_mass_kg = 1.0",
+            "key stability.parts[2].object_mass_kg: a mass",
+        ),
+        ("\"semi_implicit\"", "\"magic\"", "magic"),
+        (
+            "stroke_mm = 20.0",
+            "solver_iterations = 0",
+            "key stability.parts[3].solver_iterations: 0",
+        ),
+    ] {
+        assert!(QUICK.contains(old), "{old}");
+        let text = QUICK.replacen(old, new, 1);
+        let plan = StabilityStudySpec::parse("study.toml", &text)
+            .and_then(|spec| StabilityPlan::new("study.toml", Path::new(""), spec));
+        let error = plan.unwrap_err().to_string();
+        assert!(
+            error.contains(said) && error.starts_with("study.toml"),
+            "{error}"
+        );
+    }
+    let case = Case::new();
+    case.file("study.toml", QUICK);
+    for command in ["run", "plan"] {
+        let output = case.run(&[command, "study.toml", "--seed", "1"]);
+        assert_eq!(output.status.code(), Some(2), "{command}");
+    }
+}
+
+#[test]
+fn rows_of_other_programs_stand_in_the_parts_that_ask_for_such_cells() {
+    let case = Case::new();
+    let study = QUICK.replacen(
+        "question = \"What breaks?\"",
+        "question = \"What breaks?\"\n[stability]\npeers = \"peers.csv\"",
+        1,
+    );
+    case.file("study.toml", &study);
+    let (without, _) = case.succeeds(&["run", "study.toml", "--out", "without"]);
+    assert!(!without.contains("MuJoCo"), "no file, no rows: {without}");
+    let header = "part,scene,method,solver_iterations,taxels,stiffness_n_per_m,taxel_mass_kg,object_mass_kg,dt_s,mass_ratio,\
+                  explicit_limit_s,damping_n_s_per_m,contact_stiffness_n_per_m,outcome,force_imbalance,deflection_error,n_steps,\
+                  simulated_s,wall_s,per_simulated_s,program,version,date\n";
+    let asked = "1,rest,mujoco_discrete,,8,10,1e-7,1e-3,1e-3,1e4,2e-4,0.1,,right,1e-9,2e-5,500,0.5,1.0,2.0,MuJoCo,4.0.0,2026-11-22\n";
+    let foreign = asked.replace("8,10,", "8,77,");
+    case.file("peers.csv", format!("{header}{asked}{foreign}"));
+    let (with, _) = case.succeeds(&["run", "study.toml", "--out", "with"]);
+    assert!(with.contains("MuJoCo"), "{with}");
+    let cells: Vec<StabilityCell> = read_rows(&case.path("with/stability.csv")).unwrap();
+    let peers = cells.iter().filter(|cell| cell.method.is_peer());
+    assert_eq!(peers.count(), 1, "only cells that the study has");
+    let svg = fs::read_to_string(case.path("with/stability_rest.svg")).unwrap();
+    assert!(svg.contains("MuJoCo 4.0.0, 2026-11-22"));
+    let press = fs::read_to_string(case.path("with/stability_press.svg")).unwrap();
+    assert!(!press.contains("MuJoCo"));
+    case.file(
+        "peers.csv",
+        format!("{header}{}", asked.replace("right", "fine")),
+    );
+    let output = case.run(&["run", "study.toml", "--out", "broken"]);
+    let error = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(output.status.code(), Some(2), "{error}");
+    assert!(error.contains("peers.csv, line 2"), "{error}");
+    let study = QUICK.replacen("\"semi_implicit\"", "\"mujoco_euler\"", 1);
+    case.file("study.toml", &study);
+    let output = case.run(&["run", "study.toml"]);
+    let error = String::from_utf8(output.stderr).unwrap();
+    assert!(error.contains("key stability.parts[1].methods"), "{error}");
+}

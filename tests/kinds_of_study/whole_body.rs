@@ -1,0 +1,306 @@
+//! Studies of a whole body, small and quick.
+
+use crate::command::Case;
+use bubbletouch::report::csv_tables::read_rows;
+use bubbletouch::study::StudyKind;
+use bubbletouch::study::whole_body::table::{
+    Bar, BodyCase, BodyCount, BodyRecognition, BodySensed, BodyTime, Series, Stage,
+};
+use bubbletouch::study::whole_body::{WholeBodyPlan, WholeBodyStudySpec};
+use std::fs;
+
+const ROBOT: &str = r#"<robot name="post">
+  <link name="base">
+    <collision><origin xyz="0 0 0.1"/><geometry><capsule radius="0.06" length="0.2"/></geometry></collision>
+  </link>
+  <link name="arm">
+    <collision><origin xyz="0 0 -0.1"/><geometry><cylinder radius="0.03" length="0.2"/></geometry></collision>
+    <collision><origin xyz="0 0 -0.2"/><geometry><sphere radius="0.03"/></geometry></collision>
+  </link>
+  <joint name="shoulder" type="revolute">
+    <parent link="base"/><child link="arm"/><origin xyz="0 0.12 0.2"/><axis xyz="0 1 0"/>
+    <limit lower="-2" upper="2" velocity="1" effort="1"/>
+  </joint>
+</robot>"#;
+
+const STUDY: &str = r#"
+question = "What does a post of skin cost?"
+expected = "Little."
+seed = 7
+
+[whole_body]
+robot = "robots/post.urdf"
+pitch_mm = 3.0
+patch_mm = 60.0
+steps = 20
+surface_error_mm = 0.5
+
+[[whole_body.scenes]]
+name = "nothing"
+object = "tennis_ball"
+link = "base"
+at_mm = [500.0, 0.0, 0.0]
+
+[[whole_body.scenes]]
+name = "ball"
+object = "tennis_ball"
+link = "arm"
+at_mm = [30.0, 0.0, -100.0]
+depth_mm = 1.5
+moves_mm = [0.0, 0.0, 2.0]
+period_ms = 40.0
+posture_deg = { shoulder = -90.0 }
+
+[[whole_body.scenes]]
+name = "fingertip"
+parts = [{ capsule = { diameter_mm = 16.0, length_mm = 40.0 } }]
+link = "arm"
+at_mm = [0.0, 0.0, -230.0]
+turn_deg = [0.0, 20.0, 0.0]
+from = [0.0, 0.0, -1.0]
+depth_mm = 1.0
+
+[whole_body.sensing]
+measurements = 256
+ensembles = ["sbhe", "sparse"]
+sbhe_blocks = [32, 256]
+
+[whole_body.recognition]
+objects = ["tennis_ball", "cracker_box"]
+link = "base"
+at_mm = [60.0, 0.0, 100.0]
+offset_mm = 3.0
+yaw_deg = 10.0
+depth_mm = [1.0, 1.8]
+training_touches = 20
+test_touches = 10
+
+[whole_body.ladders]
+taxels = [2000, 20000]
+touched_at_taxels = [200, 900]
+touched = [100, 400]
+taxels_at_touch = 30000
+spheres = [200, 600]
+touched_at_spheres = 400
+"#;
+
+fn case(study: &str) -> Case {
+    let case = Case::new();
+    fs::create_dir(case.path("robots")).unwrap();
+    case.file("robots/post.urdf", ROBOT);
+    case.file("study.toml", study);
+    case
+}
+
+#[test]
+fn tables_but_for_times_are_the_same_bytes_at_any_number_of_threads_and_obey_their_laws() {
+    let case = case(STUDY);
+    let (said, _) = case.succeeds(&["run", "study.toml", "--threads", "1", "--out", "1"]);
+    assert!(
+        said.contains("What was asked") && said.contains("fingertip"),
+        "{said}"
+    );
+    let quiet = [
+        "run",
+        "study.toml",
+        "--threads",
+        "2",
+        "--out",
+        "2",
+        "--quiet",
+    ];
+    assert_eq!(case.succeeds(&quiet), (String::new(), String::new()));
+    let read = |folder: &str, name: &str| fs::read(case.path(folder).join(name)).unwrap();
+    for name in [
+        "whole_body.csv",
+        "sensed.csv",
+        "recognition.csv",
+        "study.toml",
+        "touched.png",
+    ] {
+        assert!(!read("1", name).is_empty());
+        assert!(read("1", name) == read("2", name), "{name}");
+    }
+    let cases: Vec<BodyCase> = read_rows(&case.path("1/whole_body.csv")).unwrap();
+    let counts: Vec<BodyCount> = read_rows(&case.path("1/whole_body.csv")).unwrap();
+    // 900 of 2,000 taxels are too many for a sheet.
+    assert_eq!(cases.len(), 3 + 3 + 2 + 2);
+    for (case, count) in cases.iter().zip(&counts) {
+        assert_eq!(count.n_steps, 20);
+        assert!(count.touched_min <= count.touched_max && count.bytes_per_taxel < 64.0);
+        match (case.series, case.name.as_str()) {
+            (Series::Scene, "nothing") => {
+                assert_eq!((count.touched_max, count.deflection_sum_mm), (0, 0.0));
+            }
+            (Series::Scene, _) => assert!(count.touched_min > 3, "{case:?} {count:?}"),
+            _ => {
+                let asked: f64 = match case.series {
+                    Series::Skin if case.name.ends_with(" 200 touched") => 200.0,
+                    Series::Skin => 900.0,
+                    Series::Touch if case.name == "100 touched" => 100.0,
+                    _ => 400.0,
+                };
+                assert!((count.touched_mean / asked - 1.0).abs() < 0.1, "{case:?}");
+            }
+        }
+        assert!(count.patches_touched_mean <= count.patches_visited_mean);
+    }
+    let sensed: Vec<BodySensed> = read_rows(&case.path("1/sensed.csv")).unwrap();
+    assert_eq!(sensed.len(), 3 * 3, "scenes and compressions");
+    for row in &sensed {
+        assert_eq!(
+            row.measurement_sum_mm == 0.0,
+            row.scene == "nothing",
+            "{row:?}"
+        );
+    }
+    let learned: Vec<BodyRecognition> = read_rows(&case.path("1/recognition.csv")).unwrap();
+    assert_eq!(learned.len(), 3);
+    for row in &learned {
+        assert_eq!((row.n_objects, row.n_training, row.n_test), (2, 40, 20));
+        assert!(
+            row.accuracy >= 0.9,
+            "a ball and a box feel different: {row:?}"
+        );
+    }
+    assert!(
+        learned[0].read_share < learned[1].read_share,
+        "larger blocks read more"
+    );
+    let timed: Vec<BodyCase> = read_rows(&case.path("1/timing.csv")).unwrap();
+    let times: Vec<BodyTime> = read_rows(&case.path("1/timing.csv")).unwrap();
+    assert_eq!(times.len(), 3 * (1 + 3 * 3) + 7);
+    for (case, time) in timed.iter().zip(&times) {
+        assert!(time.us_p05 <= time.us_median && time.us_median <= time.us_p95);
+        assert_eq!(
+            time.compression.is_empty(),
+            time.stage == Stage::Press,
+            "{case:?}"
+        );
+    }
+    let bars: Vec<Bar> = read_rows(&case.path("1/bars.csv")).unwrap();
+    for bar in &bars {
+        assert_eq!(
+            bar.is_met,
+            (bar.measured >= bar.bar) == bar.at_least || bar.measured == bar.bar
+        );
+    }
+    for chart in ["time_by_taxels", "time_by_touched", "time_by_stage"] {
+        assert!(!read("1", &format!("{chart}.png")).is_empty());
+        let svg = String::from_utf8(read("1", &format!("{chart}.svg"))).unwrap();
+        assert!(svg.contains("time of a step, µs"), "{chart}");
+    }
+    let page = String::from_utf8(read("1", "report.html")).unwrap();
+    assert!(page.contains("What does a post of skin cost?") && page.contains("timing.csv"));
+    assert!(!page.contains("{{") && !page.contains("(no value"));
+}
+
+#[test]
+fn a_study_of_a_body_takes_no_objects_and_misses_none() {
+    let case = case(STUDY);
+    for command in ["plan", "run"] {
+        let output = case.run(&[command, "study.toml", "--objects", "robots"]);
+        assert_eq!(output.status.code(), Some(2), "{command}");
+    }
+    let away = STUDY.replace("at_mm = [30.0, 0.0, -100.0]", "at_mm = [900.0, 900.0, 0.0]");
+    case.file("away.toml", away);
+    let output = case.run(&["run", "away.toml", "--out", "1", "--fail-fast"]);
+    let said = String::from_utf8(output.stderr).unwrap();
+    assert!(
+        output.status.code() == Some(2) && said.contains("scene ball, approach: no contact"),
+        "{said}"
+    );
+}
+
+#[test]
+fn keys_of_a_body_study_that_are_out_of_range_are_named() {
+    assert_eq!(StudyKind::of(STUDY), StudyKind::WholeBody);
+    let case = case(STUDY);
+    let plan = |text: &str| {
+        WholeBodyStudySpec::parse("study.toml", text)
+            .and_then(|spec| WholeBodyPlan::new("study.toml", case.folder(), spec))
+    };
+    assert!(plan(STUDY).is_ok());
+    for (old, new, said) in [
+        (
+            "pitch_mm = 3.0",
+            "pitch_mm = 0.0",
+            "key whole_body.pitch_mm: 0",
+        ),
+        ("steps = 20", "steps = 0", "key whole_body.steps: 0"),
+        ("steps = 20", "stepps = 20", "unknown field `stepps`"),
+        (
+            "link = \"arm\"",
+            "link = \"leg\"",
+            "key whole_body.scenes[1].link: leg",
+        ),
+        (
+            "shoulder = -90.0",
+            "hip = -90.0",
+            "key whole_body.scenes[1].posture_deg: hip",
+        ),
+        (
+            "depth_mm = 1.5",
+            "depth_mm = -1.5",
+            "key whole_body.scenes[1].depth_mm: -1.5",
+        ),
+        (
+            "from = [0.0, 0.0, -1.0]",
+            "from = [0.0, 0.0, 0.0]",
+            "key whole_body.scenes[2].from",
+        ),
+        (
+            "name = \"ball\"\nobject = \"tennis_ball\"",
+            "name = \"ball\"",
+            "key whole_body.scenes[1].object",
+        ),
+        (
+            "name = \"fingertip\"",
+            "name = \"ball\"",
+            "key whole_body.scenes: \"ball\" twice",
+        ),
+        ("{ capsule =", "{ torus =", "diameter_mm"),
+        (
+            "[\"sbhe\", \"sparse\"]",
+            "[\"gaussian\"]",
+            "key whole_body.sensing.ensembles: Gaussian",
+        ),
+        (
+            "[32, 256]",
+            "[32, 100]",
+            "key whole_body.sensing.sbhe_blocks: 100",
+        ),
+        (
+            "[\"tennis_ball\", \"cracker_box\"]",
+            "[\"mug\"]",
+            "key whole_body.recognition.objects: one object",
+        ),
+        (
+            "depth_mm = [1.0, 1.8]",
+            "depth_mm = [1.8, 1.0]",
+            "key whole_body.recognition.depth_mm",
+        ),
+        (
+            "training_touches = 20",
+            "training_touches = 0",
+            "key whole_body.recognition.training_touches: 0",
+        ),
+        (
+            "touched = [100, 400]",
+            "touched = []",
+            "key whole_body.ladders.touched: an empty list",
+        ),
+    ] {
+        assert!(STUDY.contains(old), "{old}");
+        let error = plan(&STUDY.replace(old, new)).unwrap_err().to_string();
+        assert!(
+            error.contains(said) && error.starts_with("study.toml"),
+            "{error}"
+        );
+    }
+    let missing = plan(&STUDY.replace("robots/post.urdf", "robots/none.urdf")).unwrap_err();
+    assert!(
+        missing.to_string().contains("none.urdf") && missing.exit_code() == 2,
+        "{missing}"
+    );
+}

@@ -1,0 +1,536 @@
+//! Studies of every kind that is made of pieces, through all that can happen to a run: their tables come out as if nothing had.
+#![cfg(unix)]
+
+use crate::command::Case;
+use crate::faults::{full_disk, keys, pieces, said, signal, start};
+use crate::kinds::Kind;
+use rand::{Rng, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+use std::collections::BTreeSet;
+use std::fs;
+use std::thread::sleep;
+use std::time::{Duration, Instant};
+
+/// A study that has run once, in the folder `whole`.
+struct Faults {
+    kind: Kind,
+    case: Case,
+    took: Duration,
+}
+
+/// No stage goes beyond its total; from the first piece on a run says how long it will take, and at its end nothing of what was
+/// planned is left.
+fn assert_progress_ends(said: &str) {
+    let events = said.lines().map(|line| serde_json::from_str(line).unwrap());
+    let progress = events.filter(|event: &serde_json::Value| event["event"] == "progress");
+    let progress: Vec<_> = progress.collect();
+    let of = |event: &serde_json::Value, field: &str| event[field].as_u64().expect("a count");
+    for event in &progress {
+        assert!(of(event, "done") <= of(event, "total"), "{event}");
+    }
+    let left: Vec<f64> = progress
+        .iter()
+        .map(|event| event["run_left_s"].as_f64().expect("seconds left"))
+        .collect();
+    assert!(left.len() > 1 && left[0] > 0.0, "{left:?}");
+    assert_eq!(left.last(), Some(&0.0), "{left:?}");
+}
+
+/// What a plan says after a word, as numbers and words.
+fn planned(said: &str, word: &str) -> Vec<String> {
+    let line = said
+        .lines()
+        .find(|line| line.trim_start().starts_with(word));
+    let line = line.unwrap_or_else(|| panic!("no line starts with '{word}': {said}"));
+    line.split_whitespace().skip(1).map(str::to_owned).collect()
+}
+
+#[test]
+fn a_study_of_every_kind_is_planned_and_its_plan_counts_its_pieces() {
+    for kind in [
+        Kind::STABILITY,
+        Kind::BREAKING_POINTS,
+        Kind::RECONSTRUCTION,
+        Kind::OBJECT_DETAIL,
+        Kind::WHOLE_BODY,
+        Kind::SPEED_ACCURACY,
+    ] {
+        let case = kind.case();
+        let (said, error) = case.succeeds(&["plan", "study.toml", "--threads", "1"]);
+        assert!(
+            said.starts_with("study: ") && error.is_empty(),
+            "{said}{error}"
+        );
+        assert!(!case.path("results").exists(), "a plan writes nothing");
+        for word in ["objects", "touches", "memory", "time"] {
+            assert!(!planned(&said, word).is_empty(), "{said}");
+        }
+        assert!(
+            planned(&said, "time").join(" ").contains("on 1 thread ("),
+            "{said}"
+        );
+        case.succeeds(&["run", "study.toml", "--out", "whole"]);
+        let n_pieces = pieces(&case.path("whole/journal.jsonl")).len();
+        assert_eq!(
+            planned(&said, "pieces")[0],
+            format!("{n_pieces},"),
+            "{said}"
+        );
+        let refused = case.run(&["plan", "study.toml", "--memory-gib", "1"]);
+        assert_eq!(refused.status.code(), Some(2));
+    }
+}
+
+impl Faults {
+    fn of(kind: Kind) -> Self {
+        let case = kind.case();
+        let start = Instant::now();
+        let (said, _) = case.succeeds(&["run", "study.toml", "--out", "whole", "--json"]);
+        let took = start.elapsed();
+        assert_progress_ends(&said);
+        let faults = Self { kind, case, took };
+        let manifest = fs::read_to_string(faults.case.path("whole/manifest.json")).unwrap();
+        let manifest: serde_json::Value = serde_json::from_str(&manifest).unwrap();
+        assert_eq!(manifest["n_cells"], faults.n_pieces());
+        assert_eq!(manifest["n_failed"], 0);
+        let hashes = manifest["tables_sha256"].as_object().unwrap();
+        let names: Vec<&str> = hashes.keys().map(String::as_str).collect();
+        let mut expected = faults.kind.repeatable.to_vec();
+        expected.sort_unstable();
+        assert_eq!(names, expected);
+        faults
+    }
+
+    fn n_pieces(&self) -> usize {
+        pieces(&self.case.path("whole/journal.jsonl")).len()
+    }
+
+    /// The tables without times, of which none is empty.
+    fn assert_same_tables(&self, folder: &str) {
+        for name in self.kind.repeatable.iter().chain(&["study.toml"]) {
+            let read = |folder: &str| fs::read(self.case.path(folder).join(name)).unwrap();
+            assert!(!read("whole").is_empty(), "{name}");
+            assert!(read("whole") == read(folder), "{folder}/{name}");
+        }
+    }
+
+    fn is_killed_at_random_and_does_no_piece_twice(&self, n_kills: usize) {
+        let mut rng = ChaCha8Rng::seed_from_u64(8);
+        let journal = self.case.path("killed/journal.jsonl");
+        let mut n_done = 0;
+        for n_killed in 0.. {
+            let mut run = start(&self.case, &["run", "study.toml", "--out", "killed"]);
+            let share = match n_killed < n_kills {
+                true => rng.gen_range(0.0..1.0),
+                false => 1e3,
+            };
+            let end = Instant::now() + self.took.mul_f64(share);
+            while Instant::now() < end && run.try_wait().unwrap().is_none() {
+                sleep(Duration::from_millis(2));
+            }
+            let has_ended = run.try_wait().unwrap().is_some();
+            run.kill().unwrap();
+            let output = run.wait_with_output().unwrap();
+            let done = pieces(&journal);
+            assert!(done.len() >= n_done, "pieces were lost");
+            n_done = done.len();
+            if has_ended {
+                assert!(output.status.success(), "{}", said(&output));
+                break;
+            }
+        }
+        let done = pieces(&journal);
+        let different: BTreeSet<&String> = done.iter().collect();
+        assert_eq!(done.len(), different.len(), "a piece was done twice");
+        assert_eq!(done.len(), self.n_pieces());
+        self.assert_same_tables("killed");
+    }
+
+    fn loses_no_more_than_a_torn_last_line(&self) {
+        let whole = fs::read(self.case.path("whole/journal.jsonl")).unwrap();
+        fs::create_dir(self.case.path("torn")).unwrap();
+        let journal = self.case.path("torn/journal.jsonl");
+        for n in [whole.len() / 2, whole.len() - 1] {
+            fs::write(&journal, &whole[..n]).unwrap();
+            let kept = pieces(&journal);
+            let (_, error) = self.case.succeeds(&["run", "study.toml", "--out", "torn"]);
+            assert_eq!(error.contains("going on"), !kept.is_empty(), "{error}");
+            assert_eq!(pieces(&journal)[..kept.len()], kept);
+            self.assert_same_tables("torn");
+        }
+        // Times that were measured stay as they were.
+        let times = |folder: &str| fs::read(self.case.path(folder).join(self.kind.times)).unwrap();
+        fs::write(&journal, &whole).unwrap();
+        self.case.succeeds(&["run", "study.toml", "--out", "torn"]);
+        assert!(times("whole") == times("torn"));
+    }
+
+    fn ends_on_a_full_disk_and_goes_on_where_there_is_room(&self) {
+        let arguments = ["run", "study.toml", "--out", "full"];
+        let output = full_disk(&self.case, 3, &arguments);
+        assert_eq!(output.status.code(), Some(1), "{}", said(&output));
+        self.case.succeeds(&arguments);
+        self.assert_same_tables("full");
+    }
+
+    fn tells_a_second_run_of_the_first(&self) {
+        let arguments = ["run", "study.toml", "--out", "shared"];
+        let first = start(&self.case, &arguments);
+        while keys(&self.case.path("shared/journal.jsonl")).is_empty() {
+            sleep(Duration::from_millis(1));
+        }
+        signal(&first, "STOP");
+        let second = self.case.run(&arguments);
+        signal(&first, "CONT");
+        assert_eq!(second.status.code(), Some(2));
+        let error = said(&second);
+        assert!(error.contains("another run is writing to it"), "{error}");
+        // Once a piece is done, a signal ends it with nothing lost.
+        while pieces(&self.case.path("shared/journal.jsonl")).is_empty() {
+            sleep(Duration::from_millis(1));
+        }
+        signal(&first, "TERM");
+        let output = first.wait_with_output().unwrap();
+        let stopped = output.status.code() == Some(130);
+        assert!(stopped || output.status.success(), "{}", said(&output));
+        self.case.succeeds(&arguments);
+        self.assert_same_tables("shared");
+    }
+
+    fn refuses_a_changed_study(&self) {
+        let (old, new, said_of_it) = self.kind.change;
+        assert!(self.kind.study.contains(old));
+        let changed = self.kind.study.replace(old, new);
+        self.case.file("changed.toml", changed);
+        let output = self.case.run(&["run", "changed.toml", "--out", "whole"]);
+        assert_eq!(output.status.code(), Some(2));
+        let error = said(&output);
+        assert!(
+            error.contains(said_of_it) && error.contains("--fresh"),
+            "{error}"
+        );
+    }
+
+    fn refuses_a_journal_that_names_no_study(&self) {
+        let whole = fs::read_to_string(self.case.path("whole/journal.jsonl")).unwrap();
+        let rest = whole.split_once('\n').unwrap().1;
+        fs::create_dir(self.case.path("nameless")).unwrap();
+        let journal = self.case.file("nameless/journal.jsonl", rest);
+        let output = self.case.run(&["run", "study.toml", "--out", "nameless"]);
+        assert_eq!(output.status.code(), Some(2));
+        let error = said(&output);
+        assert!(
+            error.contains("journal.jsonl: line 1: is no record of a study")
+                && error.contains("--fresh"),
+            "{error}"
+        );
+        assert!(rest == fs::read_to_string(journal).unwrap());
+    }
+
+    fn keeps_its_work_when_there_is_more_of_it(&self) {
+        let mut more = self.kind.study.to_owned();
+        for (old, new) in self.kind.more {
+            assert!(more.contains(old), "{old}");
+            more = more.replacen(old, new, 1);
+        }
+        self.case.file("more.toml", more);
+        self.case.succeeds(&["run", "more.toml", "--out", "fresh"]);
+        fs::create_dir(self.case.path("grown")).unwrap();
+        let journals = ["whole", "grown"].map(|name| self.case.path(name).join("journal.jsonl"));
+        fs::copy(&journals[0], &journals[1]).unwrap();
+        let (_, error) = self.case.succeeds(&["run", "more.toml", "--out", "grown"]);
+        let (n_before, n_all) = (self.n_pieces(), pieces(&journals[1]).len());
+        let going_on = format!("going on: {n_before} of {n_all} pieces");
+        assert!(n_before < n_all && error.contains(&going_on), "{error}");
+        for name in self.kind.repeatable {
+            let read = |folder: &str| fs::read(self.case.path(folder).join(name)).unwrap();
+            assert!(read("fresh") == read("grown"), "{name}");
+        }
+    }
+
+    fn is_the_same_in_shards(&self) {
+        for shard in ["2/3", "1/3", "3/3"] {
+            let early = self.case.run(&["merge", "study.toml", "--out", "parts"]);
+            assert_eq!(early.status.code(), Some(2), "{}", said(&early));
+            let shard = ["run", "study.toml", "--out", "parts", "--shard", shard];
+            self.case.succeeds(&shard);
+        }
+        self.case
+            .succeeds(&["merge", "study.toml", "--out", "parts"]);
+        self.assert_same_tables("parts");
+    }
+
+    fn verifies_until_a_number_is_changed(&self) {
+        let n = self.n_pieces();
+        let all = ["verify", "whole", "--cells", &n.to_string()];
+        let (output, _) = self.case.succeeds(&all);
+        assert!(
+            output.contains(&format!("{n} of {n} pieces ran again")),
+            "{output}"
+        );
+        let path = self.case.path("whole").join(self.kind.repeatable[0]);
+        let manifest = self.case.path("whole/manifest.json");
+        let text = fs::read_to_string(&path).unwrap();
+        let changed = text.replacen(['1', '2', '3'], "4", 60);
+        fs::write(&path, &changed).unwrap();
+        let output = self.case.run(&all);
+        assert_eq!(output.status.code(), Some(2));
+        let error = said(&output);
+        assert!(error.contains("was changed after its run"), "{error}");
+        // Who changes the manifest too is found out by running pieces again.
+        let written = fs::read_to_string(&manifest).unwrap();
+        let sums = [
+            crate::faults::sha256(text.as_bytes()),
+            crate::faults::sha256(changed.as_bytes()),
+        ];
+        fs::write(&manifest, written.replace(&sums[0], &sums[1])).unwrap();
+        let output = self.case.run(&all);
+        assert_eq!(output.status.code(), Some(2));
+        assert!(said(&output).contains("again it is"), "{}", said(&output));
+    }
+}
+
+fn goes_through_all_faults(kind: Kind) {
+    let faults = Faults::of(kind);
+    faults.is_killed_at_random_and_does_no_piece_twice(5);
+    faults.loses_no_more_than_a_torn_last_line();
+    faults.ends_on_a_full_disk_and_goes_on_where_there_is_room();
+    faults.tells_a_second_run_of_the_first();
+    faults.refuses_a_changed_study();
+    faults.refuses_a_journal_that_names_no_study();
+    faults.keeps_its_work_when_there_is_more_of_it();
+    faults.is_the_same_in_shards();
+    faults.verifies_until_a_number_is_changed();
+}
+
+#[test]
+fn a_study_of_stability_goes_through_all_faults() {
+    goes_through_all_faults(Kind::STABILITY);
+}
+
+#[test]
+fn a_study_of_breaking_points_goes_through_all_faults() {
+    goes_through_all_faults(Kind::BREAKING_POINTS);
+}
+
+#[test]
+fn a_reconstruction_study_goes_through_all_faults() {
+    goes_through_all_faults(Kind::RECONSTRUCTION);
+}
+
+#[test]
+fn a_study_of_object_detail_goes_through_all_faults() {
+    goes_through_all_faults(Kind::OBJECT_DETAIL);
+}
+
+#[test]
+fn a_study_of_a_whole_body_goes_through_all_faults() {
+    goes_through_all_faults(Kind::WHOLE_BODY);
+}
+
+#[test]
+fn a_study_of_speed_against_accuracy_goes_through_all_faults() {
+    goes_through_all_faults(Kind::SPEED_ACCURACY);
+}
+
+#[test]
+fn a_piece_that_fails_is_recorded_and_the_others_are_done() {
+    // Of 12 touches an object, none is left to learn from where one kind is a thousand times as rare.
+    let failing = Kind {
+        study: crate::kinds::IMBALANCED,
+        ..Kind::BREAKING_POINTS
+    };
+    let case = failing.case();
+    let output = case.run(&["run", "study.toml", "--out", "failing"]);
+    assert_eq!(output.status.code(), Some(1));
+    let error = said(&output);
+    assert!(
+        error.contains("failures.csv: 1 of 4 pieces failed"),
+        "{error}"
+    );
+    let rows = |name: &str| fs::read_to_string(case.path("failing").join(name)).unwrap();
+    let failures = rows("failures.csv");
+    assert_eq!(failures.lines().count(), 1 + 1);
+    assert!(failures.contains("imbalance at 1000"), "{failures}");
+    assert!(
+        failures.contains("key recognition.class_imbalance"),
+        "{failures}"
+    );
+    assert_eq!(rows("summary.csv").lines().count(), 1 + 3);
+    // It is tried again, the others are not.
+    let again = case.run(&["run", "study.toml", "--out", "failing"]);
+    assert_eq!(again.status.code(), Some(1));
+    assert_eq!(pieces(&case.path("failing/journal.jsonl")).len(), 4 + 1);
+    let (output, _) = case.succeeds(&["verify", "failing"]);
+    assert!(output.contains("3 of 4 pieces"), "{output}");
+    let strict = case.run(&["run", "study.toml", "--out", "strict", "--fail-fast"]);
+    assert_eq!(strict.status.code(), Some(2));
+    assert!(
+        said(&strict).contains("way imbalance at 1000"),
+        "{}",
+        said(&strict)
+    );
+}
+
+#[test]
+fn what_a_whole_group_needs_and_cannot_be_had_fails_its_pieces_and_no_others() {
+    let case = Kind::OBJECT_DETAIL.case();
+    let plate = fs::read_to_string(case.path("meshes/plate.obj")).unwrap();
+    let open: Vec<&str> = plate.lines().take(8 + 11).collect();
+    case.file("meshes/open.obj", open.join("\n"));
+    let output = case.run(&["run", "study.toml", "--out", "open"]);
+    assert_eq!(output.status.code(), Some(1), "{}", said(&output));
+    let failures = fs::read_to_string(case.path("open/failures.csv")).unwrap();
+    // Its models, their times, and all that learns from every object.
+    assert_eq!(failures.lines().count(), 1 + 2 + 3, "{failures}");
+    assert!(
+        failures
+            .lines()
+            .skip(1)
+            .all(|line| line.contains("open.obj: 3 edges")),
+        "{failures}"
+    );
+    let detail = fs::read_to_string(case.path("open/object_detail.csv")).unwrap();
+    assert_eq!(detail.lines().count(), 1 + 2 * 3, "{detail}");
+    // Mended, the study goes on with what is left.
+    case.file("meshes/open.obj", plate.replace("0.02", "0.018"));
+    let output = case.run(&["run", "study.toml", "--out", "open"]);
+    assert_eq!(
+        output.status.code(),
+        Some(2),
+        "another object is another study"
+    );
+}
+
+#[test]
+fn counts_that_no_memory_holds_are_refused_before_it_is_taken_in_studies_of_every_kind() {
+    const MANY: &str = "99999999999";
+    let cases = [
+        (
+            Kind::STABILITY,
+            "taxels = 8",
+            "taxels",
+            "stability.parts[1].taxels",
+        ),
+        (
+            Kind::RECONSTRUCTION,
+            "isometry_subsets = 30",
+            "isometry_subsets",
+            "reconstruction.isometry_subsets",
+        ),
+        (
+            Kind::RECONSTRUCTION,
+            "per_object = 20",
+            "per_object",
+            "touches.per_object",
+        ),
+        (
+            Kind::OBJECT_DETAIL,
+            "surface_points = 500",
+            "surface_points",
+            "object_detail.surface_points",
+        ),
+        (
+            Kind::OBJECT_DETAIL,
+            "training_touches = 10",
+            "training_touches",
+            "object_detail.recognition.training_touches",
+        ),
+        (
+            Kind::OBJECT_DETAIL,
+            "test_touches = 6",
+            "test_touches",
+            "object_detail.recognition.test_touches",
+        ),
+        (
+            Kind::SPEED_ACCURACY,
+            "\ntouches = 3",
+            "\ntouches",
+            "speed_accuracy.contact.touches",
+        ),
+        (
+            Kind::SPEED_ACCURACY,
+            "stepped_touches = 1",
+            "stepped_touches",
+            "speed_accuracy.contact.stepped_touches",
+        ),
+        (
+            Kind::SPEED_ACCURACY,
+            "training_touches = 10",
+            "training_touches",
+            "speed_accuracy.recognition.training_touches",
+        ),
+        (
+            Kind::SPEED_ACCURACY,
+            "touches = [8, 12]",
+            "touches",
+            "speed_accuracy.resolution.touches",
+        ),
+        (
+            Kind::SPEED_ACCURACY,
+            "trials = [2, 3]",
+            "trials",
+            "speed_accuracy.resolution.trials",
+        ),
+        (Kind::WHOLE_BODY, "steps = 10", "steps", "whole_body.steps"),
+        (
+            Kind::WHOLE_BODY,
+            "measurements = 64",
+            "measurements",
+            "whole_body.sensing.measurements",
+        ),
+        (
+            Kind::WHOLE_BODY,
+            "training_touches = 10",
+            "training_touches",
+            "whole_body.recognition.training_touches",
+        ),
+        (
+            Kind::WHOLE_BODY,
+            "test_touches = 5",
+            "test_touches",
+            "whole_body.recognition.test_touches",
+        ),
+        (
+            Kind::WHOLE_BODY,
+            "\ntaxels = [2000, 20000]",
+            "\ntaxels",
+            "whole_body.ladders.taxels",
+        ),
+        (
+            Kind::WHOLE_BODY,
+            "spheres = [200, 600]",
+            "spheres",
+            "whole_body.ladders.spheres",
+        ),
+        (
+            Kind::WHOLE_BODY,
+            "taxels_at_touch = 30000",
+            "taxels_at_touch",
+            "whole_body.ladders.taxels_at_touch",
+        ),
+        (
+            Kind::BREAKING_POINTS,
+            "per_object = 24",
+            "per_object",
+            "touches.per_object",
+        ),
+        (Kind::BREAKING_POINTS, "trials = 2", "trials", "trials"),
+    ];
+    for (kind, line, name, key) in cases {
+        let case = kind.case();
+        assert!(kind.study.contains(line), "{line}");
+        let is_list = line.contains('[');
+        let many = if is_list {
+            format!("[{MANY}]")
+        } else {
+            MANY.to_owned()
+        };
+        let study = kind.study.replacen(line, &format!("{name} = {many}"), 1);
+        case.file("study.toml", study);
+        let output = case.run(&["run", "study.toml", "--out", "out"]);
+        let error = said(&output);
+        assert_eq!(output.status.code(), Some(2), "{key}: {error}");
+        assert!(error.contains(&format!("key {key}: {MANY}")), "{error}");
+    }
+}

@@ -1,0 +1,597 @@
+//! A run that is interrupted goes on: whatever ended it, the tables come out as if nothing had.
+#![cfg(unix)]
+
+use crate::command::Case;
+use crate::faults::{full_disk, keys, said, sha256, signal, start};
+use rand::{Rng, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+use std::collections::BTreeSet;
+use std::fs;
+use std::path::Path;
+use std::thread::sleep;
+use std::time::{Duration, Instant};
+
+/// Two arrays, 64 fits; less than a second of work.
+const STUDY: &str = r#"
+question = "What is left of a run that was killed?"
+trials = 2
+
+[objects]
+sets = ["household"]
+names = ["mug", "banana", "scissors", "power_drill"]
+surface_error_mm = 2.0
+
+[skin]
+pitch_mm = [4.0, 8.0]
+size_mm = 64.0
+stroke_mm = 5.0
+
+[touches]
+per_object = 32
+offset_x_mm = { uniform = [-8.0, 8.0] }
+yaw_deg = { uniform = [0.0, 360.0] }
+depth_mm = 3.0
+
+[signal]
+noise_std_full_scale = [0.05, 0.2]
+
+[sensing]
+ensemble = "gaussian"
+ratio = [4, 16]
+
+[recognition]
+classifier = ["linear_svm", "naive_bayes"]
+features = ["raw", "unit_norm"]
+"#;
+
+/// The tables that hold no times.
+const REPEATABLE: [&str; 7] = [
+    "accuracy.csv",
+    "summary.csv",
+    "confusion.csv",
+    "comparison.csv",
+    "confused.csv",
+    "failures.csv",
+    "study.toml",
+];
+
+fn case() -> Case {
+    let case = Case::new();
+    case.file("study.toml", STUDY);
+    case.succeeds(&["run", "study.toml", "--out", "whole"]);
+    case
+}
+
+fn assert_same_tables(case: &Case, folder: &str) {
+    for name in REPEATABLE {
+        let read = |folder: &str| fs::read(case.path(folder).join(name)).unwrap();
+        assert!(read("whole") == read(folder), "{folder}/{name}");
+    }
+}
+
+fn cell_keys(journal: &Path) -> Vec<String> {
+    keys(journal)
+        .into_iter()
+        .filter(|key| key.starts_with("cell "))
+        .collect()
+}
+
+/// Kills after which a run goes on to its end.
+const MOST_KILLS_OF_FOLDER: usize = 10;
+
+#[test]
+fn a_run_that_is_killed_at_any_instant_goes_on_and_does_no_cell_twice() {
+    let case = case();
+    let start_of_whole = Instant::now();
+    case.succeeds(&["run", "study.toml", "--out", "timed"]);
+    let whole = start_of_whole.elapsed();
+    let mut rng = ChaCha8Rng::seed_from_u64(8);
+    let (mut n_kills, mut folder_number) = (0, 0);
+    while n_kills < 50 {
+        let folder = format!("killed_{folder_number}");
+        folder_number += 1;
+        let journal = case.path(&folder).join("journal.jsonl");
+        for n_of_folder in 0.. {
+            let mut run = start(&case, &["run", "study.toml", "--out", &folder]);
+            // At the last it may end: to read what is there and to report can take as long as the whole run took.
+            let mut has_ended = n_of_folder == MOST_KILLS_OF_FOLDER;
+            if !has_ended {
+                sleep(whole.mul_f64(rng.gen_range(0.0..1.0)));
+                has_ended = run.try_wait().unwrap().is_some();
+                run.kill().unwrap();
+            }
+            let output = run.wait_with_output().unwrap();
+            if has_ended {
+                assert!(output.status.success(), "{}", said(&output));
+                break;
+            }
+            n_kills += 1;
+        }
+        assert_same_tables(&case, &folder);
+        let done = cell_keys(&journal);
+        let different: BTreeSet<&String> = done.iter().collect();
+        assert_eq!(
+            done.len(),
+            different.len(),
+            "{folder}: a cell was done twice"
+        );
+        assert_eq!(done.len(), 2 * 2 * 2 * 2 * 2 * 2);
+    }
+}
+
+#[test]
+fn a_journal_whose_tail_is_torn_loses_its_last_line_and_nothing_else() {
+    let case = case();
+    let journal = case.path("whole/journal.jsonl");
+    let bytes = fs::read(&journal).unwrap();
+    let mut rng = ChaCha8Rng::seed_from_u64(9);
+    for round in 0..6 {
+        let n = match round {
+            0 => 0,
+            1 => 10,
+            2 => bytes.len() - 1,
+            _ => rng.gen_range(0..bytes.len()),
+        };
+        fs::write(&journal, &bytes[..n]).unwrap();
+        let kept = cell_keys(&journal);
+        let folder = case.path("whole");
+        let before = fs::read(folder.join("accuracy.csv")).unwrap();
+        fs::write(folder.join("accuracy.csv"), "").unwrap();
+        let (_, error) = case.succeeds(&["run", "study.toml", "--out", "whole"]);
+        assert!(
+            before == fs::read(folder.join("accuracy.csv")).unwrap(),
+            "{n} bytes"
+        );
+        assert_eq!(error.contains("going on"), !kept.is_empty(), "{error}");
+        assert_eq!(cell_keys(&journal)[..kept.len()], kept);
+    }
+    // A line that is wrong though others follow was not torn by an interrupted run.
+    let mut wrong = bytes.clone();
+    wrong[bytes.len() / 2] ^= 1;
+    fs::write(&journal, &wrong).unwrap();
+    let output = case.run(&["run", "study.toml", "--out", "whole"]);
+    assert_eq!(output.status.code(), Some(2));
+    assert!(
+        said(&output).contains("journal.jsonl: line "),
+        "{}",
+        said(&output)
+    );
+    assert!(wrong == fs::read(&journal).unwrap());
+}
+
+#[test]
+fn a_disk_that_is_full_ends_a_run_and_one_with_room_goes_on() {
+    let case = case();
+    for kilobytes in [0, 2, 5, 9] {
+        let folder = format!("full_{kilobytes}");
+        let output = full_disk(&case, kilobytes, &["run", "study.toml", "--out", &folder]);
+        assert_eq!(output.status.code(), Some(1), "{}", said(&output));
+        assert!(said(&output).contains("write failed"), "{}", said(&output));
+        assert!(!case.path(&folder).join("accuracy.csv").exists());
+        case.succeeds(&["run", "study.toml", "--out", &folder]);
+        assert_same_tables(&case, &folder);
+    }
+}
+
+#[test]
+fn ctrl_c_ends_a_run_within_two_seconds_and_says_how_to_go_on() {
+    let case = case();
+    for name in ["INT", "TERM"] {
+        let folder = format!("stopped_{name}");
+        let run = start(&case, &["run", "study.toml", "--out", &folder]);
+        let journal = case.path(&folder).join("journal.jsonl");
+        while cell_keys(&journal).is_empty() {
+            sleep(Duration::from_millis(5));
+        }
+        let asked = Instant::now();
+        signal(&run, name);
+        let output = run.wait_with_output().unwrap();
+        assert!(asked.elapsed() < Duration::from_secs(2));
+        assert_eq!(output.status.code(), Some(130));
+        assert!(
+            said(&output).contains("the same command goes on"),
+            "{}",
+            said(&output)
+        );
+        let (_, error) = case.succeeds(&["run", "study.toml", "--out", &folder]);
+        assert!(error.contains("going on"), "{error}");
+        assert_same_tables(&case, &folder);
+    }
+}
+
+#[test]
+fn a_signal_ends_a_run_though_nobody_reads_what_it_says() {
+    let case = case();
+    let mut run = start(&case, &["run", "study.toml", "--out", "unread"]);
+    let journal = case.path("unread/journal.jsonl");
+    while cell_keys(&journal).is_empty() {
+        sleep(Duration::from_millis(5));
+    }
+    drop(run.stderr.take());
+    let asked = Instant::now();
+    signal(&run, "TERM");
+    while run.try_wait().unwrap().is_none() {
+        assert!(asked.elapsed() < Duration::from_secs(2), "it hangs");
+        sleep(Duration::from_millis(5));
+    }
+}
+
+#[test]
+fn a_second_run_in_a_folder_is_told_of_the_first() {
+    let case = case();
+    let mut first = start(&case, &["run", "study.toml", "--out", "shared"]);
+    let journal = case.path("shared/journal.jsonl");
+    while cell_keys(&journal).is_empty() {
+        sleep(Duration::from_millis(5));
+    }
+    for arguments in [
+        &["run", "study.toml", "--out", "shared"][..],
+        &["run", "study.toml", "--out", "shared", "--fresh"],
+    ] {
+        let second = case.run(arguments);
+        assert_eq!(second.status.code(), Some(2));
+        assert!(
+            said(&second).contains("another run is writing to it"),
+            "{}",
+            said(&second)
+        );
+    }
+    assert!(first.wait().unwrap().success());
+    assert_same_tables(&case, "shared");
+}
+
+#[test]
+fn a_changed_study_is_refused_with_what_changed_and_fresh_keeps_the_old_beside_the_new() {
+    let case = case();
+    case.file(
+        "study.toml",
+        STUDY
+            .replace("stroke_mm = 5.0", "stroke_mm = 4.0")
+            .replace("per_object = 32", "per_object = 40"),
+    );
+    let output = case.run(&["run", "study.toml", "--out", "whole"]);
+    assert_eq!(output.status.code(), Some(2));
+    let error = said(&output);
+    for expected in [
+        "skin.stroke_mm: was 5.0, is 4.0",
+        "touches.per_object: was 32, is 40",
+        "--fresh",
+    ] {
+        assert!(error.contains(expected), "{error}");
+    }
+    let old = fs::read(case.path("whole/accuracy.csv")).unwrap();
+    let (_, error) = case.succeeds(&["run", "study.toml", "--out", "whole", "--fresh"]);
+    assert!(error.contains("whole.1"), "{error}");
+    assert!(old == fs::read(case.path("whole.1/accuracy.csv")).unwrap());
+    assert!(old != fs::read(case.path("whole/accuracy.csv")).unwrap());
+    case.succeeds(&["run", "study.toml", "--out", "whole", "--fresh"]);
+    assert!(case.path("whole.2/journal.jsonl").exists());
+}
+
+/// A study that has run in `whole`, and its journal's lines.
+fn lines_of(case: &Case, folder: &str) -> Vec<String> {
+    let text = fs::read_to_string(case.path(folder).join("journal.jsonl")).unwrap();
+    text.split_inclusive('\n').map(str::to_owned).collect()
+}
+
+/// A journal's line with something replaced, and the checksum that then is right.
+fn forged(line: &str, old: &str, new: &str) -> String {
+    let json = line.trim_end().split_once(' ').unwrap().1;
+    assert!(json.contains(old), "{json}");
+    let json = json.replace(old, new);
+    let mut sum = !0u32;
+    for &byte in json.as_bytes() {
+        sum ^= u32::from(byte);
+        for _ in 0..8 {
+            sum = (sum >> 1) ^ (0xedb8_8320 & 0u32.wrapping_sub(sum & 1));
+        }
+    }
+    format!("{:08x} {json}\n", !sum)
+}
+
+#[test]
+fn a_journal_whose_lines_are_of_no_study_or_of_another_is_refused_and_stays_as_it_is() {
+    let case = case();
+    let other = STUDY.replace("stroke_mm = 5.0", "stroke_mm = 4.0");
+    case.file("other.toml", &other);
+    case.succeeds(&["run", "other.toml", "--out", "other"]);
+    let (ours, theirs) = (lines_of(&case, "whole"), lines_of(&case, "other"));
+    let n = ours.len();
+    let header = forged(&ours[0], "stroke_mm = 5.0", "stroke_mm = 4.0");
+    let journals = [
+        (ours[1..].concat(), "line 1: is no record of a study"),
+        (theirs[1..].concat(), "line 1: is no record of a study"),
+        (
+            [&ours[..], &theirs[1..]].concat().concat(),
+            &format!("line {}: is of another study than line 1", n + 1),
+        ),
+        (
+            [&ours[..], &ours[..]].concat().concat(),
+            &format!(
+                "line {}: is of another study than line 1, or begins one anew",
+                n + 1
+            ),
+        ),
+    ];
+    let refused = |study: &str, content: &str, expected: &str| {
+        let journal = case.file("whole/journal.jsonl", content);
+        let output = case.run(&["run", study, "--out", "whole"]);
+        assert_eq!(output.status.code(), Some(2), "{expected}");
+        let error = said(&output);
+        assert!(error.contains(expected), "{error}");
+        assert!(error.contains("--fresh"), "{error}");
+        assert!(content == fs::read_to_string(journal).unwrap());
+    };
+    for (content, expected) in &journals {
+        refused("study.toml", content, expected);
+    }
+    // A first line that was made to fit another study does not fit what follows it.
+    let [forged, honest] = [&header, &ours[0]].map(|first| first.clone() + &ours[1..].concat());
+    refused("other.toml", &forged, "line 1: names another study");
+    refused("other.toml", &honest, "skin.stroke_mm: was 5.0, is 4.0");
+    // Shards are asked the same.
+    fs::create_dir(case.path("parts")).unwrap();
+    case.file("parts/journal.1-of-1.jsonl", ours[1..].concat());
+    let merge = case.run(&["merge", "study.toml", "--out", "parts"]);
+    assert_eq!(merge.status.code(), Some(2));
+    let error = said(&merge);
+    assert!(error.contains("line 1: is no record of a study"), "{error}");
+    // What stands there twice counts once.
+    let twice = [&ours[..], &ours[1..]].concat().concat();
+    case.file("whole/journal.jsonl", twice);
+    case.succeeds(&["run", "study.toml", "--out", "whole"]);
+    let (said_of, _) = case.succeeds(&["verify", "whole", "--cells", "3"]);
+    assert!(said_of.contains("3 of 64 rows"), "{said_of}");
+}
+
+/// Runs a longer study in a copy of what the study left, and from nothing: the same tables, and so much was finished before.
+fn assert_grows(case: &Case, (more, n_before, n_all): (&str, usize, usize)) {
+    case.file("more.toml", more);
+    case.succeeds(&[
+        "run",
+        "more.toml",
+        "--out",
+        "fresh",
+        "--fresh",
+        "--threads",
+        "3",
+    ]);
+    for threads in ["1", "3"] {
+        let folder = format!("grown_{threads}_{n_all}");
+        fs::create_dir(case.path(&folder)).unwrap();
+        let journal = case.path(&folder).join("journal.jsonl");
+        fs::copy(case.path("whole/journal.jsonl"), journal).unwrap();
+        let run = ["run", "more.toml", "--out", &folder, "--threads", threads];
+        let (_, error) = case.succeeds(&run);
+        let going_on = format!("going on: {n_before} of {n_all} cells");
+        assert!(error.contains(&going_on), "{error}");
+        for name in REPEATABLE.iter().chain(&["limits.csv"]) {
+            let read = |folder: &str| fs::read(case.path(folder).join(name)).unwrap();
+            assert!(read("fresh") == read(&folder), "{folder}/{name}");
+        }
+        case.succeeds(&["verify", &folder, "--cells", "20"]);
+    }
+}
+
+#[test]
+fn a_study_that_has_more_trials_and_values_keeps_its_cells_and_comes_out_as_if_run_at_once() {
+    let case = case();
+    let more = STUDY
+        .replace("trials = 2", "trials = 3")
+        .replace("What is left", "How much is left")
+        .replace("[4.0, 8.0]", "[16.0, 4.0, 8.0]")
+        .replace(
+            "[0.05, 0.2]",
+            "[0.05, 0.1, 0.2]\nsteps = [\"crosstalk\", \"noise\"]\ncrosstalk = [0.1, 0.0]",
+        )
+        .replace("ratio = [4, 16]", "ratio = [2, 4, 16]")
+        .replace("[\"linear_svm\",", "[\"k_nearest\", \"linear_svm\",")
+        + "fused_touches = [2, 1]\n";
+    assert_grows(&case, (&more, 64, 3 * 3 * 3 * 2 * 3 * 3 * 2 * 2));
+    // Fewer are no less the same.
+    let fewer = STUDY.replace("[0.05, 0.2]", "0.2");
+    assert_grows(&case, (&fewer, 32, 32));
+}
+
+#[test]
+fn a_c_more_trains_only_those_again_that_start_from_one_another() {
+    let case = case();
+    let more = STUDY.to_owned() + "c = [0.1, 1.0]\n";
+    assert_grows(&case, (&more, 32, 96));
+}
+
+#[test]
+fn other_words_refuse_nothing_and_train_nothing() {
+    let case = case();
+    let n_lines = lines_of(&case, "whole").len();
+    let words = STUDY.replace("What is left", "Expected or not: what is left")
+        + "\n[report]\nsamples = [\"mug\"]\n";
+    case.file(
+        "words.toml",
+        "expected = \"All of it.\"\n".to_owned() + &words,
+    );
+    let (_, error) = case.succeeds(&["run", "words.toml", "--out", "whole"]);
+    assert!(error.contains("going on: 64 of 64 cells"), "{error}");
+    assert_eq!(lines_of(&case, "whole").len(), n_lines);
+    let page = fs::read_to_string(case.path("whole/report.html")).unwrap();
+    assert!(page.contains("Expected or not"));
+}
+
+/// Five training touches an object are too few for 25 neighbours, twenty are not.
+const FAILING: &str = r#"
+question = "What if some cells cannot be?"
+trials = 2
+
+[objects]
+sets = ["household"]
+names = ["mug", "banana", "scissors", "power_drill"]
+surface_error_mm = 1.0
+
+[skin]
+pitch_mm = 8.0
+size_mm = 64.0
+stroke_mm = 5.0
+
+[touches]
+per_object = 60
+yaw_deg = { uniform = [0.0, 360.0] }
+depth_mm = 3.0
+
+[sensing]
+ratio = 4
+
+[recognition]
+classifier = ["linear_svm", "k_nearest"]
+n_neighbours = 25
+train_touches = [5, 20]
+"#;
+
+#[test]
+fn a_cell_that_fails_is_recorded_and_the_others_are_done() {
+    let case = Case::new();
+    case.file("failing.toml", FAILING);
+    let output = case.run(&["run", "failing.toml", "--out", "failing"]);
+    assert_eq!(output.status.code(), Some(1));
+    assert!(
+        said(&output).contains("failures.csv: 2 of 8 cells failed"),
+        "{}",
+        said(&output)
+    );
+    let rows = |name: &str| fs::read_to_string(case.path("failing").join(name)).unwrap();
+    assert_eq!(rows("accuracy.csv").lines().count(), 1 + 6);
+    assert_eq!(rows("summary.csv").lines().count(), 1 + 3);
+    let failures = rows("failures.csv");
+    assert_eq!(failures.lines().count(), 1 + 2);
+    assert!(
+        failures
+            .lines()
+            .skip(1)
+            .all(|line| line.contains("k_nearest") && line.contains("neighbours"))
+    );
+    // They are tried again, the others are not.
+    let again = case.run(&["run", "failing.toml", "--out", "failing"]);
+    assert_eq!(again.status.code(), Some(1));
+    let done = cell_keys(&case.path("failing/journal.jsonl"));
+    assert_eq!(done.len(), 8 + 2, "{done:?}");
+    let strict = case.run(&["run", "failing.toml", "--out", "strict", "--fail-fast"]);
+    assert_eq!(strict.status.code(), Some(2));
+    assert!(said(&strict).contains("neighbours"), "{}", said(&strict));
+}
+
+#[test]
+fn shards_that_know_nothing_of_each_other_make_the_same_tables() {
+    let case = case();
+    for index in ["2", "1", "3"] {
+        let shard = format!("{index}/3");
+        let early = case.run(&["merge", "study.toml", "--out", "parts"]);
+        assert_eq!(early.status.code(), Some(2), "{}", said(&early));
+        case.succeeds(&["run", "study.toml", "--out", "parts", "--shard", &shard]);
+    }
+    assert!(!case.path("parts/accuracy.csv").exists());
+    case.succeeds(&["merge", "study.toml", "--out", "parts"]);
+    assert_same_tables(&case, "parts");
+    // More shards than there are groups to share, from folders of their own.
+    for index in 1..=40 {
+        let (shard, folder) = (format!("{index}/40"), format!("machine_{}", index % 2));
+        case.succeeds(&["run", "study.toml", "--out", &folder, "--shard", &shard]);
+    }
+    case.succeeds(&[
+        "merge",
+        "study.toml",
+        "--out",
+        "machine_0",
+        "--from",
+        "machine_1",
+    ]);
+    assert_same_tables(&case, "machine_0");
+    case.file("other.toml", STUDY.replace("trials = 2", "trials = 3"));
+    let other = case.run(&["merge", "other.toml", "--out", "parts"]);
+    assert_eq!(other.status.code(), Some(2));
+}
+
+#[test]
+fn results_verify_until_a_number_in_them_is_changed() {
+    let case = case();
+    let (output, _) = case.succeeds(&["verify", "whole", "--cells", "4"]);
+    assert!(output.contains("4 of 64 rows"), "{output}");
+    let path = case.path("whole/accuracy.csv");
+    let text = fs::read_to_string(&path).unwrap();
+    let changed: Vec<String> = text
+        .lines()
+        .map(|line| line.replace(",0.7", ",0.6"))
+        .collect();
+    assert!(
+        changed.join("\n") + "\n" != text,
+        "a study with no accuracy of 0.7 shows nothing here"
+    );
+    fs::write(&path, changed.join("\n") + "\n").unwrap();
+    let output = case.run(&["verify", "whole"]);
+    assert_eq!(output.status.code(), Some(2));
+    assert!(
+        said(&output).contains("was changed after its run"),
+        "{}",
+        said(&output)
+    );
+    // Who changes the manifest too is found out by running cells again.
+    let manifest = case.path("whole/manifest.json");
+    let said_before = fs::read_to_string(&manifest).unwrap();
+    let value: serde_json::Value = serde_json::from_str(&said_before).unwrap();
+    let old = value["tables_sha256"]["accuracy.csv"]
+        .as_str()
+        .unwrap()
+        .to_owned();
+    fs::write(
+        &manifest,
+        said_before.replace(&old, &sha256(&fs::read(&path).unwrap())),
+    )
+    .unwrap();
+    let output = case.run(&["verify", "whole", "--cells", "64"]);
+    assert_eq!(output.status.code(), Some(2));
+    assert!(said(&output).contains("again it is"), "{}", said(&output));
+}
+
+#[test]
+fn a_program_that_starts_a_run_reads_json_lines_and_nothing_else() {
+    let case = case();
+    let (output, error) = case.succeeds(&["run", "study.toml", "--out", "whole", "--json"]);
+    assert_eq!(error, "");
+    let events: Vec<serde_json::Value> = output
+        .lines()
+        .map(|line| serde_json::from_str(line).unwrap())
+        .collect();
+    let last = events.last().unwrap();
+    assert_eq!(last["event"], "finished");
+    assert_eq!(
+        (&last["cells"], &last["finished_before"]),
+        (&64.into(), &64.into())
+    );
+    let (output, error) = case.succeeds(&["run", "study.toml", "--out", "whole", "--quiet"]);
+    assert_eq!((output.as_str(), error.as_str()), ("", ""));
+}
+
+#[test]
+fn two_runs_side_by_side_say_what_moved() {
+    let case = case();
+    case.file("noisy.toml", STUDY.replace("[0.05, 0.2]", "[0.2, 0.4]"));
+    case.succeeds(&["run", "noisy.toml", "--out", "noisy"]);
+    let (output, _) = case.succeeds(&["compare", "whole", "noisy", "--out", "moved.csv"]);
+    assert!(
+        output.contains("16 cells are in both runs, 16 in the first alone, 16 in the second"),
+        "{output}"
+    );
+    assert!(output.contains("16 have the same accuracy"), "{output}");
+    let moved = fs::read_to_string(case.path("moved.csv")).unwrap();
+    assert_eq!(moved.lines().count(), 1 + 16);
+    assert!(
+        moved
+            .lines()
+            .next()
+            .unwrap()
+            .ends_with("p_holm,p_status,n_trials_needed")
+    );
+    case.file("other.toml", STUDY.replace("[0.05, 0.2]", "0.7"));
+    case.succeeds(&["run", "other.toml", "--out", "other"]);
+    let output = case.run(&["compare", "whole", "other"]);
+    assert_eq!(output.status.code(), Some(2));
+    assert!(said(&output).contains("no cell"), "{}", said(&output));
+}

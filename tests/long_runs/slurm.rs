@@ -1,0 +1,269 @@
+//! A study as an array of jobs on a real Slurm of one node, which the test starts: one shard is killed, the same command goes on.
+#![cfg(target_os = "linux")]
+
+use crate::command::Case;
+use std::fs;
+use std::io::Write;
+use std::net::TcpListener;
+use std::os::unix::fs::PermissionsExt;
+use std::path::{Path, PathBuf};
+use std::process::{Child, Command, Stdio};
+use std::thread::sleep;
+use std::time::{Duration, Instant};
+
+const STUDY: &str = r#"
+question = "Do jobs of a cluster make the same tables?"
+trials = 48
+
+[objects]
+sets = ["household"]
+names = ["mug", "banana", "scissors", "power_drill"]
+surface_error_mm = 1.0
+
+[skin]
+pitch_mm = 4.0
+size_mm = 64.0
+stroke_mm = 5.0
+
+[touches]
+per_object = 60
+yaw_deg = { uniform = [0.0, 360.0] }
+depth_mm = 3.0
+
+[signal]
+noise_std_full_scale = [0.05, 0.2]
+
+[sensing]
+ratio = [1, 4]
+
+[recognition]
+classifier = ["linear_svm", "rbf_svm"]
+choose_c = [0.1, 1.0, 10.0]
+"#;
+
+/// Daemons of a cluster of one node, ended with the test.
+struct Cluster {
+    folder: PathBuf,
+    daemons: Vec<Child>,
+}
+
+impl Cluster {
+    /// Starts one in a folder; the error says why there is none.
+    fn start(folder: &Path) -> Result<Self, String> {
+        let sbin = |name: &str| {
+            let found = ["/usr/sbin", "/usr/bin", "/sbin", "/usr/local/sbin"]
+                .map(|folder| Path::new(folder).join(name))
+                .into_iter()
+                .find(|path| path.exists());
+            found.ok_or(format!("there is no {name} on this machine"))
+        };
+        let (munged, slurmctld, slurmd) = (sbin("munged")?, sbin("slurmctld")?, sbin("slurmd")?);
+        for name in ["munge", "state", "spool"] {
+            fs::create_dir(folder.join(name)).map_err(|e| e.to_string())?;
+            let private = fs::Permissions::from_mode(0o700);
+            fs::set_permissions(folder.join(name), private).map_err(|e| e.to_string())?;
+        }
+        let key = folder.join("munge/key");
+        fs::write(&key, [7; 128]).map_err(|e| e.to_string())?;
+        fs::set_permissions(&key, fs::Permissions::from_mode(0o400)).map_err(|e| e.to_string())?;
+        fs::write(folder.join("slurm.conf"), configuration(folder)).map_err(|e| e.to_string())?;
+        let munge = |file: &str| folder.join("munge").join(file).display().to_string();
+        let munge_options = [
+            "--foreground".to_owned(),
+            "--force".to_owned(),
+            format!("--key-file={}", munge("key")),
+            format!("--socket={}", munge("socket")),
+            format!("--pid-file={}", munge("pid")),
+            format!("--log-file={}", munge("log")),
+            format!("--seed-file={}", munge("seed")),
+        ];
+        let mut cluster = Self {
+            folder: folder.to_owned(),
+            daemons: Vec::new(),
+        };
+        cluster.daemon(&munged, &munge_options)?;
+        sleep(Duration::from_millis(500));
+        cluster.daemon(&slurmctld, &["-D".to_owned()])?;
+        cluster.daemon(&slurmd, &["-D".to_owned()])?;
+        let start = Instant::now();
+        while cluster
+            .ask("sinfo", &["--noheader", "--format", "%T"])
+            .trim()
+            != "idle"
+        {
+            if start.elapsed() > Duration::from_secs(20) {
+                return Err("its node is not ready after 20 s".to_owned());
+            }
+            sleep(Duration::from_millis(200));
+        }
+        Ok(cluster)
+    }
+
+    fn daemon(&mut self, program: &Path, arguments: &[String]) -> Result<(), String> {
+        let mut command = Command::new(program);
+        command
+            .args(arguments)
+            .env("SLURM_CONF", self.folder.join("slurm.conf"));
+        command.stdout(Stdio::null()).stderr(Stdio::null());
+        self.daemons
+            .push(command.spawn().map_err(|e| e.to_string())?);
+        Ok(())
+    }
+
+    fn ask(&self, program: &str, arguments: &[&str]) -> String {
+        let mut command = Command::new(program);
+        command
+            .args(arguments)
+            .env("SLURM_CONF", self.folder.join("slurm.conf"));
+        let output = command
+            .output()
+            .map(|output| output.stdout)
+            .unwrap_or_default();
+        String::from_utf8(output).unwrap()
+    }
+
+    /// Runs the command, which must succeed.
+    fn submit(&self, case: &Case) -> String {
+        let arguments = [
+            "slurm",
+            "study.toml",
+            "--out",
+            "jobs",
+            "--array",
+            "8",
+            "--time",
+            "10",
+        ];
+        let mut command = case.command(&arguments);
+        let output = command
+            .env("SLURM_CONF", self.folder.join("slurm.conf"))
+            .output()
+            .unwrap();
+        let error = String::from_utf8_lossy(&output.stderr);
+        assert!(output.status.success(), "{error}");
+        String::from_utf8(output.stdout).unwrap()
+    }
+
+    fn wait_until_empty(&self) {
+        let start = Instant::now();
+        while !self.ask("squeue", &["--noheader"]).trim().is_empty() {
+            assert!(
+                start.elapsed() < Duration::from_secs(300),
+                "jobs do not end"
+            );
+            sleep(Duration::from_millis(300));
+        }
+    }
+}
+
+impl Drop for Cluster {
+    fn drop(&mut self) {
+        for daemon in self.daemons.iter_mut().rev() {
+            let _ = daemon.kill();
+            let _ = daemon.wait();
+        }
+    }
+}
+
+fn configuration(folder: &Path) -> String {
+    let host = fs::read_to_string("/proc/sys/kernel/hostname").unwrap();
+    let host = host.trim().split('.').next().unwrap();
+    // Both held at once, lest they be the same.
+    let free = [(); 2].map(|()| TcpListener::bind("127.0.0.1:0").unwrap());
+    let [ctld, d] = free.map(|listener| listener.local_addr().unwrap().port());
+    let cpus = std::thread::available_parallelism().unwrap();
+    let folder = folder.display();
+    format!(
+        "ClusterName=test\nSlurmctldHost={host}(127.0.0.1)\nSlurmUser=root\nSlurmdUser=root\n\
+         AuthType=auth/munge\nAuthInfo=socket={folder}/munge/socket\nStateSaveLocation={folder}/state\n\
+         SlurmdSpoolDir={folder}/spool\nSlurmctldPidFile={folder}/ctld.pid\nSlurmdPidFile={folder}/d.pid\n\
+         SlurmctldLogFile={folder}/ctld.log\nSlurmdLogFile={folder}/d.log\n\
+         SlurmctldPort={ctld}\nSlurmdPort={d}\nProctrackType=proctrack/linuxproc\nTaskPlugin=task/none\n\
+         SelectType=select/cons_tres\nSelectTypeParameters=CR_CPU\nReturnToService=2\nMpiDefault=none\n\
+         SchedulerParameters=sched_interval=1,batch_sched_delay=0\nKillWait=1\n\
+         NodeName={host} NodeAddr=127.0.0.1 CPUs={cpus} State=UNKNOWN\n\
+         PartitionName=test Nodes={host} Default=YES MaxTime=INFINITE State=UP\n"
+    )
+}
+
+fn n_cells(journal: &Path) -> usize {
+    let text = fs::read_to_string(journal).unwrap_or_default();
+    text.matches("\"key\":\"cell ").count()
+}
+
+#[test]
+fn eight_jobs_of_which_one_is_killed_make_the_tables_of_a_single_run() {
+    let case = Case::new();
+    let folder = case.path("cluster");
+    fs::create_dir(&folder).unwrap();
+    let cluster = match Cluster::start(&folder) {
+        Ok(cluster) => cluster,
+        Err(reason) => {
+            writeln!(
+                std::io::stderr(),
+                "SKIPPED: no Slurm could be started: {reason}"
+            )
+            .expect("standard error takes a line");
+            return;
+        }
+    };
+    case.file("study.toml", STUDY);
+    let said = cluster.submit(&case);
+    assert!(said.contains("submitted 8 of 8 shards"), "{said}");
+    // While they are in the queue, nobody submits them again.
+    let said = cluster.submit(&case);
+    assert!(
+        said.contains("are in the queue") && !said.contains("submitted"),
+        "{said}"
+    );
+    let queue = cluster.ask("squeue", &["--noheader", "--format", "%F"]);
+    let job = queue.lines().next().unwrap_or_default().trim();
+    let journal = case.path("jobs/journal.3-of-8.jsonl");
+    let start = Instant::now();
+    while n_cells(&journal) == 0 {
+        assert!(
+            start.elapsed() < Duration::from_secs(200),
+            "the third job does not begin"
+        );
+        sleep(Duration::from_millis(5));
+    }
+    cluster.ask("scancel", &["--signal=KILL", "--full", &format!("{job}_3")]);
+    cluster.wait_until_empty();
+    let finished = n_cells(&journal);
+    assert!(
+        !case.path("jobs/summary.csv").exists(),
+        "{finished} cells of the killed job"
+    );
+    let said = cluster.submit(&case);
+    assert!(said.contains("submitted 1 of 8 shards"), "{said}");
+    cluster.wait_until_empty();
+    assert!(n_cells(&journal) > finished);
+    case.succeeds(&["run", "study.toml", "--out", "whole"]);
+    for name in [
+        "accuracy.csv",
+        "summary.csv",
+        "confusion.csv",
+        "comparison.csv",
+        "study.toml",
+    ] {
+        let read = |folder: &str| fs::read(case.path(folder).join(name)).unwrap();
+        assert!(read("whole") == read("jobs"), "{name}");
+    }
+    let said = cluster.submit(&case);
+    assert!(said.contains("all 8 shards are done"), "{said}");
+    cluster.wait_until_empty();
+}
+
+#[test]
+fn without_slurm_the_command_says_so() {
+    let case = Case::new();
+    case.file("study.toml", STUDY);
+    let mut command = case.command(&["slurm", "study.toml", "--array", "2"]);
+    let output = command.env("PATH", case.folder()).output().unwrap();
+    assert_eq!(output.status.code(), Some(2));
+    let error = String::from_utf8_lossy(&output.stderr);
+    assert!(
+        error.contains("squeue: there is no such command here"),
+        "{error}"
+    );
+}

@@ -1,0 +1,339 @@
+//! Meshes from files of three kinds, in four units, and what is said about them.
+
+use bubbletouch::mesh::{
+    LengthUnit, MeshFormat, MeshReport, Surface, TriangleMesh, read_obj, read_ply, read_stl,
+};
+use glam::DVec3;
+use std::fmt::Write;
+use std::path::Path;
+
+use crate::mesh_shapes::{cuboid, icosphere};
+
+fn obj(mesh: &TriangleMesh) -> String {
+    let mut text = String::from("# a mesh\nmtllib none.mtl\no thing\n");
+    for v in mesh.vertices() {
+        writeln!(text, "v {} {} {} 0.5 0.5 0.5", v.x, v.y, v.z).unwrap();
+    }
+    text.push_str("vt 0 0\nvn 0 0 1\nusemtl none\ns off\n");
+    for (index, [a, b, c]) in mesh.triangles().iter().enumerate() {
+        if index == mesh.n_triangles() / 2 {
+            text.push_str("g second half\n");
+        }
+        writeln!(text, "f {}/1/1 {}//1 {}", a + 1, b + 1, c + 1).unwrap();
+    }
+    text
+}
+
+fn ascii_stl(mesh: &TriangleMesh) -> String {
+    let mut text = String::from("solid thing of mine\n");
+    for t in 0..mesh.n_triangles() {
+        text.push_str("facet normal 0 0 0\nouter loop\n");
+        for v in mesh.triangle(t).0 {
+            writeln!(
+                text,
+                "  vertex {} {} {}",
+                v.x as f32, v.y as f32, v.z as f32
+            )
+            .unwrap();
+        }
+        text.push_str("endloop\nendfacet\n");
+    }
+    text + "endsolid thing of mine\n"
+}
+
+fn binary_stl(mesh: &TriangleMesh, header: &[u8]) -> Vec<u8> {
+    let mut bytes = vec![b' '; 80];
+    bytes[..header.len()].copy_from_slice(header);
+    bytes.extend((mesh.n_triangles() as u32).to_le_bytes());
+    for t in 0..mesh.n_triangles() {
+        bytes.extend([0; 12]);
+        for v in mesh.triangle(t).0 {
+            bytes.extend(v.to_array().map(|x| (x as f32).to_le_bytes()).concat());
+        }
+        bytes.extend([0; 2]);
+    }
+    bytes
+}
+
+/// Corners of all triangles in order, whatever the order of the vertices.
+fn corners(mesh: &TriangleMesh) -> Vec<DVec3> {
+    (0..mesh.n_triangles())
+        .flat_map(|t| mesh.triangle(t).0)
+        .collect()
+}
+
+fn as_f32(mesh: &TriangleMesh) -> Vec<DVec3> {
+    corners(mesh)
+        .iter()
+        .map(|v| v.as_vec3().as_dvec3())
+        .collect()
+}
+
+#[test]
+fn an_obj_gives_the_mesh_that_it_describes() {
+    let ball = icosphere(0.03, 2);
+    let read = read_obj("ball.obj", obj(&ball).as_bytes()).unwrap();
+    assert_eq!(
+        read.vertices().len(),
+        ball.vertices().len(),
+        "texture makes no seams"
+    );
+    let read = read.into_mesh("ball.obj").unwrap();
+    assert_eq!(corners(&read), corners(&ball));
+    // From the end, and a square cut in two.
+    let square = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf -4 -3 -2 -1\n";
+    let square = read_obj("s", square.as_bytes())
+        .unwrap()
+        .into_mesh("s")
+        .unwrap();
+    assert_eq!(square.triangles(), [[0, 1, 2], [0, 2, 3]]);
+    assert_eq!(square.area(), 1.0);
+}
+
+#[test]
+fn both_kinds_of_stl_give_the_mesh_with_its_corners_merged() {
+    let ball = icosphere(0.03, 2);
+    let ascii = read_stl("ball.stl", ascii_stl(&ball).as_bytes()).unwrap();
+    assert_eq!(ascii.vertices().len(), ball.vertices().len());
+    let ascii = ascii.into_mesh("ball.stl").unwrap();
+    assert_eq!(corners(&ascii), as_f32(&ball));
+    // Some programs begin a binary file with the word of an ascii one.
+    for header in [&b"made by hand"[..], b"solid ball"] {
+        let binary = read_stl("ball.stl", &binary_stl(&ball, header)[..]).unwrap();
+        assert_eq!(binary.into_mesh("ball.stl").unwrap(), ascii);
+    }
+    let nameless = ascii_stl(&ball).replace(" thing of mine", "");
+    assert_eq!(
+        read_stl("ball.stl", nameless.as_bytes())
+            .unwrap()
+            .into_mesh("b")
+            .unwrap(),
+        ascii
+    );
+    assert!(Surface::new(ascii).is_closed());
+}
+
+#[test]
+fn files_that_are_no_meshes_say_why() {
+    let stl_error = |bytes: &[u8]| read_stl("m.stl", bytes).unwrap_err().to_string();
+    let obj_error = |text: &str| match read_obj("m.obj", text.as_bytes()) {
+        Ok(file) => file.into_mesh("m.obj").unwrap_err().to_string(),
+        Err(error) => error.to_string(),
+    };
+    let text = ascii_stl(&cuboid(DVec3::ONE));
+    let cases = [
+        (stl_error(b""), "m.stl: an empty file"),
+        (stl_error(b"ply\n"), "m.stl: not an STL file"),
+        (
+            stl_error(&binary_stl(&cuboid(DVec3::ONE), b"x")[..400]),
+            "m.stl: not an STL file, or cut off",
+        ),
+        (
+            stl_error(text.rsplit_once("endloop").unwrap().0.as_bytes()),
+            "m.stl: cut off",
+        ),
+        (
+            stl_error(text.replacen("vertex -1", "vertex one", 1).as_bytes()),
+            "m.stl: not readable as STL",
+        ),
+        (
+            stl_error(text.replacen("vertex -1", "vertex NaN", 1).as_bytes()),
+            "m.stl: ",
+        ),
+        (
+            stl_error(b"solid empty\nendsolid empty\n"),
+            "m.stl: no vertices",
+        ),
+        (obj_error(""), "m.obj: no faces"),
+        (obj_error("v 0 0 0\nv 1 0 0\nv 0 1 0\n"), "m.obj: no faces"),
+        (
+            obj_error("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 4\n"),
+            "m.obj: not readable as OBJ: face vertex index",
+        ),
+        (
+            obj_error("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 0\n"),
+            "m.obj: not readable as OBJ",
+        ),
+        (
+            obj_error("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 -4\n"),
+            "m.obj: not readable as OBJ",
+        ),
+        (
+            obj_error("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2\n"),
+            "m.obj: no ",
+        ),
+        (
+            obj_error("v 0 0 0\nv 1 0 0\nv 0 1 0\nf\nf 1 2 3\n"),
+            "m.obj: ",
+        ),
+        (
+            obj_error("v 0 0 zero\nf 1 1 1\n"),
+            "m.obj: not readable as OBJ: position",
+        ),
+        (
+            obj_error("v 0 0 nan\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"),
+            "m.obj: vertex 1",
+        ),
+        (
+            obj_error("v 0 0 0\nv 2 0 0\nv 0.1 0.1 0\nv 0 2 0\nf 4 1 2 3\n"),
+            "m.obj: face 1: 4 corners that are not convex",
+        ),
+    ];
+    for (error, expected) in cases {
+        assert!(error.starts_with(expected), "{error} | {expected}");
+        assert!(!error.contains('\n'), "one line: {error}");
+    }
+}
+
+#[test]
+fn cut_or_garbled_files_never_panic() {
+    let mesh = cuboid(DVec3::ONE);
+    let files = [
+        obj(&mesh).into_bytes(),
+        ascii_stl(&mesh).into_bytes(),
+        binary_stl(&mesh, b"x"),
+    ];
+    for (kind, whole) in files.iter().enumerate() {
+        for length in 0..whole.len() {
+            let mut garbled = whole.clone();
+            garbled[length] = garbled[length].wrapping_mul(7).wrapping_add(length as u8);
+            for bytes in [&whole[..length], &garbled] {
+                let _ = match kind {
+                    0 => read_obj("m", bytes),
+                    _ => read_stl("m", bytes),
+                };
+            }
+        }
+    }
+}
+
+#[test]
+fn a_unit_is_what_it_says_and_a_name_says_the_format() {
+    let text = obj(&cuboid(DVec3::ONE));
+    for (name, metres) in [("m", 1.0), ("cm", 0.01), ("mm", 0.001), ("in", 0.0254)] {
+        let unit: LengthUnit = name.parse().unwrap();
+        let file = MeshFormat::Obj.read("box", unit, text.as_bytes()).unwrap();
+        let bounds = file.into_mesh("box").unwrap().bounds();
+        assert_eq!(bounds.max, DVec3::splat(metres));
+    }
+    assert_eq!(
+        "ft".parse::<LengthUnit>().unwrap_err(),
+        "expected one of m, cm, mm, in"
+    );
+    assert_eq!(
+        MeshFormat::of(Path::new("a/b.PLY")).unwrap(),
+        MeshFormat::Ply
+    );
+    let error = MeshFormat::of(Path::new("a/b.step"))
+        .unwrap_err()
+        .to_string();
+    assert_eq!(
+        error,
+        "a/b.step: not a mesh by its name; a name that ends in .ply, .obj or .stl"
+    );
+}
+
+#[test]
+fn a_box_is_a_solid_without_faults() {
+    let report = MeshReport::new(&cuboid(DVec3::new(0.05, 0.02, 0.01)));
+    assert!(report.is_solid() && report.faults().is_empty());
+    assert_eq!(
+        (report.n_vertices, report.n_edges, report.n_triangles),
+        (8, 18, 12)
+    );
+    assert!((report.volume - 8e-5).abs() < 1e-18);
+    assert!((report.area - 0.0136).abs() < 1e-15);
+    let expected = "size        100.0 × 40.0 × 20.0 mm\n\
+                    from        -50.0, -20.0, -10.0 mm\n\
+                    to          50.0, 20.0, 10.0 mm\n\
+                    triangles   12\n\
+                    vertices    8\n\
+                    components  1\n\
+                    area        136.00 cm²\n\
+                    volume      80.00 cm³\n\
+                    watertight  yes\n\
+                    solid       yes\n\
+                    faults      none";
+    assert_eq!(report.to_string(), expected);
+}
+
+/// A box of 1 m half sides whose triangles are changed.
+fn changed(change: impl Fn(&mut Vec<[u32; 3]>)) -> MeshReport {
+    let whole = cuboid(DVec3::ONE);
+    let mut triangles = whole.triangles().to_vec();
+    change(&mut triangles);
+    MeshReport::new(&TriangleMesh::new("box", whole.vertices().to_vec(), triangles).unwrap())
+}
+
+#[test]
+fn every_fault_is_found_and_counted() {
+    let hole = changed(|t| drop(t.drain(..2)));
+    assert!(!hole.is_watertight());
+    assert_eq!(hole.holes, [8.0]);
+    assert_eq!(hole.faults(), ["1 hole (longest border 8000.0 mm)"]);
+    let two_holes = changed(|t| {
+        t.remove(0);
+        t.remove(2);
+    });
+    assert_eq!(two_holes.holes.len(), 2);
+
+    let flipped = changed(|t| t[0].swap(0, 1));
+    assert!(flipped.is_watertight() && !flipped.is_solid());
+    assert_eq!(flipped.n_flipped_edges, 3);
+    let inwards = changed(|t| t.iter_mut().for_each(|t| t.swap(0, 1)));
+    assert!(inwards.volume < 0.0 && !inwards.is_solid());
+    assert_eq!(inwards.faults(), ["faces that face inwards"]);
+
+    let twice = changed(|t| t.push([t[0][1], t[0][0], t[0][2]]));
+    assert_eq!((twice.n_duplicates, twice.n_crowded_edges), (1, 3));
+    let collapsed = changed(|t| t.push([3, 3, 4]));
+    assert_eq!((collapsed.n_collapsed, collapsed.n_slivers), (1, 0));
+    assert!(
+        collapsed.is_solid(),
+        "a face that is a line takes nothing away"
+    );
+
+    let corners = vec![DVec3::ZERO, DVec3::X, 2.0 * DVec3::X];
+    let line = TriangleMesh::new("line", corners, vec![[0, 1, 2]]).unwrap();
+    assert_eq!(MeshReport::new(&line).n_slivers, 1);
+}
+
+#[test]
+fn parts_that_touch_at_a_corner_are_one_component_with_a_pinch() {
+    let near = cuboid(DVec3::ONE);
+    let both = |shift: DVec3| {
+        let vertices = near.vertices().iter().copied();
+        let far = vertices.clone().map(|v| v + shift);
+        let triangles = near.triangles().iter().copied();
+        let shifted = triangles.clone().map(|t| t.map(|v| v + 8));
+        let (vertices, triangles) = (
+            vertices.chain(far).collect(),
+            triangles.chain(shifted).collect(),
+        );
+        MeshReport::new(&TriangleMesh::new("two", vertices, triangles).unwrap())
+    };
+    let apart = both(DVec3::splat(3.0));
+    assert_eq!((apart.n_components, apart.n_pinched_vertices), (2, 0));
+    assert!(apart.is_solid());
+    let touching = both(DVec3::splat(2.0));
+    assert_eq!(
+        (
+            touching.n_components,
+            touching.n_pinched_vertices,
+            touching.n_vertices
+        ),
+        (1, 1, 15)
+    );
+}
+
+#[test]
+fn a_polygon_that_is_bent_a_little_is_still_a_fan() {
+    let header = "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n\
+                  element face 1\nproperty list uchar int vertex_indices\nend_header\n";
+    let bent = format!("{header}0 0 0\n1 0 0\n1 1 0.1\n0 1 0\n4 0 1 2 3\n");
+    let mesh = read_ply("p", bent.as_bytes())
+        .unwrap()
+        .into_mesh("p")
+        .unwrap();
+    assert_eq!(mesh.triangles(), [[0, 1, 2], [0, 2, 3]]);
+}

@@ -1,0 +1,580 @@
+//! No file makes a reader panic, hang or fill the memory, whatever is in it.
+
+use crate::fuzzing::{SOON, Target};
+use bubbletouch::geometry::Pose;
+use bubbletouch::mesh::{LengthUnit, MeshFormat};
+use bubbletouch::objects::{Catalogue, read_spheres};
+use bubbletouch::report::csv_tables::{TABLE_FILES, VARIANCE_FILE, read_tables, write_tables};
+use bubbletouch::report::offers::read_offers;
+use bubbletouch::scene::{ScenePlan, SceneSpec};
+use bubbletouch::study::breaking_points::BreakingPointsSpec;
+use bubbletouch::study::journal::{Identity, Journal};
+use bubbletouch::study::object_detail::{ObjectDetailPlan, ObjectDetailStudySpec};
+use bubbletouch::study::reconstruction::{ReconstructionPlan, ReconstructionStudySpec};
+use bubbletouch::study::speed_accuracy::SpeedAccuracyStudySpec;
+use bubbletouch::study::stability::{StabilityPlan, StabilityStudySpec};
+use bubbletouch::study::table::Tables;
+use bubbletouch::study::whole_body::{WholeBodyPlan, WholeBodyStudySpec};
+use bubbletouch::study::{Plan, StudyKind, StudySpec, compare_runs};
+use bubbletouch::world::{Interpolation, PoseTrajectory, Robot};
+use bubbletouch::{Error, Result};
+use std::fs;
+use std::path::{Path, PathBuf};
+
+const PLACE: &str = "input";
+
+/// TOML and XML are read as trees. A node takes up to 1.1 kB (a table of TOML has room for eleven entries from its first on),
+/// and two letters of text: `a.a.a.a = 1`, which is 550 bytes for one.
+const TREE: usize = 600;
+
+/// The end of each field of a CSV row takes eight bytes, twice while their list grows, and one letter of text: `,,,,,`.
+const FIELDS: usize = 64;
+
+fn folder(name: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join(name)
+}
+
+/// The files of a folder with an ending, not longer than so many bytes.
+fn files(name: &str, ending: &str, longest: usize) -> Vec<Vec<u8>> {
+    let entries = fs::read_dir(folder(name)).unwrap();
+    let mut paths: Vec<PathBuf> = entries.map(|entry| entry.unwrap().path()).collect();
+    paths.sort();
+    let is_it = |path: &PathBuf| path.extension().is_some_and(|e| e == ending);
+    let contents = paths
+        .into_iter()
+        .filter(is_it)
+        .map(|path| fs::read(path).unwrap());
+    let found: Vec<_> = contents
+        .filter(|content| content.len() <= longest)
+        .collect();
+    assert!(!found.is_empty(), "{name}");
+    found
+}
+
+fn text_of(input: &[u8]) -> Result<&str> {
+    std::str::from_utf8(input).map_err(|e| Error::input(PLACE, e, "a text file"))
+}
+
+#[test]
+fn studies() {
+    let seeds = files("experiments", "toml", 12_000);
+    assert!(seeds.len() > 10);
+    Target {
+        name: "study",
+        seeds,
+        words: &[
+            "[recognition]\n",
+            "[whole_body]\n",
+            "[stability]\n",
+            "[object_detail]\n",
+            "[reconstruction]\n",
+            "[human_touch]\n",
+            "[signal]\n",
+            "taxels",
+            "size_mm",
+            "uniform",
+            "grid",
+            "folds",
+            "trials",
+            "projections_per_split",
+            "linear_svm",
+            "[]",
+            "[[]]",
+            "{}",
+            "= [1,2,3]\n",
+            "1979-05-27T07:32:00Z",
+            "true",
+            "\"\"\"",
+        ],
+        n_inputs: 2000,
+        // A plan lists its values: { grid = [-10, 10, 1000] } in a few letters.
+        most_bytes: (TREE, 8 << 20),
+        least_s: SOON,
+        read: &read_study,
+    }
+    .run();
+}
+
+fn read_study(input: &[u8]) -> Result<()> {
+    let text = text_of(input)?;
+    match StudyKind::of(text) {
+        StudyKind::Recognition => Plan::new(PLACE, StudySpec::parse(PLACE, text)?).map(drop),
+        StudyKind::Reconstruction => {
+            let spec = ReconstructionStudySpec::parse(PLACE, text)?;
+            ReconstructionPlan::new(PLACE, spec).map(drop)
+        }
+        StudyKind::ObjectDetail => {
+            let spec = ObjectDetailStudySpec::parse(PLACE, text)?;
+            ObjectDetailPlan::new(PLACE, spec).map(drop)
+        }
+        StudyKind::WholeBody => {
+            let spec = WholeBodyStudySpec::parse(PLACE, text)?;
+            WholeBodyPlan::new(PLACE, &folder("experiments"), spec).map(drop)
+        }
+        StudyKind::BreakingPoints => BreakingPointsSpec::parse(PLACE, text).map(drop),
+        StudyKind::SpeedAccuracy => SpeedAccuracyStudySpec::parse(PLACE, text).map(drop),
+        StudyKind::Stability => {
+            let spec = StabilityStudySpec::parse(PLACE, text)?;
+            StabilityPlan::new(PLACE, Path::new(""), spec).map(drop)
+        }
+    }
+}
+
+#[test]
+fn scenes() {
+    let scenes = folder("experiments/scenes");
+    Target {
+        name: "scene",
+        seeds: files("experiments/scenes", "toml", 12_000),
+        words: &[
+            "[[object]]\n",
+            "[[patch]]\n",
+            "[[robot]]\n",
+            "motion",
+            "phases",
+            "way_points",
+            "grid",
+            "cylinder",
+            "rpy_deg",
+            "position_mm",
+            "csv",
+            "mesh",
+            "[]",
+            "{}",
+            "= [1,2,3]\n",
+            "true",
+        ],
+        n_inputs: 300,
+        // What a scene names is read with it: a robot, packed objects, and the taxels of its skin, at most four million of 200 bytes.
+        most_bytes: (TREE, 900 << 20),
+        // A patch may ask for four million taxels, about a microsecond each.
+        least_s: 10.0,
+        read: &|input| {
+            ScenePlan::new(PLACE, &scenes, SceneSpec::parse(PLACE, text_of(input)?)?).map(drop)
+        },
+    }
+    .run();
+}
+
+#[test]
+fn objects() {
+    let lollipop = r#"
+[[object]]
+name = "lollipop"
+source = "measured with a ruler"
+  [[object.part]]
+  shape = "ball"
+  diameter_mm = 30
+  position_mm = [0, 0, 85]
+  [[object.part]]
+  shape = "cylinder"
+  diameter_mm = 4
+  height_mm = 70
+  position_mm = [0, 0, 35]
+"#;
+    let mut seeds = files("objects", "toml", 60_000);
+    seeds.extend(std::iter::repeat_n(
+        lollipop.as_bytes().to_vec(),
+        seeds.len(),
+    ));
+    Target {
+        name: "object",
+        seeds,
+        words: &[
+            "[[object]]\n",
+            "[[object.part]]\n",
+            "shape",
+            "ball",
+            "cylinder",
+            "block",
+            "lathe",
+            "prism",
+            "torus",
+            "profile_mm",
+            "outline_mm",
+            "diameter_mm",
+            "height_mm",
+            "rpy_deg",
+            "[]",
+            "[[0,0],[1,1]]",
+            "{}",
+        ],
+        n_inputs: 1000,
+        most_bytes: (TREE, 1 << 18),
+        least_s: SOON,
+        read: &|input| Catalogue::parse("set", PLACE, text_of(input)?).map(drop),
+    }
+    .run();
+}
+
+/// A tetrahedron; with the others, what the three formats can say.
+const PLY: &str = "ply\nformat ascii 1.0\ncomment made by hand\nelement vertex 4\nproperty float x\nproperty float y\n\
+    property double z\nproperty uchar red\nelement face 4\nproperty list uchar int vertex_indices\nend_header\n\
+    0 0 0 255\n1 0 0 0\n0 1 0 7\n0 0 1 9\n3 0 2 1\n3 0 1 3\n3 1 2 3\n3 2 0 3\n";
+
+fn binary_ply(order: &str) -> Vec<u8> {
+    let header = format!(
+        "ply\nformat binary_{order}_endian 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n\
+         element face 1\nproperty list uchar uint vertex_index\nend_header\n"
+    );
+    let mut bytes = header.into_bytes();
+    let is_little = order == "little";
+    let corners = [0.0_f32, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0];
+    for number in corners {
+        bytes.extend(if is_little {
+            number.to_le_bytes()
+        } else {
+            number.to_be_bytes()
+        });
+    }
+    bytes.push(3);
+    for index in 0..3_u32 {
+        bytes.extend(if is_little {
+            index.to_le_bytes()
+        } else {
+            index.to_be_bytes()
+        });
+    }
+    bytes
+}
+
+const OBJ: &str = "# a square\nmtllib a.mtl\no thing\nv 0 0 0\nv 1 0 0 1.0\nv 1 1 0\nv 0 1 0\nvn 0 0 1\nvt 0 0\nusemtl red\n\
+    f 1/1/1 2/1/1 3/1/1 4//1\nf -4 -3 -2\nl 1 2\np 1\n";
+
+const STL: &str = "solid thing\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1e-3 0\nendloop\nendfacet\n\
+    facet normal 0 0 1\nouter loop\nvertex 1 0 0\nvertex 1 1 0\nvertex 0 1 0\nendloop\nendfacet\nendsolid thing\n";
+
+fn binary_stl(n_triangles: u32) -> Vec<u8> {
+    let mut bytes = vec![b' '; 80];
+    bytes.extend(n_triangles.to_le_bytes());
+    for triangle in 0..n_triangles {
+        let corner = |k: u32| [(triangle + k) as f32, (k % 2) as f32, (k / 2) as f32];
+        let numbers = [[0.0; 3], corner(0), corner(1), corner(2)];
+        bytes.extend(
+            numbers
+                .iter()
+                .flatten()
+                .flat_map(|number| number.to_le_bytes()),
+        );
+        bytes.extend([0, 0]);
+    }
+    bytes
+}
+
+fn mesh(
+    name: &'static str,
+    format: MeshFormat,
+    seeds: Vec<Vec<u8>>,
+    words: &'static [&'static str],
+) {
+    Target {
+        name,
+        seeds,
+        words,
+        n_inputs: 3000,
+        // A PLY header may claim any number of elements, and the reader makes room for the first 65,536 at once.
+        most_bytes: (20, 4 << 20),
+        least_s: SOON,
+        read: &|input| {
+            let file = format.read(PLACE, LengthUnit::Millimetre, input)?;
+            file.into_mesh(PLACE).map(drop)
+        },
+    }
+    .run();
+}
+
+#[test]
+fn meshes_in_ply() {
+    let seeds = vec![
+        PLY.as_bytes().to_vec(),
+        binary_ply("little"),
+        binary_ply("big"),
+    ];
+    let words: &[&str] = &[
+        "element vertex 4000000000\n",
+        "element face 3\n",
+        "element other 9\n",
+        "property list uint uint vertex_indices\n",
+        "property float x\n",
+        "property list float float vertex_index\n",
+        "end_header\n",
+        "comment",
+        "obj_info",
+        "format ascii 1.0\n",
+        "format binary_little_endian 1.0\n",
+    ];
+    mesh("ply", MeshFormat::Ply, seeds, words);
+}
+
+#[test]
+fn meshes_in_obj() {
+    let words: &[&str] = &[
+        "v ",
+        "f ",
+        "vn ",
+        "g ",
+        "s off\n",
+        "/",
+        "//",
+        "-1",
+        "\\\n",
+        "f 1 2 3 4 5 6 7 8 9\n",
+    ];
+    mesh("obj", MeshFormat::Obj, vec![OBJ.as_bytes().to_vec()], words);
+}
+
+#[test]
+fn meshes_in_stl() {
+    let seeds = vec![STL.as_bytes().to_vec(), binary_stl(2), binary_stl(40)];
+    let words: &[&str] = &[
+        "solid",
+        "facet normal ",
+        "outer loop\n",
+        "vertex ",
+        "endloop\n",
+        "endfacet\n",
+        "endsolid\n",
+    ];
+    mesh("stl", MeshFormat::Stl, seeds, words);
+}
+
+#[test]
+fn robots() {
+    let mut seeds = files("tests/robots", "urdf", 20_000);
+    seeds.extend(files("objects/robots", "urdf", 20_000));
+    Target {
+        name: "urdf",
+        seeds,
+        words: &[
+            "<link name=\"a\"/>",
+            "<joint name=\"a\" type=\"fixed\">",
+            "</joint>",
+            "<parent link=\"a\"/>",
+            "<mimic joint=\"a\"/>",
+            "<origin xyz=\"0 0 0\"/>",
+            "revolute",
+            "continuous",
+            "planar",
+            "floating",
+            "<!-- ",
+            " -->",
+            "<![CDATA[",
+            "]]>",
+            "<!DOCTYPE r [<!ENTITY a \"aaaaaaaaaa\"><!ENTITY b \"&a;&a;&a;&a;&a;&a;&a;&a;\">]>",
+            "&a;",
+            "&b;",
+            "&#0;",
+            "&lt;",
+            "xmlns:xacro=\"http://www.ros.org/wiki/xacro\"",
+            "<sphere radius=\"1\"/>",
+            "<mesh filename=\"a.stl\"/>",
+        ],
+        n_inputs: 2000,
+        most_bytes: (TREE, 1 << 18),
+        least_s: SOON,
+        read: &|input| {
+            let robot = Robot::from_urdf(PLACE, text_of(input)?)?;
+            robot
+                .forward(&Pose::IDENTITY, &vec![0.0; robot.n_positions()])
+                .map(drop)
+        },
+    }
+    .run();
+}
+
+#[test]
+fn spheres() {
+    Target {
+        name: "spheres",
+        seeds: vec![
+            b"x,y,z,r\n0,0,0,0.01\n0.02,-1e-3,5,1\n".to_vec(),
+            b"0,0,0,0.01\n0.02,-1e-3,5,1\n".to_vec(),
+            b"name,r,z,y,x\n\"a \"\"b\"\"\", 0.1 ,0,0,0\n".to_vec(),
+        ],
+        words: &[",", "\"", "x", "r", "\n", ",,,,", "0.5"],
+        n_inputs: 4000,
+        most_bytes: (FIELDS, 1 << 18),
+        least_s: SOON,
+        read: &|input| read_spheres(PLACE, input).map(drop),
+    }
+    .run();
+}
+
+#[test]
+fn way_points() {
+    Target {
+        name: "way_points",
+        seeds: vec![
+            b"time_s,x_mm,y_mm,z_mm,roll_deg,pitch_deg,yaw_deg\n0,0,0,0,0,0,0\n1,10,0,-5,0,0,90\n2,0,1,2,3,4,5\n".to_vec(),
+            b"time_s,x_m,y_m,z_m,qx,qy,qz,qw\n0,0,0,0,0,0,0,1\n1.5,10,0,-5,0,0.6,0,0.8\n".to_vec(),
+        ],
+        words: &[",", "\"", "time_s", "x_mm", "qw", "\n", "yaw_deg"],
+        n_inputs: 4000,
+        most_bytes: (FIELDS, 1 << 18),
+        least_s: SOON,
+        read: &|input| {
+            let trajectory = PoseTrajectory::read_csv(PLACE, input, Interpolation::default())?;
+            let pose = trajectory.pose_at(0.5 * trajectory.end());
+            assert!(pose.translation.is_finite());
+            Ok(())
+        },
+    }
+    .run();
+}
+
+/// Tables of a study of two small cells.
+fn study_tables() -> Tables {
+    const TEXT: &str = r#"
+question = "What do tables look like?"
+trials = 4
+projections_per_split = 2
+[objects]
+sets = ["household"]
+names = ["mug", "banana"]
+surface_error_mm = 2.0
+[skin]
+pitch_mm = 8.0
+size_mm = 64.0
+stroke_mm = 5.0
+[touches]
+per_object = 6
+offset_x_mm = { uniform = [-20.0, 20.0] }
+depth_mm = 3.0
+[sensing]
+measurements = 4
+[recognition]
+classifier = ["linear_svm", "k_nearest"]
+[report]
+published = [{ claim = "all", accuracy = 1.0, source = "nobody" }]
+"#;
+    crate::study::Study::new(TEXT).run().tables
+}
+
+#[test]
+fn tables_of_results() {
+    let tables = study_tables();
+    let at = folder_in_memory();
+    write_tables(at.path(), &tables).unwrap();
+    // The first byte of an input says which of the tables it stands for.
+    let names: Vec<&str> = TABLE_FILES.into_iter().chain([VARIANCE_FILE]).collect();
+    let seeds = names.iter().enumerate().map(|(number, name)| {
+        let content = fs::read(at.path().join(name)).unwrap();
+        [vec![number as u8], content].concat()
+    });
+    Target {
+        name: "table",
+        seeds: seeds.collect(),
+        words: &[
+            ",",
+            "\"",
+            "\n",
+            "cell",
+            "accuracy",
+            "linear_svm",
+            "rbf_svm",
+            "gaussian",
+            "split",
+            "true",
+            ",,",
+        ],
+        n_inputs: 800,
+        most_bytes: (FIELDS, 1 << 20),
+        least_s: SOON,
+        read: &|input| {
+            let Some((number, content)) = input.split_first() else {
+                return Ok(());
+            };
+            let path = at.path().join(names[usize::from(*number) % names.len()]);
+            let valid = fs::read(&path).unwrap();
+            fs::write(&path, content).unwrap();
+            let read = read_tables(at.path());
+            let offers = read_offers(at.path(), &[]);
+            fs::write(&path, valid).unwrap();
+            offers?;
+            compare_runs(&tables.accuracy, &read?.accuracy).map(drop)
+        },
+    }
+    .run();
+}
+
+#[test]
+fn journals() {
+    let at = folder_in_memory();
+    let path = at.path().join("journal.jsonl");
+    let identity = Identity::new(
+        "seed = 1\n[skin]\npitch_mm = 2.0\n".to_owned(),
+        Default::default(),
+    );
+    let journal = Journal::open(&path, &identity).unwrap();
+    journal.keep("cell 0, trial 0", &vec![0.5, 1.5]).unwrap();
+    journal.keep("cell 1, trial 0", &"failed: \"so\"").unwrap();
+    drop(journal);
+    Target {
+        name: "journal",
+        seeds: vec![fs::read(&path).unwrap()],
+        words: &[
+            "{\"key\":\"study\",\"record\":",
+            "}",
+            "\n",
+            "\\u0000",
+            "\"",
+            "null",
+            "00000000 {}\n",
+        ],
+        n_inputs: 1200,
+        // The study within a journal is TOML.
+        most_bytes: (TREE, 1 << 18),
+        least_s: SOON,
+        read: &|input| {
+            let read = |content: &[u8]| {
+                fs::write(&path, content).unwrap();
+                let read = Journal::read(&path)?;
+                if let Some((_, journal)) = read {
+                    let _: Option<Vec<f64>> = journal.get("cell 0, trial 0");
+                }
+                Journal::open(&path, &identity).map(drop)
+            };
+            // A checksum that is right lets the rest of a line through.
+            let as_it_is = read(input);
+            read(&with_checksums(input)).and(as_it_is)
+        },
+    }
+    .run();
+}
+
+/// Every line with the checksum of what follows its first space.
+fn with_checksums(input: &[u8]) -> Vec<u8> {
+    let line = |line: &[u8]| -> Vec<u8> {
+        let json = line
+            .splitn(2, |&byte| byte == b' ')
+            .nth(1)
+            .unwrap_or_default();
+        let sum = format!("{:08x} ", crc32(json.strip_suffix(b"\n").unwrap_or(json)));
+        [sum.as_bytes(), json].concat()
+    };
+    input
+        .split_inclusive(|&byte| byte == b'\n')
+        .flat_map(line)
+        .collect()
+}
+
+/// CRC-32 as in zip, bit by bit.
+fn crc32(bytes: &[u8]) -> u32 {
+    let mut sum = !0_u32;
+    for byte in bytes {
+        sum ^= u32::from(*byte);
+        for _ in 0..8 {
+            sum = (sum >> 1) ^ (0xedb8_8320 & (sum & 1).wrapping_neg());
+        }
+    }
+    !sum
+}
+
+/// A folder that no disk has to keep, where there is one.
+fn folder_in_memory() -> tempfile::TempDir {
+    let memory = Path::new("/dev/shm");
+    match memory.is_dir() {
+        true => tempfile::tempdir_in(memory).unwrap(),
+        false => tempfile::tempdir().unwrap(),
+    }
+}

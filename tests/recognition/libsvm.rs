@@ -1,0 +1,296 @@
+//! The support vector machines against LIBSVM on sets that are hard for such programs.
+//!
+//! `tests/recognition_goldens/libsvm.json` holds sets and LIBSVM's solutions, by scikit-learn 1.9.1; `make_libsvm.py` beside it
+//! made it and says how exact LIBSVM's solutions are: it keeps kernel values in 32 bits, and the file gives for every case
+//! the duality gap of its coefficients and what follows for its decision values.
+
+use bubbletouch::recognition::dataset::{Dataset, dataset};
+use bubbletouch::recognition::kernel::{Gamma, Kernel};
+use bubbletouch::recognition::svm::{BinaryProblem, Multiclass, SvmParams};
+use bubbletouch::recognition::svm_model::SvmModel;
+use ndarray::{Array1, Array2, ArrayView1};
+use std::collections::BTreeMap;
+
+#[derive(serde::Deserialize)]
+struct Goldens {
+    sets: BTreeMap<String, Set>,
+    cases: Vec<Case>,
+}
+
+#[derive(serde::Deserialize)]
+struct Set {
+    rows: Vec<Vec<f64>>,
+    labels: Vec<usize>,
+    probes: Vec<Vec<f64>>,
+}
+
+/// LIBSVM's solution of one case.
+#[derive(serde::Deserialize)]
+struct Case {
+    set: String,
+    kernel: String,
+    gamma: f64,
+    c: f64,
+    multiclass: Multiclass,
+    tolerance: f64,
+    /// Sum over the binary problems of what training minimises.
+    dual: f64,
+    /// The optimum is not below `dual − gap`.
+    gap: f64,
+    /// How far a decision value may be from the optimum's.
+    decision_error: f64,
+    /// Problems that LIBSVM gave up.
+    n_capped: usize,
+    /// Of the probes.
+    labels: Vec<usize>,
+    /// Probes × problems, where their error is small against them.
+    decision: Option<Vec<Vec<f64>>>,
+}
+
+impl Case {
+    fn name(&self) -> String {
+        format!(
+            "{}, {}, C = {}, {:?}",
+            self.set, self.kernel, self.c, self.multiclass
+        )
+    }
+
+    fn kernel(&self) -> Kernel {
+        let gamma = Gamma::Value(self.gamma);
+        match self.kernel.as_str() {
+            "linear" => Kernel::Linear,
+            "rbf" => Kernel::Rbf { gamma },
+            "poly" => Kernel::Polynomial {
+                gamma,
+                coef0: 1.0,
+                degree: 3,
+            },
+            other => panic!("no kernel {other}"),
+        }
+    }
+
+    /// `K(x, z)`, from the definition.
+    fn kernel_value(&self, x: ArrayView1<f64>, z: ArrayView1<f64>) -> f64 {
+        match self.kernel.as_str() {
+            "linear" => x.dot(&z),
+            "rbf" => {
+                let difference = &x - &z;
+                (-self.gamma * difference.dot(&difference)).exp()
+            }
+            _ => (self.gamma * x.dot(&z) + 1.0).powi(3),
+        }
+    }
+}
+
+fn goldens() -> Goldens {
+    serde_json::from_str(include_str!("../recognition_goldens/libsvm.json")).unwrap()
+}
+
+fn matrix(rows: &[Vec<f64>]) -> Array2<f64> {
+    Array2::from_shape_fn((rows.len(), rows[0].len()), |(i, j)| rows[i][j])
+}
+
+/// What a model is worth, from the definitions: the sum over its problems of the dual objective and of the duality gap,
+/// and how far the decision values may be from the optimum's (as in `make_libsvm.py`).
+struct Worth {
+    dual: f64,
+    gap: f64,
+    decision_error: f64,
+}
+
+fn worth(case: &Case, data: &Dataset, model: &SvmModel) -> Worth {
+    let n = data.records.nrows();
+    let kernel = Array2::from_shape_fn((n, n), |(i, j)| {
+        case.kernel_value(data.records.row(i), data.records.row(j))
+    });
+    let largest = kernel.diag().fold(0.0_f64, |max, &value| max.max(value));
+    let mut sum = Worth {
+        dual: 0.0,
+        gap: 0.0,
+        decision_error: 0.0,
+    };
+    for problem in model.problems() {
+        let (dual, primal) = objectives(case.c, data, &kernel, problem);
+        let gap = (primal + dual).max(0.0);
+        let error = 2.0 * (2.0 * gap * largest).sqrt() + case.tolerance;
+        sum.dual += dual;
+        sum.gap += gap;
+        sum.decision_error = sum.decision_error.max(error);
+    }
+    sum
+}
+
+/// `½ Σ_ij a_i a_j y_i y_j K_ij − Σ_i a_i` and `½ |w|² + C Σ_i max(0, 1 − y_i f(x_i))`: at the optimum their sum is 0.
+fn objectives(c: f64, data: &Dataset, kernel: &Array2<f64>, problem: &BinaryProblem) -> (f64, f64) {
+    let mut coefficients = Array1::zeros(kernel.nrows());
+    for (&row, &coefficient) in problem.rows.iter().zip(&problem.solution.coefficients) {
+        coefficients[row] = coefficient;
+    }
+    let sums = kernel.dot(&coefficients);
+    let half = 0.5 * coefficients.dot(&sums);
+    let multipliers: f64 = coefficients.iter().map(|a: &f64| a.abs()).sum();
+    let hinge: f64 = problem
+        .rows
+        .iter()
+        .map(|&row| {
+            let y = if data.targets[row] == problem.positive {
+                1.0
+            } else {
+                -1.0
+            };
+            (1.0 - y * (sums[row] - problem.solution.rho)).max(0.0)
+        })
+        .sum();
+    (half - multipliers, half + c * hinge)
+}
+
+fn trained(case: &Case, set: &Set) -> (Dataset, SvmModel) {
+    let data = dataset(matrix(&set.rows), Array1::from(set.labels.clone())).unwrap();
+    let usual = SvmParams {
+        kernel: case.kernel(),
+        c: case.c,
+        tolerance: case.tolerance,
+        ..SvmParams::default()
+    };
+    let params = SvmParams {
+        multiclass: case.multiclass,
+        ..usual
+    };
+    let model = params.train(&data).unwrap();
+    (data, model)
+}
+
+/// The case's solution must reach LIBSVM's objective and agree with its decisions as far as both are exact.
+fn check(case: &Case, set: &Set) {
+    let name = case.name();
+    let (data, model) = trained(case, set);
+    let ours = worth(case, &data, &model);
+    println!(
+        "{name}: dual {:.8e}, LIBSVM {:.8e}; gap {:.1e}, {:.1e}; capped {}, {}",
+        ours.dual,
+        case.dual,
+        ours.gap,
+        case.gap,
+        model.n_capped(),
+        case.n_capped
+    );
+    let scale = case.dual.abs();
+    // No better than the duality gap of LIBSVM's solution allows.
+    assert!(ours.dual >= case.dual - case.gap - 1e-9 * scale, "{name}");
+    if case.n_capped == 0 {
+        assert_eq!(model.n_capped(), 0, "{name}");
+        assert!((ours.dual - case.dual).abs() <= 1e-3 * scale, "{name}");
+    } else {
+        // Where LIBSVM gave up: no worse than it, or given up as well and counted.
+        let is_no_worse = ours.dual <= case.dual + 1e-3 * scale;
+        assert!(is_no_worse || model.n_capped() > 0, "{name}");
+    }
+    let Some(decision) = &case.decision else {
+        return;
+    };
+    let probes = matrix(&set.probes);
+    let values = model.decision_values(probes.view()).unwrap();
+    let near = case.decision_error + ours.decision_error;
+    let expected = matrix(decision);
+    let worst = (&values - &expected).fold(0.0_f64, |max, difference| max.max(difference.abs()));
+    assert!(worst <= near, "{name}: {worst} is above {near}");
+    let labels = model.labels(probes.view()).unwrap();
+    for (probe, values) in expected.rows().into_iter().enumerate() {
+        if is_clear(case.multiclass, values, near) {
+            assert_eq!(labels[probe], case.labels[probe], "{name}, probe {probe}");
+        }
+    }
+}
+
+/// Whether no decision that the label depends on is within the error.
+fn is_clear(multiclass: Multiclass, values: ArrayView1<f64>, near: f64) -> bool {
+    if multiclass == Multiclass::OneVsOne {
+        return values.iter().all(|value| value.abs() > near);
+    }
+    let mut sorted = values.to_vec();
+    sorted.sort_by(f64::total_cmp);
+    let n = sorted.len();
+    sorted[n - 1] - sorted[n - 2] > 2.0 * near
+}
+
+fn check_all(wanted: impl Fn(&Case) -> bool) {
+    let goldens = goldens();
+    let mut n_checked = 0;
+    for case in goldens.cases.iter().filter(|case| wanted(case)) {
+        check(case, &goldens.sets[&case.set]);
+        n_checked += 1;
+    }
+    assert!(n_checked > 2, "{n_checked} cases");
+}
+
+#[test]
+fn c_from_a_millionth_to_a_million_reaches_libsvms_objective() {
+    check_all(|case| ["overlapping", "separable"].contains(&case.set.as_str()));
+}
+
+#[test]
+fn unscaled_features_from_a_millionth_to_a_million_reach_it() {
+    check_all(|case| case.set.contains("scale"));
+}
+
+#[test]
+fn duplicated_points_with_opposite_labels_reach_it() {
+    check_all(|case| case.set == "opposite duplicates");
+}
+
+#[test]
+fn a_class_of_one_row_reaches_it() {
+    check_all(|case| case.set == "one row of a class");
+}
+
+#[test]
+fn constant_features_reach_it() {
+    check_all(|case| case.set.contains("constant"));
+}
+
+#[test]
+fn xor_reaches_it() {
+    check_all(|case| case.set == "xor");
+}
+
+#[test]
+fn two_to_a_hundred_classes_reach_it() {
+    check_all(|case| case.set.ends_with("classes"));
+}
+
+#[test]
+fn most_labels_are_libsvms_even_where_margins_are_small() {
+    let goldens = goldens();
+    let (mut n_same, mut n_all) = (0, 0);
+    for case in goldens.cases.iter().filter(|case| case.n_capped == 0) {
+        let set = &goldens.sets[&case.set];
+        let (_, model) = trained(case, set);
+        let labels = model.labels(matrix(&set.probes).view()).unwrap();
+        n_same += labels
+            .iter()
+            .zip(&case.labels)
+            .filter(|(a, b)| a == b)
+            .count();
+        n_all += labels.len();
+    }
+    println!("{n_same} of {n_all} labels are LIBSVM's");
+    assert!(n_same as f64 > 0.98 * n_all as f64, "{n_same} of {n_all}");
+}
+
+#[test]
+fn a_feature_that_is_no_number_is_named_by_row_and_column() {
+    let goldens = goldens();
+    let set = &goldens.sets["overlapping"];
+    for broken in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+        let mut rows = matrix(&set.rows);
+        rows[[17, 2]] = broken;
+        let labels = Array1::from(set.labels.clone());
+        let data = Dataset::new(rows.clone(), labels);
+        let error = SvmParams::default().train(&data).unwrap_err().to_string();
+        assert!(error.contains("row 17, column 2"), "{error}");
+        let good = dataset(matrix(&set.rows), data.targets.clone()).unwrap();
+        let model = SvmParams::default().train(&good).unwrap();
+        let error = model.labels(rows.view()).unwrap_err().to_string();
+        assert!(error.contains("row 17, column 2"), "{error}");
+    }
+}

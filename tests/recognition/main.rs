@@ -1,0 +1,15 @@
+//! Recognition: SVMs against LIBSVM and optimality conditions, splits, classifiers.
+
+#[path = "../fixtures/svm_conditions/mod.rs"]
+mod svm_conditions;
+
+mod classifier;
+mod engine;
+mod hard_cases;
+mod inseparable;
+mod kinds;
+mod libsvm;
+mod limits;
+mod linear;
+mod splits;
+mod svm;

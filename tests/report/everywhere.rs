@@ -1,0 +1,155 @@
+//! The page in a browser: on a phone, in the dark, on paper, for those who listen, without script, with ten thousand cells.
+
+use crate::browser::Browser;
+use crate::browser::shown::{Shown, pictures, show};
+use crate::report_synthetic::{
+    about, add_headlines, many_cells, quickstart_cells, tables, ten_thousand_cells,
+};
+use bubbletouch::report::page::page;
+use bubbletouch::study::table::Tables;
+use serde_json::json;
+use std::io::Write;
+use std::time::Instant;
+
+#[test]
+fn a_phone_needs_no_sideways_scrolling_and_the_dark_is_dark() {
+    let mut made = tables(many_cells(), 3, 24);
+    add_headlines(&mut made);
+    let Some(Shown { browser, page, .. }) = show(&made, &about()) else {
+        return;
+    };
+    for width in [360, 412, 768, 1600] {
+        browser.resize(width, 740);
+        browser.open(&page);
+        let wide = "return document.documentElement.scrollWidth";
+        assert_eq!(browser.count(wide), width as u64);
+    }
+    // Relative luminance of the ground and of the letters: their contrast is that of WCAG's level AAA.
+    let contrast = "const light = (colour) => { const [r, g, b] = colour.match(/[0-9.]+/g).slice(0, 3).map((c) => { const s = c / 255; return s <= 0.04045 ? s / 12.92 : ((s + 0.055) / 1.055) ** 2.4 }); return 0.2126 * r + 0.7152 * g + 0.0722 * b };
+         const style = getComputedStyle(document.querySelector('section'));
+         const [ink, ground] = [light(style.color), light(style.backgroundColor)];
+         return [ground, (Math.max(ink, ground) + 0.05) / (Math.min(ink, ground) + 0.05)]";
+    for (scheme, is_dark) in [("light", false), ("dark", true)] {
+        let features = json!({ "features": [{ "name": "prefers-color-scheme", "value": scheme }] });
+        browser.devtools("Emulation.setEmulatedMedia", features);
+        let found = browser.run(contrast);
+        let (ground, contrast) = (found[0].as_f64().unwrap(), found[1].as_f64().unwrap());
+        assert_eq!(ground < 0.1, is_dark, "{scheme}: {ground}");
+        assert!(contrast > 7.0, "{scheme}: {contrast}");
+    }
+    browser.check_quiet();
+}
+
+#[test]
+fn the_page_prints_and_is_named_for_those_who_listen() {
+    let Some(Shown { browser, .. }) = show(&tables(quickstart_cells(), 3, 24), &about()) else {
+        return;
+    };
+    let printed = browser.devtools("Page.printToPDF", json!({ "preferCSSPageSize": true }));
+    let pdf = printed["data"].as_str().unwrap();
+    assert!(pdf.starts_with("JVBERi0"), "a PDF");
+    assert!(pdf.len() > 40_000, "{}", pdf.len());
+    // Nothing that takes the focus is without a name, every section is a region with a heading, the page has its landmarks.
+    let tree = browser.devtools("Accessibility.getFullAXTree", json!({}));
+    let nodes = tree["nodes"].as_array().unwrap();
+    let role = |node: &serde_json::Value| node["role"]["value"].as_str().unwrap_or("").to_owned();
+    let nameless: Vec<String> = nodes
+        .iter()
+        .filter(|node| {
+            let properties = node["properties"].as_array();
+            let takes_focus = properties.is_some_and(|list| {
+                let is_focusable =
+                    |p: &serde_json::Value| p["name"] == "focusable" && p["value"]["value"] == true;
+                list.iter().any(is_focusable)
+            });
+            let has_name = node["name"]["value"]
+                .as_str()
+                .is_some_and(|name| !name.trim().is_empty());
+            // An empty field of the matrix is read with its row and column.
+            takes_focus
+                && !has_name
+                && !["gridcell", "cell", "RootWebArea"].contains(&&role(node)[..])
+        })
+        .map(role)
+        .collect();
+    assert_eq!(nameless, Vec::<String>::new());
+    let roles: Vec<String> = nodes.iter().map(role).collect();
+    for landmark in ["main", "navigation", "banner", "contentinfo"] {
+        assert_eq!(
+            roles.iter().filter(|r| *r == landmark).count(),
+            1,
+            "{landmark}"
+        );
+    }
+    let headless = "return [...document.querySelectorAll('main > section')].filter((s) => !document.getElementById(s.getAttribute('aria-labelledby'))).length";
+    assert_eq!(browser.count(headless), 0);
+}
+
+#[test]
+fn without_script_pictures_and_tables_stand_in() {
+    let made = tables(quickstart_cells(), 3, 24);
+    let Some(Shown { browser, page, .. }) = show(&made, &about()) else {
+        return;
+    };
+    browser.devtools(
+        "Emulation.setScriptExecutionDisabled",
+        json!({ "value": true }),
+    );
+    browser.open(&page);
+    assert_eq!(
+        browser.count("return document.querySelectorAll('#cells tbody tr').length"),
+        16
+    );
+    assert!(browser.count("return document.querySelectorAll('#accuracy figure svg').length") >= 1);
+    assert_eq!(
+        browser.count("return document.querySelectorAll('#confusion figure svg').length"),
+        1
+    );
+    assert_eq!(
+        browser.count("return document.querySelectorAll('select').length"),
+        0
+    );
+}
+
+#[test]
+fn ten_thousand_cells_are_a_light_page() {
+    let made = tables(ten_thousand_cells(), 3, 24);
+    let pictures = pictures(&made);
+    let start = Instant::now();
+    let html = page(&about(), &made, &pictures).unwrap();
+    let seconds = start.elapsed().as_secs_f64();
+    let bytes = html.len();
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("report.html"), html).unwrap();
+    assert_eq!(made.summary.len(), 10_000);
+    assert!(bytes < 5_000_000, "{bytes} bytes");
+    let Some(browser) = Browser::start() else {
+        return;
+    };
+    browser.resize(1200, 900);
+    let ms = browser.open(&folder.path().join("report.html"));
+    assert_eq!(
+        browser.count("return document.querySelectorAll('#cells tbody tr').length"),
+        50
+    );
+    browser.check_quiet();
+    writeln!(
+        std::io::stderr(),
+        "10,000 cells: report.html made in {seconds:.2} s, {:.2} MB, open in {ms:.0} ms",
+        1e-6 * bytes as f64
+    )
+    .unwrap();
+}
+
+#[test]
+fn a_study_of_one_cell_or_of_none_has_a_page_without_faults() {
+    for made in [
+        tables(vec![crate::report_synthetic::cell()], 1, 24),
+        Tables::default(),
+    ] {
+        let Some(Shown { browser, .. }) = show(&made, &about()) else {
+            return;
+        };
+        browser.check_quiet();
+    }
+}

@@ -1,0 +1,17 @@
+//! What people look at: page, charts, pictures, recordings.
+
+#[path = "../fixtures/browser/mod.rs"]
+mod browser;
+#[path = "../fixtures/counting/mod.rs"]
+mod counting;
+#[path = "../fixtures/report_synthetic/mod.rs"]
+mod report_synthetic;
+
+mod asked;
+mod everywhere;
+mod page;
+mod pareto;
+mod pictures;
+mod recording_files;
+mod recording_pictures;
+mod tables;

@@ -1,0 +1,585 @@
+//! Recordings as files: what is read back is what was written, in bounded memory, whole or not at all.
+
+use bubbletouch::geometry::Pose;
+use bubbletouch::report::recording::contact_table::{ContactTable, PatchContact};
+use bubbletouch::report::recording::{
+    ForceKind, Forces, PatchFrame, Precision, RecordedPatch, RecordingFile, RecordingHeader,
+    RecordingWriter, read_recording,
+};
+use bubbletouch::signal::Quantity;
+use bubbletouch::world::Grid;
+use glam::{DQuat, DVec3};
+use ndarray::{Array1, Array2, Array3, ArrayD};
+use ndarray_npy::NpzReader;
+use rand::{Rng, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+use std::fs;
+use std::io::Write;
+use std::path::Path;
+use std::time::Instant;
+
+const GRID: Grid = Grid {
+    nx: 4,
+    ny: 3,
+    pitch: 2e-3,
+};
+
+/// A grid with normal forces, five taxels on a finger tip with vectors, two objects.
+fn header(precision: Precision) -> RecordingHeader {
+    let axes: Vec<DVec3> = (0..5)
+        .map(|i| DVec3::new(0.2 * f64::from(i), 0.1, 1.0).normalize())
+        .collect();
+    let tip = RecordedPatch {
+        name: "finger tip".to_owned(),
+        centers: axes.iter().map(|axis| 8e-3 * axis).collect(),
+        axes,
+        grid: None,
+        force: ForceKind::Vector,
+    };
+    RecordingHeader {
+        patches: vec![RecordedPatch::of_grid("palm", GRID, ForceKind::Normal), tip],
+        objects: vec!["mug".to_owned(), "Füße ☕".to_owned()],
+        precision,
+        about: serde_json::json!({"seed": 7, "note": "a \"quoted\" µ"}),
+    }
+}
+
+/// What is pushed in one frame, with room of its own.
+struct Pushed {
+    time: f64,
+    palm: Vec<f64>,
+    palm_force: Vec<f64>,
+    tip: Vec<f64>,
+    tip_force: Vec<DVec3>,
+    poses: [Pose; 4],
+}
+
+fn pushed(n_frames: usize) -> Vec<Pushed> {
+    let mut random = ChaCha8Rng::seed_from_u64(5);
+    let mut numbers = |n: usize| -> Vec<f64> { (0..n).map(|_| random.r#gen::<f64>()).collect() };
+    let mut frames = Vec::new();
+    for frame in 0..n_frames {
+        let poses = [0; 4].map(|_| {
+            let n = numbers(7);
+            let rotation = DQuat::from_xyzw(n[0], n[1], n[2], n[3]).normalize();
+            Pose::new(rotation, DVec3::new(n[4], n[5], n[6]))
+        });
+        frames.push(Pushed {
+            time: 1e-3 * (frame + 1) as f64,
+            palm: numbers(12),
+            palm_force: numbers(12),
+            tip: numbers(5),
+            tip_force: numbers(15).chunks(3).map(DVec3::from_slice).collect(),
+            poses,
+        });
+    }
+    frames
+}
+
+fn push(writer: &mut RecordingWriter, frame: &Pushed) -> bubbletouch::Result<()> {
+    let palm = PatchFrame {
+        deflection: &frame.palm,
+        force: Forces::Normal(&frame.palm_force),
+        pose: frame.poses[0],
+    };
+    let tip = PatchFrame {
+        deflection: &frame.tip,
+        force: Forces::Vector(&frame.tip_force),
+        pose: frame.poses[1],
+    };
+    writer.push(frame.time, &[palm, tip], &frame.poses[2..])
+}
+
+fn write(path: &Path, precision: Precision, frames: &[Pushed]) {
+    let mut writer = RecordingWriter::create(path, header(precision)).unwrap();
+    frames
+        .iter()
+        .for_each(|frame| push(&mut writer, frame).unwrap());
+    assert_eq!(writer.finish().unwrap(), frames.len());
+}
+
+fn names(folder: &Path) -> Vec<String> {
+    let entries = fs::read_dir(folder).unwrap();
+    let mut names: Vec<String> = entries
+        .map(|entry| entry.unwrap().file_name().into_string().unwrap())
+        .collect();
+    names.sort();
+    names
+}
+
+#[test]
+fn what_is_read_back_is_what_was_written_to_the_bit_or_rounded_to_f32() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("touch.npz");
+    for precision in [Precision::Double, Precision::Single] {
+        for n_frames in [0, 1, 300] {
+            let frames = pushed(n_frames);
+            write(&path, precision, &frames);
+            let rounded = |value: f64| match precision {
+                Precision::Double => value,
+                Precision::Single => f64::from(value as f32),
+            };
+            let read = read_recording(&path).unwrap();
+            assert_eq!(read.header, header(precision));
+            assert_eq!(read.time.len(), n_frames);
+            assert_eq!(read.patches[0].deflection.dim(), (n_frames, 12));
+            assert_eq!(read.patches[0].force.dim(), (n_frames, 12, 1));
+            assert_eq!(read.patches[1].force.dim(), (n_frames, 5, 3));
+            for (k, frame) in frames.iter().enumerate() {
+                let same = |row: Vec<f64>, expected: &mut dyn Iterator<Item = f64>| {
+                    assert!(row.into_iter().eq(expected.map(rounded)), "frame {k}");
+                };
+                let [palm, tip] = &read.patches[..] else {
+                    panic!("two patches")
+                };
+                assert_eq!(read.time[k], frame.time);
+                same(
+                    palm.deflection.row(k).to_vec(),
+                    &mut frame.palm.iter().copied(),
+                );
+                let force = palm
+                    .force
+                    .index_axis(ndarray::Axis(0), k)
+                    .iter()
+                    .copied()
+                    .collect();
+                same(force, &mut frame.palm_force.iter().copied());
+                same(
+                    tip.deflection.row(k).to_vec(),
+                    &mut frame.tip.iter().copied(),
+                );
+                let force = tip
+                    .force
+                    .index_axis(ndarray::Axis(0), k)
+                    .iter()
+                    .copied()
+                    .collect();
+                same(
+                    force,
+                    &mut frame.tip_force.iter().flat_map(|f| f.to_array()),
+                );
+                let poses = [
+                    palm.pose[k],
+                    tip.pose[k],
+                    read.objects[0][k],
+                    read.objects[1][k],
+                ];
+                assert_eq!(poses, frame.poses);
+            }
+        }
+    }
+    assert_eq!(names(folder.path()), ["touch.npz"]);
+}
+
+#[test]
+fn single_rows_are_those_of_the_whole_and_vectors_have_lengths() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("touch.npz");
+    let frames = pushed(40);
+    write(&path, Precision::Double, &frames);
+    let mut file = RecordingFile::open(&path).unwrap();
+    assert_eq!(file.patch("finger tip").unwrap(), 1);
+    let mut visited = Vec::new();
+    file.each_frame(1, Quantity::Force, |_, values| {
+        visited.push(values.to_vec())
+    })
+    .unwrap();
+    for k in [39, 0, 17] {
+        assert_eq!(
+            file.frame(0, Quantity::Deflection, k).unwrap(),
+            frames[k].palm
+        );
+        let lengths: Vec<f64> = frames[k].tip_force.iter().map(|f| f.length()).collect();
+        assert_eq!(file.frame(1, Quantity::Force, k).unwrap(), lengths);
+        assert_eq!(visited[k], lengths);
+    }
+    let said = file.frame(0, Quantity::Force, 40).unwrap_err().to_string();
+    assert!(said.ends_with("touch.npz: frame 40; 0 to 39"), "{said}");
+    let said = file.patch("thumb").unwrap_err().to_string();
+    assert!(said.ends_with("no patch thumb; one of its patches: palm, finger tip"));
+}
+
+/// ndarray-npy knows nothing of our reader.
+#[test]
+fn another_reader_of_npz_reads_the_same_arrays() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("touch.npz");
+    let frames = pushed(20);
+    write(&path, Precision::Single, &frames);
+    let mut npz = NpzReader::new(fs::File::open(&path).unwrap()).unwrap();
+    let names = npz.names().unwrap();
+    assert_eq!(
+        names,
+        [
+            "meta",
+            "palm/centers",
+            "palm/axes",
+            "finger tip/centers",
+            "finger tip/axes",
+            "time",
+            "palm/deflection",
+            "palm/force",
+            "palm/pose",
+            "finger tip/deflection",
+            "finger tip/force",
+            "finger tip/pose",
+            "mug/pose",
+            "Füße ☕/pose",
+        ]
+    );
+    let time: Array1<f64> = npz.by_name("time").unwrap();
+    let palm: Array2<f32> = npz.by_name("palm/deflection").unwrap();
+    let force: Array3<f32> = npz.by_name("finger tip/force").unwrap();
+    let poses: Array2<f64> = npz.by_name("mug/pose").unwrap();
+    let centers: ArrayD<f64> = npz.by_name("palm/centers").unwrap();
+    assert_eq!(centers.shape(), [12, 3]);
+    assert_eq!(centers[[7, 0]], GRID.x(3));
+    assert_eq!(centers[[7, 1]], GRID.y(1));
+    for (k, frame) in frames.iter().enumerate() {
+        assert_eq!(time[k], frame.time);
+        assert_eq!(palm[(k, 5)], frame.palm[5] as f32);
+        assert_eq!(force[(k, 4, 1)], frame.tip_force[4].y as f32);
+        let (t, q) = (frame.poses[2].translation, frame.poses[2].rotation);
+        assert_eq!(poses.row(k).to_vec(), [t.x, t.y, t.z, q.x, q.y, q.z, q.w]);
+    }
+}
+
+#[test]
+fn equal_recordings_are_equal_bytes() {
+    let folder = tempfile::tempdir().unwrap();
+    let [one, two] = ["one.npz", "two.npz"].map(|name| folder.path().join(name));
+    write(&one, Precision::Single, &pushed(30));
+    write(&two, Precision::Single, &pushed(30));
+    assert!(fs::read(one).unwrap() == fs::read(two).unwrap());
+}
+
+#[test]
+fn a_recording_of_a_known_number_of_frames_is_the_same_written_once() {
+    let folder = tempfile::tempdir().unwrap();
+    let [beside, placed] = ["beside.npz", "placed.npz"].map(|name| folder.path().join(name));
+    for n_frames in [0, 1, 30, 301] {
+        for precision in [Precision::Single, Precision::Double] {
+            let frames = pushed(n_frames);
+            write(&beside, precision, &frames);
+            let begun = RecordingWriter::create_for(&placed, header(precision), n_frames);
+            let mut writer = begun.unwrap();
+            for frame in &frames {
+                push(&mut writer, frame).unwrap();
+            }
+            assert_eq!(names(folder.path()).len(), 2, "nothing waits beside it");
+            assert_eq!(writer.finish().unwrap(), n_frames);
+            let read = |path| read_recording(path).unwrap();
+            assert_eq!(read(&beside), read(&placed));
+            assert!(fs::read(&beside).unwrap() == fs::read(&placed).unwrap());
+            fs::remove_file(&placed).unwrap();
+        }
+    }
+    // Over many blocks, too.
+    stream(RecordingWriter::create(&beside, array()).unwrap(), 700);
+    stream(
+        RecordingWriter::create_for(&placed, array(), 700).unwrap(),
+        700,
+    );
+    assert!(fs::read(&beside).unwrap() == fs::read(&placed).unwrap());
+}
+
+#[test]
+fn another_number_of_frames_than_was_said_is_an_error_and_no_file() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("touch.npz");
+    let frames = pushed(4);
+    let start = |n_frames| {
+        let mut writer =
+            RecordingWriter::create_for(&path, header(Precision::Single), n_frames).unwrap();
+        let pushes = frames.iter().map(|frame| push(&mut writer, frame));
+        let pushed: Vec<_> = pushes.collect();
+        (writer, pushed)
+    };
+    let (writer, pushed) = start(3);
+    let error = pushed[3].as_ref().unwrap_err().to_string();
+    assert_eq!(error, "recording: 4 frames; 3");
+    assert_eq!(writer.finish().unwrap(), 3);
+    fs::remove_file(&path).unwrap();
+    let (writer, pushed) = start(5);
+    assert!(pushed.iter().all(Result::is_ok));
+    let error = writer.finish().unwrap_err().to_string();
+    assert_eq!(error, "recording: 4 frames; 5");
+    assert_eq!(names(folder.path()).len(), 0);
+}
+
+#[test]
+fn a_writer_dropped_half_way_leaves_what_was_there_before() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("touch.npz");
+    let mut writer = RecordingWriter::create(&path, header(Precision::Single)).unwrap();
+    pushed(10)
+        .iter()
+        .for_each(|frame| push(&mut writer, frame).unwrap());
+    assert_eq!(names(folder.path()).len(), 2);
+    drop(writer);
+    assert_eq!(names(folder.path()).len(), 0);
+    fs::write(&path, "old").unwrap();
+    drop(RecordingWriter::create(&path, header(Precision::Single)).unwrap());
+    assert_eq!(fs::read(&path).unwrap(), b"old");
+    assert_eq!(names(folder.path()), ["touch.npz"]);
+}
+
+#[test]
+fn a_place_that_cannot_be_written_is_an_error_at_once() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("file");
+    fs::write(&file, "").unwrap();
+    let start = |path: &Path| match RecordingWriter::create(path, header(Precision::Single)) {
+        Ok(_) => panic!("{} can be written", path.display()),
+        Err(error) => error,
+    };
+    let below = start(&file.join("touch.npz"));
+    assert_eq!(below.exit_code(), 2);
+    let said = "file/touch.npz: there is no folder ";
+    assert!(below.to_string().contains(said), "{below}");
+    let missing = start(&folder.path().join("no/touch.npz"));
+    assert_eq!(missing.exit_code(), 2);
+    let said = "no/touch.npz: there is no folder ";
+    assert!(missing.to_string().contains(said), "{missing}");
+    assert_eq!(start(folder.path()).exit_code(), 2);
+    assert_eq!(names(folder.path()), ["file"]);
+}
+
+#[test]
+fn a_full_disk_is_an_error() {
+    let full = Path::new("/dev/full");
+    let writer = match full.exists() {
+        true => RecordingWriter::create(full, header(Precision::Single)).ok(),
+        false => None,
+    };
+    let Some(mut writer) = writer else {
+        writeln!(
+            std::io::stderr(),
+            "SKIPPED: this system has no /dev/full to write beside"
+        )
+        .expect("standard error takes a line");
+        return;
+    };
+    pushed(500)
+        .iter()
+        .for_each(|frame| push(&mut writer, frame).unwrap());
+    let error = writer.finish().unwrap_err();
+    assert_eq!(error.exit_code(), 1);
+    assert!(
+        error.to_string().starts_with("/dev/full: write failed: "),
+        "{error}"
+    );
+    assert!(
+        !names(Path::new("/dev"))
+            .iter()
+            .any(|name| name.starts_with("full."))
+    );
+}
+
+#[test]
+fn frames_that_do_not_fit_are_refused_and_are_not_in_the_recording() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("touch.npz");
+    let frames = pushed(3);
+    let mut writer = RecordingWriter::create(&path, header(Precision::Double)).unwrap();
+    push(&mut writer, &frames[0]).unwrap();
+    let said = push(&mut writer, &frames[0]).unwrap_err().to_string();
+    assert_eq!(
+        said,
+        "recording, frame 1: 0.001 s after 0.001 s; finite times that increase"
+    );
+    let palm = PatchFrame {
+        deflection: &frames[1].palm[1..],
+        force: Forces::Normal(&frames[1].palm),
+        pose: Pose::IDENTITY,
+    };
+    let tip = PatchFrame {
+        deflection: &frames[1].tip,
+        force: Forces::Normal(&frames[1].tip),
+        pose: Pose::IDENTITY,
+    };
+    let poses = [Pose::IDENTITY; 2];
+    let said = writer
+        .push(0.5, &[palm, tip], &poses)
+        .unwrap_err()
+        .to_string();
+    assert_eq!(
+        said,
+        "recording, patch palm: 11 deflections and 12 forces (Normal); 12 of each, forces Normal"
+    );
+    let palm = PatchFrame {
+        deflection: &frames[1].palm,
+        ..palm
+    };
+    let said = writer
+        .push(0.5, &[palm, tip], &poses)
+        .unwrap_err()
+        .to_string();
+    assert!(said.starts_with("recording, patch finger tip: 5 deflections and 5 forces (Normal)"));
+    assert!(writer.push(0.5, &[palm], &poses).is_err());
+    push(&mut writer, &frames[1]).unwrap();
+    assert_eq!(writer.finish().unwrap(), 2);
+    let read = read_recording(&path).unwrap();
+    assert_eq!(read.patches[0].deflection.row(1).to_vec(), frames[1].palm);
+}
+
+#[test]
+fn names_that_cannot_be_members_are_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    for (name, said) in [
+        ("", "the name \"\""),
+        ("a/b", "the name \"a/b\""),
+        ("..", "the name \"..\""),
+        ("mug", "two patches or objects called mug"),
+    ] {
+        let mut header = header(Precision::Single);
+        header.patches[0].name = name.to_owned();
+        let error = RecordingWriter::create(&folder.path().join("touch.npz"), header).err();
+        let error = error.expect(name).to_string();
+        assert!(error.contains(said), "{error}");
+    }
+    assert!(names(folder.path()).is_empty());
+}
+
+#[test]
+fn a_changed_byte_is_an_error_or_changes_nothing() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("touch.npz");
+    write(&path, Precision::Single, &pushed(2));
+    let (good, expected) = (fs::read(&path).unwrap(), read_recording(&path).unwrap());
+    let broken = folder.path().join("broken.npz");
+    let mut n_errors = 0;
+    // Every fifth place, with every bit in turn: 5 and 8 have no common divisor.
+    for place in (0..good.len()).step_by(5) {
+        let mut bytes = good.clone();
+        bytes[place] ^= 1 << (place % 8);
+        fs::write(&broken, &bytes).unwrap();
+        match read_recording(&broken) {
+            Ok(read) => assert!(read == expected, "byte {place}"),
+            Err(error) => {
+                assert!(error.to_string().contains("broken.npz"), "{error}");
+                n_errors += 1;
+            }
+        }
+    }
+    // Time stamps, attributes and what padding there is may change; data may not.
+    assert!(10 * n_errors > good.len(), "{n_errors} of {}", good.len());
+    for length in (0..good.len()).step_by(101) {
+        fs::write(&broken, &good[..length]).unwrap();
+        assert_eq!(RecordingFile::open(&broken).err().unwrap().exit_code(), 2);
+    }
+}
+
+/// Of a 64 × 64 patch.
+fn array() -> RecordingHeader {
+    let grid = Grid {
+        nx: 64,
+        ny: 64,
+        pitch: 2e-3,
+    };
+    RecordingHeader {
+        patches: vec![RecordedPatch::of_grid("palm", grid, ForceKind::Normal)],
+        ..RecordingHeader::default()
+    }
+}
+
+/// Streams frames of a 64 × 64 patch, writing the same two buffers.
+fn stream(mut writer: RecordingWriter, n_frames: usize) {
+    let mut deflection = vec![1e-3; 4096];
+    let force = vec![0.1; 4096];
+    for frame in 0..n_frames {
+        deflection[frame % 4096] += 1e-4;
+        let palm = PatchFrame {
+            deflection: &deflection,
+            force: Forces::Normal(&force),
+            pose: Pose::IDENTITY,
+        };
+        writer.push(1e-3 * frame as f64, &[palm], &[]).unwrap();
+    }
+    writer.finish().unwrap();
+}
+
+#[test]
+fn two_thousand_frames_stream_in_the_memory_of_five_hundred() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("touch.npz");
+    let beside = |n| stream(RecordingWriter::create(&path, array()).unwrap(), n);
+    let placed = |n| stream(RecordingWriter::create_for(&path, array(), n).unwrap(), n);
+    for write in [&beside as &dyn Fn(usize), &placed] {
+        let few = crate::counting::peak_bytes(|| write(500));
+        let many = crate::counting::peak_bytes(|| write(2000));
+        println!("{few} bytes for 500 frames, {many} for 2,000");
+        assert!(many < few + 4096 && many < 10 << 20, "{few}, {many}");
+    }
+    let read = crate::counting::peak_bytes(|| {
+        let mut file = RecordingFile::open(&path).unwrap();
+        let mut sum = 0.0;
+        file.each_frame(0, Quantity::Deflection, |_, values| sum += values[5])
+            .unwrap();
+        assert!(sum > 2.0);
+    });
+    println!("{read} bytes to read them row by row");
+    assert!(read < 5 << 20, "{read}");
+}
+
+#[test]
+#[ignore = "writes 1.6 GB: a measurement of speed"]
+fn fifty_thousand_frames_of_4096_taxels() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("touch.npz");
+    let start = Instant::now();
+    let writer = RecordingWriter::create_for(&path, array(), 50_000).unwrap();
+    let peak = crate::counting::peak_bytes(|| stream(writer, 50_000));
+    let seconds = start.elapsed().as_secs_f64();
+    let bytes = fs::metadata(&path).unwrap().len();
+    println!(
+        "{seconds:.1} s, {:.0} MB/s, {:.1} MB of memory",
+        bytes as f64 * 1e-6 / seconds,
+        peak as f64 * 1e-6
+    );
+    let start = Instant::now();
+    let plain = folder.path().join("plain");
+    let mut file = fs::File::create(&plain).unwrap();
+    let block = vec![7_u8; 8 << 20];
+    for _ in 0..bytes / block.len() as u64 {
+        file.write_all(&block).unwrap();
+    }
+    file.sync_all().unwrap();
+    println!(
+        "{:.1} s for as many bytes and nothing else",
+        start.elapsed().as_secs_f64()
+    );
+}
+
+#[test]
+fn contact_rows_have_empty_centres_without_contact_and_the_digits_to_come_back() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("contact.csv");
+    let places = [DVec3::ZERO, DVec3::new(0.3, 0.0, 0.0), DVec3::Y];
+    let forces = [
+        DVec3::new(0.0, 0.0, 1.0),
+        DVec3::new(0.0, 0.0, 2.0),
+        DVec3::ZERO,
+    ];
+    let touched = PatchContact::of_taxels("palm", &places, &forces, 1);
+    assert_eq!((touched.n_touched, touched.n_saturated), (2, 1));
+    // Force times the arm of the centre is the torque.
+    let center = touched.center_of_pressure.unwrap();
+    assert!((center.cross(touched.force) - touched.torque).length() < 1e-15);
+    let free = PatchContact::of_taxels("finger, left", &places, &[DVec3::ZERO; 3], 0);
+    let mut table = ContactTable::create(&path).unwrap();
+    table.row(0.1 + 0.2, &touched).unwrap();
+    table.row(0.1 + 0.2, &free).unwrap();
+    let broken = PatchContact {
+        force: DVec3::NAN,
+        ..free
+    };
+    assert_eq!(table.row(0.5, &broken).unwrap_err().exit_code(), 2);
+    table.commit().unwrap();
+    assert_eq!(
+        fs::read_to_string(&path).unwrap(),
+        "time_s,patch,n_touched,n_saturated,fx_n,fy_n,fz_n,tx_nm,ty_nm,tz_nm,cop_x_m,cop_y_m,cop_z_m,n_sticking,n_slipping\n\
+         0.30000000000000004,palm,2,1,0.0,0.0,3.0,0.0,-0.6,0.0,0.19999999999999998,0.0,0.0,,\n\
+         0.30000000000000004,\"finger, left\",0,0,0.0,0.0,0.0,0.0,0.0,0.0,,,,,\n"
+    );
+}

@@ -1,0 +1,267 @@
+//! The tables as files: what goes out comes back, equal tables are equal bytes, and nothing is half-written.
+
+use crate::report_synthetic::{about, add_headlines, cell, noise_cells, quickstart_cells, tables};
+use bubbletouch::report::csv_tables::{TABLE_FILES, read_tables, to_csv, write_tables};
+use bubbletouch::report::page::ReportPage;
+use bubbletouch::report::results::{MOST_CHARTS, write_all};
+use bubbletouch::sensing::Ensemble;
+use bubbletouch::study::table::{Cell, Comparison, PStatus, Tables};
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::Path;
+
+fn contents(dir: &Path) -> BTreeMap<String, Vec<u8>> {
+    let entries = fs::read_dir(dir).unwrap().map(|entry| entry.unwrap());
+    entries
+        .map(|entry| {
+            let name = entry.file_name().into_string().unwrap();
+            (name, fs::read(entry.path()).unwrap())
+        })
+        .collect()
+}
+
+#[test]
+fn tables_read_back_as_they_were_written() {
+    let dir = tempfile::tempdir().unwrap();
+    let mut written = tables(quickstart_cells(), 3, 24);
+    // C chosen on a validation split, and floats that only the shortest round-trip form keeps.
+    written.accuracy[0].0.c = None;
+    written.accuracy[1].1.accuracy = 0.1 + 0.2;
+    written.accuracy[2].1.c_used = Some(f64::MIN_POSITIVE);
+    written.accuracy[3].1.c_used = None;
+    written.timing[0].1.fit_s = 5e-324;
+    written.confusion[0].object = "box, \"large\"\n2".to_owned();
+    add_headlines(&mut written);
+    write_tables(dir.path(), &written).unwrap();
+    assert_eq!(read_tables(dir.path()).unwrap(), written);
+    // One cell with one trial has no interval of a difference.
+    let single = tables(vec![cell()], 1, 2);
+    write_tables(dir.path(), &single).unwrap();
+    assert_eq!(read_tables(dir.path()).unwrap(), single);
+    write_tables(dir.path(), &Tables::default()).unwrap();
+    assert_eq!(read_tables(dir.path()).unwrap(), Tables::default());
+}
+
+#[test]
+fn a_row_is_the_cell_then_the_score_and_nothing_stands_for_absent() {
+    let mut one = tables(vec![cell()], 1, 2);
+    one.summary[0].0.c = None;
+    (
+        one.summary[0].1.accuracy_low,
+        one.summary[0].1.accuracy_high,
+    ) = (0.5625, 1e-7);
+    let summary = String::from_utf8(to_csv(&one.summary).unwrap()).unwrap();
+    assert_eq!(
+        summary,
+        "cell,pitch_mm,nx,ny,size_mm,noise_std,noise_unit,smoothing_mm,ensemble,measurements,ratio,frames,features,\
+         classifier,c,train_touches,fused_touches,n_trials,n_test,accuracy,accuracy_std,accuracy_low,accuracy_high,\
+         bootstrap_low,bootstrap_high,macro_f1,n_capped\n\
+         0,2.0,64,64,128.0,0.05,full_scale,0.0,gaussian,256,16.0,1,raw,linear_svm,,75,1,1,50,0.7,0.0,0.5625,\
+         1e-7,,,0.696,0\n"
+    );
+    let comparison = Comparison {
+        cell: 3,
+        best_cell: 1,
+        n_trials: 1,
+        difference: -0.25,
+        difference_low: None,
+        difference_high: None,
+        p_value: None,
+        p_holm: None,
+        p_status: PStatus::TooFewTrials,
+        n_trials_needed: Some(4),
+    };
+    assert_eq!(
+        String::from_utf8(to_csv(&[comparison]).unwrap()).unwrap(),
+        "cell,best_cell,n_trials,difference,difference_low,difference_high,p_value,p_holm,p_status,\
+         n_trials_needed\n3,1,1,-0.25,,,,,too_few_trials,4\n"
+    );
+}
+
+#[test]
+fn a_table_without_rows_has_the_header_of_one_with_rows_and_reads_as_none() {
+    let full = tables(quickstart_cells(), 3, 24);
+    let none = Tables::default();
+    let header = |csv: Vec<u8>| {
+        let text = String::from_utf8(csv).unwrap();
+        assert!(text.ends_with('\n'), "{text:?}");
+        text.lines().next().unwrap().to_owned()
+    };
+    let pairs = [
+        (to_csv(&full.summary), to_csv(&none.summary)),
+        (to_csv(&full.accuracy), to_csv(&none.accuracy)),
+        (to_csv(&full.confusion), to_csv(&none.confusion)),
+        (to_csv(&full.comparison), to_csv(&none.comparison)),
+        (to_csv(&full.pareto), to_csv(&none.pareto)),
+    ];
+    for (full, none) in pairs {
+        let (full, none) = (full.unwrap(), none.unwrap());
+        assert_eq!(none.iter().filter(|&&byte| byte == b'\n').count(), 1);
+        assert_eq!(header(full), header(none));
+    }
+    let folder = tempfile::tempdir().unwrap();
+    write_tables(folder.path(), &none).unwrap();
+    let failures = std::fs::read_to_string(folder.path().join("failures.csv")).unwrap();
+    assert!(
+        failures.ends_with("fused_touches,trial,error\n"),
+        "{failures}"
+    );
+    assert_eq!(read_tables(folder.path()).unwrap(), none);
+}
+
+#[test]
+fn the_first_charts_are_drawn_and_the_page_says_which_are_left_out() {
+    // Along x the ratio, pitches as lines, noise in panels: what is left makes 30 charts.
+    let mut cells = Vec::new();
+    for noise in 0..2 {
+        for smoothing in 0..15 {
+            for ratio in [4.0, 16.0] {
+                for pitch_mm in [2.0, 4.0] {
+                    for ensemble in [Ensemble::Gaussian, Ensemble::Sbhe] {
+                        cells.push(Cell {
+                            noise_std: 0.05 * f64::from(noise),
+                            smoothing_mm: f64::from(smoothing),
+                            ratio,
+                            pitch_mm,
+                            ensemble,
+                            ..cell()
+                        });
+                    }
+                }
+            }
+        }
+    }
+    let made = tables(cells, 1, 8);
+    let dir = tempfile::tempdir().unwrap();
+    let drawn = |name: &str, all_charts| {
+        let folder = dir.path().join(name);
+        let page = ReportPage {
+            all_charts,
+            ..about()
+        };
+        write_all(&folder, &made, &page).unwrap();
+        let names = contents(&folder);
+        let of_ending = |ending: &str| {
+            let is_chart =
+                |name: &&String| name.starts_with("accuracy_by") && name.ends_with(ending);
+            names.keys().filter(is_chart).cloned().collect::<Vec<_>>()
+        };
+        let html = String::from_utf8(names["report.html"].clone()).unwrap();
+        (of_ending(".svg"), of_ending(".png"), html)
+    };
+    let (first, png, html) = drawn("first", false);
+    assert_eq!((first.len(), png.len()), (MOST_CHARTS, MOST_CHARTS));
+    let (all, png, all_html) = drawn("all", true);
+    assert!(all.len() > MOST_CHARTS + 1 && first.iter().all(|name| all.contains(name)));
+    assert_eq!(png.len(), MOST_CHARTS);
+    let n_left_out = all.len() - MOST_CHARTS;
+    let said = format!("{n_left_out} more, from accuracy_by_");
+    assert!(
+        html.contains(&said) && html.contains("--all-charts"),
+        "{said}"
+    );
+    assert!(!all_html.contains("--all-charts"));
+}
+
+#[test]
+fn equal_tables_give_equal_bytes_in_every_file() {
+    let dir = tempfile::tempdir().unwrap();
+    let made = tables(noise_cells(), 3, 24);
+    let (first, second) = (dir.path().join("a"), dir.path().join("b/deeper"));
+    let paths = write_all(&first, &made, &about()).unwrap();
+    // Something else drawn in between must not change a byte.
+    write_all(
+        &dir.path().join("c"),
+        &tables(quickstart_cells(), 1, 3),
+        &about(),
+    )
+    .unwrap();
+    write_all(&second, &made, &about()).unwrap();
+    assert_eq!(contents(&first), contents(&second));
+    let names: Vec<&str> = paths
+        .iter()
+        .map(|path| path.file_name().unwrap().to_str().unwrap())
+        .collect();
+    assert_eq!(names[..TABLE_FILES.len()], TABLE_FILES);
+    assert_eq!(
+        names[TABLE_FILES.len()..],
+        [
+            "limits.csv",
+            "accuracy_by_noise.png",
+            "accuracy_by_noise.svg",
+            "accuracy_by_noise_per_classifier.png",
+            "accuracy_by_noise_per_classifier.svg",
+            "confusion.png",
+            "confusion.svg",
+            "snapshots.png",
+            "report.html",
+        ]
+    );
+    assert_eq!(contents(&first).len(), names.len());
+}
+
+#[test]
+fn a_table_that_cannot_be_read_is_named_with_its_line() {
+    let dir = tempfile::tempdir().unwrap();
+    let made = tables(
+        vec![
+            cell(),
+            Cell {
+                ratio: 4.0,
+                ..cell()
+            },
+        ],
+        2,
+        3,
+    );
+    write_tables(dir.path(), &made).unwrap();
+    let path = dir.path().join("summary.csv");
+    let whole = fs::read_to_string(&path).unwrap();
+    fs::write(
+        &path,
+        whole.replace(
+            "full_scale,0.0,gaussian,256,4.0",
+            "full_scale,0.0,magic,256,4.0",
+        ),
+    )
+    .unwrap();
+    let said = read_tables(dir.path()).unwrap_err();
+    assert_eq!(said.exit_code(), 2);
+    assert!(said.to_string().contains("summary.csv: line 3"), "{said}");
+    // A line that broke off.
+    fs::write(&path, &whole[..whole.len() - 30]).unwrap();
+    let said = read_tables(dir.path()).unwrap_err();
+    assert!(said.to_string().contains("summary.csv: line 3"), "{said}");
+    fs::remove_file(&path).unwrap();
+    let said = read_tables(dir.path()).unwrap_err();
+    assert_eq!(said.exit_code(), 2);
+    assert!(
+        said.to_string().contains("summary.csv: is missing"),
+        "{said}"
+    );
+}
+
+#[test]
+fn a_folder_that_cannot_be_written_stays_as_it_was() {
+    let dir = tempfile::tempdir().unwrap();
+    let made = tables(vec![cell()], 1, 2);
+    let taken = dir.path().join("taken");
+    fs::write(&taken, "mine").unwrap();
+    let said = write_all(&taken, &made, &ReportPage::default()).unwrap_err();
+    assert_eq!(said.exit_code(), 2);
+    assert!(said.to_string().contains("is not a folder"), "{said}");
+    assert_eq!(fs::read_to_string(&taken).unwrap(), "mine");
+    // A folder where the page should go: what is there is whole, and no partial file is left.
+    let blocked = dir.path().join("blocked");
+    fs::create_dir_all(blocked.join("report.html/inside")).unwrap();
+    assert!(write_all(&blocked, &made, &ReportPage::default()).is_err());
+    assert_eq!(read_tables(&blocked).unwrap(), made);
+    let entries = fs::read_dir(&blocked)
+        .unwrap()
+        .map(|e| e.unwrap().file_name());
+    assert!(
+        entries
+            .into_iter()
+            .all(|name| !name.to_string_lossy().contains("partial"))
+    );
+}

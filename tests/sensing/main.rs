@@ -1,0 +1,12 @@
+//! Signals and sensing: noise, sensor errors, projections and reconstruction.
+
+#[path = "../fixtures/counting/mod.rs"]
+mod counting;
+
+mod sensing_dictionaries;
+mod sensing_projection;
+mod sensing_reconstruction;
+mod signal_allocation;
+mod signal_chain;
+mod signal_imperfections;
+mod signal_limits;

@@ -1,0 +1,63 @@
+//! A chain that has seen one frame allocates nothing for the next ones.
+
+use bubbletouch::random::Seed;
+use bubbletouch::signal::{
+    Chain, Drift, Faults, GainMismatch, Noise, NoiseUnit, Recording, Scratch, SignalStep,
+};
+use bubbletouch::world::{Grid, Patch, Taxel};
+
+use crate::counting::allocations;
+
+#[test]
+fn touches_after_the_first_allocate_nothing() {
+    let grid = Grid {
+        nx: 64,
+        ny: 48,
+        pitch: 2e-3,
+    };
+    let taxel = Taxel {
+        radius: 1e-3,
+        stiffness: 200.0,
+        damping: 0.4,
+        stroke: 5e-3,
+    };
+    let noise = SignalStep::Noise(Noise {
+        std: 0.1,
+        unit: NoiseUnit::FullScale,
+    });
+    let smoothing = SignalStep::Smoothing { width: 4e-3 };
+    let skin = Seed::new(1);
+    let steps = [
+        SignalStep::Hysteresis { width: 0.1 },
+        SignalStep::Crosstalk { leak: 0.1 },
+        SignalStep::Scan { seconds: 0.1 },
+        SignalStep::Force,
+        SignalStep::Gain(GainMismatch { std: 0.1, skin }),
+        SignalStep::Drift(Drift { std: 0.1, skin }),
+        noise,
+        SignalStep::Faults(Faults {
+            dead: 0.1,
+            stuck: 0.1,
+            skin,
+        }),
+        SignalStep::Quantisation { bits: 8 },
+        smoothing,
+    ];
+    let chain = Chain::new(&steps, &Patch::new(grid, taxel).unwrap()).unwrap();
+    let mut frames = vec![1e-3; 3 * 64 * 48];
+    let rates = vec![0.01; 3 * 64 * 48];
+    let mut scratch = Scratch::default();
+    let mut touch = |number| {
+        let seed = Seed::new(2018).numbered(number);
+        frames.fill(1e-3);
+        let recording = Recording {
+            frames: &mut frames,
+            rates: Some(&rates),
+            n_before: 1,
+            interval: Some(0.1),
+        };
+        chain.apply_recording(recording, &seed, &mut scratch);
+    };
+    assert!(allocations(|| touch(0)) > 0);
+    assert_eq!(allocations(|| (1..20).for_each(touch)), 0);
+}

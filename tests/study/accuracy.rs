@@ -1,0 +1,107 @@
+//! Laws of accuracy on a small real study: chance, more measurements, less noise, no compression.
+//!
+//! A run is the same on one machine; processors round differently, so every margin is several test rows wide.
+
+use crate::study::Study;
+use bubbletouch::sensing::Ensemble;
+use bubbletouch::study::Outcome;
+use bubbletouch::study::table::{Cell, CellScore};
+
+const STUDY: &str = r#"
+question = "What does accuracy obey?"
+trials = 4
+
+[objects]
+sets = ["household"]
+names = ["mug", "banana", "scissors", "power_drill", "fork", "strawberry", "bowl", "hammer"]
+surface_error_mm = 0.5
+
+[skin]
+pitch_mm = 4.0
+size_mm = 64.0
+stroke_mm = 5.0
+
+[touches]
+per_object = 60
+offset_x_mm = { uniform = [-10.0, 10.0] }
+offset_y_mm = { uniform = [-10.0, 10.0] }
+yaw_deg = { uniform = [-30.0, 30.0] }
+depth_mm = { uniform = [2.0, 4.0] }
+
+[signal]
+noise_std_full_scale = [0.0, 0.1, 0.4, 10.0]
+
+[sensing]
+measurements = [1, 4, 16, 64, 256]
+
+[recognition]
+classifier = "linear_svm"
+"#;
+
+/// One in this many guesses is right.
+const N_OBJECTS: f64 = 8.0;
+
+fn score(outcome: &Outcome, is_wanted: impl Fn(&Cell) -> bool) -> &CellScore {
+    let mut rows = outcome.tables.summary.iter().filter(|(c, _)| is_wanted(c));
+    let (_, score) = rows.next().expect("a cell with these settings");
+    assert!(rows.next().is_none(), "one cell with these settings");
+    score
+}
+
+#[test]
+fn accuracy_obeys_chance_compression_and_noise() {
+    let outcome = Study::new(STUDY).run();
+    let noises = [0.0, 0.1, 0.4, 10.0];
+    let counts = [1, 4, 16, 64, 256];
+    let at =
+        |noise: f64, m: usize| score(&outcome, |c| c.noise_std == noise && c.measurements == m);
+    let table: Vec<Vec<f64>> = noises
+        .iter()
+        .map(|&noise| counts.iter().map(|&m| at(noise, m).accuracy).collect())
+        .collect();
+    println!("{table:.3?}");
+    let deaf = at(10.0, 1);
+    assert!(
+        deaf.accuracy_low < 1.0 / N_OBJECTS && 1.0 / N_OBJECTS < deaf.accuracy_high,
+        "one measurement of noise guesses: {deaf:?}"
+    );
+    // Four test rows of 120.
+    let margin = 4.0 / deaf.n_test as f64;
+    for accuracies in &table[..3] {
+        for pair in accuracies.windows(2) {
+            assert!(pair[1] > pair[0] - margin, "falls with m: {accuracies:?}");
+        }
+        assert!(accuracies[4] > accuracies[0] + 0.2, "{accuracies:?}");
+    }
+    for column in 0..counts.len() {
+        for pair in table.windows(2) {
+            let (less, more) = (pair[0][column], pair[1][column]);
+            assert!(more < less + margin, "rises with noise: {less} to {more}");
+        }
+        assert!(table[3][column] < table[0][column] - 0.1);
+    }
+}
+
+#[test]
+fn all_taxels_know_about_as_much_as_a_64th_of_them_or_more() {
+    let text = STUDY.replace("[0.0, 0.1, 0.4, 10.0]", "0.1").replace(
+        "measurements = [1, 4, 16, 64, 256]",
+        "ensemble = [\"identity\", \"gaussian\", \"block_average\"]\nratio = [1, 64]",
+    );
+    let outcome = Study::new(&text).run();
+    let whole = score(&outcome, |c| c.ensemble == Ensemble::Identity);
+    let margin = 4.0 / whole.n_test as f64;
+    for ensemble in [Ensemble::Gaussian, Ensemble::BlockAverage] {
+        let at =
+            |ratio: f64| score(&outcome, |c| c.ensemble == ensemble && c.ratio == ratio).accuracy;
+        println!(
+            "{ensemble:?}: {:.3} at 1:1, {:.3} at 64:1, {:.3} whole",
+            at(1.0),
+            at(64.0),
+            whole.accuracy
+        );
+        assert!(whole.accuracy > at(64.0) - margin, "{ensemble:?}");
+        assert!(at(1.0) > at(64.0) - margin, "{ensemble:?}");
+        assert!((at(1.0) - whole.accuracy).abs() < 0.1, "{ensemble:?}");
+    }
+}

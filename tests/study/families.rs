@@ -1,0 +1,348 @@
+//! What a touch can be read and recognised by: features, frames a touch, fused touches, and the choice of C and γ; against
+//! a slow pipeline written out, touch by touch, and by laws.
+
+use crate::study::{Study, trials_of};
+use bubbletouch::contact::{Workspace, press_to_depth};
+use bubbletouch::random::Seed;
+use bubbletouch::recognition::ClassifierKind;
+use bubbletouch::recognition::classifier::{Classifier, Cost, TrainedClassifier};
+use bubbletouch::recognition::dataset::dataset;
+use bubbletouch::recognition::features::Features;
+use bubbletouch::recognition::fusion::fuse_rows;
+use bubbletouch::sensing::Projection;
+use bubbletouch::signal::{Chain, Noise, NoiseUnit, Scratch, SignalStep};
+use bubbletouch::study::Outcome;
+use bubbletouch::study::table::{Cell, TrialScore};
+use bubbletouch::world::Scene;
+use ndarray::{Array1, Array2, Axis};
+use std::collections::BTreeMap;
+
+const STUDY: &str = r#"
+question = "What is a touch read by?"
+trials = 2
+
+[objects]
+sets = ["household"]
+names = ["mug", "banana", "scissors", "power_drill", "fork", "bowl"]
+surface_error_mm = 1.0
+
+[skin]
+pitch_mm = 4.0
+size_mm = 64.0
+stroke_mm = 5.0
+
+[touches]
+per_object = 32
+offset_x_mm = { uniform = [-10.0, 10.0] }
+offset_y_mm = { uniform = [-10.0, 10.0] }
+yaw_deg = { uniform = [-40.0, 40.0] }
+depth_mm = { uniform = [2.0, 4.0] }
+
+[signal]
+noise_std_full_scale = 0.2
+
+[sensing]
+measurements = 16
+
+[recognition]
+classifier = "linear_svm"
+test_fraction = 0.375
+"#;
+
+/// The study with some lines put into its sections.
+fn with(touches: &str, recognition: &str) -> String {
+    STUDY
+        .replace("[touches]", &format!("[touches]\n{touches}"))
+        .replace("[recognition]", &format!("[recognition]\n{recognition}"))
+}
+
+const ALL_FEATURES: &str = r#"features = ["raw", "centred", "unit_norm", "centred_unit_norm"]"#;
+
+/// The rows of a cell in a trial, one touch, one frame, one number after the other.
+fn slow_rows(study: &Study, cell: &Cell, trial: u64) -> Array2<f64> {
+    let patch = study.plan.arrays[0];
+    let seed = Seed::new(study.plan.spec.seed);
+    let steps = [SignalStep::Noise(Noise {
+        std: cell.noise_std,
+        unit: NoiseUnit::FullScale,
+    })];
+    let chain = Chain::new(&steps, &patch).unwrap();
+    let projection = Projection::new(
+        cell.ensemble,
+        (patch.grid.ny, patch.grid.nx),
+        cell.measurements,
+        &seed.named("projection").numbered(trial),
+    )
+    .unwrap();
+    let matrix = projection.matrix();
+    let (m, depths) = (cell.measurements, cell.frames);
+    let mut rows = Array2::zeros((study.sweep.labels.len(), depths * m));
+    let mut row = 0;
+    for touched in &study.touched {
+        let scene = Scene {
+            patch,
+            objects: vec![touched.object.model.clone()],
+        };
+        for (number, touch) in touched.touches.iter().enumerate() {
+            let name = seed.named("signal").numbered(trial);
+            let name = name.named(&touched.object.name).numbered(number as u64);
+            for frame in 1..=depths {
+                let pose = touch.patch_from_object(&touched.rests[touch.rest]);
+                let depth = touch.depth * (frame as f64 / depths as f64);
+                let mut workspace = Workspace::new();
+                press_to_depth(&scene, &[pose], depth, &mut workspace);
+                let kept = workspace.deflections().iter().map(|&d| f64::from(d as f32));
+                let mut values: Vec<f64> = kept.collect();
+                let noise = match frame == depths {
+                    true => name,
+                    false => name.named("frame").numbered(frame as u64),
+                };
+                chain.apply(&mut values, None, &noise, &mut Scratch::default());
+                for k in 0..m {
+                    rows[(row, (frame - 1) * m + k)] =
+                        matrix.row(k).dot(&Array1::from(values.clone()));
+                }
+                let u = matrix.sum_axis(Axis(1));
+                let mut part = rows.slice_mut(ndarray::s![row, (frame - 1) * m..frame * m]);
+                if matches!(cell.features, Features::Centred | Features::CentredUnitNorm) {
+                    let share = u.dot(&part) / u.dot(&u);
+                    part.zip_mut_with(&u, |y, u| *y -= share * u);
+                }
+            }
+            if matches!(
+                cell.features,
+                Features::UnitNorm | Features::CentredUnitNorm
+            ) {
+                let norm = rows.row(row).iter().map(|v| v * v).sum::<f64>().sqrt();
+                rows.row_mut(row).mapv_inplace(|v| v / norm);
+            }
+            row += 1;
+        }
+    }
+    rows
+}
+
+/// A classifier of the slow rows, and the test rows with their labels.
+fn slow_fit(
+    study: &Study,
+    cell: &Cell,
+    trial: usize,
+) -> (TrainedClassifier, Array2<f64>, Array1<usize>) {
+    let rows = slow_rows(study, cell, trial as u64);
+    let split = &study.sweep.splits[trial];
+    let labels = |rows: &[usize]| study.sweep.labels.select(Axis(0), rows);
+    let training = dataset(rows.select(Axis(0), &split.train), labels(&split.train)).unwrap();
+    let classifier = Classifier {
+        c: Cost::Fixed(cell.c.unwrap()),
+        ..Classifier::new(cell.classifier)
+    };
+    let trained = classifier.train(&training, &Seed::new(0)).unwrap();
+    let test = rows.select(Axis(0), &split.test);
+    (trained, test, labels(&split.test))
+}
+
+fn n_equal(a: &Array1<usize>, b: &Array1<usize>) -> usize {
+    a.iter().zip(b).filter(|(a, b)| a == b).count()
+}
+
+#[test]
+fn frames_and_features_are_what_a_slow_pipeline_makes_of_each_touch() {
+    let study = Study::new(&with("frames = [1, 3]", ALL_FEATURES));
+    let outcome = study.run();
+    assert_eq!(outcome.tables.accuracy.len(), 2 * 4 * 2);
+    for (cell, score) in &outcome.tables.accuracy {
+        let (trained, test, truth) = slow_fit(&study, cell, score.trial);
+        let n_correct = n_equal(&trained.labels(test.view()).unwrap(), &truth);
+        // Sums in another order can turn a row that is close to two objects.
+        assert!(
+            n_correct.abs_diff(score.n_correct) <= 1,
+            "{cell:?}: {n_correct}, not {}",
+            score.n_correct
+        );
+        assert_eq!((score.n_test, score.n_left_out), (truth.len(), 0));
+    }
+}
+
+#[test]
+fn fused_touches_are_decided_on_by_the_sum_of_their_scores() {
+    let study = Study::new(&with("", "fused_touches = [1, 2, 5]"));
+    let outcome = study.run();
+    for (cell, score) in &outcome.tables.accuracy {
+        let (trained, test, truth) = slow_fit(&study, cell, score.trial);
+        let scores = trained.scores(test.view()).unwrap();
+        if cell.fused_touches == 1 {
+            let labels = trained.labels(test.view()).unwrap();
+            assert_eq!(labels, trained.labels_of_scores(scores.view()));
+        }
+        let seed = Seed::new(2018)
+            .named("fused_touches")
+            .numbered(score.trial as u64);
+        let fused = fuse_rows(truth.view(), cell.fused_touches, &seed);
+        let mut n_correct = 0;
+        for group in &fused.groups {
+            let sum = scores.select(Axis(0), group).sum_axis(Axis(0));
+            let label = trained.labels_of_scores(sum.insert_axis(Axis(0)).view())[0];
+            n_correct += usize::from(label == truth[group[0]]);
+        }
+        assert!(n_correct.abs_diff(score.n_correct) <= 1, "{cell:?}");
+        // Twelve test touches of each of six objects.
+        let (n_groups, n_left) = [(72, 0), (36, 0), (12, 12)][[1, 2, 5]
+            .iter()
+            .position(|&k| k == cell.fused_touches)
+            .unwrap()];
+        assert_eq!((score.n_test, score.n_left_out), (n_groups, n_left));
+    }
+}
+
+#[test]
+fn cells_that_differ_in_fused_touches_share_one_fit_and_all_c_are_trained_together() {
+    let study = Study::new(&with("", "fused_touches = [1, 2, 4]\nc = [0.1, 1.0]"));
+    let groups = &study.sweep.groups;
+    assert_eq!(groups.iter().flat_map(|g| g.families()).count(), 1);
+    let estimate = study.estimate();
+    assert_eq!((estimate.n_cells, estimate.n_fits), (6, 2));
+    let outcome = study.run();
+    let mut fits: BTreeMap<(usize, String), Vec<u64>> = BTreeMap::new();
+    for (cell, time) in &outcome.tables.timing {
+        let key = (time.trial, format!("{:?}", cell.c));
+        fits.entry(key).or_default().push(time.fit_s.to_bits());
+    }
+    assert_eq!(fits.len(), 4);
+    // A clock that ran twice would not show the same nanosecond.
+    let mut distinct = Vec::new();
+    for times in fits.values() {
+        assert!(times.len() == 3 && times.iter().all(|t| *t == times[0]));
+        distinct.push(times[0]);
+    }
+    distinct.sort_unstable();
+    distinct.dedup();
+    assert_eq!(
+        distinct.len(),
+        2,
+        "each trial's C share one training, in equal parts"
+    );
+}
+
+#[test]
+fn a_cell_does_not_depend_on_the_other_values_of_these_axes() {
+    let alone = Study::new(&with("", "")).run();
+    let wide = with(
+        "frames = [2, 1]",
+        "features = [\"unit_norm\", \"raw\"]\nfused_touches = [3, 1]\nc = [0.1, 1.0]",
+    );
+    let among = Study::new(&wide).run();
+    let cell = &alone.tables.accuracy[0].0;
+    let expected: Vec<&TrialScore> = alone.tables.accuracy.iter().map(|(_, s)| s).collect();
+    assert_eq!(expected.len(), 2);
+    assert_eq!(trials_of(&among, cell), expected);
+    assert_eq!((cell.frames, cell.fused_touches), (1, 1));
+}
+
+fn accuracy(outcome: &Outcome, is_wanted: impl Fn(&Cell) -> bool) -> f64 {
+    let mut rows = outcome.tables.summary.iter().filter(|(c, _)| is_wanted(c));
+    let (_, score) = rows.next().expect("a cell with these settings");
+    assert!(rows.next().is_none(), "one cell with these settings");
+    score.accuracy
+}
+
+#[test]
+fn touching_again_recognises_more_in_noise() {
+    let text = with("", "fused_touches = [1, 2, 6]")
+        .replace("trials = 2", "trials = 4")
+        .replace("full_scale = 0.2", "full_scale = 0.1");
+    let outcome = Study::new(&text).run();
+    let by_k = [1, 2, 6].map(|k| accuracy(&outcome, |c| c.fused_touches == k));
+    println!("{by_k:.3?}");
+    assert!(
+        by_k[1] > by_k[0] && by_k[2] > by_k[0] + 0.1,
+        "1, 2 and 6 touches: {by_k:?}"
+    );
+}
+
+#[test]
+fn the_only_candidate_is_what_is_given_and_a_useless_one_is_not_chosen() {
+    let rbf = STUDY.replace("linear_svm", "rbf_svm");
+    let with = |keys: &str| {
+        let text = rbf.replace("[recognition]", &format!("[recognition]\n{keys}"));
+        Study::new(&text).run().tables.accuracy
+    };
+    let given = with("c = 10.0");
+    let only = with("choose_c = [10.0]\nchoose_gamma = [1.0]");
+    for ((_, given), (cell, only)) in given.iter().zip(&only) {
+        assert_eq!(given, only);
+        assert_eq!(cell.c, None);
+        let gamma = given.gamma_used.unwrap();
+        // Standardised features: γ 'scale' is 1 / m.
+        assert!((gamma - 1.0 / 16.0).abs() < 1e-12);
+        let multiple = with("choose_c = [10.0]\nchoose_gamma = [1.0, 1e6]\nchoose_folds = 3");
+        for (_, chosen) in multiple {
+            assert_eq!(chosen.c_used, Some(10.0));
+            assert!((chosen.gamma_used.unwrap() - gamma).abs() < 1e-12);
+        }
+    }
+    let linear = Study::new(STUDY).run();
+    assert!(
+        linear
+            .tables
+            .accuracy
+            .iter()
+            .all(|(_, s)| s.gamma_used.is_none())
+    );
+    assert_eq!(
+        linear.tables.accuracy[0].0.classifier,
+        ClassifierKind::LinearSvm
+    );
+}
+
+#[test]
+fn a_choice_by_some_of_the_touches_does_not_see_the_others() {
+    let keys = "choose_c = [0.01, 1.0]\nchoose_touches = 5\nchoose_folds = 5";
+    let few = Study::new(&with("", &format!("{keys}\ntrain_touches = 5"))).run();
+    let many = Study::new(&with("", &format!("{keys}\ntrain_touches = [5, 20]"))).run();
+    let chosen = |outcome: &Outcome, touches: usize| -> Vec<Option<f64>> {
+        let rows = outcome.tables.accuracy.iter();
+        rows.filter(|(cell, _)| cell.train_touches == touches)
+            .map(|(_, score)| score.c_used)
+            .collect()
+    };
+    // The five touches of a smaller training set are the first of a larger one's.
+    assert_eq!(chosen(&few, 5), chosen(&many, 5));
+    assert_eq!(chosen(&many, 20), chosen(&many, 5));
+}
+
+#[test]
+fn frames_take_memory_and_measuring_in_proportion_and_less_to_be_made() {
+    let estimate = |frames: usize| {
+        let text = with(&format!("frames = {frames}"), "");
+        // So many that they take more than the report.
+        let many = text.replace("per_object = 32", "per_object = 60000");
+        Study::new(&many).estimate()
+    };
+    let (one, four) = (estimate(1), estimate(4));
+    // Four frames of a touch were measured to take twice as long as one.
+    let made = four.simulate_s / one.simulate_s;
+    assert!((1.5..3.9).contains(&made), "{made}");
+    assert!(four.measure_s > 3.9 * one.measure_s);
+    let frames = 4.0 * 6.0 * 60_000.0 * 256.0;
+    assert!(four.memory_bytes - one.memory_bytes >= 3.0 * frames);
+}
+
+#[test]
+fn keys_of_trees_and_neighbours_reach_them() {
+    let accuracy = |classifier: &str, keys: &str| {
+        let new = format!("classifier = \"{classifier}\"\n{keys}");
+        let quiet = STUDY.replace("noise_std_full_scale = 0.2", "noise_std_full_scale = 0.0");
+        let study = Study::new(&quiet.replace("classifier = \"linear_svm\"", &new));
+        let rows = study.run().tables.accuracy;
+        let shares = rows.iter().map(|(_, score)| score.accuracy);
+        shares.sum::<f64>() / rows.len() as f64
+    };
+    // One split parts the six objects in two: no more than two of them are ever named.
+    assert!(accuracy("decision_tree", "max_depth = 1") <= 2.0 / 6.0);
+    assert!(accuracy("decision_tree", "") > 2.0 / 6.0);
+    assert!(accuracy("random_forest", "n_trees = 1") < accuracy("random_forest", "n_trees = 50"));
+    // All rows vote: every touch gets the same label.
+    let all = accuracy("k_nearest", "n_neighbours = 120");
+    assert!((all - 1.0 / 6.0).abs() < 1e-12, "{all}");
+    assert!(accuracy("k_nearest", "") > 2.0 / 6.0);
+}

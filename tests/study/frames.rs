@@ -1,0 +1,384 @@
+//! Frames and splits of a study, against touches pressed one by one and rows counted by hand.
+
+use crate::study::Study;
+use bubbletouch::contact::{Workspace, press_to_depth};
+use bubbletouch::recognition::split::Split;
+use bubbletouch::study::progress::Silent;
+use bubbletouch::study::{TouchedObject, sample_frames, simulate_array};
+use bubbletouch::world::{Patch, Scene, Touch, TouchAxis};
+use std::collections::BTreeSet;
+
+/// Some touches are beside the array, some deeper than its stroke.
+const STUDY: &str = r#"
+question = "What happens to every touch?"
+trials = 6
+
+[objects]
+sets = ["household"]
+names = ["mug", "banana", "scissors"]
+surface_error_mm = 2.0
+
+[skin]
+pitch_mm = 4.0
+size_mm = 48.0
+stroke_mm = 3.5
+
+[touches]
+offset_x_mm = [-6.0, 0.0, 6.0, 400.0]
+offset_y_mm = [0.0, 10.0]
+yaw_deg = [0.0, 30.0]
+tilt_x_deg = [0.0, 5.0]
+depth_mm = [2.0, 4.0]
+
+[sensing]
+ratio = 4
+
+[recognition]
+classifier = "linear_svm"
+"#;
+
+#[test]
+fn every_frame_is_its_touch_pressed_alone() {
+    let study = Study::new(STUDY);
+    let patch = study.plan.arrays[0];
+    let frames = simulate_array(&study.touched, &patch, 1, &Silent);
+    let deflection = frames.kept.to_array().unwrap();
+    let mut row = 0;
+    let (mut n_missed, mut n_saturated) = (0, 0);
+    for object in &study.touched {
+        for touch in &object.touches {
+            let mut workspace = Workspace::new();
+            let scene = Scene {
+                patch,
+                objects: vec![object.object.model.clone()],
+            };
+            let pose = touch.patch_from_object(&object.rests[touch.rest]);
+            let contact = press_to_depth(&scene, &[pose], touch.depth, &mut workspace);
+            let alone = workspace.deflections().iter();
+            let alone: Vec<f64> = alone.map(|&d| f64::from(d as f32)).collect();
+            assert_eq!(deflection.row(row).to_vec(), alone, "row {row}");
+            n_missed += usize::from(contact.is_none());
+            n_saturated += usize::from(contact.is_some_and(|c| c.n_saturated > 0));
+            row += 1;
+        }
+    }
+    assert_eq!(row, deflection.nrows());
+    assert_eq!(frames.facts.n_missed, n_missed);
+    assert_eq!(frames.facts.n_saturated, n_saturated);
+}
+
+#[test]
+fn frames_without_a_deflection_are_counted_and_none_is_of_a_deep_touch() {
+    let depths = |depths: &str| {
+        let text = STUDY.replace("depth_mm = [2.0, 4.0]", depths);
+        let study = Study::new(&text.replace(", 400.0]", "]"));
+        let patch = study.plan.arrays[0];
+        let frames = simulate_array(&study.touched, &patch, 3, &Silent);
+        let deflection = frames.kept.to_array().unwrap();
+        let empty = deflection.outer_iter().skip(2).step_by(3);
+        let n_empty = empty.filter(|row| row.iter().all(|&d| d == 0.0)).count();
+        assert_eq!(frames.facts.n_missed, n_empty);
+        (n_empty, frames.facts.n_saturated, deflection.nrows() / 3)
+    };
+    let (n_empty, n_saturated, n_touches) = depths("depth_mm = [1e-20, 2.0]");
+    assert!(0 < n_empty && 2 * n_empty <= n_touches, "{n_empty}");
+    assert_eq!(n_saturated, 0);
+    let (n_empty, n_saturated, n_touches) = depths("depth_mm = [10.0, 50.0, 200.0]");
+    assert_eq!((n_empty, n_saturated), (0, n_touches));
+}
+
+/// What the equations of contact give, taxel by taxel and sphere by sphere; `None` if no travel meets the object.
+fn by_the_equations(patch: &Patch, object: &TouchedObject, touch: &Touch) -> Option<Vec<f64>> {
+    let pose = touch.patch_from_object(&object.rests[touch.rest]);
+    let grid = &patch.grid;
+    let spheres = object.object.model.spheres().unwrap().spheres();
+    let needs: Vec<f64> = (0..grid.n_taxels())
+        .map(|taxel| {
+            let (x, y) = (grid.x(taxel % grid.nx), grid.y(taxel / grid.nx));
+            spheres.iter().fold(f64::NEG_INFINITY, |deepest, sphere| {
+                let c = pose.transform_point(sphere.center);
+                let reach = patch.taxel.radius + sphere.radius;
+                let b2 = (c.x - x).powi(2) + (c.y - y).powi(2);
+                match b2 < reach * reach {
+                    true => deepest.max((reach * reach - b2).sqrt() - c.z),
+                    false => deepest,
+                }
+            })
+        })
+        .collect();
+    let first = needs.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    let pressed = |need: f64| (need - first + touch.depth).max(0.0);
+    first
+        .is_finite()
+        .then(|| needs.into_iter().map(pressed).collect())
+}
+
+#[test]
+fn missed_and_saturated_touches_are_counted_as_the_equations_say() {
+    let study = Study::new(STUDY);
+    let patch = study.plan.arrays[0];
+    let stroke = patch.taxel.stroke;
+    let frames = simulate_array(&study.touched, &patch, 1, &Silent);
+    let deflection = frames.kept.to_array().unwrap();
+    let touches = study
+        .touched
+        .iter()
+        .flat_map(|object| object.touches.iter().map(move |touch| (object, touch)));
+    let (mut n_missed, mut n_saturated) = (0, 0);
+    for (row, (object, touch)) in deflection.outer_iter().zip(touches) {
+        let expected = by_the_equations(&patch, object, touch);
+        n_missed += usize::from(expected.is_none());
+        let expected = expected.unwrap_or_else(|| vec![0.0; patch.grid.n_taxels()]);
+        n_saturated += usize::from(expected.iter().any(|&d| d > stroke * (1.0 + 1e-9)));
+        for (&simulated, expected) in row.iter().zip(expected) {
+            let difference = (simulated - expected.min(stroke)).abs();
+            assert!(difference < 1e-9, "{difference} m");
+        }
+    }
+    let n_touches = 3 * 4 * 2 * 2 * 2 * 2;
+    assert_eq!(deflection.nrows(), n_touches);
+    assert_eq!(n_missed, n_touches / 4, "the offset of 400 mm");
+    assert_eq!(frames.facts.n_missed, n_missed);
+    assert_eq!(n_saturated, 3 * n_touches / 8, "the depth of 4 mm");
+    assert_eq!(frames.facts.n_saturated, n_saturated);
+    let outcome = study.run();
+    assert_eq!(outcome.arrays[0].n_missed, n_missed);
+    assert_eq!(outcome.arrays[0].n_saturated, n_saturated);
+    assert_eq!(outcome.arrays[0].n_touches, n_touches);
+}
+
+fn with_recognition(keys: &str) -> Study {
+    Study::new(&format!("{STUDY}{keys}\n"))
+}
+
+/// Every row is on one side, once.
+fn assert_is_a_division(split: &Split, n_rows: usize) {
+    let mut rows = [split.train.clone(), split.test.clone()].concat();
+    rows.sort_unstable();
+    assert_eq!(rows, (0..n_rows).collect::<Vec<_>>());
+    assert!(!split.test.is_empty() && !split.train.is_empty());
+}
+
+#[test]
+fn what_is_kept_together_is_never_on_both_sides() {
+    use TouchAxis::{Depth, OffsetX, OffsetY, Rest, TiltX, TiltY, Yaw};
+    let kinds: [(&str, &[TouchAxis], &str); 7] = [
+        ("offset", &[OffsetX, OffsetY], ""),
+        ("offset", &[OffsetX, OffsetY], "folds = 3"),
+        ("yaw", &[Yaw], "test_fraction = 0.5"),
+        ("tilt", &[TiltX, TiltY], "test_fraction = 0.5"),
+        ("depth", &[Depth], "folds = 2"),
+        ("pose", &[Rest, OffsetX, OffsetY, Yaw, TiltX, TiltY], ""),
+        (
+            "pose",
+            &[Rest, OffsetX, OffsetY, Yaw, TiltX, TiltY],
+            "folds = 6",
+        ),
+    ];
+    for (kind, axes, keys) in kinds {
+        let study = with_recognition(&format!("keep_together = \"{kind}\"\n{keys}"));
+        let touches: Vec<&Touch> = study.touched.iter().flat_map(|t| &t.touches).collect();
+        assert_eq!(study.sweep.splits.len(), 6);
+        for split in &study.sweep.splits {
+            assert_is_a_division(split, touches.len());
+            let groups = |rows: &[usize]| -> BTreeSet<Vec<usize>> {
+                rows.iter()
+                    .map(|&row| touches[row].group(axes).unwrap())
+                    .collect()
+            };
+            let (train, test) = (groups(&split.train), groups(&split.test));
+            assert!(train.is_disjoint(&test), "{kind}: {train:?} and {test:?}");
+        }
+    }
+}
+
+/// Poses that are drawn, but for two resting values of a tilt.
+fn with_drawn_poses(keys: &str) -> String {
+    let study = STUDY
+        .replace(
+            "[-6.0, 0.0, 6.0, 400.0]",
+            "{ uniform = [-20.0, 20.0] }\nper_object = 120",
+        )
+        .replace(
+            "offset_y_mm = [0.0, 10.0]",
+            "offset_y_mm = { uniform = [-20.0, 20.0] }",
+        )
+        .replace(
+            "yaw_deg = [0.0, 30.0]",
+            "yaw_deg = { uniform = [0.0, 360.0] }",
+        );
+    study + keys
+}
+
+#[test]
+fn no_test_touch_has_a_training_touch_of_its_object_nearer_than_is_kept_together() {
+    let (near_mm, near_deg) = (6.0, 40.0);
+    for (kind, keys) in [
+        ("pose", "keep_together_mm = 6.0\nkeep_together_deg = 40.0"),
+        ("offset", "keep_together_mm = 1.5"),
+        ("yaw", "keep_together_deg = 1.0\nfolds = 3"),
+    ] {
+        let keys = format!("keep_together = \"{kind}\"\n{keys}\n");
+        let study = Study::new(&with_drawn_poses(&keys));
+        let (near_mm, near_deg) = match kind {
+            "pose" => (near_mm, near_deg),
+            "offset" => (1.5, 0.0),
+            _ => (0.0, 1.0),
+        };
+        let touches: Vec<(usize, &Touch)> = study
+            .touched
+            .iter()
+            .enumerate()
+            .flat_map(|(object, t)| t.touches.iter().map(move |touch| (object, touch)))
+            .collect();
+        let turned = |a: f64, b: f64| {
+            let apart = (a - b).to_degrees().rem_euclid(360.0);
+            apart.min(360.0 - apart)
+        };
+        let is_near = |a: &Touch, b: &Touch| {
+            let apart_mm = |k: usize| 1e3 * (a.offset[k] - b.offset[k]).abs();
+            let offsets = apart_mm(0) < near_mm && apart_mm(1) < near_mm;
+            let yaws = turned(a.yaw, b.yaw) < near_deg;
+            match kind {
+                "pose" => offsets && yaws && a.tilt == b.tilt,
+                "offset" => offsets,
+                _ => yaws,
+            }
+        };
+        for split in &study.sweep.splits {
+            assert_is_a_division(split, touches.len());
+            for &test in &split.test {
+                let (object, touch) = touches[test];
+                let near = split.train.iter().find(|&&row| {
+                    let (other, trained) = touches[row];
+                    other == object && is_near(touch, trained)
+                });
+                assert_eq!(near, None, "{kind}: touch {test}");
+            }
+        }
+        // Not every touch is alone: neighbours there are.
+        let keys = study.sweep.group_keys.as_ref().unwrap();
+        let groups: BTreeSet<usize> = keys.iter().copied().collect();
+        assert!(
+            groups.len() > 6 && groups.len() < touches.len(),
+            "{kind}: {}",
+            groups.len()
+        );
+    }
+    // A random split has such neighbours, so that the law says something.
+    let study = Study::new(&with_drawn_poses(""));
+    let offsets: Vec<[f64; 2]> = study
+        .touched
+        .iter()
+        .flat_map(|t| &t.touches)
+        .map(|touch| touch.offset)
+        .collect();
+    let split = &study.sweep.splits[0];
+    let has_neighbour = split.test.iter().any(|&test| {
+        split.train.iter().any(|&row| {
+            let apart = |k: usize| 1e3 * (offsets[test][k] - offsets[row][k]).abs();
+            test / 120 == row / 120 && apart(0) < 1.5 && apart(1) < 1.5
+        })
+    });
+    assert!(has_neighbour);
+}
+
+#[test]
+fn a_drawn_pose_without_a_distance_and_a_distance_without_a_group_are_refused() {
+    for (keys, said) in [
+        (
+            "keep_together = \"offset\"\n",
+            "key recognition.keep_together_mm: left out, and offset_x is spread uniformly",
+        ),
+        (
+            "keep_together = \"yaw\"\nkeep_together_mm = 2.0\n",
+            "key recognition.keep_together_deg: left out, and yaw is spread uniformly",
+        ),
+        (
+            "keep_together_mm = 2.0\n",
+            "without recognition.keep_together",
+        ),
+        (
+            "keep_together = \"offset\"\nkeep_together_mm = 0.0\n",
+            "key recognition.keep_together_mm: 0; a positive number",
+        ),
+    ] {
+        let error = Study::error(&with_drawn_poses(keys));
+        assert!(error.contains(said), "{error}");
+    }
+}
+
+#[test]
+fn without_keeping_together_offsets_are_on_both_sides() {
+    let study = with_recognition("");
+    let touches: Vec<&Touch> = study.touched.iter().flat_map(|t| &t.touches).collect();
+    let split = &study.sweep.splits[0];
+    let offsets = |rows: &[usize]| -> BTreeSet<Vec<usize>> {
+        let axes = [TouchAxis::OffsetX, TouchAxis::OffsetY];
+        rows.iter()
+            .map(|&row| touches[row].group(&axes).unwrap())
+            .collect()
+    };
+    assert!(!offsets(&split.train).is_disjoint(&offsets(&split.test)));
+}
+
+#[test]
+fn over_the_folds_each_touch_is_tested_exactly_once() {
+    for keys in ["folds = 3", "folds = 3\nkeep_together = \"pose\""] {
+        let study = with_recognition(keys);
+        let n_rows = study.sweep.labels.len();
+        let divisions: Vec<&[Split]> = study.sweep.splits.chunks(3).collect();
+        assert_eq!(divisions.len(), 2);
+        for folds in &divisions {
+            let mut tested: Vec<usize> = folds.iter().flat_map(|f| f.test.clone()).collect();
+            tested.sort_unstable();
+            assert_eq!(tested, (0..n_rows).collect::<Vec<_>>(), "{keys}");
+            folds.iter().for_each(|f| assert_is_a_division(f, n_rows));
+        }
+        assert_ne!(divisions[0][0].test, divisions[1][0].test, "divided anew");
+    }
+}
+
+#[test]
+fn a_study_tests_what_its_splits_hold_out() {
+    let study = with_recognition("folds = 3\ntrain_touches = [5, 10]");
+    for (cell, score) in &study.run().tables.accuracy {
+        assert_eq!(score.n_test, study.sweep.splits[score.trial].test.len());
+        assert_eq!(score.n_train, 3 * cell.train_touches);
+        assert_eq!(score.accuracy, score.n_correct as f64 / score.n_test as f64);
+    }
+}
+
+#[test]
+fn a_damper_pushes_back_on_taxels_that_move_and_not_on_saturated_ones() {
+    let text = STUDY
+        .replace(
+            "stroke_mm = 3.5",
+            "stroke_mm = 3.5\nstiffness_n_per_m = 200.0\ndamping_n_s_per_m = 4.0",
+        )
+        .replace("[2.0, 4.0]\n", "4.0\nspeed_mm_per_s = 50.0\n")
+        .replace("[sensing]", "[signal]\nsteps = [\"force\"]\n\n[sensing]");
+    let study = Study::new(&text);
+    let patch = study.plan.arrays[0];
+    let frames = simulate_array(&study.touched, &patch, 1, &Silent);
+    let frames = frames.kept.to_array().unwrap();
+    let samples = sample_frames(&study.plan, &study.sweep, &study.touched).unwrap();
+    assert_eq!(samples.frames.len(), study.touched.len());
+    let per_object = study.touched[0].touches.len();
+    let (mut n_moving, mut n_saturated) = (0, 0);
+    for (object, (_, forces)) in samples.frames.iter().enumerate() {
+        for (&deflection, &force) in frames.row(object * per_object).iter().zip(forces) {
+            let spring = 200.0 * deflection;
+            let is_saturated = deflection == f64::from(patch.taxel.stroke as f32);
+            let is_moving = deflection > 0.0 && !is_saturated;
+            let damper = if is_moving { 4.0 * 0.05 } else { 0.0 };
+            assert!((force - spring - damper).abs() < 1e-6, "{force} N");
+            n_moving += usize::from(is_moving);
+            n_saturated += usize::from(is_saturated);
+        }
+    }
+    assert!(
+        n_moving > 20 && n_saturated > 0,
+        "{n_moving}, {n_saturated}"
+    );
+}

@@ -1,0 +1,330 @@
+//! Studies of what real skins do to a signal: one imperfection at a time, against all of them and against touches read by hand.
+
+use crate::command::Case;
+use crate::study::{Study, trials_of};
+use bubbletouch::contact::{Workspace, press_to_depth};
+use bubbletouch::random::Seed;
+use bubbletouch::report::results::draw_charts;
+use bubbletouch::signal::{Chain, Recording, Scratch, SignalStep};
+use bubbletouch::study::progress::Silent;
+use bubbletouch::study::{Imperfection, Plan, StudySpec, cell_features, sample_frames};
+use bubbletouch::world::Scene;
+use rand::Rng;
+use std::fs;
+
+const STUDY: &str = r#"
+question = "What does hardware cost?"
+trials = 2
+
+[objects]
+sets = ["household"]
+names = ["mug", "banana", "scissors"]
+surface_error_mm = 2.0
+
+[skin]
+pitch_mm = 4.0
+taxels = 16
+stroke_mm = 5.0
+
+[touches]
+per_object = 16
+offset_x_mm = { uniform = [-8.0, 8.0] }
+yaw_deg = { uniform = [0.0, 60.0] }
+depth_mm = { uniform = [2.0, 4.0] }
+frames = 2
+speed_mm_per_s = 20.0
+
+[signal]
+SIGNAL
+
+[sensing]
+ensemble = "identity"
+
+[recognition]
+classifier = "linear_svm"
+"#;
+
+fn with_signal(signal: &str) -> String {
+    STUDY.replace("SIGNAL", signal)
+}
+
+const ALL: &str = r#"
+steps = ["hysteresis", "crosstalk", "scan", "gain", "drift", "noise", "faults", "quantisation"]
+noise_std_full_scale = [0.0, 0.1]
+hysteresis_full_scale = [0.0, 0.2]
+crosstalk = [0.0, 0.4]
+gain_std = [0.0, 0.5]
+drift_std_full_scale = [0.0, 0.1]
+dead_fraction = [0.0, 0.2]
+stuck_fraction = [0.0, 0.1]
+scan_time_ms = [0.0, 40.0]
+adc_bits = [0, 4, 2]
+combine = "one_at_a_time"
+"#;
+
+#[test]
+fn one_at_a_time_scores_what_all_combinations_score_there() {
+    let signal = "steps = [\"gain\", \"drift\", \"noise\"]\ngain_std = [0.0, 0.5, 1.0]\n\
+                  drift_std_full_scale = [0.05, 0.2]\nnoise_std_full_scale = [0.01, 0.3]";
+    let all = Study::new(&with_signal(signal)).run();
+    let alone = format!("{signal}\ncombine = \"one_at_a_time\"");
+    let alone = Study::new(&with_signal(&alone)).run();
+    assert_eq!(all.tables.summary.len(), 3 * 2 * 2);
+    let settings: Vec<_> = alone.tables.summary.iter().map(|(cell, _)| cell).collect();
+    let told: Vec<_> = settings
+        .iter()
+        .map(|c| (c.noise_std, c.gain_std, c.drift_std_full_scale))
+        .collect();
+    let expected = [
+        (0.01, Some(0.0), Some(0.05)),
+        (0.3, Some(0.0), Some(0.05)),
+        (0.01, Some(0.5), Some(0.05)),
+        (0.01, Some(1.0), Some(0.05)),
+        (0.01, Some(0.0), Some(0.2)),
+    ];
+    assert_eq!(told, expected);
+    for cell in settings {
+        let trials = trials_of(&alone, cell);
+        assert_eq!(trials.len(), 2);
+        assert_eq!(trials, trials_of(&all, cell));
+    }
+}
+
+#[test]
+fn a_skin_without_strength_scores_as_one_without_the_keys_and_only_used_keys_are_columns() {
+    let with = Study::new(&with_signal(ALL)).run();
+    let without = Study::new(&with_signal("noise_std_full_scale = [0.0, 0.1]")).run();
+    for (plain, score) in &without.tables.accuracy {
+        let same = |cell: &bubbletouch::study::table::Cell| {
+            cell.noise_std == plain.noise_std && cell.strengths().present().count() == 0
+        };
+        let mut rows = with.tables.accuracy.iter();
+        let found = rows.find(|(cell, s)| same(cell) && s.trial == score.trial);
+        assert_eq!(&found.expect("a cell of no strength").1, score);
+        let strengths = plain.strengths();
+        assert_eq!(strengths.of(Imperfection::Gain), None);
+    }
+    let csv = |rows: &[_]| {
+        let csv = bubbletouch::report::csv_tables::to_csv(rows).unwrap();
+        let text = String::from_utf8(csv).unwrap();
+        text.lines().next().unwrap().to_owned()
+    };
+    assert!(!csv(&without.tables.accuracy).contains("gain_std"));
+    let named = "smoothing_mm,hysteresis_full_scale,crosstalk,gain_std,drift_std_full_scale,\
+                 dead_fraction,stuck_fraction,scan_time_ms,adc_bits,ensemble";
+    assert!(csv(&with.tables.accuracy).contains(named));
+}
+
+#[test]
+fn another_skin_reads_test_touches_and_nothing_else() {
+    let signal =
+        "steps = [\"gain\"]\ngain_std = 0.5\ntested_on = [\"same_skin\", \"another_skin\"]";
+    let study = Study::new(&with_signal(signal));
+    let read = |cell, trial| {
+        cell_features(
+            &study.plan,
+            &study.sweep,
+            &study.touched,
+            (cell, trial),
+            &Silent,
+        )
+        .unwrap()
+    };
+    let (same, other) = (read(0, 0), read(1, 0));
+    assert_eq!(same.split, other.split);
+    let rows = |touches: &[usize], set: &bubbletouch::study::FeatureSet| {
+        set.data.records.select(ndarray::Axis(0), touches)
+    };
+    let (train, test) = (&same.split.train, &same.split.test);
+    assert_eq!(rows(train, &same), rows(train, &other));
+    // Where the gains of one skin are g and those of another h, the same press reads g x and h x.
+    let (one, another) = (rows(test, &same), rows(test, &other));
+    let mut ratios = vec![None; one.ncols()];
+    for ((place, a), b) in one.indexed_iter().zip(&another) {
+        assert_eq!(*a == 0.0, *b == 0.0);
+        if *a != 0.0 {
+            let ratio = *ratios[place.1].get_or_insert(b / a);
+            assert!((b / a / ratio - 1.0).abs() < 1e-12);
+        }
+    }
+    let known: Vec<f64> = ratios.into_iter().flatten().collect();
+    assert!(known.len() > 100 && known.iter().all(|&ratio| (ratio - 1.0).abs() > 1e-6));
+    // Each trial has a skin of its own to test on.
+    let (a, b) = (&other.data.records, &read(1, 1).data.records);
+    let both = other
+        .split
+        .test
+        .iter()
+        .find(|t| read(1, 1).split.test.contains(t));
+    let touch = *both.expect("a touch that two trials test");
+    assert_ne!(a.row(touch), b.row(touch));
+}
+
+#[test]
+fn a_touch_is_read_as_a_press_that_goes_on_after_another_touch() {
+    let signal =
+        "steps = [\"hysteresis\", \"scan\"]\nhysteresis_full_scale = 0.2\nscan_time_ms = 30.0";
+    let study = Study::new(&with_signal(signal));
+    let patch = study.plan.arrays[0];
+    let n = patch.grid.n_taxels();
+    let touches: Vec<_> = study
+        .touched
+        .iter()
+        .flat_map(|object| object.touches.iter().enumerate().map(move |t| (object, t)))
+        .collect();
+    let press = |number: usize, depth: f64| -> Vec<f64> {
+        let (object, (_, touch)) = touches[number];
+        let mut workspace = Workspace::new();
+        let scene = Scene::of_one(&patch, &object.object.model);
+        let pose = touch.patch_from_object(&object.rests[touch.rest]);
+        press_to_depth(&scene, &[pose], touch.depth * depth, &mut workspace);
+        let pressed = workspace.deflections();
+        // Frames are kept in f32.
+        pressed.iter().map(|&d| f64::from(d as f32)).collect()
+    };
+    let steps = [
+        SignalStep::Hysteresis { width: 0.2 },
+        SignalStep::Scan { seconds: 0.03 },
+    ];
+    let chain = Chain::new(&steps, &patch).unwrap();
+    let trial = 1;
+    let read = cell_features(
+        &study.plan,
+        &study.sweep,
+        &study.touched,
+        (0, trial),
+        &Silent,
+    );
+    let rows = read.unwrap().data.records;
+    let names = Seed::new(2018).named("signal").numbered(trial as u64);
+    for (row, &(object, (number, touch))) in touches.iter().enumerate() {
+        let name = names.named(&object.object.name).numbered(number as u64);
+        let before = name.named("before").rng().gen_range(0..touches.len());
+        let mut frames = press(before, 1.0);
+        frames.extend(vec![0.0; n]);
+        frames.extend(press(row, 0.5));
+        frames.extend(press(row, 1.0));
+        let recording = Recording {
+            frames: &mut frames,
+            rates: None,
+            n_before: 2,
+            interval: Some(touch.depth / 0.02 / 2.0),
+        };
+        chain.apply_recording(recording, &name, &mut Scratch::default());
+        assert_eq!(rows.row(row).to_vec(), frames[2 * n..], "touch {row}");
+    }
+}
+
+#[test]
+fn the_tables_are_the_same_bytes_at_any_number_of_threads() {
+    let case = Case::new();
+    case.file("study.toml", with_signal(ALL));
+    for threads in ["1", "3"] {
+        case.succeeds(&["run", "study.toml", "--threads", threads, "--out", threads]);
+    }
+    for name in ["accuracy.csv", "summary.csv", "confusion.csv", "study.toml"] {
+        let read = |threads: &str| fs::read(case.path(threads).join(name)).unwrap();
+        assert!(!read("1").is_empty() && read("1") == read("3"), "{name}");
+    }
+    let summary = fs::read_to_string(case.path("1").join("summary.csv")).unwrap();
+    assert_eq!(summary.lines().count(), 1 + 1 + 8 + 2);
+    let again = fs::read_to_string(case.path("1").join("study.toml")).unwrap();
+    let spec = StudySpec::parse("study.toml", &again).unwrap();
+    let plan = Plan::new("study.toml", spec).unwrap();
+    assert_eq!(plan.conditions().len(), 11);
+}
+
+#[test]
+fn every_strength_gets_its_chart_and_every_imperfection_its_picture() {
+    let study = Study::new(&with_signal(ALL));
+    let charts = draw_charts(&study.run().tables);
+    let names: Vec<&str> = charts.iter().map(|(name, ..)| name.as_str()).collect();
+    let expected = [
+        "accuracy_by_noise",
+        "accuracy_by_hysteresis_full_scale",
+        "accuracy_by_crosstalk",
+        "accuracy_by_gain_std",
+        "accuracy_by_drift_std_full_scale",
+        "accuracy_by_dead_fraction",
+        "accuracy_by_stuck_fraction",
+        "accuracy_by_scan_time_ms",
+        "accuracy_by_adc_bits",
+    ];
+    assert_eq!(names, expected);
+    let samples = sample_frames(&study.plan, &study.sweep, &study.touched).unwrap();
+    let names: Vec<&str> = samples.frames.iter().map(|(name, _)| &name[..]).collect();
+    let expected = [
+        "ideal",
+        "hysteresis 20 %",
+        "crosstalk 40 %",
+        "gain mismatch 50 %",
+        "drift 10 %",
+        "dead taxels 20 %",
+        "stuck taxels 10 %",
+        "converter 2 bits",
+    ];
+    assert_eq!(names, expected);
+    for (name, frame) in &samples.frames[1..] {
+        assert_ne!(frame, &samples.frames[0].1, "{name}");
+    }
+}
+
+#[test]
+fn keys_that_make_no_sense_are_refused_with_what_does() {
+    let gain = "steps = [\"gain\"]\n";
+    for (signal, said) in [
+        (
+            "gain_std = 0.1",
+            "signal.steps: no \"gain\"; \"gain\" among",
+        ),
+        (
+            gain,
+            "\"gain\" without a strength; signal.gain_std beside it",
+        ),
+        (
+            "steps = [\"faults\"]",
+            "signal.dead_fraction or signal.stuck_fraction beside it",
+        ),
+        (
+            "steps = [\"gain\"]\ngain_std = -0.1",
+            "signal.gain_std: -0.1; zero or a positive",
+        ),
+        (
+            "steps = [\"hysteresis\"]\nhysteresis_full_scale = [0.0, 0.3]",
+            "signal.hysteresis_full_scale: 0.3; a fraction",
+        ),
+        (
+            "steps = [\"quantisation\"]\nadc_bits = 2.5",
+            "signal.adc_bits: 2.5; a whole number of bits, 1 to 24",
+        ),
+        (
+            "steps = [\"faults\"]\ndead_fraction = 0.6\nstuck_fraction = [0.1, 0.5]",
+            "signal.stuck_fraction: up to 0.5, with up to 0.6 of the taxels dead; at most 1",
+        ),
+        (
+            "steps = [\"crosstalk\"]\ncrosstalk = 0.1\ntested_on = \"another_skin\"",
+            "signal.tested_on: given for skins without a difference; gain, drift or faults",
+        ),
+        (
+            "steps = [\"gain\", \"gain\"]\ngain_std = 0.1",
+            "Gain twice; each step at most once",
+        ),
+    ] {
+        assert_refused(&with_signal(signal), said);
+    }
+    let scan = with_signal("steps = [\"scan\"]\nscan_time_ms = 5.0");
+    assert_refused(
+        &scan.replace("frames = 2", "frames = 1"),
+        "every touch is read once, at rest; touches.frames of 2",
+    );
+    assert_refused(
+        &scan.replace("speed_mm_per_s = 20.0", ""),
+        "the press waits while it is read; a touches.speed_mm_per_s above 0",
+    );
+}
+
+fn assert_refused(text: &str, said: &str) {
+    let spec = StudySpec::parse("study.toml", text).unwrap();
+    let error = Plan::new("study.toml", spec).unwrap_err().to_string();
+    assert!(error.contains(said), "{error}\n{said}");
+}

@@ -1,0 +1,16 @@
+//! Studies that recognise: tables, memory, repeatability.
+
+#[path = "../fixtures/command/mod.rs"]
+mod command;
+#[path = "../fixtures/study/mod.rs"]
+mod study;
+
+mod accuracy;
+mod experiments;
+mod families;
+mod frames;
+mod hardware;
+mod memory;
+mod quickstart;
+mod repeatability;
+mod variance;

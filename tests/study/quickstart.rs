@@ -1,0 +1,44 @@
+//! The quickstart's committed results, computed again.
+
+use crate::study::Study;
+use bubbletouch::report::csv_tables::read_cell_rows;
+use bubbletouch::study::table::TrialScore;
+use std::fs;
+use std::io::Write;
+use std::path::Path;
+
+#[test]
+fn the_quickstart_still_gives_its_committed_results() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let committed = root.join("results/quickstart/accuracy.csv");
+    if !committed.exists() {
+        writeln!(
+            std::io::stderr(),
+            "SKIPPED: there is no {}",
+            committed.display()
+        )
+        .expect("standard error takes a line");
+        return;
+    }
+    let committed = read_cell_rows::<TrialScore>(&committed).unwrap();
+    let text = fs::read_to_string(root.join("experiments/quickstart.toml")).unwrap();
+    let computed = Study::new(&text).run().tables.accuracy;
+    assert_eq!(computed.len(), committed.len());
+    for ((cell, score), (old_cell, old)) in computed.iter().zip(&committed) {
+        assert_eq!(cell, old_cell);
+        assert_eq!(
+            (score.trial, score.n_train, score.n_test),
+            (old.trial, old.n_train, old.n_test)
+        );
+        // Processors round differently, which can turn a row that is close to two objects.
+        assert!(
+            score.n_correct.abs_diff(old.n_correct) <= 1,
+            "cell {} trial {}: {} of {} are correct, {} were",
+            cell.cell,
+            score.trial,
+            score.n_correct,
+            score.n_test,
+            old.n_correct
+        );
+    }
+}

@@ -1,0 +1,229 @@
+//! What a study's tables depend on: its text and its seed; not threads, not other cells, not other objects.
+
+use crate::command::Case;
+use crate::study::{Study, trials_of};
+use bubbletouch::study::{sample_frames, simulate_array};
+use std::collections::BTreeSet;
+use std::fs;
+
+/// Several arrays, frames, ensembles (one of them not nested), ratios, features, classifiers and fused touches; C and γ are
+/// chosen, and offsets stay together.
+const WIDE: &str = r#"
+question = "Do threads matter?"
+seed = 7
+trials = 2
+
+[objects]
+sets = ["household"]
+names = ["mug", "banana", "scissors", "power_drill"]
+surface_error_mm = 1.0
+
+[skin]
+pitch_mm = [4.0, 8.0]
+size_mm = 64.0
+stroke_mm = 5.0
+
+[touches]
+per_object = 24
+offset_x_mm = [-8.0, 0.0, 8.0]
+offset_y_mm = [-8.0, 0.0, 8.0]
+yaw_deg = { grid = [0.0, 40.0, 3] }
+depth_mm = [2.0, 3.0]
+frames = [1, 2]
+
+[signal]
+noise_std_full_scale = 0.2
+smoothing_mm = 6.0
+
+[sensing]
+ensemble = ["gaussian", "block_average"]
+ratio = [4, 16]
+
+[recognition]
+features = ["raw", "centred_unit_norm"]
+classifier = ["linear_svm", "rbf_svm"]
+choose_c = [0.1, 1.0, 10.0]
+choose_gamma = [0.5, 2.0]
+fused_touches = [1, 2]
+train_touches = 12
+keep_together = "offset"
+"#;
+
+/// The tables that hold no times, and the study as it was run.
+const REPEATABLE: [&str; 5] = [
+    "accuracy.csv",
+    "summary.csv",
+    "confusion.csv",
+    "comparison.csv",
+    "study.toml",
+];
+
+#[test]
+fn the_tables_are_the_same_bytes_at_any_number_of_threads() {
+    let case = Case::new();
+    case.file("study.toml", WIDE);
+    for threads in ["1", "2", "7"] {
+        let out = format!("threads_{threads}");
+        case.succeeds(&["run", "study.toml", "--threads", threads, "--out", &out]);
+    }
+    let read = |folder: &str, name: &str| fs::read(case.path(folder).join(name)).unwrap();
+    for name in REPEATABLE {
+        let one = read("threads_1", name);
+        assert!(!one.is_empty(), "{name}");
+        assert!(one == read("threads_2", name), "{name} with 2 threads");
+        assert!(one == read("threads_7", name), "{name} with 7 threads");
+    }
+    // A table of equal numbers would be the same for no reason.
+    let mut rows = csv::Reader::from_path(case.path("threads_1/accuracy.csv")).unwrap();
+    let column = rows
+        .headers()
+        .unwrap()
+        .iter()
+        .position(|h| h == "n_correct");
+    let scores: BTreeSet<String> = rows
+        .records()
+        .map(|row| row.unwrap()[column.unwrap()].to_owned())
+        .collect();
+    assert!(scores.len() > 5, "different scores: {scores:?}");
+}
+
+#[test]
+fn another_seed_is_another_experiment_and_the_study_that_it_wrote_down_repeats_it() {
+    let case = Case::new();
+    case.file("study.toml", WIDE);
+    case.succeeds(&["run", "study.toml", "--out", "seven"]);
+    case.succeeds(&["run", "study.toml", "--seed", "8", "--out", "eight"]);
+    case.succeeds(&["run", "eight/study.toml", "--out", "again"]);
+    let read = |folder: &str, name: &str| fs::read(case.path(folder).join(name)).unwrap();
+    assert!(read("seven", "accuracy.csv") != read("eight", "accuracy.csv"));
+    for name in REPEATABLE {
+        assert!(read("eight", name) == read("again", name), "{name}");
+    }
+}
+
+/// One cell an ensemble; the axes of `ENSEMBLE` and below are then widened.
+const NARROW: &str = r#"
+question = "What does a cell depend on?"
+trials = 2
+
+[objects]
+sets = ["household"]
+names = ["mug", "banana", "scissors", "power_drill"]
+surface_error_mm = 1.0
+
+[skin]
+pitch_mm = 4.0
+size_mm = 64.0
+stroke_mm = 5.0
+
+[touches]
+per_object = 24
+offset_x_mm = { uniform = [-10.0, 10.0] }
+yaw_deg = { uniform = [0.0, 40.0] }
+depth_mm = { uniform = [2.0, 4.0] }
+
+[signal]
+noise_std_full_scale = 0.2
+smoothing_mm = 4.0
+
+[sensing]
+ensemble = "ENSEMBLE"
+ratio = 16
+
+[recognition]
+classifier = "linear_svm"
+c = 1.0
+train_touches = 12
+"#;
+
+#[test]
+fn a_cell_does_not_depend_on_the_other_cells_of_its_study() {
+    for ensemble in ["gaussian", "sbhe", "block_average", "subsample", "identity"] {
+        let narrow = NARROW.replace("ENSEMBLE", ensemble);
+        let wide = [
+            ("pitch_mm = 4.0", "pitch_mm = [8.0, 4.0]"),
+            ("full_scale = 0.2", "full_scale = [0.0, 0.2]"),
+            ("smoothing_mm = 4.0", "smoothing_mm = [8.0, 4.0]"),
+            ("ratio = 16", "ratio = [2, 64, 16]"),
+            ("\"linear_svm\"", "[\"rbf_svm\", \"linear_svm\"]"),
+            ("c = 1.0", "c = [0.1, 1.0]"),
+            ("train_touches = 12", "train_touches = [4, 12]"),
+            (
+                &format!("\"{ensemble}\""),
+                &format!("[\"{ensemble}\", \"{}\"]", other_than(ensemble)),
+            ),
+        ]
+        .into_iter()
+        .fold(narrow.clone(), |text, (old, new)| {
+            assert!(text.contains(old), "{old}");
+            text.replace(old, new)
+        });
+        let alone = Study::new(&narrow).run();
+        let among = Study::new(&wide).run();
+        assert_eq!(alone.tables.accuracy.len(), 2);
+        assert!(among.tables.accuracy.len() > 100);
+        let cell = &alone.tables.accuracy[0].0;
+        let trials = trials_of(&among, cell);
+        let expected: Vec<_> = alone.tables.accuracy.iter().map(|(_, s)| s).collect();
+        assert_eq!(trials, expected, "{ensemble}");
+    }
+}
+
+fn other_than(ensemble: &str) -> &str {
+    match ensemble {
+        "gaussian" => "sbhe",
+        _ => "gaussian",
+    }
+}
+
+#[test]
+fn an_object_is_touched_the_same_whatever_else_is_in_the_set() {
+    let uniform = NARROW.replace("ENSEMBLE", "identity");
+    let listed = uniform
+        .replace("{ uniform = [-10.0, 10.0] }", "[-8.0, 0.0, 8.0]")
+        .replace("{ uniform = [0.0, 40.0] }", "{ grid = [0.0, 40.0, 5] }")
+        .replace("{ uniform = [2.0, 4.0] }", "[2.0, 4.0]");
+    for text in [uniform, listed] {
+        let stable = text.replace("[touches]", "[touches]\nrest = \"stable\"");
+        for text in [text, stable] {
+            let few = Study::new(&text.replace("\"mug\", \"banana\", ", ""));
+            let many = Study::new(&text);
+            assert_eq!((few.touched.len(), many.touched.len()), (2, 4));
+            let patch = &few.plan.arrays[0];
+            let silent = &bubbletouch::study::progress::Silent;
+            let frames = |touched| {
+                let frames = simulate_array(touched, patch, 1, silent);
+                frames.kept.to_array().unwrap()
+            };
+            let (few_frames, many_frames) = (frames(&few.touched), frames(&many.touched));
+            for (label, object) in few.touched.iter().enumerate() {
+                let name = &object.object.name;
+                let other = many.touched.iter().position(|o| o.object.name == *name);
+                let other = other.unwrap();
+                assert_eq!(object.touches, many.touched[other].touches, "{name}");
+                for touch in 0..24 {
+                    assert_eq!(
+                        few_frames.row(24 * label + touch),
+                        many_frames.row(24 * other + touch)
+                    );
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn the_noise_on_a_touch_does_not_depend_on_the_other_objects() {
+    let text = NARROW.replace("ENSEMBLE", "identity") + "[report]\nsamples = [\"power_drill\"]\n";
+    let sample = |text: &str| {
+        let study = Study::new(text);
+        let samples = sample_frames(&study.plan, &study.sweep, &study.touched).unwrap();
+        samples.frames[0].clone()
+    };
+    let (name, frame) = sample(&text);
+    assert_eq!(name, "power drill");
+    let few = text.replace("\"mug\", \"banana\", ", "");
+    assert_eq!(sample(&few), (name.clone(), frame.clone()));
+    let quiet = text.replace("full_scale = 0.2", "full_scale = 0.0");
+    assert_ne!(sample(&quiet), (name, frame), "there is noise to compare");
+}

@@ -1,0 +1,189 @@
+//! What a split does to the accuracy, told from what the projection does.
+
+use crate::study::Study;
+use bubbletouch::report::csv_tables::{VARIANCE_FILE, read_tables, write_tables};
+use bubbletouch::study::table::{Cell, PStatus, Source, TrialScore, Variance};
+use bubbletouch::study::{Outcome, Plan, StudySpec};
+
+/// Three objects that are hard to tell apart, with few measurements.
+fn text(repeats: &str, ensemble: &str, noise: f64) -> String {
+    format!(
+        r#"
+question = "Which chance is it?"
+{repeats}
+
+[objects]
+sets = ["household"]
+names = ["mug", "apple", "orange", "pear"]
+surface_error_mm = 1.0
+
+[skin]
+pitch_mm = 4.0
+size_mm = 64.0
+stroke_mm = 5.0
+
+[touches]
+per_object = 16
+offset_x_mm = {{ uniform = [-12.0, 12.0] }}
+offset_y_mm = {{ uniform = [-12.0, 12.0] }}
+depth_mm = 3.0
+
+[signal]
+steps = ["noise"]
+noise_std_full_scale = {noise:?}
+
+[sensing]
+ensemble = {ensemble}
+measurements = 8
+
+[recognition]
+classifier = "linear_svm"
+"#
+    )
+}
+
+fn row(outcome: &Outcome, cell: usize, source: Source) -> &Variance {
+    let mut rows = outcome.tables.variance.iter();
+    rows.find(|row| row.cell == cell && row.source == source)
+        .unwrap()
+}
+
+fn trials(outcome: &Outcome, cell: usize) -> Vec<&TrialScore> {
+    let rows = outcome.tables.accuracy.iter();
+    let of_cell = rows.filter(|(row, _): &&(Cell, TrialScore)| row.cell == cell);
+    of_cell.map(|(_, score)| score).collect()
+}
+
+#[test]
+fn without_noise_all_that_varies_is_the_split_unless_a_projection_is_drawn() {
+    let crossed = "trials = 20\nprojections_per_split = 4";
+    let study = Study::new(&text(crossed, r#"["identity", "gaussian"]"#, 0.0));
+    let outcome = study.run();
+    assert_eq!(outcome.tables.variance.len(), 6);
+    for (source, n_levels) in [
+        (Source::Split, 5),
+        (Source::Projection, 4),
+        (Source::Rest, 20),
+    ] {
+        assert_eq!(row(&outcome, 0, source).n_levels, n_levels);
+    }
+    // Every taxel is measured: four projections are the same one.
+    let (split, rest) = (
+        row(&outcome, 0, Source::Split),
+        row(&outcome, 0, Source::Rest),
+    );
+    assert!(
+        split.accuracy_std > 0.0 && split.share.unwrap() > 1.0 - 1e-9,
+        "{split:?}"
+    );
+    assert!(rest.accuracy_std < 1e-9, "{rest:?}");
+    assert!(row(&outcome, 0, Source::Projection).accuracy_std < 1e-9);
+    // Eight random measurements: which ones matters.
+    let shares: f64 = [Source::Split, Source::Projection, Source::Rest]
+        .map(|source| row(&outcome, 1, source).share.unwrap())
+        .iter()
+        .sum();
+    assert!((shares - 1.0).abs() < 1e-12);
+    let of_gaussian = row(&outcome, 1, Source::Projection);
+    let rest = row(&outcome, 1, Source::Rest);
+    assert!(
+        of_gaussian.accuracy_std + rest.accuracy_std > 0.01,
+        "{of_gaussian:?}"
+    );
+}
+
+#[test]
+fn crossed_trials_share_splits_and_projections_and_the_first_is_that_of_trials_of_their_own() {
+    let ensemble = r#"["gaussian", "sbhe"]"#;
+    let crossed = Study::new(&text(
+        "trials = 6\nprojections_per_split = 3",
+        ensemble,
+        0.05,
+    ));
+    let own = Study::new(&text("trials = 2", ensemble, 0.05));
+    for trial in 0..6 {
+        assert_eq!(crossed.sweep.splits[trial], own.sweep.splits[trial / 3]);
+    }
+    let (crossed, own) = (crossed.run(), own.run());
+    let numbers = |trial: &TrialScore| (trial.split.unwrap(), trial.projection.unwrap());
+    for cell in 0..2 {
+        let (trials, own) = (trials(&crossed, cell), trials(&own, cell));
+        let met: Vec<_> = trials.iter().map(|trial| numbers(trial)).collect();
+        assert_eq!(met, [(0, 0), (0, 1), (0, 2), (1, 0), (1, 1), (1, 2)]);
+        assert_eq!((own[0].split, own[0].projection), (None, None));
+        assert_eq!(
+            trials[0].n_correct, own[0].n_correct,
+            "split, projection and noise 0"
+        );
+    }
+    // Two splits and three projections are few: an interval, but no p-value below four splits.
+    let compared = crossed.tables.comparison.iter();
+    let compared: Vec<_> = compared.filter(|row| row.cell != row.best_cell).collect();
+    assert_eq!(compared.len(), 1);
+    assert!(compared[0].difference_low.is_some() && compared[0].p_value.is_none());
+    assert_eq!(compared[0].p_status, PStatus::TooFewTrials);
+    assert_eq!(compared[0].n_trials_needed, Some(12));
+    assert!(own.tables.variance.is_empty());
+}
+
+#[test]
+fn the_table_is_written_only_where_it_has_rows_and_is_read_again() {
+    let folder = tempfile::tempdir().unwrap();
+    let study = |repeats| {
+        Study::new(&text(repeats, r#""gaussian""#, 0.02))
+            .run()
+            .tables
+    };
+    let crossed = study("trials = 25\nprojections_per_split = 5");
+    assert!(crossed.summary[0].1.bootstrap_low.unwrap() < crossed.summary[0].1.accuracy);
+    write_tables(folder.path(), &crossed).unwrap();
+    assert_eq!(read_tables(folder.path()).unwrap(), crossed);
+    let other = tempfile::tempdir().unwrap();
+    let own = study("trials = 4");
+    assert_eq!(
+        own.summary[0].1.bootstrap_low, None,
+        "four trials are too few"
+    );
+    write_tables(other.path(), &own).unwrap();
+    assert!(!other.path().join(VARIANCE_FILE).exists());
+    assert_eq!(read_tables(other.path()).unwrap(), own);
+    let header = std::fs::read_to_string(other.path().join("accuracy.csv")).unwrap();
+    assert!(
+        !header.lines().next().unwrap().contains("split"),
+        "{header}"
+    );
+}
+
+#[test]
+fn trials_that_do_not_come_out_even_are_refused() {
+    let refused = |repeats: &str, folds: &str, words: &str| {
+        let text = text(repeats, r#""gaussian""#, 0.0) + folds;
+        let spec = StudySpec::parse("study.toml", &text).unwrap();
+        let error = Plan::new("study.toml", spec).unwrap_err();
+        assert_eq!(error.exit_code(), 2);
+        assert!(error.to_string().contains(words), "{error}");
+    };
+    refused("trials = 6\nprojections_per_split = 1", "", "at least 2");
+    refused("trials = 6\nprojections_per_split = 0", "", "at least 2");
+    refused(
+        "trials = 7\nprojections_per_split = 3",
+        "",
+        "a multiple of projections_per_split = 3",
+    );
+    refused(
+        "trials = 3\nprojections_per_split = 3",
+        "",
+        "at least 2 splits",
+    );
+    refused(
+        "trials = 12\nprojections_per_split = 3",
+        "folds = 3",
+        "folds = 3",
+    );
+    let spec = text(
+        "trials = 18\nprojections_per_split = 3",
+        r#""gaussian""#,
+        0.0,
+    ) + "folds = 3";
+    assert!(Plan::new("study.toml", StudySpec::parse("study.toml", &spec).unwrap()).is_ok());
+}

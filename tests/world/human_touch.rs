@@ -1,0 +1,572 @@
+//! Human touches: what each kind does, and that a study can tell them apart by time.
+
+use crate::command::Case;
+use bubbletouch::contact::{SkinWorkspace, press_skin, spring_load};
+use bubbletouch::objects::{FingerPose, Model};
+use bubbletouch::random::Seed;
+use bubbletouch::study::progress::Silent;
+use bubbletouch::study::{
+    FrameWriter, HumanTouches, Outcome, Plan, StudySpec, Sweep, TouchSet, record_touch, run,
+};
+use bubbletouch::world::{
+    HandState, HumanTouch, Layout, SkinPatch, TOUCH_KINDS, Taxel, Taxels, TouchKind, TouchRanges,
+};
+use ndarray::Array2;
+use std::fs;
+
+/// From the arm's axis to the outside of its skin, metres.
+const SURFACE: f64 = 0.043;
+/// Between two looks at a touch, seconds.
+const STEP: f64 = 5e-3;
+/// Nothing of a hand is faster, m/s.
+const FASTEST: f64 = 2.0;
+
+fn forearm(pitch: f64) -> SkinPatch {
+    let taxel = Taxel {
+        radius: 0.5 * pitch,
+        stiffness: 100.0,
+        damping: 0.0,
+        stroke: 6e-3,
+    };
+    let layout = Layout::cylinder(SURFACE - taxel.radius, 0.19, 4.6, pitch).unwrap();
+    SkinPatch::new("forearm", layout, Taxels::Equal(taxel)).unwrap()
+}
+
+fn touch(kind: TouchKind, number: u64) -> HumanTouch {
+    let seed = Seed::new(2018).numbered(number);
+    HumanTouch::draw(kind, &TouchRanges::usual(kind), SURFACE, &seed).unwrap()
+}
+
+/// A touch at many instants, its beginning and its end among them.
+fn film(touch: &HumanTouch) -> Vec<HandState> {
+    let n = (touch.duration() / STEP).ceil() as usize;
+    (0..=n).map(|k| touch.at(k as f64 * STEP)).collect()
+}
+
+/// Σ k δ in newtons, and the place of the centre of pressure: metres along the arm, radians around it.
+fn felt(skin: &SkinPatch, state: &HandState) -> (f64, Option<(f64, f64)>) {
+    let mut workspace = SkinWorkspace::new();
+    let hand: [Model; 1] = [state.spheres().into()];
+    press_skin(skin, &hand, &[state.patch_from_hand], &mut workspace);
+    let load = spring_load(skin, workspace.contacts());
+    let place = load.center_of_pressure.map(|p| (p.z, p.y.atan2(p.x)));
+    (load.spring_force, place)
+}
+
+fn deepest(touch: &HumanTouch) -> HandState {
+    let states = film(touch);
+    *states
+        .iter()
+        .min_by(|a, b| a.height.total_cmp(&b.height))
+        .unwrap()
+}
+
+#[test]
+fn every_touch_is_drawn_from_its_ranges() {
+    for kind in TOUCH_KINDS {
+        let ranges = TouchRanges::usual(kind);
+        for number in 0..200 {
+            let touch = touch(kind, number);
+            assert!(ranges.depth.contains(&touch.depth));
+            assert!(ranges.rise.contains(&touch.rise) && ranges.hold.contains(&touch.hold));
+            assert!(ranges.contacts.contains(&touch.contacts));
+            assert!(ranges.travel.contains(&touch.travel));
+            assert!(ranges.along.contains(&touch.along) && ranges.around.contains(&touch.around));
+            let is_flat = matches!(kind, TouchKind::Shove | TouchKind::Grab);
+            assert!(ranges.fingers.contains(&touch.fingers) || is_flat && touch.fingers == 5);
+            let lengthwise = touch.direction.sin().asin().abs();
+            assert!(lengthwise <= ranges.direction.end() + 1e-12);
+            let start = touch.at(0.0);
+            assert!(ranges.hand_length.contains(&start.hand.length));
+            assert!(ranges.clearance.contains(&start.height));
+            assert!(touch.duration() < 3.2, "{kind:?} of {} s", touch.duration());
+        }
+    }
+}
+
+#[test]
+fn no_part_of_a_hand_jumps() {
+    let step = 1e-3;
+    for kind in TOUCH_KINDS {
+        for number in 0..6 {
+            let touch = touch(kind, number);
+            let places = |time: f64| {
+                let state = touch.at(time);
+                let strands = state.hand.strands().concat().into_iter();
+                let place = |ball: bubbletouch::objects::Sphere| {
+                    state.patch_from_hand.transform_point(ball.center)
+                };
+                strands.map(place).collect::<Vec<_>>()
+            };
+            let mut before = places(-step);
+            for k in 0..(touch.duration() / step) as usize + 2 {
+                let now = places(k as f64 * step);
+                for (a, b) in before.iter().zip(&now) {
+                    let speed = a.distance(*b) / step;
+                    assert!(speed < FASTEST, "{kind:?}: {speed} m/s");
+                }
+                before = now;
+            }
+        }
+    }
+}
+
+#[test]
+fn a_hand_starts_and_ends_in_the_air_and_touches_in_between() {
+    let skin = forearm(6e-3);
+    for kind in TOUCH_KINDS {
+        let mut n_missed = 0;
+        for number in 0..40 {
+            let touch = touch(kind, number);
+            for time in [-1.0, 0.0, touch.duration(), touch.duration() + 1.0] {
+                assert_eq!(felt(&skin, &touch.at(time)).0, 0.0, "{kind:?} {number}");
+            }
+            n_missed += usize::from(felt(&skin, &deepest(&touch)).0 == 0.0);
+        }
+        // A light fingertip between taxels is not felt, nor a hand beyond the end of the skin.
+        assert!(n_missed <= 2, "{n_missed} of 40: {kind:?}");
+    }
+}
+
+#[test]
+fn a_hand_goes_exactly_as_deep_as_it_says() {
+    // Where taxels are dense, the deepest one is as deep as the hand.
+    let skin = forearm(1.5e-3);
+    let mut workspace = SkinWorkspace::new();
+    for number in 0..10 {
+        let touch = touch(TouchKind::Tap, number);
+        let state = deepest(&touch);
+        assert!((state.height + touch.depth).abs() < 1e-5 || touch.hold < STEP);
+        let hand: [Model; 1] = [state.spheres().into()];
+        press_skin(&skin, &hand, &[state.patch_from_hand], &mut workspace);
+        let most = workspace.deflections().iter().copied().fold(0.0, f64::max);
+        assert!(most <= -state.height + 1e-9, "{most} for {}", state.height);
+        assert!(most > -state.height - 3e-4, "{most} for {}", state.height);
+    }
+}
+
+#[test]
+fn a_tap_and_a_hold_of_the_same_name_differ_in_time_only() {
+    for number in 0..40 {
+        let (tap, hold) = (
+            touch(TouchKind::Tap, number),
+            touch(TouchKind::Hold, number),
+        );
+        let instant = |touch: &HumanTouch| {
+            let start = touch.duration() - touch.hold;
+            touch.at(0.5 * start + 0.5 * touch.hold)
+        };
+        let (a, b) = (instant(&tap), instant(&hold));
+        assert_eq!(a.hand, b.hand);
+        let moved = a.patch_from_hand.translation - b.patch_from_hand.translation;
+        assert!(moved.length() < 1e-9, "{moved}");
+        assert!(tap.hold < 0.2 + 1e-12 && hold.hold >= 0.25);
+        assert!((hold.duration() - tap.duration() - hold.hold + tap.hold).abs() < 1e-9);
+    }
+}
+
+#[test]
+fn a_pat_has_as_many_contacts_as_it_says_and_all_others_have_one() {
+    for kind in TOUCH_KINDS {
+        for number in 0..40 {
+            let touch = touch(kind, number);
+            let presses: Vec<bool> = film(&touch).iter().map(|s| s.height < 0.0).collect();
+            let begins = presses.windows(2).filter(|pair| !pair[0] && pair[1]);
+            assert_eq!(begins.count(), touch.contacts, "{kind:?} {number}");
+            assert_eq!(touch.contacts > 1, kind == TouchKind::Pat);
+        }
+    }
+}
+
+#[test]
+fn the_centre_of_pressure_of_a_stroke_travels_its_length_its_way() {
+    let skin = forearm(3e-3);
+    let fingertip = TouchRanges {
+        fingers: vec![1],
+        ..TouchRanges::usual(TouchKind::Stroke)
+    };
+    for number in 0..12 {
+        let seed = Seed::new(7).numbered(number);
+        let touch = HumanTouch::draw(TouchKind::Stroke, &fingertip, SURFACE, &seed).unwrap();
+        let pressed = film(&touch);
+        let pressed: Vec<_> = pressed
+            .iter()
+            .filter(|s| s.height < -0.9 * touch.depth)
+            .collect();
+        let ends = [pressed[0], pressed[pressed.len() - 1]];
+        let [a, b] = ends.map(|state| felt(&skin, state).1.unwrap());
+        let (along, around) = (b.0 - a.0, SURFACE * (b.1 - a.1));
+        let expected = (
+            touch.travel * touch.direction.cos(),
+            touch.travel * touch.direction.sin(),
+        );
+        assert!(
+            (along - expected.0).abs() < 3e-3,
+            "{along} m for {}",
+            expected.0
+        );
+        assert!(
+            (around - expected.1).abs() < 3e-3,
+            "{around} m for {}",
+            expected.1
+        );
+    }
+}
+
+#[test]
+fn shoves_and_grabs_push_harder_than_taps() {
+    let skin = forearm(6e-3);
+    let mean = |kind: TouchKind| {
+        let forces = (0..40).map(|number| {
+            let states = film(&touch(kind, number));
+            let some = states.iter().step_by(4);
+            some.map(|state| felt(&skin, state).0).fold(0.0, f64::max)
+        });
+        forces.sum::<f64>() / 40.0
+    };
+    let tap = mean(TouchKind::Tap);
+    let (shove, grab) = (mean(TouchKind::Shove), mean(TouchKind::Grab));
+    assert!(
+        tap > 0.1 && shove > 2.0 * tap && grab > 2.0 * tap,
+        "{tap} {shove} {grab} N"
+    );
+}
+
+#[test]
+fn a_grab_closes_its_fingers_around_the_arm_and_opens_them() {
+    let skin = forearm(6e-3);
+    let bent = |finger: &FingerPose| finger.knuckle + finger.middle + finger.end;
+    let angles = |state: &HandState| {
+        let mut workspace = SkinWorkspace::new();
+        let hand: [Model; 1] = [state.spheres().into()];
+        press_skin(&skin, &hand, &[state.patch_from_hand], &mut workspace);
+        let touched = workspace.contacts().iter();
+        let angles: Vec<f64> = touched.map(|c| c.point.y.atan2(c.point.x)).collect();
+        let most = angles.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        most - angles.iter().copied().fold(f64::INFINITY, f64::min)
+    };
+    let mut wider = 0;
+    for number in 0..20 {
+        let grab = touch(TouchKind::Grab, number);
+        let states = film(&grab);
+        let (start, end) = (&states[0], &states[states.len() - 1]);
+        assert_eq!((start.closed, end.closed), (0.0, 0.0));
+        let closed = states.iter().find(|state| state.closed == 1.0).unwrap();
+        let mut turned = 0.0;
+        for (open, closed) in start.hand.fingers.iter().zip(&closed.hand.fingers) {
+            assert!(bent(closed) >= bent(open), "{number}");
+            turned += bent(closed) - bent(open);
+        }
+        assert!(
+            turned > 2.0,
+            "{number}: {turned} rad, four fingers together"
+        );
+        let laid_on = states
+            .iter()
+            .find(|s| s.height == -grab.depth && s.closed < 1e-3);
+        wider += usize::from(angles(closed) > angles(laid_on.unwrap()) + 0.5);
+    }
+    assert!(wider >= 16, "{wider} of 20 reach around the arm");
+}
+
+#[test]
+fn what_no_hand_can_do_is_refused_by_its_name() {
+    let usual = || TouchRanges::usual(TouchKind::Tap);
+    let refused = |ranges: TouchRanges| {
+        let drawn = HumanTouch::draw(TouchKind::Tap, &ranges, SURFACE, &Seed::new(1));
+        drawn.unwrap_err().to_string()
+    };
+    #[allow(clippy::reversed_empty_ranges)]
+    let backwards = TouchRanges {
+        depth: 3e-3..=1e-3,
+        ..usual()
+    };
+    assert!(refused(backwards).starts_with("tap, range of depth: 0.003 to 0.001; "));
+    let unknown = TouchRanges {
+        rise: 0.1..=f64::NAN,
+        ..usual()
+    };
+    assert!(refused(unknown).starts_with("tap, range of rise: 0.1 to NaN; "));
+    let endless = TouchRanges {
+        hold: 0.0..=f64::INFINITY,
+        ..usual()
+    };
+    assert!(refused(endless).starts_with("tap, range of hold: 0 to inf; "));
+    let none = TouchRanges {
+        fingers: Vec::new(),
+        ..usual()
+    };
+    assert_eq!(
+        refused(none),
+        "tap, fingers: none; at least one number, 1 to 5"
+    );
+    let glued = TouchRanges {
+        contacts: 2..=3,
+        ..usual()
+    };
+    assert!(refused(glued).starts_with("tap, range of lift: 0 m between contacts; "));
+    let unknown = TouchKind::named("pta").unwrap_err().to_string();
+    assert!(
+        unknown.starts_with("kind of touch: pta; perhaps `"),
+        "{unknown}"
+    );
+    let drawn = HumanTouch::draw(TouchKind::Tap, &usual(), f64::NAN, &Seed::new(1));
+    assert!(
+        drawn
+            .unwrap_err()
+            .to_string()
+            .starts_with("radius of the arm: NaN m; ")
+    );
+}
+
+const STUDY: &str = r#"
+question = "Which kind of touch?"
+
+[human_touch]
+KINDS
+per_kind = 40
+frames_hz = 15.0
+duration_s = 3.2
+
+[skin]
+pitch_mm = 6.0
+taxels = 32
+stroke_mm = 6.0
+
+[signal]
+noise_std_full_scale = 0.002
+
+[sensing]
+ratio = 16
+
+[recognition]
+over_time = ["deepest", "stacked_8", "summarised", "course"]
+classifier = "rbf_svm"
+c = 10.0
+"#;
+
+fn laid_out(text: &str) -> bubbletouch::Result<(Plan, HumanTouches, Sweep)> {
+    let spec = StudySpec::parse("study.toml", text)?;
+    let plan = Plan::new("study.toml", spec)?;
+    let human = plan.human_touch.as_ref().expect("a study of human touches");
+    let touches = HumanTouches::draw(human, &Seed::new(plan.spec.seed))?;
+    let sweep = Sweep::new(&plan, &touches)?;
+    Ok((plan, touches, sweep))
+}
+
+fn outcome(kinds: &str) -> Outcome {
+    let (plan, touches, sweep) = laid_out(&STUDY.replace("KINDS", kinds)).unwrap();
+    run(&plan, &sweep, &touches, &Silent).unwrap()
+}
+
+fn accuracies(outcome: &Outcome) -> Vec<f64> {
+    outcome
+        .tables
+        .summary
+        .iter()
+        .map(|(_, score)| score.accuracy)
+        .collect()
+}
+
+#[test]
+fn time_tells_kinds_apart_that_one_frame_does_not() {
+    let found = accuracies(&outcome(""));
+    let [deepest, _, summarised, course] = found[..] else {
+        panic!("{found:?}")
+    };
+    assert!(
+        summarised > deepest + 0.2 && course > deepest + 0.3,
+        "{found:?}"
+    );
+    assert!(course > 0.75, "{found:?}");
+    let found = accuracies(&outcome("kinds = [\"tap\", \"hold\"]"));
+    assert!(
+        (0.2..0.8).contains(&found[0]),
+        "one frame cannot: {found:?}"
+    );
+    assert!(found[3] > 0.9, "{found:?}");
+}
+
+#[test]
+fn touches_are_balanced_and_alone_the_same() {
+    let (plan, touches, sweep) = laid_out(&STUDY.replace("KINDS", "")).unwrap();
+    assert_eq!(touches.class_names(), TOUCH_KINDS.map(TouchKind::name));
+    for (label, kind) in TOUCH_KINDS.into_iter().enumerate() {
+        assert_eq!(sweep.labels.iter().filter(|&&l| l == label).count(), 40);
+        let of_kind = touches.of(label).iter();
+        assert!(of_kind.clone().all(|t| t.touch.kind == kind));
+        let fits = |t: &bubbletouch::study::RecordedTouch| {
+            t.onset >= 0.0 && t.onset + t.touch.duration() <= 3.2 + 1e-9
+        };
+        assert!(of_kind.clone().all(fits));
+    }
+    // Fewer kinds and fewer touches are the same ones.
+    let fewer = STUDY.replace("KINDS", "kinds = [\"pat\", \"tap\"]");
+    let (_, fewer, _) = laid_out(&fewer.replace("per_kind = 40", "per_kind = 12")).unwrap();
+    assert_eq!(fewer.of(0), &touches.of(4)[..12]);
+    assert_eq!(fewer.of(1), &touches.of(0)[..12]);
+    // Frame by frame as pressed by hand, with new spheres each time.
+    let human = plan.human_touch.as_ref().unwrap();
+    let patch = plan.arrays[0];
+    let skin = human.skin(&patch).unwrap();
+    let writer = FrameWriter::in_memory(1024, "hands");
+    let frames = touches.simulate((&patch, human.n_frames), writer, &Silent);
+    let deflection = frames.unwrap().kept.to_array().unwrap();
+    assert_eq!(deflection.dim(), (240 * 49, 1024));
+    let mut workspace = SkinWorkspace::new();
+    for number in [3, 100, 205] {
+        let recorded = &touches.touches[number];
+        for frame in 0..human.n_frames {
+            let state = recorded.touch.at(frame as f64 / 15.0 - recorded.onset);
+            let hand: [Model; 1] = [state.spheres().into()];
+            press_skin(&skin, &hand, &[state.patch_from_hand], &mut workspace);
+            let row = deflection.row(number * human.n_frames + frame);
+            for (&stored, &pressed) in row.iter().zip(workspace.deflections()) {
+                assert!((stored - pressed).abs() < 1e-8);
+            }
+        }
+        let mut alone = Array2::zeros((human.n_frames, 1024));
+        record_touch(
+            &skin,
+            recorded,
+            human.interval,
+            alone.view_mut(),
+            &mut workspace,
+        );
+        let first = number * human.n_frames;
+        let rows = deflection.slice(ndarray::s![first..first + human.n_frames, ..]);
+        assert_eq!(alone.mapv(f64::from), rows);
+    }
+}
+
+#[test]
+fn rows_and_columns_of_the_array_run_along_and_around_the_arm() {
+    let (plan, touches, _) = laid_out(&STUDY.replace("KINDS", "")).unwrap();
+    let skin = touches.plan.skin(&plan.arrays[0]).unwrap();
+    let centers = skin.layout().centers();
+    let place = |row: usize, column: usize| {
+        let p = centers[row * 32 + column];
+        (p.z, p.y.atan2(p.x))
+    };
+    let (first, right, up) = (place(0, 0), place(0, 1), place(1, 0));
+    assert!((up.0 - first.0 - 6e-3).abs() < 1e-12 && (up.1 - first.1).abs() < 1e-12);
+    assert!((right.0 - first.0).abs() < 1e-12 && right.1 > first.1);
+    assert!(
+        (place(0, 31).1 + first.1).abs() < 1e-12,
+        "the middle is at +x"
+    );
+}
+
+#[test]
+fn the_tables_are_the_same_bytes_at_any_number_of_threads() {
+    let case = Case::new();
+    let text = STUDY.replace("KINDS", "kinds = [\"tap\", \"pat\", \"grab\"]");
+    case.file("study.toml", text.replace("per_kind = 40", "per_kind = 12"));
+    for threads in ["1", "3"] {
+        case.succeeds(&["run", "study.toml", "--threads", threads, "--out", threads]);
+    }
+    let read = |threads: &str, name: &str| fs::read(case.path(threads).join(name)).unwrap();
+    for name in [
+        "accuracy.csv",
+        "summary.csv",
+        "confusion.csv",
+        "study.toml",
+        "confusion.svg",
+    ] {
+        assert!(
+            !read("1", name).is_empty() && read("1", name) == read("3", name),
+            "{name}"
+        );
+    }
+    let text = String::from_utf8(read("1", "summary.csv")).unwrap();
+    assert!(text.contains(",frames,over_time,features,") && text.contains(",49,stacked_8,raw,"));
+    let picture = String::from_utf8(read("1", "confusion.svg")).unwrap();
+    assert!(picture.contains("What each kind of touch was taken for"));
+    // What was resolved can run again.
+    let again = String::from_utf8(read("1", "study.toml")).unwrap();
+    assert!(!again.contains("[objects]") && !again.contains("[touches]"));
+    laid_out(&again).unwrap();
+}
+
+#[test]
+fn a_study_that_cannot_be_is_refused_by_its_key() {
+    let refused = |from: &str, to: &str| {
+        let text = STUDY.replace("KINDS", "");
+        assert!(text.contains(from));
+        laid_out(&text.replace(from, to)).unwrap_err().to_string()
+    };
+    for (from, to, expected) in [
+        (
+            "per_kind = 40",
+            "per_kind = 0",
+            "study.toml, key human_touch.per_kind: 0; at least 1",
+        ),
+        (
+            "frames_hz = 15.0",
+            "frames_hz = nan",
+            "study.toml, key human_touch.frames_hz: NaN; ",
+        ),
+        (
+            "duration_s = 3.2",
+            "duration_s = 1.0",
+            "key human_touch.duration_s: 1 s; more: a ",
+        ),
+        (
+            "duration_s = 3.2",
+            "duration_s = 1e9",
+            "study.toml, key human_touch: 15000000001 frames",
+        ),
+        (
+            "duration_s = 3.2",
+            "duration_s = 3.2\nkinds = []",
+            "study.toml, key human_touch.kinds: an empty",
+        ),
+        (
+            "duration_s = 3.2",
+            "duration_s = 3.2\nkinds = [\"tap\"]",
+            "key human_touch.kinds: 1 kind; at least two",
+        ),
+        (
+            "pitch_mm = 6.0",
+            "pitch_mm = 20.0",
+            "study.toml, key skin: 32 columns at 20 mm, 640.0 mm together; at most",
+        ),
+        (
+            "stacked_8",
+            "stacked_50",
+            "study.toml, key recognition.over_time: stacked_50; at most 49",
+        ),
+        (
+            "stroke_mm",
+            "damping_n_s_per_m = 1.0\nstroke_mm",
+            "study.toml, key skin.damping_n_s_per_m: 1; ",
+        ),
+        (
+            "c = 10.0",
+            "c = 10.0\nkeep_together = \"yaw\"",
+            "study.toml, key recognition.keep_together: given; ",
+        ),
+        (
+            "[skin]",
+            "[touches]\ndepth_mm = 1.0\n\n[skin]",
+            "study.toml, key human_touch: beside [objects] or [touches]; ",
+        ),
+    ] {
+        let found = refused(from, to);
+        assert!(found.starts_with(expected), "{found}");
+    }
+    for (from, to, word) in [
+        ("stacked_8", "stacked_x", "summarised"),
+        (
+            "duration_s = 3.2",
+            "duration_s = 3.2\nkinds = [\"tapp\"]",
+            "tapp",
+        ),
+    ] {
+        let found = refused(from, to);
+        assert!(
+            found.starts_with("study.toml:") && found.contains(word),
+            "{found}"
+        );
+    }
+}

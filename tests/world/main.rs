@@ -1,0 +1,21 @@
+//! The world: placement, robots, scenes, human touch and whole bodies.
+
+#[path = "../fixtures/command/mod.rs"]
+mod command;
+#[path = "../fixtures/counting/mod.rs"]
+mod counting;
+#[path = "../fixtures/random_scenes/mod.rs"]
+mod random_scenes;
+#[path = "../fixtures/reference_data/mod.rs"]
+mod reference_data;
+
+mod human_touch;
+mod placement_rest;
+mod placement_touches;
+mod robot_motion;
+mod robot_urdf;
+mod scene_errors;
+mod scene_forces;
+mod scene_laws;
+mod whole_body_laws;
+mod whole_body_variants;

@@ -1,0 +1,468 @@
+//! Robots and bodies in time: smooth between way-points, and within limits at all times.
+
+use crate::counting::allocations;
+use bubbletouch::geometry::Pose;
+use bubbletouch::random::Seed;
+use bubbletouch::world::{
+    Interpolation, JointTrajectory, Motion, Phase, PoseTrajectory, Robot, VelocityPlan,
+};
+use glam::{DQuat, DVec3};
+use ndarray::{Array2, array};
+use rand::Rng;
+
+const INTERPOLATIONS: [Interpolation; 3] = [
+    Interpolation::Linear,
+    Interpolation::Cubic,
+    Interpolation::Monotone,
+];
+
+/// The way-points of robots/splines.py.
+const TIMES: [f64; 5] = [0.0, 0.5, 1.7, 2.0, 4.0];
+const VALUES: [f64; 5] = [0.0, 1.0, 1.2, -0.7, 0.4];
+
+/// Two hinges and a slide; `follower` turns twice as far as `hinge`, the other way.
+fn robot(hinge_limits: &str) -> Robot {
+    let text = format!(
+        r#"<robot name="r"><link name="a"/><link name="b"/><link name="c"/><link name="d"/>
+        <joint name="hinge" type="revolute"><parent link="a"/><child link="b"/><limit {hinge_limits} effort="1"/></joint>
+        <joint name="follower" type="revolute"><parent link="b"/><child link="c"/>
+          <limit lower="-9" upper="9" velocity="90" effort="1"/><mimic joint="hinge" multiplier="-2" offset="0.5"/></joint>
+        <joint name="slide" type="prismatic"><parent link="c"/><child link="d"/>
+          <limit lower="0" upper="0.1" velocity="9" effort="1"/></joint>
+        </robot>"#
+    );
+    Robot::from_urdf("r.urdf", &text).expect("a sound robot")
+}
+
+fn free() -> Robot {
+    robot(r#"lower="-9" upper="9" velocity="90""#)
+}
+
+/// The hinge through these values at 0, 1, 2, … s, the slide at rest.
+fn hinge(
+    robot: &Robot,
+    values: &[f64],
+    kind: Interpolation,
+) -> bubbletouch::Result<JointTrajectory> {
+    let times = (0..values.len()).map(|i| i as f64).collect();
+    let positions = Array2::from_shape_fn(
+        (values.len(), 2),
+        |(i, k)| if k == 0 { values[i] } else { 0.0 },
+    );
+    JointTrajectory::new(robot, times, positions, kind)
+}
+
+#[test]
+fn splines_are_those_of_an_independent_program() {
+    let positions = Array2::from_shape_fn((5, 2), |(i, k)| if k == 0 { VALUES[i] } else { 0.05 });
+    let through =
+        |kind| JointTrajectory::new(&free(), TIMES.to_vec(), positions.clone(), kind).unwrap();
+    let agrees = |found: f64, expected: f64| {
+        assert!((found - expected).abs() < 1e-12, "{found}, {expected}")
+    };
+    let cubic = through(Interpolation::Cubic);
+    for (time, value, velocity) in [
+        (0.25, 0.31198778565799834, 2.247951142631994),
+        (1.0, 2.262217899045617, 1.5405256763856046),
+        (1.9, -0.07585798091235388, -6.592534804307855),
+        (3.1, -1.3458535904255333, 2.495035017730494),
+    ] {
+        agrees(cubic.positions_at(time)[0], value);
+        agrees(cubic.velocities_at(time)[0], velocity);
+    }
+    let monotone = through(Interpolation::Monotone);
+    for (time, value, velocity) in [
+        (1.0, 1.134460719251675, 0.19228763746681832),
+        (1.9, -0.20740740740740682, -8.44444444444445),
+    ] {
+        agrees(monotone.positions_at(time)[0], value);
+        agrees(monotone.velocities_at(time)[0], velocity);
+    }
+}
+
+#[test]
+fn the_ends_hold_and_way_points_are_passed_exactly() {
+    for kind in INTERPOLATIONS {
+        let trajectory = hinge(&free(), &VALUES, kind).unwrap();
+        for (i, &value) in VALUES.iter().enumerate() {
+            assert_eq!(trajectory.positions_at(i as f64), [value, 0.0]);
+        }
+        assert_eq!(trajectory.positions_at(-3.0)[0], VALUES[0]);
+        assert_eq!(trajectory.positions_at(f64::INFINITY)[0], VALUES[4]);
+        assert_eq!(trajectory.velocities_at(99.0), [0.0, 0.0]);
+        assert_eq!(trajectory.end(), 4.0);
+    }
+    let one = hinge(&free(), &[0.3], Interpolation::Cubic).unwrap();
+    assert_eq!(
+        [one.positions_at(-1.0)[0], one.positions_at(1.0)[0]],
+        [0.3, 0.3]
+    );
+}
+
+#[test]
+fn a_limit_passed_between_legal_way_points_is_found() {
+    let robot = robot(r#"lower="-1" upper="1.05" velocity="90""#);
+    let values = [0.0, 1.0, 1.0, 0.0];
+    // All way-points are legal, and so are straight lines between them.
+    for kind in [Interpolation::Linear, Interpolation::Monotone] {
+        hinge(&robot, &values, kind).expect("nothing leaves the way-points");
+    }
+    let error = hinge(&robot, &values, Interpolation::Cubic).unwrap_err();
+    assert_eq!(
+        error.to_string(),
+        "joint trajectory: joint `hinge`: 1.250000 rad (71.62°) at 1.5000 s (between way-point 2 and way-point 3); \
+         at most 1.050000 rad (60.16°)"
+    );
+}
+
+#[test]
+fn a_velocity_passed_between_slow_way_points_is_found() {
+    let robot = robot(r#"lower="-9" upper="9" velocity="1.2""#);
+    // Still at both ends, one radian in one second: 1.5 rad/s half-way.
+    hinge(&robot, &[0.0, 1.0], Interpolation::Linear).expect("1 rad/s");
+    for kind in [Interpolation::Cubic, Interpolation::Monotone] {
+        let error = hinge(&robot, &[0.0, -1.0], kind).unwrap_err();
+        assert_eq!(
+            error.to_string(),
+            "joint trajectory: joint `hinge`: velocity -1.500000 rad/s at 0.5000 s (between way-point 1 and way-point 2); \
+             at most 1.200000 rad/s"
+        );
+    }
+}
+
+#[test]
+fn a_joint_that_mimics_keeps_its_own_limits() {
+    let error = hinge(&free(), &[0.0, 4.5], Interpolation::Linear).expect("-8.5 rad");
+    assert_eq!(error.positions_at(1.0)[0], 4.5);
+    let error = hinge(&free(), &[0.0, 4.8], Interpolation::Linear).unwrap_err();
+    assert_eq!(
+        error.to_string(),
+        "joint trajectory: joint `follower`: -9.100000 rad (-521.39°) at 1.0000 s (way-point 2); \
+         at least -9.000000 rad (-515.66°)"
+    );
+}
+
+#[test]
+fn a_quarter_turn_is_within_a_limit_of_six_digits_and_no_more_is() {
+    let robot = robot(r#"lower="-1.570796" upper="1.570796" velocity="9""#);
+    let quarter = 90_f64.to_radians();
+    for kind in INTERPOLATIONS {
+        hinge(&robot, &[-quarter, quarter], kind).expect("3e-7 rad beyond");
+        hinge(&robot, &[-quarter, quarter + 1e-6], kind).expect_err("1.3e-6 rad beyond");
+    }
+}
+
+/// The closed form against a search at 10,000 times a second, on curves of all kinds.
+#[test]
+fn a_trajectory_is_refused_exactly_when_a_fine_search_finds_it_beyond() {
+    let mut rng = Seed::new(2018).named("trajectories").rng();
+    let (mut n_legal, mut n_beyond) = (0, 0);
+    for case in 0..120 {
+        let kind = INTERPOLATIONS[case % 3];
+        let values: Vec<f64> = (0..4).map(|_| rng.gen_range(-1.0..1.0)).collect();
+        let trajectory = hinge(&free(), &values, kind).unwrap();
+        let times = (0..30_000).map(|i| 1e-4 * f64::from(i));
+        let most = |of: &dyn Fn(f64) -> f64| times.clone().map(of).fold(0.0, f64::max);
+        let position = most(&|time| trajectory.positions_at(time)[0].abs());
+        let velocity = most(&|time| trajectory.velocities_at(time)[0].abs());
+        for (position_share, velocity_share) in [(1.001, 1.001), (0.999, 9.0), (9.0, 0.999)] {
+            let bound = position * position_share;
+            let limits = format!(
+                r#"lower="-{bound}" upper="{bound}" velocity="{}""#,
+                velocity * velocity_share
+            );
+            let is_legal = hinge(&robot(&limits), &values, kind).is_ok();
+            assert_eq!(
+                is_legal,
+                position_share > 1.0 && velocity_share > 1.0,
+                "{kind:?} {values:?}"
+            );
+            if is_legal {
+                n_legal += 1
+            } else {
+                n_beyond += 1
+            }
+        }
+    }
+    assert_eq!((n_legal, n_beyond), (120, 240));
+}
+
+const CSV: &str = "time_s,slide_mm,hinge_deg\n0,10,0\n1.5, 20,90\n2,0,-45\n";
+
+fn read(text: &str) -> bubbletouch::Result<JointTrajectory> {
+    JointTrajectory::read_csv(&free(), "t.csv", text.as_bytes(), Interpolation::Cubic)
+}
+
+#[test]
+fn csv_columns_come_in_any_order_and_in_their_units() {
+    let trajectory = read(CSV).unwrap();
+    let found = trajectory.positions_at(1.5);
+    assert_eq!(found, [90_f64.to_radians(), 0.02]);
+    let same = read(
+        "hinge,slide_m,time_s\n0,0.01,0\n1.5707963267948966,0.02,1.5\n-0.7853981633974483,0,2\n",
+    )
+    .unwrap();
+    for time in [0.3, 1.7] {
+        for (a, b) in trajectory
+            .positions_at(time)
+            .iter()
+            .zip(same.positions_at(time))
+        {
+            assert!((a - b).abs() < 1e-15);
+        }
+    }
+}
+
+#[test]
+fn a_bad_csv_is_refused_with_its_line() {
+    for (old, new, sentence) in [
+        (
+            "90",
+            "nan",
+            "t.csv, line 3, column hinge_deg: `nan`; a finite number",
+        ),
+        (
+            "90",
+            "",
+            "t.csv, line 3, column hinge_deg: ``; a finite number",
+        ),
+        (
+            "20,90",
+            "20",
+            "t.csv, line 3: 2 columns; 3 columns in every row",
+        ),
+        (
+            "2,0",
+            "1.5,0",
+            "t.csv, line 4: time 1.5 s after 1.5 s; strictly ascending times",
+        ),
+        (
+            "time_s",
+            "time_ms",
+            "t.csv, line 1: no column time_s; times in seconds",
+        ),
+        (
+            "hinge_deg",
+            "hing_deg",
+            "t.csv, line 1: no column for `hinge`; every joint that moves and mimics none",
+        ),
+        (
+            "hinge_deg",
+            "hinge_mm",
+            "t.csv, line 1: no column for `hinge`; every joint that moves and mimics none",
+        ),
+        (
+            "hinge_deg\n0,10,0\n1.5, 20,90\n2,0,-45",
+            "hinge,hinge_deg\n0,10,0,0",
+            "t.csv, line 1: a second column for hinge: `hinge_deg`; one column each",
+        ),
+        (
+            "hinge_deg\n0,10,0\n1.5, 20,90\n2,0,-45",
+            "hinge_deg,follower\n0,10,0,0",
+            "t.csv, line 1: a column for `follower`, which mimics another joint; only the joint that it follows",
+        ),
+        (
+            "hinge_deg\n0,10,0\n1.5, 20,90\n2,0,-45",
+            "hinge_deg,sldie\n0,10,0,0",
+            "t.csv, line 1: column `sldie`; perhaps `slide`",
+        ),
+        (
+            "20",
+            "101",
+            "t.csv: joint `slide`: 0.130850 m at 1.1862 s (between line 2 and line 3); at most 0.100000 m",
+        ),
+        (
+            "0,10,0\n1.5, 20,90\n2,0,-45\n",
+            "",
+            "t.csv: no way-points; at least one",
+        ),
+        (
+            CSV,
+            "",
+            "t.csv: an empty file; a header with time_s, then way-points",
+        ),
+        (
+            "1.5,",
+            "1e-310,",
+            "t.csv: `hinge` with an endless velocity; way-points farther apart in time",
+        ),
+    ] {
+        assert!(
+            CSV.contains(old),
+            "the test replaces something that is there: {old}"
+        );
+        let error = read(&CSV.replacen(old, new, 1)).expect_err(new);
+        assert_eq!(
+            (error.to_string().as_str(), error.exit_code()),
+            (sentence, 2)
+        );
+    }
+    let latin = JointTrajectory::read_csv(
+        &free(),
+        "t.csv",
+        &b"time_s,\xe9\n"[..],
+        Interpolation::Linear,
+    );
+    assert_eq!(latin.unwrap_err().exit_code(), 2);
+}
+
+#[test]
+fn bad_arguments_are_refused_with_their_way_point() {
+    let new = |times: Vec<f64>, positions| {
+        let trajectory = JointTrajectory::new(&free(), times, positions, Interpolation::Cubic);
+        trajectory.unwrap_err().to_string()
+    };
+    assert_eq!(
+        new(vec![0.0, 1.0], array![[0.0, 0.0], [f64::NAN, 0.0]]),
+        "joint trajectory, way-point 2: NaN; finite numbers"
+    );
+    assert_eq!(
+        new(vec![0.0], array![[0.0]]),
+        "joint trajectory: 1 positions a way-point; the 2 of robot `r`"
+    );
+    assert_eq!(
+        new(vec![0.0], array![[0.0, 0.0], [1.0, 0.0]]),
+        "joint trajectory: 1 times for 2 way-points; a time each"
+    );
+}
+
+#[test]
+fn a_pose_passes_its_way_points_and_a_steady_turn_stays_steady() {
+    let turn = |angle: f64| Pose::new(DQuat::from_rotation_z(angle), DVec3::new(angle, 0.0, 1.0));
+    let poses = [0.0, 0.5, 1.0, 1.5, 2.0].map(turn);
+    let times = vec![0.0, 1.0, 2.0, 3.0, 4.0];
+    for kind in INTERPOLATIONS {
+        let trajectory = PoseTrajectory::new(times.clone(), &poses, kind).unwrap();
+        for (&time, pose) in times.iter().zip(&poses) {
+            let found = trajectory.pose_at(time);
+            assert!(found.translation == pose.translation);
+            assert!((found.rotation.dot(pose.rotation).abs() - 1.0).abs() < 1e-15);
+        }
+        // Far from the ends, rotation goes as position does.
+        for time in [1.25, 2.0, 2.6] {
+            let angle = 2.0 * trajectory.pose_at(time).rotation.z.asin();
+            assert!(
+                (angle - 0.5 * time).abs() < 1e-12,
+                "{kind:?} {time}: {angle}"
+            );
+        }
+        assert_eq!(trajectory.pose_at(-1.0), poses[0]);
+        assert_eq!(trajectory.pose_at(5.0), poses[4]);
+    }
+}
+
+#[test]
+fn a_pose_csv_takes_quaternions_or_degrees() {
+    let read =
+        |text: &str| PoseTrajectory::read_csv("p.csv", text.as_bytes(), Interpolation::Linear);
+    let degrees = read(
+        "time_s,x_mm,y_mm,z_mm,roll_deg,pitch_deg,yaw_deg\n0,0,0,100,90,0,0\n2,0,0,300,90,0,90\n",
+    )
+    .unwrap();
+    let quaternions =
+        read("time_s,x,y,z,qx,qy,qz,qw\n0,0,0,0.1,0.7071,0,0,0.7071\n2,0,0,0.3,0.5,0.5,0.5,0.5\n")
+            .unwrap();
+    for time in [0.0, 0.7, 2.0] {
+        let (a, b) = (degrees.pose_at(time), quaternions.pose_at(time));
+        assert!((a.translation - b.translation).length() < 1e-15);
+        assert!(
+            (a.rotation.dot(b.rotation).abs() - 1.0).abs() < 1e-14,
+            "{time}: {a:?}, {b:?}"
+        );
+    }
+    for (text, sentence) in [
+        (
+            "time_s,x,y,z,qx,qy,qz,qw\n0,0,0,0,1,1,0,0\n",
+            "p.csv, line 2: a quaternion of length 1.4142135623730951; length 1",
+        ),
+        (
+            "time_s,x,y,z\n0,0,0,0\n",
+            "p.csv, line 1: no rotation; qx, qy, qz, qw, or roll, pitch, yaw, or roll_deg, pitch_deg, yaw_deg",
+        ),
+        (
+            "time_s,x,y,roll,pitch,yaw\n",
+            "p.csv, line 1: no column z; all of x, y, z",
+        ),
+        (
+            "time_s,x,y,z,qx_deg,qy,qz,qw\n",
+            "p.csv, line 1: no column qx; all of qx, qy, qz, qw",
+        ),
+    ] {
+        assert_eq!(read(text).unwrap_err().to_string(), sentence);
+    }
+}
+
+#[test]
+fn every_motion_says_where_it_is() {
+    let start = Pose::from_translation(DVec3::Z);
+    let phase = Phase {
+        duration: 2.0,
+        linear: DVec3::X,
+        angular: DVec3::ZERO,
+    };
+    let plan = VelocityPlan::new(start, vec![phase]).unwrap();
+    let far = Pose::from_translation(DVec3::new(2.0, 0.0, 1.0));
+    let way_points =
+        PoseTrajectory::new(vec![0.0, 2.0], &[start, far], Interpolation::Linear).unwrap();
+    let motions = [Motion::Plan(plan), Motion::WayPoints(way_points)];
+    for motion in motions {
+        let found = motion.pose_at(0.5).translation;
+        assert!(
+            (found - DVec3::new(0.5, 0.0, 1.0)).length() < 1e-15,
+            "{found}"
+        );
+        assert_eq!((motion.pose_at(9.0), motion.end()), (far, 2.0));
+    }
+    assert_eq!(Motion::Fixed(start).pose_at(7.0), start);
+}
+
+#[test]
+fn following_a_trajectory_allocates_nothing() {
+    let arm = Robot::from_urdf("arm.urdf", include_str!("../../objects/robots/arm.urdf")).unwrap();
+    let there = Array2::from_shape_fn((3, 7), |(i, k)| 0.2 * i as f64 - 0.05 * k as f64);
+    let times = vec![0.0, 1.0, 2.0];
+    let trajectory = JointTrajectory::new(&arm, times, there, Interpolation::Cubic).unwrap();
+    let mut positions = vec![0.0; arm.n_positions()];
+    let mut world_from_link = vec![Pose::IDENTITY; arm.links().len()];
+    let mut follow = |steps: std::ops::Range<u32>| {
+        for step in steps {
+            trajectory.positions_into(1e-3 * f64::from(step), &mut positions);
+            arm.forward_into(&Pose::IDENTITY, &positions, &mut world_from_link)
+                .unwrap();
+        }
+    };
+    assert!(allocations(|| drop(trajectory.positions_at(0.0))) > 0);
+    assert_eq!(allocations(|| follow(0..2500)), 0);
+}
+
+#[test]
+fn a_mutilated_csv_is_a_trajectory_or_bad_input_and_never_a_panic() {
+    let mut rng = Seed::new(2018).named("mutilated trajectories").rng();
+    let robot = free();
+    let (mut n_sound, mut n_refused) = (0, 0);
+    for _ in 0..2000 {
+        let mut bytes = CSV.as_bytes().to_vec();
+        for _ in 0..rng.gen_range(1..3) {
+            let at = rng.gen_range(0..bytes.len());
+            match rng.gen_range(0..3) {
+                0 => drop(bytes.remove(at)),
+                1 => bytes[at] = b"0123456789.,-e\n\"_\xff"[rng.gen_range(0..18)],
+                _ => bytes.insert(at, b"0123456789.,-e\n\"_\xff"[rng.gen_range(0..18)]),
+            }
+        }
+        match JointTrajectory::read_csv(&robot, "t.csv", &bytes[..], Interpolation::Cubic) {
+            Ok(trajectory) => {
+                let is_finite =
+                    |time: f64| trajectory.positions_at(time).iter().all(|x| x.is_finite());
+                assert!([0.0, 0.7, 1.5, 1.9, 9.0].into_iter().all(is_finite));
+                n_sound += 1;
+            }
+            Err(error) => {
+                assert!(error.to_string().starts_with("t.csv"), "{error}");
+                assert_eq!(error.exit_code(), 2);
+                n_refused += 1;
+            }
+        }
+    }
+    assert!(n_sound > 200 && n_refused > 200, "{n_sound}, {n_refused}");
+}

@@ -1,0 +1,559 @@
+//! Robots from URDF: where their links are, and what is said of a file that is no robot.
+
+use bubbletouch::geometry::Pose;
+use bubbletouch::random::Seed;
+use bubbletouch::world::{Dimension, JointKind, LinkGeometry, Robot, ShapeRole};
+use bubbletouch::{Error, Result};
+use glam::{DMat3, DQuat, DVec3};
+use rand::Rng;
+use std::path::Path;
+
+const ARM: &str = include_str!("../../objects/robots/arm.urdf");
+const SIX_AXIS: &str = include_str!("../robots/six_axis.urdf");
+const GRIPPER: &str = include_str!("../robots/gripper.urdf");
+const ROVER: &str = include_str!("../robots/rover.urdf");
+/// By another program: robots/forward.py.
+const FORWARD: &str = include_str!("../robots/forward.csv");
+
+fn robot(text: &str) -> Robot {
+    Robot::from_urdf("robot.urdf", text).expect("a sound robot")
+}
+
+fn numbers(words: &str) -> Vec<f64> {
+    let number = |word: &str| word.parse().expect("a number");
+    words.split_whitespace().map(number).collect()
+}
+
+#[test]
+fn every_link_is_where_an_independent_program_has_it() {
+    let mut n_poses = 0;
+    for line in FORWARD.lines().skip(1) {
+        let [name, positions, link, pose] = line.split(',').collect::<Vec<_>>()[..] else {
+            panic!("four columns: {line}");
+        };
+        let robot = robot(match name {
+            "six_axis" => SIX_AXIS,
+            "gripper" => GRIPPER,
+            _ => ROVER,
+        });
+        let found = robot.forward(&Pose::IDENTITY, &numbers(positions)).unwrap();
+        let found = found[robot.link(link).unwrap()];
+        let expected = numbers(pose);
+        let rotation = DMat3::from_quat(found.rotation).transpose().to_cols_array();
+        let found = [found.translation.to_array().as_slice(), &rotation].concat();
+        for (found, expected) in found.iter().zip(&expected) {
+            assert!((found - expected).abs() < 1e-12, "{line}: {found:?}");
+        }
+        n_poses += 1;
+    }
+    assert_eq!(n_poses, 6 * (8 + 6 + 5));
+}
+
+#[test]
+fn moving_the_base_moves_all_links_alike() {
+    let turn = DQuat::from_scaled_axis(DVec3::new(0.3, -1.0, 2.0));
+    let base = Pose::new(turn, DVec3::new(4.0, -3.0, 0.5));
+    for text in [ARM, SIX_AXIS, GRIPPER, ROVER] {
+        let robot = robot(text);
+        let positions: Vec<f64> = (0..robot.n_positions())
+            .map(|i| 0.1 + 0.07 * i as f64)
+            .collect();
+        let still = robot.forward(&Pose::IDENTITY, &positions).unwrap();
+        let moved = robot.forward(&base, &positions).unwrap();
+        assert_eq!(moved[robot.base()], base);
+        for (still, moved) in still.iter().zip(&moved) {
+            let expected = base.compose(still);
+            for point in [DVec3::ZERO, DVec3::X, DVec3::Y] {
+                let apart = expected.transform_point(point) - moved.transform_point(point);
+                assert!(apart.length() < 1e-14, "{apart}");
+            }
+        }
+    }
+}
+
+#[test]
+fn a_floating_robot_is_where_its_base_is() {
+    let robot = Robot::floating("probe");
+    let base = Pose::from_translation(DVec3::X);
+    assert_eq!(robot.forward(&base, &[]).unwrap(), [base]);
+    assert_eq!(robot.link("probe").unwrap(), 0);
+}
+
+#[test]
+fn the_shipped_arm_stands_as_tall_as_it_says() {
+    let arm = robot(ARM);
+    assert_eq!((arm.n_positions(), arm.links().len()), (7, 9));
+    let up = arm.forward(&Pose::IDENTITY, &[0.0; 7]).unwrap();
+    let tip = up[arm.link("fingertip").unwrap()].transform_point(DVec3::new(0.0, 0.0, 0.08));
+    assert!((tip - DVec3::new(0.0, 0.0, 1.19)).length() < 1e-15, "{tip}");
+    for joint in arm
+        .joints()
+        .iter()
+        .filter(|joint| joint.kind != JointKind::Fixed)
+    {
+        let limits = joint.limits.expect("a revolute joint has limits");
+        assert!(limits.lower < 0.0 && limits.upper > 0.0 && limits.velocity > 1.0);
+    }
+    let collisions = arm.links().iter().flat_map(|link| &link.shapes);
+    assert!(
+        collisions
+            .clone()
+            .all(|shape| shape.role == ShapeRole::Collision)
+    );
+    assert_eq!(collisions.count(), 22);
+}
+
+#[test]
+fn positions_stand_in_the_order_of_the_file_without_those_that_mimic() {
+    let names = |text| {
+        let robot = robot(text);
+        let coordinates = robot.coordinates().iter();
+        coordinates
+            .map(|c| (c.name.clone(), c.dimension))
+            .collect::<Vec<_>>()
+    };
+    use Dimension::{Angle, Length};
+    assert_eq!(
+        names(GRIPPER),
+        [("left".to_owned(), Angle), ("probe".to_owned(), Length)]
+    );
+    let rover = names(ROVER);
+    assert_eq!(rover.len(), 13);
+    assert_eq!(rover[2], ("roam.theta".to_owned(), Angle));
+    assert_eq!(rover[11], ("fly.yaw".to_owned(), Angle));
+}
+
+#[test]
+fn what_skin_needs_of_a_link_is_kept() {
+    let robot = robot(SIX_AXIS);
+    let upper = &robot.links()[robot.link("upper_arm").unwrap()];
+    let [visual, collision] = upper.shapes.as_slice() else {
+        panic!("two shapes: {:?}", upper.shapes);
+    };
+    assert_eq!(
+        (visual.role, collision.role),
+        (ShapeRole::Visual, ShapeRole::Collision)
+    );
+    let mesh = LinkGeometry::Mesh {
+        file: "package://six_axis/meshes/upper_arm.stl".to_owned(),
+        scale: DVec3::splat(1e-3),
+    };
+    assert_eq!(visual.geometry, mesh);
+    let end = collision.origin.transform_point(DVec3::new(0.0, 0.0, 0.19));
+    assert!(
+        (end - DVec3::new(0.38, 0.0, 0.12)).length() < 1e-15,
+        "{end}"
+    );
+}
+
+#[test]
+fn a_mesh_that_is_missing_is_said_only_when_asked() {
+    let folder = tempfile::tempdir().unwrap();
+    let robots = folder.path().join("six_axis/robots");
+    let meshes = folder.path().join("six_axis/meshes");
+    std::fs::create_dir_all(&robots).unwrap();
+    std::fs::create_dir_all(&meshes).unwrap();
+    let path = robots.join("robot.urdf");
+    std::fs::write(&path, SIX_AXIS).unwrap();
+    let robot = Robot::read_urdf(&path).expect("meshes are not opened");
+    let error = robot.check_meshes(&robots).unwrap_err().to_string();
+    assert!(
+        error.contains("robot.urdf, line 9, link `upper_arm`: mesh "),
+        "{error}"
+    );
+    std::fs::write(meshes.join("upper_arm.stl"), "").unwrap();
+    robot
+        .check_meshes(&robots)
+        .expect("beside the robot's folder, in its package");
+    assert_eq!(Robot::read_urdf(&robots).unwrap_err().exit_code(), 2);
+}
+
+/// The error of the first robot below with `old` replaced.
+fn refused(text: &str, old: &str, new: &str) -> String {
+    assert!(
+        text.contains(old),
+        "the test replaces something that is there: {old}"
+    );
+    let error = Robot::from_urdf("r.urdf", &text.replacen(old, new, 1)).expect_err(new);
+    assert_eq!(error.exit_code(), 2);
+    error.to_string()
+}
+
+#[test]
+fn every_broken_file_is_refused_in_one_sentence_with_its_line() {
+    for (text, old, new, sentence) in [
+        (
+            SIX_AXIS,
+            r#"<link name="flange"/>"#,
+            r#"<link name="flange"/><link name="loose"/>"#,
+            "r.urdf, line 3: 2 links that no joint moves: `base`, `loose`; \
+             one root: join the others to it (a fixed joint will do)",
+        ),
+        (
+            SIX_AXIS,
+            r#"<parent link="base"/>"#,
+            r#"<parent link="flange"/>"#,
+            "r.urdf, line 54: links in a circle: `flange` → `shoulder` → `upper_arm` → `forearm` → `wrist_1` → `wrist_2` → `wrist_3` \
+             → `flange`; a tree: no link carries itself",
+        ),
+        (
+            SIX_AXIS,
+            r#"<parent link="base"/><child link="shoulder"/>"#,
+            r#"<parent link="base"/><child link="base"/>"#,
+            "r.urdf, line 20: links in a circle: `base` → `base`; a tree: no link carries itself",
+        ),
+        (
+            SIX_AXIS,
+            r#"<child link="forearm"/>"#,
+            r#"<child link="forarm"/>"#,
+            "r.urdf, line 33: joint `elbow` with child `forarm`, which is no link; perhaps `forearm`",
+        ),
+        (
+            SIX_AXIS,
+            r#"<child link="forearm"/>"#,
+            r#"<child link="shoulder"/>"#,
+            "r.urdf, line 32: link `shoulder` is the child of `pan` and of `elbow`; one joint that moves a link: a tree",
+        ),
+        (
+            SIX_AXIS,
+            r#"<joint name="elbow""#,
+            r#"<joint name="lift""#,
+            "r.urdf, line 32: a second joint `lift` (the first is on line 26); a name of its own",
+        ),
+        (
+            SIX_AXIS,
+            r#"<link name="forearm"/>"#,
+            r#"<link name="base"/>"#,
+            "r.urdf, line 15: a second link `base` (the first is on line 4); a name of its own",
+        ),
+        (
+            SIX_AXIS,
+            r#"<limit lower="-2.8" upper="2.8" velocity="3.1" effort="80"/>"#,
+            "",
+            "r.urdf, line 32: joint `elbow` without <limit>; lower, upper, velocity and effort",
+        ),
+        (
+            SIX_AXIS,
+            r#"lower="-2.8""#,
+            r#"lower="2.9""#,
+            "r.urdf, line 36: joint `elbow` with lower limit 2.9 above upper limit 2.8; lower ≤ upper",
+        ),
+        (
+            SIX_AXIS,
+            r#"lower="-2.8" upper="2.8""#,
+            "",
+            "r.urdf, line 36: joint `elbow` with a <limit> without `lower` and `upper`; at least one of them; the other is 0",
+        ),
+        (
+            SIX_AXIS,
+            r#"xyz="0 -3 0""#,
+            r#"xyz="0 0 0""#,
+            "r.urdf, line 35: joint `elbow` with an axis of length zero; a direction",
+        ),
+        (
+            SIX_AXIS,
+            r#"xyz="-0.4187 0.002 0.0013""#,
+            r#"xyz="-0.4187 nan 0.0013""#,
+            "r.urdf, line 34: `xyz` \"-0.4187 nan 0.0013\"; 3 finite numbers with spaces between",
+        ),
+        (
+            SIX_AXIS,
+            r#"velocity="3.1" effort="80""#,
+            r#"velocity="1e999" effort="80""#,
+            "r.urdf, line 36: `velocity` \"1e999\"; a finite number",
+        ),
+        (
+            SIX_AXIS,
+            r#"type="continuous""#,
+            r#"type="continous""#,
+            "r.urdf, line 43: joint `wrist_2` of type `continous`; perhaps `continuous`",
+        ),
+        (
+            SIX_AXIS,
+            r#"<origin xyz="0 0 0.0874" rpy="0 0 3.1"/>"#,
+            r#"<orgin xyz="0 0 0.0874" rpy="0 0 3.1"/>"#,
+            "r.urdf, line 22: <orgin>; perhaps <origin>",
+        ),
+        (
+            SIX_AXIS,
+            r#"<cylinder radius="0.07""#,
+            r#"<cylinder radius="0""#,
+            "r.urdf, line 5: `radius` 0; positive lengths in metres",
+        ),
+        (
+            GRIPPER,
+            r#"<mimic joint="left"/>"#,
+            r#"<mimic joint="lfet"/>"#,
+            "r.urdf, line 20: joint `right` mimics `lfet`, which is no joint; perhaps `left`",
+        ),
+        (
+            GRIPPER,
+            r#"<mimic joint="left"/>"#,
+            r#"<mimic joint="screw"/>"#,
+            "r.urdf, line 5: joints mimic each other in a circle: `right_tip` → `right` → `screw` → `right_tip`; \
+             a chain that ends in a joint without <mimic>",
+        ),
+        (
+            ROVER,
+            r#"<child link="camera"/>"#,
+            r#"<child link="camera"/><mimic joint="roam"/>"#,
+            "r.urdf, line 23: joint `look` mimics `roam`, which has not one coordinate; \
+             a revolute, continuous or prismatic joint to follow",
+        ),
+        (
+            ROVER,
+            r#"<robot name="rover">"#,
+            r#"<robot name="rover" xmlns:xacro="http://www.ros.org/wiki/xacro"><xacro:macro name="m"/>"#,
+            "r.urdf, line 3: <macro> `m` of xacro; \
+             plain URDF: expand it first (xacro robot.urdf.xacro > robot.urdf)",
+        ),
+        (
+            ROVER,
+            r#"<robot name="rover">"#,
+            r#"<robot name="rover"><xacro:include filename="m.xacro"/>"#,
+            "r.urdf, line 3: an element of xacro; \
+             plain URDF: expand it first (xacro robot.urdf.xacro > robot.urdf)",
+        ),
+        (
+            ROVER,
+            r#"xyz="1 2 0.05""#,
+            r#"xyz="${width / 2} 2 0.05""#,
+            "r.urdf, line 11: <origin> of xacro; \
+             plain URDF: expand it first (xacro robot.urdf.xacro > robot.urdf)",
+        ),
+        (
+            ROVER,
+            r#"<link name="board"/>"#,
+            r#"<link name="board">"#,
+            "r.urdf, line 28: expected 'link' tag, not 'robot'; URDF: well-formed XML",
+        ),
+    ] {
+        assert_eq!(refused(text, old, new), sentence);
+    }
+    let empty = Robot::from_urdf("r.urdf", " \n").unwrap_err().to_string();
+    assert_eq!(empty, "r.urdf: an empty file; URDF: a <robot>");
+}
+
+#[test]
+fn names_that_are_not_there_are_met_with_those_that_resemble_them() {
+    let arm = robot(ARM);
+    let error = arm.link("fore_arm").unwrap_err().to_string();
+    assert_eq!(error, "link of robot `arm`: `fore_arm`; perhaps `forearm`");
+    let error = arm.joint("knee").unwrap_err().to_string();
+    assert!(
+        error.starts_with("joint of robot `arm`: `knee`; one of `shoulder_turn`, "),
+        "{error}"
+    );
+    let error = arm
+        .forward(&Pose::IDENTITY, &[0.0; 6])
+        .unwrap_err()
+        .to_string();
+    assert_eq!(error, "positions of robot `arm`: 6; 7 of them");
+    let mut positions = [0.0; 7];
+    positions[3] = f64::NAN;
+    let error = arm
+        .forward(&Pose::IDENTITY, &positions)
+        .unwrap_err()
+        .to_string();
+    assert_eq!(
+        error,
+        "position `elbow_bend` of robot `arm`: NaN; a finite number"
+    );
+}
+
+/// A robot of one link with one shape.
+fn one_shape(inside: &str) -> Result<Robot> {
+    let text = format!("<robot name='r'><link name='l'><visual>{inside}</visual></link></robot>");
+    Robot::from_urdf("r.urdf", &text)
+}
+
+#[test]
+fn a_quaternion_is_read_where_roll_pitch_and_yaw_are() {
+    let ball = "<geometry><sphere radius='1'/></geometry>";
+    let shape = |origin: &str| {
+        let robot = one_shape(&format!("<origin xyz='1 2 3' {origin}/>{ball}"));
+        robot.map(|robot| robot.links()[0].shapes[0].origin)
+    };
+    let angles = shape("rpy='0 0 1.5707963267948966'").unwrap();
+    let quaternion = shape("quat_xyzw='0 0 0.7071 0.7071'").unwrap();
+    assert!(angles.rotation.dot(quaternion.rotation).abs() > 1.0 - 1e-15);
+    assert_eq!(angles.translation, quaternion.translation);
+    let error = shape("quat_xyzw='0 0 1 1'").unwrap_err().to_string();
+    assert_eq!(
+        error,
+        "r.urdf, line 1: a quaternion of length 1.4142135623730951; length 1"
+    );
+    let error = shape("rpy='0 0 0' quat_xyzw='0 0 0 1'")
+        .unwrap_err()
+        .to_string();
+    assert_eq!(
+        error,
+        "r.urdf, line 1: both `rpy` and `quat_xyzw`; one of them"
+    );
+}
+
+#[test]
+fn every_form_is_read_and_no_other() {
+    let (radius, length) = (0.5, 2.0);
+    for (form, expected) in [
+        (
+            "<box size='1 2 3'/>",
+            LinkGeometry::Box {
+                size: DVec3::new(1.0, 2.0, 3.0),
+            },
+        ),
+        (
+            "<cylinder radius='0.5' length='2'/>",
+            LinkGeometry::Cylinder { radius, length },
+        ),
+        (
+            "<capsule radius='0.5' length='2'/>",
+            LinkGeometry::Capsule { radius, length },
+        ),
+        ("<sphere radius='0.5'/>", LinkGeometry::Sphere { radius }),
+    ] {
+        let robot = one_shape(&format!("<geometry>{form}</geometry>")).unwrap();
+        assert_eq!(robot.links()[0].shapes[0].geometry, expected);
+    }
+    let error = one_shape("<geometry><cone/></geometry>")
+        .unwrap_err()
+        .to_string();
+    assert_eq!(
+        error,
+        "r.urdf, line 1: <geometry> with 0 forms; exactly one of box, cylinder, capsule, sphere, mesh"
+    );
+}
+
+#[test]
+fn other_tools_elements_are_passed_over() {
+    let with_more = SIX_AXIS.replacen(
+        r#"<link name="shoulder"/>"#,
+        r#"<link name="shoulder"><inertial><mass value="2"/></inertial><sensor name="s"/></link>
+           <gazebo reference="shoulder"><mu1>0.2</mu1></gazebo>
+           <transmission name="t"><joint name="pan"><hardwareInterface>x</hardwareInterface></joint></transmission>"#,
+        1,
+    );
+    // A namespace for all, as some tools write it.
+    let with_more = with_more.replacen("<robot ", r#"<robot xmlns="http://example.org/urdf" "#, 1);
+    let (with_more, plain) = (robot(&with_more), robot(SIX_AXIS));
+    let positions = [0.3; 6];
+    assert_eq!(
+        with_more.forward(&Pose::IDENTITY, &positions).unwrap(),
+        plain.forward(&Pose::IDENTITY, &positions).unwrap()
+    );
+}
+
+#[test]
+fn a_chain_of_fifty_thousand_links_is_read_and_moved() {
+    let n = 50_000;
+    let mut text = String::from("<robot name='chain'><link name='l0'/>");
+    for i in 1..n {
+        text += &format!("<link name='l{i}'/><joint name='j{i}' type='continuous'>");
+        text += &format!(
+            "<parent link='l{}'/><child link='l{i}'/><origin xyz='1 0 0'/>",
+            i - 1
+        );
+        if i > 1 {
+            text += &format!("<mimic joint='j{}'/>", i - 1);
+        }
+        text += "</joint>";
+    }
+    let robot = robot(&(text + "</robot>"));
+    assert_eq!(robot.n_positions(), 1);
+    let poses = robot.forward(&Pose::IDENTITY, &[0.0]).unwrap();
+    assert_eq!(poses[n - 1].translation.x, (n - 1) as f64);
+}
+
+/// What a careless hand or a broken disk does to a text of tags.
+fn mutilated(text: &str, rng: &mut impl Rng) -> String {
+    const VALUES: [&str; 14] = [
+        "",
+        "nan",
+        "inf",
+        "-1",
+        "0",
+        "1e999",
+        "1e-320",
+        "1e300 1e300 1e300",
+        "1 2",
+        "0 0 0",
+        "base",
+        "fixed",
+        "floating",
+        "left",
+    ];
+    let spans = |open: &str, close: &str| -> Vec<(usize, usize)> {
+        let starts = text
+            .match_indices(open)
+            .map(|(start, _)| start + open.len());
+        let span = |start: usize| {
+            text[start..]
+                .find(close)
+                .map(|n| (start - 1, start + n + 1))
+        };
+        starts.filter_map(span).collect()
+    };
+    let mut tags = spans("<", ">");
+    if rng.gen_bool(0.8) {
+        // Without these the text is still XML.
+        tags.retain(|&(_, end)| text[..end].ends_with("/>"));
+    }
+    let values = spans("=\"", "\"");
+    let mut pick = |all: &[(usize, usize)]| all[rng.gen_range(0..all.len())];
+    let ((tag, tag_end), (other, other_end)) = (pick(&tags), pick(&tags));
+    let (value, value_end) = pick(&values);
+    let written = VALUES[rng.gen_range(0..VALUES.len())];
+    let cut = |from: usize, to: usize, new: &str| format!("{}{new}{}", &text[..from], &text[to..]);
+    match rng.gen_range(0..7) {
+        0 => cut(tag, tag_end, ""),
+        1 => cut(tag, tag_end, &text[other..other_end]),
+        2 => cut(tag, tag, &text[other..other_end]),
+        3 | 4 => cut(value, value_end, &format!("\"{written}\"")),
+        5 => cut(value, value_end - 1, ""),
+        _ => {
+            let inside = text[tag..tag_end]
+                .find(' ')
+                .map_or(tag + 1, |space| tag + space + 1);
+            cut(
+                inside,
+                inside + usize::from(text.is_char_boundary(inside + 1)),
+                "x",
+            )
+        }
+    }
+}
+
+#[test]
+fn a_mutilated_file_is_a_robot_or_bad_input_and_never_a_panic() {
+    let mut rng = Seed::new(2018).named("mutilated robots").rng();
+    let (mut n_sound, mut n_refused) = (0, 0);
+    for case in 0..2000 {
+        let mut text = [ARM, SIX_AXIS, GRIPPER, ROVER][case % 4].to_owned();
+        for _ in 0..rng.gen_range(1..3) {
+            text = mutilated(&text, &mut rng);
+        }
+        match used(&text) {
+            Ok(()) => n_sound += 1,
+            Err(Error::Input { place, .. }) => {
+                assert!(place.starts_with("r.urdf"), "{place}");
+                n_refused += 1;
+            }
+            Err(other) => panic!("{other}"),
+        }
+    }
+    assert!(n_sound > 200 && n_refused > 1000, "{n_sound}, {n_refused}");
+}
+
+/// Reads a robot and moves it.
+fn used(text: &str) -> Result<()> {
+    let robot = Robot::from_urdf("r.urdf", text)?;
+    for position in [0.0, 1.3] {
+        let positions = vec![position; robot.n_positions()];
+        let poses = robot
+            .forward(&Pose::IDENTITY, &positions)
+            .expect("as many as it has");
+        assert_eq!(poses.len(), robot.links().len());
+    }
+    let _ = robot.check_meshes(Path::new("nowhere"));
+    Ok(())
+}

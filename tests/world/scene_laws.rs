@@ -1,0 +1,613 @@
+//! Laws of scenes: steps, frames of reference, shortcuts, free objects; each against a slower or simpler way.
+
+use bubbletouch::contact::balance::{Balancer, FreeObject, PlacedSkin};
+use bubbletouch::contact::{SkinWorkspace, Wrench, press_skin, simulate, spring_load};
+use bubbletouch::geometry::Pose;
+use bubbletouch::scene::{
+    Frame, Held, Mount, Movement, ScenePlan, SceneSpec, Simulation, Stepping,
+};
+use bubbletouch::world::{Motion, Phase, Scene, VelocityPlan};
+use glam::{DQuat, DVec3};
+use std::path::{Path, PathBuf};
+
+fn shipped(name: &str) -> PathBuf {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("experiments/scenes");
+    folder.join(name)
+}
+
+fn read(name: &str) -> ScenePlan {
+    ScenePlan::read(&shipped(name)).unwrap()
+}
+
+fn parse(text: &str) -> ScenePlan {
+    let spec = SceneSpec::parse("test.toml", text).unwrap();
+    ScenePlan::new("test.toml", Path::new(""), spec).unwrap()
+}
+
+fn frames(plan: &ScenePlan, stepping: Stepping) -> Vec<Frame> {
+    let mut frames = Vec::new();
+    let mut simulation = Simulation::new(plan, stepping);
+    simulation.run(&mut [&mut frames]).unwrap();
+    assert_eq!(frames.len(), plan.n_frames);
+    frames
+}
+
+/// Two patches under a ball that comes down, slides and turns, one of them damped if `damping` says so.
+fn sliding(dt_ms: f64, damping: f64) -> ScenePlan {
+    parse(&format!(
+        r#"
+        title = "A ball slides from one patch to another"
+        dt_ms = {dt_ms}
+        output_hz = 50.0
+
+        [[patches]]
+        name = "flat"
+        layout = {{ grid = {{ nx = 24, ny = 16, pitch_mm = 3.0 }} }}
+        stroke_mm = 6.0
+        damping_n_s_per_m = {damping}
+
+        [[patches]]
+        name = "bent"
+        at = {{ position_mm = [70.0, 0.0, -40.0], rpy_deg = [0.0, -90.0, 0.0] }}
+        layout = {{ cylinder = {{ radius_mm = 40.0, length_mm = 50.0, arc_deg = 120.0, pitch_mm = 3.0 }} }}
+        stroke_mm = 6.0
+        damping_n_s_per_m = {damping}
+
+        [[objects]]
+        name = "pear"
+        object = "pear"
+        at = {{ position_mm = [-10.0, 3.0, 3.0] }}
+        motion = {{ phases = [
+            {{ duration_s = 0.31, linear_mm_per_s = [0.0, 0.0, -16.0] }},
+            {{ duration_s = 0.53, linear_mm_per_s = [120.0, 0.0, 0.0], angular_deg_per_s = [10.0, 0.0, 70.0] }},
+            {{ duration_s = 0.2, linear_mm_per_s = [0.0, 0.0, 40.0] }},
+        ] }}
+        "#
+    ))
+}
+
+fn farthest(a: &[Frame], b: &[Frame], of: impl Fn(&Frame) -> Vec<f64>) -> f64 {
+    assert_eq!(a.len(), b.len());
+    let pairs = a
+        .iter()
+        .zip(b)
+        .flat_map(|(a, b)| of(a).into_iter().zip(of(b)));
+    pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
+}
+
+fn deflections(frame: &Frame) -> Vec<f64> {
+    let patches = frame.patches.iter();
+    patches
+        .flat_map(|patch| patch.deflection.iter().copied())
+        .collect()
+}
+
+#[test]
+fn half_the_step_changes_nothing_without_dampers_and_little_with_them() {
+    let always = |dt_ms, damping| frames(&sliding(dt_ms, damping), Stepping::Always);
+    let coarse = always(2.0, 0.0);
+    assert!(
+        coarse
+            .iter()
+            .any(|frame| frame.patches.iter().all(|patch| patch.n_touched > 20))
+    );
+    assert_eq!(coarse, always(1.0, 0.0));
+    // A damped taxel that is left between two steps is late by what the object goes in one: 120 mm/s on flanks of 45° and less.
+    let off = farthest(&always(2.0, 3.0), &always(1.0, 3.0), deflections);
+    let finer = farthest(&always(1.0, 3.0), &always(0.5, 3.0), deflections);
+    assert!(off > 0.0 && off < 240e-6, "{off}");
+    assert!(finer < 120e-6, "{finer}");
+}
+
+#[test]
+fn what_remembers_nothing_is_the_same_with_and_without_steps() {
+    let plan = sliding(1.0, 0.0);
+    assert_eq!(
+        frames(&plan, Stepping::AsNeeded),
+        frames(&plan, Stepping::Always)
+    );
+    let (mut few, mut many) = (
+        Simulation::new(&plan, Stepping::AsNeeded),
+        Simulation::new(&plan, Stepping::Always),
+    );
+    few.run(&mut []).unwrap();
+    many.run(&mut []).unwrap();
+    assert_eq!(few.n_steps(), plan.n_frames);
+    assert_eq!(many.n_steps(), 1 + 20 * (plan.n_frames - 1));
+}
+
+#[test]
+fn a_damped_patch_is_the_same_beside_one_that_is_not() {
+    // As needed, the undamped patch is not stepped; and damped grids go through another kernel between frames.
+    let plan = sliding(1.0, 3.0);
+    let both = |mut plan: ScenePlan, is_damped: [bool; 2]| {
+        for (patch, is_damped) in plan.patches.iter_mut().zip(is_damped) {
+            if !is_damped {
+                let undamped = sliding(1.0, 0.0);
+                let name = patch.skin.name().to_owned();
+                let same = |p: &&bubbletouch::scene::PlannedPatch| p.skin.name() == name;
+                *patch = undamped.patches.iter().find(same).unwrap().clone();
+            }
+        }
+        frames(&plan, Stepping::AsNeeded)
+    };
+    let (all, first) = (both(plan.clone(), [true, true]), both(plan, [true, false]));
+    for (all, first) in all.iter().zip(&first) {
+        assert_eq!(all.patches[0], first.patches[0]);
+    }
+}
+
+#[test]
+fn a_moved_world_feels_the_same() {
+    let world = Pose::new(
+        DQuat::from_scaled_axis(DVec3::new(0.4, -1.1, 0.7)),
+        DVec3::new(0.3, -0.2, 0.5),
+    );
+    let phases = |moved: &Pose| {
+        let phase = |duration, linear: DVec3, angular: DVec3| Phase {
+            duration,
+            linear: moved.rotation * linear,
+            angular: moved.rotation * angular,
+        };
+        let down = phase(0.31, DVec3::new(0.0, 0.0, -0.016), DVec3::ZERO);
+        let along = phase(0.53, DVec3::new(0.12, 0.0, 0.0), DVec3::new(0.2, 0.0, 1.2));
+        let start = Pose::from_translation(DVec3::new(-0.01, 0.003, 0.003));
+        let plan = VelocityPlan::new(moved.compose(&start), vec![down, along]);
+        Movement::Imposed(Motion::Plan(plan.unwrap()))
+    };
+    let at = |moved: Pose| {
+        let mut plan = sliding(1.0, 3.0);
+        for patch in &mut plan.patches {
+            if let Mount::World(pose) = patch.mount {
+                patch.mount = Mount::World(moved.compose(&pose));
+            }
+        }
+        plan.objects[0].movement = phases(&moved);
+        frames(&plan, Stepping::AsNeeded)
+    };
+    let (here, there) = (at(Pose::IDENTITY), at(world));
+    assert!(here.iter().any(|frame| frame.patches[1].n_touched > 20));
+    let off = farthest(&here, &there, deflections);
+    assert!(off < 1e-12, "{off}");
+    let wrench = |frame: &Frame| {
+        let patches = frame.patches.iter();
+        patches
+            .flat_map(|patch| patch.wrench.force.to_array())
+            .collect()
+    };
+    let off = farthest(&here, &there, wrench);
+    assert!(off < 1e-7, "{off}");
+}
+
+#[test]
+fn the_drill_scene_is_what_the_time_loop_of_one_patch_computes() {
+    let plan = read("drill_press.toml");
+    let phase = |duration, speed| Phase {
+        duration,
+        linear: DVec3::new(0.0, 0.0, speed),
+        angular: DVec3::ZERO,
+    };
+    let phases = vec![phase(0.6, -0.01), phase(0.4, 0.0), phase(0.6, 0.01)];
+    let start = Pose::new(
+        DQuat::from_rotation_x(90f64.to_radians()),
+        DVec3::new(0.02, 0.1, 0.031),
+    );
+    let still = VelocityPlan::new(Pose::IDENTITY, vec![]).unwrap();
+    let scene = Scene {
+        patch: plan.patches[0].grid().unwrap(),
+        objects: plan.models.clone(),
+    };
+    let drill = VelocityPlan::new(start, phases).unwrap();
+    let recording = simulate(&scene, &still, &[drill], 1e-3, 2000).unwrap();
+    let frames = frames(&plan, Stepping::AsNeeded);
+    assert_eq!(frames.len(), 201);
+    for (number, frame) in frames.iter().enumerate().skip(1) {
+        let row = 10 * number - 1;
+        let reading = &frame.patches[0];
+        let taxels = recording
+            .deflection
+            .row(row)
+            .into_iter()
+            .zip(&reading.deflection);
+        let forces = recording.force.row(row).into_iter().zip(&reading.force);
+        assert!((recording.time[row] - frame.time).abs() < 1e-12);
+        for (a, b) in taxels {
+            assert!((a - b).abs() < 1e-14, "frame {number}: {a} and {b}");
+        }
+        for (a, b) in forces {
+            // A rate is a difference of deflections over a millisecond.
+            assert!((a - b).abs() < 1e-10, "frame {number}: {a} N and {b} N");
+        }
+    }
+    assert!(frames[80].patches[0].n_touched > 500);
+}
+
+#[test]
+fn what_is_out_of_reach_is_left_out_and_nothing_else() {
+    let mut n_touching = 0;
+    for plan in [read("arm_sweep.toml"), sliding(1.0, 0.0)] {
+        let mut workspace = SkinWorkspace::new();
+        for frame in frames(&plan, Stepping::AsNeeded) {
+            for (reading, patch) in frame.patches.iter().zip(&plan.patches) {
+                let objects = frame.objects.iter();
+                let poses: Vec<Pose> = objects
+                    .map(|object| object.pose.seen_from(&reading.pose))
+                    .collect();
+                let counts = press_skin(&patch.skin, &plan.models, &poses, &mut workspace);
+                assert_eq!(reading.deflection, workspace.deflections());
+                assert_eq!(reading.n_touched, counts.n_touched);
+                assert_eq!(reading.n_saturated, counts.n_saturated);
+                let load = spring_load(&patch.skin, workspace.contacts());
+                let Wrench { force, torque } = load.on_patch();
+                assert!((reading.wrench.force - force).length() < 1e-12 * (1.0 + force.length()));
+                assert!(
+                    (reading.wrench.torque - torque).length() < 1e-12 * (1.0 + torque.length())
+                );
+                let centers = (reading.center_of_pressure, load.center_of_pressure);
+                match centers {
+                    (Some(a), Some(b)) => assert!((a - b).length() < 1e-12),
+                    (a, b) => assert_eq!(a, b),
+                }
+                n_touching += usize::from(counts.n_touched > 0);
+            }
+        }
+    }
+    assert!(n_touching > 50, "{n_touching}");
+}
+
+#[test]
+fn a_mug_on_a_bed_is_where_the_balance_of_one_object_puts_it_and_rises_with_the_bed() {
+    let plan = read("drop_on_bed.toml");
+    let frames = frames(&plan, Stepping::AsNeeded);
+    let Movement::Free {
+        start,
+        mass,
+        center_of_mass,
+    } = plan.objects[0].movement
+    else {
+        panic!("the mug is free")
+    };
+    let skin = PlacedSkin {
+        patch: &plan.patches[0].skin,
+        world_from_patch: Pose::IDENTITY,
+        pushed: &[],
+    };
+    let spheres = plan.models[0].spheres().unwrap();
+    let mug = FreeObject::new(spheres, mass, center_of_mass).unwrap();
+    let settled = Balancer::new().settle(&mug, &[skin], plan.gravity, &start);
+    let (first, last) = (&frames[0], &frames[frames.len() - 1]);
+    assert_eq!(first.objects[0].pose, settled.unwrap().pose);
+    for frame in &frames {
+        assert_eq!(frame.objects[0].held, Held::AtRest);
+        // On upright springs the weight is the sum of their forces.
+        let force = frame.patches[0].wrench.force.z;
+        assert!((force + mass * 9.81).abs() < 1e-5, "{force} N");
+    }
+    let rise = last.objects[0].pose.translation.z - first.objects[0].pose.translation.z;
+    assert!((rise - 0.02).abs() < 1e-6, "{rise}");
+}
+
+/// A tennis ball at x = ±`apart` on a bed, each with a line of its own.
+fn two_balls(apart: f64, one: &str, other: &str) -> ScenePlan {
+    parse(&format!(
+        r#"
+        title = "Two balls on a bed"
+        duration_s = 0.0
+
+        [[patches]]
+        name = "bed"
+        layout = {{ grid = {{ nx = 40, ny = 20, pitch_mm = 4.0 }} }}
+        stroke_mm = 8.0
+        stiffness_n_per_m = 20.0
+
+        [[objects]]
+        name = "one"
+        object = "tennis"
+        at = {{ position_mm = [{}, 0.0, -3.0] }}
+        {one}
+
+        [[objects]]
+        name = "other"
+        object = "tennis"
+        at = {{ position_mm = [{apart}, 0.0, -3.0] }}
+        {other}
+        "#,
+        -apart
+    ))
+}
+
+#[test]
+fn two_free_balls_are_carried_side_by_side() {
+    let plan = two_balls(
+        40.0,
+        "free = { mass_kg = 0.058 }",
+        "free = { mass_kg = 0.2 }",
+    );
+    let mut simulation = Simulation::new(&plan, Stepping::AsNeeded);
+    let frame = simulation.next_frame().unwrap().unwrap().clone();
+    assert!(
+        frame
+            .objects
+            .iter()
+            .all(|object| object.held == Held::AtRest)
+    );
+    let force = frame.patches[0].wrench.force.z;
+    assert!((force + 0.258 * 9.81).abs() < 1e-4, "{force} N");
+    assert_eq!(simulation.n_unfinished(), 0);
+}
+
+#[test]
+fn balls_on_stops_of_one_skin_are_carried_side_by_side() {
+    let plan = two_balls(
+        40.0,
+        "free = { mass_kg = 50.0 }",
+        "free = { mass_kg = 0.058 }",
+    );
+    let frame = &frames(&plan, Stepping::AsNeeded)[0];
+    let [one, other] = [0, 1].map(|object| frame.objects[object].pose.translation);
+    let on_patch = frame.patches[0].wrench;
+    let weights = [-50.0 * 9.81 * DVec3::Z, -0.058 * 9.81 * DVec3::Z];
+    let torque = one.cross(weights[0]) + other.cross(weights[1]);
+    assert!((on_patch.force - weights[0] - weights[1]).length() < 1e-6 * 490.0);
+    assert!((on_patch.torque - torque).length() < 1e-6 * 490.0 * 0.04);
+}
+
+/// Of the one sphere of the first object, in the world.
+fn middle_of_ball(plan: &ScenePlan, frame: &Frame) -> DVec3 {
+    let [ball] = plan.models[0].spheres().unwrap().spheres() else {
+        panic!("a ball is one sphere")
+    };
+    frame.objects[0].pose.transform_point(ball.center)
+}
+
+/// What the forces of all patches put on a ball, by geometry alone: Σ f n / (n·axis), n from the ball's middle to the taxel's; and
+/// how many taxels are at their stroke.
+fn carried(plan: &ScenePlan, frame: &Frame) -> (DVec3, usize) {
+    let middle = middle_of_ball(plan, frame);
+    let (mut force, mut n_stopped) = (DVec3::ZERO, 0);
+    for (patch, reading) in plan.patches.iter().zip(&frame.patches) {
+        let layout = patch.skin.layout();
+        for (taxel, f) in reading.force.iter().enumerate() {
+            let axis = reading.pose.rotation * layout.axes()[taxel];
+            let rest = reading.pose.transform_point(layout.centers()[taxel]);
+            let away = rest - reading.deflection[taxel] * axis - middle;
+            force += f * away / away.dot(axis);
+            let stroke = patch.skin.taxels().at(taxel).stroke;
+            n_stopped += usize::from(reading.deflection[taxel] > stroke - 1e-9);
+        }
+    }
+    (force, n_stopped)
+}
+
+#[test]
+fn what_rests_on_stops_is_carried_by_the_forces_of_the_frame_on_flat_and_on_curved_skins() {
+    let bed = r#"
+        title = "A ball on a bed"
+        duration_s = 0.0
+        [[patches]]
+        name = "bed"
+        layout = { grid = { nx = 20, ny = 20, pitch_mm = 4.0 } }
+        stroke_mm = 8.0
+        stiffness_n_per_m = 100.0
+        [[objects]]
+        name = "ball"
+        object = "tennis"
+        at = { position_mm = [0.3, -1.1, 40.0] }
+        free = { mass_kg = 0.45 }
+        "#;
+    let forearms = std::fs::read_to_string(shipped("ball_over_forearm.toml")).unwrap();
+    for (scene, is_flat) in [(bed, true), (&forearms, false)] {
+        let mut most_stopped = 0;
+        for mass in [0.45, 5.0, 50.0, 500.0] {
+            let mut plan = parse(&scene.replace("mass_kg = 0.45", &format!("mass_kg = {mass}")));
+            plan.cut("the test", 0.0).unwrap();
+            let frame = &frames(&plan, Stepping::AsNeeded)[0];
+            let case = format!("{mass} kg, flat: {is_flat}");
+            assert_eq!(frame.objects[0].held, Held::AtRest, "{case}");
+            let weight = mass * 9.81;
+            let (force, n_stopped) = carried(&plan, frame);
+            assert!(
+                (force - weight * DVec3::Z).length() < 1e-6 * weight,
+                "{case}: {force}"
+            );
+            let n_saturated: usize = frame.patches.iter().map(|patch| patch.n_saturated).sum();
+            assert_eq!(n_saturated, n_stopped, "{case}");
+            most_stopped = most_stopped.max(n_stopped);
+            // Together the wrenches of the patches are the weight, at the middle of the ball.
+            let (mut together, mut torque) = (DVec3::ZERO, DVec3::ZERO);
+            for patch in &frame.patches {
+                let force = patch.pose.rotation * patch.wrench.force;
+                together += force;
+                torque +=
+                    patch.pose.rotation * patch.wrench.torque + patch.pose.translation.cross(force);
+            }
+            let middle = middle_of_ball(&plan, frame);
+            assert!(
+                (together + weight * DVec3::Z).length() < 1e-6 * weight,
+                "{case}"
+            );
+            let off = (torque - middle.cross(together)).length();
+            assert!(off < 1e-6 * weight * 0.03, "{case}: {off}");
+            if is_flat {
+                let sum: f64 = frame.patches[0].force.iter().sum();
+                assert!((sum - weight).abs() < 1e-6 * weight, "{case}: {sum} N");
+            }
+        }
+        assert!(most_stopped >= 3, "stops carry, too: {most_stopped}");
+    }
+}
+
+#[test]
+fn two_free_balls_that_come_to_rest_on_the_same_taxels_are_refused_by_name() {
+    for masses in [[0.2, 0.2], [0.2, 0.1], [50.0, 0.2]] {
+        let [one, other] = masses.map(|mass| format!("free = {{ mass_kg = {mass} }}"));
+        let plan = two_balls(5.0, &one, &other);
+        let mut simulation = Simulation::new(&plan, Stepping::AsNeeded);
+        let error = simulation.next_frame().unwrap_err();
+        assert_eq!(error.exit_code(), 2);
+        let said = error.to_string();
+        for word in [
+            "test.toml",
+            "`one`",
+            "`other`",
+            "at 0 s",
+            "`bed`",
+            "--until-s",
+        ] {
+            assert!(said.contains(word), "{masses:?}: no '{word}' in: {said}");
+        }
+    }
+}
+
+#[test]
+fn a_free_ball_comes_to_rest_in_the_hollow_that_an_imposed_one_makes() {
+    let plan = two_balls(10.0, "", "free = { mass_kg = 0.058 }");
+    let mut simulation = Simulation::new(&plan, Stepping::AsNeeded);
+    let frame = simulation.next_frame().unwrap().unwrap().clone();
+    let Movement::Free {
+        start,
+        mass,
+        center_of_mass,
+    } = plan.objects[1].movement
+    else {
+        panic!("the other ball is free")
+    };
+    let skin = &plan.patches[0].skin;
+    let mut workspace = SkinWorkspace::new();
+    press_skin(
+        skin,
+        &plan.models[..1],
+        &[frame.objects[0].pose],
+        &mut workspace,
+    );
+    let ball = plan.models[1].spheres().unwrap();
+    let ball = FreeObject::new(ball, mass, center_of_mass).unwrap();
+    let settled = |pushed| {
+        let skin = PlacedSkin {
+            patch: skin,
+            world_from_patch: Pose::IDENTITY,
+            pushed,
+        };
+        let balance = Balancer::new().settle(&ball, &[skin], plan.gravity, &start);
+        balance.unwrap().pose
+    };
+    assert_eq!(frame.objects[1].pose, settled(workspace.deflections()));
+    let alone = settled(&[]).translation;
+    assert!(frame.objects[1].pose.translation.distance(alone) > 1e-3);
+}
+
+#[test]
+fn what_has_rolled_off_is_reported_once_and_touches_nothing_any_more() {
+    let plan = read("ball_over_forearm.toml");
+    let frames = frames(&plan, Stepping::AsNeeded);
+    let Held::Escaped { time, direction } = frames.last().unwrap().objects[0].held else {
+        panic!("the ball escapes")
+    };
+    assert!(time > 0.5 && time < 1.2, "{time} s");
+    // Over the lowered arm, which is at negative y.
+    assert!(direction.y < -0.9, "{direction}");
+    for frame in &frames {
+        let n_touched: usize = frame.patches.iter().map(|patch| patch.n_touched).sum();
+        if frame.time >= time {
+            assert_eq!(frame.objects[0].held, Held::Escaped { time, direction });
+            assert_eq!(n_touched, 0);
+        } else {
+            assert_eq!(frame.objects[0].held, Held::AtRest);
+            assert!(n_touched > 0);
+        }
+    }
+}
+
+#[test]
+fn a_scene_begins_as_if_it_had_stood_so_for_long() {
+    let text = |damping| {
+        format!(
+            r#"
+            title = "A ball lies in the skin from the start"
+            duration_s = 0.05
+            [[patches]]
+            name = "bed"
+            layout = {{ grid = {{ nx = 10, ny = 10, pitch_mm = 4.0 }} }}
+            stroke_mm = 8.0
+            damping_n_s_per_m = {damping}
+            [[objects]]
+            name = "ball"
+            object = "tennis"
+            at = {{ position_mm = [0.0, 0.0, -3.0] }}
+            "#
+        )
+    };
+    let with = frames(&parse(&text(2.0)), Stepping::AsNeeded);
+    let without = frames(&parse(&text(0.0)), Stepping::AsNeeded);
+    for (with, without) in with.iter().zip(&without) {
+        let pairs = with.patches[0].force.iter().zip(&without.patches[0].force);
+        assert_eq!(with.patches[0].deflection, without.patches[0].deflection);
+        for (a, b) in pairs {
+            assert!((a - b).abs() < 1e-12);
+        }
+    }
+    assert!(with[0].patches[0].n_touched > 0);
+}
+
+#[test]
+fn the_original_slides_a_drill_over_64_x_64_taxels() {
+    let Some(folder) = crate::reference_data::folder("BUBBLETOUCH_REFERENCE") else {
+        return;
+    };
+    let folder = Path::new(&folder).join("traj_drill_example");
+    let text = std::fs::read_to_string(folder.join("scene.json")).unwrap();
+    let json: serde_json::Value = serde_json::from_str(&text).unwrap();
+    let way_points = json["frames"].as_array().unwrap().iter().map(|frame| {
+        let mm = |k: usize| 1e3 * frame["position"][k].as_f64().unwrap();
+        format!(
+            "{{ time_s = {:?}, position_mm = [{:?}, {:?}, {:?}], rpy_deg = [180.0, 0.0, 0.0] }},\n",
+            frame["time"].as_f64().unwrap(),
+            mm(0),
+            mm(1),
+            mm(2)
+        )
+    });
+    let beside = tempfile::tempdir().unwrap();
+    let spheres = std::fs::read_to_string(folder.join("spheres.csv")).unwrap();
+    std::fs::write(
+        beside.path().join("drill.csv"),
+        format!("x,y,z,r\n{spheres}"),
+    )
+    .unwrap();
+    let text = format!(
+        r#"
+        title = "example.m"
+        output_hz = 20.0
+        [[robots]]
+        name = "sensor"
+        floating = true
+        motion = {{ interpolation = "linear", way_points = [
+        {}] }}
+        [[patches]]
+        name = "array"
+        robot = "sensor"
+        at = {{ position_mm = [0.0, 0.0, 20.0] }}
+        layout = {{ grid = {{ nx = 64, ny = 64, pitch_mm = 4.0 }} }}
+        stroke_mm = 20.0
+        [[objects]]
+        name = "drill"
+        spheres = "drill.csv"
+        "#,
+        way_points.collect::<String>()
+    );
+    let spec = SceneSpec::parse("example.toml", &text).unwrap();
+    let plan = ScenePlan::new("example.toml", beside.path(), spec).unwrap();
+    let frames = frames(&plan, Stepping::AsNeeded);
+    let mut recorded = csv::ReaderBuilder::new()
+        .has_headers(false)
+        .from_path(folder.join("displacement_frames.csv"))
+        .unwrap();
+    let rows = recorded.deserialize().map(|row| row.unwrap());
+    let rows: Vec<Vec<f64>> = rows.collect();
+    assert_eq!((frames.len(), rows.len()), (21, 20));
+    for (number, (frame, row)) in frames[1..].iter().zip(&rows).enumerate() {
+        for (a, b) in frame.patches[0].deflection.iter().zip(row) {
+            assert!((a - b).abs() < 1e-12, "frame {}: {a} and {b}", number + 1);
+        }
+    }
+}

@@ -1,0 +1,493 @@
+//! Laws of a whole body: what its kernel finds is what the kernel for skins of any shape finds, and nothing costs but touch.
+
+use bubbletouch::contact::{DamperState, SkinWorkspace, press_skin, relaxation_factor};
+use bubbletouch::geometry::Pose;
+use bubbletouch::objects::{Model, Sphere, SphereUnion};
+use bubbletouch::whole_body::{
+    AT_REST, BodyContact, BodyPatch, BodyState, CoveredRobot, SphereClusters, WholeBody,
+};
+use bubbletouch::world::{Dome, Extrusion, Grid, Robot, SkinPatch, Taxel, Taxels};
+use glam::DVec3;
+use rand::Rng;
+use std::f64::consts::{PI, TAU};
+use std::path::Path;
+
+use crate::counting::{allocations, peak_bytes};
+use crate::random_scenes::{TAXEL, direction, random_pose, rng};
+
+const DT: f64 = 1e-3;
+
+/// A flat patch or a part of a cylinder, some centimetres large.
+fn random_extrusion(rng: &mut impl Rng) -> Extrusion {
+    let pitch = rng.gen_range(1e-3..4e-3);
+    let extrusion = if rng.gen_bool(0.4) {
+        Extrusion::grid(&Grid {
+            nx: rng.gen_range(1..40),
+            ny: rng.gen_range(1..40),
+            pitch,
+        })
+    } else {
+        let (radius, length) = (rng.gen_range(5e-3..0.05), rng.gen_range(0.0..0.08));
+        Extrusion::cylinder(radius, length, rng.gen_range(0.1..TAU), pitch)
+    };
+    extrusion.unwrap()
+}
+
+/// A part of a ball, some centimetres large.
+fn random_dome(rng: &mut impl Rng) -> Dome {
+    let (radius, pitch) = (rng.gen_range(0.01..0.06), rng.gen_range(1e-3..4e-3));
+    let (polar, arc) = (rng.gen_range(0.2..PI), rng.gen_range(0.2..TAU));
+    let polar = if rng.gen_bool(0.3) { 0.5 * PI } else { polar };
+    let arc = if rng.gen_bool(0.3) { TAU } else { arc };
+    Dome::new(radius, polar, arc, pitch).unwrap()
+}
+
+fn random_body(rng: &mut impl Rng, taxel: Taxel) -> WholeBody {
+    let n = rng.gen_range(1..6);
+    let patches = (0..n).map(|k| {
+        let name = format!("patch {k}");
+        match rng.gen_bool(0.3) {
+            true => BodyPatch::dome(name, random_dome(rng), taxel),
+            false => BodyPatch::new(name, random_extrusion(rng), taxel),
+        }
+    });
+    WholeBody::new(patches.collect::<Result<_, _>>().unwrap()).unwrap()
+}
+
+/// Spheres from a tenth of a millimetre to centimetres.
+fn random_union(rng: &mut impl Rng) -> SphereUnion {
+    let n = 10f64.powf(rng.gen_range(0.0..2.5)) as usize;
+    let spheres = (0..n).map(|_| Sphere {
+        center: rng.gen_range(0.0..0.03) * direction(rng),
+        radius: 10f64.powf(rng.gen_range(-4.0..-1.7)),
+    });
+    SphereUnion::new(spheres.collect()).unwrap()
+}
+
+/// The same patches as skins of any layout.
+fn as_skins(body: &WholeBody) -> Vec<SkinPatch> {
+    let skin = |patch: &BodyPatch| {
+        SkinPatch::new(patch.name(), patch.layout(), Taxels::Equal(*patch.taxel())).unwrap()
+    };
+    body.patches().iter().map(skin).collect()
+}
+
+/// Objects, and where they and the patches are.
+struct Touch {
+    unions: Vec<SphereUnion>,
+    objects: Vec<Pose>,
+    patches: Vec<Pose>,
+}
+
+impl Touch {
+    fn random(rng: &mut impl Rng, body: &WholeBody) -> Self {
+        let n_objects = rng.gen_range(1..4);
+        let mut poses = |n: usize| -> Vec<Pose> {
+            let mut pose = || {
+                let distance = rng.gen_range(0.0..0.08);
+                random_pose(rng, distance)
+            };
+            (0..n).map(|_| pose()).collect()
+        };
+        let (objects, patches) = (poses(n_objects), poses(body.patches().len()));
+        Self {
+            unions: objects.iter().map(|_| random_union(rng)).collect(),
+            objects,
+            patches,
+        }
+    }
+
+    fn clusters(&self) -> Vec<SphereClusters> {
+        self.unions.iter().map(SphereClusters::new).collect()
+    }
+
+    /// What the kernel for any skin finds on one patch: deflections and saturated taxels.
+    fn slowly(&self, patch: usize, skin: &SkinPatch) -> (Vec<f64>, usize) {
+        let models: Vec<Model> = self.unions.iter().cloned().map(Model::from).collect();
+        let patch_from_world = self.patches[patch].inverse();
+        let poses: Vec<Pose> = self
+            .objects
+            .iter()
+            .map(|pose| patch_from_world.compose(pose))
+            .collect();
+        let mut workspace = SkinWorkspace::new();
+        let contact = press_skin(skin, &models, &poses, &mut workspace);
+        (workspace.deflections().to_vec(), contact.n_saturated)
+    }
+}
+
+#[test]
+fn deflections_are_those_of_the_kernel_for_any_skin() {
+    let (mut n_touched, mut n_saturated) = (0, 0);
+    for case in 0..300 {
+        let mut rng = rng("oracle", case);
+        let body = random_body(&mut rng, TAXEL);
+        let skins = as_skins(&body);
+        let mut state = BodyState::at_rest(&body);
+        // The second and third touch come to a body that is still deflected.
+        for _ in 0..3 {
+            let touch = Touch::random(&mut rng, &body);
+            state.place(&body, &touch.patches);
+            let contact = state.press(&body, &touch.clusters(), &touch.objects, DT);
+            let (mut expected_touched, mut expected_saturated) = (0, 0);
+            for (patch, skin) in skins.iter().enumerate() {
+                let (expected, saturated) = touch.slowly(patch, skin);
+                for (taxel, (fast, slow)) in
+                    state.deflections(patch).iter().zip(&expected).enumerate()
+                {
+                    let error = (fast - slow).abs();
+                    assert!(
+                        error <= 1e-12,
+                        "case {case}, patch {patch}, taxel {taxel}: {fast} {slow}"
+                    );
+                }
+                expected_touched += expected
+                    .iter()
+                    .filter(|&&deflection| deflection > 0.0)
+                    .count();
+                expected_saturated += saturated;
+            }
+            // A taxel that is only just touched may be so for one and not for the other.
+            assert!(
+                contact.n_touched.abs_diff(expected_touched) <= 1,
+                "case {case}"
+            );
+            assert!(
+                contact.n_saturated.abs_diff(expected_saturated) <= 1,
+                "case {case}"
+            );
+            n_touched += contact.n_touched;
+            n_saturated += contact.n_saturated;
+        }
+    }
+    assert!(
+        n_touched > 50_000 && n_saturated > 5_000,
+        "{n_touched} {n_saturated}"
+    );
+}
+
+#[test]
+fn the_list_of_touched_taxels_is_what_the_deflections_say() {
+    for case in 0..50 {
+        let mut rng = rng("sparse", case);
+        let body = random_body(&mut rng, TAXEL);
+        let mut state = BodyState::at_rest(&body);
+        for _ in 0..3 {
+            let touch = Touch::random(&mut rng, &body);
+            state.place(&body, &touch.patches);
+            let contact = state.press(&body, &touch.clusters(), &touch.objects, DT);
+            let dense = (0..body.patches().len()).flat_map(|patch| state.deflections(patch));
+            let dense: Vec<f64> = dense.copied().collect();
+            let listed: Vec<(usize, f64)> = state.touched(&body).collect();
+            let expected = dense.iter().copied().enumerate();
+            let expected: Vec<_> = expected
+                .filter(|&(_, deflection)| deflection > 0.0)
+                .collect();
+            assert_eq!(listed, expected, "case {case}");
+            assert_eq!(
+                (dense.len(), listed.len()),
+                (body.n_taxels(), contact.n_touched)
+            );
+        }
+    }
+}
+
+#[test]
+fn what_goes_away_leaves_nothing_behind() {
+    let mut n_touched = 0;
+    for case in 0..20 {
+        let mut rng = rng("away", case);
+        let body = random_body(&mut rng, TAXEL);
+        let mut state = BodyState::at_rest(&body);
+        let touch = Touch::random(&mut rng, &body);
+        state.place(&body, &touch.patches);
+        let clusters = touch.clusters();
+        n_touched += state.press(&body, &clusters, &touch.objects, DT).n_touched;
+        let away = vec![Pose::from_translation(DVec3::X); clusters.len()];
+        let contact = state.press(&body, &clusters, &away, DT);
+        assert_eq!(contact, BodyContact::default());
+        assert_eq!(state.touched(&body).count(), 0);
+        let mut all = (0..body.patches().len()).flat_map(|patch| state.deflections(patch));
+        assert!(all.all(|&deflection| deflection == 0.0));
+    }
+    assert!(n_touched > 1000, "{n_touched}");
+}
+
+#[test]
+fn damped_taxels_relax_and_push_as_dampers_do_until_they_are_at_rest() {
+    let taxel = Taxel {
+        damping: 5.0,
+        ..TAXEL
+    };
+    let mut n_pushed = 0;
+    for case in 0..20 {
+        let mut rng = rng("damped", case);
+        let body = random_body(&mut rng, taxel);
+        let skins = as_skins(&body);
+        let mut state = BodyState::at_rest(&body);
+        let mut slow: Vec<_> = skins
+            .iter()
+            .map(|skin| DamperState::at_rest(skin.n_taxels()))
+            .collect();
+        let mut touch = Touch::random(&mut rng, &body);
+        state.place(&body, &touch.patches);
+        let clusters = touch.clusters();
+        for step in 0..40 {
+            if step == 20 {
+                touch.objects.fill(Pose::from_translation(DVec3::X));
+            }
+            let dt = rng.gen_range(1e-3..0.05);
+            state.press(&body, &clusters, &touch.objects, dt);
+            for (patch, (skin, slow)) in skins.iter().zip(&mut slow).enumerate() {
+                let (contact, _) = touch.slowly(patch, skin);
+                slow.step(skin.taxels(), dt, &contact);
+                for (fast, slow) in state.deflections(patch).iter().zip(&slow.deflection) {
+                    assert!((fast - slow).abs() <= AT_REST, "case {case}, step {step}");
+                }
+            }
+            let forces = body.frame(state.forces(&body));
+            let slow_forces = slow.iter().flat_map(|slow| &slow.force);
+            // What an earlier step has put to rest is pushed out anew.
+            let slack = taxel.stiffness * AT_REST / (1.0 - relaxation_factor(&taxel, dt));
+            for (fast, slow) in forces.iter().zip(slow_forces) {
+                assert!(
+                    (fast - slow).abs() <= slack,
+                    "case {case}, step {step}: {fast} {slow}"
+                );
+                n_pushed += usize::from(*fast > 100.0 * slack);
+            }
+            touch
+                .objects
+                .iter_mut()
+                .for_each(|pose| pose.translation += 1e-3 * direction(&mut rng));
+        }
+        // e^(−20 · 50 ms · k / c) is far below a nanometre over the stroke.
+        for _ in 0..40 {
+            state.press(&body, &clusters, &touch.objects, 0.05);
+        }
+        assert_eq!(state.touched(&body).count(), 0, "case {case}");
+    }
+    assert!(n_pushed > 10_000, "{n_pushed}");
+}
+
+#[test]
+fn without_dampers_the_force_is_that_of_the_spring() {
+    let mut n_touched = 0;
+    for case in 0..20 {
+        let mut rng = rng("springs", case);
+        let body = random_body(&mut rng, TAXEL);
+        let mut state = BodyState::at_rest(&body);
+        for _ in 0..2 {
+            let touch = Touch::random(&mut rng, &body);
+            state.place(&body, &touch.patches);
+            n_touched += state
+                .press(&body, &touch.clusters(), &touch.objects, DT)
+                .n_touched;
+            let springs = state
+                .touched(&body)
+                .map(|(taxel, deflection)| (taxel, TAXEL.stiffness * deflection));
+            assert!(state.forces(&body).eq(springs));
+        }
+    }
+    assert!(n_touched > 1000, "{n_touched}");
+}
+
+#[test]
+fn threads_change_no_bit() {
+    let sleeve = Extrusion::cylinder(0.04, 0.1, 3.0, 1e-3).unwrap();
+    let patches = (0..6).map(|k| BodyPatch::new(format!("{k}"), sleeve.clone(), TAXEL).unwrap());
+    let body = WholeBody::new(patches.collect()).unwrap();
+    let mut rng = rng("threads", 0);
+    let spheres = (0..500).map(|_| Sphere {
+        center: 0.05 * direction(&mut rng),
+        radius: 8e-3,
+    });
+    let objects = [SphereClusters::new(
+        &SphereUnion::new(spheres.collect()).unwrap(),
+    )];
+    let poses: Vec<Pose> = (0..6).map(|_| random_pose(&mut rng, 0.06)).collect();
+    let run = |n_threads: usize| {
+        let pool = rayon::ThreadPoolBuilder::new()
+            .num_threads(n_threads)
+            .build()
+            .unwrap();
+        pool.install(|| {
+            let mut state = BodyState::at_rest(&body);
+            state.place(&body, &poses);
+            let mut bits = Vec::new();
+            for step in 0..10 {
+                let pose = Pose::from_translation(1e-3 * f64::from(step) * DVec3::X);
+                let contact = state.press(&body, &objects, &[pose], DT);
+                assert!(
+                    contact.n_touched > 5000 && contact.n_patches > 2,
+                    "{contact:?}"
+                );
+                bits.extend(
+                    state
+                        .touched(&body)
+                        .map(|(taxel, deflection)| (taxel, deflection.to_bits())),
+                );
+            }
+            bits
+        })
+    };
+    let alone = run(1);
+    assert!([2, 5].map(run).iter().all(|bits| *bits == alone));
+}
+
+#[test]
+fn a_step_allocates_nothing_once_the_touch_has_been_seen() {
+    let mut rng = rng("allocations", 0);
+    let body = random_body(&mut rng, TAXEL);
+    let mut state = BodyState::at_rest(&body);
+    let touch = Touch::random(&mut rng, &body);
+    let clusters = touch.clusters();
+    let mut step = || {
+        state.place(&body, &touch.patches);
+        state.press(&body, &clusters, &touch.objects, DT);
+    };
+    step();
+    assert_eq!(allocations(step), 0);
+}
+
+#[test]
+fn a_body_at_rest_has_a_few_bytes_a_taxel() {
+    let (mut n_taxels, mut n_bytes, mut kept) = (0, 0, None);
+    let bytes = peak_bytes(|| {
+        let sleeve = Extrusion::cylinder(0.06, 0.2, 3.0, 1e-3).unwrap();
+        let patches =
+            (0..20).map(|k| BodyPatch::new(format!("{k}"), sleeve.clone(), TAXEL).unwrap());
+        let body = WholeBody::new(patches.collect()).unwrap();
+        let state = BodyState::at_rest(&body);
+        (n_taxels, n_bytes) = (body.n_taxels(), body.n_bytes() + state.n_bytes());
+        kept = Some(state);
+    });
+    drop(kept);
+    let share = bytes as f64 / n_taxels as f64;
+    assert!(
+        n_taxels > 700_000 && (8.0..10.0).contains(&share),
+        "{share} bytes a taxel"
+    );
+    let said = n_bytes as f64 / bytes as f64;
+    assert!((said - 1.0).abs() < 0.02, "{n_bytes} of {bytes} bytes");
+}
+
+#[test]
+fn bad_taxels_and_names_are_refused() {
+    let extrusion = Extrusion::grid(&Grid {
+        nx: 2,
+        ny: 2,
+        pitch: 1e-3,
+    })
+    .unwrap();
+    let soft = Taxel {
+        stiffness: 0.0,
+        ..TAXEL
+    };
+    let error = BodyPatch::new("palm", extrusion.clone(), soft).unwrap_err();
+    assert_eq!(
+        error.to_string(),
+        "body patch palm, taxel stiffness: 0 N/m; a finite positive number"
+    );
+    let palm = BodyPatch::new("palm", extrusion, TAXEL).unwrap();
+    let error = WholeBody::new(vec![palm.clone(), palm]).unwrap_err();
+    assert_eq!(
+        error.to_string(),
+        "body: two patches called `palm`; a name of its own for each"
+    );
+}
+
+fn humanoid() -> Robot {
+    Robot::read_urdf(Path::new("objects/robots/humanoid.urdf")).unwrap()
+}
+
+#[test]
+fn the_humanoid_has_two_million_taxels_in_about_two_hundred_patches() {
+    let covered = CoveredRobot::new(&humanoid(), TAXEL, 1e-3, 0.1).unwrap();
+    let (n_taxels, n_patches) = (covered.body().n_taxels(), covered.body().patches().len());
+    assert!((2_000_000..2_050_000).contains(&n_taxels), "{n_taxels}");
+    assert!((190..=210).contains(&n_patches), "{n_patches}");
+}
+
+#[test]
+fn taxels_of_a_covered_robot_are_a_pitch_apart_across_seams_too() {
+    let (robot, pitch) = (humanoid(), 8e-3);
+    let covered = CoveredRobot::new(&robot, TAXEL, pitch, 0.1).unwrap();
+    let mut poses = Vec::new();
+    let still = vec![0.0; robot.n_positions()];
+    let links = robot.forward(&Pose::IDENTITY, &still).unwrap();
+    covered.patch_poses(&links, &mut poses);
+    // Those of one limb, so that nothing else is near; of its half balls, whose poles are less even, only as neighbours.
+    let patches = covered.body().patches().iter().zip(&poses);
+    let limb = patches.filter(|(patch, _)| patch.name().starts_with("left_shank "));
+    let centers: Vec<(bool, DVec3)> = limb
+        .flat_map(|(patch, pose)| {
+            let is_side = !patch.name().contains("cap");
+            let centers = patch.layout().centers().to_vec();
+            centers
+                .into_iter()
+                .map(move |center| (is_side, pose.transform_point(center)))
+        })
+        .collect();
+    assert!(centers.len() > 1000, "{}", centers.len());
+    for (_, center) in centers.iter().filter(|(is_side, _)| *is_side) {
+        let mut distances: Vec<f64> = centers
+            .iter()
+            .map(|(_, other)| other.distance(*center))
+            .collect();
+        distances.sort_by(f64::total_cmp);
+        // At the ends of the limb a taxel has three neighbours.
+        for distance in &distances[1..4] {
+            assert!((distance / pitch - 1.0).abs() < 0.15, "{distance}");
+        }
+    }
+}
+
+#[test]
+fn patches_go_with_their_links() {
+    let robot = humanoid();
+    let covered = CoveredRobot::new(&robot, TAXEL, 8e-3, 0.1).unwrap();
+    let mut positions = vec![0.0; robot.n_positions()];
+    let poses = |positions: &[f64]| {
+        let mut poses = Vec::new();
+        let links = robot.forward(&Pose::IDENTITY, positions).unwrap();
+        covered.patch_poses(&links, &mut poses);
+        poses
+    };
+    let before = poses(&positions);
+    let elbow = robot.joint("left_elbow").unwrap();
+    let (coordinate, ..) = robot.drive_of(elbow).unwrap();
+    positions[coordinate] = -1.0;
+    let after = poses(&positions);
+    for ((patch, before), after) in covered.body().patches().iter().zip(&before).zip(&after) {
+        let is_below = ["left_forearm", "left_hand"]
+            .iter()
+            .any(|link| patch.name().starts_with(link));
+        let moved = before.translation.distance(after.translation) > 1e-3;
+        assert_eq!(moved, is_below, "{}", patch.name());
+    }
+}
+
+#[test]
+fn a_robot_with_nothing_to_cover_and_a_pitch_that_is_none_are_refused() {
+    let bare = CoveredRobot::new(&Robot::floating("ghost"), TAXEL, 1e-3, 0.1).unwrap_err();
+    assert!(
+        bare.to_string()
+            .starts_with("robot ghost: no cylinder or ball to cover; "),
+        "{bare}"
+    );
+    let tiny = Dome::new(1e-3, 1.0, 1.0, 1e-4).unwrap();
+    let error = BodyPatch::dome("pin", tiny, TAXEL).unwrap_err();
+    assert!(
+        error
+            .to_string()
+            .starts_with("body patch pin, dome radius: 0.001 m; ")
+    );
+    let error = CoveredRobot::new(&humanoid(), TAXEL, -1.0, 0.1).unwrap_err();
+    assert!(
+        error
+            .to_string()
+            .starts_with("skin of pelvis, taxel pitch: -1 m; "),
+        "{error}"
+    );
+}

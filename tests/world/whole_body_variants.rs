@@ -1,0 +1,269 @@
+//! Every way to compute a touch gives the same: with any vector instructions, any number of threads, sparse and dense; and what all
+//! spheres against all taxels give.
+
+use bubbletouch::geometry::Pose;
+use bubbletouch::objects::{Sphere, SphereUnion};
+use bubbletouch::random::Seed;
+use bubbletouch::whole_body::{BodyContact, BodyPatch, BodyState, Instructions};
+use bubbletouch::whole_body::{SphereClusters, WORTH_THREADS, WholeBody};
+use bubbletouch::world::{Dome, Extrusion, Grid, Layout, Taxel};
+use glam::DVec3;
+use rand::Rng;
+use std::f64::consts::{PI, TAU};
+
+use crate::random_scenes::{TAXEL, direction, random_pose, rng};
+
+const DT: f64 = 1e-3;
+
+/// A patch of each surface there is, some of them with as many taxels as make threads worth while.
+fn body(rng: &mut impl Rng, taxel: Taxel, pitch: f64) -> WholeBody {
+    let grid = Grid {
+        nx: rng.gen_range(1..60),
+        ny: rng.gen_range(1..60),
+        pitch,
+    };
+    let cap = Layout::sphere_cap(rng.gen_range(0.02..0.05), rng.gen_range(0.5..PI), pitch).unwrap();
+    let (cap, _) = cap.with_neighbours_together();
+    // In an order in which neighbours are apart: slower, and as right.
+    let mixed = Layout::cylinder(0.03, 0.05, TAU, pitch).unwrap();
+    let n = mixed.n_taxels();
+    let step = (1..n).rev().find(|&step| gcd(step, n) == 1).unwrap_or(1) / 2 + 1;
+    let order: Vec<usize> = (0..n).map(|k| k * coprime(step, n) % n).collect();
+    let mixed = Layout::new(
+        order.iter().map(|&k| mixed.centers()[k]).collect(),
+        order.iter().map(|&k| mixed.axes()[k]).collect(),
+    )
+    .unwrap();
+    let sleeve = Extrusion::cylinder(
+        rng.gen_range(0.01..0.05),
+        0.08,
+        rng.gen_range(0.5..TAU),
+        pitch,
+    );
+    let dome = Dome::new(
+        rng.gen_range(0.02..0.06),
+        rng.gen_range(0.5..PI),
+        TAU,
+        pitch,
+    )
+    .unwrap();
+    let patches = vec![
+        BodyPatch::new("flat", Extrusion::grid(&grid).unwrap(), taxel),
+        BodyPatch::new("sleeve", sleeve.unwrap(), taxel),
+        BodyPatch::dome("dome", dome, taxel),
+        BodyPatch::draped("cap", &cap, taxel),
+        BodyPatch::draped("mixed", &mixed, taxel),
+    ];
+    WholeBody::new(patches.into_iter().collect::<Result<_, _>>().unwrap()).unwrap()
+}
+
+fn gcd(a: usize, b: usize) -> usize {
+    if b == 0 { a } else { gcd(b, a % b) }
+}
+
+/// The first number from `step` on that has no divisor in common with n.
+fn coprime(step: usize, n: usize) -> usize {
+    (step..).find(|&step| gcd(step, n) == 1).unwrap_or(1)
+}
+
+/// Small ones beside some that are larger than a patch.
+fn union(rng: &mut impl Rng) -> SphereUnion {
+    let n = 10f64.powf(rng.gen_range(0.0..2.7)) as usize;
+    let spheres = (0..n).map(|_| {
+        let radius = 10f64.powf(rng.gen_range(-4.0..-0.5));
+        Sphere {
+            center: (rng.gen_range(0.0..0.03) + radius) * direction(rng),
+            radius,
+        }
+    });
+    SphereUnion::new(spheres.collect()).unwrap()
+}
+
+/// A body, and a walk of objects over it.
+struct Scene {
+    body: WholeBody,
+    patches: Vec<Pose>,
+    unions: Vec<SphereUnion>,
+    /// Of each step and object.
+    steps: Vec<Vec<Pose>>,
+}
+
+impl Scene {
+    fn random(case: u64) -> Self {
+        let mut rng = rng("variants", case);
+        let taxel = Taxel {
+            damping: if case.is_multiple_of(3) { 0.5 } else { 0.0 },
+            ..TAXEL
+        };
+        let pitch = if case.is_multiple_of(5) {
+            1e-3
+        } else {
+            rng.gen_range(2e-3..5e-3)
+        };
+        let body = body(&mut rng, taxel, pitch);
+        let patches: Vec<Pose> = body
+            .patches()
+            .iter()
+            .map(|_| random_pose(&mut rng, 0.05))
+            .collect();
+        let unions: Vec<SphereUnion> = (0..rng.gen_range(1..4)).map(|_| union(&mut rng)).collect();
+        let step = |_| {
+            let distance = rng.gen_range(0.0..0.08);
+            unions
+                .iter()
+                .map(|_| random_pose(&mut rng, distance))
+                .collect()
+        };
+        let steps = (0..3).map(step).collect();
+        Self {
+            body,
+            patches,
+            unions,
+            steps,
+        }
+    }
+
+    /// What each step gives: the counts, the touched taxels to the bit, and all deflections.
+    fn walk(&self, instructions: Instructions, n_threads: usize) -> Vec<Step> {
+        let clusters: Vec<SphereClusters> = self.unions.iter().map(SphereClusters::new).collect();
+        let pool = rayon::ThreadPoolBuilder::new()
+            .num_threads(n_threads)
+            .build()
+            .unwrap();
+        pool.install(|| {
+            let mut state = BodyState::at_rest(&self.body);
+            state.use_instructions(instructions);
+            state.place(&self.body, &self.patches);
+            let step = |poses: &Vec<Pose>| {
+                let contact = state.press(&self.body, &clusters, poses, DT);
+                let touched = state.touched(&self.body);
+                let all = (0..self.patches.len()).flat_map(|patch| state.deflections(patch));
+                Step {
+                    contact,
+                    touched: touched.map(|(taxel, d)| (taxel, d.to_bits())).collect(),
+                    dense: all.copied().collect(),
+                }
+            };
+            self.steps.iter().map(step).collect()
+        })
+    }
+
+    /// All spheres against all taxels, without dampers.
+    fn slowly(&self, poses: &[Pose]) -> Vec<f64> {
+        let mut all = Vec::new();
+        for (patch, pose) in self.body.patches().iter().zip(&self.patches) {
+            let (layout, taxel) = (patch.layout(), patch.taxel());
+            let mut deflections = vec![0.0_f64; layout.n_taxels()];
+            for (union, object) in self.unions.iter().zip(poses) {
+                let patch_from_object = pose.inverse().compose(object);
+                for sphere in union.spheres() {
+                    let center = patch_from_object.transform_point(sphere.center);
+                    let reach = sphere.radius + taxel.radius;
+                    let taxels = layout.centers().iter().zip(layout.axes());
+                    for ((rest, axis), deflection) in taxels.zip(&mut deflections) {
+                        let from: DVec3 = center - *rest;
+                        let height = from.dot(*axis);
+                        let beside = from - height * *axis;
+                        let q = reach * reach - beside.length_squared();
+                        if q > 0.0 && height >= -taxel.stroke - taxel.radius {
+                            *deflection = deflection.max(q.sqrt() - height).min(taxel.stroke);
+                        }
+                    }
+                }
+            }
+            all.extend(deflections);
+        }
+        all
+    }
+}
+
+#[derive(PartialEq)]
+struct Step {
+    contact: BodyContact,
+    touched: Vec<(usize, u64)>,
+    dense: Vec<f64>,
+}
+
+#[test]
+fn every_variant_gives_the_same_bits_and_what_every_pair_gives() {
+    let (mut n_touched, mut n_shared, mut by_patch) = (0, 0, [0; 5]);
+    for case in 0..60 {
+        let scene = Scene::random(case);
+        let expected = scene.walk(Instructions::Baseline, 1);
+        for &instructions in Instructions::here() {
+            for n_threads in [1, 2, 5] {
+                let same = scene.walk(instructions, n_threads) == expected;
+                assert!(same, "case {case}, {instructions:?}, {n_threads} threads");
+            }
+        }
+        for (step, poses) in expected.iter().zip(&scene.steps) {
+            let sparse = step
+                .touched
+                .iter()
+                .map(|&(taxel, bits)| (taxel, f64::from_bits(bits)));
+            let sparse = scene.body.frame(sparse);
+            assert!(sparse == step.dense, "case {case}: sparse and dense");
+            n_touched += step.contact.n_touched;
+            n_shared += usize::from(step.contact.n_touched >= WORTH_THREADS);
+            for &(taxel, _) in &step.touched {
+                by_patch[scene.body.firsts().partition_point(|&first| first <= taxel) - 1] += 1;
+            }
+            if scene.body.patches()[0].taxel().damping == 0.0 {
+                let slow = scene.slowly(poses);
+                for (taxel, (fast, slow)) in step.dense.iter().zip(&slow).enumerate() {
+                    let error = (fast - slow).abs();
+                    assert!(error <= 1e-12, "case {case}, taxel {taxel}: {fast} {slow}");
+                }
+            }
+        }
+    }
+    assert!(
+        n_touched > 50_000 && n_shared > 10,
+        "{n_touched} {n_shared}"
+    );
+    assert!(by_patch.iter().all(|&n| n > 2_000), "{by_patch:?}");
+}
+
+#[test]
+fn a_draped_patch_has_61_bytes_a_taxel_at_rest_and_its_layout() {
+    let layout = Layout::sphere_cap(0.05, PI, 1e-3).unwrap();
+    let (layout, _) = layout.with_neighbours_together();
+    let patch = BodyPatch::draped("ball", &layout, TAXEL).unwrap();
+    assert_eq!(patch.layout(), layout);
+    let body = WholeBody::new(vec![patch]).unwrap();
+    let bytes = body.n_bytes() + BodyState::at_rest(&body).n_bytes();
+    let share = bytes as f64 / body.n_taxels() as f64;
+    assert!(
+        body.n_taxels() > 20_000 && share < 62.0,
+        "{share} bytes a taxel"
+    );
+    let stiff = Taxel {
+        stroke: f64::NAN,
+        ..TAXEL
+    };
+    let error = BodyPatch::draped("ball", &layout, stiff).unwrap_err();
+    let said = "body patch ball, taxel stroke: NaN m; ";
+    assert!(error.to_string().starts_with(said), "{error}");
+}
+
+#[test]
+fn a_small_touch_of_a_large_draped_patch_evaluates_few_spheres() {
+    let layout = Layout::sphere_cap(0.1, PI, 1e-3).unwrap();
+    let (layout, _) = layout.with_neighbours_together();
+    let patch = BodyPatch::draped("ball", &layout, TAXEL).unwrap();
+    let body = WholeBody::new(vec![patch]).unwrap();
+    let mut rng = Seed::new(3).rng();
+    let spheres = (0..2000).map(|_| Sphere {
+        center: 0.05 * direction(&mut rng),
+        radius: 2e-3,
+    });
+    let object = [SphereClusters::new(
+        &SphereUnion::new(spheres.collect()).unwrap(),
+    )];
+    let mut state = BodyState::at_rest(&body);
+    let pose = [Pose::from_translation(0.151 * DVec3::Z)];
+    let contact = state.press(&body, &object, &pose, DT);
+    assert!(contact.n_touched > 50, "{contact:?}");
+    assert_eq!(contact.n_evaluated + contact.n_rejected, 2000);
+    assert!(contact.n_evaluated < 200, "{contact:?}");
+}
