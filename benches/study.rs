@@ -55,7 +55,7 @@ impl PieceStudy for Nothing {
     type Tables = Rows;
 
     fn pieces(&self) -> Vec<NamedPiece> {
-        NamedPiece::each_alone((0..N_PIECES).map(|n| (name(n), Piece::of_stage(0, 0, 1.0))))
+        NamedPiece::each_alone((0..N_PIECES).map(|n| (name(n), Piece::of_stage(0, 1.0))))
     }
 
     fn measure(&self, left: &PiecesLeft<Rows>) -> Result<()> {

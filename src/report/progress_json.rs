@@ -195,7 +195,7 @@ mod tests {
     fn a_long_piece_is_told_of_before_any_step_of_its_stage_is_done() {
         let written = Written::default();
         let lines = JsonLines::to(written.clone());
-        let half = Piece::of_stage(0, 0, 1.0);
+        let half = Piece::of_stage(0, 1.0);
         lines.expect(&[half, half]);
         lines.stage("learn", 1);
         lines.worked(&half, 1.0);
@@ -214,7 +214,7 @@ mod tests {
     fn a_stage_is_told_of_all_the_while_until_nobody_listens() {
         let written = Written::default();
         let lines = JsonLines::to(written.clone());
-        let half = Piece::one_by_one(0, 0, 100.0);
+        let half = Piece::one_by_one(0, 100.0);
         lines.expect(&[half, half]);
         lines.stage("pack", 2);
         thread::sleep(5 * INTERVAL / 2);

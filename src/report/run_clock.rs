@@ -65,7 +65,7 @@ impl Running {
     fn at(&self, now: Instant) -> RunTimes {
         let silent_s = now.duration_since(self.told).as_secs_f64();
         let elapsed_s = now.duration_since(self.start).as_secs_f64();
-        let left_s = self.left.left_s(elapsed_s - silent_s);
+        let left_s = self.left.left_s();
         let runs_down_s = (left_s - silent_s).max(OVERDUE * silent_s);
         RunTimes {
             elapsed_s,
@@ -96,7 +96,6 @@ mod tests {
         let clock = RunClock::default();
         let report = Piece {
             kind: Work::Report,
-            place: 0,
             planned_s: 5.0,
         };
         clock.worked(&report, 1.0);
@@ -110,7 +109,7 @@ mod tests {
 
     #[test]
     fn what_is_left_runs_down_while_nothing_is_told_but_not_to_nothing() {
-        let half = Piece::one_by_one(0, 0, 10.0);
+        let half = Piece::one_by_one(0, 10.0);
         let start = Instant::now();
         let after = |seconds: u64| start + Duration::from_secs(seconds);
         let mut running = Running {

@@ -39,7 +39,7 @@ impl<'a> Job<'a> {
         let mut finished = Vec::new();
         let mut measure_s = 0.0;
         for (n_measurements, families) in self.batches() {
-            let piece = self.measuring(n_measurements, &families);
+            let piece = self.measuring(n_measurements);
             let (measured, cpu_s) = match self.measure(frames, n_measurements, &piece) {
                 Ok(measured) => {
                     let cpu_s = measured.cpu_s;

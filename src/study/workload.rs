@@ -35,7 +35,7 @@ pub fn workload(plan: &Plan, sweep: &Sweep, touched: &dyn TouchSet, manner: Mann
             work.push(run.touching(patch, n_frames));
             for job in jobs {
                 for (n_measurements, families) in job.batches() {
-                    work.push(job.measuring(n_measurements, &families));
+                    work.push(job.measuring(n_measurements));
                     work.extend(families.into_iter().map(|family| run.learning(family)));
                 }
             }
@@ -50,7 +50,6 @@ impl Run<'_> {
         let n_touches = self.sweep.labels.len();
         Piece {
             kind: Work::Touch,
-            place: n_frames * patch.grid.n_taxels(),
             planned_s: touch_s(patch, self.touched, n_touches, n_frames),
         }
     }
@@ -61,7 +60,6 @@ impl Run<'_> {
         let n_touches = self.sweep.labels.len();
         Piece {
             kind: Work::Learn(family[0].classifier),
-            place: family[0].cell,
             planned_s: family_s(self.plan, family, n_objects, n_touches),
         }
     }
@@ -69,11 +67,10 @@ impl Run<'_> {
 
 impl Job<'_> {
     /// To measure all touches once, for these families.
-    pub fn measuring(&self, n_measurements: usize, families: &[&[Cell]]) -> Piece {
+    pub fn measuring(&self, n_measurements: usize) -> Piece {
         let Run { plan, sweep, .. } = self.run;
         Piece {
             kind: Work::Measure,
-            place: families[0][0].cell,
             planned_s: measure_s(plan, self.group, sweep.labels.len(), n_measurements),
         }
     }
@@ -190,7 +187,7 @@ mod tests {
         let start = Instant::now();
         let meter = LearningMeter {
             progress: &listener,
-            piece: Piece::of_stage(0, 0, 8.0),
+            piece: Piece::of_stage(0, 8.0),
             told: cell::Cell::new(start),
             told_share: cell::Cell::new(0.0),
             done_share: cell::Cell::new(0.0),

@@ -61,12 +61,9 @@ impl PieceStudy for BreakingPointsStudy {
     type Tables = BreakingPointsTables;
 
     fn pieces(&self) -> Vec<NamedPiece> {
-        let ways = self.plan.ways.iter();
-        let place = |way: &PlannedWay| ways.clone().position(|other| other.name == way.name);
         let pieces = self.named_values().enumerate();
-        let pieces = pieces.map(|(group, (name, way, value))| {
-            let place = place(way).unwrap_or(0);
-            let work = Piece::of_stage(0, place, value.planned_s());
+        let pieces = pieces.map(|(group, (name, _, value))| {
+            let work = Piece::of_stage(0, value.planned_s());
             // The study at this value is all that it depends on.
             let driven = (
                 &value.learned.spec,

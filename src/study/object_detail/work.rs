@@ -21,24 +21,24 @@ const LEARN: u8 = 2;
 impl ObjectDetailStudy {
     /// To pack a larger surface takes longer.
     pub(super) fn model_work(&self, mesh: &NamedMesh) -> Piece {
-        Piece::of_stage(MODELS, 0, MODELS_S_PER_M * mesh.mesh.area().sqrt())
+        Piece::of_stage(MODELS, MODELS_S_PER_M * mesh.mesh.area().sqrt())
     }
 
     /// Each other kind of work of an object takes about as long for every mesh.
     pub(super) fn score_work(&self) -> Piece {
-        Piece::of_stage(MODELS, 1, SCORE_S)
+        Piece::of_stage(MODELS, SCORE_S)
     }
 
     pub(super) fn feel_work(&self) -> Piece {
-        Piece::of_stage(MODELS, 2, FEEL_S)
+        Piece::of_stage(MODELS, FEEL_S)
     }
 
     pub(super) fn time_work(&self) -> Piece {
-        Piece::one_by_one(TIMES, 0, TIME_S)
+        Piece::one_by_one(TIMES, TIME_S)
     }
 
     pub(super) fn recognition_work(&self) -> Piece {
-        Piece::of_stage(LEARN, 0, RECOGNISE_S)
+        Piece::of_stage(LEARN, RECOGNISE_S)
     }
 }
 

@@ -47,7 +47,7 @@ impl PieceStudy for ReconstructionStudy {
         let mut pieces = Vec::new();
         for (group, measured) in self.measured().into_iter().enumerate() {
             pieces.extend(self.plan.dictionaries.iter().map(|&basis| {
-                let work = Piece::of_stage(STATISTICS, 0, ISOMETRY_S);
+                let work = Piece::of_stage(STATISTICS, ISOMETRY_S);
                 NamedPiece::new(statistics_name(measured, basis), group, work)
             }));
             pieces.extend(self.cells(group).iter().map(|cell| {
@@ -172,25 +172,19 @@ impl ReconstructionStudy {
     fn touch_work(&self) -> Piece {
         let n_touches: usize = self.touched.iter().map(|object| object.touches.len()).sum();
         let n_taxels = self.plan.patch.grid.n_taxels();
-        Piece::one_by_one(TOUCHES, 0, TOUCH_S * (n_touches * n_taxels) as f64)
+        Piece::one_by_one(TOUCHES, TOUCH_S * (n_touches * n_taxels) as f64)
     }
 
     fn learn_work(&self, n_bases: usize) -> Piece {
-        Piece::one_by_one(TOUCHES, 1, LEARN_S * n_bases as f64)
+        Piece::one_by_one(TOUCHES, LEARN_S * n_bases as f64)
     }
 
-    /// Alike are the cells of a solver and a dictionary.
     fn cell_work(&self, measured: Measured, cell: &Wanted) -> Piece {
-        let place_in = |position: Option<usize>| position.unwrap_or(0);
-        let solver = place_in(self.plan.solvers.iter().position(|&s| s == cell.solver));
-        let mut bases = self.plan.dictionaries.iter();
-        let basis = place_in(bases.position(|&basis| basis == cell.dictionary));
-        let place = solver * self.plan.dictionaries.len() + basis;
         let planned_s = match cell.solver {
             Solver::Omp | Solver::L1 => SPARSE_S,
             Solver::Lmmse => LINEAR_S * measured.m as f64,
         };
-        Piece::one_by_one(CELLS, place, planned_s)
+        Piece::one_by_one(CELLS, planned_s)
     }
 
     fn frames(&self, progress: &dyn Progress) -> Result<&Touches> {

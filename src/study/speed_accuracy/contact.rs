@@ -47,9 +47,8 @@ impl<'a> ContactPart<'a> {
 
     /// An object's models, and each of its ways through time, share the object's models.
     pub fn pieces(&self) -> Vec<NamedPiece> {
-        let models = (0..self.chosen.len()).map(|object| {
-            NamedPiece::new(self.models_name(object), object, self.models_work(object))
-        });
+        let models = (0..self.chosen.len())
+            .map(|object| NamedPiece::new(self.models_name(object), object, cost::touches()));
         let steps = self.steps().into_iter();
         let steps =
             steps.map(|run| NamedPiece::new(self.step_name(&run), run.3, self.step_work(&run)));
@@ -58,10 +57,6 @@ impl<'a> ContactPart<'a> {
 
     fn prepare_work(&self, object: usize) -> Piece {
         cost::models(self.chosen[object].0)
-    }
-
-    fn models_work(&self, object: usize) -> Piece {
-        cost::touches(self.chosen[object].0)
     }
 
     fn step_work(&self, &(method, dt, ..): &StepRun) -> Piece {

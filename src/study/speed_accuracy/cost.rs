@@ -27,12 +27,12 @@ pub(super) fn models(touched: Touched) -> Piece {
         Touched::Object => 0.1,
         Touched::Scan => 30.0,
     };
-    Piece::of_stage(MODELS, touched as usize, planned_s)
+    Piece::of_stage(MODELS, planned_s)
 }
 
 /// To time its touches.
-pub(super) fn touches(touched: Touched) -> Piece {
-    Piece::one_by_one(TOUCHES, touched as usize, 0.065)
+pub(super) fn touches() -> Piece {
+    Piece::one_by_one(TOUCHES, 0.065)
 }
 
 /// To step through time, `dt` seconds at once: ours in milliseconds, an engine of rigid bodies in seconds.
@@ -42,12 +42,12 @@ pub(super) fn steps(method: StepMethod, dt: f64) -> Piece {
         StepMethod::Rapier => 3e-3,
         _ => 3e-5,
     };
-    Piece::one_by_one(STEPS, method as usize, per_step_s / dt)
+    Piece::one_by_one(STEPS, per_step_s / dt)
 }
 
 /// To make the touches of an array and a detail.
 pub(super) fn bench() -> Piece {
-    Piece::one_by_one(BENCHES, 0, 0.1)
+    Piece::one_by_one(BENCHES, 0.1)
 }
 
 /// To bring touches of a detail and as many of the exact objects down to measurements, and to time some of them alone, twice.
@@ -65,7 +65,7 @@ pub(super) fn front(
     };
     let n_threads = rayon::current_num_threads() as f64;
     let planned_s = 2.0 * (n_touches as f64 * together_s / n_threads + n_timed as f64 * alone_s);
-    Piece::one_by_one(FRONTS, ensemble as usize, planned_s)
+    Piece::one_by_one(FRONTS, planned_s)
 }
 
 /// To learn from so many measurements a touch, and to decide.
@@ -74,11 +74,11 @@ pub(super) fn chain(classifier: ClassifierKind, n_measurements: f64) -> Piece {
         ClassifierKind::RandomForest => 0.03 + 0.022 * n_measurements.sqrt(),
         _ => 0.025 + 2e-4 * n_measurements,
     };
-    Piece::one_by_one(CHAINS, classifier as usize, planned_s)
+    Piece::one_by_one(CHAINS, planned_s)
 }
 
 /// For a study of so many touches an object: what is learned grows with their square.
 pub(super) fn study(n_touches: usize) -> Piece {
     let n = n_touches as f64;
-    Piece::one_by_one(STUDIES, 0, 0.9 + 8.6e-4 * n * n)
+    Piece::one_by_one(STUDIES, 0.9 + 8.6e-4 * n * n)
 }

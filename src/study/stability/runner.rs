@@ -44,12 +44,9 @@ fn name(cell: &StabilityCell, stroke: f64) -> String {
     )
 }
 
-/// What a cell is planned to take. Alike are those of a method on as many taxels.
+/// What a cell is planned to take.
 fn work(cell: &StabilityCell) -> Piece {
-    let method = cell.method as usize;
-    let iterations = cell.solver_iterations.unwrap_or(0);
-    let place = (method * 10_000 + iterations) * 1000 + cell.taxels;
-    Piece::of_stage(0, place, planned_s(cell))
+    Piece::of_stage(0, planned_s(cell))
 }
 
 impl PieceStudy for StabilityPlan {

@@ -1,160 +1,86 @@
-//! What is left of a run, by what was planned and spent.
+//! The time remaining of a run, by what was planned and what the finished part took.
 
-use super::spent::{Mean, Spent};
 use super::{Piece, Work};
 use std::collections::BTreeMap;
 
 /// Planned and spent processor-seconds of a run.
 ///
-/// What is left of a place costs as much more or less than planned as what was done for it; where little was done, as the
-/// geometric mean of the places of its kind whose pieces were planned to take about as long (a plan is wrong in much the same way for
-/// much the same work), and where little was done of these, of all places of its kind. Each place counts the same however much is done
-/// there: a few large pieces that were planned badly do not speak for all. A kind that has hardly begun, and the report, costs as the
-/// middle one of all kinds so far and of one that costs as planned. Threads are as busy as they have been.
+/// The plan only weighs work items against each other: what a planned second takes is measured, for each kind of work by its own
+/// finished items, and for a kind of which less than one item is finished mostly by all of them.
 #[derive(Clone, Debug)]
 pub struct TimeLeft {
     n_threads: f64,
     kinds: BTreeMap<Work, Spent>,
-    places: BTreeMap<(Work, usize), Spent>,
-    /// Of pieces that are told of when they end: sum of what they took times how long that was by the clock, and of what they took.
-    alone: [f64; 2],
 }
 
-/// Share of a run's work for which all threads count as busy before it began.
-const BUSY_BEFORE: f64 = 0.02;
-/// Processor-seconds after which what was told speaks for what is still unknown as much as the plan does: what a run does first is slow
-/// because memory is new and caches are cold.
-const SETTING_UP_S: f64 = 1.0;
-/// Places that what is known without them counts as much as: in the factor of a kind that of all kinds, in the factor of pieces of a size
-/// that of their kind.
-const PRIOR_PLACES: f64 = 0.5;
-/// Half octaves that sizes of pieces are apart whose plans are wrong in much the same way: a standard deviation.
-const ALIKE_SIZES: f64 = 2.0;
+/// Processor-seconds of a kind of work.
+#[derive(Clone, Copy, Debug, Default)]
+struct Spent {
+    n_pieces: usize,
+    planned_s: f64,
+    /// Of the finished part: by plan, and as measured.
+    done_s: f64,
+    took_s: f64,
+}
 
 impl TimeLeft {
     /// Of a run with this work.
     pub fn new(work: &[Piece], n_threads: usize) -> Self {
-        let mut left = Self {
-            n_threads: n_threads as f64,
-            kinds: BTreeMap::new(),
-            places: BTreeMap::new(),
-            alone: [0.0; 2],
-        };
+        let mut kinds: BTreeMap<Work, Spent> = BTreeMap::new();
         for piece in work {
-            for spent in left.spent(piece) {
-                spent.planned_s += piece.planned_s;
-                spent.n_pieces += 1;
-            }
+            let spent = kinds.entry(piece.kind).or_default();
+            spent.planned_s += piece.planned_s;
+            spent.n_pieces += 1;
         }
-        left
+        Self {
+            n_threads: n_threads as f64,
+            kinds,
+        }
     }
 
-    /// A piece of work is done, or a part of one, and took so long on its thread.
+    /// A work item is done, or a part of one, and took so long on its thread.
     pub fn worked(&mut self, piece: &Piece, took_s: f64) {
-        for spent in self.spent(piece) {
-            spent.done_s += piece.planned_s;
-            spent.took_s += took_s;
-        }
-        let wall_s = match piece.kind {
-            Work::Measure | Work::Learn(_) | Work::Stage(_) => took_s,
-            Work::OneByOne(_) => took_s / self.n_threads,
-            Work::Touch | Work::Report => return,
-        };
-        self.alone[0] += wall_s * took_s;
-        self.alone[1] += took_s;
+        let spent = self.kinds.entry(piece.kind).or_default();
+        spent.done_s += piece.planned_s;
+        spent.took_s += took_s;
     }
 
-    fn spent(&mut self, piece: &Piece) -> [&mut Spent; 2] {
-        let kind = self.kinds.entry(piece.kind).or_default();
-        let place = self.places.entry((piece.kind, piece.place)).or_default();
-        [kind, place]
+    /// Seconds left, if all threads are busy but for the report, which comes at the end on one.
+    pub fn left_s(&self) -> f64 {
+        let all = self.common_factor();
+        let left_s = |(kind, spent): (&Work, &Spent)| {
+            let threads = match kind {
+                Work::Report => 1.0,
+                _ => self.n_threads,
+            };
+            spent.left_s() * spent.factor(all) / threads
+        };
+        self.kinds.iter().map(left_s).sum()
     }
 
-    /// Seconds left when a run has gone on for `elapsed_s`.
-    pub fn left_s(&self, elapsed_s: f64) -> f64 {
-        let at_once = || self.kinds.iter().filter(|(kind, _)| **kind != Work::Report);
-        let took_s: f64 = at_once().map(|(_, spent)| spent.took_s).sum();
-        let common = self.common_factor();
-        let of_alike = self.factors_of_alike(&self.factors(common));
-        let places = self
-            .places
-            .iter()
-            .filter(|((kind, _), _)| *kind != Work::Report);
-        let left = places.map(|((kind, _), spent)| {
-            let prior = of_alike[&(*kind, spent.size())];
-            spent.left_s() * spent.factor(prior)
-        });
-        let left_s: f64 = left.sum();
-        // Each thread is somewhere within a piece that nobody has heard of yet; a second is longer within a long one. What they
-        // have done of these pieces makes up for the time in which, at the end, some threads wait for the last.
-        let usual_s = match self.alone[1] > 0.0 {
-            true => self.alone[0] / self.alone[1],
-            false => 0.0,
-        };
-        let not_told_s = (self.n_threads * elapsed_s - took_s).max(0.0);
-        let under_way_s = (0.5 * self.n_threads * usual_s)
-            .min(0.5 * left_s)
-            .min(not_told_s);
-        // What the very first pieces tell is chance.
-        let planned_s: f64 = at_once().map(|(_, spent)| spent.planned_s).sum();
-        let before_s = BUSY_BEFORE * planned_s / self.n_threads;
-        let busy = match took_s > 0.0 && elapsed_s > 0.0 {
-            true => (took_s + under_way_s + self.n_threads * before_s) / (elapsed_s + before_s),
-            false => self.n_threads,
-        };
-        let report = self.kinds.get(&Work::Report);
-        let report_s = report.map_or(0.0, |spent| spent.left_s() * spent.cautious_factor(common));
-        left_s / busy + report_s
-    }
-
-    /// What a planned second takes, of work of which nothing is known: as the middle of the kinds so far and of the plan itself, the
-    /// nearer to the plan the less is done.
+    /// What a planned second took so far; 1 before anything is finished.
     fn common_factor(&self) -> f64 {
-        let kinds = self.kinds.iter().filter(|(kind, _)| **kind != Work::Report);
-        let begun = kinds.filter(|(_, spent)| spent.has_begun());
-        let factors = begun.map(|(_, spent)| spent.took_s / spent.done_s);
-        let middle = middle(factors.chain([1.0]).collect()).max(f64::MIN_POSITIVE);
+        let done_s: f64 = self.kinds.values().map(|spent| spent.done_s).sum();
         let took_s: f64 = self.kinds.values().map(|spent| spent.took_s).sum();
-        middle.powf(took_s / (took_s + SETTING_UP_S))
-    }
-
-    /// What a planned second of each kind takes.
-    fn factors(&self, common: f64) -> BTreeMap<Work, f64> {
-        let mut means: BTreeMap<Work, Mean> = BTreeMap::new();
-        for ((kind, _), spent) in &self.places {
-            let mean = means.entry(*kind).or_insert(Mean::of(PRIOR_PLACES, common));
-            mean.take(spent.told(common), 1.0);
+        match done_s > 0.0 {
+            true => took_s / done_s,
+            false => 1.0,
         }
-        let factor = |(kind, mean): (Work, Mean)| (kind, mean.factor());
-        means.into_iter().map(factor).collect()
-    }
-
-    /// The same of each kind and size of its pieces.
-    fn factors_of_alike(&self, of_kinds: &BTreeMap<Work, f64>) -> BTreeMap<(Work, i32), f64> {
-        let mut told: BTreeMap<(Work, i32), Mean> = BTreeMap::new();
-        for ((kind, _), spent) in &self.places {
-            let of_size = told.entry((*kind, spent.size())).or_default();
-            of_size.take(spent.told(of_kinds[kind]), 1.0);
-        }
-        let factor = |&(kind, size): &(Work, i32)| {
-            let mut mean = Mean::of(PRIOR_PLACES, of_kinds[&kind]);
-            let of_kind = told.range((kind, i32::MIN)..=(kind, i32::MAX));
-            for (&(_, other), &told) in of_kind {
-                let apart = (f64::from(other) - f64::from(size)) / ALIKE_SIZES;
-                mean.take(told, (-0.5 * apart * apart).exp());
-            }
-            ((kind, size), mean.factor())
-        };
-        told.keys().map(factor).collect()
     }
 }
 
-/// The middle one of some factors; of an even number the geometric mean of both, of none 1.
-fn middle(mut factors: Vec<f64>) -> f64 {
-    factors.sort_by(f64::total_cmp);
-    match factors.len() {
-        0 => 1.0,
-        n => (factors[(n - 1) / 2] * factors[n / 2]).sqrt(),
+impl Spent {
+    fn left_s(&self) -> f64 {
+        (self.planned_s - self.done_s).max(0.0)
+    }
+
+    /// What a planned second takes, where what all kinds took counts as much as one item of this kind.
+    fn factor(&self, all: f64) -> f64 {
+        let item_s = self.planned_s / self.n_pieces.max(1) as f64;
+        match self.done_s + item_s {
+            0.0 => all,
+            sum_s => (self.took_s + item_s * all) / sum_s,
+        }
     }
 }
 
@@ -173,7 +99,7 @@ mod tests {
         (planned_s, report_s): (f64, f64),
     ) -> (Vec<[f64; 2]>, f64) {
         let mut work: Vec<Piece> = pieces.iter().map(|(piece, _)| *piece).collect();
-        work.push(piece(Work::Report, 0, planned_s));
+        work.push(piece(Work::Report, planned_s));
         let mut left = TimeLeft::new(&work, n_threads);
         // When each thread is free, and what it does until then.
         let mut threads: Vec<(f64, Option<(Piece, f64)>)> = vec![(0.0, None); n_threads];
@@ -192,7 +118,7 @@ mod tests {
             now = threads[thread].0;
             if let Some((piece, took_s)) = threads[thread].1.take() {
                 left.worked(&piece, took_s);
-                told.push([now, left.left_s(now)]);
+                told.push([now, left.left_s()]);
             }
             threads[thread] = match next.next() {
                 Some(piece) => (now + piece.1, Some(*piece)),
@@ -212,12 +138,8 @@ mod tests {
         errors.fold(0.0, f64::max)
     }
 
-    fn piece(kind: Work, place: usize, planned_s: f64) -> Piece {
-        Piece {
-            kind,
-            place,
-            planned_s,
-        }
+    fn piece(kind: Work, planned_s: f64) -> Piece {
+        Piece { kind, planned_s }
     }
 
     /// Arrays one after the other, each with touches, and in each trial measuring and three classifiers with several m. What
@@ -230,13 +152,12 @@ mod tests {
         let mut chance = |spread: f64| rng.gen_range(-spread..spread).exp();
         let of_cell: Vec<f64> = (0..40).map(|_| chance(0.4)).collect();
         let mut pieces = Vec::new();
-        for (array, size) in [(0, 1.0), (1, 4.0)] {
+        for size in [1.0, 4.0] {
             let of_array = chance(0.15);
             let mut add = |kind: Work, place: usize, planned_s: f64| {
                 let as_planned = of_cell[place] * of_array * chance(0.2);
                 let took_s = planned_s * factor(kind) * as_planned;
-                let place = 40 * array + place;
-                pieces.push((piece(kind, place, planned_s), took_s));
+                pieces.push((piece(kind, planned_s), took_s));
             };
             (0..40).for_each(|_| add(Work::Touch, 0, 0.02 * size));
             for _ in 0..n_trials {
@@ -306,31 +227,31 @@ mod tests {
     #[test]
     fn before_anything_is_done_it_is_the_plan_shared_by_threads() {
         let work = [
-            piece(Work::Touch, 0, 4.0),
-            piece(Work::Measure, 0, 6.0),
-            piece(Work::Report, 0, 1.5),
+            piece(Work::Touch, 4.0),
+            piece(Work::Measure, 6.0),
+            piece(Work::Report, 1.5),
         ];
         let left = TimeLeft::new(&work, 2);
-        assert_eq!(left.left_s(0.0), 6.5);
-        assert_eq!(TimeLeft::new(&[], 2).left_s(3.0), 0.0);
+        assert_eq!(left.left_s(), 6.5);
+        assert_eq!(TimeLeft::new(&[], 2).left_s(), 0.0);
     }
 
     #[test]
     fn pieces_one_by_one_hold_all_threads_and_those_of_a_stage_one_each() {
         // Four seconds by the clock on all threads, then eight pieces of a second on two threads; twice as slow as planned.
-        let shared = Piece::one_by_one(0, 0, 2.0);
+        let shared = Piece::one_by_one(0, 2.0);
         let n_threads = rayon::current_num_threads();
-        let alone = Piece::of_stage(1, 0, 0.5);
+        let alone = Piece::of_stage(1, 0.5);
         let work = [vec![shared], vec![alone; 4 * n_threads]].concat();
         let mut left = TimeLeft::new(&work, n_threads);
-        assert!((left.left_s(0.0) - 4.0).abs() < 1e-12);
+        assert!((left.left_s() - 4.0).abs() < 1e-12);
         left.worked(&shared, shared.spent_s(4.0));
         // What is under way is half a piece of the stage before, at most half of what is left.
-        assert!((left.left_s(4.0) - 4.0).abs() < 1.5, "{}", left.left_s(4.0));
+        assert!((left.left_s() - 4.0).abs() < 1.5, "{}", left.left_s());
         for done in 1..=4 {
             (0..n_threads).for_each(|_| left.worked(&alone, alone.spent_s(1.0)));
-            let (now, true_left) = (4.0 + done as f64, 4.0 - done as f64);
-            let told = left.left_s(now);
+            let true_left = 4.0 - done as f64;
+            let told = left.left_s();
             assert!(
                 (told - true_left).abs() <= 0.3 * true_left + 1e-9,
                 "{told} of {true_left}"
@@ -339,68 +260,38 @@ mod tests {
     }
 
     #[test]
-    fn a_piece_that_was_planned_badly_speaks_for_others_of_its_size_and_less_for_all() {
-        let learn = |place: usize, planned_s: f64| {
-            piece(Work::Learn(ClassifierKind::LinearSvm), place, planned_s)
-        };
-        // A large one took five times as long as planned, two small ones as long; together they took 4.9 times as long.
-        let done = [
-            (learn(0, 64.0), 320.0),
-            (learn(1, 1.0), 1.0),
-            (learn(2, 1.0), 1.0),
-        ];
-        let left_s = |last: Piece| {
-            let mut work: Vec<Piece> = done.iter().map(|(piece, _)| *piece).collect();
-            work.push(last);
-            let mut left = TimeLeft::new(&work, 1);
-            let worked = done.iter();
-            worked.for_each(|(piece, took_s)| left.worked(piece, *took_s));
-            left.left_s(322.0)
-        };
-        let small_s = left_s(learn(3, 1.0));
-        assert!((1.0..1.3).contains(&small_s), "{small_s}");
-        let large_s = left_s(learn(3, 64.0));
-        assert!((150.0..320.0).contains(&large_s), "{large_s}");
-        // Of a size that nothing was done of, as all places of the kind, of which each counts the same.
-        let other_s = left_s(learn(3, 8.0));
-        assert!((8.0..24.0).contains(&other_s), "{other_s}");
-    }
-
-    #[test]
-    fn a_kind_of_which_only_the_setting_up_is_done_says_nothing_of_others() {
+    fn an_item_that_has_hardly_begun_does_not_speak_for_its_kind() {
         let work = [
-            piece(Work::Touch, 0, 1.0),
-            piece(Work::Learn(ClassifierKind::LinearSvm), 0, 10.0),
-            piece(Work::Learn(ClassifierKind::RbfSvm), 1, 10.0),
+            piece(Work::Touch, 1.0),
+            piece(Work::Learn(ClassifierKind::LinearSvm), 10.0),
+            piece(Work::Learn(ClassifierKind::RbfSvm), 10.0),
         ];
         let mut left = TimeLeft::new(&work, 1);
         left.worked(&work[0], 1.0);
-        let before_s = left.left_s(1.0);
-        let begun = piece(Work::Learn(ClassifierKind::LinearSvm), 0, 1e-3);
-        left.worked(&begun, 0.3);
-        assert!((before_s - 20.0).abs() < 1e-9, "{before_s}");
-        let after_s = left.left_s(1.3);
-        assert!((after_s - before_s).abs() < 0.1 * before_s, "{after_s}");
+        assert_eq!(left.left_s(), 20.0);
+        left.worked(&piece(Work::Learn(ClassifierKind::LinearSvm), 1e-3), 0.3);
+        let after_s = left.left_s();
+        assert!((20.0..27.0).contains(&after_s), "{after_s}");
+    }
+
+    #[test]
+    fn a_kind_of_which_nothing_is_finished_takes_as_much_longer_as_the_others() {
+        let work = [
+            piece(Work::Touch, 1.0),
+            piece(Work::Learn(ClassifierKind::LinearSvm), 10.0),
+        ];
+        let mut left = TimeLeft::new(&work, 2);
+        left.worked(&work[0], 4.0);
+        assert_eq!(left.left_s(), 20.0);
     }
 
     #[test]
     fn nothing_is_left_at_the_end_but_the_report() {
-        let work = [piece(Work::Touch, 0, 4.0), piece(Work::Report, 0, 1.5)];
+        let work = [piece(Work::Touch, 4.0), piece(Work::Report, 1.5)];
         let mut left = TimeLeft::new(&work, 1);
         left.worked(&work[0], 4.0);
-        assert_eq!(left.left_s(4.0), 1.5);
-        // Where all else took nine times as long as planned, it may take about three times as long; until some of it is told.
-        let mut slow = TimeLeft::new(&work, 1);
-        slow.worked(&work[0], 36.0);
-        let slow_s = slow.left_s(36.0);
-        assert!((4.0..4.5).contains(&slow_s), "{slow_s}");
-        let half = piece(Work::Report, 0, 0.75);
-        slow.worked(&half, 0.75);
-        let half_s = slow.left_s(36.75);
-        assert!((0.75..0.5 * slow_s).contains(&half_s), "{half_s}");
-        slow.worked(&half, 0.75);
-        assert_eq!(slow.left_s(37.5), 0.0);
+        assert_eq!(left.left_s(), 1.5);
         left.worked(&work[1], 1.0);
-        assert_eq!(left.left_s(5.0), 0.0);
+        assert_eq!(left.left_s(), 0.0);
     }
 }

@@ -1,7 +1,6 @@
-//! How long a run still takes: from what its work was planned to cost, and what it has cost so far.
+//! The time remaining of a run: from what its work was planned to cost, and what the finished part has cost.
 
 mod left;
-mod spent;
 
 pub use left::TimeLeft;
 
@@ -29,8 +28,6 @@ pub enum Work {
 pub struct Piece {
     /// What is done.
     pub kind: Work,
-    /// What it is done for, such as a cell by its number: the same in each trial, so that one trial tells what others cost.
-    pub place: usize,
     /// What it was planned to take, processor-seconds.
     pub planned_s: f64,
 }
@@ -40,25 +37,22 @@ impl Piece {
     pub const fn report(planned_s: f64) -> Self {
         Self {
             kind: Work::Report,
-            place: 0,
             planned_s,
         }
     }
 
     /// Of a stage whose pieces have a thread each.
-    pub fn of_stage(stage: u8, place: usize, planned_s: f64) -> Self {
+    pub fn of_stage(stage: u8, planned_s: f64) -> Self {
         Self {
             kind: Work::Stage(stage),
-            place,
             planned_s,
         }
     }
 
     /// Of a stage whose pieces come one after the other: seconds by the clock.
-    pub fn one_by_one(stage: u8, place: usize, planned_wall_s: f64) -> Self {
+    pub fn one_by_one(stage: u8, planned_wall_s: f64) -> Self {
         Self {
             kind: Work::OneByOne(stage),
-            place,
             planned_s: planned_wall_s * rayon::current_num_threads() as f64,
         }
     }

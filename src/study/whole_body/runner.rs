@@ -62,13 +62,13 @@ impl PieceStudy for WholeBodyPlan {
     fn pieces(&self) -> Vec<NamedPiece> {
         let names = self.compression_names().into_iter();
         let compressions =
-            names.map(|name| NamedPiece::new(name, 0, Piece::one_by_one(LEARN, 2, 0.0)));
+            names.map(|name| NamedPiece::new(name, 0, Piece::one_by_one(LEARN, 0.0)));
         let scenes = self.scenes.iter().map(|scene| {
             NamedPiece::new(scene_name(scene), 0, self.scene_work(scene)).made_of(scene)
         });
         let rungs = self.rungs();
         let rungs = rungs.iter().enumerate().map(|(number, rung)| {
-            let work = Piece::one_by_one(CLIMB, 0, rung.planned_s(self.n_steps()));
+            let work = Piece::one_by_one(CLIMB, rung.planned_s(self.n_steps()));
             NamedPiece::new(rung_name(rung), number + 1, work).made_of(rung)
         });
         compressions.chain(scenes).chain(rungs).collect()
@@ -139,20 +139,20 @@ impl PieceRows for WholeBodyTables {
 
 impl WholeBodyPlan {
     fn cover_work(&self) -> Piece {
-        Piece::one_by_one(LEARN, 0, COVER_S)
+        Piece::one_by_one(LEARN, COVER_S)
     }
 
     fn learn_work(&self) -> Piece {
         let n_touches = self.recognition.n_training + self.recognition.n_test;
         let n_touches = n_touches * self.recognition.objects.len();
-        Piece::one_by_one(LEARN, 1, TOUCH_S * n_touches as f64)
+        Piece::one_by_one(LEARN, TOUCH_S * n_touches as f64)
     }
 
     /// An object that cannot be made fails when its scene begins.
     fn scene_work(&self, scene: &ScenePlan) -> Piece {
         let length = scene.object.length().unwrap_or(0.0);
         let step_s = SCENE_S + SCENE_S_PER_M * length;
-        Piece::one_by_one(PLAY, 0, step_s * self.n_steps() as f64)
+        Piece::one_by_one(PLAY, step_s * self.n_steps() as f64)
     }
 
     fn cover(&self, left: &PiecesLeft<WholeBodyTables>) -> Result<CoveredRobot> {
