@@ -103,9 +103,9 @@
 //! threads, printing or global state. Threads live in `study`, and in `whole_body` for large touches; files in `study`, `scene`
 //! (what a scene names) and `report`.
 //!
-//! The [`guide`] explains [objects of your own](guide::own_objects), the [statistics](guide::statistics) of a study, how to run one on [many
-//! machines](guide::many_machines), the [events](guide::events) that a run tells to programs, what a study holds in
-//! [memory and on disk](guide::memory_and_disk), and what happens at the [limits](guide::limits) of every method.
+//! The [`guide`] has chapters for users of the command and of the library, from a [first study](guide::first_study) and the
+//! [study file](guide::study_file) to [objects of your own](guide::own_objects), [statistics](guide::statistics), [long
+//! runs](guide::long_runs) and what happens at the [limits](guide::limits) of every method.
 //!
 //! # Sources
 //!

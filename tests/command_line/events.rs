@@ -4,7 +4,7 @@ use crate::command::Case;
 use serde_json::Value;
 use std::collections::{BTreeMap, BTreeSet};
 
-const GUIDE: &str = include_str!("../../src/guide/events.md");
+const GUIDE: &str = include_str!("../../guide/events.md");
 
 const STUDY: &str = r#"
 question = "What is told?"

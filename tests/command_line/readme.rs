@@ -1,22 +1,24 @@
-//! What the README tells people to type works.
+//! What the README and the guide tell people to type works; what they link to is there.
 #![cfg(unix)]
 
 use crate::command::Case;
 use bubbletouch::study::{Plan, StudySpec};
 use std::fs;
-use std::io::Write;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::Command;
 
-/// The README, or `None` (said aloud) while there is none.
-fn readme() -> Option<String> {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("README.md");
-    if !path.exists() {
-        writeln!(std::io::stderr(), "SKIPPED: there is no README.md")
-            .expect("standard error takes a line");
-        return None;
-    }
-    Some(fs::read_to_string(path).unwrap())
+/// The README, then the chapters of the guide by name: (file, text).
+fn documents() -> Vec<(String, String)> {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let guide = fs::read_dir(root.join("guide")).unwrap();
+    let mut paths: Vec<_> = guide.map(|entry| entry.unwrap().path()).collect();
+    paths.sort();
+    paths.insert(0, root.join("README.md"));
+    let read = |path: &PathBuf| {
+        let name = path.strip_prefix(root).unwrap().display().to_string();
+        (name, fs::read_to_string(path).unwrap())
+    };
+    paths.iter().map(read).collect()
 }
 
 /// The text of each block that is fenced as this language.
@@ -69,17 +71,8 @@ fn copy_folder(from: &Path, to: &Path) {
     }
 }
 
-#[test]
-fn every_command_in_the_readme_works() {
-    let Some(text) = readme() else { return };
-    let commands: Vec<String> = blocks(&text, "sh")
-        .iter()
-        .flat_map(|b| commands(b))
-        .collect();
-    assert!(
-        !commands.is_empty(),
-        "the README shows a command in a ```sh block"
-    );
+/// A folder with what a reader has who cloned the repository, and the command on the path.
+fn cloned() -> (Case, String) {
     let case = Case::new();
     for folder in ["experiments", "objects"] {
         let from = Path::new(env!("CARGO_MANIFEST_DIR")).join(folder);
@@ -88,32 +81,70 @@ fn every_command_in_the_readme_works() {
     let binary = Path::new(env!("CARGO_BIN_EXE_bubbletouch"));
     let path = std::env::var("PATH").unwrap();
     let path = format!("{}:{path}", binary.parent().unwrap().display());
-    for command in commands {
+    (case, path)
+}
+
+#[test]
+fn every_command_in_the_readme_and_the_guide_works() {
+    let mut n_commands = 0;
+    for (document, text) in documents() {
         // One after the other in one folder, as a reader would: a later one may read what an earlier one wrote.
-        let output = Command::new("sh")
-            .args(["-e", "-c", &command])
-            .current_dir(case.folder())
-            .env("PATH", &path)
-            .output()
-            .unwrap();
-        let error = String::from_utf8_lossy(&output.stderr);
-        assert!(output.status.success(), "{command}\n{error}");
-        println!("works: {command}");
+        let (case, path) = cloned();
+        for command in blocks(&text, "sh").iter().flat_map(|b| commands(b)) {
+            let output = Command::new("sh")
+                .args(["-e", "-c", &command])
+                .current_dir(case.folder())
+                .env("PATH", &path)
+                .env("HOME", case.folder())
+                .output()
+                .unwrap();
+            let error = String::from_utf8_lossy(&output.stderr);
+            assert!(output.status.success(), "{document}: {command}\n{error}");
+            println!("{document}: works: {command}");
+            n_commands += 1;
+        }
+    }
+    assert!(n_commands > 10, "{n_commands} commands in ```sh blocks");
+}
+
+#[test]
+fn every_study_in_the_readme_and_the_guide_can_be_planned() {
+    for name in ["README.md", "guide/study_file.md"] {
+        let documents = documents();
+        let (_, text) = documents.iter().find(|(n, _)| n == name).unwrap();
+        let studies = blocks(text, "toml");
+        assert!(!studies.is_empty(), "{name} shows a study in a ```toml block");
+        for study in studies {
+            let spec = StudySpec::parse(name, &study).unwrap();
+            Plan::new(name, spec).unwrap();
+        }
+    }
+}
+
+/// The targets of a text's links and pictures that are files.
+fn linked_files(text: &str) -> impl Iterator<Item = &str> {
+    let targets = text.split("](").skip(1);
+    let targets = targets.filter_map(|rest| rest.split_once(')').map(|(target, _)| target));
+    let files = targets.filter(|t| !t.contains("://") && !t.contains("::") && !t.starts_with('#'));
+    files.map(|target| target.split_once('#').map_or(target, |(file, _)| file))
+}
+
+#[test]
+fn what_the_readme_and_the_guide_link_to_is_there() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    for (document, text) in documents() {
+        let folder = root.join(&document);
+        let folder = folder.parent().unwrap();
+        for file in linked_files(&text) {
+            assert!(folder.join(file).exists(), "{document}: {file}");
+        }
     }
 }
 
 #[test]
-fn every_study_in_the_readme_can_be_planned() {
-    let Some(text) = readme() else { return };
-    let studies = blocks(&text, "toml");
-    assert!(
-        !studies.is_empty(),
-        "the README shows a study in a ```toml block"
-    );
-    for study in studies {
-        let spec = StudySpec::parse("README.md", &study).unwrap();
-        Plan::new("README.md", spec).unwrap();
-    }
+fn the_readme_fits_in_two_hundred_lines() {
+    let n_lines = documents()[0].1.lines().count();
+    assert!(n_lines <= 200, "{n_lines} lines");
 }
 
 #[test]

@@ -76,6 +76,14 @@ fn cell_keys(journal: &Path) -> Vec<String> {
         .collect()
 }
 
+/// Kills in all: on every change, and where there is time.
+fn n_kills_wanted() -> usize {
+    match std::env::var_os("BUBBLETOUCH_LONG") {
+        None => 8,
+        Some(_) => 50,
+    }
+}
+
 /// Kills after which a run goes on to its end.
 const MOST_KILLS_OF_FOLDER: usize = 10;
 
@@ -87,7 +95,7 @@ fn a_run_that_is_killed_at_any_instant_goes_on_and_does_no_cell_twice() {
     let whole = start_of_whole.elapsed();
     let mut rng = ChaCha8Rng::seed_from_u64(8);
     let (mut n_kills, mut folder_number) = (0, 0);
-    while n_kills < 50 {
+    while n_kills < n_kills_wanted() {
         let folder = format!("killed_{folder_number}");
         folder_number += 1;
         let journal = case.path(&folder).join("journal.jsonl");

@@ -403,7 +403,7 @@ fn an_unusable_surface_error_is_refused() {
 }
 
 /// The page about own objects.
-const GUIDE: &str = include_str!("../../src/guide/own_objects.md");
+const GUIDE: &str = include_str!("../../guide/own_objects.md");
 
 #[test]
 fn the_nut_of_the_guide_is_built() {
