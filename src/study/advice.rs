@@ -153,7 +153,10 @@ pub fn advise(offers: &[Offer], wish: Wish, cost: Cost) -> Result<Advice> {
     };
     let choice = front[place];
     let certain = match wish {
-        Wish::Accuracy(share) => cheapest_certain(offers, share, cost).filter(|it| *it != choice),
+        Wish::Accuracy(share) => {
+            // By place: costs that nobody knows are no numbers, which equal nothing.
+            cheapest_certain(offers, share, cost).filter(|it| !std::ptr::eq(*it, choice))
+        }
         Wish::Budget(_) => None,
     };
     Ok(Advice {

@@ -290,7 +290,7 @@ fn options_out_of_range_are_refused() {
         ("--train-rows", "0", "1 to 39"),
         ("--c", "0", "above 0"),
         ("--tolerance", "0", "above 0"),
-        ("--threads", "0", "at least 1"),
+        ("--threads", "0", "1 to 1024"),
     ] {
         let named = option == "--classifier";
         let first: &[&str] = if named { &[] } else { &LINEAR };

@@ -118,11 +118,11 @@ fn quiet_says_nothing_but_errors() {
     assert_eq!(said, (String::new(), String::new()));
     case.file(
         "study.toml",
-        STUDY.replace("ratio = [4, 16]", "ratio = [4]"),
+        STUDY.replace("stroke_mm = 5.0", "stroke_mm = 4.0"),
     );
     let refused = case.run(&["run", "study.toml", "--quiet"]);
     assert_eq!(refused.status.code(), Some(2));
-    assert!(String::from_utf8_lossy(&refused.stderr).contains("sensing.ratio"));
+    assert!(String::from_utf8_lossy(&refused.stderr).contains("skin.stroke_mm"));
     assert!(refused.stdout.is_empty());
 }
 

@@ -113,7 +113,10 @@ fn every_study_in_the_readme_and_the_guide_can_be_planned() {
         let documents = documents();
         let (_, text) = documents.iter().find(|(n, _)| n == name).unwrap();
         let studies = blocks(text, "toml");
-        assert!(!studies.is_empty(), "{name} shows a study in a ```toml block");
+        assert!(
+            !studies.is_empty(),
+            "{name} shows a study in a ```toml block"
+        );
         for study in studies {
             let spec = StudySpec::parse(name, &study).unwrap();
             Plan::new(name, spec).unwrap();
