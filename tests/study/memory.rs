@@ -224,7 +224,7 @@ fn a_damaged_file_is_named_and_made_again_with_the_same_bytes() {
 
 /// The least ceiling of a study, as its refusal says it.
 fn least_gib(case: &Case, study: &str) -> String {
-    let output = case.run(&["plan", study, "--memory-gib", "0.0001"]);
+    let output = case.run(&["plan", study, "--memory-gib", "0.01"]);
     assert_eq!(output.status.code(), Some(2));
     let said = String::from_utf8(output.stderr).unwrap();
     let (_, after) = said.split_once("at least ").expect("how much it takes");
