@@ -27,10 +27,10 @@ pub fn report(args: &Args) -> Result<()> {
     check_kind(folder)?;
     let manifest = checked_manifest(folder)?;
     if manifest.is_none() {
-        eprintln!(
+        note(format_args!(
             "note: whether the tables are those of a run is not known: there is no {}",
             folder.join(MANIFEST_FILE).display()
-        );
+        ));
     }
     let tables = read_tables(folder)?;
     let mut page = about(folder, manifest)?;

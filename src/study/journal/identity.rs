@@ -12,7 +12,7 @@ const BINDING_DIGITS: usize = 16;
 
 /// Everything that decides the bytes of a study's tables.
 ///
-/// Two of them are the same study if they differ at most in keys that [may change](StudyKind::may_change): axes that only say which work
+/// Two of them are the same study if they differ at most in keys that may change: axes that only say which work
 /// there is, and words.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Identity {

@@ -28,7 +28,7 @@ const CONTENT_DIGITS: usize = 16;
 pub struct NamedPiece {
     /// What it is called; no two pieces of a study share a name.
     pub name: String,
-    /// What its rows depend on beside its name and the keys of the study that [may not change](super::StudyKind::may_change); nothing
+    /// What its rows depend on beside its name and the keys of the study that may not change; nothing
     /// where these say all. Its number is no part of either: a study may have more pieces the next time.
     pub content: String,
     /// Number of its group, from 0 without gaps: pieces of a group share what has to be made before them, so that one shard does all of
