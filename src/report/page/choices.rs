@@ -8,8 +8,12 @@ use crate::study::table::{Cell, CellScore, Pareto, Tables};
 use std::collections::HashMap;
 use std::fmt::Write;
 
-/// A reason to choose a cell, and the cell.
-type Choice<'a> = (&'static str, &'a Cell);
+/// The reasons to choose a cell, and the cell.
+type Choice<'a> = (Vec<&'static str>, &'a Cell);
+
+/// Conditions whose choices stand open on the page; of more the table is folded. Larger: it pushes everything else off the screen;
+/// smaller: a study of a few levels of noise hides its answer.
+const MOST_OPEN: usize = 6;
 
 /// A table of choices; empty for a study of one cell.
 pub(super) fn choices_html(tables: &Tables, answer: &Answer) -> String {
@@ -33,7 +37,7 @@ pub(super) fn choices_html(tables: &Tables, answer: &Answer) -> String {
          <th scope=\"col\" class=\"number\">to train</th></tr></thead><tbody>"
     );
     for finding in &answer.findings {
-        for (reason, cell) in choices(tables, answer, finding) {
+        for (reasons, cell) in choices(tables, answer, finding) {
             let score = scores.get(&cell.cell).map(|score| accuracy_sentence(score));
             let cost = costs.get(&cell.cell);
             let decide = cost.map(|cost| time_words(1e-6 * cost.predict_us_per_decision));
@@ -44,8 +48,9 @@ pub(super) fn choices_html(tables: &Tables, answer: &Answer) -> String {
             };
             let _ = write!(
                 html,
-                "<tr>{given}<td>{reason}</td><td>{} (cell {})</td><td class=\"number\">{}</td><td class=\"number\">{}</td>\
+                "<tr>{given}<td>{}</td><td>{} (cell {})</td><td class=\"number\">{}</td><td class=\"number\">{}</td>\
                  <td class=\"number\">{}</td></tr>",
+                reasons.join("; "),
                 unbroken(&answer.settings().choice_words(cell)),
                 cell.cell,
                 score.unwrap_or_default(),
@@ -54,10 +59,16 @@ pub(super) fn choices_html(tables: &Tables, answer: &Answer) -> String {
             );
         }
     }
-    html + "</tbody></table></div>"
+    html += "</tbody></table></div>";
+    match answer.findings.len() {
+        n if n > MOST_OPEN => {
+            format!("<details><summary>In each of {n} conditions</summary>{html}</details>")
+        }
+        _ => html,
+    }
 }
 
-/// Among the cells of a condition.
+/// Among the cells of a condition, each once.
 fn choices<'a>(tables: &'a Tables, answer: &'a Answer, finding: &'a Finding) -> Vec<Choice<'a>> {
     let best = &finding.best.0;
     let is_of_it = |cell: &Cell| std::ptr::eq(answer.finding(cell), finding);
@@ -71,14 +82,21 @@ fn choices<'a>(tables: &'a Tables, answer: &'a Answer, finding: &'a Finding) -> 
         let found = costs.min_by(|(_, a), (_, b)| a.total_cmp(b));
         found.map(|(cell, _)| cell)
     };
-    let mut found = vec![("the highest accuracy", best)];
     let to_decide = fastest(|row| row.predict_us_per_decision);
-    found.extend(to_decide.map(|cell| ("as good, fastest to decide", cell)));
     let to_train = fastest(|row| row.fit_s);
-    found.extend(to_train.map(|cell| ("as good, fastest to train", cell)));
-    let frugal = &finding.frugal.0;
-    if frugal.cell != best.cell {
-        found.push(("as good, fewest measurements", frugal));
+    let reasons = [
+        ("the highest accuracy", Some(best)),
+        ("as good, fastest to decide", to_decide),
+        ("as good, fastest to train", to_train),
+        ("as good, fewest measurements", Some(&finding.frugal.0)),
+    ];
+    let mut found: Vec<Choice> = Vec::new();
+    for (reason, cell) in reasons {
+        let Some(cell) = cell else { continue };
+        match found.iter_mut().find(|(_, known)| known.cell == cell.cell) {
+            Some((reasons, _)) => reasons.push(reason),
+            None => found.push((vec![reason], cell)),
+        }
     }
     found
 }
