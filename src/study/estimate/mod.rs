@@ -98,12 +98,13 @@ impl fmt::Display for Estimate {
         )?;
         writeln!(
             f,
-            "  cells    {} × {} trials = {}",
+            "  cells    {} × {} = {}",
             self.n_cells,
-            self.n_trials,
+            counted(self.n_trials, "trial"),
             match (self.n_cells * self.n_trials, self.n_fits * self.n_trials) {
-                (results, fits) if results == fits => format!("{fits} fits"),
-                (results, fits) => format!("{results} results of {fits} fits"),
+                (results, fits) if results == fits => counted(fits, "fit"),
+                (results, fits) =>
+                    format!("{} of {}", counted(results, "result"), counted(fits, "fit")),
             }
         )?;
         writeln!(f, "  memory   at most {}", Bytes(self.memory_bytes))?;
