@@ -18,7 +18,7 @@ class Adviser {
     });
     this.wish = make("input", { type: "number", min: 0, max: 1, step: 0.01, input: () => this.show() });
     const label = make("label", { class: "choice" }, make("span", {}, "for an accuracy of at least"), this.wish);
-    this.answer = make("div", { role: "status", tabindex: 0 });
+    this.answer = make("div", { role: "status", tabindex: 0, "aria-label": "Advice" });
     this.element = make("div", { class: "advice" }, costs.element, label, this.answer);
   }
 
