@@ -166,6 +166,7 @@ pub mod sensing;
 pub mod signal;
 mod spelling;
 pub mod study;
+pub mod table;
 mod toml_text;
 pub mod whole_body;
 pub mod world;

@@ -1,0 +1,74 @@
+//! A chart as a value: which columns of which table it shows, and how.
+
+use super::Value;
+
+/// What a chart shows. One renderer draws it as SVG and PNG, and the page's script draws the same.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ChartSpec {
+    /// File name without ending.
+    pub name: String,
+    /// What it shows, in words.
+    pub title: String,
+    /// How to read it, in a sentence or two; empty where the chart says all.
+    pub note: String,
+    /// The file of its [table](super::Table).
+    pub table: &'static str,
+    /// Only rows with these values.
+    pub shown: Vec<Shown>,
+    /// The column along x; its scale is the column's.
+    pub x: String,
+    /// The column along y. Its interval, if it has one, is drawn as a band or as whiskers.
+    pub y: String,
+    /// Columns of which each combination has a line, or a colour of points, of its own.
+    pub lines: Vec<String>,
+    /// The column of which each value has a panel of its own.
+    pub panels: Option<String>,
+    /// How rows are drawn.
+    pub mark: Mark,
+    /// Lines across the chart: chance, a limit, a published value.
+    pub rules: Vec<Rule>,
+    /// Whether the Pareto front of the points is drawn: x is what it costs, and y is better as its [role](super::Role) says.
+    pub front: bool,
+}
+
+/// Rows of which a column has a value.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Shown {
+    /// The column.
+    pub column: String,
+    /// Its value.
+    pub value: Value,
+}
+
+/// How rows are drawn.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Mark {
+    /// Points joined along x.
+    Line,
+    /// A value holds until the next x.
+    Step,
+    /// Points alone.
+    Points,
+    /// A tile at each x and y, filled by the value or outcome of this column.
+    Tiles(String),
+}
+
+/// A line across the chart.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Rule {
+    /// The axis on which it stands.
+    pub along: Along,
+    /// Where.
+    pub at: f64,
+    /// What it is.
+    pub words: String,
+}
+
+/// An axis of a chart.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Along {
+    /// Across.
+    X,
+    /// Up.
+    Y,
+}

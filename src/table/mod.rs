@@ -1,0 +1,17 @@
+//! Tables with roles: what a study yields, and all that a report, a page, advice and a comparison look at.
+//!
+//! Rows stay typed structs, one field a column; [`columns!`](crate::columns) says of each field its words, unit, scale and [`Role`], and a field
+//! of which nothing is said does not compile. [`Table::of`] makes a table of rows, [`Table::read`] of a file that a run wrote: both hold the same.
+//! A [`ChartSpec`] names the columns of a table that a chart shows; it holds no pixels.
+
+mod chart;
+mod column;
+mod columns_macro;
+mod front;
+#[allow(clippy::module_inception)]
+mod table;
+
+pub use chart::{Along, ChartSpec, Mark, Rule, Shown};
+pub use column::{Better, Column, Columns, Role, Scale};
+pub use front::front;
+pub use table::{Data, Table, Value};

@@ -1,0 +1,346 @@
+//! A table: columns of numbers and words, and the bytes of its file.
+
+use super::{Column, Columns, Scale};
+use crate::error::{Error, Result};
+use serde::Serialize;
+use std::path::Path;
+
+/// A table of a study's results.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Table {
+    /// Its file's name: `accuracy.csv`.
+    pub file: &'static str,
+    /// What it holds, for a heading: `Accuracy of every trial`.
+    pub title: &'static str,
+    /// How to read it, in a sentence or two; empty where the columns say all.
+    pub note: String,
+    /// Whether the same study gives the same bytes: false for tables of times.
+    pub repeats: bool,
+    /// What its columns are: those that the file has.
+    pub columns: Vec<Column>,
+    /// The values of each column.
+    pub data: Vec<Data>,
+    /// How many rows.
+    pub n_rows: usize,
+    /// The file's content.
+    pub csv: Vec<u8>,
+}
+
+/// The values of a column, row by row.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Data {
+    /// NaN where absent.
+    Numbers(Vec<f64>),
+    /// Each word once, in the order of first rows, and the place of each row's in that list. An absent word is the empty one.
+    Words {
+        /// Each once.
+        levels: Vec<String>,
+        /// Of each row.
+        codes: Vec<u32>,
+    },
+}
+
+/// A value of a row.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Value {
+    /// A number.
+    Number(f64),
+    /// A word.
+    Word(String),
+}
+
+impl Data {
+    /// The value of a row; none where it is absent.
+    pub fn value(&self, row: usize) -> Option<Value> {
+        match self {
+            Self::Numbers(numbers) => Some(numbers[row])
+                .filter(|n| !n.is_nan())
+                .map(Value::Number),
+            Self::Words { levels, codes } => Some(&levels[codes[row] as usize])
+                .filter(|word| !word.is_empty())
+                .map(|word| Value::Word(word.clone())),
+        }
+    }
+}
+
+impl Table {
+    /// Of typed rows. Numbers are written in the shortest form that reads back as the same bits.
+    ///
+    /// # Errors
+    /// Rows that have no such form; the error names the file.
+    pub fn of<R: Columns + Serialize>(
+        file: &'static str,
+        title: &'static str,
+        rows: &[R],
+    ) -> Result<Self> {
+        let csv = csv_of(rows, &R::columns());
+        let csv = csv.map_err(|e| Error::io(file, "write", std::io::Error::other(e)))?;
+        Self::from_csv((file, title), R::columns(), Path::new(file), csv)
+    }
+
+    /// Of a file in a folder.
+    ///
+    /// # Errors
+    /// A file that cannot be read, or has other columns or values; the error names file, line and column.
+    pub fn read<R: Columns>(
+        file: &'static str,
+        title: &'static str,
+        folder: &Path,
+    ) -> Result<Self> {
+        let path = folder.join(file);
+        let csv = std::fs::read(&path)
+            .map_err(|e| Error::unreadable(&path, "a table that bubbletouch run wrote", e))?;
+        Self::from_csv((file, title), R::columns(), &path, csv)
+    }
+
+    /// The same, of times: no two runs give the same bytes.
+    pub fn of_times(mut self) -> Self {
+        self.repeats = false;
+        self
+    }
+
+    /// The same with a note.
+    pub fn noted(mut self, note: impl Into<String>) -> Self {
+        self.note = note.into();
+        self
+    }
+
+    /// The place of a column by its name.
+    pub fn place(&self, column: &str) -> Option<usize> {
+        self.columns.iter().position(|known| known.name == column)
+    }
+
+    /// A column by its name.
+    pub fn column(&self, column: &str) -> Option<(&Column, &Data)> {
+        let place = self.place(column)?;
+        Some((&self.columns[place], &self.data[place]))
+    }
+
+    /// The numbers of a column; none if there is no such column of numbers.
+    pub fn numbers(&self, column: &str) -> Option<&[f64]> {
+        match self.column(column)? {
+            (_, Data::Numbers(numbers)) => Some(numbers),
+            _ => None,
+        }
+    }
+
+    fn from_csv(
+        (file, title): (&'static str, &'static str),
+        known: Vec<Column>,
+        path: &Path,
+        csv: Vec<u8>,
+    ) -> Result<Self> {
+        let mut reader = csv::Reader::from_reader(&csv[..]);
+        let bad = |line: Option<u64>, given: String, allowed: String| {
+            let place = match line {
+                Some(line) => format!("{}: line {line}", path.display()),
+                None => path.display().to_string(),
+            };
+            Error::input(place, given, allowed)
+        };
+        let broken = |e: csv::Error| {
+            let line = e.position().map(csv::Position::line);
+            bad(line, e.to_string(), "a row of the table".to_owned())
+        };
+        let header = reader.headers().map_err(broken)?.clone();
+        let mut columns = Vec::with_capacity(header.len());
+        let mut all = known.into_iter();
+        for name in &header {
+            let found = all.by_ref().find(|column| {
+                // A column before it that every study has must not be passed over.
+                column.name == name || !column.is_optional
+            });
+            match found {
+                Some(column) if column.name == name => columns.push(column),
+                Some(column) => {
+                    let given = format!("column {name:?}");
+                    return Err(bad(Some(1), given, format!("column {:?}", column.name)));
+                }
+                None => {
+                    let given = format!("column {name:?}");
+                    return Err(bad(Some(1), given, "no such column".to_owned()));
+                }
+            }
+        }
+        if let Some(missing) = all.find(|column| !column.is_optional) {
+            let given = format!("no column {:?}", missing.name);
+            return Err(bad(Some(1), given, "all columns of the table".to_owned()));
+        }
+        let mut makers: Vec<Maker> = columns.iter().map(Maker::new).collect();
+        let mut n_rows = 0;
+        let mut record = csv::StringRecord::new();
+        while reader.read_record(&mut record).map_err(broken)? {
+            n_rows += 1;
+            for ((maker, column), text) in makers.iter_mut().zip(&columns).zip(&record) {
+                if !maker.push(text) {
+                    let line = record.position().map(csv::Position::line);
+                    let given = format!("{text:?} in column {:?}", column.name);
+                    return Err(bad(line, given, "a number, or nothing".to_owned()));
+                }
+            }
+        }
+        Ok(Self {
+            file,
+            title,
+            note: String::new(),
+            repeats: true,
+            columns,
+            data: makers.into_iter().map(|maker| maker.data).collect(),
+            n_rows,
+            csv,
+        })
+    }
+}
+
+/// A table of no rows has the header of those columns that every study has.
+fn csv_of<R: Serialize>(
+    rows: &[R],
+    columns: &[Column],
+) -> std::result::Result<Vec<u8>, csv::Error> {
+    let mut writer = csv::Writer::from_writer(Vec::new());
+    if rows.is_empty() {
+        let always = columns.iter().filter(|column| !column.is_optional);
+        writer.write_record(always.map(|column| column.name.as_bytes()))?;
+    }
+    for row in rows {
+        writer.serialize(row)?;
+    }
+    let bytes = writer.into_inner().map_err(|e| e.into_error());
+    bytes.map_err(csv::Error::from)
+}
+
+/// Collects the values of a column.
+struct Maker {
+    data: Data,
+    /// The code of each word.
+    known: std::collections::HashMap<String, u32>,
+}
+
+impl Maker {
+    fn new(column: &Column) -> Self {
+        let data = match column.scale {
+            Scale::Words => Data::Words {
+                levels: Vec::new(),
+                codes: Vec::new(),
+            },
+            Scale::Linear | Scale::Log | Scale::Share => Data::Numbers(Vec::new()),
+        };
+        Self {
+            data,
+            known: Default::default(),
+        }
+    }
+
+    /// Whether the text is such a value.
+    fn push(&mut self, text: &str) -> bool {
+        match &mut self.data {
+            Data::Numbers(numbers) => match (text.is_empty(), text.parse()) {
+                (true, _) => numbers.push(f64::NAN),
+                (false, Ok(number)) => numbers.push(number),
+                (false, Err(_)) => return false,
+            },
+            Data::Words { levels, codes } => {
+                let code = match self.known.get(text) {
+                    Some(&code) => code,
+                    None => {
+                        let code = levels.len() as u32;
+                        self.known.insert(text.to_owned(), code);
+                        levels.push(text.to_owned());
+                        code
+                    }
+                };
+                codes.push(code);
+            }
+        }
+        true
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::columns;
+    use serde::Deserialize;
+
+    #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+    struct Setting {
+        method: String,
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        leak: Option<f64>,
+        step_s: f64,
+    }
+
+    #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+    struct Found {
+        error: Option<f64>,
+    }
+
+    columns! { Setting {
+        method: Choice;
+        leak: Condition "crosstalk" in "%": Share, optional;
+        step_s: Choice "time step" in "s": Log;
+    } }
+    columns! { Found {
+        error: Value(Less) "deflection error": Log;
+    } }
+
+    fn rows(leak: Option<f64>) -> Vec<(Setting, Found)> {
+        let row = |method: &str, step_s, error| {
+            let method = method.to_owned();
+            (
+                Setting {
+                    method,
+                    leak,
+                    step_s,
+                },
+                Found { error },
+            )
+        };
+        vec![row("003", 1e-7, Some(0.1 + 0.2)), row("b, c", 2.0, None)]
+    }
+
+    #[test]
+    fn a_table_holds_the_same_of_its_rows_and_of_its_file() {
+        let folder = tempfile::tempdir().unwrap();
+        for rows in [rows(Some(0.25)), rows(None), Vec::new()] {
+            let made = Table::of("found.csv", "Found", &rows).unwrap();
+            std::fs::write(folder.path().join("found.csv"), &made.csv).unwrap();
+            let read = Table::read::<(Setting, Found)>("found.csv", "Found", folder.path());
+            let read = read.unwrap();
+            assert_eq!((&read.columns, read.n_rows), (&made.columns, rows.len()));
+            assert_eq!(read.csv, made.csv);
+            let values = |table: &Table, row| -> Vec<Option<Value>> {
+                table.data.iter().map(|data| data.value(row)).collect()
+            };
+            for row in 0..rows.len() {
+                assert_eq!(values(&read, row), values(&made, row));
+            }
+        }
+        let made = Table::of("found.csv", "Found", &rows(None)).unwrap();
+        assert_eq!(made.place("leak"), None);
+        let words = made.column("method").unwrap().1.value(0);
+        assert_eq!(words, Some(Value::Word("003".to_owned())));
+        assert_eq!(made.numbers("error").unwrap()[0], 0.1 + 0.2);
+        assert_eq!(made.column("error").unwrap().1.value(1), None);
+    }
+
+    #[test]
+    fn another_header_and_a_word_for_a_number_are_told_with_their_line() {
+        let folder = tempfile::tempdir().unwrap();
+        for (text, wanted) in [
+            ("method,step_s\n", "line 1: no column \"error\""),
+            ("method,step,error\n", "line 1: column \"step\""),
+            ("method,step_s,error,more\n", "line 1: column \"more\""),
+            (
+                "method,step_s,error\na,1,2\nb,x,3\n",
+                "line 3: \"x\" in column \"step_s\"",
+            ),
+            ("method,step_s,error\na,1\n", "line 2"),
+        ] {
+            std::fs::write(folder.path().join("found.csv"), text).unwrap();
+            let read = Table::read::<(Setting, Found)>("found.csv", "Found", folder.path());
+            let said = read.unwrap_err().to_string();
+            assert!(said.contains(wanted), "{said}");
+        }
+    }
+}
