@@ -153,6 +153,7 @@ pub mod error;
 pub mod files;
 pub mod geometry;
 pub mod guide;
+pub mod kinds;
 pub mod mesh;
 mod numbers_csv;
 pub mod objects;

@@ -1,62 +1,26 @@
 //! A study of any kind, as the commands see it that run it, merge it, submit it and verify it.
 
+use super::about_study::command_line;
 use super::breaking_points_kind::BreakingPointsKind;
 use super::listener::Listener;
-use super::memory_args::{CeilingArgs, MemoryArgs, not_of_pieces};
+use super::memory_args::{MemoryArgs, not_of_pieces};
 use super::object_detail_kind::ObjectDetailKind;
+use super::output::{packings_beside, tell_where, terminal_width};
 use super::piece_kind::PieceRun;
 use super::recognition_study::RecognitionStudy;
 use super::reconstruction_kind::ReconstructionKind;
 use super::speed_accuracy_kind::SpeedAccuracyKind;
 use super::stability_kind::StabilityKind;
+use super::streams::write_out;
 use super::study_args::StudyArgs;
 use super::whole_body_kind::WholeBodyKind;
+use bubbletouch::kinds::{self, AnyOutcome, AnyStudy, EndedRun};
 use bubbletouch::report::csv_tables::FAILURES_FILE;
-use bubbletouch::study::journal::{Identity, Journal};
-use bubbletouch::study::pieces::PieceManner;
+use bubbletouch::study::StudyKind;
 use bubbletouch::study::progress::Progress;
-use bubbletouch::study::{Part, StudyKind};
 use bubbletouch::{Error, Result};
 use std::path::Path;
 use std::time::SystemTime;
-
-/// A study that is loaded and checked.
-pub trait AnyStudy {
-    /// What its results depend on.
-    fn identity(&self) -> &Identity;
-    /// What its work is counted in: `cells` or `pieces`.
-    fn units(&self) -> &'static str;
-    /// How many; cells count once a trial.
-    fn n_all(&self) -> usize;
-    /// What it asks, and what it will take.
-    fn plan(&self, ceiling: &CeilingArgs) -> Result<String>;
-    /// Of a part, those of which a journal does not say what came of them.
-    fn n_left(&self, part: Part, journal: &Journal) -> usize;
-    /// Does what is left.
-    fn run<'a>(&'a self, manner: &PieceManner<'a>) -> Result<Box<dyn AnyOutcome + 'a>>;
-    /// Runs some of its work again, drawn at random, and says what it was, or which row of a folder is not the same.
-    fn verify(&self, folder: &Path, n: usize, draw: u64) -> Result<String>;
-}
-
-/// What came of a study.
-pub trait AnyOutcome {
-    /// How much of it failed, and how much there is.
-    fn n_failed(&self) -> usize;
-    /// Writes tables, charts and page, the study and the manifest.
-    fn write(&self, ended: &EndedRun) -> Result<()>;
-    /// Says to a person, on standard output, what was found.
-    fn tell(&self, folder: &Path) -> Result<()>;
-}
-
-/// A run that has done its work, and where its files go.
-pub struct EndedRun<'a> {
-    pub args: &'a StudyArgs,
-    pub folder: &'a Path,
-    pub started: SystemTime,
-    /// What was finished before it.
-    pub n_before: usize,
-    pub progress: &'a dyn Progress,
-}
 
 /// Reads and checks a study of any kind and loads its objects; `memory` is needed where it will run.
 pub fn load_study(
@@ -64,6 +28,14 @@ pub fn load_study(
     folder: &Path,
     memory: Option<&MemoryArgs>,
 ) -> Result<Box<dyn AnyStudy>> {
+    let mut source = args.source()?;
+    source.packings = Some(packings_beside(folder));
+    if let Some(memory) = memory {
+        source.memory = memory.bytes()?;
+    }
+    if let Some(study) = kinds::load(&source)? {
+        return Ok(study);
+    }
     let kind = args.kind()?;
     let mut given = memory.into_iter().flat_map(MemoryArgs::given);
     if kind != StudyKind::Recognition
@@ -92,7 +64,7 @@ pub fn end(
     run.progress.stage("report", 1);
     outcome.write(run)?;
     run.progress.advance(1);
-    let elapsed_s = seconds_since(run.started);
+    let elapsed_s = run.wall_s();
     run.progress.finish(&format!("{what}{elapsed_s:.1} s"));
     listener.finished(serde_json::json!({
         "event": "finished",
@@ -103,9 +75,28 @@ pub fn end(
         "elapsed_s": elapsed_s,
     }))?;
     if listener.is_person() {
-        outcome.tell(run.folder)?;
+        write_out(outcome.words(terminal_width()).as_bytes())?;
+        tell_where(run.folder)?;
     }
     failures(study, outcome, run.folder)
+}
+
+/// A run of a study that has ended.
+pub fn ended<'a>(
+    args: &StudyArgs,
+    folder: &'a Path,
+    (started, n_before): (SystemTime, usize),
+    progress: &'a dyn Progress,
+) -> Result<EndedRun<'a>> {
+    Ok(EndedRun {
+        name: args.name()?,
+        command: command_line(args),
+        paths_from: args.folder(),
+        folder,
+        started,
+        n_before,
+        progress,
+    })
 }
 
 /// An error if some of a study failed.

@@ -50,6 +50,7 @@ impl PieceKind for BreakingPointsKind {
             n_configurations: values().map(|value| value.learned.classifiers.len()).sum(),
             // Values are driven on all threads, their frames in single precision.
             bytes: 4.0 * N_OBJECTS * (n_threads * most.unwrap_or(0)) as f64,
+            ..Scale::default()
         }
     }
 

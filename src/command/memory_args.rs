@@ -2,7 +2,7 @@
 
 use super::output::touches_beside;
 use super::study_args::LoadedStudy;
-use bubbletouch::study::memory::{AtOnce, GIB, MemoryPlan, machine_memory};
+use bubbletouch::study::memory::{GIB, MemoryPlan, machine_memory};
 use bubbletouch::study::{FrameStorage, StudyKind, TouchCache};
 use bubbletouch::{Error, Result};
 use std::path::Path;
@@ -38,14 +38,6 @@ pub fn not_of_pieces(option: &str, kind: StudyKind) -> Error {
 }
 
 impl CeilingArgs {
-    /// An error if it was given for a study of pieces.
-    pub fn refuse(&self, kind: StudyKind) -> Result<()> {
-        match self.memory_gib {
-            Some(_) => Err(not_of_pieces("--memory-gib", kind)),
-            None => Ok(()),
-        }
-    }
-
     /// What a study may hold at once.
     pub fn plan(&self, loaded: &LoadedStudy) -> Result<MemoryPlan> {
         let n_classes = loaded.touched.class_names().len();
@@ -64,7 +56,7 @@ pub struct Room {
     /// Where frames come from and are kept.
     pub storage: FrameStorage,
     /// How much of the work is in memory at the same time.
-    pub at_once: AtOnce,
+    pub memory: MemoryPlan,
 }
 
 impl MemoryArgs {
@@ -91,7 +83,7 @@ impl MemoryArgs {
         let cache = TouchCache::new(touches_beside(folder), limit);
         Ok(Room {
             storage: FrameStorage::new(cache, memory.frames),
-            at_once: memory.at_once,
+            memory,
         })
     }
 

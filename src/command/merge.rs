@@ -1,6 +1,6 @@
 //! `bubbletouch merge`: the shards of a study put together.
 
-use super::any_study::{EndedRun, end, load_study};
+use super::any_study::{end, ended, load_study};
 use super::listener::Listener;
 use super::memory_args::MemoryArgs;
 use super::output::output_folder;
@@ -63,13 +63,8 @@ pub fn merge(args: &Args) -> Result<()> {
         progress: progress.as_ref(),
     };
     let outcome = study.run(&manner)?;
-    let ended = EndedRun {
-        args: &args.study,
-        folder: &folder,
-        started,
-        n_before: n_all,
-        progress: progress.as_ref(),
-    };
+    let times = (started, n_all);
+    let ended = ended(&args.study, &folder, times, progress.as_ref())?;
     let what = format!("{n_journals} shards, ");
     end(
         study.as_ref(),

@@ -59,6 +59,7 @@ impl PieceKind for ObjectDetailKind {
             },
             n_configurations: n_objects * n_levels + n_levels * n_classifiers,
             bytes: 16.0 * frames,
+            ..Scale::default()
         }
     }
 

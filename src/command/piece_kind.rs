@@ -1,28 +1,24 @@
 //! Studies that are made of pieces: what a kind has to say of itself, and all that follows from it.
 
-use super::about_study::command_line;
-use super::any_study::{AnyOutcome, AnyStudy, EndedRun, seconds_since};
-use super::memory_args::CeilingArgs;
-use super::output::{packings_beside, tell_where, terminal_width};
+use super::output::packings_beside;
 use super::piece_rows::{compare, draw};
-use super::streams::say;
 use super::study_args::StudyArgs;
-use bubbletouch::Result;
 use bubbletouch::files::write_bytes;
+use bubbletouch::kinds::{AnyOutcome, AnyStudy, EndedRun, ReportAbout};
 use bubbletouch::report::csv_tables::{FAILURES_FILE, csv_content};
 use bubbletouch::report::folder::Folder;
 use bubbletouch::report::page::StudyAbout;
-use bubbletouch::report::progress;
 use bubbletouch::report::study_tables::StudyTables;
 use bubbletouch::study::journal::{Identity, Journal};
 use bubbletouch::study::pieces::{
     FinishedPieces, PieceEstimate, PieceFailure, PieceManner, PieceStudy, PiecesRun, Scale,
     n_pieces_left, run_pieces,
 };
-use bubbletouch::study::progress::Silent;
+use bubbletouch::study::progress::{Progress, Silent};
 use bubbletouch::study::provenance::{MANIFEST_FILE, Manifest, PROGRAM, RunFacts};
 use bubbletouch::study::time_left::Piece;
 use bubbletouch::study::{Part, StudyKind};
+use bubbletouch::{Error, Result};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -91,7 +87,11 @@ impl<K: PieceKind> PieceRun<K> {
         let kind = K::load(args, packings_beside(folder))?;
         let facts = kind.facts()?;
         Ok(Self {
-            identity: Identity::new(facts.toml.clone(), facts.content.clone()),
+            identity: Identity::new(
+                facts.toml.clone(),
+                facts.content.clone(),
+                K::KIND.may_change(),
+            ),
             n_pieces: kind.study().pieces().len(),
             facts,
             kind,
@@ -112,8 +112,7 @@ impl<K: PieceKind> AnyStudy for PieceRun<K> {
         self.n_pieces
     }
 
-    fn plan(&self, ceiling: &CeilingArgs) -> Result<String> {
-        ceiling.refuse(K::KIND)?;
+    fn plan(&self) -> Result<String> {
         let study = self.kind.study();
         let manner = PieceManner {
             journal: &Journal::none(),
@@ -127,6 +126,7 @@ impl<K: PieceKind> AnyStudy for PieceRun<K> {
         let estimate = PieceEstimate {
             scale: self.kind.scale(),
             n_pieces: self.n_pieces,
+            n_threads: rayon::current_num_threads(),
             work,
         };
         Ok(format!("{}\n{estimate}", self.facts.asked[0]))
@@ -152,15 +152,20 @@ impl<K: PieceKind> AnyStudy for PieceRun<K> {
         }))
     }
 
-    fn verify(&self, folder: &Path, n: usize, seed: u64) -> Result<String> {
+    fn verify(
+        &self,
+        folder: &Path,
+        n: usize,
+        seed: u64,
+        progress: &dyn Progress,
+    ) -> Result<String> {
         let chosen = draw(&self.kind.study().pieces(), folder, (n, seed))?;
-        let progress = progress::to_stderr();
         let manner = PieceManner {
             journal: &Journal::none(),
             fail_fast: true,
             retries: false,
             part: Part::Holding(&chosen),
-            progress: progress.as_ref(),
+            progress,
         };
         let study = self.kind.study();
         let again = study.tables(run_pieces(study, &manner)?.rows)?;
@@ -173,6 +178,11 @@ impl<K: PieceKind> AnyStudy for PieceRun<K> {
             chosen.len(),
             self.n_pieces,
         ))
+    }
+
+    fn report(&self, folder: &Path, _about: &ReportAbout) -> Result<()> {
+        let allowed = "a study that recognises objects (of any other, bubbletouch run draws again what is finished)";
+        Err(Error::input(folder.display(), K::KIND.words(), allowed))
     }
 }
 
@@ -196,12 +206,13 @@ impl<K: PieceKind> AnyOutcome for PieceOutcome<'_, K> {
         } = &self.run.facts;
         let [question, expected] = asked.clone();
         let about = StudyAbout {
-            name: ended.args.name()?,
+            name: ended.name.clone(),
             question,
             expected,
-            wall_s: seconds_since(ended.started),
-            command: command_line(ended.args),
+            wall_s: ended.wall_s(),
+            command: ended.command.clone(),
             program: PROGRAM.to_owned(),
+            ..StudyAbout::default()
         };
         let made = kind.folder(&self.tables, folder, &about)?;
         made.write_telling(&|drawn| {
@@ -215,7 +226,7 @@ impl<K: PieceKind> AnyOutcome for PieceOutcome<'_, K> {
         let facts = RunFacts {
             study: about.name,
             command: about.command,
-            paths_from: ended.args.folder(),
+            paths_from: ended.paths_from.clone(),
             started: ended.started,
             seed: *seed,
             n_cells: self.run.n_pieces,
@@ -233,10 +244,8 @@ impl<K: PieceKind> AnyOutcome for PieceOutcome<'_, K> {
         Ok(())
     }
 
-    fn tell(&self, folder: &Path) -> Result<()> {
-        let kind = &self.run.kind;
-        say(format_args!("{}\n", self.run.facts.asked[0]))?;
-        say(kind.words(&self.tables, terminal_width()))?;
-        tell_where(folder)
+    fn words(&self, width: usize) -> String {
+        let found = self.run.kind.words(&self.tables, width);
+        format!("{}\n\n{found}\n", self.run.facts.asked[0])
     }
 }

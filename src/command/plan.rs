@@ -19,7 +19,7 @@ pub fn plan(args: &Args) -> Result<()> {
     let folder = results_folder(&args.study, None)?;
     let memory = MemoryArgs::within(args.ceiling);
     let study = load_study(&args.study, &folder, Some(&memory))?;
-    let said = study.plan(&args.ceiling)?;
+    let said = study.plan()?;
     say(format_args!("{}: {said}", args.study.name()?))?;
     if let Some(mixed) = args.study.mixed_touches()? {
         say(format_args!("note: {mixed}"))?;

@@ -1,24 +1,25 @@
 //! Studies that recognise objects, loaded.
 
-use super::about_study::{add_manifest, add_touches, command_line, limits, page_of_spec};
-use super::any_study::{AnyOutcome, AnyStudy, EndedRun, seconds_since};
-use super::memory_args::{CeilingArgs, MemoryArgs, Room};
-use super::output::{packings_beside, tell_where, terminal_width};
-use super::streams::{say, write_out};
+use super::about_study::{add_manifest, add_touches, limits, page_of_spec};
+use super::memory_args::{MemoryArgs, Room};
+use super::output::packings_beside;
+use super::report::write_again;
 use super::study_args::{LoadedStudy, StudyArgs};
 use super::verify_cells::verify_cells;
 use bubbletouch::Result;
 use bubbletouch::files::write_bytes;
+use bubbletouch::kinds::{AnyOutcome, AnyStudy, EndedRun, ReportAbout};
 use bubbletouch::report::csv_tables::table_hashes;
 use bubbletouch::report::page::Limit;
 use bubbletouch::report::{headlines, results, terminal};
 use bubbletouch::study::journal::{Identity, Journal};
-use bubbletouch::study::memory::{AtOnce, machine_memory};
+use bubbletouch::study::memory::{AtOnce, MemoryPlan, machine_memory};
 use bubbletouch::study::pieces::PieceManner;
+use bubbletouch::study::progress::Progress;
 use bubbletouch::study::provenance::{MANIFEST_FILE, Manifest, RECOGNITION_METHODS, RunFacts};
 use bubbletouch::study::time_left::{Piece, Work};
 use bubbletouch::study::{
-    Estimate, FrameStorage, Manner, Outcome, Part, n_left, run_with, workload,
+    Estimate, FrameStorage, Manner, Outcome, Part, StudyKind, n_left, run_with, workload,
 };
 use std::path::Path;
 use std::time::Instant;
@@ -38,11 +39,19 @@ impl RecognitionStudy {
             // It does not run here.
             None => Room {
                 storage: FrameStorage::in_memory(),
-                at_once: AtOnce::ALL,
+                memory: MemoryPlan {
+                    at_once: AtOnce::ALL,
+                    frames: u64::MAX,
+                    most_bytes: f64::INFINITY,
+                },
             },
         };
         Ok(Self {
-            identity: Identity::new(loaded.plan.spec.to_toml(), loaded.touched.content()),
+            identity: Identity::new(
+                loaded.plan.spec.to_toml(),
+                loaded.touched.content(),
+                StudyKind::Recognition.may_change(),
+            ),
             loaded,
             room,
         })
@@ -77,15 +86,14 @@ impl AnyStudy for RecognitionStudy {
         self.loaded.n_evaluations()
     }
 
-    fn plan(&self, ceiling: &CeilingArgs) -> Result<String> {
-        let memory = ceiling.plan(&self.loaded)?;
+    fn plan(&self) -> Result<String> {
         let LoadedStudy {
             plan,
             touched,
             sweep,
             ..
         } = &self.loaded;
-        let estimate = Estimate::new(plan, touched.as_ref(), sweep, &memory);
+        let estimate = Estimate::new(plan, touched.as_ref(), sweep, &self.room.memory);
         Ok(format!("{}\n{estimate}", plan.spec.question))
     }
 
@@ -107,7 +115,7 @@ impl AnyStudy for RecognitionStudy {
             retries: manner.retries,
             part: manner.part,
             storage: &self.room.storage,
-            at_once: self.room.at_once,
+            at_once: self.room.memory.at_once,
         };
         let report = self.report_work(manner.part);
         let work = workload(plan, sweep, touched.as_ref(), manner);
@@ -123,8 +131,18 @@ impl AnyStudy for RecognitionStudy {
         }))
     }
 
-    fn verify(&self, folder: &Path, n: usize, draw: u64) -> Result<String> {
-        verify_cells(&self.loaded, &self.room, folder, (n, draw))
+    fn verify(
+        &self,
+        folder: &Path,
+        n: usize,
+        draw: u64,
+        progress: &dyn Progress,
+    ) -> Result<String> {
+        verify_cells(&self.loaded, &self.room, (folder, progress), (n, draw))
+    }
+
+    fn report(&self, folder: &Path, about: &ReportAbout) -> Result<()> {
+        write_again(&self.loaded, folder, about)
     }
 }
 
@@ -139,9 +157,9 @@ impl RecognitionOutcome<'_> {
         let loaded = &self.study.loaded;
         let hashes = table_hashes(&self.outcome.tables, limits)?;
         let facts = RunFacts {
-            study: loaded.name.clone(),
-            command: command_line(ended.args),
-            paths_from: ended.args.folder(),
+            study: ended.name.clone(),
+            command: ended.command.clone(),
+            paths_from: ended.paths_from.clone(),
             started: ended.started,
             seed: loaded.plan.spec.seed,
             n_cells: loaded.sweep.n_cells(),
@@ -170,7 +188,7 @@ impl AnyOutcome for RecognitionOutcome<'_> {
         let manifest = self.manifest(ended, &page.limits)?;
         add_touches(&mut page, loaded)?;
         add_manifest(&mut page, manifest.clone());
-        page.wall_s = Some(seconds_since(ended.started));
+        page.wall_s = Some(ended.wall_s());
         let told = (ended.progress, &self.report);
         results::write_all_telling(folder, &self.outcome.tables, &page, told)?;
         write_bytes(&folder.join("study.toml"), spec.to_toml().as_bytes())?;
@@ -180,11 +198,9 @@ impl AnyOutcome for RecognitionOutcome<'_> {
         Ok(())
     }
 
-    fn tell(&self, folder: &Path) -> Result<()> {
+    fn words(&self, width: usize) -> String {
         let tables = &self.outcome.tables;
-        let table = folder.join("summary.csv").display().to_string();
-        say(terminal::summary_table(tables, terminal_width(), &table))?;
-        write_out(headlines::text(tables, terminal_width()).as_bytes())?;
-        tell_where(folder)
+        let summary = terminal::summary_table(tables, width, "summary.csv");
+        format!("{summary}\n{}", headlines::text(tables, width))
     }
 }

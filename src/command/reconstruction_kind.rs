@@ -47,6 +47,7 @@ impl PieceKind for ReconstructionKind {
             touches: format!("{n_touches} on one array"),
             n_configurations: self.0.n_cells(),
             bytes: 8.0 * (frames + n_taxels * n_taxels),
+            ..Scale::default()
         }
     }
 

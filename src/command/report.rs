@@ -1,15 +1,14 @@
 //! `bubbletouch report`: the page of a folder of results of recognition again, from its tables.
 
 use super::about_study::{add_manifest, add_touches, page_of_spec};
+use super::any_study::load_study;
 use super::checked_manifest::checked_manifest;
-use super::output::packings_beside;
 use super::streams::{note, say};
-use super::study_args::StudyArgs;
+use super::study_args::{LoadedStudy, StudyArgs};
+use bubbletouch::kinds::ReportAbout;
 use bubbletouch::report::csv_tables::{LIMITS_FILE, read_rows, read_tables};
-use bubbletouch::report::page::ReportPage;
 use bubbletouch::report::results::write_page;
-use bubbletouch::study::StudyKind;
-use bubbletouch::study::provenance::{MANIFEST_FILE, Manifest};
+use bubbletouch::study::provenance::MANIFEST_FILE;
 use bubbletouch::{Error, Result};
 use std::path::{Path, PathBuf};
 
@@ -24,7 +23,6 @@ pub struct Args {
 
 pub fn report(args: &Args) -> Result<()> {
     let folder = &args.results;
-    check_kind(folder)?;
     let manifest = checked_manifest(folder)?;
     if manifest.is_none() {
         note(format_args!(
@@ -32,55 +30,41 @@ pub fn report(args: &Args) -> Result<()> {
             folder.join(MANIFEST_FILE).display()
         ));
     }
-    let tables = read_tables(folder)?;
-    let mut page = about(folder, manifest)?;
-    page.all_charts = args.all_charts;
-    write_page(folder, &tables, &page)?;
+    let study = StudyArgs {
+        study: folder.join("study.toml"),
+        objects: None,
+        seed: None,
+        threads: None,
+        paths_from: manifest
+            .as_ref()
+            .map(|manifest| manifest.paths_from.clone()),
+    };
+    let name = match &manifest {
+        Some(manifest) if !manifest.study.is_empty() => manifest.study.clone(),
+        _ => folder_name(folder)?,
+    };
+    let command = match &manifest {
+        Some(manifest) => manifest.command.clone(),
+        None => format!("bubbletouch run {}", study.study.display()),
+    };
+    let about = ReportAbout {
+        name,
+        command,
+        manifest,
+        all_charts: args.all_charts,
+    };
+    load_study(&study, folder, None)?.report(folder, &about)?;
     say(format_args!(
         "Wrote {}",
         folder.join("report.html").display()
     ))
 }
 
-/// An error if the folder is of a study that does not recognise.
-fn check_kind(folder: &Path) -> Result<()> {
-    let path = folder.join("study.toml");
-    let text = std::fs::read_to_string(&path).unwrap_or_default();
-    match StudyKind::of(&text) {
-        StudyKind::Recognition => Ok(()),
-        kind => Err(Error::input(
-            path.display(),
-            kind.words(),
-            format!(
-                "{} (of any other, bubbletouch run draws again what is finished)",
-                StudyKind::Recognition.words()
-            ),
-        )),
-    }
-}
-
-/// What the folder says of itself: its study, its manifest, and the touches of its study, made again.
-fn about(folder: &Path, manifest: Option<Manifest>) -> Result<ReportPage> {
-    let study = StudyArgs {
-        study: folder.join("study.toml"),
-        objects: None,
-        seed: None,
-        threads: None,
-        paths_from: None,
-    };
-    let name = match &manifest {
-        Some(manifest) if !manifest.study.is_empty() => manifest.study.clone(),
-        _ => folder_name(folder)?,
-    };
-    let spec = study.plan()?.spec;
-    let mut page = page_of_spec(&spec, &name);
-    let packings = packings_beside(folder);
-    let loaded = study.load(Some(&packings));
-    if let Err(error) = loaded.and_then(|loaded| add_touches(&mut page, &loaded)) {
-        note(format_args!(
-            "note: the page has no sample touches: {error}"
-        ));
-    }
+/// Writes the page of a study of recognition again.
+pub fn write_again(loaded: &LoadedStudy, folder: &Path, about: &ReportAbout) -> Result<()> {
+    let mut page = page_of_spec(&loaded.plan.spec, &about.name);
+    page.all_charts = about.all_charts;
+    add_touches(&mut page, loaded)?;
     let limits = folder.join(LIMITS_FILE);
     match limits.exists() {
         true => page.limits = read_rows(&limits)?,
@@ -89,13 +73,11 @@ fn about(folder: &Path, manifest: Option<Manifest>) -> Result<ReportPage> {
             limits.display()
         )),
     }
-    if let Some(manifest) = manifest {
+    if let Some(manifest) = about.manifest.clone() {
         add_manifest(&mut page, manifest);
     }
-    if page.command.is_empty() {
-        page.command = format!("bubbletouch run {}", study.study.display());
-    }
-    Ok(page)
+    page.command = about.command.clone();
+    write_page(folder, &read_tables(folder)?, &page).map(|_| ())
 }
 
 fn folder_name(folder: &Path) -> Result<String> {

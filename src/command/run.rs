@@ -1,7 +1,7 @@
 //! `bubbletouch run`: a study from its file to its folder of results.
 
 use super::about_study::merge_line;
-use super::any_study::{EndedRun, end, failures, load_study, seconds_since};
+use super::any_study::{end, ended, failures, load_study, seconds_since};
 use super::listener::Listener;
 use super::memory_args::MemoryArgs;
 use super::study_args::StudyArgs;
@@ -96,13 +96,8 @@ pub fn run(args: &Args) -> Result<()> {
         ));
         return failures(study.as_ref(), outcome.as_ref(), &folder);
     }
-    let ended = EndedRun {
-        args: &args.study,
-        folder: &folder,
-        started,
-        n_before,
-        progress: progress.as_ref(),
-    };
+    let times = (started, n_before);
+    let ended = ended(&args.study, &folder, times, progress.as_ref())?;
     let result = end(
         study.as_ref(),
         outcome.as_ref(),

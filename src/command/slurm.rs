@@ -1,11 +1,12 @@
 //! `bubbletouch slurm`: the shards of a study as an array of jobs, and their merge after them.
 
-use super::any_study::{AnyStudy, load_study};
+use super::any_study::load_study;
 use super::output::output_folder;
 use super::run::results_folder;
 use super::slurm_jobs::{Job, queued_shards, submit};
 use super::streams::say;
 use super::study_args::StudyArgs;
+use bubbletouch::kinds::AnyStudy;
 use bubbletouch::study::journal::{JOURNAL_FILE, Journal};
 use bubbletouch::study::{Part, Shard};
 use bubbletouch::{Error, Result};

@@ -57,6 +57,7 @@ impl PieceKind for SpeedAccuracyKind {
             touches: touches.join(", "),
             n_configurations: self.0.pieces().len(),
             bytes,
+            ..Scale::default()
         }
     }
 

@@ -45,6 +45,7 @@ impl PieceKind for StabilityKind {
             touches: format!("one a configuration, on up to {} taxels", most.unwrap_or(0)),
             n_configurations: self.0.n_cells(),
             bytes: TAXEL_BYTES * (n_threads * most.unwrap_or(0)) as f64,
+            ..Scale::default()
         }
     }
 

@@ -1,5 +1,6 @@
 //! What `run`, `plan` and `touches` have in common: a study file, and what overrides it.
 
+use bubbletouch::kinds::Source;
 use bubbletouch::random::Seed;
 use bubbletouch::study::breaking_points::{BreakingPointsPlan, BreakingPointsSpec};
 use bubbletouch::study::memory::{check_touches, machine_memory};
@@ -81,7 +82,6 @@ impl StudyArgs {
 
     /// Reads and checks the study.
     pub fn plan(&self) -> Result<Plan> {
-        set_threads(self.threads)?;
         let place = self.study.display().to_string();
         let kind = self.kind()?;
         if kind != StudyKind::Recognition {
@@ -102,6 +102,19 @@ impl StudyArgs {
         Plan::new(&place, spec)
     }
 
+    /// The study's text, and what was asked for beside it.
+    pub fn source(&self) -> Result<Source> {
+        set_threads(self.threads)?;
+        Ok(Source {
+            place: self.study.display().to_string(),
+            text: self.text()?,
+            folder: self.folder(),
+            objects: self.objects.clone(),
+            seed: self.seed,
+            ..Source::default()
+        })
+    }
+
     /// What the study asks about.
     pub fn kind(&self) -> Result<StudyKind> {
         Ok(StudyKind::of(&self.text()?))
@@ -117,7 +130,6 @@ impl StudyArgs {
 
     /// Reads and checks a study that reconstructs frames.
     pub fn reconstruction_plan(&self) -> Result<ReconstructionPlan> {
-        set_threads(self.threads)?;
         let place = self.study.display().to_string();
         let mut spec = ReconstructionStudySpec::parse(&place, &self.text()?)?;
         spec.seed = self.seed.unwrap_or(spec.seed);
@@ -127,7 +139,6 @@ impl StudyArgs {
 
     /// Reads and checks a study of how detailed objects are.
     pub fn object_detail_plan(&self) -> Result<ObjectDetailPlan> {
-        set_threads(self.threads)?;
         let place = self.study.display().to_string();
         let mut spec = ObjectDetailStudySpec::parse(&place, &self.text()?)?;
         spec.seed = self.seed.unwrap_or(spec.seed);
@@ -137,7 +148,6 @@ impl StudyArgs {
 
     /// Reads and checks a study of where recognition breaks.
     pub fn breaking_points_plan(&self) -> Result<BreakingPointsPlan> {
-        set_threads(self.threads)?;
         let place = self.study.display().to_string();
         let mut spec = BreakingPointsSpec::parse(&place, &self.text()?)?;
         spec.seed = self.seed.unwrap_or(spec.seed);
@@ -147,7 +157,6 @@ impl StudyArgs {
 
     /// Reads and checks a study of a whole body; it has objects of its own.
     pub fn whole_body_plan(&self) -> Result<WholeBodyPlan> {
-        set_threads(self.threads)?;
         let place = self.study.display().to_string();
         if let Some(folder) = &self.objects {
             let allowed =
@@ -161,7 +170,6 @@ impl StudyArgs {
 
     /// Reads and checks a study of where contact methods break; it has no objects and nothing random to replace.
     pub fn stability_plan(&self) -> Result<StabilityPlan> {
-        set_threads(self.threads)?;
         let place = self.study.display().to_string();
         let spec = StabilityStudySpec::parse(&place, &self.text()?)?;
         StabilityPlan::new(&place, &self.folder(), spec)
@@ -169,7 +177,6 @@ impl StudyArgs {
 
     /// Reads and checks a study of what accuracy costs.
     pub fn speed_accuracy_plan(&self) -> Result<SpeedAccuracyPlan> {
-        set_threads(self.threads)?;
         let place = self.study.display().to_string();
         let mut spec = SpeedAccuracyStudySpec::parse(&place, &self.text()?)?;
         spec.seed = self.seed.unwrap_or(spec.seed);
@@ -199,6 +206,7 @@ impl StudyArgs {
 
     /// Reads and checks the study, builds its objects (packed ones are kept in `packings`), draws its touches and lays out its cells.
     pub fn load(&self, packings: Option<&Path>) -> Result<LoadedStudy> {
+        set_threads(self.threads)?;
         self.load_within(packings, machine_memory())
     }
 

@@ -1,7 +1,7 @@
 //! `bubbletouch touches`: just the data set.
 
 use super::output::{output_folder, packings_beside};
-use super::study_args::StudyArgs;
+use super::study_args::{StudyArgs, set_threads};
 use bubbletouch::random::Seed;
 use bubbletouch::report::progress;
 use bubbletouch::study::{Plan, ReadFrames, load_objects, millimetres, write_touches};
@@ -29,7 +29,10 @@ pub fn touches(args: &Args) -> Result<()> {
     let packings = packings_beside(&args.out);
     let progress = progress::to_stderr();
     let (plan, read) = match args.cell {
-        None => (args.study.plan()?, None),
+        None => {
+            set_threads(args.study.threads)?;
+            (args.study.plan()?, None)
+        }
         Some(cell) => {
             let loaded = args.study.load(Some(&packings))?;
             args.check(&loaded.plan)?;

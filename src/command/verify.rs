@@ -5,6 +5,7 @@ use super::checked_manifest::checked_manifest;
 use super::memory_args::MemoryArgs;
 use super::streams::say;
 use super::study_args::StudyArgs;
+use bubbletouch::report::progress::to_stderr;
 use bubbletouch::study::provenance::{MANIFEST_FILE, Manifest, SOURCE};
 use bubbletouch::{Error, Result};
 use std::path::PathBuf;
@@ -37,7 +38,8 @@ pub fn verify(args: &Args) -> Result<()> {
         paths_from: Some(manifest.paths_from),
     };
     let study = load_study(&study, folder, Some(&args.memory))?;
-    let said = study.verify(folder, args.cells, args.draw)?;
+    let progress = to_stderr();
+    let said = study.verify(folder, args.cells, args.draw, progress.as_ref())?;
     say(format_args!("{}: {said}", folder.display()))
 }
 

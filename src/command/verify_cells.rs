@@ -4,8 +4,8 @@ use super::memory_args::Room;
 use super::study_args::LoadedStudy;
 use bubbletouch::random::Seed;
 use bubbletouch::report::csv_tables::{csv_content, read_tables};
-use bubbletouch::report::progress;
 use bubbletouch::study::journal::Journal;
+use bubbletouch::study::progress::Progress;
 use bubbletouch::study::table::Tables;
 use bubbletouch::study::{Manner, Part, run_with};
 use bubbletouch::{Error, Result};
@@ -17,7 +17,7 @@ use std::path::Path;
 pub fn verify_cells(
     loaded: &LoadedStudy,
     room: &Room,
-    folder: &Path,
+    (folder, progress): (&Path, &dyn Progress),
     wanted: (usize, u64),
 ) -> Result<String> {
     let tables = read_tables(folder)?;
@@ -28,11 +28,10 @@ pub fn verify_cells(
         retries: false,
         part: Part::Holding(&chosen),
         storage: &room.storage,
-        at_once: room.at_once,
+        at_once: room.memory.at_once,
     };
-    let progress = progress::to_stderr();
     let (plan, sweep, touched) = (&loaded.plan, &loaded.sweep, loaded.touched.as_ref());
-    let outcome = run_with(plan, sweep, touched, progress.as_ref(), manner)?;
+    let outcome = run_with(plan, sweep, touched, progress, manner)?;
     progress.finish("");
     let again = rows(&outcome.tables, &chosen)?;
     let before = rows(&tables, &chosen)?;

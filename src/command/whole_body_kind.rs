@@ -54,6 +54,7 @@ impl PieceKind for WholeBodyKind {
             touches: format!("{n_touches} on a body of about {n_taxels:.0} taxels"),
             n_configurations: plan.compressions.len() + plan.scenes.len(),
             bytes: TAXEL_BYTES * n_taxels,
+            ..Scale::default()
         }
     }
 

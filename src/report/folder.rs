@@ -6,6 +6,7 @@ use crate::report::csv_tables::csv_content;
 use crate::report::drawing::Drawing;
 use crate::report::raster::ToRaster;
 use crate::report::study_tables::TableFiles;
+use crate::table::Table;
 use rayon::prelude::*;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
@@ -53,6 +54,20 @@ impl<'a> Folder<'a> {
     pub(super) fn new(path: &'a Path) -> Self {
         let files = Vec::new();
         Self { path, files }
+    }
+
+    /// The tables of a study.
+    pub fn of_tables(path: &'a Path, tables: &[Table]) -> Self {
+        let mut folder = Self::new(path);
+        for table in tables {
+            folder.add(table.file, table.csv.clone());
+        }
+        folder
+    }
+
+    /// Adds the files of another one, behind those that are there.
+    pub fn append(&mut self, other: Self) {
+        self.files.extend(other.files);
     }
 
     /// Adds a file by its name in the folder.

@@ -59,6 +59,7 @@ pub mod speed_accuracy;
 mod stability_joints;
 pub mod stability_map;
 pub mod stability_results;
+pub mod study_folder;
 pub mod study_tables;
 pub mod terminal;
 pub mod text_width;

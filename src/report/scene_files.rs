@@ -49,7 +49,7 @@ impl SceneFiles {
             folder: folder.to_owned(),
             names: names.collect(),
             scene: plan.spec.to_toml(),
-            recording: RecordingWriter::create_for(
+            recording: RecordingWriter::create(
                 &folder.join("recording.npz"),
                 header,
                 plan.n_frames,

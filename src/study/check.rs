@@ -13,7 +13,7 @@ pub fn not_negative(value: f64) -> bool {
 }
 
 /// Values of one axis, at most: more is a slip, and each would be compared with all others.
-const MOST_VALUES: usize = 10_000;
+pub const MOST_VALUES: usize = 10_000;
 
 /// What a key may count, at most: what is counted is in memory at once, or takes for ever.
 const MOST_COUNTED: usize = 100_000_000;

@@ -37,7 +37,7 @@ impl StudyKind {
 
     /// Keys, with all below them, that may change while finished work is kept: they are words, or they say which work there is and
     /// not what comes of any of it, since each piece of work goes by all that it depends on.
-    pub(crate) fn may_change(self) -> &'static [&'static str] {
+    pub fn may_change(self) -> &'static [&'static str] {
         match self {
             Self::Recognition => &[
                 "question",

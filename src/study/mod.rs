@@ -8,6 +8,7 @@
 
 pub mod advice;
 mod attempt;
+pub mod axes;
 mod axis;
 pub mod breaking_points;
 mod cell_content;

@@ -16,6 +16,8 @@ pub struct Table {
     pub note: String,
     /// Whether the same study gives the same bytes: false for tables of times.
     pub repeats: bool,
+    /// Whether its rows are made of those of all work items: some of the items alone give other rows.
+    pub is_summary: bool,
     /// What its columns are: those that the file has.
     pub columns: Vec<Column>,
     /// The values of each column.
@@ -112,6 +114,12 @@ impl Table {
         self
     }
 
+    /// The same, made of the rows of all work items.
+    pub fn summary(mut self) -> Self {
+        self.is_summary = true;
+        self
+    }
+
     /// The same with a note.
     pub fn noted(mut self, note: impl Into<String>) -> Self {
         self.note = note.into();
@@ -197,6 +205,7 @@ impl Table {
             title,
             note: String::new(),
             repeats: true,
+            is_summary: false,
             columns,
             data: makers.into_iter().map(|maker| maker.data).collect(),
             n_rows,

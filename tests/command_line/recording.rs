@@ -38,7 +38,7 @@ fn recorded() -> Case {
         about: serde_json::json!({"seed": 2018}),
         ..RecordingHeader::default()
     };
-    let mut writer = RecordingWriter::create(&case.path("touch.npz"), header).unwrap();
+    let mut writer = RecordingWriter::create(&case.path("touch.npz"), header, 30).unwrap();
     for k in 0..30 {
         let mut palm = [0.0; 12];
         palm[k % 12] = 1e-4 * k as f64;

@@ -91,7 +91,7 @@ fn push(writer: &mut RecordingWriter, frame: &Pushed) -> bubbletouch::Result<()>
 }
 
 fn write(path: &Path, precision: Precision, frames: &[Pushed]) {
-    let mut writer = RecordingWriter::create(path, header(precision)).unwrap();
+    let mut writer = RecordingWriter::create(path, header(precision), frames.len()).unwrap();
     frames
         .iter()
         .for_each(|frame| push(&mut writer, frame).unwrap());
@@ -254,43 +254,13 @@ fn equal_recordings_are_equal_bytes() {
 }
 
 #[test]
-fn a_recording_of_a_known_number_of_frames_is_the_same_written_once() {
-    let folder = tempfile::tempdir().unwrap();
-    let [beside, placed] = ["beside.npz", "placed.npz"].map(|name| folder.path().join(name));
-    for n_frames in [0, 1, 30, 301] {
-        for precision in [Precision::Single, Precision::Double] {
-            let frames = pushed(n_frames);
-            write(&beside, precision, &frames);
-            let begun = RecordingWriter::create_for(&placed, header(precision), n_frames);
-            let mut writer = begun.unwrap();
-            for frame in &frames {
-                push(&mut writer, frame).unwrap();
-            }
-            assert_eq!(names(folder.path()).len(), 2, "nothing waits beside it");
-            assert_eq!(writer.finish().unwrap(), n_frames);
-            let read = |path| read_recording(path).unwrap();
-            assert_eq!(read(&beside), read(&placed));
-            assert!(fs::read(&beside).unwrap() == fs::read(&placed).unwrap());
-            fs::remove_file(&placed).unwrap();
-        }
-    }
-    // Over many blocks, too.
-    stream(RecordingWriter::create(&beside, array()).unwrap(), 700);
-    stream(
-        RecordingWriter::create_for(&placed, array(), 700).unwrap(),
-        700,
-    );
-    assert!(fs::read(&beside).unwrap() == fs::read(&placed).unwrap());
-}
-
-#[test]
 fn another_number_of_frames_than_was_said_is_an_error_and_no_file() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("touch.npz");
     let frames = pushed(4);
     let start = |n_frames| {
         let mut writer =
-            RecordingWriter::create_for(&path, header(Precision::Single), n_frames).unwrap();
+            RecordingWriter::create(&path, header(Precision::Single), n_frames).unwrap();
         let pushes = frames.iter().map(|frame| push(&mut writer, frame));
         let pushed: Vec<_> = pushes.collect();
         (writer, pushed)
@@ -311,15 +281,15 @@ fn another_number_of_frames_than_was_said_is_an_error_and_no_file() {
 fn a_writer_dropped_half_way_leaves_what_was_there_before() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("touch.npz");
-    let mut writer = RecordingWriter::create(&path, header(Precision::Single)).unwrap();
+    let mut writer = RecordingWriter::create(&path, header(Precision::Single), 10).unwrap();
     pushed(10)
         .iter()
         .for_each(|frame| push(&mut writer, frame).unwrap());
-    assert_eq!(names(folder.path()).len(), 2);
+    assert_eq!(names(folder.path()).len(), 1);
     drop(writer);
     assert_eq!(names(folder.path()).len(), 0);
     fs::write(&path, "old").unwrap();
-    drop(RecordingWriter::create(&path, header(Precision::Single)).unwrap());
+    drop(RecordingWriter::create(&path, header(Precision::Single), 10).unwrap());
     assert_eq!(fs::read(&path).unwrap(), b"old");
     assert_eq!(names(folder.path()), ["touch.npz"]);
 }
@@ -329,7 +299,7 @@ fn a_place_that_cannot_be_written_is_an_error_at_once() {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("file");
     fs::write(&file, "").unwrap();
-    let start = |path: &Path| match RecordingWriter::create(path, header(Precision::Single)) {
+    let start = |path: &Path| match RecordingWriter::create(path, header(Precision::Single), 1) {
         Ok(_) => panic!("{} can be written", path.display()),
         Err(error) => error,
     };
@@ -348,22 +318,16 @@ fn a_place_that_cannot_be_written_is_an_error_at_once() {
 #[test]
 fn a_full_disk_is_an_error() {
     let full = Path::new("/dev/full");
-    let writer = match full.exists() {
-        true => RecordingWriter::create(full, header(Precision::Single)).ok(),
-        false => None,
-    };
-    let Some(mut writer) = writer else {
-        writeln!(
-            std::io::stderr(),
-            "SKIPPED: this system has no /dev/full to write beside"
-        )
-        .expect("standard error takes a line");
+    if !full.exists() {
+        writeln!(std::io::stderr(), "SKIPPED: this system has no /dev/full")
+            .expect("standard error takes a line");
         return;
+    }
+    // The headers are written at once.
+    let error = match RecordingWriter::create(full, header(Precision::Single), 500) {
+        Ok(_) => panic!("{} is full", full.display()),
+        Err(error) => error,
     };
-    pushed(500)
-        .iter()
-        .for_each(|frame| push(&mut writer, frame).unwrap());
-    let error = writer.finish().unwrap_err();
     assert_eq!(error.exit_code(), 1);
     assert!(
         error.to_string().starts_with("/dev/full: write failed: "),
@@ -381,7 +345,7 @@ fn frames_that_do_not_fit_are_refused_and_are_not_in_the_recording() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("touch.npz");
     let frames = pushed(3);
-    let mut writer = RecordingWriter::create(&path, header(Precision::Double)).unwrap();
+    let mut writer = RecordingWriter::create(&path, header(Precision::Double), 2).unwrap();
     push(&mut writer, &frames[0]).unwrap();
     let said = push(&mut writer, &frames[0]).unwrap_err().to_string();
     assert_eq!(
@@ -434,7 +398,7 @@ fn names_that_cannot_be_members_are_refused() {
     ] {
         let mut header = header(Precision::Single);
         header.patches[0].name = name.to_owned();
-        let error = RecordingWriter::create(&folder.path().join("touch.npz"), header).err();
+        let error = RecordingWriter::create(&folder.path().join("touch.npz"), header, 1).err();
         let error = error.expect(name).to_string();
         assert!(error.contains(said), "{error}");
     }
@@ -503,14 +467,11 @@ fn stream(mut writer: RecordingWriter, n_frames: usize) {
 fn two_thousand_frames_stream_in_the_memory_of_five_hundred() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("touch.npz");
-    let beside = |n| stream(RecordingWriter::create(&path, array()).unwrap(), n);
-    let placed = |n| stream(RecordingWriter::create_for(&path, array(), n).unwrap(), n);
-    for write in [&beside as &dyn Fn(usize), &placed] {
-        let few = crate::counting::peak_bytes(|| write(500));
-        let many = crate::counting::peak_bytes(|| write(2000));
-        println!("{few} bytes for 500 frames, {many} for 2,000");
-        assert!(many < few + 4096 && many < 10 << 20, "{few}, {many}");
-    }
+    let write = |n| stream(RecordingWriter::create(&path, array(), n).unwrap(), n);
+    let few = crate::counting::peak_bytes(|| write(500));
+    let many = crate::counting::peak_bytes(|| write(2000));
+    println!("{few} bytes for 500 frames, {many} for 2,000");
+    assert!(many < few + 4096 && many < 10 << 20, "{few}, {many}");
     let read = crate::counting::peak_bytes(|| {
         let mut file = RecordingFile::open(&path).unwrap();
         let mut sum = 0.0;
@@ -528,7 +489,7 @@ fn fifty_thousand_frames_of_4096_taxels() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("touch.npz");
     let start = Instant::now();
-    let writer = RecordingWriter::create_for(&path, array(), 50_000).unwrap();
+    let writer = RecordingWriter::create(&path, array(), 50_000).unwrap();
     let peak = crate::counting::peak_bytes(|| stream(writer, 50_000));
     let seconds = start.elapsed().as_secs_f64();
     let bytes = fs::metadata(&path).unwrap().len();

@@ -103,7 +103,7 @@ fn write(path: &Path) {
         patches: patches.clone(),
         ..RecordingHeader::default()
     };
-    let mut writer = RecordingWriter::create(path, header).unwrap();
+    let mut writer = RecordingWriter::create(path, header, 40).unwrap();
     for k in 0..40 {
         let values: Vec<Vec<f64>> = patches
             .iter()

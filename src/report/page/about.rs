@@ -45,12 +45,16 @@ pub struct StudyAbout {
     pub question: String,
     /// What was expected before it ran; may be empty.
     pub expected: String,
-    /// Seconds from start to end.
+    /// Seconds from start to end; NaN if they are not known.
     pub wall_s: f64,
     /// The command that makes the folder again.
     pub command: String,
     /// Program and version: `bubbletouch 0.1.0`.
     pub program: String,
+    /// Where the results come from, if known.
+    pub manifest: Option<Manifest>,
+    /// Whether every chart is drawn as a file, however many there are.
+    pub all_charts: bool,
 }
 
 /// How often a limit of the model was reached: a row of `limits.csv`.

@@ -36,16 +36,6 @@ impl Block {
         self.n_rows
     }
 
-    /// Of one row of each array.
-    pub fn row_bytes(&self) -> &[usize] {
-        &self.row_bytes
-    }
-
-    /// The rows of each whole block: only the last may have fewer.
-    pub fn rows_per_block(&self) -> usize {
-        self.rows_per_block
-    }
-
     /// Room for the next row of an array: to be filled before [`end_row`](Self::end_row).
     pub fn row(&mut self, column: usize) -> &mut [u8] {
         let (n, bytes) = (self.row_bytes[column], &mut self.columns[column]);
@@ -63,11 +53,6 @@ impl Block {
     /// The rows of each array.
     pub fn columns(&self) -> &[Vec<u8>] {
         &self.columns
-    }
-
-    /// The memory of an array's rows.
-    pub fn column(&mut self, column: usize) -> &mut Vec<u8> {
-        &mut self.columns[column]
     }
 
     /// Begins the next block.

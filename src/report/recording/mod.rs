@@ -33,7 +33,6 @@ mod pixels;
 mod reader;
 mod rows;
 pub mod skin_picture;
-mod spool;
 mod stored;
 mod summary;
 mod unrolled;

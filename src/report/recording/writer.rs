@@ -5,13 +5,12 @@ use super::block::Block;
 use super::header::{ForceKind, RecordedPatch, RecordingHeader, Stream};
 use super::members::{begin, first_stream, put};
 use super::npy::Element;
-use super::spool::Spool;
 use crate::error::{Error, Result};
 use crate::files::WholeFile;
 use crate::geometry::Pose;
 use glam::DVec3;
 use std::io::{self, Write};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 /// Forces on the taxels of a patch, newtons.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -35,60 +34,39 @@ pub struct PatchFrame<'a> {
 
 /// An `.npz` in the making. [`finish`](Self::finish) puts it in place; dropped before, it leaves nothing behind.
 ///
-/// It holds about 2 MiB of rows in memory, whatever the number of frames (a frame, if that is larger). Where that number is known
-/// beforehand ([`create_for`](Self::create_for)), they are written once; else they need as much disk as the recording beside
-/// the target until it is finished, twice that while it finishes. The file is the same.
+/// It holds about 2 MiB of rows in memory, whatever the number of frames (a frame, if that is larger), and writes each byte once, to
+/// its place: so the number of frames is to be known when it begins.
 pub struct RecordingWriter {
     header: RecordingHeader,
-    streams: Vec<Stream>,
     target: WholeFile,
     block: Block,
-    room: Room,
+    archive: Archive,
+    n_frames: usize,
     /// A block was written in part: what is behind it is not known.
     is_broken: bool,
     last_time: f64,
 }
 
-/// Where blocks of rows go.
-enum Room {
-    /// Beside the target: it is not known how many will come.
-    Beside(PathBuf, Spool),
-    /// To their places in the target.
-    Placed { archive: Archive, n_frames: usize },
-}
-
 impl RecordingWriter {
-    /// Starts a recording of any number of frames that will stand at `path`.
+    /// Starts a recording of `n_frames` frames that will stand at `path`.
     ///
-    /// The error says what [`RecordingHeader::check`] does, or why nothing can be written there.
-    pub fn create(path: &Path, header: RecordingHeader) -> Result<Self> {
-        header.check()?;
-        let target = WholeFile::create(path)?;
-        let room = Room::Beside(path.to_owned(), Spool::create(path)?);
-        Ok(Self::of(header, target, room))
-    }
-
-    /// Starts a recording of so many frames. Errors as those of [`create`](Self::create).
-    pub fn create_for(path: &Path, header: RecordingHeader, n_frames: usize) -> Result<Self> {
+    /// # Errors
+    /// What [`RecordingHeader::check`] says, or why nothing can be written there.
+    pub fn create(path: &Path, header: RecordingHeader, n_frames: usize) -> Result<Self> {
         header.check()?;
         let mut target = WholeFile::create(path)?;
         let mut archive = Archive::default();
         target.write(|file| begin(&header, n_frames, &mut archive, file))?;
-        let room = Room::Placed { archive, n_frames };
-        Ok(Self::of(header, target, room))
-    }
-
-    fn of(header: RecordingHeader, target: WholeFile, room: Room) -> Self {
         let streams = header.streams();
-        Self {
+        Ok(Self {
             block: Block::new(streams.iter().map(Stream::row_bytes).collect()),
             header,
-            streams,
             target,
-            room,
+            archive,
+            n_frames,
             is_broken: false,
             last_time: f64::NEG_INFINITY,
-        }
+        })
     }
 
     /// Adds a frame: `time` in seconds, then each patch and each object (world from object) in the header's order.
@@ -135,11 +113,8 @@ impl RecordingWriter {
                 "finite times that increase",
             ));
         }
-        match self.room {
-            Room::Placed { n_frames, .. } if n_frames == self.block.n_rows() => {
-                return Err(self.other_count(n_frames + 1, n_frames));
-            }
-            _ => {}
+        if self.block.n_rows() == self.n_frames {
+            return Err(self.other_count(self.n_frames + 1));
         }
         let expected = (self.header.patches.len(), self.header.objects.len());
         if (patches.len(), objects.len()) != expected {
@@ -153,71 +128,41 @@ impl RecordingWriter {
         pairs.try_for_each(|(patch, frame)| check_frame(patch, frame))
     }
 
-    fn other_count(&self, given: usize, n_frames: usize) -> Error {
-        Error::input("recording", format!("{given} frames"), n_frames)
+    fn other_count(&self, given: usize) -> Error {
+        Error::input("recording", format!("{given} frames"), self.n_frames)
     }
 
     /// Writes what waits in memory. After an error, always an error.
     fn end_block(&mut self) -> Result<()> {
         let was_broken = std::mem::replace(&mut self.is_broken, true);
         let first = first_stream(&self.header);
-        let block = &self.block;
-        let lost = || io::Error::other("rows were lost when writing failed before");
-        match &mut self.room {
-            Room::Beside(path, spool) => {
-                let put = if was_broken {
-                    Err(lost())
-                } else {
-                    spool.put(block)
-                };
-                put.map_err(|e| Error::io(&*path, "write", e))?;
+        let (block, archive) = (&self.block, &mut self.archive);
+        self.target.write(|file| {
+            if was_broken {
+                let lost = "rows were lost when writing failed before";
+                return Err(io::Error::other(lost));
             }
-            Room::Placed { archive, .. } => self.target.write(|file| {
-                if was_broken {
-                    return Err(lost());
-                }
-                let mut columns = block.columns().iter().enumerate();
-                columns.try_for_each(|(column, rows)| archive.append(file, first + column, rows))
-            })?,
-        }
+            let mut columns = block.columns().iter().enumerate();
+            columns.try_for_each(|(column, rows)| archive.append(file, first + column, rows))
+        })?;
         self.block.clear();
         self.is_broken = false;
         Ok(())
     }
 
-    /// Puts the recording together and in its place; returns how many frames it has.
+    /// Puts the recording in its place; returns how many frames it has.
     ///
-    /// The error is why it cannot be written, or a number of frames that is not the one that it was started for.
+    /// # Errors
+    /// Why it cannot be written, or a number of frames that is not the one that it was started for.
     pub fn finish(mut self) -> Result<usize> {
         let n_frames = self.block.n_rows();
-        match self.room {
-            Room::Placed { n_frames: n, .. } if n != n_frames => {
-                return Err(self.other_count(n_frames, n));
-            }
-            _ => self.end_block()?,
+        if n_frames != self.n_frames {
+            return Err(self.other_count(n_frames));
         }
-        let Self {
-            header,
-            streams,
-            target,
-            block,
-            room,
-            ..
-        } = &mut self;
-        target.write(|file| {
-            match room {
-                Room::Placed { archive, .. } => archive.finish(file),
-                Room::Beside(_, spool) => {
-                    let mut archive = Archive::default();
-                    begin(header, n_frames, &mut archive, file)?;
-                    for column in 0..streams.len() {
-                        let member = first_stream(header) + column;
-                        spool
-                            .each_part(block, column, |part| archive.append(file, member, part))?;
-                    }
-                    archive.finish(file)
-                }
-            }?;
+        self.end_block()?;
+        let archive = &self.archive;
+        self.target.write(|file| {
+            archive.finish(file)?;
             file.flush()
         })?;
         self.target.commit()?;

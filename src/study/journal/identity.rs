@@ -2,7 +2,6 @@
 
 use crate::error::{Error, Result};
 use crate::study::content_hash::ContentHash;
-use crate::study::kind::StudyKind;
 use crate::toml_text;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -24,20 +23,28 @@ pub struct Identity {
     pub study: String,
     /// SHA-256 of what each object is made of, by its name.
     pub objects: BTreeMap<String, String>,
+    /// Keys of the study, with all below them, that may change while it stays the same; unknown of one that was read.
+    #[serde(skip)]
+    may_change: &'static [&'static str],
 }
 
 impl Identity {
-    /// Of a study as it is written out, for this program.
-    pub fn new(study: String, objects: BTreeMap<String, String>) -> Self {
+    /// Of a study as it is written out, for this program; some of its keys may change.
+    pub fn new(
+        study: String,
+        objects: BTreeMap<String, String>,
+        may_change: &'static [&'static str],
+    ) -> Self {
         Self {
             program: crate::study::provenance::PROGRAM.to_owned(),
             source: crate::study::provenance::SOURCE.to_owned(),
             study,
             objects,
+            may_change,
         }
     }
 
-    /// What another one has that this one has not, and the reverse, a line each.
+    /// What another one, of a study that is here, has that this one has not, and the reverse, a line each.
     pub fn differences(&self, other: &Self) -> Vec<String> {
         let mut lines = Vec::new();
         let parts = [
@@ -47,7 +54,11 @@ impl Identity {
         for (name, ours, theirs) in parts {
             lines.extend(changed(name, Some(ours), Some(theirs)));
         }
-        lines.extend(all_changed("", &self.fixed_keys(), &other.fixed_keys()));
+        lines.extend(all_changed(
+            "",
+            &self.fixed_keys(other.may_change),
+            &other.fixed_keys(other.may_change),
+        ));
         lines.extend(all_changed("object ", &self.objects, &other.objects));
         lines
     }
@@ -76,15 +87,17 @@ impl Identity {
             objects,
             ..
         } = self;
-        let said = format!("{program:?} {source:?} {:?} {objects:?}", self.fixed_keys());
+        let said = format!(
+            "{program:?} {source:?} {:?} {objects:?}",
+            self.fixed_keys(self.may_change)
+        );
         let mut digits = ContentHash::default().bytes(said).hex();
         digits.truncate(BINDING_DIGITS);
         digits
     }
 
     /// The values of the study's keys, but for those that may change.
-    fn fixed_keys(&self) -> BTreeMap<String, String> {
-        let may_change = StudyKind::of(&self.study).may_change();
+    fn fixed_keys(&self, may_change: &[&str]) -> BTreeMap<String, String> {
         let is_fixed = |key: &String| {
             !may_change.iter().any(|name| {
                 let rest = key.strip_prefix(name);
@@ -146,14 +159,14 @@ mod tests {
             let objects = objects
                 .iter()
                 .map(|(name, hash)| (name.to_string(), hash.to_string()));
-            Identity::new(study.to_owned(), objects.collect())
+            Identity::new(study.to_owned(), objects.collect(), &["question"])
         };
         let old = identity(
             "question = \"a\"\nseed = 1\n[skin]\npitch_mm = [1.0, 2.0]\nstiffness_n_per_m = 100.0",
             &[("mug", "a1"), ("bowl", "b")],
         );
         let new = identity(
-            "question = \"b\"\nseed = 1\n[skin]\npitch_mm = 2.0\nstiffness_n_per_m = 200.0\nstroke_mm = 5.0",
+            "question = \"b\"\nseed = 1\n[skin]\npitch_mm = [1.0, 2.0]\nstiffness_n_per_m = 200.0\nstroke_mm = 5.0",
             &[("mug", "a2"), ("bowl", "b")],
         );
         let expected = [
@@ -171,7 +184,10 @@ mod tests {
 
     #[test]
     fn words_and_axes_of_a_study_leave_it_the_same() {
-        let identity = |study: &str| Identity::new(study.to_owned(), BTreeMap::new());
+        let identity = |study: &str| {
+            let may_change = &["question", "trials", "skin.pitch_mm", "report"];
+            Identity::new(study.to_owned(), BTreeMap::new(), may_change)
+        };
         let old = identity("question = \"a\"\ntrials = 1\n[skin]\npitch_mm = 2.0");
         let new = identity(
             "question = \"b\"\ntrials = 2\n[skin]\npitch_mm = [1.0, 2.0]\n[report]\nsamples = [\"mug\"]",

@@ -3,6 +3,7 @@
 use super::NamedPiece;
 use super::left::PiecesLeft;
 use super::record::{PieceResult, PieceRows, in_journal};
+use crate::columns;
 use crate::error::Result;
 use crate::study::journal::Journal;
 use crate::study::part::Part;
@@ -61,6 +62,11 @@ pub struct PieceFailure {
     /// What went wrong.
     pub error: String,
 }
+
+columns! { PieceFailure {
+    piece: Subject "work item";
+    error: Note;
+} }
 
 /// What came of all pieces, in this run and those before it.
 #[derive(Clone, Debug)]

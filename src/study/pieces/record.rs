@@ -110,7 +110,7 @@ mod tests {
         };
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join(JOURNAL_FILE);
-        let identity = Identity::new("a = 1".to_owned(), Default::default());
+        let identity = Identity::new("a = 1".to_owned(), Default::default(), &[]);
         let journal = Journal::open(&path, &identity).unwrap();
         let piece = |name: &str| NamedPiece::new(name.to_owned(), 0, Piece::of_stage(0, 1.0));
         keep(&journal, &piece("one"), &Ok(rows.clone())).unwrap();

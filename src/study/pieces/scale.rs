@@ -20,6 +20,26 @@ pub struct Scale {
     pub n_configurations: usize,
     /// Bytes held at once beside those of every program, about.
     pub bytes: f64,
+    /// Bytes more of each work item that is under way, about.
+    pub item_bytes: f64,
+}
+
+impl Scale {
+    /// Bytes with a single work item at a time.
+    pub fn least_bytes(&self) -> f64 {
+        self.bytes_at_once(1)
+    }
+
+    /// Work items at a time, at most as many as there are threads, that take no more than so many bytes; none if a single one takes more.
+    pub fn n_at_once(&self, ceiling: f64) -> Option<usize> {
+        let n_threads = (1..=rayon::current_num_threads()).rev();
+        let mut within = n_threads.filter(|&n| self.bytes_at_once(n) <= ceiling);
+        within.next()
+    }
+
+    fn bytes_at_once(&self, n_items: usize) -> f64 {
+        PROGRAM_BYTES + self.bytes + n_items as f64 * self.item_bytes
+    }
 }
 
 /// A study of pieces as `bubbletouch plan` tells it: its scale, and what its pieces are planned to take, those that are shared and those
@@ -32,6 +52,8 @@ pub struct PieceEstimate {
     pub scale: Scale,
     /// Pieces that the journal counts.
     pub n_pieces: usize,
+    /// Threads that do them.
+    pub n_threads: usize,
     /// All work.
     pub work: Vec<Piece>,
 }
@@ -39,7 +61,7 @@ pub struct PieceEstimate {
 impl PieceEstimate {
     /// Seconds until the study is done, with all threads.
     pub fn wall_s(&self) -> f64 {
-        let n_threads = rayon::current_num_threads() as f64;
+        let n_threads = self.n_threads as f64;
         let wall_s = |piece: &Piece| match piece.kind {
             Work::Report => piece.planned_s,
             _ => piece.planned_s / n_threads,
@@ -54,7 +76,7 @@ impl fmt::Display for PieceEstimate {
             objects,
             touches,
             n_configurations,
-            bytes,
+            ..
         } = &self.scale;
         writeln!(f, "  objects  {objects}")?;
         writeln!(f, "  touches  {touches}")?;
@@ -64,12 +86,16 @@ impl fmt::Display for PieceEstimate {
             self.n_pieces,
             counted(*n_configurations, "configuration")
         )?;
-        writeln!(f, "  memory   about {}", Bytes(PROGRAM_BYTES + bytes))?;
+        writeln!(
+            f,
+            "  memory   about {}",
+            Bytes(self.scale.bytes_at_once(self.n_threads))
+        )?;
         write!(
             f,
             "  time     about {} on {} (mostly right within a factor of 3)",
             Seconds(self.wall_s()),
-            counted(rayon::current_num_threads(), "thread")
+            counted(self.n_threads, "thread")
         )
     }
 }

@@ -1,0 +1,103 @@
+//! A study of any kind, as the commands see it.
+
+use crate::error::Result;
+use crate::study::Part;
+use crate::study::journal::{Identity, Journal};
+use crate::study::pieces::PieceManner;
+use crate::study::progress::Progress;
+use crate::study::provenance::Manifest;
+use std::path::{Path, PathBuf};
+use std::time::SystemTime;
+
+/// A study that is loaded and checked.
+pub trait AnyStudy {
+    /// What its results depend on.
+    fn identity(&self) -> &Identity;
+
+    /// What its work is counted in: `cells` or `pieces`.
+    fn units(&self) -> &'static str;
+
+    /// How many; cells count once a trial.
+    fn n_all(&self) -> usize;
+
+    /// What it asks, and what it will take.
+    ///
+    /// # Errors
+    /// It cannot be done within the memory that it may take.
+    fn plan(&self) -> Result<String>;
+
+    /// Of a part, those of which a journal does not say what came of them.
+    fn n_left(&self, part: Part, journal: &Journal) -> usize;
+
+    /// Does what is left.
+    ///
+    /// # Errors
+    /// The journal cannot be written; what an item fails of, if the first to fail ends the run; too little memory for any item.
+    fn run<'a>(&'a self, manner: &PieceManner<'a>) -> Result<Box<dyn AnyOutcome + 'a>>;
+
+    /// Runs `n` items again that are drawn by `draw`, and says what they were.
+    ///
+    /// # Errors
+    /// A row of a folder that is not the same again.
+    fn verify(&self, folder: &Path, n: usize, draw: u64, progress: &dyn Progress)
+    -> Result<String>;
+
+    /// Writes the charts, pictures and page of a folder again, from its tables.
+    ///
+    /// # Errors
+    /// A table that cannot be read; a file that cannot be written.
+    fn report(&self, folder: &Path, about: &ReportAbout) -> Result<()>;
+}
+
+/// What came of a study.
+pub trait AnyOutcome {
+    /// How much of it failed.
+    fn n_failed(&self) -> usize;
+
+    /// Writes tables, charts and page, the study and the manifest.
+    ///
+    /// # Errors
+    /// What cannot be drawn; a file that cannot be written.
+    fn write(&self, ended: &EndedRun) -> Result<()>;
+
+    /// What a person reads at the end, in lines of about `width` letters.
+    fn words(&self, width: usize) -> String;
+}
+
+/// A run that has done its work, and where its files go.
+pub struct EndedRun<'a> {
+    /// The study's name.
+    pub name: String,
+    /// The command that makes the folder again.
+    pub command: String,
+    /// The folder that paths in the study are relative to.
+    pub paths_from: PathBuf,
+    /// Where its files go.
+    pub folder: &'a Path,
+    /// When it began.
+    pub started: SystemTime,
+    /// What was finished before it.
+    pub n_before: usize,
+    /// What is told how far it is.
+    pub progress: &'a dyn Progress,
+}
+
+impl EndedRun<'_> {
+    /// Seconds since it began.
+    pub fn wall_s(&self) -> f64 {
+        self.started.elapsed().unwrap_or_default().as_secs_f64()
+    }
+}
+
+/// A folder whose page is written again.
+#[derive(Clone, Debug, Default)]
+pub struct ReportAbout {
+    /// The study's name.
+    pub name: String,
+    /// The command that makes the folder again.
+    pub command: String,
+    /// What its run said of itself, if that is known.
+    pub manifest: Option<Manifest>,
+    /// Whether every chart is drawn as a file, however many there are.
+    pub all_charts: bool,
+}

@@ -1,0 +1,79 @@
+//! What a kind of study says of itself.
+
+use super::source::Source;
+use crate::error::Result;
+use crate::report::study_folder::NamedPicture;
+use crate::study::pieces::{PieceStudy, Scale};
+use crate::table::{ChartSpec, Table};
+use std::collections::BTreeMap;
+use std::path::Path;
+
+/// What a kind of study is, before any study of it is read.
+#[derive(Clone, Copy, Debug)]
+pub struct About {
+    /// The table of a study's file that only this kind has.
+    pub table: &'static str,
+    /// In words: `a study that …`.
+    pub words: &'static str,
+    /// Keys, with all below them, that may change while finished work is kept: they are words, or they say which work there is and
+    /// not what comes of any of it, since each work item goes by all that it depends on.
+    pub may_change: &'static [&'static str],
+}
+
+/// What a study's file says, and what that is about.
+#[derive(Clone, Debug, Default)]
+pub struct Facts {
+    /// The study with every default spelt out, as TOML.
+    pub toml: String,
+    /// What it asks.
+    pub question: String,
+    /// What was expected before it ran; may be empty.
+    pub expected: String,
+    /// Root of all randomness; 0 where nothing is random.
+    pub seed: u64,
+    /// SHA-256 of what the study's text does not say: objects and other files, by name.
+    pub content: BTreeMap<String, String>,
+    /// How intervals and p-values are made, by table and columns.
+    pub methods: Vec<(&'static str, &'static str)>,
+}
+
+/// A kind of study. The engine does all else: it runs, keeps, resumes, deals out, merges, plans, verifies and reports it.
+pub trait Kind: PieceStudy<Tables = Vec<Table>> + Sized + Sync + 'static {
+    /// Which it is.
+    const ABOUT: About;
+
+    /// Reads and checks a study, and loads its objects.
+    ///
+    /// # Errors
+    /// A key that is not known or out of its range; a file that cannot be read. The error names place, key and what is allowed.
+    fn load(source: &Source) -> Result<Self>;
+
+    /// What its file says.
+    ///
+    /// # Errors
+    /// A file that the study depends on cannot be read.
+    fn facts(&self) -> Result<Facts>;
+
+    /// How large it is.
+    fn scale(&self) -> Scale;
+
+    /// The tables of [`PieceStudy::tables`], from the files of a folder.
+    ///
+    /// # Errors
+    /// A table that cannot be read, or has other columns.
+    fn read_tables(&self, folder: &Path) -> Result<Vec<Table>>;
+
+    /// What is charted, the most telling first.
+    fn charts(&self, tables: &[Table]) -> Vec<ChartSpec>;
+
+    /// Pictures that are no charts: frames, bodies, objects.
+    ///
+    /// # Errors
+    /// What is shown cannot be made again or drawn.
+    fn pictures(&self, _tables: &[Table]) -> Result<Vec<NamedPicture>> {
+        Ok(Vec::new())
+    }
+
+    /// What was found, in sentences: at the top of the page and at the end of the run.
+    fn answers(&self, tables: &[Table]) -> Vec<String>;
+}

@@ -1,0 +1,89 @@
+//! Where a study comes from, and what overrides it.
+
+use crate::error::{Error, Result};
+use crate::study::ObjectsSpec;
+use std::path::{Path, PathBuf};
+
+/// A study's text, and what was asked for beside it.
+#[derive(Clone, Debug, Default)]
+pub struct Source {
+    /// What errors call it: its file.
+    pub place: String,
+    /// TOML.
+    pub text: String,
+    /// The folder that paths in it are relative to.
+    pub folder: PathBuf,
+    /// Meshes or a file of objects that replace its objects.
+    pub objects: Option<PathBuf>,
+    /// Root of all randomness that replaces its own.
+    pub seed: Option<u64>,
+    /// Where packed meshes are kept from run to run.
+    pub packings: Option<PathBuf>,
+    /// Most bytes to hold; `None`: no ceiling.
+    pub memory: Option<u64>,
+}
+
+impl Source {
+    /// A text on its own, with nothing that overrides it.
+    pub fn of_text(place: &str, text: &str) -> Self {
+        Self {
+            place: place.to_owned(),
+            text: text.to_owned(),
+            ..Self::default()
+        }
+    }
+
+    /// Where packed meshes are kept, if anywhere.
+    pub fn packings(&self) -> Option<&Path> {
+        self.packings.as_deref()
+    }
+
+    /// The study's seed, or the one that replaces it.
+    pub fn seed(&self, of_study: u64) -> u64 {
+        self.seed.unwrap_or(of_study)
+    }
+
+    /// Puts the objects that were asked for in the place of the study's.
+    pub fn replace_objects(&self, objects: &mut ObjectsSpec) {
+        let Some(given) = &self.objects else {
+            return;
+        };
+        objects.sets.clear();
+        if given.extension().is_some_and(|ending| ending == "toml") {
+            objects.sets.push(given.display().to_string());
+            objects.meshes = None;
+        } else {
+            objects.meshes = Some(given.clone());
+        }
+    }
+
+    /// An error if objects were asked for; `why` says what the study has instead.
+    ///
+    /// # Errors
+    /// They were.
+    pub fn refuse_objects(&self, why: &str) -> Result<()> {
+        match &self.objects {
+            Some(given) => Err(Error::input(
+                "--objects",
+                given.display(),
+                format!("no such option: {why}"),
+            )),
+            None => Ok(()),
+        }
+    }
+
+    /// An error if a seed was asked for; `why` says why there is none.
+    ///
+    /// # Errors
+    /// It was.
+    pub fn refuse_seed(&self, why: &str) -> Result<()> {
+        match self.seed {
+            Some(seed) => Err(Error::input(
+                "--seed",
+                seed,
+                format!("no such option: {why}"),
+            )),
+            None => Ok(()),
+        }
+    }
+}

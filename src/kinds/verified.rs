@@ -1,0 +1,59 @@
+//! Work items that run again beside the rows that stand in a folder.
+
+use crate::error::{Error, Result};
+use crate::random::Seed;
+use crate::report::csv_tables::{FAILURES_FILE, read_rows};
+use crate::study::pieces::{NamedPiece, PieceFailure};
+use crate::table::Table;
+use rand::seq::SliceRandom;
+use std::collections::BTreeSet;
+use std::path::Path;
+
+/// Some of the items of a folder that did not fail, as [`Part::Holding`](crate::study::Part) wants them: how many, drawn from a seed.
+pub fn drawn(
+    pieces: &[NamedPiece],
+    folder: &Path,
+    (n, seed): (usize, u64),
+) -> Result<BTreeSet<(usize, usize)>> {
+    let failed: Vec<PieceFailure> = read_rows(&folder.join(FAILURES_FILE))?;
+    let has_failed = |piece: &NamedPiece| failed.iter().any(|row| row.piece == piece.name);
+    let numbers = (0..pieces.len()).filter(|&number| !has_failed(&pieces[number]));
+    let numbers: Vec<(usize, usize)> = numbers.map(|number| (number, 0)).collect();
+    let mut rng = Seed::new(seed).named("verify").rng();
+    Ok(numbers.choose_multiple(&mut rng, n).copied().collect())
+}
+
+/// How many rows of items without times stand in a folder as they came out again, those of others apart; the error names the first that
+/// does not.
+pub fn changed_row(folder: &Path, again: &[Table], of_others: &[Table]) -> Result<usize> {
+    let mut n_rows = 0;
+    let of_items = again.iter();
+    for table in of_items.filter(|table| table.repeats && !table.is_summary) {
+        let path = folder.join(table.file);
+        let stands = std::fs::read_to_string(&path).map_err(|e| Error::io(&path, "read", e))?;
+        let stands: BTreeSet<&str> = stands.lines().collect();
+        let others = of_others.iter().find(|other| other.file == table.file);
+        let others = others.map(|other| String::from_utf8_lossy(&other.csv));
+        let others = others.unwrap_or_default();
+        let others: BTreeSet<&str> = others.lines().skip(1).collect();
+        let content = String::from_utf8_lossy(&table.csv);
+        for row in content.lines().skip(1).filter(|row| !others.contains(row)) {
+            if !stands.contains(row) {
+                let nearest = stands.iter().max_by_key(|other| n_alike(row, other));
+                return Err(Error::input(
+                    path.display(),
+                    format!("has the row\n  {}", nearest.unwrap_or(&"(none)")),
+                    format!("\n  again it is\n  {row}"),
+                ));
+            }
+            n_rows += 1;
+        }
+    }
+    Ok(n_rows)
+}
+
+/// Leading letters that two rows share: rows begin with what they are about.
+fn n_alike(a: &str, b: &str) -> usize {
+    let pairs = a.bytes().zip(b.bytes());
+    pairs.take_while(|(a, b)| a == b).count()
+}

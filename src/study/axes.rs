@@ -1,0 +1,581 @@
+//! `[axes]`: any key of a study with the values that it takes one after the other, in all combinations.
+//!
+//! ```toml
+//! [axes]
+//! "touches.depth_mm" = [1.0, 2.0, 4.0]
+//! "skin.stiffness_n_per_m" = [500.0, 2000.0]
+//! ```
+//! The key stands here in place of its own table. Each combination is a study of its own, checked as any study is; a key that takes a list
+//! where it stands is an axis there, and may be written in either place.
+
+use super::check::MOST_VALUES;
+use crate::error::{Error, Result};
+use crate::table::{Column, Role, Scale};
+use crate::toml_text::check_brackets;
+use serde::de::DeserializeOwned;
+use serde::{Deserialize, Serialize};
+use std::borrow::Cow;
+use toml::Spanned;
+use toml::de::{DeTable, DeValue};
+
+/// What a study may say in `[axes]`.
+#[derive(Clone, Copy, Debug)]
+pub struct AxisRules {
+    /// Keys that take a list where they stand: given in `[axes]`, they are put there.
+    pub in_place: fn(&str) -> bool,
+    /// Keys that cannot differ within a study, with all below them.
+    pub refused: &'static [&'static str],
+}
+
+/// The axes that a study names itself, the first changing slowest.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct StudyAxes(pub Vec<StudyAxis>);
+
+/// A key and its values.
+#[derive(Clone, Debug, PartialEq)]
+pub struct StudyAxis {
+    /// Its path: `touches.depth_mm`.
+    pub key: String,
+    /// At least one, each once.
+    pub values: Vec<toml::Value>,
+    /// The line of the file on which it stands; none of an axis that no file has.
+    pub line: Option<usize>,
+}
+
+/// One combination of the axes' values, and the study that has it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Variant<S> {
+    /// A value of each axis.
+    pub values: Vec<toml::Value>,
+    /// The study.
+    pub study: S,
+}
+
+/// A table with a value at a path of keys, in place of what was there; tables on the way are made.
+///
+/// # Errors
+/// A path without a key, or through something that is no table.
+pub fn with_value(table: &toml::Table, key: &str, value: toml::Value) -> Result<toml::Table> {
+    let mut changed = table.clone();
+    let mut at = &mut changed;
+    let (path, last) = key.rsplit_once('.').unwrap_or(("", key));
+    let names = path.split('.').filter(|_| !path.is_empty());
+    for (place, name) in names.clone().enumerate() {
+        let next = at.entry(name).or_insert_with(|| toml::Table::new().into());
+        at = next.as_table_mut().ok_or_else(|| {
+            let above: Vec<&str> = names.clone().take(place + 1).collect();
+            let given = format!("below {}, which is no table", above.join("."));
+            Error::input(format!("key {key}"), given, "a key of a table")
+        })?;
+    }
+    if last.is_empty() || key.split('.').any(str::is_empty) {
+        let allowed = "names of tables and of a key, with a point between them: skin.stroke_mm";
+        return Err(Error::input("key", format!("{key:?}"), allowed));
+    }
+    at.insert(last.to_owned(), value);
+    Ok(changed)
+}
+
+/// A study and its axes; in the study each of their keys has its first value, but keys of lists have all.
+///
+/// # Errors
+/// What the study's reader refuses; an axis without values, with one twice, of a key that is given elsewhere too or that cannot be an
+/// axis. Each names file, line and key.
+pub fn read<S: DeserializeOwned>(
+    place: &str,
+    text: &str,
+    rules: AxisRules,
+) -> Result<(S, StudyAxes)> {
+    check_brackets(place, text)?;
+    let said = |error| Error::toml(place, text, &error);
+    let mut table = DeTable::parse(text).map_err(said)?;
+    let mut found = Vec::new();
+    if let Some((name, given)) = table.get_mut().remove_entry("axes") {
+        let line = line_of(text, name.span().start);
+        match given.into_inner() {
+            DeValue::Table(axes) => leaves(String::new(), axes, &mut found),
+            _ => {
+                let allowed = "a table of keys, each with a list of its values";
+                let place = format!("{place}:{line}, key axes");
+                return Err(Error::input(place, "no table", allowed));
+            }
+        }
+    }
+    // In the order in which they are written.
+    found.sort_by_key(|(_, start, _)| *start);
+    let mut axes = StudyAxes::default();
+    for (key, start, value) in found {
+        let line = line_of(text, start);
+        let axis = StudyAxis {
+            values: list(place, text, &value)?,
+            key,
+            line: Some(line),
+        };
+        axis.check(place, rules)?;
+        let is_in_place = (rules.in_place)(&axis.key);
+        let value = match value.into_inner() {
+            DeValue::Array(values) if !is_in_place => values[0].clone(),
+            list => Spanned::new(0..0, list),
+        };
+        if insert(table.get_mut(), &axis.key, (start, value)).is_none() {
+            let given = "given here and in its table";
+            return Err(axis.error(place, given, "one of the two"));
+        }
+        if !is_in_place {
+            axes.0.push(axis);
+        }
+    }
+    let study = S::deserialize(toml::Deserializer::from(table)).map_err(said)?;
+    Ok((study, axes))
+}
+
+/// The lists below a table, by their paths and where they begin.
+fn leaves<'i>(
+    prefix: String,
+    table: DeTable<'i>,
+    found: &mut Vec<(String, usize, Spanned<DeValue<'i>>)>,
+) {
+    for (name, value) in table {
+        let key = format!("{prefix}{}", name.get_ref());
+        let (start, span) = (name.span().start, value.span());
+        match value.into_inner() {
+            DeValue::Table(inner) => leaves(format!("{key}."), inner, found),
+            value => found.push((key, start, Spanned::new(span, value))),
+        }
+    }
+}
+
+/// The values of a list; of anything else none.
+fn list(place: &str, text: &str, value: &Spanned<DeValue>) -> Result<Vec<toml::Value>> {
+    let DeValue::Array(values) = value.get_ref() else {
+        return Ok(Vec::new());
+    };
+    let values = values.iter().map(|value| {
+        let value = toml::de::ValueDeserializer::from(value.clone());
+        toml::Value::deserialize(value).map_err(|error| Error::toml(place, text, &error))
+    });
+    values.collect()
+}
+
+/// Puts a value, written from `start` on, at a path where none is; `None` if there is one, or no table on the way.
+fn insert<'i>(
+    table: &mut DeTable<'i>,
+    key: &str,
+    (start, value): (usize, Spanned<DeValue<'i>>),
+) -> Option<()> {
+    let name = |name: &str| Spanned::new(start..start, Cow::Owned(name.to_owned()));
+    let Some((first, rest)) = key.split_once('.') else {
+        if table.contains_key(key) {
+            return None;
+        }
+        table.insert(name(key), value);
+        return Some(());
+    };
+    if !table.contains_key(first) {
+        let empty = Spanned::new(start..start, DeValue::Table(DeTable::new()));
+        table.insert(name(first), empty);
+    }
+    match table.get_mut(first)?.get_mut() {
+        DeValue::Table(inner) => insert(inner, rest, (start, value)),
+        _ => None,
+    }
+}
+
+fn line_of(text: &str, start: usize) -> usize {
+    1 + text[..start.min(text.len())].matches('\n').count()
+}
+
+impl StudyAxis {
+    /// An error about it: file, line and key first.
+    fn error(&self, place: &str, given: impl ToString, allowed: impl ToString) -> Error {
+        let line = self.line.map_or(String::new(), |line| format!(":{line}"));
+        let place = format!("{place}{line}, axes.{:?}", self.key);
+        Error::input(place, given, allowed)
+    }
+
+    fn check(&self, place: &str, rules: AxisRules) -> Result<()> {
+        let is_below = |name: &&&str| {
+            let rest = self.key.strip_prefix(**name);
+            rest.is_some_and(|rest| rest.is_empty() || rest.starts_with('.'))
+        };
+        if let Some(refused) = rules.refused.iter().find(is_below) {
+            let given = format!("{refused} as an axis");
+            return Err(self.error(place, given, "a key that may differ within a study"));
+        }
+        if self.key.split('.').any(str::is_empty) {
+            let allowed = "the path of a key: \"skin.stroke_mm\"";
+            return Err(self.error(place, "no path", allowed));
+        }
+        match self.values.len() {
+            0 => {
+                return Err(self.error(
+                    place,
+                    "no list of values",
+                    "at least one value: [1.0, 2.0]",
+                ));
+            }
+            n if n > MOST_VALUES => {
+                let allowed = format!("at most {MOST_VALUES} values");
+                return Err(self.error(place, format!("{n} values"), allowed));
+            }
+            _ => {}
+        }
+        for (place_in, value) in self.values.iter().enumerate() {
+            let same = |other: &toml::Value| match (number(other), number(value)) {
+                (Some(other), Some(value)) => other == value,
+                _ => other == value,
+            };
+            if self.values[..place_in].iter().any(same) {
+                return Err(self.error(place, format!("{value} twice"), "each value once"));
+            }
+        }
+        Ok(())
+    }
+
+    /// Its column in tables of results, where the names of others are taken.
+    pub fn column(&self, is_taken: impl Fn(&str) -> bool) -> Column {
+        let last = self.key.rsplit('.').next().unwrap_or(&self.key);
+        let name = match is_taken(last) {
+            true => self.key.replace('.', "_"),
+            false => last.to_owned(),
+        };
+        let found = UNITS.iter().find_map(|(suffix, unit)| {
+            let words = last.strip_suffix(suffix)?;
+            (!words.is_empty()).then_some((words, *unit))
+        });
+        let (words, unit) = found.unwrap_or((last, ""));
+        let words = words.replace('_', " ");
+        let numbers: Option<Vec<f64>> = self.values.iter().map(number).collect();
+        Column::new(name, self.role(), words, unit, scale(numbers))
+    }
+
+    fn role(&self) -> Role {
+        let known = ROLES.iter().find(|(start, _)| self.key.starts_with(start));
+        known.map_or(Role::Choice, |(_, role)| *role)
+    }
+}
+
+/// Units by the ends of keys, longer ends first.
+const UNITS: [(&str, &str); 15] = [
+    ("_n_s_per_m", "N·s/m"),
+    ("_mm_per_s", "mm/s"),
+    ("_n_per_m", "N/m"),
+    ("_deg", "°"),
+    ("_gib", "GiB"),
+    ("_mm", "mm"),
+    ("_ms", "ms"),
+    ("_hz", "Hz"),
+    ("_kg", "kg"),
+    ("_us", "µs"),
+    ("_pa", "Pa"),
+    ("_n", "N"),
+    ("_m", "m"),
+    ("_s", "s"),
+    ("_g", "g"),
+];
+
+/// Roles by the beginnings of keys; all others are choices. How deep, how often and how fast one presses is chosen; where the object lies
+/// and how it is turned is not.
+const ROLES: [(&str, Role); 11] = [
+    ("seed", Role::Subject),
+    ("touches.depth", Role::Choice),
+    ("touches.per_object", Role::Choice),
+    ("touches.frames", Role::Choice),
+    ("touches.speed", Role::Choice),
+    ("touches.", Role::Condition),
+    ("signal.smoothing", Role::Choice),
+    ("signal.steps", Role::Choice),
+    ("signal.", Role::Condition),
+    ("human_touch.kinds", Role::Condition),
+    ("objects.", Role::Condition),
+];
+
+/// From this ratio of the largest to the smallest on, numbers lie along an axis by their logarithm. Larger, and the small ones of a sweep
+/// by powers of two lie on each other; smaller, and evenly spread ones look uneven.
+const LOG_FROM: f64 = 16.0;
+
+fn scale(numbers: Option<Vec<f64>>) -> Scale {
+    let Some(numbers) = numbers else {
+        return Scale::Words;
+    };
+    let least = numbers.iter().copied().fold(f64::INFINITY, f64::min);
+    let most = numbers.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    match least > 0.0 && most / least >= LOG_FROM {
+        true => Scale::Log,
+        false => Scale::Linear,
+    }
+}
+
+fn number(value: &toml::Value) -> Option<f64> {
+    let integer = || value.as_integer().map(|integer| integer as f64);
+    value.as_float().or_else(integer)
+}
+
+impl StudyAxes {
+    /// Whether there are none.
+    pub fn is_empty(&self) -> bool {
+        self.0.is_empty()
+    }
+
+    /// How many combinations of values there are.
+    pub fn n_combinations(&self) -> f64 {
+        self.0.iter().map(|axis| axis.values.len() as f64).product()
+    }
+
+    /// Every combination of a value of each axis, the first axis changing slowest.
+    pub fn combinations(&self) -> Vec<Vec<toml::Value>> {
+        let mut all = vec![Vec::new()];
+        for axis in &self.0 {
+            let longer = all.iter().flat_map(|values: &Vec<toml::Value>| {
+                let with = |value: &toml::Value| [&values[..], &[value.clone()]].concat();
+                axis.values.iter().map(with)
+            });
+            all = longer.collect();
+        }
+        all
+    }
+
+    /// The study of each combination: `study` with other values at the axes' keys.
+    ///
+    /// # Errors
+    /// A value that the study's reader refuses; the error names the axis.
+    pub fn variants<S: Serialize + DeserializeOwned>(
+        &self,
+        place: &str,
+        study: &S,
+    ) -> Result<Vec<Variant<S>>> {
+        let table = toml::Table::try_from(study).expect("every field of a study has a TOML form");
+        let with = |table: &toml::Table, axis: &StudyAxis, value: &toml::Value| {
+            with_value(table, &axis.key, value.clone())
+                .map_err(|error| axis.error(place, value, error))
+        };
+        // Each value alone, so that an error names the axis that it is of.
+        for axis in &self.0 {
+            for value in &axis.values {
+                let read = with(&table, axis, value)?.try_into::<S>();
+                read.map_err(|error| axis.error(place, value, error.message().trim_end()))?;
+            }
+        }
+        let all = self.combinations().into_iter().map(|values| {
+            let mut table = table.clone();
+            for (axis, value) in self.0.iter().zip(&values) {
+                table = with(&table, axis, value)?;
+            }
+            let study = table.try_into();
+            let study = study.map_err(|error| self.refused(place, &values, &error.to_string()))?;
+            Ok(Variant { values, study })
+        });
+        all.collect()
+    }
+
+    /// What is said of a combination that a check refuses: first the axes whose keys the check speaks of, or all of them.
+    pub fn refused(&self, place: &str, values: &[toml::Value], said: &str) -> Error {
+        let all = || self.0.iter().zip(values);
+        let mut named: Vec<_> = all().filter(|(axis, _)| said.contains(&axis.key)).collect();
+        if named.is_empty() {
+            named = all().collect();
+        }
+        let given = |(axis, value): &(&StudyAxis, &toml::Value)| format!("{} = {value}", axis.key);
+        let given: Vec<String> = named.iter().map(given).collect();
+        let said = said.strip_prefix(place).unwrap_or(said);
+        let said = said.trim_start_matches([',', ':', ' ']);
+        match named.first() {
+            Some((axis, _)) => axis.error(place, given.join(", "), said),
+            None => Error::input(place, "a study", said),
+        }
+    }
+}
+
+/// A study as TOML: without the keys of its axes, and with their table at its end, in their order.
+pub fn to_toml<S: Serialize>(study: &S, axes: &StudyAxes) -> String {
+    const HAS_FORM: &str = "every field of a study has a TOML form";
+    if axes.is_empty() {
+        return toml::to_string(study).expect(HAS_FORM);
+    }
+    let mut table = toml::Table::try_from(study).expect(HAS_FORM);
+    let mut lines = "\n[axes]\n".to_owned();
+    for StudyAxis { key, values, .. } in &axes.0 {
+        remove(&mut table, key);
+        let values = toml::Value::Array(values.clone());
+        lines.push_str(&format!("{:?} = {values}\n", key));
+    }
+    toml::to_string(&table).expect(HAS_FORM) + &lines
+}
+
+fn remove(table: &mut toml::Table, key: &str) {
+    match key.split_once('.') {
+        None => {
+            table.remove(key);
+        }
+        Some((first, rest)) => {
+            if let Some(toml::Value::Table(inner)) = table.get_mut(first) {
+                remove(inner, rest);
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::table::Role;
+
+    #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+    #[serde(deny_unknown_fields)]
+    struct Study {
+        seed: u64,
+        #[serde(default)]
+        ratio: Vec<f64>,
+        skin: Skin,
+    }
+
+    #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+    #[serde(deny_unknown_fields)]
+    struct Skin {
+        stroke_mm: f64,
+        #[serde(default)]
+        words: String,
+    }
+
+    const RULES: AxisRules = AxisRules {
+        in_place: |key| key == "ratio",
+        refused: &["report"],
+    };
+
+    const TEXT: &str = "[axes]\n\"skin.stroke_mm\" = [5.0, 1]\nseed = [3, 1]\nratio = [1.0, 4.0]\n[skin]\nwords = \"a\"\n";
+
+    fn said(text: &str) -> String {
+        let read = read::<Study>("s.toml", text, RULES);
+        let made = read.and_then(|(study, axes)| axes.variants("s.toml", &study));
+        let error = made.unwrap_err();
+        assert_eq!(error.exit_code(), 2);
+        error.to_string()
+    }
+
+    #[test]
+    fn every_combination_is_a_study_and_the_first_axis_changes_slowest() {
+        let (study, axes) = read::<Study>("s.toml", TEXT, RULES).unwrap();
+        assert_eq!(study.ratio, [1.0, 4.0]);
+        let variants = axes.variants("s.toml", &study).unwrap();
+        let found = variants
+            .iter()
+            .map(|v| (v.study.skin.stroke_mm, v.study.seed));
+        let found: Vec<(f64, u64)> = found.collect();
+        assert_eq!(found, [(5.0, 3), (5.0, 1), (1.0, 3), (1.0, 1)]);
+        assert!(
+            variants
+                .iter()
+                .all(|v| v.study.skin.words == "a" && v.study.ratio.len() == 2)
+        );
+        assert_eq!(axes.n_combinations(), 4.0);
+    }
+
+    #[test]
+    fn a_study_with_axes_reads_back_from_what_it_is_written_as() {
+        let (study, axes) = read::<Study>("s.toml", TEXT, RULES).unwrap();
+        let text = to_toml(&study, &axes);
+        let (again, same) = read::<Study>("s.toml", &text, RULES).unwrap();
+        let keys = |axes: &StudyAxes| -> Vec<(String, Vec<toml::Value>)> {
+            let axes = axes.0.iter();
+            axes.map(|axis| (axis.key.clone(), axis.values.clone()))
+                .collect()
+        };
+        assert_eq!((again, keys(&same)), (study, keys(&axes)), "{text}");
+    }
+
+    #[test]
+    fn an_axis_that_cannot_be_is_told_with_its_line_and_what_is_allowed() {
+        let with = |axis: &str| format!("seed = 1\n\n[axes]\n{axis}\n[skin]\nwords = \"a\"\n");
+        for (text, wanted) in [
+            (
+                with("\"skin.stroke_mm\" = []"),
+                "s.toml:4, axes.\"skin.stroke_mm\": no list",
+            ),
+            (with("skin.stroke_mm = 2.0"), "at least one value"),
+            (
+                with("skin.stroke_mm = [1, 2, 1.0]"),
+                "1.0 twice; each value once",
+            ),
+            (
+                with("skin.stroke_mm = [1.0]\nseed = [1, 2]"),
+                "s.toml:5, axes.\"seed\": given here and in its table",
+            ),
+            (
+                with("skin.stroke_mm = [1.0]\nskin.depth = [1.0, 2.0]"),
+                "s.toml:5:6: unknown field `depth`",
+            ),
+            (
+                with("skin.stroke_mm = [1.0]\nreport.pareto = [true, false]"),
+                "report as an axis",
+            ),
+            (
+                with("skin.stroke_mm = [1.0, \"a\"]"),
+                "s.toml:4, axes.\"skin.stroke_mm\": \"a\"; invalid type",
+            ),
+            (
+                with("skin.stroke_mm = [\"a\", 1.0]"),
+                "s.toml:4:19: invalid type",
+            ),
+            (
+                with("seed.more = [1]"),
+                "axes.\"seed.more\": given here and in its table",
+            ),
+            ("axes = 3\n".to_owned(), "s.toml:1, key axes: no table"),
+        ] {
+            let said = said(&text);
+            assert!(said.contains(wanted), "{said}\nis not\n{wanted}");
+        }
+    }
+
+    #[test]
+    fn a_value_at_a_path_takes_the_place_of_what_was_there() {
+        let table: toml::Table = "a = 1\n[b]\nc = 2".parse().unwrap();
+        let changed = with_value(&table, "b.c", 3.into()).unwrap();
+        let expected = "a = 1\n[b]\nc = 3".parse().unwrap();
+        assert_eq!(changed, expected);
+        let made = with_value(&table, "d.e.f", true.into()).unwrap();
+        assert_eq!(made["d"]["e"]["f"].as_bool(), Some(true));
+        for key in ["a.b", "", "a..b", ".a", "b."] {
+            let error = with_value(&table, key, 3.into()).unwrap_err();
+            assert_eq!(error.exit_code(), 2, "{key}");
+        }
+    }
+
+    #[test]
+    fn the_column_of_an_axis_says_its_unit_and_role_and_a_taken_name_its_whole_path() {
+        let column = |key: &str, values: &str| {
+            let text = format!("v = {values}");
+            let table: toml::Table = text.parse().unwrap();
+            let axis = StudyAxis {
+                key: key.to_owned(),
+                values: table["v"].as_array().unwrap().clone(),
+                line: None,
+            };
+            axis.column(|name| name == "frames")
+        };
+        let depth = column("touches.depth_mm", "[1.0, 2, 4]");
+        let shown = (&depth.name[..], depth.title(), depth.role, depth.scale);
+        let expected = (
+            "depth_mm",
+            "depth (mm)".to_owned(),
+            Role::Choice,
+            Scale::Linear,
+        );
+        assert_eq!(shown, expected);
+        let stiffness = column("skin.stiffness_n_per_m", "[10, 1000]");
+        assert_eq!(
+            (stiffness.title(), stiffness.scale),
+            ("stiffness (N/m)".to_owned(), Scale::Log)
+        );
+        assert_eq!(
+            column("human_touch.frames", "[1]").name,
+            "human_touch_frames"
+        );
+        assert_eq!(column("seed", "[1]").role, Role::Subject);
+        assert_eq!(column("touches.rest", "[\"stable\"]").role, Role::Condition);
+        assert_eq!(
+            column("recognition.solver", "[\"smo\"]").scale,
+            Scale::Words
+        );
+    }
+}
