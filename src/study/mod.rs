@@ -73,6 +73,7 @@ mod variance_table;
 pub mod whole_body;
 mod workload;
 
+pub use crate::table::Role;
 pub use axis::Axis;
 pub(crate) use check::{Check, not_negative, positive};
 pub use compare_runs::{RunComparison, RunDifference, compare_runs};
@@ -99,7 +100,7 @@ pub use plan_human::HumanTouchPlan;
 pub use plan_signal::Condition;
 pub use pose_groups::KeepTogether;
 pub use repeats::Repeats;
-pub use role::{Role, agree, column_name, condition_numbers, most_accurate, one_of, role_of};
+pub use role::{agree, column_name, condition_numbers, most_accurate, one_of, role_of};
 pub use runner::{ArrayOutcome, Manner, Outcome, run, run_with};
 pub use samples::{Samples, sample_frames};
 pub use shard::Shard;
