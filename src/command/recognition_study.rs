@@ -11,7 +11,8 @@ use bubbletouch::files::write_bytes;
 use bubbletouch::kinds::{AnyOutcome, AnyStudy, EndedRun, ReportAbout};
 use bubbletouch::report::csv_tables::table_hashes;
 use bubbletouch::report::page::Limit;
-use bubbletouch::report::{headlines, results, terminal};
+use bubbletouch::report::recognition::{tables_of, words};
+use bubbletouch::report::results;
 use bubbletouch::study::journal::{Identity, Journal};
 use bubbletouch::study::memory::{AtOnce, MemoryPlan, machine_memory};
 use bubbletouch::study::pieces::PieceManner;
@@ -59,16 +60,9 @@ impl RecognitionStudy {
 
     /// What is done when all cells are there; a shard does nothing then.
     fn report_work(&self, part: Part) -> Piece {
-        let LoadedStudy {
-            plan,
-            sweep,
-            touched,
-            ..
-        } = &self.loaded;
-        let cells: Vec<_> = sweep.cells().collect();
         Piece::report(match part {
             Part::Shard(_) => 0.0,
-            _ => results::planned_s(&cells, plan.spec.report.pareto, touched.samples_s()),
+            _ => results::planned_s(self.loaded.touched.samples_s()),
         })
     }
 }
@@ -199,8 +193,9 @@ impl AnyOutcome for RecognitionOutcome<'_> {
     }
 
     fn words(&self, width: usize) -> String {
-        let tables = &self.outcome.tables;
-        let summary = terminal::summary_table(tables, width, "summary.csv");
-        format!("{summary}\n{}", headlines::text(tables, width))
+        match tables_of(&self.outcome.tables, &[]) {
+            Ok(tables) => words(&tables, width),
+            Err(error) => error.to_string(),
+        }
     }
 }

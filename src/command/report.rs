@@ -6,7 +6,8 @@ use super::checked_manifest::checked_manifest;
 use super::streams::{note, say};
 use super::study_args::{LoadedStudy, StudyArgs};
 use bubbletouch::kinds::ReportAbout;
-use bubbletouch::report::csv_tables::{LIMITS_FILE, read_rows, read_tables};
+use bubbletouch::report::csv_tables::{LIMITS_FILE, read_rows};
+use bubbletouch::report::recognition;
 use bubbletouch::report::results::write_page;
 use bubbletouch::study::provenance::MANIFEST_FILE;
 use bubbletouch::{Error, Result};
@@ -77,7 +78,7 @@ pub fn write_again(loaded: &LoadedStudy, folder: &Path, about: &ReportAbout) -> 
         add_manifest(&mut page, manifest);
     }
     page.command = about.command.clone();
-    write_page(folder, &read_tables(folder)?, &page).map(|_| ())
+    write_page(folder, &recognition::read_tables(folder)?, &page).map(|_| ())
 }
 
 fn folder_name(folder: &Path) -> Result<String> {

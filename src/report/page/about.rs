@@ -70,6 +70,13 @@ pub struct Limit {
     pub meaning: String,
 }
 
+crate::columns! { Limit {
+    what: Note "what happened";
+    count: Note "how often": Linear;
+    of: Note "out of": Linear;
+    meaning: Note "what it means";
+} }
+
 /// Sample touches on one scale of colours.
 #[derive(Clone, Debug)]
 pub struct Snapshots {

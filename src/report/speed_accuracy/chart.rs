@@ -2,13 +2,13 @@
 
 use super::points::{ChartKind, ChartPoint};
 use crate::report::chart;
+use crate::report::chart::{draw_steps, paler};
 use crate::report::colours::{INK, PAPER};
 use crate::report::drawing::{Align, Area, Drawing, Point, Stroke, TextStyle};
 use crate::report::legend::{
     Heading, LEFT, LegendEntry, MARKER_RADIUS, Mark, RIGHT, dashes, point_colour,
 };
 use crate::report::log_scale::{LogScale, draw_y_ticks};
-use crate::report::pareto_chart::{draw_steps, paler};
 use crate::report::time_scale::{TimeScale, time_label};
 
 const WIDTH: f64 = 820.0;
