@@ -8,6 +8,7 @@ use crate::sensing::{Basis, Ensemble, Solver};
 use crate::signal::NoiseUnit;
 use crate::study::table::Cell;
 use crate::study::{IMPERFECTIONS, Imperfection, Role, TestedOn, role_of};
+pub use crate::table::short_number;
 
 /// A setting that a study can sweep.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -250,27 +251,6 @@ impl Axis {
     }
 }
 
-/// A number as people write it: four significant digits, no trailing zeros.
-pub fn short_number(number: f64) -> String {
-    if number == 0.0 || !number.is_finite() {
-        return if number == 0.0 {
-            "0".to_owned()
-        } else {
-            number.to_string()
-        };
-    }
-    let digits_before = number.abs().log10().floor() as i32 + 1;
-    if !(-3..=6).contains(&digits_before) {
-        return format!("{number:.2e}").replace(".00e", "e");
-    }
-    let decimals = (4 - digits_before).max(0) as usize;
-    let text = format!("{number:.decimals$}");
-    match text.contains('.') {
-        true => text.trim_end_matches('0').trim_end_matches('.').to_owned(),
-        false => text,
-    }
-}
-
 /// An ensemble in words.
 pub fn ensemble_name(ensemble: Ensemble) -> &'static str {
     match ensemble {
@@ -392,27 +372,6 @@ mod tests {
             let role = axis.column().and_then(role_of);
             let is_either = matches!(role, Some(Role::Choice | Role::Condition));
             assert!(is_either, "{axis:?}: {role:?}");
-        }
-    }
-
-    #[test]
-    fn numbers_are_written_short_and_true() {
-        let written = [
-            0.0,
-            7.0,
-            0.1,
-            1.0 / 3.0,
-            1024.0,
-            102.4,
-            12345.6,
-            1e-5,
-            2.5e7,
-        ];
-        let expected = [
-            "0", "7", "0.1", "0.3333", "1024", "102.4", "12346", "1.00e-5", "2.50e7",
-        ];
-        for (number, text) in written.into_iter().zip(expected) {
-            assert_eq!(short_number(number), text.replace(".00e", "e"));
         }
     }
 }

@@ -1,7 +1,8 @@
 //! What stands above a chart's panels: title, fixed settings, and the legend.
 
-use crate::report::colours::{INK, LINES, MUTED, PAPER, Rgb};
-use crate::report::drawing::{Drawing, Point, Stroke, TextStyle};
+use crate::report::chart::draw_sign;
+use crate::report::colours::{INK, LINES, MUTED, PAPER, Rgb, heat};
+use crate::report::drawing::{Area, Drawing, Point, Stroke, TextStyle};
 use crate::report::text_width::{text_width, wrap};
 
 /// Left margin of a chart, pixels.
@@ -21,6 +22,8 @@ pub(super) const FRONT: Stroke = Stroke {
 const TITLE: u32 = 16;
 const SMALL: u32 = 12;
 const LINE_WIDTH: f64 = 2.0;
+/// Steps of a bar of colours.
+const BAR: u32 = 40;
 
 /// A dashed line of a width in pixels: something to compare data with.
 pub(super) const fn dashes(width: f64) -> Stroke {
@@ -57,6 +60,8 @@ pub(super) enum Mark {
     Front,
     /// The line of chance.
     Dashes,
+    /// A line across the chart.
+    Rule(Stroke),
     /// A band around a line.
     Band,
     /// A bar through a marker.
@@ -65,6 +70,10 @@ pub(super) enum Mark {
     Hollow,
     /// A cross.
     Cross,
+    /// A tile with its sign.
+    Tile(Rgb, String),
+    /// All colours of numbers.
+    Bar,
 }
 
 impl Heading {
@@ -134,11 +143,32 @@ impl LegendEntry {
     fn draw(&self, drawing: &mut Drawing, (x, y): Point) {
         let middle = y - 4.5;
         let text_x = x + self.mark.width();
-        match self.mark {
+        match &self.mark {
             Mark::None => {}
+            Mark::Tile(fill, sign) => {
+                let area = Area {
+                    x,
+                    y: y - 12.0,
+                    width: 28.0,
+                    height: 16.0,
+                };
+                drawing.area(area, *fill);
+                draw_sign(drawing, area, *fill, sign);
+            }
+            Mark::Bar => {
+                for step in 0..BAR {
+                    let area = Area {
+                        x: x + 2.0 * f64::from(step),
+                        y: y - 12.0,
+                        width: 2.0,
+                        height: 14.0,
+                    };
+                    drawing.area(area, heat(f64::from(step) / f64::from(BAR - 1)));
+                }
+            }
             Mark::Point(number) => {
                 let at = (x + 6.0, middle);
-                drawing.marker(number, at, MARKER_RADIUS, point_colour(number));
+                drawing.marker(*number, at, MARKER_RADIUS, point_colour(*number));
             }
             Mark::Hollow => draw_hollow(drawing, 0, (x + 6.0, middle)),
             Mark::Cross => draw_cross(drawing, (x + 6.0, middle)),
@@ -153,11 +183,12 @@ impl LegendEntry {
                 drawing.polyline(&steps, FRONT);
             }
             Mark::Line(line) => {
-                let stroke = line_stroke(line);
+                let stroke = line_stroke(*line);
                 drawing.line((x, middle), (x + 28.0, middle), stroke);
-                drawing.marker(line, (x + 14.0, middle), MARKER_RADIUS, stroke.colour);
+                drawing.marker(*line, (x + 14.0, middle), MARKER_RADIUS, stroke.colour);
             }
             Mark::Dashes => drawing.line((x, middle), (x + 28.0, middle), CHANCE),
+            Mark::Rule(stroke) => drawing.line((x, middle), (x + 28.0, middle), *stroke),
             Mark::Whisker => {
                 let centre = x + 14.0;
                 drawing.line(
@@ -182,6 +213,7 @@ impl Mark {
         match self {
             Self::None => 0.0,
             Self::Point(_) | Self::Hollow | Self::Cross => 18.0,
+            Self::Bar => 2.0 * f64::from(BAR) + 8.0,
             _ => 34.0,
         }
     }

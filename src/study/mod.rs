@@ -69,6 +69,7 @@ mod training;
 mod variance_table;
 pub mod whole_body;
 
+pub use crate::table::Role;
 pub use axis::Axis;
 pub(crate) use check::{Check, not_negative, positive};
 pub use compare_runs::{RunComparison, RunDifference, compare_runs};
@@ -93,7 +94,7 @@ pub use plan_signal::Condition;
 pub use pose_groups::KeepTogether;
 pub use recognition::{ArrayOutcome, Limit, Outcome, RecognitionRows, RecognitionStudy};
 pub use repeats::Repeats;
-pub use role::{Role, agree, column_name, condition_numbers, most_accurate, one_of, role_of};
+pub use role::{agree, column_name, condition_numbers, most_accurate, one_of, role_of};
 pub use samples::{Samples, sample_frames};
 pub use shard::Shard;
 pub use simulation::{TouchedObject, draw_touches, simulate_array};

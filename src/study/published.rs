@@ -23,7 +23,7 @@ fn check(claim: &PublishedSpec, cells: &[&Cell]) -> Result<()> {
         return Err(Error::input(place("accuracy"), claim.accuracy, allowed));
     }
     // One after the other: of many cells, all rows at once would be gigabytes.
-    let rows = || cells.iter().map(|cell| cell.columns());
+    let rows = || cells.iter().map(|cell| cell.settings());
     for (key, wanted) in &claim.at {
         let of_key = || rows().filter_map(|mut row| row.remove(column(key)));
         if of_key().any(|value| agree(&value, wanted)) {
@@ -64,7 +64,7 @@ pub fn compare_with_published(
     published: &[PublishedSpec],
     summary: &[(Cell, CellScore)],
 ) -> Vec<(Cell, Published)> {
-    let columns: Vec<Table> = summary.iter().map(|(cell, _)| cell.columns()).collect();
+    let columns: Vec<Table> = summary.iter().map(|(cell, _)| cell.settings()).collect();
     let conditions = condition_numbers(summary.iter().map(|(cell, _)| cell));
     let n_conditions = conditions.iter().max().map_or(0, |last| last + 1);
     let mut rows = Vec::new();

@@ -1,81 +1,25 @@
 //! What each setting of a cell is to whoever chooses one: a choice of the designer, or a condition that the world sets.
 
 use super::table::Cell;
-use serde::{Deserialize, Serialize};
+use crate::table::{Columns, Role};
+use std::borrow::Cow;
 use std::collections::HashMap;
-use std::fmt::Write;
+use std::sync::LazyLock;
 use toml::{Table, Value};
-
-/// What a setting is.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Role {
-    /// A designer decides it. Advice and every "best" choose among these, within a condition.
-    Choice,
-    /// The world sets it: noise, sensor errors, another skin, wrong labels. It is given, never advised.
-    Condition,
-    /// It says how to read the others.
-    Note,
-}
-
-/// The role of every column of [`Cell`]: a cell with a column that has none does not compile.
-macro_rules! roles {
-    ($($column:ident: $role:ident,)*) => {
-        const ROLES: &[(&str, Role)] = &[$((stringify!($column), Role::$role)),*];
-        const _: fn(&Cell) = |Cell { $($column: _),* }| ();
-
-        /// The conditions of a cell as a text: equal texts, equal conditions.
-        fn condition_key(cell: &Cell) -> String {
-            let mut key = String::new();
-            $(if Role::$role == Role::Condition {
-                let _ = write!(key, "{:?};", cell.$column);
-            })*
-            key
-        }
-    };
-}
-
-roles! {
-    cell: Note,
-    pitch_mm: Choice,
-    nx: Choice,
-    ny: Choice,
-    size_mm: Choice,
-    noise_std: Condition,
-    noise_unit: Note,
-    smoothing_mm: Choice,
-    hysteresis_full_scale: Condition,
-    crosstalk: Condition,
-    gain_std: Condition,
-    drift_std_full_scale: Condition,
-    dead_fraction: Condition,
-    stuck_fraction: Condition,
-    scan_time_ms: Condition,
-    adc_bits: Condition,
-    tested_on: Condition,
-    ensemble: Choice,
-    measurements: Choice,
-    ratio: Choice,
-    frames: Choice,
-    over_time: Choice,
-    features: Choice,
-    classifier: Choice,
-    c: Choice,
-    train_touches: Choice,
-    mislabelled_fraction: Condition,
-    class_imbalance: Condition,
-    fused_touches: Choice,
-}
 
 /// The role of a column of [`Cell`]; none for a name that is no column.
 pub fn role_of(column: &str) -> Option<Role> {
+    static ROLES: LazyLock<Vec<(Cow<str>, Role)>> = LazyLock::new(|| {
+        let columns = Cell::columns().into_iter();
+        columns.map(|column| (column.name, column.role)).collect()
+    });
     let known = ROLES.iter().find(|(name, _)| *name == column);
     known.map(|(_, role)| *role)
 }
 
 impl Cell {
     /// The cell by its columns but for its number, which says nothing about it; what is absent is left out.
-    pub fn columns(&self) -> Table {
+    pub fn settings(&self) -> Table {
         let mut row = Table::try_from(self).expect("every field of a cell has a TOML form");
         row.remove("cell");
         row
@@ -84,7 +28,7 @@ impl Cell {
     /// Its columns that are conditions.
     pub fn conditions(&self) -> Table {
         let of_role = |(column, _): &(String, Value)| role_of(column) == Some(Role::Condition);
-        self.columns().into_iter().filter(of_role).collect()
+        self.settings().into_iter().filter(of_role).collect()
     }
 }
 
@@ -93,7 +37,7 @@ pub fn condition_numbers<'a>(cells: impl IntoIterator<Item = &'a Cell>) -> Vec<u
     let mut known: HashMap<String, usize> = HashMap::new();
     let number = |cell: &Cell| {
         let next = known.len();
-        *known.entry(condition_key(cell)).or_insert(next)
+        *known.entry(cell.conditions().to_string()).or_insert(next)
     };
     cells.into_iter().map(number).collect()
 }

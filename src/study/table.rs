@@ -4,6 +4,7 @@
 
 use super::imperfection::{IMPERFECTIONS, Imperfection, Strengths, TestedOn};
 pub use super::variance_table::{Source, Variance};
+use crate::columns;
 use crate::recognition::ClassifierKind;
 use crate::recognition::features::Features;
 use crate::recognition::over_time::OverTime;
@@ -331,6 +332,134 @@ pub struct StageTime {
     /// Processor-microseconds a touch.
     pub us_per_touch: f64,
 }
+
+columns! { Cell {
+    cell: Note: Linear;
+    pitch_mm: Choice "pitch" in "mm": Linear;
+    nx: Choice "taxels along x": Linear;
+    ny: Choice "taxels along y": Linear;
+    size_mm: Choice "array size" in "mm": Linear;
+    noise_std: Condition "noise" in "%": Share;
+    noise_unit: Note;
+    smoothing_mm: Choice "smoothing" in "mm": Linear;
+    hysteresis_full_scale: Condition "hysteresis" in "%": Share, optional;
+    crosstalk: Condition "crosstalk" in "%": Share, optional;
+    gain_std: Condition "gain mismatch" in "%": Share, optional;
+    drift_std_full_scale: Condition "drift" in "%": Share, optional;
+    dead_fraction: Condition "dead taxels" in "%": Share, optional;
+    stuck_fraction: Condition "stuck taxels" in "%": Share, optional;
+    scan_time_ms: Condition "scan time" in "ms": Linear, optional;
+    adc_bits: Condition "converter" in "bits": Linear, optional;
+    tested_on: Condition "tested on", optional;
+    ensemble: Choice;
+    measurements: Choice "m": Log;
+    ratio: Choice "compression" in ":1": Log;
+    frames: Choice "frames a touch": Log;
+    over_time: Choice "over time", optional;
+    features: Choice;
+    classifier: Choice;
+    c: Choice "C": Log;
+    train_touches: Choice "training touches": Log;
+    mislabelled_fraction: Condition "mislabelled" in "%": Share, optional;
+    class_imbalance: Condition "class imbalance" in ":1": Log, optional;
+    fused_touches: Choice "touches fused": Log;
+} }
+
+columns! { TrialScore {
+    trial: Subject: Linear;
+    split: Note: Linear, optional;
+    projection: Note: Linear, optional;
+    n_train: Note "training rows": Linear;
+    n_test: Note "test rows": Linear;
+    n_left_out: Note "test touches left out": Linear;
+    n_correct: Note "test rows recognised": Linear;
+    accuracy: Value(More): Share between [accuracy_low, accuracy_high];
+    accuracy_low: Note "accuracy, lower end": Share;
+    accuracy_high: Note "accuracy, upper end": Share;
+    macro_f1: Value(More) "macro F1": Share;
+    c_used: Note "C used": Log;
+    gamma_used: Note "γ used": Log;
+    n_capped: Note "solves that stopped at the cap": Linear;
+} }
+
+columns! { CellScore {
+    n_trials: Note "trials": Linear;
+    n_test: Note "test rows": Linear;
+    accuracy: Value(More): Share between [accuracy_low, accuracy_high];
+    accuracy_std: Note "standard deviation over trials": Share;
+    accuracy_low: Note "accuracy, lower end": Share;
+    accuracy_high: Note "accuracy, upper end": Share;
+    bootstrap_low: Note "mean over trials, lower end": Share;
+    bootstrap_high: Note "mean over trials, upper end": Share;
+    macro_f1: Value(More) "macro F1": Share;
+    n_capped: Note "solves that stopped at the cap": Linear;
+} }
+
+columns! { Confusion {
+    cell: Note: Linear;
+    object: Subject;
+    predicted: Subject "taken for";
+    count: Value(Neither) "test rows": Linear;
+} }
+
+columns! { Confused {
+    cell: Note: Linear;
+    object: Subject;
+    predicted: Subject "taken for";
+    count: Note "test rows": Linear;
+    n_test: Note "test rows of the object": Linear;
+    share: Value(Less) "share of the object's test rows": Share;
+} }
+
+columns! { Published {
+    claim: Note;
+    source: Note;
+    published_accuracy: Value(Neither) "published accuracy": Share;
+    accuracy: Value(More): Share between [accuracy_low, accuracy_high];
+    accuracy_low: Note "accuracy, lower end": Share;
+    accuracy_high: Note "accuracy, upper end": Share;
+    difference: Value(More) "difference to what was published": Linear;
+    n_matching: Note "configurations that it is about": Linear;
+} }
+
+columns! { Comparison {
+    cell: Note: Linear;
+    best_cell: Note "best cell": Linear;
+    n_trials: Note "trials of both": Linear;
+    difference: Value(More) "difference to the best": Linear between [difference_low, difference_high];
+    difference_low: Note "difference, lower end": Linear;
+    difference_high: Note "difference, upper end": Linear;
+    p_value: Value(Neither) "p-value": Linear;
+    p_holm: Value(Neither) "p-value, Holm": Linear;
+    p_status: Outcome "test";
+    n_trials_needed: Note "trials needed": Linear;
+} }
+
+columns! { TrialTime {
+    trial: Subject: Linear;
+    fit_s: Cost "time to train" in "s": Log;
+    predict_s: Cost "time to predict" in "s": Log;
+    predict_us_per_touch: Cost "time to predict a touch" in "µs": Log;
+} }
+
+columns! { Pareto {
+    accuracy: Value(More): Share;
+    fit_s: Cost "time to train" in "s": Log;
+    fit_us_per_touch: Cost "time to train, of a training touch" in "µs": Log;
+    predict_us_per_decision: Cost "time of a decision" in "µs": Log;
+    on_training_front: Note;
+    on_prediction_front: Note;
+} }
+
+columns! { StageTime {
+    stage: Subject;
+    pitch_mm: Subject "pitch" in "mm": Linear;
+    nx: Subject "taxels along x": Linear;
+    ny: Subject "taxels along y": Linear;
+    n_touches: Note "touches": Linear;
+    cpu_s: Cost "processor time" in "s": Log;
+    us_per_touch: Cost "processor time of a touch" in "µs": Log;
+} }
 
 /// All result tables of a study.
 #[derive(Clone, Debug, Default, PartialEq)]

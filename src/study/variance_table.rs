@@ -3,6 +3,7 @@
 use super::evaluation::CONFIDENCE;
 use super::repeats::accuracies;
 use super::table::{Cell, TrialScore};
+use crate::columns;
 use crate::error::Result;
 use crate::recognition::variance::{Component, components};
 use serde::{Deserialize, Serialize};
@@ -45,6 +46,20 @@ pub struct Variance {
     /// p-value of the F test that it adds nothing; empty for the rest.
     pub p_value: Option<f64>,
 }
+
+columns! { Variance {
+    cell: Note: Linear;
+    source: Subject "source of variance";
+    n_levels: Note "levels": Linear;
+    degrees_of_freedom: Note: Linear;
+    mean_square: Note: Linear;
+    estimate: Note "variance": Linear;
+    accuracy_std: Value(Less) "standard deviation of the accuracy": Linear between [accuracy_std_low, accuracy_std_high];
+    accuracy_std_low: Note "standard deviation, lower end": Linear;
+    accuracy_std_high: Note "standard deviation, upper end": Linear;
+    share: Value(Less) "share of the variance": Share;
+    p_value: Value(Neither) "p-value": Linear;
+} }
 
 /// Three rows a cell whose trials combine every split with every projection; none for other cells.
 pub fn variances(rows: &[(Cell, TrialScore)]) -> Result<Vec<Variance>> {

@@ -1,9 +1,10 @@
 //! A chart as a value: which columns of which table it shows, and how.
 
 use super::Value;
+use serde::Serialize;
 
 /// What a chart shows. One renderer draws it as SVG and PNG, and the page's script draws the same.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct ChartSpec {
     /// File name without ending.
     pub name: String,
@@ -19,7 +20,7 @@ pub struct ChartSpec {
     pub x: String,
     /// The column along y. Its interval, if it has one, is drawn as a band or as whiskers.
     pub y: String,
-    /// Columns of which each combination has a line, or a colour of points, of its own.
+    /// Columns of which each combination has a line, or a colour of points, of its own; of tiles, a row of panels.
     pub lines: Vec<String>,
     /// The column of which each value has a panel of its own.
     pub panels: Option<String>,
@@ -32,7 +33,7 @@ pub struct ChartSpec {
 }
 
 /// Rows of which a column has a value.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Shown {
     /// The column.
     pub column: String,
@@ -41,31 +42,50 @@ pub struct Shown {
 }
 
 /// How rows are drawn.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+#[serde(rename_all = "snake_case")]
 pub enum Mark {
-    /// Points joined along x.
+    /// Points joined along x; points alone where x is words.
+    #[default]
     Line,
     /// A value holds until the next x.
     Step,
     /// Points alone.
     Points,
-    /// A tile at each x and y, filled by the value or outcome of this column.
-    Tiles(String),
+    /// A tile at each x and y.
+    Tiles {
+        /// The column that fills it: an outcome by a colour and a letter, a number by a sequential scale.
+        fill: String,
+        /// The column that is written on it, in place of the letter or the number; where it is absent, these stand there.
+        sign: Option<String>,
+    },
 }
 
 /// A line across the chart.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Rule {
     /// The axis on which it stands.
     pub along: Along,
     /// Where.
-    pub at: f64,
+    pub at: At,
     /// What it is.
     pub words: String,
 }
 
+/// Where a rule stands.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum At {
+    /// At a value of its axis.
+    Value(f64),
+    /// Where a column says, in each panel for each place along the other axis: chance that depends on the number of objects, a limit that
+    /// depends on the mass.
+    Column(String),
+}
+
 /// An axis of a chart.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
 pub enum Along {
     /// Across.
     X,

@@ -1,5 +1,6 @@
 //! What a column of a table is: its name, words, unit, scale and role.
 
+use super::{Value, short_number, time_words};
 use serde::Serialize;
 use std::borrow::Cow;
 
@@ -59,7 +60,8 @@ pub struct Column {
     pub name: Words,
     /// What people call it, without unit: `taxel pitch`.
     pub words: Words,
-    /// Of its numbers: `mm`; empty without.
+    /// Of its numbers: `mm`; empty without. Numbers of unit `%` are shares of one, shown times 100; those of unit `:1` are ratios; times
+    /// (`s`, `ms`, `us`) are said in the unit that suits them where they span decades.
     pub unit: Words,
     /// How it lies along an axis.
     pub scale: Scale,
@@ -68,6 +70,9 @@ pub struct Column {
     /// The columns that bound it, lower and upper: of a value with an interval.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub interval: Option<[Words; 2]>,
+    /// What people call its words, where these are codes: `rbf_svm`, `RBF SVM`. Of others, underscores are spaces.
+    #[serde(skip_serializing_if = "<[_]>::is_empty")]
+    pub names: &'static [(&'static str, &'static str)],
     /// Whether it may be missing from a file: only some studies have it.
     #[serde(skip)]
     pub is_optional: bool,
@@ -89,6 +94,7 @@ impl Column {
             scale,
             role,
             interval: None,
+            names: &[],
             is_optional: false,
         }
     }
@@ -105,12 +111,67 @@ impl Column {
         self
     }
 
+    /// The same, with what people call its words.
+    pub fn named(mut self, names: &'static [(&'static str, &'static str)]) -> Self {
+        self.names = names;
+        self
+    }
+
     /// The title of an axis: `taxel pitch (mm)`.
     pub fn title(&self) -> String {
-        match self.unit.is_empty() {
-            true => self.words.to_string(),
-            false => format!("{} ({})", self.words, self.unit),
+        match (self.unit.as_ref(), self.is_time()) {
+            ("" | ":1", _) | (_, true) => self.words.to_string(),
+            (unit, false) => format!("{} ({unit})", self.words),
         }
+    }
+
+    /// Whether its numbers are times over decades.
+    fn is_time(&self) -> bool {
+        self.scale == Scale::Log && matches!(self.unit.as_ref(), "s" | "ms" | "us" | "µs")
+    }
+
+    /// A number without its unit: `10`, `64:1`, `20 µs`.
+    pub fn tick(&self, number: f64) -> String {
+        match self.unit.as_ref() {
+            // 100 × 0.07 is not 7 in floating point.
+            "%" => short_number((number * 1e8).round() / 1e6),
+            ":1" => format!("{}:1", short_number(number)),
+            "s" if self.is_time() => time_words(number),
+            "ms" if self.is_time() => time_words(1e-3 * number),
+            "us" | "µs" if self.is_time() => time_words(1e-6 * number),
+            _ => short_number(number),
+        }
+    }
+
+    /// A number with its unit: `10 %`, `64:1`.
+    pub fn number_words(&self, number: f64) -> String {
+        let tick = self.tick(number);
+        match self.unit.as_ref() {
+            "" | ":1" => tick,
+            _ if self.is_time() => tick,
+            unit => format!("{tick} {unit}"),
+        }
+    }
+
+    /// What people call one of its words.
+    pub fn word(&self, code: &str) -> String {
+        let known = self.names.iter().find(|(known, _)| *known == code);
+        known.map_or_else(|| code.replace('_', " "), |(_, name)| (*name).to_owned())
+    }
+
+    /// A value for a sentence: `10 %`, `RBF SVM`.
+    pub fn value_words(&self, value: &Value) -> String {
+        match value {
+            Value::Number(number) => self.number_words(*number),
+            Value::Word(code) => self.word(code),
+        }
+    }
+
+    /// Name and value: `noise 10 %`, `m = 64`.
+    pub fn phrase(&self, value: &Value) -> String {
+        let is_symbol = self.words.chars().count() == 1;
+        let between = if is_symbol { " = " } else { " " };
+        format!("{}{between}{}", self.words, self.value_words(value))
     }
 }
 

@@ -1,7 +1,8 @@
 //! The one place in which a row says what its fields are.
 
-/// Says what each field of a row is: `field: Role "words" in "unit": Scale between [low, high], optional;` of which the words and all after
-/// them may be left out: words are then the field's name, and the scale is that of words.
+/// Says what each field of a row is: `field: Role "words" in "unit": Scale between [low, high] named NAMES, optional;` of which the words and all after
+/// them may be left out: words are then the field's name, and the scale is that of words. `NAMES` is a constant that says what people call
+/// codes, as `[("rbf_svm", "RBF SVM")]`.
 ///
 /// ```
 /// use bubbletouch::columns;
@@ -25,7 +26,7 @@
 #[macro_export]
 macro_rules! columns {
     ($row:ident { $($field:ident: $role:ident $(($better:ident))? $($words:literal)? $(in $unit:literal)? $(: $scale:ident)?
-        $(between [$low:ident, $high:ident])? $(, $optional:ident)?;)* }) => {
+        $(between [$low:ident, $high:ident])? $(named $names:path)? $(, $optional:ident)?;)* }) => {
         const _: fn(&$row) = |$row { $($field: _),* }| ();
 
         impl $crate::table::Columns for $row {
@@ -43,6 +44,7 @@ macro_rules! columns {
                     $(scale = $crate::table::Scale::$scale;)?
                     let column = $crate::table::Column::new(stringify!($field), role, words, unit, scale);
                     $(let column = column.between(stringify!($low), stringify!($high));)?
+                    $(let column = column.named($names);)?
                     $(let column = column.$optional();)?
                     column
                 }),*]

@@ -8,10 +8,12 @@ mod chart;
 mod column;
 mod columns_macro;
 mod front;
+mod numbers;
 #[allow(clippy::module_inception)]
 mod table;
 
-pub use chart::{Along, ChartSpec, Mark, Rule, Shown};
+pub use chart::{Along, At, ChartSpec, Mark, Rule, Shown};
 pub use column::{Better, Column, Columns, Role, Scale};
 pub use front::front;
+pub use numbers::{short_number, time_words};
 pub use table::{Data, Table, Value};

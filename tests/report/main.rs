@@ -2,16 +2,20 @@
 
 #[path = "../fixtures/browser/mod.rs"]
 mod browser;
+#[path = "../fixtures/chart_tables/mod.rs"]
+mod chart_tables;
 #[path = "../fixtures/counting/mod.rs"]
 mod counting;
 #[path = "../fixtures/report_synthetic/mod.rs"]
 mod report_synthetic;
 
 mod asked;
+mod charts;
 mod everywhere;
 mod page;
 mod pareto;
 mod pictures;
 mod recording_files;
 mod recording_pictures;
+mod study_page;
 mod tables;

@@ -227,12 +227,12 @@ impl Chart<'_> {
 }
 
 /// Where an accuracy stands in a panel, pixels down.
-pub(super) fn y_at(frame: Area, accuracy: f64) -> f64 {
+pub(in crate::report) fn y_at(frame: Area, accuracy: f64) -> f64 {
     frame.y + frame.height * (1.0 - accuracy.clamp(0.0, 1.0))
 }
 
 /// The axes of a panel, and lines across it at the accuracies of their ticks.
-pub(super) fn draw_axes(drawing: &mut Drawing, frame: Area) {
+pub(in crate::report) fn draw_axes(drawing: &mut Drawing, frame: Area) {
     let (right, bottom) = (frame.x + frame.width, frame.y + frame.height);
     for step in 0..=5 {
         let y = y_at(frame, f64::from(step) / 5.0);
@@ -257,7 +257,7 @@ fn draw_grid(drawing: &mut Drawing, scale: &XScale, frame: Area) {
 }
 
 /// Ticks, numbers and title of the accuracy axis, left of a panel.
-pub(super) fn draw_y_labels(drawing: &mut Drawing, frame: Area) {
+pub(in crate::report) fn draw_y_labels(drawing: &mut Drawing, frame: Area) {
     for step in 0..=5 {
         let accuracy = f64::from(step) / 5.0;
         let at = (frame.x - 9.0, y_at(frame, accuracy) + 4.5);
@@ -275,7 +275,7 @@ pub(super) fn draw_y_labels(drawing: &mut Drawing, frame: Area) {
 }
 
 /// The interval between neighbouring points, shaded.
-pub(super) fn draw_band(
+pub(in crate::report) fn draw_band(
     drawing: &mut Drawing,
     points: &[(f64, &CellScore)],
     frame: Area,
@@ -305,7 +305,7 @@ fn draw_whiskers(drawing: &mut Drawing, points: &[(f64, &CellScore)], frame: Are
 }
 
 /// The line through the points.
-pub(super) fn draw_line(
+pub(in crate::report) fn draw_line(
     drawing: &mut Drawing,
     points: &[(f64, &CellScore)],
     frame: Area,
@@ -321,7 +321,7 @@ pub(super) fn draw_line(
 }
 
 /// A marker at each point.
-pub(super) fn draw_markers(
+pub(in crate::report) fn draw_markers(
     drawing: &mut Drawing,
     points: &[(f64, &CellScore)],
     frame: Area,

@@ -1,0 +1,55 @@
+//! Charts: what a [`ChartSpec`] says, of a table, as a [`Drawing`].
+//!
+//! One renderer for every chart: [`View`](view) finds rows, lines and panels in the table; [`Scale`](scale) says where values stand along an axis, as
+//! parts of its length; [`layout`] gives panels their pixels; [`marks`] and [`tiles`] draw what stands in them. The page's script draws the
+//! same specs by the same rules: [`places`] says where every point stands, and a test holds both against each other.
+
+mod accuracy;
+mod front;
+mod layout;
+mod marks;
+mod rules;
+mod scale;
+mod tiles;
+mod view;
+
+pub use accuracy::{chart_title, draw_chart, n_classes};
+pub(in crate::report) use accuracy::{
+    draw_axes, draw_band, draw_line, draw_markers, draw_y_labels, y_at,
+};
+pub(in crate::report) use tiles::draw_sign;
+pub use view::Place;
+
+use crate::error::{Error, Result};
+use crate::report::drawing::Drawing;
+use crate::table::{ChartSpec, Mark, Table};
+use view::View;
+
+/// Draws a chart of one of these tables.
+///
+/// # Errors
+/// A table or a column that the spec names and that is not there; no row that has a place in the chart.
+pub fn draw(spec: &ChartSpec, tables: &[Table]) -> Result<Drawing> {
+    let view = View::of(spec, tables)?;
+    if view.places.is_empty() {
+        let given = format!("no row of {} with {} and {}", spec.table, spec.x, spec.y);
+        return Err(Error::input(
+            format!("chart {}", spec.name),
+            given,
+            "one at least",
+        ));
+    }
+    Ok(match spec.mark {
+        Mark::Tiles { .. } => tiles::draw(&view),
+        Mark::Line | Mark::Step | Mark::Points => marks::draw(&view),
+    })
+}
+
+/// Where every row that a chart shows stands, as parts of the width and the height of its panel, from the left and from below.
+///
+/// # Errors
+/// A table or a column that the spec names and that is not there.
+pub fn places(spec: &ChartSpec, tables: &[Table]) -> Result<Vec<Place>> {
+    let view = View::of(spec, tables)?;
+    Ok(view.places)
+}

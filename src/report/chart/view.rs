@@ -1,0 +1,356 @@
+//! What a chart shows of its table: rows, lines, panels, and where each row stands.
+
+use super::scale::{Along, Scale, values};
+use crate::error::{Error, Result};
+use crate::table::{At, ChartSpec, Column, Data, Mark, Role, Rule, Table, Value};
+use std::collections::HashMap;
+
+/// Lines up to which bands do not hide each other; more lines get a whisker at each point.
+const MOST_BANDS: usize = 4;
+/// Points up to which whiskers can be told apart.
+const MOST_WHISKERS: usize = 80;
+
+/// A chart's spec with what it means of its table.
+pub(super) struct View<'a> {
+    pub spec: &'a ChartSpec,
+    pub table: &'a Table,
+    /// Rows that are shown.
+    pub rows: Vec<usize>,
+    /// Of each row that is shown its line, and the lines' names.
+    pub lines: Groups,
+    /// Of each row that is shown its panel, and the panels' names.
+    pub panels: Groups,
+    pub x: Scale,
+    pub y: Scale,
+    /// Rows that have a place, line by line along x.
+    pub places: Vec<Place>,
+}
+
+/// Where a row stands in its panel.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Place {
+    /// The row of the table.
+    pub row: usize,
+    /// The number of its panel.
+    pub panel: usize,
+    /// The number of its line.
+    pub line: usize,
+    /// Part of the panel's width, from the left.
+    pub x: f64,
+    /// Part of the panel's height, from below.
+    pub y: f64,
+    /// The ends of its interval, as `y`; none if it has none.
+    pub interval: Option<[f64; 2]>,
+}
+
+/// Rows by the values of some columns.
+#[derive(Default)]
+pub(super) struct Groups {
+    /// What stands before the names: `classifier`; empty without columns.
+    pub heading: String,
+    /// Of each group its values in words; one empty name without columns.
+    pub names: Vec<String>,
+    /// The group of each row that is shown.
+    pub of: Vec<usize>,
+}
+
+impl<'a> View<'a> {
+    pub fn of(spec: &'a ChartSpec, tables: &'a [Table]) -> Result<Self> {
+        let table = tables.iter().find(|table| table.file == spec.table);
+        let table = table.ok_or_else(|| {
+            let files: Vec<&str> = tables.iter().map(|table| table.file).collect();
+            let given = format!("table {:?}", spec.table);
+            Error::input(
+                format!("chart {}", spec.name),
+                given,
+                format!("one of {}", files.join(", ")),
+            )
+        })?;
+        let column = |name: &str| column_of(spec, table, name);
+        let mut shown = Vec::new();
+        for one in &spec.shown {
+            shown.push((column(&one.column)?.1, &one.value));
+        }
+        let is_shown = |row: &usize| {
+            let has = |(data, value): &(&Data, &Value)| data.value(*row).as_ref() == Some(*value);
+            shown.iter().all(has)
+        };
+        let rows: Vec<usize> = (0..table.n_rows).filter(is_shown).collect();
+        let columns_of = |names: &[String]| {
+            names
+                .iter()
+                .map(|name| column(name))
+                .collect::<Result<Vec<_>>>()
+        };
+        let lines = Groups::of(&columns_of(&spec.lines)?, &rows);
+        let panels = Groups::of(&columns_of(spec.panels.as_slice())?, &rows);
+        let (x, y) = (column(&spec.x)?, column(&spec.y)?);
+        let (x_values, y_values) = (values(x.0, x.1, &rows), values(y.0, y.1, &rows));
+        let interval = interval_of(table, y.0);
+        let mut along = [x_values.0.clone(), y_values.0.clone()];
+        for bound in interval.into_iter().flatten() {
+            along[1].extend(rows.iter().map(|&row| bound[row]));
+        }
+        for Rule {
+            along: axis, at, ..
+        } in &spec.rules
+        {
+            let along = &mut along[usize::from(*axis == crate::table::Along::Y)];
+            match at {
+                At::Value(value) => along.push(*value),
+                At::Column(name) => {
+                    let numbers = table
+                        .numbers(name)
+                        .ok_or_else(|| no_column(spec, table, name))?;
+                    along.extend(rows.iter().map(|&row| numbers[row]));
+                }
+            }
+        }
+        let is_tiles = matches!(spec.mark, Mark::Tiles { .. });
+        let (x_scale, y_scale) = match is_tiles {
+            true => (
+                Scale::of_tiles(x.0, (&x_values.0, &x_values.1), Along::X),
+                Scale::of_tiles(y.0, (&y_values.0, &y_values.1), Along::Y),
+            ),
+            false => (
+                Scale::of(x.0, (&along[0], &x_values.1), Along::X),
+                Scale::of(y.0, (&along[1], &y_values.1), Along::Y),
+            ),
+        };
+        let mut view = Self {
+            spec,
+            table,
+            rows,
+            lines,
+            panels,
+            x: x_scale,
+            y: y_scale,
+            places: Vec::new(),
+        };
+        view.places = view.place_all((&x_values.0, &y_values.0), interval);
+        Ok(view)
+    }
+
+    fn place_all(&self, (xs, ys): (&[f64], &[f64]), interval: Option<[&[f64]; 2]>) -> Vec<Place> {
+        let mut places = Vec::new();
+        for (number, &row) in self.rows.iter().enumerate() {
+            let (Some(x), Some(y)) = (self.x.place(xs[number]), self.y.place(ys[number])) else {
+                continue;
+            };
+            let end = |bound: &[f64]| self.y.place(bound[row]);
+            let interval = interval.and_then(|[low, high]| Some([end(low)?, end(high)?]));
+            let line = self.lines.of[number];
+            places.push(Place {
+                row,
+                panel: self.panels.of[number],
+                line,
+                x: x + self.beside(line),
+                y,
+                interval,
+            });
+        }
+        places.sort_by(|a, b| {
+            (a.panel, a.line)
+                .cmp(&(b.panel, b.line))
+                .then(a.x.total_cmp(&b.x))
+        });
+        places
+    }
+
+    /// Lines stand beside each other at a word, so that their whiskers do not hide each other.
+    fn beside(&self, line: usize) -> f64 {
+        if !self.x.is_words() || self.spec.mark != Mark::Line {
+            return 0.0;
+        }
+        let n = self.lines.names.len() as f64;
+        let step = f64::min(0.14, 0.6 / n) / self.x.n_levels() as f64;
+        step * (line as f64 - 0.5 * (n - 1.0))
+    }
+
+    /// The line of a panel.
+    pub fn line(&self, panel: usize, line: usize) -> Vec<&Place> {
+        let is_it = |place: &&Place| place.panel == panel && place.line == line;
+        self.places.iter().filter(is_it).collect()
+    }
+
+    /// Whether lines are joined along x: between words there is nothing.
+    pub fn is_joined(&self) -> bool {
+        self.spec.mark != Mark::Points && !self.x.is_words()
+    }
+
+    /// Whether intervals are bands: of few lines.
+    pub fn has_bands(&self) -> bool {
+        self.has_interval() && self.is_joined() && self.lines.names.len() <= MOST_BANDS
+    }
+
+    /// Whether intervals are whiskers.
+    pub fn has_whiskers(&self) -> bool {
+        let is_many = self.spec.mark == Mark::Points && self.places.len() > MOST_WHISKERS;
+        self.has_interval() && !self.has_bands() && !is_many
+    }
+
+    fn has_interval(&self) -> bool {
+        self.places.iter().any(|place| place.interval.is_some())
+    }
+
+    /// The number of the panel in which a place stands: tiles have a row of panels for each line.
+    pub fn panel_of(&self, place: &Place) -> usize {
+        match self.spec.mark {
+            Mark::Tiles { .. } => place.line * self.panels.names.len() + place.panel,
+            _ => place.panel,
+        }
+    }
+
+    /// What a panel is: `noise 10 %`, `RBF SVM`.
+    pub fn panel_title(&self, panel: usize) -> String {
+        self.title(self.spec.panels.as_slice(), &self.panels.names[panel])
+    }
+
+    /// What a row of panels of tiles is.
+    pub fn row_title(&self, row: usize) -> String {
+        self.title(&self.spec.lines, &self.lines.names[row])
+    }
+
+    /// A number says what it is of.
+    fn title(&self, columns: &[String], name: &str) -> String {
+        match columns {
+            [column] => match self.column(column) {
+                Some((column, Data::Numbers(_))) => format!("{} {name}", column.words),
+                _ => name.to_owned(),
+            },
+            _ => name.to_owned(),
+        }
+    }
+
+    /// A column that the spec names.
+    pub fn column(&self, name: &str) -> Option<(&'a Column, &'a Data)> {
+        self.table.column(name)
+    }
+
+    /// What an interval is: what the words of its ends have in common before a comma, else both.
+    pub fn interval_words(&self) -> Option<String> {
+        let (y, _) = self.column(&self.spec.y)?;
+        let [low, high] = y.interval.as_ref()?;
+        let words = |name: &str| {
+            self.column(name)
+                .map(|(column, _)| column.words.to_string())
+        };
+        let (low, high) = (words(low)?, words(high)?);
+        Some(match (low.split_once(", "), high.split_once(", ")) {
+            (Some((same, _)), Some((other, _))) if same == other => same.to_owned(),
+            _ => format!("{low} to {high}"),
+        })
+    }
+
+    /// Choices and conditions that have one value in the chart and stand nowhere in it, in words.
+    pub fn constants(&self) -> String {
+        let spec = self.spec;
+        let used = |name: &str| {
+            [&spec.x, &spec.y]
+                .into_iter()
+                .chain(&spec.lines)
+                .chain(&spec.panels)
+                .any(|n| n == name)
+        };
+        let columns = self.table.columns.iter().zip(&self.table.data);
+        let columns = columns
+            .filter(|(c, _)| matches!(c.role, Role::Choice | Role::Condition) && !used(&c.name));
+        let phrases = columns.filter_map(|(column, data)| {
+            let first = data.value(*self.rows.first()?)?;
+            let is_same = |&row: &usize| data.value(row).as_ref() == Some(&first);
+            self.rows
+                .iter()
+                .all(is_same)
+                .then(|| column.phrase(&first).replace(' ', "\u{a0}"))
+        });
+        let phrases: Vec<String> = phrases.collect();
+        match phrases.is_empty() {
+            true => String::new(),
+            false => format!("At {}.", phrases.join(", ")),
+        }
+    }
+}
+
+impl Groups {
+    /// By the values of columns in the order of first rows; by one column of numbers in rising order.
+    fn of(columns: &[(&Column, &Data)], rows: &[usize]) -> Self {
+        let key = |row: usize| -> Vec<u64> {
+            let key = columns.iter().map(|(_, data)| match data {
+                Data::Numbers(numbers) => numbers[row].to_bits(),
+                Data::Words { codes, .. } => u64::from(codes[row]),
+            });
+            key.collect()
+        };
+        let mut known: HashMap<Vec<u64>, usize> = HashMap::new();
+        let mut firsts: Vec<usize> = Vec::new();
+        let mut of: Vec<usize> = Vec::with_capacity(rows.len());
+        for &row in rows {
+            let next = firsts.len();
+            let group = *known.entry(key(row)).or_insert(next);
+            if group == next {
+                firsts.push(row);
+            }
+            of.push(group);
+        }
+        if let [(_, Data::Numbers(numbers))] = columns {
+            let mut order: Vec<usize> = (0..firsts.len()).collect();
+            order.sort_by(|&a, &b| numbers[firsts[a]].total_cmp(&numbers[firsts[b]]));
+            let mut place = vec![0; order.len()];
+            for (new, &old) in order.iter().enumerate() {
+                place[old] = new;
+            }
+            firsts = order.iter().map(|&old| firsts[old]).collect();
+            of.iter_mut().for_each(|group| *group = place[*group]);
+        }
+        let heading: Vec<&str> = columns
+            .iter()
+            .map(|(column, _)| &column.words[..])
+            .collect();
+        let name = |&row: &usize| {
+            let words = columns
+                .iter()
+                .map(|(column, data)| value_words(column, data, row));
+            words.collect::<Vec<_>>().join(", ")
+        };
+        Self {
+            heading: heading.join(", "),
+            names: firsts.iter().map(name).collect(),
+            of,
+        }
+    }
+}
+
+/// A value in words; of an absent one, what the column calls it.
+pub(super) fn value_words(column: &Column, data: &Data, row: usize) -> String {
+    match data.value(row) {
+        Some(value) => column.value_words(&value),
+        None => Some(column.word(""))
+            .filter(|word| !word.is_empty())
+            .unwrap_or_else(|| "none".to_owned()),
+    }
+}
+
+fn column_of<'a>(spec: &ChartSpec, table: &'a Table, name: &str) -> Result<(&'a Column, &'a Data)> {
+    table
+        .column(name)
+        .ok_or_else(|| no_column(spec, table, name))
+}
+
+fn no_column(spec: &ChartSpec, table: &Table, name: &str) -> Error {
+    let names: Vec<&str> = table
+        .columns
+        .iter()
+        .map(|column| &column.name[..])
+        .collect();
+    let place = format!("chart {} of {}", spec.name, table.file);
+    Error::input(
+        place,
+        format!("column {name:?}"),
+        format!("one of {}", names.join(", ")),
+    )
+}
+
+fn interval_of<'a>(table: &'a Table, column: &Column) -> Option<[&'a [f64]; 2]> {
+    let [low, high] = column.interval.as_ref()?;
+    Some([table.numbers(low)?, table.numbers(high)?])
+}

@@ -1,0 +1,141 @@
+//! The renderer of charts: laws that hold for every chart.
+
+use crate::chart_tables::{charts, tables};
+use bubbletouch::report::chart::{draw, places};
+use bubbletouch::table::{ChartSpec, Value};
+
+#[test]
+fn every_point_stands_inside_its_panel() {
+    let tables = tables();
+    for spec in charts() {
+        let places = places(&spec, &tables).unwrap();
+        assert!(!places.is_empty(), "{}", spec.name);
+        for place in places {
+            let inside = |part: f64| (0.0..=1.0).contains(&part);
+            assert!(
+                inside(place.x) && inside(place.y),
+                "{}: {place:?}",
+                spec.name
+            );
+            for end in place.interval.into_iter().flatten() {
+                assert!(inside(end), "{}: {place:?}", spec.name);
+            }
+        }
+    }
+}
+
+#[test]
+fn equal_charts_are_equal_bytes_and_say_their_title_lines_and_units() {
+    let tables = tables();
+    for spec in charts() {
+        let drawing = draw(&spec, &tables).unwrap();
+        let svg = drawing.svg(&spec.title);
+        assert_eq!(svg, draw(&spec, &tables).unwrap().svg(&spec.title));
+        if let Ok(folder) = std::env::var("BUBBLETOUCH_PICTURES") {
+            std::fs::write(
+                format!("{folder}/chart_{}.png", spec.name),
+                drawing.png().unwrap(),
+            )
+            .unwrap();
+        }
+    }
+    let said = |name: &str| {
+        let spec = charts().into_iter().find(|spec| spec.name == name).unwrap();
+        draw(&spec, &tables).unwrap().svg("")
+    };
+    for (name, wanted) in [
+        (
+            "lines",
+            &[
+                "RBF SVM",
+                "k nearest",
+                "64:1",
+                "noise 20 %",
+                "95 % interval",
+                "chance (1 in 24)",
+            ][..],
+        ),
+        (
+            "zero",
+            &["crosstalk (%)", "compression 256:1", "linear SVM, gaussian"],
+        ),
+        (
+            "front",
+            &[
+                "time of one decision",
+                "100 µs",
+                "Pareto front: nothing is both faster and as good",
+            ],
+        ),
+        (
+            "tiles",
+            &["not finite", "1 ms", "1e-9", "mass of a taxel (kg)"],
+        ),
+        (
+            "rows",
+            &["5th percentile", "hand on a mug", "a millisecond"][1..],
+        ),
+        ("whiskers", &["5th percentile to 95th percentile"]),
+    ] {
+        let svg = said(name);
+        for text in wanted {
+            assert!(svg.contains(text), "{name} says {text}");
+        }
+    }
+}
+
+#[test]
+fn the_legend_stands_above_all_data() {
+    let tables = tables();
+    for spec in charts() {
+        let svg = draw(&spec, &tables).unwrap().svg("");
+        // The grid's first line is the panel's; every marker of the legend lies above it.
+        let height = |text: &str| -> Option<f64> {
+            let at = svg.find(&format!(">{text}<"))?;
+            let tag = &svg[svg[..at].rfind('<')?..at];
+            let y = tag.split(" y=\"").nth(1)?.split('"').next()?;
+            y.parse().ok()
+        };
+        let legend = spec.rules.first().and_then(|rule| height(&rule.words));
+        let highest_tick = svg.split("text-anchor=\"end\"").skip(1).count();
+        assert!(highest_tick > 0, "{}", spec.name);
+        if let Some(legend) = legend {
+            let panel = charts_top(&svg);
+            assert!(
+                legend < panel,
+                "{}: legend at {legend}, panel at {panel}",
+                spec.name
+            );
+        }
+    }
+}
+
+/// Where the highest label of a vertical axis stands.
+fn charts_top(svg: &str) -> f64 {
+    let labels = svg
+        .split("<text ")
+        .filter(|text| text.contains("text-anchor=\"end\""));
+    let heights =
+        labels.filter_map(|text| text.split("y=\"").nth(1)?.split('"').next()?.parse().ok());
+    heights.fold(f64::INFINITY, f64::min)
+}
+
+#[test]
+fn a_chart_of_what_is_not_there_names_what_is() {
+    let tables = tables();
+    let spec = charts().swap_remove(0);
+    let said = |spec: ChartSpec| draw(&spec, &tables).err().unwrap().to_string();
+    let other = ChartSpec {
+        table: "other.csv",
+        ..spec.clone()
+    };
+    assert!(said(other).contains("one of scores.csv, stable.csv"));
+    let column = ChartSpec {
+        x: "pitch".to_owned(),
+        ..spec.clone()
+    };
+    assert!(said(column).contains("column \"pitch\"; one of noise, crosstalk"));
+    let mut nothing = spec;
+    nothing.shown[0].value = Value::Number(7.0);
+    assert!(said(nothing).contains("no row of scores.csv"));
+}
