@@ -1,9 +1,9 @@
 //! Frames → signal → measurements, for one condition of the signal, ensemble and trial.
 
 use super::frames::{Frames, KeptFrames};
-use super::imperfection::{TestedOn, skin};
 use super::plan::Plan;
 use super::runner::signal_steps;
+use super::sensor_errors::{TestedOn, skin};
 use super::simulation::TouchedObject;
 use super::sweep::Group;
 use super::table::Cell;

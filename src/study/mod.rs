@@ -11,6 +11,7 @@ mod attempt;
 pub mod axes;
 mod axis;
 pub mod breaking_points;
+mod cell;
 mod cell_content;
 mod check;
 mod compare_runs;
@@ -22,7 +23,6 @@ mod finished;
 mod frames;
 mod human_samples;
 mod human_touches;
-mod imperfection;
 mod job;
 pub mod journal;
 mod kind;
@@ -52,6 +52,7 @@ mod role;
 mod runner;
 mod samples;
 mod sealed;
+mod sensor_errors;
 mod shard;
 mod simulation;
 mod spec;
@@ -86,7 +87,6 @@ pub use frames::{
     TouchCache,
 };
 pub use human_touches::{HumanTouches, RecordedTouch, record_touch};
-pub use imperfection::{IMPERFECTIONS, Imperfection, Strengths, TestedOn};
 pub use kind::StudyKind;
 pub use object_files::{
     MeshUse, NamedMesh, file_content, load_catalogue, load_mesh, load_named_meshes, load_objects,
@@ -103,6 +103,7 @@ pub use repeats::Repeats;
 pub use role::{agree, column_name, condition_numbers, most_accurate, one_of, role_of};
 pub use runner::{ArrayOutcome, Manner, Outcome, run, run_with};
 pub use samples::{Samples, sample_frames};
+pub use sensor_errors::{StrengthAxes, Strengths, TestedOn, all_strengths, strength_columns};
 pub use shard::Shard;
 pub use simulation::{TouchedObject, draw_touches, simulate_array};
 pub use spec::*;

@@ -285,17 +285,17 @@ impl<'a> Run<'a> {
 pub fn signal_steps(plan: &Plan, group: &Group, skin: &Seed) -> Vec<SignalStep> {
     let condition = &group.condition;
     let step = |&step: &StepSpec| match step {
-        StepSpec::Force => Some(SignalStep::Force),
-        StepSpec::Noise => Some(SignalStep::Noise(Noise {
+        StepSpec::Force => SignalStep::Force,
+        StepSpec::Noise => SignalStep::Noise(Noise {
             std: condition.noise,
             unit: plan.noise_unit,
-        })),
-        StepSpec::Smoothing => Some(SignalStep::Smoothing {
-            width: condition.smoothing,
         }),
-        imperfection => condition.strengths.signal_step(imperfection, skin),
+        StepSpec::Smoothing => SignalStep::Smoothing {
+            width: condition.smoothing,
+        },
+        StepSpec::Error(error) => condition.strengths.step(error, skin),
     };
-    plan.steps.iter().filter_map(step).collect()
+    plan.steps.iter().map(step).collect()
 }
 
 /// An array in words: `64×64 at 2 mm`.
