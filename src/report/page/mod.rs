@@ -7,11 +7,13 @@
 mod about;
 mod choices;
 mod confusion_data;
+mod data;
 mod frame;
 mod picture;
 pub(super) mod plain;
 mod provenance;
 mod recognition;
+mod study;
 mod study_data;
 mod tables;
 mod touches;
@@ -21,3 +23,4 @@ pub(super) use frame::Section;
 pub(super) use picture::figure;
 pub use picture::{Picture, Pictures};
 pub use recognition::page;
+pub(super) use study::{Beside, page as study_page};

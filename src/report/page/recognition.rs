@@ -31,6 +31,7 @@ pub fn page(about: &ReportPage, tables: &Tables, pictures: &Pictures) -> Result<
         question: about.question.clone(),
         expected: about.expected.clone(),
         foot: foot(about),
+        is_old: true,
         ..Page::default()
     };
     let Some(answer) = Answer::of(tables) else {
