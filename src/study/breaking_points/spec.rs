@@ -118,6 +118,7 @@ impl BreakingPointsSpec {
             sensing: self.sensing.clone(),
             recognition: self.recognition.clone(),
             report: Default::default(),
+            axes: Default::default(),
         }
     }
 }
