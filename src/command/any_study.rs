@@ -8,12 +8,9 @@ use super::object_detail_kind::ObjectDetailKind;
 use super::output::{packings_beside, tell_where, terminal_width};
 use super::piece_kind::PieceRun;
 use super::recognition_study::RecognitionStudy;
-use super::reconstruction_kind::ReconstructionKind;
 use super::speed_accuracy_kind::SpeedAccuracyKind;
-use super::stability_kind::StabilityKind;
 use super::streams::write_out;
 use super::study_args::StudyArgs;
-use super::whole_body_kind::WholeBodyKind;
 use bubbletouch::kinds::{self, AnyOutcome, AnyStudy, EndedRun};
 use bubbletouch::report::csv_tables::FAILURES_FILE;
 use bubbletouch::study::StudyKind;
@@ -45,12 +42,12 @@ pub fn load_study(
     }
     Ok(match kind {
         StudyKind::Recognition => Box::new(RecognitionStudy::load(args, folder, memory)?),
-        StudyKind::Reconstruction => Box::new(PieceRun::<ReconstructionKind>::load(args, folder)?),
         StudyKind::ObjectDetail => Box::new(PieceRun::<ObjectDetailKind>::load(args, folder)?),
-        StudyKind::WholeBody => Box::new(PieceRun::<WholeBodyKind>::load(args, folder)?),
-        StudyKind::Stability => Box::new(PieceRun::<StabilityKind>::load(args, folder)?),
         StudyKind::BreakingPoints => Box::new(PieceRun::<BreakingPointsKind>::load(args, folder)?),
         StudyKind::SpeedAccuracy => Box::new(PieceRun::<SpeedAccuracyKind>::load(args, folder)?),
+        StudyKind::Reconstruction | StudyKind::WholeBody | StudyKind::Stability => {
+            unreachable!("their table tells")
+        }
     })
 }
 

@@ -6,9 +6,12 @@
 mod any_study;
 mod kind;
 mod loaded;
+pub mod reconstruction;
 mod results;
 mod source;
+pub mod stability;
 mod verified;
+pub mod whole_body;
 
 pub use any_study::{AnyOutcome, AnyStudy, EndedRun, ReportAbout};
 pub use kind::{About, Facts, Kind};
@@ -25,9 +28,12 @@ struct Entry {
 }
 
 /// All kinds.
-const KINDS: &[Entry] = &[];
+const KINDS: &[Entry] = &[
+    entry::<reconstruction::ReconstructionStudy>(),
+    entry::<stability::StabilityPlan>(),
+    entry::<whole_body::WholeBodyPlan>(),
+];
 
-#[allow(dead_code)]
 const fn entry<K: Kind>() -> Entry {
     Entry {
         about: K::ABOUT,
