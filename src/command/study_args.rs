@@ -6,10 +6,7 @@ use bubbletouch::random::Seed;
 use bubbletouch::study::breaking_points::{BreakingPointsPlan, BreakingPointsSpec};
 use bubbletouch::study::memory::{check_touches, machine_memory};
 use bubbletouch::study::object_detail::{ObjectDetailPlan, ObjectDetailStudySpec};
-use bubbletouch::study::reconstruction::{ReconstructionPlan, ReconstructionStudySpec};
 use bubbletouch::study::speed_accuracy::{SpeedAccuracyPlan, SpeedAccuracyStudySpec};
-use bubbletouch::study::stability::{StabilityPlan, StabilityStudySpec};
-use bubbletouch::study::whole_body::{WholeBodyPlan, WholeBodyStudySpec};
 use bubbletouch::study::{
     HumanTouches, ObjectsSpec, Plan, RecognitionStudy, StudyKind, StudySpec, TouchSet, TouchesSpec,
     draw_touches, load_objects,
@@ -133,15 +130,6 @@ impl StudyArgs {
         Ok(touches.and_then(|touches| touches.mixed_values()))
     }
 
-    /// Reads and checks a study that reconstructs frames.
-    pub fn reconstruction_plan(&self) -> Result<ReconstructionPlan> {
-        let place = self.study.display().to_string();
-        let mut spec = ReconstructionStudySpec::parse(&place, &self.text()?)?;
-        spec.seed = self.seed.unwrap_or(spec.seed);
-        self.replace_objects(&mut spec.objects);
-        ReconstructionPlan::new(&place, spec)
-    }
-
     /// Reads and checks a study of how detailed objects are.
     pub fn object_detail_plan(&self) -> Result<ObjectDetailPlan> {
         let place = self.study.display().to_string();
@@ -158,26 +146,6 @@ impl StudyArgs {
         spec.seed = self.seed.unwrap_or(spec.seed);
         self.replace_objects(&mut spec.objects);
         BreakingPointsPlan::new(&place, spec)
-    }
-
-    /// Reads and checks a study of a whole body; it has objects of its own.
-    pub fn whole_body_plan(&self) -> Result<WholeBodyPlan> {
-        let place = self.study.display().to_string();
-        if let Some(folder) = &self.objects {
-            let allowed =
-                "no such option: a whole body is touched by the objects that its study names";
-            return Err(Error::input("--objects", folder.display(), allowed));
-        }
-        let mut spec = WholeBodyStudySpec::parse(&place, &self.text()?)?;
-        spec.seed = self.seed.unwrap_or(spec.seed);
-        WholeBodyPlan::new(&place, &self.folder(), spec)
-    }
-
-    /// Reads and checks a study of where contact methods break; it has no objects and nothing random to replace.
-    pub fn stability_plan(&self) -> Result<StabilityPlan> {
-        let place = self.study.display().to_string();
-        let spec = StabilityStudySpec::parse(&place, &self.text()?)?;
-        StabilityPlan::new(&place, &self.folder(), spec)
     }
 
     /// Reads and checks a study of what accuracy costs.

@@ -7,9 +7,12 @@ mod any_study;
 mod ceiling;
 mod kind;
 mod loaded;
+pub mod reconstruction;
 mod results;
 mod source;
+pub mod stability;
 mod verified;
+pub mod whole_body;
 
 pub use any_study::{AnyOutcome, AnyStudy, EndedRun, ReportAbout};
 pub use ceiling::{threads_within, within_memory};
@@ -27,9 +30,12 @@ struct Entry {
 }
 
 /// All kinds.
-const KINDS: &[Entry] = &[];
+const KINDS: &[Entry] = &[
+    entry::<reconstruction::ReconstructionStudy>(),
+    entry::<stability::StabilityPlan>(),
+    entry::<whole_body::WholeBodyPlan>(),
+];
 
-#[allow(dead_code)]
 const fn entry<K: Kind>() -> Entry {
     Entry {
         about: K::ABOUT,

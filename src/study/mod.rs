@@ -24,7 +24,7 @@ mod human_samples;
 mod human_touches;
 pub mod journal;
 mod kind;
-mod measurement;
+pub(crate) mod measurement;
 pub mod memory;
 mod npy_numbers;
 pub mod object_detail;
@@ -44,21 +44,19 @@ pub mod progress;
 pub mod provenance;
 mod published;
 mod recognition;
-pub mod reconstruction;
 mod repeats;
 mod role;
 mod samples;
 mod sealed;
 mod sensor_errors;
 mod shard;
-mod simulation;
+pub(crate) mod simulation;
 mod spec;
 mod spec_human;
 mod spec_scene;
 mod spec_signal;
 pub mod speed_accuracy;
 mod splits;
-pub mod stability;
 mod summary;
 mod sweep;
 pub mod table;
@@ -68,7 +66,6 @@ mod touch_files;
 mod touch_set;
 mod training;
 mod variance_table;
-pub mod whole_body;
 
 pub use crate::table::Role;
 pub use axis::Axis;
@@ -80,14 +77,14 @@ pub use feature_files::{FeatureSet, cell_features, read_features, write_features
 pub use frames::{FrameFacts, FramePlace, FrameWriter, Frames, KeptFrames};
 pub use human_touches::{HumanTouches, RecordedTouch, record_touch};
 pub use kind::StudyKind;
+pub use memory::recognition_scale;
 pub use object_files::{
     MeshUse, NamedMesh, file_content, load_catalogue, load_mesh, load_named_meshes, load_objects,
     load_spheres, objects_content, read_mesh_file,
 };
 pub use packing_cache::{CachedPacking, PackingCache};
 pub(crate) use pareto::{Choice, unbeaten};
-
-pub use memory::recognition_scale;
+pub(crate) use plan::MM;
 pub use plan::{Amount, Plan, SplitKind, SplitPlan, millimetres};
 pub use plan_human::HumanTouchPlan;
 pub use plan_signal::Condition;
@@ -99,6 +96,7 @@ pub use samples::{Samples, sample_frames};
 pub use sensor_errors::{StrengthAxes, Strengths, TestedOn, all_strengths, strength_columns};
 pub use shard::Shard;
 pub use simulation::{TouchedObject, draw_touches, simulate_array};
+pub(crate) use spec::default_seed;
 pub use spec::*;
 pub use sweep::{Group, Sweep};
 pub use touch_files::{ReadFrames, write_touches};

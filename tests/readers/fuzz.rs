@@ -2,6 +2,9 @@
 
 use crate::fuzzing::{SOON, Target};
 use bubbletouch::geometry::Pose;
+use bubbletouch::kinds::reconstruction::{ReconstructionPlan, ReconstructionStudySpec};
+use bubbletouch::kinds::stability::{StabilityPlan, StabilityStudySpec};
+use bubbletouch::kinds::whole_body::{WholeBodyPlan, WholeBodyStudySpec};
 use bubbletouch::mesh::{LengthUnit, MeshFormat};
 use bubbletouch::objects::{Catalogue, read_spheres};
 use bubbletouch::report::csv_tables::{TABLE_FILES, VARIANCE_FILE, read_tables, write_tables};
@@ -10,11 +13,8 @@ use bubbletouch::scene::{ScenePlan, SceneSpec};
 use bubbletouch::study::breaking_points::BreakingPointsSpec;
 use bubbletouch::study::journal::{Identity, Journal};
 use bubbletouch::study::object_detail::{ObjectDetailPlan, ObjectDetailStudySpec};
-use bubbletouch::study::reconstruction::{ReconstructionPlan, ReconstructionStudySpec};
 use bubbletouch::study::speed_accuracy::SpeedAccuracyStudySpec;
-use bubbletouch::study::stability::{StabilityPlan, StabilityStudySpec};
 use bubbletouch::study::table::Tables;
-use bubbletouch::study::whole_body::{WholeBodyPlan, WholeBodyStudySpec};
 use bubbletouch::study::{Plan, StudyKind, StudySpec, compare_runs};
 use bubbletouch::world::{Interpolation, PoseTrajectory, Robot};
 use bubbletouch::{Error, Result};
