@@ -1,15 +1,12 @@
 //! A study of any kind, as the commands see it that run it, merge it, submit it and verify it.
 
 use super::about_study::command_line;
-use super::breaking_points_kind::BreakingPointsKind;
 use super::listener::Listener;
 use super::memory_args::{MemoryArgs, not_of_pieces};
-use super::object_detail_kind::ObjectDetailKind;
 use super::output::{packings_beside, tell_where, terminal_width};
 use super::piece_kind::PieceRun;
 use super::recognition_study::RecognitionStudy;
 use super::reconstruction_kind::ReconstructionKind;
-use super::speed_accuracy_kind::SpeedAccuracyKind;
 use super::stability_kind::StabilityKind;
 use super::streams::write_out;
 use super::study_args::StudyArgs;
@@ -46,11 +43,8 @@ pub fn load_study(
     Ok(match kind {
         StudyKind::Recognition => Box::new(RecognitionStudy::load(args, folder, memory)?),
         StudyKind::Reconstruction => Box::new(PieceRun::<ReconstructionKind>::load(args, folder)?),
-        StudyKind::ObjectDetail => Box::new(PieceRun::<ObjectDetailKind>::load(args, folder)?),
         StudyKind::WholeBody => Box::new(PieceRun::<WholeBodyKind>::load(args, folder)?),
         StudyKind::Stability => Box::new(PieceRun::<StabilityKind>::load(args, folder)?),
-        StudyKind::BreakingPoints => Box::new(PieceRun::<BreakingPointsKind>::load(args, folder)?),
-        StudyKind::SpeedAccuracy => Box::new(PieceRun::<SpeedAccuracyKind>::load(args, folder)?),
     })
 }
 

@@ -1,12 +1,9 @@
 //! What `run`, `plan` and `touches` have in common: a study file, and what overrides it.
 
-use bubbletouch::kinds::Source;
+use bubbletouch::kinds::{self, Source};
 use bubbletouch::random::Seed;
-use bubbletouch::study::breaking_points::{BreakingPointsPlan, BreakingPointsSpec};
 use bubbletouch::study::memory::{check_touches, machine_memory};
-use bubbletouch::study::object_detail::{ObjectDetailPlan, ObjectDetailStudySpec};
 use bubbletouch::study::reconstruction::{ReconstructionPlan, ReconstructionStudySpec};
-use bubbletouch::study::speed_accuracy::{SpeedAccuracyPlan, SpeedAccuracyStudySpec};
 use bubbletouch::study::stability::{StabilityPlan, StabilityStudySpec};
 use bubbletouch::study::whole_body::{WholeBodyPlan, WholeBodyStudySpec};
 use bubbletouch::study::{
@@ -83,11 +80,12 @@ impl StudyArgs {
     /// Reads and checks the study.
     pub fn plan(&self) -> Result<Plan> {
         let place = self.study.display().to_string();
-        let kind = self.kind()?;
-        if kind != StudyKind::Recognition {
+        let about = kinds::about(&self.text()?);
+        let (kind, words) = (self.kind()?, about.map(|about| about.words));
+        if kind != StudyKind::Recognition || words.is_some() {
             return Err(Error::input(
                 place,
-                kind.words(),
+                words.unwrap_or(kind.words()),
                 format!(
                     "{} (bubbletouch run runs all kinds)",
                     StudyKind::Recognition.words()
@@ -137,24 +135,6 @@ impl StudyArgs {
         ReconstructionPlan::new(&place, spec)
     }
 
-    /// Reads and checks a study of how detailed objects are.
-    pub fn object_detail_plan(&self) -> Result<ObjectDetailPlan> {
-        let place = self.study.display().to_string();
-        let mut spec = ObjectDetailStudySpec::parse(&place, &self.text()?)?;
-        spec.seed = self.seed.unwrap_or(spec.seed);
-        self.replace_objects(&mut spec.objects);
-        ObjectDetailPlan::new(&place, spec)
-    }
-
-    /// Reads and checks a study of where recognition breaks.
-    pub fn breaking_points_plan(&self) -> Result<BreakingPointsPlan> {
-        let place = self.study.display().to_string();
-        let mut spec = BreakingPointsSpec::parse(&place, &self.text()?)?;
-        spec.seed = self.seed.unwrap_or(spec.seed);
-        self.replace_objects(&mut spec.objects);
-        BreakingPointsPlan::new(&place, spec)
-    }
-
     /// Reads and checks a study of a whole body; it has objects of its own.
     pub fn whole_body_plan(&self) -> Result<WholeBodyPlan> {
         let place = self.study.display().to_string();
@@ -173,22 +153,6 @@ impl StudyArgs {
         let place = self.study.display().to_string();
         let spec = StabilityStudySpec::parse(&place, &self.text()?)?;
         StabilityPlan::new(&place, &self.folder(), spec)
-    }
-
-    /// Reads and checks a study of what accuracy costs.
-    pub fn speed_accuracy_plan(&self) -> Result<SpeedAccuracyPlan> {
-        let place = self.study.display().to_string();
-        let mut spec = SpeedAccuracyStudySpec::parse(&place, &self.text()?)?;
-        spec.seed = self.seed.unwrap_or(spec.seed);
-        let contact = spec.speed_accuracy.contact.as_mut();
-        match (
-            &self.objects,
-            contact.and_then(|contact| contact.scans.as_mut()),
-        ) {
-            (Some(folder), Some(scans)) => scans.meshes.clone_from(folder),
-            _ => self.replace_objects(&mut spec.objects),
-        }
-        SpeedAccuracyPlan::new(&place, &self.folder(), spec)
     }
 
     fn replace_objects(&self, objects: &mut ObjectsSpec) {

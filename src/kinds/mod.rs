@@ -4,10 +4,15 @@
 //! ([`Kind`]). [`AnyStudy`] is what all commands see of a study: whatever can be done with one kind can be done with all.
 
 mod any_study;
+pub mod breaking_points;
 mod kind;
 mod loaded;
+mod median_time;
+mod model_recognition;
+pub mod object_detail;
 mod results;
 mod source;
+pub mod speed_accuracy;
 mod verified;
 
 pub use any_study::{AnyOutcome, AnyStudy, EndedRun, ReportAbout};
@@ -16,7 +21,9 @@ pub use loaded::Loaded;
 pub use source::Source;
 
 use crate::error::Result;
+use crate::table::Table;
 use crate::toml_text;
+use serde::de::DeserializeOwned;
 
 /// A kind, for those who do not know which.
 struct Entry {
@@ -25,9 +32,12 @@ struct Entry {
 }
 
 /// All kinds.
-const KINDS: &[Entry] = &[];
+const KINDS: &[Entry] = &[
+    entry::<breaking_points::BreakingPointsStudy>(),
+    entry::<object_detail::ObjectDetailStudy>(),
+    entry::<speed_accuracy::SpeedAccuracyStudy>(),
+];
 
-#[allow(dead_code)]
 const fn entry<K: Kind>() -> Entry {
     Entry {
         about: K::ABOUT,
@@ -54,4 +64,10 @@ fn find(text: &str) -> Option<&'static Entry> {
     let table = toml_text::table(text)?;
     let mut kinds = KINDS.iter();
     kinds.find(|entry| table.contains_key(entry.about.table))
+}
+
+/// The rows of a file among tables; none without it.
+fn rows_of<R: DeserializeOwned>(tables: &[Table], file: &str) -> Vec<R> {
+    let table = tables.iter().find(|table| table.file == file);
+    table.map_or_else(Vec::new, Table::rows)
 }

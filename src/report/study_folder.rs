@@ -1,6 +1,7 @@
 //! The folder of a study of any kind but for its tables: charts, pictures and the page.
 
 use crate::error::Result;
+use crate::report::chart::draw;
 use crate::report::drawing::Drawing;
 use crate::report::folder::Folder;
 use crate::report::page::plain::{self, plain_page};
@@ -59,8 +60,15 @@ pub fn folder_of<'a>(dir: &'a Path, about: &StudyAbout, found: &Found) -> Result
             }
         });
     }
+    let mut charts = String::new();
+    for spec in found.charts {
+        let drawing = draw(spec, found.tables)?;
+        folder.add_chart(&spec.name, &spec.title, &drawing);
+        charts += &figure(&Picture::of(&drawing, &spec.title));
+    }
     let sections = vec![
         plain::answer(found.answers),
+        Section::new("charts", "Charts", charts),
         Section::new("pictures", "Pictures", pictures),
     ];
     let files: Vec<&str> = found.tables.iter().map(|table| table.file).collect();

@@ -2,16 +2,17 @@
 
 use crate::fuzzing::{SOON, Target};
 use bubbletouch::geometry::Pose;
+use bubbletouch::kinds;
+use bubbletouch::kinds::breaking_points::BreakingPointsSpec;
+use bubbletouch::kinds::object_detail::{ObjectDetailPlan, ObjectDetailStudySpec};
+use bubbletouch::kinds::speed_accuracy::SpeedAccuracyStudySpec;
 use bubbletouch::mesh::{LengthUnit, MeshFormat};
 use bubbletouch::objects::{Catalogue, read_spheres};
 use bubbletouch::report::csv_tables::{TABLE_FILES, VARIANCE_FILE, read_tables, write_tables};
 use bubbletouch::report::offers::read_offers;
 use bubbletouch::scene::{ScenePlan, SceneSpec};
-use bubbletouch::study::breaking_points::BreakingPointsSpec;
 use bubbletouch::study::journal::{Identity, Journal};
-use bubbletouch::study::object_detail::{ObjectDetailPlan, ObjectDetailStudySpec};
 use bubbletouch::study::reconstruction::{ReconstructionPlan, ReconstructionStudySpec};
-use bubbletouch::study::speed_accuracy::SpeedAccuracyStudySpec;
 use bubbletouch::study::stability::{StabilityPlan, StabilityStudySpec};
 use bubbletouch::study::table::Tables;
 use bubbletouch::study::whole_body::{WholeBodyPlan, WholeBodyStudySpec};
@@ -97,22 +98,25 @@ fn studies() {
 
 fn read_study(input: &[u8]) -> Result<()> {
     let text = text_of(input)?;
+    match kinds::about(text).map(|about| about.table) {
+        Some("object_detail") => {
+            let spec = ObjectDetailStudySpec::parse(PLACE, text)?;
+            return ObjectDetailPlan::new(PLACE, spec).map(drop);
+        }
+        Some("breaking_points") => return BreakingPointsSpec::parse(PLACE, text).map(drop),
+        Some("speed_accuracy") => return SpeedAccuracyStudySpec::parse(PLACE, text).map(drop),
+        _ => {}
+    }
     match StudyKind::of(text) {
         StudyKind::Recognition => Plan::new(PLACE, StudySpec::parse(PLACE, text)?).map(drop),
         StudyKind::Reconstruction => {
             let spec = ReconstructionStudySpec::parse(PLACE, text)?;
             ReconstructionPlan::new(PLACE, spec).map(drop)
         }
-        StudyKind::ObjectDetail => {
-            let spec = ObjectDetailStudySpec::parse(PLACE, text)?;
-            ObjectDetailPlan::new(PLACE, spec).map(drop)
-        }
         StudyKind::WholeBody => {
             let spec = WholeBodyStudySpec::parse(PLACE, text)?;
             WholeBodyPlan::new(PLACE, &folder("experiments"), spec).map(drop)
         }
-        StudyKind::BreakingPoints => BreakingPointsSpec::parse(PLACE, text).map(drop),
-        StudyKind::SpeedAccuracy => SpeedAccuracyStudySpec::parse(PLACE, text).map(drop),
         StudyKind::Stability => {
             let spec = StabilityStudySpec::parse(PLACE, text)?;
             StabilityPlan::new(PLACE, Path::new(""), spec).map(drop)
