@@ -5,6 +5,7 @@
 
 mod any_study;
 pub mod breaking_points;
+mod ceiling;
 mod kind;
 mod loaded;
 mod median_time;
@@ -16,6 +17,7 @@ pub mod speed_accuracy;
 mod verified;
 
 pub use any_study::{AnyOutcome, AnyStudy, EndedRun, ReportAbout};
+pub use ceiling::{threads_within, within_memory};
 pub use kind::{About, Facts, Kind};
 pub use loaded::Loaded;
 pub use source::Source;

@@ -1,11 +1,10 @@
 //! The folder of a study of any kind but for its tables: charts, pictures and the page.
 
 use crate::error::Result;
-use crate::report::chart::draw;
+use crate::report::chart;
 use crate::report::drawing::Drawing;
 use crate::report::folder::Folder;
-use crate::report::page::plain::{self, plain_page};
-use crate::report::page::{Picture, Section, StudyAbout, figure};
+use crate::report::page::{Beside, Picture, StudyAbout, study_page};
 use crate::report::terminal::wrap;
 use crate::table::{ChartSpec, Table};
 use std::path::Path;
@@ -41,15 +40,41 @@ pub struct Found<'a> {
     pub answers: &'a [String],
 }
 
-/// Charts, pictures and the page, for the folder `dir`: nothing is written yet.
+/// Charts that are drawn, unless all are asked for; of all, those in the page (for readers without script) and as PNG. More: a page too
+/// heavy for a phone, and minutes for what the page shows anyway when it is asked.
+pub const MOST_CHARTS: usize = 24;
+
+/// Letters of a picture that stays an SVG in the page: a point a row of ten thousand is megabytes.
+const LIGHT: usize = 300_000;
+
+/// Charts, pictures and the page, for the folder `dir`: nothing is written yet. A chart that no row has a place in is left out.
 ///
 /// # Errors
 /// What cannot be drawn.
 pub fn folder_of<'a>(dir: &'a Path, about: &StudyAbout, found: &Found) -> Result<Folder<'a>> {
     let mut folder = Folder::new(dir);
-    let mut pictures = String::new();
+    let mut charts = Vec::new();
+    for chart in found.charts {
+        if !chart::places(chart, found.tables)?.is_empty() {
+            charts.push(chart.clone());
+        }
+    }
+    let mut beside = Beside::default();
+    for (number, spec) in charts.iter().enumerate() {
+        if number >= MOST_CHARTS && !about.all_charts {
+            beside.left_out.push(spec.name.clone());
+            continue;
+        }
+        let drawing = chart::draw(spec, found.tables)?;
+        if number < MOST_CHARTS {
+            beside.charts.push(light_picture(&drawing, &spec.title)?);
+            folder.add_chart(&spec.name, &spec.title, &drawing);
+        } else {
+            folder.add(format!("{}.svg", spec.name), drawing.svg(&spec.title));
+        }
+    }
     for NamedPicture { name, title, image } in found.pictures {
-        pictures += &figure(&match image {
+        beside.pictures.push(match image {
             Image::Drawing(drawing) => {
                 folder.add_chart(name, title, drawing);
                 Picture::of(drawing, title)
@@ -60,20 +85,22 @@ pub fn folder_of<'a>(dir: &'a Path, about: &StudyAbout, found: &Found) -> Result
             }
         });
     }
-    let mut charts = String::new();
-    for spec in found.charts {
-        let drawing = draw(spec, found.tables)?;
-        folder.add_chart(&spec.name, &spec.title, &drawing);
-        charts += &figure(&Picture::of(&drawing, &spec.title));
-    }
-    let sections = vec![
-        plain::answer(found.answers),
-        Section::new("charts", "Charts", charts),
-        Section::new("pictures", "Pictures", pictures),
-    ];
-    let files: Vec<&str> = found.tables.iter().map(|table| table.file).collect();
-    folder.add("report.html", plain_page(about, sections, &files));
+    let found = Found {
+        charts: &charts,
+        ..*found
+    };
+    folder.add("report.html", study_page(about, &found, beside));
     Ok(folder)
+}
+
+/// A drawing for the page, as SVG if that is light.
+fn light_picture(drawing: &Drawing, title: &str) -> Result<Picture> {
+    let picture = Picture::of(drawing, title);
+    if picture.element.len() <= LIGHT {
+        return Ok(picture);
+    }
+    let size = (drawing.width() as usize, drawing.height() as usize);
+    Ok(Picture::of_png(&drawing.png()?, size, title))
 }
 
 /// What a person reads at the end of a run, in lines of about `width` letters.

@@ -2,8 +2,8 @@
 
 use super::imperfection::{Imperfection, skin};
 use super::measurement::rates_of;
+use super::measurement::signal_steps;
 use super::plan::{Plan, millimetres};
-use super::runner::signal_steps;
 use super::simulation::TouchedObject;
 use super::spec::CombineSpec;
 use super::sweep::{Group, Sweep};

@@ -1,6 +1,6 @@
 //! A table: columns of numbers and words, and the bytes of its file.
 
-use super::{Column, Columns, Scale};
+use super::{Better, Column, Columns, Role, Scale};
 use crate::error::{Error, Result};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
@@ -125,6 +125,22 @@ impl Table {
     pub fn noted(mut self, note: impl Into<String>) -> Self {
         self.note = note.into();
         self
+    }
+
+    /// Whether its rows are choices of a designer that have a value and a cost.
+    pub fn offers_choices(&self) -> bool {
+        let varies = |data: &Data| match data {
+            Data::Words { levels, .. } => levels.len() > 1,
+            Data::Numbers(numbers) => numbers.iter().any(|n| n.to_bits() != numbers[0].to_bits()),
+        };
+        let columns = self.columns.iter().zip(&self.data);
+        let varying: Vec<Role> = columns
+            .filter(|(_, data)| varies(data))
+            .map(|(column, _)| column.role)
+            .collect();
+        let has = |role: Role| varying.contains(&role);
+        let has_value = has(Role::Value(Better::More)) || has(Role::Value(Better::Less));
+        has(Role::Choice) && has(Role::Cost) && has_value && !has(Role::Subject)
     }
 
     /// The place of a column by its name.

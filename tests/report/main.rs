@@ -17,4 +17,5 @@ mod pareto;
 mod pictures;
 mod recording_files;
 mod recording_pictures;
+mod study_page;
 mod tables;

@@ -10,13 +10,14 @@ use crate::objects::Object;
 use crate::random::Seed;
 use crate::recognition::bootstrap::Bootstrap;
 use crate::recognition::comparison::{TrialSize, compare};
+use crate::study::pieces::run_whole_study;
 use crate::study::pieces::{NamedPiece, PiecesLeft};
 use crate::study::progress::Silent;
 use crate::study::spec::StudySpec;
 use crate::study::summary::score;
 use crate::study::table::{Tables, TrialScore};
 use crate::study::time_left::Piece;
-use crate::study::{Axis, CONFIDENCE, Plan, Sweep, draw_touches, run};
+use crate::study::{Axis, CONFIDENCE, Plan, RecognitionStudy, draw_touches};
 use rayon::prelude::*;
 use std::path::Path;
 
@@ -90,8 +91,8 @@ impl ResolutionPart<'_> {
         study.sensing.ratio = Some(Axis::Many(self.spec.ratio.to_vec()));
         let study = Plan::new(&self.plan.place, study)?;
         let touched = draw_touches(objects, &study.placement, &Seed::new(of.seed))?;
-        let sweep = Sweep::new(&study, &touched)?;
-        let found = run(&study, &sweep, &touched, &Silent)?.tables;
+        let study = RecognitionStudy::new(study, Box::new(touched))?;
+        let found = run_whole_study(&study, &Silent)?.tables;
         let sizes = self.spec.trials.iter().map(|&trials| {
             let cpu_s = cost(&found, trials, most);
             let size = StudySize { touches, trials };

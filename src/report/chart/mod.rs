@@ -18,7 +18,7 @@ pub(in crate::report) use accuracy::{draw_axes, draw_y_labels, y_at};
 pub(in crate::report) use tiles::draw_sign;
 pub use view::Place;
 
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::report::drawing::Drawing;
 use crate::table::{ChartSpec, Mark, Table};
 use view::View;
@@ -29,6 +29,14 @@ use view::View;
 /// A table or a column that the spec names and that is not there; no row that has a place in the chart.
 pub fn draw(spec: &ChartSpec, tables: &[Table]) -> Result<Drawing> {
     let view = View::of(spec, tables)?;
+    if view.places.is_empty() {
+        let given = format!("no row of {} with {} and {}", spec.table, spec.x, spec.y);
+        return Err(Error::input(
+            format!("chart {}", spec.name),
+            given,
+            "one at least",
+        ));
+    }
     Ok(match spec.mark {
         Mark::Tiles { .. } => tiles::draw(&view),
         Mark::Line | Mark::Step | Mark::Points => marks::draw(&view),
@@ -38,7 +46,7 @@ pub fn draw(spec: &ChartSpec, tables: &[Table]) -> Result<Drawing> {
 /// Where every row that a chart shows stands, as parts of the width and the height of its panel, from the left and from below.
 ///
 /// # Errors
-/// Those of [`draw`].
+/// A table or a column that the spec names and that is not there.
 pub fn places(spec: &ChartSpec, tables: &[Table]) -> Result<Vec<Place>> {
     let view = View::of(spec, tables)?;
     Ok(view.places)

@@ -129,14 +129,6 @@ impl<'a> View<'a> {
             places: Vec::new(),
         };
         view.places = view.place_all((&x_values.0, &y_values.0), interval);
-        if view.places.is_empty() {
-            let given = format!("no row of {} with {} and {}", spec.table, spec.x, spec.y);
-            return Err(Error::input(
-                format!("chart {}", spec.name),
-                given,
-                "one at least",
-            ));
-        }
         Ok(view)
     }
 

@@ -5,16 +5,35 @@ use crate::report::drawing::escape;
 
 const TEMPLATE: &str = include_str!("page.html");
 const STYLE: &str = include_str!("page.css");
-const ELEMENTS: &str = include_str!("elements.js");
-const POINTS: &str = include_str!("points.js");
-/// Of pages that are pictures, some of which can be asked.
-const PICTURES: [&str; 3] = [ELEMENTS, POINTS, include_str!("asked.js")];
 /// In the order in which each may use what comes before it.
-const SCRIPT: [&str; 11] = [
+const SCRIPT: [&str; 10] = [
+    include_str!("script/elements.js"),
+    include_str!("script/points.js"),
+    include_str!("script/data.js"),
+    include_str!("script/scale.js"),
+    include_str!("script/view.js"),
+    include_str!("script/chart.js"),
+    include_str!("script/filter.js"),
+    include_str!("script/explorer.js"),
+    include_str!("script/tables.js"),
+    concat!(
+        include_str!("script/advice.js"),
+        include_str!("script/main.js")
+    ),
+];
+const ELEMENTS: &str = include_str!("script/elements.js");
+/// Of pages that are pictures, some of which can be asked.
+const PICTURES: [&str; 3] = [
+    ELEMENTS,
+    include_str!("points.js"),
+    include_str!("asked.js"),
+];
+/// Of recognition's page.
+const OLD: [&str; 11] = [
     ELEMENTS,
     include_str!("base.js"),
     include_str!("filter.js"),
-    POINTS,
+    include_str!("points.js"),
     include_str!("axes.js"),
     include_str!("accuracy.js"),
     include_str!("advice.js"),
@@ -39,6 +58,8 @@ pub(crate) struct Page {
     pub foot: String,
     /// JSON that the script draws from; none for a page without script.
     pub data: Option<String>,
+    /// Whether the script is that of recognition alone.
+    pub is_old: bool,
 }
 
 /// A part of a page with a heading.
@@ -115,7 +136,12 @@ impl Page {
                 let data = data.replace('<', "\\u003c");
                 let data =
                     format!("<script type=\"application/json\" id=\"study\">{data}</script>");
-                format!("{data}\n{}", in_scope(&SCRIPT))
+                let script = if self.is_old {
+                    in_scope(&OLD)
+                } else {
+                    in_scope(&SCRIPT)
+                };
+                format!("{data}\n{script}")
             }
         }
     }
