@@ -10,8 +10,6 @@
 
 pub mod answer;
 pub mod axis;
-mod breaking_points_charts;
-pub mod breaking_points_results;
 pub(crate) mod canvas;
 pub mod chart;
 pub mod chart_plan;
@@ -27,9 +25,6 @@ pub mod headlines;
 pub mod heat_map;
 mod legend;
 mod log_scale;
-pub mod object_detail_charts;
-mod object_detail_recognition;
-pub mod object_detail_results;
 pub mod object_picture;
 pub mod offers;
 pub mod page;
@@ -51,7 +46,6 @@ pub mod scene_summary;
 pub(crate) mod shaded_view;
 mod signal_axis;
 pub mod snapshots;
-pub mod speed_accuracy;
 pub mod study_folder;
 pub mod study_tables;
 pub mod terminal;

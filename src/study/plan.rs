@@ -22,7 +22,7 @@ use std::collections::HashSet;
 pub(crate) const MM: f64 = 1e-3;
 
 /// Trials of a study, at most: each has its split in memory before the first runs.
-pub(super) const MOST_TRIALS: usize = 100_000;
+pub(crate) const MOST_TRIALS: usize = 100_000;
 /// Frames a touch, at most: more is a rate or a number in the wrong unit.
 pub(super) const MOST_FRAMES: usize = 10_000;
 

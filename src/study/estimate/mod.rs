@@ -5,7 +5,7 @@ mod measuring;
 mod touching;
 
 pub(super) use learning::family_s;
-pub(super) use measuring::{measure_s, project_s};
+pub(super) use measuring::measure_s;
 pub(super) use touching::{PLACE_SPHERE_S, PLACE_TRIANGLE_S, touch_s};
 
 use std::fmt;
