@@ -5,7 +5,6 @@ use crate::files::write_bytes;
 use crate::report::csv_tables::csv_content;
 use crate::report::drawing::Drawing;
 use crate::report::raster::ToRaster;
-use crate::report::study_tables::TableFiles;
 use crate::table::Table;
 use rayon::prelude::*;
 use serde::Serialize;
@@ -103,25 +102,13 @@ impl<'a> Folder<'a> {
         Ok(())
     }
 
-    /// Adds the tables of a study.
-    pub(super) fn add_files(&mut self, tables: TableFiles) {
-        for (name, content) in tables {
-            self.add(name, content);
-        }
-    }
-
     /// Adds a chart as PNG and as SVG; its name has no ending.
     pub(super) fn add_chart(&mut self, name: &str, title: &str, drawing: &Drawing) {
         self.add_png(format!("{name}.png"), drawing);
         self.add(format!("{name}.svg"), drawing.svg(title));
     }
 
-    /// Every file whole: name and content.
-    pub(super) fn into_files(self) -> Result<Vec<(String, Vec<u8>)>> {
-        self.into_files_telling(&|_| ())
-    }
-
-    /// The same; each picture tells what share it was of the time by the clock that all of them take (the larger the more), and how long
+    /// Every file whole, name and content; each picture tells what share it was of the time by the clock that all of them take (the larger the more), and how long
     /// that was.
     fn into_files_telling(self, told: &Told) -> Result<Vec<(String, Vec<u8>)>> {
         let areas = self.files.iter().filter_map(|(_, content)| content.area());

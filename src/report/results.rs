@@ -6,9 +6,7 @@ use crate::report::page::{ReportPage, StudyAbout};
 use crate::report::recognition::{answers, charts, sections, tables_of};
 use crate::report::snapshots::snapshots;
 use crate::report::study_folder::{Found, folder_with};
-use crate::study::progress::{Progress, Silent};
 use crate::study::table::Tables;
-use crate::study::time_left::Piece;
 use crate::table::Table;
 use std::path::{Path, PathBuf};
 
@@ -21,23 +19,7 @@ use std::path::{Path, PathBuf};
 /// # Errors
 /// What cannot be drawn, or written as a table; a file that cannot be written.
 pub fn write_all(dir: &Path, tables: &Tables, about: &ReportPage) -> Result<Vec<PathBuf>> {
-    write_all_telling(dir, tables, about, (&Silent, &Piece::report(0.0)))
-}
-
-/// As [`write_all`]; `progress` is told, of what was planned for `work`, what is done as pictures are drawn.
-///
-/// # Errors
-/// Those of [`write_all`].
-pub fn write_all_telling(
-    dir: &Path,
-    tables: &Tables,
-    about: &ReportPage,
-    (progress, work): (&dyn Progress, &Piece),
-) -> Result<Vec<PathBuf>> {
-    all_files(dir, tables, about)?.write_telling(&|drawn| {
-        let pictures = Piece::report((work.planned_s - REST_S).max(0.0));
-        progress.worked(&pictures.share(drawn.share), drawn.wall_s);
-    })
+    all_files(dir, tables, about)?.write()
 }
 
 /// What [`write_all`] writes, before it is written.
@@ -85,14 +67,3 @@ fn page_of<'a>(dir: &'a Path, tables: &[Table], about: &ReportPage) -> Result<Fo
     }
     Ok(folder)
 }
-
-/// Seconds by the clock to draw and write all of it, where [samples of touches](crate::study::TouchSet::samples) take so many
-/// processor-seconds more.
-pub fn planned_s(samples_s: f64) -> f64 {
-    REST_S + PICTURES_S + samples_s / rayon::current_num_threads() as f64
-}
-
-/// Seconds for a few pictures on a 2-core x86-64 server.
-const PICTURES_S: f64 = 1.0;
-/// Seconds for tables and the page.
-const REST_S: f64 = 0.05;

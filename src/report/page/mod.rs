@@ -8,14 +8,13 @@ mod about;
 mod data;
 mod frame;
 mod picture;
-pub(super) mod plain;
 mod provenance;
 mod study;
 mod touches;
 
-pub use about::{Limit, ReportPage, Snapshots, StudyAbout};
+pub use crate::study::Limit;
+pub use about::{ReportPage, Snapshots, StudyAbout};
 pub use frame::Section;
-pub(super) use picture::figure;
-pub use picture::{Picture, Pictures};
+pub use picture::Picture;
 pub(super) use study::{Beside, page as study_page};
 pub(super) use touches::touches_html;

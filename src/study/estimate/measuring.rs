@@ -3,8 +3,8 @@
 use crate::random::Seed;
 use crate::sensing::Ensemble;
 use crate::signal::SignalStep;
+use crate::study::measurement::signal_steps;
 use crate::study::plan::Plan;
-use crate::study::runner::signal_steps;
 use crate::study::sweep::Group;
 use crate::world::Patch;
 
@@ -14,16 +14,8 @@ const READ_TAXEL_S: f64 = 1e-9;
 const NOISE_S: f64 = 7e-9;
 /// Seconds for one tap of a smoothing kernel along one axis, and the same at the other side.
 const SMOOTHING_TAP_S: f64 = 6e-10;
-/// Seconds to follow one taxel around its loop of hysteresis.
-const HYSTERESIS_S: f64 = 1.4e-8;
-/// Seconds to draw how far one taxel's zero has wandered, once a touch.
-const DRIFT_S: f64 = 1.7e-8;
-/// Seconds to read one taxel a little later than the one before.
-const SCAN_S: f64 = 5e-9;
-/// Seconds to clip and round what one taxel reads.
-const QUANTISATION_S: f64 = 3e-9;
-/// Seconds for what costs little: crosstalk, gains, faults, forces.
-const LIGHT_STEP_S: f64 = 3e-10;
+/// Seconds to make a force of one deflection.
+const FORCE_S: f64 = 3e-10;
 /// Seconds for one multiply-add of a stored matrix.
 const DENSE_S: f64 = 5.8e-11;
 /// Seconds for one entry of a sparse matrix that is not zero.
@@ -58,14 +50,13 @@ fn step_s(step: &SignalStep, patch: &Patch, n_frames: usize) -> f64 {
             let taps = 2.0 * (1.0 + 4.0 * width / patch.grid.pitch);
             if_any(*width, SMOOTHING_TAP_S * taps)
         }
-        SignalStep::Hysteresis { width } => if_any(*width, HYSTERESIS_S),
-        SignalStep::Drift(drift) => if_any(drift.std, DRIFT_S / n_frames as f64),
-        SignalStep::Scan { seconds } => if_any(*seconds, SCAN_S),
-        SignalStep::Quantisation { bits } => if_any(f64::from(*bits), QUANTISATION_S),
-        SignalStep::Force
-        | SignalStep::Crosstalk { .. }
-        | SignalStep::Gain(_)
-        | SignalStep::Faults(_) => LIGHT_STEP_S,
+        SignalStep::Error {
+            error, strengths, ..
+        } => {
+            let largest = strengths.iter().copied().fold(0.0, f64::max);
+            if_any(largest, (error.about().taxel_s)(n_frames))
+        }
+        SignalStep::Force => FORCE_S,
     }
 }
 
