@@ -7,7 +7,7 @@ use super::scale::WayScale;
 use super::spec::DrivenTouches;
 use super::study::{BREAKS, SUMMARY};
 use crate::kinds::rows_of;
-use crate::report::axis::classifier_name;
+use crate::report::names::classifier_name;
 use crate::table::{Along, At, ChartSpec, Column, Role, Rule, Scale, Shown, Table, Value};
 
 /// A chart a way.

@@ -4,8 +4,8 @@ use super::rows::{DetailCost, DetailRecognition, Measured};
 use super::spec::DetailMethod;
 use super::study::{COST, RECOGNITION};
 use crate::kinds::rows_of;
-use crate::report::axis::short_number;
 use crate::table::Table;
+use crate::table::short_number;
 
 /// An error of which nothing is felt, mm.
 const SMALL_MM: f64 = 0.5;

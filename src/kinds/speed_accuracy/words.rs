@@ -1,7 +1,7 @@
 //! Settings as a reader meets them.
 
 use super::rows::{ChainCell, ContactPoint, ContactWay, Touched};
-use crate::report::axis::{classifier_name, ensemble_name};
+use crate::report::names::{classifier_name, ensemble_name};
 
 impl ContactWay {
     /// In words.

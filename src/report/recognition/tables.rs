@@ -56,15 +56,7 @@ type File = (&'static str, &'static str);
 /// # Errors
 /// A row that has no form in a file.
 pub fn tables_of(tables: &Tables, limits: &[Limit]) -> Result<Vec<Table>> {
-    let axes = |rows: &[(Cell, TrialScore)]| -> Vec<Column> {
-        let first = rows.first().map(|(cell, _)| cell.variant.values.iter());
-        first
-            .into_iter()
-            .flatten()
-            .map(|axis| axis.column.clone())
-            .collect()
-    };
-    let axes = axes(&tables.accuracy);
+    let axes = axes_of(&tables.accuracy);
     let mut made = vec![
         Table::of_columns(ACCURACY, columns::<TrialScore>(&axes), &tables.accuracy)?,
         Table::of_columns(SUMMARY, columns::<CellScore>(&axes), &tables.summary)?.summary(),
@@ -107,6 +99,23 @@ pub fn read_tables(dir: &Path) -> Result<Vec<Table>> {
         read.push(Table::read_columns(LIMITS, Limit::columns(), dir)?.summary());
     }
     Ok(with_cells(read))
+}
+
+/// What cells cost.
+///
+/// # Errors
+/// A row that has no form in a file.
+pub fn costs_table(costs: &[(Cell, Pareto)]) -> Result<Table> {
+    let mut table = Table::of_columns(PARETO, columns::<Pareto>(&axes_of(costs)), costs)?;
+    say(&mut table);
+    Ok(table)
+}
+
+/// The axes that a study of these cells names itself.
+fn axes_of<R>(rows: &[(Cell, R)]) -> Vec<Column> {
+    let first = rows.first().map(|(cell, _)| cell.variant.values.iter());
+    let axes = first.into_iter().flatten();
+    axes.map(|axis| axis.column.clone()).collect()
 }
 
 /// Those of a cell, of the axes that its study names itself, and of a score.
