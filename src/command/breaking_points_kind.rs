@@ -22,8 +22,6 @@ impl PieceKind for BreakingPointsKind {
 
     const KIND: StudyKind = StudyKind::BreakingPoints;
 
-    const WRITE_S: f64 = 6.0;
-
     fn load(args: &StudyArgs, packings: PathBuf) -> Result<Self> {
         Ok(Self(BreakingPointsStudy {
             plan: args.breaking_points_plan()?,

@@ -20,8 +20,6 @@ impl PieceKind for ObjectDetailKind {
 
     const KIND: StudyKind = StudyKind::ObjectDetail;
 
-    const WRITE_S: f64 = 1.0;
-
     fn load(args: &StudyArgs, packings: PathBuf) -> Result<Self> {
         let plan = args.object_detail_plan()?;
         let meshes = load_named_meshes(plan.meshes(), &plan.spec.objects)?;

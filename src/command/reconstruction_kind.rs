@@ -23,8 +23,6 @@ impl PieceKind for ReconstructionKind {
 
     const KIND: StudyKind = StudyKind::Reconstruction;
 
-    const WRITE_S: f64 = 6.0;
-
     fn load(args: &StudyArgs, packings: PathBuf) -> Result<Self> {
         let plan = args.reconstruction_plan()?;
         let objects = load_objects(&plan.spec.objects, Some(&packings))?;

@@ -19,8 +19,6 @@ impl PieceKind for SpeedAccuracyKind {
 
     const KIND: StudyKind = StudyKind::SpeedAccuracy;
 
-    const WRITE_S: f64 = 2.0;
-
     fn load(args: &StudyArgs, packings: PathBuf) -> Result<Self> {
         let plan = args.speed_accuracy_plan()?;
         Ok(Self(SpeedAccuracyStudy::new(plan, Some(packings))?))

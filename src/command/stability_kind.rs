@@ -20,8 +20,6 @@ impl PieceKind for StabilityKind {
 
     const KIND: StudyKind = StudyKind::Stability;
 
-    const WRITE_S: f64 = 2.0;
-
     fn load(args: &StudyArgs, _packings: PathBuf) -> Result<Self> {
         if args.objects.is_some() || args.seed.is_some() {
             let allowed = "neither: nothing is drawn at random, and a ball is what touches";

@@ -24,8 +24,6 @@ impl PieceKind for WholeBodyKind {
 
     const KIND: StudyKind = StudyKind::WholeBody;
 
-    const WRITE_S: f64 = 2.3;
-
     fn load(args: &StudyArgs, _packings: PathBuf) -> Result<Self> {
         let plan = args.whole_body_plan()?;
         let robot = args.folder().join(&plan.spec.whole_body.robot);

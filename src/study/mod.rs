@@ -15,7 +15,6 @@ mod cell_content;
 mod check;
 mod compare_runs;
 mod content_hash;
-mod estimate;
 mod evaluation;
 mod feature_files;
 mod frames;

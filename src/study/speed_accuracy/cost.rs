@@ -4,7 +4,6 @@ use super::engines::StepMethod;
 use super::table::Touched;
 use crate::recognition::ClassifierKind;
 use crate::sensing::Ensemble;
-use crate::study::estimate::project_s;
 use crate::study::time_left::Piece;
 
 /// Stages.
@@ -57,7 +56,10 @@ pub(super) fn front(
     (n_touches, n_timed): (usize, usize),
 ) -> Piece {
     let frame_s = |project_s: f64| n_taxels as f64 * (READ_S + project_s);
-    let together_s = frame_s(project_s(ensemble, n_measurements, n_taxels));
+    let together_s = frame_s(match ensemble {
+        Ensemble::Gaussian | Ensemble::Bernoulli => 6e-11 * n_measurements,
+        _ => 1e-9,
+    });
     let alone_s = match ensemble {
         // The matrix is read from memory for each.
         Ensemble::Gaussian | Ensemble::Bernoulli => frame_s(DENSE_ALONE_S * n_measurements),
