@@ -7,7 +7,6 @@ use super::table::Cell;
 use crate::error::{Error, Result};
 use crate::recognition::ClassifierKind;
 use crate::recognition::svm::{DEFAULT_MEMORY_BYTES, Multiclass, Solver};
-use crate::sensing::Ensemble;
 use std::{fmt, fs};
 
 /// Bytes of a gibibyte.
@@ -131,10 +130,7 @@ impl Pieces {
         let n_frames = |group: &Group| n_touches * group.frames as f64;
         let m = |group: &Group| group.projected().into_iter().max().unwrap_or(0) as f64;
         let job = |group: &Group| {
-            let matrix = match group.ensemble {
-                Ensemble::Gaussian => 16.0 * n_taxels(group) as f64 * m(group),
-                _ => 0.0,
-            };
+            let matrix = (group.ensemble.about().bytes)(m(group), n_taxels(group) as f64);
             8.0 * n_frames(group) * m(group) + matrix
         };
         let n_test = sweep.splits.iter().map(|split| split.test.len());

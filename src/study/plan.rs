@@ -246,7 +246,7 @@ impl Plan {
     /// The m axis on an array; a ratio axis can name the same m twice on a small one.
     pub(super) fn measurement_counts(&self, patch: &Patch, ensemble: Ensemble) -> Vec<usize> {
         let n_taxels = patch.grid.n_taxels();
-        if ensemble == Ensemble::Identity {
+        if ensemble.about().is_whole_frame {
             return vec![n_taxels];
         }
         let mut named = HashSet::new();

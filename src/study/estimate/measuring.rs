@@ -16,14 +16,6 @@ const NOISE_S: f64 = 7e-9;
 const SMOOTHING_TAP_S: f64 = 6e-10;
 /// Seconds to make a force of one deflection.
 const FORCE_S: f64 = 3e-10;
-/// Seconds for one multiply-add of a stored matrix.
-const DENSE_S: f64 = 5.8e-11;
-/// Seconds for one entry of a sparse matrix that is not zero.
-const SPARSE_S: f64 = 2.7e-10;
-/// Seconds of one taxel in the transform of scrambled blocks.
-const HADAMARD_S: f64 = 2e-9;
-/// Seconds of one taxel where each is read once at most.
-const PICKED_S: f64 = 5e-10;
 
 /// Processor-seconds to read and project all frames of a group once.
 pub(in crate::study) fn measure_s(
@@ -62,11 +54,5 @@ fn step_s(step: &SignalStep, patch: &Patch, n_frames: usize) -> f64 {
 
 /// Seconds to project one taxel of one frame to m measurements.
 pub(in crate::study) fn project_s(ensemble: Ensemble, m: f64, n_taxels: usize) -> f64 {
-    match ensemble {
-        Ensemble::Gaussian | Ensemble::Bernoulli => DENSE_S * m,
-        // m rows of √n entries each.
-        Ensemble::Sparse => SPARSE_S * m / (n_taxels as f64).sqrt(),
-        Ensemble::Sbhe => HADAMARD_S,
-        Ensemble::BlockAverage | Ensemble::Subsample | Ensemble::Identity => PICKED_S,
-    }
+    (ensemble.about().taxel_s)(m, n_taxels as f64)
 }
