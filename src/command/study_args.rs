@@ -1,5 +1,6 @@
 //! What `run`, `plan` and `touches` have in common: a study file, and what overrides it.
 
+use super::output::packings_beside;
 use bubbletouch::kinds::Source;
 use bubbletouch::random::Seed;
 use bubbletouch::study::breaking_points::{BreakingPointsPlan, BreakingPointsSpec};
@@ -10,7 +11,7 @@ use bubbletouch::study::speed_accuracy::{SpeedAccuracyPlan, SpeedAccuracyStudySp
 use bubbletouch::study::stability::{StabilityPlan, StabilityStudySpec};
 use bubbletouch::study::whole_body::{WholeBodyPlan, WholeBodyStudySpec};
 use bubbletouch::study::{
-    HumanTouches, ObjectsSpec, Plan, StudyKind, StudySpec, Sweep, TouchSet, TouchesSpec,
+    HumanTouches, ObjectsSpec, Plan, RecognitionStudy, StudyKind, StudySpec, TouchSet, TouchesSpec,
     draw_touches, load_objects,
 };
 use bubbletouch::{Error, Result};
@@ -39,21 +40,12 @@ pub struct StudyArgs {
     /// The folder that paths in the study are relative to; its file's when left out.
     #[arg(skip)]
     pub paths_from: Option<PathBuf>,
-}
-
-/// A study whose objects are built and whose touches are drawn.
-pub struct LoadedStudy {
-    pub name: String,
-    pub plan: Plan,
-    pub touched: Box<dyn TouchSet>,
-    pub sweep: Sweep,
-}
-
-impl LoadedStudy {
-    /// Cells, counted once a trial.
-    pub fn n_evaluations(&self) -> usize {
-        self.sweep.n_cells() * self.plan.spec.trials
-    }
+    /// Most bytes to hold; no ceiling when left out.
+    #[arg(skip)]
+    pub memory: Option<u64>,
+    /// Where its results go; beside them packings are kept, and in them what memory cannot hold.
+    #[arg(skip)]
+    pub results: PathBuf,
 }
 
 impl StudyArgs {
@@ -64,6 +56,17 @@ impl StudyArgs {
             seed: None,
             threads: None,
             paths_from: None,
+            memory: None,
+            results: PathBuf::new(),
+        }
+    }
+
+    /// The study of a folder of results.
+    pub fn of_results(folder: &Path, paths_from: Option<PathBuf>) -> Self {
+        Self {
+            study: folder.join("study.toml"),
+            paths_from,
+            ..Self::quickstart()
         }
     }
 
@@ -111,7 +114,9 @@ impl StudyArgs {
             folder: self.folder(),
             objects: self.objects.clone(),
             seed: self.seed,
-            ..Source::default()
+            memory: self.memory,
+            packings: Some(packings_beside(&self.results)),
+            results: self.results.clone(),
         })
     }
 
@@ -204,21 +209,12 @@ impl StudyArgs {
         }
     }
 
-    /// Reads and checks the study, builds its objects (packed ones are kept in `packings`), draws its touches and lays out its cells.
-    pub fn load(&self, packings: Option<&Path>) -> Result<LoadedStudy> {
-        set_threads(self.threads)?;
-        self.load_within(packings, machine_memory())
-    }
-
-    /// The same within so many bytes (`None`: no limit); an error before touches are drawn that would take more.
-    pub fn load_within(
-        &self,
-        packings: Option<&Path>,
-        ceiling: Option<u64>,
-    ) -> Result<LoadedStudy> {
+    /// Reads and checks a study that recognises objects, builds them and draws its touches, unless these take more memory than there is.
+    pub fn recognition(&self, packings: Option<&Path>) -> Result<RecognitionStudy> {
         let plan = self.plan()?;
         let seed = Seed::new(plan.spec.seed);
-        let touched: Box<dyn TouchSet> = match &plan.human_touch {
+        let ceiling = self.memory.or_else(machine_memory);
+        let touched: Box<dyn TouchSet + Send> = match &plan.human_touch {
             Some(human) => {
                 check_touches(&plan, human.kinds.len(), ceiling)?;
                 Box::new(HumanTouches::draw(human, &seed)?)
@@ -229,13 +225,7 @@ impl StudyArgs {
                 Box::new(draw_touches(objects, &plan.placement, &seed)?)
             }
         };
-        let sweep = Sweep::new(&plan, touched.as_ref())?;
-        Ok(LoadedStudy {
-            name: self.name()?,
-            plan,
-            touched,
-            sweep,
-        })
+        RecognitionStudy::new(plan, touched)
     }
 
     fn text(&self) -> Result<String> {

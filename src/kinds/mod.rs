@@ -4,6 +4,7 @@
 //! ([`Kind`]). [`AnyStudy`] is what all commands see of a study: whatever can be done with one kind can be done with all.
 
 mod any_study;
+mod ceiling;
 mod kind;
 mod loaded;
 mod results;
@@ -11,6 +12,7 @@ mod source;
 mod verified;
 
 pub use any_study::{AnyOutcome, AnyStudy, EndedRun, ReportAbout};
+pub use ceiling::{threads_within, within_memory};
 pub use kind::{About, Facts, Kind};
 pub use loaded::Loaded;
 pub use source::Source;

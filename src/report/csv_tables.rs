@@ -6,10 +6,9 @@
 use crate::error::{Error, Result};
 use crate::report::csv_header::blank_row;
 use crate::report::folder::Folder;
-use crate::report::page::Limit;
 use crate::study::table::{
-    Cell, CellScore, Comparison, Confused, Confusion, Failure, Pareto, Published, StageTime,
-    Tables, TrialScore, TrialTime, Variance,
+    Cell, CellScore, Comparison, Confused, Confusion, Pareto, Published, StageTime, Tables,
+    TrialScore, TrialTime, Variance,
 };
 use crate::study::{ContentHash, StudyKind, StudySpec};
 use crate::table::Column;
@@ -20,7 +19,7 @@ use std::fs::File;
 use std::path::{Path, PathBuf};
 
 /// File names of the tables, in the order in which [`write_tables`] writes them.
-pub const TABLE_FILES: [&str; 10] = [
+pub const TABLE_FILES: [&str; 9] = [
     "accuracy.csv",
     "summary.csv",
     "confusion.csv",
@@ -30,7 +29,6 @@ pub const TABLE_FILES: [&str; 10] = [
     "stages.csv",
     "confused.csv",
     "published.csv",
-    FAILURES_FILE,
 ];
 
 /// What failed, and why.
@@ -69,15 +67,6 @@ impl TableHashes {
     }
 }
 
-/// SHA-256 of every table, and of how often limits were reached.
-pub fn table_hashes(tables: &Tables, limits: &[Limit]) -> Result<TableHashes> {
-    let mut folder = Folder::new(Path::new(""));
-    add_tables(&mut folder, tables)?;
-    folder.add_table(LIMITS_FILE, limits)?;
-    let files = folder.into_files()?;
-    Ok(TableHashes::of(files, |name| !TIME_TABLES.contains(&name)))
-}
-
 /// What is asked for where a table is missing.
 const A_TABLE: &str = "a table of results as bubbletouch run writes it";
 
@@ -109,7 +98,6 @@ pub(super) fn add_tables(folder: &mut Folder, tables: &Tables) -> Result<()> {
         stages,
         confused,
         published,
-        failures,
     ] = TABLE_FILES;
     folder.add_table(accuracy, &tables.accuracy)?;
     folder.add_table(summary, &tables.summary)?;
@@ -120,7 +108,6 @@ pub(super) fn add_tables(folder: &mut Folder, tables: &Tables) -> Result<()> {
     folder.add_table(stages, &tables.stages)?;
     folder.add_table(confused, &tables.confused)?;
     folder.add_table(published, &tables.published)?;
-    folder.add_table(failures, &tables.failures)?;
     match tables.variance.is_empty() {
         true => Ok(()),
         false => folder.add_table(VARIANCE_FILE, &tables.variance),
@@ -140,7 +127,6 @@ pub fn read_tables(dir: &Path) -> Result<Tables> {
         stages: read_rows::<StageTime>(&path(6))?,
         confused: read_rows::<Confused>(&path(7))?,
         published: read_cell_rows::<Published>(&path(8))?,
-        failures: read_cell_rows::<Failure>(&path(9))?,
         variance: match dir.join(VARIANCE_FILE) {
             path if path.exists() => read_rows::<Variance>(&path)?,
             _ => Vec::new(),

@@ -40,6 +40,7 @@ pub mod pressure_map;
 pub mod progress;
 pub mod progress_json;
 mod raster;
+mod recognition_tables;
 pub mod reconstruction_charts;
 pub mod reconstruction_frames;
 mod reconstruction_rates;

@@ -1,6 +1,6 @@
-//! What a cell's results depend on, beside what all cells of a study share: its name in a journal.
+//! What the results of a family of cells depend on, beside what all cells of a study share: its name in a journal.
 //!
-//! Nothing in it says where the cell stands in its study, so that it keeps its name when an axis has more values. Nothing of a cell is
+//! Nothing in it says where its cells stand in their study, so that it keeps its name when an axis has more values. Nothing of a cell is
 //! drawn by its number either: streams go by the study's seed, the trial, and what is touched.
 
 use super::axes::AxisValues;
@@ -16,17 +16,17 @@ use crate::signal::Strength;
 /// Hexadecimal digits of a name. Fewer: two cells may be taken for each other.
 const DIGITS: usize = 24;
 
-/// The names of the cells of a [family](Group::families), in their order.
-pub fn cell_names(plan: &Plan, family: &[Cell]) -> Vec<String> {
+/// The name of a [family](Group::families): the same for the same cells of the same study.
+pub fn family_name(plan: &Plan, family: &[Cell]) -> String {
     let steps = active_steps(plan, &family[0]);
     let path = solved_together(family);
-    let name = |cell: &Cell| {
-        let said = format!("{:?} {steps:?} {path:?}", settings(plan, cell));
-        let mut digits = ContentHash::default().bytes(said).hex();
-        digits.truncate(DIGITS);
-        digits
-    };
-    family.iter().map(name).collect()
+    let settings = settings(plan, &family[0]);
+    let differ = family.iter().map(|cell| (cell.c, cell.fused_touches));
+    let differ: Vec<_> = differ.collect();
+    let said = format!("{settings:?} {steps:?} {path:?} {differ:?}");
+    let mut digits = ContentHash::default().bytes(said).hex();
+    digits.truncate(DIGITS);
+    digits
 }
 
 /// A cell without its number, and with all that is left out said: an axis that a study does not have is one whose value does nothing.

@@ -1,6 +1,5 @@
 //! Human touches of a study: drawn once, recorded on each array.
 
-use super::content_hash::ContentHash;
 use super::frames::{FrameWriter, Frames, Making, Press};
 use super::human_samples::human_samples;
 use super::measurement::TouchToRead;
@@ -192,11 +191,6 @@ impl TouchSet for HumanTouches {
 
     fn content(&self) -> BTreeMap<String, String> {
         BTreeMap::new()
-    }
-
-    fn key(&self) -> String {
-        let hash = ContentHash::default().bytes(format!("{:?}", self.plan));
-        hash.bytes(format!("{:?}", self.touches)).hex()
     }
 }
 

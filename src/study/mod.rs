@@ -1,7 +1,7 @@
 //! Study: TOML → plan → table.
 //!
 //! [`StudySpec`] (as written) → [`Plan`] (checked, SI) → touches drawn → [`Sweep`] (splits and cells laid out) →
-//! [`run`] (simulate, measure, evaluate) → [`table::Tables`].
+//! [`RecognitionStudy`] (simulate, measure, evaluate in [work items](pieces)) → [`table::Tables`].
 //!
 //! Threads live here. Whatever their number, a study's tables are the same bytes, times apart: every touch, split, noise and
 //! projection is drawn from its own named stream, and sums are taken in a fixed order.
@@ -19,11 +19,9 @@ mod content_hash;
 mod estimate;
 mod evaluation;
 mod feature_files;
-mod finished;
 mod frames;
 mod human_samples;
 mod human_touches;
-mod job;
 pub mod journal;
 mod kind;
 mod measurement;
@@ -34,7 +32,6 @@ mod object_files;
 mod packing_cache;
 mod packings;
 mod pareto;
-mod part;
 pub mod pieces;
 mod plan;
 mod plan_human;
@@ -46,10 +43,10 @@ mod pose_groups;
 pub mod progress;
 pub mod provenance;
 mod published;
+mod recognition;
 pub mod reconstruction;
 mod repeats;
 mod role;
-mod runner;
 mod samples;
 mod sealed;
 mod sensor_errors;
@@ -72,20 +69,15 @@ mod touch_set;
 mod training;
 mod variance_table;
 pub mod whole_body;
-mod workload;
 
 pub use crate::table::Role;
 pub use axis::Axis;
 pub(crate) use check::{Check, not_negative, positive};
 pub use compare_runs::{RunComparison, RunDifference, compare_runs};
 pub(crate) use content_hash::ContentHash;
-pub use estimate::Estimate;
 pub use evaluation::CONFIDENCE;
 pub use feature_files::{FeatureSet, cell_features, read_features, write_features, write_npy};
-pub use frames::{
-    CachedTouches, FrameFacts, FrameStorage, FrameWriter, Frames, KeptFrames, KeyedTouches,
-    TouchCache,
-};
+pub use frames::{FrameFacts, FramePlace, FrameWriter, Frames, KeptFrames};
 pub use human_touches::{HumanTouches, RecordedTouch, record_touch};
 pub use kind::StudyKind;
 pub use object_files::{
@@ -94,14 +86,15 @@ pub use object_files::{
 };
 pub use packing_cache::{CachedPacking, PackingCache};
 pub(crate) use pareto::{Choice, unbeaten};
-pub use part::{Part, n_left};
+
+pub use memory::recognition_scale;
 pub use plan::{Amount, Plan, SplitKind, SplitPlan, millimetres};
 pub use plan_human::HumanTouchPlan;
 pub use plan_signal::Condition;
 pub use pose_groups::KeepTogether;
+pub use recognition::{ArrayOutcome, Limit, Outcome, RecognitionRows, RecognitionStudy};
 pub use repeats::Repeats;
 pub use role::{agree, column_name, condition_numbers, most_accurate, one_of, role_of};
-pub use runner::{ArrayOutcome, Manner, Outcome, run, run_with};
 pub use samples::{Samples, sample_frames};
 pub use sensor_errors::{StrengthAxes, Strengths, TestedOn, all_strengths, strength_columns};
 pub use shard::Shard;
@@ -111,4 +104,3 @@ pub use sweep::{Group, Sweep};
 pub use touch_files::{ReadFrames, write_touches};
 pub use touch_set::TouchSet;
 pub use training::ChoicePlan;
-pub use workload::workload;

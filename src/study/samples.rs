@@ -1,8 +1,8 @@
 //! Sample touches for the eye: what the array feels of a few objects, noise included.
 
 use super::measurement::rates_of;
+use super::measurement::signal_steps;
 use super::plan::{Plan, millimetres};
-use super::runner::signal_steps;
 use super::sensor_errors::{skin, strength_columns};
 use super::simulation::TouchedObject;
 use super::spec::{CombineSpec, StepSpec};

@@ -220,15 +220,6 @@ pub struct StageTime {
     pub us_per_touch: f64,
 }
 
-/// Why a cell has no score in a trial (with the [`Cell`] before it: a row of `failures.csv`).
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Failure {
-    /// Number of the trial, from 0.
-    pub trial: usize,
-    /// What went wrong.
-    pub error: String,
-}
-
 columns! { TrialScore {
     trial: Subject: Linear;
     split: Note: Linear, optional;
@@ -325,11 +316,6 @@ columns! { StageTime {
     us_per_touch: Cost "processor time of a touch" in "µs": Log;
 } }
 
-columns! { Failure {
-    trial: Subject: Linear;
-    error: Note;
-} }
-
 /// All result tables of a study.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Tables {
@@ -351,8 +337,6 @@ pub struct Tables {
     pub confused: Vec<Confused>,
     /// One row per published accuracy.
     pub published: Vec<(Cell, Published)>,
-    /// One row per cell and trial that failed.
-    pub failures: Vec<(Cell, Failure)>,
     /// Three rows per cell, for studies with `projections_per_split`.
     pub variance: Vec<Variance>,
 }

@@ -68,9 +68,6 @@ pub trait TouchSet: Sync {
 
     /// SHA-256 of what each object is made of, by its name; empty if the study's text says all.
     fn content(&self) -> BTreeMap<String, String>;
-
-    /// SHA-256 of all that frames depend on, the array apart.
-    fn key(&self) -> String;
 }
 
 impl TouchSet for Vec<TouchedObject> {
@@ -152,14 +149,5 @@ impl TouchSet for Vec<TouchedObject> {
             (t.object.name.clone(), model.hex())
         };
         self.iter().map(hash).collect()
-    }
-
-    fn key(&self) -> String {
-        let mut hash = ContentHash::default();
-        for t in self {
-            hash = hash.model(&t.object.model);
-            hash = hash.bytes(format!("\n{:?}\n{:?}\n", t.rests, t.touches));
-        }
-        hash.hex()
     }
 }

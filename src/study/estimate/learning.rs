@@ -57,7 +57,7 @@ const PREDICT_S: f64 = 2.5e-11;
 
 /// Processor-seconds of what is done for one C of a family in one trial.
 #[derive(Clone, Copy, Debug)]
-pub(in crate::study) struct Learning {
+struct Learning {
     /// To choose C and γ by cross-validation.
     pub choose_s: f64,
     /// To train on all training rows.
@@ -86,12 +86,7 @@ pub(in crate::study) fn family_s(
 }
 
 /// The fits of a family with one C in one trial, and the prediction of every test touch.
-pub(in crate::study) fn learning(
-    plan: &Plan,
-    cell: &Cell,
-    n_objects: usize,
-    n_touches: usize,
-) -> Learning {
+fn learning(plan: &Plan, cell: &Cell, n_objects: usize, n_touches: usize) -> Learning {
     let train_touches = cell.train_touches as f64;
     let n_objects = n_objects as f64;
     let n_test = match plan.split.kind {

@@ -3,8 +3,8 @@
 use crate::random::Seed;
 use crate::sensing::Ensemble;
 use crate::signal::SignalStep;
+use crate::study::measurement::signal_steps;
 use crate::study::plan::Plan;
-use crate::study::runner::signal_steps;
 use crate::study::sweep::Group;
 use crate::world::Patch;
 

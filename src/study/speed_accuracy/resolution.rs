@@ -9,11 +9,12 @@ use crate::objects::Object;
 use crate::random::Seed;
 use crate::recognition::comparison::{TrialSize, compare};
 use crate::recognition::interval::Interval;
+use crate::study::pieces::run_whole_study;
 use crate::study::pieces::{NamedPiece, PiecesLeft};
 use crate::study::progress::Silent;
 use crate::study::spec::StudySpec;
 use crate::study::table::{Tables, TrialScore};
-use crate::study::{CONFIDENCE, Plan, Sweep, draw_touches, run};
+use crate::study::{CONFIDENCE, Plan, RecognitionStudy, draw_touches};
 use rayon::prelude::*;
 use std::path::Path;
 
@@ -99,8 +100,8 @@ impl<'a> ResolutionPart<'a> {
         study.sensing.ratio = Some(crate::study::Axis::Many(spec.ratio.to_vec()));
         let study = Plan::new(&plan.place, study)?;
         let touched = draw_touches(objects, &study.placement, &Seed::new(plan.spec.seed))?;
-        let sweep = Sweep::new(&study, &touched)?;
-        let found = run(&study, &sweep, &touched, &Silent)?.tables;
+        let study = RecognitionStudy::new(study, Box::new(touched))?;
+        let found = run_whole_study(&study, &Silent)?.tables;
         let mut tables = SpeedAccuracyTables::default();
         for &trials in &spec.trials {
             let size = StudySize { touches, trials };

@@ -2,6 +2,7 @@
 
 use super::cell::Outcome;
 use super::spec::{ContactMethod, StabilityScene};
+use crate::study::pieces::any_number;
 use serde::{Deserialize, Serialize};
 
 /// What is simulated, and how: a row of `stability.csv` begins with it, and one of `timing.csv`.
@@ -48,8 +49,10 @@ pub struct StabilityScore {
     /// Right, or how it broke.
     pub outcome: Outcome,
     /// |Σ f − what it must be| as a share of that; none if it broke before.
+    #[serde(with = "any_number")]
     pub force_imbalance: Option<f64>,
     /// Σ |δ − δ*| / Σ δ*; none if it broke before.
+    #[serde(with = "any_number")]
     pub deflection_error: Option<f64>,
     /// Steps that were made.
     pub n_steps: usize,
