@@ -43,6 +43,7 @@ impl StudyKind {
                 "question",
                 "expected",
                 "report",
+                "axes",
                 "trials",
                 "skin.pitch_mm",
                 "skin.size_mm",
