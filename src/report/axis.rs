@@ -253,15 +253,7 @@ impl Axis {
 
 /// An ensemble in words.
 pub fn ensemble_name(ensemble: Ensemble) -> &'static str {
-    match ensemble {
-        Ensemble::Gaussian => "Gaussian",
-        Ensemble::Bernoulli => "Bernoulli",
-        Ensemble::Sparse => "sparse",
-        Ensemble::Sbhe => "SBHE",
-        Ensemble::BlockAverage => "block average",
-        Ensemble::Subsample => "subsample",
-        Ensemble::Identity => "identity",
-    }
+    ensemble.about().words
 }
 
 /// What is made of measurements, in words.
