@@ -4,9 +4,6 @@ use super::output::packings_beside;
 use bubbletouch::kinds::{self, Source};
 use bubbletouch::random::Seed;
 use bubbletouch::study::memory::{check_touches, machine_memory};
-use bubbletouch::study::reconstruction::{ReconstructionPlan, ReconstructionStudySpec};
-use bubbletouch::study::stability::{StabilityPlan, StabilityStudySpec};
-use bubbletouch::study::whole_body::{WholeBodyPlan, WholeBodyStudySpec};
 use bubbletouch::study::{
     HumanTouches, ObjectsSpec, Plan, RecognitionStudy, StudyKind, StudySpec, TouchSet, TouchesSpec,
     draw_touches, load_objects,
@@ -83,17 +80,10 @@ impl StudyArgs {
     /// Reads and checks the study.
     pub fn plan(&self) -> Result<Plan> {
         let place = self.study.display().to_string();
-        let about = kinds::about(&self.text()?);
-        let (kind, words) = (self.kind()?, about.map(|about| about.words));
-        if kind != StudyKind::Recognition || words.is_some() {
-            return Err(Error::input(
-                place,
-                words.unwrap_or(kind.words()),
-                format!(
-                    "{} (bubbletouch run runs all kinds)",
-                    StudyKind::Recognition.words()
-                ),
-            ));
+        if let Some(about) = kinds::about(&self.text()?) {
+            let recognition = StudyKind::Recognition.words();
+            let allowed = format!("{recognition} (bubbletouch run runs all kinds)");
+            return Err(Error::input(place, about.words, allowed));
         }
         let mut spec = StudySpec::parse(&place, &self.text()?)?;
         if let Some(seed) = self.seed {
@@ -118,46 +108,12 @@ impl StudyArgs {
         })
     }
 
-    /// What the study asks about.
-    pub fn kind(&self) -> Result<StudyKind> {
-        Ok(StudyKind::of(&self.text()?))
-    }
-
     /// What a study of any kind is told that mixes listed values of `[touches]` where an axis may be meant.
     pub fn mixed_touches(&self) -> Result<Option<String>> {
         let study: Option<toml::Table> = self.text()?.parse().ok();
         let touches = study.and_then(|mut study| study.remove("touches"));
         let touches: Option<TouchesSpec> = touches.and_then(|table| table.try_into().ok());
         Ok(touches.and_then(|touches| touches.mixed_values()))
-    }
-
-    /// Reads and checks a study that reconstructs frames.
-    pub fn reconstruction_plan(&self) -> Result<ReconstructionPlan> {
-        let place = self.study.display().to_string();
-        let mut spec = ReconstructionStudySpec::parse(&place, &self.text()?)?;
-        spec.seed = self.seed.unwrap_or(spec.seed);
-        self.replace_objects(&mut spec.objects);
-        ReconstructionPlan::new(&place, spec)
-    }
-
-    /// Reads and checks a study of a whole body; it has objects of its own.
-    pub fn whole_body_plan(&self) -> Result<WholeBodyPlan> {
-        let place = self.study.display().to_string();
-        if let Some(folder) = &self.objects {
-            let allowed =
-                "no such option: a whole body is touched by the objects that its study names";
-            return Err(Error::input("--objects", folder.display(), allowed));
-        }
-        let mut spec = WholeBodyStudySpec::parse(&place, &self.text()?)?;
-        spec.seed = self.seed.unwrap_or(spec.seed);
-        WholeBodyPlan::new(&place, &self.folder(), spec)
-    }
-
-    /// Reads and checks a study of where contact methods break; it has no objects and nothing random to replace.
-    pub fn stability_plan(&self) -> Result<StabilityPlan> {
-        let place = self.study.display().to_string();
-        let spec = StabilityStudySpec::parse(&place, &self.text()?)?;
-        StabilityPlan::new(&place, &self.folder(), spec)
     }
 
     fn replace_objects(&self, objects: &mut ObjectsSpec) {

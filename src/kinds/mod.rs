@@ -11,10 +11,13 @@ mod loaded;
 mod median_time;
 mod model_recognition;
 pub mod object_detail;
+pub mod reconstruction;
 mod results;
 mod source;
 pub mod speed_accuracy;
+pub mod stability;
 mod verified;
+pub mod whole_body;
 
 pub use any_study::{AnyOutcome, AnyStudy, EndedRun, ReportAbout};
 pub use ceiling::{threads_within, within_memory};
@@ -38,6 +41,9 @@ const KINDS: &[Entry] = &[
     entry::<breaking_points::BreakingPointsStudy>(),
     entry::<object_detail::ObjectDetailStudy>(),
     entry::<speed_accuracy::SpeedAccuracyStudy>(),
+    entry::<reconstruction::ReconstructionStudy>(),
+    entry::<stability::StabilityPlan>(),
+    entry::<whole_body::WholeBodyPlan>(),
 ];
 
 const fn entry<K: Kind>() -> Entry {

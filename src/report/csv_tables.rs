@@ -6,11 +6,12 @@
 use crate::error::{Error, Result};
 use crate::report::csv_header::blank_row;
 use crate::report::folder::Folder;
-use crate::study::ContentHash;
 use crate::study::table::{
     Cell, CellScore, Comparison, Confused, Confusion, Pareto, Published, StageTime, Tables,
     TrialScore, TrialTime, Variance,
 };
+use crate::study::{ContentHash, StudySpec};
+use crate::table::Column;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 use std::collections::BTreeMap;
@@ -161,11 +162,30 @@ pub fn csv_content<R: Serialize + DeserializeOwned>(path: &Path, rows: &[R]) -> 
 
 /// Reads a table whose rows are a [`Cell`] followed by `R`.
 pub fn read_cell_rows<R: DeserializeOwned>(path: &Path) -> Result<Vec<(Cell, R)>> {
-    // Each line is read twice, once for either half: through one struct with two flattened halves, serde would take an
-    // empty field for an empty text, not for an absent value.
+    // Each line is read once for either half: through one struct with two flattened halves, serde would take an empty field for an
+    // empty text, not for an absent value. The columns that only some studies have are read by their names.
     let cells: Vec<Cell> = read_rows(path)?;
     let rest: Vec<R> = read_rows(path)?;
-    Ok(cells.into_iter().zip(rest).collect())
+    let axes = axes_beside(path)?;
+    let mut file = csv::Reader::from_path(path).map_err(|e| read_error(path, e))?;
+    let header = file.headers().map_err(|e| read_error(path, e))?.clone();
+    let rows = file.into_records().zip(cells.into_iter().zip(rest));
+    let rows = rows.map(|(row, (cell, rest))| {
+        let row = row.map_err(|e| read_error(path, e))?;
+        let field = |name: &str| row.get(header.iter().position(|column| column == name)?);
+        Ok((cell.with_row(&axes, field), rest))
+    });
+    rows.collect()
+}
+
+/// The columns of the axes of the study whose results stand in a folder; none where no study stands beside them.
+fn axes_beside(table: &Path) -> Result<Vec<Column>> {
+    let path = table.with_file_name("study.toml");
+    let Ok(text) = std::fs::read_to_string(&path) else {
+        return Ok(Vec::new());
+    };
+    let study = StudySpec::parse(&path.display().to_string(), &text);
+    Ok(study.map_or_else(|_| Vec::new(), |study| study.axis_columns()))
 }
 
 /// Reads a table; the error names the file and the line.

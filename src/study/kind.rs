@@ -5,26 +5,9 @@
 pub enum StudyKind {
     /// Which object was touched? Every file that is none of the others.
     Recognition,
-    /// How well does a frame come back? A file with a `[reconstruction]` table.
-    Reconstruction,
-    /// What does a whole body of skin cost? A file with a `[whole_body]` table.
-    WholeBody,
-    /// Where does each way to simulate contact break? A file with a `[stability]` table.
-    Stability,
 }
 
 impl StudyKind {
-    /// Of a study's text; text that is not TOML is told so by whoever reads the study.
-    pub fn of(text: &str) -> Self {
-        let table = crate::toml_text::table(text).unwrap_or_default();
-        match () {
-            () if table.contains_key("reconstruction") => Self::Reconstruction,
-            () if table.contains_key("whole_body") => Self::WholeBody,
-            () if table.contains_key("stability") => Self::Stability,
-            () => Self::Recognition,
-        }
-    }
-
     /// Keys, with all below them, that may change while finished work is kept: they are words, or they say which work there is and
     /// not what comes of any of it, since each piece of work goes by all that it depends on.
     pub fn may_change(self) -> &'static [&'static str] {
@@ -65,28 +48,6 @@ impl StudyKind {
                 "recognition.class_imbalance",
                 "recognition.fused_touches",
             ],
-            Self::Reconstruction => &[
-                "question",
-                "expected",
-                "signal.noise_std_full_scale",
-                "signal.noise_std_mm",
-                "signal.noise_std_n",
-                "sensing.ensemble",
-                "sensing.ratio",
-                "sensing.measurements",
-                "reconstruction.solver",
-                "reconstruction.dictionary",
-            ],
-            Self::WholeBody => &[
-                "question",
-                "expected",
-                "whole_body.scenes",
-                "whole_body.ladders.taxels",
-                "whole_body.ladders.touched_at_taxels",
-                "whole_body.ladders.touched",
-                "whole_body.ladders.spheres",
-            ],
-            Self::Stability => &["question", "expected", "stability.parts"],
         }
     }
 
@@ -94,9 +55,6 @@ impl StudyKind {
     pub fn words(self) -> &'static str {
         match self {
             Self::Recognition => "a study that recognises objects",
-            Self::Reconstruction => "a study that reconstructs frames",
-            Self::WholeBody => "a study of a whole body of skin",
-            Self::Stability => "a study of where contact methods break",
         }
     }
 }

@@ -1,8 +1,8 @@
 //! Frames → signal → measurements, for one condition of the signal, ensemble and trial.
 
 use super::frames::{Frames, KeptFrames};
-use super::imperfection::{TestedOn, skin};
 use super::plan::Plan;
+use super::sensor_errors::{TestedOn, skin};
 use super::simulation::TouchedObject;
 use super::spec::StepSpec;
 use super::sweep::Group;
@@ -185,17 +185,17 @@ pub fn measure_group(
 pub fn signal_steps(plan: &Plan, group: &Group, skin: &Seed) -> Vec<SignalStep> {
     let condition = &group.condition;
     let step = |&step: &StepSpec| match step {
-        StepSpec::Force => Some(SignalStep::Force),
-        StepSpec::Noise => Some(SignalStep::Noise(Noise {
+        StepSpec::Force => SignalStep::Force,
+        StepSpec::Noise => SignalStep::Noise(Noise {
             std: condition.noise,
             unit: plan.noise_unit,
-        })),
-        StepSpec::Smoothing => Some(SignalStep::Smoothing {
-            width: condition.smoothing,
         }),
-        imperfection => condition.strengths.signal_step(imperfection, skin),
+        StepSpec::Smoothing => SignalStep::Smoothing {
+            width: condition.smoothing,
+        },
+        StepSpec::Error(error) => condition.strengths.step(error, skin),
     };
-    plan.steps.iter().filter_map(step).collect()
+    plan.steps.iter().map(step).collect()
 }
 
 /// The skin of training touches, and that of test touches if it is another.

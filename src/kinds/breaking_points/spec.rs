@@ -113,6 +113,7 @@ impl BreakingPointsSpec {
             sensing: self.sensing.clone(),
             recognition: self.recognition.clone(),
             report: Default::default(),
+            axes: Default::default(),
         }
     }
 }

@@ -209,7 +209,11 @@ impl<'a> View<'a> {
 
     /// What a row of panels of tiles is.
     pub fn row_title(&self, row: usize) -> String {
-        self.title(&self.spec.lines, &self.lines.names[row])
+        let name = &self.lines.names[row];
+        match &self.spec.lines[..] {
+            [_] => self.title(&self.spec.lines, name),
+            _ => format!("{}: {name}", self.lines.heading),
+        }
     }
 
     /// A number says what it is of.

@@ -1,9 +1,9 @@
 //! A study that recognises objects: its work items, and the tables of what they found.
 
+use super::cost::{family_s, measure_s, touch_s};
 use super::rows::{ArrayOutcome, Outcome, RecognitionRows};
 use crate::error::Result;
 use crate::study::cell_content::family_name;
-use crate::study::estimate::{family_s, measure_s, touch_s};
 use crate::study::frames::FramePlace;
 use crate::study::pieces::{NamedPiece, PieceStudy, PiecesLeft};
 use crate::study::plan::{Plan, millimetres};
@@ -11,9 +11,14 @@ use crate::study::published::compare_with_published;
 use crate::study::sweep::{Group, Sweep};
 use crate::study::table::{Cell, StageTime};
 use crate::study::tabulate::tabulate;
-use crate::study::time_left::{Piece, Work};
+use crate::study::time_left::Piece;
 use crate::study::touch_set::TouchSet;
 use std::ops::Range;
+
+/// Stages, for the time left; each classifier has its own.
+const TOUCH: u8 = 0;
+const MEASURE: u8 = 1;
+const LEARN: u8 = 2;
 
 /// A recognition study that is laid out.
 pub struct RecognitionStudy {
@@ -103,25 +108,21 @@ impl RecognitionStudy {
     pub(super) fn touch_work(&self, (array, frames): (usize, usize)) -> Piece {
         let (patch, n_touches) = (&self.plan.arrays[array], self.sweep.labels.len());
         let n_frames = self.plan.frames[frames];
-        Piece {
-            kind: Work::Touch,
-            planned_s: touch_s(patch, self.touched.as_ref(), n_touches, n_frames),
-        }
+        let on = (n_touches, n_frames);
+        let planned_s = touch_s(patch, self.touched.as_ref(), on);
+        Piece::one_by_one(TOUCH, planned_s / rayon::current_num_threads() as f64)
     }
 
     pub(super) fn measure_work(&self, group: &Group, n_measurements: usize) -> Piece {
-        Piece {
-            kind: Work::Measure,
-            planned_s: measure_s(&self.plan, group, self.sweep.labels.len(), n_measurements),
-        }
+        let measured = (self.sweep.labels.len(), n_measurements);
+        Piece::of_stage(MEASURE, measure_s(&self.plan, group, measured))
     }
 
     fn learn_work(&self, family: &[Cell]) -> Piece {
         let n_objects = self.touched.class_names().len();
-        Piece {
-            kind: Work::Learn(family[0].classifier),
-            planned_s: family_s(&self.plan, family, n_objects, self.sweep.labels.len()),
-        }
+        let of = (n_objects, self.sweep.labels.len());
+        let stage = LEARN + family[0].classifier as u8;
+        Piece::of_stage(stage, family_s(&self.plan, family, of))
     }
 
     /// Of each array what was made, measured, missed and saturated.
@@ -187,7 +188,7 @@ impl PieceStudy for RecognitionStudy {
             let mut groups = self.sweep.groups.iter();
             let group = groups.position(|group| self.on(group) == on);
             // What it takes is told while all that needs the touches waits for them.
-            let work = self.touch_work(on).share(0.0);
+            let work = Piece::one_by_one(TOUCH, 0.0);
             pieces.push(NamedPiece::new(name, group.unwrap_or_default(), work));
         }
         pieces
