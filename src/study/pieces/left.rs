@@ -47,7 +47,7 @@ impl<'a, R: PieceRows> PiecesLeft<'a, R> {
     }
 
     /// How many there are.
-    pub(super) fn n(&self) -> usize {
+    pub fn n(&self) -> usize {
         self.pieces.len()
     }
 
