@@ -4,9 +4,7 @@ use bubbletouch::random::Seed;
 use bubbletouch::sensing::{
     Basis, Dictionary, Effort, Ensemble, Projection, Reconstructor, SensedDictionary, Solver,
 };
-use bubbletouch::signal::{
-    Chain, Drift, Faults, GainMismatch, Noise, NoiseUnit, Scratch, SignalStep,
-};
+use bubbletouch::signal::{Chain, Noise, NoiseUnit, Scratch, SensorError, SignalStep};
 use bubbletouch::world::{Grid, Patch, Taxel};
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 use ndarray::Array2;
@@ -64,22 +62,17 @@ fn signal(criterion: &mut Criterion) {
         unit: NoiseUnit::FullScale,
     });
     let skin = Seed::new(1);
-    let faults = Faults {
-        dead: 0.05,
-        stuck: 0.05,
-        skin,
-    };
     let mut group = criterion.benchmark_group("signal_one_touch_64x64");
     for (name, step) in [
         ("force", SignalStep::Force),
         ("noise", noise),
         ("smoothing_2_taxels", SignalStep::Smoothing { width: 4e-3 }),
-        ("hysteresis", SignalStep::Hysteresis { width: 0.1 }),
-        ("crosstalk", SignalStep::Crosstalk { leak: 0.1 }),
-        ("gain", SignalStep::Gain(GainMismatch { std: 0.1, skin })),
-        ("drift", SignalStep::Drift(Drift { std: 0.1, skin })),
-        ("faults", SignalStep::Faults(faults)),
-        ("quantisation", SignalStep::Quantisation { bits: 8 }),
+        ("hysteresis", SensorError::Hysteresis.step(&[0.1], skin)),
+        ("crosstalk", SensorError::Crosstalk.step(&[0.1], skin)),
+        ("gain", SensorError::Gain.step(&[0.1], skin)),
+        ("drift", SensorError::Drift.step(&[0.1], skin)),
+        ("faults", SensorError::Faults.step(&[0.05, 0.05], skin)),
+        ("quantisation", SensorError::Quantisation.step(&[8.0], skin)),
     ] {
         let chain = Chain::new(&[step], &patch).expect("the step is valid");
         let (mut frame, mut scratch) = (vec![1e-3; SIDE * SIDE], Scratch::default());

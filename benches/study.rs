@@ -7,15 +7,13 @@
 use bubbletouch::Result;
 use bubbletouch::random::Seed;
 use bubbletouch::study::journal::{Identity, JOURNAL_FILE, Journal};
-use bubbletouch::study::memory::AtOnce;
 use bubbletouch::study::pieces::{
-    NamedPiece, PieceManner, PieceRows, PieceStudy, PiecesLeft, n_pieces_left, run_pieces,
+    NamedPiece, Part, PieceManner, PieceRows, PieceStudy, PiecesLeft, n_pieces_left, run_pieces,
 };
 use bubbletouch::study::progress::{Progress, Silent};
 use bubbletouch::study::time_left::Piece;
 use bubbletouch::study::{
-    FrameStorage, Manner, Part, Plan, StudySpec, Sweep, TouchSet, TouchedObject, draw_touches,
-    load_objects, n_left, run_with,
+    Plan, RecognitionRows, RecognitionStudy, StudySpec, draw_touches, load_objects,
 };
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
@@ -156,7 +154,10 @@ fn time_pieces(folder: &Path) -> Result<()> {
     }
     let journal = journal(folder, "pieces")?;
     let start = Instant::now();
-    assert_eq!(n_pieces_left(&Nothing, Part::All, &journal), 0);
+    assert_eq!(
+        n_pieces_left::<Rows>(&Nothing.pieces(), Part::All, &journal),
+        0
+    );
     let seconds = start.elapsed().as_secs_f64();
     say("a piece, seen to be done", seconds, N_PIECES);
     Ok(())
@@ -167,12 +168,17 @@ fn time_cells(folder: &Path) -> Result<()> {
     let plan = Plan::new("study", StudySpec::parse("study", STUDY)?)?;
     let objects = load_objects(&plan.spec.objects, None)?;
     let touched = draw_touches(objects, &plan.placement, &Seed::new(plan.spec.seed))?;
-    let sweep = Sweep::new(&plan, &touched)?;
-    let n_cells = sweep.n_cells();
-    println!("{n_cells} cells of {} classes", touched.class_names().len());
+    let study = RecognitionStudy::new(plan, Box::new(touched))?;
+    let n_cells = study.sweep.n_cells();
+    println!(
+        "{n_cells} cells of {} classes",
+        study.touched.class_names().len()
+    );
+    let n_items = study.pieces().len();
+    println!("{n_items} work items");
     say("a cell, planned", start.elapsed().as_secs_f64(), n_cells);
     for what in ["done and kept", "read and tabulated"] {
-        let (seconds, worked) = time_run(folder, (&plan, &sweep, &touched))?;
+        let (seconds, worked) = time_run(folder, &study)?;
         say(
             &format!("a cell, {what}: touch, measure, learn"),
             worked,
@@ -186,7 +192,10 @@ fn time_cells(folder: &Path) -> Result<()> {
     }
     let journal = journal(folder, "cells")?;
     let start = Instant::now();
-    assert_eq!(n_left(&plan, &sweep, Part::All, &journal), 0);
+    assert_eq!(
+        n_pieces_left::<RecognitionRows>(&study.pieces(), Part::All, &journal),
+        0
+    );
     say(
         "a cell, seen to be done",
         start.elapsed().as_secs_f64(),
@@ -196,29 +205,23 @@ fn time_cells(folder: &Path) -> Result<()> {
 }
 
 /// Seconds of a run on this thread, and those that its work says it took.
-fn time_run(
-    folder: &Path,
-    (plan, sweep, touched): (&Plan, &Sweep, &Vec<TouchedObject>),
-) -> Result<(f64, f64)> {
+fn time_run(folder: &Path, study: &RecognitionStudy) -> Result<(f64, f64)> {
     let start = Instant::now();
     let journal = journal(folder, "cells")?;
     let worked = Worked::default();
-    let manner = Manner {
+    let manner = PieceManner {
         journal: &journal,
         fail_fast: false,
         retries: true,
         part: Part::All,
-        storage: &FrameStorage::in_memory(),
-        at_once: AtOnce::ALL,
+        progress: &worked,
     };
-    let outcome = run_with(plan, sweep, touched, &worked, manner)?;
+    let finished = run_pieces(study, &manner)?;
+    let failures = finished.failures;
+    assert!(failures.is_empty(), "{:?}", failures[0]);
+    let outcome = study.tables(finished.rows)?;
     journal.sync()?;
-    assert_eq!(outcome.tables.summary.len(), sweep.n_cells());
-    assert!(
-        outcome.tables.failures.is_empty(),
-        "{:?}",
-        outcome.tables.failures[0]
-    );
+    assert_eq!(outcome.tables.summary.len(), study.sweep.n_cells());
     let worked = *worked.0.lock().expect("no thread panics");
     Ok((start.elapsed().as_secs_f64(), worked))
 }

@@ -1,54 +1,31 @@
 //! A study of any kind, as the commands see it that run it, merge it, submit it and verify it.
 
 use super::about_study::command_line;
-use super::breaking_points_kind::BreakingPointsKind;
 use super::listener::Listener;
-use super::memory_args::{MemoryArgs, not_of_pieces};
-use super::object_detail_kind::ObjectDetailKind;
-use super::output::{packings_beside, tell_where, terminal_width};
+use super::output::{tell_where, terminal_width};
 use super::piece_kind::PieceRun;
-use super::recognition_study::RecognitionStudy;
-use super::speed_accuracy_kind::SpeedAccuracyKind;
+use super::recognition_kind::RecognitionKind;
 use super::streams::write_out;
 use super::study_args::StudyArgs;
 use bubbletouch::kinds::{self, AnyOutcome, AnyStudy, EndedRun};
 use bubbletouch::report::csv_tables::FAILURES_FILE;
-use bubbletouch::study::StudyKind;
 use bubbletouch::study::progress::Progress;
 use bubbletouch::{Error, Result};
 use std::path::Path;
 use std::time::SystemTime;
 
-/// Reads and checks a study of any kind and loads its objects; `memory` is needed where it will run.
+/// Reads and checks a study of any kind and loads its objects; it is to hold at most so many bytes.
 pub fn load_study(
-    args: &StudyArgs,
+    mut args: StudyArgs,
     folder: &Path,
-    memory: Option<&MemoryArgs>,
+    memory: Option<u64>,
 ) -> Result<Box<dyn AnyStudy>> {
-    let mut source = args.source()?;
-    source.packings = Some(packings_beside(folder));
-    if let Some(memory) = memory {
-        source.memory = memory.bytes()?;
-    }
-    if let Some(study) = kinds::load(&source)? {
+    args.memory = memory;
+    args.results = folder.to_owned();
+    if let Some(study) = kinds::load(&args.source()?)? {
         return Ok(study);
     }
-    let kind = args.kind()?;
-    let mut given = memory.into_iter().flat_map(MemoryArgs::given);
-    if kind != StudyKind::Recognition
-        && let Some((option, _)) = given.find(|(_, is_given)| *is_given)
-    {
-        return Err(not_of_pieces(option, kind));
-    }
-    Ok(match kind {
-        StudyKind::Recognition => Box::new(RecognitionStudy::load(args, folder, memory)?),
-        StudyKind::ObjectDetail => Box::new(PieceRun::<ObjectDetailKind>::load(args, folder)?),
-        StudyKind::BreakingPoints => Box::new(PieceRun::<BreakingPointsKind>::load(args, folder)?),
-        StudyKind::SpeedAccuracy => Box::new(PieceRun::<SpeedAccuracyKind>::load(args, folder)?),
-        StudyKind::Reconstruction | StudyKind::WholeBody | StudyKind::Stability => {
-            unreachable!("their table tells")
-        }
-    })
+    Ok(Box::new(PieceRun::<RecognitionKind>::load(&args, folder)?))
 }
 
 /// Writes and tells what came of a study; an error if some of it failed.

@@ -1,7 +1,7 @@
 //! `bubbletouch features`: what one cell of a study learns from.
 
 use super::output::{output_folder, packings_beside};
-use super::study_args::StudyArgs;
+use super::study_args::{StudyArgs, set_threads};
 use bubbletouch::Result;
 use bubbletouch::report::progress;
 use bubbletouch::study::write_features;
@@ -23,7 +23,8 @@ pub struct Args {
 }
 
 pub fn features(args: &Args) -> Result<()> {
-    let loaded = args.study.load(Some(&packings_beside(&args.out)))?;
+    set_threads(args.study.threads)?;
+    let loaded = args.study.recognition(Some(&packings_beside(&args.out)))?;
     output_folder(&args.out)?;
     let progress = progress::to_stderr();
     let set = write_features(

@@ -6,9 +6,8 @@ use super::memory_args::MemoryArgs;
 use super::output::output_folder;
 use super::run::results_folder;
 use super::study_args::StudyArgs;
-use bubbletouch::study::Part;
 use bubbletouch::study::journal::{Identity, JOURNAL_FILE, Journal};
-use bubbletouch::study::pieces::PieceManner;
+use bubbletouch::study::pieces::{Part, PieceManner};
 use bubbletouch::{Error, Result};
 use std::path::{Path, PathBuf};
 use std::time::SystemTime;
@@ -32,7 +31,7 @@ pub struct Args {
 pub fn merge(args: &Args) -> Result<()> {
     let started = SystemTime::now();
     let folder = results_folder(&args.study, args.out.as_deref())?;
-    let study = load_study(&args.study, &folder, Some(&args.memory))?;
+    let study = load_study(args.study.clone(), &folder, args.memory.bytes()?)?;
     let identity = study.identity();
     output_folder(&folder)?;
     let mut journal = Journal::open(&folder.join(JOURNAL_FILE), identity)?;

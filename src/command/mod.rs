@@ -3,8 +3,6 @@
 mod about_study;
 mod advise;
 mod any_study;
-mod breaking_points_kind;
-mod cache;
 mod checked_manifest;
 mod classify;
 mod compare;
@@ -12,7 +10,6 @@ mod features;
 mod listener;
 mod memory_args;
 mod merge;
-mod object_detail_kind;
 mod objects;
 mod objects_pack;
 mod objects_show;
@@ -23,7 +20,7 @@ mod plan;
 mod press;
 mod press_place;
 mod press_poses;
-mod recognition_study;
+mod recognition_kind;
 mod recording;
 mod report;
 mod run;
@@ -31,13 +28,11 @@ mod shell;
 mod simulate;
 mod slurm;
 mod slurm_jobs;
-mod speed_accuracy_kind;
 pub mod streams;
 mod study_args;
 mod study_folder;
 mod touches;
 mod verify;
-mod verify_cells;
 mod which_object;
 
 use bubbletouch::Result;
@@ -65,16 +60,14 @@ enum Command {
     Merge(merge::Args),
     /// Run a study as an array of Slurm jobs, and the merge after them; what failed is submitted again by the same command
     Slurm(slurm::Args),
-    /// Write the charts and the page of a folder of results again, from its tables (of studies that recognise)
+    /// Write the charts and the page of a folder of results again, from its tables
     ///
     /// A table, or the study, that was changed after its run is refused: manifest.json holds the SHA-256 of each.
     Report(report::Args),
     /// Say what moved between two folders of results, and whether chance explains it
     Compare(compare::Args),
-    /// Run a few cells or pieces of a folder of results again, and say whether they are the same bytes
+    /// Run a few work items of a folder of results again, and say whether they are the same bytes
     Verify(verify::Args),
-    /// List or remove the touches that studies keep beside their results
-    Cache(cache::Args),
     /// Say what a study of any kind would do: configurations, touches, memory and time, without running it
     Plan(plan::Args),
     /// Say which setting is the cheapest that is accurate enough, or the most accurate that is cheap enough
@@ -118,7 +111,6 @@ pub fn dispatch() -> Result<()> {
         Some(Command::Report(args)) => report::report(&args),
         Some(Command::Compare(args)) => compare::compare(&args),
         Some(Command::Verify(args)) => verify::verify(&args),
-        Some(Command::Cache(args)) => cache::cache(&args),
         Some(Command::Plan(args)) => plan::plan(&args),
         Some(Command::Advise(args)) => advise::advise(&args),
         Some(Command::Touches(args)) => touches::touches(&args),

@@ -41,11 +41,6 @@ pub fn packings_beside(folder: &Path) -> PathBuf {
     folder.parent().unwrap_or(Path::new("")).join("packings")
 }
 
-/// Where touches that took long to make are kept from run to run: beside a folder of results.
-pub fn touches_beside(folder: &Path) -> PathBuf {
-    folder.parent().unwrap_or(Path::new("")).join("touches")
-}
-
 /// Columns of the terminal, or of a page where there is none.
 pub fn terminal_width() -> usize {
     let terminal = console::Term::stdout();

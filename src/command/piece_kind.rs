@@ -4,35 +4,35 @@ use super::output::packings_beside;
 use super::piece_rows::{compare, draw};
 use super::study_args::StudyArgs;
 use bubbletouch::files::write_bytes;
-use bubbletouch::kinds::{AnyOutcome, AnyStudy, EndedRun, ReportAbout};
+use bubbletouch::kinds::{
+    AnyOutcome, AnyStudy, EndedRun, ReportAbout, threads_within, within_memory,
+};
 use bubbletouch::report::csv_tables::{FAILURES_FILE, csv_content};
 use bubbletouch::report::folder::Folder;
 use bubbletouch::report::page::StudyAbout;
 use bubbletouch::report::study_tables::StudyTables;
+use bubbletouch::study::StudyKind;
 use bubbletouch::study::journal::{Identity, Journal};
 use bubbletouch::study::pieces::{
-    FinishedPieces, PieceEstimate, PieceFailure, PieceManner, PieceStudy, PiecesRun, Scale,
-    n_pieces_left, run_pieces,
+    FinishedPieces, NamedPiece, Part, PieceEstimate, PieceFailure, PieceManner, PieceStudy,
+    PiecesRun, Scale, n_pieces_left, run_pieces,
 };
 use bubbletouch::study::progress::{Progress, Silent};
 use bubbletouch::study::provenance::{MANIFEST_FILE, Manifest, PROGRAM, RunFacts};
-use bubbletouch::study::time_left::Piece;
-use bubbletouch::study::{Part, StudyKind};
 use bubbletouch::{Error, Result};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
-use std::time::Instant;
 
 /// A kind of study that is made of pieces.
 pub trait PieceKind: Sized {
     /// What runs.
-    type Study: PieceStudy<Tables: StudyTables>;
+    type Study: PieceStudy<Tables: StudyTables> + Sync;
 
     /// Which it is.
     const KIND: StudyKind;
 
-    /// Seconds to make and to write the files of [`folder`](Self::folder), about.
-    const WRITE_S: f64;
+    /// How intervals and p-values are made, by table and columns.
+    const METHODS: &'static [(&'static str, &'static str)] = &[];
 
     /// Reads and checks a study, and loads its objects; packings are kept in a folder.
     fn load(args: &StudyArgs, packings: PathBuf) -> Result<Self>;
@@ -51,6 +51,12 @@ pub trait PieceKind: Sized {
     ) -> Result<Folder<'a>>;
     /// What a person reads at the end, in lines of about `width` letters.
     fn words(&self, tables: &Tables<Self>, width: usize) -> String;
+
+    /// Charts and page of a folder again, from its tables.
+    fn report(&self, folder: &Path, _about: &ReportAbout) -> Result<()> {
+        let allowed = "a study that recognises objects (of any other, bubbletouch run draws again what is finished)";
+        Err(Error::input(folder.display(), Self::KIND.words(), allowed))
+    }
 }
 
 /// What a study's file says, and what that is about.
@@ -76,15 +82,14 @@ pub struct PieceRun<K> {
     kind: K,
     facts: KindFacts,
     identity: Identity,
-    n_pieces: usize,
+    memory: Option<u64>,
+    pieces: Vec<NamedPiece>,
 }
 
 impl<K: PieceKind> PieceRun<K> {
-    /// What is done when all pieces are there.
-    const REPORT: Piece = Piece::report(K::WRITE_S);
-
     pub fn load(args: &StudyArgs, folder: &Path) -> Result<Self> {
         let kind = K::load(args, packings_beside(folder))?;
+        threads_within(&kind.scale(), args.memory)?;
         let facts = kind.facts()?;
         Ok(Self {
             identity: Identity::new(
@@ -92,7 +97,8 @@ impl<K: PieceKind> PieceRun<K> {
                 facts.content.clone(),
                 K::KIND.may_change(),
             ),
-            n_pieces: kind.study().pieces().len(),
+            memory: args.memory,
+            pieces: kind.study().pieces(),
             facts,
             kind,
         })
@@ -109,7 +115,7 @@ impl<K: PieceKind> AnyStudy for PieceRun<K> {
     }
 
     fn n_all(&self) -> usize {
-        self.n_pieces
+        self.pieces.len()
     }
 
     fn plan(&self) -> Result<String> {
@@ -121,30 +127,26 @@ impl<K: PieceKind> AnyStudy for PieceRun<K> {
             part: Part::All,
             progress: &Silent,
         };
-        let mut work = PiecesRun::new(study, &manner).workload();
-        work.push(Self::REPORT);
+        let work = PiecesRun::new(study, &self.pieces, &manner).workload();
         let estimate = PieceEstimate {
             scale: self.kind.scale(),
-            n_pieces: self.n_pieces,
-            n_threads: rayon::current_num_threads(),
+            n_pieces: self.pieces.len(),
+            n_threads: threads_within(&self.kind.scale(), self.memory)?,
             work,
         };
         Ok(format!("{}\n{estimate}", self.facts.asked[0]))
     }
 
     fn n_left(&self, part: Part, journal: &Journal) -> usize {
-        n_pieces_left(self.kind.study(), part, journal)
+        n_pieces_left::<Rows<K>>(&self.pieces, part, journal)
     }
 
     fn run<'a>(&'a self, manner: &PieceManner<'a>) -> Result<Box<dyn AnyOutcome + 'a>> {
         let study = self.kind.study();
-        let pieces = PiecesRun::new(study, manner);
-        let mut work = pieces.workload();
-        if !matches!(manner.part, Part::Shard(_)) {
-            work.push(Self::REPORT);
-        }
-        manner.progress.expect(&work);
-        let FinishedPieces { rows, failures, .. } = pieces.run()?;
+        let pieces = PiecesRun::new(study, &self.pieces, manner);
+        manner.progress.expect(&pieces.workload());
+        let FinishedPieces { rows, failures, .. } =
+            within_memory(&self.kind.scale(), self.memory, || pieces.run())?;
         Ok(Box::new(PieceOutcome {
             run: self,
             tables: study.tables(rows)?,
@@ -159,12 +161,12 @@ impl<K: PieceKind> AnyStudy for PieceRun<K> {
         seed: u64,
         progress: &dyn Progress,
     ) -> Result<String> {
-        let chosen = draw(&self.kind.study().pieces(), folder, (n, seed))?;
+        let chosen = draw(&self.pieces, folder, (n, seed))?;
         let manner = PieceManner {
             journal: &Journal::none(),
             fail_fast: true,
             retries: false,
-            part: Part::Holding(&chosen),
+            part: Part::Only(&chosen),
             progress,
         };
         let study = self.kind.study();
@@ -176,13 +178,12 @@ impl<K: PieceKind> AnyStudy for PieceRun<K> {
         Ok(format!(
             "{} of {} pieces ran again, and their {n_rows} rows without times are the same bytes",
             chosen.len(),
-            self.n_pieces,
+            self.pieces.len(),
         ))
     }
 
-    fn report(&self, folder: &Path, _about: &ReportAbout) -> Result<()> {
-        let allowed = "a study that recognises objects (of any other, bubbletouch run draws again what is finished)";
-        Err(Error::input(folder.display(), K::KIND.words(), allowed))
+    fn report(&self, folder: &Path, about: &ReportAbout) -> Result<()> {
+        self.kind.report(folder, about)
     }
 }
 
@@ -199,12 +200,27 @@ impl<K: PieceKind> AnyOutcome for PieceOutcome<'_, K> {
     }
 
     fn write(&self, ended: &EndedRun) -> Result<()> {
-        let start = Instant::now();
         let (kind, folder) = (&self.run.kind, ended.folder);
         let KindFacts {
             toml, asked, seed, ..
         } = &self.run.facts;
         let [question, expected] = asked.clone();
+        let hashes = self.tables.hashes()?;
+        let facts = RunFacts {
+            study: ended.name.clone(),
+            command: ended.command.clone(),
+            paths_from: ended.paths_from.clone(),
+            started: ended.started,
+            seed: *seed,
+            n_cells: self.run.pieces.len(),
+            n_trials: 1,
+            n_finished_before: ended.n_before,
+            n_failed: self.failures.len(),
+            tables_sha256: hashes.repeatable,
+            times_sha256: hashes.times,
+            methods: K::METHODS.into(),
+        };
+        let manifest = Manifest::new(&self.run.identity, facts);
         let about = StudyAbout {
             name: ended.name.clone(),
             question,
@@ -212,36 +228,15 @@ impl<K: PieceKind> AnyOutcome for PieceOutcome<'_, K> {
             wall_s: ended.wall_s(),
             command: ended.command.clone(),
             program: PROGRAM.to_owned(),
-            ..StudyAbout::default()
+            manifest: Some(manifest.clone()),
+            all_charts: false,
         };
         let made = kind.folder(&self.tables, folder, &about)?;
-        made.write_telling(&|drawn| {
-            let work = PieceRun::<K>::REPORT.share(drawn.share);
-            ended.progress.worked(&work, drawn.wall_s);
-        })?;
+        made.write()?;
         let failures = folder.join(FAILURES_FILE);
         write_bytes(&failures, &csv_content(&failures, &self.failures)?)?;
         write_bytes(&folder.join("study.toml"), toml.as_bytes())?;
-        let hashes = self.tables.hashes()?;
-        let facts = RunFacts {
-            study: about.name,
-            command: about.command,
-            paths_from: ended.paths_from.clone(),
-            started: ended.started,
-            seed: *seed,
-            n_cells: self.run.n_pieces,
-            n_trials: 1,
-            n_finished_before: ended.n_before,
-            n_failed: self.failures.len(),
-            tables_sha256: hashes.repeatable,
-            times_sha256: hashes.times,
-            methods: Vec::new(),
-        };
-        let manifest = Manifest::new(&self.run.identity, facts).to_json();
-        write_bytes(&folder.join(MANIFEST_FILE), manifest.as_bytes())?;
-        let took_s = start.elapsed().as_secs_f64();
-        ended.progress.worked(&PieceRun::<K>::REPORT, took_s);
-        Ok(())
+        write_bytes(&folder.join(MANIFEST_FILE), manifest.to_json().as_bytes())
     }
 
     fn words(&self, width: usize) -> String {

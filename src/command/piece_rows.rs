@@ -9,16 +9,16 @@ use rand::seq::SliceRandom;
 use std::collections::BTreeSet;
 use std::path::Path;
 
-/// Some of the pieces of a folder that did not fail, as [`Part::Holding`](bubbletouch::study::Part) wants them: how many, drawn from a seed.
+/// Some of the pieces of a folder that did not fail, as [`Part::Only`](bubbletouch::study::pieces::Part) wants them: how many, drawn from a seed.
 pub fn draw(
     pieces: &[NamedPiece],
     folder: &Path,
     (n, seed): (usize, u64),
-) -> Result<BTreeSet<(usize, usize)>> {
+) -> Result<BTreeSet<usize>> {
     let failed: Vec<PieceFailure> = read_rows(&folder.join(FAILURES_FILE))?;
     let has_failed = |piece: &NamedPiece| failed.iter().any(|row| row.piece == piece.name);
     let numbers = (0..pieces.len()).filter(|&number| !has_failed(&pieces[number]));
-    let numbers: Vec<(usize, usize)> = numbers.map(|number| (number, 0)).collect();
+    let numbers: Vec<usize> = numbers.collect();
     let mut rng = Seed::new(seed).named("verify").rng();
     Ok(numbers.choose_multiple(&mut rng, n).copied().collect())
 }

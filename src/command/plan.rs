@@ -1,7 +1,7 @@
 //! `bubbletouch plan`: what a study would do, without doing it.
 
 use super::any_study::load_study;
-use super::memory_args::{CeilingArgs, MemoryArgs};
+use super::memory_args::MemoryArgs;
 use super::run::results_folder;
 use super::streams::say;
 use super::study_args::StudyArgs;
@@ -12,13 +12,12 @@ pub struct Args {
     #[command(flatten)]
     study: StudyArgs,
     #[command(flatten)]
-    ceiling: CeilingArgs,
+    memory: MemoryArgs,
 }
 
 pub fn plan(args: &Args) -> Result<()> {
     let folder = results_folder(&args.study, None)?;
-    let memory = MemoryArgs::within(args.ceiling);
-    let study = load_study(&args.study, &folder, Some(&memory))?;
+    let study = load_study(args.study.clone(), &folder, args.memory.bytes()?)?;
     let said = study.plan()?;
     say(format_args!("{}: {said}", args.study.name()?))?;
     if let Some(mixed) = args.study.mixed_touches()? {

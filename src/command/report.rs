@@ -1,13 +1,10 @@
 //! `bubbletouch report`: the page of a folder of results of recognition again, from its tables.
 
-use super::about_study::{add_manifest, add_touches, page_of_spec};
 use super::any_study::load_study;
 use super::checked_manifest::checked_manifest;
 use super::streams::{note, say};
-use super::study_args::{LoadedStudy, StudyArgs};
+use super::study_args::StudyArgs;
 use bubbletouch::kinds::ReportAbout;
-use bubbletouch::report::csv_tables::{LIMITS_FILE, read_rows, read_tables};
-use bubbletouch::report::results::write_page;
 use bubbletouch::study::provenance::MANIFEST_FILE;
 use bubbletouch::{Error, Result};
 use std::path::{Path, PathBuf};
@@ -30,15 +27,10 @@ pub fn report(args: &Args) -> Result<()> {
             folder.join(MANIFEST_FILE).display()
         ));
     }
-    let study = StudyArgs {
-        study: folder.join("study.toml"),
-        objects: None,
-        seed: None,
-        threads: None,
-        paths_from: manifest
-            .as_ref()
-            .map(|manifest| manifest.paths_from.clone()),
-    };
+    let paths_from = manifest
+        .as_ref()
+        .map(|manifest| manifest.paths_from.clone());
+    let study = StudyArgs::of_results(folder, paths_from);
     let name = match &manifest {
         Some(manifest) if !manifest.study.is_empty() => manifest.study.clone(),
         _ => folder_name(folder)?,
@@ -53,31 +45,11 @@ pub fn report(args: &Args) -> Result<()> {
         manifest,
         all_charts: args.all_charts,
     };
-    load_study(&study, folder, None)?.report(folder, &about)?;
+    load_study(study, folder, None)?.report(folder, &about)?;
     say(format_args!(
         "Wrote {}",
         folder.join("report.html").display()
     ))
-}
-
-/// Writes the page of a study of recognition again.
-pub fn write_again(loaded: &LoadedStudy, folder: &Path, about: &ReportAbout) -> Result<()> {
-    let mut page = page_of_spec(&loaded.plan.spec, &about.name);
-    page.all_charts = about.all_charts;
-    add_touches(&mut page, loaded)?;
-    let limits = folder.join(LIMITS_FILE);
-    match limits.exists() {
-        true => page.limits = read_rows(&limits)?,
-        false => note(format_args!(
-            "note: the page does not say which limits were reached: there is no {}",
-            limits.display()
-        )),
-    }
-    if let Some(manifest) = about.manifest.clone() {
-        add_manifest(&mut page, manifest);
-    }
-    page.command = about.command.clone();
-    write_page(folder, &read_tables(folder)?, &page).map(|_| ())
 }
 
 fn folder_name(folder: &Path) -> Result<String> {

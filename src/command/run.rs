@@ -6,8 +6,8 @@ use super::listener::Listener;
 use super::memory_args::MemoryArgs;
 use super::study_args::StudyArgs;
 use super::study_folder::{Start, StudyFolder};
-use bubbletouch::study::pieces::PieceManner;
-use bubbletouch::study::{Part, Shard};
+use bubbletouch::study::Shard;
+use bubbletouch::study::pieces::{Part, PieceManner};
 use bubbletouch::{Error, Result};
 use std::path::{Path, PathBuf};
 use std::time::SystemTime;
@@ -23,12 +23,15 @@ pub struct Args {
     /// what an earlier run of the same study has finished
     #[arg(long)]
     fresh: bool,
-    /// Stop at the first cell (or piece, of studies that do not recognise) that fails, rather than record it in failures.csv and go on
+    /// Stop at the first work item that fails, rather than record it in failures.csv and go on
     #[arg(long)]
     fail_fast: bool,
     /// Do only part I of N of the work, for one of N processes or machines; `bubbletouch merge` puts them together
     #[arg(long, value_name = "I/N")]
     shard: Option<Shard>,
+    /// End as if killed when so many work items are kept: to try what is left of a run
+    #[arg(long, value_name = "N", hide = true)]
+    abort_after: Option<usize>,
     #[command(flatten)]
     memory: MemoryArgs,
     #[command(flatten)]
@@ -47,6 +50,7 @@ impl Args {
             fresh: false,
             fail_fast: false,
             shard: None,
+            abort_after: None,
             memory: MemoryArgs::default(),
             listener: Listener::default(),
             is_demonstration: true,
@@ -65,7 +69,7 @@ impl Args {
 pub fn run(args: &Args) -> Result<()> {
     let started = SystemTime::now();
     let folder = results_folder(&args.study, args.out.as_deref())?;
-    let study = load_study(&args.study, &folder, Some(&args.memory))?;
+    let study = load_study(args.study.clone(), &folder, args.memory.bytes()?)?;
     if let Some(mixed) = args.study.mixed_touches()? {
         args.listener.remark(&format!("note: {mixed}"));
     }
@@ -78,6 +82,7 @@ pub fn run(args: &Args) -> Result<()> {
         let going_on = format!("going on: {n_before} of {n_all} {units} were finished before");
         args.listener.remark(&going_on);
     }
+    kept.journal.abort_after(args.abort_after.unwrap_or(0));
     let progress = args.listener.progress();
     let manner = PieceManner {
         journal: &kept.journal,

@@ -7,8 +7,9 @@ use super::slurm_jobs::{Job, queued_shards, submit};
 use super::streams::say;
 use super::study_args::StudyArgs;
 use bubbletouch::kinds::AnyStudy;
+use bubbletouch::study::Shard;
 use bubbletouch::study::journal::{JOURNAL_FILE, Journal};
-use bubbletouch::study::{Part, Shard};
+use bubbletouch::study::pieces::Part;
 use bubbletouch::{Error, Result};
 use std::path::{Path, PathBuf};
 
@@ -42,7 +43,7 @@ pub fn slurm(args: &Args) -> Result<()> {
         return Err(Error::input("--array", args.array, allowed));
     }
     let folder = results_folder(&args.study, args.out.as_deref())?;
-    let study = load_study(&args.study, &folder, None)?;
+    let study = load_study(args.study.clone(), &folder, None)?;
     output_folder(&folder)?;
     let jobs = Jobs::new(args, &folder)?;
     let queued = queued_shards(&jobs.name("shards"))?;

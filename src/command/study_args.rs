@@ -1,13 +1,11 @@
 //! What `run`, `plan` and `touches` have in common: a study file, and what overrides it.
 
-use bubbletouch::kinds::Source;
+use super::output::packings_beside;
+use bubbletouch::kinds::{self, Source};
 use bubbletouch::random::Seed;
-use bubbletouch::study::breaking_points::{BreakingPointsPlan, BreakingPointsSpec};
 use bubbletouch::study::memory::{check_touches, machine_memory};
-use bubbletouch::study::object_detail::{ObjectDetailPlan, ObjectDetailStudySpec};
-use bubbletouch::study::speed_accuracy::{SpeedAccuracyPlan, SpeedAccuracyStudySpec};
 use bubbletouch::study::{
-    HumanTouches, ObjectsSpec, Plan, StudyKind, StudySpec, Sweep, TouchSet, TouchesSpec,
+    HumanTouches, ObjectsSpec, Plan, RecognitionStudy, StudyKind, StudySpec, TouchSet, TouchesSpec,
     draw_touches, load_objects,
 };
 use bubbletouch::{Error, Result};
@@ -36,21 +34,12 @@ pub struct StudyArgs {
     /// The folder that paths in the study are relative to; its file's when left out.
     #[arg(skip)]
     pub paths_from: Option<PathBuf>,
-}
-
-/// A study whose objects are built and whose touches are drawn.
-pub struct LoadedStudy {
-    pub name: String,
-    pub plan: Plan,
-    pub touched: Box<dyn TouchSet>,
-    pub sweep: Sweep,
-}
-
-impl LoadedStudy {
-    /// Cells, counted once a trial.
-    pub fn n_evaluations(&self) -> usize {
-        self.sweep.n_cells() * self.plan.spec.trials
-    }
+    /// Most bytes to hold; no ceiling when left out.
+    #[arg(skip)]
+    pub memory: Option<u64>,
+    /// Where its results go; beside them packings are kept, and in them what memory cannot hold.
+    #[arg(skip)]
+    pub results: PathBuf,
 }
 
 impl StudyArgs {
@@ -61,6 +50,17 @@ impl StudyArgs {
             seed: None,
             threads: None,
             paths_from: None,
+            memory: None,
+            results: PathBuf::new(),
+        }
+    }
+
+    /// The study of a folder of results.
+    pub fn of_results(folder: &Path, paths_from: Option<PathBuf>) -> Self {
+        Self {
+            study: folder.join("study.toml"),
+            paths_from,
+            ..Self::quickstart()
         }
     }
 
@@ -80,16 +80,10 @@ impl StudyArgs {
     /// Reads and checks the study.
     pub fn plan(&self) -> Result<Plan> {
         let place = self.study.display().to_string();
-        let kind = self.kind()?;
-        if kind != StudyKind::Recognition {
-            return Err(Error::input(
-                place,
-                kind.words(),
-                format!(
-                    "{} (bubbletouch run runs all kinds)",
-                    StudyKind::Recognition.words()
-                ),
-            ));
+        if let Some(about) = kinds::about(&self.text()?) {
+            let recognition = StudyKind::Recognition.words();
+            let allowed = format!("{recognition} (bubbletouch run runs all kinds)");
+            return Err(Error::input(place, about.words, allowed));
         }
         let mut spec = StudySpec::parse(&place, &self.text()?)?;
         if let Some(seed) = self.seed {
@@ -108,13 +102,10 @@ impl StudyArgs {
             folder: self.folder(),
             objects: self.objects.clone(),
             seed: self.seed,
-            ..Source::default()
+            memory: self.memory,
+            packings: Some(packings_beside(&self.results)),
+            results: self.results.clone(),
         })
-    }
-
-    /// What the study asks about.
-    pub fn kind(&self) -> Result<StudyKind> {
-        Ok(StudyKind::of(&self.text()?))
     }
 
     /// What a study of any kind is told that mixes listed values of `[touches]` where an axis may be meant.
@@ -123,40 +114,6 @@ impl StudyArgs {
         let touches = study.and_then(|mut study| study.remove("touches"));
         let touches: Option<TouchesSpec> = touches.and_then(|table| table.try_into().ok());
         Ok(touches.and_then(|touches| touches.mixed_values()))
-    }
-
-    /// Reads and checks a study of how detailed objects are.
-    pub fn object_detail_plan(&self) -> Result<ObjectDetailPlan> {
-        let place = self.study.display().to_string();
-        let mut spec = ObjectDetailStudySpec::parse(&place, &self.text()?)?;
-        spec.seed = self.seed.unwrap_or(spec.seed);
-        self.replace_objects(&mut spec.objects);
-        ObjectDetailPlan::new(&place, spec)
-    }
-
-    /// Reads and checks a study of where recognition breaks.
-    pub fn breaking_points_plan(&self) -> Result<BreakingPointsPlan> {
-        let place = self.study.display().to_string();
-        let mut spec = BreakingPointsSpec::parse(&place, &self.text()?)?;
-        spec.seed = self.seed.unwrap_or(spec.seed);
-        self.replace_objects(&mut spec.objects);
-        BreakingPointsPlan::new(&place, spec)
-    }
-
-    /// Reads and checks a study of what accuracy costs.
-    pub fn speed_accuracy_plan(&self) -> Result<SpeedAccuracyPlan> {
-        let place = self.study.display().to_string();
-        let mut spec = SpeedAccuracyStudySpec::parse(&place, &self.text()?)?;
-        spec.seed = self.seed.unwrap_or(spec.seed);
-        let contact = spec.speed_accuracy.contact.as_mut();
-        match (
-            &self.objects,
-            contact.and_then(|contact| contact.scans.as_mut()),
-        ) {
-            (Some(folder), Some(scans)) => scans.meshes.clone_from(folder),
-            _ => self.replace_objects(&mut spec.objects),
-        }
-        SpeedAccuracyPlan::new(&place, &self.folder(), spec)
     }
 
     fn replace_objects(&self, objects: &mut ObjectsSpec) {
@@ -172,21 +129,12 @@ impl StudyArgs {
         }
     }
 
-    /// Reads and checks the study, builds its objects (packed ones are kept in `packings`), draws its touches and lays out its cells.
-    pub fn load(&self, packings: Option<&Path>) -> Result<LoadedStudy> {
-        set_threads(self.threads)?;
-        self.load_within(packings, machine_memory())
-    }
-
-    /// The same within so many bytes (`None`: no limit); an error before touches are drawn that would take more.
-    pub fn load_within(
-        &self,
-        packings: Option<&Path>,
-        ceiling: Option<u64>,
-    ) -> Result<LoadedStudy> {
+    /// Reads and checks a study that recognises objects, builds them and draws its touches, unless these take more memory than there is.
+    pub fn recognition(&self, packings: Option<&Path>) -> Result<RecognitionStudy> {
         let plan = self.plan()?;
         let seed = Seed::new(plan.spec.seed);
-        let touched: Box<dyn TouchSet> = match &plan.human_touch {
+        let ceiling = self.memory.or_else(machine_memory);
+        let touched: Box<dyn TouchSet + Send> = match &plan.human_touch {
             Some(human) => {
                 check_touches(&plan, human.kinds.len(), ceiling)?;
                 Box::new(HumanTouches::draw(human, &seed)?)
@@ -197,13 +145,7 @@ impl StudyArgs {
                 Box::new(draw_touches(objects, &plan.placement, &seed)?)
             }
         };
-        let sweep = Sweep::new(&plan, touched.as_ref())?;
-        Ok(LoadedStudy {
-            name: self.name()?,
-            plan,
-            touched,
-            sweep,
-        })
+        RecognitionStudy::new(plan, touched)
     }
 
     fn text(&self) -> Result<String> {

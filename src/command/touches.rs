@@ -27,14 +27,12 @@ pub struct Args {
 
 pub fn touches(args: &Args) -> Result<()> {
     let packings = packings_beside(&args.out);
+    set_threads(args.study.threads)?;
     let progress = progress::to_stderr();
     let (plan, read) = match args.cell {
-        None => {
-            set_threads(args.study.threads)?;
-            (args.study.plan()?, None)
-        }
+        None => (args.study.plan()?, None),
         Some(cell) => {
-            let loaded = args.study.load(Some(&packings))?;
+            let loaded = args.study.recognition(Some(&packings))?;
             args.check(&loaded.plan)?;
             let which = (cell, args.trial);
             let read = ReadFrames::of_cell(

@@ -14,7 +14,7 @@ use std::path::PathBuf;
 pub struct Args {
     /// A folder that `bubbletouch run` wrote
     results: PathBuf,
-    /// How many cells (or pieces, of studies that do not recognise) to run again, drawn at random
+    /// How many work items to run again, drawn at random
     #[arg(long, value_name = "N", default_value_t = 5)]
     cells: usize,
     /// Which of them are drawn
@@ -31,13 +31,10 @@ pub fn verify(args: &Args) -> Result<()> {
     let folder = &args.results;
     let manifest = check_manifest(args)?;
     let study = StudyArgs {
-        study: folder.join("study.toml"),
-        objects: None,
-        seed: None,
         threads: args.threads,
-        paths_from: Some(manifest.paths_from),
+        ..StudyArgs::of_results(folder, Some(manifest.paths_from))
     };
-    let study = load_study(&study, folder, Some(&args.memory))?;
+    let study = load_study(study, folder, args.memory.bytes()?)?;
     let progress = to_stderr();
     let said = study.verify(folder, args.cells, args.draw, progress.as_ref())?;
     say(format_args!("{}: {said}", folder.display()))

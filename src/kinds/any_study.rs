@@ -1,9 +1,8 @@
 //! A study of any kind, as the commands see it.
 
 use crate::error::Result;
-use crate::study::Part;
 use crate::study::journal::{Identity, Journal};
-use crate::study::pieces::PieceManner;
+use crate::study::pieces::{Part, PieceManner};
 use crate::study::progress::Progress;
 use crate::study::provenance::Manifest;
 use std::path::{Path, PathBuf};

@@ -1,17 +1,16 @@
 //! A study of a kind, for those who do not know which.
 
 use super::any_study::{AnyOutcome, AnyStudy, ReportAbout};
+use super::ceiling::{threads_within, within_memory};
 use super::kind::{Facts, Kind};
 use super::results::{Results, failures_table};
 use super::source::Source;
 use super::verified::{changed_row, drawn};
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::report::page::StudyAbout;
-use crate::study::Part;
 use crate::study::journal::{Identity, Journal};
-use crate::study::memory::{GIB, machine_memory};
 use crate::study::pieces::{
-    FinishedPieces, PieceEstimate, PieceManner, PiecesRun, n_pieces_left, run_pieces,
+    FinishedPieces, NamedPiece, Part, PieceEstimate, PieceManner, PiecesRun, n_pieces_left,
 };
 use crate::study::progress::{Progress, Silent};
 use crate::study::provenance::PROGRAM;
@@ -22,7 +21,7 @@ pub struct Loaded<K> {
     pub(super) kind: K,
     pub(super) facts: Facts,
     pub(super) identity: Identity,
-    pub(super) n_pieces: usize,
+    pub(super) pieces: Vec<NamedPiece>,
     /// Most bytes to hold.
     memory: Option<u64>,
 }
@@ -34,46 +33,16 @@ impl<K: Kind> Loaded<K> {
     /// Those of [`Kind::load`].
     pub fn load(source: &Source) -> Result<Self> {
         let kind = K::load(source)?;
+        threads_within(&kind.scale(), source.memory)?;
         let facts = kind.facts()?;
         let (toml, content) = (facts.toml.clone(), facts.content.clone());
         Ok(Self {
             identity: Identity::new(toml, content, K::ABOUT.may_change),
-            n_pieces: kind.pieces().len(),
-            memory: source.memory.or_else(machine_memory),
+            pieces: kind.pieces(),
+            memory: source.memory,
             facts,
             kind,
         })
-    }
-
-    /// Threads on which its work items stay within the memory that it may take.
-    fn n_threads(&self) -> Result<usize> {
-        let scale = self.kind.scale();
-        let Some(ceiling) = self.memory else {
-            return Ok(rayon::current_num_threads());
-        };
-        scale.n_at_once(ceiling as f64).ok_or_else(|| {
-            Error::input(
-                "memory",
-                format!("a ceiling of {:.2} GiB", ceiling as f64 / GIB),
-                format!(
-                    "at least {:.2} GiB for this study",
-                    scale.least_bytes() / GIB
-                ),
-            )
-        })
-    }
-
-    /// Does something on as many threads as there is memory for.
-    fn within_memory<T: Send>(&self, work: impl FnOnce() -> Result<T> + Send) -> Result<T> {
-        let n_threads = self.n_threads()?;
-        if n_threads == rayon::current_num_threads() {
-            return work();
-        }
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(n_threads);
-        let pool = pool.build().map_err(|error| {
-            Error::input("threads", error, "a number that the system can start")
-        })?;
-        pool.install(work)
     }
 }
 
@@ -87,11 +56,11 @@ impl<K: Kind> AnyStudy for Loaded<K> {
     }
 
     fn n_all(&self) -> usize {
-        self.n_pieces
+        self.pieces.len()
     }
 
     fn plan(&self) -> Result<String> {
-        let n_threads = self.n_threads()?;
+        let n_threads = threads_within(&self.kind.scale(), self.memory)?;
         let manner = PieceManner {
             journal: &Journal::none(),
             fail_fast: true,
@@ -101,20 +70,20 @@ impl<K: Kind> AnyStudy for Loaded<K> {
         };
         let estimate = PieceEstimate {
             scale: self.kind.scale(),
-            n_pieces: self.n_pieces,
+            n_pieces: self.pieces.len(),
             n_threads,
-            work: PiecesRun::new(&self.kind, &manner).workload(),
+            work: PiecesRun::new(&self.kind, &self.pieces, &manner).workload(),
         };
         Ok(format!("{}\n{estimate}", self.facts.question))
     }
 
     fn n_left(&self, part: Part, journal: &Journal) -> usize {
-        n_pieces_left(&self.kind, part, journal)
+        n_pieces_left::<K::Rows>(&self.pieces, part, journal)
     }
 
     fn run<'a>(&'a self, manner: &PieceManner<'a>) -> Result<Box<dyn AnyOutcome + 'a>> {
-        let (finished, mut tables) = self.within_memory(|| {
-            let pieces = PiecesRun::new(&self.kind, manner);
+        let (finished, mut tables) = within_memory(&self.kind.scale(), self.memory, || {
+            let pieces = PiecesRun::new(&self.kind, &self.pieces, manner);
             manner.progress.expect(&pieces.workload());
             let FinishedPieces { rows, failures, .. } = pieces.run()?;
             Ok((failures, self.kind.tables(rows)?))
@@ -134,16 +103,18 @@ impl<K: Kind> AnyStudy for Loaded<K> {
         draw: u64,
         progress: &dyn Progress,
     ) -> Result<String> {
-        let chosen = drawn(&self.kind.pieces(), folder, (n, draw))?;
+        let chosen = drawn(&self.kind, &self.pieces, folder, (n, draw))?;
         let manner = PieceManner {
             journal: &Journal::none(),
             fail_fast: true,
             retries: false,
-            part: Part::Holding(&chosen),
+            part: Part::Only(&chosen),
             progress,
         };
-        let again =
-            self.within_memory(|| self.kind.tables(run_pieces(&self.kind, &manner)?.rows))?;
+        let again = within_memory(&self.kind.scale(), self.memory, || {
+            let run = PiecesRun::new(&self.kind, &self.pieces, &manner);
+            self.kind.tables(run.run()?.rows)
+        })?;
         progress.finish("");
         // What other programs left stands in some tables, and no item made it.
         let of_others = self.kind.tables(K::Rows::default())?;
@@ -151,7 +122,7 @@ impl<K: Kind> AnyStudy for Loaded<K> {
         Ok(format!(
             "{} of {} pieces ran again, and their {n_rows} rows without times are the same bytes",
             chosen.len(),
-            self.n_pieces,
+            self.pieces.len(),
         ))
     }
 

@@ -61,7 +61,7 @@ impl<K: Kind> Results<'_, K> {
             paths_from: ended.paths_from.clone(),
             started: ended.started,
             seed: facts.seed,
-            n_cells: self.study.n_pieces,
+            n_cells: self.study.pieces.len(),
             n_trials: 1,
             n_finished_before: ended.n_before,
             n_failed: self.n_failed,

@@ -19,6 +19,8 @@ pub struct Source {
     pub seed: Option<u64>,
     /// Where packed meshes are kept from run to run.
     pub packings: Option<PathBuf>,
+    /// Where its results go: what memory cannot hold is put there while it runs.
+    pub results: PathBuf,
     /// Most bytes to hold; `None`: no ceiling.
     pub memory: Option<u64>,
 }

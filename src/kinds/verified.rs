@@ -3,22 +3,25 @@
 use crate::error::{Error, Result};
 use crate::random::Seed;
 use crate::report::csv_tables::{FAILURES_FILE, read_rows};
-use crate::study::pieces::{NamedPiece, PieceFailure};
+use crate::study::pieces::{NamedPiece, PieceFailure, PieceStudy};
 use crate::table::Table;
 use rand::seq::SliceRandom;
 use std::collections::BTreeSet;
 use std::path::Path;
 
-/// Some of the items of a folder that did not fail, as [`Part::Holding`](crate::study::Part) wants them: how many, drawn from a seed.
-pub fn drawn(
+/// Numbers of some of the items of a folder that did not fail: how many, drawn from a seed.
+pub fn drawn<S: PieceStudy>(
+    study: &S,
     pieces: &[NamedPiece],
     folder: &Path,
     (n, seed): (usize, u64),
-) -> Result<BTreeSet<(usize, usize)>> {
+) -> Result<BTreeSet<usize>> {
     let failed: Vec<PieceFailure> = read_rows(&folder.join(FAILURES_FILE))?;
-    let has_failed = |piece: &NamedPiece| failed.iter().any(|row| row.piece == piece.name);
-    let numbers = (0..pieces.len()).filter(|&number| !has_failed(&pieces[number]));
-    let numbers: Vec<(usize, usize)> = numbers.map(|number| (number, 0)).collect();
+    let has_failed = |number: usize| {
+        let words = || study.words(number, &pieces[number]);
+        !failed.is_empty() && failed.iter().any(|row| row.piece == words())
+    };
+    let numbers: Vec<usize> = (0..pieces.len()).filter(|&n| !has_failed(n)).collect();
     let mut rng = Seed::new(seed).named("verify").rng();
     Ok(numbers.choose_multiple(&mut rng, n).copied().collect())
 }

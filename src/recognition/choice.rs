@@ -5,7 +5,6 @@ use serde::{Deserialize, Serialize};
 
 use crate::recognition::dataset::{Dataset, check_labels, distinct, rows};
 use crate::recognition::extent::Extent;
-use crate::recognition::fit_progress::FitProgress;
 use crate::recognition::grid::Grid;
 use crate::recognition::kernel::{Gamma, Kernel, KernelFunction};
 use crate::recognition::scalar::Scalar;
@@ -61,17 +60,6 @@ pub fn choose(
     folds: &[Split],
     candidates: &Candidates,
 ) -> Result<Chosen> {
-    choose_telling(params, training, folds, candidates, FitProgress::default())
-}
-
-/// [`choose`], and says while it goes on how much of it is done.
-pub(crate) fn choose_telling(
-    params: &SvmParams,
-    training: &Dataset,
-    folds: &[Split],
-    candidates: &Candidates,
-    progress: FitProgress,
-) -> Result<Chosen> {
     let path = ascending(&candidates.c);
     params.check(&path)?;
     let extent = Extent::of(training.records.view())?;
@@ -82,7 +70,6 @@ pub(crate) fn choose_telling(
         path: &path,
         tolerance: params.tolerance,
         memory: params.memory_bytes,
-        progress,
     };
     let (counts, n_capped) = match params.solver {
         Solver::Smo => on_one_matrix(params, (training, &extent), folds, &kernels, goal)?,
@@ -321,7 +308,6 @@ fn one_by_one(
                 *count += n_equal(&labels, &held_out.targets);
                 n_capped += model.n_capped();
             }
-            goal.progress.done(1, folds.len() * kernels.len());
         }
     }
     Ok((counts, n_capped))
@@ -334,7 +320,6 @@ mod tests {
     use crate::recognition::dataset::dataset;
     use crate::recognition::split::stratified_k_fold;
     use crate::recognition::svm::Multiclass;
-    use std::cell::Cell;
 
     /// Three overlapping classes.
     fn overlapping(n: usize) -> Dataset {
@@ -364,19 +349,14 @@ mod tests {
                 };
                 let extent = Extent::of(data.records.view()).unwrap();
                 let kernels = kernels(&params, (&data, &extent), &[0.3, 3.0]).unwrap();
-                let done = Cell::new(0.0);
-                let add = |share: f64| done.set(done.get() + share);
                 let goal = Goal {
                     path: &path,
                     tolerance: params.tolerance,
                     memory: params.memory_bytes,
-                    progress: FitProgress::to(&add),
                 };
                 let rows = (&data, &extent);
                 let fast = on_one_matrix(&params, rows, &folds, &kernels, goal).unwrap();
-                assert!((done.get() - 1.0).abs() < 1e-9, "{done:?}");
                 let slow = one_by_one(&params, &data, &folds, &kernels, goal).unwrap();
-                assert!((done.get() - 2.0).abs() < 1e-9, "{done:?}");
                 assert_eq!(fast, slow, "{kernel:?} {multiclass:?}");
                 assert_eq!(fast.0.nrows(), if kernel == Kernel::Linear { 1 } else { 2 });
             }

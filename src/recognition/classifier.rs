@@ -13,10 +13,9 @@ use serde::{Deserialize, Serialize};
 
 use crate::random::Seed;
 use crate::recognition::ClassifierKind;
-use crate::recognition::choice::{Candidates, Chosen, choose_c, choose_telling};
+use crate::recognition::choice::{Candidates, Chosen, choose, choose_c};
 use crate::recognition::dataset::{Dataset, rows};
 use crate::recognition::decision_tree::DecisionTree;
-use crate::recognition::fit_progress::FitProgress;
 use crate::recognition::k_nearest::KNearest;
 use crate::recognition::kernel::{Gamma, Kernel};
 use crate::recognition::linear_svm::{LinearMargin, LinearSvmParams};
@@ -152,24 +151,12 @@ impl Classifier {
         candidates: &Candidates,
         seed: &Seed,
     ) -> Result<Chosen> {
-        self.choose_telling(training, (folds, candidates), seed, FitProgress::default())
-    }
-
-    /// [`choose`](Self::choose), and says while it goes on how much of it is done.
-    pub(crate) fn choose_telling(
-        &self,
-        training: &Dataset,
-        (folds, candidates): (&[Split], &Candidates),
-        seed: &Seed,
-        progress: FitProgress,
-    ) -> Result<Chosen> {
         let (_, scaled) = self.scaled(training)?;
         if let Some(params) = self.kernel_svm(1.0) {
-            return choose_telling(&params, &scaled, folds, candidates, progress);
+            return choose(&params, &scaled, folds, candidates);
         }
         let train = |fitting: &Dataset, c| {
             let model = self.train_model(fitting, Some(c), seed)?;
-            progress.done(1, folds.len() * candidates.c.len());
             let n_capped = model.n_capped();
             let predict = move |rows: &Dataset| model.labels(rows.records.view());
             Ok((predict, n_capped))
@@ -205,17 +192,6 @@ impl Classifier {
         path: &[f64],
         seed: &Seed,
     ) -> Result<Vec<TrainedClassifier>> {
-        self.train_path_telling(training, path, seed, FitProgress::default())
-    }
-
-    /// [`train_path`](Self::train_path), and says while it goes on how much of it is done.
-    pub(crate) fn train_path_telling(
-        &self,
-        training: &Dataset,
-        path: &[f64],
-        seed: &Seed,
-        progress: FitProgress,
-    ) -> Result<Vec<TrainedClassifier>> {
         if !self.kind.has_c() {
             let given = format!("for {:?}", self.kind);
             return Err(Error::input("C", given, "it has none"));
@@ -223,17 +199,13 @@ impl Classifier {
         let (scaling, scaled) = self.scaled(training)?;
         let models: Vec<Model> = match self.kernel_svm(1.0) {
             Some(params) => params
-                .train_path_telling(&scaled, path, progress)?
+                .train_path(&scaled, path)?
                 .into_iter()
                 .map(|model| Model::Svm(Box::new(model)))
                 .collect(),
             None => path
                 .iter()
-                .map(|&c| {
-                    let model = self.train_model(&scaled, Some(c), seed)?;
-                    progress.done(1, path.len());
-                    Ok(model)
-                })
+                .map(|&c| self.train_model(&scaled, Some(c), seed))
                 .collect::<Result<_>>()?,
         };
         let trained = models.into_iter().zip(path);

@@ -146,7 +146,6 @@ fn difference(a: &[f64], b: &[f64]) -> Vec<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::recognition::fit_progress::FitProgress;
     use ndarray::Array2;
 
     const N: usize = 45;
@@ -179,7 +178,6 @@ mod tests {
             path: &[0.05, 1.0, 20.0, 400.0],
             tolerance: 1e-9,
             memory: usize::MAX,
-            progress: FitProgress::default(),
         };
         let folds: Vec<Vec<f64>> = (0..3)
             .map(|fold| all.iter().map(|&at| label(at, fold)).collect())

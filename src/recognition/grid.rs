@@ -62,11 +62,6 @@ impl<T: Scalar> Grid<'_, T> {
             let kernel = ProductKernel::new(points, &products, kernel);
             for folds in folds.chunks(FOLDS_AT_ONCE) {
                 rooms.resize(folds.len(), Vec::new());
-                let share = folds.len() as f64 / (self.folds.len() * kernels.len()) as f64;
-                let goal = Goal {
-                    progress: goal.progress.part(share),
-                    ..goal
-                };
                 let judgements = self.judge(folds, (&columns, &mut rooms), &kernel, goal);
                 for class in 0..ranges.len() {
                     let doubtful = judgements.iter().map(|judgement| judgement.doubtful(class));
@@ -145,7 +140,6 @@ impl<T: Scalar> Grid<'_, T> {
                 }
                 None => FoldPath::of_class(&mut gram, labels, goal, judge),
             }
-            goal.progress.done(1, problems.len());
         }
         judgements
     }

@@ -61,7 +61,6 @@ mod factors;
 pub mod features;
 mod few_dimensions;
 mod first_rows;
-pub(crate) mod fit_progress;
 mod fold_path;
 mod free_factor;
 pub mod fusion;

@@ -10,7 +10,6 @@ use crate::recognition::dataset::{Dataset, check_labels, distinct};
 use crate::recognition::decision::DecisionFunctions;
 use crate::recognition::dual::DualSolution;
 use crate::recognition::extent::Extent;
-use crate::recognition::fit_progress::FitProgress;
 use crate::recognition::kernel::{Kernel, KernelFunction};
 use crate::recognition::linfa_solver;
 use crate::recognition::scalar::Scalar;
@@ -151,16 +150,6 @@ impl SvmParams {
     /// # Errors
     /// As [`train`](Self::train).
     pub fn train_path(&self, data: &Dataset, path: &[f64]) -> Result<Vec<SvmModel>> {
-        self.train_path_telling(data, path, FitProgress::default())
-    }
-
-    /// [`train_path`](Self::train_path), and says while it goes on how much of it is done.
-    pub(crate) fn train_path_telling(
-        &self,
-        data: &Dataset,
-        path: &[f64],
-        progress: FitProgress,
-    ) -> Result<Vec<SvmModel>> {
         self.check(path)?;
         let extent = Extent::of(data.records.view())?;
         check_labels(data.records.nrows(), data.targets.view())?;
@@ -182,7 +171,6 @@ impl SvmParams {
             path: &ascending,
             tolerance: self.tolerance,
             memory: self.memory_bytes,
-            progress,
         };
         let trained = match self.solver {
             Solver::Smo => self.train_smo(sorting, goal),

@@ -12,7 +12,6 @@ use ndarray::Array2;
 use crate::recognition::between::{Group, groups, pairs};
 use crate::recognition::dual::DualSolution;
 use crate::recognition::first_rows::{PairsNearMargin, few_dimensions};
-use crate::recognition::fit_progress::FitProgress;
 use crate::recognition::kernel::KernelFunction;
 use crate::recognition::near_margin::NearMargin;
 use crate::recognition::scalar::Scalar;
@@ -42,8 +41,6 @@ pub(crate) struct Goal<'a> {
     pub tolerance: f64,
     /// Most bytes of kernel values held at once.
     pub memory: usize,
-    /// Who is told what share of the problems is solved.
-    pub progress: FitProgress<'a>,
 }
 
 impl<T: Scalar> Sorted<T> {
@@ -97,7 +94,6 @@ impl<T: Scalar> Sorted<T> {
                         .copy_from_slice(&normal);
                 }
             }
-            goal.progress.done(pairs.len(), shape.0);
         }
         in_order(&mut problems);
         let with_normals = |(problems, normals)| Trained {
@@ -134,8 +130,6 @@ impl<T: Scalar> Sorted<T> {
                     let mut gram = part_of_blocks(&within, &across, &mut room);
                     self.solve_pair(&mut gram, (a, b), goal, problems);
                 }
-                let solved = pairs(classes[at].clone(), classes[number].clone());
-                goal.progress.done(solved.count(), self.all_pairs().count());
             }
         }
         in_order(problems);
@@ -146,7 +140,6 @@ impl<T: Scalar> Sorted<T> {
             let points = self.points().select(&self.pair_rows(a, b));
             let mut gram = Cached::new(&points, self.kernel(), goal.memory);
             self.solve_pair(&mut gram, (a, b), goal, problems);
-            goal.progress.done(1, self.all_pairs().count());
         }
     }
 
@@ -206,7 +199,6 @@ impl<T: Scalar> Sorted<T> {
                 problem.solution.coefficients = coefficients;
                 problem.rows.clone_from(&rows);
             }
-            goal.progress.done(1, self.classes().len());
         }
     }
 

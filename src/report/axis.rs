@@ -7,11 +7,12 @@ use crate::recognition::over_time::OverTime;
 use crate::sensing::{Basis, Ensemble, Solver};
 use crate::signal::NoiseUnit;
 use crate::study::table::Cell;
-use crate::study::{IMPERFECTIONS, Imperfection, Role, TestedOn, role_of};
+use crate::study::{Role, TestedOn, role_of, strength_columns};
 pub use crate::table::short_number;
+use crate::table::{Column, Value};
 
 /// A setting that a study can sweep.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Axis {
     /// Compression ratio n / m.
     Ratio,
@@ -45,42 +46,38 @@ pub enum Axis {
     ClassImbalance,
     /// Test touches decided on together.
     FusedTouches,
-    /// What a skin and its reader do to the signal.
-    Imperfection(Imperfection),
+    /// A sensor error, or an axis that the study names itself: what its column says.
+    Column(&'static Column),
     /// The skin that test touches are made with.
     TestedOn,
     /// All that happens to the signal, in words: where only one thing at a time does.
     Signal,
 }
 
-/// Every axis but [`Signal`](Axis::Signal), which stands for several, in the order in which tables show them.
-pub const AXES: [Axis; 25] = [
-    Axis::Pitch,
-    Axis::Size,
-    Axis::Noise,
-    Axis::Smoothing,
-    Axis::Imperfection(IMPERFECTIONS[0]),
-    Axis::Imperfection(IMPERFECTIONS[1]),
-    Axis::Imperfection(IMPERFECTIONS[2]),
-    Axis::Imperfection(IMPERFECTIONS[3]),
-    Axis::Imperfection(IMPERFECTIONS[4]),
-    Axis::Imperfection(IMPERFECTIONS[5]),
-    Axis::Imperfection(IMPERFECTIONS[6]),
-    Axis::Imperfection(IMPERFECTIONS[7]),
-    Axis::TestedOn,
-    Axis::Frames,
-    Axis::OverTime,
-    Axis::Ensemble,
-    Axis::Features,
-    Axis::Classifier,
-    Axis::C,
-    Axis::TrainTouches,
-    Axis::Mislabelled,
-    Axis::ClassImbalance,
-    Axis::FusedTouches,
-    Axis::Ratio,
-    Axis::Measurements,
-];
+/// Every axis of some cells but [`Signal`](Axis::Signal), which stands for several, in the order in which tables show them.
+pub fn axes_of(cells: &[&Cell]) -> Vec<Axis> {
+    let errors = strength_columns().iter();
+    let own = cells.first().map_or(&[][..], |cell| &cell.variant.values);
+    let own = own.iter().map(|axis| Axis::Column(axis.column));
+    let first = [Axis::Pitch, Axis::Size, Axis::Noise, Axis::Smoothing];
+    let last = [
+        Axis::TestedOn,
+        Axis::Frames,
+        Axis::OverTime,
+        Axis::Ensemble,
+        Axis::Features,
+        Axis::Classifier,
+        Axis::C,
+        Axis::TrainTouches,
+        Axis::Mislabelled,
+        Axis::ClassImbalance,
+        Axis::FusedTouches,
+        Axis::Ratio,
+        Axis::Measurements,
+    ];
+    let all = own.chain(first).chain(errors.map(Axis::Column)).chain(last);
+    all.collect()
+}
 
 /// One value of an axis.
 #[derive(Clone, Debug, PartialEq)]
@@ -113,7 +110,7 @@ impl Axis {
             Self::Mislabelled => "mislabelled_fraction",
             Self::ClassImbalance => "class_imbalance",
             Self::FusedTouches => "fused_touches",
-            Self::Imperfection(kind) => kind.key(),
+            Self::Column(column) => &column.name,
             Self::TestedOn => "tested_on",
             Self::Signal => "signal",
         }
@@ -133,6 +130,9 @@ impl Axis {
 
     /// Whether it is a condition of the world, not a designer's choice.
     pub fn is_condition(self) -> bool {
+        if let Self::Column(column) = self {
+            return column.role == Role::Condition;
+        }
         self.column().and_then(role_of) == Some(Role::Condition)
     }
 
@@ -155,7 +155,7 @@ impl Axis {
             Self::Mislabelled => "mislabelled",
             Self::ClassImbalance => "class imbalance",
             Self::FusedTouches => "touches fused",
-            Self::Imperfection(kind) => kind.name(),
+            Self::Column(column) => &column.words,
             Self::TestedOn => "test skin",
             Self::Signal => "signal",
         }
@@ -187,7 +187,7 @@ impl Axis {
             Self::Mislabelled => "training touches with another object's label (%)",
             Self::ClassImbalance => "class imbalance (most : fewest training touches)",
             Self::FusedTouches => "touches decided on together",
-            Self::Imperfection(kind) => signal_axis::title(kind),
+            Self::Column(column) => return column.title(),
             Self::TestedOn => "test skin",
             Self::Signal => "signal",
         };
@@ -217,7 +217,7 @@ impl Axis {
             Self::Mislabelled => percent(cell.mislabelled_fraction.unwrap_or(0.0)),
             Self::ClassImbalance => with_suffix(cell.class_imbalance.unwrap_or(1.0), ":1", ":1"),
             Self::FusedTouches => with_suffix(cell.fused_touches as f64, "", ""),
-            Self::Imperfection(kind) => signal_axis::value(kind, cell),
+            Self::Column(column) => column_value(column, cell),
             Self::TestedOn => word(match cell.tested_on.unwrap_or_default() {
                 TestedOn::SameSkin => "the same skin",
                 TestedOn::AnotherSkin => "another skin",
@@ -328,6 +328,35 @@ fn with_suffix(number: f64, tick: &str, label: &str) -> AxisValue {
     }
 }
 
+fn column_value(column: &'static Column, cell: &Cell) -> AxisValue {
+    let own = cell.variant.values.iter();
+    let value = match own.into_iter().find(|axis| axis.column == column) {
+        Some(axis) => match &axis.value {
+            toml::Value::Integer(number) => Value::Number(*number as f64),
+            toml::Value::Float(number) => Value::Number(*number),
+            toml::Value::String(text) => Value::Word(text.clone()),
+            other => Value::Word(other.to_string()),
+        },
+        None => Value::Number(cell.strengths.of(&column.name).unwrap_or(0.0)),
+    };
+    let label = column.value_words(&value);
+    match value {
+        Value::Number(number) => {
+            let shown = if column.unit == "%" {
+                100.0 * number
+            } else {
+                number
+            };
+            AxisValue {
+                number: Some(shown),
+                tick: column.tick(number),
+                label,
+            }
+        }
+        Value::Word(_) => word(&label),
+    }
+}
+
 fn word(text: &str) -> AxisValue {
     AxisValue {
         number: None,
@@ -368,7 +397,7 @@ mod tests {
 
     #[test]
     fn every_axis_is_a_choice_or_a_condition() {
-        for axis in AXES {
+        for axis in axes_of(&[]) {
             let role = axis.column().and_then(role_of);
             let is_either = matches!(role, Some(Role::Choice | Role::Condition));
             assert!(is_either, "{axis:?}: {role:?}");

@@ -6,7 +6,7 @@
 
 use crate::report::axis::{Axis, AxisValue};
 use crate::report::varying::{Levels, Settings};
-use crate::study::IMPERFECTIONS;
+use crate::study::strength_columns;
 use crate::study::table::Cell;
 
 /// What a chart shows where.
@@ -124,8 +124,9 @@ pub fn plan_charts(cells: &[&Cell]) -> Vec<ChartPlan> {
 fn charts_along(x: Option<Axis>, mut free: Vec<Levels>, cells: &[&Cell]) -> Vec<ChartPlan> {
     // Words stand along x only if no number varies.
     let words_last = |levels: &Levels| levels.numbers().is_some();
-    let given: Vec<Axis> = x.into_iter().collect();
-    let x = take(&mut free, &given, |_| true)
+    let given = free.iter().position(|levels| Some(levels.axis) == x);
+    let given = given.map(|place| free.remove(place));
+    let x = given
         .or_else(|| take(&mut free, &ALONG_X, words_last))
         .or_else(|| take(&mut free, &ALONG_X, |_| true))
         .unwrap_or_else(|| Levels::of(Axis::Ratio, cells));
@@ -167,12 +168,13 @@ impl ChartPlan {
 }
 
 fn take(free: &mut Vec<Levels>, order: &[Axis], suits: impl Fn(&Levels) -> bool) -> Option<Levels> {
-    // What a skin does to a signal comes after what people choose.
-    let imperfections = IMPERFECTIONS.map(Axis::Imperfection);
-    let order = order.iter().chain(&imperfections);
-    let chosen = order
-        .into_iter()
-        .find_map(|axis| free.iter().position(|l| l.axis == *axis && suits(l)))?;
+    // What a study names itself comes first, and what a skin does to a signal after what people choose.
+    let errors = strength_columns();
+    let is_own = |axis: &Axis| matches!(axis, Axis::Column(own) if !errors.contains(own));
+    let own: Vec<Axis> = free.iter().map(|l| l.axis).filter(is_own).collect();
+    let errors = errors.iter().map(Axis::Column);
+    let mut order = own.into_iter().chain(order.iter().copied()).chain(errors);
+    let chosen = order.find_map(|axis| free.iter().position(|l| l.axis == axis && suits(l)))?;
     Some(free.remove(chosen))
 }
 
@@ -313,7 +315,7 @@ mod tests {
         for classifier in [ClassifierKind::LinearSvm, ClassifierKind::RbfSvm] {
             let at = |noise_std, crosstalk| Cell {
                 noise_std,
-                crosstalk: Some(crosstalk),
+                strengths: crate::study::Strengths::default().with("crosstalk", Some(crosstalk)),
                 classifier,
                 ..cell()
             };
@@ -321,7 +323,7 @@ mod tests {
         }
         let all: Vec<&Cell> = cells.iter().collect();
         let plans = plan_charts(&all);
-        let crosstalk = Axis::Imperfection(IMPERFECTIONS[1]);
+        let crosstalk = Axis::Column(&strength_columns()[1]);
         let lines = Some(Axis::Classifier);
         assert_eq!(plans.len(), 2);
         assert_eq!(roles(&plans[0]), (Axis::Noise, lines, None));

@@ -1,6 +1,6 @@
 //! What was taken for what: a confusion matrix as a picture.
 
-use crate::report::axis::AXES;
+use crate::report::axis::axes_of;
 use crate::report::colours::{GRID, INK, MUTED, PAPER, share, text_on};
 use crate::report::drawing::{Align, Area, Drawing, Stroke, TextStyle};
 use crate::report::heat_map::draw_colours;
@@ -68,7 +68,7 @@ pub fn confusion_picture(tables: &Tables, cell: usize) -> Option<Drawing> {
         "What each {what} was taken for: accuracy {:.2} [{:.2}, {:.2}]",
         score.accuracy, score.accuracy_low, score.accuracy_high
     );
-    let mut parts: Vec<String> = AXES
+    let mut parts: Vec<String> = axes_of(&[settings])
         .iter()
         .map(|axis| Levels::of(*axis, &[settings]))
         .filter(|levels| !levels.go_without_saying())

@@ -6,12 +6,12 @@
 use crate::error::{Error, Result};
 use crate::report::csv_header::blank_row;
 use crate::report::folder::Folder;
-use crate::report::page::Limit;
-use crate::study::ContentHash;
 use crate::study::table::{
-    Cell, CellScore, Comparison, Confused, Confusion, Failure, Pareto, Published, StageTime,
-    Tables, TrialScore, TrialTime, Variance,
+    Cell, CellScore, Comparison, Confused, Confusion, Pareto, Published, StageTime, Tables,
+    TrialScore, TrialTime, Variance,
 };
+use crate::study::{ContentHash, StudySpec};
+use crate::table::Column;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 use std::collections::BTreeMap;
@@ -19,7 +19,7 @@ use std::fs::File;
 use std::path::{Path, PathBuf};
 
 /// File names of the tables, in the order in which [`write_tables`] writes them.
-pub const TABLE_FILES: [&str; 10] = [
+pub const TABLE_FILES: [&str; 9] = [
     "accuracy.csv",
     "summary.csv",
     "confusion.csv",
@@ -29,7 +29,6 @@ pub const TABLE_FILES: [&str; 10] = [
     "stages.csv",
     "confused.csv",
     "published.csv",
-    FAILURES_FILE,
 ];
 
 /// What failed, and why.
@@ -68,15 +67,6 @@ impl TableHashes {
     }
 }
 
-/// SHA-256 of every table, and of how often limits were reached.
-pub fn table_hashes(tables: &Tables, limits: &[Limit]) -> Result<TableHashes> {
-    let mut folder = Folder::new(Path::new(""));
-    add_tables(&mut folder, tables)?;
-    folder.add_table(LIMITS_FILE, limits)?;
-    let files = folder.into_files()?;
-    Ok(TableHashes::of(files, |name| !TIME_TABLES.contains(&name)))
-}
-
 /// What is asked for where a table is missing.
 const A_TABLE: &str = "a table of results as bubbletouch run writes it";
 
@@ -108,7 +98,6 @@ pub(super) fn add_tables(folder: &mut Folder, tables: &Tables) -> Result<()> {
         stages,
         confused,
         published,
-        failures,
     ] = TABLE_FILES;
     folder.add_table(accuracy, &tables.accuracy)?;
     folder.add_table(summary, &tables.summary)?;
@@ -119,7 +108,6 @@ pub(super) fn add_tables(folder: &mut Folder, tables: &Tables) -> Result<()> {
     folder.add_table(stages, &tables.stages)?;
     folder.add_table(confused, &tables.confused)?;
     folder.add_table(published, &tables.published)?;
-    folder.add_table(failures, &tables.failures)?;
     match tables.variance.is_empty() {
         true => Ok(()),
         false => folder.add_table(VARIANCE_FILE, &tables.variance),
@@ -139,7 +127,6 @@ pub fn read_tables(dir: &Path) -> Result<Tables> {
         stages: read_rows::<StageTime>(&path(6))?,
         confused: read_rows::<Confused>(&path(7))?,
         published: read_cell_rows::<Published>(&path(8))?,
-        failures: read_cell_rows::<Failure>(&path(9))?,
         variance: match dir.join(VARIANCE_FILE) {
             path if path.exists() => read_rows::<Variance>(&path)?,
             _ => Vec::new(),
@@ -175,11 +162,30 @@ pub fn csv_content<R: Serialize + DeserializeOwned>(path: &Path, rows: &[R]) -> 
 
 /// Reads a table whose rows are a [`Cell`] followed by `R`.
 pub fn read_cell_rows<R: DeserializeOwned>(path: &Path) -> Result<Vec<(Cell, R)>> {
-    // Each line is read twice, once for either half: through one struct with two flattened halves, serde would take an
-    // empty field for an empty text, not for an absent value.
+    // Each line is read once for either half: through one struct with two flattened halves, serde would take an empty field for an
+    // empty text, not for an absent value. The columns that only some studies have are read by their names.
     let cells: Vec<Cell> = read_rows(path)?;
     let rest: Vec<R> = read_rows(path)?;
-    Ok(cells.into_iter().zip(rest).collect())
+    let axes = axes_beside(path)?;
+    let mut file = csv::Reader::from_path(path).map_err(|e| read_error(path, e))?;
+    let header = file.headers().map_err(|e| read_error(path, e))?.clone();
+    let rows = file.into_records().zip(cells.into_iter().zip(rest));
+    let rows = rows.map(|(row, (cell, rest))| {
+        let row = row.map_err(|e| read_error(path, e))?;
+        let field = |name: &str| row.get(header.iter().position(|column| column == name)?);
+        Ok((cell.with_row(&axes, field), rest))
+    });
+    rows.collect()
+}
+
+/// The columns of the axes of the study whose results stand in a folder; none where no study stands beside them.
+fn axes_beside(table: &Path) -> Result<Vec<Column>> {
+    let path = table.with_file_name("study.toml");
+    let Ok(text) = std::fs::read_to_string(&path) else {
+        return Ok(Vec::new());
+    };
+    let study = StudySpec::parse(&path.display().to_string(), &text);
+    Ok(study.map_or_else(|_| Vec::new(), |study| study.axis_columns()))
 }
 
 /// Reads a table; the error names the file and the line.

@@ -106,12 +106,7 @@ impl<'a> Folder<'a> {
         self.add(format!("{name}.svg"), drawing.svg(title));
     }
 
-    /// Every file whole: name and content.
-    pub(super) fn into_files(self) -> Result<Vec<(String, Vec<u8>)>> {
-        self.into_files_telling(&|_| ())
-    }
-
-    /// The same; each picture tells what share it was of the time by the clock that all of them take (the larger the more), and how long
+    /// Every file whole, name and content; each picture tells what share it was of the time by the clock that all of them take (the larger the more), and how long
     /// that was.
     fn into_files_telling(self, told: &Told) -> Result<Vec<(String, Vec<u8>)>> {
         let areas = self.files.iter().filter_map(|(_, content)| content.area());

@@ -11,9 +11,7 @@ use crate::report::folder::Folder;
 use crate::report::page::{Picture, Pictures, ReportPage, page};
 use crate::report::pareto_chart::{Cost, draw_pareto, is_wanted};
 use crate::report::snapshots::snapshots;
-use crate::study::progress::{Progress, Silent};
 use crate::study::table::{Cell, Tables};
-use crate::study::time_left::Piece;
 use std::path::{Path, PathBuf};
 
 /// Static charts that are drawn, unless all are asked for; of all, those in the page (for readers without script) and as PNG. More: a page
@@ -26,24 +24,19 @@ pub const MOST_CHARTS: usize = 24;
 /// Everything is drawn before the first file is written, and each file is whole or not there. Files of other names in the
 /// folder are left alone.
 pub fn write_all(dir: &Path, tables: &Tables, about: &ReportPage) -> Result<Vec<PathBuf>> {
-    write_all_telling(dir, tables, about, (&Silent, &Piece::report(0.0)))
+    all_files(dir, tables, about)?.write()
 }
 
-/// As [`write_all`]; `progress` is told, of what was planned for `work`, what is done as pictures are drawn.
-pub fn write_all_telling(
-    dir: &Path,
-    tables: &Tables,
-    about: &ReportPage,
-    (progress, work): (&dyn Progress, &Piece),
-) -> Result<Vec<PathBuf>> {
+/// What [`write_all`] writes, before it is written.
+///
+/// # Errors
+/// What cannot be drawn, or written as a table.
+pub fn all_files<'a>(dir: &'a Path, tables: &Tables, about: &ReportPage) -> Result<Folder<'a>> {
     let mut folder = Folder::new(dir);
     add_tables(&mut folder, tables)?;
     folder.add_table(LIMITS_FILE, &about.limits)?;
     add_page(&mut folder, tables, about)?;
-    folder.write_telling(&|drawn| {
-        let pictures = Piece::report((work.planned_s - REST_S).max(0.0));
-        progress.worked(&pictures.share(drawn.share), drawn.wall_s);
-    })
+    Ok(folder)
 }
 
 /// Writes charts, pictures and the page into a folder that has the tables; as [`write_all`].
@@ -106,25 +99,6 @@ fn light_picture(drawing: &Drawing, title: &str) -> Result<Picture> {
     Ok(Picture::of_png(&drawing.png()?, size, title))
 }
 
-/// Seconds by the clock to draw and write all of it for these cells, where accuracy against time is charted or not, or as the
-/// classifiers say, and [samples of touches](crate::study::TouchSet::samples) take so many processor-seconds more.
-pub fn planned_s(cells: &[&Cell], pareto: Option<bool>, samples_s: f64) -> f64 {
-    let n_charts = plan_charts(cells).len().min(MOST_CHARTS);
-    let n_costs = match is_wanted(cells, pareto) {
-        true => COSTS.len(),
-        false => 0,
-    };
-    // With the confusion matrix and the sample touches.
-    let n_pictures = n_charts + n_costs + 2;
-    let n_threads = rayon::current_num_threads();
-    let n_in_turn = n_pictures.div_ceil(n_threads);
-    REST_S + PICTURE_S * n_in_turn as f64 + samples_s / n_threads as f64
-}
-
-/// Seconds for one picture's PNG and SVG on one core of a 2-core x86-64 server.
-const PICTURE_S: f64 = 0.33;
-/// Seconds for tables and the page.
-const REST_S: f64 = 0.05;
 /// What accuracy is charted against.
 const COSTS: [Cost; 2] = [Cost::Training, Cost::Prediction];
 

@@ -4,10 +4,10 @@
 //! other varying axes (the ratio, when only m and the array are chosen) follows them and gets no place of its own. Axes of the
 //! signal that leave their first values one at a time share one place: their cells are told by what happens to the signal.
 
-use crate::report::axis::{AXES, Axis, AxisValue};
+use crate::report::axis::{Axis, AxisValue, axes_of};
 use crate::report::signal_axis::IDEAL_SIGNAL;
+use crate::study::strength_columns;
 use crate::study::table::Cell;
-use crate::study::{IMPERFECTIONS, Imperfection};
 use std::collections::HashMap;
 
 /// An axis and the values it takes, ascending (numbers) or in order of appearance (words).
@@ -22,7 +22,7 @@ pub struct Levels {
 /// The settings of a set of cells, sorted by whether they vary.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Settings {
-    /// Axes that vary by themselves, in the order of [`AXES`].
+    /// Axes that vary by themselves, in the order of [`axes_of`].
     pub varying: Vec<Levels>,
     /// Axes that vary only because others do.
     pub following: Vec<Levels>,
@@ -30,6 +30,8 @@ pub struct Settings {
     pub one_at_a_time: Vec<Levels>,
     /// Axes with one value, but for those that [go without saying](Levels::go_without_saying).
     pub fixed: Vec<Levels>,
+    /// All axes in the order in which tables show them.
+    order: Vec<Axis>,
 }
 
 impl Levels {
@@ -83,9 +85,9 @@ impl Levels {
             Axis::OverTime => "all frames",
             Axis::Features => "raw",
             // A reader expects an ideal skin.
-            Axis::Imperfection(Imperfection::Quantisation) => "none",
-            Axis::Imperfection(Imperfection::Scan) => "0 ms",
-            Axis::Imperfection(_) => "0 %",
+            Axis::Column(column) if strength_columns().contains(column) => {
+                return self.numbers() == Some(vec![0.0]);
+            }
             Axis::TestedOn => "the same skin",
             Axis::Mislabelled => "0 %",
             Axis::ClassImbalance => "1:1",
@@ -102,7 +104,8 @@ impl Levels {
 impl Settings {
     /// Sorts the axes of some cells.
     pub fn of(cells: &[&Cell]) -> Self {
-        let all = AXES.map(|axis| Levels::of(axis, cells));
+        let axes = axes_of(cells);
+        let all: Vec<Levels> = axes.iter().map(|&axis| Levels::of(axis, cells)).collect();
         let columns = Columns::of(&all, cells);
         let (mut varying, mut fixed): (Vec<Levels>, Vec<Levels>) =
             all.into_iter().partition(|levels| levels.values.len() > 1);
@@ -129,7 +132,7 @@ impl Settings {
             Axis::Classifier,
         ]
         .into_iter()
-        .chain(IMPERFECTIONS.map(Axis::Imperfection))
+        .chain(strength_columns().iter().map(Axis::Column))
         .chain([Axis::TestedOn])
         {
             let others: Vec<Axis> = varying
@@ -152,7 +155,12 @@ impl Settings {
             following,
             one_at_a_time,
             fixed,
+            order: axes,
         }
+    }
+
+    fn place(&self, axis: Axis) -> usize {
+        self.order.iter().position(|&a| a == axis).unwrap_or(0)
     }
 
     /// The axes whose numbers a chart can run along, or a sentence: those that vary by themselves, each by its own.
@@ -173,7 +181,7 @@ impl Settings {
     pub fn condition_words(&self, cell: &Cell) -> String {
         let is_ideal = |levels: &&Levels| match levels.axis {
             Axis::Noise => cell.noise_std == 0.0,
-            Axis::Imperfection(kind) => cell.strengths().of(kind).unwrap_or(0.0) == 0.0,
+            Axis::Column(column) => cell.strengths.of(&column.name).unwrap_or(0.0) == 0.0,
             _ => false,
         };
         let is_ideal = |levels: &&Levels| self.one_at_a_time.contains(*levels) && is_ideal(levels);
@@ -189,15 +197,15 @@ impl Settings {
     pub fn choice_words(&self, cell: &Cell) -> String {
         let mut axes: Vec<&Levels> = self.single().chain(&self.following).collect();
         axes.retain(|levels| !levels.axis.is_condition());
-        axes.sort_by_key(|levels| place(levels.axis));
+        axes.sort_by_key(|levels| self.place(levels.axis));
         let words: Vec<String> = axes.iter().map(|levels| levels.axis.phrase(cell)).collect();
         words.join(", ")
     }
 
-    /// The axes that vary, by themselves or with others, in the order of [`AXES`].
+    /// The axes that vary, by themselves or with others, in the order of [`axes_of`].
     pub fn shown(&self) -> Vec<&Levels> {
         let mut shown: Vec<&Levels> = self.varying.iter().chain(&self.following).collect();
-        shown.sort_by_key(|levels| place(levels.axis));
+        shown.sort_by_key(|levels| self.place(levels.axis));
         shown
     }
 }
@@ -212,7 +220,11 @@ pub fn unbroken_parts(parts: &[String]) -> String {
 fn one_at_a_time(varying: &[Levels], cells: &[&Cell]) -> Vec<Levels> {
     let of_signal = varying.iter().filter(|levels| {
         let axis = levels.axis;
-        matches!(axis, Axis::Noise | Axis::Smoothing | Axis::Imperfection(_))
+        match axis {
+            Axis::Noise | Axis::Smoothing => true,
+            Axis::Column(column) => strength_columns().contains(column),
+            _ => false,
+        }
     });
     let of_signal: Vec<Levels> = of_signal.cloned().collect();
     let differs = |cell: &Cell, axis: Axis| axis.value(cell) != axis.value(cells[0]);
@@ -229,15 +241,16 @@ fn one_at_a_time(varying: &[Levels], cells: &[&Cell]) -> Vec<Levels> {
 /// Whether equal values on the other axes always come with equal values on this one.
 fn is_function_of(axis: Axis, others: &[Axis], columns: &Columns) -> bool {
     let mut known: HashMap<Vec<usize>, usize> = HashMap::new();
-    let column = &columns.0[place(axis)];
+    let column = columns.of_axis(axis);
+    let others: Vec<&[usize]> = others.iter().map(|&other| columns.of_axis(other)).collect();
     (0..column.len()).all(|cell| {
-        let key = others.iter().map(|&other| columns.0[place(other)][cell]);
+        let key = others.iter().map(|other| other[cell]);
         *known.entry(key.collect()).or_insert(column[cell]) == column[cell]
     })
 }
 
-/// For each axis in the order of [`AXES`], the number of each cell's value among the axis's levels.
-struct Columns(Vec<Vec<usize>>);
+/// For each axis in the order of [`axes_of`], the number of each cell's value among the axis's levels.
+struct Columns(Vec<(Axis, Vec<usize>)>);
 
 impl Columns {
     fn of(levels: &[Levels], cells: &[&Cell]) -> Self {
@@ -246,14 +259,15 @@ impl Columns {
                 let value = levels.axis.value(cell);
                 levels.values.iter().position(|v| *v == value).unwrap_or(0)
             });
-            numbers.collect()
+            (levels.axis, numbers.collect())
         };
         Self(levels.iter().map(column).collect())
     }
-}
 
-fn place(axis: Axis) -> usize {
-    AXES.iter().position(|&a| a == axis).unwrap_or(0)
+    fn of_axis(&self, axis: Axis) -> &[usize] {
+        let found = self.0.iter().find(|(known, _)| *known == axis);
+        found.map_or(&[], |(_, column)| column)
+    }
 }
 
 fn numbers(values: &[AxisValue]) -> Option<Vec<f64>> {
@@ -263,6 +277,7 @@ fn numbers(values: &[AxisValue]) -> Option<Vec<f64>> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::study::Strengths;
 
     fn cell(pitch_mm: f64, nx: usize, measurements: usize) -> Cell {
         Cell {
@@ -311,7 +326,7 @@ mod tests {
     fn one_imperfection_at_a_time() -> Vec<Cell> {
         let at = |noise_std, gain| Cell {
             noise_std,
-            gain_std: Some(gain),
+            strengths: Strengths::default().with("gain_std", Some(gain)),
             ..cell(2.0, 32, 64)
         };
         vec![at(0.0, 0.0), at(0.1, 0.0), at(0.0, 0.2), at(0.0, 0.5)]
@@ -324,7 +339,7 @@ mod tests {
         let all: Vec<&Cell> = cells.iter().collect();
         let settings = Settings::of(&all);
         let single: Vec<Axis> = settings.single().map(|levels| levels.axis).collect();
-        let gain = Axis::Imperfection(Imperfection::Gain);
+        let gain = Axis::Column(&strength_columns()[2]);
         assert_eq!(single, [Axis::Noise, gain]);
         let words: Vec<String> = settings.varying[0]
             .values
@@ -350,7 +365,7 @@ mod tests {
     fn an_ideal_skin_goes_without_saying_and_any_other_does_not() {
         let told = |gain_std| {
             let cell = Cell {
-                gain_std,
+                strengths: Strengths::default().with("gain_std", gain_std),
                 ..cell(2.0, 32, 64)
             };
             let settings = Settings::of(&[&cell]);

@@ -4,6 +4,7 @@ use crate::report::axis::{Axis, AxisValue};
 use crate::report::drawing::Area;
 use crate::report::text_width::text_width;
 use crate::report::varying::Levels;
+use crate::table::Role;
 
 /// Font size of tick labels.
 pub(super) const TICK_SIZE: u32 = 12;
@@ -103,21 +104,21 @@ fn is_logarithmic(axis: Axis, numbers: &[f64]) -> bool {
 }
 
 fn is_of_roots(axis: Axis, numbers: &[f64]) -> bool {
-    let is_strength = matches!(axis, Axis::Imperfection(_));
+    let is_strength = matches!(axis, Axis::Column(column) if column.role == Role::Condition);
     is_strength && numbers.iter().all(|&number| number >= 0.0)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::study::IMPERFECTIONS;
     use crate::study::table::Cell;
+    use crate::study::{Strengths, strength_columns};
 
     #[test]
     fn strengths_from_nothing_to_absurd_all_find_room_for_their_labels() {
         let strengths = [0.0, 0.001, 0.005, 0.02, 0.1, 0.3];
         let cells = strengths.map(|strength| Cell {
-            stuck_fraction: Some(strength),
+            strengths: Strengths::default().with("stuck_fraction", Some(strength)),
             ..crate::study::table::tests::cell()
         });
         let cells: Vec<&Cell> = cells.iter().collect();
@@ -128,7 +129,7 @@ mod tests {
             height: 300.0,
         };
         let scale = XScale::of(
-            &Levels::of(Axis::Imperfection(IMPERFECTIONS[5]), &cells),
+            &Levels::of(Axis::Column(&strength_columns()[5]), &cells),
             frame,
         );
         assert!(scale.label_rows.iter().all(Option::is_some));

@@ -1,14 +1,10 @@
 //! Signal steps in the order in which the study lists them.
 
-use super::drift::{Zeros, time_of};
-use super::{
-    Crosstalk, Drift, Faults, GainMismatch, Hysteresis, Noise, Quantisation, Quantity, Scan,
-    SignalStep, Smoothing,
-};
-use super::{drift, faults, force, gain, noise};
+use super::{Effect, Noise, Quantity, SignalStep, Skin, Smoothing, TouchRead, force, noise};
 use crate::error::{Error, Result};
 use crate::random::Seed;
 use crate::world::{Grid, Patch, Taxel};
+use std::sync::Arc;
 
 /// Checked signal steps, prepared for one patch. The empty chain leaves deflections as they are.
 ///
@@ -62,13 +58,7 @@ enum Prepared {
     Force,
     Noise { std: f64, place: u64 },
     Smoothing(Smoothing),
-    Hysteresis(Hysteresis),
-    Crosstalk(Crosstalk),
-    Gain(Vec<f64>),
-    Drift(Zeros),
-    Faults(Vec<(usize, f64)>),
-    Scan(Scan),
-    Quantisation(Quantisation),
+    Error(Arc<dyn Effect>),
 }
 
 impl Chain {
@@ -89,9 +79,10 @@ impl Chain {
         let mut n_noises = 0;
         for step in steps {
             n_noises += u64::from(matches!(step, SignalStep::Noise(_)));
+            let n_before = chain.steps.len();
             let prepared = chain.prepare(step, n_noises)?;
             chain.steps.extend(prepared);
-            if let Some(Prepared::Hysteresis(_)) = chain.steps.last() {
+            if chain.steps.len() > n_before && step.remembers() {
                 chain.n_remembering = chain.steps.len();
             }
         }
@@ -166,12 +157,7 @@ impl Chain {
 
     fn apply_step(&self, step: &Prepared, recording: Recording, touch: &Seed, scratch: &mut [f64]) {
         let n_taxels = self.n_taxels();
-        let Recording {
-            frames, interval, ..
-        } = recording;
-        let each = |frames: &mut [f64], act: &mut dyn FnMut(&mut [f64])| {
-            frames.chunks_exact_mut(n_taxels).for_each(act);
-        };
+        let frames = recording.frames;
         match step {
             Prepared::Force => force(frames, recording.rates, &self.taxel),
             Prepared::Noise { std, place } => {
@@ -183,25 +169,18 @@ impl Chain {
                 }
             }
             Prepared::Smoothing(smoothing) => {
-                each(frames, &mut |frame| smoothing.apply(frame, scratch));
+                let frames = frames.chunks_exact_mut(n_taxels);
+                frames.for_each(|frame| smoothing.apply(frame, scratch));
             }
-            Prepared::Hysteresis(hysteresis) => hysteresis.apply(frames, n_taxels),
-            Prepared::Crosstalk(crosstalk) => {
-                each(frames, &mut |frame| crosstalk.apply(frame, scratch));
+            Prepared::Error(effect) => {
+                let touch = TouchRead {
+                    n_taxels,
+                    n_before: recording.n_before,
+                    interval: recording.interval,
+                    seed: touch,
+                };
+                effect.apply(frames, &touch, scratch);
             }
-            Prepared::Gain(gains) => each(frames, &mut |frame| gain::multiply(frame, gains)),
-            Prepared::Drift(zeros) => {
-                let now = &mut scratch[..n_taxels];
-                zeros.at(time_of(touch), now);
-                each(frames, &mut |frame| drift::add(frame, now));
-            }
-            Prepared::Faults(taxels) => each(frames, &mut |frame| faults::replace(frame, taxels)),
-            Prepared::Scan(scan) => {
-                if let Some(interval) = interval {
-                    scan.apply(frames, n_taxels, interval);
-                }
-            }
-            Prepared::Quantisation(quantisation) => quantisation.apply(frames),
         }
     }
 
@@ -211,44 +190,28 @@ impl Chain {
 
     /// The step for frames as they are by now; none if it has no strength.
     fn prepare(&mut self, step: &SignalStep, n_noises: u64) -> Result<Option<Prepared>> {
-        let full_scale = self.quantity.full_scale(&self.taxel);
-        let n_taxels = self.n_taxels();
-        let has_strength = match *step {
-            SignalStep::Force | SignalStep::Noise(_) | SignalStep::Smoothing { .. } => true,
-            SignalStep::Hysteresis { width: strength }
-            | SignalStep::Crosstalk { leak: strength }
-            | SignalStep::Gain(GainMismatch { std: strength, .. })
-            | SignalStep::Drift(Drift { std: strength, .. })
-            | SignalStep::Scan { seconds: strength } => strength != 0.0,
-            SignalStep::Faults(Faults { dead, stuck, .. }) => dead != 0.0 || stuck != 0.0,
-            SignalStep::Quantisation { bits } => bits != 0,
-        };
-        if !has_strength {
-            return Ok(None);
-        }
-        let prepared = match step {
+        Ok(Some(match step {
             SignalStep::Force => self.prepare_force()?,
             SignalStep::Noise(noise) => self.prepare_noise(noise, n_noises)?,
             SignalStep::Smoothing { width } => self.prepare_smoothing(*width)?,
-            SignalStep::Hysteresis { width } => {
-                Prepared::Hysteresis(Hysteresis::new(*width, full_scale)?)
+            SignalStep::Error { strengths, .. } if strengths.iter().all(|&s| s == 0.0) => {
+                return Ok(None);
             }
-            SignalStep::Crosstalk { leak } => {
-                self.scratch_len = self.scratch_len.max(n_taxels);
-                Prepared::Crosstalk(Crosstalk::new(*leak, &self.grid)?)
+            SignalStep::Error {
+                error,
+                strengths,
+                skin,
+            } => {
+                let skin = Skin {
+                    grid: self.grid,
+                    full_scale: self.quantity.full_scale(&self.taxel),
+                    name: *skin,
+                };
+                let effect = (error.about().prepare)(strengths, &skin)?;
+                self.scratch_len = self.scratch_len.max(effect.scratch_len());
+                Prepared::Error(effect.into())
             }
-            SignalStep::Gain(mismatch) => Prepared::Gain(mismatch.gains(n_taxels)?),
-            SignalStep::Drift(drift) => {
-                self.scratch_len = self.scratch_len.max(n_taxels);
-                Prepared::Drift(drift.zeros(n_taxels, full_scale)?)
-            }
-            SignalStep::Faults(faults) => Prepared::Faults(faults.taxels(n_taxels, full_scale)?),
-            SignalStep::Scan { seconds } => Prepared::Scan(Scan::new(*seconds)?),
-            SignalStep::Quantisation { bits } => {
-                Prepared::Quantisation(Quantisation::new(*bits, full_scale)?)
-            }
-        };
-        Ok(Some(prepared))
+        }))
     }
 
     fn prepare_force(&mut self) -> Result<Prepared> {

@@ -6,6 +6,7 @@
 //! but adds none. Four neighbours and not eight, because coupling falls with distance: a diagonal one gets its share by
 //! leaking twice.
 
+use super::sensor_error::{Effect, ErrorAbout, Strength, TouchRead};
 use super::strength::fraction;
 use crate::error::Result;
 use crate::world::Grid;
@@ -35,7 +36,7 @@ impl Crosstalk {
     ///
     /// # Panics
     /// When the frame has another size, or the scratch is shorter than the frame.
-    pub fn apply(&self, frame: &mut [f64], scratch: &mut [f64]) {
+    pub fn spread(&self, frame: &mut [f64], scratch: &mut [f64]) {
         assert_eq!(frame.len(), self.nx * self.ny, "one value for each taxel");
         let felt = &mut scratch[..frame.len()];
         felt.copy_from_slice(frame);
@@ -52,6 +53,23 @@ impl Crosstalk {
     }
 }
 
+pub(super) const ABOUT: ErrorAbout = ErrorAbout::new(
+    "crosstalk",
+    &[Strength::fraction("crosstalk", "crosstalk")],
+    |&[leak, _], skin| Ok(Box::new(Crosstalk::new(leak, &skin.grid)?)),
+);
+
+impl Effect for Crosstalk {
+    fn scratch_len(&self) -> usize {
+        self.nx * self.ny
+    }
+
+    fn apply(&self, frames: &mut [f64], touch: &TouchRead, scratch: &mut [f64]) {
+        let frames = frames.chunks_exact_mut(touch.n_taxels);
+        frames.for_each(|frame| self.spread(frame, scratch));
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -61,7 +79,7 @@ mod tests {
         let pitch = 2e-3;
         let crosstalk = Crosstalk::new(leak, &Grid { nx, ny, pitch }).unwrap();
         let mut out = frame.to_vec();
-        crosstalk.apply(&mut out, &mut vec![f64::NAN; nx * ny + 3]);
+        crosstalk.spread(&mut out, &mut vec![f64::NAN; nx * ny + 3]);
         out
     }
 

@@ -9,6 +9,7 @@
 //! so the zero at any time is known without the times before it, and touches need no order. 64 terms hold 99.7 % of the
 //! variance; c makes the variance at the end σ² exactly.
 
+use super::sensor_error::{Effect, ErrorAbout, Strength, TouchRead};
 use super::strength::not_negative;
 use crate::error::Result;
 use crate::random::Seed;
@@ -76,21 +77,52 @@ impl Zeros {
     }
 }
 
-/// Adds its zero to each taxel's value.
-pub(super) fn add(frame: &mut [f64], zeros: &[f64]) {
-    for (value, zero) in frame.iter_mut().zip(zeros) {
-        *value += zero;
-    }
-}
-
 /// When a touch happens: touches come in random order, evenly over the session.
-pub(super) fn time_of(touch: &Seed) -> f64 {
+fn time_of(touch: &Seed) -> f64 {
     touch.named("time").rng().r#gen()
 }
 
 /// (k − ½) π for the mode's number from 0.
 fn frequency(mode: usize) -> f64 {
     (mode as f64 + 0.5) * PI
+}
+
+pub(super) const ABOUT: ErrorAbout = ErrorAbout {
+    is_of_skin: true,
+    taxel_s: |n_frames| 1.7e-8 / n_frames as f64,
+    ..ErrorAbout::new(
+        "drift",
+        &[Strength::share(
+            "drift_std_full_scale",
+            "drift",
+            "zero or a positive fraction of the full scale",
+        )],
+        |&[std, _], skin| {
+            let drift = Drift {
+                std,
+                skin: skin.name,
+            };
+            Ok(Box::new(
+                drift.zeros(skin.grid.n_taxels(), skin.full_scale)?,
+            ))
+        },
+    )
+};
+
+impl Effect for Zeros {
+    fn scratch_len(&self) -> usize {
+        self.n_taxels
+    }
+
+    fn apply(&self, frames: &mut [f64], touch: &TouchRead, scratch: &mut [f64]) {
+        let now = &mut scratch[..self.n_taxels];
+        self.at(time_of(touch.seed), now);
+        for frame in frames.chunks_exact_mut(self.n_taxels) {
+            for (value, zero) in frame.iter_mut().zip(&*now) {
+                *value += zero;
+            }
+        }
+    }
 }
 
 #[cfg(test)]

@@ -3,6 +3,7 @@
 //! Which taxels, and at which levels, belongs to the skin. Taxels fail in one random order of the skin, the dead from its
 //! front and the stuck from its back: a skin with more faults has all those of a skin with fewer.
 
+use super::sensor_error::{Effect, ErrorAbout, Strength, TouchRead};
 use super::strength::fraction;
 use crate::error::{Error, Result};
 use crate::random::Seed;
@@ -52,10 +53,37 @@ impl Faults {
     }
 }
 
-/// What each taxel at fault reads takes the place of what it feels.
-pub(super) fn replace(frame: &mut [f64], faults: &[(usize, f64)]) {
-    for &(taxel, level) in faults {
-        frame[taxel] = level;
+pub(super) const ABOUT: ErrorAbout = ErrorAbout {
+    is_of_skin: true,
+    ..ErrorAbout::new(
+        "faults",
+        &[
+            Strength::fraction("dead_fraction", "dead taxels"),
+            Strength::fraction("stuck_fraction", "stuck taxels"),
+        ],
+        |&[dead, stuck], skin| {
+            let faults = Faults {
+                dead,
+                stuck,
+                skin: skin.name,
+            };
+            let taxels = faults.taxels(skin.grid.n_taxels(), skin.full_scale)?;
+            Ok(Box::new(Levels(taxels)))
+        },
+    )
+};
+
+/// What each taxel at fault reads in place of what it feels.
+#[derive(Debug)]
+struct Levels(Vec<(usize, f64)>);
+
+impl Effect for Levels {
+    fn apply(&self, frames: &mut [f64], touch: &TouchRead, _: &mut [f64]) {
+        for frame in frames.chunks_exact_mut(touch.n_taxels) {
+            for &(taxel, level) in &self.0 {
+                frame[taxel] = level;
+            }
+        }
     }
 }
 

@@ -3,6 +3,7 @@
 //! xᵢ ← gᵢ xᵢ with gᵢ = exp(s zᵢ − s²/2), zᵢ ~ N(0, 1), s² = ln(1 + std²): log-normal gains of mean 1 and standard
 //! deviation `std`, above zero at any strength. Imaging calls this fixed-pattern noise, \[SD\] mismatching.
 
+use super::sensor_error::{Effect, ErrorAbout, Strength, TouchRead};
 use super::strength::not_negative;
 use crate::error::Result;
 use crate::random::Seed;
@@ -34,10 +35,36 @@ impl GainMismatch {
     }
 }
 
-/// Multiplies each value by its taxel's gain.
-pub(super) fn multiply(frame: &mut [f64], gains: &[f64]) {
-    for (value, gain) in frame.iter_mut().zip(gains) {
-        *value *= gain;
+pub(super) const ABOUT: ErrorAbout = ErrorAbout {
+    is_of_skin: true,
+    ..ErrorAbout::new(
+        "gain",
+        &[Strength::share(
+            "gain_std",
+            "gain mismatch",
+            "zero or a positive number",
+        )],
+        |&[std, _], skin| {
+            let mismatch = GainMismatch {
+                std,
+                skin: skin.name,
+            };
+            Ok(Box::new(Gains(mismatch.gains(skin.grid.n_taxels())?)))
+        },
+    )
+};
+
+/// One gain for each taxel.
+#[derive(Debug)]
+struct Gains(Vec<f64>);
+
+impl Effect for Gains {
+    fn apply(&self, frames: &mut [f64], touch: &TouchRead, _: &mut [f64]) {
+        for frame in frames.chunks_exact_mut(touch.n_taxels) {
+            for (value, gain) in frame.iter_mut().zip(&self.0) {
+                *value *= gain;
+            }
+        }
     }
 }
 

@@ -11,6 +11,7 @@
 //!   after one of half the depth, until it is pressed deeper. So what a touch reads depends on the touches before it. (Skins that
 //!   recover with time lie between this and a fresh skin.)
 
+use super::sensor_error::{Effect, ErrorAbout, Strength, TouchRead};
 use crate::error::{Error, Result};
 
 /// Play operators. Fewer make a cornered loop; more cost time.
@@ -48,7 +49,7 @@ impl Hysteresis {
     ///
     /// # Panics
     /// When `n_taxels` is zero or the frames are not whole.
-    pub fn apply(&self, frames: &mut [f64], n_taxels: usize) {
+    pub fn follow(&self, frames: &mut [f64], n_taxels: usize) {
         assert!(
             frames.len().is_multiple_of(n_taxels),
             "one value for each taxel"
@@ -68,6 +69,26 @@ impl Hysteresis {
     }
 }
 
+pub(super) const ABOUT: ErrorAbout = ErrorAbout {
+    remembers: true,
+    taxel_s: |_| 1.4e-8,
+    ..ErrorAbout::new(
+        "hysteresis",
+        &[Strength {
+            is_allowed: |width| (0.0..=MAX_WIDTH).contains(&width),
+            allowed: "a fraction of the full scale, 0 to 0.25",
+            ..Strength::fraction("hysteresis_full_scale", "hysteresis")
+        }],
+        |&[width, _], skin| Ok(Box::new(Hysteresis::new(width, skin.full_scale)?)),
+    )
+};
+
+impl Effect for Hysteresis {
+    fn apply(&self, frames: &mut [f64], touch: &TouchRead, _: &mut [f64]) {
+        self.follow(frames, touch.n_taxels);
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -78,7 +99,7 @@ mod tests {
     fn read(width: f64, felt: &[f64]) -> Vec<f64> {
         let mut frames = felt.to_vec();
         let hysteresis = Hysteresis::new(width, FULL_SCALE).unwrap();
-        hysteresis.apply(&mut frames, 1);
+        hysteresis.follow(&mut frames, 1);
         frames
     }
 
@@ -147,7 +168,7 @@ mod tests {
     fn each_taxel_has_a_history_of_its_own() {
         let hysteresis = Hysteresis::new(0.1, FULL_SCALE).unwrap();
         let mut frames = [4e-3, 1e-3, 0.0, 3e-3, 2e-3, 0.0];
-        hysteresis.apply(&mut frames, 2);
+        hysteresis.follow(&mut frames, 2);
         let first = read(0.1, &[4e-3, 0.0, 2e-3]);
         let second = read(0.1, &[1e-3, 3e-3, 0.0]);
         assert_eq!([frames[0], frames[2], frames[4]], first[..]);

@@ -8,15 +8,15 @@
 //! | [`Force`](SignalStep::Force) | fᵢ = max(0, k δᵢ + c δ̇ᵢ) where δᵢ > 0, else 0 \[BT\] | k N/m, c N·s/m, δ m, δ̇ m/s |
 //! | [`Noise`](SignalStep::Noise) | xᵢ ← xᵢ + σ zᵢ, zᵢ ~ N(0, 1), independent | σ in the frame's unit |
 //! | [`Smoothing`](SignalStep::Smoothing) | x ← G_w ∗ x along y, then along x | w metres |
-//! | [`Hysteresis`](SignalStep::Hysteresis) | x ← (1 − 4w) x + w Σⱼ Pⱼ\[x\], Pⱼ play operators over time | w of the full scale |
-//! | [`Crosstalk`](SignalStep::Crosstalk) | xᵢ ← (1 − κ) xᵢ + κ/4 Σ xⱼ over four neighbours | κ a fraction |
-//! | [`Scan`](SignalStep::Scan) | xᵢ(t) ← xᵢ(t + T i/n), n taxels read one after another | T seconds |
-//! | [`Gain`](SignalStep::Gain) | xᵢ ← gᵢ xᵢ, g log-normal of mean 1 | std of g |
-//! | [`Drift`](SignalStep::Drift) | xᵢ ← xᵢ + σ Wᵢ(t), W a Wiener process, t the touch's time | σ of the full scale |
-//! | [`Faults`](SignalStep::Faults) | xᵢ ← 0 (dead) or a level of its own (stuck) | fractions of taxels |
-//! | [`Quantisation`](SignalStep::Quantisation) | x ← q round(x / q), clipped to the full scale | b bits |
+//! | [`Hysteresis`](SensorError::Hysteresis) | x ← (1 − 4w) x + w Σⱼ Pⱼ\[x\], Pⱼ play operators over time | w of the full scale |
+//! | [`Crosstalk`](SensorError::Crosstalk) | xᵢ ← (1 − κ) xᵢ + κ/4 Σ xⱼ over four neighbours | κ a fraction |
+//! | [`Scan`](SensorError::Scan) | xᵢ(t) ← xᵢ(t + T i/n), n taxels read one after another | T seconds |
+//! | [`Gain`](SensorError::Gain) | xᵢ ← gᵢ xᵢ, g log-normal of mean 1 | std of g |
+//! | [`Drift`](SensorError::Drift) | xᵢ ← xᵢ + σ Wᵢ(t), W a Wiener process, t the touch's time | σ of the full scale |
+//! | [`Faults`](SensorError::Faults) | xᵢ ← 0 (dead) or a level of its own (stuck) | fractions of taxels |
+//! | [`Quantisation`](SensorError::Quantisation) | x ← q round(x / q), clipped to the full scale | b bits |
 //!
-//! The last seven are what real skins do to a signal: what \[SD\] calls mismatching, drift, hysteresis and crosstalk, and
+//! The others are what real skins do to a signal: what \[SD\] calls mismatching, drift, hysteresis and crosstalk, and
 //! what readers add. A step of no strength is exactly as if it were not listed. A chain that follows the signal's way
 //! lists them as above, noise after drift: the material first, then what each taxel is read at, the converter last.
 //!
@@ -33,18 +33,24 @@
 //! recording of one: read at rest, by a skin that nothing has touched before.
 
 mod chain;
-mod crosstalk;
-mod drift;
-mod faults;
 mod force;
-mod gain;
-mod hysteresis;
 mod noise;
-mod quantisation;
-mod scan;
+#[macro_use]
+mod sensor_error;
 mod smoothing;
 mod step;
 mod strength;
+
+// Everything that a study may say of a sensor error follows from its line here and from the file that it names.
+sensor_errors! {
+    Hysteresis hysteresis "Loading and unloading read differently.";
+    Crosstalk crosstalk "Values leak to the neighbours.";
+    Gain gain "Each taxel has its own gain.";
+    Drift drift "Each taxel's zero drifts from touch to touch.";
+    Faults faults "Some taxels are dead or stuck.";
+    Scan scan "Taxels are read one after another.";
+    Quantisation quantisation "A converter clips and rounds.";
+}
 
 pub use chain::{Chain, Recording, Scratch};
 pub use crosstalk::Crosstalk;
@@ -56,6 +62,7 @@ pub use hysteresis::Hysteresis;
 pub use noise::{Noise, NoiseUnit};
 pub use quantisation::Quantisation;
 pub use scan::Scan;
+pub use sensor_error::{Effect, ErrorAbout, MOST_STRENGTHS, Skin, Strength, TouchRead};
 pub use smoothing::Smoothing;
 pub use step::SignalStep;
 

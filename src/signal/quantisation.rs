@@ -3,6 +3,7 @@
 //! x ← q round(min(max(x, 0), X) / q), q = X / (2ᵇ − 1): 2ᵇ codes from 0 to the full scale X, both included. What is outside
 //! reads as the nearest end: a converter clips as well as it rounds.
 
+use super::sensor_error::{Effect, ErrorAbout, Strength, TouchRead};
 use crate::error::{Error, Result};
 
 /// The most bits. A finer step is below anything that a touch could change.
@@ -31,11 +32,33 @@ impl Quantisation {
     }
 
     /// Clips and rounds each value.
-    pub fn apply(&self, frame: &mut [f64]) {
+    pub fn convert(&self, frame: &mut [f64]) {
         for value in frame {
             let code = ((*value / self.full_scale).clamp(0.0, 1.0) * self.last).round();
             *value = code / self.last * self.full_scale;
         }
+    }
+}
+
+pub(super) const ABOUT: ErrorAbout = ErrorAbout {
+    taxel_s: |_| 3e-9,
+    ..ErrorAbout::new(
+        "quantisation",
+        &[Strength {
+            key: "adc_bits",
+            words: "converter",
+            unit: "bits",
+            is_whole: true,
+            is_allowed: |bits| bits.fract() == 0.0 && (0.0..=MAX_BITS as f64).contains(&bits),
+            allowed: "a whole number of bits, 1 to 24, or 0 for no converter",
+        }],
+        |&[bits, _], skin| Ok(Box::new(Quantisation::new(bits as u32, skin.full_scale)?)),
+    )
+};
+
+impl Effect for Quantisation {
+    fn apply(&self, frames: &mut [f64], _: &TouchRead, _: &mut [f64]) {
+        self.convert(frames);
     }
 }
 
@@ -45,7 +68,7 @@ mod tests {
 
     fn converted(bits: u32, frame: &[f64]) -> Vec<f64> {
         let mut out = frame.to_vec();
-        Quantisation::new(bits, 5e-3).unwrap().apply(&mut out);
+        Quantisation::new(bits, 5e-3).unwrap().convert(&mut out);
         out
     }
 

@@ -5,6 +5,7 @@
 //! Between the frames of a touch the press is interpolated linearly; after the last one it rests. So a touch of one frame,
 //! and the last frame of any touch, is read at rest and not changed; nor is a touch that waits at each depth.
 
+use super::sensor_error::{Effect, ErrorAbout, Strength, TouchRead};
 use super::strength::not_negative;
 use crate::error::Result;
 
@@ -28,7 +29,7 @@ impl Scan {
     ///
     /// # Panics
     /// When `n_taxels` is zero or the frames are not whole.
-    pub fn apply(&self, frames: &mut [f64], n_taxels: usize, interval: f64) {
+    pub fn read_late(&self, frames: &mut [f64], n_taxels: usize, interval: f64) {
         assert!(
             frames.len().is_multiple_of(n_taxels),
             "one value for each taxel"
@@ -49,6 +50,34 @@ impl Scan {
     }
 }
 
+/// Seconds in a millisecond.
+const MS: f64 = 1e-3;
+
+pub(super) const ABOUT: ErrorAbout = ErrorAbout {
+    needs_motion: true,
+    taxel_s: |_| 5e-9,
+    ..ErrorAbout::new(
+        "scan",
+        &[Strength {
+            unit: "ms",
+            ..Strength::share(
+                "scan_time_ms",
+                "scan time",
+                "zero or a positive number of milliseconds",
+            )
+        }],
+        |&[time_ms, _], _| Ok(Box::new(Scan::new(time_ms * MS)?)),
+    )
+};
+
+impl Effect for Scan {
+    fn apply(&self, frames: &mut [f64], touch: &TouchRead, _: &mut [f64]) {
+        if let Some(interval) = touch.interval {
+            self.read_late(frames, touch.n_taxels, interval);
+        }
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -57,7 +86,7 @@ mod tests {
         let mut out = frames.to_vec();
         Scan::new(seconds)
             .unwrap()
-            .apply(&mut out, n_taxels, interval);
+            .read_late(&mut out, n_taxels, interval);
         out
     }
 

@@ -1,6 +1,7 @@
 //! The steps that a chain can have.
 
-use super::{Drift, Faults, GainMismatch, Noise};
+use super::{MOST_STRENGTHS, Noise, SensorError};
+use crate::random::Seed;
 
 /// One step from deflections to frames, as a study names it.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -14,30 +15,20 @@ pub enum SignalStep {
         /// σ of the Gaussian, metres, zero or positive.
         width: f64,
     },
-    /// Loading and unloading read differently.
-    Hysteresis {
-        /// Width of the loop between zero and full scale, in its middle: a fraction of the full scale, 0 to 0.25.
-        width: f64,
+    /// A sensor error.
+    Error {
+        /// Which.
+        error: SensorError,
+        /// Its [strengths](super::ErrorAbout::strengths), zero or more.
+        strengths: [f64; MOST_STRENGTHS],
+        /// The name of the skin that it belongs to.
+        skin: Seed,
     },
-    /// Values leak to the neighbours.
-    Crosstalk {
-        /// κ, the fraction that leaks, 0 to 1.
-        leak: f64,
-    },
-    /// Each taxel has its own gain.
-    Gain(GainMismatch),
-    /// Each taxel's zero wanders from touch to touch.
-    Drift(Drift),
-    /// Some taxels are dead or stuck.
-    Faults(Faults),
-    /// Taxels are read one after another.
-    Scan {
-        /// T, the time to read the whole array, seconds, zero or positive.
-        seconds: f64,
-    },
-    /// A converter clips and rounds.
-    Quantisation {
-        /// b, 1 to 24; 0 for no converter.
-        bits: u32,
-    },
+}
+
+impl SignalStep {
+    /// Whether what a touch reads depends on the touches before it.
+    pub(super) fn remembers(&self) -> bool {
+        matches!(self, Self::Error { error, .. } if error.about().remembers)
+    }
 }

@@ -15,6 +15,7 @@ use crate::toml_text::check_brackets;
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
+use std::sync::{Arc, Mutex};
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
@@ -49,6 +50,59 @@ pub struct Variant<S> {
     pub values: Vec<toml::Value>,
     /// The study.
     pub study: S,
+}
+
+/// Where a configuration is on the axes of its study.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct AxisValues {
+    /// The number of the combination, from 0.
+    pub number: usize,
+    /// The value on each axis.
+    pub values: Arc<[AxisValue]>,
+}
+
+/// A value on an axis, as tables have it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct AxisValue {
+    /// What the axis is.
+    pub column: &'static Column,
+    /// A number, a truth value, or a text; a list or a table is the text of it.
+    pub value: toml::Value,
+}
+
+impl AxisValue {
+    fn new(column: &Column, value: &toml::Value) -> Self {
+        use toml::Value::{Boolean, Float, Integer, String};
+        let column = known_column(column);
+        let value = match value {
+            Integer(_) | Float(_) | Boolean(_) | String(_) => value.clone(),
+            other => other.to_string().into(),
+        };
+        Self { column, value }
+    }
+
+    /// Of a column's text in a file.
+    pub fn of_text(column: &Column, text: &str) -> Self {
+        let number = || text.parse().ok().map(toml::Value::Integer);
+        let number = number().or_else(|| text.parse().ok().map(toml::Value::Float));
+        Self::new(column, &number.unwrap_or_else(|| text.into()))
+    }
+}
+
+/// A column that lives as long as the program, as written ones do; each is kept once.
+fn known_column(column: &Column) -> &'static Column {
+    static KNOWN: Mutex<Vec<&'static Column>> = Mutex::new(Vec::new());
+    let mut known = KNOWN.lock().unwrap_or_else(|broken| broken.into_inner());
+    if let Some(known) = known.iter().find(|known| **known == column) {
+        return known;
+    }
+    let name: &'static str = column.name.clone().into_owned().leak();
+    let column = Column {
+        name: name.into(),
+        ..column.clone()
+    };
+    known.push(Box::leak(Box::new(column)));
+    known[known.len() - 1]
 }
 
 /// A table with a value at a path of keys, in place of what was there; tables on the way are made.
@@ -246,7 +300,7 @@ impl StudyAxis {
         let (words, unit) = found.unwrap_or((last, ""));
         let words = words.replace('_', " ");
         let numbers: Option<Vec<f64>> = self.values.iter().map(number).collect();
-        Column::new(name, self.role(), words, unit, scale(numbers))
+        Column::new(name, self.role(), words, unit, scale(numbers)).optional()
     }
 
     fn role(&self) -> Role {
@@ -315,6 +369,36 @@ impl StudyAxes {
     /// Whether there are none.
     pub fn is_empty(&self) -> bool {
         self.0.is_empty()
+    }
+
+    /// The column of each, where the names of others are taken.
+    pub fn columns(&self, is_taken: impl Fn(&str) -> bool) -> Vec<Column> {
+        let last = |axis: &StudyAxis| axis.key.rsplit('.').next().map(str::to_owned);
+        let column = |axis: &StudyAxis| {
+            let is_shared = self
+                .0
+                .iter()
+                .filter(|other| last(other) == last(axis))
+                .count()
+                > 1;
+            axis.column(|name| is_shared || is_taken(name))
+        };
+        self.0.iter().map(column).collect()
+    }
+
+    /// The place of a combination in tables whose columns are these.
+    pub fn point(
+        &self,
+        columns: &[Column],
+        (number, values): (usize, &[toml::Value]),
+    ) -> AxisValues {
+        let values = columns.iter().zip(values);
+        AxisValues {
+            number,
+            values: values
+                .map(|(column, value)| AxisValue::new(column, value))
+                .collect(),
+        }
     }
 
     /// How many combinations of values there are.

@@ -1,51 +1,52 @@
-//! What a cell's results depend on, beside what all cells of a study share: its name in a journal.
+//! What the results of a family of cells depend on, beside what all cells of a study share: its name in a journal.
 //!
-//! Nothing in it says where the cell stands in its study, so that it keeps its name when an axis has more values. Nothing of a cell is
+//! Nothing in it says where its cells stand in their study, so that it keeps its name when an axis has more values. Nothing of a cell is
 //! drawn by its number either: streams go by the study's seed, the trial, and what is touched.
 
+use super::axes::AxisValues;
 use super::content_hash::ContentHash;
-use super::imperfection::{IMPERFECTIONS, TestedOn};
 use super::plan::Plan;
+use super::sensor_errors::{Strengths, TestedOn, all_strengths};
 use super::spec::StepSpec;
 use super::sweep::Group;
 use super::table::Cell;
 use crate::recognition::ClassifierKind;
+use crate::signal::Strength;
 
 /// Hexadecimal digits of a name. Fewer: two cells may be taken for each other.
 const DIGITS: usize = 24;
 
-/// The names of the cells of a [family](Group::families), in their order.
-pub fn cell_names(plan: &Plan, family: &[Cell]) -> Vec<String> {
+/// The name of a [family](Group::families): the same for the same cells of the same study.
+pub fn family_name(plan: &Plan, family: &[Cell]) -> String {
     let steps = active_steps(plan, &family[0]);
     let path = solved_together(family);
-    let name = |cell: &Cell| {
-        let said = format!("{:?} {steps:?} {path:?}", settings(plan, cell));
-        let mut digits = ContentHash::default().bytes(said).hex();
-        digits.truncate(DIGITS);
-        digits
-    };
-    family.iter().map(name).collect()
+    let settings = settings(plan, &family[0]);
+    let differ = family.iter().map(|cell| (cell.c, cell.fused_touches));
+    let differ: Vec<_> = differ.collect();
+    let said = format!("{settings:?} {steps:?} {path:?} {differ:?}");
+    let mut digits = ContentHash::default().bytes(said).hex();
+    digits.truncate(DIGITS);
+    digits
 }
 
 /// A cell without its number, and with all that is left out said: an axis that a study does not have is one whose value does nothing.
 fn settings(plan: &Plan, cell: &Cell) -> Cell {
-    let strength = |imperfection| Some(cell.strengths().of(imperfection).unwrap_or(0.0));
-    let [hysteresis, crosstalk, gain, drift, dead, stuck, scan, _] = IMPERFECTIONS.map(strength);
+    let said = |strengths: Strengths, (_, strength): (_, &Strength)| {
+        let value = strengths.of(strength.key).unwrap_or(0.0);
+        strengths.with(strength.key, Some(value))
+    };
     Cell {
         cell: 0,
-        hysteresis_full_scale: hysteresis,
-        crosstalk,
-        gain_std: gain,
-        drift_std_full_scale: drift,
-        dead_fraction: dead,
-        stuck_fraction: stuck,
-        scan_time_ms: scan,
-        adc_bits: Some(cell.adc_bits.unwrap_or(0)),
+        strengths: all_strengths().fold(cell.strengths, said),
         tested_on: Some(cell.tested_on.unwrap_or(TestedOn::SameSkin)),
         // All of a split's, which more trials may make fewer in a split of theirs.
         train_touches: match plan.spec.recognition.train_touches {
             None => 0,
             Some(_) => cell.train_touches,
+        },
+        variant: AxisValues {
+            number: 0,
+            ..cell.variant.clone()
         },
         ..cell.clone()
     }
@@ -53,14 +54,11 @@ fn settings(plan: &Plan, cell: &Cell) -> Cell {
 
 /// The steps of the signal that do something to the cell, in their order.
 fn active_steps(plan: &Plan, cell: &Cell) -> Vec<StepSpec> {
-    let strengths = cell.strengths();
     let is_active = |step: &&StepSpec| match step {
         StepSpec::Force => true,
         StepSpec::Noise => cell.noise_std != 0.0,
         StepSpec::Smoothing => cell.smoothing_mm != 0.0,
-        step => strengths
-            .present()
-            .any(|(imperfection, _)| imperfection.step() == **step),
+        StepSpec::Error(error) => cell.strengths.present().any(|(own, ..)| own == *error),
     };
     plan.steps.iter().filter(is_active).copied().collect()
 }

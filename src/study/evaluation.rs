@@ -1,6 +1,5 @@
 //! A family of cells in one trial: fit on training rows once for each C, answer to test touches once, decide for each k.
 
-use super::estimate::learning;
 use super::measurement::Measurements;
 use super::plan::Plan;
 use super::sweep::{Group, Sweep};
@@ -9,7 +8,6 @@ use super::training::{Fitted, Training};
 use crate::error::Result;
 use crate::random::Seed;
 use crate::recognition::dataset::{Dataset, dataset};
-use crate::recognition::fit_progress::FitProgress;
 use crate::recognition::fusion::{fuse_rows, fuse_scores};
 use crate::recognition::interval::Interval;
 use crate::recognition::metrics::ConfusionMatrix;
@@ -89,23 +87,12 @@ impl Answers {
 impl Trial<'_> {
     /// Fits and tests the cells of a [family](super::sweep::Group::families) on their leading measurements, in their order.
     pub fn evaluate(&self, family: &[Cell]) -> Result<Vec<Evaluation>> {
-        self.evaluate_telling(family, FitProgress::default())
-    }
-
-    /// [`evaluate`](Self::evaluate), and says while it goes on how much of it is done, by the seconds that it is planned to take.
-    pub(super) fn evaluate_telling(
-        &self,
-        family: &[Cell],
-        progress: FitProgress,
-    ) -> Result<Vec<Evaluation>> {
         let split = self.sweep.split(self.plan, &family[0], self.number)?;
         let training = self.training(&family[0], &split)?;
         let test = rows(&family[0], (self.tested, &split.test), &self.sweep.labels)?;
         let same_fit: Vec<&[Cell]> = Group::fits(family).collect();
         let penalties: Vec<Option<f64>> = same_fit.iter().map(|cells| cells[0].c).collect();
-        let labels = &self.sweep.labels;
-        let planned = learning(self.plan, &family[0], self.n_objects(), labels.len());
-        let fitted = training.train_all(&penalties, (progress, &planned))?;
+        let fitted = training.train_all(&penalties)?;
         let mut evaluations = Vec::with_capacity(family.len());
         for (fitted, cells) in fitted.iter().zip(same_fit) {
             let start = Instant::now();

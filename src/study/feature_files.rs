@@ -9,12 +9,12 @@
 //! | `objects.csv` | one row an object: number, name |
 //! | `cell.toml` | the settings of the cell and the trial |
 
-use super::frames::{FrameStorage, KeyedTouches};
+use super::frames::FrameWriter;
 use super::measurement::measure_group;
 use super::npy_numbers::{read_labels, read_matrix, read_rows};
 use super::plan::Plan;
 use super::progress::Progress;
-use super::runner::describe;
+use super::recognition::describe;
 use super::spec::RecognitionSpec;
 use super::sweep::{Group, Sweep};
 use super::table::Cell;
@@ -74,8 +74,8 @@ pub fn cell_features(
         &format!("touch {}", describe(patch)),
         sweep.labels.len() as u64,
     );
-    let storage = FrameStorage::in_memory();
-    let frames = storage.frames(&KeyedTouches::new(touched), (patch, group.frames), progress)?;
+    let writer = FrameWriter::in_memory(patch.grid.n_taxels());
+    let frames = touched.simulate((patch, group.frames), writer, progress)?;
     // As the run does it: nested measurements are the leading ones of the largest m.
     let n_projected = group
         .projected()

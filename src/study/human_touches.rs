@@ -1,6 +1,5 @@
 //! Human touches of a study: drawn once, recorded on each array.
 
-use super::content_hash::ContentHash;
 use super::frames::{FrameWriter, Frames, Making, Press};
 use super::human_samples::human_samples;
 use super::measurement::TouchToRead;
@@ -23,9 +22,6 @@ use std::collections::BTreeMap;
 
 /// Seconds to bring a hand to the skin once, and of a moving one to make its spheres.
 const PLACE_HAND_S: f64 = 6e-5;
-
-/// Processor-seconds of the samples of a kind: some touches to look at, and a row of the picture.
-const SAMPLES_S: f64 = 0.25;
 
 /// Human touches, kind by kind.
 #[derive(Clone, Debug)]
@@ -165,10 +161,6 @@ impl TouchSet for HumanTouches {
         human_samples(plan, sweep, self)
     }
 
-    fn samples_s(&self) -> f64 {
-        SAMPLES_S * self.plan.kinds.len() as f64
-    }
-
     fn place_s(&self) -> f64 {
         PLACE_HAND_S * self.touches.len() as f64
     }
@@ -192,11 +184,6 @@ impl TouchSet for HumanTouches {
 
     fn content(&self) -> BTreeMap<String, String> {
         BTreeMap::new()
-    }
-
-    fn key(&self) -> String {
-        let hash = ContentHash::default().bytes(format!("{:?}", self.plan));
-        hash.bytes(format!("{:?}", self.touches)).hex()
     }
 }
 

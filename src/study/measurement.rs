@@ -1,10 +1,10 @@
 //! Frames → signal → measurements, for one condition of the signal, ensemble and trial.
 
 use super::frames::{Frames, KeptFrames};
-use super::imperfection::{TestedOn, skin};
 use super::plan::Plan;
-use super::runner::signal_steps;
+use super::sensor_errors::{TestedOn, skin};
 use super::simulation::TouchedObject;
+use super::spec::StepSpec;
 use super::sweep::Group;
 use super::table::Cell;
 use super::touch_set::TouchSet;
@@ -12,7 +12,7 @@ use crate::error::Result;
 use crate::random::Seed;
 use crate::recognition::split::Split;
 use crate::sensing::Projection;
-use crate::signal::{Chain, Recording, Scratch};
+use crate::signal::{Chain, Noise, Recording, Scratch, SignalStep};
 use crate::world::Taxel;
 use ndarray::{Array1, Array2, ArrayView2, ArrayViewMut2, Axis, s};
 use rand::Rng;
@@ -132,10 +132,6 @@ pub fn touches_of_study(
     touches
 }
 
-/// Who is told, from any thread, of a block of frames that is measured: what share of all frames it is, and the processor-seconds that
-/// it took.
-pub type BlockTold<'a> = dyn Fn(f64, f64) + Sync + 'a;
-
 /// Reads and projects all frames of a group in one trial, to a number of measurements among
 /// [`Group::projected`](super::Group::projected).
 ///
@@ -144,23 +140,9 @@ pub type BlockTold<'a> = dyn Fn(f64, f64) + Sync + 'a;
 pub fn measure_group(
     plan: &Plan,
     group: &Group,
-    touches: (&dyn TouchSet, &Frames),
-    trial: (usize, &Split),
-    n_measurements: usize,
-) -> Result<Measurements> {
-    measure_group_telling(plan, group, touches, trial, (n_measurements, &|_, _| ()))
-}
-
-/// The same, and tells of each block.
-///
-/// # Errors
-/// Those of [`measure_group`].
-pub fn measure_group_telling(
-    plan: &Plan,
-    group: &Group,
     (touched, frames): (&dyn TouchSet, &Frames),
     (trial, split): (usize, &Split),
-    (n_measurements, told): (usize, &BlockTold),
+    n_measurements: usize,
 ) -> Result<Measurements> {
     let patch = &plan.arrays[group.array];
     let seed = Seed::new(plan.spec.seed);
@@ -189,7 +171,7 @@ pub fn measure_group_telling(
     for &touch in &split.test {
         touches[touch].skin = skins.len() - 1;
     }
-    let (values, cpu_s) = measure_telling(reading, (&frames.kept, n_frames), &touches, told)?;
+    let (values, cpu_s) = measure(reading, (&frames.kept, n_frames), &touches)?;
     let ones = Array2::ones((1, patch.grid.n_taxels()));
     Ok(Measurements {
         values,
@@ -197,6 +179,23 @@ pub fn measure_group_telling(
         of_ones: projection.measure(ones.view()).row(0).to_owned(),
         cpu_s,
     })
+}
+
+/// The study's steps in this group's condition, on a skin.
+pub fn signal_steps(plan: &Plan, group: &Group, skin: &Seed) -> Vec<SignalStep> {
+    let condition = &group.condition;
+    let step = |&step: &StepSpec| match step {
+        StepSpec::Force => SignalStep::Force,
+        StepSpec::Noise => SignalStep::Noise(Noise {
+            std: condition.noise,
+            unit: plan.noise_unit,
+        }),
+        StepSpec::Smoothing => SignalStep::Smoothing {
+            width: condition.smoothing,
+        },
+        StepSpec::Error(error) => condition.strengths.step(error, skin),
+    };
+    plan.steps.iter().map(step).collect()
 }
 
 /// The skin of training touches, and that of test touches if it is another.
@@ -215,17 +214,8 @@ fn skins(plan: &Plan, group: &Group, trial: u64) -> Vec<Seed> {
 /// Frames that are in a file cannot be read.
 pub fn measure(
     reading: Reading,
-    frames: (&KeptFrames, usize),
-    touches: &[TouchToRead],
-) -> Result<(Array2<f64>, f64)> {
-    measure_telling(reading, frames, touches, &|_, _| ())
-}
-
-fn measure_telling(
-    reading: Reading,
     (frames, n_frames): (&KeptFrames, usize),
     touches: &[TouchToRead],
-    told: &BlockTold,
 ) -> Result<(Array2<f64>, f64)> {
     let n_touches = touches.len();
     let block = (BLOCK / n_frames.max(1)).max(1);
@@ -238,9 +228,7 @@ fn measure_telling(
         .map_init(Working::default, |working, (out, touches)| {
             let start = Instant::now();
             measure_block(reading, (frames, n_frames), touches, working, out)?;
-            let cpu_s = start.elapsed().as_secs_f64();
-            told(touches.len() as f64 / n_touches as f64, cpu_s);
-            Ok(cpu_s)
+            Ok(start.elapsed().as_secs_f64())
         })
         .collect::<Result<Vec<_>>>()?
         .iter()

@@ -1,22 +1,21 @@
 //! How much of a study is held at once: frames, measurements, the rows and matrices of training.
 
-use super::frames::{made_at_once, most_bytes};
+use super::frames::{FramePlace, made_at_once, most_bytes};
+use super::pieces::Scale;
 use super::plan::Plan;
-use super::sweep::{Group, Sweep};
+use super::recognition::RecognitionStudy;
+use super::sweep::Group;
 use super::table::Cell;
 use crate::error::{Error, Result};
 use crate::recognition::ClassifierKind;
 use crate::recognition::svm::{DEFAULT_MEMORY_BYTES, Multiclass, Solver};
 use crate::sensing::Ensemble;
+use std::path::Path;
 use std::{fmt, fs};
 
 /// Bytes of a gibibyte.
 pub const GIB: f64 = (1u64 << 30) as f64;
 
-/// The program itself, its threads and small tables: measured, a study of a few balls takes two thirds of it.
-const PROGRAM_BYTES: f64 = 64e6;
-/// The report, when the work is done: measured, drawing charts on two threads takes 160 MB.
-const REPORT_BYTES: f64 = 200e6;
 /// Bytes of a cell in a trial: its rows in all tables.
 const CELL_BYTES: f64 = 4e3;
 /// Copies of training rows, bytes a number: as they are, scaled, sorted by class, and as support vectors.
@@ -31,136 +30,69 @@ const TOUCH_BYTES: f64 = 400.0;
 /// Bytes of a touch in the split of a trial.
 const SPLIT_BYTES: f64 = 8.0;
 
-/// How many pieces of work are in memory at the same time.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct AtOnce {
-    /// Groups whose measurements are held, in one trial each.
-    pub jobs: usize,
-    /// Families of each that learn at the same time.
-    pub families: usize,
-}
-
-impl AtOnce {
-    /// No limit.
-    pub const ALL: Self = Self {
-        jobs: usize::MAX,
-        families: usize::MAX,
+/// How large a study is, and where the frames of an array are so that it stays below `ceiling` bytes (`None`: no ceiling): in memory if
+/// they fit there beside the work of all threads, else in a file in `folder`.
+pub fn recognition_scale(
+    study: &RecognitionStudy,
+    ceiling: Option<u64>,
+    folder: &Path,
+) -> (Scale, FramePlace) {
+    let RecognitionStudy {
+        plan,
+        touched,
+        sweep,
+        ..
+    } = study;
+    let n_touches = sweep.labels.len();
+    let n_taxels = |group: &Group| plan.arrays[group.array].grid.n_taxels();
+    let n_frames = |group: &Group| (n_touches * group.frames) as f64;
+    let m = |group: &Group| group.projected().into_iter().max().unwrap_or(0) as f64;
+    let measured = |group: &Group| {
+        8.0 * n_frames(group) * m(group) + matrix_bytes(group.ensemble, m(group), n_taxels(group))
     };
-}
-
-/// What a study may hold at once, so that it stays below its ceiling.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct MemoryPlan {
-    /// Work in memory at the same time.
-    pub at_once: AtOnce,
-    /// Bytes of frames in memory; an array with more is read from its file.
-    pub frames: u64,
-    /// Most bytes that the study takes.
-    pub most_bytes: f64,
-}
-
-/// Bytes of one piece of each kind, the largest of a study.
-struct Pieces {
-    /// Frames of an array, if all taxels were touched.
-    frames: f64,
-    /// The measurements of a group, with the matrix of its ensemble.
-    job: f64,
-    /// The largest family of a group.
-    family: f64,
-    /// All families of the largest group.
-    families: f64,
-    /// Tables and charts.
-    report: f64,
-    /// Where each frame is, of frames in a file, and what is held before it is put there.
-    places: f64,
-}
-
-impl MemoryPlan {
-    /// The most parallel way that stays below `ceiling` bytes (`None`: no ceiling).
-    ///
-    /// # Errors
-    /// Not even one piece of work at a time does.
-    pub fn new(plan: &Plan, sweep: &Sweep, n_classes: usize, ceiling: Option<u64>) -> Result<Self> {
-        let pieces = Pieces::largest(plan, sweep, n_classes);
-        let n_threads = rayon::current_num_threads();
-        let ceiling = ceiling.map_or(f64::INFINITY, |bytes| bytes as f64);
+    let n_test = sweep.splits.iter().map(|split| split.test.len());
+    let rows = Rows {
+        n_test: n_test.max().unwrap_or(0) as f64,
+        n_classes: touched.class_names().len(),
+    };
+    let groups = || sweep.groups.iter();
+    let families = || groups().flat_map(Group::families);
+    let in_memory = largest(groups().map(|g| n_frames(g) * (most_bytes(n_taxels(g)) + 16) as f64));
+    // Where each frame is, and what is held before it is put there.
+    let in_file = largest(groups().map(|g| {
+        let n_made = (made_at_once(g.frames) * g.frames) as f64;
+        8.0 * n_frames(g) + n_made * most_bytes(n_taxels(g)) as f64
+    }));
+    let scale = |frames: f64| Scale {
+        objects: touched.class_names().len().to_string(),
+        touches: match plan.arrays.len() {
+            1 => format!("{n_touches} on one array"),
+            n => format!("{n_touches} on each of {n} arrays"),
+        },
+        n_configurations: sweep.n_cells(),
+        bytes: frames + CELL_BYTES * (sweep.n_cells() * plan.spec.trials) as f64,
         // A thread that waits for others begins another group.
-        let ways = [
-            (2 * n_threads, AtOnce::ALL),
-            (n_threads, at_once(n_threads, usize::MAX)),
-            (n_threads, at_once(n_threads, 1)),
-            (1, at_once(1, n_threads)),
-            (1, at_once(1, 1)),
-        ];
-        for (n_jobs, at_once) in ways {
-            let work = pieces.of_work(n_jobs, at_once, n_threads);
-            for (frames, is_in_memory) in [(pieces.frames, true), (pieces.places, false)] {
-                let most_bytes = (work + frames).max(pieces.report);
-                if most_bytes <= ceiling {
-                    let frames = if is_in_memory { u64::MAX } else { 0 };
-                    return Ok(Self {
-                        at_once,
-                        // What few taxels were touched of may fit all the same.
-                        frames: frames.max((ceiling - work) as u64),
-                        most_bytes,
-                    });
-                }
-            }
-        }
-        let least = pieces.of_work(1, at_once(1, 1), n_threads) + pieces.places;
-        let least = least.max(pieces.report);
-        Err(Error::input(
-            "memory",
-            format!("a ceiling of {:.2} GiB", ceiling / GIB),
-            format!(
-                "at least {:.2} GiB for this study: fewer touches or measurements, or a smaller recognition.solver_memory_gib, take less",
-                least / GIB
-            ),
-        ))
+        item_bytes: 2.0 * largest(groups().map(measured))
+            + largest(families().map(|family| rows.family_bytes(plan, &family[0]))),
+    };
+    let free = scale(in_memory);
+    let ceiling = ceiling.map_or(f64::INFINITY, |bytes| bytes as f64);
+    match free.n_at_once(ceiling) == Some(rayon::current_num_threads()) {
+        true => (free, FramePlace::Memory),
+        false => (scale(in_file), FramePlace::File(folder.to_owned())),
     }
 }
 
-fn at_once(jobs: usize, families: usize) -> AtOnce {
-    AtOnce { jobs, families }
-}
-
-impl Pieces {
-    fn largest(plan: &Plan, sweep: &Sweep, n_classes: usize) -> Self {
-        let n_touches = sweep.labels.len() as f64;
-        let n_taxels = |group: &Group| plan.arrays[group.array].grid.n_taxels();
-        let n_frames = |group: &Group| n_touches * group.frames as f64;
-        let m = |group: &Group| group.projected().into_iter().max().unwrap_or(0) as f64;
-        let job = |group: &Group| {
-            let matrix = match group.ensemble {
-                Ensemble::Gaussian => 16.0 * n_taxels(group) as f64 * m(group),
-                _ => 0.0,
-            };
-            8.0 * n_frames(group) * m(group) + matrix
-        };
-        let n_test = sweep.splits.iter().map(|split| split.test.len());
-        let n_test = n_test.max().unwrap_or(0) as f64;
-        let rows = Rows { n_test, n_classes };
-        let family = |family: &[Cell]| rows.family_bytes(plan, &family[0]);
-        let of_group = |group: &Group| group.families().map(family).sum();
-        let groups = || sweep.groups.iter();
-        Self {
-            frames: largest(groups().map(|g| n_frames(g) * (most_bytes(n_taxels(g)) + 16) as f64)),
-            places: largest(groups().map(|g| {
-                let n_made = (made_at_once(g.frames) * g.frames) as f64;
-                8.0 * n_frames(g) + n_made * most_bytes(n_taxels(g)) as f64
-            })),
-            job: largest(groups().map(job)),
-            family: largest(groups().flat_map(Group::families).map(family)),
-            families: largest(groups().map(of_group)),
-            report: REPORT_BYTES + CELL_BYTES * (sweep.n_cells() * plan.spec.trials) as f64,
+/// Bytes of an ensemble's matrix of m rows.
+fn matrix_bytes(ensemble: Ensemble, m: f64, n_taxels: usize) -> f64 {
+    let n = n_taxels as f64;
+    match ensemble {
+        Ensemble::Gaussian | Ensemble::Bernoulli => 16.0 * n * m,
+        // m rows of √n entries each.
+        Ensemble::Sparse => 16.0 * n.sqrt() * m,
+        Ensemble::Sbhe | Ensemble::BlockAverage | Ensemble::Subsample | Ensemble::Identity => {
+            16.0 * n
         }
-    }
-
-    /// Bytes but for frames.
-    fn of_work(&self, n_jobs: usize, at_once: AtOnce, n_threads: usize) -> f64 {
-        let n_families = (n_jobs as f64) * at_once.families.min(n_threads) as f64;
-        let families = (n_families * self.family).min(n_jobs as f64 * self.families);
-        PROGRAM_BYTES + n_jobs as f64 * self.job + families
     }
 }
 

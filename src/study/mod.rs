@@ -1,7 +1,7 @@
 //! Study: TOML → plan → table.
 //!
 //! [`StudySpec`] (as written) → [`Plan`] (checked, SI) → touches drawn → [`Sweep`] (splits and cells laid out) →
-//! [`run`] (simulate, measure, evaluate) → [`table::Tables`].
+//! [`RecognitionStudy`] (simulate, measure, evaluate in [work items](pieces)) → [`table::Tables`].
 //!
 //! Threads live here. Whatever their number, a study's tables are the same bytes, times apart: every touch, split, noise and
 //! projection is drawn from its own named stream, and sums are taken in a fixed order.
@@ -9,34 +9,28 @@
 pub mod advice;
 mod attempt;
 pub mod axes;
-mod axis;
-pub mod breaking_points;
+pub(crate) mod axis;
+mod cell;
 mod cell_content;
-mod check;
+pub(crate) mod check;
 mod compare_runs;
 mod content_hash;
-mod estimate;
-mod evaluation;
+pub(crate) mod evaluation;
 mod feature_files;
-mod finished;
-mod frames;
+pub(crate) mod frames;
 mod human_samples;
 mod human_touches;
-mod imperfection;
-mod job;
 pub mod journal;
 mod kind;
 pub(crate) mod measurement;
 pub mod memory;
 mod npy_numbers;
-pub mod object_detail;
-mod object_files;
-mod packing_cache;
-mod packings;
+pub(crate) mod object_files;
+pub(crate) mod packing_cache;
+pub(crate) mod packings;
 mod pareto;
-mod part;
 pub mod pieces;
-mod plan;
+pub(crate) mod plan;
 mod plan_human;
 mod plan_learning;
 mod plan_scene;
@@ -46,21 +40,21 @@ mod pose_groups;
 pub mod progress;
 pub mod provenance;
 mod published;
+mod recognition;
 mod repeats;
 mod role;
-mod runner;
 mod samples;
 mod sealed;
+mod sensor_errors;
 mod shard;
 pub(crate) mod simulation;
-mod spec;
+pub(crate) mod spec;
 mod spec_human;
 mod spec_scene;
 mod spec_signal;
-pub mod speed_accuracy;
 mod splits;
-mod summary;
-mod sweep;
+pub(crate) mod summary;
+pub(crate) mod sweep;
 pub mod table;
 mod tabulate;
 pub mod time_left;
@@ -68,39 +62,33 @@ mod touch_files;
 mod touch_set;
 mod training;
 mod variance_table;
-mod workload;
 
 pub use crate::table::Role;
 pub use axis::Axis;
 pub(crate) use check::{Check, not_negative, positive};
 pub use compare_runs::{RunComparison, RunDifference, compare_runs};
 pub(crate) use content_hash::ContentHash;
-pub use estimate::Estimate;
 pub use evaluation::CONFIDENCE;
 pub use feature_files::{FeatureSet, cell_features, read_features, write_features, write_npy};
-pub use frames::{
-    CachedTouches, FrameFacts, FrameStorage, FrameWriter, Frames, KeptFrames, KeyedTouches,
-    TouchCache,
-};
+pub use frames::{FrameFacts, FramePlace, FrameWriter, Frames, KeptFrames};
 pub use human_touches::{HumanTouches, RecordedTouch, record_touch};
-pub use imperfection::{IMPERFECTIONS, Imperfection, Strengths, TestedOn};
 pub use kind::StudyKind;
+pub use memory::recognition_scale;
 pub use object_files::{
     MeshUse, NamedMesh, file_content, load_catalogue, load_mesh, load_named_meshes, load_objects,
     load_spheres, objects_content, read_mesh_file,
 };
 pub use packing_cache::{CachedPacking, PackingCache};
-pub(crate) use pareto::{Choice, unbeaten};
-pub use part::{Part, n_left};
 pub(crate) use plan::MM;
 pub use plan::{Amount, Plan, SplitKind, SplitPlan, millimetres};
 pub use plan_human::HumanTouchPlan;
 pub use plan_signal::Condition;
 pub use pose_groups::KeepTogether;
+pub use recognition::{ArrayOutcome, Limit, Outcome, RecognitionRows, RecognitionStudy};
 pub use repeats::Repeats;
 pub use role::{agree, column_name, condition_numbers, most_accurate, one_of, role_of};
-pub use runner::{ArrayOutcome, Manner, Outcome, run, run_with};
 pub use samples::{Samples, sample_frames};
+pub use sensor_errors::{StrengthAxes, Strengths, TestedOn, all_strengths, strength_columns};
 pub use shard::Shard;
 pub use simulation::{TouchedObject, draw_touches, simulate_array};
 pub(crate) use spec::default_seed;
@@ -109,4 +97,3 @@ pub use sweep::{Group, Sweep};
 pub use touch_files::{ReadFrames, write_touches};
 pub use touch_set::TouchSet;
 pub use training::ChoicePlan;
-pub use workload::workload;

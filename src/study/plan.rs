@@ -3,10 +3,10 @@
 //! This is the only place where millimetres, degrees and fractions become metres, radians and absolute values.
 
 use super::check::Check;
-use super::imperfection::{Imperfection, TestedOn};
 use super::plan_human::{HumanTouchPlan, no_placement};
 use super::pose_groups::KeepTogether;
 use super::repeats::Repeats;
+use super::sensor_errors::TestedOn;
 use super::spec::{CombineSpec, StepSpec, StudySpec};
 use super::training::ChoicePlan;
 use crate::error::Result;
@@ -14,7 +14,7 @@ use crate::recognition::ClassifierKind;
 use crate::recognition::features::Features;
 use crate::recognition::over_time::OverTime;
 use crate::sensing::Ensemble;
-use crate::signal::NoiseUnit;
+use crate::signal::{NoiseUnit, Strength};
 use crate::world::{Patch, Placement};
 use std::collections::HashSet;
 
@@ -22,7 +22,7 @@ use std::collections::HashSet;
 pub(crate) const MM: f64 = 1e-3;
 
 /// Trials of a study, at most: each has its split in memory before the first runs.
-pub(super) const MOST_TRIALS: usize = 100_000;
+pub(crate) const MOST_TRIALS: usize = 100_000;
 /// Frames a touch, at most: more is a rate or a number in the wrong unit.
 pub(super) const MOST_FRAMES: usize = 10_000;
 
@@ -52,8 +52,8 @@ pub struct Plan {
     pub noise: Vec<f64>,
     /// The smoothing axis, metres.
     pub smoothing: Vec<f64>,
-    /// The axes of what skins and readers do to the signal, in the units of their keys.
-    pub imperfections: Vec<(Imperfection, Vec<f64>)>,
+    /// The axes of the strengths of sensor errors, in the units of their keys.
+    pub sensor_errors: Vec<(&'static Strength, Vec<f64>)>,
     /// How the axes of the signal are combined.
     pub combine: CombineSpec,
     /// The axis of skins that test touches are made with.
@@ -144,7 +144,7 @@ impl Plan {
         };
         let (noise_unit, noise) = check.noise(&spec.signal)?;
         let smoothing = check.smoothing(&spec.signal)?;
-        let imperfections = check.imperfections(&spec.signal, &spec.touches)?;
+        let sensor_errors = check.sensor_errors(&spec.signal, &spec.touches)?;
         check.steps(&spec.signal)?;
         let tested_on = check.tested_on(&spec.signal)?;
         let ensembles = check.list("sensing.ensemble", spec.sensing.ensemble.values())?;
@@ -182,7 +182,7 @@ impl Plan {
             noise_unit,
             noise,
             smoothing,
-            imperfections,
+            sensor_errors,
             combine: spec.signal.combine,
             tested_on,
             ensembles,

@@ -33,7 +33,7 @@ impl ObjectsSpec {
     }
 
     /// Says how large objects may be whose files have no unit.
-    pub(super) fn settle_sizes(&mut self, arrays: &[Patch]) {
+    pub(crate) fn settle_sizes(&mut self, arrays: &[Patch]) {
         let feels = |patch: &Patch| {
             let n = patch.grid.nx.max(patch.grid.ny);
             (n as f64 * patch.grid.pitch, patch.taxel.radius)

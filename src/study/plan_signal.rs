@@ -1,11 +1,11 @@
 //! The checks of `[signal]`, and the conditions that its axes make.
 
 use super::check::{Check, not_negative};
-use super::imperfection::{IMPERFECTIONS, Imperfection, Strengths, TestedOn};
 use super::plan::{MM, Plan, millimetres};
+use super::sensor_errors::{Strengths, TestedOn, all_strengths};
 use super::spec::{CombineSpec, SignalSpec, StepSpec, TouchesSpec};
 use crate::error::Result;
-use crate::signal::NoiseUnit;
+use crate::signal::{NoiseUnit, SENSOR_ERRORS, Strength};
 
 /// One value for each axis of the signal.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -81,48 +81,47 @@ impl Check<'_> {
         Ok(widths.iter().map(|width| width * MM).collect())
     }
 
-    /// The axes of the imperfections that a study has, in the units of their keys.
-    pub fn imperfections(
+    /// The axes of the sensor errors that a study has, in the units of their keys.
+    pub fn sensor_errors(
         &self,
         signal: &SignalSpec,
         touches: &TouchesSpec,
-    ) -> Result<Vec<(Imperfection, Vec<f64>)>> {
+    ) -> Result<Vec<(&'static Strength, Vec<f64>)>> {
         let mut axes = Vec::new();
-        for imperfection in IMPERFECTIONS {
-            if let Some(axis) = imperfection.axis(signal) {
-                let key = key(imperfection);
-                let (is_allowed, allowed) = imperfection.range();
-                axes.push((imperfection, self.axis(&key, axis, is_allowed, allowed)?));
-            }
+        for (strength, axis) in signal.errors.given() {
+            let values = self.axis(&key(strength), axis, strength.is_allowed, strength.allowed)?;
+            axes.push((*strength, values));
         }
-        let largest = |wanted| {
-            let axis = axes
-                .iter()
-                .find(|(imperfection, _)| *imperfection == wanted);
+        let largest = |strength: &Strength| {
+            let axis = axes.iter().find(|(known, _)| *known == strength);
             let values = axis.map_or(&[][..], |(_, values)| values);
             values.iter().copied().fold(0.0, f64::max)
         };
-        let (dead, stuck) = (largest(Imperfection::Dead), largest(Imperfection::Stuck));
-        if dead + stuck > 1.0 {
-            let given = format!("up to {stuck}, with up to {dead} of the taxels dead");
-            return Err(self.error(&key(Imperfection::Stuck), given, "at most 1 together"));
-        }
-        if largest(Imperfection::Scan) > 0.0 {
-            self.scan_is_of_use(touches)?;
+        for error in SENSOR_ERRORS {
+            let about = error.about();
+            if let [first, second] = about.strengths
+                && largest(first) + largest(second) > 1.0
+            {
+                let (least, most) = (largest(first), largest(second));
+                let given = format!("up to {most}, with up to {least} of {}", first.words);
+                return Err(self.error(&key(second), given, "at most 1 together"));
+            }
+            if about.needs_motion && about.strengths.iter().any(|s| largest(s) > 0.0) {
+                self.moves(&key(&about.strengths[0]), touches)?;
+            }
         }
         Ok(axes)
     }
 
-    /// A scan shows only in frames that the press moves through.
-    fn scan_is_of_use(&self, touches: &TouchesSpec) -> Result<()> {
-        let key = key(Imperfection::Scan);
+    /// The press moves while frames are read.
+    fn moves(&self, key: &str, touches: &TouchesSpec) -> Result<()> {
         if touches.frames.values().iter().all(|&frames| frames < 2) {
             let given = "given, but every touch is read once, at rest";
-            return Err(self.error(&key, given, "touches.frames of 2 or more beside it"));
+            return Err(self.error(key, given, "touches.frames of 2 or more beside it"));
         }
         if touches.speed_mm_per_s == 0.0 {
             let given = "given, but the press waits while it is read";
-            return Err(self.error(&key, given, "a touches.speed_mm_per_s above 0 beside it"));
+            return Err(self.error(key, given, "a touches.speed_mm_per_s above 0 beside it"));
         }
         Ok(())
     }
@@ -132,9 +131,12 @@ impl Check<'_> {
         let Some(axis) = &signal.tested_on else {
             return Ok(vec![TestedOn::SameSkin]);
         };
-        let of_skin = [StepSpec::Gain, StepSpec::Drift, StepSpec::Faults];
-        if !signal.steps.iter().any(|step| of_skin.contains(step)) {
-            let allowed = "gain, drift or faults among signal.steps beside it";
+        let is_of_skin =
+            |step: &StepSpec| matches!(step, StepSpec::Error(error) if error.about().is_of_skin);
+        if !signal.steps.iter().any(is_of_skin) {
+            let all = SENSOR_ERRORS.iter().map(|error| error.about());
+            let of_skin: Vec<&str> = all.filter(|e| e.is_of_skin).map(|e| e.step).collect();
+            let allowed = format!("{} among signal.steps beside it", of_skin.join(" or "));
             return Err(self.error(
                 "signal.tested_on",
                 "given for skins without a difference",
@@ -163,8 +165,10 @@ impl Check<'_> {
             (has_noise, StepSpec::Noise),
             (signal.smoothing_mm.is_some(), StepSpec::Smoothing),
         ];
-        let of_imperfection = |i: Imperfection| (i.axis(signal).is_some(), i.step());
-        set.extend(IMPERFECTIONS.map(of_imperfection));
+        set.extend(all_strengths().map(|(error, strength)| {
+            let is_set = signal.errors.of(strength.key).is_some();
+            (is_set, StepSpec::Error(error))
+        }));
         for &(is_set, step) in &set {
             let word = step.word();
             if is_set && !signal.steps.contains(&step) {
@@ -175,10 +179,11 @@ impl Check<'_> {
                 ));
             }
         }
-        for step in signal.steps.iter().filter(|step| step.is_imperfection()) {
-            if !set.contains(&(true, *step)) {
-                let of_step = IMPERFECTIONS.into_iter().filter(|i| i.step() == *step);
-                let keys: Vec<String> = of_step.map(key).collect();
+        for step in &signal.steps {
+            if let StepSpec::Error(error) = step
+                && !set.contains(&(true, *step))
+            {
+                let keys: Vec<String> = error.about().strengths.iter().map(key).collect();
                 let given = format!("\"{}\" without a strength", step.word());
                 let allowed = format!("{} beside it", keys.join(" or "));
                 return Err(self.error("signal.steps", given, allowed));
@@ -188,16 +193,16 @@ impl Check<'_> {
     }
 }
 
-fn key(imperfection: Imperfection) -> String {
-    format!("signal.{}", imperfection.key())
+fn key(strength: &Strength) -> String {
+    format!("signal.{}", strength.key)
 }
 
 impl Plan {
     /// How many conditions of the signal there are.
     pub(super) fn n_conditions(&self) -> f64 {
-        let imperfections = self.imperfections.iter().map(|(_, values)| values.len());
+        let errors = self.sensor_errors.iter().map(|(_, values)| values.len());
         let axes = [self.noise.len(), self.smoothing.len()].into_iter();
-        let lengths = axes.chain(imperfections).map(|n| n as f64);
+        let lengths = axes.chain(errors).map(|n| n as f64);
         match self.combine {
             CombineSpec::All => lengths.product(),
             CombineSpec::OneAtATime => 1.0 + lengths.map(|n| n - 1.0).sum::<f64>(),
@@ -210,18 +215,18 @@ impl Plan {
             noise: self.noise[0],
             smoothing: self.smoothing[0],
             strengths: self
-                .imperfections
+                .sensor_errors
                 .iter()
-                .fold(Strengths::default(), |strengths, (kind, values)| {
-                    strengths.with(*kind, Some(values[0]))
+                .fold(Strengths::default(), |strengths, (strength, values)| {
+                    strengths.with(strength.key, Some(values[0]))
                 }),
         };
         let mut conditions = vec![first];
-        for axis in 0..2 + self.imperfections.len() {
+        for axis in 0..2 + self.sensor_errors.len() {
             let n_values = match axis {
                 0 => self.noise.len(),
                 1 => self.smoothing.len(),
-                _ => self.imperfections[axis - 2].1.len(),
+                _ => self.sensor_errors[axis - 2].1.len(),
             };
             match self.combine {
                 CombineSpec::OneAtATime => {
@@ -240,14 +245,14 @@ impl Plan {
         conditions
     }
 
-    /// A condition with another value on one axis: noise, smoothing, imperfection after imperfection.
+    /// A condition with another value on one axis: noise, smoothing, sensor error after sensor error.
     fn at(&self, mut condition: Condition, axis: usize, value: usize) -> Condition {
         match axis {
             0 => condition.noise = self.noise[value],
             1 => condition.smoothing = self.smoothing[value],
             _ => {
-                let (kind, values) = &self.imperfections[axis - 2];
-                condition.strengths = condition.strengths.with(*kind, Some(values[value]));
+                let (strength, values) = &self.sensor_errors[axis - 2];
+                condition.strengths = condition.strengths.with(strength.key, Some(values[value]));
             }
         }
         condition

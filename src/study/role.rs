@@ -27,7 +27,12 @@ impl Cell {
 
     /// Its columns that are conditions.
     pub fn conditions(&self) -> Table {
-        let of_role = |(column, _): &(String, Value)| role_of(column) == Some(Role::Condition);
+        let axes = &self.variant.values;
+        let role = |column: &str| {
+            let own = axes.iter().find(|axis| axis.column.name == column);
+            own.map_or_else(|| role_of(column), |axis| Some(axis.column.role))
+        };
+        let of_role = |(column, _): &(String, Value)| role(column) == Some(Role::Condition);
         self.settings().into_iter().filter(of_role).collect()
     }
 }

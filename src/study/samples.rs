@@ -1,16 +1,16 @@
 //! Sample touches for the eye: what the array feels of a few objects, noise included.
 
-use super::imperfection::{Imperfection, skin};
 use super::measurement::rates_of;
+use super::measurement::signal_steps;
 use super::plan::{Plan, millimetres};
-use super::runner::signal_steps;
+use super::sensor_errors::{skin, strength_columns};
 use super::simulation::TouchedObject;
-use super::spec::CombineSpec;
+use super::spec::{CombineSpec, StepSpec};
 use super::sweep::{Group, Sweep};
 use crate::contact::{Workspace, press_to_depth};
 use crate::error::{Error, Result};
 use crate::random::Seed;
-use crate::signal::{Chain, Quantity, Recording, Scratch, SignalStep};
+use crate::signal::{Chain, Quantity, Recording, Scratch, SensorError, SignalStep, Strength};
 use crate::world::{Patch, Scene};
 use ndarray::Array2;
 
@@ -65,8 +65,9 @@ pub fn sample_frames(plan: &Plan, sweep: &Sweep, touched: &[TouchedObject]) -> R
                 frame.mapv_inplace(|value| value.min(full_scale));
                 frames.push((words, frame));
             }
-            let remembers = |kind: &Imperfection| *kind == Imperfection::Hysteresis;
-            let after = match plan.imperfections.iter().any(|(kind, _)| remembers(kind)) {
+            let remembers =
+                |step: &StepSpec| matches!(step, StepSpec::Error(error) if error.about().remembers);
+            let after = match plan.steps.iter().any(remembers) {
                 true => format!(", after one of the {},", name(before)),
                 false => String::new(),
             };
@@ -145,7 +146,7 @@ fn steps(plan: &Plan, group: &Group) -> Vec<SignalStep> {
     steps
 }
 
-/// In a study of one imperfection at a time: the first group of an array, then for each imperfection the group that has it at
+/// In a study of one sensor error at a time: the first group of an array, then for each error the group that has it at
 /// its last value, with what to call them. A scan is left out: it does not change a touch that is read once.
 fn imperfect_groups<'a>(plan: &Plan, sweep: &'a Sweep, array: usize) -> Vec<(String, &'a Group)> {
     if plan.combine != CombineSpec::OneAtATime {
@@ -153,14 +154,19 @@ fn imperfect_groups<'a>(plan: &Plan, sweep: &'a Sweep, array: usize) -> Vec<(Str
     }
     let groups = || sweep.groups.iter().filter(|group| group.array == array);
     let mut chosen = Vec::new();
-    for (kind, values) in &plan.imperfections {
+    for (strength, values) in &plan.sensor_errors {
+        let Some(column) = strength_columns().iter().find(|c| c.name == strength.key) else {
+            continue;
+        };
         let last = *values.last().unwrap_or(&0.0);
-        let has_it = |group: &&Group| group.condition.strengths.of(*kind) == Some(last);
+        let shows = |(error, own, value): (SensorError, &Strength, f64)| {
+            own == *strength && value == last && !error.about().needs_motion
+        };
+        let has_it = |group: &&Group| group.condition.strengths.given().any(shows);
         if let Some(group) = groups().find(has_it)
             && values.len() > 1
-            && *kind != Imperfection::Scan
         {
-            chosen.push((format!("{} {}", kind.name(), kind.describe(last)), group));
+            chosen.push((column.phrase(&last.into()), group));
         }
     }
     if let (Some(first), false) = (groups().next(), chosen.is_empty()) {

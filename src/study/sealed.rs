@@ -113,10 +113,10 @@ fn aside(path: &Path) -> PathBuf {
 }
 
 /// A file, `None` if there is none, or what is wrong with it, as in `it is cut`.
-pub type Checked = std::result::Result<Option<Unsealed>, String>;
+type Checked = std::result::Result<Option<Unsealed>, String>;
 
 /// What [`open`] finds, without a word.
-pub fn check(path: &Path, kind: &'static str) -> Checked {
+fn check(path: &Path, kind: &'static str) -> Checked {
     let Some((mut file, n_bytes, said)) = read_seal(path).map_err(unreadable)?? else {
         return Ok(None);
     };
@@ -129,13 +129,6 @@ pub fn check(path: &Path, kind: &'static str) -> Checked {
     }
     file.rewind().map_err(unreadable)?;
     Ok(Some(Unsealed { file, n_bytes }))
-}
-
-/// [`check`] that reads the seal alone, not the bytes that it is of.
-pub fn glance(path: &Path, kind: &'static str) -> Checked {
-    let found = read_seal(path).map_err(unreadable)??;
-    let of_kind = found.filter(|(_, _, said)| is_of(kind, said));
-    Ok(of_kind.map(|(file, n_bytes, _)| Unsealed { file, n_bytes }))
 }
 
 fn unreadable(error: io::Error) -> String {

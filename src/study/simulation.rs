@@ -63,7 +63,7 @@ pub fn simulate_array(
     n_frames: usize,
     progress: &dyn Progress,
 ) -> Frames {
-    let writer = FrameWriter::in_memory(patch.grid.n_taxels(), "");
+    let writer = FrameWriter::in_memory(patch.grid.n_taxels());
     let frames = simulate_into(touched, (patch, n_frames), writer, progress);
     frames.expect("memory takes all frames")
 }

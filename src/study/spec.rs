@@ -2,7 +2,9 @@
 //!
 //! Nothing is checked here beyond names and types; [`Plan`](super::Plan) does that. An axis takes one value or a list.
 
+use super::axes::{self, AxisRules, StudyAxes};
 use super::axis::Axis;
+use super::cell::Cell;
 pub use super::spec_human::*;
 pub use super::spec_scene::*;
 pub use super::spec_signal::*;
@@ -13,7 +15,7 @@ use crate::recognition::over_time::OverTime;
 use crate::recognition::scaling::Scaling;
 use crate::recognition::svm::{Multiclass, Solver};
 use crate::sensing::Ensemble;
-use crate::toml_text;
+use crate::table::{Column, Columns};
 use serde::{Deserialize, Serialize};
 
 /// The file.
@@ -56,7 +58,55 @@ pub struct StudySpec {
     /// What the report shows.
     #[serde(default)]
     pub report: ReportSpec,
+    /// Other keys with their values, in all combinations: [`axes`].
+    #[serde(skip)]
+    pub axes: StudyAxes,
 }
+
+/// Keys that are axes where they stand.
+const AXIS_KEYS: [&str; 28] = [
+    "skin.pitch_mm",
+    "skin.size_mm",
+    "skin.taxels",
+    "touches.frames",
+    "signal.noise_std_full_scale",
+    "signal.noise_std_mm",
+    "signal.noise_std_n",
+    "signal.smoothing_mm",
+    "signal.hysteresis_full_scale",
+    "signal.crosstalk",
+    "signal.gain_std",
+    "signal.drift_std_full_scale",
+    "signal.dead_fraction",
+    "signal.stuck_fraction",
+    "signal.scan_time_ms",
+    "signal.adc_bits",
+    "signal.tested_on",
+    "sensing.ensemble",
+    "sensing.ratio",
+    "sensing.measurements",
+    "recognition.features",
+    "recognition.over_time",
+    "recognition.classifier",
+    "recognition.c",
+    "recognition.train_touches",
+    "recognition.mislabelled_fraction",
+    "recognition.class_imbalance",
+    "recognition.fused_touches",
+];
+
+/// Trials split the same touches again, and words and reports are of the whole study.
+const AXIS_RULES: AxisRules = AxisRules {
+    in_place: |key| AXIS_KEYS.contains(&key),
+    refused: &[
+        "question",
+        "expected",
+        "trials",
+        "projections_per_split",
+        "report",
+        "axes",
+    ],
+};
 
 /// `[sensing]`
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -217,12 +267,20 @@ pub enum GroupSpec {
 impl StudySpec {
     /// Reads a study; the error names the file, the line and the key.
     pub fn parse(place: &str, text: &str) -> Result<Self> {
-        toml_text::read(place, text)
+        let (spec, axes) = axes::read::<Self>(place, text, AXIS_RULES)?;
+        Ok(Self { axes, ..spec })
+    }
+
+    /// The columns of its own axes in tables of results.
+    pub fn axis_columns(&self) -> Vec<Column> {
+        let known = Cell::columns();
+        let is_taken = |name: &str| known.iter().any(|column| column.name == name);
+        self.axes.columns(is_taken)
     }
 
     /// Writes the study with every default spelt out.
     pub fn to_toml(&self) -> String {
-        toml::to_string(self).expect("every field of a study has a TOML form")
+        axes::to_toml(self, &self.axes)
     }
 }
 

@@ -1,12 +1,14 @@
 //! What happens to a frame, as it is written: `[signal]`.
 
 use super::axis::Axis;
-use super::imperfection::TestedOn;
-use serde::{Deserialize, Serialize};
+use super::sensor_errors::{StrengthAxes, TestedOn, all_strengths};
+use crate::signal::{SENSOR_ERRORS, SensorError};
+use serde::de::{Error as _, MapAccess, Visitor};
+use serde::{Deserialize, Deserializer, Serialize};
+use std::fmt;
 
 /// `[signal]`
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields, default)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct SignalSpec {
     /// What is done to a frame of deflections, in this order; each step at most once.
     pub steps: Vec<StepSpec>,
@@ -22,34 +24,13 @@ pub struct SignalSpec {
     /// Axis: standard deviation of the Gaussian that smooths, mm.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub smoothing_mm: Option<Axis<f64>>,
-    /// Axis: width of the loop between loading and unloading, as a fraction of the full scale, 0 to 0.25. Each touch comes
-    /// after another of the study, drawn at random and let go: what a taxel remembers of it depends on how deep it was.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub hysteresis_full_scale: Option<Axis<f64>>,
-    /// Axis: fraction of a taxel's value that leaks to its four neighbours, 0 to 1.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub crosstalk: Option<Axis<f64>>,
-    /// Axis: standard deviation of the taxels' gains, whose mean is 1. Gains, drift and faults belong to a skin: they follow from
-    /// the seed and the array and are the same in all touches and trials.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub gain_std: Option<Axis<f64>>,
-    /// Axis: standard deviation of the taxels' zeros at the end of the session, as a fraction of the full scale. A session is
-    /// the study's touches in random order, trial by trial; it begins with every zero at zero.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub drift_std_full_scale: Option<Axis<f64>>,
-    /// Axis: fraction of the taxels that read 0.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub dead_fraction: Option<Axis<f64>>,
-    /// Axis: fraction of the taxels that read one level whatever they feel.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub stuck_fraction: Option<Axis<f64>>,
-    /// Axis: time to read the array, taxel after taxel, while the press goes on at `touches.speed_mm_per_s`, ms. The last frame
+    /// Axes of the strengths of sensor errors, each by its [key](crate::signal::Strength::key). Hysteresis: each touch comes after
+    /// another of the study, drawn at random and let go. Gains, drift and faults belong to a skin: they follow from the seed and the
+    /// array and are the same in all touches and trials. Drift: a session is the study's touches in random order, trial by trial; it
+    /// begins with every zero at zero. Scan: the press goes on at `touches.speed_mm_per_s` while the array is read; the last frame
     /// of a touch is read at rest.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub scan_time_ms: Option<Axis<f64>>,
-    /// Axis: bits of the converter, which clips to the full scale and rounds; 0 for none.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub adc_bits: Option<Axis<f64>>,
+    #[serde(flatten)]
+    pub errors: StrengthAxes,
     /// Axis: the skin that test touches are made with, `same_skin` (as training touches; when left out) or `another_skin`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub tested_on: Option<Axis<TestedOn>>,
@@ -71,7 +52,7 @@ pub enum CombineSpec {
 
 /// A step of the signal stage.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
+#[serde(try_from = "String", into = "String")]
 pub enum StepSpec {
     /// Deflection → force, newtons.
     Force,
@@ -79,20 +60,8 @@ pub enum StepSpec {
     Noise,
     /// Gaussian smoothing over the array.
     Smoothing,
-    /// Loading and unloading read differently.
-    Hysteresis,
-    /// Values leak to the neighbours.
-    Crosstalk,
-    /// Each taxel has its own gain.
-    Gain,
-    /// Each taxel's zero wanders.
-    Drift,
-    /// Some taxels are dead or stuck.
-    Faults,
-    /// Taxels are read one after another.
-    Scan,
-    /// A converter clips and rounds.
-    Quantisation,
+    /// A sensor error, with strengths of its own keys.
+    Error(SensorError),
 }
 
 impl CombineSpec {
@@ -108,19 +77,104 @@ impl StepSpec {
             Self::Force => "force",
             Self::Noise => "noise",
             Self::Smoothing => "smoothing",
-            Self::Hysteresis => "hysteresis",
-            Self::Crosstalk => "crosstalk",
-            Self::Gain => "gain",
-            Self::Drift => "drift",
-            Self::Faults => "faults",
-            Self::Scan => "scan",
-            Self::Quantisation => "quantisation",
+            Self::Error(error) => error.about().step,
         }
     }
 
-    /// Whether it is something that real skins do to a signal, with a strength of its own key.
-    pub fn is_imperfection(self) -> bool {
-        !matches!(self, Self::Force | Self::Noise | Self::Smoothing)
+    /// Every step.
+    fn all() -> impl Iterator<Item = Self> {
+        let errors = SENSOR_ERRORS.iter().map(|error| Self::Error(*error));
+        [Self::Force, Self::Noise, Self::Smoothing]
+            .into_iter()
+            .chain(errors)
+    }
+}
+
+impl TryFrom<String> for StepSpec {
+    type Error = String;
+
+    fn try_from(word: String) -> Result<Self, String> {
+        let found = Self::all().find(|step| step.word() == word);
+        found.ok_or_else(|| unknown("variant", &word, Self::all().map(Self::word)))
+    }
+}
+
+impl From<StepSpec> for String {
+    fn from(step: StepSpec) -> Self {
+        step.word().to_owned()
+    }
+}
+
+fn unknown(what: &str, given: &str, known: impl Iterator<Item = &'static str>) -> String {
+    let known: Vec<String> = known.map(|word| format!("`{word}`")).collect();
+    format!(
+        "unknown {what} `{given}`, expected one of {}",
+        known.join(", ")
+    )
+}
+
+/// A key of `[signal]`.
+struct Key(String);
+
+/// Keys but for those of sensor errors.
+const KEYS: [&str; 7] = [
+    "steps",
+    "noise_std_full_scale",
+    "noise_std_mm",
+    "noise_std_n",
+    "smoothing_mm",
+    "tested_on",
+    "combine",
+];
+
+impl<'de> Deserialize<'de> for Key {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        let key = String::deserialize(deserializer)?;
+        let all = || {
+            KEYS.into_iter()
+                .chain(all_strengths().map(|(_, strength)| strength.key))
+        };
+        match all().any(|known| known == key) {
+            true => Ok(Self(key)),
+            false => Err(D::Error::custom(unknown("field", &key, all()))),
+        }
+    }
+}
+
+/// Written out, because the keys of sensor errors are those that their files say.
+impl<'de> Deserialize<'de> for SignalSpec {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        deserializer.deserialize_map(SpecVisitor)
+    }
+}
+
+struct SpecVisitor;
+
+impl<'de> Visitor<'de> for SpecVisitor {
+    type Value = SignalSpec;
+
+    fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        f.write_str("a table of what happens to a frame")
+    }
+
+    fn visit_map<M: MapAccess<'de>>(self, mut map: M) -> Result<SignalSpec, M::Error> {
+        let mut spec = SignalSpec::default();
+        while let Some(Key(key)) = map.next_key()? {
+            match &key[..] {
+                "steps" => spec.steps = map.next_value()?,
+                "noise_std_full_scale" => spec.noise_std_full_scale = Some(map.next_value()?),
+                "noise_std_mm" => spec.noise_std_mm = Some(map.next_value()?),
+                "noise_std_n" => spec.noise_std_n = Some(map.next_value()?),
+                "smoothing_mm" => spec.smoothing_mm = Some(map.next_value()?),
+                "tested_on" => spec.tested_on = Some(map.next_value()?),
+                "combine" => spec.combine = map.next_value()?,
+                strength => {
+                    let axis = map.next_value()?;
+                    spec.errors.set(strength, axis);
+                }
+            }
+        }
+        Ok(spec)
     }
 }
 
@@ -132,14 +186,7 @@ impl Default for SignalSpec {
             noise_std_mm: None,
             noise_std_n: None,
             smoothing_mm: None,
-            hysteresis_full_scale: None,
-            crosstalk: None,
-            gain_std: None,
-            drift_std_full_scale: None,
-            dead_fraction: None,
-            stuck_fraction: None,
-            scan_time_ms: None,
-            adc_bits: None,
+            errors: StrengthAxes::default(),
             tested_on: None,
             combine: CombineSpec::default(),
         }

@@ -8,11 +8,12 @@
 //!                  └─ fused touches (a cell) ── decide
 //! ```
 
-use super::imperfection::{Imperfection, TestedOn};
+use super::axes::AxisValues;
 use super::plan::{Plan, millimetres};
 use super::plan_signal::Condition;
 use super::published::check_published;
 use super::samples::named_samples;
+use super::sensor_errors::TestedOn;
 use super::splits::{check_folds, check_fused_touches, check_imbalance, draw_split, train_touches};
 use super::table::Cell;
 use super::touch_set::TouchSet;
@@ -285,16 +286,7 @@ fn group_cell(plan: &Plan, group: &Group, measurements: usize) -> Cell {
         noise_std: noise,
         noise_unit: plan.noise_unit,
         smoothing_mm: millimetres(smoothing),
-        hysteresis_full_scale: strengths.of(Imperfection::Hysteresis),
-        crosstalk: strengths.of(Imperfection::Crosstalk),
-        gain_std: strengths.of(Imperfection::Gain),
-        drift_std_full_scale: strengths.of(Imperfection::Drift),
-        dead_fraction: strengths.of(Imperfection::Dead),
-        stuck_fraction: strengths.of(Imperfection::Stuck),
-        scan_time_ms: strengths.of(Imperfection::Scan),
-        adc_bits: strengths
-            .of(Imperfection::Quantisation)
-            .map(|bits| bits as u32),
+        strengths,
         tested_on: plan.spec.signal.tested_on.as_ref().map(|_| group.tested_on),
         ensemble: group.ensemble,
         measurements,
@@ -308,5 +300,6 @@ fn group_cell(plan: &Plan, group: &Group, measurements: usize) -> Cell {
         mislabelled_fraction: None,
         class_imbalance: None,
         fused_touches: plan.fused_touches[0],
+        variant: AxisValues::default(),
     }
 }

@@ -2,125 +2,12 @@
 //!
 //! A row of `accuracy.csv` is a [`Cell`] followed by a [`TrialScore`]; the other tables are built the same way.
 
-use super::imperfection::{IMPERFECTIONS, Imperfection, Strengths, TestedOn};
+pub use super::cell::Cell;
+#[cfg(test)]
+pub(crate) use super::cell::tests;
 pub use super::variance_table::{Source, Variance};
 use crate::columns;
-use crate::recognition::ClassifierKind;
-use crate::recognition::features::Features;
-use crate::recognition::over_time::OverTime;
-use crate::sensing::Ensemble;
-use crate::signal::NoiseUnit;
 use serde::{Deserialize, Serialize};
-
-/// The settings of one cell of a sweep: every axis at one value.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Cell {
-    /// Number of the cell, from 0, in sweep order.
-    pub cell: usize,
-    /// Millimetres between taxels.
-    pub pitch_mm: f64,
-    /// Taxel columns.
-    pub nx: usize,
-    /// Taxel rows.
-    pub ny: usize,
-    /// Side length of the array along x: nx × pitch.
-    pub size_mm: f64,
-    /// Noise standard deviation, in `noise_unit`.
-    pub noise_std: f64,
-    /// What `noise_std` is measured in.
-    pub noise_unit: NoiseUnit,
-    /// Standard deviation of the Gaussian smoothing, millimetres; 0 for none.
-    pub smoothing_mm: f64,
-    /// Width of the hysteresis loop, as a fraction of the full scale. This column and the seven after it are there only if
-    /// the study has a key of the same name.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub hysteresis_full_scale: Option<f64>,
-    /// Fraction of a taxel's value that leaks to its four neighbours.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub crosstalk: Option<f64>,
-    /// Standard deviation of the taxels' gains, whose mean is 1.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub gain_std: Option<f64>,
-    /// Standard deviation of the taxels' zeros at the end of the session, as a fraction of the full scale.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub drift_std_full_scale: Option<f64>,
-    /// Fraction of the taxels that read 0.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub dead_fraction: Option<f64>,
-    /// Fraction of the taxels that read a level of their own.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub stuck_fraction: Option<f64>,
-    /// Milliseconds to read the array, taxel after taxel.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub scan_time_ms: Option<f64>,
-    /// Bits of the converter; 0 for none.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub adc_bits: Option<u32>,
-    /// The skin that test touches are made with; only if the study has the key.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub tested_on: Option<TestedOn>,
-    /// How measurements are made.
-    pub ensemble: Ensemble,
-    /// Measurements a frame, m.
-    pub measurements: usize,
-    /// Compression ratio n / m.
-    pub ratio: f64,
-    /// Frames a touch, F: a row of features has F · m values.
-    pub frames: usize,
-    /// What is made of the frames, if not all of them one after the other; only if the study has the key.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub over_time: Option<OverTime>,
-    /// What is made of the measurements.
-    pub features: Features,
-    /// Which classifier.
-    pub classifier: ClassifierKind,
-    /// Soft-margin penalty C; empty when it is chosen by cross-validation, or when the classifier has none.
-    pub c: Option<f64>,
-    /// Training touches an object, at most.
-    pub train_touches: usize,
-    /// Fraction of them with another object's label; only if the study has the key.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub mislabelled_fraction: Option<f64>,
-    /// How many times as many the most frequent object has as the rarest; only if the study has the key.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub class_imbalance: Option<f64>,
-    /// Test touches of an object that are decided on together, by the sum of their scores.
-    pub fused_touches: usize,
-}
-
-impl Cell {
-    /// Numbers that a touch is told by.
-    pub fn n_features(&self) -> usize {
-        let (n_frames, m) = (self.frames, self.measurements);
-        let all = n_frames * m;
-        self.over_time
-            .map_or(all, |kind| kind.n_features(n_frames, m))
-    }
-
-    /// Numbers that are read for one decision: measurements of each frame of each fused touch.
-    pub fn measurements_of_decision(&self) -> usize {
-        self.measurements * self.frames * self.fused_touches
-    }
-
-    /// What the skin and its reader do to the signal.
-    pub fn strengths(&self) -> Strengths {
-        let strength = |imperfection| match imperfection {
-            Imperfection::Hysteresis => self.hysteresis_full_scale,
-            Imperfection::Crosstalk => self.crosstalk,
-            Imperfection::Gain => self.gain_std,
-            Imperfection::Drift => self.drift_std_full_scale,
-            Imperfection::Dead => self.dead_fraction,
-            Imperfection::Stuck => self.stuck_fraction,
-            Imperfection::Scan => self.scan_time_ms,
-            Imperfection::Quantisation => self.adc_bits.map(f64::from),
-        };
-        IMPERFECTIONS
-            .into_iter()
-            .fold(Strengths::default(), |strengths, imperfection| {
-                strengths.with(imperfection, strength(imperfection))
-            })
-    }
-}
 
 /// How one trial of a cell went (with the [`Cell`] before it: a row of `accuracy.csv`).
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -333,47 +220,6 @@ pub struct StageTime {
     pub us_per_touch: f64,
 }
 
-/// Why a cell has no score in a trial (with the [`Cell`] before it: a row of `failures.csv`).
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Failure {
-    /// Number of the trial, from 0.
-    pub trial: usize,
-    /// What went wrong.
-    pub error: String,
-}
-
-columns! { Cell {
-    cell: Note: Linear;
-    pitch_mm: Choice "pitch" in "mm": Linear;
-    nx: Choice "taxels along x": Linear;
-    ny: Choice "taxels along y": Linear;
-    size_mm: Choice "array size" in "mm": Linear;
-    noise_std: Condition "noise" in "%": Share;
-    noise_unit: Note;
-    smoothing_mm: Choice "smoothing" in "mm": Linear;
-    hysteresis_full_scale: Condition "hysteresis" in "%": Share, optional;
-    crosstalk: Condition "crosstalk" in "%": Share, optional;
-    gain_std: Condition "gain mismatch" in "%": Share, optional;
-    drift_std_full_scale: Condition "drift" in "%": Share, optional;
-    dead_fraction: Condition "dead taxels" in "%": Share, optional;
-    stuck_fraction: Condition "stuck taxels" in "%": Share, optional;
-    scan_time_ms: Condition "scan time" in "ms": Linear, optional;
-    adc_bits: Condition "converter" in "bits": Linear, optional;
-    tested_on: Condition "tested on", optional;
-    ensemble: Choice;
-    measurements: Choice "m": Log;
-    ratio: Choice "compression" in ":1": Log;
-    frames: Choice "frames a touch": Log;
-    over_time: Choice "over time", optional;
-    features: Choice;
-    classifier: Choice;
-    c: Choice "C": Log;
-    train_touches: Choice "training touches": Log;
-    mislabelled_fraction: Condition "mislabelled" in "%": Share, optional;
-    class_imbalance: Condition "class imbalance" in ":1": Log, optional;
-    fused_touches: Choice "touches fused": Log;
-} }
-
 columns! { TrialScore {
     trial: Subject: Linear;
     split: Note: Linear, optional;
@@ -470,11 +316,6 @@ columns! { StageTime {
     us_per_touch: Cost "processor time of a touch" in "µs": Log;
 } }
 
-columns! { Failure {
-    trial: Subject: Linear;
-    error: Note;
-} }
-
 /// All result tables of a study.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Tables {
@@ -496,48 +337,6 @@ pub struct Tables {
     pub confused: Vec<Confused>,
     /// One row per published accuracy.
     pub published: Vec<(Cell, Published)>,
-    /// One row per cell and trial that failed.
-    pub failures: Vec<(Cell, Failure)>,
     /// Three rows per cell, for studies with `projections_per_split`.
     pub variance: Vec<Variance>,
-}
-
-#[cfg(test)]
-pub(crate) mod tests {
-    use super::*;
-
-    /// A cell for tests to start from: 32 × 32 taxels at 2 mm, 16:1.
-    pub(crate) fn cell() -> Cell {
-        Cell {
-            cell: 0,
-            pitch_mm: 2.0,
-            nx: 32,
-            ny: 32,
-            size_mm: 64.0,
-            noise_std: 0.1,
-            noise_unit: NoiseUnit::FullScale,
-            smoothing_mm: 0.0,
-            hysteresis_full_scale: None,
-            crosstalk: None,
-            gain_std: None,
-            drift_std_full_scale: None,
-            dead_fraction: None,
-            stuck_fraction: None,
-            scan_time_ms: None,
-            adc_bits: None,
-            tested_on: None,
-            ensemble: Ensemble::Gaussian,
-            measurements: 64,
-            ratio: 16.0,
-            frames: 1,
-            over_time: None,
-            features: Features::Raw,
-            classifier: ClassifierKind::LinearSvm,
-            c: Some(1.0),
-            train_touches: 75,
-            mislabelled_fraction: None,
-            class_imbalance: None,
-            fused_touches: 1,
-        }
-    }
 }

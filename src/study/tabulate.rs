@@ -1,35 +1,20 @@
 //! Finished cells → tables: by cell, then by trial.
 
 use super::evaluation::Evaluation;
-use super::finished::Finished;
-use super::job::FinishedCell;
 use super::role::most_accurate;
 use super::summary::{compare_with_best, most_confused, pareto, summarise};
-use super::table::{Cell, Confusion, Failure, Tables};
+use super::table::{Cell, Confusion, Tables};
 use super::variance_table::variances;
 use crate::error::Result;
 use std::collections::BTreeMap;
 
 /// Fills every table but those of stages and of published numbers; `names` are those of the classes.
-pub fn tabulate(tables: &mut Tables, finished: Vec<FinishedCell>, names: &[&str]) -> Result<()> {
-    let mut scored: Vec<(Cell, Evaluation)> = Vec::new();
-    for (cell, trial, finished) in finished {
-        match finished {
-            Finished::Scored(evaluation) => scored.push((cell.clone(), *evaluation)),
-            Finished::Failed(error) => {
-                let failure = Failure { trial, error };
-                tables.failures.push((cell.clone(), failure));
-            }
-        }
-    }
-    tables
-        .failures
-        .sort_by_key(|(cell, failure)| (cell.cell, failure.trial));
+pub fn tabulate(
+    tables: &mut Tables,
+    mut scored: Vec<(Cell, Evaluation)>,
+    names: &[&str],
+) -> Result<()> {
     scored.sort_by_key(|(cell, evaluation)| (cell.cell, evaluation.score.trial));
-    fill(tables, scored, names)
-}
-
-fn fill(tables: &mut Tables, scored: Vec<(Cell, Evaluation)>, names: &[&str]) -> Result<()> {
     let mut confusions: BTreeMap<(usize, usize, usize), usize> = BTreeMap::new();
     for (cell, evaluation) in scored {
         for &(object, predicted, count) in &evaluation.confusion {

@@ -13,11 +13,11 @@
 //! ([`ReadFrames`]) have all of these, in metres or, with the step `force`, in newtons; only `frames.npy` differs.
 
 use super::feature_files::find;
-use super::frames::{FrameStorage, KeyedTouches};
+use super::frames::FrameWriter;
 use super::measurement::measure_group;
 use super::plan::Plan;
 use super::progress::Progress;
-use super::runner::describe;
+use super::recognition::describe;
 use super::simulation::touch_stream;
 use super::sweep::{Group, Sweep};
 use super::touch_set::TouchSet;
@@ -95,13 +95,12 @@ impl ReadFrames {
         let (group, cell) = find(sweep, cell)?;
         let split = sweep.split(plan, cell, trial)?;
         let patch = &plan.arrays[group.array];
-        let storage = FrameStorage::in_memory();
         progress.stage(
             &format!("read {}", describe(patch)),
             sweep.labels.len() as u64,
         );
-        let frames =
-            storage.frames(&KeyedTouches::new(touched), (patch, group.frames), progress)?;
+        let writer = FrameWriter::in_memory(patch.grid.n_taxels());
+        let frames = touched.simulate((patch, group.frames), writer, progress)?;
         // What the identity measures are the frames themselves.
         let identity = Group {
             ensemble: Ensemble::Identity,

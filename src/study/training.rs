@@ -1,6 +1,5 @@
 //! Training of a family of cells: the same rows and features, one fit for each C.
 
-use super::estimate::Learning;
 use super::memory::solver_memory;
 use super::spec::RecognitionSpec;
 use crate::error::Result;
@@ -9,7 +8,6 @@ use crate::recognition::ClassifierKind;
 use crate::recognition::choice::Candidates;
 use crate::recognition::classifier::{Classifier, TrainedClassifier};
 use crate::recognition::dataset::Dataset;
-use crate::recognition::fit_progress::FitProgress;
 use crate::recognition::kernel::Gamma;
 use crate::recognition::split::{Split, group_k_fold, stratified_k_fold};
 use ndarray::{Array1, s};
@@ -60,27 +58,15 @@ pub struct Fitted {
 }
 
 impl Training<'_> {
-    /// One classifier for each C (`None`: chosen, or a classifier that has none), in their order. Says while it goes on how much of
-    /// what is planned for each C is done.
+    /// One classifier for each C (`None`: chosen, or a classifier that has none), in their order.
     ///
     /// # Errors
     /// What a fold or a training refuses.
-    pub(super) fn train_all(
-        &self,
-        penalties: &[Option<f64>],
-        (progress, planned): (FitProgress, &Learning),
-    ) -> Result<Vec<Fitted>> {
-        let part = |planned_s: f64| progress.part(planned_s / planned.total_s());
-        let [choosing, training] = [planned.choose_s, planned.train_s].map(part);
+    pub(super) fn train_all(&self, penalties: &[Option<f64>]) -> Result<Vec<Fitted>> {
         let given: Option<Vec<f64>> = penalties.iter().copied().collect();
         match given {
-            Some(path) if !self.chooses_gamma() => self.train_path(&path, training),
-            _ => {
-                let share = 1.0 / penalties.len() as f64;
-                let progress = [choosing, training].map(|all| all.part(share));
-                let train = |&c: &Option<f64>| self.train(c, progress);
-                penalties.iter().map(train).collect()
-            }
+            Some(path) if !self.chooses_gamma() => self.train_path(&path),
+            _ => penalties.iter().map(|&c| self.train(c)).collect(),
         }
     }
 
@@ -89,10 +75,10 @@ impl Training<'_> {
     }
 
     /// For several C that are given: what they share is computed once, and its time told to each in equal parts.
-    fn train_path(&self, path: &[f64], progress: FitProgress) -> Result<Vec<Fitted>> {
+    fn train_path(&self, path: &[f64]) -> Result<Vec<Fitted>> {
         let start = Instant::now();
         let classifier = self.classifier();
-        let trained = classifier.train_path_telling(&self.data, path, &self.seed, progress)?;
+        let trained = classifier.train_path(&self.data, path, &self.seed)?;
         let gamma = self.gamma()?;
         let fit_s = start.elapsed().as_secs_f64() / path.len() as f64;
         let fitted = trained.into_iter().map(|classifier| Fitted {
@@ -105,7 +91,7 @@ impl Training<'_> {
     }
 
     /// With this C, or one that is chosen, or none; and a γ that may be chosen.
-    fn train(&self, c: Option<f64>, [choosing, training]: [FitProgress; 2]) -> Result<Fitted> {
+    fn train(&self, c: Option<f64>) -> Result<Fitted> {
         let start = Instant::now();
         let mut classifier = self.classifier();
         let (mut gamma, mut path) = (None, None);
@@ -116,15 +102,14 @@ impl Training<'_> {
                 gamma_scales: self.choice.gamma_multiples.clone(),
             };
             let folds = self.folds(&data)?;
-            let choice = (&folds[..], &candidates);
-            let chosen = classifier.choose_telling(&data, choice, &self.seed, choosing)?;
+            let chosen = classifier.choose(&data, &folds, &candidates, &self.seed)?;
             classifier = classifier.with_choice(&chosen);
             gamma = chosen.best.gamma;
             path = Some([chosen.best.c]);
         }
         let classifier = match path {
             Some(path) => classifier
-                .train_path_telling(&self.data, &path, &self.seed, training)?
+                .train_path(&self.data, &path, &self.seed)?
                 .swap_remove(0),
             None => classifier.train(&self.data, &self.seed)?,
         };

@@ -199,11 +199,10 @@ fn what_the_user_names_wrongly_is_refused_as_bad_input() {
     case.file("file", "precious");
     let before = case.names();
     for (arguments, words) in [
-        ("report empty", &["empty/accuracy.csv", "is missing"][..]),
+        ("report empty", &["empty/study.toml", "cannot be read"][..]),
         ("compare empty empty", &["empty/accuracy.csv", "is missing"]),
         ("compare nothere empty", &["nothere/accuracy.csv"]),
         ("recording nothere.npz", &["nothere.npz", "is missing"]),
-        ("cache list file", &["file"]),
         ("press --mesh x.ply", &["x.ply: a folder"]),
         ("press --spheres x.csv", &["x.csv: a folder"]),
         ("objects mesh x.ply", &["x.ply: a folder"]),

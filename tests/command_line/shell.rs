@@ -170,7 +170,7 @@ fn a_terminal_gets_colours_unless_no_color_is_set() {
 }
 
 /// A study, a scene and a folder for each subcommand that says something on standard output; those first that others read.
-const SPEAKERS: [&str; 25] = [
+const SPEAKERS: [&str; 24] = [
     "run study.toml --out results/study --threads 2",
     "run study.toml --out results/json --json --threads 2",
     "features study.toml --out features",
@@ -191,7 +191,6 @@ const SPEAKERS: [&str; 25] = [
     "plan study.toml",
     "recording scene/recording.npz",
     "recording scene/recording.npz --frame 0",
-    "cache list",
     "verify results/study --cells 1",
     "report results/study",
     "compare results/study results/study --html o.html",

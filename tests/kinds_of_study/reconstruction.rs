@@ -1,6 +1,7 @@
 //! A study that reconstructs frames: from its file to its tables and pictures.
 
 use crate::command::Case;
+use bubbletouch::kinds;
 use bubbletouch::kinds::reconstruction::rows::{
     EnsembleStatistics, ReconstructionCell, ReconstructionPareto, ReconstructionScore,
     ReconstructionTime,
@@ -8,7 +9,6 @@ use bubbletouch::kinds::reconstruction::rows::{
 use bubbletouch::kinds::reconstruction::{ReconstructionPlan, ReconstructionStudySpec};
 use bubbletouch::report::csv_tables::read_rows;
 use bubbletouch::sensing::{Basis, Ensemble, Solver};
-use bubbletouch::study::StudyKind;
 use std::fs;
 
 const SMALL: &str = r#"
@@ -138,9 +138,9 @@ fn the_tables_are_the_same_bytes_at_any_number_of_threads_and_hold_every_cell() 
 
 #[test]
 fn a_study_says_which_kind_it_is_and_other_commands_say_what_they_take() {
-    assert_eq!(StudyKind::of(SMALL), StudyKind::Reconstruction);
-    assert_eq!(StudyKind::of("question = 1"), StudyKind::Recognition);
-    assert_eq!(StudyKind::of("not TOML ["), StudyKind::Recognition);
+    assert_eq!(kinds::about(SMALL).unwrap().table, "reconstruction");
+    assert!(kinds::about("question = 1").is_none());
+    assert!(kinds::about("not TOML [").is_none());
     let case = Case::new();
     case.file("study.toml", SMALL);
     let output = case.run(&["touches", "study.toml", "--out", "touches"]);

@@ -1,6 +1,7 @@
 //! The study of where contact methods break.
 
 use crate::command::Case;
+use bubbletouch::kinds;
 use bubbletouch::kinds::stability::rows::{
     Joints, StabilityCell, StabilityScore, StabilitySummary,
 };
@@ -8,7 +9,6 @@ use bubbletouch::kinds::stability::{
     ContactMethod, Outcome, StabilityPlan, StabilityScene, StabilityStudySpec, TOLERANCE,
 };
 use bubbletouch::report::csv_tables::read_rows;
-use bubbletouch::study::StudyKind;
 use std::fs;
 use std::path::Path;
 
@@ -170,7 +170,7 @@ fn a_ladder_of_joints_carries_the_same_on_each_and_is_charted() {
 
 #[test]
 fn keys_that_are_out_of_range_are_named_with_their_part() {
-    assert_eq!(StudyKind::of(QUICK), StudyKind::Stability);
+    assert_eq!(kinds::about(QUICK).unwrap().table, "stability");
     for (old, new, said) in [
         (
             "taxels = 8",

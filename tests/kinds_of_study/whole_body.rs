@@ -1,12 +1,12 @@
 //! Studies of a whole body, small and quick.
 
 use crate::command::Case;
+use bubbletouch::kinds;
 use bubbletouch::kinds::whole_body::rows::{
     BodyCase, BodyCount, BodyRecognition, BodySensed, BodyStep, BodyTime, Series, Stage,
 };
 use bubbletouch::kinds::whole_body::{WholeBodyPlan, WholeBodyStudySpec};
 use bubbletouch::report::csv_tables::read_rows;
-use bubbletouch::study::StudyKind;
 use std::fs;
 
 const ROBOT: &str = r#"<robot name="post">
@@ -219,7 +219,7 @@ fn a_study_of_a_body_takes_no_objects_and_misses_none() {
 
 #[test]
 fn keys_of_a_body_study_that_are_out_of_range_are_named() {
-    assert_eq!(StudyKind::of(STUDY), StudyKind::WholeBody);
+    assert_eq!(kinds::about(STUDY).unwrap().table, "whole_body");
     let case = case(STUDY);
     let plan = |text: &str| {
         WholeBodyStudySpec::parse("study.toml", text)

@@ -1,4 +1,4 @@
-//! Studies of every kind that is made of pieces, through all that can happen to a run: their tables come out as if nothing had.
+//! Studies of every kind, through all that can happen to a run: their tables come out as if nothing had.
 #![cfg(unix)]
 
 use crate::command::Case;
@@ -9,13 +9,12 @@ use rand_chacha::ChaCha8Rng;
 use std::collections::BTreeSet;
 use std::fs;
 use std::thread::sleep;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 /// A study that has run once, in the folder `whole`.
 struct Faults {
     kind: Kind,
     case: Case,
-    took: Duration,
 }
 
 /// No stage goes beyond its total; from the first piece on a run says how long it will take, and at its end nothing of what was
@@ -47,14 +46,7 @@ fn planned(said: &str, word: &str) -> Vec<String> {
 
 #[test]
 fn a_study_of_every_kind_is_planned_and_its_plan_counts_its_pieces() {
-    for kind in [
-        Kind::STABILITY,
-        Kind::BREAKING_POINTS,
-        Kind::RECONSTRUCTION,
-        Kind::OBJECT_DETAIL,
-        Kind::WHOLE_BODY,
-        Kind::SPEED_ACCURACY,
-    ] {
+    for kind in Kind::ALL {
         let case = kind.case();
         let (said, error) = case.succeeds(&["plan", "study.toml", "--threads", "1"]);
         assert!(
@@ -76,19 +68,15 @@ fn a_study_of_every_kind_is_planned_and_its_plan_counts_its_pieces() {
             format!("{n_pieces},"),
             "{said}"
         );
-        let refused = case.run(&["plan", "study.toml", "--memory-gib", "1"]);
-        assert_eq!(refused.status.code(), Some(2));
     }
 }
 
 impl Faults {
     fn of(kind: Kind) -> Self {
         let case = kind.case();
-        let start = Instant::now();
         let (said, _) = case.succeeds(&["run", "study.toml", "--out", "whole", "--json"]);
-        let took = start.elapsed();
         assert_progress_ends(&said);
-        let faults = Self { kind, case, took };
+        let faults = Self { kind, case };
         let manifest = fs::read_to_string(faults.case.path("whole/manifest.json")).unwrap();
         let manifest: serde_json::Value = serde_json::from_str(&manifest).unwrap();
         assert_eq!(manifest["n_cells"], faults.n_pieces());
@@ -114,36 +102,42 @@ impl Faults {
         }
     }
 
-    fn is_killed_at_random_and_does_no_piece_twice(&self, n_kills: usize) {
+    /// Kills at work items until there were enough, each of a run that went on from the last.
+    fn is_killed_at_work_items_and_does_none_twice(&self) {
         let mut rng = ChaCha8Rng::seed_from_u64(8);
-        let journal = self.case.path("killed/journal.jsonl");
-        let mut n_done = 0;
-        for n_killed in 0.. {
-            let mut run = start(&self.case, &["run", "study.toml", "--out", "killed"]);
-            let share = match n_killed < n_kills {
-                true => rng.gen_range(0.0..1.0),
-                false => 1e3,
-            };
-            let end = Instant::now() + self.took.mul_f64(share);
-            while Instant::now() < end && run.try_wait().unwrap().is_none() {
-                sleep(Duration::from_millis(2));
+        let n_pieces = self.n_pieces();
+        let (mut n_kills, mut n_folders) = (0, 0);
+        while n_kills < n_kills_wanted() {
+            let folder = format!("killed_{n_folders}");
+            n_folders += 1;
+            let journal = self.case.path(&folder).join("journal.jsonl");
+            let mut n_left = n_pieces;
+            while n_left > 0 {
+                let n = rng.gen_range(1..=n_left.min(1 + n_pieces / 4));
+                let kill = n.to_string();
+                let run = [
+                    "run",
+                    "study.toml",
+                    "--out",
+                    &folder,
+                    "--abort-after",
+                    &kill,
+                ];
+                let output = self.case.run(&run);
+                assert!(!output.status.success(), "{}", said(&output));
+                n_left -= n;
+                n_kills += 1;
+                // What several threads finish at the same time is kept one after the other.
+                assert_eq!(pieces(&journal).len(), n_pieces - n_left);
             }
-            let has_ended = run.try_wait().unwrap().is_some();
-            run.kill().unwrap();
-            let output = run.wait_with_output().unwrap();
+            let (_, error) = self.case.succeeds(&["run", "study.toml", "--out", &folder]);
+            let all = format!("going on: {n_pieces} of {n_pieces} ");
+            assert!(error.contains(&all), "{error}");
             let done = pieces(&journal);
-            assert!(done.len() >= n_done, "pieces were lost");
-            n_done = done.len();
-            if has_ended {
-                assert!(output.status.success(), "{}", said(&output));
-                break;
-            }
+            let different: BTreeSet<&String> = done.iter().collect();
+            assert_eq!(done.len(), different.len(), "a piece was done twice");
+            self.assert_same_tables(&folder);
         }
-        let done = pieces(&journal);
-        let different: BTreeSet<&String> = done.iter().collect();
-        assert_eq!(done.len(), different.len(), "a piece was done twice");
-        assert_eq!(done.len(), self.n_pieces());
-        self.assert_same_tables("killed");
     }
 
     fn loses_no_more_than_a_torn_last_line(&self) {
@@ -260,6 +254,26 @@ impl Faults {
         self.assert_same_tables("parts");
     }
 
+    /// Refused below what it takes, with how much that is; the same tables from there on.
+    fn is_the_same_within_a_ceiling_of_memory(&self) {
+        let run = |gib: &str| {
+            let run = ["run", "study.toml", "--out", "below", "--memory-gib", gib];
+            self.case.run(&run)
+        };
+        let refused = run("0.001");
+        assert_eq!(refused.status.code(), Some(2));
+        let error = said(&refused);
+        let (_, after) = error.split_once("at least ").expect("how much it takes");
+        let (least, _) = after.split_once(" GiB").expect("a unit");
+        // It is rounded to hundredths.
+        let least = format!("{:.2}", least.parse::<f64>().unwrap() + 0.01);
+        let plan = ["plan", "study.toml", "--memory-gib", &least];
+        assert!(!planned(&self.case.succeeds(&plan).0, "memory").is_empty());
+        let output = run(&least);
+        assert!(output.status.success(), "{}", said(&output));
+        self.assert_same_tables("below");
+    }
+
     fn verifies_until_a_number_is_changed(&self) {
         let n = self.n_pieces();
         let all = ["verify", "whole", "--cells", &n.to_string()];
@@ -290,9 +304,17 @@ impl Faults {
     }
 }
 
+/// Kills of each kind: on every change, and where there is time.
+fn n_kills_wanted() -> usize {
+    match std::env::var_os("BUBBLETOUCH_LONG") {
+        None => 8,
+        Some(_) => 50,
+    }
+}
+
 fn goes_through_all_faults(kind: Kind) {
     let faults = Faults::of(kind);
-    faults.is_killed_at_random_and_does_no_piece_twice(5);
+    faults.is_killed_at_work_items_and_does_none_twice();
     faults.loses_no_more_than_a_torn_last_line();
     faults.ends_on_a_full_disk_and_goes_on_where_there_is_room();
     faults.tells_a_second_run_of_the_first();
@@ -300,37 +322,27 @@ fn goes_through_all_faults(kind: Kind) {
     faults.refuses_a_journal_that_names_no_study();
     faults.keeps_its_work_when_there_is_more_of_it();
     faults.is_the_same_in_shards();
+    faults.is_the_same_within_a_ceiling_of_memory();
     faults.verifies_until_a_number_is_changed();
 }
 
-#[test]
-fn a_study_of_stability_goes_through_all_faults() {
-    goes_through_all_faults(Kind::STABILITY);
+macro_rules! through_all_faults {
+    ($($name:ident: $kind:ident;)*) => {
+        $(#[test]
+        fn $name() {
+            goes_through_all_faults(Kind::$kind);
+        })*
+    };
 }
 
-#[test]
-fn a_study_of_breaking_points_goes_through_all_faults() {
-    goes_through_all_faults(Kind::BREAKING_POINTS);
-}
-
-#[test]
-fn a_reconstruction_study_goes_through_all_faults() {
-    goes_through_all_faults(Kind::RECONSTRUCTION);
-}
-
-#[test]
-fn a_study_of_object_detail_goes_through_all_faults() {
-    goes_through_all_faults(Kind::OBJECT_DETAIL);
-}
-
-#[test]
-fn a_study_of_a_whole_body_goes_through_all_faults() {
-    goes_through_all_faults(Kind::WHOLE_BODY);
-}
-
-#[test]
-fn a_study_of_speed_against_accuracy_goes_through_all_faults() {
-    goes_through_all_faults(Kind::SPEED_ACCURACY);
+through_all_faults! {
+    a_study_of_recognition_goes_through_all_faults: RECOGNITION;
+    a_study_of_reconstruction_goes_through_all_faults: RECONSTRUCTION;
+    a_study_of_object_detail_goes_through_all_faults: OBJECT_DETAIL;
+    a_study_of_a_whole_body_goes_through_all_faults: WHOLE_BODY;
+    a_study_of_stability_goes_through_all_faults: STABILITY;
+    a_study_of_breaking_points_goes_through_all_faults: BREAKING_POINTS;
+    a_study_of_speed_against_accuracy_goes_through_all_faults: SPEED_ACCURACY;
 }
 
 #[test]

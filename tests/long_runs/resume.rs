@@ -2,47 +2,16 @@
 #![cfg(unix)]
 
 use crate::command::Case;
-use crate::faults::{full_disk, keys, said, sha256, signal, start};
+use crate::faults::{pieces, said, signal, start};
+use crate::kinds::Kind;
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
-use std::collections::BTreeSet;
 use std::fs;
-use std::path::Path;
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
 /// Two arrays, 64 fits; less than a second of work.
-const STUDY: &str = r#"
-question = "What is left of a run that was killed?"
-trials = 2
-
-[objects]
-sets = ["household"]
-names = ["mug", "banana", "scissors", "power_drill"]
-surface_error_mm = 2.0
-
-[skin]
-pitch_mm = [4.0, 8.0]
-size_mm = 64.0
-stroke_mm = 5.0
-
-[touches]
-per_object = 32
-offset_x_mm = { uniform = [-8.0, 8.0] }
-yaw_deg = { uniform = [0.0, 360.0] }
-depth_mm = 3.0
-
-[signal]
-noise_std_full_scale = [0.05, 0.2]
-
-[sensing]
-ensemble = "gaussian"
-ratio = [4, 16]
-
-[recognition]
-classifier = ["linear_svm", "naive_bayes"]
-features = ["raw", "unit_norm"]
-"#;
+const STUDY: &str = Kind::RECOGNITION.study;
 
 /// The tables that hold no times.
 const REPEATABLE: [&str; 7] = [
@@ -69,64 +38,6 @@ fn assert_same_tables(case: &Case, folder: &str) {
     }
 }
 
-fn cell_keys(journal: &Path) -> Vec<String> {
-    keys(journal)
-        .into_iter()
-        .filter(|key| key.starts_with("cell "))
-        .collect()
-}
-
-/// Kills in all: on every change, and where there is time.
-fn n_kills_wanted() -> usize {
-    match std::env::var_os("BUBBLETOUCH_LONG") {
-        None => 8,
-        Some(_) => 50,
-    }
-}
-
-/// Kills after which a run goes on to its end.
-const MOST_KILLS_OF_FOLDER: usize = 10;
-
-#[test]
-fn a_run_that_is_killed_at_any_instant_goes_on_and_does_no_cell_twice() {
-    let case = case();
-    let start_of_whole = Instant::now();
-    case.succeeds(&["run", "study.toml", "--out", "timed"]);
-    let whole = start_of_whole.elapsed();
-    let mut rng = ChaCha8Rng::seed_from_u64(8);
-    let (mut n_kills, mut folder_number) = (0, 0);
-    while n_kills < n_kills_wanted() {
-        let folder = format!("killed_{folder_number}");
-        folder_number += 1;
-        let journal = case.path(&folder).join("journal.jsonl");
-        for n_of_folder in 0.. {
-            let mut run = start(&case, &["run", "study.toml", "--out", &folder]);
-            // At the last it may end: to read what is there and to report can take as long as the whole run took.
-            let mut has_ended = n_of_folder == MOST_KILLS_OF_FOLDER;
-            if !has_ended {
-                sleep(whole.mul_f64(rng.gen_range(0.0..1.0)));
-                has_ended = run.try_wait().unwrap().is_some();
-                run.kill().unwrap();
-            }
-            let output = run.wait_with_output().unwrap();
-            if has_ended {
-                assert!(output.status.success(), "{}", said(&output));
-                break;
-            }
-            n_kills += 1;
-        }
-        assert_same_tables(&case, &folder);
-        let done = cell_keys(&journal);
-        let different: BTreeSet<&String> = done.iter().collect();
-        assert_eq!(
-            done.len(),
-            different.len(),
-            "{folder}: a cell was done twice"
-        );
-        assert_eq!(done.len(), 2 * 2 * 2 * 2 * 2 * 2);
-    }
-}
-
 #[test]
 fn a_journal_whose_tail_is_torn_loses_its_last_line_and_nothing_else() {
     let case = case();
@@ -141,7 +52,7 @@ fn a_journal_whose_tail_is_torn_loses_its_last_line_and_nothing_else() {
             _ => rng.gen_range(0..bytes.len()),
         };
         fs::write(&journal, &bytes[..n]).unwrap();
-        let kept = cell_keys(&journal);
+        let kept = pieces(&journal);
         let folder = case.path("whole");
         let before = fs::read(folder.join("accuracy.csv")).unwrap();
         fs::write(folder.join("accuracy.csv"), "").unwrap();
@@ -151,7 +62,7 @@ fn a_journal_whose_tail_is_torn_loses_its_last_line_and_nothing_else() {
             "{n} bytes"
         );
         assert_eq!(error.contains("going on"), !kept.is_empty(), "{error}");
-        assert_eq!(cell_keys(&journal)[..kept.len()], kept);
+        assert_eq!(pieces(&journal)[..kept.len()], kept);
     }
     // A line that is wrong though others follow was not torn by an interrupted run.
     let mut wrong = bytes.clone();
@@ -168,27 +79,13 @@ fn a_journal_whose_tail_is_torn_loses_its_last_line_and_nothing_else() {
 }
 
 #[test]
-fn a_disk_that_is_full_ends_a_run_and_one_with_room_goes_on() {
-    let case = case();
-    for kilobytes in [0, 2, 5, 9] {
-        let folder = format!("full_{kilobytes}");
-        let output = full_disk(&case, kilobytes, &["run", "study.toml", "--out", &folder]);
-        assert_eq!(output.status.code(), Some(1), "{}", said(&output));
-        assert!(said(&output).contains("write failed"), "{}", said(&output));
-        assert!(!case.path(&folder).join("accuracy.csv").exists());
-        case.succeeds(&["run", "study.toml", "--out", &folder]);
-        assert_same_tables(&case, &folder);
-    }
-}
-
-#[test]
 fn ctrl_c_ends_a_run_within_two_seconds_and_says_how_to_go_on() {
     let case = case();
     for name in ["INT", "TERM"] {
         let folder = format!("stopped_{name}");
         let run = start(&case, &["run", "study.toml", "--out", &folder]);
         let journal = case.path(&folder).join("journal.jsonl");
-        while cell_keys(&journal).is_empty() {
+        while pieces(&journal).is_empty() {
             sleep(Duration::from_millis(5));
         }
         let asked = Instant::now();
@@ -212,7 +109,7 @@ fn a_signal_ends_a_run_though_nobody_reads_what_it_says() {
     let case = case();
     let mut run = start(&case, &["run", "study.toml", "--out", "unread"]);
     let journal = case.path("unread/journal.jsonl");
-    while cell_keys(&journal).is_empty() {
+    while pieces(&journal).is_empty() {
         sleep(Duration::from_millis(5));
     }
     drop(run.stderr.take());
@@ -229,7 +126,7 @@ fn a_second_run_in_a_folder_is_told_of_the_first() {
     let case = case();
     let mut first = start(&case, &["run", "study.toml", "--out", "shared"]);
     let journal = case.path("shared/journal.jsonl");
-    while cell_keys(&journal).is_empty() {
+    while pieces(&journal).is_empty() {
         sleep(Duration::from_millis(5));
     }
     for arguments in [
@@ -349,7 +246,7 @@ fn a_journal_whose_lines_are_of_no_study_or_of_another_is_refused_and_stays_as_i
     case.file("whole/journal.jsonl", twice);
     case.succeeds(&["run", "study.toml", "--out", "whole"]);
     let (said_of, _) = case.succeeds(&["verify", "whole", "--cells", "3"]);
-    assert!(said_of.contains("3 of 64 rows"), "{said_of}");
+    assert!(said_of.contains("3 of 66 pieces"), "{said_of}");
 }
 
 /// Runs a longer study in a copy of what the study left, and from nothing: the same tables, and so much was finished before.
@@ -371,7 +268,7 @@ fn assert_grows(case: &Case, (more, n_before, n_all): (&str, usize, usize)) {
         fs::copy(case.path("whole/journal.jsonl"), journal).unwrap();
         let run = ["run", "more.toml", "--out", &folder, "--threads", threads];
         let (_, error) = case.succeeds(&run);
-        let going_on = format!("going on: {n_before} of {n_all} cells");
+        let going_on = format!("going on: {n_before} of {n_all} pieces");
         assert!(error.contains(&going_on), "{error}");
         for name in REPEATABLE.iter().chain(&["limits.csv"]) {
             let read = |folder: &str| fs::read(case.path(folder).join(name)).unwrap();
@@ -393,19 +290,18 @@ fn a_study_that_has_more_trials_and_values_keeps_its_cells_and_comes_out_as_if_r
             "[0.05, 0.1, 0.2]\nsteps = [\"crosstalk\", \"noise\"]\ncrosstalk = [0.1, 0.0]",
         )
         .replace("ratio = [4, 16]", "ratio = [2, 4, 16]")
-        .replace("[\"linear_svm\",", "[\"k_nearest\", \"linear_svm\",")
-        + "fused_touches = [2, 1]\n";
-    assert_grows(&case, (&more, 64, 3 * 3 * 3 * 2 * 3 * 3 * 2 * 2));
+        .replace("[\"linear_svm\",", "[\"k_nearest\", \"linear_svm\",");
+    assert_grows(&case, (&more, 66, 3 * 3 * 3 * 2 * 3 * 3 * 2 + 3));
     // Fewer are no less the same.
     let fewer = STUDY.replace("[0.05, 0.2]", "0.2");
-    assert_grows(&case, (&fewer, 32, 32));
+    assert_grows(&case, (&fewer, 34, 34));
 }
 
 #[test]
 fn a_c_more_trains_only_those_again_that_start_from_one_another() {
     let case = case();
     let more = STUDY.to_owned() + "c = [0.1, 1.0]\n";
-    assert_grows(&case, (&more, 32, 96));
+    assert_grows(&case, (&more, 34, 66));
 }
 
 #[test]
@@ -419,7 +315,7 @@ fn other_words_refuse_nothing_and_train_nothing() {
         "expected = \"All of it.\"\n".to_owned() + &words,
     );
     let (_, error) = case.succeeds(&["run", "words.toml", "--out", "whole"]);
-    assert!(error.contains("going on: 64 of 64 cells"), "{error}");
+    assert!(error.contains("going on: 66 of 66 pieces"), "{error}");
     assert_eq!(lines_of(&case, "whole").len(), n_lines);
     let page = fs::read_to_string(case.path("whole/report.html")).unwrap();
     assert!(page.contains("Expected or not"));
@@ -461,7 +357,7 @@ fn a_cell_that_fails_is_recorded_and_the_others_are_done() {
     let output = case.run(&["run", "failing.toml", "--out", "failing"]);
     assert_eq!(output.status.code(), Some(1));
     assert!(
-        said(&output).contains("failures.csv: 2 of 8 cells failed"),
+        said(&output).contains("failures.csv: 2 of 9 pieces failed"),
         "{}",
         said(&output)
     );
@@ -479,26 +375,16 @@ fn a_cell_that_fails_is_recorded_and_the_others_are_done() {
     // They are tried again, the others are not.
     let again = case.run(&["run", "failing.toml", "--out", "failing"]);
     assert_eq!(again.status.code(), Some(1));
-    let done = cell_keys(&case.path("failing/journal.jsonl"));
-    assert_eq!(done.len(), 8 + 2, "{done:?}");
+    let done = pieces(&case.path("failing/journal.jsonl"));
+    assert_eq!(done.len(), 9 + 2, "{done:?}");
     let strict = case.run(&["run", "failing.toml", "--out", "strict", "--fail-fast"]);
     assert_eq!(strict.status.code(), Some(2));
     assert!(said(&strict).contains("neighbours"), "{}", said(&strict));
 }
 
 #[test]
-fn shards_that_know_nothing_of_each_other_make_the_same_tables() {
+fn more_shards_than_groups_from_folders_of_their_own_make_the_same_tables() {
     let case = case();
-    for index in ["2", "1", "3"] {
-        let shard = format!("{index}/3");
-        let early = case.run(&["merge", "study.toml", "--out", "parts"]);
-        assert_eq!(early.status.code(), Some(2), "{}", said(&early));
-        case.succeeds(&["run", "study.toml", "--out", "parts", "--shard", &shard]);
-    }
-    assert!(!case.path("parts/accuracy.csv").exists());
-    case.succeeds(&["merge", "study.toml", "--out", "parts"]);
-    assert_same_tables(&case, "parts");
-    // More shards than there are groups to share, from folders of their own.
     for index in 1..=40 {
         let (shard, folder) = (format!("{index}/40"), format!("machine_{}", index % 2));
         case.succeeds(&["run", "study.toml", "--out", &folder, "--shard", &shard]);
@@ -513,49 +399,8 @@ fn shards_that_know_nothing_of_each_other_make_the_same_tables() {
     ]);
     assert_same_tables(&case, "machine_0");
     case.file("other.toml", STUDY.replace("trials = 2", "trials = 3"));
-    let other = case.run(&["merge", "other.toml", "--out", "parts"]);
+    let other = case.run(&["merge", "other.toml", "--out", "machine_0"]);
     assert_eq!(other.status.code(), Some(2));
-}
-
-#[test]
-fn results_verify_until_a_number_in_them_is_changed() {
-    let case = case();
-    let (output, _) = case.succeeds(&["verify", "whole", "--cells", "4"]);
-    assert!(output.contains("4 of 64 rows"), "{output}");
-    let path = case.path("whole/accuracy.csv");
-    let text = fs::read_to_string(&path).unwrap();
-    let changed: Vec<String> = text
-        .lines()
-        .map(|line| line.replace(",0.7", ",0.6"))
-        .collect();
-    assert!(
-        changed.join("\n") + "\n" != text,
-        "a study with no accuracy of 0.7 shows nothing here"
-    );
-    fs::write(&path, changed.join("\n") + "\n").unwrap();
-    let output = case.run(&["verify", "whole"]);
-    assert_eq!(output.status.code(), Some(2));
-    assert!(
-        said(&output).contains("was changed after its run"),
-        "{}",
-        said(&output)
-    );
-    // Who changes the manifest too is found out by running cells again.
-    let manifest = case.path("whole/manifest.json");
-    let said_before = fs::read_to_string(&manifest).unwrap();
-    let value: serde_json::Value = serde_json::from_str(&said_before).unwrap();
-    let old = value["tables_sha256"]["accuracy.csv"]
-        .as_str()
-        .unwrap()
-        .to_owned();
-    fs::write(
-        &manifest,
-        said_before.replace(&old, &sha256(&fs::read(&path).unwrap())),
-    )
-    .unwrap();
-    let output = case.run(&["verify", "whole", "--cells", "64"]);
-    assert_eq!(output.status.code(), Some(2));
-    assert!(said(&output).contains("again it is"), "{}", said(&output));
 }
 
 #[test]
@@ -570,8 +415,8 @@ fn a_program_that_starts_a_run_reads_json_lines_and_nothing_else() {
     let last = events.last().unwrap();
     assert_eq!(last["event"], "finished");
     assert_eq!(
-        (&last["cells"], &last["finished_before"]),
-        (&64.into(), &64.into())
+        (&last["pieces"], &last["finished_before"]),
+        (&66.into(), &66.into())
     );
     let (output, error) = case.succeeds(&["run", "study.toml", "--out", "whole", "--quiet"]);
     assert_eq!((output.as_str(), error.as_str()), ("", ""));

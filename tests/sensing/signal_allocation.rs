@@ -1,9 +1,7 @@
 //! A chain that has seen one frame allocates nothing for the next ones.
 
 use bubbletouch::random::Seed;
-use bubbletouch::signal::{
-    Chain, Drift, Faults, GainMismatch, Noise, NoiseUnit, Recording, Scratch, SignalStep,
-};
+use bubbletouch::signal::{Chain, Noise, NoiseUnit, Recording, Scratch, SensorError, SignalStep};
 use bubbletouch::world::{Grid, Patch, Taxel};
 
 use crate::counting::allocations;
@@ -28,19 +26,15 @@ fn touches_after_the_first_allocate_nothing() {
     let smoothing = SignalStep::Smoothing { width: 4e-3 };
     let skin = Seed::new(1);
     let steps = [
-        SignalStep::Hysteresis { width: 0.1 },
-        SignalStep::Crosstalk { leak: 0.1 },
-        SignalStep::Scan { seconds: 0.1 },
+        SensorError::Hysteresis.step(&[0.1], skin),
+        SensorError::Crosstalk.step(&[0.1], skin),
+        SensorError::Scan.step(&[1e3 * 0.1], skin),
         SignalStep::Force,
-        SignalStep::Gain(GainMismatch { std: 0.1, skin }),
-        SignalStep::Drift(Drift { std: 0.1, skin }),
+        SensorError::Gain.step(&[0.1], skin),
+        SensorError::Drift.step(&[0.1], skin),
         noise,
-        SignalStep::Faults(Faults {
-            dead: 0.1,
-            stuck: 0.1,
-            skin,
-        }),
-        SignalStep::Quantisation { bits: 8 },
+        SensorError::Faults.step(&[0.1, 0.1], skin),
+        SensorError::Quantisation.step(&[8.0], skin),
         smoothing,
     ];
     let chain = Chain::new(&steps, &Patch::new(grid, taxel).unwrap()).unwrap();

@@ -1,9 +1,7 @@
 //! What real skins do to a signal, in chains: strengths, order, history, time, units.
 
 use bubbletouch::random::Seed;
-use bubbletouch::signal::{
-    Chain, Drift, Faults, GainMismatch, Noise, NoiseUnit, Recording, Scratch, SignalStep,
-};
+use bubbletouch::signal::{Chain, Noise, NoiseUnit, Recording, Scratch, SensorError, SignalStep};
 use bubbletouch::world::{Grid, Patch, Taxel};
 
 const N: usize = 48;
@@ -31,31 +29,21 @@ fn skin() -> Seed {
     Seed::new(1).named("skin")
 }
 
+fn is_of(step: &SignalStep, wanted: SensorError) -> bool {
+    matches!(step, SignalStep::Error { error, .. } if *error == wanted)
+}
+
 /// Every imperfection at a multiple of some strength.
 fn imperfections(times: f64) -> Vec<SignalStep> {
     let skin = skin();
     vec![
-        SignalStep::Hysteresis { width: 0.1 * times },
-        SignalStep::Crosstalk { leak: 0.2 * times },
-        SignalStep::Scan {
-            seconds: 0.05 * times,
-        },
-        SignalStep::Gain(GainMismatch {
-            std: 0.3 * times,
-            skin,
-        }),
-        SignalStep::Drift(Drift {
-            std: 0.1 * times,
-            skin,
-        }),
-        SignalStep::Faults(Faults {
-            dead: 0.1 * times,
-            stuck: 0.1 * times,
-            skin,
-        }),
-        SignalStep::Quantisation {
-            bits: (6.0 * times) as u32,
-        },
+        SensorError::Hysteresis.step(&[0.1 * times], skin),
+        SensorError::Crosstalk.step(&[0.2 * times], skin),
+        SensorError::Scan.step(&[1e3 * 0.05 * times], skin),
+        SensorError::Gain.step(&[0.3 * times], skin),
+        SensorError::Drift.step(&[0.1 * times], skin),
+        SensorError::Faults.step(&[0.1 * times, 0.1 * times], skin),
+        SensorError::Quantisation.step(&[(6.0 * times).floor()], skin),
     ]
 }
 
@@ -117,7 +105,7 @@ fn gains_and_faults_stay_with_the_skin_and_zeros_wander_from_touch_to_touch() {
     let frames = press(2);
     for step in imperfections(1.0) {
         let is_same = read(&[step], &frames, 0, 4) == read(&[step], &frames, 0, 5);
-        let wanders = matches!(step, SignalStep::Drift(_));
+        let wanders = is_of(&step, SensorError::Drift);
         assert_eq!(is_same, !wanders, "{step:?}");
     }
     let drift = imperfections(1.0)[4];
@@ -127,12 +115,7 @@ fn gains_and_faults_stay_with_the_skin_and_zeros_wander_from_touch_to_touch() {
     assert_eq!(zeros[..N], zeros[2 * N..]);
     let of = |skin| {
         let std = 0.3;
-        read(
-            &[SignalStep::Gain(GainMismatch { std, skin })],
-            &frames,
-            0,
-            4,
-        )
+        read(&[SensorError::Gain.step(&[std], skin)], &frames, 0, 4)
     };
     assert_ne!(of(skin()), of(Seed::new(2).named("skin")));
 }
@@ -157,13 +140,12 @@ fn steps_act_in_the_order_of_the_list() {
 #[test]
 fn frames_of_a_chain_without_time_are_read_as_if_each_were_alone() {
     let mut steps = imperfections(1.0);
-    steps.retain(|step| {
-        !matches!(
-            step,
-            SignalStep::Hysteresis { .. } | SignalStep::Scan { .. }
-        )
-    });
-    steps.retain(|step| !matches!(step, SignalStep::Drift(_)));
+    let connects = [
+        SensorError::Hysteresis,
+        SensorError::Scan,
+        SensorError::Drift,
+    ];
+    steps.retain(|step| !connects.iter().any(|error| is_of(step, *error)));
     steps.insert(2, NOISE);
     let frames = press(3);
     let together = read(&steps, &frames, 0, 4);
@@ -186,7 +168,7 @@ fn frames_of_a_chain_without_time_are_read_as_if_each_were_alone() {
 
 #[test]
 fn a_skin_that_was_pressed_deeper_and_let_go_reads_a_touch_differently_and_no_touch_as_one() {
-    let hysteresis = SignalStep::Hysteresis { width: 0.1 };
+    let hysteresis = SensorError::Hysteresis.step(&[0.1], skin());
     let chain = Chain::new(&[NOISE, hysteresis], &patch()).unwrap();
     assert!(chain.remembers());
     let deep = vec![4e-3; N];
@@ -224,31 +206,30 @@ fn a_strength_that_no_skin_has_is_refused_by_name() {
     let skin = skin();
     for (step, place) in [
         (
-            SignalStep::Hysteresis { width: 0.3 },
+            SensorError::Hysteresis.step(&[0.3], skin),
             "hysteresis width: 0.3;",
         ),
-        (SignalStep::Crosstalk { leak: -0.1 }, "crosstalk: -0.1;"),
-        (SignalStep::Scan { seconds: f64::NAN }, "scan time: NaN;"),
         (
-            SignalStep::Gain(GainMismatch { std: -1.0, skin }),
-            "gain std: -1;",
+            SensorError::Crosstalk.step(&[-0.1], skin),
+            "crosstalk: -0.1;",
         ),
         (
-            SignalStep::Drift(Drift {
-                std: f64::INFINITY,
-                skin,
-            }),
+            SensorError::Scan.step(&[1e3 * f64::NAN], skin),
+            "scan time: NaN;",
+        ),
+        (SensorError::Gain.step(&[-1.0], skin), "gain std: -1;"),
+        (
+            SensorError::Drift.step(&[f64::INFINITY], skin),
             "drift std: inf;",
         ),
         (
-            SignalStep::Faults(Faults {
-                dead: 0.7,
-                stuck: 0.7,
-                skin,
-            }),
+            SensorError::Faults.step(&[0.7, 0.7], skin),
             "dead and stuck fractions: 0.7 and 0.7;",
         ),
-        (SignalStep::Quantisation { bits: 25 }, "converter bits: 25;"),
+        (
+            SensorError::Quantisation.step(&[25.0], skin),
+            "converter bits: 25;",
+        ),
     ] {
         let error = Chain::new(&[step], &patch()).unwrap_err();
         assert!(error.to_string().starts_with(place), "{error}");

@@ -3,7 +3,7 @@
 
 use bubbletouch::random::Seed;
 use bubbletouch::sensing::{Ensemble, Projection};
-use bubbletouch::signal::{Chain, Noise, NoiseUnit, Scratch, SignalStep};
+use bubbletouch::signal::{Chain, Noise, NoiseUnit, Scratch, SensorError, SignalStep};
 use bubbletouch::world::{Grid, Patch, Taxel};
 use ndarray::Array2;
 use rand::Rng;
@@ -68,7 +68,7 @@ fn noise_of_ten_times_the_full_scale_is_neither_clipped_nor_bounded() {
         );
         // A converter behind it clips.
         let clipped = applied(
-            &[noise, SignalStep::Quantisation { bits: 8 }],
+            &[noise, SensorError::Quantisation.step(&[8.0], Seed::new(1))],
             &patch,
             &noisy,
         );

@@ -5,9 +5,9 @@ use crate::study::{Study, trials_of};
 use bubbletouch::contact::{Workspace, press_to_depth};
 use bubbletouch::random::Seed;
 use bubbletouch::report::results::draw_charts;
-use bubbletouch::signal::{Chain, Recording, Scratch, SignalStep};
+use bubbletouch::signal::{Chain, Recording, Scratch, SensorError};
 use bubbletouch::study::progress::Silent;
-use bubbletouch::study::{Imperfection, Plan, StudySpec, cell_features, sample_frames};
+use bubbletouch::study::{Plan, StudySpec, cell_features, sample_frames};
 use bubbletouch::world::Scene;
 use rand::Rng;
 use std::fs;
@@ -73,7 +73,14 @@ fn one_at_a_time_scores_what_all_combinations_score_there() {
     let settings: Vec<_> = alone.tables.summary.iter().map(|(cell, _)| cell).collect();
     let told: Vec<_> = settings
         .iter()
-        .map(|c| (c.noise_std, c.gain_std, c.drift_std_full_scale))
+        .map(|c| {
+            let strength = |key| c.strengths.of(key);
+            (
+                c.noise_std,
+                strength("gain_std"),
+                strength("drift_std_full_scale"),
+            )
+        })
         .collect();
     let expected = [
         (0.01, Some(0.0), Some(0.05)),
@@ -96,13 +103,13 @@ fn a_skin_without_strength_scores_as_one_without_the_keys_and_only_used_keys_are
     let without = Study::new(&with_signal("noise_std_full_scale = [0.0, 0.1]")).run();
     for (plain, score) in &without.tables.accuracy {
         let same = |cell: &bubbletouch::study::table::Cell| {
-            cell.noise_std == plain.noise_std && cell.strengths().present().count() == 0
+            cell.noise_std == plain.noise_std && cell.strengths.present().count() == 0
         };
         let mut rows = with.tables.accuracy.iter();
         let found = rows.find(|(cell, s)| same(cell) && s.trial == score.trial);
         assert_eq!(&found.expect("a cell of no strength").1, score);
-        let strengths = plain.strengths();
-        assert_eq!(strengths.of(Imperfection::Gain), None);
+        let strengths = plain.strengths;
+        assert_eq!(strengths.of("gain_std"), None);
     }
     let csv = |rows: &[_]| {
         let csv = bubbletouch::report::csv_tables::to_csv(rows).unwrap();
@@ -183,8 +190,8 @@ fn a_touch_is_read_as_a_press_that_goes_on_after_another_touch() {
         pressed.iter().map(|&d| f64::from(d as f32)).collect()
     };
     let steps = [
-        SignalStep::Hysteresis { width: 0.2 },
-        SignalStep::Scan { seconds: 0.03 },
+        SensorError::Hysteresis.step(&[0.2], Seed::new(1)),
+        SensorError::Scan.step(&[30.0], Seed::new(1)),
     ];
     let chain = Chain::new(&steps, &patch).unwrap();
     let trial = 1;
@@ -299,7 +306,7 @@ fn keys_that_make_no_sense_are_refused_with_what_does() {
         ),
         (
             "steps = [\"faults\"]\ndead_fraction = 0.6\nstuck_fraction = [0.1, 0.5]",
-            "signal.stuck_fraction: up to 0.5, with up to 0.6 of the taxels dead; at most 1",
+            "signal.stuck_fraction: up to 0.5, with up to 0.6 of dead taxels; at most 1",
         ),
         (
             "steps = [\"crosstalk\"]\ncrosstalk = 0.1\ntested_on = \"another_skin\"",

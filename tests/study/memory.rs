@@ -1,12 +1,10 @@
-//! A study within a ceiling of memory, and touches that are kept from one run to the next.
+//! A study within a ceiling of memory.
 
 use crate::command::Case;
 use crate::study::Study;
-use bubbletouch::study::memory::{AtOnce, MemoryPlan};
+use bubbletouch::study::pieces::run_whole_study;
 use bubbletouch::study::progress::Silent;
-use bubbletouch::study::{
-    FrameStorage, Manner, Outcome, Part, TouchCache, journal::Journal, run_with,
-};
+use bubbletouch::study::{FramePlace, recognition_scale};
 use std::fs;
 use std::path::Path;
 use std::time::{Duration, Instant};
@@ -75,151 +73,23 @@ train_touches = 30
 solver_memory_gib = 0.01
 "#;
 
-fn run_in(study: &Study, storage: &FrameStorage, at_once: AtOnce) -> Outcome {
-    let manner = Manner {
-        journal: &Journal::none(),
-        fail_fast: true,
-        retries: false,
-        part: Part::All,
-        storage,
-        at_once,
-    };
-    run_with(&study.plan, &study.sweep, &study.touched, &Silent, manner).unwrap()
-}
-
 #[test]
-fn frames_in_files_and_one_piece_at_a_time_give_the_same_tables() {
+fn frames_in_a_file_and_one_item_at_a_time_give_the_same_tables() {
     let study = Study::new(SMALL);
     let usual = study.run();
     let folder = tempfile::tempdir().unwrap();
-    for (limit, n_kept) in [(u64::MAX, 4), (0, 0)] {
-        let cache = TouchCache::new(folder.path().join(limit.to_string()), limit);
-        let storage = FrameStorage::new(cache.clone(), 0);
-        for (jobs, families) in [(1, 1), (3, 2)] {
-            let outcome = run_in(&study, &storage, AtOnce { jobs, families });
-            assert_eq!(outcome.tables.accuracy, usual.tables.accuracy);
-            assert_eq!(outcome.tables.confusion, usual.tables.confusion);
-            assert_eq!(outcome.arrays, usual.arrays);
-            assert_eq!(cache.list().unwrap().len(), n_kept, "limit {limit}");
-        }
+    for n_threads in [1, 3] {
+        let mut items = study.of_items();
+        items.place = FramePlace::File(folder.path().join("results"));
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(n_threads);
+        let run = || run_whole_study(&items, &Silent).unwrap();
+        let outcome = pool.build().unwrap().install(run);
+        assert_eq!(outcome.tables.accuracy, usual.tables.accuracy);
+        assert_eq!(outcome.tables.confusion, usual.tables.confusion);
+        assert_eq!(outcome.arrays, usual.arrays);
     }
-}
-
-#[test]
-fn touches_that_are_kept_are_not_made_again_and_others_are() {
-    let folder = tempfile::tempdir().unwrap();
-    let cache = TouchCache::new(folder.path(), u64::MAX);
-    let storage = FrameStorage::new(cache.clone(), 0);
-    let seconds = |text: &str| -> Vec<u64> {
-        let outcome = run_in(&Study::new(text), &storage, AtOnce::ALL);
-        let stages = outcome.tables.stages.iter();
-        let made = stages.filter(|stage| stage.stage.starts_with("simulate"));
-        made.map(|stage| stage.cpu_s.to_bits()).collect()
-    };
-    let first = seconds(SMALL);
-    // A clock that ran twice would not show the same nanosecond.
-    assert_eq!(seconds(SMALL), first);
-    assert_eq!(seconds(&SMALL.replace("trials = 2", "trials = 1")), first);
-    assert_eq!(cache.list().unwrap().len(), 4);
-    for change in [
-        ("seed = 5", "seed = 6"),
-        ("[1.0, 3.0]", "[1.0, 3.5]"),
-        ("stroke_mm = 5.0", "stroke_mm = 9.0"),
-    ] {
-        let before = cache.list().unwrap().len();
-        seconds(&SMALL.replace(change.0, change.1));
-        assert_eq!(cache.list().unwrap().len(), before + 4, "{change:?}");
-    }
-    let facts = cache.list().unwrap()[0].facts().unwrap();
-    let (n_objects, n_taxels) = (Study::new(SMALL).touched.len(), facts.n_taxels);
-    assert!(n_taxels == 1024 || n_taxels == 256, "{n_taxels}");
-    assert!(
-        facts
-            .what
-            .starts_with(&format!("{} touches", 12 * n_objects))
-    );
-}
-
-#[test]
-fn what_was_used_longest_ago_goes_first() {
-    let folder = tempfile::tempdir().unwrap();
-    let all = TouchCache::new(folder.path(), u64::MAX);
-    let study = Study::new(SMALL);
-    run_in(&study, &FrameStorage::new(all.clone(), 0), AtOnce::ALL);
-    let listed = all.list().unwrap();
-    let sizes: Vec<u64> = listed.iter().map(|touches| touches.n_bytes).collect();
-    let two: u64 = sizes[..2].iter().sum();
-    let gone = all.prune(two).unwrap();
-    assert_eq!(gone, listed[2..]);
-    assert_eq!(all.list().unwrap(), listed[..2]);
-    assert_eq!(all.prune(0).unwrap().len(), 2);
-    assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0);
-}
-
-#[test]
-fn a_damaged_file_is_named_and_made_again_with_the_same_bytes() {
-    let case = Case::new();
-    // Few cells, whose charts are soon drawn.
-    let few = SMALL.replace("[\"sbhe\", \"gaussian\"]", "\"sbhe\"");
-    let few = few.replace("[8, 32]", "8").replace("[0.0, 0.05]", "0.0");
-    let few = few.replace(
-        "[\"linear_svm\", \"k_nearest\"]\nc = [0.1, 1.0]",
-        "\"k_nearest\"",
-    );
-    case.file("few.toml", &few);
-    let cache = TouchCache::new(case.path("results/touches"), u64::MAX);
-    run_in(
-        &Study::new(&few),
-        &FrameStorage::new(cache.clone(), 0),
-        AtOnce::ALL,
-    );
-    let (said, _) = case.succeeds(&["cache", "list"]);
-    assert!(
-        said.contains("touches of 3 frames, 32×32 at 2 mm"),
-        "{said}"
-    );
-    // The command reads what it did not make.
-    let seconds = cache.list().unwrap()[3].facts().unwrap().cpu_s;
-    case.succeeds(&["run", "few.toml", "--quiet"]);
-    let stages = fs::read_to_string(case.path("results/few/stages.csv")).unwrap();
-    assert!(
-        stages.contains(&seconds.to_string()),
-        "{seconds} s in {stages}"
-    );
-    let table = || fs::read(case.path("results/few/accuracy.csv")).unwrap();
-    let fresh = table();
-    let kept = cache.list().unwrap();
-    let whole: Vec<Vec<u8>> = kept.iter().map(|k| fs::read(&k.path).unwrap()).collect();
-    for (touches, bytes) in kept.iter().zip(&whole) {
-        let mut bytes = bytes.clone();
-        let middle = bytes.len() / 2;
-        bytes[middle] ^= 4;
-        fs::write(&touches.path, bytes).unwrap();
-    }
-    // A list reads what stands around frames only, unless it is asked to check them.
-    let (said, _) = case.succeeds(&["cache", "list"]);
-    assert!(!said.contains("damaged"), "{said}");
-    let (said, _) = case.succeeds(&["cache", "list", "--check"]);
-    assert_eq!(said.matches("damaged").count(), 4, "{said}");
-    let again = || {
-        let (_, said) = case.succeeds(&["run", "few.toml", "--quiet", "--fresh"]);
-        assert!(said.contains(".touches is "), "{said}");
-        assert!(said.contains("it is made again"), "{said}");
-        assert!(!said.contains("cache prune"), "{said}");
-        assert_eq!(table(), fresh);
-    };
-    again();
-    // Too little work to be kept again. Cut, empty, of the form before, and a folder.
-    assert_eq!(cache.list().unwrap().len(), 0);
-    fs::write(&kept[0].path, &whole[0][..whole[0].len() / 2]).unwrap();
-    fs::write(&kept[1].path, b"").unwrap();
-    fs::write(&kept[2].path, [b"bubbletouch frm1", &whole[2][..]].concat()).unwrap();
-    fs::create_dir(&kept[3].path).unwrap();
-    again();
-    assert!(!kept[3].path.is_dir());
-    case.succeeds(&["cache", "prune"]);
-    let (said, _) = case.succeeds(&["cache", "list"]);
-    assert!(said.contains("no touches are kept"), "{said}");
+    let left = fs::read_dir(folder.path().join("results")).unwrap();
+    assert_eq!(left.count(), 0, "frames are gone with the run");
 }
 
 /// The least ceiling of a study, as its refusal says it.
@@ -269,19 +139,30 @@ fn peak(folder: &Path) -> Option<u64> {
 
 #[test]
 fn a_ceiling_too_low_is_refused_with_what_it_takes() {
-    let study = Study::new(SMALL);
-    let plan = |ceiling| MemoryPlan::new(&study.plan, &study.sweep, study.touched.len(), ceiling);
-    let error = plan(Some(1 << 20)).unwrap_err();
-    assert_eq!(error.exit_code(), 2);
-    assert!(error.to_string().contains("at least 0."), "{error}");
-    let free = plan(None).unwrap();
-    assert_eq!(free.at_once, AtOnce::ALL);
-    let most = free.most_bytes as u64;
-    assert_eq!(plan(Some(most + 1)).unwrap().at_once, AtOnce::ALL);
-    let tight = plan(Some(most * 3 / 4));
-    assert!(tight.is_err() || tight.unwrap().most_bytes <= most as f64 * 0.75);
+    let study = Study::new(SMALL).of_items();
+    let folder = Path::new("results");
+    let (free, place) = recognition_scale(&study, None, folder);
+    assert_eq!(place, FramePlace::Memory);
+    let n_threads = rayon::current_num_threads();
+    let (mut most, mut n_before) = (free.least_bytes(), n_threads);
+    while free.n_at_once(most) != Some(n_threads) {
+        most *= 1.01;
+    }
+    // The lower the ceiling, the less is done at once, and frames do not stay in memory.
+    for share in [0.99, 0.97, 0.95] {
+        let (scale, place) = recognition_scale(&study, Some((share * most) as u64), folder);
+        assert_eq!(place, FramePlace::File(folder.to_owned()));
+        let n = scale.n_at_once(share * most).unwrap_or(0);
+        assert!(n <= n_before, "{n} items at once at {share}");
+        n_before = n;
+    }
+    assert_eq!(free.n_at_once(1e6), None);
     let case = Case::new();
     case.file("small.toml", SMALL);
+    let output = case.run(&["run", "small.toml", "--memory-gib", "0.001"]);
+    assert_eq!(output.status.code(), Some(2));
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert!(said.contains("at least 0."), "{said}");
     for bad in ["0", "-1", "nan", "inf"] {
         let output = case.run(&["run", "small.toml", &format!("--memory-gib={bad}")]);
         assert_eq!(output.status.code(), Some(2), "{bad}");
@@ -371,7 +252,7 @@ fn a_study_is_planned_in_time_that_grows_as_its_cells_do_and_more_than_a_million
     case.file("large.toml", cells([500, 400, 1]));
     let start = Instant::now();
     let (said, _) = case.succeeds(&["plan", "large.toml"]);
-    assert!(said.contains("200000 × 1 trial"), "{said}");
+    assert!(said.contains("200001, of 200000 configurations"), "{said}");
     // With every group counting all cells before it, minutes.
     assert!(start.elapsed() < Duration::from_secs(20));
     case.file("huge.toml", cells([1000, 1001, 1]));

@@ -4,9 +4,11 @@ use crate::command::Case;
 use bubbletouch::contact::{SkinWorkspace, press_skin, spring_load};
 use bubbletouch::objects::{FingerPose, Model};
 use bubbletouch::random::Seed;
+use bubbletouch::study::pieces::run_whole_study;
 use bubbletouch::study::progress::Silent;
 use bubbletouch::study::{
-    FrameWriter, HumanTouches, Outcome, Plan, StudySpec, Sweep, TouchSet, record_touch, run,
+    FrameWriter, HumanTouches, Outcome, Plan, RecognitionStudy, StudySpec, Sweep, TouchSet,
+    record_touch,
 };
 use bubbletouch::world::{
     HandState, HumanTouch, Layout, SkinPatch, TOUCH_KINDS, Taxel, Taxels, TouchKind, TouchRanges,
@@ -355,8 +357,9 @@ fn laid_out(text: &str) -> bubbletouch::Result<(Plan, HumanTouches, Sweep)> {
 }
 
 fn outcome(kinds: &str) -> Outcome {
-    let (plan, touches, sweep) = laid_out(&STUDY.replace("KINDS", kinds)).unwrap();
-    run(&plan, &sweep, &touches, &Silent).unwrap()
+    let (plan, touches, _) = laid_out(&STUDY.replace("KINDS", kinds)).unwrap();
+    let study = RecognitionStudy::new(plan, Box::new(touches)).unwrap();
+    run_whole_study(&study, &Silent).unwrap()
 }
 
 fn accuracies(outcome: &Outcome) -> Vec<f64> {
@@ -409,7 +412,7 @@ fn touches_are_balanced_and_alone_the_same() {
     let human = plan.human_touch.as_ref().unwrap();
     let patch = plan.arrays[0];
     let skin = human.skin(&patch).unwrap();
-    let writer = FrameWriter::in_memory(1024, "hands");
+    let writer = FrameWriter::in_memory(1024);
     let frames = touches.simulate((&patch, human.n_frames), writer, &Silent);
     let deflection = frames.unwrap().kept.to_array().unwrap();
     assert_eq!(deflection.dim(), (240 * 49, 1024));

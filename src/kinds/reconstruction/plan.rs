@@ -181,7 +181,11 @@ impl Check<'_> {
                 "no smoothing: solvers take the noise of taxels to be independent",
             ));
         }
-        if let Some(step) = signal.steps.iter().find(|step| step.is_imperfection()) {
+        if let Some(step) = signal
+            .steps
+            .iter()
+            .find(|step| matches!(step, StepSpec::Error(_)))
+        {
             return Err(self.error(
                 "signal.steps",
                 format!("\"{}\" before reconstruction", step.word()),

@@ -3,6 +3,7 @@
 use super::cell::Outcome;
 use super::spec::{ContactMethod, StabilityScene};
 use crate::row;
+use crate::study::pieces::any_number;
 use serde::{Deserialize, Serialize};
 
 /// What people call methods.
@@ -65,8 +66,10 @@ pub struct StabilityScore {
     /// Right, or how it broke.
     outcome: Outcome => Outcome;
     /// |Σ f − what it must be| as a share of that; none if it broke before.
+    #[serde(with = "any_number")]
     force_imbalance: Option<f64> => Value(Less): Log;
     /// Σ |δ − δ*| / Σ δ*; none if it broke before.
+    #[serde(with = "any_number")]
     deflection_error: Option<f64> => Value(Less): Log;
     /// Steps that were made.
     n_steps: usize => Note "steps": Log;

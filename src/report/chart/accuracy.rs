@@ -10,7 +10,6 @@ use crate::report::legend::{
 use crate::report::panels::Panels;
 use crate::report::varying::{Levels, Settings, unbroken_parts};
 use crate::report::x_scale::{TICK_SIZE, XScale};
-use crate::study::Imperfection;
 use crate::study::table::{Cell, CellScore, Tables};
 
 const LABEL: u32 = 13;
@@ -43,10 +42,7 @@ pub fn draw_chart(plan: &ChartPlan, tables: &Tables) -> Drawing {
 
 /// What a chart is read as: `accuracy by compression, by pitch and array size (noise 10 % of full scale)`.
 pub fn chart_title(plan: &ChartPlan) -> String {
-    let along = match plan.x.axis {
-        Axis::Imperfection(Imperfection::Quantisation) => "bits of the converter",
-        axis => axis.name(),
-    };
+    let along = plan.x.axis.name();
     let mut title = format!("Accuracy by {along}");
     let others: Vec<&str> = [&plan.lines, &plan.panels]
         .into_iter()

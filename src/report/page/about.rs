@@ -1,9 +1,9 @@
 //! What a study says of itself, beside its tables.
 
 use crate::signal::Quantity;
+use crate::study::Limit;
 use crate::study::provenance::Manifest;
 use ndarray::Array2;
-use serde::{Deserialize, Serialize};
 
 /// What a study says of itself, beside its tables.
 #[derive(Clone, Debug, Default)]
@@ -55,19 +55,6 @@ pub struct StudyAbout {
     pub manifest: Option<Manifest>,
     /// Whether every chart is drawn as a file, however many there are.
     pub all_charts: bool,
-}
-
-/// How often a limit of the model was reached: a row of `limits.csv`.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Limit {
-    /// What happened: `saturated taxels`.
-    pub what: String,
-    /// How often.
-    pub count: u64,
-    /// Out of how many.
-    pub of: u64,
-    /// What it means for the reader.
-    pub meaning: String,
 }
 
 /// Sample touches on one scale of colours.

@@ -18,7 +18,8 @@ mod study_data;
 mod tables;
 mod touches;
 
-pub use about::{Limit, ReportPage, Snapshots, StudyAbout};
+pub use crate::study::Limit;
+pub use about::{ReportPage, Snapshots, StudyAbout};
 pub(super) use frame::Section;
 pub(super) use picture::figure;
 pub use picture::{Picture, Pictures};

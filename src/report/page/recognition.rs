@@ -11,9 +11,7 @@ use crate::report::page::frame::{Page, Section, sentences_html};
 use crate::report::page::picture::{Picture, Pictures, figures};
 use crate::report::page::provenance::provenance_html;
 use crate::report::page::study_data::StudyData;
-use crate::report::page::tables::{
-    failures_html, limits_html, summary_html, times_html, too_few_trials,
-};
+use crate::report::page::tables::{limits_html, summary_html, times_html, too_few_trials};
 use crate::report::page::touches::touches_html;
 use crate::study::table::Tables;
 use std::fmt::Write;
@@ -208,8 +206,7 @@ fn settings_html(about: &ReportPage, answer: &Answer) -> String {
 }
 
 fn limits(about: &ReportPage, tables: &Tables) -> Section {
-    let body = limits_html(about, tables) + &failures_html(tables);
-    Section::new("limits", "Failures and limits", body)
+    Section::new("limits", "Limits", limits_html(about, tables))
 }
 
 fn again(about: &ReportPage) -> Section {

@@ -1,4 +1,4 @@
-//! The tables of the page that do not move: cells, limits reached, failures, times.
+//! The tables of the page that do not move: cells, limits reached, times.
 
 use crate::report::answer::{Answer, accuracy_sentence};
 use crate::report::axis::{classifier_name, short_number};
@@ -129,39 +129,6 @@ pub(super) fn limits_html(about: &ReportPage, tables: &Tables) -> String {
         }
     );
     html + "</ul>"
-}
-
-/// Failures in a page, at most.
-const MOST_FAILURES: usize = 50;
-
-/// Cells that failed, and why; empty if none did.
-pub(super) fn failures_html(tables: &Tables) -> String {
-    let failures = &tables.failures;
-    if failures.is_empty() {
-        return String::new();
-    }
-    let mut html = String::from(
-        "<h3>Cells that failed</h3><div class=\"wide words\" tabindex=\"0\" role=\"region\" aria-label=\"Cells that failed\"><table>\
-         <thead><tr><th scope=\"col\">cell</th><th scope=\"col\">trial</th><th scope=\"col\">error</th></tr></thead><tbody>",
-    );
-    for (cell, failure) in failures.iter().take(MOST_FAILURES) {
-        let _ = write!(
-            html,
-            "<tr><td>{}</td><td>{}</td><td>{}</td></tr>",
-            cell.cell,
-            failure.trial,
-            escape(&failure.error)
-        );
-    }
-    html += "</tbody></table></div>";
-    if failures.len() > MOST_FAILURES {
-        let _ = write!(
-            html,
-            "<p>The first {MOST_FAILURES} of {}; all are in failures.csv.</p>",
-            failures.len()
-        );
-    }
-    html
 }
 
 /// What each stage cost.

@@ -1,11 +1,23 @@
-//! Frames kept in memory, or in a file and read as they are wanted.
+//! Frames kept in memory, or in a temporary file and read as they are wanted.
 
 use super::coding::{decode, most_bytes};
-use super::frame_file::{FrameFile, FrameFileWriter};
-use crate::error::Result;
+use crate::error::{Error, Result};
 use ndarray::{Array2, Axis};
 use rayon::prelude::*;
-use std::path::Path;
+use std::fs::File;
+use std::io::{BufWriter, Read, Seek, SeekFrom, Write};
+use std::path::{Path, PathBuf};
+use std::sync::Mutex;
+
+/// Where frames are while they are read.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub enum FramePlace {
+    /// In memory.
+    #[default]
+    Memory,
+    /// In a file without a name, in this folder: it is gone with the process, however that ends.
+    File(PathBuf),
+}
 
 /// Frames of n_taxels metres of deflection each; only touched taxels are kept.
 #[derive(Debug)]
@@ -20,37 +32,33 @@ enum Place {
     File(FrameFile),
 }
 
+/// Frames one after the other, and where each begins and the last ends.
+#[derive(Debug)]
+struct FrameFile {
+    folder: PathBuf,
+    file: Mutex<File>,
+    offsets: Vec<u64>,
+}
+
+impl FrameFile {
+    /// One frame, encoded; several threads read.
+    fn read(&self, number: usize) -> Result<Vec<u8>> {
+        let [from, to] = [self.offsets[number], self.offsets[number + 1]];
+        let mut bytes = vec![0; (to - from) as usize];
+        let mut file = self.file.lock().unwrap_or_else(|e| e.into_inner());
+        let found = file.seek(SeekFrom::Start(from));
+        let found = found.and_then(|_| file.read_exact(&mut bytes));
+        found.map_err(|e| Error::io(&self.folder, "read frames from", e))?;
+        Ok(bytes)
+    }
+}
+
 impl KeptFrames {
-    /// Those of a file.
-    pub(super) fn of_file(file: FrameFile) -> Self {
-        Self {
-            n_taxels: file.facts().n_taxels,
-            place: Place::File(file),
-        }
-    }
-
-    /// Reads them into memory if they take at most so many bytes.
-    pub(super) fn within(mut self, most: u64) -> Result<Self> {
-        if let Place::File(file) = &self.place
-            && file.n_bytes() <= most
-        {
-            self.place = Place::Memory(file.read_all()?);
-        }
-        Ok(self)
-    }
-
-    /// Lets their file go with them.
-    pub(super) fn remove_when_done(&mut self) {
-        if let Place::File(file) = &mut self.place {
-            file.remove_when_done();
-        }
-    }
-
     /// How many.
     pub fn len(&self) -> usize {
         match &self.place {
             Place::Memory(frames) => frames.len(),
-            Place::File(file) => file.len(),
+            Place::File(file) => file.offsets.len() - 1,
         }
     }
 
@@ -95,44 +103,51 @@ impl KeptFrames {
             })?;
         Ok(array)
     }
-
-    /// Every frame as it is kept, in order.
-    pub(super) fn in_memory(&self) -> Option<&[Box<[u8]>]> {
-        match &self.place {
-            Place::Memory(frames) => Some(frames),
-            Place::File(_) => None,
-        }
-    }
 }
 
 /// Takes frames in their order.
 pub struct FrameWriter {
     n_taxels: usize,
-    what: String,
     place: Growing,
 }
 
 enum Growing {
     Memory(Vec<Box<[u8]>>),
-    File(Box<FrameFileWriter>),
+    File {
+        folder: PathBuf,
+        file: BufWriter<File>,
+        offsets: Vec<u64>,
+    },
 }
 
 impl FrameWriter {
-    /// Into memory; `what` they are of, in words.
-    pub fn in_memory(n_taxels: usize, what: &str) -> Self {
-        Self {
-            n_taxels,
-            what: what.to_owned(),
-            place: Growing::Memory(Vec::new()),
+    /// Into memory.
+    pub fn in_memory(n_taxels: usize) -> Self {
+        let place = Growing::Memory(Vec::new());
+        Self { n_taxels, place }
+    }
+
+    /// Into memory or a file.
+    ///
+    /// # Errors
+    /// No file can be made in the folder.
+    pub fn new(n_taxels: usize, place: &FramePlace) -> Result<Self> {
+        match place {
+            FramePlace::Memory => Ok(Self::in_memory(n_taxels)),
+            FramePlace::File(folder) => Self::in_file(n_taxels, folder),
         }
     }
 
-    /// Into a file, which is there once all frames are.
-    pub(super) fn in_file(path: &Path, n_taxels: usize, what: &str) -> Result<Self> {
-        Ok(Self {
-            place: Growing::File(Box::new(FrameFileWriter::create(path)?)),
-            ..Self::in_memory(n_taxels, what)
-        })
+    fn in_file(n_taxels: usize, folder: &Path) -> Result<Self> {
+        std::fs::create_dir_all(folder).map_err(|e| Error::io(folder, "create folder", e))?;
+        let file = tempfile::tempfile_in(folder);
+        let file = file.map_err(|e| Error::io(folder, "write frames to", e))?;
+        let place = Growing::File {
+            folder: folder.to_owned(),
+            file: BufWriter::new(file),
+            offsets: vec![0],
+        };
+        Ok(Self { n_taxels, place })
     }
 
     /// Taxels of a frame.
@@ -145,18 +160,36 @@ impl FrameWriter {
         debug_assert!(frame.len() <= most_bytes(self.n_taxels));
         match &mut self.place {
             Growing::Memory(frames) => frames.push(frame),
-            Growing::File(file) => file.put(&frame)?,
+            Growing::File {
+                folder,
+                file,
+                offsets,
+            } => {
+                let written = file.write_all(&frame);
+                written.map_err(|e| Error::io(&*folder, "write frames to", e))?;
+                offsets.push(offsets[offsets.len() - 1] + frame.len() as u64);
+            }
         }
         Ok(())
     }
 
     /// What was put, and what happened meanwhile.
-    pub(super) fn finish(self, mut facts: super::FrameFacts) -> Result<super::Frames> {
-        facts.n_taxels = self.n_taxels;
-        facts.what = self.what;
+    pub(super) fn finish(self, facts: super::FrameFacts) -> Result<super::Frames> {
         let place = match self.place {
             Growing::Memory(frames) => Place::Memory(frames),
-            Growing::File(file) => Place::File(file.commit(&facts)?),
+            Growing::File {
+                folder,
+                file,
+                offsets,
+            } => {
+                let file = file.into_inner().map_err(|e| e.into_error());
+                let file = file.map_err(|e| Error::io(&folder, "write frames to", e))?;
+                Place::File(FrameFile {
+                    folder,
+                    file: Mutex::new(file),
+                    offsets,
+                })
+            }
         };
         let kept = KeptFrames {
             n_taxels: self.n_taxels,

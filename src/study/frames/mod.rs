@@ -1,19 +1,12 @@
-//! The frames of an array's touches: made once, read by every cell; kept in memory or, where they are too large for it, in a file.
+//! The frames of an array's touches: made once, read by every cell; kept in memory or, where they are too large for it, in a temporary file.
 
-mod cache;
 mod coding;
-mod frame_file;
 mod kept;
 mod making;
-mod storage;
 
-pub use cache::{CachedTouches, TouchCache};
 pub(super) use coding::most_bytes;
-pub use kept::{FrameWriter, KeptFrames};
+pub use kept::{FramePlace, FrameWriter, KeptFrames};
 pub(super) use making::{Making, Press, made_at_once};
-pub use storage::{FrameStorage, KeyedTouches};
-
-use serde::{Deserialize, Serialize};
 
 /// Frames of an array and what happened while they were made.
 #[derive(Debug)]
@@ -25,12 +18,8 @@ pub struct Frames {
 }
 
 /// What happened while frames were made.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct FrameFacts {
-    /// What they are of, in words.
-    pub what: String,
-    /// Taxels of a frame.
-    pub n_taxels: usize,
     /// F, frames a touch.
     pub n_frames: usize,
     /// Touches that met nothing: no taxel is deflected when they are deepest.

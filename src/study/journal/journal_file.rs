@@ -8,6 +8,7 @@ use serde::de::DeserializeOwned;
 use std::fs::{File, OpenOptions, TryLockError};
 use std::io::{self, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
 use std::sync::{Mutex, MutexGuard};
 use std::time::{Duration, Instant};
 
@@ -30,6 +31,8 @@ pub struct Journal {
     of: String,
     before: Records,
     writer: Mutex<Option<Writer>>,
+    /// Records after which the process ends; 0: it does not.
+    aborts_after: AtomicUsize,
 }
 
 #[derive(Debug)]
@@ -72,6 +75,7 @@ impl Journal {
             of,
             before: decoded.records,
             writer: Mutex::new(Some(writer)),
+            aborts_after: AtomicUsize::new(0),
         };
         if decoded.first.is_none() {
             journal.keep(HEADER, identity)?;
@@ -100,6 +104,7 @@ impl Journal {
             of,
             before: decoded.records,
             writer: Mutex::new(None),
+            aborts_after: AtomicUsize::new(0),
         };
         Ok(Some((identity, journal)))
     }
@@ -124,7 +129,16 @@ impl Journal {
             encode(&self.of, key, record).map_err(|e| Error::io(&self.path, "write", e.into()))?;
         writer
             .append(&line)
-            .map_err(|e| Error::io(&self.path, "write", e))
+            .map_err(|e| Error::io(&self.path, "write", e))?;
+        if self.aborts_after.load(Relaxed) > 0 && self.aborts_after.fetch_sub(1, Relaxed) == 1 {
+            std::process::abort();
+        }
+        Ok(())
+    }
+
+    /// Ends the process, as a kill does, when so many more records are kept: to try what is left of it.
+    pub fn abort_after(&self, n_records: usize) {
+        self.aborts_after.store(n_records, Relaxed);
     }
 
     /// Adds what another journal of the same study holds and this one did not hold when it was opened.

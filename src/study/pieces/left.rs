@@ -7,53 +7,75 @@ use crate::study::attempt::attempt;
 use crate::study::journal::Journal;
 use crate::study::progress::Progress;
 use crate::study::time_left::Piece;
-use std::collections::BTreeMap;
-use std::sync::{Mutex, MutexGuard};
+use std::collections::{BTreeMap, HashMap};
+use std::sync::{Mutex, MutexGuard, OnceLock};
 use std::time::Instant;
 
-/// The pieces that are left to a run, for whoever measures them.
+/// The pieces that are left to a run, for whoever measures them: by name, or by their number among all pieces.
 pub struct PiecesLeft<'a, R> {
     journal: &'a Journal,
     fail_fast: bool,
     /// What is told how far the run is. Each finished piece advances it by one.
     pub progress: &'a dyn Progress,
-    /// By name.
-    pieces: BTreeMap<String, NamedPiece>,
-    /// By name, once it is finished.
-    results: Mutex<BTreeMap<String, PieceResult<R>>>,
+    pieces: &'a [NamedPiece],
+    /// Of each piece.
+    is_left: Vec<bool>,
+    /// Of those that are left, by name; made when a name is first asked for.
+    numbers: OnceLock<HashMap<&'a str, usize>>,
+    /// By number, once it is finished.
+    results: Mutex<BTreeMap<usize, PieceResult<R>>>,
 }
 
 impl<'a, R: PieceRows> PiecesLeft<'a, R> {
-    /// Of these names.
+    /// Some of all pieces.
     pub(super) fn new(
         journal: &'a Journal,
         fail_fast: bool,
         progress: &'a dyn Progress,
-        pieces: impl IntoIterator<Item = NamedPiece>,
+        (pieces, is_left): (&'a [NamedPiece], Vec<bool>),
     ) -> Self {
-        let pieces = pieces.into_iter();
         Self {
             journal,
             fail_fast,
             progress,
-            pieces: pieces.map(|piece| (piece.name.clone(), piece)).collect(),
+            pieces,
+            is_left,
+            numbers: OnceLock::new(),
             results: Mutex::default(),
         }
     }
 
     /// What each piece is planned to take.
     pub(super) fn work(&self) -> impl Iterator<Item = Piece> + '_ {
-        self.pieces.values().map(|piece| piece.work)
+        self.left().map(|number| self.pieces[number].work)
     }
 
     /// How many there are.
     pub fn n(&self) -> usize {
-        self.pieces.len()
+        self.left().count()
+    }
+
+    /// Their numbers.
+    fn left(&self) -> impl Iterator<Item = usize> + '_ {
+        (0..self.pieces.len()).filter(|&number| self.is_left[number])
+    }
+
+    /// Whether a piece is to be done, by its number.
+    pub fn has_number(&self, number: usize) -> bool {
+        self.is_left[number]
     }
 
     /// Whether a piece is to be done.
     pub fn has(&self, name: &str) -> bool {
-        self.pieces.contains_key(name)
+        self.number(name).is_some()
+    }
+
+    fn number(&self, name: &str) -> Option<usize> {
+        let numbers = self.numbers.get_or_init(|| {
+            let named = self.left().map(|n| (self.pieces[n].name.as_str(), n));
+            named.collect()
+        });
+        numbers.get(name).copied()
     }
 
     /// Those of some things whose pieces are to be done.
@@ -67,11 +89,23 @@ impl<'a, R: PieceRows> PiecesLeft<'a, R> {
     /// # Errors
     /// The journal cannot be written; what went wrong, if the first failure ends the run.
     pub fn finish(&self, name: &str, measure: impl FnOnce() -> Result<R>) -> Result<()> {
-        let Some(piece) = self.pieces.get(name) else {
+        match self.number(name) {
+            Some(number) => self.finish_number(number, measure),
+            None => Ok(()),
+        }
+    }
+
+    /// The same by its number.
+    ///
+    /// # Errors
+    /// As of [`finish`](Self::finish).
+    pub fn finish_number(&self, number: usize, measure: impl FnOnce() -> Result<R>) -> Result<()> {
+        if !self.is_left[number] {
             return Ok(());
-        };
-        let result = self.during(&piece.work, || attempt(self.fail_fast, measure))?;
-        self.keep(piece, result)
+        }
+        let work = &self.pieces[number].work;
+        let result = self.during(work, || attempt(self.fail_fast, measure))?;
+        self.keep(number, result)
     }
 
     /// Does some of what the study [shares](super::PieceStudy::shared_work), and tells how long it took.
@@ -92,34 +126,45 @@ impl<'a, R: PieceRows> PiecesLeft<'a, R> {
         names: &[String],
         make: impl FnOnce() -> Result<T>,
     ) -> Result<Option<T>> {
+        let numbers: Vec<usize> = names.iter().filter_map(|name| self.number(name)).collect();
+        self.prepare_numbers(&numbers, make)
+    }
+
+    /// The same by their numbers.
+    ///
+    /// # Errors
+    /// As of [`finish`](Self::finish).
+    pub fn prepare_numbers<T>(
+        &self,
+        numbers: &[usize],
+        make: impl FnOnce() -> Result<T>,
+    ) -> Result<Option<T>> {
         match attempt(self.fail_fast, make)? {
             Ok(made) => Ok(Some(made)),
             Err(said) => {
-                for piece in names.iter().filter_map(|name| self.pieces.get(name)) {
-                    self.keep(piece, Err(said.clone()))?;
+                for &number in numbers.iter().filter(|&&number| self.is_left[number]) {
+                    self.keep(number, Err(said.clone()))?;
                 }
                 Ok(None)
             }
         }
     }
 
-    fn keep(&self, piece: &NamedPiece, result: PieceResult<R>) -> Result<()> {
-        keep(self.journal, piece, &result)?;
-        self.results().insert(piece.name.clone(), result);
+    fn keep(&self, number: usize, result: PieceResult<R>) -> Result<()> {
+        keep(self.journal, &self.pieces[number], &result)?;
+        self.results().insert(number, result);
         self.progress.advance(1);
         Ok(())
     }
 
-    /// What came of every piece that was to be done, by name; none of one that was passed over.
-    pub(super) fn into_results(self) -> BTreeMap<String, Option<PieceResult<R>>> {
-        let names = self.pieces.into_keys();
+    /// What came of every piece that was to be done, by number; none of one that was passed over.
+    pub(super) fn into_results(self) -> impl FnMut(usize) -> Option<Option<PieceResult<R>>> {
         let results = self.results.into_inner();
         let mut results = results.unwrap_or_else(|poisoned| poisoned.into_inner());
-        let found = names.map(|name| (results.remove(&name), name));
-        found.map(|(result, name)| (name, result)).collect()
+        move |number| self.is_left[number].then(|| results.remove(&number))
     }
 
-    fn results(&self) -> MutexGuard<'_, BTreeMap<String, PieceResult<R>>> {
+    fn results(&self) -> MutexGuard<'_, BTreeMap<usize, PieceResult<R>>> {
         // What a thread that panicked held is whole: nothing is inserted in parts.
         self.results
             .lock()

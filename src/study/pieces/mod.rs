@@ -1,9 +1,10 @@
 //! Pieces: a study's work in named parts that know nothing of each other.
 //!
-//! Every kind of study but recognition (whose cells share more) is a [`PieceStudy`]: it says which pieces there are, measures those that
+//! Every kind of study is a [`PieceStudy`]: it says which pieces there are, measures those that
 //! are left, and makes its tables of their rows. The engine does all else: it keeps each piece in the [journal](super::journal) as soon as
 //! it is finished and reads it from there when the study goes on, records what fails, and deals pieces out to shards.
 
+pub mod any_number;
 mod left;
 mod piece_study;
 mod record;
@@ -12,8 +13,8 @@ mod shared;
 
 pub use left::PiecesLeft;
 pub use piece_study::{
-    FinishedPieces, PieceFailure, PieceManner, PieceStudy, PiecesRun, n_pieces_left, run_pieces,
-    run_whole_study,
+    FinishedPieces, Part, PieceFailure, PieceManner, PieceStudy, PiecesRun, n_pieces_left,
+    run_pieces, run_whole_study,
 };
 pub use record::PieceRows;
 pub use scale::{PieceEstimate, Scale};

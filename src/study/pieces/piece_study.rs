@@ -6,10 +6,11 @@ use super::record::{PieceResult, PieceRows, in_journal};
 use crate::columns;
 use crate::error::Result;
 use crate::study::journal::Journal;
-use crate::study::part::Part;
 use crate::study::progress::Progress;
+use crate::study::shard::Shard;
 use crate::study::time_left::Piece;
 use serde::{Deserialize, Serialize};
+use std::collections::BTreeSet;
 
 /// A study that is ready to run, in pieces.
 pub trait PieceStudy {
@@ -32,6 +33,15 @@ pub trait PieceStudy {
         Vec::new()
     }
 
+    /// Gives the rows of a piece, by its number, what its place among all pieces decides, such as numbers of cells: rows that the journal has
+    /// may be of a study with other axes.
+    fn place(&self, _number: usize, _rows: &mut Self::Rows) {}
+
+    /// A piece in words, by its number: for failures.
+    fn words(&self, _number: usize, piece: &NamedPiece) -> String {
+        piece.name.clone()
+    }
+
     /// The tables of the rows of all pieces, but for those that failed.
     ///
     /// # Errors
@@ -39,7 +49,18 @@ pub trait PieceStudy {
     fn tables(&self, rows: Self::Rows) -> Result<Self::Tables>;
 }
 
-/// How a run goes about its pieces; of a study that recognises, about its cells.
+/// Which pieces of a study a run does.
+#[derive(Clone, Copy, Debug)]
+pub enum Part<'a> {
+    /// All.
+    All,
+    /// One of several equal parts.
+    Shard(Shard),
+    /// Those of these numbers.
+    Only(&'a BTreeSet<usize>),
+}
+
+/// How a run goes about its pieces.
 #[derive(Clone, Copy)]
 pub struct PieceManner<'a> {
     /// Where finished pieces are looked for and kept.
@@ -48,7 +69,7 @@ pub struct PieceManner<'a> {
     pub fail_fast: bool,
     /// Whether pieces that failed in an earlier run are tried again.
     pub retries: bool,
-    /// Which pieces to do: [`Part::Holding`] names them by (number, 0).
+    /// Which pieces to do.
     pub part: Part<'a>,
     /// What is told how far the run is.
     pub progress: &'a dyn Progress,
@@ -84,7 +105,7 @@ pub struct FinishedPieces<R> {
 /// A run of a study's pieces that has read its journal.
 pub struct PiecesRun<'a, S: PieceStudy> {
     study: &'a S,
-    pieces: Vec<NamedPiece>,
+    pieces: &'a [NamedPiece],
     /// What came of each before.
     before: Vec<Option<PieceResult<S::Rows>>>,
     left: PiecesLeft<'a, S::Rows>,
@@ -98,14 +119,13 @@ pub fn run_pieces<S: PieceStudy>(
     study: &S,
     manner: &PieceManner,
 ) -> Result<FinishedPieces<S::Rows>> {
-    PiecesRun::new(study, manner).run()
+    PiecesRun::new(study, &study.pieces(), manner).run()
 }
 
 impl<'a, S: PieceStudy> PiecesRun<'a, S> {
-    /// Of this study.
-    pub fn new(study: &'a S, manner: &PieceManner<'a>) -> Self {
-        let pieces = study.pieces();
-        let (before, left) = before_and_left(&pieces, manner);
+    /// Of this study, with all its pieces.
+    pub fn new(study: &'a S, pieces: &'a [NamedPiece], manner: &PieceManner<'a>) -> Self {
+        let (before, left) = before_and_left(pieces, manner);
         Self {
             study,
             pieces,
@@ -145,16 +165,19 @@ impl<'a, S: PieceStudy> PiecesRun<'a, S> {
             n_left: 0,
             n_pieces: pieces.len(),
         };
-        for (piece, before) in pieces.iter().zip(before) {
-            let result = match now.remove(&piece.name) {
+        for (number, (piece, before)) in pieces.iter().zip(before).enumerate() {
+            let result = match now(number) {
                 Some(Some(result)) => Some(result),
                 Some(None) => Some(Err("a defect of the program: it was passed over".to_owned())),
                 None => before,
             };
             match result {
-                Some(Ok(rows)) => finished.rows.append(rows),
+                Some(Ok(mut rows)) => {
+                    study.place(number, &mut rows);
+                    finished.rows.append(rows);
+                }
                 Some(Err(error)) => finished.failures.push(PieceFailure {
-                    piece: piece.name.clone(),
+                    piece: study.words(number, piece),
                     error,
                 }),
                 None => finished.n_left += 1,
@@ -166,22 +189,21 @@ impl<'a, S: PieceStudy> PiecesRun<'a, S> {
 
 /// What came of each piece before a run, and those that it does.
 fn before_and_left<'a, R: PieceRows>(
-    pieces: &[NamedPiece],
+    pieces: &'a [NamedPiece],
     manner: &PieceManner<'a>,
 ) -> (Vec<Option<PieceResult<R>>>, PiecesLeft<'a, R>) {
     let is_in = is_in(pieces, manner.part);
     let known = |piece: &NamedPiece| in_journal::<R>(manner.journal, piece);
     let before: Vec<Option<PieceResult<R>>> = pieces.iter().map(known).collect();
-    let is_left = |(number, _): &(usize, &NamedPiece)| {
-        let is_left = match &before[*number] {
+    let is_left = |(number, _): (usize, &NamedPiece)| {
+        let is_left = match &before[number] {
             None => true,
             Some(Err(_)) => manner.retries,
             Some(Ok(_)) => false,
         };
-        is_left && is_in(*number)
+        is_left && is_in(number)
     };
-    let left = pieces.iter().enumerate().filter(is_left);
-    let left = left.map(|(_, piece)| piece.clone());
+    let left = (pieces, pieces.iter().enumerate().map(is_left).collect());
     let left = PiecesLeft::new(manner.journal, manner.fail_fast, manner.progress, left);
     (before, left)
 }
@@ -202,11 +224,10 @@ pub fn run_whole_study<S: PieceStudy>(study: &S, progress: &dyn Progress) -> Res
 }
 
 /// Pieces of a part of which a journal does not say what came of them.
-pub fn n_pieces_left<S: PieceStudy>(study: &S, part: Part, journal: &Journal) -> usize {
-    let pieces = study.pieces();
-    let is_in = is_in(&pieces, part);
+pub fn n_pieces_left<R: PieceRows>(pieces: &[NamedPiece], part: Part, journal: &Journal) -> usize {
+    let is_in = is_in(pieces, part);
     let is_left = |(number, piece): &(usize, &NamedPiece)| {
-        is_in(*number) && in_journal::<S::Rows>(journal, piece).is_none()
+        is_in(*number) && in_journal::<R>(journal, piece).is_none()
     };
     pieces.iter().enumerate().filter(is_left).count()
 }
@@ -218,6 +239,6 @@ fn is_in<'a>(pieces: &'a [NamedPiece], part: Part<'a>) -> impl Fn(usize) -> bool
     move |number| match part {
         Part::All => true,
         Part::Shard(shard) => shard.takes((pieces[number].group, n_groups), number),
-        Part::Holding(numbers) => numbers.contains(&(number, 0)),
+        Part::Only(numbers) => numbers.contains(&number),
     }
 }

@@ -1,0 +1,181 @@
+//! What a sensor error says of itself: its step, its strengths, what it belongs to, what it costs, and how it is made.
+
+use super::{SENSOR_ERRORS, SensorError, SignalStep};
+use crate::error::Result;
+use crate::random::Seed;
+use crate::world::Grid;
+use std::fmt::Debug;
+
+/// A number that says how strong a sensor error is; zero is none of it.
+#[derive(Debug)]
+pub struct Strength {
+    /// The key of `[signal]` and the column of tables.
+    pub key: &'static str,
+    /// What people call it, before a value: `gain mismatch`.
+    pub words: &'static str,
+    /// Of the value: `ms`; `%` of a share of one.
+    pub unit: &'static str,
+    /// Whether it is a whole number.
+    pub is_whole: bool,
+    /// Whether a value is possible.
+    pub is_allowed: fn(f64) -> bool,
+    /// What is, in words.
+    pub allowed: &'static str,
+}
+
+/// A sensor error.
+#[derive(Debug)]
+pub struct ErrorAbout {
+    /// The word of `signal.steps`.
+    pub step: &'static str,
+    /// How strong it is: one number, or [two](MOST_STRENGTHS), shares of one whole that are at most 1 together.
+    pub strengths: &'static [Strength],
+    /// Whether it belongs to a skin: another skin of the same make has another of it.
+    pub is_of_skin: bool,
+    /// Whether what a touch reads depends on the touches before it.
+    pub remembers: bool,
+    /// Whether it shows only in frames that the press moves through.
+    pub needs_motion: bool,
+    /// About how many seconds it takes for one taxel of one frame, of so many frames a touch.
+    pub taxel_s: fn(usize) -> f64,
+    /// Checks strengths of which at least one is not zero, and prepares what they do.
+    pub prepare: fn(&[f64; MOST_STRENGTHS], &Skin) -> Result<Box<dyn Effect>>,
+}
+
+/// Strengths of an error, at most.
+pub const MOST_STRENGTHS: usize = 2;
+
+/// Whose signal it is.
+#[derive(Clone, Copy, Debug)]
+pub struct Skin {
+    /// Its taxels.
+    pub grid: Grid,
+    /// The value of a taxel at its stroke: metres, or newtons.
+    pub full_scale: f64,
+    /// The name of the piece of hardware, the same in each touch.
+    pub name: Seed,
+}
+
+/// What a prepared error does to frames.
+pub trait Effect: Debug + Send + Sync {
+    /// Numbers of working memory that [`apply`](Self::apply) needs.
+    fn scratch_len(&self) -> usize {
+        0
+    }
+
+    /// Changes frames of n_taxels values each, one after the other in time. Nothing is allocated.
+    fn apply(&self, frames: &mut [f64], touch: &TouchRead, scratch: &mut [f64]);
+}
+
+/// How the frames of a touch are read.
+#[derive(Clone, Copy, Debug)]
+pub struct TouchRead<'a> {
+    /// Values of a frame.
+    pub n_taxels: usize,
+    /// Leading frames that came before the touch.
+    pub n_before: usize,
+    /// Seconds between frames; `None` when the press waits at each until it is read.
+    pub interval: Option<f64>,
+    /// The touch's own name.
+    pub seed: &'a Seed,
+}
+
+/// Their keys tell them apart.
+impl PartialEq for Strength {
+    fn eq(&self, other: &Self) -> bool {
+        self.key == other.key
+    }
+}
+
+impl ErrorAbout {
+    /// One of a light cost that belongs to no skin and remembers nothing.
+    pub(super) const fn new(
+        step: &'static str,
+        strengths: &'static [Strength],
+        prepare: fn(&[f64; MOST_STRENGTHS], &Skin) -> Result<Box<dyn Effect>>,
+    ) -> Self {
+        Self {
+            step,
+            strengths,
+            is_of_skin: false,
+            remembers: false,
+            needs_motion: false,
+            taxel_s: |_| 3e-10,
+            prepare,
+        }
+    }
+}
+
+impl Strength {
+    /// A fraction of something, from 0 to 1.
+    pub(super) const fn fraction(key: &'static str, words: &'static str) -> Self {
+        Self {
+            key,
+            words,
+            unit: "%",
+            is_whole: false,
+            is_allowed: |share| (0.0..=1.0).contains(&share),
+            allowed: "a fraction, 0 to 1",
+        }
+    }
+
+    /// A share of one without an end.
+    pub(super) const fn share(
+        key: &'static str,
+        words: &'static str,
+        allowed: &'static str,
+    ) -> Self {
+        Self {
+            key,
+            words,
+            unit: "%",
+            is_whole: false,
+            is_allowed: |share| share.is_finite() && share >= 0.0,
+            allowed,
+        }
+    }
+}
+
+impl SensorError {
+    /// The step that does it at some strengths, those that are not given being zero, of the skin of a name.
+    pub fn step(self, given: &[f64], skin: Seed) -> SignalStep {
+        let mut strengths = [0.0; MOST_STRENGTHS];
+        strengths[..given.len()].copy_from_slice(given);
+        SignalStep::Error {
+            error: self,
+            strengths,
+            skin,
+        }
+    }
+
+    /// The one of a step's word.
+    pub fn of_step(word: &str) -> Option<Self> {
+        let mut all = SENSOR_ERRORS.iter().copied();
+        all.find(|error| error.about().step == word)
+    }
+}
+
+/// Says of each sensor error which file tells of it; the order is that of the tables' columns.
+macro_rules! sensor_errors {
+    ($($name:ident $file:ident $doc:literal;)*) => {
+        $(mod $file;)*
+
+        /// What real skins and their readers do to a signal.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+        pub enum SensorError {
+            $(#[doc = $doc] $name,)*
+        }
+
+        /// All of them.
+        pub const SENSOR_ERRORS: &[SensorError] = &[$(SensorError::$name),*];
+
+        impl SensorError {
+            /// What it says of itself.
+            pub const fn about(self) -> &'static ErrorAbout {
+                match self {
+                    $(Self::$name => &$file::ABOUT,)*
+                }
+            }
+        }
+    };
+}

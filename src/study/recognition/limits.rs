@@ -1,0 +1,81 @@
+//! How often limits of the model were reached.
+
+use super::rows::ArrayOutcome;
+use super::study::RecognitionStudy;
+use crate::columns;
+use crate::study::table::Tables;
+use serde::{Deserialize, Serialize};
+
+/// How often a limit of the model was reached: a row of `limits.csv`.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Limit {
+    /// What happened: `saturated taxels`.
+    pub what: String,
+    /// How often.
+    pub count: u64,
+    /// Out of how many.
+    pub of: u64,
+    /// What it means for the reader.
+    pub meaning: String,
+}
+
+columns! { Limit {
+    what: Subject "limit";
+    count: Note: Linear;
+    of: Note: Linear;
+    meaning: Note;
+} }
+
+impl RecognitionStudy {
+    /// Of touches on all arrays, and of fits.
+    pub(super) fn limits(&self, tables: &Tables, arrays: &[ArrayOutcome]) -> Vec<Limit> {
+        let sum = |count: fn(&ArrayOutcome) -> usize| -> u64 {
+            arrays.iter().map(|array| count(array) as u64).sum()
+        };
+        let n_touches = sum(|a| a.n_touches);
+        let fits = tables.accuracy.iter();
+        let n_capped = fits.filter(|(_, score)| score.n_capped > 0).count();
+        let limit = |what: &str, (count, of), meaning: &str| Limit {
+            what: what.to_owned(),
+            count,
+            of,
+            meaning: meaning.to_owned(),
+        };
+        let mut limits = vec![
+            limit(
+                "touches that met nothing",
+                (sum(|a| a.n_missed), n_touches),
+                match self.plan.human_touch {
+                    Some(_) => {
+                        "the hand was beyond the array or between its taxels; their frames hold no contact"
+                    }
+                    None => {
+                        "no part of the object was over the array; their frames hold no contact"
+                    }
+                },
+            ),
+            limit(
+                "touches with a saturated taxel",
+                (sum(|a| a.n_saturated), n_touches),
+                "a taxel was at its stroke, where it cannot tell how much further the object pushes",
+            ),
+            limit(
+                "fits stopped at the solver's iteration cap",
+                (n_capped as u64, tables.accuracy.len() as u64),
+                "at least one of their SVMs is short of its tolerance",
+            ),
+        ];
+        let strokes = arrays.iter().map(|array| array.patch.taxel.stroke);
+        let n_deep: usize = strokes
+            .map(|stroke| self.touched.n_deeper_than(stroke))
+            .sum();
+        if n_deep > 0 {
+            limits.push(limit(
+                "touches deeper than the stroke",
+                (n_deep as u64, n_touches),
+                "the patch went on past the depth at which its first taxel was at its stroke: more taxels are saturated, the deeper the more",
+            ));
+        }
+        limits
+    }
+}

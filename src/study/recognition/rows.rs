@@ -1,0 +1,78 @@
+//! What work items of a recognition study find.
+
+use super::limits::Limit;
+use crate::study::evaluation::Evaluation;
+use crate::study::pieces::PieceRows;
+use crate::study::table::Tables;
+use crate::world::Patch;
+use serde::{Deserialize, Serialize};
+
+/// What work items found.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct RecognitionRows {
+    /// Cells in a trial.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub(super) cells: Vec<CellRow>,
+    /// Touches that were made or measured.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub(super) touches: Vec<TouchRow>,
+}
+
+/// A cell in a trial.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub(super) struct CellRow {
+    /// Its group and its place there, in the study as it is today.
+    #[serde(skip)]
+    pub at: (usize, usize),
+    /// What it scored.
+    pub evaluation: Evaluation,
+}
+
+/// Touches of an array, read in so many frames each.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub(super) struct TouchRow {
+    /// The array and how many frames, by their places in the plan as it is today.
+    #[serde(skip)]
+    pub on: (usize, usize),
+    /// Whether they were made; else measured.
+    pub is_made: bool,
+    /// Touches that met nothing, of those that were made.
+    pub n_missed: usize,
+    /// Touches with at least one taxel at its stroke, of those that were made.
+    pub n_saturated: usize,
+    /// Touches that were measured, counted as often as they were.
+    pub n_measured: usize,
+    /// Processor-seconds.
+    pub cpu_s: f64,
+}
+
+impl PieceRows for RecognitionRows {
+    fn append(&mut self, next: Self) {
+        self.cells.extend(next.cells);
+        self.touches.extend(next.touches);
+    }
+}
+
+/// What a study found.
+#[derive(Clone, Debug)]
+pub struct Outcome {
+    /// All tables.
+    pub tables: Tables,
+    /// What happened while the touches of each array were made.
+    pub arrays: Vec<ArrayOutcome>,
+    /// How often limits of the model were reached.
+    pub limits: Vec<Limit>,
+}
+
+/// What happened while the touches of an array were made.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ArrayOutcome {
+    /// The array.
+    pub patch: Patch,
+    /// How many touches.
+    pub n_touches: usize,
+    /// Touches that met nothing.
+    pub n_missed: usize,
+    /// Touches with at least one taxel at its stroke.
+    pub n_saturated: usize,
+}
