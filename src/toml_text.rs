@@ -1,6 +1,7 @@
 //! TOML that a person wrote: read into what it says, or refused with the place.
 
 use crate::error::{Error, Result};
+use serde::Serialize;
 use serde::de::DeserializeOwned;
 use toml_parser::Source;
 use toml_parser::lexer::TokenKind;
@@ -13,6 +14,11 @@ const MOST_OPEN: usize = 200;
 pub(crate) fn read<T: DeserializeOwned>(place: &str, text: &str) -> Result<T> {
     check_brackets(place, text)?;
     toml::from_str(text).map_err(|error| Error::toml(place, text, &error))
+}
+
+/// A study with every default spelt out.
+pub(crate) fn write(study: &impl Serialize) -> String {
+    toml::to_string(study).expect("every field of a study has a TOML form")
 }
 
 /// The table that a text is, if it is one.

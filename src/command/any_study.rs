@@ -1,21 +1,14 @@
 //! A study of any kind, as the commands see it that run it, merge it, submit it and verify it.
 
 use super::about_study::command_line;
-use super::breaking_points_kind::BreakingPointsKind;
 use super::listener::Listener;
-use super::object_detail_kind::ObjectDetailKind;
 use super::output::{tell_where, terminal_width};
 use super::piece_kind::PieceRun;
 use super::recognition_kind::RecognitionKind;
-use super::reconstruction_kind::ReconstructionKind;
-use super::speed_accuracy_kind::SpeedAccuracyKind;
-use super::stability_kind::StabilityKind;
 use super::streams::write_out;
 use super::study_args::StudyArgs;
-use super::whole_body_kind::WholeBodyKind;
 use bubbletouch::kinds::{self, AnyOutcome, AnyStudy, EndedRun};
 use bubbletouch::report::csv_tables::FAILURES_FILE;
-use bubbletouch::study::StudyKind;
 use bubbletouch::study::progress::Progress;
 use bubbletouch::{Error, Result};
 use std::path::Path;
@@ -32,16 +25,7 @@ pub fn load_study(
     if let Some(study) = kinds::load(&args.source()?)? {
         return Ok(study);
     }
-    let (args, kind) = (&args, args.kind()?);
-    Ok(match kind {
-        StudyKind::Recognition => Box::new(PieceRun::<RecognitionKind>::load(args, folder)?),
-        StudyKind::Reconstruction => Box::new(PieceRun::<ReconstructionKind>::load(args, folder)?),
-        StudyKind::ObjectDetail => Box::new(PieceRun::<ObjectDetailKind>::load(args, folder)?),
-        StudyKind::WholeBody => Box::new(PieceRun::<WholeBodyKind>::load(args, folder)?),
-        StudyKind::Stability => Box::new(PieceRun::<StabilityKind>::load(args, folder)?),
-        StudyKind::BreakingPoints => Box::new(PieceRun::<BreakingPointsKind>::load(args, folder)?),
-        StudyKind::SpeedAccuracy => Box::new(PieceRun::<SpeedAccuracyKind>::load(args, folder)?),
-    })
+    Ok(Box::new(PieceRun::<RecognitionKind>::load(&args, folder)?))
 }
 
 /// Writes and tells what came of a study; an error if some of it failed.

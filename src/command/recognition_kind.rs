@@ -34,8 +34,6 @@ impl PieceKind for RecognitionKind {
 
     const KIND: StudyKind = StudyKind::Recognition;
 
-    const WRITE_S: f64 = 2.0;
-
     const METHODS: &'static [(&'static str, &'static str)] = &RECOGNITION_METHODS;
 
     fn load(args: &StudyArgs, packings: PathBuf) -> Result<Self> {

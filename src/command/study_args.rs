@@ -1,15 +1,9 @@
 //! What `run`, `plan` and `touches` have in common: a study file, and what overrides it.
 
 use super::output::packings_beside;
-use bubbletouch::kinds::Source;
+use bubbletouch::kinds::{self, Source};
 use bubbletouch::study::axes::AxisValues;
-use bubbletouch::study::breaking_points::{BreakingPointsPlan, BreakingPointsSpec};
 use bubbletouch::study::memory::machine_memory;
-use bubbletouch::study::object_detail::{ObjectDetailPlan, ObjectDetailStudySpec};
-use bubbletouch::study::reconstruction::{ReconstructionPlan, ReconstructionStudySpec};
-use bubbletouch::study::speed_accuracy::{SpeedAccuracyPlan, SpeedAccuracyStudySpec};
-use bubbletouch::study::stability::{StabilityPlan, StabilityStudySpec};
-use bubbletouch::study::whole_body::{WholeBodyPlan, WholeBodyStudySpec};
 use bubbletouch::study::{ObjectsSpec, Plan, RecognitionStudy, StudyKind, StudySpec, TouchesSpec};
 use bubbletouch::{Error, Result};
 use std::path::{Path, PathBuf};
@@ -88,16 +82,10 @@ impl StudyArgs {
     /// Reads and checks the study: a plan for each combination of its own axes.
     fn plans(&self) -> Result<Vec<(AxisValues, Plan)>> {
         let place = self.study.display().to_string();
-        let kind = self.kind()?;
-        if kind != StudyKind::Recognition {
-            return Err(Error::input(
-                place,
-                kind.words(),
-                format!(
-                    "{} (bubbletouch run runs all kinds)",
-                    StudyKind::Recognition.words()
-                ),
-            ));
+        if let Some(about) = kinds::about(&self.text()?) {
+            let recognition = StudyKind::Recognition.words();
+            let allowed = format!("{recognition} (bubbletouch run runs all kinds)");
+            return Err(Error::input(place, about.words, allowed));
         }
         let mut spec = StudySpec::parse(&place, &self.text()?)?;
         if let Some(seed) = self.seed {
@@ -126,80 +114,12 @@ impl StudyArgs {
         })
     }
 
-    /// What the study asks about.
-    pub fn kind(&self) -> Result<StudyKind> {
-        Ok(StudyKind::of(&self.text()?))
-    }
-
     /// What a study of any kind is told that mixes listed values of `[touches]` where an axis may be meant.
     pub fn mixed_touches(&self) -> Result<Option<String>> {
         let study: Option<toml::Table> = self.text()?.parse().ok();
         let touches = study.and_then(|mut study| study.remove("touches"));
         let touches: Option<TouchesSpec> = touches.and_then(|table| table.try_into().ok());
         Ok(touches.and_then(|touches| touches.mixed_values()))
-    }
-
-    /// Reads and checks a study that reconstructs frames.
-    pub fn reconstruction_plan(&self) -> Result<ReconstructionPlan> {
-        let place = self.study.display().to_string();
-        let mut spec = ReconstructionStudySpec::parse(&place, &self.text()?)?;
-        spec.seed = self.seed.unwrap_or(spec.seed);
-        self.replace_objects(&mut spec.objects);
-        ReconstructionPlan::new(&place, spec)
-    }
-
-    /// Reads and checks a study of how detailed objects are.
-    pub fn object_detail_plan(&self) -> Result<ObjectDetailPlan> {
-        let place = self.study.display().to_string();
-        let mut spec = ObjectDetailStudySpec::parse(&place, &self.text()?)?;
-        spec.seed = self.seed.unwrap_or(spec.seed);
-        self.replace_objects(&mut spec.objects);
-        ObjectDetailPlan::new(&place, spec)
-    }
-
-    /// Reads and checks a study of where recognition breaks.
-    pub fn breaking_points_plan(&self) -> Result<BreakingPointsPlan> {
-        let place = self.study.display().to_string();
-        let mut spec = BreakingPointsSpec::parse(&place, &self.text()?)?;
-        spec.seed = self.seed.unwrap_or(spec.seed);
-        self.replace_objects(&mut spec.objects);
-        BreakingPointsPlan::new(&place, spec)
-    }
-
-    /// Reads and checks a study of a whole body; it has objects of its own.
-    pub fn whole_body_plan(&self) -> Result<WholeBodyPlan> {
-        let place = self.study.display().to_string();
-        if let Some(folder) = &self.objects {
-            let allowed =
-                "no such option: a whole body is touched by the objects that its study names";
-            return Err(Error::input("--objects", folder.display(), allowed));
-        }
-        let mut spec = WholeBodyStudySpec::parse(&place, &self.text()?)?;
-        spec.seed = self.seed.unwrap_or(spec.seed);
-        WholeBodyPlan::new(&place, &self.folder(), spec)
-    }
-
-    /// Reads and checks a study of where contact methods break; it has no objects and nothing random to replace.
-    pub fn stability_plan(&self) -> Result<StabilityPlan> {
-        let place = self.study.display().to_string();
-        let spec = StabilityStudySpec::parse(&place, &self.text()?)?;
-        StabilityPlan::new(&place, &self.folder(), spec)
-    }
-
-    /// Reads and checks a study of what accuracy costs.
-    pub fn speed_accuracy_plan(&self) -> Result<SpeedAccuracyPlan> {
-        let place = self.study.display().to_string();
-        let mut spec = SpeedAccuracyStudySpec::parse(&place, &self.text()?)?;
-        spec.seed = self.seed.unwrap_or(spec.seed);
-        let contact = spec.speed_accuracy.contact.as_mut();
-        match (
-            &self.objects,
-            contact.and_then(|contact| contact.scans.as_mut()),
-        ) {
-            (Some(folder), Some(scans)) => scans.meshes.clone_from(folder),
-            _ => self.replace_objects(&mut spec.objects),
-        }
-        SpeedAccuracyPlan::new(&place, &self.folder(), spec)
     }
 
     fn replace_objects(&self, objects: &mut ObjectsSpec) {

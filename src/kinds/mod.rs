@@ -4,12 +4,20 @@
 //! ([`Kind`]). [`AnyStudy`] is what all commands see of a study: whatever can be done with one kind can be done with all.
 
 mod any_study;
+pub mod breaking_points;
 mod ceiling;
 mod kind;
 mod loaded;
+mod median_time;
+mod model_recognition;
+pub mod object_detail;
+pub mod reconstruction;
 mod results;
 mod source;
+pub mod speed_accuracy;
+pub mod stability;
 mod verified;
+pub mod whole_body;
 
 pub use any_study::{AnyOutcome, AnyStudy, EndedRun, ReportAbout};
 pub use ceiling::{threads_within, within_memory};
@@ -18,7 +26,9 @@ pub use loaded::Loaded;
 pub use source::Source;
 
 use crate::error::Result;
+use crate::table::Table;
 use crate::toml_text;
+use serde::de::DeserializeOwned;
 
 /// A kind, for those who do not know which.
 struct Entry {
@@ -27,9 +37,15 @@ struct Entry {
 }
 
 /// All kinds.
-const KINDS: &[Entry] = &[];
+const KINDS: &[Entry] = &[
+    entry::<breaking_points::BreakingPointsStudy>(),
+    entry::<object_detail::ObjectDetailStudy>(),
+    entry::<speed_accuracy::SpeedAccuracyStudy>(),
+    entry::<reconstruction::ReconstructionStudy>(),
+    entry::<stability::StabilityPlan>(),
+    entry::<whole_body::WholeBodyPlan>(),
+];
 
-#[allow(dead_code)]
 const fn entry<K: Kind>() -> Entry {
     Entry {
         about: K::ABOUT,
@@ -56,4 +72,10 @@ fn find(text: &str) -> Option<&'static Entry> {
     let table = toml_text::table(text)?;
     let mut kinds = KINDS.iter();
     kinds.find(|entry| table.contains_key(entry.about.table))
+}
+
+/// The rows of a file among tables; none without it.
+fn rows_of<R: DeserializeOwned>(tables: &[Table], file: &str) -> Vec<R> {
+    let table = tables.iter().find(|table| table.file == file);
+    table.map_or_else(Vec::new, Table::rows)
 }

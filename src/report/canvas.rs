@@ -5,11 +5,11 @@ use glam::{DVec2, DVec3};
 use rayon::prelude::*;
 
 /// Brightness of the floor and of blank paper, 0 to 255.
-pub(super) const BACKGROUND: u8 = 250;
+pub(crate) const BACKGROUND: u8 = 250;
 
 /// What a ray of the picture meets first.
 #[derive(Clone, Copy)]
-pub(super) struct Hit {
+pub(crate) struct Hit {
     /// Towards the eye, metres.
     pub height: f64,
     /// In the frame of the picture: right, up, towards the eye.
@@ -19,7 +19,7 @@ pub(super) struct Hit {
 }
 
 /// Axes of the picture in the object's frame.
-pub(super) struct View {
+pub(crate) struct View {
     pub right: DVec3,
     pub up: DVec3,
     pub towards_eye: DVec3,
@@ -48,7 +48,7 @@ impl View {
     }
 }
 
-pub(super) fn extent(view: &View, spheres: &[Sphere]) -> (DVec2, DVec2) {
+pub(crate) fn extent(view: &View, spheres: &[Sphere]) -> (DVec2, DVec2) {
     let mut low = DVec2::MAX;
     let mut high = DVec2::MIN;
     for sphere in spheres {
@@ -60,7 +60,7 @@ pub(super) fn extent(view: &View, spheres: &[Sphere]) -> (DVec2, DVec2) {
 }
 
 /// The supersampled tile.
-pub(super) struct Canvas {
+pub(crate) struct Canvas {
     pub width: usize,
     pub height: usize,
     /// Rays a metre.

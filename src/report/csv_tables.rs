@@ -10,7 +10,7 @@ use crate::study::table::{
     Cell, CellScore, Comparison, Confused, Confusion, Pareto, Published, StageTime, Tables,
     TrialScore, TrialTime, Variance,
 };
-use crate::study::{ContentHash, StudyKind, StudySpec};
+use crate::study::{ContentHash, StudySpec};
 use crate::table::Column;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
@@ -184,12 +184,8 @@ fn axes_beside(table: &Path) -> Result<Vec<Column>> {
     let Ok(text) = std::fs::read_to_string(&path) else {
         return Ok(Vec::new());
     };
-    match StudyKind::of(&text) {
-        StudyKind::Recognition => {
-            Ok(StudySpec::parse(&path.display().to_string(), &text)?.axis_columns())
-        }
-        _ => Ok(Vec::new()),
-    }
+    let study = StudySpec::parse(&path.display().to_string(), &text);
+    Ok(study.map_or_else(|_| Vec::new(), |study| study.axis_columns()))
 }
 
 /// Reads a table; the error names the file and the line.

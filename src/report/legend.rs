@@ -68,8 +68,6 @@ pub(super) enum Mark {
     Whisker,
     /// A marker with nothing inside.
     Hollow,
-    /// A cross.
-    Cross,
     /// A tile with its sign.
     Tile(Rgb, String),
     /// All colours of numbers.
@@ -171,7 +169,6 @@ impl LegendEntry {
                 drawing.marker(*number, at, MARKER_RADIUS, point_colour(*number));
             }
             Mark::Hollow => draw_hollow(drawing, 0, (x + 6.0, middle)),
-            Mark::Cross => draw_cross(drawing, (x + 6.0, middle)),
             Mark::Front => {
                 let corner = (x + 14.0, middle + 4.0);
                 let steps = [
@@ -212,7 +209,7 @@ impl Mark {
     fn width(&self) -> f64 {
         match self {
             Self::None => 0.0,
-            Self::Point(_) | Self::Hollow | Self::Cross => 18.0,
+            Self::Point(_) | Self::Hollow => 18.0,
             Self::Bar => 2.0 * f64::from(BAR) + 8.0,
             _ => 34.0,
         }
@@ -240,14 +237,6 @@ fn flow(entries: Vec<LegendEntry>, width: f64) -> Vec<Vec<LegendEntry>> {
 pub(super) fn draw_hollow(drawing: &mut Drawing, line: usize, at: Point) {
     drawing.marker(line, at, MARKER_RADIUS + 0.6, point_colour(line));
     drawing.marker(line, at, MARKER_RADIUS - 1.6, PAPER);
-}
-
-/// Nothing is left of it.
-pub(super) fn draw_cross(drawing: &mut Drawing, (x, y): Point) {
-    let r = MARKER_RADIUS;
-    let stroke = Stroke::new(INK, 2.0);
-    drawing.line((x - r, y - r), (x + r, y + r), stroke);
-    drawing.line((x - r, y + r), (x + r, y - r), stroke);
 }
 
 /// Colour of a line by its number.

@@ -1,18 +1,18 @@
 //! What a folder of results offers: settings with their accuracy and what they cost, for [`advise`](crate::study::advice::advise).
 
 use crate::error::{Error, Result};
+use crate::kinds::speed_accuracy::rows::{ChainCell, ChainPoint};
 use crate::report::csv_tables::{read_cell_rows, read_rows};
-use crate::report::speed_accuracy::{
-    CHAINS_FILE, ChartKind, ChartPoint, PARETO_FILE, chain_setting,
-};
 use crate::report::varying::Settings;
 use crate::study::advice::{Costs, Offer};
-use crate::study::speed_accuracy::table::ChainCell;
 use crate::study::table::{Cell, CellScore, Pareto};
 use crate::study::{Role, agree, column_name, one_of, role_of};
 use std::collections::{HashMap, HashSet};
 use std::path::Path;
 use toml::{Table, Value};
+
+/// What settings cost and give, of studies of several kinds.
+const PARETO_FILE: &str = "pareto.csv";
 
 /// A condition that advice is given for: `noise=0.05`.
 #[derive(Clone, Debug, PartialEq)]
@@ -85,16 +85,19 @@ pub fn read_offers(folder: &Path, given: &[Given]) -> Result<Vec<Offer>> {
     let path = folder.join(PARETO_FILE);
     let header = first_line(&path)?;
     let has = |column: &str| header.split(',').any(|name| name == column);
-    if has("chart") && has("cost_us") {
+    if has("decision_us") {
         if let Some(Given { column, .. }) = given.first() {
             let allowed = "no such option: the study was made in one condition";
             return Err(Error::input("--given", column, allowed));
         }
-        let offers = of_points(&read_rows(&path)?, folder)?;
-        return match offers.is_empty() {
+        let (cells, points) = (read_rows(&path)?, read_rows(&path)?);
+        return match cells.is_empty() {
             true => Err(refusal(&path, "no decisions")),
-            false => Ok(offers),
+            false => Ok(of_chains(&cells, &points)),
         };
+    }
+    if has("chart") {
+        return Err(refusal(&path, "columns of an earlier version (chart)"));
     }
     if !has("predict_us_per_decision") || !has("accuracy") {
         return Err(refusal(&path, "other columns"));
@@ -163,36 +166,21 @@ fn refusal(path: &Path, given: &str) -> Error {
     Error::input(path.display(), given, allowed)
 }
 
-/// The decisions among the points of charts: what training costs stands in another chart, and what is sensed in another table.
-fn of_points(points: &[ChartPoint], folder: &Path) -> Result<Vec<Offer>> {
-    let path = folder.join(CHAINS_FILE);
-    let chains: Vec<ChainCell> = match path.exists() {
-        true => read_rows(&path)?,
-        false => Vec::new(),
+/// The chains of a study of what accuracy costs.
+fn of_chains(cells: &[ChainCell], points: &[ChainPoint]) -> Vec<Offer> {
+    let offer = |(cell, point): (&ChainCell, &ChainPoint)| Offer {
+        cell: None,
+        setting: cell.words(),
+        condition: String::new(),
+        costs: Costs {
+            decision_us: point.decision_us,
+            training_s: point.fit_s,
+            taxels: cell.n_taxels as f64,
+            measurements: cell.measurements as f64,
+        },
+        accuracy: point.accuracy,
+        accuracy_low: point.accuracy_low,
+        accuracy_high: point.accuracy_high,
     };
-    let chains: HashMap<String, &ChainCell> =
-        chains.iter().map(|c| (chain_setting(c), c)).collect();
-    let of_chart = |kind| points.iter().filter(move |point| point.chart == kind);
-    let training: HashMap<&str, f64> = of_chart(ChartKind::Training)
-        .map(|point| (point.setting.as_str(), 1e-6 * point.cost_us))
-        .collect();
-    let offer = |point: &ChartPoint| {
-        let setting = point.setting.as_str();
-        let chain = chains.get(setting);
-        Offer {
-            cell: None,
-            setting: setting.to_owned(),
-            condition: String::new(),
-            costs: Costs {
-                decision_us: point.cost_us,
-                training_s: training.get(setting).copied().unwrap_or(f64::NAN),
-                taxels: chain.map_or(f64::NAN, |chain| chain.n_taxels as f64),
-                measurements: chain.map_or(f64::NAN, |chain| chain.measurements as f64),
-            },
-            accuracy: point.value,
-            accuracy_low: point.value_low,
-            accuracy_high: point.value_high,
-        }
-    };
-    Ok(of_chart(ChartKind::Decision).map(offer).collect())
+    cells.iter().zip(points).map(offer).collect()
 }

@@ -19,7 +19,7 @@ pub struct Picture {
 }
 
 /// A line of text in the middle of a place.
-pub(super) struct Label {
+pub(crate) struct Label {
     pub text: String,
     /// Pixels from the left.
     pub x: f64,
@@ -52,7 +52,7 @@ impl Picture {
     }
 
     /// Paper of a size in pixels, each side 64 to 20,000.
-    pub(super) fn blank(width: usize, height: usize) -> Result<Self> {
+    pub(crate) fn blank(width: usize, height: usize) -> Result<Self> {
         // The largest side that a table of 100 × 100 tiles of 200 pixels needs.
         let sides = 64..=20_000;
         if !(sides.contains(&width) && sides.contains(&height)) {
@@ -67,7 +67,7 @@ impl Picture {
     }
 
     /// Sets all labels at once, in the chart library's own type.
-    pub(super) fn write_labels(&mut self, labels: &[Label]) -> Result<()> {
+    pub(crate) fn write_labels(&mut self, labels: &[Label]) -> Result<()> {
         let mut scene = Scene::new(self.width as f64, self.height as f64);
         for label in labels {
             scene.add(Primitive::Text {
@@ -107,7 +107,7 @@ impl Picture {
     }
 
     /// Fills the pixels of an area that are on the paper.
-    pub(super) fn fill(&mut self, columns: Range<usize>, rows: Range<usize>, rgb: [u8; 3]) {
+    pub(crate) fn fill(&mut self, columns: Range<usize>, rows: Range<usize>, rgb: [u8; 3]) {
         for y in rows.start..rows.end.min(self.height) {
             for x in columns.start..columns.end.min(self.width) {
                 let at = 3 * (y * self.width + x);
@@ -117,7 +117,7 @@ impl Picture {
     }
 
     /// Copies a view to the area whose top left corner is given.
-    pub(super) fn place(&mut self, view: &ShadedView, [left, top]: [usize; 2], size: [usize; 2]) {
+    pub(crate) fn place(&mut self, view: &ShadedView, [left, top]: [usize; 2], size: [usize; 2]) {
         for y in 0..size[1] {
             for x in 0..size[0] {
                 let at = 3 * ((top + y) * self.width + left + x);
@@ -127,7 +127,7 @@ impl Picture {
     }
 
     /// Draws a bar of a round length of about a fifth of `width` pixels about a place, and returns its label.
-    pub(super) fn draw_scale(
+    pub(crate) fn draw_scale(
         &mut self,
         pixels_per_metre: f64,
         width: f64,
@@ -145,7 +145,7 @@ impl Picture {
 }
 
 /// The longest of 1, 2, 5, 10, … that fits.
-pub(super) fn bar_length(largest: f64) -> f64 {
+pub(crate) fn bar_length(largest: f64) -> f64 {
     let power = 10f64.powf(largest.log10().floor());
     let steps = [5.0, 2.0, 1.0].map(|step| step * power);
     steps.into_iter().find(|&s| s <= largest).unwrap_or(power)

@@ -9,11 +9,11 @@ use rayon::prelude::*;
 const SUPERSAMPLING: usize = 2;
 
 /// Slate blue, for objects without colours of their own.
-pub(super) const PAINT: [u8; 3] = [142, 178, 214];
+pub(crate) const PAINT: [u8; 3] = [142, 178, 214];
 
 /// What light makes of a surface.
 #[derive(Clone, Copy, PartialEq, Eq)]
-pub(super) enum Lighting {
+pub(crate) enum Lighting {
     /// Bumps are smoothed away, so that the eye sees the shape and not its spheres.
     Smoothed,
     /// Every sphere and every face shows.
@@ -23,7 +23,7 @@ pub(super) enum Lighting {
 }
 
 /// Floor, lamp and eye set up around an object.
-pub(super) struct Stage {
+pub(crate) struct Stage {
     pub canvas: Canvas,
     shadow: Vec<f32>,
     /// Scale of the picture.
@@ -31,7 +31,7 @@ pub(super) struct Stage {
 }
 
 /// An object as it is seen and lit, pixel by pixel.
-pub(super) struct ShadedView {
+pub(crate) struct ShadedView {
     /// Rays a row.
     width: usize,
     rays: Vec<Ray>,

@@ -221,7 +221,7 @@ pub fn load_named_meshes(folder: &Path, spec: &ObjectsSpec) -> Result<Vec<NamedM
 }
 
 /// The wanted objects of a set, as solids.
-pub(super) fn set_entries(set: &str, names: Option<&[String]>) -> Result<Vec<Entry>> {
+pub(crate) fn set_entries(set: &str, names: Option<&[String]>) -> Result<Vec<Entry>> {
     let entries = entries(set)?.into_iter();
     Ok(entries
         .filter(|entry| is_wanted(&entry.name, names))

@@ -8,7 +8,7 @@ use crate::packing::{Body, error_of_file, pack_mesh};
 use std::path::Path;
 
 /// Spheres that stand for a mesh, and where they are from.
-pub(super) struct Packed {
+pub(crate) struct Packed {
     pub spheres: SphereUnion,
     /// Whether they were in the folder already.
     pub was_kept: bool,
@@ -18,7 +18,7 @@ pub(super) struct Packed {
 /// nothing is kept without one).
 ///
 /// The error begins with `place` and says what the mesh lacks.
-pub(super) fn pack_within(
+pub(crate) fn pack_within(
     place: &str,
     surface: &Surface,
     tolerance: f64,

@@ -20,10 +20,10 @@ use crate::world::{Patch, Placement};
 use std::collections::HashSet;
 
 /// Metres in a millimetre.
-pub(super) const MM: f64 = 1e-3;
+pub(crate) const MM: f64 = 1e-3;
 
 /// Trials of a study, at most: each has its split in memory before the first runs.
-pub(super) const MOST_TRIALS: usize = 100_000;
+pub(crate) const MOST_TRIALS: usize = 100_000;
 /// Frames a touch, at most: more is a rate or a number in the wrong unit.
 pub(super) const MOST_FRAMES: usize = 10_000;
 

@@ -23,7 +23,7 @@ impl ModelSpec {
 
 impl ObjectsSpec {
     /// Says how far spheres may be from surfaces, where the study leaves it to the arrays.
-    pub(super) fn settle_surface_error(&mut self, arrays: &[Patch]) {
+    pub(crate) fn settle_surface_error(&mut self, arrays: &[Patch]) {
         let pitches = arrays.iter().map(|patch| patch.grid.pitch / MM);
         let finest = pitches.fold(f64::INFINITY, f64::min);
         let model = self.model.unwrap_or_default();
@@ -33,7 +33,7 @@ impl ObjectsSpec {
     }
 
     /// Says how large objects may be whose files have no unit.
-    pub(super) fn settle_sizes(&mut self, arrays: &[Patch]) {
+    pub(crate) fn settle_sizes(&mut self, arrays: &[Patch]) {
         let feels = |patch: &Patch| {
             let n = patch.grid.nx.max(patch.grid.ny);
             (n as f64 * patch.grid.pitch, patch.taxel.radius)

@@ -1,6 +1,6 @@
 //! A chart as a value: which columns of which table it shows, and how.
 
-use super::Value;
+use super::{Column, Value};
 use serde::Serialize;
 
 /// What a chart shows. One renderer draws it as SVG and PNG, and the page's script draws the same.
@@ -18,6 +18,9 @@ pub struct ChartSpec {
     pub shown: Vec<Shown>,
     /// The column along x; its scale is the column's.
     pub x: String,
+    /// What runs along x where the column holds values of several things: its words, unit and scale in place of the column's.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub x_is: Option<Column>,
     /// The column along y. Its interval, if it has one, is drawn as a band or as whiskers.
     pub y: String,
     /// Columns of which each combination has a line, or a colour of points, of its own; of tiles, a row of panels.

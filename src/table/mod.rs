@@ -9,6 +9,7 @@ mod column;
 mod columns_macro;
 mod front;
 mod numbers;
+mod rows;
 #[allow(clippy::module_inception)]
 mod table;
 

@@ -3,6 +3,7 @@
 use super::{Better, Column, Columns, Role, Scale};
 use crate::error::{Error, Result};
 use serde::Serialize;
+use serde::de::DeserializeOwned;
 use std::path::Path;
 
 /// A table of a study's results.
@@ -159,6 +160,12 @@ impl Table {
             (_, Data::Numbers(numbers)) => Some(numbers),
             _ => None,
         }
+    }
+
+    /// Its rows, typed; those that are not of the type are left out. Of a row of two structs each is read alone.
+    pub fn rows<R: DeserializeOwned>(&self) -> Vec<R> {
+        let rows = csv::Reader::from_reader(&self.csv[..]).into_deserialize();
+        rows.filter_map(|row| row.ok()).collect()
     }
 
     fn from_csv(

@@ -1,12 +1,12 @@
 //! The study of where recognition breaks, and the axes of a study that spoil what is learned.
 
 use crate::command::Case;
-use bubbletouch::report::csv_tables::read_rows;
-use bubbletouch::study::StudyKind;
-use bubbletouch::study::breaking_points::table::{
+use bubbletouch::kinds;
+use bubbletouch::kinds::breaking_points::rows::{
     BreakingPoint, CellScore, Side, TrialScore, WayCell,
 };
-use bubbletouch::study::breaking_points::{BreakingPointsPlan, BreakingPointsSpec};
+use bubbletouch::kinds::breaking_points::{BreakingPointsPlan, BreakingPointsSpec};
+use bubbletouch::report::csv_tables::read_rows;
 use std::fs;
 
 const QUICK: &str = r#"
@@ -81,18 +81,17 @@ beside = { "recognition.classifier" = "linear_svm" }
 
 #[test]
 fn each_way_breaks_where_it_must_and_threads_change_no_byte() {
-    assert_eq!(StudyKind::of(QUICK), StudyKind::BreakingPoints);
+    assert_eq!(kinds::about(QUICK).unwrap().table, "breaking_points");
     let case = Case::new();
     case.file("study.toml", QUICK);
     let (said, _) = case.succeeds(&["run", "study.toml", "--threads", "1", "--out", "1"]);
-    assert!(said.contains("half of it at"), "{said}");
+    assert!(said.contains("half of the best at"), "{said}");
     case.succeeds(&["run", "study.toml", "--threads", "2", "--out", "2"]);
     let read = |folder: &str, name: &str| fs::read(case.path(folder).join(name)).unwrap();
     for name in [
         "accuracy.csv",
         "summary.csv",
         "breaking_points.csv",
-        "breaking_points.svg",
         "noise.svg",
         "c.png",
         "study.toml",

@@ -1,13 +1,13 @@
 //! The study of what accuracy costs, and the advisor.
 
 use crate::command::Case;
-use bubbletouch::report::csv_tables::read_rows;
-use bubbletouch::report::speed_accuracy::{ChartKind, ChartPoint};
-use bubbletouch::study::StudyKind;
-use bubbletouch::study::speed_accuracy::table::{
-    ChainScore, ContactCell, ContactScore, ContactWay, Resolved, StudySize,
+use bubbletouch::kinds;
+use bubbletouch::kinds::speed_accuracy::rows::{
+    ChainPoint, ChainScore, ContactCell, ContactPoint, ContactScore, ContactWay, ResolutionPoint,
+    Resolved, ResolvedBy, StudySize,
 };
-use bubbletouch::study::speed_accuracy::{SpeedAccuracyPlan, SpeedAccuracyStudySpec};
+use bubbletouch::kinds::speed_accuracy::{SpeedAccuracyPlan, SpeedAccuracyStudySpec};
+use bubbletouch::report::csv_tables::read_rows;
 use std::fs;
 use std::path::Path;
 
@@ -67,7 +67,10 @@ fn every_point_is_a_row_fronts_are_fronts_and_threads_change_no_byte_but_times()
     case.file("study.toml", QUICK);
     case.file("peers.csv", PEERS);
     let (said, _) = case.succeeds(&["run", "study.toml", "--threads", "1", "--out", "1"]);
-    assert!(said.contains("on the front"), "{said}");
+    assert!(
+        said.contains("Contact, from the fastest to the most accurate of"),
+        "{said}"
+    );
     case.succeeds(&["run", "study.toml", "--threads", "2", "--out", "2"]);
     for name in [
         "contact.csv",
@@ -102,35 +105,39 @@ fn every_point_is_a_row_fronts_are_fronts_and_threads_change_no_byte_but_times()
     // Steps of the quasi-static model end where one evaluation does.
     let stepped = mean(ContactWay::TimeSteps, Some(0.2));
     assert!((stepped - fine).abs() < fine, "{stepped} {fine}");
-    let points: Vec<ChartPoint> = read_rows(&case.path("1/pareto.csv")).unwrap();
-    for kind in ChartKind::ALL {
-        let of_kind: Vec<&ChartPoint> = points.iter().filter(|p| p.chart == kind).collect();
-        assert!(of_kind.iter().any(|p| p.on_front), "{kind:?}");
-        for point in of_kind.iter().filter(|p| !p.on_front) {
-            let beats = |other: &&&ChartPoint| {
-                let is_as_good = match kind.more_is_better() {
-                    true => other.value >= point.value,
-                    false => other.value <= point.value,
-                };
-                is_as_good
-                    && other.cost_us <= point.cost_us
-                    && other.on_front
-                    && other.front() == point.front()
-            };
-            assert!(of_kind.iter().any(|other| beats(&other)), "{point:?}");
-        }
-        let svg = fs::read_to_string(case.path("1").join(format!("{}.svg", kind.name()))).unwrap();
+    let contact: Vec<ContactPoint> = read_rows(&case.path("1/contact_pareto.csv")).unwrap();
+    let points = contact
+        .iter()
+        .map(|p| (p.us_per_touch, p.error_mm, p.on_front));
+    is_front(&points.collect::<Vec<_>>());
+    let peer = contact.iter().find(|p| p.source.starts_with("MuJoCo"));
+    let peer = peer.unwrap();
+    assert_eq!((peer.us_per_touch, peer.error_mm), (400.0, 0.05));
+    let chains: Vec<ChainPoint> = read_rows(&case.path("1/pareto.csv")).unwrap();
+    assert_eq!(chains.len(), 2 * 2 * 2 * 2);
+    // Less is better of what is wrong.
+    let points = chains
+        .iter()
+        .map(|p| (p.decision_us, -p.accuracy, p.on_decision_front));
+    is_front(&points.collect::<Vec<_>>());
+    let points = chains
+        .iter()
+        .map(|p| (p.fit_s, -p.accuracy, p.on_training_front));
+    is_front(&points.collect::<Vec<_>>());
+    let studies: Vec<ResolutionPoint> = read_rows(&case.path("1/resolution_pareto.csv")).unwrap();
+    for interval in [ResolvedBy::OneAccuracy, ResolvedBy::Difference] {
+        let of_it = studies.iter().filter(|p| p.interval == interval);
+        let points: Vec<_> = of_it.map(|p| (p.cpu_s, p.half_width, p.on_front)).collect();
+        assert_eq!(points.len(), 2 * 2);
+        is_front(&points);
+    }
+    for name in ["contact", "decision", "training", "resolution"] {
+        let svg =
+            fs::read_to_string(case.path("1").join(format!("speed_accuracy_{name}.svg"))).unwrap();
         assert!(svg.contains("Pareto front"));
     }
     let page = fs::read_to_string(case.path("1/report.html")).unwrap();
-    assert!(page.contains("class=\"asked\"") && page.contains("Contact, from the fastest"));
-    let n_decisions = points.iter().filter(|p| p.chart == ChartKind::Decision);
-    assert_eq!(n_decisions.count(), 2 * 2 * 2 * 2);
-    let peer = points
-        .iter()
-        .find(|p| p.source.starts_with("MuJoCo"))
-        .unwrap();
-    assert_eq!((peer.cost_us, peer.value), (400.0, 0.05));
+    assert!(page.contains("Contact, from the fastest"));
     let answers: Vec<ChainScore> = read_rows(&case.path("1/recognition.csv")).unwrap();
     let chance = 0.25;
     let best = answers.iter().map(|row| row.accuracy).fold(0.0, f64::max);
@@ -154,18 +161,40 @@ fn every_point_is_a_row_fronts_are_fronts_and_threads_change_no_byte_but_times()
     assert!(of_difference(9) < of_difference(3));
 }
 
+/// Of costs, values of which less is better, and who is said to be on the front: all others are beaten by one of these.
+fn is_front(points: &[(f64, f64, bool)]) {
+    assert!(points.iter().any(|point| point.2));
+    for &(cost, value, on_front) in points {
+        let beats = |other: &&(f64, f64, bool)| {
+            other.2 && other.0 <= cost && other.1 <= value && (other.0 < cost || other.1 < value)
+        };
+        assert_eq!(
+            points.iter().any(|other| beats(&other)),
+            !on_front,
+            "{cost} {value}"
+        );
+    }
+}
+
 #[test]
 fn the_advisor_answers_from_what_was_measured_and_says_what_is_nearest() {
     let case = Case::new();
-    let header = "chart,group,setting,source,cost_us,value,value_low,value_high,on_front\n";
-    let rows = "decision,a,cheap one,this run,10.0,0.6,0.55,0.65,true\n\
-                decision,a,middle one,this run,50.0,0.9,0.87,0.93,true\n\
-                decision,a,dear one,this run,200.0,0.97,0.95,0.98,true\n\
-                contact,b,no decision,this run,1.0,0.99,0.99,0.99,true\n";
+    let header = "pitch_mm,n_taxels,tolerance_mm,ensemble,ratio,measurements,classifier,decision_us,fit_s,accuracy,accuracy_low,\
+                  accuracy_high,on_decision_front,on_training_front\n";
+    let chain = |m: usize, rest: &str| {
+        let ratio = 256 / m;
+        format!("8.0,256,1.0,block_average,{ratio},{m},linear_svm,{rest},true,true\n")
+    };
+    let rows = chain(4, "10.0,0.1,0.6,0.55,0.65")
+        + &chain(16, "50.0,0.2,0.9,0.87,0.93")
+        + &chain(64, "200.0,0.3,0.97,0.95,0.98");
     fs::create_dir(case.path("results")).unwrap();
     case.file("results/pareto.csv", format!("{header}{rows}"));
     let (said, _) = case.succeeds(&["advise", "results", "--accuracy", "0.9"]);
-    assert!(said.starts_with("middle one\n"), "{said}");
+    assert!(
+        said.starts_with("linear SVM, block average, m = 16, pitch 8 mm"),
+        "{said}"
+    );
     assert!(
         said.contains("0.870 to 0.930") && said.contains("50.0 µs"),
         "{said}"
@@ -182,7 +211,7 @@ fn the_advisor_answers_from_what_was_measured_and_says_what_is_nearest() {
     let advice: serde_json::Value = serde_json::from_str(&said).unwrap();
     assert_eq!(advice["cost"], "decision_time");
     let answer = &advice["answers"][0];
-    assert_eq!(answer["choice"]["setting"], "cheap one");
+    assert_eq!(answer["choice"]["costs"]["measurements"], 4.0);
     assert_eq!(answer["next_up"]["costs"]["decision_us"], 50.0);
     for (arguments, wanted) in [
         (
@@ -192,7 +221,7 @@ fn the_advisor_answers_from_what_was_measured_and_says_what_is_nearest() {
         (&["advise", "results", "--budget", "5"], "at least 0.600"),
         (
             &["advise", "results", "--budget", "5", "--cost", "taxels"],
-            "whose cost it says",
+            "for 256 taxels",
         ),
         (
             &["advise", "results", "--budget", "5", "--given", "noise=0"],
@@ -210,9 +239,16 @@ fn the_advisor_answers_from_what_was_measured_and_says_what_is_nearest() {
         assert_eq!(output.status.code(), Some(2), "{arguments:?}: {error}");
         assert!(error.contains(wanted), "{arguments:?}: {error}");
     }
-    case.file("results/pareto.csv", "a,b\n1,2\n");
-    let output = case.run(&["advise", "results", "--accuracy", "0.5"]);
-    assert_eq!(output.status.code(), Some(2));
+    for (columns, said) in [
+        ("a,b", "other columns"),
+        ("chart,cost_us", "an earlier version"),
+    ] {
+        case.file("results/pareto.csv", format!("{columns}\n1,2\n"));
+        let output = case.run(&["advise", "results", "--accuracy", "0.5"]);
+        let error = String::from_utf8(output.stderr).unwrap();
+        assert_eq!(output.status.code(), Some(2), "{error}");
+        assert!(error.contains(said), "{error}");
+    }
 }
 
 #[test]
@@ -293,7 +329,7 @@ fn conditions_of_the_world_are_given_and_never_advised() {
 
 #[test]
 fn keys_that_are_out_of_range_are_named() {
-    assert_eq!(StudyKind::of(QUICK), StudyKind::SpeedAccuracy);
+    assert_eq!(kinds::about(QUICK).unwrap().table, "speed_accuracy");
     for (old, new, said) in [
         (
             "tolerances_mm = [0.2, 1.0]",

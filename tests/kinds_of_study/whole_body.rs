@@ -1,12 +1,12 @@
 //! Studies of a whole body, small and quick.
 
 use crate::command::Case;
-use bubbletouch::report::csv_tables::read_rows;
-use bubbletouch::study::StudyKind;
-use bubbletouch::study::whole_body::table::{
-    Bar, BodyCase, BodyCount, BodyRecognition, BodySensed, BodyTime, Series, Stage,
+use bubbletouch::kinds;
+use bubbletouch::kinds::whole_body::rows::{
+    BodyCase, BodyCount, BodyRecognition, BodySensed, BodyStep, BodyTime, Series, Stage,
 };
-use bubbletouch::study::whole_body::{WholeBodyPlan, WholeBodyStudySpec};
+use bubbletouch::kinds::whole_body::{WholeBodyPlan, WholeBodyStudySpec};
+use bubbletouch::report::csv_tables::read_rows;
 use std::fs;
 
 const ROBOT: &str = r#"<robot name="post">
@@ -97,7 +97,7 @@ fn tables_but_for_times_are_the_same_bytes_at_any_number_of_threads_and_obey_the
     let case = case(STUDY);
     let (said, _) = case.succeeds(&["run", "study.toml", "--threads", "1", "--out", "1"]);
     assert!(
-        said.contains("What was asked") && said.contains("fingertip"),
+        said.contains("From touch to answer on 18118 taxels") && said.contains("bytes a taxel"),
         "{said}"
     );
     let quiet = [
@@ -178,17 +178,22 @@ fn tables_but_for_times_are_the_same_bytes_at_any_number_of_threads_and_obey_the
             "{case:?}"
         );
     }
-    let bars: Vec<Bar> = read_rows(&case.path("1/bars.csv")).unwrap();
-    for bar in &bars {
-        assert_eq!(
-            bar.is_met,
-            (bar.measured >= bar.bar) == bar.at_least || bar.measured == bar.bar
-        );
+    let steps: Vec<BodyStep> = read_rows(&case.path("1/steps.csv")).unwrap();
+    assert_eq!(steps.len(), cases.len(), "one with all threads of each");
+    for (step, count) in steps.iter().zip(&counts) {
+        assert_eq!(step.touched_mean, count.touched_mean);
+        assert!((step.touched - step.touched_mean).abs() <= 0.05 * step.touched_mean);
+        assert!((step.steps_per_s * step.us_median / 1e6 - 1.0).abs() < 1e-12);
     }
-    for chart in ["time_by_taxels", "time_by_touched", "time_by_stage"] {
+    for chart in [
+        "time_by_taxels",
+        "time_by_touched",
+        "time_by_spheres",
+        "time_by_stage",
+    ] {
         assert!(!read("1", &format!("{chart}.png")).is_empty());
         let svg = String::from_utf8(read("1", &format!("{chart}.svg"))).unwrap();
-        assert!(svg.contains("time of a step, µs"), "{chart}");
+        assert!(svg.contains("time of a step") && svg.contains("a millisecond"));
     }
     let page = String::from_utf8(read("1", "report.html")).unwrap();
     assert!(page.contains("What does a post of skin cost?") && page.contains("timing.csv"));
@@ -214,7 +219,7 @@ fn a_study_of_a_body_takes_no_objects_and_misses_none() {
 
 #[test]
 fn keys_of_a_body_study_that_are_out_of_range_are_named() {
-    assert_eq!(StudyKind::of(STUDY), StudyKind::WholeBody);
+    assert_eq!(kinds::about(STUDY).unwrap().table, "whole_body");
     let case = case(STUDY);
     let plan = |text: &str| {
         WholeBodyStudySpec::parse("study.toml", text)

@@ -2,20 +2,21 @@
 
 use crate::fuzzing::{SOON, Target};
 use bubbletouch::geometry::Pose;
+use bubbletouch::kinds;
+use bubbletouch::kinds::breaking_points::BreakingPointsSpec;
+use bubbletouch::kinds::object_detail::{ObjectDetailPlan, ObjectDetailStudySpec};
+use bubbletouch::kinds::reconstruction::{ReconstructionPlan, ReconstructionStudySpec};
+use bubbletouch::kinds::speed_accuracy::SpeedAccuracyStudySpec;
+use bubbletouch::kinds::stability::{StabilityPlan, StabilityStudySpec};
+use bubbletouch::kinds::whole_body::{WholeBodyPlan, WholeBodyStudySpec};
 use bubbletouch::mesh::{LengthUnit, MeshFormat};
 use bubbletouch::objects::{Catalogue, read_spheres};
 use bubbletouch::report::csv_tables::{TABLE_FILES, VARIANCE_FILE, read_tables, write_tables};
 use bubbletouch::report::offers::read_offers;
 use bubbletouch::scene::{ScenePlan, SceneSpec};
-use bubbletouch::study::breaking_points::BreakingPointsSpec;
 use bubbletouch::study::journal::{Identity, Journal};
-use bubbletouch::study::object_detail::{ObjectDetailPlan, ObjectDetailStudySpec};
-use bubbletouch::study::reconstruction::{ReconstructionPlan, ReconstructionStudySpec};
-use bubbletouch::study::speed_accuracy::SpeedAccuracyStudySpec;
-use bubbletouch::study::stability::{StabilityPlan, StabilityStudySpec};
 use bubbletouch::study::table::Tables;
-use bubbletouch::study::whole_body::{WholeBodyPlan, WholeBodyStudySpec};
-use bubbletouch::study::{Plan, StudyKind, StudySpec, compare_runs};
+use bubbletouch::study::{Plan, StudySpec, compare_runs};
 use bubbletouch::world::{Interpolation, PoseTrajectory, Robot};
 use bubbletouch::{Error, Result};
 use std::fs;
@@ -97,26 +98,26 @@ fn studies() {
 
 fn read_study(input: &[u8]) -> Result<()> {
     let text = text_of(input)?;
-    match StudyKind::of(text) {
-        StudyKind::Recognition => Plan::new(PLACE, StudySpec::parse(PLACE, text)?).map(drop),
-        StudyKind::Reconstruction => {
-            let spec = ReconstructionStudySpec::parse(PLACE, text)?;
-            ReconstructionPlan::new(PLACE, spec).map(drop)
-        }
-        StudyKind::ObjectDetail => {
+    match kinds::about(text).map(|about| about.table) {
+        Some("object_detail") => {
             let spec = ObjectDetailStudySpec::parse(PLACE, text)?;
             ObjectDetailPlan::new(PLACE, spec).map(drop)
         }
-        StudyKind::WholeBody => {
+        Some("breaking_points") => BreakingPointsSpec::parse(PLACE, text).map(drop),
+        Some("speed_accuracy") => SpeedAccuracyStudySpec::parse(PLACE, text).map(drop),
+        Some("reconstruction") => {
+            let spec = ReconstructionStudySpec::parse(PLACE, text)?;
+            ReconstructionPlan::new(PLACE, spec).map(drop)
+        }
+        Some("whole_body") => {
             let spec = WholeBodyStudySpec::parse(PLACE, text)?;
             WholeBodyPlan::new(PLACE, &folder("experiments"), spec).map(drop)
         }
-        StudyKind::BreakingPoints => BreakingPointsSpec::parse(PLACE, text).map(drop),
-        StudyKind::SpeedAccuracy => SpeedAccuracyStudySpec::parse(PLACE, text).map(drop),
-        StudyKind::Stability => {
+        Some("stability") => {
             let spec = StabilityStudySpec::parse(PLACE, text)?;
             StabilityPlan::new(PLACE, Path::new(""), spec).map(drop)
         }
+        _ => Plan::new(PLACE, StudySpec::parse(PLACE, text)?).map(drop),
     }
 }
 

@@ -196,12 +196,9 @@ impl<'a> Look<'a> {
         match data {
             Data::Words { levels, codes } => {
                 for (code, level) in levels.iter().enumerate() {
-                    let first = view
-                        .places
-                        .iter()
-                        .find(|place| codes[place.row] as usize == code);
-                    if let Some(place) = first {
-                        let sign = self.sign(place.row);
+                    let mut places = view.places.iter();
+                    if places.any(|place| codes[place.row] as usize == code) {
+                        let sign = letter(column, levels, code);
                         let mark = Mark::Tile(OUTCOMES[code % OUTCOMES.len()], sign);
                         entries.push(LegendEntry::new(column.word(level), mark));
                     }

@@ -84,7 +84,8 @@ impl<'a> View<'a> {
         };
         let lines = Groups::of(&columns_of(&spec.lines)?, &rows);
         let panels = Groups::of(&columns_of(spec.panels.as_slice())?, &rows);
-        let (x, y) = (column(&spec.x)?, column(&spec.y)?);
+        let (mut x, y) = (column(&spec.x)?, column(&spec.y)?);
+        x.0 = spec.x_is.as_ref().unwrap_or(x.0);
         let (x_values, y_values) = (values(x.0, x.1, &rows), values(y.0, y.1, &rows));
         let interval = interval_of(table, y.0);
         let mut along = [x_values.0.clone(), y_values.0.clone()];
@@ -208,7 +209,11 @@ impl<'a> View<'a> {
 
     /// What a row of panels of tiles is.
     pub fn row_title(&self, row: usize) -> String {
-        self.title(&self.spec.lines, &self.lines.names[row])
+        let name = &self.lines.names[row];
+        match &self.spec.lines[..] {
+            [_] => self.title(&self.spec.lines, name),
+            _ => format!("{}: {name}", self.lines.heading),
+        }
     }
 
     /// A number says what it is of.

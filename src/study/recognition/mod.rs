@@ -1,5 +1,6 @@
 //! Studies that recognise objects, in work items: a family of cells in a trial each, and the touches of each array.
 
+mod cost;
 mod limits;
 mod load;
 mod measuring;

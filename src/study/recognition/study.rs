@@ -1,5 +1,6 @@
 //! A study that recognises objects: its work items, and the tables of what they found.
 
+use super::cost::{family_s, measure_s, touch_s};
 use super::load::touch_content;
 use super::rows::{ArrayOutcome, Outcome, RecognitionRows};
 use crate::error::Result;
@@ -7,7 +8,6 @@ use crate::random::Seed;
 use crate::study::axes::AxisValues;
 use crate::study::cell_content::family_name;
 use crate::study::content_hash::ContentHash;
-use crate::study::estimate::{family_s, measure_s, touch_s};
 use crate::study::frames::FramePlace;
 use crate::study::measurement::signal_steps;
 use crate::study::pieces::{NamedPiece, PieceStudy, PiecesLeft};
@@ -17,12 +17,17 @@ use crate::study::sensor_errors::TestedOn;
 use crate::study::sweep::{Group, Sweep};
 use crate::study::table::{Cell, StageTime};
 use crate::study::tabulate::tabulate;
-use crate::study::time_left::{Piece, Work};
+use crate::study::time_left::Piece;
 use crate::study::touch_set::TouchSet;
 use crate::world::Patch;
 use std::collections::{BTreeMap, HashMap, HashSet};
 use std::ops::Range;
 use std::sync::Arc;
+
+/// Stages, for the time left; each classifier has its own.
+const TOUCH: u8 = 0;
+const MEASURE: u8 = 1;
+const LEARN: u8 = 2;
 
 /// A recognition study that is laid out.
 pub struct RecognitionStudy {
@@ -274,28 +279,22 @@ impl RecognitionStudy {
 
     pub(super) fn touch_work(&self, touches: usize) -> Piece {
         let (part, patch, n_frames) = self.on(touches);
-        let n_touches = part.sweep.labels.len();
-        Piece {
-            kind: Work::Touch,
-            planned_s: touch_s(patch, part.touched.as_ref(), n_touches, n_frames),
-        }
+        let on = (part.sweep.labels.len(), n_frames);
+        let planned_s = touch_s(patch, part.touched.as_ref(), on);
+        Piece::one_by_one(TOUCH, planned_s / rayon::current_num_threads() as f64)
     }
 
     pub(super) fn measure_work(&self, group: usize, n_measurements: usize) -> Piece {
         let (part, group) = self.group(group);
-        let n_touches = part.sweep.labels.len();
-        Piece {
-            kind: Work::Measure,
-            planned_s: measure_s(&part.plan, group, n_touches, n_measurements),
-        }
+        let measured = (part.sweep.labels.len(), n_measurements);
+        Piece::of_stage(MEASURE, measure_s(&part.plan, group, measured))
     }
 
     fn learn_work(&self, (part, family): (&StudyPart, &[Cell])) -> Piece {
         let n_objects = part.touched.class_names().len();
-        Piece {
-            kind: Work::Learn(family[0].classifier),
-            planned_s: family_s(&part.plan, family, n_objects, part.sweep.labels.len()),
-        }
+        let of = (n_objects, part.sweep.labels.len());
+        let stage = LEARN + family[0].classifier as u8;
+        Piece::of_stage(stage, family_s(&part.plan, family, of))
     }
 
     /// Of all touches what was made, measured, missed and saturated.
@@ -376,7 +375,7 @@ impl PieceStudy for RecognitionStudy {
             let mut groups = self.groups.iter();
             let group = groups.position(|group| group.touches == number);
             // What it takes is told while all that needs the touches waits for them.
-            let work = self.touch_work(number).share(0.0);
+            let work = Piece::one_by_one(TOUCH, 0.0);
             pieces.push(NamedPiece::new(name, group.unwrap_or_default(), work));
         }
         pieces

@@ -34,7 +34,8 @@ class View {
     this.kind = typeof spec.mark === "string" ? spec.mark : "tiles";
     this.lines = groupsOf(spec.lines.map(column), rows);
     this.panels = groupsOf(spec.panels ? [column(spec.panels)] : [], rows);
-    const [x, y] = [column(spec.x), column(spec.y)];
+    const x = spec.x_is?.name === spec.x ? column(spec.x).as(spec.x_is) : column(spec.x);
+    const y = column(spec.y);
     const interval = (y.interval ?? []).map(column);
     const bounds = interval.length === 2 && interval.every(Boolean) ? interval : null;
     const along = { x: rows.map((row) => x.value(row)), y: rows.map((row) => y.value(row)) };

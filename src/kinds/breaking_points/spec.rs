@@ -1,0 +1,119 @@
+//! A study of breaking points as it is written.
+
+use super::scale::WayScale;
+use crate::error::Result;
+use crate::study::spec::{
+    ObjectsSpec, RecognitionSpec, SensingSpec, SignalSpec, SkinSpec, StudySpec, TouchesSpec,
+    default_seed,
+};
+use crate::toml_text;
+use serde::{Deserialize, Serialize};
+
+/// The file.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct BreakingPointsSpec {
+    /// What the study asks, in a sentence.
+    pub question: String,
+    /// What the author expected before it ran.
+    #[serde(default)]
+    pub expected: String,
+    /// Root of all randomness.
+    #[serde(default = "default_seed")]
+    pub seed: u64,
+    /// How often each value is repeated with a new split, projection and noise.
+    pub trials: usize,
+    /// What is touched.
+    pub objects: ObjectsSpec,
+    /// What touches.
+    pub skin: SkinSpec,
+    /// How it touches.
+    pub touches: TouchesSpec,
+    /// What happens to a frame before it is sensed.
+    #[serde(default)]
+    pub signal: SignalSpec,
+    /// How a frame is compressed.
+    pub sensing: SensingSpec,
+    /// How objects are recognised: any number of classifiers.
+    pub recognition: RecognitionSpec,
+    /// Ways to drive the study until it breaks.
+    pub breaking_points: Vec<WaySpec>,
+}
+
+/// `[[breaking_points]]`
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct WaySpec {
+    /// One word, as in tables and file names: letters, digits and `_`.
+    pub name: String,
+    /// What runs along x, with its unit.
+    pub label: String,
+    /// The keys of the study that take each value: `signal.noise_std_full_scale`.
+    pub keys: Vec<String>,
+    /// The values, ascending; at least three.
+    pub values: Vec<toml::Value>,
+    /// How places between values are measured.
+    #[serde(default)]
+    pub scale: WayScale,
+    /// What a key makes of a value.
+    #[serde(default, rename = "as")]
+    pub driven_as: DrivenAs,
+    /// Which touches have the value.
+    #[serde(default)]
+    pub touches: DrivenTouches,
+    /// Other keys of the study, and what they are while this way is gone.
+    #[serde(default, skip_serializing_if = "toml::Table::is_empty")]
+    pub beside: toml::Table,
+}
+
+/// What a key makes of a value.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum DrivenAs {
+    /// The value itself.
+    #[default]
+    Value,
+    /// `{ uniform = [−value, value] }`; 0 for 0.
+    HalfWidth,
+}
+
+/// Which touches have the value; the others have the study's own.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum DrivenTouches {
+    /// All: what is tested has been learned alike.
+    #[default]
+    All,
+    /// Those that train: what is tested is as it was.
+    Training,
+    /// Those that test: what is met was not learned.
+    Test,
+}
+
+impl BreakingPointsSpec {
+    /// Reads a study; the error names the file, the line and the key.
+    pub fn parse(place: &str, text: &str) -> Result<Self> {
+        toml_text::read(place, text)
+    }
+
+    /// The recognition study that the ways drive.
+    pub(super) fn base(&self) -> StudySpec {
+        StudySpec {
+            // Words: no part of what a value depends on.
+            question: String::new(),
+            expected: String::new(),
+            seed: self.seed,
+            trials: self.trials,
+            projections_per_split: None,
+            objects: self.objects.clone(),
+            skin: self.skin.clone(),
+            touches: self.touches.clone(),
+            human_touch: None,
+            signal: self.signal.clone(),
+            sensing: self.sensing.clone(),
+            recognition: self.recognition.clone(),
+            report: Default::default(),
+            axes: Default::default(),
+        }
+    }
+}

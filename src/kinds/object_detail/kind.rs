@@ -1,0 +1,97 @@
+//! What the engine asks of a study of object detail.
+
+use super::plan::ObjectDetailPlan;
+use super::rows::{
+    DetailCell, DetailCost, DetailRecognition, DetailScore, DetailSummary, DetailTime,
+};
+use super::spec::ObjectDetailStudySpec;
+use super::study::{COST, DETAIL, ObjectDetailStudy, RECOGNITION, SUMMARY, TIMING, described};
+use super::variants::levels;
+use super::{answers, charts};
+use crate::error::Result;
+use crate::kinds::{About, Facts, Kind, Source};
+use crate::study::pieces::Scale;
+use crate::study::{load_named_meshes, objects_content};
+use crate::table::{ChartSpec, Table};
+use crate::toml_text;
+use std::path::Path;
+
+impl Kind for ObjectDetailStudy {
+    const ABOUT: About = About {
+        table: "object_detail",
+        words: "a study of how detailed objects are",
+        may_change: &[
+            "question",
+            "expected",
+            "object_detail.recognition.classifiers",
+        ],
+    };
+
+    fn load(source: &Source) -> Result<Self> {
+        let mut spec = ObjectDetailStudySpec::parse(&source.place, &source.text)?;
+        spec.seed = source.seed(spec.seed);
+        source.replace_objects(&mut spec.objects);
+        let plan = ObjectDetailPlan::new(&source.place, spec)?;
+        Ok(Self {
+            meshes: load_named_meshes(plan.meshes(), &plan.spec.objects)?,
+            packings: source.packings.clone(),
+            plan,
+        })
+    }
+
+    fn facts(&self) -> Result<Facts> {
+        let spec = &self.plan.spec;
+        Ok(Facts {
+            toml: toml_text::write(spec),
+            question: spec.question.clone(),
+            expected: spec.expected.clone(),
+            seed: spec.seed,
+            content: objects_content(&spec.objects)?,
+            ..Facts::default()
+        })
+    }
+
+    fn scale(&self) -> Scale {
+        let n_objects = self.meshes.len();
+        let n_levels = levels(&self.plan).len();
+        let per_object = self.plan.placement.per_object.unwrap_or(1);
+        let learned = self.plan.recognition.as_ref();
+        let n_learned = learned.map_or(0, |learned| learned.n_training + learned.n_test);
+        let n_classifiers = learned.map_or(0, |learned| learned.classifiers.len());
+        let n_taxels = self.plan.patch.grid.n_taxels();
+        let n_measurements = learned.map_or(0, |learned| learned.n_measurements);
+        Scale {
+            objects: format!("{n_objects} meshes, in {n_levels} models each"),
+            touches: match n_learned {
+                0 => format!("{per_object} of each model"),
+                n => format!("{per_object} of each model, {n} of each for recognition"),
+            },
+            n_configurations: n_levels * (n_objects + n_classifiers),
+            bytes: 8.0 * (n_objects * n_learned * n_levels * n_measurements) as f64,
+            // Frames as they were, and as they are read.
+            item_bytes: 12.0 * (n_learned * n_taxels) as f64,
+        }
+    }
+
+    fn read_tables(&self, folder: &Path) -> Result<Vec<Table>> {
+        let mut tables = vec![
+            Table::read::<(DetailCell, DetailScore)>(DETAIL.0, DETAIL.1, folder)?,
+            Table::read::<DetailSummary>(SUMMARY.0, SUMMARY.1, folder)?,
+            Table::read::<(DetailCell, DetailTime)>(TIMING.0, TIMING.1, folder)?,
+            Table::read::<DetailCost>(COST.0, COST.1, folder)?,
+        ];
+        if self.plan.recognition.is_some() {
+            let table = Table::read::<DetailRecognition>(RECOGNITION.0, RECOGNITION.1, folder)?;
+            tables.push(table);
+        }
+        Ok(tables.into_iter().map(described).collect())
+    }
+
+    fn charts(&self, tables: &[Table]) -> Vec<ChartSpec> {
+        charts::charts(tables)
+    }
+
+    fn answers(&self, tables: &[Table]) -> Vec<String> {
+        answers::answers(tables)
+    }
+}

@@ -1,0 +1,123 @@
+//! A study of object detail that can run: every key checked, every unit SI.
+
+use super::spec::{DetailMethod, DetailRecognitionSpec, ObjectDetailStudySpec};
+use crate::error::Result;
+use crate::recognition::ClassifierKind;
+use crate::sensing::Ensemble;
+use crate::study::check::{Check, positive};
+use crate::world::{MOST_TOUCHES, Patch, Placement};
+use std::path::{Path, PathBuf};
+
+/// Settings of a study of object detail, ready to run.
+#[derive(Clone, Debug)]
+pub struct ObjectDetailPlan {
+    /// As it was written.
+    pub spec: ObjectDetailStudySpec,
+    meshes: PathBuf,
+    /// The array.
+    pub patch: Patch,
+    /// How touches are drawn.
+    pub placement: Placement,
+    /// What learns from the models, if anything does.
+    pub recognition: Option<RecognitionPlan>,
+}
+
+/// Classifiers that learn from models of the meshes.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RecognitionPlan {
+    /// Touches of each object that train, at least 1.
+    pub n_training: usize,
+    /// Touches of each object that test, at least 1.
+    pub n_test: usize,
+    /// How frames are compressed.
+    pub ensemble: Ensemble,
+    /// Measurements a touch, at most one a taxel.
+    pub n_measurements: usize,
+    /// What learns.
+    pub classifiers: Vec<ClassifierKind>,
+}
+
+/// Points of a mesh, at most: all are in memory at once.
+const MOST_POINTS: usize = 10_000_000;
+
+impl ObjectDetailPlan {
+    /// Checks a study; the error names `place` (the file) and the first key that is out of its range.
+    pub fn new(place: &str, mut spec: ObjectDetailStudySpec) -> Result<Self> {
+        let check = Check { place };
+        check.objects(&spec.objects)?;
+        let meshes = match &spec.objects.meshes {
+            Some(folder) if spec.objects.sets.is_empty() => folder.clone(),
+            _ => {
+                let allowed = "meshes alone (or --objects FOLDER): solids have no exact contact";
+                return Err(check.error("objects", "sets of solids", allowed));
+            }
+        };
+        if spec.objects.model.is_some() {
+            let allowed = "no such key: object_detail.methods says what the meshes become";
+            return Err(check.error("objects.model", "a model", allowed));
+        }
+        let patch = check.one_array(&spec.skin, "one pitch and one size")?;
+        spec.objects.settle_sizes(&[patch]);
+        if spec.objects.surface_error_mm.is_some() {
+            let allowed = "no such key: object_detail.tolerances_mm says how far spheres may be from the meshes";
+            return Err(check.error("objects.surface_error_mm", "a surface error", allowed));
+        }
+        let placement = check.placement(&spec.touches)?;
+        let wanted = &spec.object_detail;
+        let key = "object_detail.tolerances_mm";
+        for tolerance in check.list(key, wanted.tolerances_mm.clone())? {
+            let allowed = "positive numbers of millimetres";
+            check.value(key, tolerance, positive, allowed)?;
+        }
+        let key = "object_detail.methods";
+        check.list(key, wanted.methods.clone())?;
+        if wanted.methods.contains(&DetailMethod::Mesh) {
+            let allowed = "packing, vertex_spheres, decimated_vertex_spheres, medial_spheres: the mesh is what they are compared with";
+            return Err(check.error(key, "mesh", allowed));
+        }
+        let key = "object_detail.surface_points";
+        check.count(key, wanted.surface_points, MOST_POINTS)?;
+        let recognition = wanted.recognition.as_ref();
+        let recognition = recognition.map(|wanted| check_recognition(&check, wanted, &patch));
+        Ok(Self {
+            meshes,
+            patch,
+            placement,
+            recognition: recognition.transpose()?,
+            spec,
+        })
+    }
+
+    /// The folder of meshes.
+    pub fn meshes(&self) -> &Path {
+        &self.meshes
+    }
+}
+
+fn check_recognition(
+    check: &Check,
+    wanted: &DetailRecognitionSpec,
+    patch: &Patch,
+) -> Result<RecognitionPlan> {
+    let key = |name: &str| format!("object_detail.recognition.{name}");
+    let count = |name: &str, count| check.count(&key(name), count, MOST_TOUCHES);
+    let n_measurements = count("measurements", wanted.measurements)?;
+    let n_taxels = patch.grid.n_taxels();
+    if n_measurements > n_taxels {
+        let allowed = format!("at most {n_taxels}, the taxels of the array");
+        return Err(check.error(&key("measurements"), n_measurements, allowed));
+    }
+    let n_training = count("training_touches", wanted.training_touches)?;
+    let n_test = count("test_touches", wanted.test_touches)?;
+    // Of two objects, the fewest; with more it takes more.
+    let bytes = 16.0 * (n_training + n_test) as f64 * n_measurements as f64;
+    let what = "the measurements of all touches";
+    check.memory(&key("training_touches"), n_training + n_test, bytes, what)?;
+    Ok(RecognitionPlan {
+        n_training,
+        n_test,
+        ensemble: wanted.ensemble,
+        n_measurements,
+        classifiers: check.list(&key("classifiers"), wanted.classifiers.clone())?,
+    })
+}

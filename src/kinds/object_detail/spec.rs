@@ -1,0 +1,116 @@
+//! A study of object detail as it is written.
+
+use crate::error::Result;
+use crate::recognition::ClassifierKind;
+use crate::sensing::Ensemble;
+use crate::study::spec::{ObjectsSpec, SkinSpec, TouchesSpec, default_seed};
+use crate::toml_text;
+use serde::{Deserialize, Serialize};
+
+/// The file.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ObjectDetailStudySpec {
+    /// What the study asks, in a sentence.
+    pub question: String,
+    /// What the author expected before it ran.
+    #[serde(default)]
+    pub expected: String,
+    /// Root of all randomness.
+    #[serde(default = "default_seed")]
+    pub seed: u64,
+    /// What is touched: meshes.
+    pub objects: ObjectsSpec,
+    /// What touches; one array.
+    pub skin: SkinSpec,
+    /// How it touches.
+    pub touches: TouchesSpec,
+    /// What the meshes become.
+    pub object_detail: ObjectDetailSpec,
+}
+
+/// `[object_detail]`
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ObjectDetailSpec {
+    /// How far packed spheres may be from the mesh, mm: one level each.
+    pub tolerances_mm: Vec<f64>,
+    /// What stands for the mesh.
+    pub methods: Vec<DetailMethod>,
+    /// Points of a mesh at which the distance to the spheres is measured.
+    #[serde(default = "default_surface_points")]
+    pub surface_points: usize,
+    /// Classifiers that learn from the models and are tested on the meshes; none when left out.
+    #[serde(default)]
+    pub recognition: Option<DetailRecognitionSpec>,
+}
+
+/// `[object_detail.recognition]`
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct DetailRecognitionSpec {
+    /// Touches of each object that train, drawn as the study's touches are.
+    pub training_touches: usize,
+    /// Further touches of each object that test.
+    pub test_touches: usize,
+    /// How frames are compressed.
+    #[serde(default = "default_ensemble")]
+    pub ensemble: Ensemble,
+    /// To how many measurements.
+    pub measurements: usize,
+    /// What learns; with the parameters of [`Classifier::new`](crate::recognition::classifier::Classifier::new).
+    pub classifiers: Vec<ClassifierKind>,
+}
+
+/// What stands for a mesh.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum DetailMethod {
+    /// The mesh itself, touched exactly: what the others are compared with. Measured in any case.
+    Mesh,
+    /// Spheres within each tolerance.
+    Packing,
+    /// One sphere a vertex \[BT\].
+    VertexSpheres,
+    /// The same around so many of the vertices, spread evenly, as each packing has spheres (all vertices if it has more).
+    DecimatedVertexSpheres,
+    /// The largest spheres inside the mesh that touch it at as many points as each packing has spheres
+    /// ([`medial_spheres`](crate::packing::medial_spheres)).
+    MedialSpheres,
+}
+
+impl ObjectDetailStudySpec {
+    /// Reads a study; the error names the file, the line and the key.
+    pub fn parse(place: &str, text: &str) -> Result<Self> {
+        toml_text::read(place, text)
+    }
+}
+
+impl DetailMethod {
+    /// Those that are spheres.
+    pub const OF_SPHERES: [Self; 4] = [
+        Self::Packing,
+        Self::VertexSpheres,
+        Self::DecimatedVertexSpheres,
+        Self::MedialSpheres,
+    ];
+
+    /// In words.
+    pub fn words(self) -> &'static str {
+        match self {
+            Self::Mesh => "exact mesh",
+            Self::Packing => "packing",
+            Self::VertexSpheres => "vertex spheres",
+            Self::DecimatedVertexSpheres => "decimated vertex spheres",
+            Self::MedialSpheres => "medial spheres",
+        }
+    }
+}
+
+fn default_surface_points() -> usize {
+    5000
+}
+
+fn default_ensemble() -> Ensemble {
+    Ensemble::Sbhe
+}

@@ -1,0 +1,126 @@
+//! What is charted, and what was found in sentences.
+
+use crate::table::{Along, At, ChartSpec, Mark, Rule, Table, short_number};
+
+/// Of each noise level: error by measurements for each ensemble, then error against time.
+pub(super) fn charts(tables: &[Table]) -> Vec<ChartSpec> {
+    let [cells, _, _, pareto, ..] = tables else {
+        return Vec::new();
+    };
+    let mut charts = Vec::new();
+    for of_level in cells.groups(&["noise_std"], 0..cells.n_rows) {
+        let ensembles = cells.groups(&["ensemble"], of_level.iter().copied());
+        let compressed = ensembles
+            .iter()
+            .filter(|rows| cells.word("ensemble", rows[0]) != "identity");
+        charts.extend(compressed.map(|rows| by_measurements(cells, rows)));
+        let noise = noise_words(cells, of_level[0]);
+        charts.push(ChartSpec {
+            name: format!(
+                "error_by_time_noise_{}",
+                cells.number("noise_std", of_level[0])
+            ),
+            title: format!("Error of reconstructed frames against their time, {noise}"),
+            note: pareto.note.clone(),
+            table: pareto.file,
+            shown: cells.shown("noise_std", of_level[0]).into_iter().collect(),
+            x: "us_per_frame".to_owned(),
+            y: "error".to_owned(),
+            lines: vec!["solver".to_owned()],
+            mark: Mark::Points,
+            front: true,
+            ..ChartSpec::default()
+        });
+    }
+    charts
+}
+
+/// A panel a dictionary, a line a solver; the noisy frame itself as a rule.
+fn by_measurements(cells: &Table, rows: &[usize]) -> ChartSpec {
+    let ensemble = cells.words("ensemble", rows[0]);
+    let noise = noise_words(cells, rows[0]);
+    let full = cells.number("full_sampling_error", rows[0]);
+    let rule = Rule {
+        along: Along::Y,
+        at: At::Value(full),
+        words: "full sampling: the noisy frame itself".to_owned(),
+    };
+    let shown = ["noise_std", "ensemble"].iter();
+    ChartSpec {
+        name: format!(
+            "error_{}_noise_{}",
+            cells.word("ensemble", rows[0]),
+            cells.number("noise_std", rows[0])
+        ),
+        title: format!("Error of reconstructed frames by measurements, {ensemble}, {noise}"),
+        note: cells.note.clone(),
+        table: cells.file,
+        shown: shown
+            .filter_map(|column| cells.shown(column, rows[0]))
+            .collect(),
+        x: "measurements".to_owned(),
+        y: "error".to_owned(),
+        lines: vec!["solver".to_owned()],
+        panels: Some("dictionary".to_owned()),
+        rules: (full > 0.0).then_some(rule).into_iter().collect(),
+        ..ChartSpec::default()
+    }
+}
+
+/// The noise of a cell: `noise of 10 % of full scale`.
+pub(super) fn noise_words(cells: &Table, row: usize) -> String {
+    let level = cells.number("noise_std", row);
+    match (level, cells.word("noise_unit", row)) {
+        (0.0, _) => "no noise".to_owned(),
+        (_, "full_scale") => format!("noise of {} % of full scale", short_number(100.0 * level)),
+        (_, "n") => format!("noise of {} N", short_number(level)),
+        (_, unit) => format!("noise of {} {unit}", short_number(level)),
+    }
+}
+
+/// The settings of a cell: `LMMSE, PCA, SBHE, m = 1024`.
+pub(super) fn cell_words(cells: &Table, row: usize) -> String {
+    let names = ["solver", "dictionary", "ensemble", "measurements"];
+    let [solver, dictionary, ensemble, m] = names.map(|column| cells.words(column, row));
+    format!("{solver}, {dictionary}, {ensemble}, m = {m}")
+}
+
+/// At each noise level: the best cell of all, and the fewest measurements from which some cell is as good as full sampling.
+pub(super) fn answers(tables: &[Table]) -> Vec<String> {
+    let [cells, _, timing, ..] = tables else {
+        return Vec::new();
+    };
+    let error = |row: usize| cells.number("error", row);
+    let full = |row: usize| cells.number("full_sampling_error", row);
+    let mut sentences = Vec::new();
+    for rows in cells.groups(&["noise_std"], 0..cells.n_rows) {
+        let least = rows
+            .iter()
+            .copied()
+            .min_by(|&a, &b| error(a).total_cmp(&error(b)));
+        sentences.extend(least.map(|row| {
+            format!(
+                "With {}: least error {:.3} ({}; {:.0} frames/s a core).",
+                noise_words(cells, row),
+                error(row),
+                cell_words(cells, row),
+                timing.number("frames_per_s_per_core", row)
+            )
+        }));
+        let as_good = rows.into_iter().filter(|&row| error(row) <= full(row));
+        let key = |row: usize| (cells.number("measurements", row), error(row));
+        let fewest =
+            as_good.min_by(|&a, &b| key(a).partial_cmp(&key(b)).expect("errors are numbers"));
+        sentences.extend(fewest.map(|row| {
+            format!(
+                "As good as full sampling ({:.3}) from {} measurements ({:.0}:1): {:.3} ({}).",
+                full(row),
+                cells.number("measurements", row),
+                cells.number("ratio", row),
+                error(row),
+                cell_words(cells, row)
+            )
+        }));
+    }
+    sentences
+}

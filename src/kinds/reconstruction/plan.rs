@@ -1,0 +1,244 @@
+//! A reconstruction study that can run: every key checked, every unit SI.
+
+use super::rows::ReconstructionCell;
+use super::spec::{ReconstructionSpec, ReconstructionStudySpec};
+use crate::error::Result;
+use crate::random::Seed;
+use crate::sensing::{Basis, Dictionary, Effort, Ensemble, Projection, Solver};
+use crate::signal::{Noise, NoiseUnit, Quantity, SignalStep};
+use crate::study::Amount;
+use crate::study::{Check, positive};
+use crate::study::{SignalSpec, StepSpec};
+use crate::world::{Grid, Patch, Placement};
+
+/// Axes and settings of a reconstruction study, ready to run.
+#[derive(Clone, Debug)]
+pub struct ReconstructionPlan {
+    /// As it was written.
+    pub spec: ReconstructionStudySpec,
+    /// The array.
+    pub patch: Patch,
+    /// How touches are drawn.
+    pub placement: Placement,
+    /// Approach speed at the moment of reading, m/s.
+    pub speed: f64,
+    /// What the noise axis is measured in.
+    pub noise_unit: NoiseUnit,
+    /// The noise axis, in `noise_unit`.
+    pub noise: Vec<f64>,
+    /// The ensemble axis.
+    pub ensembles: Vec<Ensemble>,
+    /// The axis of measurements.
+    pub amounts: Vec<Amount>,
+    /// The dictionary axis.
+    pub dictionaries: Vec<Basis>,
+    /// The solver axis.
+    pub solvers: Vec<Solver>,
+    /// What bounds the solvers' work.
+    pub effort: Effort,
+    /// Sizes of the supports whose isometry is sampled.
+    pub isometry_sparsity: Vec<usize>,
+}
+
+/// Supports that are drawn of each size, at most: all are in memory at once.
+const MOST_SUBSETS: usize = 1_000_000;
+
+impl ReconstructionPlan {
+    /// Checks a study; the error names `place` (the file) and the first key that is out of its range.
+    pub fn new(place: &str, mut spec: ReconstructionStudySpec) -> Result<Self> {
+        let check = Check { place };
+        check.objects(&spec.objects)?;
+        let allowed = "one pitch and one size: a dictionary is of one array";
+        let patch = check.one_array(&spec.skin, allowed)?;
+        spec.objects.settle_surface_error(&[patch]);
+        let placement = check.placement(&spec.touches)?;
+        let (noise_unit, noise) = check.noise(&spec.signal)?;
+        check.steps(&spec.signal)?;
+        check.noise_is_last(&spec.signal)?;
+        let ensembles = check.list("sensing.ensemble", spec.sensing.ensemble.values())?;
+        let amounts = check.amounts(&spec.sensing, &[patch])?;
+        let wanted = &spec.reconstruction;
+        let dictionaries = check.dictionaries(wanted, &patch.grid)?;
+        let solvers = check.list("reconstruction.solver", wanted.solver.values())?;
+        let speed = check.speed(&spec.touches)?;
+        let effort = check.effort(wanted)?;
+        check.value(
+            "reconstruction.test_fraction",
+            wanted.test_fraction,
+            |f| f > 0.0 && f < 1.0,
+            "between 0 and 1",
+        )?;
+        let isometry_sparsity = check.isometry(wanted)?;
+        let axes = [
+            ensembles.len(),
+            amounts.len(),
+            noise.len(),
+            dictionaries.len(),
+            solvers.len(),
+        ];
+        check.configurations(axes.iter().map(|&n| n as f64).product())?;
+        Ok(Self {
+            patch,
+            placement,
+            speed,
+            noise_unit,
+            noise,
+            ensembles,
+            amounts,
+            dictionaries,
+            solvers,
+            effort,
+            isometry_sparsity,
+            spec,
+        })
+    }
+
+    /// The study's steps at a noise level; without its noise step for `None`.
+    pub fn signal_steps(&self, noise: Option<f64>) -> Vec<SignalStep> {
+        let unit = self.noise_unit;
+        let steps = self.spec.signal.steps.iter();
+        steps
+            .filter_map(|step| match step {
+                StepSpec::Force => Some(SignalStep::Force),
+                StepSpec::Noise => noise.map(|std| SignalStep::Noise(Noise { std, unit })),
+                // Steps that a reconstruction has no place for are refused.
+                _ => None,
+            })
+            .collect()
+    }
+
+    /// What frames are when noise is added.
+    pub fn quantity(&self) -> Quantity {
+        match self.spec.signal.steps.contains(&StepSpec::Force) {
+            true => Quantity::Force,
+            false => Quantity::Deflection,
+        }
+    }
+
+    /// The measurements axis of an ensemble; identity has all taxels whatever is asked.
+    pub fn measurement_counts(&self, ensemble: Ensemble) -> Vec<usize> {
+        let n = self.patch.grid.n_taxels();
+        if ensemble == Ensemble::Identity {
+            return vec![n];
+        }
+        let mut counts: Vec<usize> = self.amounts.iter().map(|a| a.measurements(n)).collect();
+        counts.sort_unstable();
+        counts.dedup();
+        counts
+    }
+
+    /// The study's projection of an ensemble to m measurements.
+    pub(super) fn projection(&self, ensemble: Ensemble, m: usize) -> Result<Projection> {
+        let grid = (self.patch.grid.ny, self.patch.grid.nx);
+        let seed = Seed::new(self.spec.seed).named("projection").numbered(0);
+        Projection::new(ensemble, grid, m, &seed)
+    }
+
+    /// All cells, those of an ensemble and m together; how many atoms a dictionary has is known once it is learned.
+    pub fn cells(&self) -> Vec<ReconstructionCell> {
+        let n_taxels = self.patch.grid.n_taxels() as f64;
+        let mut cells = Vec::new();
+        for &ensemble in &self.ensembles {
+            for measurements in self.measurement_counts(ensemble) {
+                for &noise_std in &self.noise {
+                    for &dictionary in &self.dictionaries {
+                        cells.extend(self.solvers.iter().map(|&solver| ReconstructionCell {
+                            cell: 0,
+                            noise_std,
+                            noise_unit: self.noise_unit,
+                            ensemble,
+                            measurements,
+                            ratio: n_taxels / measurements as f64,
+                            dictionary,
+                            atoms: 0,
+                            solver,
+                        }));
+                    }
+                }
+            }
+        }
+        cells
+            .iter_mut()
+            .enumerate()
+            .for_each(|(number, cell)| cell.cell = number);
+        cells
+    }
+}
+
+impl Check<'_> {
+    /// Solvers assume independent noise on every taxel, and a clean frame to compare with: nothing may follow the noise.
+    fn noise_is_last(&self, signal: &SignalSpec) -> Result<()> {
+        if signal.smoothing_mm.is_some() {
+            return Err(self.error(
+                "signal.smoothing_mm",
+                "smoothing before reconstruction",
+                "no smoothing: solvers take the noise of taxels to be independent",
+            ));
+        }
+        if let Some(step) = signal
+            .steps
+            .iter()
+            .find(|step| matches!(step, StepSpec::Error(_)))
+        {
+            return Err(self.error(
+                "signal.steps",
+                format!("\"{}\" before reconstruction", step.word()),
+                "force and noise: solvers take taxels to differ from the truth by independent noise alone",
+            ));
+        }
+        let place = |step| signal.steps.iter().position(|s| *s == step);
+        match (place(StepSpec::Force), place(StepSpec::Noise)) {
+            (Some(force), Some(noise)) if force > noise => Err(self.error(
+                "signal.steps",
+                "force after noise",
+                "noise after force: solvers take noise to be Gaussian, and force cuts it at zero",
+            )),
+            _ => Ok(()),
+        }
+    }
+
+    fn dictionaries(&self, wanted: &ReconstructionSpec, grid: &Grid) -> Result<Vec<Basis>> {
+        let key = "reconstruction.dictionary";
+        let bases = self.list(key, wanted.dictionary.values())?;
+        for &basis in bases.iter().filter(|&&basis| basis != Basis::Pca) {
+            if let Err(error) = Dictionary::complete(basis, (grid.ny, grid.nx)) {
+                return Err(self.error(
+                    key,
+                    format!("{basis:?} ({error})"),
+                    "a basis of this array",
+                ));
+            }
+        }
+        if let Some(count) = wanted.atoms {
+            self.positive_count("reconstruction.atoms", count)?;
+        }
+        Ok(bases)
+    }
+
+    fn effort(&self, wanted: &ReconstructionSpec) -> Result<Effort> {
+        for (key, count) in [
+            ("reconstruction.most_atoms", wanted.most_atoms),
+            ("reconstruction.most_steps", wanted.most_steps),
+        ] {
+            self.positive_count(key, count)?;
+        }
+        for (key, value) in [
+            ("reconstruction.lambda_scale", wanted.lambda_scale),
+            ("reconstruction.tolerance", wanted.tolerance),
+        ] {
+            self.value(key, value, positive, "a positive number")?;
+        }
+        Ok(wanted.effort())
+    }
+
+    fn isometry(&self, wanted: &ReconstructionSpec) -> Result<Vec<usize>> {
+        let key = "reconstruction.isometry_sparsity";
+        let sizes = self.list(key, wanted.isometry_sparsity.values())?;
+        for &size in &sizes {
+            self.positive_count(key, size)?;
+        }
+        let key = "reconstruction.isometry_subsets";
+        self.count(key, wanted.isometry_subsets, MOST_SUBSETS)?;
+        Ok(sizes)
+    }
+}

@@ -1,0 +1,122 @@
+//! A reconstruction study as it is written.
+
+use crate::error::Result;
+use crate::sensing::{Basis, Effort, Solver};
+use crate::study::{
+    Axis, ObjectsSpec, SensingSpec, SignalSpec, SkinSpec, TouchesSpec, default_seed,
+};
+use crate::toml_text;
+use serde::{Deserialize, Serialize};
+
+/// The file.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ReconstructionStudySpec {
+    /// What the study asks, in a sentence.
+    pub question: String,
+    /// What the author expected before it ran.
+    #[serde(default)]
+    pub expected: String,
+    /// Root of all randomness.
+    #[serde(default = "default_seed")]
+    pub seed: u64,
+    /// What is touched.
+    pub objects: ObjectsSpec,
+    /// What touches; one array.
+    pub skin: SkinSpec,
+    /// How it touches.
+    pub touches: TouchesSpec,
+    /// What happens to a frame before it is sensed; no smoothing.
+    #[serde(default)]
+    pub signal: SignalSpec,
+    /// How a frame is compressed.
+    pub sensing: SensingSpec,
+    /// How a frame is reconstructed.
+    pub reconstruction: ReconstructionSpec,
+}
+
+/// `[reconstruction]`
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ReconstructionSpec {
+    /// Axis: how coefficients are found: `omp`, `l1`, `lmmse`.
+    pub solver: Axis<Solver>,
+    /// Axis: what frames are made of: `dct`, `haar`, `daubechies4`, `pca`.
+    pub dictionary: Axis<Basis>,
+    /// Atoms of a dictionary, at most: those that carry most of the training frames. All (of PCA 256) when left out.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub atoms: Option<usize>,
+    /// Atoms that matching pursuit may choose a frame.
+    #[serde(default = "default_most_atoms")]
+    pub most_atoms: usize,
+    /// λ of the ℓ1 problem, as a multiple of the universal threshold σ a √(2 ln k).
+    #[serde(default = "default_lambda_scale")]
+    pub lambda_scale: f64,
+    /// Relative duality gap at which an ℓ1 problem is solved.
+    #[serde(default = "default_tolerance")]
+    pub tolerance: f64,
+    /// Steps that the ℓ1 solver may take a frame.
+    #[serde(default = "default_most_steps")]
+    pub most_steps: usize,
+    /// Fraction of the touches held out for testing.
+    #[serde(default = "default_test_fraction")]
+    pub test_fraction: f64,
+    /// Sizes of the supports whose isometry is sampled.
+    #[serde(default = "default_isometry_sparsity")]
+    pub isometry_sparsity: Axis<usize>,
+    /// Supports drawn for each size.
+    #[serde(default = "default_isometry_subsets")]
+    pub isometry_subsets: usize,
+}
+
+impl ReconstructionStudySpec {
+    /// Reads a study; the error names the file, the line and the key.
+    pub fn parse(place: &str, text: &str) -> Result<Self> {
+        toml_text::read(place, text)
+    }
+
+    /// Writes the study with every default spelt out.
+    pub fn to_toml(&self) -> String {
+        toml::to_string(self).expect("every field of a study has a TOML form")
+    }
+}
+
+impl ReconstructionSpec {
+    /// What bounds the solvers' work.
+    pub fn effort(&self) -> Effort {
+        Effort {
+            most_atoms: self.most_atoms,
+            lambda_scale: self.lambda_scale,
+            tolerance: self.tolerance,
+            most_steps: self.most_steps,
+        }
+    }
+}
+
+fn default_most_atoms() -> usize {
+    Effort::default().most_atoms
+}
+
+fn default_lambda_scale() -> f64 {
+    Effort::default().lambda_scale
+}
+
+fn default_tolerance() -> f64 {
+    Effort::default().tolerance
+}
+
+fn default_most_steps() -> usize {
+    Effort::default().most_steps
+}
+
+fn default_test_fraction() -> f64 {
+    0.25
+}
+
+fn default_isometry_sparsity() -> Axis<usize> {
+    Axis::Many(vec![8, 32])
+}
+
+fn default_isometry_subsets() -> usize {
+    200
+}

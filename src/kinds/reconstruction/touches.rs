@@ -1,0 +1,144 @@
+//! Frames of all touches: simulated once, split, with and without noise; and the dictionaries learned from them.
+
+use super::plan::ReconstructionPlan;
+use super::score::{Truth, square_errors};
+use crate::error::Result;
+use crate::random::Seed;
+use crate::recognition::split::{Split, stratified_hold_out};
+use crate::sensing::{Basis, Dictionary, Ensemble};
+use crate::signal::{Chain, Noise, NoiseUnit};
+use crate::study::Frames;
+use crate::study::measurement::{Reading, TouchToRead, measure, touches_to_read};
+use crate::study::progress::Progress;
+use crate::study::simulation::{TouchedObject, simulate_array, touch_labels};
+use ndarray::{Array1, Array2, Axis};
+use rayon::prelude::*;
+
+/// Test frames that are kept for the eye.
+const N_SAMPLES: usize = 3;
+
+/// Frames of all touches, split.
+pub(super) struct Touches {
+    /// Clean training frames.
+    pub train: Array2<f64>,
+    /// Clean test frames.
+    pub test: Array2<f64>,
+    pub truth: Truth,
+    pub noisy: Vec<Noisy>,
+    /// The test rows that are kept for the eye, and their objects.
+    pub shown: Vec<(usize, String)>,
+}
+
+/// Test frames at one noise level.
+pub(super) struct Noisy {
+    pub level: f64,
+    /// σ of a taxel, in the frame's unit.
+    pub std: f64,
+    pub frames: Array2<f64>,
+    /// ‖noise‖² of each frame.
+    pub errors: Vec<f64>,
+}
+
+impl Touches {
+    pub(super) fn simulate(
+        plan: &ReconstructionPlan,
+        touched: &[TouchedObject],
+        progress: &dyn Progress,
+    ) -> Result<Self> {
+        let labels = touch_labels(touched);
+        progress.stage("touch", labels.len() as u64);
+        let frames = simulate_array(touched, &plan.patch, 1, progress);
+        let seed = Seed::new(plan.spec.seed);
+        let fraction = plan.spec.reconstruction.test_fraction;
+        let split = stratified_hold_out(labels.view(), fraction, &seed.named("split").numbered(0))?;
+        let touches = touches_to_read(touched, &seed.named("signal").numbered(0));
+        let read = |rows: &[usize], noise| read(plan, &frames, &touches, rows, noise);
+        let test = read(&split.test, None)?;
+        let noisy = plan.noise.iter().map(|&level| {
+            let frames = read(&split.test, Some(level))?;
+            let noise = Noise {
+                std: level,
+                unit: plan.noise_unit,
+            };
+            Ok(Noisy {
+                level,
+                std: noise.std_of(plan.quantity(), &plan.patch.taxel)?,
+                errors: square_errors(frames.view(), test.view()),
+                frames,
+            })
+        });
+        let noisy = noisy.collect::<Result<Vec<_>>>()?;
+        let one = Noise {
+            std: 1.0,
+            unit: NoiseUnit::FullScale,
+        };
+        let full_scale = one.std_of(plan.quantity(), &plan.patch.taxel)?;
+        Ok(Self {
+            train: read(&split.train, None)?,
+            truth: Truth::new(&test, full_scale),
+            shown: shown(touched, &labels, &split),
+            test,
+            noisy,
+        })
+    }
+
+    pub(super) fn learn(
+        &self,
+        plan: &ReconstructionPlan,
+        bases: &[Basis],
+        progress: &dyn Progress,
+    ) -> Result<Vec<Dictionary>> {
+        let grid = (plan.patch.grid.ny, plan.patch.grid.nx);
+        let atoms = plan.spec.reconstruction.atoms;
+        let seed = Seed::new(plan.spec.seed).named("dictionary");
+        bases
+            .par_iter()
+            .map(|&basis| {
+                let learned = Dictionary::learned(basis, grid, self.train.view(), atoms, &seed);
+                progress.advance(1);
+                learned
+            })
+            .collect()
+    }
+
+    /// Those of some test frames that are for the eye.
+    pub(super) fn pick(&self, frames: &Array2<f64>) -> Array2<f64> {
+        let rows: Vec<usize> = self.shown.iter().map(|(row, _)| *row).collect();
+        frames.select(Axis(0), &rows)
+    }
+}
+
+/// Frames of some touches, with or without noise.
+fn read(
+    plan: &ReconstructionPlan,
+    frames: &Frames,
+    touches: &[TouchToRead],
+    rows: &[usize],
+    noise: Option<f64>,
+) -> Result<Array2<f64>> {
+    let chains = [Chain::new(&plan.signal_steps(noise), &plan.patch)?];
+    let projection = plan.projection(Ensemble::Identity, 1)?;
+    let reading = Reading {
+        chains: &chains,
+        projection: &projection,
+        taxel: plan.patch.taxel,
+        speed: plan.speed,
+    };
+    let touches: Vec<TouchToRead> = rows.iter().map(|&row| touches[row]).collect();
+    Ok(measure(reading, (&frames.kept, 1), &touches)?.0)
+}
+
+/// The first test touch of a few objects spread over the list.
+fn shown(touched: &[TouchedObject], labels: &Array1<usize>, split: &Split) -> Vec<(usize, String)> {
+    let n = N_SAMPLES.min(touched.len());
+    let objects = (0..n).map(|sample| sample * touched.len() / n);
+    objects
+        .filter_map(|object| {
+            let row = split
+                .test
+                .iter()
+                .position(|&touch| labels[touch] == object)?;
+            Some((row, touched[object].object.name.clone()))
+        })
+        .collect()
+}

@@ -1,0 +1,49 @@
+//! What is charted: what each choice costs and gives, with the fronts.
+
+use super::study::{CHAINS, CONTACT, SIZES};
+use crate::table::{ChartSpec, Mark, Table};
+
+/// A chart of contact, of decisions, of trainings and of studies: of those parts that there are.
+pub(super) fn charts(tables: &[Table]) -> Vec<ChartSpec> {
+    let chart = |name: &str, (table, x, y): (&'static str, &str, &str)| ChartSpec {
+        name: format!("speed_accuracy_{name}"),
+        table,
+        x: x.to_owned(),
+        y: y.to_owned(),
+        mark: Mark::Points,
+        front: true,
+        ..ChartSpec::default()
+    };
+    let contact = ChartSpec {
+        title: "Contact: error of the deflections against the time of a touch".to_owned(),
+        note: "Medians over objects. What is right says exact contact.".to_owned(),
+        lines: vec!["way".to_owned()],
+        panels: Some("touched".to_owned()),
+        ..chart("contact", (CONTACT[2].0, "us_per_touch", "error_mm"))
+    };
+    let decision = ChartSpec {
+        title: "Recognition: accuracy against the time of a decision".to_owned(),
+        note: "Press, noise, compression and answer of one touch, one thread; tested on the exact objects.".to_owned(),
+        lines: vec!["classifier".to_owned()],
+        ..chart("decision", (CHAINS[2].0, "decision_us", "accuracy"))
+    };
+    let training = ChartSpec {
+        title: "Recognition: accuracy against the time of a training".to_owned(),
+        note: "One thread; tested on the exact objects.".to_owned(),
+        lines: vec!["classifier".to_owned()],
+        ..chart("training", (CHAINS[2].0, "fit_s", "accuracy"))
+    };
+    let resolution = ChartSpec {
+        title: "Studies: what can be told apart against the time that it takes".to_owned(),
+        note: "Of an accuracy at one trial's test touches, and of a difference by the corrected t-test.".to_owned(),
+        lines: vec!["touches".to_owned()],
+        panels: Some("interval".to_owned()),
+        ..chart("resolution", (SIZES[2].0, "cpu_s", "half_width"))
+    };
+    let all = [contact, decision, training, resolution].into_iter();
+    let is_there = |chart: &ChartSpec| {
+        let table = tables.iter().find(|table| table.file == chart.table);
+        table.is_some_and(|table| table.n_rows > 0)
+    };
+    all.filter(is_there).collect()
+}

@@ -1,0 +1,140 @@
+//! What the engine asks of a study of speed against accuracy.
+
+use super::plan::SpeedAccuracyPlan;
+use super::rows::{
+    ChainCell, ChainPoint, ChainScore, ChainTime, ContactCell, ContactPoint, ContactScore,
+    ContactTime, ResolutionPoint, Resolved, StudySize, StudyTime,
+};
+use super::spec::SpeedAccuracyStudySpec;
+use super::study::{CHAINS, CONTACT, Files, SIZES, SpeedAccuracyStudy};
+use super::subject::{load_scans, load_subjects, scans_content};
+use super::{answers, charts};
+use crate::error::Result;
+use crate::kinds::{About, Facts, Kind, Source};
+use crate::study::objects_content;
+use crate::study::pieces::{PieceStudy, Scale};
+use crate::table::{ChartSpec, Columns, Table};
+use crate::toml_text;
+use std::path::Path;
+
+impl Kind for SpeedAccuracyStudy {
+    const ABOUT: About = About {
+        table: "speed_accuracy",
+        words: "a study of what accuracy costs",
+        may_change: &[
+            "question",
+            "expected",
+            "speed_accuracy.contact.dt_ms",
+            "speed_accuracy.recognition.pitch_mm",
+            "speed_accuracy.recognition.tolerances_mm",
+            "speed_accuracy.recognition.ensemble",
+            "speed_accuracy.recognition.ratio",
+            "speed_accuracy.recognition.classifier",
+            "speed_accuracy.resolution.touches",
+        ],
+    };
+
+    fn load(source: &Source) -> Result<Self> {
+        let mut spec = SpeedAccuracyStudySpec::parse(&source.place, &source.text)?;
+        spec.seed = source.seed(spec.seed);
+        let contact = spec.speed_accuracy.contact.as_mut();
+        let scans = contact.and_then(|contact| contact.scans.as_mut());
+        match (&source.objects, scans) {
+            (Some(folder), Some(scans)) => scans.meshes.clone_from(folder),
+            _ => source.replace_objects(&mut spec.objects),
+        }
+        let plan = SpeedAccuracyPlan::new(&source.place, &source.folder, spec)?;
+        Ok(Self {
+            subjects: load_subjects(&plan.spec.objects)?,
+            scans: load_scans(plan.scans(), &plan.spec.objects)?,
+            packings: source.packings.clone(),
+            plan,
+        })
+    }
+
+    fn facts(&self) -> Result<Facts> {
+        let spec = &self.plan.spec;
+        let mut content = objects_content(&spec.objects)?;
+        content.extend(scans_content(self.plan.scans(), &spec.objects)?);
+        Ok(Facts {
+            toml: toml_text::write(spec),
+            question: spec.question.clone(),
+            expected: spec.expected.clone(),
+            seed: spec.seed,
+            content,
+            ..Facts::default()
+        })
+    }
+
+    fn scale(&self) -> Scale {
+        let mut touches = Vec::new();
+        let mut bytes = 0.0;
+        if let Some(contact) = &self.plan.parts().contact {
+            touches.push(format!("{} of each object in contact", contact.touches));
+        }
+        if let Some(sweep) = &self.plan.recognition {
+            let spec = &sweep.spec;
+            let per_object = spec.training_touches + spec.test_touches;
+            touches.push(format!("{per_object} of each in recognition"));
+            let n_taxels = sweep.patches.iter().map(|patch| patch.grid.n_taxels());
+            let n_taxels = n_taxels.max().unwrap_or(0);
+            bytes = 8.0 * (spec.objects * per_object * n_taxels) as f64;
+        }
+        if let Some(resolution) = &self.plan.parts().resolution {
+            let most = resolution.touches.iter().max().copied();
+            touches.push(format!("up to {} of each in resolution", most.unwrap_or(0)));
+        }
+        Scale {
+            objects: self.subjects.len().to_string(),
+            touches: touches.join(", "),
+            n_configurations: self.pieces().len(),
+            bytes,
+            ..Scale::default()
+        }
+    }
+
+    fn read_tables(&self, folder: &Path) -> Result<Vec<Table>> {
+        let mut tables = Vec::new();
+        let parts = self.plan.parts();
+        if parts.contact.is_some() {
+            let part =
+                read::<ContactCell, ContactScore, ContactTime, ContactPoint>(CONTACT, folder);
+            tables.extend(part?);
+        }
+        if parts.recognition.is_some() {
+            type Point = (ChainCell, ChainPoint);
+            tables.extend(read::<ChainCell, ChainScore, ChainTime, Point>(
+                CHAINS, folder,
+            )?);
+        }
+        if parts.resolution.is_some() {
+            type Point = (StudySize, ResolutionPoint);
+            tables.extend(read::<StudySize, Resolved, StudyTime, Point>(
+                SIZES, folder,
+            )?);
+        }
+        Ok(tables)
+    }
+
+    fn charts(&self, tables: &[Table]) -> Vec<ChartSpec> {
+        charts::charts(tables)
+    }
+
+    fn answers(&self, tables: &[Table]) -> Vec<String> {
+        answers::answers(&self.plan, tables)
+    }
+}
+
+/// The tables of a part.
+fn read<C: Columns, S: Columns, T: Columns, P: Columns>(
+    [scores, times, points]: Files,
+    folder: &Path,
+) -> Result<[Table; 3]> {
+    Ok([
+        Table::read::<(C, S)>(scores.0, scores.1, folder)?,
+        Table::read::<(C, T)>(times.0, times.1, folder)?.of_times(),
+        Table::read::<P>(points.0, points.1, folder)?
+            .of_times()
+            .summary(),
+    ])
+}

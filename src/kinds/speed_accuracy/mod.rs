@@ -1,0 +1,41 @@
+//! What does accuracy cost, for every choice there is here?
+//!
+//! A file with a `[speed_accuracy]` table is such a study: [`SpeedAccuracyStudySpec`] (as written) → [`SpeedAccuracyPlan`] (checked, SI) →
+//! [`SpeedAccuracyStudy`] → tables of [`rows`]. It has three parts, each left out where its table is:
+//!
+//! - **contact**: time of a touch against its deflection error, of models of objects (packed spheres, a sphere a vertex, the mesh itself,
+//!   solids by their distance functions), of singles, of time steps, and of methods whose taxels have mass. Exact contact says what is
+//!   right. [Scans](ContactSpec::scans) that a study names are touched beside its objects. Rows that other programs left in a file of
+//!   [`peers`](ContactSpec::peers) stand beside ours.
+//! - **recognition**: share of right answers against the time of a decision (touch, compress, classify: one touch at a time on one thread) and
+//!   of a training (one thread), over pitch, detail of the objects, ensemble, ratio and classifier. Learned from objects of that
+//!   detail, tested on other touches of the exact ones.
+//! - **resolution**: half the width of intervals against the time of the study that it takes, over touches an object and trials.
+//!
+//! Each part has a table of what it found, one of times, and one of both together with what is on the Pareto front.
+
+mod answers;
+mod chain_times;
+mod charts;
+mod contact;
+mod engines;
+mod flat_rows;
+mod fronts;
+mod kind;
+mod models;
+mod plan;
+mod recognition;
+mod resolution;
+pub mod rows;
+mod solid_contact;
+mod spec;
+mod study;
+mod subject;
+mod words;
+
+pub use plan::{RecognitionSweep, SpeedAccuracyPlan};
+pub use spec::{
+    ContactSpec, RecognitionSweepSpec, ResolutionSpec, ScansSpec, SpeedAccuracySpec,
+    SpeedAccuracyStudySpec,
+};
+pub use study::{SpeedAccuracyRows, SpeedAccuracyStudy};

@@ -1,0 +1,181 @@
+//! Runs a study of speed against accuracy, part by part.
+
+use super::contact::ContactPart;
+use super::fronts::{chain_points, contact_points, resolution_points};
+use super::models::ContactRow;
+use super::plan::SpeedAccuracyPlan;
+use super::recognition::RecognitionPart;
+use super::resolution::ResolutionPart;
+use super::rows::{
+    ChainCell, ChainScore, ChainTime, PeerRow, Resolved, StudySize, StudyTime, Touched,
+};
+use super::subject::{Subject, spread_evenly};
+use crate::error::Result;
+use crate::report::csv_tables::read_rows;
+use crate::study::pieces::{NamedPiece, PieceRows, PieceStudy, PiecesLeft};
+use crate::table::{Columns, Table};
+use serde::{Deserialize, Serialize};
+use std::path::{Path, PathBuf};
+
+/// A study of speed against accuracy and its objects.
+pub struct SpeedAccuracyStudy {
+    /// What to run.
+    pub plan: SpeedAccuracyPlan,
+    pub(super) subjects: Vec<Subject>,
+    /// Touched in the part on contact only.
+    pub(super) scans: Vec<Subject>,
+    pub(super) packings: Option<PathBuf>,
+}
+
+/// What work items of the study found: a setting, how near or how often right it is, and what it costs.
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
+pub struct SpeedAccuracyRows {
+    pub(super) contact: Vec<ContactRow>,
+    pub(super) chains: Vec<(ChainCell, ChainScore, ChainTime)>,
+    pub(super) sizes: Vec<(StudySize, Resolved, StudyTime)>,
+}
+
+impl PieceRows for SpeedAccuracyRows {
+    fn append(&mut self, next: Self) {
+        self.contact.extend(next.contact);
+        self.chains.extend(next.chains);
+        self.sizes.extend(next.sizes);
+    }
+}
+
+/// Files of a part: what is found, what it costs, and both together with what is on the front; and what they hold.
+pub(super) type Files = [(&'static str, &'static str); 3];
+pub(super) const CONTACT: Files = [
+    ("contact.csv", "Contact: error of every object"),
+    ("contact_timing.csv", "Contact: time of every object"),
+    ("contact_pareto.csv", "Contact: error against time"),
+];
+pub(super) const CHAINS: Files = [
+    ("recognition.csv", "Recognition: accuracy of every chain"),
+    ("recognition_timing.csv", "Recognition: time of every chain"),
+    ("pareto.csv", "Recognition: accuracy against time"),
+];
+pub(super) const SIZES: Files = [
+    ("resolution.csv", "Studies: what they resolve"),
+    ("resolution_timing.csv", "Studies: what they cost"),
+    (
+        "resolution_pareto.csv",
+        "Studies: what can be told apart against time",
+    ),
+];
+
+impl SpeedAccuracyStudy {
+    fn contact(&self) -> Option<ContactPart<'_>> {
+        let spec = self.plan.parts().contact.as_ref()?;
+        let objects = spread_evenly(&self.subjects, spec.objects).into_iter();
+        let objects = objects.map(|subject| (Touched::Object, subject));
+        let scans = self.scans.iter().map(|scan| (Touched::Scan, scan));
+        Some(ContactPart {
+            plan: &self.plan,
+            spec,
+            chosen: objects.chain(scans).collect(),
+            packings: self.packings.as_deref(),
+        })
+    }
+
+    fn recognition(&self) -> Option<RecognitionPart<'_>> {
+        let sweep = self.plan.recognition.as_ref()?;
+        let objects = (self.subjects.as_slice(), self.packings.as_deref());
+        Some(RecognitionPart::new(&self.plan, sweep, objects))
+    }
+
+    fn resolution(&self) -> Option<ResolutionPart<'_>> {
+        Some(ResolutionPart {
+            plan: &self.plan,
+            spec: self.plan.parts().resolution.as_ref()?,
+            subjects: &self.subjects,
+            packings: self.packings.as_deref(),
+        })
+    }
+}
+
+impl PieceStudy for SpeedAccuracyStudy {
+    type Rows = SpeedAccuracyRows;
+    type Tables = Vec<Table>;
+
+    fn pieces(&self) -> Vec<NamedPiece> {
+        let parts = [
+            self.contact().map(|part| part.pieces()),
+            self.recognition().map(|part| part.pieces()),
+            self.resolution().map(|part| part.pieces()),
+        ];
+        let mut pieces: Vec<NamedPiece> = Vec::new();
+        for mut part in parts.into_iter().flatten() {
+            let groups = pieces.iter().map(|piece| piece.group);
+            let first = groups.max().map_or(0, |last| last + 1);
+            part.iter_mut().for_each(|piece| piece.group += first);
+            pieces.extend(part);
+        }
+        pieces
+    }
+
+    fn measure(&self, left: &PiecesLeft<SpeedAccuracyRows>) -> Result<()> {
+        self.contact().map_or(Ok(()), |part| part.measure(left))?;
+        self.recognition()
+            .map_or(Ok(()), |part| part.measure(left))?;
+        self.resolution().map_or(Ok(()), |part| part.measure(left))
+    }
+
+    fn tables(&self, rows: SpeedAccuracyRows) -> Result<Vec<Table>> {
+        let mut tables = Vec::new();
+        let parts = self.plan.parts();
+        if parts.contact.is_some() {
+            let peers = read_peers(self.plan.peers.as_deref())?;
+            tables.extend(of_part(
+                CONTACT,
+                &rows.contact,
+                &contact_points(&rows.contact, &peers),
+            )?);
+        }
+        if parts.recognition.is_some() {
+            tables.extend(of_part(CHAINS, &rows.chains, &chain_points(&rows.chains))?);
+        }
+        if parts.resolution.is_some() {
+            tables.extend(of_part(
+                SIZES,
+                &rows.sizes,
+                &resolution_points(&rows.sizes),
+            )?);
+        }
+        Ok(tables)
+    }
+}
+
+/// The tables of a part.
+fn of_part<C, S, T, P>(files: Files, rows: &[(C, S, T)], points: &[P]) -> Result<[Table; 3]>
+where
+    C: Columns + Serialize + Clone,
+    S: Columns + Serialize + Clone,
+    T: Columns + Serialize + Clone,
+    P: Columns + Serialize,
+{
+    let scores: Vec<(C, S)> = rows
+        .iter()
+        .map(|(c, s, _)| (c.clone(), s.clone()))
+        .collect();
+    let times: Vec<(C, T)> = rows
+        .iter()
+        .map(|(c, _, t)| (c.clone(), t.clone()))
+        .collect();
+    let [of_scores, of_times, of_points] = files;
+    Ok([
+        Table::of(of_scores.0, of_scores.1, &scores)?,
+        Table::of(of_times.0, of_times.1, &times)?.of_times(),
+        Table::of(of_points.0, of_points.1, points)?
+            .of_times()
+            .summary(),
+    ])
+}
+
+/// What other programs take for the same press, as they left it in a file; none where there is no file.
+fn read_peers(path: Option<&Path>) -> Result<Vec<PeerRow>> {
+    match path.filter(|path| path.exists()) {
+        Some(path) => read_rows(path),
+        None => Ok(Vec::new()),
+    }
+}

@@ -1,0 +1,193 @@
+//! What is touched: a closed mesh or a solid, as spheres of each detail and exactly.
+
+use super::solid_contact::press_solid;
+use super::spec::ScansSpec;
+use crate::error::Result;
+use crate::geometry::Pose;
+use crate::kinds::object_detail::Truth;
+use crate::mesh::Surface;
+use crate::objects::{Entry, MeshModel, Model, Object, Solid, vertex_spheres};
+use crate::random::Seed;
+use crate::study::object_files::{NamedMesh, load_named_meshes, objects_content, set_entries};
+use crate::study::packings::pack_within;
+use crate::study::plan::MM;
+use crate::study::simulation::draw_touches;
+use crate::study::spec::ObjectsSpec;
+use crate::world::{Patch, Placement};
+use std::collections::BTreeMap;
+use std::path::Path;
+
+/// An object before it has a model.
+pub(super) enum Subject {
+    /// A closed mesh: its file, and its surface.
+    Mesh {
+        name: String,
+        place: String,
+        surface: Box<Surface>,
+    },
+    /// A solid of a set.
+    Solid(Entry),
+}
+
+/// All objects of a study, solids first.
+pub(super) fn load_subjects(spec: &ObjectsSpec) -> Result<Vec<Subject>> {
+    let mut subjects = Vec::new();
+    for set in &spec.sets {
+        let entries = set_entries(set, spec.names.as_deref())?;
+        subjects.extend(entries.into_iter().map(Subject::Solid));
+    }
+    if let Some(folder) = &spec.meshes {
+        let meshes = load_named_meshes(folder, spec)?;
+        subjects.extend(meshes.into_iter().map(Subject::of_mesh));
+    }
+    Ok(subjects)
+}
+
+/// The meshes that are touched beside a study's objects; none where their folder is not.
+pub(super) fn load_scans(scans: Option<&ScansSpec>, objects: &ObjectsSpec) -> Result<Vec<Subject>> {
+    let Some((folder, wanted)) = wanted_scans(scans, objects) else {
+        return Ok(Vec::new());
+    };
+    let meshes = load_named_meshes(folder, &wanted)?;
+    Ok(meshes.into_iter().map(Subject::of_mesh).collect())
+}
+
+/// SHA-256 of their files, by name.
+pub(super) fn scans_content(
+    scans: Option<&ScansSpec>,
+    objects: &ObjectsSpec,
+) -> Result<BTreeMap<String, String>> {
+    let Some((folder, wanted)) = wanted_scans(scans, objects) else {
+        return Ok(BTreeMap::new());
+    };
+    let of_folder = ObjectsSpec {
+        meshes: Some(folder.to_owned()),
+        ..wanted
+    };
+    let content = objects_content(&of_folder)?.into_iter();
+    Ok(content
+        .map(|(name, hash)| (format!("scan {name}"), hash))
+        .collect())
+}
+
+/// Their folder, if it is there, and which of it.
+fn wanted_scans<'a>(
+    scans: Option<&'a ScansSpec>,
+    objects: &ObjectsSpec,
+) -> Option<(&'a Path, ObjectsSpec)> {
+    let scans = scans.filter(|scans| scans.meshes.is_dir())?;
+    let wanted = ObjectsSpec {
+        names: Some(scans.names.clone()),
+        unit: objects.unit,
+        sizes: objects.sizes,
+        ..ObjectsSpec::default()
+    };
+    Some((&scans.meshes, wanted))
+}
+
+/// At most `n` of them, spread evenly over the list, the first and the last among them.
+pub(super) fn spread_evenly<T>(all: &[T], n: usize) -> Vec<&T> {
+    let n = n.min(all.len());
+    let last = all.len().saturating_sub(1);
+    let gaps = n.saturating_sub(1).max(1);
+    (0..n).map(|k| &all[k * last / gaps]).collect()
+}
+
+impl Subject {
+    fn of_mesh(NamedMesh { name, place, mesh }: NamedMesh) -> Self {
+        Self::Mesh {
+            name,
+            place,
+            surface: Box::new(Surface::new(mesh)),
+        }
+    }
+
+    pub fn name(&self) -> &str {
+        match self {
+            Self::Mesh { name, .. } => name,
+            Self::Solid(entry) => &entry.name,
+        }
+    }
+
+    /// Spheres within so many millimetres; those of meshes are looked for and kept in the folder `packings`.
+    pub fn packed(&self, within_mm: f64, packings: Option<&Path>) -> Result<Model> {
+        let tolerance = within_mm * MM;
+        match self {
+            Self::Mesh { place, surface, .. } => {
+                let packed = pack_within(place, surface, tolerance, packings)?;
+                Ok(packed.spheres.into())
+            }
+            Self::Solid(entry) => Ok(entry.build(tolerance)?.model),
+        }
+    }
+
+    /// A sphere a vertex; none of a solid.
+    pub fn vertex_spheres(&self) -> Result<Option<Model>> {
+        match self {
+            Self::Mesh { place, surface, .. } => {
+                let spheres = vertex_spheres(place, surface.mesh().vertices())?;
+                Ok(Some(spheres.into()))
+            }
+            Self::Solid(_) => Ok(None),
+        }
+    }
+
+    /// The triangles; none of a solid.
+    pub fn mesh(&self) -> Option<Model> {
+        match self {
+            Self::Mesh { surface, .. } => Some(MeshModel::new(surface.mesh().clone()).into()),
+            Self::Solid(_) => None,
+        }
+    }
+
+    pub fn solid(&self) -> Option<&Solid> {
+        match self {
+            Self::Mesh { .. } => None,
+            Self::Solid(entry) => Some(&entry.solid),
+        }
+    }
+
+    /// The model that is the object itself, or as near to it as it gets: the triangles, or spheres within half of the finest tolerance.
+    pub fn exact(&self, finest_mm: f64) -> Result<Model> {
+        match self.mesh() {
+            Some(mesh) => Ok(mesh),
+            None => self.packed(0.5 * finest_mm, None),
+        }
+    }
+
+    /// The touches that every study would draw for an object of this name, and what exact contact says of them.
+    pub fn truth(
+        &self,
+        patch: &Patch,
+        placement: &Placement,
+        (finest_mm, seed): (f64, &Seed),
+    ) -> Result<Truth> {
+        let object = Object::of_one_part(self.name(), self.exact(finest_mm)?);
+        let touched = draw_touches(vec![object], placement, seed)?;
+        let mut truth = Truth::new(&touched[0], patch);
+        if let Some(solid) = self.solid() {
+            truth.feel_instead(|pose: &Pose| press_solid(patch, solid, pose));
+        }
+        Ok(truth)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn objects_are_spread_over_the_whole_list_and_none_comes_twice() {
+        let all: Vec<usize> = (0..38).collect();
+        assert_eq!(spread_evenly(&all, 3), [&0, &18, &37]);
+        assert_eq!(spread_evenly(&all, 1), [&0]);
+        assert_eq!(spread_evenly(&all, 99).len(), 38);
+        assert!(spread_evenly::<usize>(&[], 3).is_empty());
+        for n in 2..=38 {
+            let mut chosen = spread_evenly(&all, n);
+            assert_eq!((chosen[0], chosen[n - 1]), (&0, &37));
+            chosen.dedup();
+            assert_eq!(chosen.len(), n);
+        }
+    }
+}

@@ -1,0 +1,229 @@
+//! A study of stability that can run: every key checked, its cells laid out.
+
+use super::rows::StabilityCell;
+use super::spec::{ContactMethod, StabilityPartSpec, StabilityScene, StabilityStudySpec};
+use crate::error::Result;
+use crate::study::Axis;
+use crate::study::MM;
+use crate::study::{Check, positive};
+use std::path::{Path, PathBuf};
+
+/// Settings of a study of stability, ready to run.
+#[derive(Clone, Debug)]
+pub struct StabilityPlan {
+    /// As it was written.
+    pub spec: StabilityStudySpec,
+    /// Between neighbouring taxels, metres.
+    pub pitch: f64,
+    /// What is tried, in this order.
+    pub parts: Vec<StabilityPart>,
+    /// Where the rows of other programs are.
+    pub peers: Option<PathBuf>,
+}
+
+/// Cells that share what no axis says.
+#[derive(Clone, Debug, PartialEq)]
+pub struct StabilityPart {
+    /// s, metres.
+    pub stroke: f64,
+    /// What is simulated; methods that this build does not have are left out.
+    pub cells: Vec<StabilityCell>,
+}
+
+/// Taxels a side, at most: a million and more of bodies is no question of stability.
+const MOST_TAXELS: usize = 256;
+
+impl StabilityPlan {
+    /// Checks a study that lies in `folder`; the error names `place` (the file) and the first key that is out of its range.
+    pub fn new(place: &str, folder: &Path, spec: StabilityStudySpec) -> Result<Self> {
+        let check = Check { place };
+        let wanted = &spec.stability;
+        let millimetres = "a positive number of millimetres";
+        let pitch = check.value("stability.pitch_mm", wanted.pitch_mm, positive, millimetres)?;
+        check.list("stability.parts", wanted.parts.clone())?;
+        let parts = wanted.parts.iter().enumerate();
+        let parts = parts.map(|(number, part)| {
+            let part = PartCheck {
+                check: &check,
+                number,
+                part,
+            };
+            part.lay_out()
+        });
+        let parts = parts.collect::<Result<Vec<_>>>()?;
+        Ok(Self {
+            pitch: pitch * MM,
+            parts,
+            peers: wanted.peers.as_ref().map(|path| folder.join(path)),
+            spec,
+        })
+    }
+
+    /// All cells, each with its stroke, metres.
+    pub fn cells(&self) -> impl Iterator<Item = (&StabilityCell, f64)> {
+        let parts = self.parts.iter();
+        parts.flat_map(|part| part.cells.iter().map(|cell| (cell, part.stroke)))
+    }
+}
+
+/// One part, and what it is called in errors.
+struct PartCheck<'a> {
+    check: &'a Check<'a>,
+    number: usize,
+    part: &'a StabilityPartSpec,
+}
+
+impl PartCheck<'_> {
+    fn key(&self, name: &str) -> String {
+        format!("stability.parts[{}].{name}", self.number + 1)
+    }
+
+    fn positive(&self, name: &str, axis: &Axis<f64>) -> Result<Vec<f64>> {
+        let allowed = "positive numbers";
+        self.check.axis(&self.key(name), axis, positive, allowed)
+    }
+
+    fn lay_out(&self) -> Result<StabilityPart> {
+        let part = self.part;
+        let methods = self
+            .check
+            .list(&self.key("methods"), part.methods.clone())?;
+        if methods.iter().any(|method| method.is_peer()) {
+            let allowed =
+                "methods of this program: other programs leave their rows in stability.peers";
+            return Err(self.check.error(&self.key("methods"), "MuJoCo", allowed));
+        }
+        let sides = self.sides()?;
+        let stroke = self.positive("stroke_mm", &Axis::One(part.stroke_mm))?[0];
+        let stiffnesses = self.positive("stiffness_n_per_m", &part.stiffness_n_per_m)?;
+        let taxel_masses = self.positive("taxel_mass_kg", &part.taxel_mass_kg)?;
+        let masses = self.object_masses()?;
+        let dts = self.positive("dt_s", &part.dt_s)?;
+        let iterations = self.key("solver_iterations");
+        let iterations = self.check.counts(&iterations, &part.solver_iterations)?;
+        let base = StabilityCell {
+            part: self.number + 1,
+            scene: part.scene,
+            method: ContactMethod::QuasiStatic,
+            solver_iterations: None,
+            taxels: 0,
+            stiffness_n_per_m: 0.0,
+            taxel_mass_kg: 0.0,
+            object_mass_kg: None,
+            dt_s: 0.0,
+        };
+        let built: Vec<ContactMethod> = methods.into_iter().filter(|m| m.is_built()).collect();
+        let ways = built.iter().flat_map(|method| {
+            let n = if method.is_engine() {
+                iterations.len()
+            } else {
+                1
+            };
+            (0..n).map(|k| (*method, method.is_engine().then(|| iterations[k])))
+        });
+        let ways: Vec<(ContactMethod, Option<usize>)> = ways.collect();
+        let axes = [
+            ways.len(),
+            sides.len(),
+            stiffnesses.len(),
+            masses.len(),
+            taxel_masses.len(),
+            dts.len(),
+        ];
+        let n_all = axes.iter().map(|&n| n as f64).product();
+        self.check.configurations(n_all)?;
+        let cells = vec![base];
+        let cells = swept(cells, &ways, |cell, (method, iterations)| {
+            (cell.method, cell.solver_iterations) = (method, iterations);
+        });
+        let cells = swept(cells, &sides, |cell, side| cell.taxels = side);
+        let cells = swept(cells, &stiffnesses, |cell, k| cell.stiffness_n_per_m = k);
+        let cells = swept(cells, &masses, |cell, mass| {
+            cell.object_mass_kg = mass.map(|mass| mass.on(cell.n_taxels()));
+        });
+        let cells = swept(cells, &taxel_masses, |cell, mass| cell.taxel_mass_kg = mass);
+        Ok(StabilityPart {
+            stroke: stroke * MM,
+            cells: swept(cells, &dts, |cell, dt| cell.dt_s = dt),
+        })
+    }
+
+    /// Even, so that the ball lies between four taxels and not on one.
+    fn sides(&self) -> Result<Vec<usize>> {
+        let key = self.key("taxels");
+        let sides = self.check.counts(&key, &self.part.taxels)?;
+        match sides.iter().find(|&&n| n % 2 != 0 || n > MOST_TAXELS) {
+            Some(n) => {
+                let allowed = format!("even numbers from 2 to {MOST_TAXELS}");
+                Err(self.check.error(&key, n, allowed))
+            }
+            None => Ok(sides),
+        }
+    }
+
+    /// None where the ball's motion is imposed.
+    fn object_masses(&self) -> Result<Vec<Option<ObjectMass>>> {
+        let (one, other) = ("object_mass_kg", "object_mass_per_taxel_kg");
+        let (given, per_taxel) = (
+            &self.part.object_mass_kg,
+            &self.part.object_mass_per_taxel_kg,
+        );
+        let refused = match (given, per_taxel, self.part.scene) {
+            (None, None, StabilityScene::Press) => return Ok(vec![None]),
+            (Some(_), _, StabilityScene::Press) => {
+                (one, "a mass", "no such key: the ball's motion is imposed")
+            }
+            (None, Some(_), StabilityScene::Press) => {
+                (other, "a mass", "no such key: the ball's motion is imposed")
+            }
+            (None, None, _) => (one, "none", "a mass: the ball is free"),
+            (Some(_), Some(_), _) => (other, "a mass", "one of this key and object_mass_kg"),
+            (Some(axis), None, _) => {
+                let masses = self.positive(one, axis)?.into_iter();
+                return Ok(masses.map(|mass| Some(ObjectMass::Of(mass))).collect());
+            }
+            (None, Some(axis), _) => {
+                let masses = self.positive(other, axis)?.into_iter();
+                return Ok(masses
+                    .map(|mass| Some(ObjectMass::PerTaxel(mass)))
+                    .collect());
+            }
+        };
+        let (name, given, allowed) = refused;
+        Err(self.check.error(&self.key(name), given, allowed))
+    }
+}
+
+/// M, kg.
+#[derive(Clone, Copy)]
+enum ObjectMass {
+    Of(f64),
+    /// Over the number of taxels.
+    PerTaxel(f64),
+}
+
+impl ObjectMass {
+    fn on(self, n_taxels: usize) -> f64 {
+        match self {
+            Self::Of(mass) => mass,
+            Self::PerTaxel(mass) => n_taxels as f64 * mass,
+        }
+    }
+}
+
+/// Each of some cells at each value of an axis.
+fn swept<T: Copy>(
+    cells: Vec<StabilityCell>,
+    values: &[T],
+    set: impl Fn(&mut StabilityCell, T),
+) -> Vec<StabilityCell> {
+    let mut all = Vec::with_capacity(cells.len() * values.len());
+    for cell in cells {
+        for &value in values {
+            let mut cell = cell.clone();
+            set(&mut cell, value);
+            all.push(cell);
+        }
+    }
+    all
+}

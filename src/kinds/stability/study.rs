@@ -1,0 +1,251 @@
+//! Runs a study of stability, and makes its tables.
+
+use super::cell::{Outcome, measure};
+use super::charts::{answers, charts};
+use super::peers::{join_peers, peer_rows};
+use super::plan::StabilityPlan;
+use super::rows::{
+    Joints, StabilityCell, StabilityRows, StabilityScore, StabilitySummary, StabilityTime,
+};
+use super::spec::{StabilityScene, StabilityStudySpec};
+use super::{LEAST_STEPS, TOLERANCE};
+use crate::error::Result;
+use crate::kinds::{About, Facts, Kind, Source};
+use crate::study::millimetres;
+use crate::study::pieces::{NamedPiece, PieceRows, PieceStudy, PiecesLeft, Scale};
+use crate::study::time_left::Piece;
+use crate::table::{ChartSpec, Table};
+use rayon::prelude::*;
+use std::collections::BTreeSet;
+use std::path::Path;
+
+const CELLS: (&str, &str) = ("stability.csv", "Every configuration");
+const SUMMARY: (&str, &str) = ("stability_summary.csv", "Scenes and methods");
+const TIMING: (&str, &str) = ("timing.csv", "Time of every configuration");
+const JOINTS: (&str, &str) = ("joints.csv", "Taxels on joints");
+
+impl Kind for StabilityPlan {
+    const ABOUT: About = About {
+        table: "stability",
+        words: "a study of where contact methods break",
+        may_change: &["question", "expected", "stability.parts"],
+    };
+
+    fn load(source: &Source) -> Result<Self> {
+        source.refuse_objects("a ball is what touches")?;
+        source.refuse_seed("nothing is drawn at random")?;
+        let spec = StabilityStudySpec::parse(&source.place, &source.text)?;
+        Self::new(&source.place, &source.folder, spec)
+    }
+
+    fn facts(&self) -> Result<Facts> {
+        Ok(Facts {
+            toml: self.spec.to_toml(),
+            question: self.spec.question.clone(),
+            expected: self.spec.expected.clone(),
+            ..Facts::default()
+        })
+    }
+
+    fn scale(&self) -> Scale {
+        // Of a taxel: the state, its history and an engine's body.
+        const TAXEL_BYTES: f64 = 2000.0;
+        let most = self.cells().map(|(cell, _)| cell.n_taxels()).max();
+        let most = most.unwrap_or(0);
+        Scale {
+            objects: "a ball and a plunger".to_owned(),
+            touches: format!("one a configuration, on up to {most} taxels"),
+            n_configurations: self.cells().count(),
+            item_bytes: TAXEL_BYTES * most as f64,
+            ..Scale::default()
+        }
+    }
+
+    fn read_tables(&self, folder: &Path) -> Result<Vec<Table>> {
+        let [cells, summary, timing, joints] = [CELLS, SUMMARY, TIMING, JOINTS];
+        let tables = [
+            Table::read::<(StabilityCell, StabilityScore)>(cells.0, cells.1, folder)?,
+            Table::read::<StabilitySummary>(summary.0, summary.1, folder)?,
+            Table::read::<(StabilityCell, StabilityTime)>(timing.0, timing.1, folder)?,
+            Table::read::<Joints>(joints.0, joints.1, folder)?,
+        ];
+        Ok(described(tables, &peer_rows(self)?.1))
+    }
+
+    fn charts(&self, tables: &[Table]) -> Vec<ChartSpec> {
+        charts(tables)
+    }
+
+    fn answers(&self, tables: &[Table]) -> Vec<String> {
+        answers(tables)
+    }
+}
+
+/// What tables are beside their rows; `sources` says who measured rows of other programs.
+fn described([cells, summary, timing, joints]: [Table; 4], sources: &str) -> Vec<Table> {
+    let percent = 100.0 * TOLERANCE;
+    let note = format!(
+        "Right: force balance and deflections within {percent} %. Imbalance, deflection: the worst errors of what came to an end, as shares."
+    );
+    vec![
+        cells.noted(sources),
+        summary.summary().noted(note),
+        timing.of_times(),
+        joints.of_times().summary().noted("Plungers on SkinSim's springs and dampers whose taxels carry the same on all arrays. Quasi-static steps nothing: its time is that of the whole answer."),
+    ]
+}
+
+impl PieceStudy for StabilityPlan {
+    type Rows = StabilityRows;
+    type Tables = Vec<Table>;
+
+    fn pieces(&self) -> Vec<NamedPiece> {
+        let piece = |(cell, stroke)| (name(cell, stroke), Piece::of_stage(0, planned_s(cell)));
+        NamedPiece::each_alone(self.cells().map(piece))
+    }
+
+    fn measure(&self, left: &PiecesLeft<StabilityRows>) -> Result<()> {
+        let cells = left.of(self.cells(), |&(cell, stroke)| name(cell, stroke));
+        left.progress.stage("stability", cells.len() as u64);
+        cells
+            .par_iter()
+            // One at a time: a cell takes from microseconds to a minute.
+            .with_max_len(1)
+            .try_for_each(|&(cell, stroke)| {
+                left.finish(&name(cell, stroke), || {
+                    let (score, time) = measure(cell, self.pitch, stroke)?;
+                    Ok(StabilityRows {
+                        stability: vec![(cell.clone(), score)],
+                        timing: vec![(cell.clone(), time)],
+                    })
+                })
+            })
+    }
+
+    fn tables(&self, mut rows: StabilityRows) -> Result<Vec<Table>> {
+        let sources = join_peers(self, &mut rows)?;
+        let tables = [
+            Table::of(CELLS.0, CELLS.1, &rows.stability)?,
+            Table::of(SUMMARY.0, SUMMARY.1, &summary(&rows.stability))?,
+            Table::of(TIMING.0, TIMING.1, &rows.timing)?,
+            Table::of(JOINTS.0, JOINTS.1, &joints(&rows))?,
+        ];
+        Ok(described(tables, &sources))
+    }
+}
+
+impl PieceRows for StabilityRows {
+    fn append(&mut self, next: Self) {
+        self.stability.extend(next.stability);
+        self.timing.extend(next.timing);
+    }
+}
+
+/// By its settings: which cells there are depends on what the program was built with.
+fn name(cell: &StabilityCell, stroke: f64) -> String {
+    let StabilityCell {
+        part,
+        scene,
+        method,
+        taxels,
+        stiffness_n_per_m,
+        taxel_mass_kg,
+        dt_s,
+        ..
+    } = cell;
+    let of = |name: &str, value: Option<String>| {
+        value.map_or(String::new(), |v| format!(", {name} {v}"))
+    };
+    format!(
+        "part {part}: {scene:?} by {method:?}, {taxels} taxels a side of {stiffness_n_per_m} N/m, {taxel_mass_kg} kg and a stroke of {} \
+         mm, steps of {dt_s} s{}{}",
+        millimetres(stroke),
+        of("iterations", cell.solver_iterations.map(|n| n.to_string())),
+        of(
+            "ball of kg",
+            cell.object_mass_kg.map(|mass| mass.to_string())
+        ),
+    )
+}
+
+/// Seconds of a thread, about, if nothing takes longer than it must.
+fn planned_s(cell: &StabilityCell) -> f64 {
+    // An engine takes microseconds for a taxel, iteration and step, what is written for taxels a hundredth of one.
+    let per_step_s = cell.solver_iterations.map_or(1e-8, |n| 1e-6 * n as f64);
+    per_step_s * cell.n_taxels() as f64 * (0.5 / cell.dt_s).max(LEAST_STEPS)
+}
+
+/// A row a scene, method and number of iterations, in the order of first occurrence.
+fn summary(rows: &[(StabilityCell, StabilityScore)]) -> Vec<StabilitySummary> {
+    let key = |cell: &StabilityCell| (cell.scene, cell.method, cell.solver_iterations);
+    let mut keys = Vec::new();
+    for (cell, _) in rows {
+        if !keys.contains(&key(cell)) {
+            keys.push(key(cell));
+        }
+    }
+    let summarise = |of| {
+        let of_key = rows.iter().filter(|(cell, _)| key(cell) == of);
+        let scores: Vec<&StabilityScore> = of_key.map(|(_, score)| score).collect();
+        let count = |outcome| scores.iter().filter(|s| s.outcome == outcome).count();
+        let worst = |error: fn(&StabilityScore) -> Option<f64>| {
+            scores
+                .iter()
+                .filter_map(|score| error(score))
+                .reduce(f64::max)
+        };
+        StabilitySummary {
+            scene: of.0,
+            method: of.1,
+            solver_iterations: of.2,
+            n_cells: scores.len(),
+            n_right: count(Outcome::Right),
+            n_inaccurate: count(Outcome::Inaccurate),
+            n_missed_contact: count(Outcome::MissedContact),
+            n_energy_growth: count(Outcome::EnergyGrowth),
+            n_not_finite: count(Outcome::NotFinite),
+            worst_force_imbalance: worst(|score| score.force_imbalance),
+            worst_deflection_error: worst(|score| score.deflection_error),
+        }
+    };
+    keys.into_iter().map(summarise).collect()
+}
+
+/// Arrays of different sizes that make a ladder, at least.
+const LEAST_RUNGS: usize = 3;
+
+/// The plungers whose taxels carry the same on most sizes of arrays; none where no three sizes do.
+fn joints(rows: &StabilityRows) -> Vec<Joints> {
+    let rows = rows.stability.iter().zip(&rows.timing);
+    let plungers = rows.filter(|((cell, _), _)| cell.scene == StabilityScene::Plunger);
+    let mut all: Vec<Joints> = plungers
+        .map(|((cell, score), (_, time))| Joints {
+            method: cell.method,
+            solver_iterations: cell.solver_iterations,
+            taxel_mass_kg: cell.taxel_mass_kg,
+            dt_s: cell.dt_s,
+            joints: cell.n_taxels(),
+            carried_kg: carried(cell),
+            outcome: score.outcome,
+            time_s: time.per_simulated_s.unwrap_or(time.wall_s),
+        })
+        .collect();
+    let n_sizes = |load: f64| {
+        let of_load = all.iter().filter(|row| row.carried_kg == load);
+        of_load.map(|row| row.joints).collect::<BTreeSet<_>>().len()
+    };
+    let loads = all
+        .iter()
+        .map(|row| (n_sizes(row.carried_kg), row.carried_kg));
+    let most = loads.max_by_key(|&(n_sizes, _)| n_sizes);
+    let most = most.filter(|&(n_sizes, _)| n_sizes >= LEAST_RUNGS);
+    all.retain(|row| most.is_some_and(|(_, load)| row.carried_kg == load));
+    all
+}
+
+/// Mass of the ball over the number of taxels, kg, but for rounding.
+fn carried(cell: &StabilityCell) -> f64 {
+    let load = cell.object_mass_kg.unwrap_or(0.0) / cell.n_taxels() as f64;
+    let digits = format!("{load:.9e}");
+    digits.parse().expect("a number is written as one")
+}

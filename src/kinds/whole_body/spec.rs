@@ -1,0 +1,253 @@
+//! A study of a whole body as it is written.
+
+use crate::error::Result;
+use crate::sensing::Ensemble;
+use crate::study::default_seed;
+use crate::toml_text;
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+use std::path::PathBuf;
+
+/// The file.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct WholeBodyStudySpec {
+    /// What the study asks, in a sentence.
+    pub question: String,
+    /// What the author expected before it ran.
+    #[serde(default)]
+    pub expected: String,
+    /// Root of all randomness.
+    #[serde(default = "default_seed")]
+    pub seed: u64,
+    /// Everything else.
+    pub whole_body: WholeBodySpec,
+}
+
+/// `[whole_body]`
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct WholeBodySpec {
+    /// The URDF file of what is covered, beside the study's own.
+    pub robot: PathBuf,
+    /// Distance between taxels, mm.
+    #[serde(default = "default_pitch_mm")]
+    pub pitch_mm: f64,
+    /// Side of a patch, about, mm.
+    #[serde(default = "default_patch_mm")]
+    pub patch_mm: f64,
+    /// ρ, mm; half the pitch when left out.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub taxel_radius_mm: Option<f64>,
+    /// s, mm.
+    #[serde(default = "default_stroke_mm")]
+    pub stroke_mm: f64,
+    /// k, N/m.
+    #[serde(default = "default_stiffness")]
+    pub stiffness_n_per_m: f64,
+    /// c, N·s/m.
+    #[serde(default)]
+    pub damping_n_s_per_m: f64,
+    /// Length of a step, ms.
+    #[serde(default = "default_step_ms")]
+    pub step_ms: f64,
+    /// Steps that are measured of each scene and rung.
+    #[serde(default = "default_steps")]
+    pub steps: usize,
+    /// How far the spheres of an object may be from its surface, mm.
+    #[serde(default = "default_surface_error_mm")]
+    pub surface_error_mm: f64,
+    /// What happens to the robot.
+    pub scenes: Vec<BodySceneSpec>,
+    /// How what is touched is compressed.
+    pub sensing: BodySensingSpec,
+    /// What is recognised.
+    pub recognition: BodyRecognitionSpec,
+    /// What a step costs by size; nothing of it when left out.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub ladders: Option<LaddersSpec>,
+}
+
+/// `[[whole_body.scenes]]`: an object that goes along a path.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct BodySceneSpec {
+    /// What the scene is called.
+    pub name: String,
+    /// A built-in object, its box about its own origin; or `parts`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub object: Option<String>,
+    /// What the object is made of, in its own frame.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub parts: Vec<BodyPartSpec>,
+    /// The link in whose frame the object is placed and moves.
+    pub link: String,
+    /// Where the object's origin is, mm; with `depth_mm`, where it aims.
+    #[serde(default)]
+    pub at_mm: [f64; 3],
+    /// How it is turned: roll, pitch, yaw about the link's axes, degrees.
+    #[serde(default)]
+    pub turn_deg: [f64; 3],
+    /// With `depth_mm`: from where it comes to `at_mm`, a direction.
+    #[serde(default = "default_from")]
+    pub from: [f64; 3],
+    /// How far it goes past first contact, mm. When left out, it is at `at_mm` itself.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub depth_mm: Option<f64>,
+    /// To and fro by so much, mm, as a sine of the period.
+    #[serde(default)]
+    pub moves_mm: [f64; 3],
+    /// To and fro about the link's z axis by so much, degrees, as the same sine.
+    #[serde(default)]
+    pub swing_deg: f64,
+    /// Period of the sine, ms.
+    #[serde(default = "default_period_ms")]
+    pub period_ms: f64,
+    /// Joints that are not at zero, degrees by name.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub posture_deg: BTreeMap<String, f64>,
+}
+
+/// A part of an object.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case", deny_unknown_fields)]
+pub enum BodyPartSpec {
+    /// A ball.
+    Ball {
+        /// Its diameter, mm.
+        diameter_mm: f64,
+        /// Its middle, mm.
+        #[serde(default)]
+        at_mm: [f64; 3],
+    },
+    /// A cylinder about z with a half ball on each end.
+    Capsule {
+        /// Its diameter, mm.
+        diameter_mm: f64,
+        /// Along z, both half balls included, mm.
+        length_mm: f64,
+        /// Its middle, mm.
+        #[serde(default)]
+        at_mm: [f64; 3],
+    },
+    /// A torus about z: arms that close.
+    Torus {
+        /// Of the circle in the middle of the tube, mm.
+        ring_diameter_mm: f64,
+        /// Of the tube, mm.
+        tube_diameter_mm: f64,
+        /// Its middle, mm.
+        #[serde(default)]
+        at_mm: [f64; 3],
+    },
+}
+
+/// `[whole_body.sensing]`
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct BodySensingSpec {
+    /// Measurements a frame.
+    pub measurements: usize,
+    /// How they are made: `sbhe` and `sparse`, whose entries are few.
+    pub ensembles: Vec<Ensemble>,
+    /// Taxels of a Hadamard block, powers of two; each is a compression of its own.
+    #[serde(default = "default_blocks")]
+    pub sbhe_blocks: Vec<usize>,
+}
+
+/// `[whole_body.recognition]`: touches of built-in objects at one place.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct BodyRecognitionSpec {
+    /// Built-in objects.
+    pub objects: Vec<String>,
+    /// The link in whose frame they are placed.
+    pub link: String,
+    /// Where they aim, mm.
+    pub at_mm: [f64; 3],
+    /// From where they come, a direction.
+    #[serde(default = "default_from")]
+    pub from: [f64; 3],
+    /// They miss by up to so much either way across, mm.
+    #[serde(default)]
+    pub offset_mm: f64,
+    /// They are turned about the link's z axis by up to so much either way, degrees.
+    #[serde(default)]
+    pub yaw_deg: f64,
+    /// They go between these past first contact, mm.
+    pub depth_mm: [f64; 2],
+    /// Touches of each object that train.
+    pub training_touches: usize,
+    /// Touches of each object that test.
+    pub test_touches: usize,
+}
+
+/// `[whole_body.ladders]`
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct LaddersSpec {
+    /// Rungs of the skin, taxels.
+    pub taxels: Vec<usize>,
+    /// On each of them, but for those that have no room for it: taxels touched, about.
+    pub touched_at_taxels: Vec<usize>,
+    /// Rungs of the touch, taxels, about.
+    pub touched: Vec<usize>,
+    /// Rungs of the object, spheres; the first makes the cushion of the other ladders; half are on its far side.
+    pub spheres: Vec<usize>,
+    /// Taxels touched on the rungs of the object, about.
+    pub touched_at_spheres: usize,
+    /// Taxels of the skin on the rungs of the touch and of the object.
+    pub taxels_at_touch: usize,
+}
+
+impl WholeBodyStudySpec {
+    /// Reads a study; the error names the file, the line and the key.
+    pub fn parse(place: &str, text: &str) -> Result<Self> {
+        toml_text::read(place, text)
+    }
+
+    /// Writes the study with every default spelt out.
+    pub fn to_toml(&self) -> String {
+        toml::to_string(self).expect("every field of a study has a TOML form")
+    }
+}
+
+fn default_pitch_mm() -> f64 {
+    1.0
+}
+
+fn default_patch_mm() -> f64 {
+    100.0
+}
+
+fn default_stroke_mm() -> f64 {
+    2.0
+}
+
+fn default_stiffness() -> f64 {
+    100.0
+}
+
+fn default_step_ms() -> f64 {
+    1.0
+}
+
+fn default_steps() -> usize {
+    1000
+}
+
+fn default_surface_error_mm() -> f64 {
+    0.25
+}
+
+fn default_from() -> [f64; 3] {
+    [1.0, 0.0, 0.0]
+}
+
+fn default_period_ms() -> f64 {
+    1000.0
+}
+
+fn default_blocks() -> Vec<usize> {
+    vec![32]
+}

@@ -1,0 +1,394 @@
+//! Runs a study of a whole body: learn, then the scenes and the ladders one after the other, so that nothing else is timed.
+
+use super::charts::{answers, charts};
+use super::drawn::whole_body_picture;
+use super::drive::{Drive, Driven, PosedBody};
+use super::ladders::{Rung, climb, rungs};
+use super::path::Path;
+use super::picture::picture_body;
+use super::plan::{ScenePlan, WholeBodyPlan};
+use super::recognition::{Compression, learn, name_of};
+use super::rows::{
+    BodyCase, BodyCount, BodyRecognition, BodySensed, BodyStep, BodyTime, Series, Stage,
+    WholeBodyRows,
+};
+use super::spec::WholeBodyStudySpec;
+use crate::error::{Error, Result};
+use crate::geometry::Pose;
+use crate::kinds::{About, Facts, Kind, Source};
+use crate::objects::SphereUnion;
+use crate::report::study_folder::{Image, NamedPicture};
+use crate::study::file_content;
+use crate::study::pieces::{NamedPiece, PieceRows, PieceStudy, PiecesLeft, Scale};
+use crate::study::time_left::Piece;
+use crate::table::{ChartSpec, Table};
+use crate::whole_body::CoveredRobot;
+
+const CASES: (&str, &str) = ("whole_body.csv", "Scenes and rungs");
+const RECOGNITION: (&str, &str) = ("recognition.csv", "Recognition");
+const SENSED: (&str, &str) = ("sensed.csv", "What scenes are taken for");
+const TIMING: (&str, &str) = ("timing.csv", "From touch to answer");
+const STEPS: (&str, &str) = ("steps.csv", "Steps of the skin");
+
+/// Stages of a run.
+const LEARN: u8 = 0;
+const PLAY: u8 = 1;
+const CLIMB: u8 = 2;
+
+/// Seconds by the clock, about: to cover a robot, of a touch that is learned from or tested, and of a step of a scene or a rung.
+const COVER_S: f64 = 0.5;
+const TOUCH_S: f64 = 1e-3;
+const STEP_S: f64 = 5e-4;
+
+impl Kind for WholeBodyPlan {
+    const ABOUT: About = About {
+        table: "whole_body",
+        words: "a study of a whole body of skin",
+        may_change: &[
+            "question",
+            "expected",
+            "whole_body.scenes",
+            "whole_body.ladders.taxels",
+            "whole_body.ladders.touched_at_taxels",
+            "whole_body.ladders.touched",
+            "whole_body.ladders.spheres",
+        ],
+    };
+
+    fn load(source: &Source) -> Result<Self> {
+        source.refuse_objects("a whole body is touched by the objects that its study names")?;
+        let mut spec = WholeBodyStudySpec::parse(&source.place, &source.text)?;
+        spec.seed = source.seed(spec.seed);
+        Self::new(&source.place, &source.folder, spec)
+    }
+
+    fn facts(&self) -> Result<Facts> {
+        let spec = &self.spec;
+        Ok(Facts {
+            toml: spec.to_toml(),
+            question: spec.question.clone(),
+            expected: spec.expected.clone(),
+            seed: spec.seed,
+            content: [("robot".to_owned(), file_content(&self.robot_file)?)].into(),
+            ..Facts::default()
+        })
+    }
+
+    fn scale(&self) -> Scale {
+        // A taxel's place and what its compressions keep of it.
+        const TAXEL_BYTES: f64 = 150.0;
+        // Of a body, about, square metres.
+        const AREA: f64 = 2.0;
+        let n_objects = self.recognition.objects.len();
+        let n_taxels = AREA / (self.pitch * self.pitch);
+        Scale {
+            objects: format!("{n_objects} to tell apart, {} scenes", self.scenes.len()),
+            touches: format!(
+                "{} on a body of about {n_taxels:.0} taxels",
+                self.n_touches()
+            ),
+            n_configurations: self.compressions.len() + self.scenes.len(),
+            bytes: TAXEL_BYTES * n_taxels,
+            ..Scale::default()
+        }
+    }
+
+    fn read_tables(&self, folder: &std::path::Path) -> Result<Vec<Table>> {
+        Ok(described([
+            Table::read::<(BodyCase, BodyCount)>(CASES.0, CASES.1, folder)?,
+            Table::read::<BodyRecognition>(RECOGNITION.0, RECOGNITION.1, folder)?,
+            Table::read::<BodySensed>(SENSED.0, SENSED.1, folder)?,
+            Table::read::<(BodyCase, BodyTime)>(TIMING.0, TIMING.1, folder)?,
+            Table::read::<(BodyCase, BodyStep)>(STEPS.0, STEPS.1, folder)?,
+        ]))
+    }
+
+    fn charts(&self, tables: &[Table]) -> Vec<ChartSpec> {
+        charts(tables)
+    }
+
+    fn pictures(&self, tables: &[Table]) -> Result<Vec<NamedPicture>> {
+        let Some(scene) = picture_body(self, tables)? else {
+            return Ok(Vec::new());
+        };
+        let drawn = whole_body_picture(&scene)?;
+        Ok(vec![NamedPicture {
+            name: "touched".to_owned(),
+            title: format!("The scene {}, and the pressure on each patch", scene.scene),
+            image: Image::Png(drawn.png()?, (drawn.width, drawn.height)),
+        }])
+    }
+
+    fn answers(&self, tables: &[Table]) -> Vec<String> {
+        answers(tables)
+    }
+}
+
+/// What tables are beside their rows.
+fn described([cases, recognition, sensed, timing, steps]: [Table; 5]) -> Vec<Table> {
+    vec![
+        cases,
+        recognition.noted("A linear SVM, trained and tested on simulated touches."),
+        sensed,
+        timing.of_times().noted("Medians over steps, on this machine."),
+        steps
+            .of_times()
+            .summary()
+            .noted("Medians over steps of a moving object; of ladders, a cushion of spheres, half of them on its far side."),
+    ]
+}
+
+impl PieceStudy for WholeBodyPlan {
+    type Rows = WholeBodyRows;
+    type Tables = Vec<Table>;
+
+    /// Compressions and scenes need all that is learned; rungs need nothing.
+    fn pieces(&self) -> Vec<NamedPiece> {
+        let n_steps = self.n_steps() as f64;
+        let compressions = self.compression_names().into_iter();
+        let compressions =
+            compressions.map(|name| NamedPiece::new(name, 0, Piece::one_by_one(LEARN, 0.0)));
+        let play = Piece::one_by_one(PLAY, STEP_S * n_steps);
+        let scenes = self.scenes.iter();
+        let scenes = scenes.map(|scene| NamedPiece::new(scene_name(scene), 0, play).made_of(scene));
+        let climb = Piece::one_by_one(CLIMB, STEP_S * n_steps);
+        let rungs = self.rungs().into_iter().enumerate();
+        let rungs = rungs.map(|(number, rung)| {
+            NamedPiece::new(rung_name(&rung), number + 1, climb).made_of(rung)
+        });
+        compressions.chain(scenes).chain(rungs).collect()
+    }
+
+    fn measure(&self, left: &PiecesLeft<WholeBodyRows>) -> Result<()> {
+        let names = left.of(self.learned_names(), String::clone);
+        if !names.is_empty() {
+            self.measure_learned(&names, left)?;
+        }
+        let rungs = left.of(self.rungs(), rung_name);
+        left.progress.stage("ladders", rungs.len() as u64);
+        rungs.iter().try_for_each(|rung| {
+            left.finish(&rung_name(rung), || {
+                let (case, driven) = climb(self, rung)?;
+                Ok(WholeBodyRows::of(&case, driven))
+            })
+        })
+    }
+
+    fn shared_work(&self, left: &PiecesLeft<WholeBodyRows>) -> Vec<Piece> {
+        match self.learned_names().iter().any(|name| left.has(name)) {
+            true => vec![self.cover_work(), self.learn_work()],
+            false => Vec::new(),
+        }
+    }
+
+    fn tables(&self, rows: WholeBodyRows) -> Result<Vec<Table>> {
+        Ok(described([
+            Table::of(CASES.0, CASES.1, &rows.cases)?,
+            Table::of(RECOGNITION.0, RECOGNITION.1, &rows.recognition)?,
+            Table::of(SENSED.0, SENSED.1, &rows.sensed)?,
+            Table::of(TIMING.0, TIMING.1, &rows.timing)?,
+            Table::of(STEPS.0, STEPS.1, &steps(&rows))?,
+        ]))
+    }
+}
+
+impl PieceRows for WholeBodyRows {
+    fn append(&mut self, next: Self) {
+        self.cases.extend(next.cases);
+        self.sensed.extend(next.sensed);
+        self.recognition.extend(next.recognition);
+        self.timing.extend(next.timing);
+    }
+}
+
+impl WholeBodyRows {
+    /// What happened in a case, and what it cost.
+    fn of(case: &BodyCase, driven: Driven) -> Self {
+        let times = driven.times.into_iter();
+        Self {
+            cases: vec![(case.clone(), driven.count)],
+            timing: times.map(|time| (case.clone(), time)).collect(),
+            ..Self::default()
+        }
+    }
+}
+
+/// Of each case the step of the skin with all threads.
+fn steps(rows: &WholeBodyRows) -> Vec<(BodyCase, BodyStep)> {
+    let of_case = |(case, count): &(BodyCase, BodyCount)| {
+        // The press is there once more with one thread.
+        let is_it = |(of, time): &&(BodyCase, BodyTime)| of == case && time.stage == Stage::Press;
+        let (_, time) = rows.timing.iter().find(is_it)?;
+        let step = BodyStep {
+            touched: round_to_two(count.touched_mean),
+            touched_mean: count.touched_mean,
+            us_median: time.us_median,
+            us_p05: time.us_p05,
+            us_p95: time.us_p95,
+            steps_per_s: time.steps_per_s,
+        };
+        Some((case.clone(), step))
+    };
+    rows.cases.iter().filter_map(of_case).collect()
+}
+
+/// To two digits: a touch of 10,008 taxels is one of 10,000.
+fn round_to_two(value: f64) -> f64 {
+    let unit = 10f64.powf(value.max(1.0).log10().floor() - 1.0);
+    (value / unit).round() * unit
+}
+
+fn scene_name(scene: &ScenePlan) -> String {
+    format!("scene {}", scene.name)
+}
+
+fn rung_name(rung: &Rung) -> String {
+    format!("ladder of {:?}, {}", rung.series, rung.name).to_lowercase()
+}
+
+impl WholeBodyPlan {
+    /// What each compression is called as a work item.
+    fn compression_names(&self) -> Vec<String> {
+        let compressions = self.compressions.iter();
+        let name = |&(ensemble, block)| format!("learn from {}", name_of(ensemble, block));
+        compressions.map(name).collect()
+    }
+
+    /// What needs all that is learned.
+    fn learned_names(&self) -> Vec<String> {
+        let mut names = self.compression_names();
+        names.extend(self.scenes.iter().map(scene_name));
+        names
+    }
+
+    fn rungs(&self) -> Vec<Rung> {
+        self.ladders.as_ref().map_or_else(Vec::new, rungs)
+    }
+
+    fn n_touches(&self) -> usize {
+        let learned = &self.recognition;
+        learned.objects.len() * (learned.n_training + learned.n_test)
+    }
+
+    fn cover_work(&self) -> Piece {
+        Piece::one_by_one(LEARN, COVER_S)
+    }
+
+    fn learn_work(&self) -> Piece {
+        Piece::one_by_one(LEARN, TOUCH_S * self.n_touches() as f64)
+    }
+
+    /// Does what is left that needs what is learned: some of `names`.
+    fn measure_learned(&self, names: &[String], left: &PiecesLeft<WholeBodyRows>) -> Result<()> {
+        let cover = || {
+            left.progress.stage("cover", 1);
+            let covered = CoveredRobot::new(&self.robot, self.taxel, self.pitch, self.side);
+            left.progress.advance(1);
+            covered
+        };
+        let cover = || left.during(&self.cover_work(), cover);
+        let Some(covered) = left.prepare(names, cover)? else {
+            return Ok(());
+        };
+        let learn = || {
+            let straight = vec![0.0; self.robot.n_positions()];
+            let straight = Posture::new(self, &covered, &straight)?;
+            left.during(&self.learn_work(), || {
+                learn(self, &straight.posed, &straight.links, left.progress)
+            })
+        };
+        let Some(compressions) = left.prepare(names, learn)? else {
+            return Ok(());
+        };
+        for (compression, name) in compressions.iter().zip(self.compression_names()) {
+            left.finish(&name, || {
+                Ok(WholeBodyRows {
+                    recognition: vec![compression.score.clone()],
+                    ..WholeBodyRows::default()
+                })
+            })?;
+        }
+        let scenes = left.of(&self.scenes, |scene| scene_name(scene));
+        left.progress.stage("scenes", scenes.len() as u64);
+        scenes.into_iter().try_for_each(|scene| {
+            let play = || play(self, scene, &covered, &compressions);
+            left.finish(&scene_name(scene), play)
+        })
+    }
+}
+
+/// Where everything of a robot is.
+pub(super) struct Posture<'a> {
+    pub links: Vec<Pose>,
+    pub posed: PosedBody<'a>,
+}
+
+impl<'a> Posture<'a> {
+    pub fn new(plan: &WholeBodyPlan, covered: &'a CoveredRobot, positions: &[f64]) -> Result<Self> {
+        let links = plan.robot.forward(&Pose::IDENTITY, positions)?;
+        let mut poses = Vec::new();
+        covered.patch_poses(&links, &mut poses);
+        let posed = PosedBody {
+            body: covered.body(),
+            poses,
+        };
+        Ok(Self { links, posed })
+    }
+}
+
+/// Brings an object to where its scene begins.
+pub(super) fn begin<'a>(
+    scene: &ScenePlan,
+    posture: &Posture<'a>,
+    object: &SphereUnion,
+) -> Result<Drive<'a>> {
+    let path = Path {
+        world_from_link: posture.links[scene.place.link],
+        start: Pose::new(scene.place.turn, scene.place.at),
+        moves: scene.moves,
+        swing: scene.swing,
+        period: scene.period,
+    };
+    let mut drive = Drive::new(&posture.posed, object, path);
+    if let Some(depth) = scene.depth {
+        drive.approach(scene.place.from, depth)?;
+    }
+    Ok(drive)
+}
+
+/// Plays a scene; the error names it.
+fn play(
+    plan: &WholeBodyPlan,
+    scene: &ScenePlan,
+    covered: &CoveredRobot,
+    compressions: &[Compression],
+) -> Result<WholeBodyRows> {
+    let in_scene = |error: Error| error.under(format!("scene {}, ", scene.name));
+    let object = scene.object.build(plan.surface_error).map_err(in_scene)?;
+    let posture = Posture::new(plan, covered, &scene.positions)?;
+    let mut drive = begin(scene, &posture, &object).map_err(in_scene)?;
+    let case = BodyCase {
+        series: Series::Scene,
+        name: scene.name.clone(),
+        n_taxels: covered.body().n_taxels(),
+        n_patches: covered.body().patches().len(),
+        n_spheres: drive.n_spheres(),
+    };
+    let driven = drive.run(plan.n_steps(), plan.dt, compressions)?;
+    let sensed = compressions.iter().zip(&driven.sensed);
+    let sensed = sensed.map(|(compression, (sum, decisions))| {
+        let most = decisions.iter().copied().max().unwrap_or(0);
+        let label = decisions.iter().position(|&n| n == most).unwrap_or(0);
+        BodySensed {
+            scene: scene.name.clone(),
+            compression: compression.score.compression.clone(),
+            measurement_sum_mm: *sum,
+            decision: plan.recognition.objects[label].clone(),
+            decision_share: most as f64 / driven.count.n_steps as f64,
+        }
+    });
+    Ok(WholeBodyRows {
+        sensed: sensed.collect(),
+        ..WholeBodyRows::of(&case, driven)
+    })
+}

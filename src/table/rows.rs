@@ -1,0 +1,61 @@
+//! Rows of a table by their values.
+
+use super::{Data, Shown, Table};
+use std::collections::HashMap;
+
+impl Table {
+    /// Rows that have the same values in some columns, in the order of their first. A column that is not there tells none apart.
+    pub fn groups(
+        &self,
+        columns: &[&str],
+        rows: impl IntoIterator<Item = usize>,
+    ) -> Vec<Vec<usize>> {
+        let columns = columns.iter().filter_map(|name| self.column(name));
+        let columns: Vec<&Data> = columns.map(|(_, data)| data).collect();
+        let key = |row: usize| -> Vec<u64> {
+            let bits = |data: &&Data| match data {
+                Data::Numbers(numbers) => numbers[row].to_bits(),
+                Data::Words { codes, .. } => u64::from(codes[row]),
+            };
+            columns.iter().map(bits).collect()
+        };
+        let mut places = HashMap::new();
+        let mut groups: Vec<Vec<usize>> = Vec::new();
+        for row in rows {
+            let place = *places.entry(key(row)).or_insert(groups.len());
+            if place == groups.len() {
+                groups.push(Vec::new());
+            }
+            groups[place].push(row);
+        }
+        groups
+    }
+
+    /// What of a column must be shown for a row; none where its value is absent.
+    pub fn shown(&self, column: &str, row: usize) -> Option<Shown> {
+        let value = self.column(column)?.1.value(row)?;
+        let column = column.to_owned();
+        Some(Shown { column, value })
+    }
+
+    /// A number; NaN where it is absent.
+    pub fn number(&self, column: &str, row: usize) -> f64 {
+        self.numbers(column)
+            .map_or(f64::NAN, |numbers| numbers[row])
+    }
+
+    /// A word as it is written; empty where it is absent.
+    pub fn word(&self, column: &str, row: usize) -> &str {
+        match self.column(column) {
+            Some((_, Data::Words { levels, codes })) => &levels[codes[row] as usize],
+            _ => "",
+        }
+    }
+
+    /// A value as people read it, with its unit; empty where it is absent.
+    pub fn words(&self, column: &str, row: usize) -> String {
+        let found = self.column(column);
+        let found = found.and_then(|(column, data)| Some(column.value_words(&data.value(row)?)));
+        found.unwrap_or_default()
+    }
+}
