@@ -299,16 +299,7 @@ pub fn solver_name(solver: Solver) -> &'static str {
 
 /// A classifier in words.
 pub fn classifier_name(classifier: ClassifierKind) -> &'static str {
-    match classifier {
-        ClassifierKind::LinearSvm => "linear SVM",
-        ClassifierKind::RbfSvm => "RBF SVM",
-        ClassifierKind::PolynomialSvm => "polynomial SVM",
-        ClassifierKind::LogisticRegression => "logistic regression",
-        ClassifierKind::KNearest => "k nearest neighbours",
-        ClassifierKind::NaiveBayes => "naive Bayes",
-        ClassifierKind::DecisionTree => "decision tree",
-        ClassifierKind::RandomForest => "random forest",
-    }
+    classifier.about().words
 }
 
 fn with_suffix(number: f64, tick: &str, label: &str) -> AxisValue {

@@ -92,6 +92,9 @@ macro_rules! ensembles {
             /// All of them.
             pub const ALL: &[Self] = &[$(Self::$name),*];
 
+            /// The name in a study, and what people call it.
+            pub const NAMES: &[(&str, &str)] = &[$((stringify!($file), $file::ABOUT.words)),*];
+
             /// What it says of itself.
             pub const fn about(self) -> &'static EnsembleAbout {
                 match self {

@@ -7,7 +7,6 @@ use super::recognition::{RecognitionStudy, StudyPart};
 use super::sweep::Group;
 use super::table::Cell;
 use crate::error::{Error, Result};
-use crate::recognition::ClassifierKind;
 use crate::recognition::svm::{DEFAULT_MEMORY_BYTES, Multiclass, Solver};
 use std::path::Path;
 use std::{fmt, fs};
@@ -109,10 +108,7 @@ impl Rows {
 
     /// Kernel values, at most as many as the solver is allowed.
     fn solver_bytes(&self, plan: &Plan, cell: &Cell) -> f64 {
-        let is_kernel_svm = matches!(
-            cell.classifier,
-            ClassifierKind::LinearSvm | ClassifierKind::RbfSvm | ClassifierKind::PolynomialSvm
-        );
+        let is_kernel_svm = cell.classifier.about().kernel.is_some();
         let recognition = &plan.spec.recognition;
         if !is_kernel_svm || recognition.solver == Solver::CoordinateDescent {
             return 0.0;
