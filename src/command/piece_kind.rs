@@ -19,12 +19,10 @@ use bubbletouch::study::pieces::{
 };
 use bubbletouch::study::progress::{Progress, Silent};
 use bubbletouch::study::provenance::{MANIFEST_FILE, Manifest, PROGRAM, RunFacts};
-use bubbletouch::study::time_left::Piece;
 use bubbletouch::table::Table;
 use bubbletouch::{Error, Result};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
-use std::time::Instant;
 
 /// A kind of study that is made of pieces.
 pub trait PieceKind: Sized {
@@ -33,9 +31,6 @@ pub trait PieceKind: Sized {
 
     /// Which it is.
     const KIND: StudyKind;
-
-    /// Seconds to make and to write the files of [`folder`](Self::folder), about.
-    const WRITE_S: f64;
 
     /// How intervals and p-values are made, by table and columns.
     const METHODS: &'static [(&'static str, &'static str)] = &[];
@@ -93,9 +88,6 @@ pub struct PieceRun<K> {
 }
 
 impl<K: PieceKind> PieceRun<K> {
-    /// What is done when all pieces are there.
-    const REPORT: Piece = Piece::report(K::WRITE_S);
-
     pub fn load(args: &StudyArgs, folder: &Path) -> Result<Self> {
         let kind = K::load(args, packings_beside(folder))?;
         threads_within(&kind.scale(), args.memory)?;
@@ -136,8 +128,7 @@ impl<K: PieceKind> AnyStudy for PieceRun<K> {
             part: Part::All,
             progress: &Silent,
         };
-        let mut work = PiecesRun::new(study, &self.pieces, &manner).workload();
-        work.push(Self::REPORT);
+        let work = PiecesRun::new(study, &self.pieces, &manner).workload();
         let estimate = PieceEstimate {
             scale: self.kind.scale(),
             n_pieces: self.pieces.len(),
@@ -154,11 +145,7 @@ impl<K: PieceKind> AnyStudy for PieceRun<K> {
     fn run<'a>(&'a self, manner: &PieceManner<'a>) -> Result<Box<dyn AnyOutcome + 'a>> {
         let study = self.kind.study();
         let pieces = PiecesRun::new(study, &self.pieces, manner);
-        let mut work = pieces.workload();
-        if !matches!(manner.part, Part::Shard(_)) {
-            work.push(Self::REPORT);
-        }
-        manner.progress.expect(&work);
+        manner.progress.expect(&pieces.workload());
         let FinishedPieces { rows, failures, .. } =
             within_memory(&self.kind.scale(), self.memory, || pieces.run())?;
         Ok(Box::new(PieceOutcome {
@@ -214,7 +201,6 @@ impl<K: PieceKind> AnyOutcome for PieceOutcome<'_, K> {
     }
 
     fn write(&self, ended: &EndedRun) -> Result<()> {
-        let start = Instant::now();
         let (kind, folder) = (&self.run.kind, ended.folder);
         let KindFacts {
             toml, asked, seed, ..
@@ -247,20 +233,14 @@ impl<K: PieceKind> AnyOutcome for PieceOutcome<'_, K> {
             all_charts: false,
         };
         let made = kind.folder(&self.tables, folder, &about)?;
-        made.write_telling(&|drawn| {
-            let work = PieceRun::<K>::REPORT.share(drawn.share);
-            ended.progress.worked(&work, drawn.wall_s);
-        })?;
+        made.write()?;
         let failures = folder.join(FAILURES_FILE);
         write_bytes(
             &failures,
             &Table::of(FAILURES_FILE, "What failed, and why", &self.failures)?.csv,
         )?;
         write_bytes(&folder.join("study.toml"), toml.as_bytes())?;
-        write_bytes(&folder.join(MANIFEST_FILE), manifest.to_json().as_bytes())?;
-        let took_s = start.elapsed().as_secs_f64();
-        ended.progress.worked(&PieceRun::<K>::REPORT, took_s);
-        Ok(())
+        write_bytes(&folder.join(MANIFEST_FILE), manifest.to_json().as_bytes())
     }
 
     fn words(&self, width: usize) -> String {

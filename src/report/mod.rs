@@ -18,7 +18,6 @@ pub mod folder;
 pub mod frame_files;
 pub mod heat_map;
 mod legend;
-pub mod names;
 pub mod object_picture;
 pub mod offers;
 pub mod page;

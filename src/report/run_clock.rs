@@ -88,22 +88,18 @@ pub fn in_words(seconds: f64) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::study::time_left::Work;
     use std::time::Duration;
 
     #[test]
     fn a_clock_knows_nothing_until_it_is_told_what_to_expect() {
         let clock = RunClock::default();
-        let report = Piece {
-            kind: Work::Report,
-            planned_s: 5.0,
-        };
+        let report = Piece::one_by_one(0, 5.0);
         clock.worked(&report, 1.0);
         assert_eq!(clock.times(), None);
         clock.expect(&[report]);
         let left_s = clock.times().unwrap().left_s;
         assert!((4.0..=5.0).contains(&left_s), "{left_s}");
-        clock.worked(&report, 3.0);
+        clock.worked(&report, report.spent_s(3.0));
         assert_eq!(clock.times().map(|times| times.left_s), Some(0.0));
     }
 

@@ -23,9 +23,6 @@ use std::collections::BTreeMap;
 /// Seconds to bring a hand to the skin once, and of a moving one to make its spheres.
 const PLACE_HAND_S: f64 = 6e-5;
 
-/// Processor-seconds of the samples of a kind: some touches to look at, and a row of the picture.
-const SAMPLES_S: f64 = 0.25;
-
 /// Human touches, kind by kind.
 #[derive(Clone, Debug)]
 pub struct HumanTouches {
@@ -162,10 +159,6 @@ impl TouchSet for HumanTouches {
 
     fn samples(&self, plan: &Plan, sweep: &Sweep) -> Result<Samples> {
         human_samples(plan, sweep, self)
-    }
-
-    fn samples_s(&self) -> f64 {
-        SAMPLES_S * self.plan.kinds.len() as f64
     }
 
     fn place_s(&self) -> f64 {

@@ -1,7 +1,6 @@
 //! What a recognition study asks of its touches: of pressed objects, or of human touches.
 
 use super::content_hash::ContentHash;
-use super::estimate::{PLACE_SPHERE_S, PLACE_TRIANGLE_S};
 use super::frames::{FrameWriter, Frames};
 use super::measurement::{TouchToRead, touches_of_study};
 use super::plan::Plan;
@@ -55,12 +54,7 @@ pub trait TouchSet: Sync {
         0
     }
 
-    /// About how many processor-seconds more these take to make and to draw than four frames of objects.
-    fn samples_s(&self) -> f64 {
-        0.0
-    }
-
-    /// About how long one core takes to bring what touches to an array, once each touch; seconds.
+    /// About how long one core takes to bring what touches to an array, once each touch; seconds, right within a factor of three.
     fn place_s(&self) -> f64;
 
     /// What a report says about them: name and value.
@@ -114,9 +108,8 @@ impl TouchSet for Vec<TouchedObject> {
         self.iter()
             .map(|t| {
                 let model = &t.object.model;
-                let spheres_s = PLACE_SPHERE_S * model.n_spheres() as f64;
-                let triangles_s = PLACE_TRIANGLE_S * model.n_triangles() as f64;
-                (spheres_s + triangles_s) * t.touches.len() as f64
+                let seconds = 5e-9 * model.n_spheres() as f64 + 2.5e-8 * model.n_triangles() as f64;
+                seconds * t.touches.len() as f64
             })
             .sum()
     }

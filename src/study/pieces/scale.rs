@@ -1,9 +1,8 @@
 //! How large a study of pieces is, told before it runs.
 
 use crate::spelling::counted;
-use crate::study::estimate::Seconds;
 use crate::study::memory::Bytes;
-use crate::study::time_left::{Piece, Work};
+use crate::study::time_left::Piece;
 use std::fmt;
 
 /// Bytes of the program, its objects and the pictures that it draws at the end, about.
@@ -45,7 +44,7 @@ impl Scale {
 /// A study of pieces as `bubbletouch plan` tells it: its scale, and what its pieces are planned to take, those that are shared and those
 /// at the end included.
 ///
-/// Times are those of the pieces' plans, from rates of a 2-core x86-64 server: mostly right within a factor of 3.
+/// Times are those of the pieces' plans: mostly right within a factor of 3 on a usual machine.
 #[derive(Clone, Debug)]
 pub struct PieceEstimate {
     /// How large it is.
@@ -62,11 +61,7 @@ impl PieceEstimate {
     /// Seconds until the study is done, with all threads.
     pub fn wall_s(&self) -> f64 {
         let n_threads = self.n_threads as f64;
-        let wall_s = |piece: &Piece| match piece.kind {
-            Work::Report => piece.planned_s,
-            _ => piece.planned_s / n_threads,
-        };
-        self.work.iter().map(wall_s).sum()
+        self.work.iter().map(|piece| piece.planned_s).sum::<f64>() / n_threads
     }
 }
 
@@ -94,8 +89,18 @@ impl fmt::Display for PieceEstimate {
         write!(
             f,
             "  time     about {} on {} (mostly right within a factor of 3)",
-            Seconds(self.wall_s()),
+            seconds(self.wall_s()),
             counted(self.n_threads, "thread")
         )
+    }
+}
+
+/// Seconds in words, without more digits than an estimate has.
+fn seconds(seconds: f64) -> String {
+    match seconds {
+        s if s < 1.0 => "1 s".to_owned(),
+        s if s < 100.0 => format!("{s:.0} s"),
+        s if s < 6000.0 => format!("{:.0} min", s / 60.0),
+        s => format!("{:.1} h", s / 3600.0),
     }
 }

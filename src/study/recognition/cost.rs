@@ -1,0 +1,98 @@
+//! About how long parts of a recognition study take, processor-seconds: for `plan` right within a factor of three; a run weighs its items by
+//! those that finished.
+
+use crate::recognition::svm::{Multiclass, Solver};
+use crate::study::plan::{Plan, SplitKind};
+use crate::study::sweep::Group;
+use crate::study::table::Cell;
+use crate::study::touch_set::TouchSet;
+use crate::world::Patch;
+
+/// Seconds to make or to read a taxel of a frame.
+const TAXEL_S: f64 = 8e-9;
+/// Seconds of a multiply-add of a product of matrices.
+const PRODUCT_S: f64 = 4e-11;
+/// Seconds of an SVM's solver for an entry of the kernel matrices of its binary problems; of linfa's.
+const ENTRY_S: f64 = 1.5e-9;
+const LINFA_ENTRY_S: f64 = 1.2e-7;
+
+/// To make all touches on an array, so many frames each.
+pub(super) fn touch_s(
+    patch: &Patch,
+    touched: &dyn TouchSet,
+    (n_touches, n_frames): (usize, usize),
+) -> f64 {
+    // What a frame after the first takes, as a share of it.
+    let frames = 1.0 + 0.25 * (n_frames as f64 - 1.0);
+    let taxels = (n_touches * n_frames * patch.grid.n_taxels()) as f64;
+    frames * touched.place_s() + 0.5 * TAXEL_S * taxels
+}
+
+/// To read and project all frames of a group once.
+pub(super) fn measure_s(plan: &Plan, group: &Group, (n_touches, m): (usize, usize)) -> f64 {
+    let n_taxels = plan.arrays[group.array].grid.n_taxels();
+    let project_s = (group.ensemble.about().taxel_s)(m as f64, n_taxels as f64);
+    (n_touches * group.frames * n_taxels) as f64 * (TAXEL_S + project_s)
+}
+
+/// To fit and test a family in one trial.
+pub(super) fn family_s(
+    plan: &Plan,
+    family: &[Cell],
+    (n_classes, n_touches): (usize, usize),
+) -> f64 {
+    let fits = Group::fits(family);
+    fits.map(|cells| fit_s(plan, &cells[0], (n_classes as f64, n_touches as f64)))
+        .sum()
+}
+
+/// A fit, with what it chooses, and its test.
+fn fit_s(plan: &Plan, cell: &Cell, (n_classes, n_touches): (f64, f64)) -> f64 {
+    let n_train = cell.train_touches as f64 * n_classes;
+    let n_test = match plan.split.kind {
+        SplitKind::HoldOut(share) => share * n_touches,
+        SplitKind::Folds(n) => n_touches / n as f64,
+    };
+    let choice = &plan.choice;
+    let n_c = match cell.classifier.has_c() && cell.c.is_none() {
+        true => choice.c.len().max(1),
+        false => 1,
+    };
+    let n_gamma = match cell.classifier.has_gamma() {
+        true => choice.gamma_multiples.len().max(1),
+        false => 1,
+    };
+    let n_chosen = choice
+        .touches
+        .map_or(n_train, |n| n_train.min(n as f64 * n_classes));
+    let choose_s = match n_c * n_gamma {
+        1 => 0.0,
+        // Each solution goes on from another, and products of rows are made once.
+        n => 0.5 * (n * choice.folds) as f64 * train_s(plan, cell, n_chosen, n_classes),
+    };
+    choose_s + train_s(plan, cell, n_train, n_classes) + n_test * test_s(cell, n_train, n_classes)
+}
+
+fn train_s(plan: &Plan, cell: &Cell, n_train: f64, n_classes: f64) -> f64 {
+    let m = cell.n_features() as f64;
+    let recognition = &plan.spec.recognition;
+    let about = cell.classifier.about();
+    if about.kernel.is_none() {
+        return (about.train_s)(n_train, m, n_classes);
+    }
+    let entry_s = match recognition.solver {
+        Solver::Linfa => LINFA_ENTRY_S,
+        _ => ENTRY_S,
+    };
+    // Entries of all binary problems.
+    let n_entries = match recognition.multiclass {
+        Multiclass::OneVsOne => 2.0 * n_train * n_train,
+        Multiclass::OneVsRest | Multiclass::CrammerSinger => n_classes * n_train * n_train,
+    };
+    n_entries * entry_s + 0.5 * PRODUCT_S * n_train * n_train * m
+}
+
+/// A test touch.
+fn test_s(cell: &Cell, n_train: f64, n_classes: f64) -> f64 {
+    (cell.classifier.about().test_s)(n_train, cell.n_features() as f64, n_classes)
+}
