@@ -1,13 +1,8 @@
 //! What `run`, `plan` and `touches` have in common: a study file, and what overrides it.
 
 use super::output::packings_beside;
-use bubbletouch::kinds::{self, Source};
-use bubbletouch::random::Seed;
-use bubbletouch::study::memory::{check_touches, machine_memory};
-use bubbletouch::study::{
-    HumanTouches, ObjectsSpec, Plan, RecognitionStudy, StudyKind, StudySpec, TouchSet, TouchesSpec,
-    draw_touches, load_objects,
-};
+use bubbletouch::kinds::Source;
+use bubbletouch::study::TouchesSpec;
 use bubbletouch::{Error, Result};
 use std::path::{Path, PathBuf};
 
@@ -77,22 +72,6 @@ impl StudyArgs {
             .ok_or_else(|| Error::input("study", self.study.display(), "a file with a name"))
     }
 
-    /// Reads and checks the study.
-    pub fn plan(&self) -> Result<Plan> {
-        let place = self.study.display().to_string();
-        if let Some(about) = kinds::about(&self.text()?) {
-            let recognition = StudyKind::Recognition.words();
-            let allowed = format!("{recognition} (bubbletouch run runs all kinds)");
-            return Err(Error::input(place, about.words, allowed));
-        }
-        let mut spec = StudySpec::parse(&place, &self.text()?)?;
-        if let Some(seed) = self.seed {
-            spec.seed = seed;
-        }
-        self.replace_objects(&mut spec.objects);
-        Plan::new(&place, spec)
-    }
-
     /// The study's text, and what was asked for beside it.
     pub fn source(&self) -> Result<Source> {
         set_threads(self.threads)?;
@@ -114,38 +93,6 @@ impl StudyArgs {
         let touches = study.and_then(|mut study| study.remove("touches"));
         let touches: Option<TouchesSpec> = touches.and_then(|table| table.try_into().ok());
         Ok(touches.and_then(|touches| touches.mixed_values()))
-    }
-
-    fn replace_objects(&self, objects: &mut ObjectsSpec) {
-        let Some(given) = &self.objects else {
-            return;
-        };
-        objects.sets.clear();
-        if given.extension().is_some_and(|ending| ending == "toml") {
-            objects.sets.push(given.display().to_string());
-            objects.meshes = None;
-        } else {
-            objects.meshes = Some(given.clone());
-        }
-    }
-
-    /// Reads and checks a study that recognises objects, builds them and draws its touches, unless these take more memory than there is.
-    pub fn recognition(&self, packings: Option<&Path>) -> Result<RecognitionStudy> {
-        let plan = self.plan()?;
-        let seed = Seed::new(plan.spec.seed);
-        let ceiling = self.memory.or_else(machine_memory);
-        let touched: Box<dyn TouchSet + Send> = match &plan.human_touch {
-            Some(human) => {
-                check_touches(&plan, human.kinds.len(), ceiling)?;
-                Box::new(HumanTouches::draw(human, &seed)?)
-            }
-            None => {
-                let objects = load_objects(&plan.spec.objects, packings)?;
-                check_touches(&plan, objects.len(), ceiling)?;
-                Box::new(draw_touches(objects, &plan.placement, &seed)?)
-            }
-        };
-        RecognitionStudy::new(plan, touched)
     }
 
     fn text(&self) -> Result<String> {

@@ -18,7 +18,7 @@ mod study_data;
 mod tables;
 mod touches;
 
-pub use crate::study::Limit;
+pub use crate::study::table::Limit;
 pub use about::{ReportPage, Snapshots, StudyAbout};
 pub(super) use frame::Section;
 pub(super) use picture::figure;

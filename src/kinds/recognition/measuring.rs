@@ -7,8 +7,8 @@ use crate::study::evaluation::Trial;
 use crate::study::frames::{FrameWriter, Frames};
 use crate::study::measurement::{Measurements, measure_group};
 use crate::study::pieces::PiecesLeft;
-use crate::study::plan::millimetres;
 use crate::study::progress::Progress;
+use crate::study::simulation::describe;
 use crate::study::sweep::Group;
 use crate::world::Patch;
 use rayon::prelude::*;
@@ -195,12 +195,6 @@ fn costliest_first(frames: &[usize]) -> Vec<usize> {
     let mut places: Vec<usize> = (0..frames.len()).collect();
     places.sort_by_key(|&place| std::cmp::Reverse(frames[place]));
     places
-}
-
-/// An array in words: `64×64 at 2 mm`.
-pub fn describe(patch: &Patch) -> String {
-    let grid = &patch.grid;
-    format!("{}×{} at {} mm", grid.nx, grid.ny, millimetres(grid.pitch))
 }
 
 #[cfg(test)]
