@@ -10,11 +10,11 @@ use bubbletouch::kinds::ReportAbout;
 use bubbletouch::kinds::recognition::{
     Outcome, RECOGNITION, RecognitionStudy, load_study, recognition_scale,
 };
-use bubbletouch::report::csv_tables::{LIMITS_FILE, read_rows, read_tables};
+use bubbletouch::report::csv_tables::{LIMITS_FILE, read_rows};
 use bubbletouch::report::folder::Folder;
 use bubbletouch::report::page::{ReportPage, StudyAbout};
+use bubbletouch::report::recognition;
 use bubbletouch::report::results::{all_files, write_page};
-use bubbletouch::report::{headlines, terminal};
 use bubbletouch::study::pieces::Scale;
 use bubbletouch::study::provenance::RECOGNITION_METHODS;
 use std::path::{Path, PathBuf};
@@ -81,8 +81,10 @@ impl PieceKind for RecognitionKind {
     }
 
     fn words(&self, outcome: &Outcome, width: usize) -> String {
-        let summary = terminal::summary_table(&outcome.tables, width, "summary.csv");
-        format!("{summary}\n{}", headlines::text(&outcome.tables, width))
+        match recognition::tables_of(&outcome.tables, &[]) {
+            Ok(tables) => recognition::words(&tables, width),
+            Err(error) => error.to_string(),
+        }
     }
 
     fn report(&self, folder: &Path, about: &ReportAbout) -> Result<()> {
@@ -100,6 +102,6 @@ impl PieceKind for RecognitionKind {
             add_manifest(&mut page, manifest);
         }
         page.command.clone_from(&about.command);
-        write_page(folder, &read_tables(folder)?, &page).map(|_| ())
+        write_page(folder, &recognition::read_tables(folder)?, &page).map(|_| ())
     }
 }
