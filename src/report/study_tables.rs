@@ -1,9 +1,9 @@
 //! The tables of a study as files, and which of them come out again.
 
 use crate::error::Result;
+use crate::kinds::recognition::Outcome;
 use crate::report::csv_tables::{LIMITS_FILE, TableHashes, VARIANCE_FILE};
 use crate::report::recognition::tables_of;
-use crate::study::Outcome;
 
 /// Names and contents of tables, in the order of writing.
 pub type TableFiles = Vec<(&'static str, Vec<u8>)>;

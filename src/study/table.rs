@@ -316,6 +316,26 @@ columns! { StageTime {
     us_per_touch: Cost "processor time of a touch" in "µs": Log;
 } }
 
+/// How often a limit of the model was reached: a row of `limits.csv`.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Limit {
+    /// What happened: `saturated taxels`.
+    pub what: String,
+    /// How often.
+    pub count: u64,
+    /// Out of how many.
+    pub of: u64,
+    /// What it means for the reader.
+    pub meaning: String,
+}
+
+columns! { Limit {
+    what: Subject "limit";
+    count: Note: Linear;
+    of: Note: Linear;
+    meaning: Note;
+} }
+
 /// All result tables of a study.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Tables {

@@ -12,7 +12,7 @@ mod provenance;
 mod study;
 mod touches;
 
-pub use crate::study::Limit;
+pub use crate::study::table::Limit;
 pub use about::{ReportPage, Snapshots, StudyAbout};
 pub use frame::Section;
 pub use picture::Picture;

@@ -2,9 +2,8 @@
 
 use crate::error::Result;
 use crate::report::csv_tables::{LIMITS_FILE, VARIANCE_FILE, axes_beside};
-use crate::study::Limit;
 use crate::study::table::{
-    Cell, CellScore, Comparison, Confused, Confusion, Pareto, Published, StageTime, Tables,
+    Cell, CellScore, Comparison, Confused, Confusion, Limit, Pareto, Published, StageTime, Tables,
     TrialScore, TrialTime, Variance,
 };
 use crate::table::{Better, Column, Columns, Data, Role, Scale, Table};
