@@ -7,7 +7,7 @@ use bubbletouch::files::write_bytes;
 use bubbletouch::kinds::{
     About, AnyOutcome, AnyStudy, EndedRun, ReportAbout, threads_within, within_memory,
 };
-use bubbletouch::report::csv_tables::{FAILURES_FILE, csv_content};
+use bubbletouch::report::csv_tables::FAILURES_FILE;
 use bubbletouch::report::folder::Folder;
 use bubbletouch::report::page::StudyAbout;
 use bubbletouch::report::study_tables::StudyTables;
@@ -18,6 +18,7 @@ use bubbletouch::study::pieces::{
 };
 use bubbletouch::study::progress::{Progress, Silent};
 use bubbletouch::study::provenance::{MANIFEST_FILE, Manifest, PROGRAM, RunFacts};
+use bubbletouch::table::Table;
 use bubbletouch::{Error, Result};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -233,7 +234,10 @@ impl<K: PieceKind> AnyOutcome for PieceOutcome<'_, K> {
         let made = kind.folder(&self.tables, folder, &about)?;
         made.write()?;
         let failures = folder.join(FAILURES_FILE);
-        write_bytes(&failures, &csv_content(&failures, &self.failures)?)?;
+        write_bytes(
+            &failures,
+            &Table::of(FAILURES_FILE, "What failed, and why", &self.failures)?.csv,
+        )?;
         write_bytes(&folder.join("study.toml"), toml.as_bytes())?;
         write_bytes(&folder.join(MANIFEST_FILE), manifest.to_json().as_bytes())
     }

@@ -13,7 +13,7 @@ use bubbletouch::kinds::recognition::{
 use bubbletouch::report::csv_tables::{LIMITS_FILE, read_rows};
 use bubbletouch::report::folder::Folder;
 use bubbletouch::report::page::{ReportPage, StudyAbout};
-use bubbletouch::report::recognition;
+use bubbletouch::report::recognition::{read_tables, tables_of, words};
 use bubbletouch::report::results::{all_files, write_page};
 use bubbletouch::study::pieces::Scale;
 use bubbletouch::study::provenance::RECOGNITION_METHODS;
@@ -81,10 +81,8 @@ impl PieceKind for RecognitionKind {
     }
 
     fn words(&self, outcome: &Outcome, width: usize) -> String {
-        match recognition::tables_of(&outcome.tables, &[]) {
-            Ok(tables) => recognition::words(&tables, width),
-            Err(error) => error.to_string(),
-        }
+        tables_of(&outcome.tables, &outcome.limits)
+            .map_or_else(|error| error.to_string(), |tables| words(&tables, width))
     }
 
     fn report(&self, folder: &Path, about: &ReportAbout) -> Result<()> {
@@ -102,6 +100,6 @@ impl PieceKind for RecognitionKind {
             add_manifest(&mut page, manifest);
         }
         page.command.clone_from(&about.command);
-        write_page(folder, &recognition::read_tables(folder)?, &page).map(|_| ())
+        write_page(folder, &read_tables(folder)?, &page).map(|_| ())
     }
 }

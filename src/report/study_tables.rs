@@ -1,10 +1,9 @@
 //! The tables of a study as files, and which of them come out again.
 
 use crate::error::Result;
-use crate::report::csv_tables::{TableHashes, csv_content};
-use serde::Serialize;
-use serde::de::DeserializeOwned;
-use std::path::Path;
+use crate::kinds::recognition::Outcome;
+use crate::report::csv_tables::{LIMITS_FILE, TableHashes, VARIANCE_FILE};
+use crate::report::recognition::tables_of;
 
 /// Names and contents of tables, in the order of writing.
 pub type TableFiles = Vec<(&'static str, Vec<u8>)>;
@@ -33,10 +32,21 @@ pub trait StudyTables {
     }
 }
 
-/// One of them.
-pub(super) fn table_file(
-    name: &'static str,
-    rows: &[impl Serialize + DeserializeOwned],
-) -> Result<(&'static str, Vec<u8>)> {
-    Ok((name, csv_content(Path::new(name), rows)?))
+impl StudyTables for Outcome {
+    const OF_PIECES: &'static [&'static str] = &["accuracy.csv"];
+    const OF_ALL: &'static [&'static str] = &[
+        "summary.csv",
+        "confusion.csv",
+        "comparison.csv",
+        "confused.csv",
+        "published.csv",
+        VARIANCE_FILE,
+        LIMITS_FILE,
+    ];
+
+    fn files(&self) -> Result<TableFiles> {
+        let tables = tables_of(&self.tables, &self.limits)?.into_iter();
+        let files = tables.filter(|table| !table.csv.is_empty());
+        Ok(files.map(|table| (table.file, table.csv)).collect())
+    }
 }

@@ -4,7 +4,6 @@ use super::plan::PlannedWay;
 use super::rows::BreakingPoint;
 use super::study::BREAKS;
 use crate::kinds::rows_of;
-use crate::report::axis::classifier_name;
 use crate::table::{Table, short_number};
 
 /// How many settings break recognition, where each does, and which do not.
@@ -14,7 +13,7 @@ pub(super) fn answers(ways: &[PlannedWay], tables: &[Table]) -> Vec<String> {
         Some(format!(
             "{} ({})",
             break_words(row)?,
-            classifier_name(row.classifier)
+            row.classifier.about().words
         ))
     };
     let (mut said, mut unbroken) = (Vec::new(), Vec::new());

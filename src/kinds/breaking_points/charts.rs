@@ -7,7 +7,6 @@ use super::scale::WayScale;
 use super::spec::DrivenTouches;
 use super::study::{BREAKS, SUMMARY};
 use crate::kinds::rows_of;
-use crate::report::axis::classifier_name;
 use crate::table::{Along, At, ChartSpec, Column, Role, Rule, Scale, Shown, Table, Value};
 
 /// A chart a way.
@@ -36,7 +35,7 @@ fn chart_of(PlannedWay { spec: way, .. }: &PlannedWay, breaks: &[&BreakingPoint]
         words: "chance".to_owned(),
     });
     let halves = breaks.iter().filter_map(|row| {
-        let words = format!("{}: half of its best at", classifier_name(row.classifier));
+        let words = format!("{}: half of its best at", row.classifier.about().words);
         Some(Rule {
             along: Along::X,
             at: At::Value(row.breaks_at?),
