@@ -5,6 +5,8 @@ use crate::error::Result;
 use crate::report::study_folder::NamedPicture;
 use crate::study::pieces::{PieceStudy, Scale};
 use crate::table::{ChartSpec, Table};
+use crate::toml_text;
+use serde::Serialize;
 use std::collections::BTreeMap;
 use std::path::Path;
 
@@ -35,6 +37,24 @@ pub struct Facts {
     pub content: BTreeMap<String, String>,
     /// How intervals and p-values are made, by table and columns.
     pub methods: Vec<(&'static str, &'static str)>,
+}
+
+impl Facts {
+    /// Of a study as it is written, with the hashes of what its text does not say.
+    pub fn of(spec: &impl Serialize, content: BTreeMap<String, String>) -> Self {
+        let toml = toml_text::write(spec);
+        let study = toml_text::table(&toml).unwrap_or_default();
+        let words = |key: &str| study.get(key).and_then(toml::Value::as_str);
+        let seed = study.get("seed").and_then(toml::Value::as_integer);
+        Self {
+            question: words("question").unwrap_or_default().to_owned(),
+            expected: words("expected").unwrap_or_default().to_owned(),
+            seed: seed.map_or(0, |seed| seed as u64),
+            toml,
+            content,
+            methods: Vec::new(),
+        }
+    }
 }
 
 /// A kind of study. The engine does all else: it runs, keeps, resumes, deals out, merges, plans, verifies and reports it.

@@ -10,6 +10,7 @@ mod kind;
 mod loaded;
 mod median_time;
 mod model_recognition;
+mod names;
 pub mod object_detail;
 pub mod reconstruction;
 mod results;

@@ -24,7 +24,6 @@ pub mod frame_files;
 pub mod headlines;
 pub mod heat_map;
 mod legend;
-mod log_scale;
 pub mod object_picture;
 pub mod offers;
 pub mod page;

@@ -13,7 +13,6 @@ use crate::kinds::{About, Facts, Kind, Source};
 use crate::study::object_files::objects_content;
 use crate::study::pieces::Scale;
 use crate::table::{ChartSpec, Table};
-use crate::toml_text;
 use std::collections::BTreeMap;
 use std::path::Path;
 
@@ -41,14 +40,7 @@ impl Kind for BreakingPointsStudy {
         for objects in object_specs(values.flat_map(|value| value.plans())) {
             content.extend(objects_content(objects)?);
         }
-        Ok(Facts {
-            toml: toml_text::write(spec),
-            question: spec.question.clone(),
-            expected: spec.expected.clone(),
-            seed: spec.seed,
-            content,
-            ..Facts::default()
-        })
+        Ok(Facts::of(spec, content))
     }
 
     fn scale(&self) -> Scale {

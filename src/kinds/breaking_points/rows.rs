@@ -2,6 +2,7 @@
 
 use super::spec::DrivenTouches;
 use crate::columns;
+use crate::kinds::names::CLASSIFIERS;
 use crate::recognition::ClassifierKind;
 use serde::{Deserialize, Serialize};
 
@@ -22,7 +23,7 @@ columns! { WayCell {
     way: Subject "setting";
     touches: Subject "touches that have it";
     value: Condition: Log;
-    classifier: Choice;
+    classifier: Choice named CLASSIFIERS;
 } }
 
 /// Where a way breaks a classifier, going one way from its best: a row of `breaking_points.csv`.
@@ -62,7 +63,7 @@ pub struct BreakingPoint {
 
 columns! { BreakingPoint {
     way: Subject "setting";
-    classifier: Choice;
+    classifier: Choice named CLASSIFIERS;
     side: Subject "to values that are";
     best: Value(More) "best accuracy": Share between [best_low, best_high];
     best_low: Note "95 % interval of the best, lower end": Share;

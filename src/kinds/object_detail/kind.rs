@@ -13,7 +13,6 @@ use crate::kinds::{About, Facts, Kind, Source};
 use crate::study::pieces::Scale;
 use crate::study::{load_named_meshes, objects_content};
 use crate::table::{ChartSpec, Table};
-use crate::toml_text;
 use std::path::Path;
 
 impl Kind for ObjectDetailStudy {
@@ -41,14 +40,7 @@ impl Kind for ObjectDetailStudy {
 
     fn facts(&self) -> Result<Facts> {
         let spec = &self.plan.spec;
-        Ok(Facts {
-            toml: toml_text::write(spec),
-            question: spec.question.clone(),
-            expected: spec.expected.clone(),
-            seed: spec.seed,
-            content: objects_content(&spec.objects)?,
-            ..Facts::default()
-        })
+        Ok(Facts::of(spec, objects_content(&spec.objects)?))
     }
 
     fn scale(&self) -> Scale {

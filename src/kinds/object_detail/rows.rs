@@ -2,6 +2,7 @@
 
 use super::spec::DetailMethod;
 use crate::columns;
+use crate::kinds::names::CLASSIFIERS;
 use crate::recognition::ClassifierKind;
 use serde::{Deserialize, Serialize};
 
@@ -216,7 +217,7 @@ pub struct DetailRecognition {
 columns! { DetailRecognition {
     method: Choice "learned from" named METHODS;
     tolerance_mm: Choice "packed within" in "mm": Log;
-    classifier: Choice;
+    classifier: Choice named CLASSIFIERS;
     n_objects: Note "objects": Linear;
     n_training: Note "training touches": Linear;
     n_test: Note "test touches": Linear;

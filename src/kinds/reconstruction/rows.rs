@@ -1,12 +1,12 @@
 //! The result tables of a reconstruction study: one plain struct a row, one field a column.
 
 use crate::columns;
+use crate::kinds::names::ENSEMBLES;
 use crate::sensing::{Basis, Ensemble, Solver};
 use crate::signal::NoiseUnit;
 use serde::{Deserialize, Serialize};
 
 /// What people call ensembles, dictionaries and solvers.
-const ENSEMBLES: &[(&str, &str)] = &[("sbhe", "SBHE"), ("gaussian", "Gaussian")];
 const DICTIONARIES: &[(&str, &str)] = &[
     ("dct", "DCT"),
     ("haar", "Haar"),

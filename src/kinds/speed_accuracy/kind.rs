@@ -7,14 +7,13 @@ use super::rows::{
 };
 use super::spec::SpeedAccuracyStudySpec;
 use super::study::{CHAINS, CONTACT, Files, SIZES, SpeedAccuracyStudy};
-use super::subject::{load_scans, load_subjects, scans_content};
+use super::subject::load_subjects;
 use super::{answers, charts};
 use crate::error::Result;
 use crate::kinds::{About, Facts, Kind, Source};
 use crate::study::objects_content;
 use crate::study::pieces::{PieceStudy, Scale};
 use crate::table::{ChartSpec, Columns, Table};
-use crate::toml_text;
 use std::path::Path;
 
 impl Kind for SpeedAccuracyStudy {
@@ -46,7 +45,9 @@ impl Kind for SpeedAccuracyStudy {
         let plan = SpeedAccuracyPlan::new(&source.place, &source.folder, spec)?;
         Ok(Self {
             subjects: load_subjects(&plan.spec.objects)?,
-            scans: load_scans(plan.scans(), &plan.spec.objects)?,
+            scans: plan
+                .scanned()
+                .map_or(Ok(Vec::new()), |scans| load_subjects(&scans))?,
             packings: source.packings.clone(),
             plan,
         })
@@ -55,15 +56,11 @@ impl Kind for SpeedAccuracyStudy {
     fn facts(&self) -> Result<Facts> {
         let spec = &self.plan.spec;
         let mut content = objects_content(&spec.objects)?;
-        content.extend(scans_content(self.plan.scans(), &spec.objects)?);
-        Ok(Facts {
-            toml: toml_text::write(spec),
-            question: spec.question.clone(),
-            expected: spec.expected.clone(),
-            seed: spec.seed,
-            content,
-            ..Facts::default()
-        })
+        if let Some(scans) = self.plan.scanned() {
+            let scans = objects_content(&scans)?.into_iter();
+            content.extend(scans.map(|(name, hash)| (format!("scan {name}"), hash)));
+        }
+        Ok(Facts::of(spec, content))
     }
 
     fn scale(&self) -> Scale {

@@ -1,6 +1,7 @@
 //! The tables of a study of speed against accuracy: one plain struct a row, one field a column.
 
 use crate::columns;
+use crate::kinds::names::{CLASSIFIERS, ENSEMBLES};
 use crate::recognition::ClassifierKind;
 use crate::sensing::Ensemble;
 use serde::{Deserialize, Serialize};
@@ -121,10 +122,10 @@ columns! { ChainCell {
     pitch_mm: Choice "pitch" in "mm": Log;
     n_taxels: Cost "taxels": Log;
     tolerance_mm: Choice "spheres within" in "mm": Log;
-    ensemble: Choice;
+    ensemble: Choice named ENSEMBLES;
     ratio: Choice "compression" in ":1": Log;
     measurements: Cost "m": Log;
-    classifier: Choice;
+    classifier: Choice named CLASSIFIERS;
 } }
 
 /// How often it is right (with the [`ChainCell`] before it: a row of `recognition.csv`).
