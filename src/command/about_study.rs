@@ -27,11 +27,12 @@ pub fn page_of_spec(spec: &StudySpec, name: &str) -> ReportPage {
 
 /// Adds what is known of objects and touches.
 pub fn add_touches(page: &mut ReportPage, study: &RecognitionStudy) -> Result<()> {
-    let mut settings = study.touched.settings();
-    let n_touches = study.sweep.labels.len().to_string();
+    let first = study.first();
+    let mut settings = first.touched.settings();
+    let n_touches = first.sweep.labels.len().to_string();
     settings.push(("Touches".to_owned(), n_touches));
     page.settings.splice(0..0, settings);
-    let samples = study.touched.samples(&study.plan, &study.sweep)?;
+    let samples = first.touched.samples(&first.plan, &first.sweep)?;
     page.gallery = gallery(&samples);
     page.snapshots = Some(snapshots(
         &samples,

@@ -26,6 +26,7 @@ pub fn features(args: &Args) -> Result<()> {
     set_threads(args.study.threads)?;
     let loaded = args.study.recognition(Some(&packings_beside(&args.out)))?;
     output_folder(&args.out)?;
+    let loaded = loaded.part_of(args.cell);
     let progress = progress::to_stderr();
     let set = write_features(
         &args.out,

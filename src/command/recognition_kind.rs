@@ -23,7 +23,7 @@ pub struct RecognitionKind {
 
 impl RecognitionKind {
     fn page(&self, name: &str) -> Result<ReportPage> {
-        let mut page = page_of_spec(&self.study.plan.spec, name);
+        let mut page = page_of_spec(&self.study.first().plan.spec, name);
         add_touches(&mut page, &self.study)?;
         Ok(page)
     }
@@ -52,12 +52,12 @@ impl PieceKind for RecognitionKind {
     }
 
     fn facts(&self) -> Result<KindFacts> {
-        let spec = &self.study.plan.spec;
+        let spec = &self.study.first().plan.spec;
         Ok(KindFacts {
             toml: spec.to_toml(),
             asked: [spec.question.clone(), spec.expected.clone()],
             seed: spec.seed,
-            content: self.study.touched.content(),
+            content: self.study.content(),
         })
     }
 

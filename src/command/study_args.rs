@@ -2,12 +2,9 @@
 
 use super::output::packings_beside;
 use bubbletouch::kinds::{self, Source};
-use bubbletouch::random::Seed;
-use bubbletouch::study::memory::{check_touches, machine_memory};
-use bubbletouch::study::{
-    HumanTouches, ObjectsSpec, Plan, RecognitionStudy, StudyKind, StudySpec, TouchSet, TouchesSpec,
-    draw_touches, load_objects,
-};
+use bubbletouch::study::axes::AxisValues;
+use bubbletouch::study::memory::machine_memory;
+use bubbletouch::study::{ObjectsSpec, Plan, RecognitionStudy, StudyKind, StudySpec, TouchesSpec};
 use bubbletouch::{Error, Result};
 use std::path::{Path, PathBuf};
 
@@ -77,8 +74,13 @@ impl StudyArgs {
             .ok_or_else(|| Error::input("study", self.study.display(), "a file with a name"))
     }
 
-    /// Reads and checks the study.
+    /// Reads and checks the study: the plan of the first combination of its own axes.
     pub fn plan(&self) -> Result<Plan> {
+        Ok(self.plans()?.swap_remove(0).1)
+    }
+
+    /// Reads and checks the study: a plan for each combination of its own axes.
+    fn plans(&self) -> Result<Vec<(AxisValues, Plan)>> {
         let place = self.study.display().to_string();
         if let Some(about) = kinds::about(&self.text()?) {
             let recognition = StudyKind::Recognition.words();
@@ -87,10 +89,14 @@ impl StudyArgs {
         }
         let mut spec = StudySpec::parse(&place, &self.text()?)?;
         if let Some(seed) = self.seed {
+            if spec.axes.0.iter().any(|axis| axis.key == "seed") {
+                let allowed = "no such option: the seed is an axis of the study";
+                return Err(Error::input("--seed", seed, allowed));
+            }
             spec.seed = seed;
         }
         self.replace_objects(&mut spec.objects);
-        Plan::new(&place, spec)
+        Plan::variants(&place, spec)
     }
 
     /// The study's text, and what was asked for beside it.
@@ -131,21 +137,8 @@ impl StudyArgs {
 
     /// Reads and checks a study that recognises objects, builds them and draws its touches, unless these take more memory than there is.
     pub fn recognition(&self, packings: Option<&Path>) -> Result<RecognitionStudy> {
-        let plan = self.plan()?;
-        let seed = Seed::new(plan.spec.seed);
         let ceiling = self.memory.or_else(machine_memory);
-        let touched: Box<dyn TouchSet + Send> = match &plan.human_touch {
-            Some(human) => {
-                check_touches(&plan, human.kinds.len(), ceiling)?;
-                Box::new(HumanTouches::draw(human, &seed)?)
-            }
-            None => {
-                let objects = load_objects(&plan.spec.objects, packings)?;
-                check_touches(&plan, objects.len(), ceiling)?;
-                Box::new(draw_touches(objects, &plan.placement, &seed)?)
-            }
-        };
-        RecognitionStudy::new(plan, touched)
+        RecognitionStudy::load(self.plans()?, packings, ceiling)
     }
 
     fn text(&self) -> Result<String> {

@@ -32,7 +32,8 @@ pub fn touches(args: &Args) -> Result<()> {
     let (plan, read) = match args.cell {
         None => (args.study.plan()?, None),
         Some(cell) => {
-            let loaded = args.study.recognition(Some(&packings))?;
+            let study = args.study.recognition(Some(&packings))?;
+            let loaded = study.part_of(cell);
             args.check(&loaded.plan)?;
             let which = (cell, args.trial);
             let read = ReadFrames::of_cell(
@@ -42,7 +43,7 @@ pub fn touches(args: &Args) -> Result<()> {
                 which,
                 progress.as_ref(),
             )?;
-            (loaded.plan, Some(read))
+            (loaded.plan.clone(), Some(read))
         }
     };
     args.check(&plan)?;

@@ -6,7 +6,6 @@ use crate::report::study_folder::NamedPicture;
 use crate::study::pieces::{PieceStudy, Scale};
 use crate::table::{ChartSpec, Table};
 use crate::toml_text;
-use serde::Serialize;
 use std::collections::BTreeMap;
 use std::path::Path;
 
@@ -40,19 +39,18 @@ pub struct Facts {
 }
 
 impl Facts {
-    /// Of a study as it is written, with the hashes of what its text does not say.
-    pub fn of(spec: &impl Serialize, content: BTreeMap<String, String>) -> Self {
-        let toml = toml_text::write(spec);
-        let study = toml_text::table(&toml).unwrap_or_default();
-        let words = |key: &str| study.get(key).and_then(toml::Value::as_str);
-        let seed = study.get("seed").and_then(toml::Value::as_integer);
+    /// Of a study's TOML with every default, and of what that does not say: question, expected and seed stand in it.
+    pub fn of(toml: String, content: BTreeMap<String, String>) -> Self {
+        let table = toml_text::table(&toml).unwrap_or_default();
+        let words = |key| table.get(key).and_then(toml::Value::as_str);
+        let seed = table.get("seed").and_then(toml::Value::as_integer);
         Self {
             question: words("question").unwrap_or_default().to_owned(),
             expected: words("expected").unwrap_or_default().to_owned(),
             seed: seed.map_or(0, |seed| seed as u64),
             toml,
             content,
-            methods: Vec::new(),
+            ..Self::default()
         }
     }
 }

@@ -10,7 +10,6 @@ mod kind;
 mod loaded;
 mod median_time;
 mod model_recognition;
-mod names;
 pub mod object_detail;
 pub mod reconstruction;
 mod results;

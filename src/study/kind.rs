@@ -16,6 +16,7 @@ impl StudyKind {
                 "question",
                 "expected",
                 "report",
+                "axes",
                 "trials",
                 "skin.pitch_mm",
                 "skin.size_mm",

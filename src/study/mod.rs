@@ -84,7 +84,7 @@ pub use plan::{Amount, Plan, SplitKind, SplitPlan, millimetres};
 pub use plan_human::HumanTouchPlan;
 pub use plan_signal::Condition;
 pub use pose_groups::KeepTogether;
-pub use recognition::{ArrayOutcome, Limit, Outcome, RecognitionRows, RecognitionStudy};
+pub use recognition::{ArrayOutcome, Limit, Outcome, RecognitionRows, RecognitionStudy, StudyPart};
 pub use repeats::Repeats;
 pub use role::{agree, column_name, condition_numbers, most_accurate, one_of, role_of};
 pub use samples::{Samples, sample_frames};

@@ -13,6 +13,7 @@ use crate::kinds::{About, Facts, Kind, Source};
 use crate::study::object_files::objects_content;
 use crate::study::pieces::Scale;
 use crate::table::{ChartSpec, Table};
+use crate::toml_text;
 use std::collections::BTreeMap;
 use std::path::Path;
 
@@ -40,7 +41,7 @@ impl Kind for BreakingPointsStudy {
         for objects in object_specs(values.flat_map(|value| value.plans())) {
             content.extend(objects_content(objects)?);
         }
-        Ok(Facts::of(spec, content))
+        Ok(Facts::of(toml_text::write(spec), content))
     }
 
     fn scale(&self) -> Scale {

@@ -14,6 +14,7 @@ use crate::kinds::{About, Facts, Kind, Source};
 use crate::study::objects_content;
 use crate::study::pieces::{PieceStudy, Scale};
 use crate::table::{ChartSpec, Columns, Table};
+use crate::toml_text;
 use std::path::Path;
 
 impl Kind for SpeedAccuracyStudy {
@@ -60,7 +61,7 @@ impl Kind for SpeedAccuracyStudy {
             let scans = objects_content(&scans)?.into_iter();
             content.extend(scans.map(|(name, hash)| (format!("scan {name}"), hash)));
         }
-        Ok(Facts::of(spec, content))
+        Ok(Facts::of(toml_text::write(spec), content))
     }
 
     fn scale(&self) -> Scale {

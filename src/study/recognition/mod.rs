@@ -2,6 +2,7 @@
 
 mod cost;
 mod limits;
+mod load;
 mod measuring;
 mod rows;
 mod study;
@@ -9,4 +10,4 @@ mod study;
 pub use limits::Limit;
 pub(super) use measuring::describe;
 pub use rows::{ArrayOutcome, Outcome, RecognitionRows};
-pub use study::RecognitionStudy;
+pub use study::{RecognitionStudy, StudyPart};
