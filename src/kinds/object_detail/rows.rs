@@ -78,37 +78,37 @@ pub struct DetailSummary {
     /// Objects.
     n_objects: usize => Note "objects": Linear;
     /// Lower quartile of the spheres an object.
-    n_spheres_q1: f64 => Note "spheres, quartiles over objects, lower": Log;
+    n_spheres_q1: f64 => Note "quartiles of spheres, lower": Log;
     /// Median.
     n_spheres_median: f64 => Cost "spheres an object": Log between [n_spheres_q1, n_spheres_q3];
     /// Upper quartile.
-    n_spheres_q3: f64 => Note "spheres, quartiles over objects, upper": Log;
+    n_spheres_q3: f64 => Note "quartiles of spheres, upper": Log;
     /// Lower quartile of [`DetailScore::surface_error_mm`].
-    surface_error_q1_mm: f64 => Note "mean distance of the surfaces, quartiles over objects, lower" in "mm": Log;
+    surface_error_q1_mm: f64 => Note "quartiles of mean distance of the surfaces, lower" in "mm": Log;
     /// Median.
     surface_error_median_mm: f64 => Value(Less) "mean distance of the surfaces" in "mm": Log between [surface_error_q1_mm, surface_error_q3_mm];
     /// Upper quartile.
-    surface_error_q3_mm: f64 => Note "mean distance of the surfaces, quartiles over objects, upper" in "mm": Log;
+    surface_error_q3_mm: f64 => Note "quartiles of mean distance of the surfaces, upper" in "mm": Log;
     /// Lower quartile of the larger of `protrusion_max_mm` and `gap_max_mm`.
-    surface_error_max_q1_mm: f64 => Note "largest distance of the surfaces, quartiles over objects, lower" in "mm": Log;
+    surface_error_max_q1_mm: f64 => Note "quartiles of largest distance of the surfaces, lower" in "mm": Log;
     /// Median.
     surface_error_max_median_mm: f64 => Value(Less) "largest distance of the surfaces" in "mm": Log between [surface_error_max_q1_mm, surface_error_max_q3_mm];
     /// Upper quartile.
-    surface_error_max_q3_mm: f64 => Note "largest distance of the surfaces, quartiles over objects, upper" in "mm": Log;
+    surface_error_max_q3_mm: f64 => Note "quartiles of largest distance of the surfaces, upper" in "mm": Log;
     /// Lower quartile of [`DetailScore::error_mm`].
-    error_q1_mm: f64 => Note "deflection error, quartiles over objects, lower" in "mm": Log;
+    error_q1_mm: f64 => Note "quartiles of deflection error, lower" in "mm": Log;
     /// Median.
     error_median_mm: f64 => Value(Less) "deflection error" in "mm": Log between [error_q1_mm, error_q3_mm];
     /// Upper quartile.
-    error_q3_mm: f64 => Note "deflection error, quartiles over objects, upper" in "mm": Log;
+    error_q3_mm: f64 => Note "quartiles of deflection error, upper" in "mm": Log;
     /// The worst object's.
     error_worst_mm: f64 => Value(Less) "deflection error of the worst object" in "mm": Log;
     /// Lower quartile of [`DetailScore::error_after_offset_mm`].
-    error_after_offset_q1_mm: f64 => Note "deflection error after offset, quartiles over objects, lower" in "mm": Log;
+    error_after_offset_q1_mm: f64 => Note "quartiles of deflection error after offset, lower" in "mm": Log;
     /// Median.
     error_after_offset_median_mm: f64 => Value(Less) "deflection error after offset" in "mm": Log between [error_after_offset_q1_mm, error_after_offset_q3_mm];
     /// Upper quartile.
-    error_after_offset_q3_mm: f64 => Note "deflection error after offset, quartiles over objects, upper" in "mm": Log;
+    error_after_offset_q3_mm: f64 => Note "quartiles of deflection error after offset, upper" in "mm": Log;
     /// The worst object's.
     error_after_offset_worst_mm: f64 => Value(Less) "deflection error after offset of the worst object" in "mm": Log;
     /// Median of [`DetailScore::error_own_contact_mm`].
