@@ -8,38 +8,34 @@
 //! [`frame_files::write_frame`] and [`pressure_map`] show a single frame; [`recording`] streams frames over time to a file and
 //! draws them, also moving.
 
-pub mod answer;
 pub mod axis;
 pub(crate) mod canvas;
 pub mod chart;
-pub mod chart_plan;
 pub mod colours;
-pub mod confusion_picture;
 mod csv_header;
 pub mod csv_tables;
 pub mod drawing;
 pub mod fit_picture;
 pub mod folder;
 pub mod frame_files;
-pub mod headlines;
+mod headlines;
 pub mod heat_map;
 mod legend;
 pub mod object_picture;
 pub mod offers;
 pub mod page;
 mod panels;
-pub mod pareto_chart;
 pub(crate) mod picture;
 pub mod pressure_map;
 pub mod progress;
 pub mod progress_json;
 mod raster;
+pub mod recognition;
 mod recognition_tables;
 pub mod recording;
 pub mod results;
 pub mod run_clock;
 pub mod run_differences;
-pub mod run_differences_page;
 pub mod scene_files;
 pub mod scene_summary;
 pub(crate) mod shaded_view;
@@ -47,6 +43,7 @@ mod signal_axis;
 pub mod snapshots;
 pub mod study_folder;
 pub mod study_tables;
+pub mod swept;
 pub mod terminal;
 pub mod text_width;
 mod time_scale;

@@ -13,8 +13,9 @@ mod scale;
 mod tiles;
 mod view;
 
-pub use accuracy::{chart_title, draw_chart, n_classes};
-pub(in crate::report) use accuracy::{draw_axes, draw_y_labels, y_at};
+pub(in crate::report) use accuracy::{
+    draw_axes, draw_band, draw_line, draw_markers, draw_steps, draw_y_labels, paler, y_at,
+};
 pub(in crate::report) use tiles::draw_sign;
 pub use view::Place;
 
