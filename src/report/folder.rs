@@ -5,7 +5,6 @@ use crate::files::write_bytes;
 use crate::report::csv_tables::csv_content;
 use crate::report::drawing::Drawing;
 use crate::report::raster::ToRaster;
-use crate::report::study_tables::TableFiles;
 use crate::table::Table;
 use rayon::prelude::*;
 use serde::Serialize;
@@ -101,13 +100,6 @@ impl<'a> Folder<'a> {
         let csv = csv_content(&self.path.join(name), rows)?;
         self.add(name, csv);
         Ok(())
-    }
-
-    /// Adds the tables of a study.
-    pub(super) fn add_files(&mut self, tables: TableFiles) {
-        for (name, content) in tables {
-            self.add(name, content);
-        }
     }
 
     /// Adds a chart as PNG and as SVG; its name has no ending.

@@ -48,6 +48,6 @@ pub fn load_study(source: &Source) -> Result<RecognitionStudy> {
         }
     };
     let mut study = RecognitionStudy::new(plan, touched)?;
-    study.place = recognition_scale(&study, source.memory, &source.results).1;
+    (study.scale, study.place) = recognition_scale(&study, source.memory, &source.results);
     Ok(study)
 }

@@ -3,17 +3,22 @@
 use super::cost::{family_s, measure_s, touch_s};
 use super::rows::{ArrayOutcome, Outcome, RecognitionRows};
 use crate::error::Result;
+use crate::report::recognition::tables_of;
+use crate::study::Samples;
 use crate::study::cell_content::family_name;
 use crate::study::frames::FramePlace;
-use crate::study::pieces::{NamedPiece, PieceStudy, PiecesLeft};
+use crate::study::pieces::{NamedPiece, PieceStudy, PiecesLeft, Scale, run_whole};
 use crate::study::plan::{Plan, millimetres};
+use crate::study::progress::Progress;
 use crate::study::published::compare_with_published;
 use crate::study::sweep::{Group, Sweep};
 use crate::study::table::{Cell, StageTime};
 use crate::study::tabulate::tabulate;
 use crate::study::time_left::Piece;
 use crate::study::touch_set::TouchSet;
+use crate::table::Table;
 use std::ops::Range;
+use std::sync::OnceLock;
 
 /// Stages, for the time left; each classifier has its own.
 const TOUCH: u8 = 0;
@@ -30,6 +35,10 @@ pub struct RecognitionStudy {
     pub sweep: Sweep,
     /// Where the frames of an array are while its cells read them.
     pub place: FramePlace,
+    /// How large it is.
+    pub(super) scale: Scale,
+    /// A few touches for the eye, once something showed them.
+    samples: OnceLock<Samples>,
     /// All families, group by group.
     families: Vec<Family>,
     /// Of each group the number of its first family, and behind the last that of all families.
@@ -65,9 +74,28 @@ impl RecognitionStudy {
             touched,
             sweep,
             place: FramePlace::Memory,
+            scale: Scale::default(),
+            samples: OnceLock::new(),
             families,
             first_family,
         })
+    }
+
+    /// Runs all of it at once, keeps nothing, and ends at the first work item that fails.
+    ///
+    /// # Errors
+    /// What an item fails of.
+    pub fn run(&self, progress: &dyn Progress) -> Result<Outcome> {
+        self.outcome(run_whole(self, progress)?)
+    }
+
+    /// A few touches for the eye.
+    pub(super) fn samples(&self) -> Result<&Samples> {
+        if let Some(samples) = self.samples.get() {
+            return Ok(samples);
+        }
+        let made = self.touched.samples(&self.plan, &self.sweep)?;
+        Ok(self.samples.get_or_init(|| made))
     }
 
     /// The families of a group.
@@ -125,6 +153,26 @@ impl RecognitionStudy {
         Piece::of_stage(stage, family_s(&self.plan, family, of))
     }
 
+    /// The tables, typed.
+    pub fn outcome(&self, rows: RecognitionRows) -> Result<Outcome> {
+        let mut outcome = Outcome {
+            tables: Default::default(),
+            arrays: Vec::new(),
+            limits: Vec::new(),
+        };
+        self.add_arrays(&mut outcome, &rows);
+        let scored = rows.cells.into_iter().map(|row| {
+            let cell = &self.sweep.groups[row.at.0].cells[row.at.1];
+            (cell.clone(), row.evaluation)
+        });
+        let names = self.touched.class_names();
+        tabulate(&mut outcome.tables, scored.collect(), &names)?;
+        let published = &self.plan.spec.report.published;
+        outcome.tables.published = compare_with_published(published, &outcome.tables.summary);
+        outcome.limits = self.limits(&outcome.tables, &outcome.arrays);
+        Ok(outcome)
+    }
+
     /// Of each array what was made, measured, missed and saturated.
     fn add_arrays(&self, outcome: &mut Outcome, rows: &RecognitionRows) {
         for on in self.arrays() {
@@ -161,7 +209,7 @@ impl RecognitionStudy {
 
 impl PieceStudy for RecognitionStudy {
     type Rows = RecognitionRows;
-    type Tables = Outcome;
+    type Tables = Vec<Table>;
 
     /// Trial by trial all families, group by group; then the touches of each array.
     fn pieces(&self) -> Vec<NamedPiece> {
@@ -254,23 +302,9 @@ impl PieceStudy for RecognitionStudy {
         words.join(", ")
     }
 
-    fn tables(&self, rows: RecognitionRows) -> Result<Outcome> {
-        let mut outcome = Outcome {
-            tables: Default::default(),
-            arrays: Vec::new(),
-            limits: Vec::new(),
-        };
-        self.add_arrays(&mut outcome, &rows);
-        let scored = rows.cells.into_iter().map(|row| {
-            let cell = &self.sweep.groups[row.at.0].cells[row.at.1];
-            (cell.clone(), row.evaluation)
-        });
-        let names = self.touched.class_names();
-        tabulate(&mut outcome.tables, scored.collect(), &names)?;
-        let published = &self.plan.spec.report.published;
-        outcome.tables.published = compare_with_published(published, &outcome.tables.summary);
-        outcome.limits = self.limits(&outcome.tables, &outcome.arrays);
-        Ok(outcome)
+    fn tables(&self, rows: RecognitionRows) -> Result<Vec<Table>> {
+        let outcome = self.outcome(rows)?;
+        tables_of(&outcome.tables, &outcome.limits)
     }
 }
 
