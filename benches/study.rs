@@ -168,10 +168,10 @@ fn time_cells(folder: &Path) -> Result<()> {
     let objects = load_objects(&plan.spec.objects, None)?;
     let touched = draw_touches(objects, &plan.placement, &Seed::new(plan.spec.seed))?;
     let study = RecognitionStudy::new(plan, Box::new(touched))?;
-    let n_cells = study.sweep.n_cells();
+    let n_cells = study.n_cells();
     println!(
         "{n_cells} cells of {} classes",
-        study.touched.class_names().len()
+        study.first().touched.class_names().len()
     );
     let n_items = study.pieces().len();
     println!("{n_items} work items");
@@ -220,7 +220,7 @@ fn time_run(folder: &Path, study: &RecognitionStudy) -> Result<(f64, f64)> {
     assert!(failures.is_empty(), "{:?}", failures[0]);
     let outcome = study.outcome(finished.rows)?;
     journal.sync()?;
-    assert_eq!(outcome.tables.summary.len(), study.sweep.n_cells());
+    assert_eq!(outcome.tables.summary.len(), study.n_cells());
     let worked = *worked.0.lock().expect("no thread panics");
     Ok((start.elapsed().as_secs_f64(), worked))
 }

@@ -28,6 +28,7 @@ pub fn features(args: &Args) -> Result<()> {
     source.packings = Some(packings_beside(&args.out));
     let loaded = load_study(&source)?;
     output_folder(&args.out)?;
+    let loaded = loaded.part_of(args.cell);
     let progress = progress::to_stderr();
     let set = write_features(
         &args.out,

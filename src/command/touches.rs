@@ -34,7 +34,8 @@ pub fn touches(args: &Args) -> Result<()> {
     let (plan, read) = match args.cell {
         None => (read_plan(&source)?, None),
         Some(cell) => {
-            let loaded = load_study(&source)?;
+            let study = load_study(&source)?;
+            let loaded = study.part_of(cell);
             args.check(&loaded.plan)?;
             let which = (cell, args.trial);
             let read = ReadFrames::of_cell(
@@ -44,7 +45,7 @@ pub fn touches(args: &Args) -> Result<()> {
                 which,
                 progress.as_ref(),
             )?;
-            (loaded.plan, Some(read))
+            (loaded.plan.clone(), Some(read))
         }
     };
     args.check(&plan)?;

@@ -14,14 +14,10 @@ use serde::{Deserialize, Serialize};
 use crate::random::Seed;
 use crate::recognition::ClassifierKind;
 use crate::recognition::choice::{Candidates, Chosen, choose, choose_c};
+use crate::recognition::class_model::ClassModel;
 use crate::recognition::dataset::{Dataset, rows};
-use crate::recognition::decision_tree::DecisionTree;
-use crate::recognition::k_nearest::KNearest;
-use crate::recognition::kernel::{Gamma, Kernel};
+use crate::recognition::kernel::Gamma;
 use crate::recognition::linear_svm::{LinearMargin, LinearSvmParams};
-use crate::recognition::logistic::LogisticParams;
-use crate::recognition::naive_bayes::NaiveBayes;
-use crate::recognition::random_forest::RandomForest;
 use crate::recognition::scaling::{FittedScaling, Scaling};
 use crate::recognition::split::{Split, stratified_k_fold};
 use crate::recognition::svm::{DEFAULT_MEMORY_BYTES, Multiclass, Solver, SvmParams};
@@ -237,54 +233,29 @@ impl Classifier {
         Ok(TrainedClassifier::new(scaling, model, c, chosen))
     }
 
-    /// The model on scaled rows: one arm for each kind.
+    /// The model on scaled rows.
     fn train_model(&self, scaled: &Dataset, c: Option<f64>, seed: &Seed) -> Result<Model> {
         let c = c.unwrap_or(1.0);
-        Ok(match self.kind {
-            ClassifierKind::LinearSvm | ClassifierKind::RbfSvm | ClassifierKind::PolynomialSvm => {
-                match self.kernel_svm(c) {
-                    Some(params) => Model::Svm(Box::new(params.train(scaled)?)),
-                    None => Model::Classes(Arc::new(
-                        self.linear_svm(c)?.train(scaled, &seed.named("descent"))?,
-                    )),
-                }
-            }
-            ClassifierKind::LogisticRegression => {
-                let params = LogisticParams {
-                    c,
-                    tolerance: 0.1 * self.tolerance,
-                    ..LogisticParams::default()
-                };
-                Model::Classes(Arc::new(params.train(scaled)?))
-            }
-            ClassifierKind::KNearest => {
-                Model::Classes(Arc::new(KNearest::train(scaled, self.n_neighbours)?))
-            }
-            ClassifierKind::NaiveBayes => Model::Classes(Arc::new(NaiveBayes::train(scaled)?)),
-            ClassifierKind::DecisionTree => {
-                Model::Classes(Arc::new(DecisionTree::train(scaled, self.max_depth)?))
-            }
-            ClassifierKind::RandomForest => {
-                let seed = seed.named("forest");
-                let forest = RandomForest::train(scaled, self.n_trees, self.max_depth, &seed)?;
-                Model::Classes(Arc::new(forest))
-            }
+        Ok(match self.kernel_svm(c) {
+            Some(params) => Model::Svm(Box::new(params.train(scaled)?)),
+            None => Model::Classes((self.kind.about().train)(self, scaled, c, seed)?),
         })
+    }
+
+    /// An SVM without a kernel matrix.
+    pub(super) fn train_kernel_free(
+        &self,
+        scaled: &Dataset,
+        c: f64,
+        seed: &Seed,
+    ) -> Result<Arc<dyn ClassModel>> {
+        let seed = seed.named("descent");
+        Ok(Arc::new(self.linear_svm(c)?.train(scaled, &seed)?))
     }
 
     /// What the kernel SVM is trained with, if that is what the options ask for.
     fn kernel_svm(&self, c: f64) -> Option<SvmParams> {
-        let gamma = self.gamma;
-        let kernel = match self.kind {
-            ClassifierKind::LinearSvm => Kernel::Linear,
-            ClassifierKind::RbfSvm => Kernel::Rbf { gamma },
-            ClassifierKind::PolynomialSvm => Kernel::Polynomial {
-                gamma,
-                coef0: self.coef0,
-                degree: self.degree,
-            },
-            _ => return None,
-        };
+        let kernel = self.kind.about().kernel?(self);
         let is_kernel_free = self.multiclass == Multiclass::CrammerSinger
             || self.solver == Solver::CoordinateDescent;
         (!is_kernel_free).then_some(SvmParams {

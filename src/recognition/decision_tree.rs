@@ -8,6 +8,8 @@
 //! same rows differ (2,000 rows, 20 classes: 3 of 500 predictions). It also takes values closer than 1e-5 for equal,
 //! whatever the unit, and visits every row and feature at every node.
 
+use crate::recognition::classifier_about::ClassifierAbout;
+use std::sync::Arc;
 use ndarray::{Array2, ArrayView1, ArrayView2};
 use rand::Rng;
 
@@ -17,6 +19,14 @@ use crate::recognition::dataset::{Dataset, check_width};
 use crate::recognition::linear_svm::checked_classes;
 use crate::recognition::ranked::Ranked;
 use crate::{Error, Result};
+
+pub(super) const ABOUT: ClassifierAbout = ClassifierAbout {
+    has_depth: true,
+    train_s: |n_train, m, _| 3e-7 * n_train * m,
+    ..ClassifierAbout::new("decision tree", |classifier, scaled, _, _| {
+        Ok(Arc::new(DecisionTree::train(scaled, classifier.max_depth)?))
+    })
+};
 
 /// A trained tree. Scores are the logarithms of smoothed shares of the leaf's training rows.
 #[derive(Clone, Debug)]

@@ -7,12 +7,22 @@
 //! nominates: every row that rounding could have kept out of the k nearest is measured again by `Σ (a − b)²`, and the
 //! neighbours are those of a search one pair at a time, exactly. (Far from the origin many are nominated: scale features.)
 
+use crate::recognition::classifier_about::{ClassifierAbout, PRODUCT_S};
+use std::sync::Arc;
 use ndarray::{Array1, Array2, ArrayView1, ArrayView2, Axis};
 
 use crate::recognition::class_model::{ClassModel, log_vote_shares, positions};
 use crate::recognition::dataset::{Dataset, check_width};
 use crate::recognition::linear_svm::checked_classes;
 use crate::{Error, Result};
+
+pub(super) const ABOUT: ClassifierAbout = ClassifierAbout {
+    has_neighbours: true,
+    test_s: |n_train, m, _| n_train * (6e-9 + PRODUCT_S * m),
+    ..ClassifierAbout::new("k nearest neighbours", |classifier, scaled, _, _| {
+        Ok(Arc::new(KNearest::train(scaled, classifier.n_neighbours)?))
+    })
+};
 
 /// Rows whose distances to all training rows are computed at once. More leave the processor's cache, fewer make the
 /// products inefficient.

@@ -8,6 +8,8 @@
 //! - Crammer–Singer: all classes in one problem, `½ Σ_k |w_k|² + C Σ_i max_k (1[k ≠ y_i] + w_k·x_i − w_{y_i}·x_i)`, by
 //!   the sequential dual method.
 
+use crate::recognition::classifier_about::{ClassifierAbout, PRODUCT_S};
+use crate::recognition::kernel::Kernel;
 use ndarray::{Array1, Array2, ArrayView2, Axis, Zip, s};
 
 use crate::random::Seed;
@@ -17,6 +19,12 @@ use crate::recognition::crammer_singer;
 use crate::recognition::dataset::{Dataset, check_features, check_labels, distinct};
 use crate::recognition::linear_model::LinearModel;
 use crate::{Error, Result};
+
+pub(super) const ABOUT: ClassifierAbout = ClassifierAbout {
+    has_gamma: false,
+    test_s: |_, m, n_classes| n_classes * n_classes * (PRODUCT_S * m + 5e-9),
+    ..ClassifierAbout::svm("linear SVM", |_| Kernel::Linear)
+};
 
 /// Passes over the rows after which a solver gives up: scikit-learn's default for LinearSVC.
 pub const MAX_PASSES: usize = 1000;

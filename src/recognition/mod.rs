@@ -12,7 +12,7 @@
 //! `½ Σ_ij a_i a_j y_i y_j K(x_i, x_j) − Σ_i a_i` over `0 ≤ a_i ≤ C`, `Σ_i y_i a_i = 0`; our own sequential
 //! minimal optimisation solves it on Gram matrices that all problems of a data set share; [`svm`] makes one classifier of
 //! many, and can have linfa-svm solve them instead. [`linear_svm`] trains the linear case without a kernel
-//! matrix, and [`logistic`], [`naive_bayes`], [`k_nearest`], [`decision_tree`] and [`random_forest`] stand beside it as
+//! matrix, and [`logistic_regression`], [`naive_bayes`], [`k_nearest`], [`decision_tree`] and [`random_forest`] stand beside it as
 //! [`ClassModel`](class_model::ClassModel)s.
 //!
 //! ```
@@ -48,12 +48,13 @@ pub mod class_model;
 mod class_products;
 mod class_weights;
 pub mod classifier;
+#[macro_use]
+mod classifier_about;
 pub mod comparison;
 pub(crate) mod coordinate_descent;
 pub(crate) mod crammer_singer;
 pub mod dataset;
 mod decision;
-pub mod decision_tree;
 pub mod dual;
 mod election;
 mod extent;
@@ -67,21 +68,17 @@ pub mod fusion;
 mod grid;
 pub mod interval;
 mod judgement;
-pub mod k_nearest;
 pub mod kernel;
 mod later_products;
 pub(crate) mod lbfgs;
 pub mod linear_model;
-pub mod linear_svm;
 mod linfa_solver;
-pub mod logistic;
 pub mod many_tests;
 mod margin_pair;
 mod margin_rows;
 mod mean_squares;
 pub mod metrics;
 mod moved_row;
-pub mod naive_bayes;
 mod near_margin;
 pub mod over_time;
 mod packed;
@@ -91,7 +88,6 @@ mod panels;
 mod panels_512;
 mod points;
 mod product_kernel;
-pub mod random_forest;
 pub(crate) mod ranked;
 mod row_products;
 mod row_tiles;
@@ -113,39 +109,16 @@ pub mod variance;
 mod vector_registers;
 mod voting;
 
-/// A classifier that a study can sweep.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum ClassifierKind {
-    /// Soft-margin SVM, linear kernel.
-    LinearSvm,
-    /// Soft-margin SVM, Gaussian kernel `exp(−γ|x − z|²)`.
-    RbfSvm,
-    /// Soft-margin SVM, polynomial kernel `(γ x·z + c₀)^d`.
-    PolynomialSvm,
-    /// Multinomial [logistic regression](logistic).
-    LogisticRegression,
-    /// [k nearest neighbours](k_nearest).
-    KNearest,
-    /// Gaussian [naive Bayes](naive_bayes).
-    NaiveBayes,
-    /// A single [classification tree](decision_tree).
-    DecisionTree,
-    /// A [random forest](random_forest).
-    RandomForest,
-}
+pub use classifier_about::{ClassifierAbout, Train};
 
-impl ClassifierKind {
-    /// Whether it has a C: the soft-margin SVMs and logistic regression. The others train the same whatever C is given.
-    pub fn has_c(self) -> bool {
-        match self {
-            Self::LinearSvm | Self::RbfSvm | Self::PolynomialSvm | Self::LogisticRegression => true,
-            Self::KNearest | Self::NaiveBayes | Self::DecisionTree | Self::RandomForest => false,
-        }
-    }
-
-    /// Whether it has a kernel with a γ.
-    pub fn has_gamma(self) -> bool {
-        matches!(self, Self::RbfSvm | Self::PolynomialSvm)
-    }
+// Everything that a study may say of a classifier follows from its line here and from the file that it names.
+classifiers! {
+    LinearSvm linear_svm "Soft-margin SVM, linear kernel.";
+    RbfSvm rbf_svm "Soft-margin SVM, Gaussian kernel `exp(−γ|x − z|²)`.";
+    PolynomialSvm polynomial_svm "Soft-margin SVM, polynomial kernel `(γ x·z + c₀)^d`.";
+    LogisticRegression logistic_regression "Multinomial [logistic regression](logistic_regression).";
+    KNearest k_nearest "[k nearest neighbours](k_nearest).";
+    NaiveBayes naive_bayes "Gaussian [naive Bayes](naive_bayes).";
+    DecisionTree decision_tree "A single [classification tree](decision_tree).";
+    RandomForest random_forest "A [random forest](random_forest).";
 }

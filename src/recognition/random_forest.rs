@@ -4,6 +4,8 @@
 //! Differs from linfa-ensemble 0.8.1, because that grows linfa-trees' trees (see
 //! [`decision_tree`](crate::recognition::decision_tree)), breaks ties of votes by the order of a `HashMap`, and draws features once a tree.
 
+use crate::recognition::classifier_about::ClassifierAbout;
+use std::sync::Arc;
 use ndarray::{Array2, ArrayView2};
 use rand::Rng;
 
@@ -14,6 +16,17 @@ use crate::recognition::decision_tree::{Growth, Tree, check_depth};
 use crate::recognition::linear_svm::checked_classes;
 use crate::recognition::ranked::Ranked;
 use crate::{Error, Result};
+
+pub(super) const ABOUT: ClassifierAbout = ClassifierAbout {
+    has_trees: true,
+    has_depth: true,
+    train_s: |n_train, m, _| 3e-5 * n_train * m.sqrt(),
+    ..ClassifierAbout::new("random forest", |classifier, scaled, _, seed| {
+        let (n_trees, depth) = (classifier.n_trees, classifier.max_depth);
+        let forest = RandomForest::train(scaled, n_trees, depth, &seed.named("forest"))?;
+        Ok(Arc::new(forest))
+    })
+};
 
 /// A trained forest. Scores are the logarithms of smoothed shares of its trees' votes.
 #[derive(Clone, Debug)]

@@ -253,15 +253,7 @@ impl Axis {
 
 /// An ensemble in words.
 pub fn ensemble_name(ensemble: Ensemble) -> &'static str {
-    match ensemble {
-        Ensemble::Gaussian => "Gaussian",
-        Ensemble::Bernoulli => "Bernoulli",
-        Ensemble::Sparse => "sparse",
-        Ensemble::Sbhe => "SBHE",
-        Ensemble::BlockAverage => "block average",
-        Ensemble::Subsample => "subsample",
-        Ensemble::Identity => "identity",
-    }
+    ensemble.about().words
 }
 
 /// What is made of measurements, in words.
@@ -307,16 +299,7 @@ pub fn solver_name(solver: Solver) -> &'static str {
 
 /// A classifier in words.
 pub fn classifier_name(classifier: ClassifierKind) -> &'static str {
-    match classifier {
-        ClassifierKind::LinearSvm => "linear SVM",
-        ClassifierKind::RbfSvm => "RBF SVM",
-        ClassifierKind::PolynomialSvm => "polynomial SVM",
-        ClassifierKind::LogisticRegression => "logistic regression",
-        ClassifierKind::KNearest => "k nearest neighbours",
-        ClassifierKind::NaiveBayes => "naive Bayes",
-        ClassifierKind::DecisionTree => "decision tree",
-        ClassifierKind::RandomForest => "random forest",
-    }
+    classifier.about().words
 }
 
 fn with_suffix(number: f64, tick: &str, label: &str) -> AxisValue {

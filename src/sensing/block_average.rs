@@ -1,13 +1,14 @@
 //! Averages over blocks of neighbouring taxels.
 
-use ndarray::{Array1, ArrayView2, ArrayViewMut2, s};
+use super::ensemble::{EnsembleAbout, Operator};
+use ndarray::{Array1, Array2, ArrayView2, ArrayViewMut2, s};
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 use std::ops::Range;
 
 /// A rectangle of taxels.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub(super) struct Block {
+struct Block {
     /// Along patch y.
     pub rows: Range<usize>,
     /// Along patch x.
@@ -41,7 +42,7 @@ impl Block {
 }
 
 /// Splits an ny × nx array into m blocks, in reading order of their first taxels.
-pub(super) fn blocks(grid: (usize, usize), m: usize) -> Vec<Block> {
+fn blocks(grid: (usize, usize), m: usize) -> Vec<Block> {
     let mut blocks = equal_squares(grid, m).unwrap_or_else(|| split_blocks(grid, m));
     blocks.sort_by_key(|block| (block.rows.start, block.columns.start));
     blocks
@@ -89,7 +90,7 @@ fn split_blocks((ny, nx): (usize, usize), m: usize) -> Vec<Block> {
 }
 
 /// ‖φᵢ‖² of each row of Φ; rows are orthogonal.
-pub(super) fn row_squares(blocks: &[Block]) -> Array1<f64> {
+fn row_squares(blocks: &[Block]) -> Array1<f64> {
     blocks
         .iter()
         .map(|block| 1.0 / block.area() as f64)
@@ -97,7 +98,7 @@ pub(super) fn row_squares(blocks: &[Block]) -> Array1<f64> {
 }
 
 /// Measurement, taxel and value of each entry that is not zero.
-pub(super) fn each_entry(blocks: &[Block], mut visit: impl FnMut(usize, usize, f64)) {
+fn each_entry(blocks: &[Block], visit: &mut dyn FnMut(usize, usize, f64)) {
     let nx = width(blocks);
     for (measurement, block) in blocks.iter().enumerate() {
         for line in block.rows.clone() {
@@ -114,7 +115,7 @@ fn width(blocks: &[Block]) -> usize {
 }
 
 /// The mean of each block of each frame.
-pub(super) fn measure(blocks: &[Block], frames: ArrayView2<f64>, mut out: ArrayViewMut2<f64>) {
+fn measure(blocks: &[Block], frames: ArrayView2<f64>, mut out: ArrayViewMut2<f64>) {
     let nx = width(blocks);
     for (frame, mut row) in frames.outer_iter().zip(out.outer_iter_mut()) {
         for (y, block) in row.iter_mut().zip(blocks) {
@@ -128,6 +129,35 @@ pub(super) fn measure(blocks: &[Block], frames: ArrayView2<f64>, mut out: ArrayV
             }
             *y = sum / block.area() as f64;
         }
+    }
+}
+
+pub(super) const ABOUT: EnsembleAbout = EnsembleAbout {
+    is_prefix_nested: false,
+    ..EnsembleAbout::new("block average", |grid, m, _| {
+        Box::new(Blocks(blocks(grid, m)))
+    })
+};
+
+/// The blocks of measurements.
+#[derive(Debug)]
+struct Blocks(Vec<Block>);
+
+impl Operator for Blocks {
+    fn measure(&self, frames: ArrayView2<f64>, out: ArrayViewMut2<f64>) {
+        measure(&self.0, frames, out);
+    }
+
+    fn each_entry(&self, visit: &mut dyn FnMut(usize, usize, f64)) {
+        each_entry(&self.0, visit);
+    }
+
+    fn row_norm(&self) -> f64 {
+        row_squares(&self.0).mean().unwrap_or(1.0).sqrt()
+    }
+
+    fn known_gram(&self) -> Option<Array2<f64>> {
+        Some(Array2::from_diag(&row_squares(&self.0)))
     }
 }
 

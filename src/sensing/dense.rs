@@ -1,30 +1,51 @@
-//! A stored matrix Φ, and the ensembles that need one.
+//! A stored matrix Φ.
 
+use super::ensemble::{EnsembleAbout, Operator};
 use crate::random::Seed;
 use ndarray::linalg::general_mat_mul;
 use ndarray::{Array1, Array2, ArrayView2, ArrayViewMut2, s};
-use ndarray_rand::RandomExt;
-use rand::Rng;
 use rand_chacha::ChaCha8Rng;
-use rand_distr::StandardNormal;
 
-/// Φ, m × n, entries N(0, 1/n).
-pub(super) fn gaussian(m: usize, n: usize, stream: &Seed) -> Array2<f64> {
-    by_rows(m, n, stream, |rng| {
-        Array1::random_using(n, StandardNormal, rng)
-    })
+/// A stored matrix Φ, m × n.
+#[derive(Debug)]
+pub(super) struct Dense(pub(super) Array2<f64>);
+
+impl Operator for Dense {
+    fn measure(&self, frames: ArrayView2<f64>, out: ArrayViewMut2<f64>) {
+        measure(&self.0, frames, out);
+    }
+
+    fn each_entry(&self, visit: &mut dyn FnMut(usize, usize, f64)) {
+        let entries = self.0.indexed_iter();
+        entries.for_each(|((measurement, taxel), &value)| visit(measurement, taxel, value));
+    }
+
+    fn row_norm(&self) -> f64 {
+        let square = self.0.iter().map(|v| v * v).sum::<f64>();
+        (square / self.0.nrows() as f64).sqrt()
+    }
+
+    fn stored(&self) -> Option<&Array2<f64>> {
+        Some(&self.0)
+    }
 }
 
-/// Φ, m × n, entries ±1/√n, either sign as likely.
-pub(super) fn bernoulli(m: usize, n: usize, stream: &Seed) -> Array2<f64> {
-    by_rows(m, n, stream, |rng| {
-        Array1::from_shape_simple_fn(n, || if rng.r#gen() { 1.0 } else { -1.0 })
-    })
+/// One of a stored matrix, by what draws it from n, m and a stream.
+pub(super) const fn about(
+    words: &'static str,
+    draw: fn((usize, usize), usize, &Seed) -> Box<dyn Operator>,
+) -> EnsembleAbout {
+    EnsembleAbout {
+        // As it is drawn, and as it is kept.
+        bytes: |m, n| 16.0 * n * m,
+        taxel_s: |m, _| 5.8e-11 * m,
+        ..EnsembleAbout::new(words, draw)
+    }
 }
 
 /// Rows of n numbers of variance 1, divided by √n. Row r comes from the stream's child r alone, so a larger m keeps the
 /// smaller's rows.
-fn by_rows(
+pub(super) fn by_rows(
     m: usize,
     n: usize,
     stream: &Seed,
@@ -48,7 +69,7 @@ const MOSTLY_TOUCHED: f64 = 0.8;
 /// Y = X Φᵀ by the blocked matrix product, which sums each entry over the taxels in one fixed order whatever the
 /// number of frames or measurements (a law-test holds it to that). Taxels that read zero in all frames are left out, which
 /// changes no bit.
-pub(super) fn measure(matrix: &Array2<f64>, frames: ArrayView2<f64>, mut out: ArrayViewMut2<f64>) {
+fn measure(matrix: &Array2<f64>, frames: ArrayView2<f64>, mut out: ArrayViewMut2<f64>) {
     let touched = touched(frames);
     if touched.len() as f64 > MOSTLY_TOUCHED * frames.ncols() as f64 {
         return general_mat_mul(1.0, &frames, &matrix.t(), 0.0, &mut out);

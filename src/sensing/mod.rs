@@ -40,14 +40,14 @@
 //! How well a pair of Φ and Ψ can do is bounded by its [`Coherence`] and restricted isometry
 //! ([`SensedDictionary::isometry`]).
 
-mod block_average;
 mod cholesky;
 mod coherence;
 mod columns;
 mod cosine;
 mod dense;
 mod dictionary;
-mod hadamard;
+#[macro_use]
+mod ensemble;
 mod lasso;
 mod lmmse;
 mod omp;
@@ -55,14 +55,24 @@ mod pca;
 mod projection;
 mod reconstruction;
 mod sensed;
-mod sparse;
-mod subsample;
 mod symmetric_eigen;
 mod wavelet;
+
+// Everything that a study may say of an ensemble follows from its line here and from the file that it names.
+ensembles! {
+    Gaussian gaussian "Independent Gaussian entries.";
+    Bernoulli bernoulli "Independent entries ±1/√n, either sign as likely.";
+    Sparse sparse "Independent entries +√(s/n), 0, −√(s/n) with probabilities 1/2s, 1 − 1/s, 1/2s, where s = √n: the very sparse projections of Li, Hastie and Church (2006). A measurement reads √n taxels on average.";
+    Sbhe sbhe "Scrambled block Hadamard \\[SBHE\\]: taxels permuted, Walsh–Hadamard transforms of blocks, coefficients in random order.";
+    BlockAverage block_average "Averages over blocks of neighbouring taxels: equal squares where the array allows them (64 × 64 at m = 1,024 is 2 × 2 taxels each), else the cells of recursive splitting, largest first, along its longer side. A cell of a smaller m is a union of cells of a larger m, so the smaller measurements follow from the larger, among all m of splitting and among squares whose sides divide each other (ratios 4, 16, 64 …).";
+    Subsample subsample "Some taxels, drawn without replacement.";
+    Identity identity "The frame itself, whatever m.";
+}
 
 pub use coherence::{Coherence, Extremes};
 pub use columns::Columns;
 pub use dictionary::{Basis, Dictionary, Energy};
+pub use ensemble::{EnsembleAbout, Operator};
 pub use lasso::Lasso;
 pub use lmmse::Lmmse;
 pub use omp::Omp;
@@ -71,35 +81,3 @@ pub use reconstruction::{Effort, Reconstruction, Reconstructor, Solved, Solver};
 pub use sensed::SensedDictionary;
 
 use serde::{Deserialize, Serialize};
-
-/// How measurements are made from a frame.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Ensemble {
-    /// Independent Gaussian entries.
-    Gaussian,
-    /// Independent entries ±1/√n, either sign as likely.
-    Bernoulli,
-    /// Independent entries +√(s/n), 0, −√(s/n) with probabilities 1/2s, 1 − 1/s, 1/2s, where s = √n: the very sparse
-    /// projections of Li, Hastie and Church (2006). A measurement reads √n taxels on average.
-    Sparse,
-    /// Scrambled block Hadamard \[SBHE\]: taxels permuted, Walsh–Hadamard transforms of blocks, coefficients in random order.
-    Sbhe,
-    /// Averages over blocks of neighbouring taxels: equal squares where the array allows them (64 × 64 at m = 1,024 is
-    /// 2 × 2 taxels each), else the cells of recursive splitting, largest first, along its longer side.
-    ///
-    /// A cell of a smaller m is a union of cells of a larger m, so the smaller measurements follow from the larger, among all
-    /// m of splitting and among squares whose sides divide each other (ratios 4, 16, 64 …).
-    BlockAverage,
-    /// Some taxels, drawn without replacement.
-    Subsample,
-    /// The frame itself, whatever m.
-    Identity,
-}
-
-impl Ensemble {
-    /// Whether the first m measurements of a larger projection are those of the projection of size m.
-    pub fn is_prefix_nested(self) -> bool {
-        self != Self::BlockAverage
-    }
-}

@@ -1,12 +1,12 @@
 //! One prepared projection of any ensemble.
 
-use super::hadamard::{BLOCK, ScrambledHadamard};
-use super::sparse::VerySparse;
-use super::{Ensemble, block_average, dense, subsample};
+use super::Ensemble;
+use super::ensemble::Operator;
+use super::sbhe::ScrambledHadamard;
 use crate::error::{Error, Result};
 use crate::random::Seed;
-use block_average::Block;
 use ndarray::{Array2, ArrayView2, ArrayViewMut2, Axis, s};
+use std::sync::Arc;
 
 /// A map y = Φx from frames of n taxels to m measurements, drawn once and applied to any number of frames.
 ///
@@ -26,20 +26,7 @@ pub struct Projection {
     ensemble: Ensemble,
     n_taxels: usize,
     n_measurements: usize,
-    operator: Operator,
-}
-
-/// What each ensemble keeps.
-#[derive(Clone, Debug)]
-enum Operator {
-    /// Φ, m × n.
-    Dense(Array2<f64>),
-    Sparse(VerySparse),
-    Hadamard(ScrambledHadamard),
-    Blocks(Vec<Block>),
-    /// The taxel of each measurement.
-    Taxels(Vec<usize>),
-    Identity,
+    operator: Arc<dyn Operator>,
 }
 
 impl Projection {
@@ -51,28 +38,11 @@ impl Projection {
     /// An array without taxels; m = 0 or m > n.
     pub fn new(ensemble: Ensemble, grid: (usize, usize), m: usize, seed: &Seed) -> Result<Self> {
         let n = check_size(grid, m)?;
-        let operator = match ensemble {
-            Ensemble::Gaussian => Operator::Dense(dense::gaussian(m, n, &seed.named("gaussian"))),
-            Ensemble::Bernoulli => {
-                Operator::Dense(dense::bernoulli(m, n, &seed.named("bernoulli")))
-            }
-            Ensemble::Sparse => Operator::Sparse(VerySparse::new(m, n, &seed.named("sparse"))),
-            Ensemble::Sbhe => {
-                let stream = seed.named("sbhe");
-                Operator::Hadamard(ScrambledHadamard::new(m, n, BLOCK, &stream))
-            }
-            Ensemble::BlockAverage => Operator::Blocks(block_average::blocks(grid, m)),
-            Ensemble::Subsample => {
-                Operator::Taxels(subsample::taxels(m, n, &seed.named("subsample")))
-            }
-            Ensemble::Identity => Operator::Identity,
-        };
-        let n_measurements = if ensemble == Ensemble::Identity { n } else { m };
         Ok(Self {
             ensemble,
             n_taxels: n,
-            n_measurements,
-            operator,
+            n_measurements: ensemble.n_measurements(m, n),
+            operator: (ensemble.about().draw)(grid, m, seed).into(),
         })
     }
 
@@ -93,7 +63,7 @@ impl Projection {
             ensemble: Ensemble::Sbhe,
             n_taxels: n,
             n_measurements: m,
-            operator: Operator::Hadamard(hadamard),
+            operator: Arc::new(hadamard),
         })
     }
 
@@ -126,77 +96,37 @@ impl Projection {
     ///
     /// # Panics
     /// When a shape does not match.
-    pub fn measure_into(&self, frames: ArrayView2<f64>, mut measurements: ArrayViewMut2<f64>) {
+    pub fn measure_into(&self, frames: ArrayView2<f64>, measurements: ArrayViewMut2<f64>) {
         assert_eq!(frames.ncols(), self.n_taxels, "taxels in a frame");
         let expected = (frames.nrows(), self.n_measurements);
         assert_eq!(measurements.dim(), expected, "frames × measurements");
-        match &self.operator {
-            Operator::Dense(matrix) => dense::measure(matrix, frames, measurements),
-            Operator::Sparse(sparse) => sparse.measure(frames, measurements),
-            Operator::Hadamard(hadamard) => hadamard.measure(frames, measurements),
-            Operator::Blocks(blocks) => block_average::measure(blocks, frames, measurements),
-            Operator::Taxels(taxels) => {
-                for (frame, mut row) in frames.outer_iter().zip(measurements.outer_iter_mut()) {
-                    row.iter_mut().zip(taxels).for_each(|(y, &i)| *y = frame[i]);
-                }
-            }
-            Operator::Identity => measurements.assign(&frames),
-        }
+        self.operator.measure(frames, measurements);
     }
 
     /// Calls `visit` with measurement, taxel and value of each entry of Φ that may not be zero; the same order every time.
     pub(super) fn each_entry(&self, mut visit: impl FnMut(usize, usize, f64)) {
-        match &self.operator {
-            Operator::Dense(matrix) => {
-                let entries = matrix.indexed_iter();
-                entries.for_each(|((measurement, taxel), &value)| visit(measurement, taxel, value));
-            }
-            Operator::Sparse(sparse) => sparse.each_entry(visit),
-            Operator::Hadamard(hadamard) => hadamard.each_entry(visit),
-            Operator::Blocks(blocks) => block_average::each_entry(blocks, visit),
-            Operator::Taxels(taxels) => {
-                let picked = taxels.iter().enumerate();
-                picked.for_each(|(measurement, &taxel)| visit(measurement, taxel, 1.0));
-            }
-            Operator::Identity => (0..self.n_taxels).for_each(|taxel| visit(taxel, taxel, 1.0)),
-        }
+        self.operator.each_entry(&mut visit);
     }
 
     /// Root mean square norm of a row of Φ: how much louder noise on a taxel is in a measurement.
     pub fn row_norm(&self) -> f64 {
-        match &self.operator {
-            Operator::Dense(matrix) => {
-                let square = matrix.iter().map(|v| v * v).sum::<f64>();
-                (square / self.n_measurements as f64).sqrt()
-            }
-            Operator::Sparse(sparse) => sparse.row_norm(),
-            Operator::Hadamard(hadamard) => hadamard.row_norm(),
-            Operator::Blocks(blocks) => block_average::row_squares(blocks)
-                .mean()
-                .unwrap_or(1.0)
-                .sqrt(),
-            Operator::Taxels(_) | Operator::Identity => 1.0,
-        }
+        self.operator.row_norm()
     }
 
     /// ΦΦᵀ, m × m: the covariance of measurements of independent noise of variance 1 on every taxel.
     pub fn row_gram(&self) -> Array2<f64> {
-        match &self.operator {
-            Operator::Taxels(_) | Operator::Identity => Array2::eye(self.n_measurements),
-            Operator::Blocks(blocks) => Array2::from_diag(&block_average::row_squares(blocks)),
-            Operator::Dense(matrix) => matrix.dot(&matrix.t()),
-            Operator::Sparse(_) | Operator::Hadamard(_) => {
-                let matrix = self.matrix();
-                matrix.dot(&matrix.t())
-            }
-        }
+        let of_matrix = |matrix: &Array2<f64>| matrix.dot(&matrix.t());
+        self.operator.known_gram().unwrap_or_else(|| {
+            let stored = self.operator.stored().map(of_matrix);
+            stored.unwrap_or_else(|| of_matrix(&self.matrix()))
+        })
     }
 
     /// Φ itself, m × n: what [`measure`](Self::measure) applies.
     pub fn matrix(&self) -> Array2<f64> {
         // Unit frames are measured so many at a time, to bound their memory.
         const BLOCK: usize = 256;
-        if let Operator::Dense(matrix) = &self.operator {
+        if let Some(matrix) = self.operator.stored() {
             return matrix.clone();
         }
         let mut matrix = Array2::zeros((self.n_measurements, self.n_taxels));

@@ -4,6 +4,7 @@
 //! Li, Hastie and Church (2006, *Very sparse random projections*) for s up to √n where the data's tails are not heavy. A
 //! measurement then adds and subtracts √n taxels on average instead of n.
 
+use super::ensemble::{EnsembleAbout, Operator};
 use crate::random::Seed;
 use ndarray::{ArrayView2, ArrayViewMut2};
 use rand::Rng;
@@ -30,6 +31,15 @@ struct Row {
     minus: Vec<usize>,
 }
 
+pub(super) const ABOUT: EnsembleAbout = EnsembleAbout {
+    // m rows of √n entries each.
+    bytes: |m, n| 16.0 * n.sqrt() * m,
+    taxel_s: |m, n| 2.7e-10 * m / n.sqrt(),
+    ..EnsembleAbout::new("sparse", |(ny, nx), m, seed| {
+        Box::new(VerySparse::new(m, ny * nx, &seed.named("sparse")))
+    })
+};
+
 impl VerySparse {
     /// Row r comes from the stream's child r alone, so a larger m keeps the smaller's rows.
     pub(super) fn new(m: usize, n: usize, stream: &Seed) -> Self {
@@ -41,8 +51,10 @@ impl VerySparse {
             rows: rows.collect(),
         }
     }
+}
 
-    pub(super) fn row_norm(&self) -> f64 {
+impl Operator for VerySparse {
+    fn row_norm(&self) -> f64 {
         let n_entries: usize = self
             .rows
             .iter()
@@ -52,7 +64,7 @@ impl VerySparse {
     }
 
     /// Measurement, taxel and value of each entry that is not zero.
-    pub(super) fn each_entry(&self, mut visit: impl FnMut(usize, usize, f64)) {
+    fn each_entry(&self, visit: &mut dyn FnMut(usize, usize, f64)) {
         for (measurement, row) in self.rows.iter().enumerate() {
             let plus = row.plus.iter().map(|&taxel| (taxel, self.scale));
             let minus = row.minus.iter().map(|&taxel| (taxel, -self.scale));
@@ -61,7 +73,7 @@ impl VerySparse {
         }
     }
 
-    pub(super) fn measure(&self, frames: ArrayView2<f64>, mut out: ArrayViewMut2<f64>) {
+    fn measure(&self, frames: ArrayView2<f64>, mut out: ArrayViewMut2<f64>) {
         let mut values = vec![[0.0; LANES]; self.n_taxels];
         let groups = frames.axis_chunks_iter(ndarray::Axis(0), LANES);
         for (group, frames) in groups.enumerate() {

@@ -135,13 +135,13 @@ impl Columns for Cell {
         columns.extend_from_slice(strength_columns());
         columns.extend([
             Column::new("tested_on", Condition, "tested on", "", Words).optional(),
-            Column::new("ensemble", Choice, "ensemble", "", Words),
+            Column::new("ensemble", Choice, "ensemble", "", Words).named(Ensemble::NAMES),
             Column::new("measurements", Choice, "m", "", Log),
             Column::new("ratio", Choice, "compression", ":1", Log),
             Column::new("frames", Choice, "frames a touch", "", Log),
             Column::new("over_time", Choice, "over time", "", Words).optional(),
             Column::new("features", Choice, "features", "", Words),
-            Column::new("classifier", Choice, "classifier", "", Words),
+            Column::new("classifier", Choice, "classifier", "", Words).named(ClassifierKind::NAMES),
             Column::new("c", Choice, "C", "", Log),
             Column::new("train_touches", Choice, "training touches", "", Log),
             Column::new("mislabelled_fraction", Condition, "mislabelled", "%", Share).optional(),

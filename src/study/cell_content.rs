@@ -10,7 +10,6 @@ use super::sensor_errors::{Strengths, TestedOn, all_strengths};
 use super::spec::StepSpec;
 use super::sweep::Group;
 use super::table::Cell;
-use crate::recognition::ClassifierKind;
 use crate::signal::Strength;
 
 /// Hexadecimal digits of a name. Fewer: two cells may be taken for each other.
@@ -66,10 +65,7 @@ fn active_steps(plan: &Plan, cell: &Cell) -> Vec<StepSpec> {
 /// The C's of which each is solved from where the last one ended: the last digits of a solution depend on them all. None where each fit
 /// stands alone.
 fn solved_together(family: &[Cell]) -> Vec<f64> {
-    let is_path = matches!(
-        family[0].classifier,
-        ClassifierKind::LinearSvm | ClassifierKind::RbfSvm | ClassifierKind::PolynomialSvm
-    );
+    let is_path = family[0].classifier.about().kernel.is_some();
     let penalties = Group::fits(family).filter_map(|cells| cells[0].c);
     let mut penalties: Vec<f64> = penalties.filter(|_| is_path).collect();
     penalties.sort_by(f64::total_cmp);

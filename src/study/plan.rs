@@ -2,6 +2,7 @@
 //!
 //! This is the only place where millimetres, degrees and fractions become metres, radians and absolute values.
 
+use super::axes::{AxisValues, Variant};
 use super::check::Check;
 use super::plan_human::{HumanTouchPlan, no_placement};
 use super::pose_groups::KeepTogether;
@@ -205,6 +206,32 @@ impl Plan {
         Ok(plan)
     }
 
+    /// A plan for each combination of a study's own axes, the first alone where it has none; each says the whole study.
+    ///
+    /// # Errors
+    /// Those of [`Plan::new`], which name the axis.
+    pub fn variants(place: &str, spec: StudySpec) -> Result<Vec<(AxisValues, Self)>> {
+        if spec.axes.is_empty() {
+            return Ok(vec![(AxisValues::default(), Self::new(place, spec)?)]);
+        }
+        let check = Check { place };
+        check.configurations(spec.axes.n_combinations())?;
+        let (axes, columns) = (spec.axes.clone(), spec.axis_columns());
+        let variants = axes.variants(place, &spec)?.into_iter().enumerate();
+        let plans = variants.map(|(number, Variant { values, study })| {
+            let study = StudySpec {
+                axes: axes.clone(),
+                ..study
+            };
+            let plan = Self::new(place, study);
+            let plan = plan.map_err(|error| axes.refused(place, &values, &error.to_string()))?;
+            Ok((axes.point(&columns, (number, &values)), plan))
+        });
+        let plans = plans.collect::<Result<Vec<_>>>()?;
+        check.configurations(plans.iter().map(|(_, plan)| plan.n_cells()).sum())?;
+        Ok(plans)
+    }
+
     /// How many cells the study has, counted without laying any out.
     pub fn n_cells(&self) -> f64 {
         let product = |lengths: &[usize]| lengths.iter().map(|&n| n as f64).product::<f64>();
@@ -246,7 +273,7 @@ impl Plan {
     /// The m axis on an array; a ratio axis can name the same m twice on a small one.
     pub(super) fn measurement_counts(&self, patch: &Patch, ensemble: Ensemble) -> Vec<usize> {
         let n_taxels = patch.grid.n_taxels();
-        if ensemble == Ensemble::Identity {
+        if ensemble.about().is_whole_frame {
             return vec![n_taxels];
         }
         let mut named = HashSet::new();

@@ -163,14 +163,9 @@ impl Check<'_> {
     pub fn kinds(&self, spec: &StudySpec) -> Result<()> {
         let recognition = &spec.recognition;
         type Has = fn(ClassifierKind) -> bool;
-        let has_neighbours: Has = |kind| kind == ClassifierKind::KNearest;
-        let has_trees: Has = |kind| kind == ClassifierKind::RandomForest;
-        let has_depth: Has = |kind| {
-            matches!(
-                kind,
-                ClassifierKind::DecisionTree | ClassifierKind::RandomForest
-            )
-        };
+        let has_neighbours: Has = |kind| kind.about().has_neighbours;
+        let has_trees: Has = |kind| kind.about().has_trees;
+        let has_depth: Has = |kind| kind.about().has_depth;
         for (key, given, has_it, what) in [
             (
                 "recognition.n_neighbours",

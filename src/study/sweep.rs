@@ -87,6 +87,14 @@ impl Group {
 impl Sweep {
     /// Lays out splits and cells; the error says which objects or touches are too few, or shown without being there.
     pub fn new(plan: &Plan, touched: &dyn TouchSet) -> Result<Self> {
+        let sweep = Self::lay_out(plan, touched)?;
+        let cells: Vec<&Cell> = sweep.cells().collect();
+        check_published(&plan.spec.report.published, &cells)?;
+        Ok(sweep)
+    }
+
+    /// The same, but for claims of others, which may be about another combination of the study's own axes.
+    pub(crate) fn lay_out(plan: &Plan, touched: &dyn TouchSet) -> Result<Self> {
         let classes = touched.class_names();
         // Asked before it runs: samples are drawn when it is over.
         named_samples(plan, &classes)?;
@@ -127,9 +135,15 @@ impl Sweep {
                 sweep.add_groups(plan, (array, frames), &train_touches);
             }
         }
-        let cells: Vec<&Cell> = sweep.cells().collect();
-        check_published(&plan.spec.report.published, &cells)?;
         Ok(sweep)
+    }
+
+    /// Its cells as those of a combination of the study's own axes, numbered from `first` on.
+    pub(crate) fn place(&mut self, first: usize, variant: &AxisValues) {
+        for cell in self.groups.iter_mut().flat_map(|group| &mut group.cells) {
+            cell.cell += first;
+            cell.variant.clone_from(variant);
+        }
     }
 
     /// A trial's split, with no more training touches an object than the cell allows, and with its imbalance; an error for a

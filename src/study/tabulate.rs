@@ -8,30 +8,32 @@ use super::variance_table::variances;
 use crate::error::Result;
 use std::collections::BTreeMap;
 
-/// Fills every table but those of stages and of published numbers; `names` are those of the classes.
+/// The names of an object and of what it was taken for, and how often.
+type Counted = ([String; 2], usize);
+
+/// Fills every table but those of stages and of published numbers; `name` says the class of a label in a cell.
 pub fn tabulate(
     tables: &mut Tables,
     mut scored: Vec<(Cell, Evaluation)>,
-    names: &[&str],
+    name: impl Fn(&Cell, usize) -> String,
 ) -> Result<()> {
     scored.sort_by_key(|(cell, evaluation)| (cell.cell, evaluation.score.trial));
-    let mut confusions: BTreeMap<(usize, usize, usize), usize> = BTreeMap::new();
+    let mut confusions: BTreeMap<(usize, usize, usize), Counted> = BTreeMap::new();
     for (cell, evaluation) in scored {
         for &(object, predicted, count) in &evaluation.confusion {
-            *confusions
-                .entry((cell.cell, object, predicted))
-                .or_default() += count;
+            let names = || [object, predicted].map(|label| name(&cell, label));
+            let known = confusions.entry((cell.cell, object, predicted));
+            known.or_insert_with(|| (names(), 0)).1 += count;
         }
         tables.accuracy.push((cell.clone(), evaluation.score));
         tables.timing.push((cell, evaluation.time));
     }
-    let name = |label: usize| names[label].to_owned();
     tables.confusion = confusions
         .into_iter()
-        .map(|((cell, object, predicted), count)| Confusion {
+        .map(|((cell, ..), ([object, predicted], count))| Confusion {
             cell,
-            object: name(object),
-            predicted: name(predicted),
+            object,
+            predicted,
             count,
         })
         .collect();

@@ -10,7 +10,7 @@ use bubbletouch::recognition::class_model::ClassModel;
 use bubbletouch::recognition::classifier::{Classifier, Cost};
 use bubbletouch::recognition::dataset::{Dataset, dataset, rows};
 use bubbletouch::recognition::linear_svm::{LinearMargin, LinearSvm, LinearSvmParams};
-use bubbletouch::recognition::logistic::LogisticParams;
+use bubbletouch::recognition::logistic_regression::LogisticParams;
 use bubbletouch::recognition::svm::{Multiclass, Solver};
 use linfa::traits::Fit;
 use ndarray::{Array1, Array2};

@@ -1,9 +1,7 @@
 //! About how long parts of a recognition study take, processor-seconds: for `plan` right within a factor of three; a run weighs its items by
 //! those that finished.
 
-use crate::recognition::ClassifierKind;
 use crate::recognition::svm::{Multiclass, Solver};
-use crate::sensing::Ensemble;
 use crate::study::plan::{Plan, SplitKind};
 use crate::study::sweep::Group;
 use crate::study::table::Cell;
@@ -33,10 +31,7 @@ pub(super) fn touch_s(
 /// To read and project all frames of a group once.
 pub(super) fn measure_s(plan: &Plan, group: &Group, (n_touches, m): (usize, usize)) -> f64 {
     let n_taxels = plan.arrays[group.array].grid.n_taxels();
-    let project_s = match group.ensemble {
-        Ensemble::Gaussian | Ensemble::Bernoulli => PRODUCT_S * m as f64,
-        _ => 0.0,
-    };
+    let project_s = (group.ensemble.about().taxel_s)(m as f64, n_taxels as f64);
     (n_touches * group.frames * n_taxels) as f64 * (TAXEL_S + project_s)
 }
 
@@ -81,34 +76,23 @@ fn fit_s(plan: &Plan, cell: &Cell, (n_classes, n_touches): (f64, f64)) -> f64 {
 fn train_s(plan: &Plan, cell: &Cell, n_train: f64, n_classes: f64) -> f64 {
     let m = cell.n_features() as f64;
     let recognition = &plan.spec.recognition;
-    match cell.classifier {
-        ClassifierKind::LinearSvm | ClassifierKind::RbfSvm | ClassifierKind::PolynomialSvm => {
-            let entry_s = match recognition.solver {
-                Solver::Linfa => LINFA_ENTRY_S,
-                _ => ENTRY_S,
-            };
-            // Entries of all binary problems.
-            let n_entries = match recognition.multiclass {
-                Multiclass::OneVsOne => 2.0 * n_train * n_train,
-                Multiclass::OneVsRest | Multiclass::CrammerSinger => n_classes * n_train * n_train,
-            };
-            n_entries * entry_s + 0.5 * PRODUCT_S * n_train * n_train * m
-        }
-        ClassifierKind::LogisticRegression => 8e-8 * n_train * n_classes * (m + 40.0),
-        ClassifierKind::DecisionTree => 3e-7 * n_train * m,
-        ClassifierKind::RandomForest => 3e-5 * n_train * m.sqrt(),
-        ClassifierKind::KNearest | ClassifierKind::NaiveBayes => 2e-8 * n_train * m,
+    let about = cell.classifier.about();
+    if about.kernel.is_none() {
+        return (about.train_s)(n_train, m, n_classes);
     }
+    let entry_s = match recognition.solver {
+        Solver::Linfa => LINFA_ENTRY_S,
+        _ => ENTRY_S,
+    };
+    // Entries of all binary problems.
+    let n_entries = match recognition.multiclass {
+        Multiclass::OneVsOne => 2.0 * n_train * n_train,
+        Multiclass::OneVsRest | Multiclass::CrammerSinger => n_classes * n_train * n_train,
+    };
+    n_entries * entry_s + 0.5 * PRODUCT_S * n_train * n_train * m
 }
 
 /// A test touch.
 fn test_s(cell: &Cell, n_train: f64, n_classes: f64) -> f64 {
-    let m = cell.n_features() as f64;
-    match cell.classifier {
-        ClassifierKind::KNearest => n_train * (6e-9 + PRODUCT_S * m),
-        ClassifierKind::RbfSvm | ClassifierKind::PolynomialSvm => {
-            n_train * PRODUCT_S * (m + n_classes + 25.0)
-        }
-        _ => n_classes * n_classes * (PRODUCT_S * m + 5e-9),
-    }
+    (cell.classifier.about().test_s)(n_train, cell.n_features() as f64, n_classes)
 }

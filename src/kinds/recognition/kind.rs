@@ -49,13 +49,13 @@ impl Kind for RecognitionStudy {
     }
 
     fn facts(&self) -> Result<Facts> {
-        let spec = &self.plan.spec;
+        let spec = &self.first().plan.spec;
         Ok(Facts {
             toml: spec.to_toml(),
             question: spec.question.clone(),
             expected: spec.expected.clone(),
             seed: spec.seed,
-            content: self.touched.content(),
+            content: self.content(),
             methods: METHODS.into(),
         })
     }
@@ -69,7 +69,7 @@ impl Kind for RecognitionStudy {
     }
 
     fn charts(&self, tables: &[Table]) -> Vec<ChartSpec> {
-        recognition::charts(tables, self.plan.spec.report.pareto)
+        recognition::charts(tables, self.first().plan.spec.report.pareto)
     }
 
     fn pictures(&self, _tables: &[Table]) -> Result<Vec<NamedPicture>> {
@@ -87,10 +87,11 @@ impl Kind for RecognitionStudy {
 
     fn sections(&self, tables: &[Table]) -> Result<Vec<Section>> {
         let row = |name: &str, value: String| (name.to_owned(), value);
-        let spec = &self.plan.spec;
-        let mut settings = self.touched.settings();
+        let first = self.first();
+        let spec = &first.plan.spec;
+        let mut settings = first.touched.settings();
         settings.extend([
-            row("Touches", self.sweep.labels.len().to_string()),
+            row("Touches", first.sweep.labels.len().to_string()),
             row("Stroke", format!("{} mm", spec.skin.stroke_mm)),
             row("Trials", spec.trials.to_string()),
             row("Seed", spec.seed.to_string()),

@@ -23,7 +23,7 @@ impl RecognitionStudy {
             limit(
                 "touches that met nothing",
                 (sum(|a| a.n_missed), n_touches),
-                match self.plan.human_touch {
+                match self.first().plan.human_touch {
                     Some(_) => {
                         "the hand was beyond the array or between its taxels; their frames hold no contact"
                     }
@@ -43,14 +43,11 @@ impl RecognitionStudy {
                 "at least one of their SVMs is short of its tolerance",
             ),
         ];
-        let strokes = arrays.iter().map(|array| array.patch.taxel.stroke);
-        let n_deep: usize = strokes
-            .map(|stroke| self.touched.n_deeper_than(stroke))
-            .sum();
+        let n_deep = sum(|a| a.n_deeper);
         if n_deep > 0 {
             limits.push(limit(
                 "touches deeper than the stroke",
-                (n_deep as u64, n_touches),
+                (n_deep, n_touches),
                 "the patch went on past the depth at which its first taxel was at its stroke: more taxels are saturated, the deeper the more",
             ));
         }

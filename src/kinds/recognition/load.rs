@@ -1,53 +1,113 @@
-//! A recognition study from its text.
+//! A recognition study from its text: objects that are built once and touches that are drawn once for all combinations that share them.
 
 use super::scale::recognition_scale;
 use super::study::RecognitionStudy;
 use crate::error::{Error, Result};
 use crate::kinds::{self, Source};
 use crate::random::Seed;
+use crate::study::HumanTouches;
+use crate::study::axes::AxisValues;
 use crate::study::memory::check_touches;
+use crate::study::object_files::load_objects;
+use crate::study::plan::Plan;
+use crate::study::simulation::draw_touches;
+use crate::study::spec::StudySpec;
 use crate::study::touch_set::TouchSet;
-use crate::study::{HumanTouches, Plan, StudySpec, draw_touches, load_objects};
+use std::collections::HashMap;
+use std::path::Path;
+use std::sync::Arc;
 
-/// Reads and checks a study.
+/// Reads and checks a study: the plan of the first combination of its own axes.
 ///
 /// # Errors
 /// A study of another kind; a key that is not known or out of its range.
 pub fn read_plan(source: &Source) -> Result<Plan> {
+    Ok(read_plans(source)?.swap_remove(0).1)
+}
+
+/// The same: a plan for each combination of its own axes.
+fn read_plans(source: &Source) -> Result<Vec<(AxisValues, Plan)>> {
     if let Some(about) = kinds::about(&source.text)
         && about.table != super::RECOGNITION.table
     {
-        let allowed = format!(
-            "{} (bubbletouch run runs all kinds)",
-            super::RECOGNITION.words
-        );
+        let recognition = super::RECOGNITION.words;
+        let allowed = format!("{recognition} (bubbletouch run runs all kinds)");
         return Err(Error::input(&source.place, about.words, allowed));
     }
     let mut spec = StudySpec::parse(&source.place, &source.text)?;
+    if let Some(seed) = source.seed
+        && spec.axes.0.iter().any(|axis| axis.key == "seed")
+    {
+        let allowed = "no such option: the seed is an axis of the study";
+        return Err(Error::input("--seed", seed, allowed));
+    }
     spec.seed = source.seed(spec.seed);
     source.replace_objects(&mut spec.objects);
-    Plan::new(&source.place, spec)
+    Plan::variants(&source.place, spec)
 }
 
-/// The same, builds its objects and draws its touches, unless these take more memory than there is.
+/// Reads and checks a study, builds its objects and draws its touches, unless these take more memory than there is.
 ///
 /// # Errors
 /// Those of [`read_plan`]; an object that cannot be read; touches that memory cannot hold.
 pub fn load_study(source: &Source) -> Result<RecognitionStudy> {
-    let plan = read_plan(source)?;
-    let seed = Seed::new(plan.spec.seed);
-    let touched: Box<dyn TouchSet + Send> = match &plan.human_touch {
-        Some(human) => {
-            check_touches(&plan, human.kinds.len(), source.memory)?;
-            Box::new(HumanTouches::draw(human, &seed)?)
-        }
-        None => {
-            let objects = load_objects(&plan.spec.objects, source.packings())?;
-            check_touches(&plan, objects.len(), source.memory)?;
-            Box::new(draw_touches(objects, &plan.placement, &seed)?)
-        }
-    };
-    let mut study = RecognitionStudy::new(plan, touched)?;
+    let plans = read_plans(source)?;
+    let mut study = RecognitionStudy::load(plans, source.packings(), source.memory)?;
     (study.scale, study.place) = recognition_scale(&study, source.memory, &source.results);
     Ok(study)
+}
+
+impl RecognitionStudy {
+    /// Builds the objects of [plans](Plan::variants) and draws their touches, unless these take more bytes than `ceiling` (`None`: no
+    /// limit). Objects that are packed are kept in `packings`.
+    ///
+    /// # Errors
+    /// An object that cannot be built; too many touches; those of [`of_variants`](Self::of_variants).
+    pub fn load(
+        plans: Vec<(AxisValues, Plan)>,
+        packings: Option<&Path>,
+        ceiling: Option<u64>,
+    ) -> Result<Self> {
+        let mut objects = HashMap::new();
+        let mut drawn: HashMap<String, Arc<dyn TouchSet + Send>> = HashMap::new();
+        let mut variants = Vec::with_capacity(plans.len());
+        for (variant, plan) in plans {
+            let built = format!("{:?}", plan.spec.objects);
+            let (key, seed) = (touch_content(&plan), plan.spec.seed);
+            let touched = match (drawn.get(&key), &plan.human_touch) {
+                (Some(known), _) => known.clone(),
+                (None, Some(human)) => {
+                    check_touches(&plan, human.kinds.len(), ceiling)?;
+                    Arc::new(HumanTouches::draw(human, &Seed::new(seed))?)
+                }
+                (None, None) => {
+                    if !objects.contains_key(&built) {
+                        let loaded = load_objects(&plan.spec.objects, packings)?;
+                        objects.insert(built.clone(), loaded);
+                    }
+                    let objects = &objects[&built];
+                    check_touches(&plan, objects.len(), ceiling)?;
+                    let seed = Seed::new(seed);
+                    Arc::new(draw_touches(objects.clone(), &plan.placement, &seed)?)
+                }
+            };
+            drawn.insert(key, touched.clone());
+            variants.push((variant, plan, touched));
+        }
+        Self::of_variants(variants)
+    }
+}
+
+/// All that the touches of a plan depend on, beside the array and the files of its objects.
+pub(super) fn touch_content(plan: &Plan) -> String {
+    let Plan {
+        spec,
+        placement,
+        human_touch,
+        ..
+    } = plan;
+    format!(
+        "{:?} {placement:?} {human_touch:?} {}",
+        spec.objects, spec.seed
+    )
 }

@@ -7,43 +7,46 @@ use crate::study::evaluation::Trial;
 use crate::study::frames::{FrameWriter, Frames};
 use crate::study::measurement::{Measurements, measure_group};
 use crate::study::pieces::PiecesLeft;
-use crate::study::progress::Progress;
 use crate::study::simulation::describe;
-use crate::study::sweep::Group;
-use crate::world::Patch;
 use rayon::prelude::*;
+use std::cmp::Reverse;
+use std::collections::BTreeMap;
 
 /// A group in a trial, and those of its families that are left.
 pub(super) struct Job<'a> {
     study: &'a RecognitionStudy,
-    pub group: &'a Group,
+    /// The first of the groups that are measured together.
+    pub group: usize,
     trial: usize,
     families: Vec<usize>,
 }
 
 impl RecognitionStudy {
     pub(super) fn measure_all(&self, left: &PiecesLeft<RecognitionRows>) -> Result<()> {
-        self.touched.prepare();
-        for array in 0..self.plan.arrays.len() {
-            for frames in costliest_first(&self.plan.frames) {
-                self.on_array(left, (array, frames))?;
-            }
+        for part in self.parts() {
+            part.touched.prepare();
         }
-        Ok(())
+        let all: Vec<_> = self.touch_sets.iter().collect();
+        let mut order: Vec<usize> = (0..all.len()).collect();
+        // Most frames first: what learns from them takes longest, and how much longer than planned is then known early.
+        order.sort_by_key(|&t| (all[t].part, all[t].array, Reverse(all[t].n_frames)));
+        order
+            .into_iter()
+            .try_for_each(|touches| self.on_touches(left, touches))
     }
 
-    /// Groups in trials of which some families are left, on an array and with a number of frames.
-    pub(super) fn jobs(
-        &self,
-        left: &PiecesLeft<RecognitionRows>,
-        on: (usize, usize),
-    ) -> Vec<Job<'_>> {
+    /// Groups in trials of which some families are left, of some touches; those that are measured alike together.
+    pub(super) fn jobs(&self, left: &PiecesLeft<RecognitionRows>, touches: usize) -> Vec<Job<'_>> {
+        let mut alike: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
+        for group in self.groups.iter().filter(|group| group.touches == touches) {
+            let families = alike.entry(group.measured_as).or_default();
+            families.extend(group.families.clone());
+        }
         let mut jobs = Vec::new();
-        for trial in 0..self.plan.spec.trials {
-            let groups = self.sweep.groups.iter().enumerate();
-            for (place, group) in groups.filter(|(_, group)| self.on(group) == on) {
+        for trial in 0..self.n_trials() {
+            for (&group, families) in &alike {
                 let is_left = |&family: &usize| left.has_number(self.family_item(trial, family));
-                let families: Vec<usize> = self.families_of(place).filter(is_left).collect();
+                let families: Vec<usize> = families.iter().copied().filter(is_left).collect();
                 if !families.is_empty() {
                     jobs.push(Job {
                         study: self,
@@ -57,22 +60,24 @@ impl RecognitionStudy {
         jobs
     }
 
-    /// Does what is left on an array read in so many frames a touch.
-    fn on_array(&self, left: &PiecesLeft<RecognitionRows>, on: (usize, usize)) -> Result<()> {
+    /// Does what is left of some touches.
+    fn on_touches(&self, left: &PiecesLeft<RecognitionRows>, on: usize) -> Result<()> {
         let jobs = self.jobs(left, on);
         let touches = self.touches_item(on);
         if jobs.is_empty() && !left.has_number(touches) {
             return Ok(());
         }
-        let (patch, n_frames) = (&self.plan.arrays[on.0], self.plan.frames[on.1]);
+        let (part, patch, n_frames) = self.on(on);
         let mut need: Vec<usize> = jobs.iter().flat_map(Job::items).collect();
         let n_families = need.len();
         need.push(touches);
         let stage = in_frames(&format!("touch {}", describe(patch)), n_frames);
-        left.progress.stage(&stage, self.sweep.labels.len() as u64);
+        left.progress.stage(&stage, part.sweep.labels.len() as u64);
         let make = || {
             left.during(&self.touch_work(on), || {
-                self.frames((patch, n_frames), left.progress)
+                let writer = FrameWriter::new(patch.grid.n_taxels(), &self.place)?;
+                part.touched
+                    .simulate((patch, n_frames), writer, left.progress)
             })
         };
         let Some(frames) = left.prepare_numbers(&need, make)? else {
@@ -95,11 +100,6 @@ impl RecognitionStudy {
         })?;
         jobs.par_iter().try_for_each(|job| job.run(left, &frames))
     }
-
-    fn frames(&self, on: (&Patch, usize), progress: &dyn Progress) -> Result<Frames> {
-        let writer = FrameWriter::new(on.0.grid.n_taxels(), &self.place)?;
-        self.touched.simulate(on, writer, progress)
-    }
 }
 
 impl Job<'_> {
@@ -112,17 +112,15 @@ impl Job<'_> {
     /// What is measured once, and the families that it serves: a group of prefixes is projected once and serves all cells; else
     /// each m serves its own.
     pub fn batches(&self) -> Vec<(usize, Vec<usize>)> {
-        let nested = self.group.ensemble.is_prefix_nested();
+        let (_, group) = self.study.group(self.group);
+        let nested = group.ensemble.is_prefix_nested();
         let served = |m| {
-            let serves = |&family: &usize| nested || self.study.cells(family)[0].measurements == m;
+            let serves =
+                |&family: &usize| nested || self.study.family(family).1[0].measurements == m;
             let families: Vec<usize> = self.families.iter().copied().filter(serves).collect();
             (!families.is_empty()).then_some((m, families))
         };
-        self.group
-            .projected()
-            .into_iter()
-            .filter_map(served)
-            .collect()
+        group.projected().into_iter().filter_map(served).collect()
     }
 
     /// Measures, then evaluates the families.
@@ -145,7 +143,7 @@ impl Job<'_> {
                     // It is told once.
                     if place == 0 {
                         rows.touches.push(TouchRow {
-                            n_measured: self.study.sweep.labels.len(),
+                            n_measured: self.study.group(self.group).0.sweep.labels.len(),
                             cpu_s: measured.cpu_s,
                             ..TouchRow::default()
                         });
@@ -158,26 +156,22 @@ impl Job<'_> {
     }
 
     fn measure(&self, frames: &Frames, n_measurements: usize) -> Result<Measurements> {
-        let RecognitionStudy {
-            plan,
-            sweep,
-            touched,
-            ..
-        } = self.study;
-        let touches = (touched.as_ref() as _, frames);
-        let trial = (self.trial, &sweep.splits[self.trial]);
-        measure_group(plan, self.group, touches, trial, n_measurements)
+        let (part, group) = self.study.group(self.group);
+        let touches = (part.touched.as_ref() as _, frames);
+        let trial = (self.trial, &part.sweep.splits[self.trial]);
+        measure_group(&part.plan, group, touches, trial, n_measurements)
     }
 
     fn evaluate(&self, family: usize, measurements: &Measurements) -> Result<RecognitionRows> {
+        let (part, cells) = self.study.family(family);
         let trial = Trial {
-            plan: &self.study.plan,
-            sweep: &self.study.sweep,
+            plan: &part.plan,
+            sweep: &part.sweep,
             measurements,
             tested: measurements,
             number: self.trial,
         };
-        let evaluations = trial.evaluate(self.study.cells(family))?.into_iter();
+        let evaluations = trial.evaluate(cells)?.into_iter();
         let rows = evaluations.map(|evaluation| CellRow {
             at: (0, 0),
             evaluation,
@@ -186,24 +180,5 @@ impl Job<'_> {
             cells: rows.collect(),
             ..RecognitionRows::default()
         })
-    }
-}
-
-/// The places of numbers of frames, most frames first: what learns from them takes longest, and how much longer than planned is
-/// then known early.
-fn costliest_first(frames: &[usize]) -> Vec<usize> {
-    let mut places: Vec<usize> = (0..frames.len()).collect();
-    places.sort_by_key(|&place| std::cmp::Reverse(frames[place]));
-    places
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn touches_of_most_frames_are_learned_from_first() {
-        assert_eq!(costliest_first(&[1, 4, 2]), [1, 2, 0]);
-        assert_eq!(costliest_first(&[]), [0; 0]);
     }
 }

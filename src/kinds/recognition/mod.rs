@@ -12,7 +12,7 @@ mod study;
 pub use load::{load_study, read_plan};
 pub use rows::{ArrayOutcome, Outcome, RecognitionRows};
 pub use scale::recognition_scale;
-pub use study::RecognitionStudy;
+pub use study::{RecognitionStudy, StudyPart};
 
 use super::About;
 
@@ -24,6 +24,7 @@ pub const RECOGNITION: About = About {
         "question",
         "expected",
         "report",
+        "axes",
         "trials",
         "skin.pitch_mm",
         "skin.size_mm",

@@ -30,9 +30,9 @@ pub(super) struct CellRow {
 /// Touches of an array, read in so many frames each.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(super) struct TouchRow {
-    /// The array and how many frames, by their places in the plan as it is today.
+    /// Which touches, by their place in the study as it is today.
     #[serde(skip)]
-    pub on: (usize, usize),
+    pub on: usize,
     /// Whether they were made; else measured.
     pub is_made: bool,
     /// Touches that met nothing, of those that were made.
@@ -74,4 +74,6 @@ pub struct ArrayOutcome {
     pub n_missed: usize,
     /// Touches with at least one taxel at its stroke.
     pub n_saturated: usize,
+    /// Touches deeper than the stroke.
+    pub n_deeper: usize,
 }

@@ -1,9 +1,7 @@
 //! How much of a recognition study is held at once: frames, measurements, the rows and matrices of training.
 
-use super::study::RecognitionStudy;
-use crate::recognition::ClassifierKind;
+use super::study::{RecognitionStudy, StudyPart};
 use crate::recognition::svm::{Multiclass, Solver};
-use crate::sensing::Ensemble;
 use crate::study::frames::{FramePlace, made_at_once, most_bytes};
 use crate::study::memory::solver_memory;
 use crate::study::pieces::Scale;
@@ -28,62 +26,51 @@ pub fn recognition_scale(
     ceiling: Option<u64>,
     folder: &Path,
 ) -> (Scale, FramePlace) {
-    let RecognitionStudy {
-        plan,
-        touched,
-        sweep,
-        ..
-    } = study;
-    let n_touches = sweep.labels.len();
-    let n_taxels = |group: &Group| plan.arrays[group.array].grid.n_taxels();
-    let n_frames = |group: &Group| (n_touches * group.frames) as f64;
+    type Placed<'a> = (&'a StudyPart, &'a Group);
+    let n_taxels = |(part, group): Placed| part.plan.arrays[group.array].grid.n_taxels();
+    let n_frames = |(part, group): Placed| (part.sweep.labels.len() * group.frames) as f64;
     let m = |group: &Group| group.projected().into_iter().max().unwrap_or(0) as f64;
-    let measured = |group: &Group| {
-        8.0 * n_frames(group) * m(group) + matrix_bytes(group.ensemble, m(group), n_taxels(group))
+    let measured = |on: Placed| {
+        let matrix = on.1.ensemble.about().bytes;
+        8.0 * n_frames(on) * m(on.1) + matrix(m(on.1), n_taxels(on) as f64)
     };
-    let n_test = sweep.splits.iter().map(|split| split.test.len());
-    let rows = Rows {
-        n_test: n_test.max().unwrap_or(0) as f64,
-        n_classes: touched.class_names().len(),
+    let groups = || {
+        let parts = study.parts().iter();
+        parts.flat_map(|part| part.sweep.groups.iter().map(move |group| (part, group)))
     };
-    let groups = || sweep.groups.iter();
-    let families = || groups().flat_map(Group::families);
+    let learned = |(part, group): Placed| {
+        let n_test = part.sweep.splits.iter().map(|split| split.test.len());
+        let rows = Rows {
+            n_test: n_test.max().unwrap_or(0) as f64,
+            n_classes: part.touched.class_names().len(),
+        };
+        let families = group.families();
+        largest(families.map(|family| rows.family_bytes(&part.plan, &family[0])))
+    };
     let in_memory = largest(groups().map(|g| n_frames(g) * (most_bytes(n_taxels(g)) + 16) as f64));
     // Where each frame is, and what is held before it is put there.
     let in_file = largest(groups().map(|g| {
-        let n_made = (made_at_once(g.frames) * g.frames) as f64;
+        let n_made = (made_at_once(g.1.frames) * g.1.frames) as f64;
         8.0 * n_frames(g) + n_made * most_bytes(n_taxels(g)) as f64
     }));
+    let first = study.first();
+    let n_touches = first.sweep.labels.len();
     let scale = |frames: f64| Scale {
-        objects: touched.class_names().len().to_string(),
-        touches: match plan.arrays.len() {
+        objects: first.touched.class_names().len().to_string(),
+        touches: match study.n_arrays() {
             1 => format!("{n_touches} on one array"),
             n => format!("{n_touches} on each of {n} arrays"),
         },
-        n_configurations: sweep.n_cells(),
-        bytes: frames + CELL_BYTES * (sweep.n_cells() * plan.spec.trials) as f64,
+        n_configurations: study.n_cells(),
+        bytes: frames + CELL_BYTES * (study.n_cells() * first.plan.spec.trials) as f64,
         // A thread that waits for others begins another group.
-        item_bytes: 2.0 * largest(groups().map(measured))
-            + largest(families().map(|family| rows.family_bytes(plan, &family[0]))),
+        item_bytes: 2.0 * largest(groups().map(measured)) + largest(groups().map(learned)),
     };
     let free = scale(in_memory);
     let ceiling = ceiling.map_or(f64::INFINITY, |bytes| bytes as f64);
     match free.n_at_once(ceiling) == Some(rayon::current_num_threads()) {
         true => (free, FramePlace::Memory),
         false => (scale(in_file), FramePlace::File(folder.to_owned())),
-    }
-}
-
-/// Bytes of an ensemble's matrix of m rows.
-fn matrix_bytes(ensemble: Ensemble, m: f64, n_taxels: usize) -> f64 {
-    let n = n_taxels as f64;
-    match ensemble {
-        Ensemble::Gaussian | Ensemble::Bernoulli => 16.0 * n * m,
-        // m rows of √n entries each.
-        Ensemble::Sparse => 16.0 * n.sqrt() * m,
-        Ensemble::Sbhe | Ensemble::BlockAverage | Ensemble::Subsample | Ensemble::Identity => {
-            16.0 * n
-        }
     }
 }
 
@@ -112,10 +99,7 @@ impl Rows {
 
     /// Kernel values, at most as many as the solver is allowed.
     fn solver_bytes(&self, plan: &Plan, cell: &Cell) -> f64 {
-        let is_kernel_svm = matches!(
-            cell.classifier,
-            ClassifierKind::LinearSvm | ClassifierKind::RbfSvm | ClassifierKind::PolynomialSvm
-        );
+        let is_kernel_svm = cell.classifier.about().kernel.is_some();
         let recognition = &plan.spec.recognition;
         if !is_kernel_svm || recognition.solver == Solver::CoordinateDescent {
             return 0.0;

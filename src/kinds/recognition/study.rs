@@ -1,24 +1,32 @@
 //! A study that recognises objects: its work items, and the tables of what they found.
 
 use super::cost::{family_s, measure_s, touch_s};
+use super::load::touch_content;
 use super::rows::{ArrayOutcome, Outcome, RecognitionRows};
 use crate::error::Result;
+use crate::random::Seed;
 use crate::report::recognition::tables_of;
+use crate::study::ContentHash;
 use crate::study::Samples;
+use crate::study::TestedOn;
+use crate::study::axes::AxisValues;
 use crate::study::cell_content::family_name;
 use crate::study::frames::FramePlace;
+use crate::study::measurement::signal_steps;
 use crate::study::pieces::{NamedPiece, PieceStudy, PiecesLeft, Scale, run_whole};
 use crate::study::plan::{Plan, millimetres};
 use crate::study::progress::Progress;
-use crate::study::published::compare_with_published;
+use crate::study::published::{check_published, compare_with_published};
 use crate::study::sweep::{Group, Sweep};
 use crate::study::table::{Cell, StageTime};
 use crate::study::tabulate::tabulate;
 use crate::study::time_left::Piece;
 use crate::study::touch_set::TouchSet;
 use crate::table::Table;
+use crate::world::Patch;
+use std::collections::{BTreeMap, HashMap, HashSet};
 use std::ops::Range;
-use std::sync::OnceLock;
+use std::sync::{Arc, OnceLock};
 
 /// Stages, for the time left; each classifier has its own.
 const TOUCH: u8 = 0;
@@ -27,22 +35,56 @@ const LEARN: u8 = 2;
 
 /// A recognition study that is laid out.
 pub struct RecognitionStudy {
-    /// What to run.
-    pub plan: Plan,
-    /// What is touched.
-    pub touched: Box<dyn TouchSet + Send>,
-    /// Splits and cells.
-    pub sweep: Sweep,
+    /// One for each combination of the study's own axes; one alone where it has none.
+    parts: Vec<StudyPart>,
     /// Where the frames of an array are while its cells read them.
     pub place: FramePlace,
     /// How large it is.
     pub(super) scale: Scale,
     /// A few touches for the eye, once something showed them.
     samples: OnceLock<Samples>,
+    /// All touches that are made, those of the same content once.
+    pub(super) touch_sets: Vec<Touches>,
+    /// All groups, part by part.
+    pub(super) groups: Vec<PlacedGroup>,
     /// All families, group by group.
     families: Vec<Family>,
-    /// Of each group the number of its first family, and behind the last that of all families.
-    first_family: Vec<usize>,
+}
+
+/// What is run of one combination of a study's own axes.
+pub struct StudyPart {
+    /// What to run.
+    pub plan: Plan,
+    /// What is touched; the same for parts that touch the same.
+    pub touched: Arc<dyn TouchSet + Send>,
+    /// Splits and cells.
+    pub sweep: Sweep,
+}
+
+/// Touches of an array that are made, with so many frames each.
+pub(super) struct Touches {
+    /// The first part that reads them.
+    pub part: usize,
+    /// The array, by its place in the part's plan.
+    pub array: usize,
+    /// Frames a touch.
+    pub n_frames: usize,
+    /// What tells them from others in the name of their work item; empty in a study without axes of its own.
+    key: String,
+}
+
+/// A group of a part.
+pub(super) struct PlacedGroup {
+    /// Its part.
+    pub part: usize,
+    /// Its place in the part's sweep.
+    place: usize,
+    /// Its touches.
+    pub touches: usize,
+    /// The first group that reads and measures the same.
+    pub measured_as: usize,
+    /// Its families.
+    pub families: Range<usize>,
 }
 
 /// A [family](Group::families) of cells.
@@ -57,56 +99,170 @@ impl RecognitionStudy {
     /// # Errors
     /// Objects or touches that are too few, or are shown without being there.
     pub fn new(plan: Plan, touched: Box<dyn TouchSet + Send>) -> Result<Self> {
-        let sweep = Sweep::new(&plan, touched.as_ref())?;
-        let (mut families, mut first_family) = (Vec::new(), Vec::new());
-        for (group, laid_out) in sweep.groups.iter().enumerate() {
-            first_family.push(families.len());
-            let mut first = 0;
-            families.extend(laid_out.families().map(|family| {
-                let cells = first..first + family.len();
-                first = cells.end;
-                Family { group, cells }
-            }));
-        }
-        first_family.push(families.len());
-        Ok(Self {
-            plan,
-            touched,
-            sweep,
+        Self::of_variants(vec![(AxisValues::default(), plan, touched.into())])
+    }
+
+    /// The same of all combinations of a study's own axes.
+    ///
+    /// # Errors
+    /// Those of [`new`](Self::new).
+    pub fn of_variants(
+        variants: Vec<(AxisValues, Plan, Arc<dyn TouchSet + Send>)>,
+    ) -> Result<Self> {
+        let mut study = Self {
+            parts: Vec::with_capacity(variants.len()),
             place: FramePlace::Memory,
             scale: Scale::default(),
             samples: OnceLock::new(),
-            families,
-            first_family,
-        })
-    }
-
-    /// Runs all of it at once, keeps nothing, and ends at the first work item that fails.
-    ///
-    /// # Errors
-    /// What an item fails of.
-    pub fn run(&self, progress: &dyn Progress) -> Result<Outcome> {
-        self.outcome(run_whole(self, progress)?)
-    }
-
-    /// A few touches for the eye.
-    pub(super) fn samples(&self) -> Result<&Samples> {
-        if let Some(samples) = self.samples.get() {
-            return Ok(samples);
+            touch_sets: Vec::new(),
+            groups: Vec::new(),
+            families: Vec::new(),
+        };
+        let is_one = variants.len() == 1;
+        let mut n_cells = 0;
+        for (variant, plan, touched) in variants {
+            let mut sweep = Sweep::lay_out(&plan, touched.as_ref())?;
+            sweep.place(n_cells, &variant);
+            n_cells += sweep.n_cells();
+            study.parts.push(StudyPart {
+                plan,
+                touched,
+                sweep,
+            });
         }
-        let made = self.touched.samples(&self.plan, &self.sweep)?;
-        Ok(self.samples.get_or_init(|| made))
+        let cells: Vec<&Cell> = study.all_cells().collect();
+        check_published(&study.first().plan.spec.report.published, &cells)?;
+        study.place_groups(is_one);
+        Ok(study)
     }
 
-    /// The families of a group.
-    pub(super) fn families_of(&self, group: usize) -> Range<usize> {
-        self.first_family[group]..self.first_family[group + 1]
+    /// Finds what touches and measurements have the same content.
+    fn place_groups(&mut self, is_one: bool) {
+        let mut known_touches: HashMap<String, usize> = HashMap::new();
+        let mut known_groups: HashMap<String, usize> = HashMap::new();
+        for (part, study) in self.parts.iter().enumerate() {
+            let touched = if is_one {
+                String::new()
+            } else {
+                touch_content(&study.plan)
+            };
+            for (place, group) in study.sweep.groups.iter().enumerate() {
+                let StudyPart { plan, .. } = study;
+                let patch = &plan.arrays[group.array];
+                let made = match is_one {
+                    true => format!("{} {}", group.array, group.frames),
+                    false => format!("{touched} {patch:?} {}", group.frames),
+                };
+                let next = self.touch_sets.len();
+                let touches = *known_touches.entry(made.clone()).or_insert(next);
+                if touches == next {
+                    let key = ContentHash::default().bytes(&made).hex();
+                    self.touch_sets.push(Touches {
+                        part,
+                        array: group.array,
+                        n_frames: group.frames,
+                        key: if is_one {
+                            String::new()
+                        } else {
+                            format!(", {}", &key[..12])
+                        },
+                    });
+                }
+                let number = self.groups.len();
+                let measured_as = match is_one {
+                    true => number,
+                    false => {
+                        let content = format!("{touches} {}", measured_content(plan, group));
+                        *known_groups.entry(content).or_insert(number)
+                    }
+                };
+                let first = self.families.len();
+                let mut start = 0;
+                self.families.extend(group.families().map(|family| {
+                    let cells = start..start + family.len();
+                    start = cells.end;
+                    Family {
+                        group: number,
+                        cells,
+                    }
+                }));
+                self.groups.push(PlacedGroup {
+                    part,
+                    place,
+                    touches,
+                    measured_as,
+                    families: first..self.families.len(),
+                });
+            }
+        }
     }
 
-    /// The cells of a family.
-    pub(super) fn cells(&self, family: usize) -> &[Cell] {
+    /// The first combination of the study's own axes: all of a study without any.
+    pub fn first(&self) -> &StudyPart {
+        &self.parts[0]
+    }
+
+    /// All combinations.
+    pub fn parts(&self) -> &[StudyPart] {
+        &self.parts
+    }
+
+    /// The combination that a cell is of, by its number; the last for a cell that the study does not have.
+    pub fn part_of(&self, cell: usize) -> &StudyPart {
+        let has_it = |part: &&StudyPart| part.sweep.cells().any(|known| known.cell == cell);
+        self.parts
+            .iter()
+            .find(has_it)
+            .unwrap_or_else(|| self.first())
+    }
+
+    /// All cells, in the order of their numbers.
+    pub fn all_cells(&self) -> impl Iterator<Item = &Cell> {
+        self.parts.iter().flat_map(|part| part.sweep.cells())
+    }
+
+    /// How many.
+    pub fn n_cells(&self) -> usize {
+        self.parts.iter().map(|part| part.sweep.n_cells()).sum()
+    }
+
+    /// Arrays on which touches are made.
+    pub fn n_arrays(&self) -> usize {
+        let arrays = self.touch_sets.iter().map(|t| (t.part, t.array));
+        arrays.collect::<HashSet<_>>().len()
+    }
+
+    /// SHA-256 of what each object is made of, by its name and, where combinations of the study's own axes differ in it, by those.
+    pub fn content(&self) -> BTreeMap<String, String> {
+        let mut all = self.first().touched.content();
+        for part in &self.parts {
+            for (name, hash) in part.touched.content() {
+                let known = all.entry(name.clone()).or_insert_with(|| hash.clone());
+                if *known != hash {
+                    all.insert(format!("{name} of {}", &hash[..12]), hash);
+                }
+            }
+        }
+        all
+    }
+
+    /// Trials of each cell.
+    pub(super) fn n_trials(&self) -> usize {
+        self.first().plan.spec.trials
+    }
+
+    /// A group with its part.
+    pub(super) fn group(&self, number: usize) -> (&StudyPart, &Group) {
+        let PlacedGroup { part, place, .. } = self.groups[number];
+        let part = &self.parts[part];
+        (part, &part.sweep.groups[place])
+    }
+
+    /// The cells of a family, with their part.
+    pub(super) fn family(&self, family: usize) -> (&StudyPart, &[Cell]) {
         let Family { group, cells } = &self.families[family];
-        &self.sweep.groups[*group].cells[cells.clone()]
+        let (part, group) = self.group(*group);
+        (part, &group.cells[cells.clone()])
     }
 
     /// The number of a family in a trial as a work item.
@@ -114,73 +270,52 @@ impl RecognitionStudy {
         trial * self.families.len() + family
     }
 
-    /// The number of an array's touches as a work item, by the places of the array and of how many frames.
-    pub(super) fn touches_item(&self, (array, frames): (usize, usize)) -> usize {
-        self.family_item(self.plan.spec.trials, 0) + array * self.plan.frames.len() + frames
+    /// The number of touches as a work item.
+    pub(super) fn touches_item(&self, touches: usize) -> usize {
+        self.family_item(self.n_trials(), 0) + touches
     }
 
-    /// The places of every array and number of frames.
-    fn arrays(&self) -> impl Iterator<Item = (usize, usize)> + use<> {
-        let n_frames = self.plan.frames.len();
-        let arrays = 0..self.plan.arrays.len();
-        arrays.flat_map(move |array| (0..n_frames).map(move |frames| (array, frames)))
+    /// What is touched, and on what.
+    pub(super) fn on(&self, touches: usize) -> (&StudyPart, &Patch, usize) {
+        let Touches {
+            part,
+            array,
+            n_frames,
+            ..
+        } = self.touch_sets[touches];
+        let part = &self.parts[part];
+        (part, &part.plan.arrays[array], n_frames)
     }
 
-    /// Where touches of a group are, by the places of its array and of its number of frames.
-    pub(super) fn on(&self, group: &Group) -> (usize, usize) {
-        let mut known = self.plan.frames.iter();
-        let frames = known.position(|&n_frames| n_frames == group.frames);
-        (group.array, frames.unwrap_or_default())
-    }
-
-    pub(super) fn touch_work(&self, (array, frames): (usize, usize)) -> Piece {
-        let (patch, n_touches) = (&self.plan.arrays[array], self.sweep.labels.len());
-        let n_frames = self.plan.frames[frames];
-        let on = (n_touches, n_frames);
-        let planned_s = touch_s(patch, self.touched.as_ref(), on);
+    pub(super) fn touch_work(&self, touches: usize) -> Piece {
+        let (part, patch, n_frames) = self.on(touches);
+        let on = (part.sweep.labels.len(), n_frames);
+        let planned_s = touch_s(patch, part.touched.as_ref(), on);
         Piece::one_by_one(TOUCH, planned_s / rayon::current_num_threads() as f64)
     }
 
-    pub(super) fn measure_work(&self, group: &Group, n_measurements: usize) -> Piece {
-        let measured = (self.sweep.labels.len(), n_measurements);
-        Piece::of_stage(MEASURE, measure_s(&self.plan, group, measured))
+    pub(super) fn measure_work(&self, group: usize, n_measurements: usize) -> Piece {
+        let (part, group) = self.group(group);
+        let measured = (part.sweep.labels.len(), n_measurements);
+        Piece::of_stage(MEASURE, measure_s(&part.plan, group, measured))
     }
 
-    fn learn_work(&self, family: &[Cell]) -> Piece {
-        let n_objects = self.touched.class_names().len();
-        let of = (n_objects, self.sweep.labels.len());
+    fn learn_work(&self, (part, family): (&StudyPart, &[Cell])) -> Piece {
+        let n_objects = part.touched.class_names().len();
+        let of = (n_objects, part.sweep.labels.len());
         let stage = LEARN + family[0].classifier as u8;
-        Piece::of_stage(stage, family_s(&self.plan, family, of))
+        Piece::of_stage(stage, family_s(&part.plan, family, of))
     }
 
-    /// The tables, typed.
-    pub fn outcome(&self, rows: RecognitionRows) -> Result<Outcome> {
-        let mut outcome = Outcome {
-            tables: Default::default(),
-            arrays: Vec::new(),
-            limits: Vec::new(),
-        };
-        self.add_arrays(&mut outcome, &rows);
-        let scored = rows.cells.into_iter().map(|row| {
-            let cell = &self.sweep.groups[row.at.0].cells[row.at.1];
-            (cell.clone(), row.evaluation)
-        });
-        let names = self.touched.class_names();
-        tabulate(&mut outcome.tables, scored.collect(), &names)?;
-        let published = &self.plan.spec.report.published;
-        outcome.tables.published = compare_with_published(published, &outcome.tables.summary);
-        outcome.limits = self.limits(&outcome.tables, &outcome.arrays);
-        Ok(outcome)
-    }
-
-    /// Of each array what was made, measured, missed and saturated.
+    /// Of all touches what was made, measured, missed and saturated.
     fn add_arrays(&self, outcome: &mut Outcome, rows: &RecognitionRows) {
-        for on in self.arrays() {
-            let of_array = || rows.touches.iter().filter(|row| row.on == on);
+        for touches in 0..self.touch_sets.len() {
+            let of_array = || rows.touches.iter().filter(|row| row.on == touches);
             if of_array().next().is_none() {
                 continue;
             }
-            let (patch, n_touches) = (&self.plan.arrays[on.0], self.sweep.labels.len());
+            let (part, patch, n_frames) = self.on(touches);
+            let n_touches = part.sweep.labels.len();
             let seconds = |is_made: bool| -> f64 {
                 let rows = of_array().filter(|row| row.is_made == is_made);
                 rows.map(|row| row.cpu_s).sum()
@@ -190,20 +325,76 @@ impl RecognitionStudy {
                 ("simulate", n_touches, seconds(true)),
                 ("measure", n_measured, seconds(false)),
             ] {
-                let stage = in_frames(stage, self.plan.frames[on.1]);
-                let time = stage_time(stage, self, on.0, (n_touches, cpu_s));
+                let stage = in_frames(stage, n_frames);
+                let time = stage_time(stage, patch, (n_touches, cpu_s));
                 outcome.tables.stages.push(time);
             }
             // The deepest frame is the same however many come before it.
-            if on.1 == 0 {
+            if n_frames == part.plan.frames[0] {
                 outcome.arrays.push(ArrayOutcome {
                     patch: *patch,
                     n_touches,
                     n_missed: of_array().map(|row| row.n_missed).sum(),
                     n_saturated: of_array().map(|row| row.n_saturated).sum(),
+                    n_deeper: part.touched.n_deeper_than(patch.taxel.stroke),
                 });
             }
         }
+    }
+}
+
+/// All that the measurements of a group depend on, beside its touches.
+fn measured_content(plan: &Plan, group: &Group) -> String {
+    let patch = &plan.arrays[group.array];
+    let steps = signal_steps(plan, group, &Seed::new(plan.spec.seed));
+    // Test touches are read by another skin only where there is one.
+    let split = (group.tested_on != TestedOn::SameSkin).then_some((plan.split, &plan.repeats));
+    let drawn = (plan.spec.seed, &plan.repeats, plan.speed);
+    let (ensemble, m) = (group.ensemble, group.projected());
+    format!("{patch:?} {steps:?} {split:?} {drawn:?} {ensemble:?} {m:?}")
+}
+
+impl RecognitionStudy {
+    /// Runs all of it at once, keeps nothing, and ends at the first work item that fails.
+    ///
+    /// # Errors
+    /// What an item fails of.
+    pub fn run(&self, progress: &dyn Progress) -> Result<Outcome> {
+        self.outcome(run_whole(self, progress)?)
+    }
+
+    /// The tables of all rows, typed.
+    ///
+    /// # Errors
+    /// Those of [`PieceStudy::tables`].
+    pub fn outcome(&self, rows: RecognitionRows) -> Result<Outcome> {
+        let mut outcome = Outcome {
+            tables: Default::default(),
+            arrays: Vec::new(),
+            limits: Vec::new(),
+        };
+        self.add_arrays(&mut outcome, &rows);
+        let scored = rows.cells.into_iter().map(|row| {
+            let cell = &self.group(row.at.0).1.cells[row.at.1];
+            (cell.clone(), row.evaluation)
+        });
+        let names: Vec<Vec<&str>> = self.parts.iter().map(|p| p.touched.class_names()).collect();
+        let name = |cell: &Cell, label: usize| names[cell.variant.number][label].to_owned();
+        tabulate(&mut outcome.tables, scored.collect(), name)?;
+        let published = &self.first().plan.spec.report.published;
+        outcome.tables.published = compare_with_published(published, &outcome.tables.summary);
+        outcome.limits = self.limits(&outcome.tables, &outcome.arrays);
+        Ok(outcome)
+    }
+
+    /// A few touches for the eye, of the first combination of the study's own axes.
+    pub(super) fn samples(&self) -> Result<&Samples> {
+        if let Some(samples) = self.samples.get() {
+            return Ok(samples);
+        }
+        let first = self.first();
+        let made = first.touched.samples(&first.plan, &first.sweep)?;
+        Ok(self.samples.get_or_init(|| made))
     }
 }
 
@@ -213,28 +404,30 @@ impl PieceStudy for RecognitionStudy {
 
     /// Trial by trial all families, group by group; then the touches of each array.
     fn pieces(&self) -> Vec<NamedPiece> {
-        let trials = self.plan.spec.trials;
         let families = 0..self.families.len();
         let of_family = |family| {
-            let cells = self.cells(family);
-            (family_name(&self.plan, cells), self.learn_work(cells))
+            let (part, cells) = self.family(family);
+            let name = family_name(&part.plan, cells);
+            (name, self.learn_work((part, cells)))
         };
         let families: Vec<(String, Piece)> = families.map(of_family).collect();
-        let mut pieces = Vec::with_capacity(trials * families.len());
-        for trial in 0..trials {
+        let mut pieces = Vec::with_capacity(self.n_trials() * families.len());
+        for trial in 0..self.n_trials() {
             for (family, (name, work)) in self.families.iter().zip(&families) {
-                let group = trial * self.sweep.groups.len() + family.group;
+                let group = trial * self.groups.len() + family.group;
                 let name = format!("{name}, trial {trial}");
                 pieces.push(NamedPiece::new(name, group, *work));
             }
         }
-        for on in self.arrays() {
-            let patch = &self.plan.arrays[on.0];
-            let (grid, n_frames) = (&patch.grid, self.plan.frames[on.1]);
-            let (nx, ny, pitch) = (grid.nx, grid.ny, grid.pitch);
-            let name = format!("touches of {n_frames} frames on {nx}x{ny} taxels at {pitch} m");
-            let mut groups = self.sweep.groups.iter();
-            let group = groups.position(|group| self.on(group) == on);
+        for (number, touches) in self.touch_sets.iter().enumerate() {
+            let (_, patch, n_frames) = self.on(number);
+            let (nx, ny, pitch) = (patch.grid.nx, patch.grid.ny, patch.grid.pitch);
+            let name = format!(
+                "touches of {n_frames} frames on {nx}x{ny} taxels at {pitch} m{}",
+                touches.key
+            );
+            let mut groups = self.groups.iter();
+            let group = groups.position(|group| group.touches == number);
             // What it takes is told while all that needs the touches waits for them.
             let work = Piece::one_by_one(TOUCH, 0.0);
             pieces.push(NamedPiece::new(name, group.unwrap_or_default(), work));
@@ -248,12 +441,12 @@ impl PieceStudy for RecognitionStudy {
 
     fn shared_work(&self, left: &PiecesLeft<RecognitionRows>) -> Vec<Piece> {
         let mut work = Vec::new();
-        for on in self.arrays() {
-            let jobs = self.jobs(left, on);
-            if jobs.is_empty() && !left.has_number(self.touches_item(on)) {
+        for touches in 0..self.touch_sets.len() {
+            let jobs = self.jobs(left, touches);
+            if jobs.is_empty() && !left.has_number(self.touches_item(touches)) {
                 continue;
             }
-            work.push(self.touch_work(on));
+            work.push(self.touch_work(touches));
             for job in jobs {
                 let batches = job.batches().into_iter();
                 work.extend(batches.map(|(m, _)| self.measure_work(job.group, m)));
@@ -263,33 +456,28 @@ impl PieceStudy for RecognitionStudy {
     }
 
     fn place(&self, number: usize, rows: &mut RecognitionRows) {
-        let n_families = self.families.len();
-        let n_touches = self.touches_item((0, 0));
-        let on = match number.checked_sub(n_touches) {
-            Some(touches) => {
-                let n_frames = self.plan.frames.len();
-                (touches / n_frames, touches % n_frames)
-            }
+        let touches = match number.checked_sub(self.touches_item(0)) {
+            Some(touches) => touches,
             None => {
-                let Family { group, cells } = &self.families[number % n_families];
+                let Family { group, cells } = &self.families[number % self.families.len()];
                 for (row, cell) in rows.cells.iter_mut().zip(cells.clone()) {
                     row.at = (*group, cell);
                 }
-                self.on(&self.sweep.groups[*group])
+                self.groups[*group].touches
             }
         };
         for row in &mut rows.touches {
-            row.on = on;
+            row.on = touches;
         }
     }
 
     /// A family by the settings of its first cell.
     fn words(&self, number: usize, piece: &NamedPiece) -> String {
-        if number >= self.touches_item((0, 0)) {
+        if number >= self.touches_item(0) {
             return piece.name.clone();
         }
         let (trial, family) = (number / self.families.len(), number % self.families.len());
-        let settings = serde_json::to_value(&self.cells(family)[0]).unwrap_or_default();
+        let settings = serde_json::to_value(&self.family(family).1[0]).unwrap_or_default();
         let settings = settings.as_object().into_iter().flatten();
         let settings = settings.filter(|(_, value)| !value.is_null());
         let mut words: Vec<String> = settings
@@ -316,13 +504,8 @@ pub(super) fn in_frames(stage: &str, n_frames: usize) -> String {
     }
 }
 
-fn stage_time(
-    stage: String,
-    study: &RecognitionStudy,
-    array: usize,
-    (n_touches, cpu_s): (usize, f64),
-) -> StageTime {
-    let grid = &study.plan.arrays[array].grid;
+fn stage_time(stage: String, patch: &Patch, (n_touches, cpu_s): (usize, f64)) -> StageTime {
+    let grid = &patch.grid;
     StageTime {
         stage,
         pitch_mm: millimetres(grid.pitch),

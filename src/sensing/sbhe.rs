@@ -4,6 +4,7 @@
 //! Q keeps m coefficients in random order. Where B does not divide n, zeros fill up the last block before the permutation, so
 //! they are scattered too; without them the rows of Φ are orthonormal.
 
+use super::ensemble::{EnsembleAbout, Operator};
 use super::subsample::permutation;
 use crate::random::Seed;
 use ndarray::{ArrayView2, ArrayViewMut2};
@@ -28,6 +29,18 @@ pub(super) struct ScrambledHadamard {
     picks: Vec<(usize, usize)>,
 }
 
+pub(super) const ABOUT: EnsembleAbout = EnsembleAbout {
+    taxel_s: |_, _| 2e-9,
+    ..EnsembleAbout::new("SBHE", |(ny, nx), m, seed| {
+        Box::new(ScrambledHadamard::new(
+            m,
+            ny * nx,
+            BLOCK,
+            &seed.named("sbhe"),
+        ))
+    })
+};
+
 impl ScrambledHadamard {
     /// In blocks of `block` taxels, a power of two.
     pub(super) fn new(m: usize, n: usize, block: usize, stream: &Seed) -> Self {
@@ -44,7 +57,22 @@ impl ScrambledHadamard {
         }
     }
 
-    pub(super) fn measure(&self, frames: ArrayView2<f64>, mut out: ArrayViewMut2<f64>) {
+    fn same_block(&self, a: &(usize, usize), b: &(usize, usize)) -> bool {
+        a.0 / self.block == b.0 / self.block
+    }
+
+    /// One block's taxels of each frame; lanes without a frame stay zero.
+    fn gather(&self, frames: &[f64], taxels: &[usize], values: &mut [Lanes]) {
+        for (lane, frame) in frames.chunks_exact(self.n_taxels).enumerate() {
+            for (value, &taxel) in values.iter_mut().zip(taxels) {
+                value[lane] = frame.get(taxel).copied().unwrap_or(0.0);
+            }
+        }
+    }
+}
+
+impl Operator for ScrambledHadamard {
+    fn measure(&self, frames: ArrayView2<f64>, mut out: ArrayViewMut2<f64>) {
         let frames = frames.as_standard_layout();
         let all = frames.as_slice().unwrap_or_default();
         let scale = 1.0 / (self.block as f64).sqrt();
@@ -67,7 +95,7 @@ impl ScrambledHadamard {
     }
 
     /// Measurement, taxel and value of each entry.
-    pub(super) fn each_entry(&self, mut visit: impl FnMut(usize, usize, f64)) {
+    fn each_entry(&self, visit: &mut dyn FnMut(usize, usize, f64)) {
         let scale = 1.0 / (self.block as f64).sqrt();
         for &(coefficient, measurement) in &self.picks {
             let (block, i) = (coefficient / self.block, coefficient % self.block);
@@ -84,7 +112,7 @@ impl ScrambledHadamard {
     }
 
     /// Below 1 where zeros were scattered among the taxels.
-    pub(super) fn row_norm(&self) -> f64 {
+    fn row_norm(&self) -> f64 {
         let in_block = |coefficient: usize| {
             let first = coefficient / self.block * self.block;
             let taxels = &self.taxels[first..first + self.block];
@@ -95,19 +123,6 @@ impl ScrambledHadamard {
         };
         let n_entries: usize = self.picks.iter().map(|pick| in_block(pick.0)).sum();
         (n_entries as f64 / (self.block * self.picks.len()) as f64).sqrt()
-    }
-
-    fn same_block(&self, a: &(usize, usize), b: &(usize, usize)) -> bool {
-        a.0 / self.block == b.0 / self.block
-    }
-
-    /// One block's taxels of each frame; lanes without a frame stay zero.
-    fn gather(&self, frames: &[f64], taxels: &[usize], values: &mut [Lanes]) {
-        for (lane, frame) in frames.chunks_exact(self.n_taxels).enumerate() {
-            for (value, &taxel) in values.iter_mut().zip(taxels) {
-                value[lane] = frame.get(taxel).copied().unwrap_or(0.0);
-            }
-        }
     }
 }
 
@@ -135,7 +150,7 @@ mod tests {
     /// Φ from its definition, entry by entry.
     fn dense(hadamard: &ScrambledHadamard) -> Array2<f64> {
         let mut matrix = Array2::zeros((hadamard.picks.len(), hadamard.n_taxels));
-        hadamard.each_entry(|measurement, taxel, value| matrix[[measurement, taxel]] = value);
+        hadamard.each_entry(&mut |measurement, taxel, value| matrix[[measurement, taxel]] = value);
         matrix
     }
 

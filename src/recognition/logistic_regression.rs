@@ -7,6 +7,8 @@
 //! each row's: where scores of rows differ by more than 34, probabilities and gradients are wrong and it stops short in
 //! silence (600 rows, 5 classes, C = 1,000: objective 46.6, where C = 1 reaches 9.8).
 
+use crate::recognition::classifier_about::ClassifierAbout;
+use std::sync::Arc;
 use ndarray::{Array1, Array2, ArrayView1, ArrayView2, Axis, s};
 
 use crate::recognition::class_model::{ClassModel, log_priors, positions};
@@ -15,6 +17,19 @@ use crate::recognition::lbfgs::minimise;
 use crate::recognition::linear_model::LinearModel;
 use crate::recognition::linear_svm::checked_classes;
 use crate::{Error, Result};
+
+pub(super) const ABOUT: ClassifierAbout = ClassifierAbout {
+    has_c: true,
+    train_s: |n_train, m, n_classes| 8e-8 * n_train * n_classes * (m + 40.0),
+    ..ClassifierAbout::new("logistic regression", |classifier, scaled, c, _| {
+        let params = LogisticParams {
+            c,
+            tolerance: 0.1 * classifier.tolerance,
+            ..LogisticParams::default()
+        };
+        Ok(Arc::new(params.train(scaled)?))
+    })
+};
 
 /// Iterations after which the solver gives up: ten times scikit-learn's.
 pub const MAX_ITERATIONS: usize = 1000;

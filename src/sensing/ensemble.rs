@@ -1,0 +1,106 @@
+//! What an ensemble says of itself, and what a drawn map does.
+
+use super::Ensemble;
+use crate::random::Seed;
+use ndarray::{Array2, ArrayView2, ArrayViewMut2};
+use std::fmt::Debug;
+
+/// An ensemble of measurements.
+#[derive(Debug)]
+pub struct EnsembleAbout {
+    /// What people call it.
+    pub words: &'static str,
+    /// Whether the first m measurements of a larger projection are those of the projection of size m.
+    pub is_prefix_nested: bool,
+    /// Whether it measures the whole frame, whatever m.
+    pub is_whole_frame: bool,
+    /// Bytes that a map from n taxels to m measurements takes, by m and n.
+    pub bytes: fn(f64, f64) -> f64,
+    /// About how many seconds it takes for one taxel of a frame among many, by m and n.
+    pub taxel_s: fn(f64, f64) -> f64,
+    /// Draws the map of an ny × nx array to m measurements, 1 ≤ m ≤ n, from its own stream.
+    pub draw: fn((usize, usize), usize, &Seed) -> Box<dyn Operator>,
+}
+
+impl EnsembleAbout {
+    /// One of nested rows and few numbers that reads each taxel once at most.
+    pub(super) const fn new(
+        words: &'static str,
+        draw: fn((usize, usize), usize, &Seed) -> Box<dyn Operator>,
+    ) -> Self {
+        Self {
+            words,
+            is_prefix_nested: true,
+            is_whole_frame: false,
+            bytes: |_, n| 16.0 * n,
+            taxel_s: |_, _| 5e-10,
+            draw,
+        }
+    }
+}
+
+/// A drawn map y = Φx.
+pub trait Operator: Debug + Send + Sync {
+    /// Measures frames (n_frames × n) into `out` (n_frames × m), whatever was there. A row has the same bits in whatever batch.
+    fn measure(&self, frames: ArrayView2<f64>, out: ArrayViewMut2<f64>);
+
+    /// Calls `visit` with measurement, taxel and value of each entry of Φ that may not be zero; the same order every time.
+    fn each_entry(&self, visit: &mut dyn FnMut(usize, usize, f64));
+
+    /// Root mean square norm of a row of Φ.
+    fn row_norm(&self) -> f64;
+
+    /// Φ, if it is stored.
+    fn stored(&self) -> Option<&Array2<f64>> {
+        None
+    }
+
+    /// ΦΦᵀ, if it is known without Φ.
+    fn known_gram(&self) -> Option<Array2<f64>> {
+        None
+    }
+}
+
+impl Ensemble {
+    /// Whether the first m measurements of a larger projection are those of the projection of size m.
+    pub fn is_prefix_nested(self) -> bool {
+        self.about().is_prefix_nested
+    }
+
+    /// The number of measurements of an array of n taxels where m are asked for: n, of a whole frame.
+    pub fn n_measurements(self, m: usize, n: usize) -> usize {
+        match self.about().is_whole_frame {
+            true => n,
+            false => m,
+        }
+    }
+}
+
+/// Says of each ensemble which file tells of it.
+macro_rules! ensembles {
+    ($($name:ident $file:ident $doc:literal;)*) => {
+        $(mod $file;)*
+
+        /// How measurements are made from a frame.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
+        #[serde(rename_all = "snake_case")]
+        pub enum Ensemble {
+            $(#[doc = $doc] $name,)*
+        }
+
+        impl Ensemble {
+            /// All of them.
+            pub const ALL: &[Self] = &[$(Self::$name),*];
+
+            /// The name in a study, and what people call it.
+            pub const NAMES: &[(&str, &str)] = &[$((stringify!($file), $file::ABOUT.words)),*];
+
+            /// What it says of itself.
+            pub const fn about(self) -> &'static EnsembleAbout {
+                match self {
+                    $(Self::$name => &$file::ABOUT,)*
+                }
+            }
+        }
+    };
+}
