@@ -1,7 +1,7 @@
 //! `bubbletouch run`: a study from its file to its folder of results.
 
-use super::about_study::merge_line;
 use super::any_study::{end, ended, failures, load_study, seconds_since};
+use super::command_line::merge_line;
 use super::listener::Listener;
 use super::memory_args::MemoryArgs;
 use super::study_args::StudyArgs;

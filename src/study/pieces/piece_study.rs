@@ -208,11 +208,19 @@ fn before_and_left<'a, R: PieceRows>(
     (before, left)
 }
 
-/// Runs a whole study at once, keeps nothing, and ends at the first piece that fails.
+/// The tables of [`run_whole`].
 ///
 /// # Errors
 /// What a piece fails of.
 pub fn run_whole_study<S: PieceStudy>(study: &S, progress: &dyn Progress) -> Result<S::Tables> {
+    study.tables(run_whole(study, progress)?)
+}
+
+/// Runs a whole study at once, keeps nothing, and ends at the first piece that fails.
+///
+/// # Errors
+/// What a piece fails of.
+pub fn run_whole<S: PieceStudy>(study: &S, progress: &dyn Progress) -> Result<S::Rows> {
     let manner = PieceManner {
         journal: &Journal::none(),
         fail_fast: true,
@@ -220,7 +228,7 @@ pub fn run_whole_study<S: PieceStudy>(study: &S, progress: &dyn Progress) -> Res
         part: Part::All,
         progress,
     };
-    study.tables(run_pieces(study, &manner)?.rows)
+    Ok(run_pieces(study, &manner)?.rows)
 }
 
 /// Pieces of a part of which a journal does not say what came of them.
