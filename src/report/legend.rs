@@ -1,7 +1,7 @@
 //! What stands above a chart's panels: title, fixed settings, and the legend.
 
-use crate::report::chart::draw_sign;
-use crate::report::colours::{INK, LINES, MUTED, Rgb, heat};
+use crate::report::chart::{draw_sign, tint};
+use crate::report::colours::{INK, LINES, MUTED, Rgb};
 use crate::report::drawing::{Area, Drawing, Point, Stroke, TextStyle};
 use crate::report::text_width::{text_width, wrap};
 
@@ -147,7 +147,7 @@ impl LegendEntry {
                         width: 2.0,
                         height: 14.0,
                     };
-                    drawing.area(area, heat(f64::from(step) / f64::from(BAR - 1)));
+                    drawing.area(area, tint(f64::from(step) / f64::from(BAR - 1)));
                 }
             }
             Mark::Point(number) => {

@@ -12,7 +12,7 @@ mod scale;
 mod tiles;
 mod view;
 
-pub(in crate::report) use tiles::draw_sign;
+pub(in crate::report) use tiles::{draw_sign, tint};
 pub use view::Place;
 
 use crate::error::{Error, Result};

@@ -2,9 +2,8 @@
 
 use crate::error::Result;
 use crate::report::csv_tables::{LIMITS_FILE, VARIANCE_FILE, axes_beside};
-use crate::study::table::Limit;
 use crate::study::table::{
-    Cell, CellScore, Comparison, Confused, Confusion, Pareto, Published, StageTime, Tables,
+    Cell, CellScore, Comparison, Confused, Confusion, Limit, Pareto, Published, StageTime, Tables,
     TrialScore, TrialTime, Variance,
 };
 use crate::table::{Better, Column, Columns, Data, Role, Scale, Table};
@@ -13,18 +12,6 @@ use std::path::Path;
 /// The table of all that is known of each cell; it has no file.
 pub const CELLS: &str = "cells.csv";
 
-const CLASSIFIERS: &[(&str, &str)] = &[
-    ("linear_svm", "linear SVM"),
-    ("rbf_svm", "RBF SVM"),
-    ("polynomial_svm", "polynomial SVM"),
-    ("k_nearest", "k nearest neighbours"),
-    ("naive_bayes", "naive Bayes"),
-];
-const ENSEMBLES: &[(&str, &str)] = &[
-    ("gaussian", "Gaussian"),
-    ("bernoulli", "Bernoulli"),
-    ("sbhe", "SBHE"),
-];
 const FEATURES: &[(&str, &str)] = &[("centred_unit_norm", "centred, unit norm")];
 const OVER_TIME: &[(&str, &str)] = &[
     ("", "all frames"),
@@ -182,11 +169,11 @@ pub fn say(table: &mut Table) {
                 column.scale = Scale::Linear;
             }
             ("noise_std", _) => column.words = "noise".into(),
-            ("classifier", _) => column.names = CLASSIFIERS,
-            ("ensemble", _) => column.names = ENSEMBLES,
             ("features", _) => column.names = FEATURES,
             ("over_time", _) => column.names = OVER_TIME,
             ("c", _) => column.names = CHOSEN,
+            // Rare confusions are seen, too.
+            ("count", _) => column.scale = Scale::Log,
             // The pitch and the size say them.
             ("nx" | "ny", _) => column.role = Role::Note,
             _ => {}
