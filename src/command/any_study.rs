@@ -38,7 +38,7 @@ pub fn end(
     listener.finished(serde_json::json!({
         "event": "finished",
         "folder": run.folder,
-        study.units(): study.n_all(),
+        "work_items": study.n_all(),
         "finished_before": run.n_before,
         "failed": outcome.n_failed(),
         "elapsed_s": elapsed_s,
@@ -72,9 +72,8 @@ pub fn ended<'a>(
 pub fn failures(study: &dyn AnyStudy, outcome: &dyn AnyOutcome, folder: &Path) -> Result<()> {
     match outcome.n_failed() {
         0 => Ok(()),
-        n_failed => Err(Error::Cells {
+        n_failed => Err(Error::WorkItems {
             path: folder.join(FAILURES_FILE),
-            what: study.units(),
             n_failed,
             n_all: study.n_all(),
         }),

@@ -78,14 +78,14 @@ pub struct PieceManner<'a> {
 /// A piece that failed: a row of `failures.csv`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct PieceFailure {
-    /// The piece.
-    pub piece: String,
+    /// The piece, in words.
+    pub work_item: String,
     /// What went wrong.
     pub error: String,
 }
 
 columns! { PieceFailure {
-    piece: Subject "work item";
+    work_item: Subject "work item";
     error: Note;
 } }
 
@@ -177,7 +177,7 @@ impl<'a, S: PieceStudy> PiecesRun<'a, S> {
                     finished.rows.append(rows);
                 }
                 Some(Err(error)) => finished.failures.push(PieceFailure {
-                    piece: study.words(number, piece),
+                    work_item: study.words(number, piece),
                     error,
                 }),
                 None => finished.n_left += 1,
