@@ -5,6 +5,7 @@
 //!    they take; what is left of the time is the engine's: laying out, journal, tables.
 
 use bubbletouch::Result;
+use bubbletouch::kinds::recognition::{RecognitionRows, RecognitionStudy};
 use bubbletouch::random::Seed;
 use bubbletouch::study::journal::{Identity, JOURNAL_FILE, Journal};
 use bubbletouch::study::pieces::{
@@ -12,9 +13,7 @@ use bubbletouch::study::pieces::{
 };
 use bubbletouch::study::progress::{Progress, Silent};
 use bubbletouch::study::time_left::Piece;
-use bubbletouch::study::{
-    Plan, RecognitionRows, RecognitionStudy, StudySpec, draw_touches, load_objects,
-};
+use bubbletouch::study::{Plan, StudySpec, draw_touches, load_objects};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use std::path::Path;
@@ -219,7 +218,7 @@ fn time_run(folder: &Path, study: &RecognitionStudy) -> Result<(f64, f64)> {
     let finished = run_pieces(study, &manner)?;
     let failures = finished.failures;
     assert!(failures.is_empty(), "{:?}", failures[0]);
-    let outcome = study.tables(finished.rows)?;
+    let outcome = study.outcome(finished.rows)?;
     journal.sync()?;
     assert_eq!(outcome.tables.summary.len(), study.n_cells());
     let worked = *worked.0.lock().expect("no thread panics");

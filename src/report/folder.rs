@@ -2,14 +2,10 @@
 
 use crate::error::{Error, Result};
 use crate::files::write_bytes;
-use crate::report::csv_tables::csv_content;
 use crate::report::drawing::Drawing;
 use crate::report::raster::ToRaster;
-use crate::report::study_tables::TableFiles;
 use crate::table::Table;
 use rayon::prelude::*;
-use serde::Serialize;
-use serde::de::DeserializeOwned;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -59,7 +55,8 @@ impl<'a> Folder<'a> {
     /// The tables of a study.
     pub fn of_tables(path: &'a Path, tables: &[Table]) -> Self {
         let mut folder = Self::new(path);
-        for table in tables {
+        // A table that is made of others has no file.
+        for table in tables.iter().filter(|table| !table.csv.is_empty()) {
             folder.add(table.file, table.csv.clone());
         }
         folder
@@ -68,6 +65,15 @@ impl<'a> Folder<'a> {
     /// Adds the files of another one, behind those that are there.
     pub fn append(&mut self, other: Self) {
         self.files.extend(other.files);
+    }
+
+    /// The content of a file that needs no drawing, by its name.
+    pub fn file(&self, name: &str) -> Option<&[u8]> {
+        let (_, content) = self.files.iter().find(|(known, _)| known == name)?;
+        match content {
+            Content::Bytes(bytes) => Some(bytes),
+            Content::Png(_) => None,
+        }
     }
 
     /// Adds a file by its name in the folder.
@@ -80,24 +86,6 @@ impl<'a> Folder<'a> {
     pub(super) fn add_png(&mut self, name: impl Into<String>, drawing: &Drawing) {
         let content = Content::Png(Box::new(drawing.to_raster()));
         self.files.push((name.into(), content));
-    }
-
-    /// Adds a table as CSV; the error names the file.
-    pub(super) fn add_table(
-        &mut self,
-        name: &str,
-        rows: &[impl Serialize + DeserializeOwned],
-    ) -> Result<()> {
-        let csv = csv_content(&self.path.join(name), rows)?;
-        self.add(name, csv);
-        Ok(())
-    }
-
-    /// Adds the tables of a study.
-    pub(super) fn add_files(&mut self, tables: TableFiles) {
-        for (name, content) in tables {
-            self.add(name, content);
-        }
     }
 
     /// Adds a chart as PNG and as SVG; its name has no ending.

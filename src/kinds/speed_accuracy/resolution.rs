@@ -6,18 +6,18 @@ use super::spec::ResolutionSpec;
 use super::study::SpeedAccuracyRows;
 use super::subject::Subject;
 use crate::error::Result;
+use crate::kinds::recognition::RecognitionStudy;
 use crate::objects::Object;
 use crate::random::Seed;
 use crate::recognition::bootstrap::Bootstrap;
 use crate::recognition::comparison::{TrialSize, compare};
-use crate::study::pieces::run_whole_study;
 use crate::study::pieces::{NamedPiece, PiecesLeft};
 use crate::study::progress::Silent;
 use crate::study::spec::StudySpec;
 use crate::study::summary::score;
 use crate::study::table::{Tables, TrialScore};
 use crate::study::time_left::Piece;
-use crate::study::{Axis, CONFIDENCE, Plan, RecognitionStudy, draw_touches};
+use crate::study::{Axis, CONFIDENCE, Plan, draw_touches};
 use rayon::prelude::*;
 use std::path::Path;
 
@@ -92,7 +92,7 @@ impl ResolutionPart<'_> {
         let study = Plan::new(&self.plan.place, study)?;
         let touched = draw_touches(objects, &study.placement, &Seed::new(of.seed))?;
         let study = RecognitionStudy::new(study, Box::new(touched))?;
-        let found = run_whole_study(&study, &Silent)?.tables;
+        let found = study.run(&Silent)?.tables;
         let sizes = self.spec.trials.iter().map(|&trials| {
             let cpu_s = cost(&found, trials, most);
             let size = StudySize { touches, trials };

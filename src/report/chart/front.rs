@@ -47,10 +47,7 @@ impl Front {
         let mut groups: Vec<(usize, Vec<usize>)> = Vec::new();
         let mut known: HashMap<(usize, Vec<u64>), usize> = HashMap::new();
         for (number, place) in view.places.iter().enumerate() {
-            let of = |data: &&Data| match data {
-                Data::Numbers(numbers) => numbers[place.row].to_bits(),
-                Data::Words { codes, .. } => u64::from(codes[place.row]),
-            };
+            let of = |data: &&Data| data.key(place.row);
             let key = (place.panel, conditions.iter().map(of).collect());
             let group = *known.entry(key).or_insert_with(|| {
                 groups.push((place.panel, Vec::new()));

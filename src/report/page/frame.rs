@@ -1,6 +1,5 @@
 //! What every page has: head, question, contents, sections, foot.
 
-use super::picture::ASKED;
 use crate::report::drawing::escape;
 
 const TEMPLATE: &str = include_str!("page.html");
@@ -21,27 +20,6 @@ const SCRIPT: [&str; 10] = [
         include_str!("script/main.js")
     ),
 ];
-const ELEMENTS: &str = include_str!("script/elements.js");
-/// Of pages that are pictures, some of which can be asked.
-const PICTURES: [&str; 3] = [
-    ELEMENTS,
-    include_str!("points.js"),
-    include_str!("asked.js"),
-];
-/// Of recognition's page.
-const OLD: [&str; 11] = [
-    ELEMENTS,
-    include_str!("base.js"),
-    include_str!("filter.js"),
-    include_str!("points.js"),
-    include_str!("axes.js"),
-    include_str!("accuracy.js"),
-    include_str!("advice.js"),
-    include_str!("pareto.js"),
-    include_str!("cells.js"),
-    include_str!("confusion.js"),
-    include_str!("main.js"),
-];
 
 /// A page.
 #[derive(Clone, Debug, Default)]
@@ -58,13 +36,11 @@ pub(crate) struct Page {
     pub foot: String,
     /// JSON that the script draws from; none for a page without script.
     pub data: Option<String>,
-    /// Whether the script is that of recognition alone.
-    pub is_old: bool,
 }
 
 /// A part of a page with a heading.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Section {
+pub struct Section {
     /// Where links lead; letters and hyphens.
     pub id: &'static str,
     /// Its heading.
@@ -127,21 +103,14 @@ impl Page {
     }
 
     fn script(&self) -> String {
-        let is_asked = format!("class=\"{ASKED}\"");
         match &self.data {
-            None if !self.sections.iter().any(|s| s.body.contains(&is_asked)) => String::new(),
-            None => in_scope(&PICTURES),
+            None => String::new(),
             Some(data) => {
                 // What ends an element of HTML has no place in JSON but within its strings.
                 let data = data.replace('<', "\\u003c");
                 let data =
                     format!("<script type=\"application/json\" id=\"study\">{data}</script>");
-                let script = if self.is_old {
-                    in_scope(&OLD)
-                } else {
-                    in_scope(&SCRIPT)
-                };
-                format!("{data}\n{script}")
+                format!("{data}\n{}", in_scope(&SCRIPT))
             }
         }
     }
