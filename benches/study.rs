@@ -5,6 +5,7 @@
 //!    they take; what is left of the time is the engine's: laying out, journal, tables.
 
 use bubbletouch::Result;
+use bubbletouch::kinds::recognition::{RecognitionRows, RecognitionStudy};
 use bubbletouch::random::Seed;
 use bubbletouch::study::journal::{Identity, JOURNAL_FILE, Journal};
 use bubbletouch::study::pieces::{
@@ -12,9 +13,7 @@ use bubbletouch::study::pieces::{
 };
 use bubbletouch::study::progress::{Progress, Silent};
 use bubbletouch::study::time_left::Piece;
-use bubbletouch::study::{
-    Plan, RecognitionRows, RecognitionStudy, StudySpec, draw_touches, load_objects,
-};
+use bubbletouch::study::{Plan, StudySpec, draw_touches, load_objects};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use std::path::Path;

@@ -2,9 +2,10 @@
 
 use super::study_args::StudyArgs;
 use bubbletouch::Result;
+use bubbletouch::kinds::recognition::RecognitionStudy;
 use bubbletouch::report::page::{ReportPage, Snapshots};
 use bubbletouch::study::provenance::{Manifest, PROGRAM};
-use bubbletouch::study::{RecognitionStudy, Samples, StudySpec};
+use bubbletouch::study::{Samples, StudySpec};
 use std::path::Path;
 
 /// What a page says without the study's objects.

@@ -5,8 +5,7 @@ use super::streams::{say, write_out};
 use bubbletouch::Result;
 use bubbletouch::files::{CsvFile, write_bytes};
 use bubbletouch::report::csv_tables::read_tables;
-use bubbletouch::report::run_differences::differences_text;
-use bubbletouch::report::run_differences_page::differences_page;
+use bubbletouch::report::run_differences::{differences_page, differences_text};
 use bubbletouch::study::compare_runs;
 use bubbletouch::study::provenance::PROGRAM;
 use std::path::PathBuf;
@@ -45,7 +44,7 @@ pub fn compare(args: &Args) -> Result<()> {
     }
     if let Some(html) = &args.html {
         let [first, second] = [&args.first, &args.second].map(|path| path.display().to_string());
-        let page = differences_page(&comparison, (&first, &second), PROGRAM);
+        let page = differences_page(&comparison, (&first, &second), PROGRAM)?;
         write_bytes(html, page.as_bytes())?;
     }
     say(format_args!(
@@ -53,5 +52,5 @@ pub fn compare(args: &Args) -> Result<()> {
         args.first.display(),
         args.second.display()
     ))?;
-    write_out(differences_text(&comparison, terminal_width()).as_bytes())
+    write_out(differences_text(&comparison, terminal_width())?.as_bytes())
 }

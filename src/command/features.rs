@@ -1,8 +1,9 @@
 //! `bubbletouch features`: what one cell of a study learns from.
 
 use super::output::{output_folder, packings_beside};
-use super::study_args::{StudyArgs, set_threads};
+use super::study_args::StudyArgs;
 use bubbletouch::Result;
+use bubbletouch::kinds::recognition::load_study;
 use bubbletouch::report::progress;
 use bubbletouch::study::write_features;
 use std::path::PathBuf;
@@ -23,8 +24,9 @@ pub struct Args {
 }
 
 pub fn features(args: &Args) -> Result<()> {
-    set_threads(args.study.threads)?;
-    let loaded = args.study.recognition(Some(&packings_beside(&args.out)))?;
+    let mut source = args.study.source()?;
+    source.packings = Some(packings_beside(&args.out));
+    let loaded = load_study(&source)?;
     output_folder(&args.out)?;
     let loaded = loaded.part_of(args.cell);
     let progress = progress::to_stderr();

@@ -5,13 +5,12 @@ use super::piece_rows::{compare, draw};
 use super::study_args::StudyArgs;
 use bubbletouch::files::write_bytes;
 use bubbletouch::kinds::{
-    AnyOutcome, AnyStudy, EndedRun, ReportAbout, threads_within, within_memory,
+    About, AnyOutcome, AnyStudy, EndedRun, ReportAbout, threads_within, within_memory,
 };
 use bubbletouch::report::csv_tables::{FAILURES_FILE, csv_content};
 use bubbletouch::report::folder::Folder;
 use bubbletouch::report::page::StudyAbout;
 use bubbletouch::report::study_tables::StudyTables;
-use bubbletouch::study::StudyKind;
 use bubbletouch::study::journal::{Identity, Journal};
 use bubbletouch::study::pieces::{
     FinishedPieces, NamedPiece, Part, PieceEstimate, PieceFailure, PieceManner, PieceStudy,
@@ -29,7 +28,7 @@ pub trait PieceKind: Sized {
     type Study: PieceStudy<Tables: StudyTables> + Sync;
 
     /// Which it is.
-    const KIND: StudyKind;
+    const KIND: About;
 
     /// How intervals and p-values are made, by table and columns.
     const METHODS: &'static [(&'static str, &'static str)] = &[];
@@ -55,7 +54,7 @@ pub trait PieceKind: Sized {
     /// Charts and page of a folder again, from its tables.
     fn report(&self, folder: &Path, _about: &ReportAbout) -> Result<()> {
         let allowed = "a study that recognises objects (of any other, bubbletouch run draws again what is finished)";
-        Err(Error::input(folder.display(), Self::KIND.words(), allowed))
+        Err(Error::input(folder.display(), Self::KIND.words, allowed))
     }
 }
 
@@ -95,7 +94,7 @@ impl<K: PieceKind> PieceRun<K> {
             identity: Identity::new(
                 facts.toml.clone(),
                 facts.content.clone(),
-                K::KIND.may_change(),
+                K::KIND.may_change,
             ),
             memory: args.memory,
             pieces: kind.study().pieces(),

@@ -5,15 +5,18 @@ use super::piece_kind::{KindFacts, PieceKind};
 use super::streams::note;
 use super::study_args::StudyArgs;
 use bubbletouch::Result;
+use bubbletouch::kinds::About;
 use bubbletouch::kinds::ReportAbout;
-use bubbletouch::report::csv_tables::{LIMITS_FILE, read_rows, read_tables};
+use bubbletouch::kinds::recognition::{
+    Outcome, RECOGNITION, RecognitionStudy, load_study, recognition_scale,
+};
+use bubbletouch::report::csv_tables::{LIMITS_FILE, read_rows};
 use bubbletouch::report::folder::Folder;
 use bubbletouch::report::page::{ReportPage, StudyAbout};
+use bubbletouch::report::recognition;
 use bubbletouch::report::results::{all_files, write_page};
-use bubbletouch::report::{headlines, terminal};
 use bubbletouch::study::pieces::Scale;
 use bubbletouch::study::provenance::RECOGNITION_METHODS;
-use bubbletouch::study::{Outcome, RecognitionStudy, StudyKind, recognition_scale};
 use std::path::{Path, PathBuf};
 
 pub struct RecognitionKind {
@@ -32,14 +35,15 @@ impl RecognitionKind {
 impl PieceKind for RecognitionKind {
     type Study = RecognitionStudy;
 
-    const KIND: StudyKind = StudyKind::Recognition;
+    const KIND: About = RECOGNITION;
 
     const METHODS: &'static [(&'static str, &'static str)] = &RECOGNITION_METHODS;
 
     fn load(args: &StudyArgs, packings: PathBuf) -> Result<Self> {
-        let mut study = args.recognition(Some(&packings))?;
-        let (scale, place) = recognition_scale(&study, args.memory, &args.results);
-        study.place = place;
+        let mut source = args.source()?;
+        source.packings = Some(packings);
+        let study = load_study(&source)?;
+        let (scale, _) = recognition_scale(&study, args.memory, &args.results);
         Ok(Self { study, scale })
     }
 
@@ -77,8 +81,10 @@ impl PieceKind for RecognitionKind {
     }
 
     fn words(&self, outcome: &Outcome, width: usize) -> String {
-        let summary = terminal::summary_table(&outcome.tables, width, "summary.csv");
-        format!("{summary}\n{}", headlines::text(&outcome.tables, width))
+        match recognition::tables_of(&outcome.tables, &[]) {
+            Ok(tables) => recognition::words(&tables, width),
+            Err(error) => error.to_string(),
+        }
     }
 
     fn report(&self, folder: &Path, about: &ReportAbout) -> Result<()> {
@@ -96,6 +102,6 @@ impl PieceKind for RecognitionKind {
             add_manifest(&mut page, manifest);
         }
         page.command.clone_from(&about.command);
-        write_page(folder, &read_tables(folder)?, &page).map(|_| ())
+        write_page(folder, &recognition::read_tables(folder)?, &page).map(|_| ())
     }
 }

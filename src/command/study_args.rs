@@ -1,10 +1,8 @@
 //! What `run`, `plan` and `touches` have in common: a study file, and what overrides it.
 
 use super::output::packings_beside;
-use bubbletouch::kinds::{self, Source};
-use bubbletouch::study::axes::AxisValues;
-use bubbletouch::study::memory::machine_memory;
-use bubbletouch::study::{ObjectsSpec, Plan, RecognitionStudy, StudyKind, StudySpec, TouchesSpec};
+use bubbletouch::kinds::Source;
+use bubbletouch::study::TouchesSpec;
 use bubbletouch::{Error, Result};
 use std::path::{Path, PathBuf};
 
@@ -74,31 +72,6 @@ impl StudyArgs {
             .ok_or_else(|| Error::input("study", self.study.display(), "a file with a name"))
     }
 
-    /// Reads and checks the study: the plan of the first combination of its own axes.
-    pub fn plan(&self) -> Result<Plan> {
-        Ok(self.plans()?.swap_remove(0).1)
-    }
-
-    /// Reads and checks the study: a plan for each combination of its own axes.
-    fn plans(&self) -> Result<Vec<(AxisValues, Plan)>> {
-        let place = self.study.display().to_string();
-        if let Some(about) = kinds::about(&self.text()?) {
-            let recognition = StudyKind::Recognition.words();
-            let allowed = format!("{recognition} (bubbletouch run runs all kinds)");
-            return Err(Error::input(place, about.words, allowed));
-        }
-        let mut spec = StudySpec::parse(&place, &self.text()?)?;
-        if let Some(seed) = self.seed {
-            if spec.axes.0.iter().any(|axis| axis.key == "seed") {
-                let allowed = "no such option: the seed is an axis of the study";
-                return Err(Error::input("--seed", seed, allowed));
-            }
-            spec.seed = seed;
-        }
-        self.replace_objects(&mut spec.objects);
-        Plan::variants(&place, spec)
-    }
-
     /// The study's text, and what was asked for beside it.
     pub fn source(&self) -> Result<Source> {
         set_threads(self.threads)?;
@@ -120,25 +93,6 @@ impl StudyArgs {
         let touches = study.and_then(|mut study| study.remove("touches"));
         let touches: Option<TouchesSpec> = touches.and_then(|table| table.try_into().ok());
         Ok(touches.and_then(|touches| touches.mixed_values()))
-    }
-
-    fn replace_objects(&self, objects: &mut ObjectsSpec) {
-        let Some(given) = &self.objects else {
-            return;
-        };
-        objects.sets.clear();
-        if given.extension().is_some_and(|ending| ending == "toml") {
-            objects.sets.push(given.display().to_string());
-            objects.meshes = None;
-        } else {
-            objects.meshes = Some(given.clone());
-        }
-    }
-
-    /// Reads and checks a study that recognises objects, builds them and draws its touches, unless these take more memory than there is.
-    pub fn recognition(&self, packings: Option<&Path>) -> Result<RecognitionStudy> {
-        let ceiling = self.memory.or_else(machine_memory);
-        RecognitionStudy::load(self.plans()?, packings, ceiling)
     }
 
     fn text(&self) -> Result<String> {

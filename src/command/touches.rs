@@ -1,7 +1,8 @@
 //! `bubbletouch touches`: just the data set.
 
 use super::output::{output_folder, packings_beside};
-use super::study_args::{StudyArgs, set_threads};
+use super::study_args::StudyArgs;
+use bubbletouch::kinds::recognition::{load_study, read_plan};
 use bubbletouch::random::Seed;
 use bubbletouch::report::progress;
 use bubbletouch::study::{Plan, ReadFrames, load_objects, millimetres, write_touches};
@@ -27,12 +28,13 @@ pub struct Args {
 
 pub fn touches(args: &Args) -> Result<()> {
     let packings = packings_beside(&args.out);
-    set_threads(args.study.threads)?;
+    let mut source = args.study.source()?;
+    source.packings = Some(packings.clone());
     let progress = progress::to_stderr();
     let (plan, read) = match args.cell {
-        None => (args.study.plan()?, None),
+        None => (read_plan(&source)?, None),
         Some(cell) => {
-            let study = args.study.recognition(Some(&packings))?;
+            let study = load_study(&source)?;
             let loaded = study.part_of(cell);
             args.check(&loaded.plan)?;
             let which = (cell, args.trial);

@@ -5,6 +5,7 @@ use crate::error::Result;
 use crate::report::study_folder::NamedPicture;
 use crate::study::pieces::{PieceStudy, Scale};
 use crate::table::{ChartSpec, Table};
+use crate::toml_text;
 use std::collections::BTreeMap;
 use std::path::Path;
 
@@ -35,6 +36,23 @@ pub struct Facts {
     pub content: BTreeMap<String, String>,
     /// How intervals and p-values are made, by table and columns.
     pub methods: Vec<(&'static str, &'static str)>,
+}
+
+impl Facts {
+    /// Of a study's TOML with every default, and of what that does not say: question, expected and seed stand in it.
+    pub fn of(toml: String, content: BTreeMap<String, String>) -> Self {
+        let table = toml_text::table(&toml).unwrap_or_default();
+        let words = |key| table.get(key).and_then(toml::Value::as_str);
+        let seed = table.get("seed").and_then(toml::Value::as_integer);
+        Self {
+            question: words("question").unwrap_or_default().to_owned(),
+            expected: words("expected").unwrap_or_default().to_owned(),
+            seed: seed.map_or(0, |seed| seed as u64),
+            toml,
+            content,
+            ..Self::default()
+        }
+    }
 }
 
 /// A kind of study. The engine does all else: it runs, keeps, resumes, deals out, merges, plans, verifies and reports it.

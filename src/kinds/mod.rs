@@ -11,6 +11,7 @@ mod loaded;
 mod median_time;
 mod model_recognition;
 pub mod object_detail;
+pub mod recognition;
 pub mod reconstruction;
 mod results;
 mod source;

@@ -59,7 +59,8 @@ impl<'a> Folder<'a> {
     /// The tables of a study.
     pub fn of_tables(path: &'a Path, tables: &[Table]) -> Self {
         let mut folder = Self::new(path);
-        for table in tables {
+        // A table that is made of others has no file.
+        for table in tables.iter().filter(|table| !table.csv.is_empty()) {
             folder.add(table.file, table.csv.clone());
         }
         folder
@@ -68,6 +69,15 @@ impl<'a> Folder<'a> {
     /// Adds the files of another one, behind those that are there.
     pub fn append(&mut self, other: Self) {
         self.files.extend(other.files);
+    }
+
+    /// The content of a file that needs no drawing, by its name.
+    pub fn file(&self, name: &str) -> Option<&[u8]> {
+        let (_, content) = self.files.iter().find(|(known, _)| known == name)?;
+        match content {
+            Content::Bytes(bytes) => Some(bytes),
+            Content::Png(_) => None,
+        }
     }
 
     /// Adds a file by its name in the folder.

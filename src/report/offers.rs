@@ -1,7 +1,8 @@
 //! What a folder of results offers: settings with their accuracy and what they cost, for [`advise`](crate::study::advice::advise).
 
 use crate::error::{Error, Result};
-use crate::kinds::speed_accuracy::rows::{ChainCell, ChainPoint};
+use crate::kinds::speed_accuracy::rows::{ChainCell, ChainScore, ChainTime};
+use crate::report::axis::{classifier_name, ensemble_name};
 use crate::report::csv_tables::{read_cell_rows, read_rows};
 use crate::report::varying::Settings;
 use crate::study::advice::{Costs, Offer};
@@ -90,10 +91,13 @@ pub fn read_offers(folder: &Path, given: &[Given]) -> Result<Vec<Offer>> {
             let allowed = "no such option: the study was made in one condition";
             return Err(Error::input("--given", column, allowed));
         }
-        let (cells, points) = (read_rows(&path)?, read_rows(&path)?);
-        return match cells.is_empty() {
+        let cells: Vec<ChainCell> = read_rows(&path)?;
+        let (scores, times) = (read_rows(&path)?, read_rows(&path)?);
+        let rows = cells.into_iter().zip(scores).zip(times);
+        let offers: Vec<Offer> = rows.map(of_chain).collect();
+        return match offers.is_empty() {
             true => Err(refusal(&path, "no decisions")),
-            false => Ok(of_chains(&cells, &points)),
+            false => Ok(offers),
         };
     }
     if has("chart") {
@@ -166,21 +170,27 @@ fn refusal(path: &Path, given: &str) -> Error {
     Error::input(path.display(), given, allowed)
 }
 
-/// The chains of a study of what accuracy costs.
-fn of_chains(cells: &[ChainCell], points: &[ChainPoint]) -> Vec<Offer> {
-    let offer = |(cell, point): (&ChainCell, &ChainPoint)| Offer {
+/// A chain of a study of what accuracy costs.
+fn of_chain(((cell, score), time): ((ChainCell, ChainScore), ChainTime)) -> Offer {
+    Offer {
         cell: None,
-        setting: cell.words(),
+        setting: format!(
+            "{}, {}, m = {}, pitch {} mm, spheres within {} mm",
+            classifier_name(cell.classifier),
+            ensemble_name(cell.ensemble),
+            cell.measurements,
+            cell.pitch_mm,
+            cell.tolerance_mm
+        ),
         condition: String::new(),
         costs: Costs {
-            decision_us: point.decision_us,
-            training_s: point.fit_s,
+            decision_us: time.decision_us,
+            training_s: time.fit_s,
             taxels: cell.n_taxels as f64,
             measurements: cell.measurements as f64,
         },
-        accuracy: point.accuracy,
-        accuracy_low: point.accuracy_low,
-        accuracy_high: point.accuracy_high,
-    };
-    cells.iter().zip(points).map(offer).collect()
+        accuracy: score.accuracy,
+        accuracy_low: score.accuracy_low,
+        accuracy_high: score.accuracy_high,
+    }
 }

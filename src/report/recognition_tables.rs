@@ -1,9 +1,9 @@
 //! The tables of a recognition study as files.
 
 use crate::error::Result;
+use crate::kinds::recognition::Outcome;
 use crate::report::csv_tables::{LIMITS_FILE, VARIANCE_FILE};
 use crate::report::study_tables::{StudyTables, TableFiles, table_file};
-use crate::study::Outcome;
 
 impl StudyTables for Outcome {
     const OF_PIECES: &'static [&'static str] = &["accuracy.csv"];

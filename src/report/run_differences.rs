@@ -1,39 +1,100 @@
-//! What moved between two runs, for the terminal.
+//! What moved between two runs: sentences, a table, and a page.
 
-use crate::report::terminal::{align, finish, ruled_table, wrap};
-use crate::report::varying::{Levels, Settings, unbroken_parts};
+use crate::error::Result;
+use crate::report::page::StudyAbout;
+use crate::report::recognition::say;
+use crate::report::study_folder::{Found, page_of};
+use crate::report::terminal::{paragraph, table_text};
 use crate::spelling::counted;
 use crate::study::table::{Cell, PStatus};
 use crate::study::{RunComparison, RunDifference};
-use comfy_table::Table;
-
-/// Cells that are listed, at most.
-const MOST_LISTED: usize = 30;
+use crate::table::{Along, At, ChartSpec, Column, Data, Mark, Role, Rule, Scale, Table};
 
 /// Sentences and a table of lines at most `width` letters long: the cells that moved most surely first.
-pub fn differences_text(comparison: &RunComparison, width: usize) -> String {
-    let cells: Vec<&Cell> = comparison.both.iter().map(|(cell, _)| cell).collect();
-    let settings = Settings::of(&cells);
-    let fixed: Vec<String> = settings.fixed.iter().map(Levels::sentence).collect();
-    let mut sentences = vec![format!("All cells: {}", unbroken_parts(&fixed))];
-    sentences.extend(verdict(comparison));
-    let mut text = String::new();
-    for sentence in sentences {
-        text += &wrap(&sentence, width).join("\n");
-        text.push('\n');
-    }
-    let left_out = match comparison.both.len().saturating_sub(MOST_LISTED) {
-        0 => String::new(),
-        n => {
-            format!("{n} cells that moved less surely are left out here; --out FILE.csv has all\n")
-        }
+///
+/// # Errors
+/// Rows that have no form in a table.
+pub fn differences_text(comparison: &RunComparison, width: usize) -> Result<String> {
+    let mut text: String = verdict(comparison)
+        .iter()
+        .map(|sentence| paragraph(sentence, width))
+        .collect();
+    text.push('\n');
+    text += &table_text(&table(comparison)?, width);
+    Ok(text)
+}
+
+/// The page of two runs by their names, and the program that made it.
+///
+/// # Errors
+/// As [`differences_text`]; a chart that cannot be drawn.
+pub fn differences_page(
+    comparison: &RunComparison,
+    (first, second): (&str, &str),
+    program: &str,
+) -> Result<String> {
+    let table = table(comparison)?.noted(format!(
+        "First: {first}; second: {second}. The cells that moved most surely come first."
+    ));
+    let about = StudyAbout {
+        name: format!("{first} and {second}"),
+        program: program.to_owned(),
+        wall_s: f64::NAN,
+        ..StudyAbout::default()
     };
-    let table = differences_table(comparison, &settings, width, MOST_LISTED);
-    text + "\n" + &finish(&table) + &left_out
+    let chart = ChartSpec {
+        name: "differences".to_owned(),
+        title: "Accuracy of each cell in both runs".to_owned(),
+        note: format!("Up: {second}. Across: {first}."),
+        table: table.file,
+        x: "first_accuracy".to_owned(),
+        y: "second_accuracy".to_owned(),
+        lines: vec!["moved".to_owned()],
+        mark: Mark::Points,
+        rules: vec![Rule {
+            along: Along::Y,
+            at: At::Column("first_accuracy".to_owned()),
+            words: "no difference".to_owned(),
+        }],
+        ..ChartSpec::default()
+    };
+    page_of(
+        &about,
+        &Found {
+            tables: &[table],
+            charts: &[chart],
+            pictures: &[],
+            answers: &verdict(comparison),
+        },
+    )
+}
+
+/// All cells, those first that moved most surely.
+fn table(comparison: &RunComparison) -> Result<Table> {
+    let mut rows: Vec<(Cell, RunDifference)> = comparison.both.clone();
+    rows.sort_by(|(_, a), (_, b)| {
+        let p = |row: &RunDifference| row.p_holm.unwrap_or(1.0);
+        let by_size = b.difference.abs().total_cmp(&a.difference.abs());
+        p(a).total_cmp(&p(b)).then(by_size)
+    });
+    let moved = rows.iter().map(|(_, row)| {
+        let words = match row.is_significant() {
+            true => "more than chance explains",
+            false => "chance explains it",
+        };
+        words.to_owned()
+    });
+    let column = Column::new("moved", Role::Note, "difference", "", Scale::Words);
+    let mut table = Table::of("differences.csv", "Cells of both runs", &rows)?;
+    say(&mut table);
+    Ok(table.with(
+        ("differences.csv", "Cells of both runs"),
+        vec![(column, Data::of_words(moved))],
+    ))
 }
 
 /// What moved, in sentences.
-pub(super) fn verdict(comparison: &RunComparison) -> Vec<String> {
+fn verdict(comparison: &RunComparison) -> Vec<String> {
     let rows = || comparison.both.iter().map(|(_, row)| row);
     let surely = |better: bool| {
         let moved = rows().filter(|row| row.is_significant() && (row.difference > 0.0) == better);
@@ -62,7 +123,7 @@ pub(super) fn verdict(comparison: &RunComparison) -> Vec<String> {
 }
 
 /// That there are no p-values, for so many trials where so many are needed.
-pub(super) fn too_few_words(trials: Option<(usize, usize)>) -> String {
+fn too_few_words(trials: Option<(usize, usize)>) -> String {
     match trials {
         Some((n_trials, needed)) => format!(
             "No p-values: {} a cell are too few to tell a difference from chance; {needed} are needed.",
@@ -72,47 +133,4 @@ pub(super) fn too_few_words(trials: Option<(usize, usize)>) -> String {
             "No p-values: more rows are tested than trained on, or trials are missing.".to_owned()
         }
     }
-}
-
-/// The cells that moved most surely, at most so many, in lines of so many letters.
-pub(super) fn differences_table(
-    comparison: &RunComparison,
-    settings: &Settings,
-    width: usize,
-    most: usize,
-) -> Table {
-    let axes = settings.shown();
-    let mut rows: Vec<&(Cell, RunDifference)> = comparison.both.iter().collect();
-    rows.sort_by(|(_, a), (_, b)| {
-        let p = |row: &RunDifference| row.p_holm.unwrap_or(1.0);
-        let by_size = b.difference.abs().total_cmp(&a.difference.abs());
-        p(a).total_cmp(&p(b)).then(by_size)
-    });
-    let mut table = ruled_table(width);
-    let names = axes.iter().map(|levels| levels.axis.name().to_owned());
-    let heads = ["first", "second", "difference [95 %]", "p (Holm)"].map(str::to_owned);
-    table.set_header(names.chain(heads));
-    for (cell, row) in rows.iter().take(most) {
-        let labels = axes.iter().map(|levels| levels.axis.value(cell).label);
-        table.add_row(labels.chain(numbers(row)));
-    }
-    align(&mut table, &axes, 4);
-    table
-}
-
-fn numbers(row: &RunDifference) -> [String; 4] {
-    let interval = match (row.difference_low, row.difference_high) {
-        (Some(low), Some(high)) => format!(" [{low:+.3}, {high:+.3}]"),
-        _ => String::new(),
-    };
-    [
-        format!("{:.3}", row.first_accuracy),
-        format!("{:.3}", row.second_accuracy),
-        format!("{:+.3}{interval}", row.difference),
-        match (row.p_holm, row.p_status) {
-            (Some(p), _) => format!("{p:.3}"),
-            (None, PStatus::TooFewTrials) => "too few trials".to_owned(),
-            (None, _) => "-".to_owned(),
-        },
-    ]
 }

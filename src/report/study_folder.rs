@@ -4,9 +4,9 @@ use crate::error::Result;
 use crate::report::chart;
 use crate::report::drawing::Drawing;
 use crate::report::folder::Folder;
-use crate::report::page::{Beside, Picture, StudyAbout, study_page};
-use crate::report::terminal::wrap;
-use crate::table::{ChartSpec, Table};
+use crate::report::page::{Beside, Picture, Section, StudyAbout, study_page};
+use crate::report::terminal::{paragraph, table_text};
+use crate::table::{ChartSpec, Role, Table};
 use std::path::Path;
 
 /// A picture that is no chart: frames, bodies, objects.
@@ -52,19 +52,32 @@ const LIGHT: usize = 300_000;
 /// # Errors
 /// What cannot be drawn.
 pub fn folder_of<'a>(dir: &'a Path, about: &StudyAbout, found: &Found) -> Result<Folder<'a>> {
+    folder_with(dir, about, found, Vec::new())
+}
+
+/// The same with sections of its own on the page.
+pub(super) fn folder_with<'a>(
+    dir: &'a Path,
+    about: &StudyAbout,
+    found: &Found,
+    sections: Vec<Section>,
+) -> Result<Folder<'a>> {
     let mut folder = Folder::new(dir);
+    let mut beside = Beside {
+        sections,
+        ..Beside::default()
+    };
     let mut charts = Vec::new();
-    for chart in found.charts {
-        if !chart::places(chart, found.tables)?.is_empty() {
-            charts.push(chart.clone());
-        }
-    }
-    let mut beside = Beside::default();
-    for (number, spec) in charts.iter().enumerate() {
-        if number >= MOST_CHARTS && !about.all_charts {
+    for spec in found.charts {
+        if charts.len() >= MOST_CHARTS && !about.all_charts {
             beside.left_out.push(spec.name.clone());
             continue;
         }
+        if chart::places(spec, found.tables)?.is_empty() {
+            continue;
+        }
+        let number = charts.len();
+        charts.push(spec.clone());
         let drawing = chart::draw(spec, found.tables)?;
         if number < MOST_CHARTS {
             beside.charts.push(light_picture(&drawing, &spec.title)?);
@@ -85,12 +98,27 @@ pub fn folder_of<'a>(dir: &'a Path, about: &StudyAbout, found: &Found) -> Result
             }
         });
     }
+    // More would make the page slow; each can be arranged to show what the others do.
+    charts.truncate(MOST_CHARTS);
     let found = Found {
         charts: &charts,
         ..*found
     };
     folder.add("report.html", study_page(about, &found, beside));
     Ok(folder)
+}
+
+/// A page alone.
+///
+/// # Errors
+/// What cannot be drawn.
+pub(super) fn page_of(about: &StudyAbout, found: &Found) -> Result<String> {
+    let mut beside = Beside::default();
+    for spec in found.charts {
+        let drawing = chart::draw(spec, found.tables)?;
+        beside.charts.push(light_picture(&drawing, &spec.title)?);
+    }
+    Ok(study_page(about, found, beside))
 }
 
 /// A drawing for the page, as SVG if that is light.
@@ -103,12 +131,20 @@ fn light_picture(drawing: &Drawing, title: &str) -> Result<Picture> {
     Ok(Picture::of_png(&drawing.png()?, size, title))
 }
 
-/// What a person reads at the end of a run, in lines of about `width` letters.
-pub fn words_of(question: &str, _tables: &[Table], answers: &[String], width: usize) -> String {
+/// What a person reads at the end of a run, in lines of about `width` letters: the first table in which something was found, and the answers.
+pub fn words_of(question: &str, tables: &[Table], answers: &[String], width: usize) -> String {
     let mut words = format!("{question}\n\n");
-    for line in answers.iter().flat_map(|answer| wrap(answer, width)) {
-        words += &line;
+    let is_found = |table: &&Table| {
+        let roles = table.columns.iter().map(|column| column.role);
+        let mut roles = roles.filter(|role| matches!(role, Role::Value(_) | Role::Outcome));
+        table.n_rows > 0 && roles.next().is_some()
+    };
+    if let Some(table) = tables.iter().find(is_found) {
+        words += &table_text(table, width);
         words.push('\n');
+    }
+    for answer in answers {
+        words += &paragraph(answer, width);
     }
     words
 }

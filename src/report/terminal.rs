@@ -1,22 +1,17 @@
-//! What a run prints at its end: the summary table, at the width of the terminal.
+//! What a run prints at its end: tables at the width of the terminal.
 
-use crate::report::answer::{Answer, accuracy_sentence};
-use crate::report::axis::Axis;
-use crate::report::chart_plan::plan_charts;
 use crate::report::colours::Rgb;
+use crate::report::swept::{Setting, Swept, groups};
 use crate::report::text_width::break_lines;
-use crate::report::varying::{Levels, Settings, unbroken_parts};
-use crate::study::table::{Cell, CellScore, Tables};
+use crate::table::{Column, Data, Role, Scale, Table, Value};
 use comfy_table::{
-    CellAlignment, ColumnConstraint, ContentArrangement, Table, TableComponent, presets,
+    CellAlignment, ColumnConstraint, ContentArrangement, Table as TextTable, TableComponent,
+    presets,
 };
 use std::io::IsTerminal;
 
-/// Cells up to which each gets a line; beyond, one axis runs across.
-const MOST_LISTED: usize = 40;
-
-/// Lines of the compact table, at most.
-const MOST_LINES: usize = 40;
+/// Lines of a table, at most.
+pub(super) const MOST_LINES: usize = 40;
 
 /// Blanks between two columns.
 const COLUMN_GAP: usize = 3;
@@ -77,170 +72,221 @@ impl Ink {
     }
 }
 
-/// The summary as text without escape codes, lines at most `width` letters long.
+/// A table as text without escape codes, lines at most `width` letters long: settings that are the same in all rows once above it, then a
+/// line a row of what varies, was found and is the cost, as far as there is room.
 ///
-/// Settings that are the same in all cells stand once above the table. Up to 40 cells get a line each; more are shown with
-/// one axis running across, and if even that is too long, the text says how many lines were left out and that
-/// `full_table` has them.
-pub fn summary_table(tables: &Tables, width: usize, full_table: &str) -> String {
-    let cells: Vec<&Cell> = tables.summary.iter().map(|(cell, _)| cell).collect();
-    if cells.is_empty() {
-        return "No cell has been computed.\n".to_owned();
+/// Of more than 40 rows the text has the first, and says how many there are.
+pub fn table_text(table: &Table, width: usize) -> String {
+    let rows: Vec<usize> = (0..table.n_rows).collect();
+    let mut text = constants(table, &rows, width);
+    let mut columns: Vec<(String, Vec<String>, bool)> = Vec::new();
+    let mut used = 0;
+    for (column, data) in shown_columns(table) {
+        let setting = Setting { column, data };
+        let said = rows
+            .iter()
+            .take(MOST_LINES)
+            .map(|&row| bounded(table, setting, row));
+        let said: Vec<String> = said.collect();
+        let head = column.words.to_string();
+        // A long note breaks over lines, a number never does.
+        let widest = said.iter().map(|text| letters(text)).max().unwrap_or(0);
+        let wide = widest
+            .min(if setting.is_number() { widest } else { 24 })
+            .max(letters(&head).min(widest.max(10)));
+        if !columns.is_empty() && used + wide + COLUMN_GAP > width {
+            break;
+        }
+        used += wide + COLUMN_GAP;
+        columns.push((head, said, setting.is_number()));
     }
-    let settings = Settings::of(&cells);
-    let mut text = String::new();
-    let fixed: Vec<String> = settings.fixed.iter().map(Levels::sentence).collect();
-    let fixed = format!("All cells: {}", unbroken_parts(&fixed));
-    text += &paragraph(&fixed, width);
-    text.push('\n');
-    text += &if cells.len() <= MOST_LISTED {
-        list(tables, &settings, width)
-    } else {
-        pivot(tables, &settings, width, full_table)
-    };
-    if settings
-        .shown()
-        .iter()
-        .any(|levels| levels.heading() != levels.axis.name())
-    {
-        text += "Noise is its standard deviation in percent of the full scale.\n";
+    let mut lines = ruled_table(width);
+    lines.set_header(columns.iter().map(|(head, ..)| head));
+    for row in 0..table.n_rows.min(MOST_LINES) {
+        lines.add_row(columns.iter().map(|(_, said, _)| &said[row]));
     }
-    text.push('\n');
-    for sentence in Answer::of(tables).iter().flat_map(Answer::sentences) {
-        text += &paragraph(&sentence, width);
+    for (place, (_, said, is_number)) in columns.iter().enumerate() {
+        if let Some(column) = lines.column_mut(place) {
+            column.set_padding((0, 2));
+            if *is_number {
+                column.set_cell_alignment(CellAlignment::Right);
+            }
+            if said.iter().any(|text| text.contains('[')) {
+                // An interval broken over two lines cannot be read down the column.
+                column.set_constraint(ColumnConstraint::ContentWidth);
+            }
+        }
+    }
+    text += &finish(&lines);
+    if table.n_rows > MOST_LINES {
+        let (n, file) = (table.n_rows, table.file);
+        text += &paragraph(
+            &format!("The first {MOST_LINES} of {n} rows; all are in {file}."),
+            width,
+        );
     }
     text
 }
 
-/// One line a cell.
-fn list(tables: &Tables, settings: &Settings, width: usize) -> String {
-    let axes = settings.shown();
-    let best = Answer::of(tables).filter(|_| tables.summary.len() > 1);
-    let mut table = ruled_table(width);
-    let names = axes.iter().map(|levels| levels.axis.name().to_owned());
-    let scores = ["accuracy [95 %]", "macro-F1", ""].map(str::to_owned);
-    table.set_header(names.chain(scores));
-    for (cell, score) in &tables.summary {
-        let mut row: Vec<String> = axes
-            .iter()
-            .map(|levels| levels.axis.value(cell).label)
-            .collect();
-        row.push(accuracy_sentence(score));
-        row.push(format!("{:.2}", score.macro_f1));
-        row.push(
-            best.as_ref()
-                .map_or("", |best| best.remark(cell, score))
-                .to_owned(),
-        );
-        table.add_row(row);
-    }
-    align(&mut table, &axes, 2);
-    // An interval broken over two lines cannot be read down the column.
-    if let Some(accuracy) = table.column_mut(axes.len()) {
-        accuracy.set_constraint(ColumnConstraint::ContentWidth);
-    }
-    finish(&table)
+/// What a terminal has room for: what varies, then what came of it, then what it costs.
+fn shown_columns(table: &Table) -> impl Iterator<Item = (&Column, &Data)> {
+    let rank = |column: &Column| match column.role {
+        Role::Choice | Role::Condition | Role::Subject => Some(0),
+        Role::Value(_) | Role::Outcome => Some(1),
+        Role::Cost => Some(2),
+        Role::Note => None,
+    };
+    let rows: Vec<usize> = (0..table.n_rows).collect();
+    let is_shown = move |rank: usize, setting: Setting| match rank {
+        0 => setting.varies(&rows),
+        // What is the same for all, or for none, says nothing.
+        _ if setting.is_number() => rows.iter().any(|&row| setting.data.value(row).is_some()),
+        _ => setting.varies(&rows),
+    };
+    let columns = move |wanted: usize| {
+        let is_shown = is_shown.clone();
+        let all = table.columns.iter().zip(&table.data);
+        all.filter(move |&(column, data)| {
+            rank(column) == Some(wanted) && is_shown(wanted, Setting { column, data })
+        })
+    };
+    (0..3).flat_map(columns)
 }
 
-/// One axis across, the others down; only the accuracy.
-fn pivot(tables: &Tables, settings: &Settings, width: usize, full_table: &str) -> String {
-    let cells: Vec<&Cell> = tables.summary.iter().map(|(cell, _)| cell).collect();
-    let first_chart = plan_charts(&cells).into_iter().next();
-    let across = match settings.one_at_a_time.is_empty() {
-        true => first_chart.map(|plan| plan.x),
-        // Down run the words for the signal.
-        false => {
-            let mut varying = settings.varying.iter();
-            varying.find(|levels| levels.axis != Axis::Signal).cloned()
-        }
+/// A value with its interval: `0.93 [0.9, 0.95]`.
+fn bounded(table: &Table, setting: Setting, row: usize) -> String {
+    let Some(value) = setting.data.value(row) else {
+        return String::new();
     };
-    let Some(across) = across else {
-        return list(tables, settings, width);
+    let is_share = setting.column.scale == Scale::Share && setting.column.unit.is_empty();
+    let said = |number: f64| match is_share {
+        true => format!("{number:.2}"),
+        false => setting.column.tick(number),
     };
-    let down: Vec<&Levels> = settings
-        .varying
+    let Value::Number(number) = value else {
+        return setting.column.value_words(&value);
+    };
+    let end = |name: &str| {
+        table
+            .numbers(name)
+            .map(|ends| ends[row])
+            .filter(|end| end.is_finite())
+    };
+    let ends = setting
+        .column
+        .interval
+        .as_ref()
+        .and_then(|[low, high]| Some([end(low)?, end(high)?]));
+    match ends {
+        Some([low, high]) => format!("{} [{}, {}]", said(number), said(low), said(high)),
+        None if is_share => said(number),
+        None => setting.column.number_words(number),
+    }
+}
+
+/// What is the same in all rows, in a line or more; empty if nothing is.
+fn constants(table: &Table, rows: &[usize], width: usize) -> String {
+    if rows.len() < 2 {
+        return String::new();
+    }
+    let fixed = Swept::of(table, rows, &[]).fixed;
+    // An ideal world goes without saying.
+    let is_said = |setting: &&Setting| {
+        let value = setting.data.value(rows[0]);
+        value.is_some()
+            && !(setting.column.role == Role::Condition && value == Some(Value::Number(0.0)))
+    };
+    let parts = fixed
         .iter()
-        .filter(|levels| levels.axis != across.axis)
+        .filter(is_said)
+        .map(|setting| setting.phrase(rows[0]).replace(' ', "\u{a0}"));
+    match &parts.collect::<Vec<_>>()[..] {
+        [] => String::new(),
+        parts => paragraph(&format!("All rows: {}", parts.join("\u{a0}· ")), width) + "\n",
+    }
+}
+
+/// One setting across, the others down, and of each combination a value: for tables of more rows than a terminal has.
+pub fn pivot_text(
+    table: &Table,
+    (across, value): (&str, &str),
+    given_up_first: &[&str],
+    width: usize,
+) -> String {
+    let rows: Vec<usize> = (0..table.n_rows).collect();
+    let free = Swept::of(table, &rows, given_up_first).free;
+    let (Some((column, data)), Some(values)) = (table.column(across), table.numbers(value)) else {
+        return table_text(table, width);
+    };
+    let setting = Setting { column, data };
+    let levels = setting.levels(&rows);
+    let down: Vec<Setting> = free
+        .into_iter()
+        .filter(|one| one.column.name != across)
         .collect();
-    let lines = pivot_lines(tables, &across, &down);
+    let lines = groups(&down, &rows);
     let labels_wide: usize = down
         .iter()
-        .enumerate()
-        .map(|(i, levels)| {
-            let widths = lines.iter().map(|line| letters(&line.labels[i]));
-            widths.max().unwrap_or(0).max(letters(levels.axis.name())) + COLUMN_GAP
+        .map(|one| {
+            let widths = lines.iter().map(|line| letters(&one.label(line[0])));
+            widths.max().unwrap_or(0).max(letters(&one.column.words)) + COLUMN_GAP
         })
         .sum();
-    let column_wide = |i: usize| letters(&across.values[i].tick).max(4) + COLUMN_GAP;
-    let mut n_columns = 0;
+    let ticks: Vec<String> = levels.iter().map(|&row| setting.label(row)).collect();
     let mut used = labels_wide;
-    while n_columns < across.values.len()
-        && (n_columns == 0 || used + column_wide(n_columns) <= width)
-    {
-        used += column_wide(n_columns);
+    let mut n_columns = 0;
+    for tick in &ticks {
+        used += letters(tick).max(4) + COLUMN_GAP;
+        if n_columns > 0 && used > width {
+            break;
+        }
         n_columns += 1;
     }
-    let mut table = ruled_table(width);
-    let names = down.iter().map(|levels| levels.axis.name().to_owned());
-    let ticks = across.values[..n_columns]
-        .iter()
-        .map(|value| value.tick.clone());
-    table.set_header(names.chain(ticks));
+    let mut shown = ruled_table(width);
+    let names = down.iter().map(|one| one.column.words.to_string());
+    shown.set_header(names.chain(ticks[..n_columns].iter().cloned()));
     for line in lines.iter().take(MOST_LINES) {
-        let scores = line.accuracies[..n_columns]
-            .iter()
-            .map(|accuracy| match accuracy {
-                Some(accuracy) => format!("{accuracy:.2}"),
-                None => "-".to_owned(),
-            });
-        table.add_row(line.labels.iter().cloned().chain(scores));
+        let at = |&level: &usize| {
+            let found = line.iter().find(|&&row| data.key(row) == data.key(level));
+            found.map_or_else(|| "-".to_owned(), |&row| format!("{:.2}", values[row]))
+        };
+        let labels = down.iter().map(|one| one.label(line[0]));
+        shown.add_row(labels.chain(levels[..n_columns].iter().map(at)));
     }
-    align(&mut table, &down, n_columns);
-    let mut text = format!("Mean accuracy; across: {}\n", across.axis.name());
-    text += &finish(&table);
-    let hidden_lines = lines.len().saturating_sub(MOST_LINES);
-    let hidden_columns = across.values.len() - n_columns;
-    let (n_lines, n_across, n_cells) = (lines.len(), across.values.len(), cells.len());
-    let remark = match hidden_lines + hidden_columns {
-        0 => format!("The intervals of all {n_cells} cells are in {full_table}"),
-        _ => format!(
-            "Left out here: {hidden_lines} of {n_lines} lines, {hidden_columns} of {n_across} columns; \
-             all {n_cells} cells are in {full_table}"
+    for (place, column) in shown.column_iter_mut().enumerate() {
+        column.set_padding((0, 2));
+        if down.get(place).is_none_or(Setting::is_number) {
+            column.set_cell_alignment(CellAlignment::Right);
+        }
+    }
+    let mut text = constants(table, &rows, width);
+    let value = table
+        .column(value)
+        .map_or(value, |(column, _)| &column.words);
+    text += &format!("{value}; across: {}\n", column.words);
+    text += &finish(&shown);
+    let hidden = (
+        lines.len().saturating_sub(MOST_LINES),
+        levels.len() - n_columns,
+    );
+    let remark = match hidden {
+        (0, 0) => format!(
+            "All {} rows with their intervals are in the tables.",
+            table.n_rows
+        ),
+        (h, c) => format!(
+            "Left out here: {h} of {} lines, {c} of {} columns; all {} rows are in the tables.",
+            lines.len(),
+            levels.len(),
+            table.n_rows
         ),
     };
     text + &paragraph(&remark, width)
 }
 
-struct PivotLine {
-    labels: Vec<String>,
-    accuracies: Vec<Option<f64>>,
-}
-
-fn pivot_lines(tables: &Tables, across: &Levels, down: &[&Levels]) -> Vec<PivotLine> {
-    let mut lines: Vec<PivotLine> = Vec::new();
-    let mut places = std::collections::HashMap::new();
-    for (cell, CellScore { accuracy, .. }) in &tables.summary {
-        let label = |levels: &&Levels| levels.axis.value(cell).label;
-        let labels: Vec<String> = down.iter().map(label).collect();
-        let line = *places.entry(labels.clone()).or_insert_with(|| {
-            lines.push(PivotLine {
-                labels,
-                accuracies: vec![None; across.values.len()],
-            });
-            lines.len() - 1
-        });
-        let value = across.axis.value(cell);
-        let column = across.values.iter().position(|v| *v == value);
-        if let Some(column) = column {
-            lines[line].accuracies[column] = Some(*accuracy);
-        }
-    }
-    lines
-}
-
 /// A table without lines that breaks its texts to fit a width, letters.
-pub(super) fn plain_table(width: usize) -> Table {
-    let mut table = Table::new();
+pub(super) fn plain_table(width: usize) -> TextTable {
+    let mut table = TextTable::new();
     table.load_preset(presets::NOTHING);
     table.set_content_arrangement(ContentArrangement::Dynamic);
     table.set_width(width.min(usize::from(u16::MAX)) as u16);
@@ -248,7 +294,7 @@ pub(super) fn plain_table(width: usize) -> Table {
 }
 
 /// The same with a line below its header, at least 20 letters wide.
-pub(super) fn ruled_table(width: usize) -> Table {
+pub(super) fn ruled_table(width: usize) -> TextTable {
     let mut table = plain_table(width.max(20));
     table.remove_style(TableComponent::VerticalLines);
     table.set_style(TableComponent::HeaderLines, '-');
@@ -257,7 +303,7 @@ pub(super) fn ruled_table(width: usize) -> Table {
 }
 
 /// Columns of numbers, by their indices.
-pub(super) fn align_right(table: &mut Table, columns: impl IntoIterator<Item = usize>) {
+pub(super) fn align_right(table: &mut TextTable, columns: impl IntoIterator<Item = usize>) {
     for column in columns {
         if let Some(column) = table.column_mut(column) {
             column.set_cell_alignment(CellAlignment::Right);
@@ -265,20 +311,7 @@ pub(super) fn align_right(table: &mut Table, columns: impl IntoIterator<Item = u
     }
 }
 
-/// Numbers right, words left: columns of axes, then so many of numbers.
-pub(super) fn align(table: &mut Table, axes: &[&Levels], n_numbers: usize) {
-    for (index, column) in table.column_iter_mut().enumerate() {
-        column.set_padding((0, 2));
-        let is_word = axes
-            .get(index)
-            .is_some_and(|levels| levels.numbers().is_none());
-        if !is_word && index < axes.len() + n_numbers {
-            column.set_cell_alignment(CellAlignment::Right);
-        }
-    }
-}
-
-pub(super) fn finish(table: &Table) -> String {
+pub(super) fn finish(table: &TextTable) -> String {
     let lines = table.lines().map(|line| line.trim_end().to_owned() + "\n");
     lines.collect()
 }
@@ -293,6 +326,6 @@ pub(super) fn wrap(text: &str, width: usize) -> Vec<String> {
 }
 
 /// The same as one text, a line end after each line.
-fn paragraph(text: &str, width: usize) -> String {
+pub(super) fn paragraph(text: &str, width: usize) -> String {
     wrap(text, width).join("\n") + "\n"
 }

@@ -35,6 +35,20 @@ pub struct RunDifference {
     pub n_trials_needed: Option<usize>,
 }
 
+crate::columns! { RunDifference {
+    first_cell: Note "cell of the first run": Linear;
+    n_trials: Note "trials of both": Linear;
+    first_accuracy: Value(Neither) "accuracy in the first run": Share;
+    second_accuracy: Value(Neither) "accuracy in the second run": Share;
+    difference: Value(Neither): Linear between [difference_low, difference_high];
+    difference_low: Note "95 % interval, lower end": Linear;
+    difference_high: Note "95 % interval, upper end": Linear;
+    p_value: Note "p-value": Linear;
+    p_holm: Value(Neither) "p (Holm)": Linear;
+    p_status: Outcome "test";
+    n_trials_needed: Note "trials needed": Linear;
+} }
+
 impl RunDifference {
     /// Whether chance explains it less than once in twenty such comparisons of runs.
     pub fn is_significant(&self) -> bool {

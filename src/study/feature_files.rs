@@ -14,7 +14,7 @@ use super::measurement::measure_group;
 use super::npy_numbers::{read_labels, read_matrix, read_rows};
 use super::plan::Plan;
 use super::progress::Progress;
-use super::recognition::describe;
+use super::simulation::describe;
 use super::spec::RecognitionSpec;
 use super::sweep::{Group, Sweep};
 use super::table::Cell;

@@ -1,7 +1,7 @@
 //! Study: TOML → plan → table.
 //!
 //! [`StudySpec`] (as written) → [`Plan`] (checked, SI) → touches drawn → [`Sweep`] (splits and cells laid out) →
-//! [`RecognitionStudy`] (simulate, measure, evaluate in [work items](pieces)) → [`table::Tables`].
+//! [`RecognitionStudy`](crate::kinds::recognition::RecognitionStudy) (simulate, measure, evaluate in [work items](pieces)) → [`table::Tables`].
 //!
 //! Threads live here. Whatever their number, a study's tables are the same bytes, times apart: every touch, split, noise and
 //! projection is drawn from its own named stream, and sums are taken in a fixed order.
@@ -11,7 +11,7 @@ mod attempt;
 pub mod axes;
 pub(crate) mod axis;
 mod cell;
-mod cell_content;
+pub(crate) mod cell_content;
 pub(crate) mod check;
 mod compare_runs;
 mod content_hash;
@@ -21,7 +21,6 @@ pub(crate) mod frames;
 mod human_samples;
 mod human_touches;
 pub mod journal;
-mod kind;
 pub(crate) mod measurement;
 pub mod memory;
 mod npy_numbers;
@@ -39,9 +38,8 @@ mod plan_training;
 mod pose_groups;
 pub mod progress;
 pub mod provenance;
-mod published;
-mod recognition;
-mod repeats;
+pub(crate) mod published;
+pub(crate) mod repeats;
 mod role;
 mod samples;
 mod sealed;
@@ -56,10 +54,10 @@ mod splits;
 pub(crate) mod summary;
 pub(crate) mod sweep;
 pub mod table;
-mod tabulate;
+pub(crate) mod tabulate;
 pub mod time_left;
 mod touch_files;
-mod touch_set;
+pub(crate) mod touch_set;
 mod training;
 mod variance_table;
 
@@ -72,8 +70,6 @@ pub use evaluation::CONFIDENCE;
 pub use feature_files::{FeatureSet, cell_features, read_features, write_features, write_npy};
 pub use frames::{FrameFacts, FramePlace, FrameWriter, Frames, KeptFrames};
 pub use human_touches::{HumanTouches, RecordedTouch, record_touch};
-pub use kind::StudyKind;
-pub use memory::recognition_scale;
 pub use object_files::{
     MeshUse, NamedMesh, file_content, load_catalogue, load_mesh, load_named_meshes, load_objects,
     load_spheres, objects_content, read_mesh_file,
@@ -84,7 +80,6 @@ pub use plan::{Amount, Plan, SplitKind, SplitPlan, millimetres};
 pub use plan_human::HumanTouchPlan;
 pub use plan_signal::Condition;
 pub use pose_groups::KeepTogether;
-pub use recognition::{ArrayOutcome, Limit, Outcome, RecognitionRows, RecognitionStudy, StudyPart};
 pub use repeats::Repeats;
 pub use role::{agree, column_name, condition_numbers, most_accurate, one_of, role_of};
 pub use samples::{Samples, sample_frames};

@@ -1,6 +1,7 @@
 //! Touches of an array: made once, shared by all cells.
 
 use super::frames::{FrameWriter, Frames, Making, Press};
+use super::plan::millimetres;
 use super::progress::Progress;
 use crate::contact::{Contact, Workspace, press_to_depth};
 use crate::error::Result;
@@ -46,6 +47,12 @@ pub fn touch_labels(touched: &[TouchedObject]) -> Array1<usize> {
     let objects = touched.iter().enumerate();
     let labels = objects.flat_map(|(label, t)| std::iter::repeat_n(label, t.touches.len()));
     labels.collect()
+}
+
+/// An array in words: `64×64 at 2 mm`.
+pub(crate) fn describe(patch: &Patch) -> String {
+    let grid = &patch.grid;
+    format!("{}×{} at {} mm", grid.nx, grid.ny, millimetres(grid.pitch))
 }
 
 /// What an object's touches are drawn from.

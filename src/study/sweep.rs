@@ -94,7 +94,7 @@ impl Sweep {
     }
 
     /// The same, but for claims of others, which may be about another combination of the study's own axes.
-    pub(super) fn lay_out(plan: &Plan, touched: &dyn TouchSet) -> Result<Self> {
+    pub(crate) fn lay_out(plan: &Plan, touched: &dyn TouchSet) -> Result<Self> {
         let classes = touched.class_names();
         // Asked before it runs: samples are drawn when it is over.
         named_samples(plan, &classes)?;
@@ -139,7 +139,7 @@ impl Sweep {
     }
 
     /// Its cells as those of a combination of the study's own axes, numbered from `first` on.
-    pub(super) fn place(&mut self, first: usize, variant: &AxisValues) {
+    pub(crate) fn place(&mut self, first: usize, variant: &AxisValues) {
         for cell in self.groups.iter_mut().flat_map(|group| &mut group.cells) {
             cell.cell += first;
             cell.variant.clone_from(variant);

@@ -229,8 +229,8 @@ columns! { TrialScore {
     n_left_out: Note "test touches left out": Linear;
     n_correct: Note "test rows recognised": Linear;
     accuracy: Value(More): Share between [accuracy_low, accuracy_high];
-    accuracy_low: Note "accuracy, lower end": Share;
-    accuracy_high: Note "accuracy, upper end": Share;
+    accuracy_low: Note "95 % interval, lower end": Share;
+    accuracy_high: Note "95 % interval, upper end": Share;
     macro_f1: Value(More) "macro F1": Share;
     c_used: Note "C used": Log;
     gamma_used: Note "γ used": Log;
@@ -242,8 +242,8 @@ columns! { CellScore {
     n_test: Note "test rows": Linear;
     accuracy: Value(More): Share between [accuracy_low, accuracy_high];
     accuracy_std: Note "standard deviation over trials": Share;
-    accuracy_low: Note "accuracy, lower end": Share;
-    accuracy_high: Note "accuracy, upper end": Share;
+    accuracy_low: Note "95 % interval, lower end": Share;
+    accuracy_high: Note "95 % interval, upper end": Share;
     bootstrap_low: Note "mean over trials, lower end": Share;
     bootstrap_high: Note "mean over trials, upper end": Share;
     macro_f1: Value(More) "macro F1": Share;
@@ -251,7 +251,7 @@ columns! { CellScore {
 } }
 
 columns! { Confusion {
-    cell: Note: Linear;
+    cell: Subject: Linear;
     object: Subject;
     predicted: Subject "taken for";
     count: Value(Neither) "test rows": Linear;
@@ -271,8 +271,8 @@ columns! { Published {
     source: Note;
     published_accuracy: Value(Neither) "published accuracy": Share;
     accuracy: Value(More): Share between [accuracy_low, accuracy_high];
-    accuracy_low: Note "accuracy, lower end": Share;
-    accuracy_high: Note "accuracy, upper end": Share;
+    accuracy_low: Note "95 % interval, lower end": Share;
+    accuracy_high: Note "95 % interval, upper end": Share;
     difference: Value(More) "difference to what was published": Linear;
     n_matching: Note "configurations that it is about": Linear;
 } }
@@ -314,6 +314,26 @@ columns! { StageTime {
     n_touches: Note "touches": Linear;
     cpu_s: Cost "processor time" in "s": Log;
     us_per_touch: Cost "processor time of a touch" in "µs": Log;
+} }
+
+/// How often a limit of the model was reached: a row of `limits.csv`.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Limit {
+    /// What happened: `saturated taxels`.
+    pub what: String,
+    /// How often.
+    pub count: u64,
+    /// Out of how many.
+    pub of: u64,
+    /// What it means for the reader.
+    pub meaning: String,
+}
+
+columns! { Limit {
+    what: Subject "limit";
+    count: Note: Linear;
+    of: Note: Linear;
+    meaning: Note;
 } }
 
 /// All result tables of a study.

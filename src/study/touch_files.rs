@@ -17,7 +17,7 @@ use super::frames::FrameWriter;
 use super::measurement::measure_group;
 use super::plan::Plan;
 use super::progress::Progress;
-use super::recognition::describe;
+use super::simulation::describe;
 use super::simulation::touch_stream;
 use super::sweep::{Group, Sweep};
 use super::touch_set::TouchSet;

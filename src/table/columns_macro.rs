@@ -52,3 +52,35 @@ macro_rules! columns {
         }
     };
 }
+
+/// A row of a table: a struct, and what each of its fields is, as [`columns!`](crate::columns) says it behind the field's type.
+///
+/// ```
+/// use bubbletouch::row;
+/// row! {
+/// /// What was found.
+/// pub struct Row {
+///     /// How it is simulated.
+///     method: String => Choice;
+///     /// Σ |δ − δ*| / Σ δ*.
+///     error: f64 => Value(Less) "deflection error": Log;
+/// } }
+/// let row = Row { method: "press".to_owned(), error: 0.1 };
+/// assert_eq!(bubbletouch::table::Table::of("found.csv", "Found", &[row]).unwrap().csv, b"method,error\npress,0.1\n");
+/// ```
+#[macro_export]
+macro_rules! row {
+    ($(#[$of_row:meta])* pub struct $row:ident { $($(#[$of_field:meta])* $field:ident: $type:ty =>
+        $role:ident $(($better:ident))? $($words:literal)? $(in $unit:literal)? $(: $scale:ident)?
+        $(between [$low:ident, $high:ident])? $(named $names:path)? $(, $optional:ident)?;)* }) => {
+        $(#[$of_row])*
+        #[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+        pub struct $row {
+            $($(#[$of_field])* pub $field: $type,)*
+        }
+
+        $crate::columns! { $row {
+            $($field: $role $(($better))? $($words)? $(in $unit)? $(: $scale)? $(between [$low, $high])? $(named $names)? $(, $optional)?;)*
+        } }
+    };
+}

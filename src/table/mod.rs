@@ -7,6 +7,7 @@
 mod chart;
 mod column;
 mod columns_macro;
+mod file;
 mod front;
 mod numbers;
 mod rows;
@@ -15,6 +16,7 @@ mod table;
 
 pub use chart::{Along, At, ChartSpec, Mark, Rule, Shown};
 pub use column::{Better, Column, Columns, Role, Scale};
+pub use file::File;
 pub use front::front;
 pub use numbers::{short_number, time_words};
 pub use table::{Data, Table, Value};

@@ -4,6 +4,7 @@ use super::{Better, Column, Columns, Role, Scale};
 use crate::error::{Error, Result};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
+use std::collections::HashMap;
 use std::path::Path;
 
 /// A table of a study's results.
@@ -66,6 +67,28 @@ impl From<&str> for Value {
 }
 
 impl Data {
+    /// Of words, row by row.
+    pub fn of_words(words: impl IntoIterator<Item = String>) -> Self {
+        let mut known: HashMap<String, u32> = HashMap::new();
+        let mut levels: Vec<String> = Vec::new();
+        let mut code = |word: String| {
+            *known.entry(word).or_insert_with_key(|word| {
+                levels.push(word.clone());
+                levels.len() as u32 - 1
+            })
+        };
+        let codes = words.into_iter().map(&mut code).collect();
+        Self::Words { levels, codes }
+    }
+
+    /// A number a row that is equal for equal values only.
+    pub fn key(&self, row: usize) -> u64 {
+        match self {
+            Self::Numbers(numbers) => numbers[row].to_bits(),
+            Self::Words { codes, .. } => u64::from(codes[row]),
+        }
+    }
+
     /// The value of a row; none where it is absent.
     pub fn value(&self, row: usize) -> Option<Value> {
         match self {
@@ -168,6 +191,55 @@ impl Table {
         rows.filter_map(|row| row.ok()).collect()
     }
 
+    /// A table of the same rows that more columns follow. It has no file: its content is empty.
+    pub fn with(
+        &self,
+        (file, title): (&'static str, &'static str),
+        more: Vec<(Column, Data)>,
+    ) -> Self {
+        let mut table = Self {
+            file,
+            title,
+            csv: Vec::new(),
+            is_summary: true,
+            ..self.clone()
+        };
+        for (column, data) in more {
+            table.columns.push(column);
+            table.data.push(data);
+        }
+        table
+    }
+
+    /// A column of another table for the rows of this one, found by a column of numbers that both have; absent for rows that the other
+    /// one lacks.
+    pub fn look_up(&self, other: &Self, key: &str, column: &str) -> Option<(Column, Data)> {
+        let (known, wanted) = (other.numbers(key)?, self.numbers(key)?);
+        let rows: HashMap<u64, usize> = known
+            .iter()
+            .enumerate()
+            .map(|(row, n)| (n.to_bits(), row))
+            .collect();
+        let row_of = |key: &f64| rows.get(&key.to_bits()).copied();
+        let (column, data) = other.column(column)?;
+        let data = match data {
+            Data::Numbers(numbers) => Data::Numbers(
+                wanted
+                    .iter()
+                    .map(|key| row_of(key).map_or(f64::NAN, |row| numbers[row]))
+                    .collect(),
+            ),
+            Data::Words { .. } => {
+                let word = |key: &f64| row_of(key).and_then(|row| data.value(row));
+                Data::of_words(wanted.iter().map(|key| match word(key) {
+                    Some(Value::Word(word)) => word,
+                    _ => String::new(),
+                }))
+            }
+        };
+        Some((column.clone(), data))
+    }
+
     fn from_csv(
         (file, title): (&'static str, &'static str),
         known: Vec<Column>,
@@ -258,7 +330,7 @@ fn csv_of<R: Serialize>(
 struct Maker {
     data: Data,
     /// The code of each word.
-    known: std::collections::HashMap<String, u32>,
+    known: HashMap<String, u32>,
 }
 
 impl Maker {

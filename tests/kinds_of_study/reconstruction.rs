@@ -3,8 +3,8 @@
 use crate::command::Case;
 use bubbletouch::kinds;
 use bubbletouch::kinds::reconstruction::rows::{
-    EnsembleStatistics, ReconstructionBest, ReconstructionCell, ReconstructionPareto,
-    ReconstructionScore, ReconstructionTime,
+    EnsembleStatistics, ReconstructionCell, ReconstructionPareto, ReconstructionScore,
+    ReconstructionTime,
 };
 use bubbletouch::kinds::reconstruction::{ReconstructionPlan, ReconstructionStudySpec};
 use bubbletouch::report::csv_tables::read_rows;
@@ -120,12 +120,6 @@ fn the_tables_are_the_same_bytes_at_any_number_of_threads_and_hold_every_cell() 
     for (row, cell) in pareto.iter().zip(&cells) {
         assert_eq!(row.on_front, !is_beaten(row, cell.noise_std), "{cell:?}");
     }
-    let best: Vec<ReconstructionBest> = rows(&case, "1/best.csv");
-    // Two levels of noise, three m, three solvers.
-    assert_eq!(best.len(), 2 * 3 * 3);
-    let least = |error: f64, row: &ReconstructionBest| error.min(row.error);
-    let least = best.iter().fold(f64::INFINITY, least);
-    assert!(scores.iter().all(|score| score.error >= least));
     let statistics: Vec<EnsembleStatistics> = rows(&case, "1/ensembles.csv");
     assert_eq!(statistics.len(), 5 * 3 * 2);
     for row in &statistics {

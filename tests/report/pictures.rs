@@ -1,15 +1,16 @@
 //! Pictures: every cell is drawn, every frame is readable, names are only names.
 
 use crate::report_synthetic::{cell, many_cells, noise_cells, press, quickstart_cells, tables};
-use bubbletouch::report::confusion_picture::{ConfusionMatrix, confusion_picture};
+use bubbletouch::report::chart::{draw, places};
 use bubbletouch::report::drawing::Drawing;
 use bubbletouch::report::frame_files::{frame_csv, write_frame};
 use bubbletouch::report::pressure_map::{pressure_picture, pressure_text};
-use bubbletouch::report::results::draw_charts;
+use bubbletouch::report::recognition::{charts, tables_of};
 use bubbletouch::report::snapshots::snapshots;
 use bubbletouch::report::terminal::Ink;
 use bubbletouch::signal::Quantity;
-use bubbletouch::study::table::Tables;
+use bubbletouch::study::table::{Cell, Tables};
+use bubbletouch::table::{ChartSpec, Table};
 use bubbletouch::world::Grid;
 use ndarray::{Array1, Array2, array};
 use std::fs;
@@ -24,68 +25,44 @@ fn pixels(bytes: &[u8]) -> (u32, u32, Vec<[u8; 3]>) {
     (info.width, info.height, data.as_chunks().0.to_vec())
 }
 
-/// Markers of the lines lie on a white rim of their own: a circle of radius 5.2, or a path.
-fn count(svg: &str, what: &str) -> usize {
-    svg.matches(what).count()
+/// Charts of accuracy but for those that exchange lines and panels.
+fn main_charts(made: &[Table]) -> Vec<ChartSpec> {
+    let mut specs = charts(made, Some(false));
+    specs.retain(|spec| spec.y == "accuracy" && !spec.name.contains("_per_"));
+    specs
 }
 
 #[test]
-fn every_cell_is_a_marker_in_exactly_one_of_the_main_charts() {
-    for (cells, n_exchanged) in [
+fn every_cell_is_a_point_in_exactly_one_of_the_main_charts() {
+    for (cells, n_charts) in [
         (quickstart_cells(), 1),
         (noise_cells(), 1),
-        (many_cells(), 0),
-        (vec![cell()], 0),
+        (many_cells(), 10),
+        (vec![cell()], 1),
     ] {
         let n_cells = cells.len();
-        let made = tables(cells, 2, 4);
-        let charts = draw_charts(&made);
-        let mut markers = 0;
-        for (name, title, drawing) in &charts {
-            if name.contains("_per_") {
-                continue;
-            }
-            let svg = drawing.svg(title);
-            let rims = count(&svg, r##"" r="5.2" fill="#ffffff""##)
-                + count(
-                    &svg,
-                    r##"Z" stroke="none" stroke-width="0" fill="#ffffff""##,
-                );
-            // The legend draws each line's marker once.
-            let legend = made_lines(&svg);
-            markers += rims - legend;
+        let made = tables_of(&tables(cells, 2, 4), &[]).unwrap();
+        let specs = main_charts(&made);
+        assert_eq!(specs.len(), n_charts);
+        let mut rows: Vec<usize> = Vec::new();
+        for spec in &specs {
+            rows.extend(places(spec, &made).unwrap().iter().map(|place| place.row));
         }
-        assert_eq!(markers, n_cells);
-        assert_eq!(
-            charts
-                .iter()
-                .filter(|(name, ..)| name.contains("_per_"))
-                .count(),
-            n_exchanged
-        );
+        rows.sort_unstable();
+        assert_eq!(rows, (0..n_cells).collect::<Vec<_>>());
     }
-}
-
-/// Lines of the legend: drawn 28 pixels long with the lines' width.
-fn made_lines(svg: &str) -> usize {
-    let lines = svg
-        .match_indices("<line ")
-        .map(|(at, _)| &svg[at..at + svg[at..].find("/>").unwrap()]);
-    lines
-        .filter(|line| line.contains(r#"stroke-width="2""#))
-        .count()
 }
 
 #[test]
 fn a_chart_has_its_ticks_at_the_ratios_of_the_study() {
-    let charts = draw_charts(&tables(quickstart_cells(), 1, 24));
-    let (name, title, drawing) = &charts[0];
-    assert_eq!(name, "accuracy_by_ratio");
+    let made = tables_of(&tables(quickstart_cells(), 1, 24), &[]).unwrap();
+    let spec = charts(&made, None).swap_remove(0);
+    assert_eq!(spec.name, "accuracy_by_ratio");
     assert_eq!(
-        title,
+        spec.title,
         "Accuracy by compression, for each pitch and array size"
     );
-    let svg = drawing.svg(title);
+    let svg = draw(&spec, &made).unwrap().svg(&spec.title);
     for text in [
         "4:1",
         "16:1",
@@ -103,9 +80,11 @@ fn a_chart_has_its_ticks_at_the_ratios_of_the_study() {
 
 #[test]
 fn pictures_are_png_files_with_two_elements_a_pixel() {
-    let made = tables(quickstart_cells(), 1, 43);
-    let (_, _, chart) = draw_charts(&made).swap_remove(0);
-    let matrix = confusion_picture(&made, 0).unwrap();
+    let made = tables_of(&tables(quickstart_cells(), 1, 43), &[]).unwrap();
+    let specs = charts(&made, None);
+    let of =
+        |name: &str| draw(specs.iter().find(|spec| spec.name == name).unwrap(), &made).unwrap();
+    let (chart, matrix) = (of("accuracy_by_ratio"), of("confusion"));
     let map = pressure_picture(&press(64, 64, 0, 0.0), 2.0, Quantity::Force).unwrap();
     for drawing in [chart, matrix, map] {
         let (width, height, elements) = pixels(&drawing.png().unwrap());
@@ -122,17 +101,33 @@ fn pictures_are_png_files_with_two_elements_a_pixel() {
 }
 
 #[test]
-fn a_confusion_matrix_holds_every_test_row() {
-    let made = tables(quickstart_cells(), 3, 24);
-    let matrix = ConfusionMatrix::of(&made.confusion, 5);
-    assert_eq!(matrix.names.len(), 24);
-    assert_eq!(matrix.counts.sum(), 3 * 25 * 24);
-    for row in 0..24 {
-        let shares: f64 = (0..24).map(|column| matrix.share(row, column)).sum();
-        assert!((shares - 1.0).abs() < 1e-12);
+fn a_confusion_matrix_holds_every_count_of_the_best_cell() {
+    let typed = tables(quickstart_cells(), 3, 24);
+    let made = tables_of(&typed, &[]).unwrap();
+    let spec = charts(&made, None)
+        .into_iter()
+        .find(|spec| spec.name == "confusion")
+        .unwrap();
+    let best = typed
+        .summary
+        .iter()
+        .max_by(|a, b| a.1.accuracy.total_cmp(&b.1.accuracy))
+        .unwrap();
+    let rows: Vec<usize> = (0..typed.confusion.len())
+        .filter(|&row| typed.confusion[row].cell == best.0.cell)
+        .collect();
+    let mut shown: Vec<usize> = places(&spec, &made)
+        .unwrap()
+        .iter()
+        .map(|place| place.row)
+        .collect();
+    shown.sort_unstable();
+    assert_eq!(shown, rows);
+    let drawing = draw(&spec, &made).unwrap();
+    if let Ok(folder) = std::env::var("BUBBLETOUCH_PICTURES") {
+        std::fs::write(format!("{folder}/confusion.png"), drawing.png().unwrap()).unwrap();
     }
-    assert!(confusion_picture(&made, 99).is_none());
-    assert!(confusion_picture(&Tables::default(), 0).is_none());
+    assert!(charts(&tables_of(&Tables::default(), &[]).unwrap(), None).is_empty());
 }
 
 #[test]
@@ -290,19 +285,21 @@ fn between_words_nothing_is_drawn_and_many_lines_have_whiskers() {
     let ensembles = many_cells().into_iter().filter(|cell| {
         cell.pitch_mm == 2.0 && cell.size_mm == 64.0 && cell.noise_std == 0.0 && cell.ratio == 4.0
     });
-    let charts = draw_charts(&tables(ensembles.collect(), 1, 4));
-    assert_eq!(charts[0].0, "accuracy_by_ensemble");
-    let svg = charts[0].2.svg("");
+    let count = |svg: &str, what: &str| svg.matches(what).count();
+    let first = |cells: Vec<Cell>| {
+        let made = tables_of(&tables(cells, 1, 4), &[]).unwrap();
+        let spec = charts(&made, None).swap_remove(0);
+        let svg = draw(&spec, &made).unwrap().svg("");
+        (spec.name, svg)
+    };
+    let (name, svg) = first(ensembles.collect());
+    assert_eq!(name, "accuracy_by_ensemble");
     assert_eq!(count(&svg, r#"stroke-width="1.5""#), 5 + 1);
-    assert_eq!(count(&svg, r#"fill="none""#), 0);
     assert!(!svg.contains("fill-opacity"));
     // Five lines over ratios: five polylines, a whisker a point, one in the legend.
     let over_ratios = many_cells()
         .into_iter()
         .filter(|cell| cell.pitch_mm == 2.0 && cell.size_mm == 64.0 && cell.noise_std == 0.0);
-    let svg = draw_charts(&tables(over_ratios.collect(), 1, 4))[0]
-        .2
-        .svg("");
+    let (_, svg) = first(over_ratios.collect());
     assert_eq!(count(&svg, r#"stroke-width="1.5""#), 25 + 1);
-    assert_eq!(count(&svg, r#"fill="none""#), 5);
 }

@@ -3,8 +3,8 @@
 //! A run is the same on one machine; processors round differently, so every margin is several test rows wide.
 
 use crate::study::Study;
+use bubbletouch::kinds::recognition::Outcome;
 use bubbletouch::sensing::Ensemble;
-use bubbletouch::study::Outcome;
 use bubbletouch::study::table::{Cell, CellScore};
 
 const STUDY: &str = r#"

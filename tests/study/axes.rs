@@ -2,11 +2,12 @@
 
 use crate::command::Case;
 use crate::study::Study;
+use bubbletouch::kinds::recognition::{Outcome, RecognitionStudy};
 use bubbletouch::report::csv_tables::{read_tables, write_tables};
 use bubbletouch::study::pieces::{PieceStudy, run_whole_study};
 use bubbletouch::study::progress::Silent;
 use bubbletouch::study::table::TrialScore;
-use bubbletouch::study::{Outcome, Plan, RecognitionStudy, StudySpec};
+use bubbletouch::study::{Plan, StudySpec};
 
 const REST: &str = r#"
 [objects]

@@ -3,6 +3,7 @@
 
 use crate::study::{Study, trials_of};
 use bubbletouch::contact::{Workspace, press_to_depth};
+use bubbletouch::kinds::recognition::{Outcome, recognition_scale};
 use bubbletouch::random::Seed;
 use bubbletouch::recognition::ClassifierKind;
 use bubbletouch::recognition::classifier::{Classifier, Cost, TrainedClassifier};
@@ -12,7 +13,6 @@ use bubbletouch::recognition::fusion::fuse_rows;
 use bubbletouch::sensing::Projection;
 use bubbletouch::signal::{Chain, Noise, NoiseUnit, Scratch, SignalStep};
 use bubbletouch::study::table::{Cell, TrialScore};
-use bubbletouch::study::{Outcome, recognition_scale};
 use bubbletouch::world::Scene;
 use ndarray::{Array1, Array2, Axis};
 use std::collections::BTreeMap;

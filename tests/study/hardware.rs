@@ -4,7 +4,7 @@ use crate::command::Case;
 use crate::study::{Study, trials_of};
 use bubbletouch::contact::{Workspace, press_to_depth};
 use bubbletouch::random::Seed;
-use bubbletouch::report::results::draw_charts;
+use bubbletouch::report::recognition::{charts, tables_of};
 use bubbletouch::signal::{Chain, Recording, Scratch, SensorError};
 use bubbletouch::study::progress::Silent;
 use bubbletouch::study::{Plan, StudySpec, cell_features, sample_frames};
@@ -244,8 +244,9 @@ fn the_tables_are_the_same_bytes_at_any_number_of_threads() {
 #[test]
 fn every_strength_gets_its_chart_and_every_imperfection_its_picture() {
     let study = Study::new(&with_signal(ALL));
-    let charts = draw_charts(&study.run().tables);
-    let names: Vec<&str> = charts.iter().map(|(name, ..)| name.as_str()).collect();
+    let mut charts = charts(&tables_of(&study.run().tables, &[]).unwrap(), None);
+    charts.retain(|spec| spec.y == "accuracy");
+    let names: Vec<&str> = charts.iter().map(|spec| spec.name.as_str()).collect();
     let expected = [
         "accuracy_by_noise",
         "accuracy_by_hysteresis_full_scale",

@@ -2,9 +2,10 @@
 
 use crate::command::Case;
 use crate::study::Study;
+use bubbletouch::kinds::recognition::recognition_scale;
+use bubbletouch::study::FramePlace;
 use bubbletouch::study::pieces::run_whole_study;
 use bubbletouch::study::progress::Silent;
-use bubbletouch::study::{FramePlace, recognition_scale};
 use std::fs;
 use std::path::Path;
 use std::time::{Duration, Instant};

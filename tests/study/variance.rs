@@ -1,9 +1,10 @@
 //! What a split does to the accuracy, told from what the projection does.
 
 use crate::study::Study;
+use bubbletouch::kinds::recognition::Outcome;
 use bubbletouch::report::csv_tables::{VARIANCE_FILE, read_tables, write_tables};
 use bubbletouch::study::table::{Cell, PStatus, Source, TrialScore, Variance};
-use bubbletouch::study::{Outcome, Plan, StudySpec};
+use bubbletouch::study::{Plan, StudySpec};
 
 /// Three objects that are hard to tell apart, with few measurements.
 fn text(repeats: &str, ensemble: &str, noise: f64) -> String {

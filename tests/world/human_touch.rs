@@ -2,13 +2,13 @@
 
 use crate::command::Case;
 use bubbletouch::contact::{SkinWorkspace, press_skin, spring_load};
+use bubbletouch::kinds::recognition::{Outcome, RecognitionStudy};
 use bubbletouch::objects::{FingerPose, Model};
 use bubbletouch::random::Seed;
 use bubbletouch::study::pieces::run_whole_study;
 use bubbletouch::study::progress::Silent;
 use bubbletouch::study::{
-    FrameWriter, HumanTouches, Outcome, Plan, RecognitionStudy, StudySpec, Sweep, TouchSet,
-    record_touch,
+    FrameWriter, HumanTouches, Plan, StudySpec, Sweep, TouchSet, record_touch,
 };
 use bubbletouch::world::{
     HandState, HumanTouch, Layout, SkinPatch, TOUCH_KINDS, Taxel, Taxels, TouchKind, TouchRanges,

@@ -4,8 +4,8 @@ use super::plan::PlannedWay;
 use super::rows::BreakingPoint;
 use super::study::BREAKS;
 use crate::kinds::rows_of;
-use crate::report::axis::{classifier_name, short_number};
-use crate::table::Table;
+use crate::report::axis::classifier_name;
+use crate::table::{Table, short_number};
 
 /// How many settings break recognition, where each does, and which do not.
 pub(super) fn answers(ways: &[PlannedWay], tables: &[Table]) -> Vec<String> {

@@ -1,36 +1,33 @@
 //! What was found, in sentences.
 
-use super::rows::{DetailCost, DetailRecognition, Measured};
+use super::rows::{DetailRecognition, DetailSummary, LevelTime};
 use super::spec::DetailMethod;
 use super::study::{COST, RECOGNITION};
 use crate::kinds::rows_of;
-use crate::report::axis::short_number;
-use crate::table::Table;
+use crate::table::{Table, short_number};
 
-/// An error of which nothing is felt, mm.
+/// A method at a level, and what a touch of it takes.
+type Model<'a> = (&'a DetailSummary, &'a LevelTime);
+
+/// A small error, mm.
 const SMALL_MM: f64 = 0.5;
 
 /// The most exact model; the cheapest of each method that is within half a millimetre; what learning from a model costs.
 pub(super) fn answers(tables: &[Table]) -> Vec<String> {
-    let costs: Vec<DetailCost> = rows_of(tables, COST.0);
-    let models: Vec<&DetailCost> = costs
-        .iter()
-        .filter(|row| row.measured == Measured::AsItIs && row.n_spheres.is_some())
-        .collect();
-    let best = models
-        .iter()
-        .min_by(|a, b| a.error_mm.total_cmp(&b.error_mm));
-    let best = best.map(|row| format!("The most exact model of spheres is {}", sentence(row)));
+    let summary: Vec<DetailSummary> = rows_of(tables, COST.0);
+    let times: Vec<LevelTime> = rows_of(tables, COST.0);
+    let all = summary.iter().zip(&times);
+    let models: Vec<Model> = all.filter(|(row, _)| row.n_spheres_median > 0.0).collect();
+    let error = |(row, _): &Model| row.error_median_mm;
+    let best = models.iter().min_by(|a, b| error(a).total_cmp(&error(b)));
+    let best = best.map(|model| format!("The most exact model of spheres is {}", sentence(model)));
     let fewest = DetailMethod::OF_SPHERES.into_iter().filter_map(|method| {
-        let small = models
-            .iter()
-            .filter(|row| row.method == method && row.error_mm <= SMALL_MM);
-        let spheres = |row: &DetailCost| row.n_spheres.unwrap_or(f64::INFINITY);
+        let of_method = models.iter().filter(|(row, _)| row.method == method);
+        let small = of_method.filter(|model| error(model) <= SMALL_MM);
+        let spheres = |(row, _): &Model| row.n_spheres_median;
         let fewest = small.min_by(|a, b| spheres(a).total_cmp(&spheres(b)))?;
-        Some(format!(
-            "Fewest spheres within {SMALL_MM} mm by {}",
-            sentence(fewest)
-        ))
+        let said = sentence(fewest);
+        Some(format!("Fewest spheres within {SMALL_MM} mm by {said}"))
     });
     let learned: Vec<DetailRecognition> = rows_of(tables, RECOGNITION.0);
     let misled = learned
@@ -58,12 +55,12 @@ fn named(method: DetailMethod, tolerance_mm: Option<f64>) -> String {
     format!("{}{within}", method.words())
 }
 
-fn sentence(row: &DetailCost) -> String {
+fn sentence((row, time): &Model) -> String {
     format!(
         "{}: {} mm error with {:.0} spheres, {:.0} µs a touch.",
         named(row.method, row.tolerance_mm),
-        short_number(row.error_mm),
-        row.n_spheres.unwrap_or_default(),
-        row.us_per_touch
+        short_number(row.error_median_mm),
+        row.n_spheres_median,
+        time.us_per_touch_median
     )
 }

@@ -2,7 +2,7 @@
 
 use super::plan::ObjectDetailPlan;
 use super::rows::{
-    DetailCell, DetailCost, DetailRecognition, DetailScore, DetailSummary, DetailTime,
+    DetailCell, DetailRecognition, DetailScore, DetailSummary, DetailTime, LevelTime,
 };
 use super::spec::ObjectDetailStudySpec;
 use super::study::{COST, DETAIL, ObjectDetailStudy, RECOGNITION, SUMMARY, TIMING, described};
@@ -55,11 +55,12 @@ impl Kind for ObjectDetailStudy {
         let n_objects = self.meshes.len();
         let n_levels = levels(&self.plan).len();
         let per_object = self.plan.placement.per_object.unwrap_or(1);
-        let learned = self.plan.recognition.as_ref();
-        let n_learned = learned.map_or(0, |learned| learned.n_training + learned.n_test);
+        let learned = self.plan.recognition();
+        let n_learned =
+            learned.map_or(0, |learned| learned.training_touches + learned.test_touches);
         let n_classifiers = learned.map_or(0, |learned| learned.classifiers.len());
         let n_taxels = self.plan.patch.grid.n_taxels();
-        let n_measurements = learned.map_or(0, |learned| learned.n_measurements);
+        let n_measurements = learned.map_or(0, |learned| learned.measurements);
         Scale {
             objects: format!("{n_objects} meshes, in {n_levels} models each"),
             touches: match n_learned {
@@ -78,9 +79,9 @@ impl Kind for ObjectDetailStudy {
             Table::read::<(DetailCell, DetailScore)>(DETAIL.0, DETAIL.1, folder)?,
             Table::read::<DetailSummary>(SUMMARY.0, SUMMARY.1, folder)?,
             Table::read::<(DetailCell, DetailTime)>(TIMING.0, TIMING.1, folder)?,
-            Table::read::<DetailCost>(COST.0, COST.1, folder)?,
+            Table::read::<(DetailSummary, LevelTime)>(COST.0, COST.1, folder)?,
         ];
-        if self.plan.recognition.is_some() {
+        if self.plan.recognition().is_some() {
             let table = Table::read::<DetailRecognition>(RECOGNITION.0, RECOGNITION.1, folder)?;
             tables.push(table);
         }

@@ -28,6 +28,6 @@ mod summary;
 mod variants;
 
 pub(in crate::kinds) use deflection::{DeflectionError, Reading, Truth};
-pub use plan::{ObjectDetailPlan, RecognitionPlan};
+pub use plan::ObjectDetailPlan;
 pub use spec::{DetailMethod, DetailRecognitionSpec, ObjectDetailSpec, ObjectDetailStudySpec};
 pub use study::{DetailRows, ObjectDetailStudy};

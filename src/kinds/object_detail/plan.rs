@@ -2,8 +2,6 @@
 
 use super::spec::{DetailMethod, DetailRecognitionSpec, ObjectDetailStudySpec};
 use crate::error::Result;
-use crate::recognition::ClassifierKind;
-use crate::sensing::Ensemble;
 use crate::study::check::{Check, positive};
 use crate::world::{MOST_TOUCHES, Patch, Placement};
 use std::path::{Path, PathBuf};
@@ -18,23 +16,6 @@ pub struct ObjectDetailPlan {
     pub patch: Patch,
     /// How touches are drawn.
     pub placement: Placement,
-    /// What learns from the models, if anything does.
-    pub recognition: Option<RecognitionPlan>,
-}
-
-/// Classifiers that learn from models of the meshes.
-#[derive(Clone, Debug, PartialEq)]
-pub struct RecognitionPlan {
-    /// Touches of each object that train, at least 1.
-    pub n_training: usize,
-    /// Touches of each object that test, at least 1.
-    pub n_test: usize,
-    /// How frames are compressed.
-    pub ensemble: Ensemble,
-    /// Measurements a touch, at most one a taxel.
-    pub n_measurements: usize,
-    /// What learns.
-    pub classifiers: Vec<ClassifierKind>,
 }
 
 /// Points of a mesh, at most: all are in memory at once.
@@ -78,14 +59,18 @@ impl ObjectDetailPlan {
         let key = "object_detail.surface_points";
         check.count(key, wanted.surface_points, MOST_POINTS)?;
         let recognition = wanted.recognition.as_ref();
-        let recognition = recognition.map(|wanted| check_recognition(&check, wanted, &patch));
+        recognition.map_or(Ok(()), |wanted| check_recognition(&check, wanted, &patch))?;
         Ok(Self {
             meshes,
             patch,
             placement,
-            recognition: recognition.transpose()?,
             spec,
         })
+    }
+
+    /// What learns from the models, if anything does.
+    pub fn recognition(&self) -> Option<&DetailRecognitionSpec> {
+        self.spec.object_detail.recognition.as_ref()
     }
 
     /// The folder of meshes.
@@ -94,11 +79,7 @@ impl ObjectDetailPlan {
     }
 }
 
-fn check_recognition(
-    check: &Check,
-    wanted: &DetailRecognitionSpec,
-    patch: &Patch,
-) -> Result<RecognitionPlan> {
+fn check_recognition(check: &Check, wanted: &DetailRecognitionSpec, patch: &Patch) -> Result<()> {
     let key = |name: &str| format!("object_detail.recognition.{name}");
     let count = |name: &str, count| check.count(&key(name), count, MOST_TOUCHES);
     let n_measurements = count("measurements", wanted.measurements)?;
@@ -108,16 +89,11 @@ fn check_recognition(
         return Err(check.error(&key("measurements"), n_measurements, allowed));
     }
     let n_training = count("training_touches", wanted.training_touches)?;
-    let n_test = count("test_touches", wanted.test_touches)?;
+    let n_touches = n_training + count("test_touches", wanted.test_touches)?;
     // Of two objects, the fewest; with more it takes more.
-    let bytes = 16.0 * (n_training + n_test) as f64 * n_measurements as f64;
+    let bytes = 16.0 * n_touches as f64 * n_measurements as f64;
     let what = "the measurements of all touches";
-    check.memory(&key("training_touches"), n_training + n_test, bytes, what)?;
-    Ok(RecognitionPlan {
-        n_training,
-        n_test,
-        ensemble: wanted.ensemble,
-        n_measurements,
-        classifiers: check.list(&key("classifiers"), wanted.classifiers.clone())?,
-    })
+    check.memory(&key("training_touches"), n_touches, bytes, what)?;
+    check.list(&key("classifiers"), wanted.classifiers.clone())?;
+    Ok(())
 }

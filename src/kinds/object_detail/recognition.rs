@@ -4,10 +4,10 @@
 //! contact.
 
 use super::deflection::Truth;
-use super::plan::{ObjectDetailPlan, RecognitionPlan};
+use super::plan::ObjectDetailPlan;
 use super::rows::DetailRecognition;
 use super::score::own_contact_error_mm;
-use super::spec::DetailMethod;
+use super::spec::{DetailMethod, DetailRecognitionSpec};
 use super::variants::Variant;
 use crate::error::Result;
 use crate::kinds::model_recognition::{Accuracy, touches_of};
@@ -27,7 +27,7 @@ pub(super) struct Sensor<'a> {
     patch: Patch,
     placement: Placement,
     projection: Projection,
-    plan: &'a RecognitionPlan,
+    spec: &'a DetailRecognitionSpec,
     seed: Seed,
 }
 
@@ -42,7 +42,7 @@ pub(super) struct Felt {
 impl<'a> Sensor<'a> {
     /// For a study in which something learns.
     pub fn of(plan: &'a ObjectDetailPlan) -> Result<Option<Self>> {
-        let Some(wanted) = &plan.recognition else {
+        let Some(wanted) = plan.recognition() else {
             return Ok(None);
         };
         let seed = Seed::new(plan.spec.seed);
@@ -51,11 +51,11 @@ impl<'a> Sensor<'a> {
         Ok(Some(Self {
             patch: plan.patch,
             placement: Placement {
-                per_object: Some(wanted.n_training + wanted.n_test),
+                per_object: Some(wanted.training_touches + wanted.test_touches),
                 ..plan.placement.clone()
             },
-            projection: Projection::new(wanted.ensemble, grid, wanted.n_measurements, &stream)?,
-            plan: wanted,
+            projection: Projection::new(wanted.ensemble, grid, wanted.measurements, &stream)?,
+            spec: wanted,
             seed,
         }))
     }
@@ -86,8 +86,8 @@ impl<'a> Sensor<'a> {
         (number, (method, tolerance_mm)): (usize, (DetailMethod, Option<f64>)),
         kind: ClassifierKind,
     ) -> Result<DetailRecognition> {
-        let n_training = self.plan.n_training;
-        let n_all = n_training + self.plan.n_test;
+        let n_training = self.spec.training_touches;
+        let n_all = n_training + self.spec.test_touches;
         let level = |level: usize| {
             objects
                 .iter()

@@ -156,22 +156,22 @@ columns! { DetailSummary {
     method: Choice "model" named METHODS;
     tolerance_mm: Choice "packed within" in "mm": Log;
     n_objects: Note "objects": Linear;
-    n_spheres_q1: Note "spheres, lower quartile": Log;
-    n_spheres_median: Cost "spheres": Log between [n_spheres_q1, n_spheres_q3];
-    n_spheres_q3: Note "spheres, upper quartile": Log;
-    surface_error_q1_mm: Note "mean distance of the surfaces, lower quartile" in "mm": Log;
+    n_spheres_q1: Note "spheres, quartiles over objects, lower": Log;
+    n_spheres_median: Cost "spheres an object": Log between [n_spheres_q1, n_spheres_q3];
+    n_spheres_q3: Note "spheres, quartiles over objects, upper": Log;
+    surface_error_q1_mm: Note "mean distance of the surfaces, quartiles over objects, lower" in "mm": Log;
     surface_error_median_mm: Value(Less) "mean distance of the surfaces" in "mm": Log between [surface_error_q1_mm, surface_error_q3_mm];
-    surface_error_q3_mm: Note "mean distance of the surfaces, upper quartile" in "mm": Log;
-    surface_error_max_q1_mm: Note "largest distance of the surfaces, lower quartile" in "mm": Log;
+    surface_error_q3_mm: Note "mean distance of the surfaces, quartiles over objects, upper" in "mm": Log;
+    surface_error_max_q1_mm: Note "largest distance of the surfaces, quartiles over objects, lower" in "mm": Log;
     surface_error_max_median_mm: Value(Less) "largest distance of the surfaces" in "mm": Log between [surface_error_max_q1_mm, surface_error_max_q3_mm];
-    surface_error_max_q3_mm: Note "largest distance of the surfaces, upper quartile" in "mm": Log;
-    error_q1_mm: Note "deflection error, lower quartile" in "mm": Log;
+    surface_error_max_q3_mm: Note "largest distance of the surfaces, quartiles over objects, upper" in "mm": Log;
+    error_q1_mm: Note "deflection error, quartiles over objects, lower" in "mm": Log;
     error_median_mm: Value(Less) "deflection error" in "mm": Log between [error_q1_mm, error_q3_mm];
-    error_q3_mm: Note "deflection error, upper quartile" in "mm": Log;
+    error_q3_mm: Note "deflection error, quartiles over objects, upper" in "mm": Log;
     error_worst_mm: Value(Less) "deflection error of the worst object" in "mm": Log;
-    error_after_offset_q1_mm: Note "deflection error after offset, lower quartile" in "mm": Log;
+    error_after_offset_q1_mm: Note "deflection error after offset, quartiles over objects, lower" in "mm": Log;
     error_after_offset_median_mm: Value(Less) "deflection error after offset" in "mm": Log between [error_after_offset_q1_mm, error_after_offset_q3_mm];
-    error_after_offset_q3_mm: Note "deflection error after offset, upper quartile" in "mm": Log;
+    error_after_offset_q3_mm: Note "deflection error after offset, quartiles over objects, upper" in "mm": Log;
     error_after_offset_worst_mm: Value(Less) "deflection error after offset of the worst object" in "mm": Log;
     error_own_contact_median_mm: Value(Less) "deflection error past own contact" in "mm": Log;
     error_own_contact_worst_mm: Value(Less) "deflection error past own contact of the worst object" in "mm": Log;
@@ -231,61 +231,13 @@ columns! { DetailRecognition {
     n_capped: Note "fits stopped at the iteration cap": Linear;
 } }
 
-/// One kind of error of a method at a level, over all objects, and what the method costs: a row of `object_detail_cost.csv`.
+/// What a touch of a method at a level takes (with the [`DetailSummary`] before it: a row of `object_detail_cost.csv`).
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct DetailCost {
-    /// What stands for the meshes.
-    pub method: DetailMethod,
-    /// The level, mm; none for methods without levels.
-    pub tolerance_mm: Option<f64>,
-    /// What is compared with the mesh.
-    pub compared: Compared,
-    /// How.
-    pub measured: Measured,
-    /// Median number of spheres; none for the mesh.
-    pub n_spheres: Option<f64>,
-    /// Median microseconds a touch.
-    pub us_per_touch: f64,
-    /// Median error, mm.
-    pub error_mm: f64,
-    /// Lower quartile.
-    pub error_q1_mm: f64,
-    /// Upper quartile.
-    pub error_q3_mm: f64,
+pub struct LevelTime {
+    /// Microseconds a touch, one thread, median over objects.
+    pub us_per_touch_median: f64,
 }
 
-columns! { DetailCost {
-    method: Choice "model" named METHODS;
-    tolerance_mm: Choice "packed within" in "mm": Log;
-    compared: Subject;
-    measured: Subject "error";
-    n_spheres: Cost "spheres an object": Log;
-    us_per_touch: Cost "time of a touch, one thread" in "µs": Log;
-    error_mm: Value(Less) "error" in "mm": Log between [error_q1_mm, error_q3_mm];
-    error_q1_mm: Note "quartiles over objects, lower" in "mm": Log;
-    error_q3_mm: Note "quartiles over objects, upper" in "mm": Log;
+columns! { LevelTime {
+    us_per_touch_median: Cost "time of a touch, one thread" in "µs": Log;
 } }
-
-/// What of a model is compared with the mesh.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Compared {
-    /// How far its surface is.
-    Surface,
-    /// What the skin feels of it.
-    Deflection,
-}
-
-/// Which error it is.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Measured {
-    /// Mean over the surface.
-    Mean,
-    /// The largest.
-    Largest,
-    /// The mean over touched taxels.
-    AsItIs,
-    /// The same after the best constant offset.
-    AfterOffset,
-}

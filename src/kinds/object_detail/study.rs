@@ -135,7 +135,7 @@ impl PieceStudy for ObjectDetailStudy {
             Table::of(TIMING.0, TIMING.1, &rows.timing)?,
             Table::of(COST.0, COST.1, &costs)?,
         ];
-        if self.plan.recognition.is_some() {
+        if self.plan.recognition().is_some() {
             tables.push(Table::of(RECOGNITION.0, RECOGNITION.1, &rows.recognition)?);
         }
         Ok(tables.into_iter().map(described).collect())
@@ -190,7 +190,7 @@ fn times_name(mesh: &NamedMesh) -> String {
 impl ObjectDetailStudy {
     /// Level by level, of each every classifier; none if nothing learns.
     fn learned(&self) -> Vec<Learned> {
-        let kinds = self.plan.recognition.iter();
+        let kinds = self.plan.recognition().into_iter();
         let kinds: Vec<ClassifierKind> = kinds.flat_map(|plan| plan.classifiers.clone()).collect();
         let levels = levels(&self.plan).into_iter().enumerate();
         let of_level = |(number, level)| {

@@ -1,8 +1,6 @@
 //! Methods and levels over all objects.
 
-use super::rows::{
-    Compared, DetailCell, DetailCost, DetailScore, DetailSummary, DetailTime, Measured,
-};
+use super::rows::{DetailCell, DetailScore, DetailSummary, DetailTime, LevelTime};
 use super::spec::DetailMethod;
 use crate::quantile::quantile;
 
@@ -76,53 +74,22 @@ fn summary_row((method, tolerance_mm): Level, rows: &[Row]) -> DetailSummary {
     }
 }
 
-/// Errors of each method and level with what it costs: four rows of each.
+/// Each method and level with what a touch of it takes.
 pub(super) fn costs(
     summary: &[DetailSummary],
     timing: &[(DetailCell, DetailTime)],
-) -> Vec<DetailCost> {
-    let of_level = |row: &DetailSummary| {
+) -> Vec<(DetailSummary, LevelTime)> {
+    let costs = summary.iter().map(|row| {
         let is_it = |cell: &DetailCell| level(cell) == (row.method, row.tolerance_mm);
         let times = timing.iter().filter(|(cell, _)| is_it(cell));
         let mut times: Vec<f64> = times.map(|(_, time)| time.us_per_touch).collect();
-        let us_per_touch = quantile(&mut times, 0.5);
-        let quartiles = [
-            (
-                (Compared::Surface, Measured::Mean),
-                row.surface_error_q1_mm,
-                row.surface_error_median_mm,
-                row.surface_error_q3_mm,
-            ),
-            (
-                (Compared::Surface, Measured::Largest),
-                row.surface_error_max_q1_mm,
-                row.surface_error_max_median_mm,
-                row.surface_error_max_q3_mm,
-            ),
-            (
-                (Compared::Deflection, Measured::AsItIs),
-                row.error_q1_mm,
-                row.error_median_mm,
-                row.error_q3_mm,
-            ),
-            (
-                (Compared::Deflection, Measured::AfterOffset),
-                row.error_after_offset_q1_mm,
-                row.error_after_offset_median_mm,
-                row.error_after_offset_q3_mm,
-            ),
-        ];
-        quartiles.map(|((compared, measured), low, median, high)| DetailCost {
-            method: row.method,
-            tolerance_mm: row.tolerance_mm,
-            compared,
-            measured,
-            n_spheres: Some(row.n_spheres_median).filter(|&n| n > 0.0),
-            us_per_touch,
-            error_mm: median,
-            error_q1_mm: low,
-            error_q3_mm: high,
-        })
-    };
-    summary.iter().flat_map(of_level).collect()
+        let us_per_touch_median = quantile(&mut times, 0.5);
+        (
+            row.clone(),
+            LevelTime {
+                us_per_touch_median,
+            },
+        )
+    });
+    costs.collect()
 }

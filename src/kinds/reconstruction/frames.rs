@@ -5,7 +5,7 @@ use super::study::ReconstructionStudy;
 use crate::error::Result;
 use crate::report::snapshots::snapshots;
 use crate::report::study_folder::{Image, NamedPicture};
-use crate::sensing::{Dictionary, Reconstructor, SensedDictionary};
+use crate::sensing::{Reconstructor, SensedDictionary};
 use crate::study::millimetres;
 use crate::study::progress::Silent;
 use crate::table::Table;
@@ -31,19 +31,18 @@ impl ReconstructionStudy {
             .iter()
             .map(|&row| &all[cells.number("cell", row) as usize]);
         let shown_cells: Vec<&ReconstructionCell> = shown_cells.collect();
-        let bases: Vec<_> = shown_cells.iter().map(|cell| cell.dictionary).collect();
-        let dictionaries = touches.learn(&self.plan, &bases, &Silent)?;
         let read = touches.pick(&noisy.frames);
-        let back = |(cell, dictionary): (&&ReconstructionCell, &Dictionary)| {
+        let back = |cell: &&ReconstructionCell| {
+            let dictionary = touches.learn(&self.plan, cell.dictionary)?;
             let projection = self.plan.projection(cell.ensemble, cell.measurements)?;
-            let sensed = SensedDictionary::new(&projection, dictionary)?;
+            let sensed = SensedDictionary::new(&projection, &dictionary)?;
             let effort = &self.plan.effort;
             let reconstructor = Reconstructor::new(cell.solver, &sensed, effort, noisy.std)?;
             Ok(reconstructor
                 .reconstruct(projection.measure(read.view()).view())?
                 .frames)
         };
-        let back = shown_cells.iter().zip(&dictionaries).map(back);
+        let back = shown_cells.iter().map(back);
         let back = back.collect::<Result<Vec<Array2<f64>>>>()?;
         let grid = self.plan.patch.grid;
         let mut frames = Vec::new();

@@ -7,7 +7,7 @@ use super::score::{Outcome, square_errors};
 use super::touches::{Noisy, Touches};
 use crate::error::Result;
 use crate::sensing::{Basis, Dictionary, Reconstruction, Reconstructor, SensedDictionary};
-use crate::study::pieces::PiecesLeft;
+use crate::study::pieces::{PiecesLeft, Shared};
 use ndarray::{Array2, Axis};
 use rayon::prelude::*;
 use std::time::Instant;
@@ -24,86 +24,48 @@ pub(super) struct OnMeasured<'a> {
 }
 
 impl OnMeasured<'_> {
-    /// Does what is left of it.
-    pub fn measure(
+    /// Does what is left of it; a dictionary is learned when something needs it.
+    pub fn measure<'d>(
         &self,
-        dictionaries: &[Dictionary],
+        learned: &(impl Fn(Basis) -> Result<&'d Dictionary> + Sync),
         left: &PiecesLeft<ReconstructionRows>,
     ) -> Result<()> {
-        let needed = dictionaries.iter();
-        let needed: Vec<(&Dictionary, Vec<String>)> = needed
-            .map(|dictionary| (dictionary, self.names(dictionary.basis(), left)))
-            .filter(|(_, names)| !names.is_empty())
-            .collect();
-        let names: Vec<String> = needed.iter().flat_map(|(_, names)| names.clone()).collect();
-        let ReconstructionCell {
-            ensemble,
-            measurements,
-            ..
-        } = self.cells[0];
-        if names.is_empty() {
+        let (plan, first) = (self.plan, &self.cells[0]);
+        let isometry = |basis: &&Basis| left.has(&first.isometry_name(**basis));
+        let isometries: Vec<&Basis> = plan.dictionaries.iter().filter(isometry).collect();
+        let cells = left.of(self.cells, |cell| cell.name());
+        if isometries.is_empty() && cells.is_empty() {
             return Ok(());
         }
-        let make = || self.plan.projection(ensemble, measurements);
-        let Some(projection) = left.prepare(&names, make)? else {
-            return Ok(());
+        let projection = Shared::default();
+        let projection = || projection.get(|| plan.projection(first.ensemble, first.measurements));
+        // By one, before several ask for it at once; whoever needs it says what is wrong with it.
+        let _ = projection();
+        let n_bases = plan.dictionaries.len();
+        let sensed: Vec<_> = (0..n_bases).map(|_| Shared::default()).collect();
+        let sense = |basis: Basis| {
+            sensed[plan.place_of(basis)]
+                .get(|| SensedDictionary::new(projection()?, learned(basis)?))
         };
-        let sensed = needed
-            .into_par_iter()
-            .map(|(dictionary, names)| {
-                let sense = || SensedDictionary::new(&projection, dictionary);
-                let sensed = left.prepare(&names, sense)?;
-                if let Some(sensed) = &sensed {
-                    self.isometry(sensed, left)?;
-                }
-                Ok(sensed)
+        isometries.into_par_iter().try_for_each(|&basis| {
+            left.finish(&first.isometry_name(basis), || {
+                Ok(ReconstructionRows {
+                    ensembles: statistics(plan, sense(basis)?)?,
+                    ..ReconstructionRows::default()
+                })
             })
-            .collect::<Result<Vec<_>>>()?;
-        let sensed: Vec<SensedDictionary> = sensed.into_iter().flatten().collect();
+        })?;
         for noisy in &self.touches.noisy {
-            let of_level = self
-                .cells
-                .iter()
-                .filter(|cell| cell.noise_std == noisy.level);
-            let cells = left.of(of_level, |cell| cell.name());
-            if cells.is_empty() {
-                continue;
-            }
-            let measurements = projection.measure(noisy.frames.view());
-            for cell in cells {
-                let mut sensed = sensed.iter();
-                let of_cell = sensed.find(|s| s.dictionary().basis() == cell.dictionary);
-                let Some(sensed) = of_cell else {
-                    continue;
-                };
+            let measurements = Shared::default();
+            for cell in cells.iter().filter(|cell| cell.noise_std == noisy.level) {
                 left.finish(&cell.name(), || {
-                    self.reconstruct(cell, sensed, noisy, &measurements)
+                    let measure = || Ok(projection()?.measure(noisy.frames.view()));
+                    let measurements = measurements.get(measure)?;
+                    self.reconstruct(cell, sense(cell.dictionary)?, noisy, measurements)
                 })?;
             }
         }
         Ok(())
-    }
-
-    /// What is left that is made of a dictionary.
-    fn names(&self, basis: Basis, left: &PiecesLeft<ReconstructionRows>) -> Vec<String> {
-        let cells = self.cells.iter().filter(|cell| cell.dictionary == basis);
-        let names = cells.map(ReconstructionCell::name);
-        let names = names.chain([self.cells[0].isometry_name(basis)]);
-        left.of(names, String::clone)
-    }
-
-    fn isometry(
-        &self,
-        sensed: &SensedDictionary,
-        left: &PiecesLeft<ReconstructionRows>,
-    ) -> Result<()> {
-        let name = self.cells[0].isometry_name(sensed.dictionary().basis());
-        left.finish(&name, || {
-            Ok(ReconstructionRows {
-                ensembles: statistics(self.plan, sensed)?,
-                ..ReconstructionRows::default()
-            })
-        })
     }
 
     /// Errors and times of a cell.

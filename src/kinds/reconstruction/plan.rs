@@ -134,6 +134,12 @@ impl ReconstructionPlan {
         Projection::new(ensemble, grid, m, &seed)
     }
 
+    /// Which of its dictionaries it is.
+    pub(super) fn place_of(&self, basis: Basis) -> usize {
+        let place = self.dictionaries.iter().position(|&known| known == basis);
+        place.expect("cells have the dictionaries of their plan")
+    }
+
     /// All cells, those of an ensemble and m together; how many atoms a dictionary has is known once it is learned.
     pub fn cells(&self) -> Vec<ReconstructionCell> {
         let n_taxels = self.patch.grid.n_taxels() as f64;

@@ -1,8 +1,7 @@
 //! Errors of reconstructed frames, and which cells no other beats.
 
 use super::rows::{
-    ReconstructionBest, ReconstructionCell, ReconstructionPareto, ReconstructionRows,
-    ReconstructionScore,
+    ReconstructionCell, ReconstructionPareto, ReconstructionRows, ReconstructionScore,
 };
 use crate::table::front;
 use ndarray::{Array2, ArrayView2};
@@ -91,11 +90,12 @@ pub(super) fn pareto(rows: &ReconstructionRows) -> Vec<(ReconstructionCell, Reco
             (cell.clone(), row)
         })
         .collect();
-    for level in values_of(rows, |cell| cell.noise_std) {
-        let mut of_level: Vec<_> = all
-            .iter_mut()
-            .filter(|(cell, _)| cell.noise_std == level)
-            .collect();
+    let mut levels: Vec<f64> = all.iter().map(|(cell, _)| cell.noise_std).collect();
+    levels.sort_by(f64::total_cmp);
+    levels.dedup();
+    for level in levels {
+        let of_level = all.iter_mut().filter(|(cell, _)| cell.noise_std == level);
+        let mut of_level: Vec<_> = of_level.collect();
         let points: Vec<(f64, f64)> = of_level
             .iter()
             .map(|(_, row)| (row.us_per_frame, row.error))
@@ -105,49 +105,6 @@ pub(super) fn pareto(rows: &ReconstructionRows) -> Vec<(ReconstructionCell, Reco
         }
     }
     all
-}
-
-/// The lowest error of each noise level, m and solver, in the order of the tables, m ascending.
-pub(super) fn best(rows: &ReconstructionRows) -> Vec<(ReconstructionCell, ReconstructionBest)> {
-    let mut counts = values_of(rows, |cell| cell.measurements);
-    counts.sort_unstable();
-    let mut found = Vec::new();
-    for noise in values_of(rows, |cell| cell.noise_std) {
-        for &m in &counts {
-            for solver in values_of(rows, |cell| cell.solver) {
-                let cells = rows.reconstruction.iter().zip(&rows.timing);
-                let same = cells.filter(|((cell, _), _)| {
-                    (cell.noise_std, cell.measurements, cell.solver) == (noise, m, solver)
-                });
-                let best = same.min_by(|a, b| a.0.1.error.total_cmp(&b.0.1.error));
-                found.extend(best.map(|((cell, score), (_, time))| {
-                    let row = ReconstructionBest {
-                        error: score.error,
-                        error_low: score.error_low,
-                        error_high: score.error_high,
-                        full_sampling_error: score.full_sampling_error,
-                        frames_per_s_per_core: time.frames_per_s_per_core,
-                    };
-                    (cell.clone(), row)
-                }));
-            }
-        }
-    }
-    found
-}
-
-/// The different values of a cell's setting, in order of appearance.
-fn values_of<T: PartialEq>(
-    rows: &ReconstructionRows,
-    value: impl Fn(&ReconstructionCell) -> T,
-) -> Vec<T> {
-    let mut found = Vec::new();
-    for (cell, _) in &rows.reconstruction {
-        if !found.contains(&value(cell)) {
-            found.push(value(cell));
-        }
-    }
-    found
 }
 
 #[cfg(test)]

@@ -4,10 +4,10 @@ use super::charts::{answers, charts};
 use super::measured::OnMeasured;
 use super::plan::ReconstructionPlan;
 use super::rows::{
-    EnsembleStatistics, ReconstructionBest, ReconstructionCell, ReconstructionPareto,
-    ReconstructionRows, ReconstructionScore, ReconstructionTime,
+    EnsembleStatistics, ReconstructionCell, ReconstructionPareto, ReconstructionRows,
+    ReconstructionScore, ReconstructionTime,
 };
-use super::score::{best, pareto};
+use super::score::pareto;
 use super::spec::ReconstructionStudySpec;
 use super::touches::Touches;
 use crate::error::Result;
@@ -15,14 +15,13 @@ use crate::kinds::{About, Facts, Kind, Source};
 use crate::random::Seed;
 use crate::report::study_folder::NamedPicture;
 use crate::sensing::Basis;
-use crate::study::pieces::{NamedPiece, PieceRows, PieceStudy, PiecesLeft, Scale};
+use crate::study::pieces::{NamedPiece, PieceRows, PieceStudy, PiecesLeft, Scale, Shared};
 use crate::study::progress::Progress;
 use crate::study::time_left::Piece;
 use crate::study::{TouchedObject, draw_touches, load_objects, objects_content};
-use crate::table::{ChartSpec, Table};
+use crate::table::{ChartSpec, File, Table};
 use std::collections::BTreeMap;
 use std::path::Path;
-use std::sync::OnceLock;
 
 /// A reconstruction study and its touches.
 pub struct ReconstructionStudy {
@@ -31,25 +30,32 @@ pub struct ReconstructionStudy {
     /// What is touched.
     pub touched: Vec<TouchedObject>,
     /// Their frames, once something needed them.
-    frames: OnceLock<Touches>,
+    frames: Shared<Touches>,
 }
 
-const CELLS: (&str, &str) = ("reconstruction.csv", "Every cell");
-const ENSEMBLES: (&str, &str) = ("ensembles.csv", "Isometry of ensembles and dictionaries");
-const TIMING: (&str, &str) = ("timing.csv", "Time of every cell");
-const PARETO: (&str, &str) = ("pareto.csv", "Error and time of every cell");
-const BEST: (&str, &str) = ("best.csv", "Best cells");
+const CELLS: File<(ReconstructionCell, ReconstructionScore)> = File::new(
+    "reconstruction.csv",
+    "Every cell",
+    "Errors are relative to the clean frames: 0 is perfect, 1 is as wrong as an empty frame.",
+);
+const ENSEMBLES: File<EnsembleStatistics> = File::new(
+    "ensembles.csv",
+    "Isometry of ensembles and dictionaries",
+    "Squared singular values of supports drawn at random, whose columns have a mean square norm of 1.",
+);
+const TIMING: File<(ReconstructionCell, ReconstructionTime)> =
+    File::new("timing.csv", "Time of every cell", "").of_times();
+const PARETO: File<(ReconstructionCell, ReconstructionPareto)> = File::new(
+    "pareto.csv",
+    "Error and time of every cell",
+    "One core, frames in blocks of 64.",
+)
+.summary()
+.of_times();
 
-/// Stages of a run.
-const TOUCHES: u8 = 0;
-const STATISTICS: u8 = 1;
-const CELL: u8 = 2;
-
-/// Seconds by the clock, about: of a touch's taxel, of a dictionary, of its isometry, and of a cell.
-const TOUCH_S: f64 = 1e-7;
-const LEARN_S: f64 = 1.0;
-const ISOMETRY_S: f64 = 0.1;
-const CELL_S: f64 = 0.3;
+/// Stages of a run, and seconds by the clock of one of their work items, about: most of the time is that of cells.
+const STATISTICS: (u8, f64) = (0, 0.1);
+const CELL: (u8, f64) = (1, 0.3);
 
 impl Kind for ReconstructionStudy {
     const ABOUT: About = About {
@@ -79,24 +85,17 @@ impl Kind for ReconstructionStudy {
         Ok(Self {
             plan,
             touched,
-            frames: OnceLock::new(),
+            frames: Shared::default(),
         })
     }
 
     fn facts(&self) -> Result<Facts> {
         let spec = &self.plan.spec;
-        Ok(Facts {
-            toml: spec.to_toml(),
-            question: spec.question.clone(),
-            expected: spec.expected.clone(),
-            seed: spec.seed,
-            content: objects_content(&spec.objects)?,
-            ..Facts::default()
-        })
+        Ok(Facts::of(spec.to_toml(), objects_content(&spec.objects)?))
     }
 
     fn scale(&self) -> Scale {
-        let n_touches = self.n_touches();
+        let n_touches: usize = self.touched.iter().map(|t| t.touches.len()).sum();
         let n_taxels = self.plan.patch.grid.n_taxels() as f64;
         // Frames clean, read and reconstructed; one dictionary.
         let frames = 3.0 * n_touches as f64 * n_taxels;
@@ -110,13 +109,12 @@ impl Kind for ReconstructionStudy {
     }
 
     fn read_tables(&self, folder: &Path) -> Result<Vec<Table>> {
-        Ok(described([
-            Table::read::<(ReconstructionCell, ReconstructionScore)>(CELLS.0, CELLS.1, folder)?,
-            Table::read::<EnsembleStatistics>(ENSEMBLES.0, ENSEMBLES.1, folder)?,
-            Table::read::<(ReconstructionCell, ReconstructionTime)>(TIMING.0, TIMING.1, folder)?,
-            Table::read::<(ReconstructionCell, ReconstructionPareto)>(PARETO.0, PARETO.1, folder)?,
-            Table::read::<(ReconstructionCell, ReconstructionBest)>(BEST.0, BEST.1, folder)?,
-        ]))
+        Ok(vec![
+            CELLS.read(folder)?,
+            ENSEMBLES.read(folder)?,
+            TIMING.read(folder)?,
+            PARETO.read(folder)?,
+        ])
     }
 
     fn charts(&self, tables: &[Table]) -> Vec<ChartSpec> {
@@ -132,19 +130,6 @@ impl Kind for ReconstructionStudy {
     }
 }
 
-/// What tables are beside their rows.
-fn described([cells, ensembles, timing, pareto, best]: [Table; 5]) -> Vec<Table> {
-    vec![
-        cells.noted("Errors are relative to the clean frames: 0 is perfect, 1 is as wrong as an empty frame."),
-        ensembles.noted("Squared singular values of supports drawn at random, whose columns have a mean square norm of 1."),
-        timing.of_times(),
-        pareto.of_times().summary().noted("One core, frames in blocks of 64."),
-        best.of_times().summary().noted(
-            "The best dictionary and ensemble of each solver; full sampling error is that of the noisy frame itself.",
-        ),
-    ]
-}
-
 impl PieceStudy for ReconstructionStudy {
     type Rows = ReconstructionRows;
     type Tables = Vec<Table>;
@@ -152,42 +137,29 @@ impl PieceStudy for ReconstructionStudy {
     /// Of each ensemble and m what every dictionary keeps apart, then its cells.
     fn pieces(&self) -> Vec<NamedPiece> {
         let mut pieces = Vec::new();
-        let cells = self.plan.cells();
-        for (group, cells) in on_measured(&cells).enumerate() {
-            pieces.extend(self.plan.dictionaries.iter().map(|&basis| {
-                let work = Piece::one_by_one(STATISTICS, ISOMETRY_S);
-                NamedPiece::new(cells[0].isometry_name(basis), group, work)
-            }));
-            let work = Piece::one_by_one(CELL, CELL_S);
-            pieces.extend(
-                cells
-                    .iter()
-                    .map(|cell| NamedPiece::new(cell.name(), group, work)),
-            );
+        let [isometry, reconstruct] =
+            [STATISTICS, CELL].map(|(stage, s)| Piece::one_by_one(stage, s));
+        for (group, cells) in on_measured(&self.plan.cells()).enumerate() {
+            let names = self
+                .plan
+                .dictionaries
+                .iter()
+                .map(|&basis| cells[0].isometry_name(basis));
+            pieces.extend(names.map(|name| NamedPiece::new(name, group, isometry)));
+            let names = cells.iter().map(ReconstructionCell::name);
+            pieces.extend(names.map(|name| NamedPiece::new(name, group, reconstruct)));
         }
         pieces
     }
 
     fn measure(&self, left: &PiecesLeft<ReconstructionRows>) -> Result<()> {
-        let all: Vec<String> = self.pieces().into_iter().map(|piece| piece.name).collect();
-        let names = left.of(all, String::clone);
-        let Some(touches) = left.prepare(&names, || {
-            left.during(&self.touch_work(), || self.frames(left.progress))
-        })?
-        else {
-            return Ok(());
+        let touches = self.frames(left.progress)?;
+        let n_bases = self.plan.dictionaries.len();
+        let dictionaries: Vec<_> = (0..n_bases).map(|_| Shared::default()).collect();
+        let learned = |basis: Basis| {
+            dictionaries[self.plan.place_of(basis)].get(|| touches.learn(&self.plan, basis))
         };
-        let bases = self.bases_of(left);
-        left.progress.stage("dictionaries", bases.len() as u64);
-        let Some(dictionaries) = left.prepare(&names, || {
-            left.during(&learn_work(bases.len()), || {
-                touches.learn(&self.plan, &bases, left.progress)
-            })
-        })?
-        else {
-            return Ok(());
-        };
-        left.progress.stage("reconstruct", names.len() as u64);
+        left.progress.stage("reconstruct", left.n() as u64);
         on_measured(&self.plan.cells()).try_for_each(|cells| {
             let plan = &self.plan;
             let on = OnMeasured {
@@ -195,12 +167,8 @@ impl PieceStudy for ReconstructionStudy {
                 cells,
                 touches,
             };
-            on.measure(&dictionaries, left)
+            on.measure(&learned, left)
         })
-    }
-
-    fn shared_work(&self, left: &PiecesLeft<ReconstructionRows>) -> Vec<Piece> {
-        vec![self.touch_work(), learn_work(self.bases_of(left).len())]
     }
 
     fn tables(&self, mut rows: ReconstructionRows) -> Result<Vec<Table>> {
@@ -212,13 +180,12 @@ impl PieceStudy for ReconstructionStudy {
         for cell in cells.chain(rows.timing.iter_mut().map(|row| &mut row.0)) {
             cell.cell = numbers[&cell.name()];
         }
-        Ok(described([
-            Table::of(CELLS.0, CELLS.1, &rows.reconstruction)?,
-            Table::of(ENSEMBLES.0, ENSEMBLES.1, &rows.ensembles)?,
-            Table::of(TIMING.0, TIMING.1, &rows.timing)?,
-            Table::of(PARETO.0, PARETO.1, &pareto(&rows))?,
-            Table::of(BEST.0, BEST.1, &best(&rows))?,
-        ]))
+        Ok(vec![
+            CELLS.of(&rows.reconstruction)?,
+            ENSEMBLES.of(&rows.ensembles)?,
+            TIMING.of(&rows.timing)?,
+            PARETO.of(&pareto(&rows))?,
+        ])
     }
 }
 
@@ -227,45 +194,11 @@ fn on_measured(cells: &[ReconstructionCell]) -> impl Iterator<Item = &[Reconstru
     cells.chunk_by(|a, b| (a.ensemble, a.measurements) == (b.ensemble, b.measurements))
 }
 
-fn learn_work(n_bases: usize) -> Piece {
-    Piece::one_by_one(TOUCHES, LEARN_S * n_bases as f64)
-}
-
 impl ReconstructionStudy {
-    fn n_touches(&self) -> usize {
-        self.touched.iter().map(|object| object.touches.len()).sum()
-    }
-
-    fn touch_work(&self) -> Piece {
-        let n_taxels = self.plan.patch.grid.n_taxels();
-        Piece::one_by_one(TOUCHES, TOUCH_S * (self.n_touches() * n_taxels) as f64)
-    }
-
     /// The frames of all touches.
     pub(super) fn frames(&self, progress: &dyn Progress) -> Result<&Touches> {
-        if let Some(frames) = self.frames.get() {
-            return Ok(frames);
-        }
-        let made = Touches::simulate(&self.plan, &self.touched, progress)?;
-        Ok(self.frames.get_or_init(|| made))
-    }
-
-    /// Dictionaries of which something that is left is made.
-    fn bases_of(&self, left: &PiecesLeft<ReconstructionRows>) -> Vec<Basis> {
-        let cells = self.plan.cells();
-        let is_left = |cell: &ReconstructionCell| {
-            left.has(&cell.name()) || left.has(&cell.isometry_name(cell.dictionary))
-        };
-        let is_needed = |basis: &Basis| {
-            let mut of_basis = cells.iter().filter(|cell| cell.dictionary == *basis);
-            of_basis.any(is_left)
-        };
-        self.plan
-            .dictionaries
-            .iter()
-            .copied()
-            .filter(is_needed)
-            .collect()
+        let simulate = || Touches::simulate(&self.plan, &self.touched, progress);
+        self.frames.get(simulate)
     }
 }
 

@@ -12,7 +12,6 @@ use crate::study::measurement::{Reading, TouchToRead, measure, touches_to_read};
 use crate::study::progress::Progress;
 use crate::study::simulation::{TouchedObject, simulate_array, touch_labels};
 use ndarray::{Array1, Array2, Axis};
-use rayon::prelude::*;
 
 /// Test frames that are kept for the eye.
 const N_SAMPLES: usize = 3;
@@ -82,23 +81,12 @@ impl Touches {
         })
     }
 
-    pub(super) fn learn(
-        &self,
-        plan: &ReconstructionPlan,
-        bases: &[Basis],
-        progress: &dyn Progress,
-    ) -> Result<Vec<Dictionary>> {
+    /// A dictionary of the training frames.
+    pub(super) fn learn(&self, plan: &ReconstructionPlan, basis: Basis) -> Result<Dictionary> {
         let grid = (plan.patch.grid.ny, plan.patch.grid.nx);
         let atoms = plan.spec.reconstruction.atoms;
         let seed = Seed::new(plan.spec.seed).named("dictionary");
-        bases
-            .par_iter()
-            .map(|&basis| {
-                let learned = Dictionary::learned(basis, grid, self.train.view(), atoms, &seed);
-                progress.advance(1);
-                learned
-            })
-            .collect()
+        Dictionary::learned(basis, grid, self.train.view(), atoms, &seed)
     }
 
     /// Those of some test frames that are for the eye.

@@ -34,13 +34,18 @@ pub(super) fn charts(tables: &[Table]) -> Vec<ChartSpec> {
         ..chart("training", (CHAINS[2].0, "fit_s", "accuracy"))
     };
     let resolution = ChartSpec {
-        title: "Studies: what can be told apart against the time that it takes".to_owned(),
-        note: "Of an accuracy at one trial's test touches, and of a difference by the corrected t-test.".to_owned(),
+        title: "Studies: how near an accuracy is told by the time that it takes".to_owned(),
+        note: "At one trial's test touches.".to_owned(),
         lines: vec!["touches".to_owned()],
-        panels: Some("interval".to_owned()),
-        ..chart("resolution", (SIZES[2].0, "cpu_s", "half_width"))
+        ..chart("resolution", (SIZES[2].0, "cpu_s", "accuracy_half_width"))
     };
-    let all = [contact, decision, training, resolution].into_iter();
+    let difference = ChartSpec {
+        title: "Studies: which differences are told by the time that it takes".to_owned(),
+        note: "Of two settings, by the corrected t-test.".to_owned(),
+        lines: vec!["touches".to_owned()],
+        ..chart("difference", (SIZES[2].0, "cpu_s", "difference_half_width"))
+    };
+    let all = [contact, decision, training, resolution, difference].into_iter();
     let is_there = |chart: &ChartSpec| {
         let table = tables.iter().find(|table| table.file == chart.table);
         table.is_some_and(|table| table.n_rows > 0)

@@ -2,8 +2,8 @@
 
 use super::plan::SpeedAccuracyPlan;
 use super::rows::{
-    ChainCell, ChainPoint, ChainScore, ChainTime, ContactCell, ContactPoint, ContactScore,
-    ContactTime, ResolutionPoint, Resolved, StudySize, StudyTime,
+    ChainCell, ChainScore, ChainTime, ContactCell, ContactPoint, ContactScore, ContactTime,
+    Resolved, StudySize, StudyTime,
 };
 use super::spec::SpeedAccuracyStudySpec;
 use super::study::{CHAINS, CONTACT, Files, SIZES, SpeedAccuracyStudy};
@@ -102,13 +102,13 @@ impl Kind for SpeedAccuracyStudy {
             tables.extend(part?);
         }
         if parts.recognition.is_some() {
-            type Point = (ChainCell, ChainPoint);
+            type Point = (ChainCell, ChainScore, ChainTime);
             tables.extend(read::<ChainCell, ChainScore, ChainTime, Point>(
                 CHAINS, folder,
             )?);
         }
         if parts.resolution.is_some() {
-            type Point = (StudySize, ResolutionPoint);
+            type Point = (StudySize, Resolved, StudyTime);
             tables.extend(read::<StudySize, Resolved, StudyTime, Point>(
                 SIZES, folder,
             )?);

@@ -12,15 +12,15 @@
 //!   detail, tested on other touches of the exact ones.
 //! - **resolution**: half the width of intervals against the time of the study that it takes, over touches an object and trials.
 //!
-//! Each part has a table of what it found, one of times, and one of both together with what is on the Pareto front.
+//! Each part has a table of what it found, one of times, and one of both together.
 
 mod answers;
 mod chain_times;
 mod charts;
 mod contact;
+mod contact_points;
 mod engines;
 mod flat_rows;
-mod fronts;
 mod kind;
 mod models;
 mod plan;
@@ -31,7 +31,6 @@ mod solid_contact;
 mod spec;
 mod study;
 mod subject;
-mod words;
 
 pub use plan::{RecognitionSweep, SpeedAccuracyPlan};
 pub use spec::{

@@ -6,6 +6,7 @@ use super::spec::ResolutionSpec;
 use super::study::SpeedAccuracyRows;
 use super::subject::Subject;
 use crate::error::Result;
+use crate::kinds::recognition::RecognitionStudy;
 use crate::objects::Object;
 use crate::random::Seed;
 use crate::recognition::bootstrap::Bootstrap;
@@ -17,7 +18,7 @@ use crate::study::spec::StudySpec;
 use crate::study::summary::score;
 use crate::study::table::{Tables, TrialScore};
 use crate::study::time_left::Piece;
-use crate::study::{Axis, CONFIDENCE, Plan, RecognitionStudy, draw_touches};
+use crate::study::{Axis, CONFIDENCE, Plan, draw_touches};
 use rayon::prelude::*;
 use std::path::Path;
 

@@ -273,8 +273,6 @@ pub struct ContactPoint {
     pub error_q1_mm: f64,
     /// Upper quartile.
     pub error_q3_mm: f64,
-    /// Whether no other way on the same objects is at most as dear, at least as right, and better in one of both.
-    pub on_front: bool,
 }
 
 columns! { ContactPoint {
@@ -288,64 +286,4 @@ columns! { ContactPoint {
     error_mm: Value(Less) "mean deflection error" in "mm": Log between [error_q1_mm, error_q3_mm];
     error_q1_mm: Note "quartiles over objects, lower" in "mm": Log;
     error_q3_mm: Note "quartiles over objects, upper" in "mm": Log;
-    on_front: Outcome "on the Pareto front";
 } }
-
-/// What a chain costs and gives (with the [`ChainCell`] before it: a row of `pareto.csv`).
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct ChainPoint {
-    /// Microseconds of a decision: press, noise and compression, answer.
-    pub decision_us: f64,
-    /// Seconds of the training.
-    pub fit_s: f64,
-    /// Share of right answers, 0 to 1.
-    pub accuracy: f64,
-    /// Lower end of its 95 % Wilson interval.
-    pub accuracy_low: f64,
-    /// Upper end.
-    pub accuracy_high: f64,
-    /// Whether no other chain decides as fast and as well, and better in one of both.
-    pub on_decision_front: bool,
-    /// The same of the training.
-    pub on_training_front: bool,
-}
-
-columns! { ChainPoint {
-    decision_us: Cost "time of a decision" in "µs": Log;
-    fit_s: Cost "time of a training" in "s": Log;
-    accuracy: Value(More): Share between [accuracy_low, accuracy_high];
-    accuracy_low: Note "95 % interval, lower end": Share;
-    accuracy_high: Note "95 % interval, upper end": Share;
-    on_decision_front: Outcome "on the front of decisions";
-    on_training_front: Outcome "on the front of trainings";
-} }
-
-/// What a study tells apart (with the [`StudySize`] before it: a row of `resolution_pareto.csv`).
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct ResolutionPoint {
-    /// Of what the interval is.
-    pub interval: ResolvedBy,
-    /// Processor-seconds.
-    pub cpu_s: f64,
-    /// Half the width of the 95 % interval.
-    pub half_width: f64,
-    /// Whether no other study takes at most as long, has at most as wide an interval of this kind, and is better in one of both.
-    pub on_front: bool,
-}
-
-columns! { ResolutionPoint {
-    interval: Subject "interval of";
-    cpu_s: Cost "processor time of the study" in "s": Log;
-    half_width: Value(Less) "half width of the interval": Log;
-    on_front: Outcome "on the Pareto front";
-} }
-
-/// What has an interval: widths of different ones do not compare.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum ResolvedBy {
-    /// An accuracy, at one trial's test touches.
-    OneAccuracy,
-    /// A difference of two settings, by the corrected t-test.
-    Difference,
-}

@@ -1,7 +1,7 @@
 //! Runs a study of speed against accuracy, part by part.
 
 use super::contact::ContactPart;
-use super::fronts::{chain_points, contact_points, resolution_points};
+use super::contact_points::contact_points;
 use super::models::ContactRow;
 use super::plan::SpeedAccuracyPlan;
 use super::recognition::RecognitionPart;
@@ -43,7 +43,7 @@ impl PieceRows for SpeedAccuracyRows {
     }
 }
 
-/// Files of a part: what is found, what it costs, and both together with what is on the front; and what they hold.
+/// Files of a part: what is found, what it costs, and both together; and what they hold.
 pub(super) type Files = [(&'static str, &'static str); 3];
 pub(super) const CONTACT: Files = [
     ("contact.csv", "Contact: error of every object"),
@@ -133,14 +133,10 @@ impl PieceStudy for SpeedAccuracyStudy {
             )?);
         }
         if parts.recognition.is_some() {
-            tables.extend(of_part(CHAINS, &rows.chains, &chain_points(&rows.chains))?);
+            tables.extend(of_part(CHAINS, &rows.chains, &rows.chains)?);
         }
         if parts.resolution.is_some() {
-            tables.extend(of_part(
-                SIZES,
-                &rows.sizes,
-                &resolution_points(&rows.sizes),
-            )?);
+            tables.extend(of_part(SIZES, &rows.sizes, &rows.sizes)?);
         }
         Ok(tables)
     }

@@ -2,7 +2,7 @@
 
 use super::cell::Outcome;
 use super::spec::{ContactMethod, StabilityScene};
-use crate::columns;
+use crate::row;
 use crate::study::pieces::any_number;
 use serde::{Deserialize, Serialize};
 
@@ -17,78 +17,28 @@ const METHODS: &[(&str, &str)] = &[
     ("mujoco_discrete", "MuJoCo, discrete, hard"),
 ];
 
-columns! { StabilityCell {
-    part: Subject "part of the study": Linear;
-    scene: Condition;
-    method: Choice named METHODS;
-    solver_iterations: Choice: Linear;
-    taxels: Condition "taxels a side": Linear;
-    stiffness_n_per_m: Condition "taxel stiffness" in "N/m": Log;
-    taxel_mass_kg: Condition "taxel mass" in "kg": Log;
-    object_mass_kg: Condition "mass of the ball" in "kg": Log;
-    dt_s: Choice "time step" in "s": Log;
-} }
-columns! { StabilityScore {
-    mass_ratio: Note "mass ratio, ball to taxel": Log;
-    explicit_limit_s: Note "limit of an explicit spring" in "s": Log;
-    damping_n_s_per_m: Note "taxel damping" in "N s/m": Log;
-    contact_stiffness_n_per_m: Note "contact stiffness" in "N/m": Log;
-    outcome: Outcome;
-    force_imbalance: Value(Less): Log;
-    deflection_error: Value(Less): Log;
-    n_steps: Note "steps": Log;
-    simulated_s: Note "simulated time" in "s": Log;
-} }
-columns! { StabilityTime {
-    wall_s: Cost "time" in "s": Log;
-    per_simulated_s: Cost "computing a simulated second" in "s": Log;
-} }
-columns! { StabilitySummary {
-    scene: Condition;
-    method: Choice named METHODS;
-    solver_iterations: Choice: Linear;
-    n_cells: Note "cells": Linear;
-    n_right: Value(More) "right": Linear;
-    n_inaccurate: Value(Less) "inaccurate": Linear;
-    n_missed_contact: Value(Less) "missed contact": Linear;
-    n_energy_growth: Value(Less) "energy growth": Linear;
-    n_not_finite: Value(Less) "not finite": Linear;
-    worst_force_imbalance: Value(Less): Log;
-    worst_deflection_error: Value(Less): Log;
-} }
-columns! { Joints {
-    method: Choice named METHODS;
-    solver_iterations: Choice: Linear;
-    taxel_mass_kg: Condition "taxel mass" in "kg": Log;
-    dt_s: Choice "time step" in "s": Log;
-    joints: Condition: Log;
-    carried_kg: Note "load of a taxel" in "kg": Log;
-    outcome: Outcome;
-    time_s: Cost "computing a simulated second" in "s": Log;
-} }
-
+row! {
 /// What is simulated, and how: a row of `stability.csv` begins with it, and one of `timing.csv`.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct StabilityCell {
     /// The part of the study, from 1.
-    pub part: usize,
+    part: usize => Subject "part of the study": Linear;
     /// What happens.
-    pub scene: StabilityScene,
+    scene: StabilityScene => Condition;
     /// How it is simulated.
-    pub method: ContactMethod,
+    method: ContactMethod => Choice named METHODS;
     /// Of an engine's solver, a step.
-    pub solver_iterations: Option<usize>,
+    solver_iterations: Option<usize> => Choice: Linear;
     /// Taxels a side.
-    pub taxels: usize,
+    taxels: usize => Condition "taxels a side": Linear;
     /// k, N/m.
-    pub stiffness_n_per_m: f64,
+    stiffness_n_per_m: f64 => Condition "taxel stiffness" in "N/m": Log;
     /// m, kg.
-    pub taxel_mass_kg: f64,
+    taxel_mass_kg: f64 => Condition "taxel mass" in "kg": Log;
     /// M of a free ball, kg.
-    pub object_mass_kg: Option<f64>,
+    object_mass_kg: Option<f64> => Condition "mass of the ball" in "kg": Log;
     /// Δt, s.
-    pub dt_s: f64,
-}
+    dt_s: f64 => Choice "time step" in "s": Log;
+} }
 
 impl StabilityCell {
     /// All taxels.
@@ -102,87 +52,87 @@ impl StabilityCell {
     }
 }
 
+row! {
 /// What came of it (with the [`StabilityCell`] before it: a row of `stability.csv`).
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct StabilityScore {
     /// M / m, of a free ball.
-    pub mass_ratio: Option<f64>,
+    mass_ratio: Option<f64> => Note "mass ratio, ball to taxel": Log;
     /// 2 √(m / k), s: an explicit spring without damper diverges beyond.
-    pub explicit_limit_s: f64,
+    explicit_limit_s: f64 => Note "limit of an explicit spring" in "s": Log;
     /// c, N·s/m.
-    pub damping_n_s_per_m: f64,
+    damping_n_s_per_m: f64 => Note "taxel damping" in "N s/m": Log;
     /// κ, N/m, where contact is a penalty.
-    pub contact_stiffness_n_per_m: Option<f64>,
+    contact_stiffness_n_per_m: Option<f64> => Note "contact stiffness" in "N/m": Log;
     /// Right, or how it broke.
-    pub outcome: Outcome,
+    outcome: Outcome => Outcome;
     /// |Σ f − what it must be| as a share of that; none if it broke before.
     #[serde(with = "any_number")]
-    pub force_imbalance: Option<f64>,
+    force_imbalance: Option<f64> => Value(Less): Log;
     /// Σ |δ − δ*| / Σ δ*; none if it broke before.
     #[serde(with = "any_number")]
-    pub deflection_error: Option<f64>,
+    deflection_error: Option<f64> => Value(Less): Log;
     /// Steps that were made.
-    pub n_steps: usize,
+    n_steps: usize => Note "steps": Log;
     /// Seconds that were simulated; none where nothing is stepped.
-    pub simulated_s: Option<f64>,
-}
+    simulated_s: Option<f64> => Note "simulated time" in "s": Log;
+} }
 
+row! {
 /// What it cost (with the [`StabilityCell`] before it: a row of `timing.csv`).
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct StabilityTime {
     /// Seconds of the whole cell, on one thread beside other cells on the others.
-    pub wall_s: f64,
+    wall_s: f64 => Cost "time" in "s": Log;
     /// Seconds a simulated second; none where nothing is stepped.
-    pub per_simulated_s: Option<f64>,
-}
+    per_simulated_s: Option<f64> => Cost "computing a simulated second" in "s": Log;
+} }
 
+row! {
 /// A method in a scene over all cells: a row of `stability_summary.csv`.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct StabilitySummary {
     /// What happens.
-    pub scene: StabilityScene,
+    scene: StabilityScene => Condition;
     /// How it is simulated.
-    pub method: ContactMethod,
+    method: ContactMethod => Choice named METHODS;
     /// Of an engine's solver, a step.
-    pub solver_iterations: Option<usize>,
+    solver_iterations: Option<usize> => Choice: Linear;
     /// Cells.
-    pub n_cells: usize,
+    n_cells: usize => Note "cells": Linear;
     /// Cells that are right.
-    pub n_right: usize,
+    n_right: usize => Value(More) "right": Linear;
     /// Cells that came to an end, but not to the right one.
-    pub n_inaccurate: usize,
+    n_inaccurate: usize => Value(Less) "inaccurate": Linear;
     /// Cells in which contact was missed.
-    pub n_missed_contact: usize,
+    n_missed_contact: usize => Value(Less) "missed contact": Linear;
     /// Cells that gained energy.
-    pub n_energy_growth: usize,
+    n_energy_growth: usize => Value(Less) "energy growth": Linear;
     /// Cells that ended in numbers that are not finite.
-    pub n_not_finite: usize,
+    n_not_finite: usize => Value(Less) "not finite": Linear;
     /// The largest force imbalance of the cells that did not break; none if all did.
-    pub worst_force_imbalance: Option<f64>,
+    worst_force_imbalance: Option<f64> => Value(Less): Log;
     /// The largest deflection error of the same.
-    pub worst_deflection_error: Option<f64>,
-}
+    worst_deflection_error: Option<f64> => Value(Less): Log;
+} }
 
+row! {
 /// What a plunger costs whose taxels carry the same on all arrays: a row of `joints.csv`.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Joints {
     /// How it is simulated.
-    pub method: ContactMethod,
+    method: ContactMethod => Choice named METHODS;
     /// Of an engine's solver, a step.
-    pub solver_iterations: Option<usize>,
+    solver_iterations: Option<usize> => Choice: Linear;
     /// m, kg.
-    pub taxel_mass_kg: f64,
+    taxel_mass_kg: f64 => Condition "taxel mass" in "kg": Log;
     /// Δt, s.
-    pub dt_s: f64,
+    dt_s: f64 => Choice "time step" in "s": Log;
     /// Taxels: each is a body on a joint.
-    pub joints: usize,
+    joints: usize => Condition: Log;
     /// M over the number of taxels, kg.
-    pub carried_kg: f64,
+    carried_kg: f64 => Note "load of a taxel" in "kg": Log;
     /// Right, or how it broke.
-    pub outcome: Outcome,
+    outcome: Outcome => Outcome;
     /// Seconds a simulated second; of what steps nothing, in all.
-    pub time_s: f64,
-}
+    time_s: f64 => Cost "computing a simulated second" in "s": Log;
+} }
 
 /// Rows of work items.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]

@@ -1,5 +1,6 @@
 //! Runs a study of stability, and makes its tables.
 
+use super::LEAST_STEPS;
 use super::cell::{Outcome, measure};
 use super::charts::{answers, charts};
 use super::peers::{join_peers, peer_rows};
@@ -8,21 +9,33 @@ use super::rows::{
     Joints, StabilityCell, StabilityRows, StabilityScore, StabilitySummary, StabilityTime,
 };
 use super::spec::{StabilityScene, StabilityStudySpec};
-use super::{LEAST_STEPS, TOLERANCE};
 use crate::error::Result;
 use crate::kinds::{About, Facts, Kind, Source};
 use crate::study::millimetres;
 use crate::study::pieces::{NamedPiece, PieceRows, PieceStudy, PiecesLeft, Scale};
 use crate::study::time_left::Piece;
-use crate::table::{ChartSpec, Table};
+use crate::table::{ChartSpec, File, Table};
 use rayon::prelude::*;
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
-const CELLS: (&str, &str) = ("stability.csv", "Every configuration");
-const SUMMARY: (&str, &str) = ("stability_summary.csv", "Scenes and methods");
-const TIMING: (&str, &str) = ("timing.csv", "Time of every configuration");
-const JOINTS: (&str, &str) = ("joints.csv", "Taxels on joints");
+const CELLS: File<(StabilityCell, StabilityScore)> =
+    File::new("stability.csv", "Every configuration", "");
+const SUMMARY: File<StabilitySummary> = File::new(
+    "stability_summary.csv",
+    "Scenes and methods",
+    "Right: force balance and deflections within 1 %. Imbalance, deflection: the worst errors of what came to an end, as shares.",
+)
+.summary();
+const TIMING: File<(StabilityCell, StabilityTime)> =
+    File::new("timing.csv", "Time of every configuration", "").of_times();
+const JOINTS: File<Joints> = File::new(
+    "joints.csv",
+    "Taxels on joints",
+    "Plungers on SkinSim's springs and dampers whose taxels carry the same on all arrays. Quasi-static steps nothing: its time is that of the whole answer.",
+)
+.summary()
+.of_times();
 
 impl Kind for StabilityPlan {
     const ABOUT: About = About {
@@ -39,12 +52,7 @@ impl Kind for StabilityPlan {
     }
 
     fn facts(&self) -> Result<Facts> {
-        Ok(Facts {
-            toml: self.spec.to_toml(),
-            question: self.spec.question.clone(),
-            expected: self.spec.expected.clone(),
-            ..Facts::default()
-        })
+        Ok(Facts::of(self.spec.to_toml(), BTreeMap::new()))
     }
 
     fn scale(&self) -> Scale {
@@ -62,14 +70,12 @@ impl Kind for StabilityPlan {
     }
 
     fn read_tables(&self, folder: &Path) -> Result<Vec<Table>> {
-        let [cells, summary, timing, joints] = [CELLS, SUMMARY, TIMING, JOINTS];
-        let tables = [
-            Table::read::<(StabilityCell, StabilityScore)>(cells.0, cells.1, folder)?,
-            Table::read::<StabilitySummary>(summary.0, summary.1, folder)?,
-            Table::read::<(StabilityCell, StabilityTime)>(timing.0, timing.1, folder)?,
-            Table::read::<Joints>(joints.0, joints.1, folder)?,
-        ];
-        Ok(described(tables, &peer_rows(self)?.1))
+        Ok(vec![
+            CELLS.read(folder)?.noted(peer_rows(self)?.1),
+            SUMMARY.read(folder)?,
+            TIMING.read(folder)?,
+            JOINTS.read(folder)?,
+        ])
     }
 
     fn charts(&self, tables: &[Table]) -> Vec<ChartSpec> {
@@ -79,20 +85,6 @@ impl Kind for StabilityPlan {
     fn answers(&self, tables: &[Table]) -> Vec<String> {
         answers(tables)
     }
-}
-
-/// What tables are beside their rows; `sources` says who measured rows of other programs.
-fn described([cells, summary, timing, joints]: [Table; 4], sources: &str) -> Vec<Table> {
-    let percent = 100.0 * TOLERANCE;
-    let note = format!(
-        "Right: force balance and deflections within {percent} %. Imbalance, deflection: the worst errors of what came to an end, as shares."
-    );
-    vec![
-        cells.noted(sources),
-        summary.summary().noted(note),
-        timing.of_times(),
-        joints.of_times().summary().noted("Plungers on SkinSim's springs and dampers whose taxels carry the same on all arrays. Quasi-static steps nothing: its time is that of the whole answer."),
-    ]
 }
 
 impl PieceStudy for StabilityPlan {
@@ -124,13 +116,12 @@ impl PieceStudy for StabilityPlan {
 
     fn tables(&self, mut rows: StabilityRows) -> Result<Vec<Table>> {
         let sources = join_peers(self, &mut rows)?;
-        let tables = [
-            Table::of(CELLS.0, CELLS.1, &rows.stability)?,
-            Table::of(SUMMARY.0, SUMMARY.1, &summary(&rows.stability))?,
-            Table::of(TIMING.0, TIMING.1, &rows.timing)?,
-            Table::of(JOINTS.0, JOINTS.1, &joints(&rows))?,
-        ];
-        Ok(described(tables, &sources))
+        Ok(vec![
+            CELLS.of(&rows.stability)?.noted(sources),
+            SUMMARY.of(&summary(&rows.stability))?,
+            TIMING.of(&rows.timing)?,
+            JOINTS.of(&joints(&rows))?,
+        ])
     }
 }
 

@@ -26,7 +26,7 @@ mod spec;
 mod study;
 
 pub use path::Path;
-pub use plan::{ObjectPlan, PlacePlan, RecognitionPlan, ScenePlan, WholeBodyPlan};
+pub use plan::{Aim, ScenePlan, WholeBodyPlan};
 pub use spec::{
     BodyPartSpec, BodyRecognitionSpec, BodySceneSpec, BodySensingSpec, LaddersSpec, WholeBodySpec,
     WholeBodyStudySpec,

@@ -1,30 +1,29 @@
 //! What touches a body: built-in objects, solids of a few parts, and cushions of spheres.
 
-use super::plan::ObjectPlan;
-use super::spec::BodyPartSpec;
+use super::spec::{BodyPartSpec, BodySceneSpec};
 use crate::error::Result;
 use crate::geometry::Pose;
 use crate::objects::{Catalogue, Part, Shape, Solid, Sphere, SphereUnion, pack};
 use crate::study::MM;
 use glam::DVec3;
 
-impl ObjectPlan {
-    /// Its spheres, metres.
-    pub(super) fn build(&self, surface_error: f64) -> Result<SphereUnion> {
-        pack(&self.solid()?, surface_error)
-    }
-
-    /// Metres: a built-in object with the middle of its box at the origin.
-    fn solid(&self) -> Result<Solid> {
-        match self {
-            Self::BuiltIn(name) => {
-                let solid = Catalogue::builtin()?.object(name)?.solid.clone();
-                let middle = solid.bounds().center();
-                Ok(solid.moved(&Pose::from_translation(-middle)))
-            }
-            Self::Parts(parts) => Solid::new(parts.iter().map(part).collect::<Result<_>>()?),
+/// The spheres of what a scene has, metres.
+pub(super) fn of_scene(scene: &BodySceneSpec, surface_error: f64) -> Result<SphereUnion> {
+    match &scene.object {
+        Some(name) => built_in(name, surface_error),
+        None => {
+            let parts = scene.parts.iter().map(part).collect::<Result<_>>()?;
+            pack(&Solid::new(parts)?, surface_error)
         }
     }
+}
+
+/// The spheres of a built-in object with the middle of its box at the origin, metres.
+pub(super) fn built_in(name: &str, surface_error: f64) -> Result<SphereUnion> {
+    let solid = Catalogue::builtin()?.object(name)?.solid.clone();
+    let middle = solid.bounds().center();
+    let solid = solid.moved(&Pose::from_translation(-middle));
+    pack(&solid, surface_error)
 }
 
 fn part(part: &BodyPartSpec) -> Result<Part> {

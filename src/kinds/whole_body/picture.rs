@@ -1,5 +1,6 @@
 //! What the scene looks like that touches most of a robot.
 
+use super::objects::of_scene;
 use super::plan::{ScenePlan, WholeBodyPlan};
 use super::study::{Posture, begin};
 use crate::error::Result;
@@ -33,7 +34,7 @@ pub(super) fn picture_body(plan: &WholeBodyPlan, tables: &[Table]) -> Result<Opt
         tables.first().is_some_and(|cases| {
             (0..cases.n_rows).any(|row| {
                 cases.word("series", row) == "scene"
-                    && cases.word("name", row) == scene.name
+                    && cases.word("name", row) == scene.spec.name
                     && cases.number("touched_max", row) > 0.0
             })
         })
@@ -56,7 +57,7 @@ pub(super) fn picture_body(plan: &WholeBodyPlan, tables: &[Table]) -> Result<Opt
 
 /// Patches that are touched as a scene begins.
 fn n_patches(plan: &WholeBodyPlan, scene: &ScenePlan, covered: &CoveredRobot) -> Result<usize> {
-    let object = scene.object.build(plan.surface_error)?;
+    let object = of_scene(&scene.spec, plan.surface_error)?;
     let posture = Posture::new(plan, covered, &scene.positions)?;
     let mut drive = begin(scene, &posture, &object)?;
     let path = drive.path;
@@ -64,7 +65,7 @@ fn n_patches(plan: &WholeBodyPlan, scene: &ScenePlan, covered: &CoveredRobot) ->
 }
 
 fn picture(plan: &WholeBodyPlan, scene: &ScenePlan, covered: &CoveredRobot) -> Result<BodyPicture> {
-    let object = scene.object.build(plan.surface_error)?;
+    let object = of_scene(&scene.spec, plan.surface_error)?;
     let posture = Posture::new(plan, covered, &scene.positions)?;
     let mut drive = begin(scene, &posture, &object)?;
     let path = drive.path;
@@ -98,7 +99,7 @@ fn picture(plan: &WholeBodyPlan, scene: &ScenePlan, covered: &CoveredRobot) -> R
             .map(move |center| (pose.transform_point(center), pressure))
     });
     Ok(BodyPicture {
-        scene: scene.name.clone(),
+        scene: scene.spec.name.clone(),
         skin: skin.collect(),
         touched,
         object: object.moved(&path.at(0.0)).spheres().to_vec(),

@@ -1,16 +1,16 @@
 //! A study of a whole body that can run: every key checked, every unit SI.
 
+use super::path::Path as ObjectPath;
 use super::spec::{
-    BodyPartSpec, BodyRecognitionSpec, BodySceneSpec, BodySensingSpec, LaddersSpec, WholeBodySpec,
+    BodyRecognitionSpec, BodySceneSpec, BodySensingSpec, LaddersSpec, WholeBodySpec,
     WholeBodyStudySpec,
 };
 use crate::error::Result;
-use crate::geometry::rotation_from_rpy;
+use crate::geometry::{Pose, rotation_from_rpy};
 use crate::sensing::Ensemble;
-use crate::study::MM;
-use crate::study::{Check, not_negative, positive};
+use crate::study::{Check, MM, not_negative, positive};
 use crate::world::{MOST_TOUCHES, Robot, Taxel};
-use glam::{DQuat, DVec3};
+use glam::DVec3;
 use std::path::{Path, PathBuf};
 
 /// Settings of a study of a whole body, ready to run.
@@ -36,72 +36,32 @@ pub struct WholeBodyPlan {
     pub scenes: Vec<ScenePlan>,
     /// Taxels of a Hadamard block, or none for very sparse rows: each a compression.
     pub compressions: Vec<(Ensemble, Option<usize>)>,
-    /// Which objects are told apart where.
-    pub recognition: RecognitionPlan,
-    /// Rungs of all ladders, as they were written.
-    pub ladders: Option<LaddersSpec>,
+    /// Where objects are aimed that are told apart.
+    pub aim: Aim,
 }
 
 /// A scene: an object and its path.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ScenePlan {
-    /// What it is called.
-    pub name: String,
-    /// What touches.
-    pub object: ObjectPlan,
-    /// Where it is placed.
-    pub place: PlacePlan,
-    /// How far past first contact, metres; `None` where it is placed at once.
-    pub depth: Option<f64>,
-    /// Metres, in the frame of the link.
-    pub moves: DVec3,
-    /// Radians.
-    pub swing: f64,
-    /// Seconds.
-    pub period: f64,
+    /// As it was written.
+    pub spec: BodySceneSpec,
+    /// Where the object is aimed.
+    pub aim: Aim,
+    /// Its path; the link stands at the origin until a posture is known.
+    pub path: ObjectPath,
     /// Values of the robot's coordinates, radians or metres.
     pub positions: Vec<f64>,
 }
 
-/// What an object is.
-#[derive(Clone, Debug, PartialEq)]
-pub enum ObjectPlan {
-    /// A built-in one by its name.
-    BuiltIn(String),
-    /// Parts.
-    Parts(Vec<BodyPartSpec>),
-}
-
 /// Where an object is aimed, in the frame of a link.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct PlacePlan {
+pub struct Aim {
     /// The link's number.
     pub link: usize,
     /// Metres.
     pub at: DVec3,
-    /// How it is turned.
-    pub turn: DQuat,
     /// From where it comes, unit.
     pub from: DVec3,
-}
-
-/// Objects that are told apart.
-#[derive(Clone, Debug, PartialEq)]
-pub struct RecognitionPlan {
-    /// At least two names.
-    pub objects: Vec<String>,
-    /// Where they are aimed.
-    pub place: PlacePlan,
-    /// Metres either way.
-    pub offset: f64,
-    /// Radians either way.
-    pub yaw: f64,
-    /// Least and most, metres.
-    pub depth: [f64; 2],
-    /// Touches of each object that train, at least 1.
-    pub n_training: usize,
-    /// Touches of each object that test, at least 1.
-    pub n_test: usize,
 }
 
 /// Steps of a scene, at most: the time of each is in memory.
@@ -121,9 +81,14 @@ impl WholeBodyPlan {
         let scenes = scenes
             .map(|(number, scene)| check.scene(number, scene, &robot))
             .collect::<Result<Vec<_>>>()?;
-        let names: Vec<&str> = scenes.iter().map(|scene| scene.name.as_str()).collect();
-        check.list("whole_body.scenes", names)?;
+        let names = scenes.iter().map(|scene| scene.spec.name.as_str());
+        check.list("whole_body.scenes", names.collect())?;
         let compressions = check.compressions(&wanted.sensing)?;
+        let n_measured = compressions.len() * wanted.sensing.measurements;
+        check.count("whole_body.steps", wanted.steps, MOST_STEPS)?;
+        if let Some(ladders) = &wanted.ladders {
+            check.ladders(ladders)?;
+        }
         Ok(Self {
             taxel: check.taxel(wanted)?,
             pitch,
@@ -131,19 +96,17 @@ impl WholeBodyPlan {
             dt: check.length("step_ms", wanted.step_ms)?,
             surface_error: check.length("surface_error_mm", wanted.surface_error_mm)?,
             scenes,
-            recognition: {
-                let n_measured = compressions.len() * wanted.sensing.measurements;
-                check.body_recognition(&wanted.recognition, (&robot, n_measured))?
-            },
+            aim: check.body_recognition(&wanted.recognition, (&robot, n_measured))?,
             compressions,
-            ladders: check.ladders(wanted.ladders.as_ref())?,
             robot,
             robot_file,
-            spec: {
-                check.count("whole_body.steps", wanted.steps, MOST_STEPS)?;
-                spec
-            },
+            spec,
         })
+    }
+
+    /// What is recognised, as it was written.
+    pub fn recognition(&self) -> &BodyRecognitionSpec {
+        &self.spec.whole_body.recognition
     }
 
     /// Steps that are measured of each scene and rung.
@@ -175,68 +138,75 @@ impl Check<'_> {
     }
 
     fn scene(&self, number: usize, scene: &BodySceneSpec, robot: &Robot) -> Result<ScenePlan> {
-        let key = |name: &str| format!("whole_body.scenes[{number}].{name}");
-        let object = match (&scene.object, scene.parts.is_empty()) {
-            (Some(name), true) => ObjectPlan::BuiltIn(name.clone()),
-            (None, false) => ObjectPlan::Parts(scene.parts.clone()),
-            _ => {
-                let given = "both or neither of object and parts";
-                return Err(self.error(&key("object"), given, "one of object and parts"));
-            }
-        };
-        let mut positions = vec![0.0; robot.n_positions()];
-        for (joint, degrees) in &scene.posture_deg {
-            let key = key("posture_deg");
-            let number = robot
-                .joint(joint)
-                .map_err(|_| self.error(&key, joint, "joints of the robot"))?;
-            let Some((coordinate, ..)) = robot.drive_of(number) else {
-                return Err(self.error(&key, joint, "joints that move"));
-            };
-            let allowed = "finite degrees";
-            positions[coordinate] = self
-                .value(&key, *degrees, f64::is_finite, allowed)?
-                .to_radians();
+        let prefix = format!("whole_body.scenes[{number}]");
+        let key = |name: &str| format!("{prefix}.{name}");
+        if scene.object.is_some() != scene.parts.is_empty() {
+            let given = "both or neither of object and parts";
+            return Err(self.error(&key("object"), given, "one of object and parts"));
         }
-        let depth = scene.depth_mm.map(|depth| {
-            let allowed = "a positive number";
-            self.value(&key("depth_mm"), depth, positive, allowed)
-        });
-        let period = self.value(
-            &key("period_ms"),
-            scene.period_ms,
-            positive,
-            "a positive number",
-        )?;
-        let swing = self.value(
-            &key("swing_deg"),
-            scene.swing_deg,
-            f64::is_finite,
-            "finite degrees",
-        )?;
-        let at = self.vector(&key("at_mm"), scene.at_mm)?;
+        let finite: fn(f64) -> bool = f64::is_finite;
+        for (name, value, is_allowed, allowed) in [
+            (
+                "depth_mm",
+                scene.depth_mm.unwrap_or(1.0),
+                positive as fn(f64) -> bool,
+                "a positive number",
+            ),
+            ("period_ms", scene.period_ms, positive, "a positive number"),
+            ("swing_deg", scene.swing_deg, finite, "finite degrees"),
+        ] {
+            self.value(&key(name), value, is_allowed, allowed)?;
+        }
+        let aim = self.aim(&prefix, (&scene.link, scene.at_mm, scene.from), robot)?;
         let turn = self.vector(&key("turn_deg"), scene.turn_deg)?;
-        Ok(ScenePlan {
-            name: scene.name.clone(),
-            object,
-            place: PlacePlan {
-                link: self.link(&key("link"), &scene.link, robot)?,
-                at: MM * at,
-                turn: rotation_from_rpy(turn.map(f64::to_radians)),
-                from: self.direction(&key("from"), scene.from)?,
-            },
-            depth: depth.transpose()?.map(|depth| MM * depth),
+        let turn = rotation_from_rpy(turn.map(f64::to_radians));
+        let path = ObjectPath {
+            world_from_link: Pose::IDENTITY,
+            start: Pose::new(turn, aim.at),
             moves: MM * self.vector(&key("moves_mm"), scene.moves_mm)?,
-            swing: swing.to_radians(),
-            period: MM * period,
-            positions,
+            swing: scene.swing_deg.to_radians(),
+            period: MM * scene.period_ms,
+        };
+        Ok(ScenePlan {
+            spec: scene.clone(),
+            aim,
+            path,
+            positions: self.positions(&key("posture_deg"), scene, robot)?,
         })
     }
 
-    fn link(&self, key: &str, name: &str, robot: &Robot) -> Result<usize> {
-        robot
-            .link(name)
-            .map_err(|_| self.error(key, name, "links of the robot"))
+    fn positions(&self, key: &str, scene: &BodySceneSpec, robot: &Robot) -> Result<Vec<f64>> {
+        let mut positions = vec![0.0; robot.n_positions()];
+        for (joint, &degrees) in &scene.posture_deg {
+            let number = robot.joint(joint);
+            let number = number.map_err(|_| self.error(key, joint, "joints of the robot"))?;
+            let Some((coordinate, ..)) = robot.drive_of(number) else {
+                return Err(self.error(key, joint, "joints that move"));
+            };
+            let degrees = self.value(key, degrees, f64::is_finite, "finite degrees")?;
+            positions[coordinate] = degrees.to_radians();
+        }
+        Ok(positions)
+    }
+
+    /// The link by its name, a place in millimetres and a direction.
+    fn aim(
+        &self,
+        prefix: &str,
+        (link, at, from): (&str, [f64; 3], [f64; 3]),
+        robot: &Robot,
+    ) -> Result<Aim> {
+        let key = |name: &str| format!("{prefix}.{name}");
+        let found = robot.link(link);
+        let from_key = key("from");
+        let direction = self.vector(&from_key, from)?.try_normalize();
+        Ok(Aim {
+            link: found.map_err(|_| self.error(&key("link"), link, "links of the robot"))?,
+            at: MM * self.vector(&key("at_mm"), at)?,
+            from: direction.ok_or_else(|| {
+                self.error(&from_key, format!("{from:?}"), "a vector that is not zero")
+            })?,
+        })
     }
 
     fn vector(&self, key: &str, values: [f64; 3]) -> Result<DVec3> {
@@ -244,13 +214,6 @@ impl Check<'_> {
             true => Ok(DVec3::from_array(values)),
             false => Err(self.error(key, format!("{values:?}"), "three finite numbers")),
         }
-    }
-
-    fn direction(&self, key: &str, values: [f64; 3]) -> Result<DVec3> {
-        let vector = self.vector(key, values)?;
-        vector
-            .try_normalize()
-            .ok_or_else(|| self.error(key, format!("{values:?}"), "a vector that is not zero"))
     }
 
     fn compressions(&self, wanted: &BodySensingSpec) -> Result<Vec<(Ensemble, Option<usize>)>> {
@@ -282,8 +245,9 @@ impl Check<'_> {
         &self,
         wanted: &BodyRecognitionSpec,
         (robot, n_measured): (&Robot, usize),
-    ) -> Result<RecognitionPlan> {
-        let key = |name: &str| format!("whole_body.recognition.{name}");
+    ) -> Result<Aim> {
+        let prefix = "whole_body.recognition";
+        let key = |name: &str| format!("{prefix}.{name}");
         let objects = self.list(&key("objects"), wanted.objects.clone())?;
         if objects.len() < 2 {
             return Err(self.error(&key("objects"), "one object", "at least two"));
@@ -293,56 +257,40 @@ impl Check<'_> {
             let given = format!("{:?}", wanted.depth_mm);
             return Err(self.error(&key("depth_mm"), given, "two positive numbers that ascend"));
         }
-        let spread = |name: &str, value| {
-            self.value(&key(name), value, not_negative, "zero or a positive number")
-        };
-        let count = |name: &str, count| self.count(&key(name), count, MOST_TOUCHES);
-        let n_training = count("training_touches", wanted.training_touches)?;
-        let n_test = count("test_touches", wanted.test_touches)?;
-        let n_touches = objects.len() * (n_training + n_test);
+        for (name, value) in [("offset_mm", wanted.offset_mm), ("yaw_deg", wanted.yaw_deg)] {
+            self.value(&key(name), value, not_negative, "zero or a positive number")?;
+        }
+        self.count(
+            &key("training_touches"),
+            wanted.training_touches,
+            MOST_TOUCHES,
+        )?;
+        self.count(&key("test_touches"), wanted.test_touches, MOST_TOUCHES)?;
+        let n_touches = wanted.n_touches();
         let bytes = 8.0 * n_touches as f64 * n_measured as f64;
         let what = format!("{n_measured} measurements of each of {n_touches} touches");
-        self.memory(&key("training_touches"), n_training + n_test, bytes, &what)?;
-        Ok(RecognitionPlan {
-            objects,
-            place: PlacePlan {
-                link: self.link(&key("link"), &wanted.link, robot)?,
-                at: MM * self.vector(&key("at_mm"), wanted.at_mm)?,
-                turn: DQuat::IDENTITY,
-                from: self.direction(&key("from"), wanted.from)?,
-            },
-            offset: MM * spread("offset_mm", wanted.offset_mm)?,
-            yaw: spread("yaw_deg", wanted.yaw_deg)?.to_radians(),
-            depth: [MM * least, MM * most],
-            n_training,
-            n_test,
-        })
+        let of_each = wanted.training_touches + wanted.test_touches;
+        self.memory(&key("training_touches"), of_each, bytes, &what)?;
+        self.aim(prefix, (&wanted.link, wanted.at_mm, wanted.from), robot)
     }
 
-    fn ladders(&self, wanted: Option<&LaddersSpec>) -> Result<Option<LaddersSpec>> {
-        let Some(rungs) = wanted else {
-            return Ok(None);
-        };
+    fn ladders(&self, rungs: &LaddersSpec) -> Result<()> {
         let key = |name: &str| format!("whole_body.ladders.{name}");
-        for &count in &rungs.spheres {
-            self.count(&key("spheres"), count, MOST_SPHERES)?;
-        }
         for (name, counts) in [
             ("taxels", &rungs.taxels),
             ("touched_at_taxels", &rungs.touched_at_taxels),
             ("touched", &rungs.touched),
             ("spheres", &rungs.spheres),
+            ("touched_at_spheres", &vec![rungs.touched_at_spheres]),
+            ("taxels_at_touch", &vec![rungs.taxels_at_touch]),
         ] {
             for &count in &self.list(&key(name), counts.clone())? {
-                self.positive_count(&key(name), count)?;
+                match name {
+                    "spheres" => self.count(&key(name), count, MOST_SPHERES)?,
+                    _ => self.positive_count(&key(name), count)?,
+                };
             }
         }
-        for (name, count) in [
-            ("touched_at_spheres", rungs.touched_at_spheres),
-            ("taxels_at_touch", rungs.taxels_at_touch),
-        ] {
-            self.positive_count(&key(name), count)?;
-        }
-        Ok(Some(rungs.clone()))
+        Ok(())
     }
 }

@@ -1,8 +1,9 @@
 //! Which object is it? A linear SVM for each compression, learned from simulated touches and tested on others.
 
 use super::drive::{Drive, PosedBody};
+use super::objects::built_in;
 use super::path::Path;
-use super::plan::{ObjectPlan, RecognitionPlan, WholeBodyPlan};
+use super::plan::WholeBodyPlan;
 use super::rows::BodyRecognition;
 use crate::error::Result;
 use crate::geometry::Pose;
@@ -13,8 +14,8 @@ use crate::recognition::classifier::{Classifier, TrainedClassifier};
 use crate::recognition::dataset::{Dataset, dataset};
 use crate::recognition::interval::Interval;
 use crate::sensing::{Columns, Ensemble, Projection};
-use crate::study::CONFIDENCE;
 use crate::study::progress::Progress;
+use crate::study::{CONFIDENCE, MM};
 use glam::{DQuat, DVec3};
 use ndarray::{Array1, Array2, Axis, concatenate};
 use rand::Rng;
@@ -38,7 +39,7 @@ pub(super) fn learn(
     world_from_links: &[Pose],
     progress: &dyn Progress,
 ) -> Result<Vec<Compression>> {
-    let wanted = &plan.recognition;
+    let wanted = plan.recognition();
     let columns = plan
         .compressions
         .par_iter()
@@ -47,14 +48,14 @@ pub(super) fn learn(
     let unions = wanted
         .objects
         .par_iter()
-        .map(|name| ObjectPlan::BuiltIn(name.clone()).build(plan.surface_error))
+        .map(|name| built_in(name, plan.surface_error))
         .collect::<Result<Vec<_>>>()?;
-    let n_touches = wanted.n_training + wanted.n_test;
+    let n_touches = wanted.training_touches + wanted.test_touches;
     progress.stage("touch", (unions.len() * n_touches) as u64);
     let touches = Touches {
-        plan: wanted,
+        plan,
         posed,
-        world_from_link: world_from_links[wanted.place.link],
+        world_from_link: world_from_links[plan.aim.link],
         columns: &columns,
         seed: Seed::new(plan.spec.seed).named("whole_body").named("touch"),
     };
@@ -113,7 +114,7 @@ fn columns(
 
 /// How objects touch, and how that is measured.
 struct Touches<'a> {
-    plan: &'a RecognitionPlan,
+    plan: &'a WholeBodyPlan,
     posed: &'a PosedBody<'a>,
     world_from_link: Pose,
     columns: &'a [Columns],
@@ -138,7 +139,7 @@ impl Touches<'_> {
         for (row, number) in numbers.enumerate() {
             let (start, depth) = self.draw(object, number);
             drive.path = self.path(start);
-            drive.approach(self.plan.place.from, depth)?;
+            drive.approach(self.plan.aim.from, depth)?;
             let path = drive.path;
             drive.probe(&path);
             for (columns, rows) in self.columns.iter().zip(&mut rows) {
@@ -152,15 +153,17 @@ impl Touches<'_> {
 
     /// Where an object aims at a touch (`link_from_object`), and how far it goes past first contact, metres.
     fn draw(&self, object: usize, number: usize) -> (Pose, f64) {
-        let seed = self.seed.named(&self.plan.objects[object]);
+        let wanted = self.plan.recognition();
+        let seed = self.seed.named(&wanted.objects[object]);
         let mut rng = seed.numbered(number as u64).rng();
         let mut within = |half: f64| half * (2.0 * rng.r#gen::<f64>() - 1.0);
-        let (across, beside) = self.plan.place.from.any_orthonormal_pair();
-        let offset = within(self.plan.offset) * across + within(self.plan.offset) * beside;
-        let turn = DQuat::from_rotation_z(within(self.plan.yaw));
-        let [least, most] = self.plan.depth;
+        let (across, beside) = self.plan.aim.from.any_orthonormal_pair();
+        let half = MM * wanted.offset_mm;
+        let offset = within(half) * across + within(half) * beside;
+        let turn = DQuat::from_rotation_z(within(wanted.yaw_deg.to_radians()));
+        let [least, most] = wanted.depth_mm.map(|depth| MM * depth);
         let depth = 0.5 * (least + most) + within(0.5 * (most - least));
-        (Pose::new(turn, self.plan.place.at + offset), depth)
+        (Pose::new(turn, self.plan.aim.at + offset), depth)
     }
 
     fn path(&self, start: Pose) -> Path {
@@ -182,9 +185,8 @@ fn train(
     features: &Array2<f64>,
     n_objects: usize,
 ) -> Result<Compression> {
-    let RecognitionPlan {
-        n_training, n_test, ..
-    } = plan.recognition;
+    let n_training = plan.recognition().training_touches;
+    let n_test = plan.recognition().test_touches;
     let n_touches = n_training + n_test;
     let part = |range: Range<usize>| -> Result<Dataset> {
         let rows = |object: usize| range.clone().map(move |touch| object * n_touches + touch);

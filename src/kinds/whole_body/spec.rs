@@ -200,6 +200,13 @@ pub struct LaddersSpec {
     pub taxels_at_touch: usize,
 }
 
+impl BodyRecognitionSpec {
+    /// Touches of all objects.
+    pub fn n_touches(&self) -> usize {
+        self.objects.len() * (self.training_touches + self.test_touches)
+    }
+}
+
 impl WholeBodyStudySpec {
     /// Reads a study; the error names the file, the line and the key.
     pub fn parse(place: &str, text: &str) -> Result<Self> {

@@ -4,6 +4,7 @@ use super::charts::{answers, charts};
 use super::drawn::whole_body_picture;
 use super::drive::{Drive, Driven, PosedBody};
 use super::ladders::{Rung, climb, rungs};
+use super::objects::of_scene;
 use super::path::Path;
 use super::picture::picture_body;
 use super::plan::{ScenePlan, WholeBodyPlan};
@@ -18,25 +19,39 @@ use crate::geometry::Pose;
 use crate::kinds::{About, Facts, Kind, Source};
 use crate::objects::SphereUnion;
 use crate::report::study_folder::{Image, NamedPicture};
-use crate::study::file_content;
-use crate::study::pieces::{NamedPiece, PieceRows, PieceStudy, PiecesLeft, Scale};
+use crate::study::pieces::{NamedPiece, PieceRows, PieceStudy, PiecesLeft, Scale, Shared};
 use crate::study::time_left::Piece;
-use crate::table::{ChartSpec, Table};
+use crate::study::{MM, file_content};
+use crate::table::{ChartSpec, File, Table};
 use crate::whole_body::CoveredRobot;
 
-const CASES: (&str, &str) = ("whole_body.csv", "Scenes and rungs");
-const RECOGNITION: (&str, &str) = ("recognition.csv", "Recognition");
-const SENSED: (&str, &str) = ("sensed.csv", "What scenes are taken for");
-const TIMING: (&str, &str) = ("timing.csv", "From touch to answer");
-const STEPS: (&str, &str) = ("steps.csv", "Steps of the skin");
+const CASES: File<(BodyCase, BodyCount)> = File::new("whole_body.csv", "Scenes and rungs", "");
+const RECOGNITION: File<BodyRecognition> = File::new(
+    "recognition.csv",
+    "Recognition",
+    "A linear SVM, trained and tested on simulated touches.",
+);
+const SENSED: File<BodySensed> = File::new("sensed.csv", "What scenes are taken for", "");
+const TIMING: File<(BodyCase, BodyTime)> = File::new(
+    "timing.csv",
+    "From touch to answer",
+    "Medians over steps, on this machine.",
+)
+.of_times();
+const STEPS: File<(BodyCase, BodyStep)> = File::new(
+    "steps.csv",
+    "Steps of the skin",
+    "Medians over steps of a moving object; of ladders, a cushion of spheres, half of them on its far side.",
+)
+.summary()
+.of_times();
 
 /// Stages of a run.
 const LEARN: u8 = 0;
 const PLAY: u8 = 1;
 const CLIMB: u8 = 2;
 
-/// Seconds by the clock, about: to cover a robot, of a touch that is learned from or tested, and of a step of a scene or a rung.
-const COVER_S: f64 = 0.5;
+/// Seconds by the clock, about: of a touch that is learned from or tested, and of a step of a scene or a rung.
 const TOUCH_S: f64 = 1e-3;
 const STEP_S: f64 = 5e-4;
 
@@ -63,15 +78,11 @@ impl Kind for WholeBodyPlan {
     }
 
     fn facts(&self) -> Result<Facts> {
-        let spec = &self.spec;
-        Ok(Facts {
-            toml: spec.to_toml(),
-            question: spec.question.clone(),
-            expected: spec.expected.clone(),
-            seed: spec.seed,
-            content: [("robot".to_owned(), file_content(&self.robot_file)?)].into(),
-            ..Facts::default()
-        })
+        let robot = file_content(&self.robot_file)?;
+        Ok(Facts::of(
+            self.spec.to_toml(),
+            [("robot".to_owned(), robot)].into(),
+        ))
     }
 
     fn scale(&self) -> Scale {
@@ -79,13 +90,13 @@ impl Kind for WholeBodyPlan {
         const TAXEL_BYTES: f64 = 150.0;
         // Of a body, about, square metres.
         const AREA: f64 = 2.0;
-        let n_objects = self.recognition.objects.len();
+        let n_objects = self.recognition().objects.len();
         let n_taxels = AREA / (self.pitch * self.pitch);
         Scale {
             objects: format!("{n_objects} to tell apart, {} scenes", self.scenes.len()),
             touches: format!(
                 "{} on a body of about {n_taxels:.0} taxels",
-                self.n_touches()
+                self.recognition().n_touches()
             ),
             n_configurations: self.compressions.len() + self.scenes.len(),
             bytes: TAXEL_BYTES * n_taxels,
@@ -94,13 +105,13 @@ impl Kind for WholeBodyPlan {
     }
 
     fn read_tables(&self, folder: &std::path::Path) -> Result<Vec<Table>> {
-        Ok(described([
-            Table::read::<(BodyCase, BodyCount)>(CASES.0, CASES.1, folder)?,
-            Table::read::<BodyRecognition>(RECOGNITION.0, RECOGNITION.1, folder)?,
-            Table::read::<BodySensed>(SENSED.0, SENSED.1, folder)?,
-            Table::read::<(BodyCase, BodyTime)>(TIMING.0, TIMING.1, folder)?,
-            Table::read::<(BodyCase, BodyStep)>(STEPS.0, STEPS.1, folder)?,
-        ]))
+        Ok(vec![
+            CASES.read(folder)?,
+            RECOGNITION.read(folder)?,
+            SENSED.read(folder)?,
+            TIMING.read(folder)?,
+            STEPS.read(folder)?,
+        ])
     }
 
     fn charts(&self, tables: &[Table]) -> Vec<ChartSpec> {
@@ -124,20 +135,6 @@ impl Kind for WholeBodyPlan {
     }
 }
 
-/// What tables are beside their rows.
-fn described([cases, recognition, sensed, timing, steps]: [Table; 5]) -> Vec<Table> {
-    vec![
-        cases,
-        recognition.noted("A linear SVM, trained and tested on simulated touches."),
-        sensed,
-        timing.of_times().noted("Medians over steps, on this machine."),
-        steps
-            .of_times()
-            .summary()
-            .noted("Medians over steps of a moving object; of ladders, a cushion of spheres, half of them on its far side."),
-    ]
-}
-
 impl PieceStudy for WholeBodyPlan {
     type Rows = WholeBodyRows;
     type Tables = Vec<Table>;
@@ -146,8 +143,9 @@ impl PieceStudy for WholeBodyPlan {
     fn pieces(&self) -> Vec<NamedPiece> {
         let n_steps = self.n_steps() as f64;
         let compressions = self.compression_names().into_iter();
-        let compressions =
-            compressions.map(|name| NamedPiece::new(name, 0, Piece::one_by_one(LEARN, 0.0)));
+        let learn_s = TOUCH_S * self.recognition().n_touches() as f64 / compressions.len() as f64;
+        let learn = Piece::one_by_one(LEARN, learn_s);
+        let compressions = compressions.map(|name| NamedPiece::new(name, 0, learn));
         let play = Piece::one_by_one(PLAY, STEP_S * n_steps);
         let scenes = self.scenes.iter();
         let scenes = scenes.map(|scene| NamedPiece::new(scene_name(scene), 0, play).made_of(scene));
@@ -160,9 +158,30 @@ impl PieceStudy for WholeBodyPlan {
     }
 
     fn measure(&self, left: &PiecesLeft<WholeBodyRows>) -> Result<()> {
-        let names = left.of(self.learned_names(), String::clone);
-        if !names.is_empty() {
-            self.measure_learned(&names, left)?;
+        let (covered, compressions) = (Shared::default(), Shared::default());
+        let cover = || {
+            let cover = || CoveredRobot::new(&self.robot, self.taxel, self.pitch, self.side);
+            covered.get(cover)
+        };
+        let learn = || {
+            compressions.get(|| {
+                let straight = vec![0.0; self.robot.n_positions()];
+                let straight = Posture::new(self, cover()?, &straight)?;
+                learn(self, &straight.posed, &straight.links, left.progress)
+            })
+        };
+        for (number, name) in self.compression_names().iter().enumerate() {
+            left.finish(name, || {
+                Ok(WholeBodyRows {
+                    recognition: vec![learn()?[number].score.clone()],
+                    ..WholeBodyRows::default()
+                })
+            })?;
+        }
+        let scenes = left.of(&self.scenes, |scene| scene_name(scene));
+        left.progress.stage("scenes", scenes.len() as u64);
+        for scene in scenes {
+            left.finish(&scene_name(scene), || play(self, scene, cover()?, learn()?))?;
         }
         let rungs = left.of(self.rungs(), rung_name);
         left.progress.stage("ladders", rungs.len() as u64);
@@ -174,21 +193,14 @@ impl PieceStudy for WholeBodyPlan {
         })
     }
 
-    fn shared_work(&self, left: &PiecesLeft<WholeBodyRows>) -> Vec<Piece> {
-        match self.learned_names().iter().any(|name| left.has(name)) {
-            true => vec![self.cover_work(), self.learn_work()],
-            false => Vec::new(),
-        }
-    }
-
     fn tables(&self, rows: WholeBodyRows) -> Result<Vec<Table>> {
-        Ok(described([
-            Table::of(CASES.0, CASES.1, &rows.cases)?,
-            Table::of(RECOGNITION.0, RECOGNITION.1, &rows.recognition)?,
-            Table::of(SENSED.0, SENSED.1, &rows.sensed)?,
-            Table::of(TIMING.0, TIMING.1, &rows.timing)?,
-            Table::of(STEPS.0, STEPS.1, &steps(&rows))?,
-        ]))
+        Ok(vec![
+            CASES.of(&rows.cases)?,
+            RECOGNITION.of(&rows.recognition)?,
+            SENSED.of(&rows.sensed)?,
+            TIMING.of(&rows.timing)?,
+            STEPS.of(&steps(&rows))?,
+        ])
     }
 }
 
@@ -239,7 +251,7 @@ fn round_to_two(value: f64) -> f64 {
 }
 
 fn scene_name(scene: &ScenePlan) -> String {
-    format!("scene {}", scene.name)
+    format!("scene {}", scene.spec.name)
 }
 
 fn rung_name(rung: &Rung) -> String {
@@ -254,66 +266,9 @@ impl WholeBodyPlan {
         compressions.map(name).collect()
     }
 
-    /// What needs all that is learned.
-    fn learned_names(&self) -> Vec<String> {
-        let mut names = self.compression_names();
-        names.extend(self.scenes.iter().map(scene_name));
-        names
-    }
-
     fn rungs(&self) -> Vec<Rung> {
-        self.ladders.as_ref().map_or_else(Vec::new, rungs)
-    }
-
-    fn n_touches(&self) -> usize {
-        let learned = &self.recognition;
-        learned.objects.len() * (learned.n_training + learned.n_test)
-    }
-
-    fn cover_work(&self) -> Piece {
-        Piece::one_by_one(LEARN, COVER_S)
-    }
-
-    fn learn_work(&self) -> Piece {
-        Piece::one_by_one(LEARN, TOUCH_S * self.n_touches() as f64)
-    }
-
-    /// Does what is left that needs what is learned: some of `names`.
-    fn measure_learned(&self, names: &[String], left: &PiecesLeft<WholeBodyRows>) -> Result<()> {
-        let cover = || {
-            left.progress.stage("cover", 1);
-            let covered = CoveredRobot::new(&self.robot, self.taxel, self.pitch, self.side);
-            left.progress.advance(1);
-            covered
-        };
-        let cover = || left.during(&self.cover_work(), cover);
-        let Some(covered) = left.prepare(names, cover)? else {
-            return Ok(());
-        };
-        let learn = || {
-            let straight = vec![0.0; self.robot.n_positions()];
-            let straight = Posture::new(self, &covered, &straight)?;
-            left.during(&self.learn_work(), || {
-                learn(self, &straight.posed, &straight.links, left.progress)
-            })
-        };
-        let Some(compressions) = left.prepare(names, learn)? else {
-            return Ok(());
-        };
-        for (compression, name) in compressions.iter().zip(self.compression_names()) {
-            left.finish(&name, || {
-                Ok(WholeBodyRows {
-                    recognition: vec![compression.score.clone()],
-                    ..WholeBodyRows::default()
-                })
-            })?;
-        }
-        let scenes = left.of(&self.scenes, |scene| scene_name(scene));
-        left.progress.stage("scenes", scenes.len() as u64);
-        scenes.into_iter().try_for_each(|scene| {
-            let play = || play(self, scene, &covered, &compressions);
-            left.finish(&scene_name(scene), play)
-        })
+        let ladders = self.spec.whole_body.ladders.as_ref();
+        ladders.map_or_else(Vec::new, rungs)
     }
 }
 
@@ -343,15 +298,12 @@ pub(super) fn begin<'a>(
     object: &SphereUnion,
 ) -> Result<Drive<'a>> {
     let path = Path {
-        world_from_link: posture.links[scene.place.link],
-        start: Pose::new(scene.place.turn, scene.place.at),
-        moves: scene.moves,
-        swing: scene.swing,
-        period: scene.period,
+        world_from_link: posture.links[scene.aim.link],
+        ..scene.path
     };
     let mut drive = Drive::new(&posture.posed, object, path);
-    if let Some(depth) = scene.depth {
-        drive.approach(scene.place.from, depth)?;
+    if let Some(depth_mm) = scene.spec.depth_mm {
+        drive.approach(scene.aim.from, MM * depth_mm)?;
     }
     Ok(drive)
 }
@@ -363,13 +315,13 @@ fn play(
     covered: &CoveredRobot,
     compressions: &[Compression],
 ) -> Result<WholeBodyRows> {
-    let in_scene = |error: Error| error.under(format!("scene {}, ", scene.name));
-    let object = scene.object.build(plan.surface_error).map_err(in_scene)?;
+    let in_scene = |error: Error| error.under(format!("scene {}, ", scene.spec.name));
+    let object = of_scene(&scene.spec, plan.surface_error).map_err(in_scene)?;
     let posture = Posture::new(plan, covered, &scene.positions)?;
     let mut drive = begin(scene, &posture, &object).map_err(in_scene)?;
     let case = BodyCase {
         series: Series::Scene,
-        name: scene.name.clone(),
+        name: scene.spec.name.clone(),
         n_taxels: covered.body().n_taxels(),
         n_patches: covered.body().patches().len(),
         n_spheres: drive.n_spheres(),
@@ -380,10 +332,10 @@ fn play(
         let most = decisions.iter().copied().max().unwrap_or(0);
         let label = decisions.iter().position(|&n| n == most).unwrap_or(0);
         BodySensed {
-            scene: scene.name.clone(),
+            scene: scene.spec.name.clone(),
             compression: compression.score.compression.clone(),
             measurement_sum_mm: *sum,
-            decision: plan.recognition.objects[label].clone(),
+            decision: plan.recognition().objects[label].clone(),
             decision_share: most as f64 / driven.count.n_steps as f64,
         }
     });

@@ -47,10 +47,7 @@ impl Front {
         let mut groups: Vec<(usize, Vec<usize>)> = Vec::new();
         let mut known: HashMap<(usize, Vec<u64>), usize> = HashMap::new();
         for (number, place) in view.places.iter().enumerate() {
-            let of = |data: &&Data| match data {
-                Data::Numbers(numbers) => numbers[place.row].to_bits(),
-                Data::Words { codes, .. } => u64::from(codes[place.row]),
-            };
+            let of = |data: &&Data| data.key(place.row);
             let key = (place.panel, conditions.iter().map(of).collect());
             let group = *known.entry(key).or_insert_with(|| {
                 groups.push((place.panel, Vec::new()));
@@ -102,8 +99,21 @@ impl Front {
         all.enumerate().map(|(number, place)| (number + 1, place))
     }
 
-    /// A line a numbered point: what was chosen, what it reaches, and what it costs.
+    /// A line a numbered point.
     pub fn list(&self, view: &View) -> Vec<String> {
+        let numbered = self.numbered(view).map(|(_, place)| place);
+        Self::said(view, numbered)
+    }
+
+    /// The ends of the first front, the cheaper first.
+    pub fn ends(&self, view: &View) -> Option<[String; 2]> {
+        let (_, front) = self.fronts.first()?;
+        let ends = [front.first()?, front.last()?].map(|&place| &view.places[place]);
+        Self::said(view, ends.into_iter()).try_into().ok()
+    }
+
+    /// Of each point what was chosen, what it reaches, and what it costs.
+    fn said<'a>(view: &View, places: impl Iterator<Item = &'a Place>) -> Vec<String> {
         let columns = view.table.columns.iter().zip(&view.table.data);
         let names: Vec<(&Column, &Data)> = columns
             .filter(|(c, _)| matches!(c.role, Role::Choice | Role::Condition | Role::Subject))
@@ -113,7 +123,7 @@ impl Front {
             let found = view.column(name);
             found.map_or_else(String::new, |(column, data)| value_words(column, data, row))
         };
-        let said = self.numbered(view).map(|(_, place)| {
+        let said = places.map(|place| {
             let phrase = |(column, data): &(&Column, &Data)| match data.value(place.row) {
                 Some(value) => match data {
                     Data::Words { .. } => column.value_words(&value),

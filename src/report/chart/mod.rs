@@ -13,14 +13,16 @@ mod scale;
 mod tiles;
 mod view;
 
-pub use accuracy::{chart_title, draw_chart, n_classes};
-pub(in crate::report) use accuracy::{draw_axes, draw_y_labels, y_at};
+pub(in crate::report) use accuracy::{
+    draw_axes, draw_band, draw_line, draw_markers, draw_steps, draw_y_labels, paler, y_at,
+};
 pub(in crate::report) use tiles::draw_sign;
 pub use view::Place;
 
 use crate::error::{Error, Result};
 use crate::report::drawing::Drawing;
 use crate::table::{ChartSpec, Mark, Table};
+use front::Front;
 use view::View;
 
 /// Draws a chart of one of these tables.
@@ -50,4 +52,10 @@ pub fn draw(spec: &ChartSpec, tables: &[Table]) -> Result<Drawing> {
 pub fn places(spec: &ChartSpec, tables: &[Table]) -> Result<Vec<Place>> {
     let view = View::of(spec, tables)?;
     Ok(view.places)
+}
+
+/// What the cheapest and the best point of a chart's first front are, in words; none without a front.
+pub fn front_ends(spec: &ChartSpec, tables: &[Table]) -> Option<[String; 2]> {
+    let view = View::of(spec, tables).ok()?;
+    Front::of(&view).ends(&view)
 }

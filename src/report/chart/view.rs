@@ -280,10 +280,7 @@ impl Groups {
     /// By the values of columns in the order of first rows; by one column of numbers in rising order.
     fn of(columns: &[(&Column, &Data)], rows: &[usize]) -> Self {
         let key = |row: usize| -> Vec<u64> {
-            let key = columns.iter().map(|(_, data)| match data {
-                Data::Numbers(numbers) => numbers[row].to_bits(),
-                Data::Words { codes, .. } => u64::from(codes[row]),
-            });
+            let key = columns.iter().map(|(_, data)| data.key(row));
             key.collect()
         };
         let mut known: HashMap<Vec<u64>, usize> = HashMap::new();

@@ -1,8 +1,8 @@
 //! What a study says of itself, beside its tables.
 
 use crate::signal::Quantity;
-use crate::study::Limit;
 use crate::study::provenance::Manifest;
+use crate::study::table::Limit;
 use ndarray::Array2;
 
 /// What a study says of itself, beside its tables.

@@ -25,24 +25,9 @@ const ELEMENTS: &str = include_str!("script/elements.js");
 /// Of pages that are pictures, some of which can be asked.
 const PICTURES: [&str; 3] = [
     ELEMENTS,
-    include_str!("points.js"),
+    include_str!("script/points.js"),
     include_str!("asked.js"),
 ];
-/// Of recognition's page.
-const OLD: [&str; 11] = [
-    ELEMENTS,
-    include_str!("base.js"),
-    include_str!("filter.js"),
-    include_str!("points.js"),
-    include_str!("axes.js"),
-    include_str!("accuracy.js"),
-    include_str!("advice.js"),
-    include_str!("pareto.js"),
-    include_str!("cells.js"),
-    include_str!("confusion.js"),
-    include_str!("main.js"),
-];
-
 /// A page.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Page {
@@ -58,13 +43,11 @@ pub(crate) struct Page {
     pub foot: String,
     /// JSON that the script draws from; none for a page without script.
     pub data: Option<String>,
-    /// Whether the script is that of recognition alone.
-    pub is_old: bool,
 }
 
 /// A part of a page with a heading.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Section {
+pub struct Section {
     /// Where links lead; letters and hyphens.
     pub id: &'static str,
     /// Its heading.
@@ -136,12 +119,7 @@ impl Page {
                 let data = data.replace('<', "\\u003c");
                 let data =
                     format!("<script type=\"application/json\" id=\"study\">{data}</script>");
-                let script = if self.is_old {
-                    in_scope(&OLD)
-                } else {
-                    in_scope(&SCRIPT)
-                };
-                format!("{data}\n{script}")
+                format!("{data}\n{}", in_scope(&SCRIPT))
             }
         }
     }

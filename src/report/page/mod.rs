@@ -5,23 +5,18 @@
 //! move stand in their places.
 
 mod about;
-mod choices;
-mod confusion_data;
 mod data;
 mod frame;
 mod picture;
 pub(super) mod plain;
 mod provenance;
-mod recognition;
 mod study;
-mod study_data;
-mod tables;
 mod touches;
 
-pub use crate::study::Limit;
+pub use crate::study::table::Limit;
 pub use about::{ReportPage, Snapshots, StudyAbout};
-pub(super) use frame::Section;
+pub use frame::Section;
 pub(super) use picture::figure;
 pub use picture::{Picture, Pictures};
-pub use recognition::page;
 pub(super) use study::{Beside, page as study_page};
+pub(super) use touches::touches_html;

@@ -29,15 +29,6 @@ pub(crate) fn plain_page(about: &StudyAbout, found: Vec<Section>, files: &[&str]
     page.html()
 }
 
-/// Sections, and the program that made them.
-pub(crate) fn bare_page(name: &str, found: Vec<Section>, program: &str) -> String {
-    let page = Page {
-        foot: format!("<p>{}</p>", escape(program)),
-        ..with_sections(name, found)
-    };
-    page.html()
-}
-
 fn with_sections(name: &str, found: Vec<Section>) -> Page {
     let mut page = Page {
         name: name.to_owned(),

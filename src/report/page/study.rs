@@ -231,7 +231,8 @@ fn again(about: &StudyAbout) -> String {
 }
 
 fn foot(about: &StudyAbout, tables: &[Table]) -> String {
-    let files: Vec<&str> = tables.iter().map(|table| table.file).collect();
+    let files = tables.iter().filter(|table| !table.csv.is_empty());
+    let files: Vec<&str> = files.map(|table| table.file).collect();
     format!(
         "<p>{}. The tables behind this page lie beside it: {}. Times differ from run to run; all else does not.</p>",
         escape(&about.program),

@@ -4,9 +4,10 @@ mod coding;
 mod kept;
 mod making;
 
-pub(super) use coding::most_bytes;
+pub(crate) use coding::most_bytes;
 pub use kept::{FramePlace, FrameWriter, KeptFrames};
-pub(super) use making::{Making, Press, made_at_once};
+pub(crate) use making::made_at_once;
+pub(super) use making::{Making, Press};
 
 /// Frames of an array and what happened while they were made.
 #[derive(Debug)]

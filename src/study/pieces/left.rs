@@ -51,7 +51,7 @@ impl<'a, R: PieceRows> PiecesLeft<'a, R> {
     }
 
     /// How many there are.
-    pub(super) fn n(&self) -> usize {
+    pub fn n(&self) -> usize {
         self.left().count()
     }
 

@@ -9,6 +9,7 @@ mod left;
 mod piece_study;
 mod record;
 mod scale;
+mod shared;
 
 pub use left::PiecesLeft;
 pub use piece_study::{
@@ -17,6 +18,7 @@ pub use piece_study::{
 };
 pub use record::PieceRows;
 pub use scale::{PieceEstimate, Scale};
+pub use shared::Shared;
 
 use super::content_hash::ContentHash;
 use super::time_left::Piece;

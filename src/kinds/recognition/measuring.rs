@@ -7,8 +7,7 @@ use crate::study::evaluation::Trial;
 use crate::study::frames::{FrameWriter, Frames};
 use crate::study::measurement::{Measurements, measure_group};
 use crate::study::pieces::PiecesLeft;
-use crate::study::plan::millimetres;
-use crate::world::Patch;
+use crate::study::simulation::describe;
 use rayon::prelude::*;
 use std::cmp::Reverse;
 use std::collections::BTreeMap;
@@ -182,10 +181,4 @@ impl Job<'_> {
             ..RecognitionRows::default()
         })
     }
-}
-
-/// An array in words: `64×64 at 2 mm`.
-pub fn describe(patch: &Patch) -> String {
-    let grid = &patch.grid;
-    format!("{}×{} at {} mm", grid.nx, grid.ny, millimetres(grid.pitch))
 }

@@ -1,14 +1,10 @@
-//! Settings with what they cost and what they give, and which of them nothing beats.
+//! Ways to evaluate contact over all objects: what each costs, and how wrong it is.
 
 use super::models::ContactRow;
-use super::rows::{
-    ChainCell, ChainPoint, ChainScore, ChainTime, ContactCell, ContactPoint, PeerRow,
-    ResolutionPoint, Resolved, ResolvedBy, StudySize, StudyTime, Touched,
-};
+use super::rows::{ContactCell, ContactPoint, ContactWay, PeerRow, Touched};
 use crate::quantile::quantile;
-use crate::table::front;
 
-/// Of every way to evaluate contact, medians over objects; each set of objects has a front of its own.
+/// Medians over objects of every way to evaluate contact, and of those of other programs.
 pub(super) fn contact_points(rows: &[ContactRow], peers: &[PeerRow]) -> Vec<ContactPoint> {
     let setting = |cell: &ContactCell| (cell.way, cell.tolerance_mm, cell.dt_ms, cell.touched);
     let ours = by_key(rows, |(cell, ..)| setting(cell))
@@ -34,19 +30,28 @@ pub(super) fn contact_points(rows: &[ContactRow], peers: &[PeerRow]) -> Vec<Cont
         });
     let mut points: Vec<ContactPoint> = ours.collect();
     points.extend(peer_points(peers));
-    for touched in [Touched::Object, Touched::Scan] {
-        let of_them = points.iter_mut().filter(|point| point.touched == touched);
-        mark_front(
-            &mut of_them.collect::<Vec<_>>(),
-            |point| (point.us_per_touch, point.error_mm),
-            |a, b| a < b,
-            |point| &mut point.on_front,
-        );
-    }
     points
 }
 
 const HERE: &str = "this run";
+
+impl ContactWay {
+    /// In words.
+    pub fn words(self) -> &'static str {
+        match self {
+            Self::PackedSpheres => "packed spheres",
+            Self::VertexSpheres => "a sphere a vertex",
+            Self::ExactMesh => "mesh, exact",
+            Self::SolidMarching => "solid, exact",
+            Self::TimeSteps => "quasi-static, stepped",
+            Self::SemiImplicit => "semi-implicit Euler",
+            Self::ImplicitEuler => "implicit Euler",
+            Self::Rapier => "rapier, tuned",
+            Self::RowsInDoubles => "flat rows in doubles, pose given",
+            Self::RowsInSingles => "flat rows in singles, pose given",
+        }
+    }
+}
 
 /// A point of which nothing is known.
 const NOTHING: ContactPoint = ContactPoint {
@@ -60,7 +65,6 @@ const NOTHING: ContactPoint = ContactPoint {
     error_mm: f64::NAN,
     error_q1_mm: f64::NAN,
     error_q3_mm: f64::NAN,
-    on_front: false,
 };
 
 /// What the file says of ours was measured beside them; the table has ours as this run measures it.
@@ -112,85 +116,6 @@ fn over_objects(point: ContactPoint, mut errors: Vec<f64>, mut costs: Vec<f64>) 
     }
 }
 
-/// Every chain, with both fronts.
-pub(super) fn chain_points(
-    rows: &[(ChainCell, ChainScore, ChainTime)],
-) -> Vec<(ChainCell, ChainPoint)> {
-    let points = rows.iter().map(|(cell, score, time)| {
-        let point = ChainPoint {
-            decision_us: time.decision_us,
-            fit_s: time.fit_s,
-            accuracy: score.accuracy,
-            accuracy_low: score.accuracy_low,
-            accuracy_high: score.accuracy_high,
-            on_decision_front: false,
-            on_training_front: false,
-        };
-        (cell.clone(), point)
-    });
-    let mut points: Vec<_> = points.collect();
-    let mut all: Vec<&mut ChainPoint> = points.iter_mut().map(|(_, point)| point).collect();
-    mark_front(
-        &mut all,
-        |point| (point.decision_us, point.accuracy),
-        |a, b| a > b,
-        |point| &mut point.on_decision_front,
-    );
-    mark_front(
-        &mut all,
-        |point| (point.fit_s, point.accuracy),
-        |a, b| a > b,
-        |point| &mut point.on_training_front,
-    );
-    points
-}
-
-/// Every size of study by both intervals.
-pub(super) fn resolution_points(
-    rows: &[(StudySize, Resolved, StudyTime)],
-) -> Vec<(StudySize, ResolutionPoint)> {
-    let kinds = [ResolvedBy::OneAccuracy, ResolvedBy::Difference];
-    let points = rows.iter().flat_map(|(size, found, time)| {
-        kinds.map(|interval| {
-            let point = ResolutionPoint {
-                interval,
-                cpu_s: time.cpu_s,
-                half_width: match interval {
-                    ResolvedBy::OneAccuracy => found.accuracy_half_width,
-                    ResolvedBy::Difference => found.difference_half_width,
-                },
-                on_front: false,
-            };
-            (size.clone(), point)
-        })
-    });
-    let mut points: Vec<_> = points.collect();
-    for interval in kinds {
-        let of_it = points.iter_mut().map(|(_, point)| point);
-        let of_it = of_it.filter(|point| point.interval == interval);
-        mark_front(
-            &mut of_it.collect::<Vec<_>>(),
-            |point| (point.cpu_s, point.half_width),
-            |a, b| a < b,
-            |point| &mut point.on_front,
-        );
-    }
-    points
-}
-
-/// Says of each point whether nothing beats it.
-fn mark_front<P>(
-    points: &mut [&mut P],
-    cost_and_value: impl Fn(&P) -> (f64, f64),
-    is_better: impl Fn(f64, f64) -> bool,
-    mark: impl Fn(&mut P) -> &mut bool,
-) {
-    let places: Vec<(f64, f64)> = points.iter().map(|point| cost_and_value(point)).collect();
-    for (point, on_front) in points.iter_mut().zip(front(&places, is_better)) {
-        *mark(point) = on_front;
-    }
-}
-
 /// Things of the same key together, keys in the order of their first.
 fn by_key<T, K: PartialEq>(things: &[T], key: impl Fn(&T) -> K) -> Vec<Vec<&T>> {
     let mut groups: Vec<(K, Vec<&T>)> = Vec::new();
@@ -229,6 +154,5 @@ mod tests {
         assert_eq!(points.len(), 1);
         assert_eq!((points[0].us_per_touch, points[0].error_mm), (350.0, 0.2));
         assert_eq!(points[0].source, "MuJoCo 4.0.0, 2026-11-22");
-        assert!(points[0].on_front);
     }
 }

@@ -1,9 +1,8 @@
 //! What work items of a recognition study find.
 
-use super::limits::Limit;
 use crate::study::evaluation::Evaluation;
 use crate::study::pieces::PieceRows;
-use crate::study::table::Tables;
+use crate::study::table::{Limit, Tables};
 use crate::world::Patch;
 use serde::{Deserialize, Serialize};
 

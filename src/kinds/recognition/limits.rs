@@ -2,29 +2,7 @@
 
 use super::rows::ArrayOutcome;
 use super::study::RecognitionStudy;
-use crate::columns;
-use crate::study::table::Tables;
-use serde::{Deserialize, Serialize};
-
-/// How often a limit of the model was reached: a row of `limits.csv`.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Limit {
-    /// What happened: `saturated taxels`.
-    pub what: String,
-    /// How often.
-    pub count: u64,
-    /// Out of how many.
-    pub of: u64,
-    /// What it means for the reader.
-    pub meaning: String,
-}
-
-columns! { Limit {
-    what: Subject "limit";
-    count: Note: Linear;
-    of: Note: Linear;
-    meaning: Note;
-} }
+use crate::study::table::{Limit, Tables};
 
 impl RecognitionStudy {
     /// Of touches on all arrays, and of fits.

@@ -1,18 +1,61 @@
-//! A recognition study from its plans: objects that are built once and touches that are drawn once for all that share them.
+//! A recognition study from its text: objects that are built once and touches that are drawn once for all combinations that share them.
 
+use super::scale::recognition_scale;
 use super::study::RecognitionStudy;
-use crate::error::Result;
+use crate::error::{Error, Result};
+use crate::kinds::{self, Source};
 use crate::random::Seed;
+use crate::study::HumanTouches;
 use crate::study::axes::AxisValues;
-use crate::study::human_touches::HumanTouches;
 use crate::study::memory::check_touches;
 use crate::study::object_files::load_objects;
 use crate::study::plan::Plan;
 use crate::study::simulation::draw_touches;
+use crate::study::spec::StudySpec;
 use crate::study::touch_set::TouchSet;
 use std::collections::HashMap;
 use std::path::Path;
 use std::sync::Arc;
+
+/// Reads and checks a study: the plan of the first combination of its own axes.
+///
+/// # Errors
+/// A study of another kind; a key that is not known or out of its range.
+pub fn read_plan(source: &Source) -> Result<Plan> {
+    Ok(read_plans(source)?.swap_remove(0).1)
+}
+
+/// The same: a plan for each combination of its own axes.
+fn read_plans(source: &Source) -> Result<Vec<(AxisValues, Plan)>> {
+    if let Some(about) = kinds::about(&source.text)
+        && about.table != super::RECOGNITION.table
+    {
+        let recognition = super::RECOGNITION.words;
+        let allowed = format!("{recognition} (bubbletouch run runs all kinds)");
+        return Err(Error::input(&source.place, about.words, allowed));
+    }
+    let mut spec = StudySpec::parse(&source.place, &source.text)?;
+    if let Some(seed) = source.seed
+        && spec.axes.0.iter().any(|axis| axis.key == "seed")
+    {
+        let allowed = "no such option: the seed is an axis of the study";
+        return Err(Error::input("--seed", seed, allowed));
+    }
+    spec.seed = source.seed(spec.seed);
+    source.replace_objects(&mut spec.objects);
+    Plan::variants(&source.place, spec)
+}
+
+/// Reads and checks a study, builds its objects and draws its touches, unless these take more memory than there is.
+///
+/// # Errors
+/// Those of [`read_plan`]; an object that cannot be read; touches that memory cannot hold.
+pub fn load_study(source: &Source) -> Result<RecognitionStudy> {
+    let plans = read_plans(source)?;
+    let mut study = RecognitionStudy::load(plans, source.packings(), source.memory)?;
+    study.place = recognition_scale(&study, source.memory, &source.results).1;
+    Ok(study)
+}
 
 impl RecognitionStudy {
     /// Builds the objects of [plans](Plan::variants) and draws their touches, unless these take more bytes than `ceiling` (`None`: no

@@ -1,0 +1,45 @@
+//! Studies that recognise objects, in work items: a family of cells in a trial each, and the touches of each array.
+
+mod cost;
+mod limits;
+mod load;
+mod measuring;
+mod rows;
+mod scale;
+mod study;
+
+pub use load::{load_study, read_plan};
+pub use rows::{ArrayOutcome, Outcome, RecognitionRows};
+pub use scale::recognition_scale;
+pub use study::{RecognitionStudy, StudyPart};
+
+use super::About;
+
+/// What studies that recognise objects are.
+pub const RECOGNITION: About = About {
+    table: "recognition",
+    words: "a study that recognises objects",
+    may_change: &[
+        "question",
+        "expected",
+        "report",
+        "axes",
+        "trials",
+        "skin.pitch_mm",
+        "skin.size_mm",
+        "skin.taxels",
+        "touches.frames",
+        "signal",
+        "sensing.ensemble",
+        "sensing.ratio",
+        "sensing.measurements",
+        "recognition.features",
+        "recognition.over_time",
+        "recognition.classifier",
+        "recognition.c",
+        "recognition.train_touches",
+        "recognition.mislabelled_fraction",
+        "recognition.class_imbalance",
+        "recognition.fused_touches",
+    ],
+};

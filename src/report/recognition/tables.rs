@@ -1,0 +1,220 @@
+//! The tables of a study of recognition, and one of all that is known of each cell.
+
+use crate::error::Result;
+use crate::report::csv_tables::{LIMITS_FILE, VARIANCE_FILE};
+use crate::report::page::Limit;
+use crate::study::table::{
+    Cell, CellScore, Comparison, Confused, Confusion, Pareto, Published, StageTime, Tables,
+    TrialScore, TrialTime, Variance,
+};
+use crate::table::{Better, Column, Data, Role, Scale, Table};
+use std::path::Path;
+
+/// The table of all that is known of each cell; it has no file.
+pub const CELLS: &str = "cells.csv";
+
+const CLASSIFIERS: &[(&str, &str)] = &[
+    ("linear_svm", "linear SVM"),
+    ("rbf_svm", "RBF SVM"),
+    ("polynomial_svm", "polynomial SVM"),
+    ("k_nearest", "k nearest neighbours"),
+    ("naive_bayes", "naive Bayes"),
+];
+const ENSEMBLES: &[(&str, &str)] = &[
+    ("gaussian", "Gaussian"),
+    ("bernoulli", "Bernoulli"),
+    ("sbhe", "SBHE"),
+];
+const FEATURES: &[(&str, &str)] = &[("centred_unit_norm", "centred, unit norm")];
+const OVER_TIME: &[(&str, &str)] = &[
+    ("", "all frames"),
+    ("deepest", "deepest frame"),
+    ("summarised", "moments and course"),
+];
+const CHOSEN: &[(&str, &str)] = &[("", "chosen")];
+
+/// Every table of a run, in the order of their files; then [`CELLS`].
+///
+/// # Errors
+/// A row that has no form in a file.
+pub fn tables_of(tables: &Tables, limits: &[Limit]) -> Result<Vec<Table>> {
+    let mut made = vec![
+        Table::of("accuracy.csv", "Every trial", &tables.accuracy)?,
+        Table::of("summary.csv", "Cells over their trials", &tables.summary)?.summary(),
+        Table::of(
+            "confusion.csv",
+            "What was taken for what",
+            &tables.confusion,
+        )?
+        .summary(),
+        Table::of(
+            "comparison.csv",
+            "Cells against the best of their condition",
+            &tables.comparison,
+        )?
+        .summary(),
+        Table::of("timing.csv", "Times of every trial", &tables.timing)?.of_times(),
+        Table::of("pareto.csv", "Accuracy and its cost", &tables.pareto)?.of_times(),
+        Table::of("stages.csv", "Times of the stages", &tables.stages)?.of_times(),
+        Table::of("confused.csv", "Most often confused", &tables.confused)?.summary(),
+        Table::of(
+            "published.csv",
+            "Beside what was published",
+            &tables.published,
+        )?
+        .summary(),
+    ];
+    if !tables.variance.is_empty() {
+        made.push(
+            Table::of(VARIANCE_FILE, "What makes trials differ", &tables.variance)?.summary(),
+        );
+    }
+    made.push(Table::of(LIMITS_FILE, "How often limits were reached", limits)?.summary());
+    Ok(with_cells(made))
+}
+
+/// The same of the files of a folder; without [`LIMITS_FILE`] where an earlier version wrote none.
+///
+/// # Errors
+/// A table that cannot be read, by its file, line and column.
+pub fn read_tables(dir: &Path) -> Result<Vec<Table>> {
+    let mut read = vec![
+        Table::read::<(Cell, TrialScore)>("accuracy.csv", "Every trial", dir)?,
+        Table::read::<(Cell, CellScore)>("summary.csv", "Cells over their trials", dir)?.summary(),
+        Table::read::<Confusion>("confusion.csv", "What was taken for what", dir)?.summary(),
+        Table::read::<Comparison>(
+            "comparison.csv",
+            "Cells against the best of their condition",
+            dir,
+        )?
+        .summary(),
+        Table::read::<(Cell, TrialTime)>("timing.csv", "Times of every trial", dir)?.of_times(),
+        Table::read::<(Cell, Pareto)>("pareto.csv", "Accuracy and its cost", dir)?.of_times(),
+        Table::read::<StageTime>("stages.csv", "Times of the stages", dir)?.of_times(),
+        Table::read::<Confused>("confused.csv", "Most often confused", dir)?.summary(),
+        Table::read::<(Cell, Published)>("published.csv", "Beside what was published", dir)?
+            .summary(),
+    ];
+    if dir.join(VARIANCE_FILE).exists() {
+        read.push(
+            Table::read::<Variance>(VARIANCE_FILE, "What makes trials differ", dir)?.summary(),
+        );
+    }
+    if dir.join(LIMITS_FILE).exists() {
+        read.push(
+            Table::read::<Limit>(LIMITS_FILE, "How often limits were reached", dir)?.summary(),
+        );
+    }
+    Ok(with_cells(read))
+}
+
+fn with_cells(mut tables: Vec<Table>) -> Vec<Table> {
+    for table in &mut tables {
+        say(table);
+    }
+    let notes = [
+        (
+            "accuracy.csv",
+            "Intervals are 95 % Wilson intervals of the test decisions of the trial.",
+        ),
+        (
+            "summary.csv",
+            "Means over trials; intervals are 95 % Wilson intervals at the test decisions of one trial.",
+        ),
+        (
+            "comparison.csv",
+            "A t-test paired over trials, corrected for their overlap; the p-value of Holm is corrected for the number of cells too.",
+        ),
+        (
+            "published.csv",
+            "Ours: the most accurate of the cells that have the settings of the claim, in each condition that these were measured in.",
+        ),
+        (
+            "confused.csv",
+            "The pairs of objects that the best cell confuses most often, all trials together.",
+        ),
+    ];
+    for (file, note) in notes {
+        if let Some(table) = tables.iter_mut().find(|table| table.file == file) {
+            table.note = note.to_owned();
+        }
+    }
+    let cells = cells_of(&tables);
+    tables.extend(cells);
+    tables
+}
+
+/// What people call codes, and what noise is measured in.
+pub fn say(table: &mut Table) {
+    let unit = table.column("noise_unit").and_then(|(_, data)| match data {
+        Data::Words { levels, .. } => levels.first().cloned(),
+        Data::Numbers(_) => None,
+    });
+    for column in &mut table.columns {
+        match (column.name.as_ref(), unit.as_deref()) {
+            ("noise_std", Some("mm" | "n")) => {
+                column.unit = if unit.as_deref() == Some("mm") {
+                    "mm"
+                } else {
+                    "N"
+                }
+                .into();
+                column.scale = Scale::Linear;
+            }
+            ("noise_std", _) => column.words = "noise".into(),
+            ("classifier", _) => column.names = CLASSIFIERS,
+            ("ensemble", _) => column.names = ENSEMBLES,
+            ("features", _) => column.names = FEATURES,
+            ("over_time", _) => column.names = OVER_TIME,
+            ("c", _) => column.names = CHOSEN,
+            // The pitch and the size say them.
+            ("nx" | "ny", _) => column.role = Role::Note,
+            _ => {}
+        }
+    }
+}
+
+/// Each cell with its distance to the best of its condition and with what it costs.
+fn cells_of(tables: &[Table]) -> Option<Table> {
+    let of = |file: &str| tables.iter().find(|table| table.file == file);
+    let (summary, comparison, pareto) =
+        (of("summary.csv")?, of("comparison.csv")?, of("pareto.csv")?);
+    let compared =
+        ["difference", "p_holm", "p_status"].map(|name| summary.look_up(comparison, "cell", name));
+    let costs =
+        ["fit_s", "predict_us_per_decision"].map(|name| summary.look_up(pareto, "cell", name));
+    let product = |names: [&str; 3]| -> Option<Vec<f64>> {
+        let columns = names.map(|name| summary.numbers(name));
+        let rows = 0..summary.n_rows;
+        columns.iter().all(Option::is_some).then(|| {
+            rows.map(|row| columns.iter().flatten().map(|column| column[row]).product())
+                .collect()
+        })
+    };
+    let cost = |name: &'static str, words: &'static str| {
+        Column::new(name, Role::Cost, words, "", Scale::Log)
+    };
+    let measurements = product(["measurements", "frames", "fused_touches"])?;
+    let taxels = product(["nx", "ny", "fused_touches"])?;
+    let fused = summary.numbers("fused_touches")?;
+    let taxels = taxels
+        .iter()
+        .zip(fused)
+        .map(|(n, fused)| n / fused)
+        .collect();
+    let mut more: Vec<(Column, Data)> = compared.into_iter().flatten().collect();
+    for (column, _) in &mut more {
+        column.interval = None;
+        if column.name == "difference" {
+            column.role = Role::Value(Better::Neither);
+        }
+    }
+    more.extend(costs.into_iter().flatten());
+    more.push((
+        cost("measurements_per_decision", "measurements a decision"),
+        Data::Numbers(measurements),
+    ));
+    more.push((cost("taxels", "taxels"), Data::Numbers(taxels)));
+    let table = summary.with((CELLS, "All cells"), more);
+    Some(table.noted("All that is known of each cell, from summary.csv, comparison.csv and pareto.csv. Costs of time are of this machine."))
+}
