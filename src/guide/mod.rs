@@ -56,3 +56,6 @@ pub mod benchmarks {}
 
 #[doc = include_str!("../../guide/experiments.md")]
 pub mod experiments {}
+
+#[doc = include_str!("../../guide/adding.md")]
+pub mod adding {}

@@ -118,6 +118,7 @@ classifiers! {
     PolynomialSvm polynomial_svm "Soft-margin SVM, polynomial kernel `(γ x·z + c₀)^d`.";
     LogisticRegression logistic_regression "Multinomial [logistic regression](logistic_regression).";
     KNearest k_nearest "[k nearest neighbours](k_nearest).";
+    NearestCentroid nearest_centroid "The class whose mean is nearest: [nearest centroid](nearest_centroid).";
     NaiveBayes naive_bayes "Gaussian [naive Bayes](naive_bayes).";
     DecisionTree decision_tree "A single [classification tree](decision_tree).";
     RandomForest random_forest "A [random forest](random_forest).";

@@ -36,7 +36,6 @@ pub mod scene_summary;
 pub(crate) mod shaded_view;
 pub mod snapshots;
 pub mod study_folder;
-pub mod study_tables;
 pub mod swept;
 pub mod terminal;
 pub mod text_width;

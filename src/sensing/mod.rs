@@ -7,6 +7,7 @@
 //! |---|---|---|---|
 //! | [`Gaussian`](Ensemble::Gaussian) | independent N(0, 1/n) | 1 on average | m × n numbers |
 //! | [`Bernoulli`](Ensemble::Bernoulli) | independent ±1/√n | 1 | m × n numbers |
+//! | [`Circulant`](Ensemble::Circulant) | a cyclic shift of one row of ±1/√n | 1 | n + m numbers |
 //! | [`Sparse`](Ensemble::Sparse) | independent ±√(s/n) at a density of 1/s, s = √n, else 0 | 1 on average | m√n indices |
 //! | [`Sbhe`](Ensemble::Sbhe) | ±1/√B on the B taxels of a scrambled block \[SBHE\] | 1 | n + m indices |
 //! | [`BlockAverage`](Ensemble::BlockAverage) | 1/area on a rectangle of taxels | 1/√area | m rectangles |
@@ -63,6 +64,7 @@ ensembles! {
     Gaussian gaussian "Independent Gaussian entries.";
     Bernoulli bernoulli "Independent entries ±1/√n, either sign as likely.";
     Sparse sparse "Independent entries +√(s/n), 0, −√(s/n) with probabilities 1/2s, 1 − 1/s, 1/2s, where s = √n: the very sparse projections of Li, Hastie and Church (2006). A measurement reads √n taxels on average.";
+    Circulant circulant "Some rows of a random circulant matrix: cyclic shifts of one row of signs ±1/√n.";
     Sbhe sbhe "Scrambled block Hadamard \\[SBHE\\]: taxels permuted, Walsh–Hadamard transforms of blocks, coefficients in random order.";
     BlockAverage block_average "Averages over blocks of neighbouring taxels: equal squares where the array allows them (64 × 64 at m = 1,024 is 2 × 2 taxels each), else the cells of recursive splitting, largest first, along its longer side. A cell of a smaller m is a union of cells of a larger m, so the smaller measurements follow from the larger, among all m of splitting and among squares whose sides divide each other (ratios 4, 16, 64 …).";
     Subsample subsample "Some taxels, drawn without replacement.";

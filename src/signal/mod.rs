@@ -14,6 +14,7 @@
 //! | [`Gain`](SensorError::Gain) | xᵢ ← gᵢ xᵢ, g log-normal of mean 1 | std of g |
 //! | [`Drift`](SensorError::Drift) | xᵢ ← xᵢ + σ Wᵢ(t), W a Wiener process, t the touch's time | σ of the full scale |
 //! | [`Faults`](SensorError::Faults) | xᵢ ← 0 (dead) or a level of its own (stuck) | fractions of taxels |
+//! | [`PinkNoise`](SensorError::PinkNoise) | xᵢ ← xᵢ + σ pᵢ, p of a 1/f spectrum in the order of reading | σ of the full scale |
 //! | [`Quantisation`](SensorError::Quantisation) | x ← q round(x / q), clipped to the full scale | b bits |
 //!
 //! The others are what real skins do to a signal: what \[SD\] calls mismatching, drift, hysteresis and crosstalk, and
@@ -49,6 +50,7 @@ sensor_errors! {
     Drift drift "Each taxel's zero drifts from touch to touch.";
     Faults faults "Some taxels are dead or stuck.";
     Scan scan "Taxels are read one after another.";
+    PinkNoise pink_noise "The amplifier adds 1/f noise from reading to reading.";
     Quantisation quantisation "A converter clips and rounds.";
 }
 

@@ -5,6 +5,7 @@
 use super::axes::{self, AxisRules, StudyAxes};
 use super::axis::Axis;
 use super::cell::Cell;
+use super::sensor_errors::all_strengths;
 pub use super::spec_human::*;
 pub use super::spec_scene::*;
 pub use super::spec_signal::*;
@@ -63,8 +64,8 @@ pub struct StudySpec {
     pub axes: StudyAxes,
 }
 
-/// Keys that are axes where they stand.
-const AXIS_KEYS: [&str; 28] = [
+/// Keys that are axes where they stand, beside the strengths of sensor errors.
+const AXIS_KEYS: [&str; 20] = [
     "skin.pitch_mm",
     "skin.size_mm",
     "skin.taxels",
@@ -73,14 +74,6 @@ const AXIS_KEYS: [&str; 28] = [
     "signal.noise_std_mm",
     "signal.noise_std_n",
     "signal.smoothing_mm",
-    "signal.hysteresis_full_scale",
-    "signal.crosstalk",
-    "signal.gain_std",
-    "signal.drift_std_full_scale",
-    "signal.dead_fraction",
-    "signal.stuck_fraction",
-    "signal.scan_time_ms",
-    "signal.adc_bits",
     "signal.tested_on",
     "sensing.ensemble",
     "sensing.ratio",
@@ -97,7 +90,11 @@ const AXIS_KEYS: [&str; 28] = [
 
 /// Trials split the same touches again, and words and reports are of the whole study.
 const AXIS_RULES: AxisRules = AxisRules {
-    in_place: |key| AXIS_KEYS.contains(&key),
+    in_place: |key| {
+        let signal = key.strip_prefix("signal.");
+        let is_strength = |key| all_strengths().any(|(_, strength)| strength.key == key);
+        AXIS_KEYS.contains(&key) || signal.is_some_and(is_strength)
+    },
     refused: &[
         "question",
         "expected",

@@ -6,6 +6,7 @@ mod command;
 mod study;
 
 mod accuracy;
+mod axes;
 mod experiments;
 mod families;
 mod frames;

@@ -8,7 +8,7 @@ use crate::table::{Table, short_number};
 
 /// How many settings break recognition, where each does, and which do not.
 pub(super) fn answers(ways: &[PlannedWay], tables: &[Table]) -> Vec<String> {
-    let breaks: Vec<BreakingPoint> = rows_of(tables, BREAKS.0);
+    let breaks: Vec<BreakingPoint> = rows_of(tables, BREAKS.name());
     let place = |row: &BreakingPoint| {
         Some(format!(
             "{} ({})",

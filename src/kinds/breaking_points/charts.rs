@@ -11,7 +11,7 @@ use crate::table::{Along, At, ChartSpec, Column, Role, Rule, Scale, Shown, Table
 
 /// A chart a way.
 pub(super) fn charts(ways: &[PlannedWay], tables: &[Table]) -> Vec<ChartSpec> {
-    let breaks: Vec<BreakingPoint> = rows_of(tables, BREAKS.0);
+    let breaks: Vec<BreakingPoint> = rows_of(tables, BREAKS.name());
     let chart = |way: &PlannedWay| {
         let of_way = breaks.iter().filter(|row| row.way == way.spec.name);
         chart_of(way, &of_way.collect::<Vec<_>>())
@@ -46,7 +46,7 @@ fn chart_of(PlannedWay { spec: way, .. }: &PlannedWay, breaks: &[&BreakingPoint]
         name: way.name.clone(),
         title: format!("Accuracy by {}", way.label),
         note: touches.to_owned(),
-        table: SUMMARY.0,
+        table: SUMMARY.name(),
         shown: vec![Shown {
             column: "way".to_owned(),
             value: Value::Word(way.name.clone()),

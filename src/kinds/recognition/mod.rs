@@ -1,6 +1,7 @@
 //! Studies that recognise objects, in work items: a family of cells in a trial each, and the touches of each array.
 
 mod cost;
+mod kind;
 mod limits;
 mod load;
 mod measuring;
@@ -29,21 +30,7 @@ pub const RECOGNITION: About = About {
         "skin.size_mm",
         "skin.taxels",
         "touches.frames",
-        "signal.steps",
-        "signal.combine",
-        "signal.noise_std_full_scale",
-        "signal.noise_std_mm",
-        "signal.noise_std_n",
-        "signal.smoothing_mm",
-        "signal.hysteresis_full_scale",
-        "signal.crosstalk",
-        "signal.gain_std",
-        "signal.drift_std_full_scale",
-        "signal.dead_fraction",
-        "signal.stuck_fraction",
-        "signal.scan_time_ms",
-        "signal.adc_bits",
-        "signal.tested_on",
+        "signal",
         "sensing.ensemble",
         "sensing.ratio",
         "sensing.measurements",

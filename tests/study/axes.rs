@@ -1,0 +1,182 @@
+//! Studies with axes of their own: each combination is the study that has its values, and what is the same is made once.
+
+use crate::command::Case;
+use crate::study::Study;
+use bubbletouch::kinds::recognition::{Outcome, RecognitionStudy};
+use bubbletouch::report::csv_tables::{read_tables, write_tables};
+use bubbletouch::study::pieces::{PieceStudy, run_whole_study};
+use bubbletouch::study::progress::Silent;
+use bubbletouch::study::table::TrialScore;
+use bubbletouch::study::{Plan, StudySpec};
+
+const REST: &str = r#"
+[objects]
+sets = ["balls"]
+names = ["golf_ball", "tennis_ball", "baseball"]
+
+[skin]
+pitch_mm = 4.0
+taxels = 8
+
+[touches]
+per_object = 12
+offset_x_mm = { uniform = [-6.0, 6.0] }
+offset_y_mm = { uniform = [-6.0, 6.0] }
+
+[signal]
+steps = ["force", "noise"]
+noise_std_n = 0.01
+
+[sensing]
+ratio = [4, 8]
+"#;
+
+const HEAD: &str = "question = \"?\"\ntrials = 2\n";
+const LEARNING: &str = "[recognition]\ntest_fraction = 0.25\n";
+
+fn laid_out(text: &str) -> RecognitionStudy {
+    let spec = StudySpec::parse("study.toml", text).unwrap();
+    let plans = Plan::variants("study.toml", spec).unwrap();
+    RecognitionStudy::load(plans, None, None).unwrap()
+}
+
+fn run(study: &RecognitionStudy) -> Outcome {
+    run_whole_study(study, &Silent).unwrap()
+}
+
+fn with_axes(axes: &str) -> String {
+    format!("{HEAD}{REST}{LEARNING}[axes]\n{axes}")
+}
+
+fn scores(outcome: &Outcome) -> Vec<TrialScore> {
+    let rows = outcome.tables.accuracy.iter();
+    rows.map(|(_, score)| score.clone()).collect()
+}
+
+#[test]
+fn each_combination_scores_what_the_study_with_its_values_scores() {
+    let axes = "touches.depth_mm = [1.0, 3.0]\nskin.stroke_mm = [2.0, 5.0]\n\
+                recognition.classifier = [\"linear_svm\", \"k_nearest\"]\nrecognition.n_neighbours = [1, 3]\nseed = [7, 2018]";
+    let outcome = run(&laid_out(&with_axes(axes)));
+    let mut expected = Vec::new();
+    for depth in [1.0, 3.0] {
+        for stroke in [2.0, 5.0] {
+            for neighbours in [1, 3] {
+                for seed in [7, 2018] {
+                    let rest = REST
+                        .replace("taxels = 8", &format!("taxels = 8\nstroke_mm = {stroke:?}"))
+                        .replace("per_object", &format!("depth_mm = {depth:?}\nper_object"));
+                    let text = format!(
+                        "seed = {seed}\n{HEAD}{rest}{LEARNING}classifier = [\"linear_svm\", \"k_nearest\"]\nn_neighbours = {neighbours}\n"
+                    );
+                    expected.extend(scores(&Study::new(&text).run()));
+                }
+            }
+        }
+    }
+    assert_eq!(scores(&outcome), expected);
+    let places = outcome.tables.summary.iter().enumerate();
+    for (place, (cell, _)) in places {
+        assert_eq!(cell.cell, place);
+        let columns = cell.variant.values.iter().map(|v| &v.column.name[..]);
+        let columns: Vec<&str> = columns.collect();
+        assert_eq!(columns, ["depth_mm", "stroke_mm", "n_neighbours", "seed"]);
+    }
+}
+
+#[test]
+fn what_does_not_change_is_made_once() {
+    let stages = |axes: &str| {
+        let outcome = run(&laid_out(&with_axes(axes)));
+        let stages = outcome.tables.stages.iter();
+        let counted = stages.map(|row| (row.stage.clone(), row.n_touches));
+        counted.collect::<Vec<_>>()
+    };
+    let alone = "touches.depth_mm = [1.0]\nskin.stroke_mm = [5.0]\nrecognition.classifier = [\"linear_svm\"]\n";
+    let once = [("simulate".to_owned(), 36), ("measure".to_owned(), 2 * 36)];
+    // Only fits differ.
+    let learning = format!("{alone}recognition.scaling = [\"standard\", \"none\"]");
+    assert_eq!(stages(&learning), once);
+    // Touches are the same, and measured for each value.
+    let signal = format!("{alone}touches.speed_mm_per_s = [0.0, 5.0]");
+    assert_eq!(
+        stages(&signal),
+        [("simulate".to_owned(), 36), ("measure".to_owned(), 4 * 36)]
+    );
+}
+
+#[test]
+fn an_axis_with_more_values_leaves_the_names_of_what_was_done() {
+    let names = |depths: &str| {
+        let axes = format!(
+            "touches.depth_mm = {depths}\nskin.stroke_mm = [5.0]\nrecognition.classifier = [\"k_nearest\"]"
+        );
+        let pieces = laid_out(&with_axes(&axes)).pieces();
+        pieces
+            .into_iter()
+            .map(|piece| piece.name)
+            .collect::<Vec<_>>()
+    };
+    let (few, many) = (names("[1.0, 3.0]"), names("[0.5, 1.0, 3.0]"));
+    assert!(few.iter().all(|name| many.contains(name)));
+    let mut different = many.clone();
+    different.sort();
+    different.dedup();
+    assert_eq!(different.len(), many.len());
+}
+
+#[test]
+fn tables_of_a_study_with_axes_read_back_as_they_are() {
+    let axes = "touches.depth_mm = [1.0, 3.0]\nskin.stroke_mm = [5.0]\nrecognition.classifier = [\"k_nearest\"]\nobjects.names = [[\"golf_ball\", \"baseball\"]]";
+    let text =
+        with_axes(axes).replace("names = [\"golf_ball\", \"tennis_ball\", \"baseball\"]", "");
+    let study = laid_out(&text);
+    let tables = run(&study).tables;
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(
+        folder.path().join("study.toml"),
+        study.first().plan.spec.to_toml(),
+    )
+    .unwrap();
+    write_tables(folder.path(), &tables).unwrap();
+    assert_eq!(read_tables(folder.path()).unwrap().accuracy, {
+        let mut rows = tables.accuracy;
+        for (cell, _) in &mut rows {
+            cell.variant.number = 0;
+        }
+        rows
+    });
+}
+
+#[test]
+fn a_combination_that_a_check_refuses_is_told_with_its_axis() {
+    let said = |axes: &str| {
+        let spec = StudySpec::parse("study.toml", &with_axes(axes)).unwrap();
+        Plan::variants("study.toml", spec).unwrap_err().to_string()
+    };
+    let rest = "skin.stroke_mm = [5.0]\nrecognition.classifier = [\"k_nearest\"]\n";
+    let depth = said(&format!("{rest}touches.depth_mm = [1.0, -1.0]"));
+    assert!(
+        depth.contains("axes.\"touches.depth_mm\": touches.depth_mm = -1.0;"),
+        "{depth}"
+    );
+    assert!(depth.contains("positive numbers"), "{depth}");
+    let k = said(&format!(
+        "{rest}touches.depth_mm = [1.0]\nrecognition.n_neighbours = [3, 0]"
+    ));
+    assert!(
+        k.contains("recognition.n_neighbours = 0;") && k.contains("at least 1"),
+        "{k}"
+    );
+}
+
+#[test]
+fn the_seed_of_the_command_and_an_axis_of_seeds_exclude_each_other() {
+    let case = Case::new();
+    let axes = "touches.depth_mm = [1.0]\nskin.stroke_mm = [5.0]\nrecognition.classifier = [\"k_nearest\"]\nseed = [1, 2]";
+    case.file("seeds.toml", with_axes(axes));
+    let output = case.run(&["plan", "seeds.toml", "--seed", "3"]);
+    assert_eq!(output.status.code(), Some(2));
+    let said = String::from_utf8(output.stderr).unwrap();
+    assert!(said.contains("--seed: 3;"), "{said}");
+}
