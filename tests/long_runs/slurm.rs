@@ -188,7 +188,7 @@ fn configuration(folder: &Path) -> String {
 
 fn n_cells(journal: &Path) -> usize {
     let text = fs::read_to_string(journal).unwrap_or_default();
-    text.matches("\"key\":\"cell ").count()
+    text.matches("\"key\":\"piece ").count()
 }
 
 #[test]
