@@ -8,7 +8,6 @@ use crate::table::Table;
 use rayon::prelude::*;
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::time::Instant;
 
 /// Files that will stand in a folder, in the order of writing; nothing is there before [`Folder::write`].
 pub struct Folder<'a> {
@@ -22,28 +21,6 @@ enum Content {
     /// A PNG that is still to be drawn.
     Png(Box<ToRaster>),
 }
-
-impl Content {
-    /// That of a picture that is still to be drawn.
-    fn area(&self) -> Option<f64> {
-        match self {
-            Self::Bytes(_) => None,
-            Self::Png(raster) => Some(raster.area()),
-        }
-    }
-}
-
-/// A picture that is drawn.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Drawn {
-    /// How much of all pictures that is.
-    pub share: f64,
-    /// Of the seconds by the clock that all of them take, those that it took.
-    pub wall_s: f64,
-}
-
-/// Who is told of pictures, from any thread.
-pub type Told<'a> = dyn Fn(Drawn) + Sync + 'a;
 
 impl<'a> Folder<'a> {
     /// No files yet, for the folder at `path`, which need not exist.
@@ -94,24 +71,11 @@ impl<'a> Folder<'a> {
         self.add(format!("{name}.svg"), drawing.svg(title));
     }
 
-    /// Every file whole, name and content; each picture tells what share it was of the time by the clock that all of them take (the larger the more), and how long
-    /// that was.
-    fn into_files_telling(self, told: &Told) -> Result<Vec<(String, Vec<u8>)>> {
-        let areas = self.files.iter().filter_map(|(_, content)| content.area());
-        let areas: Vec<f64> = areas.collect();
-        let all: f64 = areas.iter().sum();
-        let at_once = rayon::current_num_threads().min(areas.len()).max(1) as f64;
+    /// Every file whole, name and content.
+    fn into_files(self) -> Result<Vec<(String, Vec<u8>)>> {
         let whole = |(name, content)| match content {
             Content::Bytes(bytes) => Ok((name, bytes)),
-            Content::Png(raster) => {
-                let start = Instant::now();
-                let png = raster.picture()?.png()?;
-                told(Drawn {
-                    share: raster.area() / all,
-                    wall_s: start.elapsed().as_secs_f64() / at_once,
-                });
-                Ok((name, png))
-            }
+            Content::Png(raster) => Ok((name, raster.picture()?.png()?)),
         };
         self.files.into_par_iter().map(whole).collect()
     }
@@ -123,16 +87,8 @@ impl<'a> Folder<'a> {
     /// # Errors
     /// A picture that cannot be drawn; a file that is in the folder's way or cannot be written.
     pub fn write(self) -> Result<Vec<PathBuf>> {
-        self.write_telling(&|_| ())
-    }
-
-    /// The same, and says when pictures are drawn.
-    ///
-    /// # Errors
-    /// Those of [`write`](Self::write).
-    pub fn write_telling(self, told: &Told) -> Result<Vec<PathBuf>> {
         let path = self.path;
-        let files = self.into_files_telling(told)?;
+        let files = self.into_files()?;
         make_folder(path)?;
         let written = files.into_iter().map(|(name, content)| {
             let path = path.join(name);

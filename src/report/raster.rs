@@ -24,11 +24,6 @@ impl ToRaster {
         Self(large)
     }
 
-    /// How large it will be, as large as its scene.
-    pub fn area(&self) -> f64 {
-        self.0.width * self.0.height
-    }
-
     /// The pixels: a tenth of a second's work.
     pub fn picture(&self) -> Result<Picture> {
         let large = kuva::RasterBackend::new()
