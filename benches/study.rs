@@ -218,7 +218,7 @@ fn time_run(folder: &Path, study: &RecognitionStudy) -> Result<(f64, f64)> {
     let finished = run_pieces(study, &manner)?;
     let failures = finished.failures;
     assert!(failures.is_empty(), "{:?}", failures[0]);
-    let outcome = study.tables(finished.rows)?;
+    let outcome = study.outcome(finished.rows)?;
     journal.sync()?;
     assert_eq!(outcome.tables.summary.len(), study.n_cells());
     let worked = *worked.0.lock().expect("no thread panics");

@@ -32,16 +32,14 @@ pub enum Error {
         /// What the system answered.
         source: std::io::Error,
     },
-    /// Some cells or pieces of a study failed; what the others found is written. The command exits with code 1.
-    #[error("{path}: {n_failed} of {n_all} {what} failed; the file says why, and the same command tries them again", path = path.display())]
-    Cells {
+    /// Some work items of a study failed; what the others found is written. The command exits with code 1.
+    #[error("{path}: {n_failed} of {n_all} work items failed; the file says why, and the same command tries them again", path = path.display())]
+    WorkItems {
         /// The table of failures.
         path: PathBuf,
-        /// What a study of this kind is made of: `cells` or `pieces`.
-        what: &'static str,
-        /// Those that failed; cells are counted once a trial.
+        /// Those that failed.
         n_failed: usize,
-        /// All, counted in the same way.
+        /// All.
         n_all: usize,
     },
 }
@@ -65,7 +63,7 @@ impl Error {
                 given,
                 allowed,
             } => Self::input(format!("{outer}{place}"), given, allowed),
-            other @ (Self::Io { .. } | Self::Cells { .. }) => other,
+            other @ (Self::Io { .. } | Self::WorkItems { .. }) => other,
         }
     }
 
@@ -118,7 +116,7 @@ impl Error {
     pub fn exit_code(&self) -> u8 {
         match self {
             Self::Input { .. } => 2,
-            Self::Io { .. } | Self::Cells { .. } => 1,
+            Self::Io { .. } | Self::WorkItems { .. } => 1,
         }
     }
 }

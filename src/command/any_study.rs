@@ -1,10 +1,8 @@
 //! A study of any kind, as the commands see it that run it, merge it, submit it and verify it.
 
-use super::about_study::command_line;
+use super::command_line::command_line;
 use super::listener::Listener;
 use super::output::{tell_where, terminal_width};
-use super::piece_kind::PieceRun;
-use super::recognition_kind::RecognitionKind;
 use super::streams::write_out;
 use super::study_args::StudyArgs;
 use bubbletouch::kinds::{self, AnyOutcome, AnyStudy, EndedRun};
@@ -22,10 +20,7 @@ pub fn load_study(
 ) -> Result<Box<dyn AnyStudy>> {
     args.memory = memory;
     args.results = folder.to_owned();
-    if let Some(study) = kinds::load(&args.source()?)? {
-        return Ok(study);
-    }
-    Ok(Box::new(PieceRun::<RecognitionKind>::load(&args, folder)?))
+    kinds::load(&args.source()?)
 }
 
 /// Writes and tells what came of a study; an error if some of it failed.
@@ -43,7 +38,7 @@ pub fn end(
     listener.finished(serde_json::json!({
         "event": "finished",
         "folder": run.folder,
-        study.units(): study.n_all(),
+        "work_items": study.n_all(),
         "finished_before": run.n_before,
         "failed": outcome.n_failed(),
         "elapsed_s": elapsed_s,
@@ -77,9 +72,8 @@ pub fn ended<'a>(
 pub fn failures(study: &dyn AnyStudy, outcome: &dyn AnyOutcome, folder: &Path) -> Result<()> {
     match outcome.n_failed() {
         0 => Ok(()),
-        n_failed => Err(Error::Cells {
+        n_failed => Err(Error::WorkItems {
             path: folder.join(FAILURES_FILE),
-            what: study.units(),
             n_failed,
             n_all: study.n_all(),
         }),

@@ -46,10 +46,9 @@ pub fn merge(args: &Args) -> Result<()> {
     journal.sync()?;
     let (n_all, n_left) = (study.n_all(), study.n_left(Part::All, &journal));
     if n_left > 0 {
-        let units = study.units();
         return Err(Error::input(
             folder.display(),
-            format!("{n_left} of {n_all} {units} are in none of the {n_journals} journals"),
+            format!("{n_left} of {n_all} work items are in none of the {n_journals} journals"),
             "the journals of all shards, each run to its end (or bubbletouch run, which does here what is left)",
         ));
     }

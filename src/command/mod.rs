@@ -1,10 +1,10 @@
 //! The command line: one file a subcommand, each `Args` → work → files or terminal.
 
-mod about_study;
 mod advise;
 mod any_study;
 mod checked_manifest;
 mod classify;
+mod command_line;
 mod compare;
 mod features;
 mod listener;
@@ -14,13 +14,10 @@ mod objects;
 mod objects_pack;
 mod objects_show;
 mod output;
-mod piece_kind;
-mod piece_rows;
 mod plan;
 mod press;
 mod press_place;
 mod press_poses;
-mod recognition_kind;
 mod recording;
 mod report;
 mod run;

@@ -13,7 +13,7 @@ use std::path::{Path, PathBuf};
 pub struct Args {
     /// A folder that `bubbletouch run` wrote
     results: PathBuf,
-    /// Draw every static chart of a study of recognition; without it the first 24
+    /// Draw every chart as a file; without it the first 24
     #[arg(long)]
     all_charts: bool,
 }

@@ -1,7 +1,7 @@
 //! `bubbletouch run`: a study from its file to its folder of results.
 
-use super::about_study::merge_line;
 use super::any_study::{end, ended, failures, load_study, seconds_since};
+use super::command_line::merge_line;
 use super::listener::Listener;
 use super::memory_args::MemoryArgs;
 use super::study_args::StudyArgs;
@@ -78,8 +78,7 @@ pub fn run(args: &Args) -> Result<()> {
     let n_all = study.n_all();
     let n_before = n_all - study.n_left(Part::All, &kept.journal);
     if n_before > 0 {
-        let units = study.units();
-        let going_on = format!("going on: {n_before} of {n_all} {units} were finished before");
+        let going_on = format!("going on: {n_before} of {n_all} work items were finished before");
         args.listener.remark(&going_on);
     }
     kept.journal.abort_after(args.abort_after.unwrap_or(0));
@@ -109,7 +108,7 @@ pub fn run(args: &Args) -> Result<()> {
         &ended,
         (args.listener, ""),
     );
-    let is_written = matches!(result, Ok(()) | Err(Error::Cells { .. }));
+    let is_written = matches!(result, Ok(()) | Err(Error::WorkItems { .. }));
     if args.is_demonstration && is_written {
         kept.forget()?;
     }

@@ -13,10 +13,7 @@ pub trait AnyStudy {
     /// What its results depend on.
     fn identity(&self) -> &Identity;
 
-    /// What its work is counted in: `cells` or `pieces`.
-    fn units(&self) -> &'static str;
-
-    /// How many; cells count once a trial.
+    /// How many work items it has.
     fn n_all(&self) -> usize;
 
     /// What it asks, and what it will take.

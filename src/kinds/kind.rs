@@ -2,7 +2,8 @@
 
 use super::source::Source;
 use crate::error::Result;
-use crate::report::study_folder::NamedPicture;
+use crate::report::page::Section;
+use crate::report::study_folder::{NamedPicture, words_of};
 use crate::study::pieces::{PieceStudy, Scale};
 use crate::table::{ChartSpec, Table};
 use crate::toml_text;
@@ -90,6 +91,19 @@ pub trait Kind: PieceStudy<Tables = Vec<Table>> + Sized + Sync + 'static {
     /// What is shown cannot be made again or drawn.
     fn pictures(&self, _tables: &[Table]) -> Result<Vec<NamedPicture>> {
         Ok(Vec::new())
+    }
+
+    /// What its page has beside that of any study.
+    ///
+    /// # Errors
+    /// What is shown cannot be made again or drawn.
+    fn sections(&self, _tables: &[Table]) -> Result<Vec<Section>> {
+        Ok(Vec::new())
+    }
+
+    /// What a person reads at the end of a run below the question, in lines of about `width` letters.
+    fn summary(&self, tables: &[Table], width: usize) -> String {
+        words_of(tables, &self.answers(tables), width)
     }
 
     /// What was found, in sentences: at the top of the page and at the end of the run.

@@ -51,10 +51,6 @@ impl<K: Kind> AnyStudy for Loaded<K> {
         &self.identity
     }
 
-    fn units(&self) -> &'static str {
-        "pieces"
-    }
-
     fn n_all(&self) -> usize {
         self.pieces.len()
     }
@@ -120,7 +116,7 @@ impl<K: Kind> AnyStudy for Loaded<K> {
         let of_others = self.kind.tables(K::Rows::default())?;
         let n_rows = changed_row(folder, &again, &of_others)?;
         Ok(format!(
-            "{} of {} pieces ran again, and their {n_rows} rows without times are the same bytes",
+            "{} of {} work items ran again, and their {n_rows} rows without times are the same bytes",
             chosen.len(),
             self.pieces.len(),
         ))

@@ -45,7 +45,11 @@ const KINDS: &[Entry] = &[
     entry::<reconstruction::ReconstructionStudy>(),
     entry::<stability::StabilityPlan>(),
     entry::<whole_body::WholeBodyPlan>(),
+    RECOGNITION,
 ];
+
+/// The kind of every file that no table makes another.
+const RECOGNITION: Entry = entry::<recognition::RecognitionStudy>();
 
 const fn entry<K: Kind>() -> Entry {
     Entry {
@@ -59,13 +63,13 @@ pub fn about(text: &str) -> Option<About> {
     find(text).map(|entry| entry.about)
 }
 
-/// Reads and checks a study of any kind; none where no table tells of which.
+/// Reads and checks a study of any kind; one of which no table tells is taken for recognition.
 ///
 /// # Errors
 /// Those of its [`Kind::load`].
-pub fn load(source: &Source) -> Result<Option<Box<dyn AnyStudy>>> {
-    let found = find(&source.text).map(|entry| (entry.load)(source));
-    found.transpose()
+pub fn load(source: &Source) -> Result<Box<dyn AnyStudy>> {
+    let entry = find(&source.text).unwrap_or(&RECOGNITION);
+    (entry.load)(source)
 }
 
 /// Text that is not TOML is told so by whoever reads the study.

@@ -8,7 +8,7 @@ use crate::files::write_bytes;
 use crate::report::csv_tables::{FAILURES_FILE, TableHashes};
 use crate::report::folder::Folder;
 use crate::report::page::StudyAbout;
-use crate::report::study_folder::{Found, folder_of, words_of};
+use crate::report::study_folder::{Found, folder_with};
 use crate::study::pieces::PieceFailure;
 use crate::study::provenance::{MANIFEST_FILE, Manifest, PROGRAM, RunFacts};
 use crate::table::Table;
@@ -40,7 +40,7 @@ impl<K: Kind> Loaded<K> {
             pictures: &self.kind.pictures(tables)?,
             answers: &self.kind.answers(tables),
         };
-        folder_of(folder, about, &found)
+        folder_with(folder, about, &found, self.kind.sections(tables)?)
     }
 }
 
@@ -49,10 +49,8 @@ impl<K: Kind> Results<'_, K> {
         let Loaded {
             facts, identity, ..
         } = self.study;
-        let files = self
-            .tables
-            .iter()
-            .map(|table| (table.file, table.csv.clone()));
+        let files = self.tables.iter().filter(|table| !table.csv.is_empty());
+        let files = files.map(|table| (table.file, table.csv.clone()));
         let of_name = |name: &str| self.tables.iter().find(|table| table.file == name);
         let hashes = TableHashes::of(files, |name| of_name(name).is_some_and(|t| t.repeats));
         let run = RunFacts {
@@ -102,7 +100,7 @@ impl<K: Kind> AnyOutcome for Results<'_, K> {
     }
 
     fn words(&self, width: usize) -> String {
-        let answers = self.study.kind.answers(&self.tables);
-        words_of(&self.study.facts.question, &self.tables, &answers, width)
+        let found = self.study.kind.summary(&self.tables, width);
+        format!("{}\n\n{found}", self.study.facts.question)
     }
 }

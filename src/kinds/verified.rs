@@ -19,7 +19,7 @@ pub fn drawn<S: PieceStudy>(
     let failed: Vec<PieceFailure> = read_rows(&folder.join(FAILURES_FILE))?;
     let has_failed = |number: usize| {
         let words = || study.words(number, &pieces[number]);
-        !failed.is_empty() && failed.iter().any(|row| row.piece == words())
+        !failed.is_empty() && failed.iter().any(|row| row.work_item == words())
     };
     let numbers: Vec<usize> = (0..pieces.len()).filter(|&n| !has_failed(n)).collect();
     let mut rng = Seed::new(seed).named("verify").rng();

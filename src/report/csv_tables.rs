@@ -4,15 +4,14 @@
 //! value is an empty field. A table without rows has its header, but for columns that only some studies have.
 
 use crate::error::{Error, Result};
-use crate::report::csv_header::blank_row;
 use crate::report::folder::Folder;
+use crate::report::recognition::tables_of;
 use crate::study::table::{
     Cell, CellScore, Comparison, Confused, Confusion, Pareto, Published, StageTime, Tables,
     TrialScore, TrialTime, Variance,
 };
 use crate::study::{ContentHash, StudySpec};
 use crate::table::Column;
-use serde::Serialize;
 use serde::de::DeserializeOwned;
 use std::collections::BTreeMap;
 use std::fs::File;
@@ -80,38 +79,11 @@ pub fn sha256_of(path: &Path) -> Result<String> {
 pub const TIME_TABLES: [&str; 3] = ["timing.csv", "pareto.csv", "stages.csv"];
 
 /// Writes every table into `dir` (created if missing), each as a whole file; returns their paths.
+///
+/// # Errors
+/// A row that has no form in a file; a file that cannot be written.
 pub fn write_tables(dir: &Path, tables: &Tables) -> Result<Vec<PathBuf>> {
-    let mut folder = Folder::new(dir);
-    add_tables(&mut folder, tables)?;
-    folder.write()
-}
-
-/// Adds every table to what is written into a folder.
-pub(super) fn add_tables(folder: &mut Folder, tables: &Tables) -> Result<()> {
-    let [
-        accuracy,
-        summary,
-        confusion,
-        comparison,
-        timing,
-        pareto,
-        stages,
-        confused,
-        published,
-    ] = TABLE_FILES;
-    folder.add_table(accuracy, &tables.accuracy)?;
-    folder.add_table(summary, &tables.summary)?;
-    folder.add_table(confusion, &tables.confusion)?;
-    folder.add_table(comparison, &tables.comparison)?;
-    folder.add_table(timing, &tables.timing)?;
-    folder.add_table(pareto, &tables.pareto)?;
-    folder.add_table(stages, &tables.stages)?;
-    folder.add_table(confused, &tables.confused)?;
-    folder.add_table(published, &tables.published)?;
-    match tables.variance.is_empty() {
-        true => Ok(()),
-        false => folder.add_table(VARIANCE_FILE, &tables.variance),
-    }
+    Folder::of_tables(dir, &tables_of(tables, &[])?).write()
 }
 
 /// Reads the tables that [`write_tables`] wrote.
@@ -134,32 +106,6 @@ pub fn read_tables(dir: &Path) -> Result<Tables> {
     })
 }
 
-/// One table as CSV with a header row, also where there are no rows; a `(Cell, score)` row becomes one line.
-pub fn to_csv<R: Serialize + DeserializeOwned>(
-    rows: &[R],
-) -> std::result::Result<Vec<u8>, csv::Error> {
-    if rows.is_empty() {
-        let blank: R = blank_row().map_err(std::io::Error::other)?;
-        let mut text = to_csv(&[blank])?;
-        let header = text.iter().position(|&byte| byte == b'\n');
-        text.truncate(header.map_or(0, |end| end + 1));
-        return Ok(text);
-    }
-    let mut writer = csv::Writer::from_writer(Vec::new());
-    for row in rows {
-        writer.serialize(row)?;
-    }
-    writer.into_inner().map_err(|e| e.into_error().into())
-}
-
-/// The same for a file.
-///
-/// # Errors
-/// A row that has no such form; the error names the file.
-pub fn csv_content<R: Serialize + DeserializeOwned>(path: &Path, rows: &[R]) -> Result<Vec<u8>> {
-    to_csv(rows).map_err(|error| Error::io(path, "write", std::io::Error::other(error)))
-}
-
 /// Reads a table whose rows are a [`Cell`] followed by `R`.
 pub fn read_cell_rows<R: DeserializeOwned>(path: &Path) -> Result<Vec<(Cell, R)>> {
     // Each line is read once for either half: through one struct with two flattened halves, serde would take an empty field for an
@@ -179,7 +125,7 @@ pub fn read_cell_rows<R: DeserializeOwned>(path: &Path) -> Result<Vec<(Cell, R)>
 }
 
 /// The columns of the axes of the study whose results stand in a folder; none where no study stands beside them.
-fn axes_beside(table: &Path) -> Result<Vec<Column>> {
+pub(super) fn axes_beside(table: &Path) -> Result<Vec<Column>> {
     let path = table.with_file_name("study.toml");
     let Ok(text) = std::fs::read_to_string(&path) else {
         return Ok(Vec::new());

@@ -11,7 +11,6 @@ use crate::report::raster::ToRaster;
 use kuva::backend::svg::SvgBackend;
 use kuva::render::color::Color;
 use kuva::render::render::{PathData, Primitive, Scene, TextAnchor, TextSpan, build_path};
-use serde::Serialize;
 
 /// A place in a drawing, pixels from the top left corner: `(x, y)`.
 pub type Point = (f64, f64);
@@ -108,22 +107,6 @@ pub const N_MARKERS: usize = 8;
 /// A drawing on white paper.
 pub struct Drawing {
     scene: Scene,
-    asked: Vec<Asked>,
-}
-
-/// A place of a drawing that readers of a page can point at, and what it says then.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Asked {
-    /// Pixels from the left.
-    pub x: f64,
-    /// Pixels from the top.
-    pub y: f64,
-    /// Which line of data it belongs to: arrow keys go along one, and from one to the next.
-    pub line: usize,
-    /// What it is.
-    pub title: String,
-    /// What is known of it, a line each.
-    pub lines: Vec<String>,
 }
 
 impl Drawing {
@@ -132,26 +115,7 @@ impl Drawing {
         let mut scene = Scene::new(width.ceil(), height.ceil());
         scene.background_color = Some(colour(PAPER).to_svg_string());
         scene.font_family = Some("DejaVu Sans, Verdana, sans-serif".to_owned());
-        Self {
-            scene,
-            asked: Vec::new(),
-        }
-    }
-
-    /// Lets readers of a page point at a place.
-    pub fn ask(&mut self, (x, y): Point, line: usize, title: String, lines: Vec<String>) {
-        self.asked.push(Asked {
-            x: snap(x),
-            y: snap(y),
-            line,
-            title,
-            lines,
-        });
-    }
-
-    /// The places that readers of a page can point at.
-    pub fn asked(&self) -> &[Asked] {
-        &self.asked
+        Self { scene }
     }
 
     /// Pixels across.

@@ -2,14 +2,10 @@
 
 use crate::error::{Error, Result};
 use crate::files::write_bytes;
-use crate::report::csv_tables::csv_content;
 use crate::report::drawing::Drawing;
 use crate::report::raster::ToRaster;
-use crate::report::study_tables::TableFiles;
 use crate::table::Table;
 use rayon::prelude::*;
-use serde::Serialize;
-use serde::de::DeserializeOwned;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -90,24 +86,6 @@ impl<'a> Folder<'a> {
     pub(super) fn add_png(&mut self, name: impl Into<String>, drawing: &Drawing) {
         let content = Content::Png(Box::new(drawing.to_raster()));
         self.files.push((name.into(), content));
-    }
-
-    /// Adds a table as CSV; the error names the file.
-    pub(super) fn add_table(
-        &mut self,
-        name: &str,
-        rows: &[impl Serialize + DeserializeOwned],
-    ) -> Result<()> {
-        let csv = csv_content(&self.path.join(name), rows)?;
-        self.add(name, csv);
-        Ok(())
-    }
-
-    /// Adds the tables of a study.
-    pub(super) fn add_files(&mut self, tables: TableFiles) {
-        for (name, content) in tables {
-            self.add(name, content);
-        }
     }
 
     /// Adds a chart as PNG and as SVG; its name has no ending.

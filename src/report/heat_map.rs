@@ -1,10 +1,10 @@
 //! A frame as a heat map with axes in millimetres and a colour bar, part of a drawing.
 
 use crate::error::{Error, Result};
-use crate::report::axis::short_number;
 use crate::report::colours::{INK, Rgb, heat};
 use crate::report::drawing::{Align, Area, Drawing, Stroke, TextStyle};
 use crate::signal::Quantity;
+use crate::table::short_number;
 use ndarray::{Array2, ArrayView2};
 
 /// How many taxels a grid has and how far apart they are: `64 × 64 taxels, pitch 3.5 mm`.

@@ -1,7 +1,7 @@
 //! What stands above a chart's panels: title, fixed settings, and the legend.
 
-use crate::report::chart::draw_sign;
-use crate::report::colours::{INK, LINES, MUTED, PAPER, Rgb, heat};
+use crate::report::chart::{draw_sign, tint};
+use crate::report::colours::{INK, LINES, MUTED, Rgb};
 use crate::report::drawing::{Area, Drawing, Point, Stroke, TextStyle};
 use crate::report::text_width::{text_width, wrap};
 
@@ -11,8 +11,6 @@ pub(super) const LEFT: f64 = 66.0;
 pub(super) const RIGHT: f64 = 18.0;
 /// Radius of a marker, pixels.
 pub(super) const MARKER_RADIUS: f64 = 4.2;
-/// The line of chance.
-pub(super) const CHANCE: Stroke = dashes(1.2);
 /// The line of a Pareto front.
 pub(super) const FRONT: Stroke = Stroke {
     colour: INK,
@@ -58,16 +56,12 @@ pub(super) enum Mark {
     Point(usize),
     /// The steps of a Pareto front.
     Front,
-    /// The line of chance.
-    Dashes,
     /// A line across the chart.
     Rule(Stroke),
     /// A band around a line.
     Band,
     /// A bar through a marker.
     Whisker,
-    /// A marker with nothing inside.
-    Hollow,
     /// A tile with its sign.
     Tile(Rgb, String),
     /// All colours of numbers.
@@ -117,14 +111,6 @@ impl Heading {
     }
 }
 
-/// An entry for each line of data by its name, in their order.
-pub(super) fn line_entries<'a>(names: impl IntoIterator<Item = &'a str>) -> Vec<LegendEntry> {
-    let lines = names.into_iter().enumerate();
-    lines
-        .map(|(line, name)| LegendEntry::new(name.to_owned(), Mark::Line(line)))
-        .collect()
-}
-
 impl LegendEntry {
     /// An entry as wide as its mark and text.
     pub(super) fn new(text: String, mark: Mark) -> Self {
@@ -161,14 +147,13 @@ impl LegendEntry {
                         width: 2.0,
                         height: 14.0,
                     };
-                    drawing.area(area, heat(f64::from(step) / f64::from(BAR - 1)));
+                    drawing.area(area, tint(f64::from(step) / f64::from(BAR - 1)));
                 }
             }
             Mark::Point(number) => {
                 let at = (x + 6.0, middle);
                 drawing.marker(*number, at, MARKER_RADIUS, point_colour(*number));
             }
-            Mark::Hollow => draw_hollow(drawing, 0, (x + 6.0, middle)),
             Mark::Front => {
                 let corner = (x + 14.0, middle + 4.0);
                 let steps = [
@@ -184,7 +169,6 @@ impl LegendEntry {
                 drawing.line((x, middle), (x + 28.0, middle), stroke);
                 drawing.marker(*line, (x + 14.0, middle), MARKER_RADIUS, stroke.colour);
             }
-            Mark::Dashes => drawing.line((x, middle), (x + 28.0, middle), CHANCE),
             Mark::Rule(stroke) => drawing.line((x, middle), (x + 28.0, middle), *stroke),
             Mark::Whisker => {
                 let centre = x + 14.0;
@@ -209,7 +193,7 @@ impl Mark {
     fn width(&self) -> f64 {
         match self {
             Self::None => 0.0,
-            Self::Point(_) | Self::Hollow => 18.0,
+            Self::Point(_) => 18.0,
             Self::Bar => 2.0 * f64::from(BAR) + 8.0,
             _ => 34.0,
         }
@@ -231,12 +215,6 @@ fn flow(entries: Vec<LegendEntry>, width: f64) -> Vec<Vec<LegendEntry>> {
         }
     }
     rows
-}
-
-/// The marker of a line with nothing inside: not what it should be.
-pub(super) fn draw_hollow(drawing: &mut Drawing, line: usize, at: Point) {
-    drawing.marker(line, at, MARKER_RADIUS + 0.6, point_colour(line));
-    drawing.marker(line, at, MARKER_RADIUS - 1.6, PAPER);
 }
 
 /// Colour of a line by its number.

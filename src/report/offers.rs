@@ -2,9 +2,8 @@
 
 use crate::error::{Error, Result};
 use crate::kinds::speed_accuracy::rows::{ChainCell, ChainScore, ChainTime};
-use crate::report::axis::{classifier_name, ensemble_name};
 use crate::report::csv_tables::{read_cell_rows, read_rows};
-use crate::report::varying::Settings;
+use crate::report::recognition::{costs_table, swept};
 use crate::study::advice::{Costs, Offer};
 use crate::study::table::{Cell, CellScore, Pareto};
 use crate::study::{Role, agree, column_name, one_of, role_of};
@@ -126,22 +125,24 @@ pub fn cell_offers(
     given: &[Given],
 ) -> Result<Vec<Offer>> {
     let mut cells: Vec<&Cell> = costs.iter().map(|(cell, _)| cell).collect();
-    let settings = Settings::of(&cells);
+    let table = costs_table(costs)?;
+    let rows: Vec<usize> = (0..table.n_rows).collect();
+    let settings = swept(&table, &rows);
     for given in given {
         cells = given.filter(&cells)?;
     }
     let cells: HashSet<usize> = cells.iter().map(|cell| cell.cell).collect();
     let scores: HashMap<usize, &CellScore> = scores.iter().map(|(c, s)| (c.cell, s)).collect();
-    let offer = |(cell, row): &(Cell, Pareto)| {
+    let offer = |(number, (cell, row)): (usize, &(Cell, Pareto))| {
         let score = scores.get(&cell.cell)?;
-        let setting = match settings.choice_words(cell) {
+        let setting = match settings.choice_words(number) {
             words if words.is_empty() => "the only setting".to_owned(),
             words => words,
         };
         Some(Offer {
             cell: Some(cell.cell),
             setting,
-            condition: settings.condition_words(cell),
+            condition: settings.condition_words(number),
             costs: Costs {
                 decision_us: row.predict_us_per_decision,
                 training_s: row.fit_s,
@@ -153,7 +154,8 @@ pub fn cell_offers(
             accuracy_high: score.accuracy_high,
         })
     };
-    let of_given = costs.iter().filter(|(cell, _)| cells.contains(&cell.cell));
+    let of_given = costs.iter().enumerate();
+    let of_given = of_given.filter(|(_, (cell, _))| cells.contains(&cell.cell));
     Ok(of_given.filter_map(offer).collect())
 }
 
@@ -176,8 +178,8 @@ fn of_chain(((cell, score), time): ((ChainCell, ChainScore), ChainTime)) -> Offe
         cell: None,
         setting: format!(
             "{}, {}, m = {}, pitch {} mm, spheres within {} mm",
-            classifier_name(cell.classifier),
-            ensemble_name(cell.ensemble),
+            cell.classifier.about().words,
+            cell.ensemble.about().words,
             cell.measurements,
             cell.pitch_mm,
             cell.tolerance_mm

@@ -1,7 +1,6 @@
 //! One frame for the eye: a heat map as a picture, and a drawing in the terminal.
 
 use crate::error::Result;
-use crate::report::axis::short_number;
 use crate::report::colours::{INK, MUTED, heat};
 use crate::report::drawing::{Area, Drawing, TextStyle};
 use crate::report::heat_map::{
@@ -11,6 +10,7 @@ use crate::report::heat_map::{
 use crate::report::terminal::Ink;
 use crate::report::text_width::wrap;
 use crate::signal::Quantity;
+use crate::table::short_number;
 use ndarray::Array2;
 
 /// Taxels that a picture shows each way, at most; longer arrays are shown by the largest value of blocks.

@@ -8,7 +8,7 @@ use crate::report::terminal::{paragraph, table_text};
 use crate::spelling::counted;
 use crate::study::table::{Cell, PStatus};
 use crate::study::{RunComparison, RunDifference};
-use crate::table::{Along, At, ChartSpec, Column, Data, Mark, Role, Rule, Scale, Table};
+use crate::table::{Along, At, ChartSpec, Column, Columns, Data, Mark, Role, Rule, Scale, Table};
 
 /// Sentences and a table of lines at most `width` letters long: the cells that moved most surely first.
 ///
@@ -85,7 +85,17 @@ fn table(comparison: &RunComparison) -> Result<Table> {
         words.to_owned()
     });
     let column = Column::new("moved", Role::Note, "difference", "", Scale::Words);
-    let mut table = Table::of("differences.csv", "Cells of both runs", &rows)?;
+    let first = rows.first().map(|(cell, _)| cell.variant.values.iter());
+    let axes = first.into_iter().flatten().map(|axis| axis.column.clone());
+    let columns = Cell::columns()
+        .into_iter()
+        .chain(axes)
+        .chain(RunDifference::columns());
+    let mut table = Table::of_columns(
+        ("differences.csv", "Cells of both runs"),
+        columns.collect(),
+        &rows,
+    )?;
     say(&mut table);
     Ok(table.with(
         ("differences.csv", "Cells of both runs"),

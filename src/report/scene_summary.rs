@@ -1,7 +1,7 @@
 //! What came of a scene, as tables for people.
 
-use super::axis::short_number;
 use crate::scene::{Held, Movement, ScenePlan, Summary};
+use crate::table::short_number;
 use crate::world::Motion;
 use comfy_table::{CellAlignment, Table, presets::NOTHING};
 

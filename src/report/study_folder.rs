@@ -56,7 +56,7 @@ pub fn folder_of<'a>(dir: &'a Path, about: &StudyAbout, found: &Found) -> Result
 }
 
 /// The same with sections of its own on the page.
-pub(super) fn folder_with<'a>(
+pub fn folder_with<'a>(
     dir: &'a Path,
     about: &StudyAbout,
     found: &Found,
@@ -132,8 +132,8 @@ fn light_picture(drawing: &Drawing, title: &str) -> Result<Picture> {
 }
 
 /// What a person reads at the end of a run, in lines of about `width` letters: the first table in which something was found, and the answers.
-pub fn words_of(question: &str, tables: &[Table], answers: &[String], width: usize) -> String {
-    let mut words = format!("{question}\n\n");
+pub fn words_of(tables: &[Table], answers: &[String], width: usize) -> String {
+    let mut words = String::new();
     let is_found = |table: &&Table| {
         let roles = table.columns.iter().map(|column| column.role);
         let mut roles = roles.filter(|role| matches!(role, Role::Value(_) | Role::Outcome));

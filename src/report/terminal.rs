@@ -302,15 +302,6 @@ pub(super) fn ruled_table(width: usize) -> TextTable {
     table
 }
 
-/// Columns of numbers, by their indices.
-pub(super) fn align_right(table: &mut TextTable, columns: impl IntoIterator<Item = usize>) {
-    for column in columns {
-        if let Some(column) = table.column_mut(column) {
-            column.set_cell_alignment(CellAlignment::Right);
-        }
-    }
-}
-
 pub(super) fn finish(table: &TextTable) -> String {
     let lines = table.lines().map(|line| line.trim_end().to_owned() + "\n");
     lines.collect()

@@ -15,6 +15,7 @@ pub(crate) mod cell_content;
 pub(crate) mod check;
 mod compare_runs;
 mod content_hash;
+pub(crate) mod defaults;
 pub(crate) mod evaluation;
 mod feature_files;
 pub(crate) mod frames;

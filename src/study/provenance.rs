@@ -86,30 +86,6 @@ pub struct Manifest {
     pub methods: BTreeMap<String, String>,
 }
 
-/// The methods of recognition, by table and columns. Everything is at 95 %.
-pub const RECOGNITION_METHODS: [(&str, &str); 5] = [
-    (
-        "accuracy.csv, summary.csv: accuracy_low, accuracy_high",
-        "Wilson score interval of the test rows of one trial",
-    ),
-    (
-        "summary.csv: bootstrap_low, bootstrap_high",
-        "bootstrap of the mean over trials, expanded percentiles; with projections_per_split, splits and projections drawn apart",
-    ),
-    (
-        "comparison.csv: difference_low, difference_high, p_value, p_holm",
-        "corrected resampled t-test against the best cell (Nadeau, Bengio 2003); p_holm: corrected for the number of cells by Holm's method",
-    ),
-    (
-        "variance.csv: accuracy_std_low, accuracy_std_high, p_value",
-        "crossed random effects by the method of moments; modified large samples (of the rest chi-squared); F test",
-    ),
-    (
-        "bubbletouch compare: p_holm",
-        "corrected resampled t-tests, corrected for the number of cells by Holm's method",
-    ),
-];
-
 /// What a run says of itself for its manifest.
 #[derive(Clone, Debug)]
 pub struct RunFacts {

@@ -29,6 +29,11 @@ impl<R: Columns> File<R> {
         }
     }
 
+    /// Its name.
+    pub const fn name(&self) -> &'static str {
+        self.name
+    }
+
     /// The same, of times: no two runs give the same bytes.
     pub const fn of_times(mut self) -> Self {
         self.repeats = false;

@@ -1,7 +1,8 @@
 //! Tables with roles: what a study yields, and all that a report, a page, advice and a comparison look at.
 //!
 //! Rows stay typed structs, one field a column; [`columns!`](crate::columns) says of each field its words, unit, scale and [`Role`], and a field
-//! of which nothing is said does not compile. [`Table::of`] makes a table of rows, [`Table::read`] of a file that a run wrote: both hold the same.
+//! of which nothing is said does not compile; [`row!`](crate::row) makes struct and columns of one list. [`File`] knows what a table is before
+//! there are rows. [`Table::of`] makes a table of rows, [`Table::read`] of a file that a run wrote: both hold the same.
 //! A [`ChartSpec`] names the columns of a table that a chart shows; it holds no pixels.
 
 mod chart;

@@ -112,9 +112,21 @@ impl Table {
         title: &'static str,
         rows: &[R],
     ) -> Result<Self> {
-        let csv = csv_of(rows, &R::columns());
+        Self::of_columns((file, title), R::columns(), rows)
+    }
+
+    /// The same of rows that have other columns than their type says: those of axes that a study names itself.
+    ///
+    /// # Errors
+    /// Those of [`of`](Self::of); a row with other columns.
+    pub fn of_columns(
+        (file, title): (&'static str, &'static str),
+        columns: Vec<Column>,
+        rows: &[impl Serialize],
+    ) -> Result<Self> {
+        let csv = csv_of(rows, &columns);
         let csv = csv.map_err(|e| Error::io(file, "write", std::io::Error::other(e)))?;
-        Self::from_csv((file, title), R::columns(), Path::new(file), csv)
+        Self::from_csv((file, title), columns, Path::new(file), csv)
     }
 
     /// Of a file in a folder.
@@ -126,10 +138,22 @@ impl Table {
         title: &'static str,
         folder: &Path,
     ) -> Result<Self> {
+        Self::read_columns((file, title), R::columns(), folder)
+    }
+
+    /// The same of a file that has these columns.
+    ///
+    /// # Errors
+    /// Those of [`read`](Self::read).
+    pub fn read_columns(
+        (file, title): (&'static str, &'static str),
+        columns: Vec<Column>,
+        folder: &Path,
+    ) -> Result<Self> {
         let path = folder.join(file);
         let csv = std::fs::read(&path)
             .map_err(|e| Error::unreadable(&path, "a table that bubbletouch run wrote", e))?;
-        Self::from_csv((file, title), R::columns(), &path, csv)
+        Self::from_csv((file, title), columns, &path, csv)
     }
 
     /// The same, of times: no two runs give the same bytes.
@@ -185,12 +209,6 @@ impl Table {
         }
     }
 
-    /// Its rows, typed; those that are not of the type are left out. Of a row of two structs each is read alone.
-    pub fn rows<R: DeserializeOwned>(&self) -> Vec<R> {
-        let rows = csv::Reader::from_reader(&self.csv[..]).into_deserialize();
-        rows.filter_map(|row| row.ok()).collect()
-    }
-
     /// A table of the same rows that more columns follow. It has no file: its content is empty.
     pub fn with(
         &self,
@@ -238,6 +256,12 @@ impl Table {
             }
         };
         Some((column.clone(), data))
+    }
+
+    /// Its rows, typed; those that are not of the type are left out. Of a row of two structs each is read alone.
+    pub fn rows<R: DeserializeOwned>(&self) -> Vec<R> {
+        let rows = csv::Reader::from_reader(&self.csv[..]).into_deserialize();
+        rows.filter_map(|row| row.ok()).collect()
     }
 
     fn from_csv(

@@ -88,12 +88,10 @@ fn every_line_of_a_run_is_an_event_as_the_guide_has_it() {
         .map(String::as_str)
         .collect();
     let fields = schema["finished"].keys().map(String::as_str);
-    // Pieces are for other kinds of study.
-    let fields = fields.filter(|field| *field != "pieces");
     assert_eq!(told, fields.chain(["event"]).collect(), "{finished}");
     assert_eq!(
-        (&finished["cells"], &finished["failed"]),
-        (&24.into(), &0.into())
+        (&finished["work_items"], &finished["failed"]),
+        (&26.into(), &0.into())
     );
     let progress: Vec<&Value> = of_kind("progress").collect();
     assert!(progress.iter().all(|event| event["run_left_s"].is_number()));
@@ -103,11 +101,11 @@ fn every_line_of_a_run_is_an_event_as_the_guide_has_it() {
         .iter()
         .map(|event| event["run_elapsed_s"].as_f64().unwrap());
     assert!(elapsed.is_sorted());
-    // Once more: all cells are there, and a remark says so.
+    // Once more: all work items are there, and a remark says so.
     let again = self::events(&case.succeeds(&["run", "study.toml", "--json"]).0);
     again.iter().for_each(|event| check(event, &schema));
     assert_eq!(again[0]["event"], "message");
-    assert_eq!(again.last().unwrap()["finished_before"], 24);
+    assert_eq!(again.last().unwrap()["finished_before"], 26);
 }
 
 #[test]

@@ -67,7 +67,7 @@ fn every_point_is_a_row_fronts_are_fronts_and_threads_change_no_byte_but_times()
     case.file("peers.csv", PEERS);
     let (said, _) = case.succeeds(&["run", "study.toml", "--threads", "1", "--out", "1"]);
     assert!(
-        said.contains("Contact, from the fastest to the most accurate of"),
+        said.contains("against the time of a touch, the front:"),
         "{said}"
     );
     case.succeeds(&["run", "study.toml", "--threads", "2", "--out", "2"]);

@@ -6,8 +6,9 @@ use crate::faults::{full_disk, keys, pieces, said, signal, start};
 use crate::kinds::Kind;
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
+use std::path::Path;
 use std::thread::sleep;
 use std::time::Duration;
 
@@ -63,11 +64,7 @@ fn a_study_of_every_kind_is_planned_and_its_plan_counts_its_pieces() {
         );
         case.succeeds(&["run", "study.toml", "--out", "whole"]);
         let n_pieces = pieces(&case.path("whole/journal.jsonl")).len();
-        assert_eq!(
-            planned(&said, "pieces")[0],
-            format!("{n_pieces},"),
-            "{said}"
-        );
+        assert_eq!(planned(&said, "items")[0], format!("{n_pieces},"), "{said}");
     }
 }
 
@@ -82,8 +79,10 @@ impl Faults {
         assert_eq!(manifest["n_cells"], faults.n_pieces());
         assert_eq!(manifest["n_failed"], 0);
         let hashes = manifest["tables_sha256"].as_object().unwrap();
-        let names: Vec<&str> = hashes.keys().map(String::as_str).collect();
+        let names = hashes.keys().map(String::as_str);
+        let names: Vec<&str> = names.filter(|name| *name != "failures.csv").collect();
         let mut expected = faults.kind.repeatable.to_vec();
+        expected.push("failures.csv");
         expected.sort_unstable();
         assert_eq!(names, expected);
         faults
@@ -234,7 +233,7 @@ impl Faults {
         fs::copy(&journals[0], &journals[1]).unwrap();
         let (_, error) = self.case.succeeds(&["run", "more.toml", "--out", "grown"]);
         let (n_before, n_all) = (self.n_pieces(), pieces(&journals[1]).len());
-        let going_on = format!("going on: {n_before} of {n_all} pieces");
+        let going_on = format!("going on: {n_before} of {n_all} work items");
         assert!(n_before < n_all && error.contains(&going_on), "{error}");
         for name in self.kind.repeatable {
             let read = |folder: &str| fs::read(self.case.path(folder).join(name)).unwrap();
@@ -274,12 +273,33 @@ impl Faults {
         self.assert_same_tables("below");
     }
 
+    /// Charts and page come out of the files of a folder as they came out of the run.
+    fn is_reported_again_from_its_tables(&self) {
+        let drawn = || -> BTreeMap<String, Vec<u8>> {
+            let files = fs::read_dir(self.case.path("whole")).unwrap();
+            let files = files.map(|file| file.unwrap().path());
+            let charts = files.filter(|path| path.extension().is_some_and(|e| e == "svg"));
+            let name = |path: &Path| path.file_name().unwrap().to_string_lossy().into_owned();
+            charts
+                .map(|path| (name(&path), fs::read(&path).unwrap()))
+                .collect()
+        };
+        let before = drawn();
+        for name in before.keys().map(String::as_str).chain(["report.html"]) {
+            fs::remove_file(self.case.path("whole").join(name)).unwrap();
+        }
+        self.case.succeeds(&["report", "whole"]);
+        assert!(before == drawn(), "{:?}", before.keys());
+        let page = fs::read_to_string(self.case.path("whole/report.html")).unwrap();
+        assert!(page.contains("<html"), "{page}");
+    }
+
     fn verifies_until_a_number_is_changed(&self) {
         let n = self.n_pieces();
         let all = ["verify", "whole", "--cells", &n.to_string()];
         let (output, _) = self.case.succeeds(&all);
         assert!(
-            output.contains(&format!("{n} of {n} pieces ran again")),
+            output.contains(&format!("{n} of {n} work items ran again")),
             "{output}"
         );
         let path = self.case.path("whole").join(self.kind.repeatable[0]);
@@ -323,6 +343,7 @@ fn goes_through_all_faults(kind: Kind) {
     faults.keeps_its_work_when_there_is_more_of_it();
     faults.is_the_same_in_shards();
     faults.is_the_same_within_a_ceiling_of_memory();
+    faults.is_reported_again_from_its_tables();
     faults.verifies_until_a_number_is_changed();
 }
 
@@ -357,7 +378,7 @@ fn a_piece_that_fails_is_recorded_and_the_others_are_done() {
     assert_eq!(output.status.code(), Some(1));
     let error = said(&output);
     assert!(
-        error.contains("failures.csv: 1 of 4 pieces failed"),
+        error.contains("failures.csv: 1 of 4 work items failed"),
         "{error}"
     );
     let rows = |name: &str| fs::read_to_string(case.path("failing").join(name)).unwrap();
@@ -374,7 +395,7 @@ fn a_piece_that_fails_is_recorded_and_the_others_are_done() {
     assert_eq!(again.status.code(), Some(1));
     assert_eq!(pieces(&case.path("failing/journal.jsonl")).len(), 4 + 1);
     let (output, _) = case.succeeds(&["verify", "failing"]);
-    assert!(output.contains("3 of 4 pieces"), "{output}");
+    assert!(output.contains("3 of 4 work items"), "{output}");
     let strict = case.run(&["run", "study.toml", "--out", "strict", "--fail-fast"]);
     assert_eq!(strict.status.code(), Some(2));
     assert!(

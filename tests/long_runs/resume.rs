@@ -246,7 +246,7 @@ fn a_journal_whose_lines_are_of_no_study_or_of_another_is_refused_and_stays_as_i
     case.file("whole/journal.jsonl", twice);
     case.succeeds(&["run", "study.toml", "--out", "whole"]);
     let (said_of, _) = case.succeeds(&["verify", "whole", "--cells", "3"]);
-    assert!(said_of.contains("3 of 66 pieces"), "{said_of}");
+    assert!(said_of.contains("3 of 66 work items"), "{said_of}");
 }
 
 /// Runs a longer study in a copy of what the study left, and from nothing: the same tables, and so much was finished before.
@@ -268,7 +268,7 @@ fn assert_grows(case: &Case, (more, n_before, n_all): (&str, usize, usize)) {
         fs::copy(case.path("whole/journal.jsonl"), journal).unwrap();
         let run = ["run", "more.toml", "--out", &folder, "--threads", threads];
         let (_, error) = case.succeeds(&run);
-        let going_on = format!("going on: {n_before} of {n_all} pieces");
+        let going_on = format!("going on: {n_before} of {n_all} work items");
         assert!(error.contains(&going_on), "{error}");
         for name in REPEATABLE.iter().chain(&["limits.csv"]) {
             let read = |folder: &str| fs::read(case.path(folder).join(name)).unwrap();
@@ -315,7 +315,7 @@ fn other_words_refuse_nothing_and_train_nothing() {
         "expected = \"All of it.\"\n".to_owned() + &words,
     );
     let (_, error) = case.succeeds(&["run", "words.toml", "--out", "whole"]);
-    assert!(error.contains("going on: 66 of 66 pieces"), "{error}");
+    assert!(error.contains("going on: 66 of 66 work items"), "{error}");
     assert_eq!(lines_of(&case, "whole").len(), n_lines);
     let page = fs::read_to_string(case.path("whole/report.html")).unwrap();
     assert!(page.contains("Expected or not"));
@@ -357,7 +357,7 @@ fn a_cell_that_fails_is_recorded_and_the_others_are_done() {
     let output = case.run(&["run", "failing.toml", "--out", "failing"]);
     assert_eq!(output.status.code(), Some(1));
     assert!(
-        said(&output).contains("failures.csv: 2 of 9 pieces failed"),
+        said(&output).contains("failures.csv: 2 of 9 work items failed"),
         "{}",
         said(&output)
     );
@@ -415,7 +415,7 @@ fn a_program_that_starts_a_run_reads_json_lines_and_nothing_else() {
     let last = events.last().unwrap();
     assert_eq!(last["event"], "finished");
     assert_eq!(
-        (&last["pieces"], &last["finished_before"]),
+        (&last["work_items"], &last["finished_before"]),
         (&66.into(), &66.into())
     );
     let (output, error) = case.succeeds(&["run", "study.toml", "--out", "whole", "--quiet"]);

@@ -85,6 +85,20 @@ fn equal_charts_are_equal_bytes_and_say_their_title_lines_and_units() {
 }
 
 #[test]
+fn what_is_alike_in_rows_and_columns_lies_on_the_diagonal() {
+    let tables = tables();
+    let spec = charts()
+        .into_iter()
+        .find(|spec| spec.name == "diagonal")
+        .unwrap();
+    let places = places(&spec, &tables).unwrap();
+    let counts = tables[0].numbers("count").unwrap();
+    for place in places.iter().filter(|place| counts[place.row] == 60.0) {
+        assert!((place.x - (1.0 - place.y)).abs() < 1e-9, "{place:?}");
+    }
+}
+
+#[test]
 fn the_legend_stands_above_all_data() {
     let tables = tables();
     for spec in charts() {
@@ -129,7 +143,7 @@ fn a_chart_of_what_is_not_there_names_what_is() {
         table: "other.csv",
         ..spec.clone()
     };
-    assert!(said(other).contains("one of scores.csv, stable.csv"));
+    assert!(said(other).contains("one of taken.csv, scores.csv, stable.csv"));
     let column = ChartSpec {
         x: "pitch".to_owned(),
         ..spec.clone()

@@ -4,7 +4,6 @@ use crate::command::Case;
 use crate::study::Study;
 use bubbletouch::kinds::recognition::recognition_scale;
 use bubbletouch::study::FramePlace;
-use bubbletouch::study::pieces::run_whole_study;
 use bubbletouch::study::progress::Silent;
 use std::fs;
 use std::path::Path;
@@ -83,7 +82,7 @@ fn frames_in_a_file_and_one_item_at_a_time_give_the_same_tables() {
         let mut items = study.of_items();
         items.place = FramePlace::File(folder.path().join("results"));
         let pool = rayon::ThreadPoolBuilder::new().num_threads(n_threads);
-        let run = || run_whole_study(&items, &Silent).unwrap();
+        let run = || items.run(&Silent).unwrap();
         let outcome = pool.build().unwrap().install(run);
         assert_eq!(outcome.tables.accuracy, usual.tables.accuracy);
         assert_eq!(outcome.tables.confusion, usual.tables.confusion);

@@ -5,7 +5,6 @@ use bubbletouch::contact::{SkinWorkspace, press_skin, spring_load};
 use bubbletouch::kinds::recognition::{Outcome, RecognitionStudy};
 use bubbletouch::objects::{FingerPose, Model};
 use bubbletouch::random::Seed;
-use bubbletouch::study::pieces::run_whole_study;
 use bubbletouch::study::progress::Silent;
 use bubbletouch::study::{
     FrameWriter, HumanTouches, Plan, StudySpec, Sweep, TouchSet, record_touch,
@@ -359,7 +358,7 @@ fn laid_out(text: &str) -> bubbletouch::Result<(Plan, HumanTouches, Sweep)> {
 fn outcome(kinds: &str) -> Outcome {
     let (plan, touches, _) = laid_out(&STUDY.replace("KINDS", kinds)).unwrap();
     let study = RecognitionStudy::new(plan, Box::new(touches)).unwrap();
-    run_whole_study(&study, &Silent).unwrap()
+    study.run(&Silent).unwrap()
 }
 
 fn accuracies(outcome: &Outcome) -> Vec<f64> {

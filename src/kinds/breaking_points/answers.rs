@@ -4,17 +4,16 @@ use super::plan::PlannedWay;
 use super::rows::BreakingPoint;
 use super::study::BREAKS;
 use crate::kinds::rows_of;
-use crate::report::axis::classifier_name;
 use crate::table::{Table, short_number};
 
 /// How many settings break recognition, where each does, and which do not.
 pub(super) fn answers(ways: &[PlannedWay], tables: &[Table]) -> Vec<String> {
-    let breaks: Vec<BreakingPoint> = rows_of(tables, BREAKS.0);
+    let breaks: Vec<BreakingPoint> = rows_of(tables, BREAKS.name());
     let place = |row: &BreakingPoint| {
         Some(format!(
             "{} ({})",
             break_words(row)?,
-            classifier_name(row.classifier)
+            row.classifier.about().words
         ))
     };
     let (mut said, mut unbroken) = (Vec::new(), Vec::new());

@@ -7,12 +7,11 @@ use super::scale::WayScale;
 use super::spec::DrivenTouches;
 use super::study::{BREAKS, SUMMARY};
 use crate::kinds::rows_of;
-use crate::report::axis::classifier_name;
 use crate::table::{Along, At, ChartSpec, Column, Role, Rule, Scale, Shown, Table, Value};
 
 /// A chart a way.
 pub(super) fn charts(ways: &[PlannedWay], tables: &[Table]) -> Vec<ChartSpec> {
-    let breaks: Vec<BreakingPoint> = rows_of(tables, BREAKS.0);
+    let breaks: Vec<BreakingPoint> = rows_of(tables, BREAKS.name());
     let chart = |way: &PlannedWay| {
         let of_way = breaks.iter().filter(|row| row.way == way.spec.name);
         chart_of(way, &of_way.collect::<Vec<_>>())
@@ -36,7 +35,7 @@ fn chart_of(PlannedWay { spec: way, .. }: &PlannedWay, breaks: &[&BreakingPoint]
         words: "chance".to_owned(),
     });
     let halves = breaks.iter().filter_map(|row| {
-        let words = format!("{}: half of its best at", classifier_name(row.classifier));
+        let words = format!("{}: half of its best at", row.classifier.about().words);
         Some(Rule {
             along: Along::X,
             at: At::Value(row.breaks_at?),
@@ -47,7 +46,7 @@ fn chart_of(PlannedWay { spec: way, .. }: &PlannedWay, breaks: &[&BreakingPoint]
         name: way.name.clone(),
         title: format!("Accuracy by {}", way.label),
         note: touches.to_owned(),
-        table: SUMMARY.0,
+        table: SUMMARY.name(),
         shown: vec![Shown {
             column: "way".to_owned(),
             value: Value::Word(way.name.clone()),

@@ -1,11 +1,8 @@
 //! What the engine asks of a study of breaking points.
 
 use super::plan::BreakingPointsPlan;
-use super::rows::{BreakingPoint, CellScore, TrialScore, TrialTime, WayCell};
 use super::spec::BreakingPointsSpec;
-use super::study::{
-    ACCURACY, BREAKS, BreakingPointsStudy, N_OBJECTS, SUMMARY, TIMING, described, n_read,
-};
+use super::study::{ACCURACY, BREAKS, BreakingPointsStudy, N_OBJECTS, SUMMARY, TIMING, n_read};
 use super::value::object_specs;
 use super::{answers, charts};
 use crate::error::Result;
@@ -41,14 +38,7 @@ impl Kind for BreakingPointsStudy {
         for objects in object_specs(values.flat_map(|value| value.plans())) {
             content.extend(objects_content(objects)?);
         }
-        Ok(Facts {
-            toml: toml_text::write(spec),
-            question: spec.question.clone(),
-            expected: spec.expected.clone(),
-            seed: spec.seed,
-            content,
-            ..Facts::default()
-        })
+        Ok(Facts::of(toml_text::write(spec), content))
     }
 
     fn scale(&self) -> Scale {
@@ -70,10 +60,10 @@ impl Kind for BreakingPointsStudy {
 
     fn read_tables(&self, folder: &Path) -> Result<Vec<Table>> {
         Ok(vec![
-            Table::read::<(WayCell, TrialScore)>(ACCURACY.0, ACCURACY.1, folder)?,
-            Table::read::<(WayCell, CellScore)>(SUMMARY.0, SUMMARY.1, folder)?,
-            described(Table::read::<BreakingPoint>(BREAKS.0, BREAKS.1, folder)?),
-            Table::read::<(WayCell, TrialTime)>(TIMING.0, TIMING.1, folder)?.of_times(),
+            ACCURACY.read(folder)?,
+            SUMMARY.read(folder)?,
+            BREAKS.read(folder)?,
+            TIMING.read(folder)?,
         ])
     }
 

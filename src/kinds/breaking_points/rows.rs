@@ -1,81 +1,56 @@
 //! The tables of a study of breaking points: one plain struct a row, one field a column.
 
 use super::spec::DrivenTouches;
-use crate::columns;
 use crate::recognition::ClassifierKind;
+use crate::row;
 use serde::{Deserialize, Serialize};
 
+row! {
 /// A classifier at a value of a way: a row of `accuracy.csv`, of `summary.csv` and of `timing.csv` begins with it.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct WayCell {
     /// The way's name.
-    pub way: String,
+    way: String => Subject "setting";
     /// Which touches have the value.
-    pub touches: DrivenTouches,
+    touches: DrivenTouches => Subject "touches that have it";
     /// The value, in the unit of the way's keys.
-    pub value: f64,
+    value: f64 => Condition: Log;
     /// Which classifier.
-    pub classifier: ClassifierKind,
-}
-
-columns! { WayCell {
-    way: Subject "setting";
-    touches: Subject "touches that have it";
-    value: Condition: Log;
-    classifier: Choice;
+    classifier: ClassifierKind => Choice named ClassifierKind::NAMES;
 } }
 
+row! {
 /// Where a way breaks a classifier, going one way from its best: a row of `breaking_points.csv`.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct BreakingPoint {
     /// The way's name.
-    pub way: String,
+    way: String => Subject "setting";
     /// Which classifier.
-    pub classifier: ClassifierKind,
+    classifier: ClassifierKind => Choice named ClassifierKind::NAMES;
     /// To larger or to smaller values than the best.
-    pub side: Side,
+    side: Side => Subject "to values that are";
     /// The highest mean accuracy (the first of equals).
-    pub best: f64,
+    best: f64 => Value(More) "best accuracy": Share between [best_low, best_high];
     /// Lower end of its 95 % Wilson interval at one trial's test rows.
-    pub best_low: f64,
+    best_low: f64 => Note "95 % interval of the best, lower end": Share;
     /// Upper end of the same interval.
-    pub best_high: f64,
+    best_high: f64 => Note "95 % interval of the best, upper end": Share;
     /// The value that it is at.
-    pub best_at: f64,
+    best_at: f64 => Note "best at": Log;
     /// Half of the best.
-    pub half: f64,
+    half: f64 => Note "half of the best": Share;
     /// One in the number of objects.
-    pub chance: f64,
+    chance: f64 => Note: Share;
     /// Whether the accuracy falls to half of the best.
-    pub is_reached: bool,
+    is_reached: bool => Outcome "half is reached";
     /// The value at which it does; empty if it does not.
-    pub breaks_at: Option<f64>,
+    breaks_at: Option<f64> => Value(Neither) "half of the best at": Log between [breaks_at_low, breaks_at_high];
     /// Lower end of its 95 % interval; empty if that is beyond the last value.
-    pub breaks_at_low: Option<f64>,
+    breaks_at_low: Option<f64> => Note "95 % interval of the place, lower end": Log;
     /// Upper end of the same interval; empty if that is beyond the last value.
-    pub breaks_at_high: Option<f64>,
+    breaks_at_high: Option<f64> => Note "95 % interval of the place, upper end": Log;
     /// The last value on this side.
-    pub end: f64,
+    end: f64 => Note "last value": Log;
     /// The mean accuracy there.
-    pub accuracy_at_end: f64,
-}
-
-columns! { BreakingPoint {
-    way: Subject "setting";
-    classifier: Choice;
-    side: Subject "to values that are";
-    best: Value(More) "best accuracy": Share between [best_low, best_high];
-    best_low: Note "95 % interval of the best, lower end": Share;
-    best_high: Note "95 % interval of the best, upper end": Share;
-    best_at: Note "best at": Log;
-    half: Note "half of the best": Share;
-    chance: Note: Share;
-    is_reached: Outcome "half is reached";
-    breaks_at: Value(Neither) "half of the best at": Log between [breaks_at_low, breaks_at_high];
-    breaks_at_low: Note "95 % interval of the place, lower end": Log;
-    breaks_at_high: Note "95 % interval of the place, upper end": Log;
-    end: Note "last value": Log;
-    accuracy_at_end: Value(More) "accuracy at the last value": Share;
+    accuracy_at_end: f64 => Value(More) "accuracy at the last value": Share;
 } }
 
 /// Which way from the best.

@@ -12,7 +12,7 @@ use crate::study::Plan;
 use crate::study::pieces::{NamedPiece, PieceRows, PieceStudy, PiecesLeft};
 use crate::study::summary::score;
 use crate::study::time_left::Piece;
-use crate::table::Table;
+use crate::table::{File, Table};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -43,11 +43,19 @@ impl PieceRows for DrivenRows {
     }
 }
 
-/// Names of tables, and what they hold.
-pub(super) const ACCURACY: (&str, &str) = ("accuracy.csv", "Accuracy of every trial");
-pub(super) const SUMMARY: (&str, &str) = ("summary.csv", "Accuracy at every value");
-pub(super) const BREAKS: (&str, &str) = ("breaking_points.csv", "Breaking points");
-pub(super) const TIMING: (&str, &str) = ("timing.csv", "Time of every trial");
+/// Tables.
+pub(super) const ACCURACY: File<(WayCell, TrialScore)> =
+    File::new("accuracy.csv", "Accuracy of every trial", "");
+pub(super) const SUMMARY: File<(WayCell, CellScore)> =
+    File::new("summary.csv", "Accuracy at every value", "");
+pub(super) const BREAKS: File<BreakingPoint> = File::new(
+    "breaking_points.csv",
+    "Breaking points",
+    "Each setting alone is driven to its ends; the interval is that of the place where accuracy is half of its best.",
+)
+.summary();
+pub(super) const TIMING: File<(WayCell, TrialTime)> =
+    File::new("timing.csv", "Time of every trial", "").of_times();
 
 /// Objects that are not counted before they are loaded are as many as this, for estimates.
 pub(super) const N_OBJECTS: usize = 30;
@@ -118,19 +126,12 @@ impl PieceStudy for BreakingPointsStudy {
             self.breaks(way, &summary, n_objects.copied().unwrap_or(0))
         });
         Ok(vec![
-            Table::of(ACCURACY.0, ACCURACY.1, &rows.accuracy)?,
-            Table::of(SUMMARY.0, SUMMARY.1, &summary)?,
-            described(Table::of(BREAKS.0, BREAKS.1, &breaks.collect::<Vec<_>>())?),
-            Table::of(TIMING.0, TIMING.1, &rows.timing)?.of_times(),
+            ACCURACY.of(&rows.accuracy)?,
+            SUMMARY.of(&summary)?,
+            BREAKS.of(&breaks.collect::<Vec<_>>())?,
+            TIMING.of(&rows.timing)?,
         ])
     }
-}
-
-/// The table of breaking points with what is to know of it.
-pub(super) fn described(breaks: Table) -> Table {
-    breaks.summary().noted(
-        "Each setting alone is driven to its ends; the interval is that of the place where accuracy is half of its best.",
-    )
 }
 
 impl BreakingPointsStudy {

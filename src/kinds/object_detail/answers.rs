@@ -14,8 +14,8 @@ const SMALL_MM: f64 = 0.5;
 
 /// The most exact model; the cheapest of each method that is within half a millimetre; what learning from a model costs.
 pub(super) fn answers(tables: &[Table]) -> Vec<String> {
-    let summary: Vec<DetailSummary> = rows_of(tables, COST.0);
-    let times: Vec<LevelTime> = rows_of(tables, COST.0);
+    let summary: Vec<DetailSummary> = rows_of(tables, COST.name());
+    let times: Vec<LevelTime> = rows_of(tables, COST.name());
     let all = summary.iter().zip(&times);
     let models: Vec<Model> = all.filter(|(row, _)| row.n_spheres_median > 0.0).collect();
     let error = |(row, _): &Model| row.error_median_mm;
@@ -29,7 +29,7 @@ pub(super) fn answers(tables: &[Table]) -> Vec<String> {
         let said = sentence(fewest);
         Some(format!("Fewest spheres within {SMALL_MM} mm by {said}"))
     });
-    let learned: Vec<DetailRecognition> = rows_of(tables, RECOGNITION.0);
+    let learned: Vec<DetailRecognition> = rows_of(tables, RECOGNITION.name());
     let misled = learned
         .iter()
         .max_by(|a, b| misled_by(a).total_cmp(&misled_by(b)));

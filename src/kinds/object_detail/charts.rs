@@ -75,13 +75,13 @@ pub(super) fn charts(tables: &[Table]) -> Vec<ChartSpec> {
     };
     let errors = ERRORS.map(|named| ChartSpec {
         note: "Medians over objects with their quartiles.".to_owned(),
-        ..chart(COST.0, named)
+        ..chart(COST.name(), named)
     });
-    let has_learned = tables.iter().any(|table| table.file == RECOGNITION.0);
+    let has_learned = tables.iter().any(|table| table.file == RECOGNITION.name());
     let learned = LEARNED.into_iter().filter(|_| has_learned);
     let learned = learned.map(|named| ChartSpec {
         panels: Some("classifier".to_owned()),
-        ..chart(RECOGNITION.0, named)
+        ..chart(RECOGNITION.name(), named)
     });
     errors.into_iter().chain(learned).collect()
 }

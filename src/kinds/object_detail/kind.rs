@@ -1,11 +1,8 @@
 //! What the engine asks of a study of object detail.
 
 use super::plan::ObjectDetailPlan;
-use super::rows::{
-    DetailCell, DetailRecognition, DetailScore, DetailSummary, DetailTime, LevelTime,
-};
 use super::spec::ObjectDetailStudySpec;
-use super::study::{COST, DETAIL, ObjectDetailStudy, RECOGNITION, SUMMARY, TIMING, described};
+use super::study::{COST, DETAIL, ObjectDetailStudy, RECOGNITION, SUMMARY, TIMING};
 use super::variants::levels;
 use super::{answers, charts};
 use crate::error::Result;
@@ -41,14 +38,10 @@ impl Kind for ObjectDetailStudy {
 
     fn facts(&self) -> Result<Facts> {
         let spec = &self.plan.spec;
-        Ok(Facts {
-            toml: toml_text::write(spec),
-            question: spec.question.clone(),
-            expected: spec.expected.clone(),
-            seed: spec.seed,
-            content: objects_content(&spec.objects)?,
-            ..Facts::default()
-        })
+        Ok(Facts::of(
+            toml_text::write(spec),
+            objects_content(&spec.objects)?,
+        ))
     }
 
     fn scale(&self) -> Scale {
@@ -76,16 +69,15 @@ impl Kind for ObjectDetailStudy {
 
     fn read_tables(&self, folder: &Path) -> Result<Vec<Table>> {
         let mut tables = vec![
-            Table::read::<(DetailCell, DetailScore)>(DETAIL.0, DETAIL.1, folder)?,
-            Table::read::<DetailSummary>(SUMMARY.0, SUMMARY.1, folder)?,
-            Table::read::<(DetailCell, DetailTime)>(TIMING.0, TIMING.1, folder)?,
-            Table::read::<(DetailSummary, LevelTime)>(COST.0, COST.1, folder)?,
+            DETAIL.read(folder)?,
+            SUMMARY.read(folder)?,
+            TIMING.read(folder)?,
+            COST.read(folder)?,
         ];
         if self.plan.recognition().is_some() {
-            let table = Table::read::<DetailRecognition>(RECOGNITION.0, RECOGNITION.1, folder)?;
-            tables.push(table);
+            tables.push(RECOGNITION.read(folder)?);
         }
-        Ok(tables.into_iter().map(described).collect())
+        Ok(tables)
     }
 
     fn charts(&self, tables: &[Table]) -> Vec<ChartSpec> {

@@ -3,7 +3,9 @@
 use super::deflection::Truth;
 use super::plan::ObjectDetailPlan;
 use super::recognition::{Felt, Sensor};
-use super::rows::{DetailCell, DetailRecognition, DetailScore, DetailTime};
+use super::rows::{
+    DetailCell, DetailRecognition, DetailScore, DetailSummary, DetailTime, LevelTime,
+};
 use super::score::{cell, score, truth};
 use super::spec::DetailMethod;
 use super::summary::{costs, summary};
@@ -14,7 +16,7 @@ use crate::recognition::ClassifierKind;
 use crate::study::object_files::NamedMesh;
 use crate::study::pieces::{NamedPiece, PieceRows, PieceStudy, PiecesLeft};
 use crate::study::time_left::Piece;
-use crate::table::Table;
+use crate::table::{File, Table};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
@@ -51,14 +53,26 @@ const MODELS_S_PER_M: f64 = 170.0;
 const TIME_S: f64 = 0.3;
 const RECOGNISE_S: f64 = 0.5;
 
-/// Names of tables, and what they hold.
-pub(super) const DETAIL: (&str, &str) = ("object_detail.csv", "Models of each object");
-pub(super) const SUMMARY: (&str, &str) = ("object_detail_summary.csv", "Models over all objects");
-pub(super) const TIMING: (&str, &str) = ("timing.csv", "Time of a touch of each model");
-pub(super) const COST: (&str, &str) = ("object_detail_cost.csv", "What errors cost");
-pub(super) const RECOGNITION: (&str, &str) = (
+/// Tables.
+pub(super) const DETAIL: File<(DetailCell, DetailScore)> =
+    File::new("object_detail.csv", "Models of each object", "");
+pub(super) const SUMMARY: File<DetailSummary> = File::new(
+    "object_detail_summary.csv",
+    "Models over all objects",
+    "Medians and quartiles over objects; deflection errors are means over touched taxels of |deflection − that of the exact mesh|, after \
+     offset with the best constant depth taken off.",
+)
+.summary();
+pub(super) const TIMING: File<(DetailCell, DetailTime)> =
+    File::new("timing.csv", "Time of a touch of each model", "").of_times();
+pub(super) const COST: File<(DetailSummary, LevelTime)> =
+    File::new("object_detail_cost.csv", "What errors cost", "")
+        .of_times()
+        .summary();
+pub(super) const RECOGNITION: File<DetailRecognition> = File::new(
     "object_detail_recognition.csv",
     "Classifiers that learned from models",
+    "",
 );
 
 impl PieceStudy for ObjectDetailStudy {
@@ -130,31 +144,15 @@ impl PieceStudy for ObjectDetailStudy {
         let summary = summary(&rows.detail);
         let costs = costs(&summary, &rows.timing);
         let mut tables = vec![
-            Table::of(DETAIL.0, DETAIL.1, &rows.detail)?,
-            Table::of(SUMMARY.0, SUMMARY.1, &summary)?,
-            Table::of(TIMING.0, TIMING.1, &rows.timing)?,
-            Table::of(COST.0, COST.1, &costs)?,
+            DETAIL.of(&rows.detail)?,
+            SUMMARY.of(&summary)?,
+            TIMING.of(&rows.timing)?,
+            COST.of(&costs)?,
         ];
         if self.plan.recognition().is_some() {
-            tables.push(Table::of(RECOGNITION.0, RECOGNITION.1, &rows.recognition)?);
+            tables.push(RECOGNITION.of(&rows.recognition)?);
         }
-        Ok(tables.into_iter().map(described).collect())
-    }
-}
-
-/// The same table, with what is to know of it.
-pub(super) fn described(table: Table) -> Table {
-    let is = |(file, _): (&str, &str)| table.file == file;
-    if is(SUMMARY) {
-        return table.summary().noted(
-            "Medians and quartiles over objects; deflection errors are means over touched taxels of |deflection − that of the exact \
-             mesh|, after offset with the best constant depth taken off.",
-        );
-    }
-    match (is(TIMING), is(COST)) {
-        (true, _) => table.of_times(),
-        (_, true) => table.of_times().summary(),
-        _ => table,
+        Ok(tables)
     }
 }
 

@@ -53,7 +53,7 @@ fn read_plans(source: &Source) -> Result<Vec<(AxisValues, Plan)>> {
 pub fn load_study(source: &Source) -> Result<RecognitionStudy> {
     let plans = read_plans(source)?;
     let mut study = RecognitionStudy::load(plans, source.packings(), source.memory)?;
-    study.place = recognition_scale(&study, source.memory, &source.results).1;
+    (study.scale, study.place) = recognition_scale(&study, source.memory, &source.results);
     Ok(study)
 }
 

@@ -5,24 +5,28 @@ use super::load::touch_content;
 use super::rows::{ArrayOutcome, Outcome, RecognitionRows};
 use crate::error::Result;
 use crate::random::Seed;
+use crate::report::recognition::tables_of;
 use crate::study::ContentHash;
+use crate::study::Samples;
 use crate::study::TestedOn;
 use crate::study::axes::AxisValues;
 use crate::study::cell_content::family_name;
 use crate::study::frames::FramePlace;
 use crate::study::measurement::signal_steps;
-use crate::study::pieces::{NamedPiece, PieceStudy, PiecesLeft};
+use crate::study::pieces::{NamedPiece, PieceStudy, PiecesLeft, Scale, run_whole};
 use crate::study::plan::{Plan, millimetres};
+use crate::study::progress::Progress;
 use crate::study::published::{check_published, compare_with_published};
 use crate::study::sweep::{Group, Sweep};
 use crate::study::table::{Cell, StageTime};
 use crate::study::tabulate::tabulate;
 use crate::study::time_left::Piece;
 use crate::study::touch_set::TouchSet;
+use crate::table::Table;
 use crate::world::Patch;
 use std::collections::{BTreeMap, HashMap, HashSet};
 use std::ops::Range;
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 /// Stages, for the time left; each classifier has its own.
 const TOUCH: u8 = 0;
@@ -35,6 +39,10 @@ pub struct RecognitionStudy {
     parts: Vec<StudyPart>,
     /// Where the frames of an array are while its cells read them.
     pub place: FramePlace,
+    /// How large it is.
+    pub(super) scale: Scale,
+    /// A few touches for the eye, once something showed them.
+    samples: OnceLock<Samples>,
     /// All touches that are made, those of the same content once.
     pub(super) touch_sets: Vec<Touches>,
     /// All groups, part by part.
@@ -104,6 +112,8 @@ impl RecognitionStudy {
         let mut study = Self {
             parts: Vec::with_capacity(variants.len()),
             place: FramePlace::Memory,
+            scale: Scale::default(),
+            samples: OnceLock::new(),
             touch_sets: Vec::new(),
             groups: Vec::new(),
             families: Vec::new(),
@@ -344,9 +354,53 @@ fn measured_content(plan: &Plan, group: &Group) -> String {
     format!("{patch:?} {steps:?} {split:?} {drawn:?} {ensemble:?} {m:?}")
 }
 
+impl RecognitionStudy {
+    /// Runs all of it at once, keeps nothing, and ends at the first work item that fails.
+    ///
+    /// # Errors
+    /// What an item fails of.
+    pub fn run(&self, progress: &dyn Progress) -> Result<Outcome> {
+        self.outcome(run_whole(self, progress)?)
+    }
+
+    /// The tables of all rows, typed.
+    ///
+    /// # Errors
+    /// Those of [`PieceStudy::tables`].
+    pub fn outcome(&self, rows: RecognitionRows) -> Result<Outcome> {
+        let mut outcome = Outcome {
+            tables: Default::default(),
+            arrays: Vec::new(),
+            limits: Vec::new(),
+        };
+        self.add_arrays(&mut outcome, &rows);
+        let scored = rows.cells.into_iter().map(|row| {
+            let cell = &self.group(row.at.0).1.cells[row.at.1];
+            (cell.clone(), row.evaluation)
+        });
+        let names: Vec<Vec<&str>> = self.parts.iter().map(|p| p.touched.class_names()).collect();
+        let name = |cell: &Cell, label: usize| names[cell.variant.number][label].to_owned();
+        tabulate(&mut outcome.tables, scored.collect(), name)?;
+        let published = &self.first().plan.spec.report.published;
+        outcome.tables.published = compare_with_published(published, &outcome.tables.summary);
+        outcome.limits = self.limits(&outcome.tables, &outcome.arrays);
+        Ok(outcome)
+    }
+
+    /// A few touches for the eye, of the first combination of the study's own axes.
+    pub(super) fn samples(&self) -> Result<&Samples> {
+        if let Some(samples) = self.samples.get() {
+            return Ok(samples);
+        }
+        let first = self.first();
+        let made = first.touched.samples(&first.plan, &first.sweep)?;
+        Ok(self.samples.get_or_init(|| made))
+    }
+}
+
 impl PieceStudy for RecognitionStudy {
     type Rows = RecognitionRows;
-    type Tables = Outcome;
+    type Tables = Vec<Table>;
 
     /// Trial by trial all families, group by group; then the touches of each array.
     fn pieces(&self) -> Vec<NamedPiece> {
@@ -436,24 +490,9 @@ impl PieceStudy for RecognitionStudy {
         words.join(", ")
     }
 
-    fn tables(&self, rows: RecognitionRows) -> Result<Outcome> {
-        let mut outcome = Outcome {
-            tables: Default::default(),
-            arrays: Vec::new(),
-            limits: Vec::new(),
-        };
-        self.add_arrays(&mut outcome, &rows);
-        let scored = rows.cells.into_iter().map(|row| {
-            let cell = &self.group(row.at.0).1.cells[row.at.1];
-            (cell.clone(), row.evaluation)
-        });
-        let names: Vec<Vec<&str>> = self.parts.iter().map(|p| p.touched.class_names()).collect();
-        let name = |cell: &Cell, label: usize| names[cell.variant.number][label].to_owned();
-        tabulate(&mut outcome.tables, scored.collect(), name)?;
-        let published = &self.first().plan.spec.report.published;
-        outcome.tables.published = compare_with_published(published, &outcome.tables.summary);
-        outcome.limits = self.limits(&outcome.tables, &outcome.arrays);
-        Ok(outcome)
+    fn tables(&self, rows: RecognitionRows) -> Result<Vec<Table>> {
+        let outcome = self.outcome(rows)?;
+        tables_of(&outcome.tables, &outcome.limits)
     }
 }
 

@@ -2,6 +2,7 @@
 
 use crate::error::Result;
 use crate::sensing::{Basis, Effort, Solver};
+use crate::study::defaults::count;
 use crate::study::{
     Axis, ObjectsSpec, SensingSpec, SignalSpec, SkinSpec, TouchesSpec, default_seed,
 };
@@ -65,7 +66,7 @@ pub struct ReconstructionSpec {
     #[serde(default = "default_isometry_sparsity")]
     pub isometry_sparsity: Axis<usize>,
     /// Supports drawn for each size.
-    #[serde(default = "default_isometry_subsets")]
+    #[serde(default = "count::<200>")]
     pub isometry_subsets: usize,
 }
 
@@ -115,8 +116,4 @@ fn default_test_fraction() -> f64 {
 
 fn default_isometry_sparsity() -> Axis<usize> {
     Axis::Many(vec![8, 32])
-}
-
-fn default_isometry_subsets() -> usize {
-    200
 }

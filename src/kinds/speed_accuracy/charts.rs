@@ -19,31 +19,40 @@ pub(super) fn charts(tables: &[Table]) -> Vec<ChartSpec> {
         note: "Medians over objects. What is right says exact contact.".to_owned(),
         lines: vec!["way".to_owned()],
         panels: Some("touched".to_owned()),
-        ..chart("contact", (CONTACT[2].0, "us_per_touch", "error_mm"))
+        ..chart(
+            "contact",
+            (CONTACT.pareto.name(), "us_per_touch", "error_mm"),
+        )
     };
     let decision = ChartSpec {
         title: "Recognition: accuracy against the time of a decision".to_owned(),
         note: "Press, noise, compression and answer of one touch, one thread; tested on the exact objects.".to_owned(),
         lines: vec!["classifier".to_owned()],
-        ..chart("decision", (CHAINS[2].0, "decision_us", "accuracy"))
+        ..chart("decision", (CHAINS.pareto.name(), "decision_us", "accuracy"))
     };
     let training = ChartSpec {
         title: "Recognition: accuracy against the time of a training".to_owned(),
         note: "One thread; tested on the exact objects.".to_owned(),
         lines: vec!["classifier".to_owned()],
-        ..chart("training", (CHAINS[2].0, "fit_s", "accuracy"))
+        ..chart("training", (CHAINS.pareto.name(), "fit_s", "accuracy"))
     };
     let resolution = ChartSpec {
         title: "Studies: how near an accuracy is told by the time that it takes".to_owned(),
         note: "At one trial's test touches.".to_owned(),
         lines: vec!["touches".to_owned()],
-        ..chart("resolution", (SIZES[2].0, "cpu_s", "accuracy_half_width"))
+        ..chart(
+            "resolution",
+            (SIZES.pareto.name(), "cpu_s", "accuracy_half_width"),
+        )
     };
     let difference = ChartSpec {
         title: "Studies: which differences are told by the time that it takes".to_owned(),
         note: "Of two settings, by the corrected t-test.".to_owned(),
         lines: vec!["touches".to_owned()],
-        ..chart("difference", (SIZES[2].0, "cpu_s", "difference_half_width"))
+        ..chart(
+            "difference",
+            (SIZES.pareto.name(), "cpu_s", "difference_half_width"),
+        )
     };
     let all = [contact, decision, training, resolution, difference].into_iter();
     let is_there = |chart: &ChartSpec| {

@@ -1,19 +1,15 @@
 //! What the engine asks of a study of speed against accuracy.
 
 use super::plan::SpeedAccuracyPlan;
-use super::rows::{
-    ChainCell, ChainScore, ChainTime, ContactCell, ContactPoint, ContactScore, ContactTime,
-    Resolved, StudySize, StudyTime,
-};
 use super::spec::SpeedAccuracyStudySpec;
-use super::study::{CHAINS, CONTACT, Files, SIZES, SpeedAccuracyStudy};
-use super::subject::{load_scans, load_subjects, scans_content};
+use super::study::{CHAINS, CONTACT, SIZES, SpeedAccuracyStudy};
+use super::subject::load_subjects;
 use super::{answers, charts};
 use crate::error::Result;
 use crate::kinds::{About, Facts, Kind, Source};
 use crate::study::objects_content;
 use crate::study::pieces::{PieceStudy, Scale};
-use crate::table::{ChartSpec, Columns, Table};
+use crate::table::{ChartSpec, Table};
 use crate::toml_text;
 use std::path::Path;
 
@@ -46,7 +42,9 @@ impl Kind for SpeedAccuracyStudy {
         let plan = SpeedAccuracyPlan::new(&source.place, &source.folder, spec)?;
         Ok(Self {
             subjects: load_subjects(&plan.spec.objects)?,
-            scans: load_scans(plan.scans(), &plan.spec.objects)?,
+            scans: plan
+                .scanned()
+                .map_or(Ok(Vec::new()), |scans| load_subjects(&scans))?,
             packings: source.packings.clone(),
             plan,
         })
@@ -55,15 +53,11 @@ impl Kind for SpeedAccuracyStudy {
     fn facts(&self) -> Result<Facts> {
         let spec = &self.plan.spec;
         let mut content = objects_content(&spec.objects)?;
-        content.extend(scans_content(self.plan.scans(), &spec.objects)?);
-        Ok(Facts {
-            toml: toml_text::write(spec),
-            question: spec.question.clone(),
-            expected: spec.expected.clone(),
-            seed: spec.seed,
-            content,
-            ..Facts::default()
-        })
+        if let Some(scans) = self.plan.scanned() {
+            let scans = objects_content(&scans)?.into_iter();
+            content.extend(scans.map(|(name, hash)| (format!("scan {name}"), hash)));
+        }
+        Ok(Facts::of(toml_text::write(spec), content))
     }
 
     fn scale(&self) -> Scale {
@@ -97,21 +91,13 @@ impl Kind for SpeedAccuracyStudy {
         let mut tables = Vec::new();
         let parts = self.plan.parts();
         if parts.contact.is_some() {
-            let part =
-                read::<ContactCell, ContactScore, ContactTime, ContactPoint>(CONTACT, folder);
-            tables.extend(part?);
+            tables.extend(CONTACT.read(folder)?);
         }
         if parts.recognition.is_some() {
-            type Point = (ChainCell, ChainScore, ChainTime);
-            tables.extend(read::<ChainCell, ChainScore, ChainTime, Point>(
-                CHAINS, folder,
-            )?);
+            tables.extend(CHAINS.read(folder)?);
         }
         if parts.resolution.is_some() {
-            type Point = (StudySize, Resolved, StudyTime);
-            tables.extend(read::<StudySize, Resolved, StudyTime, Point>(
-                SIZES, folder,
-            )?);
+            tables.extend(SIZES.read(folder)?);
         }
         Ok(tables)
     }
@@ -123,18 +109,4 @@ impl Kind for SpeedAccuracyStudy {
     fn answers(&self, tables: &[Table]) -> Vec<String> {
         answers::answers(&self.plan, tables)
     }
-}
-
-/// The tables of a part.
-fn read<C: Columns, S: Columns, T: Columns, P: Columns>(
-    [scores, times, points]: Files,
-    folder: &Path,
-) -> Result<[Table; 3]> {
-    Ok([
-        Table::read::<(C, S)>(scores.0, scores.1, folder)?,
-        Table::read::<(C, T)>(times.0, times.1, folder)?.of_times(),
-        Table::read::<P>(points.0, points.1, folder)?
-            .of_times()
-            .summary(),
-    ])
 }

@@ -8,7 +8,7 @@ use crate::error::Result;
 use crate::study::axis::Axis;
 use crate::study::check::{Check, not_negative, positive};
 use crate::study::plan::MOST_TRIALS;
-use crate::study::spec::SkinSpec;
+use crate::study::spec::{ObjectsSpec, SkinSpec};
 use crate::world::{MOST_TOUCHES, Patch, Placement};
 use std::path::{Path, PathBuf};
 
@@ -51,6 +51,18 @@ impl SpeedAccuracyPlan {
     /// What is touched beside the objects in the part on contact, if anything is.
     pub fn scans(&self) -> Option<&ScansSpec> {
         self.parts().contact.as_ref()?.scans.as_ref()
+    }
+
+    /// The same as objects; none where their folder is not.
+    pub fn scanned(&self) -> Option<ObjectsSpec> {
+        let scans = self.scans().filter(|scans| scans.meshes.is_dir())?;
+        Some(ObjectsSpec {
+            meshes: Some(scans.meshes.clone()),
+            names: Some(scans.names.clone()),
+            unit: self.spec.objects.unit,
+            sizes: self.spec.objects.sizes,
+            ..ObjectsSpec::default()
+        })
     }
 
     /// Checks a study that lies in `folder`; the error names `place` (the file) and the first key that is out of its range.

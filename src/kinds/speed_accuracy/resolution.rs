@@ -11,7 +11,6 @@ use crate::objects::Object;
 use crate::random::Seed;
 use crate::recognition::bootstrap::Bootstrap;
 use crate::recognition::comparison::{TrialSize, compare};
-use crate::study::pieces::run_whole_study;
 use crate::study::pieces::{NamedPiece, PiecesLeft};
 use crate::study::progress::Silent;
 use crate::study::spec::StudySpec;
@@ -93,7 +92,7 @@ impl ResolutionPart<'_> {
         let study = Plan::new(&self.plan.place, study)?;
         let touched = draw_touches(objects, &study.placement, &Seed::new(of.seed))?;
         let study = RecognitionStudy::new(study, Box::new(touched))?;
-        let found = run_whole_study(&study, &Silent)?.tables;
+        let found = study.run(&Silent)?.tables;
         let sizes = self.spec.trials.iter().map(|&trials| {
             let cpu_s = cost(&found, trials, most);
             let size = StudySize { touches, trials };

@@ -1,7 +1,7 @@
 //! The tables of a study of speed against accuracy: one plain struct a row, one field a column.
 
-use crate::columns;
 use crate::recognition::ClassifierKind;
+use crate::row;
 use crate::sensing::Ensemble;
 use serde::{Deserialize, Serialize};
 
@@ -41,190 +41,125 @@ pub enum Touched {
     Scan,
 }
 
+row! {
 /// A way and an object: a row of `contact.csv` begins with it, and one of `contact_timing.csv`.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ContactCell {
     /// How.
-    pub way: ContactWay,
+    way: ContactWay => Choice "way to evaluate contact";
     /// Of the spheres, mm.
-    pub tolerance_mm: Option<f64>,
+    tolerance_mm: Option<f64> => Choice "spheres within" in "mm": Log;
     /// Of the time steps, ms.
-    pub dt_ms: Option<f64>,
+    dt_ms: Option<f64> => Choice "time step" in "ms": Log;
     /// Whose it is that is touched.
-    pub touched: Touched,
+    touched: Touched => Subject;
     /// What is touched.
-    pub object: String,
+    object: String => Subject;
     /// 0 for meshes and solids themselves.
-    pub n_spheres: usize,
-}
-
-columns! { ContactCell {
-    way: Choice "way to evaluate contact";
-    tolerance_mm: Choice "spheres within" in "mm": Log;
-    dt_ms: Choice "time step" in "ms": Log;
-    touched: Subject;
-    object: Subject;
-    n_spheres: Cost "spheres": Log;
+    n_spheres: usize => Cost "spheres": Log;
 } }
 
+row! {
 /// How near the deflections are to those of exact contact (with the [`ContactCell`] before it: a row of `contact.csv`).
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ContactScore {
     /// Touches.
-    pub n_touches: usize,
+    n_touches: usize => Note "touches": Linear;
     /// |δ − δ*|, mean over the taxels that either touches, mm; none where a number was not finite.
-    pub error_mm: Option<f64>,
+    error_mm: Option<f64> => Value(Less) "deflection error" in "mm": Log;
     /// 95th percentile of the same, mm.
-    pub error_p95_mm: Option<f64>,
+    error_p95_mm: Option<f64> => Value(Less) "deflection error, 95th percentile" in "mm": Log;
     /// Steps of a touch; none where nothing is stepped.
-    pub n_steps: Option<usize>,
-}
-
-columns! { ContactScore {
-    n_touches: Note "touches": Linear;
-    error_mm: Value(Less) "deflection error" in "mm": Log;
-    error_p95_mm: Value(Less) "deflection error, 95th percentile" in "mm": Log;
-    n_steps: Note "steps of a touch": Linear;
+    n_steps: Option<usize> => Note "steps of a touch": Linear;
 } }
 
+row! {
 /// What it costs (with the [`ContactCell`] before it: a row of `contact_timing.csv`).
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ContactTime {
     /// Microseconds a touch, one thread, median.
-    pub us_per_touch: f64,
-}
-
-columns! { ContactTime {
-    us_per_touch: Cost "time of a touch" in "µs": Log;
+    us_per_touch: f64 => Cost "time of a touch" in "µs": Log;
 } }
 
+row! {
 /// A chain from touch to answer: a row of `recognition.csv` begins with it, and one of `recognition_timing.csv`.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ChainCell {
     /// Between taxels, mm.
-    pub pitch_mm: f64,
+    pitch_mm: f64 => Choice "pitch" in "mm": Log;
     /// Taxels.
-    pub n_taxels: usize,
+    n_taxels: usize => Cost "taxels": Log;
     /// Detail of the objects that are learned from, mm.
-    pub tolerance_mm: f64,
+    tolerance_mm: f64 => Choice "spheres within" in "mm": Log;
     /// How frames are compressed.
-    pub ensemble: Ensemble,
+    ensemble: Ensemble => Choice named Ensemble::NAMES;
     /// Taxels per measurement.
-    pub ratio: f64,
+    ratio: f64 => Choice "compression" in ":1": Log;
     /// Measurements.
-    pub measurements: usize,
+    measurements: usize => Cost "m": Log;
     /// What answers.
-    pub classifier: ClassifierKind,
-}
-
-columns! { ChainCell {
-    pitch_mm: Choice "pitch" in "mm": Log;
-    n_taxels: Cost "taxels": Log;
-    tolerance_mm: Choice "spheres within" in "mm": Log;
-    ensemble: Choice;
-    ratio: Choice "compression" in ":1": Log;
-    measurements: Cost "m": Log;
-    classifier: Choice;
+    classifier: ClassifierKind => Choice named ClassifierKind::NAMES;
 } }
 
+row! {
 /// How often it is right (with the [`ChainCell`] before it: a row of `recognition.csv`).
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ChainScore {
     /// Objects to tell apart.
-    pub n_objects: usize,
+    n_objects: usize => Note "objects": Linear;
     /// Training touches, all objects.
-    pub n_training: usize,
+    n_training: usize => Note "training touches": Linear;
     /// Test touches of the exact objects.
-    pub n_test: usize,
+    n_test: usize => Note "test touches": Linear;
     /// Share of right answers, 0 to 1.
-    pub accuracy: f64,
+    accuracy: f64 => Value(More): Share between [accuracy_low, accuracy_high];
     /// Lower end of its 95 % Wilson interval.
-    pub accuracy_low: f64,
+    accuracy_low: f64 => Note "95 % interval, lower end": Share;
     /// Upper end.
-    pub accuracy_high: f64,
+    accuracy_high: f64 => Note "95 % interval, upper end": Share;
     /// Optimisation problems that stopped at the solver's iteration cap.
-    pub n_capped: usize,
-}
-
-columns! { ChainScore {
-    n_objects: Note "objects": Linear;
-    n_training: Note "training touches": Linear;
-    n_test: Note "test touches": Linear;
-    accuracy: Value(More): Share between [accuracy_low, accuracy_high];
-    accuracy_low: Note "95 % interval, lower end": Share;
-    accuracy_high: Note "95 % interval, upper end": Share;
-    n_capped: Note "SVMs stopped at the iteration cap": Linear;
+    n_capped: usize => Note "SVMs stopped at the iteration cap": Linear;
 } }
 
+row! {
 /// What it costs on one thread (with the [`ChainCell`] before it: a row of `recognition_timing.csv`). Medians, one touch at a time.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ChainTime {
     /// The press, microseconds.
-    pub sense_us: f64,
+    sense_us: f64 => Cost "time of a press" in "µs": Log;
     /// Noise and compression.
-    pub project_us: f64,
+    project_us: f64 => Cost "time of noise and compression" in "µs": Log;
     /// Scaling, scores and label.
-    pub classify_us: f64,
+    classify_us: f64 => Cost "time of an answer" in "µs": Log;
     /// All three.
-    pub decision_us: f64,
+    decision_us: f64 => Cost "time of a decision" in "µs": Log;
     /// Training, seconds.
-    pub fit_s: f64,
-}
-
-columns! { ChainTime {
-    sense_us: Cost "time of a press" in "µs": Log;
-    project_us: Cost "time of noise and compression" in "µs": Log;
-    classify_us: Cost "time of an answer" in "µs": Log;
-    decision_us: Cost "time of a decision" in "µs": Log;
-    fit_s: Cost "time of a training" in "s": Log;
+    fit_s: f64 => Cost "time of a training" in "s": Log;
 } }
 
+row! {
 /// A study of some size: a row of `resolution.csv` begins with it, and one of `resolution_timing.csv`.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct StudySize {
     /// Touches an object, three quarters of which train.
-    pub touches: usize,
+    touches: usize => Choice "touches an object": Log;
     /// Trials.
-    pub trials: usize,
-}
-
-columns! { StudySize {
-    touches: Choice "touches an object": Log;
-    trials: Choice: Log;
+    trials: usize => Choice: Log;
 } }
 
+row! {
 /// What it resolves (with the [`StudySize`] before it: a row of `resolution.csv`).
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Resolved {
     /// Test touches of a trial, all objects.
-    pub n_test: usize,
+    n_test: usize => Note "test touches": Linear;
     /// Mean accuracy at the first ratio.
-    pub accuracy: f64,
+    accuracy: f64 => Value(Neither): Share;
     /// Half the width of its 95 % Wilson interval at one trial's test touches, as studies report it.
-    pub accuracy_half_width: f64,
+    accuracy_half_width: f64 => Value(Less) "half width of the interval of an accuracy": Log;
     /// Accuracy at the first ratio − at the second.
-    pub difference: f64,
+    difference: f64 => Value(Neither) "difference of two accuracies": Share;
     /// Half the width of its 95 % interval, by the corrected resampled t-test.
-    pub difference_half_width: f64,
-}
-
-columns! { Resolved {
-    n_test: Note "test touches": Linear;
-    accuracy: Value(Neither): Share;
-    accuracy_half_width: Value(Less) "half width of the interval of an accuracy": Log;
-    difference: Value(Neither) "difference of two accuracies": Share;
-    difference_half_width: Value(Less) "half width of the interval of a difference": Log;
+    difference_half_width: f64 => Value(Less) "half width of the interval of a difference": Log;
 } }
 
+row! {
 /// What it costs (with the [`StudySize`] before it: a row of `resolution_timing.csv`).
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct StudyTime {
     /// Processor-seconds: touches, measurements, fits and predictions of both ratios.
-    pub cpu_s: f64,
-}
-
-columns! { StudyTime {
-    cpu_s: Cost "processor time of the study" in "s": Log;
+    cpu_s: f64 => Cost "processor time of the study" in "s": Log;
 } }
 
 /// What another program takes for the same press: a row of `results/peers/contact.csv`, of which the columns that are not here do not
@@ -249,41 +184,28 @@ pub struct PeerRow {
     pub error_mm: f64,
 }
 
+row! {
 /// A way to evaluate contact over all objects: a row of `contact_pareto.csv`. A way of which an object has no number (a method that
 /// diverged) has none.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ContactPoint {
     /// How.
-    pub way: String,
+    way: String => Choice "way to evaluate contact";
     /// Of the spheres, mm.
-    pub tolerance_mm: Option<f64>,
+    tolerance_mm: Option<f64> => Choice "spheres within" in "mm": Log;
     /// Of the time steps, ms.
-    pub dt_ms: Option<f64>,
+    dt_ms: Option<f64> => Choice "time step" in "ms": Log;
     /// Another program's settings in words.
-    pub setting: Option<String>,
+    setting: Option<String> => Choice;
     /// Who measured: this run, or a program with version and date.
-    pub source: String,
+    source: String => Note "measured by";
     /// Whose the objects are.
-    pub touched: Touched,
+    touched: Touched => Subject;
     /// Median microseconds a touch.
-    pub us_per_touch: f64,
+    us_per_touch: f64 => Cost "time of a touch, one thread" in "µs": Log;
     /// Median error, mm.
-    pub error_mm: f64,
+    error_mm: f64 => Value(Less) "mean deflection error" in "mm": Log between [error_q1_mm, error_q3_mm];
     /// Lower quartile.
-    pub error_q1_mm: f64,
+    error_q1_mm: f64 => Note "quartiles over objects, lower" in "mm": Log;
     /// Upper quartile.
-    pub error_q3_mm: f64,
-}
-
-columns! { ContactPoint {
-    way: Choice "way to evaluate contact";
-    tolerance_mm: Choice "spheres within" in "mm": Log;
-    dt_ms: Choice "time step" in "ms": Log;
-    setting: Choice;
-    source: Note "measured by";
-    touched: Subject;
-    us_per_touch: Cost "time of a touch, one thread" in "µs": Log;
-    error_mm: Value(Less) "mean deflection error" in "mm": Log between [error_q1_mm, error_q3_mm];
-    error_q1_mm: Note "quartiles over objects, lower" in "mm": Log;
-    error_q3_mm: Note "quartiles over objects, upper" in "mm": Log;
+    error_q3_mm: f64 => Note "quartiles over objects, upper" in "mm": Log;
 } }

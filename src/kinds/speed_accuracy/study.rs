@@ -7,13 +7,14 @@ use super::plan::SpeedAccuracyPlan;
 use super::recognition::RecognitionPart;
 use super::resolution::ResolutionPart;
 use super::rows::{
-    ChainCell, ChainScore, ChainTime, PeerRow, Resolved, StudySize, StudyTime, Touched,
+    ChainCell, ChainScore, ChainTime, ContactCell, ContactPoint, ContactScore, ContactTime,
+    PeerRow, Resolved, StudySize, StudyTime, Touched,
 };
 use super::subject::{Subject, spread_evenly};
 use crate::error::Result;
 use crate::report::csv_tables::read_rows;
 use crate::study::pieces::{NamedPiece, PieceRows, PieceStudy, PiecesLeft};
-use crate::table::{Columns, Table};
+use crate::table::{Columns, File, Table};
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
 
@@ -27,12 +28,16 @@ pub struct SpeedAccuracyStudy {
     pub(super) packings: Option<PathBuf>,
 }
 
+/// A chain and a size of a study: what it is, what it gives, and what it costs.
+pub(super) type ChainRow = (ChainCell, ChainScore, ChainTime);
+pub(super) type SizeRow = (StudySize, Resolved, StudyTime);
+
 /// What work items of the study found: a setting, how near or how often right it is, and what it costs.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub struct SpeedAccuracyRows {
     pub(super) contact: Vec<ContactRow>,
-    pub(super) chains: Vec<(ChainCell, ChainScore, ChainTime)>,
-    pub(super) sizes: Vec<(StudySize, Resolved, StudyTime)>,
+    pub(super) chains: Vec<ChainRow>,
+    pub(super) sizes: Vec<SizeRow>,
 }
 
 impl PieceRows for SpeedAccuracyRows {
@@ -43,26 +48,47 @@ impl PieceRows for SpeedAccuracyRows {
     }
 }
 
-/// Files of a part: what is found, what it costs, and both together; and what they hold.
-pub(super) type Files = [(&'static str, &'static str); 3];
-pub(super) const CONTACT: Files = [
-    ("contact.csv", "Contact: error of every object"),
-    ("contact_timing.csv", "Contact: time of every object"),
-    ("contact_pareto.csv", "Contact: error against time"),
-];
-pub(super) const CHAINS: Files = [
-    ("recognition.csv", "Recognition: accuracy of every chain"),
-    ("recognition_timing.csv", "Recognition: time of every chain"),
-    ("pareto.csv", "Recognition: accuracy against time"),
-];
-pub(super) const SIZES: Files = [
-    ("resolution.csv", "Studies: what they resolve"),
-    ("resolution_timing.csv", "Studies: what they cost"),
-    (
-        "resolution_pareto.csv",
-        "Studies: what can be told apart against time",
+/// Tables of a part: what is found, what it costs, and both together.
+pub(super) struct Part<C, S, T, P> {
+    scores: File<(C, S)>,
+    times: File<(C, T)>,
+    pub pareto: File<P>,
+}
+
+pub(super) const CONTACT: Part<ContactCell, ContactScore, ContactTime, ContactPoint> = Part {
+    scores: File::new("contact.csv", "Contact: error of every object", ""),
+    times: File::new("contact_timing.csv", "Contact: time of every object", "").of_times(),
+    pareto: File::new("contact_pareto.csv", "Contact: error against time", "")
+        .of_times()
+        .summary(),
+};
+pub(super) const CHAINS: Part<ChainCell, ChainScore, ChainTime, ChainRow> = Part {
+    scores: File::new(
+        "recognition.csv",
+        "Recognition: accuracy of every chain",
+        "",
     ),
-];
+    times: File::new(
+        "recognition_timing.csv",
+        "Recognition: time of every chain",
+        "",
+    )
+    .of_times(),
+    pareto: File::new("pareto.csv", "Recognition: accuracy against time", "")
+        .of_times()
+        .summary(),
+};
+pub(super) const SIZES: Part<StudySize, Resolved, StudyTime, SizeRow> = Part {
+    scores: File::new("resolution.csv", "Studies: what they resolve", ""),
+    times: File::new("resolution_timing.csv", "Studies: what they cost", "").of_times(),
+    pareto: File::new(
+        "resolution_pareto.csv",
+        "Studies: resolution against time",
+        "",
+    )
+    .of_times()
+    .summary(),
+};
 
 impl SpeedAccuracyStudy {
     fn contact(&self) -> Option<ContactPart<'_>> {
@@ -126,46 +152,43 @@ impl PieceStudy for SpeedAccuracyStudy {
         let parts = self.plan.parts();
         if parts.contact.is_some() {
             let peers = read_peers(self.plan.peers.as_deref())?;
-            tables.extend(of_part(
-                CONTACT,
-                &rows.contact,
-                &contact_points(&rows.contact, &peers),
-            )?);
+            tables.extend(CONTACT.of(&rows.contact, &contact_points(&rows.contact, &peers))?);
         }
         if parts.recognition.is_some() {
-            tables.extend(of_part(CHAINS, &rows.chains, &rows.chains)?);
+            tables.extend(CHAINS.of(&rows.chains, &rows.chains)?);
         }
         if parts.resolution.is_some() {
-            tables.extend(of_part(SIZES, &rows.sizes, &rows.sizes)?);
+            tables.extend(SIZES.of(&rows.sizes, &rows.sizes)?);
         }
         Ok(tables)
     }
 }
 
-/// The tables of a part.
-fn of_part<C, S, T, P>(files: Files, rows: &[(C, S, T)], points: &[P]) -> Result<[Table; 3]>
-where
-    C: Columns + Serialize + Clone,
-    S: Columns + Serialize + Clone,
-    T: Columns + Serialize + Clone,
-    P: Columns + Serialize,
-{
-    let scores: Vec<(C, S)> = rows
-        .iter()
-        .map(|(c, s, _)| (c.clone(), s.clone()))
-        .collect();
-    let times: Vec<(C, T)> = rows
-        .iter()
-        .map(|(c, _, t)| (c.clone(), t.clone()))
-        .collect();
-    let [of_scores, of_times, of_points] = files;
-    Ok([
-        Table::of(of_scores.0, of_scores.1, &scores)?,
-        Table::of(of_times.0, of_times.1, &times)?.of_times(),
-        Table::of(of_points.0, of_points.1, points)?
-            .of_times()
-            .summary(),
-    ])
+impl<C: Columns, S: Columns, T: Columns, P: Columns> Part<C, S, T, P> {
+    fn of(&self, rows: &[(C, S, T)], points: &[P]) -> Result<[Table; 3]>
+    where
+        C: Serialize + Clone,
+        S: Serialize + Clone,
+        T: Serialize + Clone,
+        P: Serialize,
+    {
+        let scores = rows.iter().map(|(c, s, _)| (c.clone(), s.clone()));
+        let times = rows.iter().map(|(c, _, t)| (c.clone(), t.clone()));
+        Ok([
+            self.scores.of(&scores.collect::<Vec<_>>())?,
+            self.times.of(&times.collect::<Vec<_>>())?,
+            self.pareto.of(points)?,
+        ])
+    }
+
+    /// Of a folder.
+    pub fn read(&self, folder: &Path) -> Result<[Table; 3]> {
+        Ok([
+            self.scores.read(folder)?,
+            self.times.read(folder)?,
+            self.pareto.read(folder)?,
+        ])
+    }
 }
 
 /// What other programs take for the same press, as they left it in a file; none where there is no file.

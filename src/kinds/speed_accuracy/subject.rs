@@ -1,20 +1,18 @@
 //! What is touched: a closed mesh or a solid, as spheres of each detail and exactly.
 
 use super::solid_contact::press_solid;
-use super::spec::ScansSpec;
 use crate::error::Result;
 use crate::geometry::Pose;
 use crate::kinds::object_detail::Truth;
 use crate::mesh::Surface;
 use crate::objects::{Entry, MeshModel, Model, Object, Solid, vertex_spheres};
 use crate::random::Seed;
-use crate::study::object_files::{NamedMesh, load_named_meshes, objects_content, set_entries};
+use crate::study::object_files::{NamedMesh, load_named_meshes, set_entries};
 use crate::study::packings::pack_within;
 use crate::study::plan::MM;
 use crate::study::simulation::draw_touches;
 use crate::study::spec::ObjectsSpec;
 use crate::world::{Patch, Placement};
-use std::collections::BTreeMap;
 use std::path::Path;
 
 /// An object before it has a model.
@@ -41,48 +39,6 @@ pub(super) fn load_subjects(spec: &ObjectsSpec) -> Result<Vec<Subject>> {
         subjects.extend(meshes.into_iter().map(Subject::of_mesh));
     }
     Ok(subjects)
-}
-
-/// The meshes that are touched beside a study's objects; none where their folder is not.
-pub(super) fn load_scans(scans: Option<&ScansSpec>, objects: &ObjectsSpec) -> Result<Vec<Subject>> {
-    let Some((folder, wanted)) = wanted_scans(scans, objects) else {
-        return Ok(Vec::new());
-    };
-    let meshes = load_named_meshes(folder, &wanted)?;
-    Ok(meshes.into_iter().map(Subject::of_mesh).collect())
-}
-
-/// SHA-256 of their files, by name.
-pub(super) fn scans_content(
-    scans: Option<&ScansSpec>,
-    objects: &ObjectsSpec,
-) -> Result<BTreeMap<String, String>> {
-    let Some((folder, wanted)) = wanted_scans(scans, objects) else {
-        return Ok(BTreeMap::new());
-    };
-    let of_folder = ObjectsSpec {
-        meshes: Some(folder.to_owned()),
-        ..wanted
-    };
-    let content = objects_content(&of_folder)?.into_iter();
-    Ok(content
-        .map(|(name, hash)| (format!("scan {name}"), hash))
-        .collect())
-}
-
-/// Their folder, if it is there, and which of it.
-fn wanted_scans<'a>(
-    scans: Option<&'a ScansSpec>,
-    objects: &ObjectsSpec,
-) -> Option<(&'a Path, ObjectsSpec)> {
-    let scans = scans.filter(|scans| scans.meshes.is_dir())?;
-    let wanted = ObjectsSpec {
-        names: Some(scans.names.clone()),
-        unit: objects.unit,
-        sizes: objects.sizes,
-        ..ObjectsSpec::default()
-    };
-    Some((&scans.meshes, wanted))
 }
 
 /// At most `n` of them, spread evenly over the list, the first and the last among them.

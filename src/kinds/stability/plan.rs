@@ -139,7 +139,11 @@ impl PartCheck<'_> {
         let cells = swept(cells, &sides, |cell, side| cell.taxels = side);
         let cells = swept(cells, &stiffnesses, |cell, k| cell.stiffness_n_per_m = k);
         let cells = swept(cells, &masses, |cell, mass| {
-            cell.object_mass_kg = mass.map(|mass| mass.on(cell.n_taxels()));
+            let n_shares = match part.object_mass_per_taxel_kg {
+                Some(_) => cell.n_taxels(),
+                None => 1,
+            };
+            cell.object_mass_kg = mass.map(|mass| n_shares as f64 * mass);
         });
         let cells = swept(cells, &taxel_masses, |cell, mass| cell.taxel_mass_kg = mass);
         Ok(StabilityPart {
@@ -161,53 +165,33 @@ impl PartCheck<'_> {
         }
     }
 
-    /// None where the ball's motion is imposed.
-    fn object_masses(&self) -> Result<Vec<Option<ObjectMass>>> {
-        let (one, other) = ("object_mass_kg", "object_mass_per_taxel_kg");
-        let (given, per_taxel) = (
-            &self.part.object_mass_kg,
-            &self.part.object_mass_per_taxel_kg,
-        );
-        let refused = match (given, per_taxel, self.part.scene) {
-            (None, None, StabilityScene::Press) => return Ok(vec![None]),
-            (Some(_), _, StabilityScene::Press) => {
-                (one, "a mass", "no such key: the ball's motion is imposed")
+    /// M or, where it is given so, M over the number of taxels; none where the ball's motion is imposed.
+    fn object_masses(&self) -> Result<Vec<Option<f64>>> {
+        let part = self.part;
+        let given = [
+            ("object_mass_kg", part.object_mass_kg.as_ref()),
+            (
+                "object_mass_per_taxel_kg",
+                part.object_mass_per_taxel_kg.as_ref(),
+            ),
+        ];
+        let mut given = given
+            .into_iter()
+            .filter_map(|(name, axis)| Some((name, axis?)));
+        let (first, second) = (given.next(), given.next());
+        let (name, given, allowed) = match (first, second, part.scene) {
+            (None, _, StabilityScene::Press) => return Ok(vec![None]),
+            (Some((name, _)), _, StabilityScene::Press) => {
+                (name, "a mass", "no such key: the ball's motion is imposed")
             }
-            (None, Some(_), StabilityScene::Press) => {
-                (other, "a mass", "no such key: the ball's motion is imposed")
-            }
-            (None, None, _) => (one, "none", "a mass: the ball is free"),
-            (Some(_), Some(_), _) => (other, "a mass", "one of this key and object_mass_kg"),
-            (Some(axis), None, _) => {
-                let masses = self.positive(one, axis)?.into_iter();
-                return Ok(masses.map(|mass| Some(ObjectMass::Of(mass))).collect());
-            }
-            (None, Some(axis), _) => {
-                let masses = self.positive(other, axis)?.into_iter();
-                return Ok(masses
-                    .map(|mass| Some(ObjectMass::PerTaxel(mass)))
-                    .collect());
+            (None, ..) => ("object_mass_kg", "none", "a mass: the ball is free"),
+            (_, Some((name, _)), _) => (name, "a mass", "one of this key and object_mass_kg"),
+            (Some((name, axis)), None, _) => {
+                let masses = self.positive(name, axis)?.into_iter();
+                return Ok(masses.map(Some).collect());
             }
         };
-        let (name, given, allowed) = refused;
         Err(self.check.error(&self.key(name), given, allowed))
-    }
-}
-
-/// M, kg.
-#[derive(Clone, Copy)]
-enum ObjectMass {
-    Of(f64),
-    /// Over the number of taxels.
-    PerTaxel(f64),
-}
-
-impl ObjectMass {
-    fn on(self, n_taxels: usize) -> f64 {
-        match self {
-            Self::Of(mass) => mass,
-            Self::PerTaxel(mass) => n_taxels as f64 * mass,
-        }
     }
 }
 

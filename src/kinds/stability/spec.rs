@@ -2,6 +2,7 @@
 
 use crate::error::Result;
 use crate::study::Axis;
+use crate::study::defaults::number;
 use crate::toml_text;
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
@@ -24,7 +25,7 @@ pub struct StabilityStudySpec {
 #[serde(deny_unknown_fields)]
 pub struct StabilitySpec {
     /// Between neighbouring taxels; they are balls of half as much.
-    #[serde(default = "default_pitch")]
+    #[serde(default = "number::<4>")]
     pub pitch_mm: f64,
     /// A table that other programs wrote (`benches/peers/stability.py`), beside the study's file; left out where it is not.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -44,7 +45,7 @@ pub struct StabilityPartSpec {
     /// Axis: taxels a side.
     pub taxels: Axis<usize>,
     /// s.
-    #[serde(default = "default_stroke")]
+    #[serde(default = "number::<2>")]
     pub stroke_mm: f64,
     /// Axis: k.
     pub stiffness_n_per_m: Axis<f64>,
@@ -137,14 +138,6 @@ impl StabilityStudySpec {
     pub fn to_toml(&self) -> String {
         toml::to_string(self).expect("every field of a study has a TOML form")
     }
-}
-
-fn default_pitch() -> f64 {
-    4.0
-}
-
-fn default_stroke() -> f64 {
-    2.0
 }
 
 fn default_iterations() -> Axis<usize> {

@@ -134,29 +134,9 @@ impl PieceRows for StabilityRows {
 
 /// By its settings: which cells there are depends on what the program was built with.
 fn name(cell: &StabilityCell, stroke: f64) -> String {
-    let StabilityCell {
-        part,
-        scene,
-        method,
-        taxels,
-        stiffness_n_per_m,
-        taxel_mass_kg,
-        dt_s,
-        ..
-    } = cell;
-    let of = |name: &str, value: Option<String>| {
-        value.map_or(String::new(), |v| format!(", {name} {v}"))
-    };
-    format!(
-        "part {part}: {scene:?} by {method:?}, {taxels} taxels a side of {stiffness_n_per_m} N/m, {taxel_mass_kg} kg and a stroke of {} \
-         mm, steps of {dt_s} s{}{}",
-        millimetres(stroke),
-        of("iterations", cell.solver_iterations.map(|n| n.to_string())),
-        of(
-            "ball of kg",
-            cell.object_mass_kg.map(|mass| mass.to_string())
-        ),
-    )
+    let settings = format!("{cell:?}");
+    let settings = settings.trim_start_matches("StabilityCell ");
+    format!("{settings} and a stroke of {} mm", millimetres(stroke))
 }
 
 /// Seconds of a thread, about, if nothing takes longer than it must.

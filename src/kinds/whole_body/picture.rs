@@ -25,48 +25,29 @@ pub struct BodyPicture {
 /// Between the places of a picture's skin, metres.
 const PICTURE_PITCH: f64 = 4e-3;
 
-/// The scene in which most patches are touched at its beginning, of those in which any taxel is touched; the last of equals.
+/// The scene in which most patches are touched, of those in which any taxel is; the last of equals.
 ///
 /// # Errors
 /// As of a run.
-pub(super) fn picture_body(plan: &WholeBodyPlan, tables: &[Table]) -> Result<Option<BodyPicture>> {
-    let is_touched = |scene: &&ScenePlan| {
-        tables.first().is_some_and(|cases| {
-            (0..cases.n_rows).any(|row| {
-                cases.word("series", row) == "scene"
-                    && cases.word("name", row) == scene.spec.name
-                    && cases.number("touched_max", row) > 0.0
-            })
-        })
-    };
-    let scenes: Vec<&ScenePlan> = plan.scenes.iter().filter(is_touched).collect();
-    if scenes.is_empty() {
-        return Ok(None);
-    }
+pub(super) fn picture_body(plan: &WholeBodyPlan, cases: &Table) -> Result<Option<BodyPicture>> {
+    let number = |column, row: &usize| cases.number(column, *row);
+    let most = (0..cases.n_rows)
+        .filter(|&row| cases.word("series", row) == "scene")
+        .filter(|row| number("touched_max", row) > 0.0)
+        .max_by(|a, b| {
+            let patches = |row| number("patches_touched_mean", row);
+            patches(a).total_cmp(&patches(b))
+        });
+    let name = most.map(|row| cases.word("name", row));
+    let mut scenes = plan.scenes.iter();
+    let scene = scenes.find(|scene| Some(scene.spec.name.as_str()) == name);
+    scene.map(|scene| picture(plan, scene)).transpose()
+}
+
+fn picture(plan: &WholeBodyPlan, scene: &ScenePlan) -> Result<BodyPicture> {
     let covered = CoveredRobot::new(&plan.robot, plan.taxel, plan.pitch, plan.side)?;
-    let mut most: Option<(usize, &ScenePlan)> = None;
-    for scene in scenes {
-        let n_patches = n_patches(plan, scene, &covered)?;
-        if most.is_none_or(|(most, _)| n_patches >= most) {
-            most = Some((n_patches, scene));
-        }
-    }
-    most.map(|(_, scene)| picture(plan, scene, &covered))
-        .transpose()
-}
-
-/// Patches that are touched as a scene begins.
-fn n_patches(plan: &WholeBodyPlan, scene: &ScenePlan, covered: &CoveredRobot) -> Result<usize> {
     let object = of_scene(&scene.spec, plan.surface_error)?;
-    let posture = Posture::new(plan, covered, &scene.positions)?;
-    let mut drive = begin(scene, &posture, &object)?;
-    let path = drive.path;
-    Ok(drive.probe(&path).n_patches)
-}
-
-fn picture(plan: &WholeBodyPlan, scene: &ScenePlan, covered: &CoveredRobot) -> Result<BodyPicture> {
-    let object = of_scene(&scene.spec, plan.surface_error)?;
-    let posture = Posture::new(plan, covered, &scene.positions)?;
+    let posture = Posture::new(plan, &covered, &scene.positions)?;
     let mut drive = begin(scene, &posture, &object)?;
     let path = drive.path;
     drive.probe(&path);

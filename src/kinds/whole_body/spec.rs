@@ -3,6 +3,7 @@
 use crate::error::Result;
 use crate::sensing::Ensemble;
 use crate::study::default_seed;
+use crate::study::defaults::{count, number};
 use crate::toml_text;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -31,28 +32,28 @@ pub struct WholeBodySpec {
     /// The URDF file of what is covered, beside the study's own.
     pub robot: PathBuf,
     /// Distance between taxels, mm.
-    #[serde(default = "default_pitch_mm")]
+    #[serde(default = "number::<1>")]
     pub pitch_mm: f64,
     /// Side of a patch, about, mm.
-    #[serde(default = "default_patch_mm")]
+    #[serde(default = "number::<100>")]
     pub patch_mm: f64,
     /// ρ, mm; half the pitch when left out.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub taxel_radius_mm: Option<f64>,
     /// s, mm.
-    #[serde(default = "default_stroke_mm")]
+    #[serde(default = "number::<2>")]
     pub stroke_mm: f64,
     /// k, N/m.
-    #[serde(default = "default_stiffness")]
+    #[serde(default = "number::<100>")]
     pub stiffness_n_per_m: f64,
     /// c, N·s/m.
     #[serde(default)]
     pub damping_n_s_per_m: f64,
     /// Length of a step, ms.
-    #[serde(default = "default_step_ms")]
+    #[serde(default = "number::<1>")]
     pub step_ms: f64,
     /// Steps that are measured of each scene and rung.
-    #[serde(default = "default_steps")]
+    #[serde(default = "count::<1000>")]
     pub steps: usize,
     /// How far the spheres of an object may be from its surface, mm.
     #[serde(default = "default_surface_error_mm")]
@@ -101,7 +102,7 @@ pub struct BodySceneSpec {
     #[serde(default)]
     pub swing_deg: f64,
     /// Period of the sine, ms.
-    #[serde(default = "default_period_ms")]
+    #[serde(default = "number::<1000>")]
     pub period_ms: f64,
     /// Joints that are not at zero, degrees by name.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
@@ -219,40 +220,12 @@ impl WholeBodyStudySpec {
     }
 }
 
-fn default_pitch_mm() -> f64 {
-    1.0
-}
-
-fn default_patch_mm() -> f64 {
-    100.0
-}
-
-fn default_stroke_mm() -> f64 {
-    2.0
-}
-
-fn default_stiffness() -> f64 {
-    100.0
-}
-
-fn default_step_ms() -> f64 {
-    1.0
-}
-
-fn default_steps() -> usize {
-    1000
-}
-
 fn default_surface_error_mm() -> f64 {
     0.25
 }
 
 fn default_from() -> [f64; 3] {
     [1.0, 0.0, 0.0]
-}
-
-fn default_period_ms() -> f64 {
-    1000.0
 }
 
 fn default_blocks() -> Vec<usize> {

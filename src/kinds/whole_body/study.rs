@@ -119,7 +119,7 @@ impl Kind for WholeBodyPlan {
     }
 
     fn pictures(&self, tables: &[Table]) -> Result<Vec<NamedPicture>> {
-        let Some(scene) = picture_body(self, tables)? else {
+        let Some(scene) = picture_body(self, &tables[0])? else {
             return Ok(Vec::new());
         };
         let drawn = whole_body_picture(&scene)?;

@@ -16,6 +16,8 @@ const LABEL: u32 = 13;
 const GAP: f64 = 26.0;
 /// Letters of a word beside a row, pixels.
 const WIDEST: f64 = 230.0;
+/// Letters of a turned word below a column, pixels.
+const DEEPEST: f64 = 160.0;
 /// Lines of a word below a column.
 const MOST_LINES: usize = 3;
 
@@ -50,11 +52,7 @@ impl Layout {
             .iter()
             .map(|tick| text_width(&tick.label, TICK).min(WIDEST));
         let left = f64::max(LEFT, 44.0 + labels.fold(0.0, f64::max));
-        let n_lines = x_labels(&view.x, size.0)
-            .iter()
-            .flatten()
-            .map(Vec::len)
-            .max();
+        let below = below(&view.x, size.0);
         let spec = view.spec;
         let settings = [&spec.note[..], &view.constants()].join(" ");
         let columns_width = columns as f64 * (size.0 + GAP) - GAP;
@@ -66,7 +64,7 @@ impl Layout {
             left,
             first: 0.0,
             above,
-            below: 12.0 + 14.0 * n_lines.unwrap_or(1) as f64,
+            below,
             heading: Heading::of(&spec.title, settings.trim(), entries, width),
         }
     }
@@ -123,6 +121,12 @@ impl Layout {
             if has_grid {
                 drawing.line((x, frame.y), (x, bottom), Stroke::new(GRID, 1.0));
                 drawing.line((x, bottom), (x, bottom + 5.0), ink);
+            }
+            if is_turned(&view.x, frame.width) {
+                let style = TextStyle::new(TICK as u32).align(Align::End).angle(-90.0);
+                let text = shorten(&tick.label, TICK, DEEPEST);
+                drawing.text((x + 4.0, bottom + 8.0), &text, style);
+                continue;
             }
             for (line, text) in label.into_iter().flatten().enumerate() {
                 let below = (x, bottom + 19.0 + 14.0 * line as f64);
@@ -210,6 +214,29 @@ impl Layout {
             TextStyle::new(12).colour(MUTED),
         );
     }
+}
+
+/// Whether words are too many to stand below their columns unless they are turned.
+fn is_turned(scale: &Scale, width: f64) -> bool {
+    let room = width / scale.n_levels() as f64 - 4.0;
+    let longest = |tick: &Tick| {
+        let words = tick.label.split(' ').map(|word| text_width(word, TICK));
+        words.fold(0.0, f64::max)
+    };
+    scale.is_words() && scale.ticks.iter().any(|tick| longest(tick) > room)
+}
+
+/// Pixels below a panel for its labels.
+fn below(scale: &Scale, width: f64) -> f64 {
+    if is_turned(scale, width) {
+        let labels = scale
+            .ticks
+            .iter()
+            .map(|tick| text_width(&tick.label, TICK).min(DEEPEST));
+        return 14.0 + labels.fold(0.0, f64::max);
+    }
+    let n_lines = x_labels(scale, width).iter().flatten().map(Vec::len).max();
+    12.0 + 14.0 * n_lines.unwrap_or(1) as f64
 }
 
 /// Lines of text below each tick; none where there is no room.

@@ -4,7 +4,6 @@
 //! parts of its length; [`layout`] gives panels their pixels; [`marks`] and [`tiles`] draw what stands in them. The page's script draws the
 //! same specs by the same rules: [`places`] says where every point stands, and a test holds both against each other.
 
-mod accuracy;
 mod front;
 mod layout;
 mod marks;
@@ -13,10 +12,7 @@ mod scale;
 mod tiles;
 mod view;
 
-pub(in crate::report) use accuracy::{
-    draw_axes, draw_band, draw_line, draw_markers, draw_steps, draw_y_labels, paler, y_at,
-};
-pub(in crate::report) use tiles::draw_sign;
+pub(in crate::report) use tiles::{draw_sign, tint};
 pub use view::Place;
 
 use crate::error::{Error, Result};

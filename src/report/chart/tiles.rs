@@ -3,7 +3,7 @@
 use super::layout::{Layout, TICK};
 use super::rules;
 use super::view::View;
-use crate::report::colours::{INK, LINES, PAPER, Rgb, heat, text_on};
+use crate::report::colours::{INK, LINES, PAPER, Rgb, share, text_on};
 use crate::report::drawing::{Align, Area, Drawing, Stroke, TextStyle};
 use crate::report::legend::{LegendEntry, Mark};
 use crate::report::text_width::{text_width, wrap};
@@ -115,6 +115,11 @@ pub(super) fn draw(view: &View) -> Drawing {
     drawing
 }
 
+/// The colour of a number between the least and the most: the least is not yet white, which is none.
+pub(in crate::report) fn tint(part: f64) -> Rgb {
+    share(0.12 + 0.88 * part.clamp(0.0, 1.0))
+}
+
 /// On a ground of its own, so that no line runs through it: a minus would be read as a plus.
 pub(in crate::report) fn draw_sign(drawing: &mut Drawing, place: Area, fill: Rgb, sign: &str) {
     let width = text_width(sign, f64::from(SIGN)) + 4.0;
@@ -157,7 +162,7 @@ impl<'a> Look<'a> {
     fn fill(&self, row: usize) -> Rgb {
         match self.column.1 {
             Data::Words { codes, .. } => OUTCOMES[codes[row] as usize % OUTCOMES.len()],
-            Data::Numbers(numbers) => heat(self.part(numbers[row])),
+            Data::Numbers(numbers) => tint(self.part(numbers[row])),
         }
     }
 

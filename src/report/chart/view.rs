@@ -86,7 +86,10 @@ impl<'a> View<'a> {
         let panels = Groups::of(&columns_of(spec.panels.as_slice())?, &rows);
         let (mut x, y) = (column(&spec.x)?, column(&spec.y)?);
         x.0 = spec.x_is.as_ref().unwrap_or(x.0);
-        let (x_values, y_values) = (values(x.0, x.1, &rows), values(y.0, y.1, &rows));
+        let (mut x_values, y_values) = (values(x.0, x.1, &rows), values(y.0, y.1, &rows));
+        if matches!(spec.mark, Mark::Tiles { .. }) {
+            order_as(&mut x_values, &y_values.1);
+        }
         let interval = interval_of(table, y.0);
         let mut along = [x_values.0.clone(), y_values.0.clone()];
         for bound in interval.into_iter().flatten() {
@@ -319,6 +322,28 @@ impl Groups {
             names: firsts.iter().map(name).collect(),
             of,
         }
+    }
+}
+
+/// Puts words in the order of others, those first that these have: what is alike in rows and columns lies on the diagonal.
+fn order_as((places, words): &mut (Vec<f64>, Vec<String>), others: &[String]) {
+    let rank = |word: &String| {
+        others
+            .iter()
+            .position(|other| other == word)
+            .unwrap_or(others.len())
+    };
+    let mut order: Vec<usize> = (0..words.len()).collect();
+    order.sort_by_key(|&word| rank(&words[word]));
+    let mut now = vec![0.0; words.len()];
+    for (place, &word) in order.iter().enumerate() {
+        now[word] = place as f64;
+    }
+    *words = order.iter().map(|&word| words[word].clone()).collect();
+    if !words.is_empty() {
+        places
+            .iter_mut()
+            .for_each(|place| *place = now[*place as usize]);
     }
 }
 

@@ -1,6 +1,5 @@
 //! What every page has: head, question, contents, sections, foot.
 
-use super::picture::ASKED;
 use crate::report::drawing::escape;
 
 const TEMPLATE: &str = include_str!("page.html");
@@ -21,13 +20,7 @@ const SCRIPT: [&str; 10] = [
         include_str!("script/main.js")
     ),
 ];
-const ELEMENTS: &str = include_str!("script/elements.js");
-/// Of pages that are pictures, some of which can be asked.
-const PICTURES: [&str; 3] = [
-    ELEMENTS,
-    include_str!("script/points.js"),
-    include_str!("asked.js"),
-];
+
 /// A page.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Page {
@@ -110,10 +103,8 @@ impl Page {
     }
 
     fn script(&self) -> String {
-        let is_asked = format!("class=\"{ASKED}\"");
         match &self.data {
-            None if !self.sections.iter().any(|s| s.body.contains(&is_asked)) => String::new(),
-            None => in_scope(&PICTURES),
+            None => String::new(),
             Some(data) => {
                 // What ends an element of HTML has no place in JSON but within its strings.
                 let data = data.replace('<', "\\u003c");

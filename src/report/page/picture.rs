@@ -2,9 +2,6 @@
 
 use crate::report::drawing::{Drawing, escape};
 
-/// The class of what a picture says when it is pointed at.
-pub(super) const ASKED: &str = "asked";
-
 /// A picture for the page.
 #[derive(Clone, Debug)]
 pub struct Picture {
@@ -17,18 +14,9 @@ pub struct Picture {
 impl Picture {
     /// An SVG in the page.
     pub fn of(drawing: &Drawing, title: &str) -> Self {
-        let mut element = drawing.svg(title);
-        if !drawing.asked().is_empty() {
-            let points =
-                serde_json::to_string(drawing.asked()).expect("numbers and texts are JSON");
-            // As in the data of a page: nothing in it may end the element.
-            let points = points.replace('<', "\\u003c");
-            element +=
-                &format!("<script type=\"application/json\" class=\"{ASKED}\">{points}</script>");
-        }
         Self {
             title: title.to_owned(),
-            element,
+            element: drawing.svg(title),
         }
     }
 
@@ -43,21 +31,6 @@ impl Picture {
             ),
         }
     }
-}
-
-/// The pictures of a study of recognition, for readers without script.
-#[derive(Clone, Debug, Default)]
-pub struct Pictures {
-    /// Charts, the main one first.
-    pub charts: Vec<Picture>,
-    /// Charts of accuracy against time.
-    pub times: Vec<Picture>,
-    /// How many charts lie beside the page only.
-    pub n_more_charts: usize,
-    /// Names of the charts that were not drawn.
-    pub left_out: Vec<String>,
-    /// The confusion matrix of the best cell.
-    pub confusion: Option<Picture>,
 }
 
 /// A picture in its frame.

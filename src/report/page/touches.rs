@@ -1,12 +1,12 @@
 //! Sample touches as heat maps, side by side on one scale of colours.
 
 use crate::error::{Error, Result};
-use crate::report::axis::short_number;
 use crate::report::colours::heat;
 use crate::report::drawing::escape;
 use crate::report::heat_map::{ColourScale, block_sentence, check_frame, largest_of_blocks};
 use crate::report::page::about::Snapshots;
 use crate::report::page::picture::Picture;
+use crate::table::short_number;
 use ndarray::Array2;
 
 /// Taxels a side up to which each has a pixel of its own.

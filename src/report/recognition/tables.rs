@@ -1,30 +1,17 @@
 //! The tables of a study of recognition, and one of all that is known of each cell.
 
 use crate::error::Result;
-use crate::report::csv_tables::{LIMITS_FILE, VARIANCE_FILE};
-use crate::report::page::Limit;
+use crate::report::csv_tables::{LIMITS_FILE, VARIANCE_FILE, axes_beside};
 use crate::study::table::{
-    Cell, CellScore, Comparison, Confused, Confusion, Pareto, Published, StageTime, Tables,
+    Cell, CellScore, Comparison, Confused, Confusion, Limit, Pareto, Published, StageTime, Tables,
     TrialScore, TrialTime, Variance,
 };
-use crate::table::{Better, Column, Data, Role, Scale, Table};
+use crate::table::{Better, Column, Columns, Data, Role, Scale, Table};
 use std::path::Path;
 
 /// The table of all that is known of each cell; it has no file.
 pub const CELLS: &str = "cells.csv";
 
-const CLASSIFIERS: &[(&str, &str)] = &[
-    ("linear_svm", "linear SVM"),
-    ("rbf_svm", "RBF SVM"),
-    ("polynomial_svm", "polynomial SVM"),
-    ("k_nearest", "k nearest neighbours"),
-    ("naive_bayes", "naive Bayes"),
-];
-const ENSEMBLES: &[(&str, &str)] = &[
-    ("gaussian", "Gaussian"),
-    ("bernoulli", "Bernoulli"),
-    ("sbhe", "SBHE"),
-];
 const FEATURES: &[(&str, &str)] = &[("centred_unit_norm", "centred, unit norm")];
 const OVER_TIME: &[(&str, &str)] = &[
     ("", "all frames"),
@@ -33,79 +20,99 @@ const OVER_TIME: &[(&str, &str)] = &[
 ];
 const CHOSEN: &[(&str, &str)] = &[("", "chosen")];
 
+const ACCURACY: File = ("accuracy.csv", "Every trial");
+const SUMMARY: File = ("summary.csv", "Cells over their trials");
+const CONFUSION: File = ("confusion.csv", "What was taken for what");
+const COMPARISON: File = (
+    "comparison.csv",
+    "Cells against the best of their condition",
+);
+const TIMING: File = ("timing.csv", "Times of every trial");
+const PARETO: File = ("pareto.csv", "Accuracy and its cost");
+const STAGES: File = ("stages.csv", "Times of the stages");
+const CONFUSED: File = ("confused.csv", "Most often confused");
+const PUBLISHED: File = ("published.csv", "Beside what was published");
+const VARIANCE: File = (VARIANCE_FILE, "What makes trials differ");
+const LIMITS: File = (LIMITS_FILE, "How often limits were reached");
+
+/// Its name and title.
+type File = (&'static str, &'static str);
+
 /// Every table of a run, in the order of their files; then [`CELLS`].
 ///
 /// # Errors
 /// A row that has no form in a file.
 pub fn tables_of(tables: &Tables, limits: &[Limit]) -> Result<Vec<Table>> {
+    let axes = axes_of(&tables.accuracy);
     let mut made = vec![
-        Table::of("accuracy.csv", "Every trial", &tables.accuracy)?,
-        Table::of("summary.csv", "Cells over their trials", &tables.summary)?.summary(),
-        Table::of(
-            "confusion.csv",
-            "What was taken for what",
-            &tables.confusion,
-        )?
-        .summary(),
-        Table::of(
-            "comparison.csv",
-            "Cells against the best of their condition",
-            &tables.comparison,
-        )?
-        .summary(),
-        Table::of("timing.csv", "Times of every trial", &tables.timing)?.of_times(),
-        Table::of("pareto.csv", "Accuracy and its cost", &tables.pareto)?.of_times(),
-        Table::of("stages.csv", "Times of the stages", &tables.stages)?.of_times(),
-        Table::of("confused.csv", "Most often confused", &tables.confused)?.summary(),
-        Table::of(
-            "published.csv",
-            "Beside what was published",
-            &tables.published,
-        )?
-        .summary(),
+        Table::of_columns(ACCURACY, columns::<TrialScore>(&axes), &tables.accuracy)?,
+        Table::of_columns(SUMMARY, columns::<CellScore>(&axes), &tables.summary)?.summary(),
+        Table::of_columns(CONFUSION, Confusion::columns(), &tables.confusion)?.summary(),
+        Table::of_columns(COMPARISON, Comparison::columns(), &tables.comparison)?.summary(),
+        Table::of_columns(TIMING, columns::<TrialTime>(&axes), &tables.timing)?.of_times(),
+        Table::of_columns(PARETO, columns::<Pareto>(&axes), &tables.pareto)?.of_times(),
+        Table::of_columns(STAGES, StageTime::columns(), &tables.stages)?.of_times(),
+        Table::of_columns(CONFUSED, Confused::columns(), &tables.confused)?.summary(),
+        Table::of_columns(PUBLISHED, columns::<Published>(&axes), &tables.published)?.summary(),
     ];
     if !tables.variance.is_empty() {
-        made.push(
-            Table::of(VARIANCE_FILE, "What makes trials differ", &tables.variance)?.summary(),
-        );
+        made.push(Table::of_columns(VARIANCE, Variance::columns(), &tables.variance)?.summary());
     }
-    made.push(Table::of(LIMITS_FILE, "How often limits were reached", limits)?.summary());
+    made.push(Table::of_columns(LIMITS, Limit::columns(), limits)?.summary());
     Ok(with_cells(made))
 }
 
-/// The same of the files of a folder; without [`LIMITS_FILE`] where an earlier version wrote none.
+/// The same of the files of a folder; without limits where an earlier version wrote none.
 ///
 /// # Errors
 /// A table that cannot be read, by its file, line and column.
 pub fn read_tables(dir: &Path) -> Result<Vec<Table>> {
+    let axes = axes_beside(&dir.join(ACCURACY.0))?;
     let mut read = vec![
-        Table::read::<(Cell, TrialScore)>("accuracy.csv", "Every trial", dir)?,
-        Table::read::<(Cell, CellScore)>("summary.csv", "Cells over their trials", dir)?.summary(),
-        Table::read::<Confusion>("confusion.csv", "What was taken for what", dir)?.summary(),
-        Table::read::<Comparison>(
-            "comparison.csv",
-            "Cells against the best of their condition",
-            dir,
-        )?
-        .summary(),
-        Table::read::<(Cell, TrialTime)>("timing.csv", "Times of every trial", dir)?.of_times(),
-        Table::read::<(Cell, Pareto)>("pareto.csv", "Accuracy and its cost", dir)?.of_times(),
-        Table::read::<StageTime>("stages.csv", "Times of the stages", dir)?.of_times(),
-        Table::read::<Confused>("confused.csv", "Most often confused", dir)?.summary(),
-        Table::read::<(Cell, Published)>("published.csv", "Beside what was published", dir)?
-            .summary(),
+        Table::read_columns(ACCURACY, columns::<TrialScore>(&axes), dir)?,
+        Table::read_columns(SUMMARY, columns::<CellScore>(&axes), dir)?.summary(),
+        Table::read_columns(CONFUSION, Confusion::columns(), dir)?.summary(),
+        Table::read_columns(COMPARISON, Comparison::columns(), dir)?.summary(),
+        Table::read_columns(TIMING, columns::<TrialTime>(&axes), dir)?.of_times(),
+        Table::read_columns(PARETO, columns::<Pareto>(&axes), dir)?.of_times(),
+        Table::read_columns(STAGES, StageTime::columns(), dir)?.of_times(),
+        Table::read_columns(CONFUSED, Confused::columns(), dir)?.summary(),
+        Table::read_columns(PUBLISHED, columns::<Published>(&axes), dir)?.summary(),
     ];
     if dir.join(VARIANCE_FILE).exists() {
-        read.push(
-            Table::read::<Variance>(VARIANCE_FILE, "What makes trials differ", dir)?.summary(),
-        );
+        read.push(Table::read_columns(VARIANCE, Variance::columns(), dir)?.summary());
     }
     if dir.join(LIMITS_FILE).exists() {
-        read.push(
-            Table::read::<Limit>(LIMITS_FILE, "How often limits were reached", dir)?.summary(),
-        );
+        read.push(Table::read_columns(LIMITS, Limit::columns(), dir)?.summary());
     }
     Ok(with_cells(read))
+}
+
+/// What cells cost.
+///
+/// # Errors
+/// A row that has no form in a file.
+pub fn costs_table(costs: &[(Cell, Pareto)]) -> Result<Table> {
+    let mut table = Table::of_columns(PARETO, columns::<Pareto>(&axes_of(costs)), costs)?;
+    say(&mut table);
+    Ok(table)
+}
+
+/// The axes that a study of these cells names itself.
+fn axes_of<R>(rows: &[(Cell, R)]) -> Vec<Column> {
+    let first = rows.first().map(|(cell, _)| cell.variant.values.iter());
+    let axes = first.into_iter().flatten();
+    axes.map(|axis| axis.column.clone()).collect()
+}
+
+/// Those of a cell, of the axes that its study names itself, and of a score.
+fn columns<R: Columns>(axes: &[Column]) -> Vec<Column> {
+    let axes = axes.iter().map(|axis| axis.clone().optional());
+    Cell::columns()
+        .into_iter()
+        .chain(axes)
+        .chain(R::columns())
+        .collect()
 }
 
 fn with_cells(mut tables: Vec<Table>) -> Vec<Table> {
@@ -162,11 +169,11 @@ pub fn say(table: &mut Table) {
                 column.scale = Scale::Linear;
             }
             ("noise_std", _) => column.words = "noise".into(),
-            ("classifier", _) => column.names = CLASSIFIERS,
-            ("ensemble", _) => column.names = ENSEMBLES,
             ("features", _) => column.names = FEATURES,
             ("over_time", _) => column.names = OVER_TIME,
             ("c", _) => column.names = CHOSEN,
+            // Rare confusions are seen, too.
+            ("count", _) => column.scale = Scale::Log,
             // The pitch and the size say them.
             ("nx" | "ny", _) => column.role = Role::Note,
             _ => {}

@@ -2,10 +2,10 @@
 
 use super::skin_picture::{LEFT, SIDE, TOP};
 use super::unrolled::Unrolled;
-use crate::report::axis::short_number;
 use crate::report::colours::INK;
 use crate::report::drawing::{Area, Drawing, Stroke, TextStyle};
 use crate::report::picture::bar_length;
+use crate::table::short_number;
 use glam::DVec2;
 
 /// The largest radius of a dot, pixels.

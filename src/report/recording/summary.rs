@@ -2,8 +2,8 @@
 
 use super::reader::RecordingFile;
 use crate::error::Result;
-use crate::report::axis::short_number;
 use crate::signal::Quantity;
+use crate::table::short_number;
 use comfy_table::{CellAlignment, Table, presets::NOTHING};
 
 /// The largest values of a patch over all frames.

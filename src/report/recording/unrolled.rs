@@ -4,7 +4,7 @@
 //! distances from it (azimuthal equidistant); both are recognised by p = c + R n, which their places and axes obey (without the
 //! part along the cylinder's axis). All else is seen from the side that shows most, and from behind if some taxels face away.
 
-use crate::report::axis::short_number;
+use crate::table::short_number;
 use glam::{DVec2, DVec3};
 
 /// Cosine of the angle between axes up to which a skin is flat: 10°, which shortens nothing by more than 1.5 %.

@@ -14,7 +14,7 @@ mod shared;
 pub use left::PiecesLeft;
 pub use piece_study::{
     FinishedPieces, Part, PieceFailure, PieceManner, PieceStudy, PiecesRun, n_pieces_left,
-    run_pieces, run_whole_study,
+    run_pieces, run_whole, run_whole_study,
 };
 pub use record::PieceRows;
 pub use scale::{PieceEstimate, Scale};

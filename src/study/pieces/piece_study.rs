@@ -78,14 +78,14 @@ pub struct PieceManner<'a> {
 /// A piece that failed: a row of `failures.csv`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct PieceFailure {
-    /// The piece.
-    pub piece: String,
+    /// The piece, in words.
+    pub work_item: String,
     /// What went wrong.
     pub error: String,
 }
 
 columns! { PieceFailure {
-    piece: Subject "work item";
+    work_item: Subject "work item";
     error: Note;
 } }
 
@@ -177,7 +177,7 @@ impl<'a, S: PieceStudy> PiecesRun<'a, S> {
                     finished.rows.append(rows);
                 }
                 Some(Err(error)) => finished.failures.push(PieceFailure {
-                    piece: study.words(number, piece),
+                    work_item: study.words(number, piece),
                     error,
                 }),
                 None => finished.n_left += 1,
@@ -208,11 +208,19 @@ fn before_and_left<'a, R: PieceRows>(
     (before, left)
 }
 
-/// Runs a whole study at once, keeps nothing, and ends at the first piece that fails.
+/// The tables of [`run_whole`].
 ///
 /// # Errors
 /// What a piece fails of.
 pub fn run_whole_study<S: PieceStudy>(study: &S, progress: &dyn Progress) -> Result<S::Tables> {
+    study.tables(run_whole(study, progress)?)
+}
+
+/// Runs a whole study at once, keeps nothing, and ends at the first piece that fails.
+///
+/// # Errors
+/// What a piece fails of.
+pub fn run_whole<S: PieceStudy>(study: &S, progress: &dyn Progress) -> Result<S::Rows> {
     let manner = PieceManner {
         journal: &Journal::none(),
         fail_fast: true,
@@ -220,7 +228,7 @@ pub fn run_whole_study<S: PieceStudy>(study: &S, progress: &dyn Progress) -> Res
         part: Part::All,
         progress,
     };
-    study.tables(run_pieces(study, &manner)?.rows)
+    Ok(run_pieces(study, &manner)?.rows)
 }
 
 /// Pieces of a part of which a journal does not say what came of them.

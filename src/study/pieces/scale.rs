@@ -77,7 +77,7 @@ impl fmt::Display for PieceEstimate {
         writeln!(f, "  touches  {touches}")?;
         writeln!(
             f,
-            "  pieces   {}, of {}",
+            "  items    {}, of {}",
             self.n_pieces,
             counted(*n_configurations, "configuration")
         )?;

@@ -9,8 +9,8 @@ const DASHES = ["none", "7 4", "2 4", "9 3 2 3"];
 const RULES = ["5 4", "2 3", "9 3", "1 2"];
 /** Colours of outcomes in the order in which the table first has them. */
 const OUTCOMES = ["#56b4e9", "#e69f00", "#d55e00", "#6a3d9a", "#1f2328", "#009e73", "#cc79a7", "#0072b2"];
-/** Viridis, nine of its colours. */
-const HEAT = ["#440154", "#472d7b", "#3b528b", "#2c728e", "#21918c", "#28ae80", "#5ec962", "#addc30", "#fde725"];
+/** Blues: the least is not yet white, which is none. */
+const TINTS = ["#ffffff", "#c6dbef", "#9ecae1", "#4d97c9", "#1f65ae", "#08306b"];
 const MANY = 1500;
 
 const colour = (line) => `var(--c${line % 8})`;
@@ -20,10 +20,10 @@ function marker(line, x, y, more = {}) {
   return draw("path", { d: SHAPES[line % 8], transform: `translate(${at1(x)},${at1(y)})`, fill: colour(line), ...more });
 }
 
-function heat(part) {
-  const place = Math.min(Math.max(part, 0), 1) * (HEAT.length - 1);
-  const below = Math.min(Math.floor(place), HEAT.length - 2);
-  return `color-mix(in srgb, ${HEAT[below + 1]} ${Math.round(100 * (place - below))}%, ${HEAT[below]})`;
+function tint(part) {
+  const place = (0.12 + 0.88 * Math.min(Math.max(part, 0), 1)) * (TINTS.length - 1);
+  const below = Math.min(Math.floor(place), TINTS.length - 2);
+  return `color-mix(in srgb, ${TINTS[below + 1]} ${Math.round(100 * (place - below))}%, ${TINTS[below]})`;
 }
 
 /** How the tiles of a view are filled and signed. */
@@ -42,8 +42,8 @@ function lookOf(view) {
   };
   return {
     column, signs, ends: [low, high],
-    fill: (row) => (column.isNumber ? heat(part(column.value(row))) : OUTCOMES[column.levels.codes[row] % 8]),
-    isDark: (row) => (column.isNumber ? part(column.value(row)) < 0.62 : [2, 3, 4, 7].includes(column.levels.codes[row] % 8)),
+    fill: (row) => (column.isNumber ? tint(part(column.value(row))) : OUTCOMES[column.levels.codes[row] % 8]),
+    isDark: (row) => (column.isNumber ? part(column.value(row)) > 0.55 : [2, 3, 4, 7].includes(column.levels.codes[row] % 8)),
     sign: (row) => {
       if (signs && !signs.isAbsent(row)) return signs.isNumber ? signs.tick(signs.value(row)) : signs.say(signs.value(row));
       if (column.isAbsent(row)) return "";
@@ -62,7 +62,7 @@ function legendOf(view, look) {
   const entries = [];
   if (look) {
     entries.push(make("span", { class: "name" }, `${look.column.title}:`));
-    if (look.column.isNumber) entries.push(make("span", { class: "entry" }, look.column.tick(look.ends[0]), make("span", { class: "bar", style: `background: linear-gradient(to right, ${HEAT.join()})` }), look.column.tick(look.ends[1])));
+    if (look.column.isNumber) entries.push(make("span", { class: "entry" }, look.column.tick(look.ends[0]), make("span", { class: "bar", style: `background: linear-gradient(to right, ${[0, 0.5, 1].map(tint).join()})` }), look.column.tick(look.ends[1])));
     else look.column.levels.labels.forEach((label, code) => entries.push(legendEntry(label, draw("rect", { x: -12, y: -7, width: 24, height: 14, fill: OUTCOMES[code % 8] }))));
     if (look.signs) entries.push(make("span", { class: "name" }, `written: ${look.signs.title}`));
   } else if (spec.lines.length) {

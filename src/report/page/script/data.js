@@ -28,7 +28,8 @@ class Column {
     this.isNumber = about.scale !== "words";
     this.seconds = about.scale === "log" ? { s: 1, ms: 1e-3, us: 1e-6, "µs": 1e-6 }[about.unit] : undefined;
     const empty = this.isNumber ? null : "";
-    if ("same" in data) this.values = Array(n).fill(data.same ?? empty);
+    this.isSame = "same" in data;
+    if (this.isSame) this.values = Array(n).fill(data.same ?? empty);
     else if (data.levels) this.values = data.codes.map((code) => data.levels[code]);
     else this.values = data;
   }
@@ -58,7 +59,7 @@ class Column {
   }
 
   get varies() {
-    return this.levels.each.length > 1;
+    return !this.isSame && this.levels.each.length > 1;
   }
 
   get isSwept() {

@@ -75,9 +75,14 @@ function endsAlong(column, numbers, along, fitted) {
 }
 
 /** Words at equal distances, rows from above; and numbers of tiles. */
-function levelScale(column, rows, along) {
+function levelScale(column, rows, along, other) {
   const shown = new Set(rows.map((row) => column.levels.codes[row]));
   const each = column.levels.each.map((_, code) => code).filter((code) => shown.has(code) && column.levels.each[code] !== null);
+  // What is alike in rows and columns lies on the diagonal.
+  if (other && !column.isNumber && !other.isNumber) {
+    const rank = (code) => other.levels.each.indexOf(column.levels.each[code]);
+    each.sort((a, b) => (rank(a) < 0 ? Infinity : rank(a)) - (rank(b) < 0 ? Infinity : rank(b)) || a - b);
+  }
   const fromAbove = along === "y" && !column.isNumber;
   const at = (position) => (fromAbove ? 1 - (position + 0.5) / each.length : (position + 0.5) / each.length);
   const position = new Map(each.map((code, place) => [column.levels.each[code], place]));

@@ -41,7 +41,7 @@ class View {
     const along = { x: rows.map((row) => x.value(row)), y: rows.map((row) => y.value(row)) };
     for (const bound of bounds ?? []) along.y.push(...rows.map((row) => bound.value(row)));
     for (const rule of spec.rules) along[rule.along].push(...("value" in rule.at ? [rule.at.value] : rows.map((row) => column(rule.at.column).value(row))));
-    const scale = (column, which) => (this.kind === "tiles" || !column.isNumber ? levelScale(column, rows, which) : scaleOf(column, along[which], which, fitted));
+    const scale = (column, which) => (this.kind === "tiles" || !column.isNumber ? levelScale(column, rows, which, this.kind === "tiles" && which === "x" ? y : null) : scaleOf(column, along[which], which, fitted));
     this.x = scale(x, "x");
     this.y = scale(y, "y");
     this.places = [];

@@ -1,0 +1,133 @@
+//! Studies that recognise objects, as a kind.
+
+use super::load::load_study;
+use super::study::RecognitionStudy;
+use crate::error::Result;
+use crate::kinds::kind::{About, Facts, Kind};
+use crate::kinds::rows_of;
+use crate::kinds::source::Source;
+use crate::report::csv_tables::LIMITS_FILE;
+use crate::report::page::{ReportPage, Section, Snapshots};
+use crate::report::recognition;
+use crate::report::snapshots::snapshots;
+use crate::report::study_folder::{Image, NamedPicture};
+use crate::study::Samples;
+use crate::study::pieces::Scale;
+use crate::table::{ChartSpec, Table};
+use ndarray::Array2;
+use std::path::Path;
+
+/// How intervals and p-values are made, by table and columns. Everything is at 95 %.
+const METHODS: [(&str, &str); 5] = [
+    (
+        "accuracy.csv, summary.csv: accuracy_low, accuracy_high",
+        "Wilson score interval of the test rows of one trial",
+    ),
+    (
+        "summary.csv: bootstrap_low, bootstrap_high",
+        "bootstrap of the mean over trials, expanded percentiles; with projections_per_split, splits and projections drawn apart",
+    ),
+    (
+        "comparison.csv: difference_low, difference_high, p_value, p_holm",
+        "corrected resampled t-test against the best cell (Nadeau, Bengio 2003); p_holm: corrected for the number of cells by Holm's method",
+    ),
+    (
+        "variance.csv: accuracy_std_low, accuracy_std_high, p_value",
+        "crossed random effects by the method of moments; modified large samples (of the rest chi-squared); F test",
+    ),
+    (
+        "bubbletouch compare: p_holm",
+        "corrected resampled t-tests, corrected for the number of cells by Holm's method",
+    ),
+];
+
+impl Kind for RecognitionStudy {
+    const ABOUT: About = super::RECOGNITION;
+
+    fn load(source: &Source) -> Result<Self> {
+        load_study(source)
+    }
+
+    fn facts(&self) -> Result<Facts> {
+        let spec = &self.first().plan.spec;
+        Ok(Facts {
+            toml: spec.to_toml(),
+            question: spec.question.clone(),
+            expected: spec.expected.clone(),
+            seed: spec.seed,
+            content: self.content(),
+            methods: METHODS.into(),
+        })
+    }
+
+    fn scale(&self) -> Scale {
+        self.scale.clone()
+    }
+
+    fn read_tables(&self, folder: &Path) -> Result<Vec<Table>> {
+        recognition::read_tables(folder)
+    }
+
+    fn charts(&self, tables: &[Table]) -> Vec<ChartSpec> {
+        recognition::charts(tables, self.first().plan.spec.report.pareto)
+    }
+
+    fn pictures(&self, _tables: &[Table]) -> Result<Vec<NamedPicture>> {
+        let samples = self.samples()?;
+        let (pitch_mm, quantity) = (samples.pitch_mm, samples.quantity);
+        let drawing = snapshots(&samples.frames, pitch_mm, quantity, &samples.caption)?;
+        let size = (drawing.width() as usize, drawing.height() as usize);
+        Ok(vec![NamedPicture {
+            name: "snapshots".to_owned(),
+            title: samples.caption.clone(),
+            // As SVG, ten thousand noisy taxels would be a megabyte.
+            image: Image::Png(drawing.png()?, size),
+        }])
+    }
+
+    fn sections(&self, tables: &[Table]) -> Result<Vec<Section>> {
+        let row = |name: &str, value: String| (name.to_owned(), value);
+        let first = self.first();
+        let spec = &first.plan.spec;
+        let mut settings = first.touched.settings();
+        settings.extend([
+            row("Touches", first.sweep.labels.len().to_string()),
+            row("Stroke", format!("{} mm", spec.skin.stroke_mm)),
+            row("Trials", spec.trials.to_string()),
+            row("Seed", spec.seed.to_string()),
+        ]);
+        let page = ReportPage {
+            settings,
+            limits: rows_of(tables, LIMITS_FILE),
+            gallery: gallery(self.samples()?),
+            ..ReportPage::default()
+        };
+        recognition::sections(&page, tables)
+    }
+
+    fn answers(&self, tables: &[Table]) -> Vec<String> {
+        recognition::answers(tables)
+    }
+
+    fn summary(&self, tables: &[Table], width: usize) -> String {
+        recognition::words(tables, width)
+    }
+}
+
+/// Every object; before them what the picture shows, if that is something else.
+fn gallery(samples: &Samples) -> Vec<Snapshots> {
+    let shown = |frames: &[(String, Array2<f64>)], caption: &str| Snapshots {
+        frames: frames.to_vec(),
+        pitch_mm: samples.pitch_mm,
+        quantity: samples.quantity,
+        caption: caption.to_owned(),
+    };
+    let mut sets = Vec::new();
+    if samples.each.is_empty() || samples.caption != samples.each_caption {
+        sets.push(shown(&samples.frames, &samples.caption));
+    }
+    if !samples.each.is_empty() {
+        sets.push(shown(&samples.each, &samples.each_caption));
+    }
+    sets
+}
