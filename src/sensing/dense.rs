@@ -1,6 +1,6 @@
 //! A stored matrix Φ.
 
-use super::ensemble::{EnsembleAbout, Operator};
+use super::ensemble::{Draw, EnsembleAbout, Operator};
 use crate::random::Seed;
 use ndarray::linalg::general_mat_mul;
 use ndarray::{Array1, Array2, ArrayView2, ArrayViewMut2, s};
@@ -31,10 +31,7 @@ impl Operator for Dense {
 }
 
 /// One of a stored matrix, by what draws it from n, m and a stream.
-pub(super) const fn about(
-    words: &'static str,
-    draw: fn((usize, usize), usize, &Seed) -> Box<dyn Operator>,
-) -> EnsembleAbout {
+pub(super) const fn about(words: &'static str, draw: Draw) -> EnsembleAbout {
     EnsembleAbout {
         // As it is drawn, and as it is kept.
         bytes: |m, n| 16.0 * n * m,

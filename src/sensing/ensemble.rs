@@ -5,6 +5,9 @@ use crate::random::Seed;
 use ndarray::{Array2, ArrayView2, ArrayViewMut2};
 use std::fmt::Debug;
 
+/// Draws the map of an ny × nx array to m measurements, 1 ≤ m ≤ n, from its own stream.
+pub type Draw = fn((usize, usize), usize, &Seed) -> Box<dyn Operator>;
+
 /// An ensemble of measurements.
 #[derive(Debug)]
 pub struct EnsembleAbout {
@@ -19,15 +22,12 @@ pub struct EnsembleAbout {
     /// About how many seconds it takes for one taxel of a frame among many, by m and n.
     pub taxel_s: fn(f64, f64) -> f64,
     /// Draws the map of an ny × nx array to m measurements, 1 ≤ m ≤ n, from its own stream.
-    pub draw: fn((usize, usize), usize, &Seed) -> Box<dyn Operator>,
+    pub draw: Draw,
 }
 
 impl EnsembleAbout {
     /// One of nested rows and few numbers that reads each taxel once at most.
-    pub(super) const fn new(
-        words: &'static str,
-        draw: fn((usize, usize), usize, &Seed) -> Box<dyn Operator>,
-    ) -> Self {
+    pub(super) const fn new(words: &'static str, draw: Draw) -> Self {
         Self {
             words,
             is_prefix_nested: true,

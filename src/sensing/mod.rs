@@ -74,7 +74,7 @@ ensembles! {
 pub use coherence::{Coherence, Extremes};
 pub use columns::Columns;
 pub use dictionary::{Basis, Dictionary, Energy};
-pub use ensemble::{EnsembleAbout, Operator};
+pub use ensemble::{Draw, EnsembleAbout, Operator};
 pub use lasso::Lasso;
 pub use lmmse::Lmmse;
 pub use omp::Omp;

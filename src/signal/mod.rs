@@ -64,7 +64,7 @@ pub use hysteresis::Hysteresis;
 pub use noise::{Noise, NoiseUnit};
 pub use quantisation::Quantisation;
 pub use scan::Scan;
-pub use sensor_error::{Effect, ErrorAbout, MOST_STRENGTHS, Skin, Strength, TouchRead};
+pub use sensor_error::{Effect, ErrorAbout, MOST_STRENGTHS, Prepare, Skin, Strength, TouchRead};
 pub use smoothing::Smoothing;
 pub use step::SignalStep;
 

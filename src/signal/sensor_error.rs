@@ -23,6 +23,9 @@ pub struct Strength {
     pub allowed: &'static str,
 }
 
+/// Checks strengths of which at least one is not zero, and prepares what they do to the signal of a skin.
+pub type Prepare = fn(&[f64; MOST_STRENGTHS], &Skin) -> Result<Box<dyn Effect>>;
+
 /// A sensor error.
 #[derive(Debug)]
 pub struct ErrorAbout {
@@ -39,7 +42,7 @@ pub struct ErrorAbout {
     /// About how many seconds it takes for one taxel of one frame, of so many frames a touch.
     pub taxel_s: fn(usize) -> f64,
     /// Checks strengths of which at least one is not zero, and prepares what they do.
-    pub prepare: fn(&[f64; MOST_STRENGTHS], &Skin) -> Result<Box<dyn Effect>>,
+    pub prepare: Prepare,
 }
 
 /// Strengths of an error, at most.
@@ -92,7 +95,7 @@ impl ErrorAbout {
     pub(super) const fn new(
         step: &'static str,
         strengths: &'static [Strength],
-        prepare: fn(&[f64; MOST_STRENGTHS], &Skin) -> Result<Box<dyn Effect>>,
+        prepare: Prepare,
     ) -> Self {
         Self {
             step,

@@ -411,7 +411,8 @@ impl StudyAxes {
         let mut all = vec![Vec::new()];
         for axis in &self.0 {
             let longer = all.iter().flat_map(|values: &Vec<toml::Value>| {
-                let with = |value: &toml::Value| [&values[..], &[value.clone()]].concat();
+                let with =
+                    |value: &toml::Value| [&values[..], std::slice::from_ref(value)].concat();
                 axis.values.iter().map(with)
             });
             all = longer.collect();

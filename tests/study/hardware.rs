@@ -311,7 +311,7 @@ fn keys_that_make_no_sense_are_refused_with_what_does() {
         ),
         (
             "steps = [\"crosstalk\"]\ncrosstalk = 0.1\ntested_on = \"another_skin\"",
-            "signal.tested_on: given for skins without a difference; gain, drift or faults",
+            "signal.tested_on: given for skins without a difference; gain or drift or faults",
         ),
         (
             "steps = [\"gain\", \"gain\"]\ngain_std = 0.1",
