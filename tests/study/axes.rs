@@ -4,7 +4,7 @@ use crate::command::Case;
 use crate::study::Study;
 use bubbletouch::kinds::recognition::{Outcome, RecognitionStudy};
 use bubbletouch::report::csv_tables::{read_tables, write_tables};
-use bubbletouch::study::pieces::{PieceStudy, run_whole_study};
+use bubbletouch::study::pieces::{PieceStudy};
 use bubbletouch::study::progress::Silent;
 use bubbletouch::study::table::TrialScore;
 use bubbletouch::study::{Plan, StudySpec};
@@ -41,7 +41,7 @@ fn laid_out(text: &str) -> RecognitionStudy {
 }
 
 fn run(study: &RecognitionStudy) -> Outcome {
-    run_whole_study(study, &Silent).unwrap()
+    study.run(&Silent).unwrap()
 }
 
 fn with_axes(axes: &str) -> String {
