@@ -1,7 +1,7 @@
 //! Charts: what a [`ChartSpec`] says, of a table, as a [`Drawing`].
 //!
-//! One renderer for every chart: [`View`](view) finds rows, lines and panels in the table; [`Scale`](scale) says where values stand along an axis, as
-//! parts of its length; [`layout`] gives panels their pixels; [`marks`] and [`tiles`] draw what stands in them. The page's script draws the
+//! One renderer for every chart: `view` finds rows, lines and panels in the table; `scale` says where values stand along an axis, as
+//! parts of its length; `layout` gives panels their pixels; `marks` and `tiles` draw what stands in them. The page's script draws the
 //! same specs by the same rules: [`places`] says where every point stands, and a test holds both against each other.
 
 mod front;

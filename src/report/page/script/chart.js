@@ -152,8 +152,8 @@ function drawAxes(svg, view, { box, px, py, turned, below, hasGrid }) {
     if (hasGrid) svg.append(draw("line", { x1: left, x2: right, y1: y, y2: y, class: "grid" }));
     svg.append(draw("text", { x: left - 8, y: y + 4, class: "tick end" }, tick.label));
   }
-  if (view.x.shelf) svg.append(draw("path", { d: `M${px(view.x.shelf)},${top}V${bottom}`, class: "rule" }));
-  if (view.y.shelf) svg.append(draw("path", { d: `M${left},${py(view.y.shelf)}H${right}`, class: "rule" }));
+  if (view.x.shelf) svg.append(draw("path", { d: `M${px(view.x.shelf)},${top}V${bottom}`, class: "rule", "stroke-dasharray": "5 4" }));
+  if (view.y.shelf) svg.append(draw("path", { d: `M${left},${py(view.y.shelf)}H${right}`, class: "rule", "stroke-dasharray": "5 4" }));
   svg.append(draw("path", { d: hasGrid ? `M${left},${top}V${bottom}H${right}` : `M${left},${top}V${bottom}H${right}V${top}z`, class: "frame" }));
   svg.append(draw("text", { x: (left + right) / 2, y: bottom + below - 6, class: "axis-title middle" }, view.x.title));
   const middle = (top + bottom) / 2;
