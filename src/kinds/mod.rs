@@ -1,4 +1,4 @@
-//! The kinds of study: a folder each, and a line each in [`KINDS`].
+//! The kinds of study: a folder each, and a line each in `KINDS`.
 //!
 //! A kind says which [work items](crate::study::pieces) a study has and measures them, and gives tables, charts, pictures and answers
 //! ([`Kind`]). [`AnyStudy`] is what all commands see of a study: whatever can be done with one kind can be done with all.

@@ -61,7 +61,7 @@ pub struct Classifier {
     /// Degree of the polynomial kernel, 1 to 20.
     pub degree: u32,
     /// The solver's stopping tolerance, above 0; see [`SvmParams::tolerance`] and [`LinearSvmParams::tolerance`].
-    /// Logistic regression takes a tenth of it as [`LogisticParams::tolerance`].
+    /// Logistic regression takes a tenth of it as its own tolerance.
     pub tolerance: f64,
     /// k of the k nearest neighbours, 1 to the number of training rows.
     pub n_neighbours: usize,
@@ -136,10 +136,10 @@ impl Classifier {
         }
     }
 
-    /// The best of the candidates on folds of the training rows; see [`choose`](crate::recognition::choice::choose).
+    /// The best of the candidates on folds of the training rows; see [`choose`].
     ///
     /// # Errors
-    /// As [`choose`](crate::recognition::choice::choose).
+    /// As [`choose`].
     pub fn choose(
         &self,
         training: &Dataset,

@@ -9,9 +9,9 @@
 //! whatever the unit, and visits every row and feature at every node.
 
 use crate::recognition::classifier_about::ClassifierAbout;
-use std::sync::Arc;
 use ndarray::{Array2, ArrayView1, ArrayView2};
 use rand::Rng;
+use std::sync::Arc;
 
 use crate::random::Seed;
 use crate::recognition::class_model::{ClassModel, log_vote_shares, positions};

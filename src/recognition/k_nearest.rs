@@ -8,8 +8,8 @@
 //! neighbours are those of a search one pair at a time, exactly. (Far from the origin many are nominated: scale features.)
 
 use crate::recognition::classifier_about::{ClassifierAbout, PRODUCT_S};
-use std::sync::Arc;
 use ndarray::{Array1, Array2, ArrayView1, ArrayView2, Axis};
+use std::sync::Arc;
 
 use crate::recognition::class_model::{ClassModel, log_vote_shares, positions};
 use crate::recognition::dataset::{Dataset, check_width};

@@ -8,8 +8,8 @@
 //! silence (600 rows, 5 classes, C = 1,000: objective 46.6, where C = 1 reaches 9.8).
 
 use crate::recognition::classifier_about::ClassifierAbout;
-use std::sync::Arc;
 use ndarray::{Array1, Array2, ArrayView1, ArrayView2, Axis, s};
+use std::sync::Arc;
 
 use crate::recognition::class_model::{ClassModel, log_priors, positions};
 use crate::recognition::dataset::Dataset;

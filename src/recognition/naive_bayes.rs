@@ -4,18 +4,19 @@
 //! probabilities without taking the largest out first (with 64 features all underflow to 0). Its joint log-likelihoods are right.
 
 use crate::recognition::classifier_about::ClassifierAbout;
-use std::sync::Arc;
 use linfa::traits::Fit;
 use linfa_bayes::{GaussianNb, NaiveBayes as _};
 use ndarray::{Array1, Array2, ArrayView1, ArrayView2};
+use std::sync::Arc;
 
 use crate::recognition::class_model::{ClassModel, log_priors};
 use crate::recognition::dataset::{Dataset, check_width};
 use crate::recognition::linear_svm::checked_classes;
 use crate::{Error, Result};
 
-pub(super) const ABOUT: ClassifierAbout =
-    ClassifierAbout::new("naive Bayes", |_, scaled, _, _| Ok(Arc::new(NaiveBayes::train(scaled)?)));
+pub(super) const ABOUT: ClassifierAbout = ClassifierAbout::new("naive Bayes", |_, scaled, _, _| {
+    Ok(Arc::new(NaiveBayes::train(scaled)?))
+});
 
 /// Share of the largest feature's variance that is added to every variance: scikit-learn's default.
 pub const VARIANCE_SMOOTHING: f64 = 1e-9;

@@ -5,9 +5,9 @@
 //! [`decision_tree`](crate::recognition::decision_tree)), breaks ties of votes by the order of a `HashMap`, and draws features once a tree.
 
 use crate::recognition::classifier_about::ClassifierAbout;
-use std::sync::Arc;
 use ndarray::{Array2, ArrayView2};
 use rand::Rng;
+use std::sync::Arc;
 
 use crate::random::Seed;
 use crate::recognition::class_model::{ClassModel, log_vote_shares, positions};

@@ -3,6 +3,7 @@
 use super::classifier_about::ClassifierAbout;
 use super::kernel::Kernel;
 
-pub(super) const ABOUT: ClassifierAbout = ClassifierAbout::svm("RBF SVM", |classifier| Kernel::Rbf {
-    gamma: classifier.gamma,
-});
+pub(super) const ABOUT: ClassifierAbout =
+    ClassifierAbout::svm("RBF SVM", |classifier| Kernel::Rbf {
+        gamma: classifier.gamma,
+    });

@@ -56,7 +56,7 @@ struct Settings<'a> {
     recognition: &'a RecognitionSpec,
 }
 
-/// Makes the measurements of one cell in one trial: the numbers that [`run`](super::run) gives its classifier.
+/// Makes the measurements of one cell in one trial: the numbers that a run gives its classifier.
 ///
 /// # Errors
 /// A cell or a trial that the study does not have; what a signal step or a projection refuses.
