@@ -77,6 +77,7 @@ pub(super) const ABOUT: ErrorAbout = ErrorAbout {
         &[Strength {
             is_allowed: |width| (0.0..=MAX_WIDTH).contains(&width),
             allowed: "a fraction of the full scale, 0 to 0.25",
+            names: &[],
             ..Strength::fraction("hysteresis_full_scale", "hysteresis")
         }],
         |&[width, _], skin| Ok(Box::new(Hysteresis::new(width, skin.full_scale)?)),

@@ -51,6 +51,7 @@ pub(super) const ABOUT: ErrorAbout = ErrorAbout {
             is_whole: true,
             is_allowed: |bits| bits.fract() == 0.0 && (0.0..=MAX_BITS as f64).contains(&bits),
             allowed: "a whole number of bits, 1 to 24, or 0 for no converter",
+            names: &[("0", "none")],
         }],
         |&[bits, _], skin| Ok(Box::new(Quantisation::new(bits as u32, skin.full_scale)?)),
     )

@@ -21,6 +21,8 @@ pub struct Strength {
     pub is_allowed: fn(f64) -> bool,
     /// What is, in words.
     pub allowed: &'static str,
+    /// What people call values that are more than numbers: `0`, `none`.
+    pub names: &'static [(&'static str, &'static str)],
 }
 
 /// Checks strengths of which at least one is not zero, and prepares what they do to the signal of a skin.
@@ -119,6 +121,7 @@ impl Strength {
             is_whole: false,
             is_allowed: |share| (0.0..=1.0).contains(&share),
             allowed: "a fraction, 0 to 1",
+            names: &[],
         }
     }
 
@@ -135,6 +138,7 @@ impl Strength {
             is_whole: false,
             is_allowed: |share| share.is_finite() && share >= 0.0,
             allowed,
+            names: &[],
         }
     }
 }

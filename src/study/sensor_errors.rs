@@ -53,9 +53,14 @@ pub fn strength_columns() -> &'static [Column] {
                 Scale::Linear
             };
             let Strength {
-                key, words, unit, ..
+                key,
+                words,
+                unit,
+                names,
+                ..
             } = *strength;
-            Column::new(key, Role::Condition, words, unit, scale).optional()
+            let column = Column::new(key, Role::Condition, words, unit, scale);
+            column.named(names).optional()
         };
         all_strengths().map(column).collect()
     });

@@ -70,7 +70,8 @@ pub struct Column {
     /// The columns that bound it, lower and upper: of a value with an interval.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub interval: Option<[Words; 2]>,
-    /// What people call its words, where these are codes: `rbf_svm`, `RBF SVM`. Of others, underscores are spaces.
+    /// What people call its words, where these are codes: `rbf_svm`, `RBF SVM`. Of others, underscores are spaces. Of numbers, those that
+    /// are more than numbers: `0` bits, `none`.
     #[serde(skip_serializing_if = "<[_]>::is_empty")]
     pub names: &'static [(&'static str, &'static str)],
     /// Whether it may be missing from a file: only some studies have it.
@@ -125,6 +126,17 @@ impl Column {
         }
     }
 
+    /// Whether it has numbers that are more than numbers: between these and others there is nothing.
+    pub fn has_named_numbers(&self) -> bool {
+        self.scale != Scale::Words && self.names.iter().any(|(code, _)| !code.is_empty())
+    }
+
+    /// The name of one of its codes, or of one of its numbers.
+    fn name_of(&self, code: &str) -> Option<&'static str> {
+        let mut names = self.names.iter();
+        names.find_map(|(known, name)| (*known == code).then_some(*name))
+    }
+
     /// Whether its numbers are times over decades.
     fn is_time(&self) -> bool {
         self.scale == Scale::Log && matches!(self.unit.as_ref(), "s" | "ms" | "us" | "µs")
@@ -132,6 +144,9 @@ impl Column {
 
     /// A number without its unit: `10`, `64:1`, `20 µs`.
     pub fn tick(&self, number: f64) -> String {
+        if let Some(name) = self.name_of(&short_number(number)) {
+            return name.to_owned();
+        }
         match self.unit.as_ref() {
             // 100 × 0.07 is not 7 in floating point.
             "%" => short_number((number * 1e8).round() / 1e6),
@@ -148,15 +163,15 @@ impl Column {
         let tick = self.tick(number);
         match self.unit.as_ref() {
             "" | ":1" => tick,
-            _ if self.is_time() => tick,
+            _ if self.is_time() || self.name_of(&short_number(number)).is_some() => tick,
             unit => format!("{tick} {unit}"),
         }
     }
 
     /// What people call one of its words.
     pub fn word(&self, code: &str) -> String {
-        let known = self.names.iter().find(|(known, _)| *known == code);
-        known.map_or_else(|| code.replace('_', " "), |(_, name)| (*name).to_owned())
+        let name = self.name_of(code);
+        name.map_or_else(|| code.replace('_', " "), str::to_owned)
     }
 
     /// A value for a sentence: `10 %`, `RBF SVM`.

@@ -99,6 +99,29 @@ fn what_is_alike_in_rows_and_columns_lies_on_the_diagonal() {
 }
 
 #[test]
+fn a_number_that_stands_for_none_is_named_and_no_line_leads_to_it() {
+    let mut tables = tables();
+    let mut spec = charts().swap_remove(1);
+    assert_eq!((&spec.name[..], &spec.x[..]), ("zero", "crosstalk"));
+    let n_lines = |spec: &ChartSpec, tables: &[_]| {
+        let svg = draw(spec, tables).unwrap().svg("");
+        (svg.matches("<polyline").count(), svg.contains(">no cable<"))
+    };
+    spec.shown.clear();
+    let (joined, is_said) = n_lines(&spec, &tables);
+    assert!(joined > 0 && !is_said, "{joined} lines");
+    let table = tables.iter_mut().find(|table| table.file == spec.table);
+    let table = table.unwrap();
+    let place = table.place("crosstalk").unwrap();
+    table.columns[place].names = &[("0", "no cable")];
+    assert_eq!(
+        table.columns[place].value_words(&Value::Number(0.0)),
+        "no cable"
+    );
+    assert_eq!(n_lines(&spec, &tables), (0, true));
+}
+
+#[test]
 fn the_legend_stands_above_all_data() {
     let tables = tables();
     for spec in charts() {

@@ -83,7 +83,7 @@ fn legend(view: &View) -> Vec<LegendEntry> {
         ));
         let names = view.lines.names.iter().enumerate();
         entries.extend(names.map(|(line, name)| {
-            let mark = match view.is_joined() {
+            let mark = match view.is_joined {
                 true => Mark::Line(line),
                 false => Mark::Point(line),
             };
@@ -129,7 +129,7 @@ impl Panel<'_> {
         }
         self.draw_fronts(drawing);
         for (line, places) in lines.iter().enumerate() {
-            if self.view.is_joined() && places.len() > 1 {
+            if self.view.is_joined && places.len() > 1 {
                 drawing.polyline(&self.path(places), line_stroke(line));
             }
             let is_on_front = |place: &&&Place| self.front.has(place.row);
@@ -158,7 +158,7 @@ impl Panel<'_> {
     }
 
     fn colour(&self, line: usize) -> Rgb {
-        match self.view.is_joined() {
+        match self.view.is_joined {
             true => line_colour(line),
             false => point_colour(line),
         }

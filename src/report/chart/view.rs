@@ -22,6 +22,8 @@ pub(super) struct View<'a> {
     pub panels: Groups,
     pub x: Scale,
     pub y: Scale,
+    /// Whether lines are joined along x: between words, or a number and what stands for none of it, there is nothing.
+    pub is_joined: bool,
     /// Rows that have a place, line by line along x.
     pub places: Vec<Place>,
 }
@@ -121,6 +123,7 @@ impl<'a> View<'a> {
                 Scale::of(y.0, (&along[1], &y_values.1), Along::Y),
             ),
         };
+        let is_broken = x_scale.is_words() || x.0.has_named_numbers();
         let mut view = Self {
             spec,
             table,
@@ -129,6 +132,7 @@ impl<'a> View<'a> {
             panels,
             x: x_scale,
             y: y_scale,
+            is_joined: spec.mark != Mark::Points && !is_broken,
             places: Vec::new(),
         };
         view.places = view.place_all((&x_values.0, &y_values.0), interval);
@@ -177,14 +181,9 @@ impl<'a> View<'a> {
         self.places.iter().filter(is_it).collect()
     }
 
-    /// Whether lines are joined along x: between words there is nothing.
-    pub fn is_joined(&self) -> bool {
-        self.spec.mark != Mark::Points && !self.x.is_words()
-    }
-
     /// Whether intervals are bands: of few lines.
     pub fn has_bands(&self) -> bool {
-        self.has_interval() && self.is_joined() && self.lines.names.len() <= MOST_BANDS
+        self.has_interval() && self.is_joined && self.lines.names.len() <= MOST_BANDS
     }
 
     /// Whether intervals are whiskers.

@@ -70,7 +70,14 @@ class Column {
     return this.unit === "" || this.unit === ":1" || this.seconds ? this.words : `${this.words} (${this.unit})`;
   }
 
+  /** Whether it has numbers that are more than numbers: between these and others there is nothing. */
+  get hasNamedNumbers() {
+    return this.isNumber && [...this.names.keys()].some((code) => code !== "");
+  }
+
   tick(number) {
+    const name = this.names.get(short(number));
+    if (name !== undefined) return name;
     if (this.unit === "%") return short(Math.round(number * 1e8) / 1e6);
     if (this.unit === ":1") return `${short(number)}:1`;
     return this.seconds ? duration(number * this.seconds) : short(number);
@@ -80,7 +87,8 @@ class Column {
   say(value) {
     if (value === null || value === "") return this.names.get("") ?? "none";
     if (!this.isNumber) return this.names.get(value) ?? value.replaceAll("_", " ");
-    return this.unit === "" || this.unit === ":1" || this.seconds ? this.tick(value) : `${this.tick(value)} ${this.unit}`;
+    const isWhole = this.unit === "" || this.unit === ":1" || this.seconds || this.names.has(short(value));
+    return isWhole ? this.tick(value) : `${this.tick(value)} ${this.unit}`;
   }
 
   phrase(value) {

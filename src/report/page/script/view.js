@@ -54,7 +54,7 @@ class View {
       this.places.push(place);
     });
     this.places.sort((a, b) => a.panel - b.panel || a.line - b.line || a.x - b.x);
-    this.isJoined = this.kind !== "points" && this.kind !== "tiles" && !this.x.isWords;
+    this.isJoined = this.kind !== "points" && this.kind !== "tiles" && !this.x.isWords && !x.hasNamedNumbers;
     const hasEnds = this.places.some((place) => place.ends);
     this.hasBands = hasEnds && this.isJoined && this.lines.names.length <= MOST_BANDS;
     this.hasWhiskers = hasEnds && !this.hasBands && !(this.kind === "points" && this.places.length > MOST_WHISKERS);
