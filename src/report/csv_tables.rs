@@ -10,7 +10,7 @@ use crate::study::table::{
     Cell, CellScore, Comparison, Confused, Confusion, Pareto, Published, StageTime, Tables,
     TrialScore, TrialTime, Variance,
 };
-use crate::study::{ContentHash, StudySpec};
+use crate::study::{StudySpec, sha256};
 use crate::table::Column;
 use serde::de::DeserializeOwned;
 use std::collections::BTreeMap;
@@ -60,7 +60,7 @@ impl TableHashes {
                 true => &mut hashes.repeatable,
                 false => &mut hashes.times,
             };
-            known.insert(name, ContentHash::default().bytes(content).hex());
+            known.insert(name, sha256(content));
         }
         hashes
     }
@@ -72,7 +72,7 @@ const A_TABLE: &str = "a table of results as bubbletouch run writes it";
 /// SHA-256 of a file as it stands there.
 pub fn sha256_of(path: &Path) -> Result<String> {
     let content = std::fs::read(path).map_err(|e| Error::unreadable(path, A_TABLE, e))?;
-    Ok(ContentHash::default().bytes(content).hex())
+    Ok(sha256(content))
 }
 
 /// Those of them that hold times, which no two runs share.

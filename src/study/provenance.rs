@@ -118,7 +118,6 @@ pub struct RunFacts {
 impl Manifest {
     /// Of a run that ends now.
     pub fn new(identity: &Identity, facts: RunFacts) -> Self {
-        let study = super::content_hash::ContentHash::default().bytes(&identity.study);
         Self {
             study: facts.study,
             command: facts.command,
@@ -139,7 +138,7 @@ impl Manifest {
             n_cells: facts.n_cells,
             n_trials: facts.n_trials,
             n_failed: facts.n_failed,
-            study_sha256: study.hex(),
+            study_sha256: super::content_hash::sha256(&identity.study),
             objects_sha256: identity.objects.clone(),
             tables_sha256: facts.tables_sha256,
             times_sha256: facts.times_sha256,

@@ -9,12 +9,13 @@
 //! ```
 
 use super::axes::AxisValues;
+use super::axis::Axis;
 use super::plan::{Plan, millimetres};
 use super::plan_signal::Condition;
 use super::published::check_published;
 use super::samples::named_samples;
 use super::sensor_errors::TestedOn;
-use super::splits::{check_folds, check_fused_touches, check_imbalance, draw_split, train_touches};
+use super::splits::{draw_split, train_touches};
 use super::table::Cell;
 use super::touch_set::TouchSet;
 use crate::error::{Error, Result};
@@ -121,9 +122,6 @@ impl Sweep {
             .map(|trial| draw_split(plan, &labels, keys.as_ref(), trial))
             .collect::<Result<Vec<_>>>()?;
         let train_touches = train_touches(plan, &splits, &labels)?;
-        check_fused_touches(plan, &splits, &labels)?;
-        check_folds(plan, &train_touches)?;
-        check_imbalance(plan, &train_touches)?;
         let mut sweep = Self {
             groups: Vec::new(),
             splits,
@@ -186,13 +184,13 @@ impl Sweep {
 
     fn add_groups(&mut self, plan: &Plan, (array, frames): (usize, usize), train: &[usize]) {
         for condition in plan.conditions() {
-            for &tested_on in &plan.tested_on {
-                for &ensemble in &plan.ensembles {
+            for tested_on in Axis::of(&plan.spec.signal.tested_on) {
+                for ensemble in plan.spec.sensing.ensemble.values() {
                     let group = Group {
                         array,
                         frames,
                         condition,
-                        tested_on,
+                        tested_on: tested_on.unwrap_or_default(),
                         ensemble,
                         cells: Vec::new(),
                     };
@@ -219,7 +217,7 @@ impl Sweep {
         let first = last.map_or(0, |cell| cell.cell + 1);
         for measurements in plan.measurement_counts(patch, group.ensemble) {
             for family in families(plan, &group_cell(plan, &group, measurements), train_touches) {
-                group.cells.extend(family_cells(plan, &family));
+                group.cells.extend(family_cells(plan, family));
             }
         }
         for (number, cell) in group.cells.iter_mut().enumerate() {
@@ -237,55 +235,69 @@ fn training_stream(plan: &Plan, trial: usize) -> Seed {
     seed.numbered(trial as u64)
 }
 
-/// Over time × features × classifier × training touches × what spoils them: the first cell of each family with a number of
-/// measurements.
+/// Over time × features × classifier × training touches × class imbalance × mislabelled fraction: the first cell of each family with a number
+/// of measurements.
 fn families(plan: &Plan, first: &Cell, train_touches: &[usize]) -> Vec<Cell> {
-    let mut families = Vec::new();
-    for &over_time in &plan.over_time {
-        for &features in &plan.features {
-            for &classifier in &plan.classifiers {
-                for &train_touches in train_touches {
-                    families.extend(spoiled(plan).map(|[imbalance, mislabelled]| Cell {
-                        over_time,
-                        features,
-                        classifier,
-                        train_touches,
-                        class_imbalance: imbalance,
-                        mislabelled_fraction: mislabelled,
-                        ..first.clone()
-                    }));
-                }
-            }
-        }
-    }
-    families
+    let recognition = &plan.spec.recognition;
+    let mut families = vec![first.clone()];
+    // The first axis changes slowest.
+    families = along(
+        families,
+        &Axis::of(&recognition.over_time),
+        |cell, &value| cell.over_time = value,
+    );
+    families = along(families, &recognition.features.values(), |cell, &value| {
+        cell.features = value
+    });
+    families = along(
+        families,
+        &recognition.classifier.values(),
+        |cell, &value| cell.classifier = value,
+    );
+    families = along(families, train_touches, |cell, &value| {
+        cell.train_touches = value
+    });
+    families = along(
+        families,
+        &Axis::of(&recognition.class_imbalance),
+        |cell, &value| cell.class_imbalance = value,
+    );
+    along(
+        families,
+        &Axis::of(&recognition.mislabelled_fraction),
+        |cell, &value| cell.mislabelled_fraction = value,
+    )
 }
 
-/// Class imbalance × mislabelled fraction.
-fn spoiled(plan: &Plan) -> impl Iterator<Item = [Option<f64>; 2]> {
-    let imbalances = plan.class_imbalance.iter();
-    imbalances.flat_map(|&imbalance| plan.mislabelled.iter().map(move |&part| [imbalance, part]))
+/// Each of some cells with every value of an axis.
+fn along<T>(cells: Vec<Cell>, values: &[T], set: impl Fn(&mut Cell, &T)) -> Vec<Cell> {
+    let all = cells
+        .iter()
+        .flat_map(|cell| values.iter().map(move |value| (cell, value)));
+    let with = |(cell, value): (&Cell, &T)| {
+        let mut cell = cell.clone();
+        set(&mut cell, value);
+        cell
+    };
+    all.map(with).collect()
 }
 
 /// The cells of a family: every C that its classifier has a use for, with every number of fused touches.
-fn family_cells(plan: &Plan, family: &Cell) -> Vec<Cell> {
+fn family_cells(plan: &Plan, family: Cell) -> Vec<Cell> {
+    let recognition = &plan.spec.recognition;
     let penalties = match family.classifier.has_c() {
-        true => &plan.penalties[..],
-        false => &[None],
+        true => recognition.penalties(),
+        false => vec![None],
     };
-    let of_penalty = |&c: &Option<f64>| {
-        plan.fused_touches.iter().map(move |&fused_touches| Cell {
-            c,
-            fused_touches,
-            ..family.clone()
-        })
-    };
-    penalties.iter().flat_map(of_penalty).collect()
+    let fits = along(vec![family], &penalties, |cell, &c| cell.c = c);
+    let fused = recognition.fused_touches.values();
+    along(fits, &fused, |cell, &k| cell.fused_touches = k)
 }
 
 /// A cell of a group, with m and with the first value of each axis that the group leaves open.
 fn group_cell(plan: &Plan, group: &Group, measurements: usize) -> Cell {
     let grid = &plan.arrays[group.array].grid;
+    let recognition = &plan.spec.recognition;
     let Condition {
         noise,
         smoothing,
@@ -306,14 +318,14 @@ fn group_cell(plan: &Plan, group: &Group, measurements: usize) -> Cell {
         measurements,
         ratio: grid.n_taxels() as f64 / measurements as f64,
         frames: group.frames,
-        over_time: plan.over_time[0],
-        features: plan.features[0],
-        classifier: plan.classifiers[0],
+        over_time: None,
+        features: recognition.features.values()[0],
+        classifier: recognition.classifier.values()[0],
         c: None,
         train_touches: 0,
         mislabelled_fraction: None,
         class_imbalance: None,
-        fused_touches: plan.fused_touches[0],
+        fused_touches: 1,
         variant: AxisValues::default(),
     }
 }

@@ -1,6 +1,6 @@
 //! What a recognition study asks of its touches: of pressed objects, or of human touches.
 
-use super::content_hash::ContentHash;
+use super::content_hash::{bytes_of_model, sha256};
 use super::frames::{FrameWriter, Frames};
 use super::measurement::{TouchToRead, touches_of_study};
 use super::plan::Plan;
@@ -137,10 +137,8 @@ impl TouchSet for Vec<TouchedObject> {
     }
 
     fn content(&self) -> BTreeMap<String, String> {
-        let hash = |t: &TouchedObject| {
-            let model = ContentHash::default().model(&t.object.model);
-            (t.object.name.clone(), model.hex())
-        };
-        self.iter().map(hash).collect()
+        let objects = self.iter().map(|t| &t.object);
+        let hashed = objects.map(|o| (o.name.clone(), sha256(bytes_of_model(&o.model))));
+        hashed.collect()
     }
 }
