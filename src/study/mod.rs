@@ -66,7 +66,7 @@ pub use compare_runs::{RunComparison, RunDifference, compare_runs};
 pub(crate) use content_hash::{sha256, short_hash};
 pub use evaluation::CONFIDENCE;
 pub use feature_files::{FeatureSet, cell_features, read_features, write_features, write_npy};
-pub use frames::{FrameFacts, FramePlace, FrameWriter, Frames, KeptFrames};
+pub use frames::{FrameFacts, FramePlace, Frames, KeptFrames};
 pub use human_touches::{HumanTouches, RecordedTouch, record_touch};
 pub use object_files::{
     MeshUse, NamedMesh, file_content, load_catalogue, load_mesh, load_named_meshes, load_objects,

@@ -20,10 +20,23 @@ use super::table::Cell;
 use super::touch_set::TouchSet;
 use crate::error::{Error, Result};
 use crate::random::Seed;
+use crate::recognition::ClassifierKind;
 use crate::recognition::split::Split;
 use crate::recognition::spoiled::mislabelled;
 use crate::sensing::Ensemble;
 use ndarray::Array1;
+
+/// Loops within loops: the first changes slowest.
+macro_rules! nested {
+    ($name:ident in $values:expr; $($rest:tt)*) => {
+        for $name in $values {
+            nested!($($rest)*)
+        }
+    };
+    ($body:expr) => {
+        $body
+    };
+}
 
 /// Everything that is decided before the first touch is simulated.
 #[derive(Clone, Debug)]
@@ -128,9 +141,22 @@ impl Sweep {
             labels,
             group_keys: keys,
         };
-        for array in 0..plan.arrays.len() {
-            for &frames in &plan.frames {
-                sweep.add_groups(plan, (array, frames), &train_touches);
+        nested! {
+            array in 0..plan.arrays.len();
+            frames in plan.frames.iter().copied();
+            condition in plan.conditions();
+            tested_on in Axis::of(&plan.spec.signal.tested_on);
+            ensemble in plan.spec.sensing.ensemble.values();
+            {
+                let group = Group {
+                    array,
+                    frames,
+                    condition,
+                    tested_on: tested_on.unwrap_or_default(),
+                    ensemble,
+                    cells: Vec::new(),
+                };
+                sweep.add_group(plan, group, &train_touches);
             }
         }
         Ok(sweep)
@@ -182,24 +208,6 @@ impl Sweep {
         Ok(labels)
     }
 
-    fn add_groups(&mut self, plan: &Plan, (array, frames): (usize, usize), train: &[usize]) {
-        for condition in plan.conditions() {
-            for tested_on in Axis::of(&plan.spec.signal.tested_on) {
-                for ensemble in plan.spec.sensing.ensemble.values() {
-                    let group = Group {
-                        array,
-                        frames,
-                        condition,
-                        tested_on: tested_on.unwrap_or_default(),
-                        ensemble,
-                        cells: Vec::new(),
-                    };
-                    self.add_group(plan, group, train);
-                }
-            }
-        }
-    }
-
     /// All cells, in their order.
     pub fn cells(&self) -> impl Iterator<Item = &Cell> {
         self.groups.iter().flat_map(|group| &group.cells)
@@ -212,16 +220,50 @@ impl Sweep {
 
     fn add_group(&mut self, plan: &Plan, mut group: Group, train_touches: &[usize]) {
         let patch = &plan.arrays[group.array];
+        let grid = &patch.grid;
+        let learned = &plan.spec.recognition;
+        let penalties = |classifier: ClassifierKind| match classifier.has_c() {
+            true => learned.penalties(),
+            false => vec![None],
+        };
         // Counted from the last group on: all cells would be counted once a group.
         let last = self.groups.last().and_then(|group| group.cells.last());
         let first = last.map_or(0, |cell| cell.cell + 1);
-        for measurements in plan.measurement_counts(patch, group.ensemble) {
-            for family in families(plan, &group_cell(plan, &group, measurements), train_touches) {
-                group.cells.extend(family_cells(plan, family));
-            }
-        }
-        for (number, cell) in group.cells.iter_mut().enumerate() {
-            cell.cell = first + number;
+        nested! {
+            measurements in plan.measurement_counts(patch, group.ensemble);
+            over_time in Axis::of(&learned.over_time);
+            features in learned.features.values();
+            classifier in learned.classifier.values();
+            train_touches in train_touches.iter().copied();
+            class_imbalance in Axis::of(&learned.class_imbalance);
+            mislabelled_fraction in Axis::of(&learned.mislabelled_fraction);
+            c in penalties(classifier);
+            fused_touches in learned.fused_touches.values();
+            group.cells.push(Cell {
+                cell: first + group.cells.len(),
+                pitch_mm: millimetres(grid.pitch),
+                nx: grid.nx,
+                ny: grid.ny,
+                size_mm: millimetres(grid.pitch * grid.nx as f64),
+                noise_std: group.condition.noise,
+                noise_unit: plan.noise_unit,
+                smoothing_mm: millimetres(group.condition.smoothing),
+                strengths: group.condition.strengths,
+                tested_on: plan.spec.signal.tested_on.as_ref().map(|_| group.tested_on),
+                ensemble: group.ensemble,
+                measurements,
+                ratio: grid.n_taxels() as f64 / measurements as f64,
+                frames: group.frames,
+                over_time,
+                features,
+                classifier,
+                c,
+                train_touches,
+                mislabelled_fraction,
+                class_imbalance,
+                fused_touches,
+                variant: AxisValues::default(),
+            })
         }
         // Of many groups of few cells, room for more would be most of the memory.
         group.cells.shrink_to_fit();
@@ -233,99 +275,4 @@ impl Sweep {
 fn training_stream(plan: &Plan, trial: usize) -> Seed {
     let seed = Seed::new(plan.spec.seed).named("training rows");
     seed.numbered(trial as u64)
-}
-
-/// Over time × features × classifier × training touches × class imbalance × mislabelled fraction: the first cell of each family with a number
-/// of measurements.
-fn families(plan: &Plan, first: &Cell, train_touches: &[usize]) -> Vec<Cell> {
-    let recognition = &plan.spec.recognition;
-    let mut families = vec![first.clone()];
-    // The first axis changes slowest.
-    families = along(
-        families,
-        &Axis::of(&recognition.over_time),
-        |cell, &value| cell.over_time = value,
-    );
-    families = along(families, &recognition.features.values(), |cell, &value| {
-        cell.features = value
-    });
-    families = along(
-        families,
-        &recognition.classifier.values(),
-        |cell, &value| cell.classifier = value,
-    );
-    families = along(families, train_touches, |cell, &value| {
-        cell.train_touches = value
-    });
-    families = along(
-        families,
-        &Axis::of(&recognition.class_imbalance),
-        |cell, &value| cell.class_imbalance = value,
-    );
-    along(
-        families,
-        &Axis::of(&recognition.mislabelled_fraction),
-        |cell, &value| cell.mislabelled_fraction = value,
-    )
-}
-
-/// Each of some cells with every value of an axis.
-fn along<T>(cells: Vec<Cell>, values: &[T], set: impl Fn(&mut Cell, &T)) -> Vec<Cell> {
-    let all = cells
-        .iter()
-        .flat_map(|cell| values.iter().map(move |value| (cell, value)));
-    let with = |(cell, value): (&Cell, &T)| {
-        let mut cell = cell.clone();
-        set(&mut cell, value);
-        cell
-    };
-    all.map(with).collect()
-}
-
-/// The cells of a family: every C that its classifier has a use for, with every number of fused touches.
-fn family_cells(plan: &Plan, family: Cell) -> Vec<Cell> {
-    let recognition = &plan.spec.recognition;
-    let penalties = match family.classifier.has_c() {
-        true => recognition.penalties(),
-        false => vec![None],
-    };
-    let fits = along(vec![family], &penalties, |cell, &c| cell.c = c);
-    let fused = recognition.fused_touches.values();
-    along(fits, &fused, |cell, &k| cell.fused_touches = k)
-}
-
-/// A cell of a group, with m and with the first value of each axis that the group leaves open.
-fn group_cell(plan: &Plan, group: &Group, measurements: usize) -> Cell {
-    let grid = &plan.arrays[group.array].grid;
-    let recognition = &plan.spec.recognition;
-    let Condition {
-        noise,
-        smoothing,
-        strengths,
-    } = group.condition;
-    Cell {
-        cell: 0,
-        pitch_mm: millimetres(grid.pitch),
-        nx: grid.nx,
-        ny: grid.ny,
-        size_mm: millimetres(grid.pitch * grid.nx as f64),
-        noise_std: noise,
-        noise_unit: plan.noise_unit,
-        smoothing_mm: millimetres(smoothing),
-        strengths,
-        tested_on: plan.spec.signal.tested_on.as_ref().map(|_| group.tested_on),
-        ensemble: group.ensemble,
-        measurements,
-        ratio: grid.n_taxels() as f64 / measurements as f64,
-        frames: group.frames,
-        over_time: None,
-        features: recognition.features.values()[0],
-        classifier: recognition.classifier.values()[0],
-        c: None,
-        train_touches: 0,
-        mislabelled_fraction: None,
-        class_imbalance: None,
-        fused_touches: 1,
-        variant: AxisValues::default(),
-    }
 }

@@ -4,7 +4,7 @@ use super::rows::{CellRow, RecognitionRows, TouchRow};
 use super::study::{RecognitionStudy, in_frames};
 use crate::error::Result;
 use crate::study::evaluation::Trial;
-use crate::study::frames::{FrameWriter, Frames};
+use crate::study::frames::Frames;
 use crate::study::measurement::{Measurements, measure_group};
 use crate::study::pieces::PiecesLeft;
 use crate::study::simulation::describe;
@@ -75,9 +75,8 @@ impl RecognitionStudy {
         left.progress.stage(&stage, part.sweep.labels.len() as u64);
         let make = || {
             left.during(&self.touch_work(on), || {
-                let writer = FrameWriter::new(patch.grid.n_taxels(), &self.place)?;
-                part.touched
-                    .simulate((patch, n_frames), writer, left.progress)
+                let touched = &part.touched;
+                touched.simulate((patch, n_frames), &self.place, left.progress)
             })
         };
         let Some(frames) = left.prepare_numbers(&need, make)? else {

@@ -3,13 +3,12 @@
 use super::NamedPiece;
 use super::left::PiecesLeft;
 use super::record::{PieceResult, PieceRows};
-use crate::columns;
 use crate::error::Result;
+use crate::row;
 use crate::study::journal::Journal;
 use crate::study::progress::Progress;
 use crate::study::shard::Shard;
 use crate::study::time_left::Piece;
-use serde::{Deserialize, Serialize};
 use std::collections::BTreeSet;
 
 /// A study that is ready to run, in pieces.
@@ -75,18 +74,13 @@ pub struct PieceManner<'a> {
     pub progress: &'a dyn Progress,
 }
 
+row! {
 /// A piece that failed: a row of `failures.csv`.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct PieceFailure {
     /// The piece, in words.
-    pub work_item: String,
+    work_item: String => Subject "work item";
     /// What went wrong.
-    pub error: String,
-}
-
-columns! { PieceFailure {
-    work_item: Subject "work item";
-    error: Note;
+    error: String => Note;
 } }
 
 /// What came of all pieces, in this run and those before it.
