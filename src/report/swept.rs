@@ -145,7 +145,11 @@ impl<'a> Swept<'a> {
         let choices = self
             .varying()
             .filter(|setting| setting.column.role == Role::Choice);
+        // What does not apply to a row is not said of it.
+        let applies =
+            |one: &&Setting| one.data.value(row).is_some() || !one.column.word("").is_empty();
         choices
+            .filter(applies)
             .map(|setting| setting.phrase(row))
             .collect::<Vec<_>>()
             .join(", ")

@@ -267,8 +267,8 @@ columns! { Confused {
 } }
 
 columns! { Published {
-    claim: Note;
-    source: Note;
+    claim: Subject;
+    source: Subject;
     published_accuracy: Value(Neither) "published accuracy": Share;
     accuracy: Value(More): Share between [accuracy_low, accuracy_high];
     accuracy_low: Note "95 % interval, lower end": Share;

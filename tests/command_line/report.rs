@@ -89,7 +89,7 @@ fn the_page_comes_again_from_the_tables() {
         "What does the page say?",
         "<h1>asked</h1>",
         "bubbletouch run asked.toml",
-        "<b>0 of 8</b> cells that failed",
+        "touches that met nothing (0 %)",
         "alt=\"scissors: largest deflection",
         "SHA-256 of study.toml",
     ] {
@@ -105,14 +105,13 @@ fn the_page_comes_again_from_the_tables() {
     fs::remove_file(case.path("found/manifest.json")).unwrap();
     let (_, remarks) = case.succeeds(&["report", "found"]);
     assert!(
-        remarks.contains("does not say which limits were reached"),
+        remarks.contains("there is no found/manifest.json"),
         "{remarks}"
     );
-    assert!(
-        fs::read_to_string(&file)
-            .unwrap()
-            .contains("<h1>found</h1>")
-    );
+    let page = fs::read_to_string(&file).unwrap();
+    for part in ["<h1>found</h1>", "Which limits were reached is not known"] {
+        assert!(page.contains(part), "the page has {part}");
+    }
     fs::remove_file(case.path("found/summary.csv")).unwrap();
     let output = case.run(&["report", "found"]);
     assert!(!output.status.success());
@@ -198,10 +197,7 @@ fn with_too_few_trials_there_is_no_p_value_and_with_enough_there_is() {
         said.contains("No p-values: 2 trials a cell are too few") && said.contains("4 are needed"),
         "{said}"
     );
-    assert!(
-        said.contains("too few trials") && !said.contains("One trial"),
-        "{said}"
-    );
+    assert!(!said.contains("One trial"), "{said}");
 }
 
 #[test]

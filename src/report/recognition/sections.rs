@@ -1,6 +1,7 @@
 //! What the page of a study of recognition has beside that of any study: sample touches, settings, and how often limits were reached.
 
 use crate::error::Result;
+use crate::report::csv_tables::LIMITS_FILE;
 use crate::report::drawing::escape;
 use crate::report::page::{Limit, ReportPage, Section, touches_html};
 use crate::report::swept::{Setting, Swept};
@@ -82,7 +83,9 @@ fn limits_html(limits: &[Limit]) -> String {
         )
     };
     match limits.is_empty() {
-        true => String::new(),
+        true => {
+            format!("<p>Which limits were reached is not known: there is no {LIMITS_FILE}.</p>")
+        }
         false => format!("<ul>{}</ul>", limits.iter().map(item).collect::<String>()),
     }
 }

@@ -1,12 +1,16 @@
 //! The tables of a study of recognition, and one of all that is known of each cell.
 
 use crate::error::Result;
+use crate::recognition::ClassifierKind;
 use crate::report::csv_tables::{LIMITS_FILE, VARIANCE_FILE, axes_beside};
 use crate::study::table::{
     Cell, CellScore, Comparison, Confused, Confusion, Limit, Pareto, Published, StageTime, Tables,
     TrialScore, TrialTime, Variance,
 };
-use crate::table::{Better, Column, Columns, Data, Role, Scale, Table};
+use crate::table::{Better, Column, Columns, Data, Role, Scale, Table, Value};
+use serde::Deserialize;
+use serde::de::IntoDeserializer;
+use serde::de::value::StrDeserializer;
 use std::path::Path;
 
 /// The table of all that is known of each cell; it has no file.
@@ -157,6 +161,7 @@ pub fn say(table: &mut Table) {
         Data::Words { levels, .. } => levels.first().cloned(),
         Data::Numbers(_) => None,
     });
+    let chosen = has_chosen_c(table);
     for column in &mut table.columns {
         match (column.name.as_ref(), unit.as_deref()) {
             ("noise_std", Some("mm" | "n")) => {
@@ -171,7 +176,7 @@ pub fn say(table: &mut Table) {
             ("noise_std", _) => column.words = "noise".into(),
             ("features", _) => column.names = FEATURES,
             ("over_time", _) => column.names = OVER_TIME,
-            ("c", _) => column.names = CHOSEN,
+            ("c", _) if chosen => column.names = CHOSEN,
             // Rare confusions are seen, too.
             ("count", _) => column.scale = Scale::Log,
             // The pitch and the size say them.
@@ -179,6 +184,22 @@ pub fn say(table: &mut Table) {
             _ => {}
         }
     }
+}
+
+/// Whether C is absent only where a classifier that has one chooses it.
+fn has_chosen_c(table: &Table) -> bool {
+    let (Some(c), Some((_, classifiers))) = (table.numbers("c"), table.column("classifier")) else {
+        return false;
+    };
+    let has_c = |row: usize| match classifiers.value(row) {
+        Some(Value::Word(word)) => {
+            let word: StrDeserializer<serde::de::value::Error> = word.as_str().into_deserializer();
+            ClassifierKind::deserialize(word).is_ok_and(ClassifierKind::has_c)
+        }
+        _ => false,
+    };
+    let mut absent = (0..table.n_rows).filter(|&row| c[row].is_nan());
+    absent.all(has_c)
 }
 
 /// Each cell with its distance to the best of its condition and with what it costs.
