@@ -160,8 +160,8 @@ impl TouchSet for HumanTouches {
         names.enumerate().flat_map(of_kind).collect()
     }
 
-    fn samples(&self, plan: &Plan, sweep: &Sweep) -> Result<Samples> {
-        human_samples(plan, sweep, self)
+    fn samples(&self, plan: &Plan, _sweep: &Sweep) -> Result<Samples> {
+        human_samples(plan, self)
     }
 
     fn place_s(&self) -> f64 {

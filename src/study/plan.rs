@@ -2,7 +2,7 @@
 //!
 //! This is the only place where millimetres, degrees and fractions become metres, radians and absolute values.
 
-use super::axes::{AxisValues, Variant};
+use super::axes::AxisValues;
 use super::axis::Axis;
 use super::check::Check;
 use super::plan_human::{HumanTouchPlan, no_placement};
@@ -150,7 +150,7 @@ impl Plan {
         check.configurations(spec.axes.n_combinations())?;
         let (axes, columns) = (spec.axes.clone(), spec.axis_columns());
         let variants = axes.variants(place, &spec)?.into_iter().enumerate();
-        let plans = variants.map(|(number, Variant { values, study })| {
+        let plans = variants.map(|(number, (values, study))| {
             let study = StudySpec {
                 axes: axes.clone(),
                 ..study
