@@ -26,14 +26,14 @@ pub fn human_samples(plan: &Plan, touches: &HumanTouches) -> Result<Samples> {
     let patch =
         patch.ok_or_else(|| Error::input("study", "no cells", "at least one value an axis"))?;
     let grid = patch.grid;
-    let skin = touches.plan.skin(&patch)?;
-    let interval = touches.plan.interval;
+    let skin = touches.spec.skin(&patch)?;
+    let interval = touches.spec.interval();
     let mut frames = Vec::new();
     let chosen = named_samples(plan, &touches.class_names())?;
-    for label in chosen.unwrap_or_else(|| (0..touches.plan.kinds.len()).collect()) {
+    for label in chosen.unwrap_or_else(|| (0..touches.spec.kinds.len()).collect()) {
         let first = touches.of(label).par_iter().take(N_LOOKED_AT);
         let recorded = first.map_init(SkinWorkspace::new, |room, touch| {
-            let mut rows = Array2::zeros((touches.plan.n_frames, grid.n_taxels()));
+            let mut rows = Array2::zeros((touches.spec.n_frames(), grid.n_taxels()));
             record_touch(&skin, touch, interval, rows.view_mut(), room);
             rows
         });
@@ -51,7 +51,7 @@ pub fn human_samples(plan: &Plan, touches: &HumanTouches) -> Result<Samples> {
             let frame = first + (part * (last - first) + N_FRAMES / 2) / (N_FRAMES - 1);
             let name = format!(
                 "{} {:.2} s",
-                touches.plan.kinds[label].name(),
+                touches.spec.kinds[label].name(),
                 (frame - first) as f64 * interval
             );
             let row = rows.row(frame).mapv(f64::from);

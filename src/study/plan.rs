@@ -5,10 +5,9 @@
 use super::axes::AxisValues;
 use super::axis::Axis;
 use super::check::Check;
-use super::plan_human::{HumanTouchPlan, no_placement};
 use super::pose_groups::KeepTogether;
 use super::repeats::Repeats;
-use super::spec::StudySpec;
+use super::spec::{SpreadSpec, StudySpec, TouchesSpec};
 use super::training::ChoicePlan;
 use crate::error::Result;
 use crate::sensing::Ensemble;
@@ -38,8 +37,6 @@ pub struct Plan {
     pub arrays: Vec<Patch>,
     /// How touches are drawn; of nothing in a study of human touches.
     pub placement: Placement,
-    /// Human touches in place of objects.
-    pub human_touch: Option<HumanTouchPlan>,
     /// Approach speed at the moment of reading, m/s.
     pub speed: f64,
     /// What the noise axis is measured in.
@@ -98,14 +95,16 @@ impl Plan {
     pub fn new(place: &str, mut spec: StudySpec) -> Result<Self> {
         let check = Check { place };
         check.count("trials", spec.trials, MOST_TRIALS)?;
-        if spec.human_touch.is_none() {
-            check.objects(&spec.objects)?;
-        }
         let arrays = check.arrays(&spec.skin)?;
-        let human_touch = check.human_touch(&spec, &arrays)?;
-        let placement = match human_touch {
-            Some(_) => no_placement(),
+        check.human_touch(&spec, &arrays)?;
+        let placement = match spec.human_touch {
+            // It places no objects.
+            Some(_) => check.placement(&TouchesSpec {
+                depth_mm: SpreadSpec::One(1.0),
+                ..TouchesSpec::default()
+            })?,
             None => {
+                check.objects(&spec.objects)?;
                 spec.objects.settle_surface_error(&arrays);
                 check.placement(&spec.touches)?
             }
@@ -115,8 +114,8 @@ impl Plan {
         check.steps(&spec.signal)?;
         check.tested_on(&spec.signal)?;
         let amounts = check.amounts(&spec.sensing, &arrays)?;
-        let frames = match &human_touch {
-            Some(human) => vec![human.n_frames],
+        let frames = match &spec.human_touch {
+            Some(human) => vec![human.n_frames()],
             None => spec.touches.frames.values(),
         };
         check.recognition(&spec.recognition)?;
@@ -128,7 +127,6 @@ impl Plan {
             repeats: check.repeats(&spec)?,
             arrays,
             placement,
-            human_touch,
             noise_unit,
             amounts,
             frames,

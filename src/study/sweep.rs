@@ -114,7 +114,7 @@ impl Sweep {
         named_samples(plan, &classes)?;
         let n_classes = classes.len();
         if n_classes < 2 {
-            let (place, given, allowed) = match plan.human_touch {
+            let (place, given, allowed) = match plan.spec.human_touch {
                 Some(_) => ("key human_touch.kinds", "kind", "kinds"),
                 None => ("objects", "object", "objects"),
             };

@@ -3,9 +3,8 @@
 use super::rows::StabilityCell;
 use super::spec::{ContactMethod, StabilityPartSpec, StabilityScene, StabilityStudySpec};
 use crate::error::Result;
-use crate::study::Axis;
 use crate::study::MM;
-use crate::study::{Check, positive};
+use crate::study::check::{COUNT, Check, Range};
 use std::path::{Path, PathBuf};
 
 /// Settings of a study of stability, ready to run.
@@ -33,13 +32,25 @@ pub struct StabilityPart {
 /// Taxels a side, at most: a million and more of bodies is no question of stability.
 const MOST_TAXELS: usize = 256;
 
+/// What the numbers of a part may be.
+const KEYS: [(&str, Range); 9] = [
+    ("methods", Range::Any),
+    ("taxels", COUNT),
+    ("stroke_mm", Range::Positive),
+    ("stiffness_n_per_m", Range::Positive),
+    ("taxel_mass_kg", Range::Positive),
+    ("object_mass_kg", Range::Positive),
+    ("object_mass_per_taxel_kg", Range::Positive),
+    ("dt_s", Range::Positive),
+    ("solver_iterations", COUNT),
+];
+
 impl StabilityPlan {
     /// Checks a study that lies in `folder`; the error names `place` (the file) and the first key that is out of its range.
     pub fn new(place: &str, folder: &Path, spec: StabilityStudySpec) -> Result<Self> {
         let check = Check { place };
         let wanted = &spec.stability;
-        let millimetres = "a positive number of millimetres";
-        let pitch = check.value("stability.pitch_mm", wanted.pitch_mm, positive, millimetres)?;
+        check.keys("stability", wanted, [("pitch_mm", Range::Positive)])?;
         check.list("stability.parts", wanted.parts.clone())?;
         let parts = wanted.parts.iter().enumerate();
         let parts = parts.map(|(number, part)| {
@@ -52,7 +63,7 @@ impl StabilityPlan {
         });
         let parts = parts.collect::<Result<Vec<_>>>()?;
         Ok(Self {
-            pitch: pitch * MM,
+            pitch: wanted.pitch_mm * MM,
             parts,
             peers: wanted.peers.as_ref().map(|path| folder.join(path)),
             spec,
@@ -78,29 +89,21 @@ impl PartCheck<'_> {
         format!("stability.parts[{}].{name}", self.number + 1)
     }
 
-    fn positive(&self, name: &str, axis: &Axis<f64>) -> Result<Vec<f64>> {
-        let allowed = "positive numbers";
-        self.check.axis(&self.key(name), axis, positive, allowed)
-    }
-
     fn lay_out(&self) -> Result<StabilityPart> {
         let part = self.part;
-        let methods = self
-            .check
-            .list(&self.key("methods"), part.methods.clone())?;
-        if methods.iter().any(|method| method.is_peer()) {
+        let name = format!("stability.parts[{}]", self.number + 1);
+        self.check.keys(&name, part, KEYS)?;
+        if part.methods.iter().any(|method| method.is_peer()) {
             let allowed =
                 "methods of this program: other programs leave their rows in stability.peers";
             return Err(self.check.error(&self.key("methods"), "MuJoCo", allowed));
         }
         let sides = self.sides()?;
-        let stroke = self.positive("stroke_mm", &Axis::One(part.stroke_mm))?[0];
-        let stiffnesses = self.positive("stiffness_n_per_m", &part.stiffness_n_per_m)?;
-        let taxel_masses = self.positive("taxel_mass_kg", &part.taxel_mass_kg)?;
+        let stiffnesses = part.stiffness_n_per_m.values();
+        let taxel_masses = part.taxel_mass_kg.values();
         let masses = self.object_masses()?;
-        let dts = self.positive("dt_s", &part.dt_s)?;
-        let iterations = self.key("solver_iterations");
-        let iterations = self.check.counts(&iterations, &part.solver_iterations)?;
+        let dts = part.dt_s.values();
+        let iterations = part.solver_iterations.values();
         let base = StabilityCell {
             part: self.number + 1,
             scene: part.scene,
@@ -112,8 +115,8 @@ impl PartCheck<'_> {
             object_mass_kg: None,
             dt_s: 0.0,
         };
-        let built: Vec<ContactMethod> = methods.into_iter().filter(|m| m.is_built()).collect();
-        let ways = built.iter().flat_map(|method| {
+        let built = part.methods.iter().filter(|method| method.is_built());
+        let ways = built.flat_map(|method| {
             let n = if method.is_engine() {
                 iterations.len()
             } else {
@@ -147,7 +150,7 @@ impl PartCheck<'_> {
         });
         let cells = swept(cells, &taxel_masses, |cell, mass| cell.taxel_mass_kg = mass);
         Ok(StabilityPart {
-            stroke: stroke * MM,
+            stroke: part.stroke_mm * MM,
             cells: swept(cells, &dts, |cell, dt| cell.dt_s = dt),
         })
     }
@@ -155,7 +158,7 @@ impl PartCheck<'_> {
     /// Even, so that the ball lies between four taxels and not on one.
     fn sides(&self) -> Result<Vec<usize>> {
         let key = self.key("taxels");
-        let sides = self.check.counts(&key, &self.part.taxels)?;
+        let sides = self.part.taxels.values();
         match sides.iter().find(|&&n| n % 2 != 0 || n > MOST_TAXELS) {
             Some(n) => {
                 let allowed = format!("even numbers from 2 to {MOST_TAXELS}");
@@ -186,9 +189,8 @@ impl PartCheck<'_> {
             }
             (None, ..) => ("object_mass_kg", "none", "a mass: the ball is free"),
             (_, Some((name, _)), _) => (name, "a mass", "one of this key and object_mass_kg"),
-            (Some((name, axis)), None, _) => {
-                let masses = self.positive(name, axis)?.into_iter();
-                return Ok(masses.map(Some).collect());
+            (Some((_, axis)), None, _) => {
+                return Ok(axis.values().into_iter().map(Some).collect());
             }
         };
         Err(self.check.error(&self.key(name), given, allowed))
