@@ -96,6 +96,13 @@ fn known_column(column: &Column) -> &'static Column {
     known[known.len() - 1]
 }
 
+/// What a table has at a path of keys.
+pub fn value_at<'t>(table: &'t toml::Table, path: &str) -> Option<&'t toml::Value> {
+    let mut names = path.split('.');
+    let first = table.get(names.next()?)?;
+    names.try_fold(first, |value, name| value.get(name))
+}
+
 /// A table with a value at a path of keys, in place of what was there; tables on the way are made.
 ///
 /// # Errors

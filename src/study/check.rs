@@ -1,6 +1,6 @@
 //! Checks of single keys: each error names the file and the key, what was given and what is allowed.
 
-use super::axes::number;
+use super::axes::{number, value_at};
 use super::memory::{check_memory, machine_memory};
 use super::plan::{MM, MOST_FRAMES, millimetres};
 use super::plan_scene::MOST_SIDE;
@@ -164,12 +164,7 @@ impl Check<'_> {
     ) -> Result<toml::Table> {
         let table = toml::Table::try_from(table).expect("every field of a study has a TOML form");
         for (key, range) in keys {
-            let mut names = key.split('.');
-            let first = names.next().and_then(|name| table.get(name));
-            let Some(value) = names
-                .try_fold(first, |value, name| Some(value?.get(name)))
-                .flatten()
-            else {
+            let Some(value) = value_at(&table, key) else {
                 continue;
             };
             let path = &format!("{name}.{key}");

@@ -3,7 +3,6 @@
 //! This is the only place where millimetres, degrees and fractions become metres, radians and absolute values.
 
 use super::axes::AxisValues;
-use super::axis::Axis;
 use super::check::Check;
 use super::pose_groups::KeepTogether;
 use super::repeats::Repeats;
@@ -165,32 +164,8 @@ impl Plan {
     /// How many cells the study has at most, counted without laying any out: values that name the same m twice, or a C for a classifier
     /// that has none, make no further cells.
     pub fn n_cells(&self) -> f64 {
-        fn n<T: Clone>(axis: &Option<Axis<T>>) -> usize {
-            axis.as_ref().map_or(1, |axis| axis.values().len())
-        }
-        let StudySpec {
-            signal,
-            sensing,
-            recognition,
-            ..
-        } = &self.spec;
-        let lengths = [
-            self.arrays.len(),
-            self.frames.len(),
-            n(&signal.tested_on),
-            sensing.ensemble.values().len(),
-            self.amounts.len(),
-            n(&recognition.over_time),
-            recognition.features.values().len(),
-            recognition.classifier.values().len(),
-            n(&recognition.c),
-            n(&recognition.train_touches),
-            n(&recognition.mislabelled_fraction),
-            n(&recognition.class_imbalance),
-            recognition.fused_touches.values().len(),
-        ];
-        let others: f64 = lengths.iter().map(|&n| n as f64).product();
-        signal.n_conditions() * others
+        let lengths = self.spec.axis_lengths().map(|(_, n)| n as f64);
+        self.spec.signal.n_conditions() * lengths.product::<f64>()
     }
 
     /// The m axis on an array; a ratio axis can name the same m twice on a small one.

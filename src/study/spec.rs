@@ -244,6 +244,16 @@ impl StudySpec {
         Ok(Self { axes, ..spec })
     }
 
+    /// How many values each key has that is an axis where it stands, but for those of the signal, which may be combined in another way.
+    pub(crate) fn axis_lengths(&self) -> impl Iterator<Item = (&'static str, usize)> {
+        let table = toml::Table::try_from(self).expect("every field of a study has a TOML form");
+        let keys = MAY_CHANGE.iter().filter(|key| key.contains('.'));
+        keys.chain(&["signal.tested_on"]).map(move |key| {
+            let values = axes::value_at(&table, key).and_then(toml::Value::as_array);
+            (*key, values.map_or(1, Vec::len))
+        })
+    }
+
     /// The columns of its own axes in tables of results.
     pub fn axis_columns(&self) -> Vec<Column> {
         let known = Cell::columns();

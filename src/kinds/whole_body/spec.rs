@@ -209,11 +209,6 @@ impl WholeBodyStudySpec {
     pub fn parse(place: &str, text: &str) -> Result<Self> {
         toml_text::read(place, text)
     }
-
-    /// Writes the study with every default spelt out.
-    pub fn to_toml(&self) -> String {
-        toml::to_string(self).expect("every field of a study has a TOML form")
-    }
 }
 
 fn default_surface_error_mm() -> f64 {
