@@ -28,15 +28,17 @@ use ndarray::Array1;
 
 /// Loops within loops: the first changes slowest.
 macro_rules! nested {
-    ($name:ident in $values:expr; $($rest:tt)*) => {
+    ($name:pat in $values:expr; $($rest:tt)*) => {
         for $name in $values {
-            nested!($($rest)*)
+            $crate::study::sweep::nested!($($rest)*)
         }
     };
     ($body:expr) => {
         $body
     };
 }
+
+pub(crate) use nested;
 
 /// Everything that is decided before the first touch is simulated.
 #[derive(Clone, Debug)]

@@ -4,11 +4,12 @@ use super::rows::ReconstructionCell;
 use super::spec::{ReconstructionSpec, ReconstructionStudySpec};
 use crate::error::Result;
 use crate::random::Seed;
-use crate::sensing::{Basis, Dictionary, Effort, Ensemble, Projection, Solver};
+use crate::sensing::{Basis, Dictionary, Ensemble, Projection};
 use crate::signal::{Noise, NoiseUnit, Quantity, SignalStep};
 use crate::study::Amount;
 use crate::study::check::{COUNT, Check, Range};
 use crate::study::plan::MM;
+use crate::study::sweep::nested;
 use crate::study::{SignalSpec, StepSpec};
 use crate::world::{Grid, Patch, Placement};
 
@@ -27,18 +28,10 @@ pub struct ReconstructionPlan {
     pub noise_unit: NoiseUnit,
     /// The noise axis, in `noise_unit`.
     pub noise: Vec<f64>,
-    /// The ensemble axis.
-    pub ensembles: Vec<Ensemble>,
     /// The axis of measurements.
     pub amounts: Vec<Amount>,
     /// The dictionary axis.
     pub dictionaries: Vec<Basis>,
-    /// The solver axis.
-    pub solvers: Vec<Solver>,
-    /// What bounds the solvers' work.
-    pub effort: Effort,
-    /// Sizes of the supports whose isometry is sampled.
-    pub isometry_sparsity: Vec<usize>,
 }
 
 /// Supports that are drawn of each size, at most: all are in memory at once.
@@ -71,32 +64,25 @@ impl ReconstructionPlan {
         check.steps(&spec.signal)?;
         check.noise_is_last(&spec.signal)?;
         let amounts = check.amounts(&spec.sensing, &[patch])?;
-        let ensembles = spec.sensing.ensemble.values();
         let wanted = &spec.reconstruction;
         check.keys("reconstruction", wanted, KEYS)?;
         let dictionaries = check.dictionaries(wanted, &patch.grid)?;
-        let solvers = wanted.solver.values();
-        let speed = spec.touches.speed_mm_per_s * MM;
         let axes = [
-            ensembles.len(),
+            spec.sensing.ensemble.values().len(),
             amounts.len(),
             noise.len(),
             dictionaries.len(),
-            solvers.len(),
+            wanted.solver.values().len(),
         ];
         check.configurations(axes.iter().map(|&n| n as f64).product())?;
         Ok(Self {
             patch,
             placement,
-            speed,
+            speed: spec.touches.speed_mm_per_s * MM,
             noise_unit,
             noise,
-            ensembles,
             amounts,
             dictionaries,
-            solvers,
-            effort: wanted.effort(),
-            isometry_sparsity: wanted.isometry_sparsity.values(),
             spec,
         })
     }
@@ -152,29 +138,24 @@ impl ReconstructionPlan {
     pub fn cells(&self) -> Vec<ReconstructionCell> {
         let n_taxels = self.patch.grid.n_taxels() as f64;
         let mut cells = Vec::new();
-        for &ensemble in &self.ensembles {
-            for measurements in self.measurement_counts(ensemble) {
-                for &noise_std in &self.noise {
-                    for &dictionary in &self.dictionaries {
-                        cells.extend(self.solvers.iter().map(|&solver| ReconstructionCell {
-                            cell: 0,
-                            noise_std,
-                            noise_unit: self.noise_unit,
-                            ensemble,
-                            measurements,
-                            ratio: n_taxels / measurements as f64,
-                            dictionary,
-                            atoms: 0,
-                            solver,
-                        }));
-                    }
-                }
-            }
+        nested! {
+            ensemble in self.spec.sensing.ensemble.values();
+            measurements in self.measurement_counts(ensemble);
+            &noise_std in &self.noise;
+            &dictionary in &self.dictionaries;
+            solver in self.spec.reconstruction.solver.values();
+            cells.push(ReconstructionCell {
+                cell: cells.len(),
+                noise_std,
+                noise_unit: self.noise_unit,
+                ensemble,
+                measurements,
+                ratio: n_taxels / measurements as f64,
+                dictionary,
+                atoms: 0,
+                solver,
+            })
         }
-        cells
-            .iter_mut()
-            .enumerate()
-            .for_each(|(number, cell)| cell.cell = number);
         cells
     }
 }

@@ -5,6 +5,7 @@ use super::spec::{ContactMethod, StabilityPartSpec, StabilityScene, StabilityStu
 use crate::error::Result;
 use crate::study::MM;
 use crate::study::check::{COUNT, Check, Range};
+use crate::study::sweep::nested;
 use std::path::{Path, PathBuf};
 
 /// Settings of a study of stability, ready to run.
@@ -104,25 +105,15 @@ impl PartCheck<'_> {
         let masses = self.object_masses()?;
         let dts = part.dt_s.values();
         let iterations = part.solver_iterations.values();
-        let base = StabilityCell {
-            part: self.number + 1,
-            scene: part.scene,
-            method: ContactMethod::QuasiStatic,
-            solver_iterations: None,
-            taxels: 0,
-            stiffness_n_per_m: 0.0,
-            taxel_mass_kg: 0.0,
-            object_mass_kg: None,
-            dt_s: 0.0,
-        };
         let built = part.methods.iter().filter(|method| method.is_built());
-        let ways = built.flat_map(|method| {
-            let n = if method.is_engine() {
-                iterations.len()
+        let ways = built.flat_map(|&method| {
+            let engine = iterations.iter().map(|&n| Some(n)).collect();
+            let counts: Vec<_> = if method.is_engine() {
+                engine
             } else {
-                1
+                vec![None]
             };
-            (0..n).map(|k| (*method, method.is_engine().then(|| iterations[k])))
+            counts.into_iter().map(move |n| (method, n))
         });
         let ways: Vec<(ContactMethod, Option<usize>)> = ways.collect();
         let axes = [
@@ -135,23 +126,35 @@ impl PartCheck<'_> {
         ];
         let n_all = axes.iter().map(|&n| n as f64).product();
         self.check.configurations(n_all)?;
-        let cells = vec![base];
-        let cells = swept(cells, &ways, |cell, (method, iterations)| {
-            (cell.method, cell.solver_iterations) = (method, iterations);
-        });
-        let cells = swept(cells, &sides, |cell, side| cell.taxels = side);
-        let cells = swept(cells, &stiffnesses, |cell, k| cell.stiffness_n_per_m = k);
-        let cells = swept(cells, &masses, |cell, mass| {
-            let n_shares = match part.object_mass_per_taxel_kg {
-                Some(_) => cell.n_taxels(),
-                None => 1,
-            };
-            cell.object_mass_kg = mass.map(|mass| n_shares as f64 * mass);
-        });
-        let cells = swept(cells, &taxel_masses, |cell, mass| cell.taxel_mass_kg = mass);
+        let mut cells = Vec::new();
+        nested! {
+            (method, solver_iterations) in ways;
+            &taxels in &sides;
+            &stiffness_n_per_m in &stiffnesses;
+            &mass in &masses;
+            &taxel_mass_kg in &taxel_masses;
+            &dt_s in &dts;
+            {
+                let mut cell = StabilityCell {
+                    part: self.number + 1,
+                    scene: part.scene,
+                    method,
+                    solver_iterations,
+                    taxels,
+                    stiffness_n_per_m,
+                    taxel_mass_kg,
+                    object_mass_kg: mass,
+                    dt_s,
+                };
+                if part.object_mass_per_taxel_kg.is_some() {
+                    cell.object_mass_kg = mass.map(|mass| cell.n_taxels() as f64 * mass);
+                }
+                cells.push(cell);
+            }
+        }
         Ok(StabilityPart {
             stroke: part.stroke_mm * MM,
-            cells: swept(cells, &dts, |cell, dt| cell.dt_s = dt),
+            cells,
         })
     }
 
@@ -195,21 +198,4 @@ impl PartCheck<'_> {
         };
         Err(self.check.error(&self.key(name), given, allowed))
     }
-}
-
-/// Each of some cells at each value of an axis.
-fn swept<T: Copy>(
-    cells: Vec<StabilityCell>,
-    values: &[T],
-    set: impl Fn(&mut StabilityCell, T),
-) -> Vec<StabilityCell> {
-    let mut all = Vec::with_capacity(cells.len() * values.len());
-    for cell in cells {
-        for &value in values {
-            let mut cell = cell.clone();
-            set(&mut cell, value);
-            all.push(cell);
-        }
-    }
-    all
 }
