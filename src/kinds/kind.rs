@@ -7,6 +7,7 @@ use crate::report::study_folder::{NamedPicture, words_of};
 use crate::study::pieces::{PieceStudy, Scale};
 use crate::table::{ChartSpec, Table};
 use crate::toml_text;
+use serde::Serialize;
 use std::collections::BTreeMap;
 use std::path::Path;
 
@@ -40,8 +41,13 @@ pub struct Facts {
 }
 
 impl Facts {
-    /// Of a study's TOML with every default, and of what that does not say: question, expected and seed stand in it.
-    pub fn of(toml: String, content: BTreeMap<String, String>) -> Self {
+    /// Of a study as it is written, and of what that does not say.
+    pub fn of(spec: &impl Serialize, content: BTreeMap<String, String>) -> Self {
+        Self::of_toml(toml_text::write(spec), content)
+    }
+
+    /// Of its TOML with every default: question, expected and seed stand in it.
+    pub fn of_toml(toml: String, content: BTreeMap<String, String>) -> Self {
         let table = toml_text::table(&toml).unwrap_or_default();
         let words = |key| table.get(key).and_then(toml::Value::as_str);
         let seed = table.get("seed").and_then(toml::Value::as_integer);

@@ -421,24 +421,17 @@ impl StudyAxes {
         study: &S,
     ) -> Result<Vec<(Vec<toml::Value>, S)>> {
         let table = toml::Table::try_from(study).expect("every field of a study has a TOML form");
-        let with = |table: &toml::Table, axis: &StudyAxis, value: &toml::Value| {
-            with_value(table, &axis.key, value.clone())
-                .map_err(|error| axis.error(place, value, error))
-        };
-        // Each value alone, so that an error names the axis that it is of.
-        for axis in &self.0 {
-            for value in &axis.values {
-                let read = with(&table, axis, value)?.try_into::<S>();
-                read.map_err(|error| axis.error(place, value, error.message().trim_end()))?;
-            }
-        }
         let all = self.combinations().into_iter().map(|values| {
             let mut table = table.clone();
             for (axis, value) in self.0.iter().zip(&values) {
-                table = with(&table, axis, value)?;
+                let with = with_value(&table, &axis.key, value.clone());
+                table = with.map_err(|error| axis.error(place, value, error))?;
             }
             let study = table.try_into();
-            let study = study.map_err(|error| self.refused(place, &values, &error.to_string()))?;
+            let study = study.map_err(|error: toml::de::Error| {
+                let said = error.to_string().trim().replace('\n', " ");
+                self.refused(place, &values, &said)
+            })?;
             Ok((values, study))
         });
         all.collect()
@@ -592,7 +585,7 @@ mod tests {
             ),
             (
                 with("skin.stroke_mm = [1.0, \"a\"]"),
-                "s.toml:4, axes.\"skin.stroke_mm\": \"a\"; invalid type",
+                "s.toml:4, axes.\"skin.stroke_mm\": skin.stroke_mm = \"a\"; invalid type",
             ),
             (
                 with("skin.stroke_mm = [\"a\", 1.0]"),

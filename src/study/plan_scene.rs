@@ -3,10 +3,10 @@
 use super::axis::Axis;
 use super::check::{Check, MOST_VALUES, positive};
 use super::plan::MM;
-use super::spec::{ModelSpec, ObjectsSpec, RangeSpec, RestSpec, SkinSpec, SpreadSpec, TouchesSpec};
+use super::spec::{ModelSpec, ObjectsSpec, RangeSpec, SkinSpec, SpreadSpec, TouchesSpec};
 use crate::error::Result;
 use crate::mesh::SizeLimits;
-use crate::world::{Grid, Patch, Placement, RestPoses, Spread, Taxel};
+use crate::world::{Grid, Patch, Placement, Spread, Taxel};
 
 /// Taxels along a side of an array, at most.
 pub(super) const MOST_SIDE: usize = 4096;
@@ -144,10 +144,7 @@ impl Check<'_> {
         let degree = std::f64::consts::PI / 180.0;
         let spread = |key: &str, spread, unit| self.spread(&format!("touches.{key}"), spread, unit);
         Ok(Placement {
-            rest: match touches.rest {
-                RestSpec::AsModelled => RestPoses::AsModelled,
-                RestSpec::Stable => RestPoses::Stable,
-            },
+            rest: touches.rest,
             offset_x: spread("offset_x_mm", &touches.offset_x_mm, MM)?,
             offset_y: spread("offset_y_mm", &touches.offset_y_mm, MM)?,
             yaw: spread("yaw_deg", &touches.yaw_deg, degree)?,

@@ -4,6 +4,7 @@ use super::axis::Axis;
 use super::defaults::number;
 use super::spec::one_value;
 use crate::mesh::{LengthUnit, SizeLimits};
+use crate::world::RestPoses;
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
 
@@ -61,7 +62,7 @@ pub struct SkinSpec {
 #[serde(default, deny_unknown_fields)]
 pub struct TouchesSpec {
     /// How the object lies on the table.
-    pub rest: RestSpec,
+    pub rest: RestPoses,
     /// Touches an object; all combinations when left out.
     pub per_object: Option<usize>,
     /// Where the patch's centre is over the object's, along table x, mm.
@@ -107,7 +108,7 @@ impl TouchesSpec {
 impl Default for TouchesSpec {
     fn default() -> Self {
         Self {
-            rest: RestSpec::default(),
+            rest: RestPoses::default(),
             per_object: None,
             offset_x_mm: zero(),
             offset_y_mm: zero(),
@@ -132,17 +133,6 @@ pub enum ModelSpec {
     Mesh,
     /// Few spheres within `surface_error_mm` of the mesh, which must be closed.
     Packed,
-}
-
-/// How an object lies on the table.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum RestSpec {
-    /// With its own z axis up.
-    #[default]
-    AsModelled,
-    /// In one of its stable poses, the likelier ones more often.
-    Stable,
 }
 
 /// How a touch parameter is spread over touches.

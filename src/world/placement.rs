@@ -13,6 +13,7 @@ use super::rest::{RestPose, as_modelled, stable_poses};
 use crate::error::{Error, Result};
 use crate::geometry::Pose;
 use glam::{DQuat, DVec3};
+use serde::{Deserialize, Serialize};
 
 /// Half a turn about x: the patch's z points down. Written out, so that it is exact.
 const FACING_DOWN: DQuat = DQuat::from_xyzw(1.0, 0.0, 0.0, 0.0);
@@ -32,9 +33,11 @@ pub enum Spread {
 }
 
 /// Which resting poses are touched.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
 pub enum RestPoses {
     /// The object's own z points up.
+    #[default]
     AsModelled,
     /// The poses in which the object can rest on the table.
     Stable,

@@ -10,7 +10,6 @@ use crate::kinds::{About, Facts, Kind, Source};
 use crate::study::object_files::objects_content;
 use crate::study::pieces::Scale;
 use crate::table::{ChartSpec, Table};
-use crate::toml_text;
 use std::collections::BTreeMap;
 use std::path::Path;
 
@@ -38,7 +37,7 @@ impl Kind for BreakingPointsStudy {
         for objects in object_specs(values.flat_map(|value| value.plans())) {
             content.extend(objects_content(objects)?);
         }
-        Ok(Facts::of(toml_text::write(spec), content))
+        Ok(Facts::of(spec, content))
     }
 
     fn scale(&self) -> Scale {

@@ -10,7 +10,6 @@ use crate::kinds::{About, Facts, Kind, Source};
 use crate::study::pieces::Scale;
 use crate::study::{load_named_meshes, objects_content};
 use crate::table::{ChartSpec, Table};
-use crate::toml_text;
 use std::path::Path;
 
 impl Kind for ObjectDetailStudy {
@@ -38,10 +37,7 @@ impl Kind for ObjectDetailStudy {
 
     fn facts(&self) -> Result<Facts> {
         let spec = &self.plan.spec;
-        Ok(Facts::of(
-            toml_text::write(spec),
-            objects_content(&spec.objects)?,
-        ))
+        Ok(Facts::of(spec, objects_content(&spec.objects)?))
     }
 
     fn scale(&self) -> Scale {

@@ -51,12 +51,8 @@ impl Kind for RecognitionStudy {
     fn facts(&self) -> Result<Facts> {
         let spec = &self.first().plan.spec;
         Ok(Facts {
-            toml: spec.to_toml(),
-            question: spec.question.clone(),
-            expected: spec.expected.clone(),
-            seed: spec.seed,
-            content: self.content(),
             methods: METHODS.into(),
+            ..Facts::of_toml(spec.to_toml(), self.content())
         })
     }
 

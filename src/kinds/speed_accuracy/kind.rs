@@ -10,7 +10,6 @@ use crate::kinds::{About, Facts, Kind, Source};
 use crate::study::objects_content;
 use crate::study::pieces::{PieceStudy, Scale};
 use crate::table::{ChartSpec, Table};
-use crate::toml_text;
 use std::path::Path;
 
 impl Kind for SpeedAccuracyStudy {
@@ -57,7 +56,7 @@ impl Kind for SpeedAccuracyStudy {
             let scans = objects_content(&scans)?.into_iter();
             content.extend(scans.map(|(name, hash)| (format!("scan {name}"), hash)));
         }
-        Ok(Facts::of(toml_text::write(spec), content))
+        Ok(Facts::of(spec, content))
     }
 
     fn scale(&self) -> Scale {
