@@ -14,6 +14,7 @@ use bubbletouch::study::pieces::{
 use bubbletouch::study::progress::{Progress, Silent};
 use bubbletouch::study::time_left::Piece;
 use bubbletouch::study::{Plan, StudySpec, draw_touches, load_objects};
+use bubbletouch::table::Table;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use std::path::Path;
@@ -49,7 +50,6 @@ fn name(number: usize) -> String {
 
 impl PieceStudy for Nothing {
     type Rows = Rows;
-    type Tables = Rows;
 
     fn pieces(&self) -> Vec<NamedPiece> {
         NamedPiece::each_alone((0..N_PIECES).map(|n| (name(n), Piece::of_stage(0, 1.0))))
@@ -70,8 +70,8 @@ impl PieceStudy for Nothing {
         })
     }
 
-    fn tables(&self, rows: Rows) -> Result<Rows> {
-        Ok(rows)
+    fn tables(&self, _rows: Rows) -> Result<Vec<Table>> {
+        Ok(Vec::new())
     }
 }
 

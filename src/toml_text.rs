@@ -16,6 +16,19 @@ pub(crate) fn read<T: DeserializeOwned>(place: &str, text: &str) -> Result<T> {
     toml::from_str(text).map_err(|error| Error::toml(place, text, &error))
 }
 
+/// What a file says, as a type that is read from its text.
+macro_rules! toml_file {
+    ($file:ident) => {
+        impl $file {
+            /// Reads a file; the error names it, the line and the key.
+            pub fn parse(place: &str, text: &str) -> $crate::Result<Self> {
+                $crate::toml_text::read(place, text)
+            }
+        }
+    };
+}
+pub(crate) use toml_file;
+
 /// A study with every default spelt out.
 pub(crate) fn write(study: &impl Serialize) -> String {
     toml::to_string(study).expect("every field of a study has a TOML form")

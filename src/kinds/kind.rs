@@ -63,7 +63,7 @@ impl Facts {
 }
 
 /// A kind of study. The engine does all else: it runs, keeps, resumes, deals out, merges, plans, verifies and reports it.
-pub trait Kind: PieceStudy<Tables = Vec<Table>> + Sized + Sync + 'static {
+pub trait Kind: PieceStudy + Sized + Sync + 'static {
     /// Which it is.
     const ABOUT: About;
 

@@ -272,7 +272,7 @@ pub(crate) fn default_seed() -> u64 {
     2018
 }
 
-fn is_default<T: Default + PartialEq>(value: &T) -> bool {
+pub(super) fn is_default<T: Default + PartialEq>(value: &T) -> bool {
     *value == T::default()
 }
 

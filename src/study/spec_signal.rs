@@ -2,6 +2,7 @@
 
 use super::axis::Axis;
 use super::sensor_errors::{TestedOn, all_strengths};
+use super::spec::is_default;
 use crate::signal::{NoiseUnit, SENSOR_ERRORS, SensorError};
 use serde::de::{Error as _, MapAccess, Visitor};
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
@@ -19,7 +20,7 @@ pub struct SignalSpec {
     /// Axis: the skin that test touches are made with, `same_skin` (as training touches; when left out) or `another_skin`.
     pub tested_on: Option<Axis<TestedOn>>,
     /// How the axes above are combined with each other. (With other axes they always are.)
-    #[serde(skip_serializing_if = "CombineSpec::is_default")]
+    #[serde(skip_serializing_if = "is_default")]
     pub combine: CombineSpec,
 }
 
@@ -102,12 +103,6 @@ pub enum StepSpec {
     Smoothing,
     /// A sensor error, with strengths of its own keys.
     Error(SensorError),
-}
-
-impl CombineSpec {
-    fn is_default(&self) -> bool {
-        *self == Self::default()
-    }
 }
 
 impl StepSpec {

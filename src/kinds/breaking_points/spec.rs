@@ -1,12 +1,11 @@
 //! A study of breaking points as it is written.
 
 use super::scale::WayScale;
-use crate::error::Result;
 use crate::study::spec::{
     ObjectsSpec, RecognitionSpec, SensingSpec, SignalSpec, SkinSpec, StudySpec, TouchesSpec,
     default_seed,
 };
-use crate::toml_text;
+use crate::toml_text::toml_file;
 use serde::{Deserialize, Serialize};
 
 /// The file.
@@ -90,12 +89,9 @@ pub enum DrivenTouches {
     Test,
 }
 
-impl BreakingPointsSpec {
-    /// Reads a study; the error names the file, the line and the key.
-    pub fn parse(place: &str, text: &str) -> Result<Self> {
-        toml_text::read(place, text)
-    }
+toml_file!(BreakingPointsSpec);
 
+impl BreakingPointsSpec {
     /// The recognition study that the ways drive.
     pub(super) fn base(&self) -> StudySpec {
         StudySpec {

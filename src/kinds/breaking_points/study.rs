@@ -81,7 +81,6 @@ pub(super) fn n_read(value: &PlannedValue) -> usize {
 
 impl PieceStudy for BreakingPointsStudy {
     type Rows = DrivenRows;
-    type Tables = Vec<Table>;
 
     fn pieces(&self) -> Vec<NamedPiece> {
         let pieces = self.named_values().enumerate();

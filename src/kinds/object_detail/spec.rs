@@ -1,11 +1,10 @@
 //! A study of object detail as it is written.
 
-use crate::error::Result;
 use crate::recognition::ClassifierKind;
 use crate::sensing::Ensemble;
 use crate::study::defaults::count;
 use crate::study::spec::{ObjectsSpec, SkinSpec, TouchesSpec, default_seed};
-use crate::toml_text;
+use crate::toml_text::toml_file;
 use serde::{Deserialize, Serialize};
 
 /// The file.
@@ -80,12 +79,7 @@ pub enum DetailMethod {
     MedialSpheres,
 }
 
-impl ObjectDetailStudySpec {
-    /// Reads a study; the error names the file, the line and the key.
-    pub fn parse(place: &str, text: &str) -> Result<Self> {
-        toml_text::read(place, text)
-    }
-}
+toml_file!(ObjectDetailStudySpec);
 
 impl DetailMethod {
     /// Those that are spheres.

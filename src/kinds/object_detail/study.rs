@@ -77,7 +77,6 @@ pub(super) const RECOGNITION: File<DetailRecognition> = File::new(
 
 impl PieceStudy for ObjectDetailStudy {
     type Rows = DetailRows;
-    type Tables = Vec<Table>;
 
     /// Of each object its models and their times; then each level and classifier, which all need all objects.
     fn pieces(&self) -> Vec<NamedPiece> {

@@ -396,7 +396,6 @@ impl RecognitionStudy {
 
 impl PieceStudy for RecognitionStudy {
     type Rows = RecognitionRows;
-    type Tables = Vec<Table>;
 
     /// Trial by trial all families, group by group; then the touches of each array.
     fn pieces(&self) -> Vec<NamedPiece> {

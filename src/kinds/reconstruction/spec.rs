@@ -1,12 +1,11 @@
 //! A reconstruction study as it is written.
 
-use crate::error::Result;
 use crate::sensing::{Basis, Effort, Solver};
 use crate::study::defaults::count;
 use crate::study::{
     Axis, ObjectsSpec, SensingSpec, SignalSpec, SkinSpec, TouchesSpec, default_seed,
 };
-use crate::toml_text;
+use crate::toml_text::toml_file;
 use serde::{Deserialize, Serialize};
 
 /// The file.
@@ -69,12 +68,7 @@ pub struct ReconstructionSpec {
     pub isometry_subsets: usize,
 }
 
-impl ReconstructionStudySpec {
-    /// Reads a study; the error names the file, the line and the key.
-    pub fn parse(place: &str, text: &str) -> Result<Self> {
-        toml_text::read(place, text)
-    }
-}
+toml_file!(ReconstructionStudySpec);
 
 impl ReconstructionSpec {
     /// What bounds the solvers' work.

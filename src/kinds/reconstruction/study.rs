@@ -132,7 +132,6 @@ impl Kind for ReconstructionStudy {
 
 impl PieceStudy for ReconstructionStudy {
     type Rows = ReconstructionRows;
-    type Tables = Vec<Table>;
 
     /// Of each ensemble and m what every dictionary keeps apart, then its cells.
     fn pieces(&self) -> Vec<NamedPiece> {

@@ -1,10 +1,9 @@
 //! A study of speed against accuracy as it is written.
 
-use crate::error::Result;
 use crate::recognition::ClassifierKind;
 use crate::sensing::Ensemble;
 use crate::study::spec::{ObjectsSpec, SkinSpec, TouchesSpec, default_seed};
-use crate::toml_text;
+use crate::toml_text::toml_file;
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
 
@@ -114,9 +113,4 @@ pub struct ResolutionSpec {
     pub ratio: [f64; 2],
 }
 
-impl SpeedAccuracyStudySpec {
-    /// Reads a study; the error names the file, the line and the key.
-    pub fn parse(place: &str, text: &str) -> Result<Self> {
-        toml_text::read(place, text)
-    }
-}
+toml_file!(SpeedAccuracyStudySpec);

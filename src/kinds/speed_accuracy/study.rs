@@ -122,7 +122,6 @@ impl SpeedAccuracyStudy {
 
 impl PieceStudy for SpeedAccuracyStudy {
     type Rows = SpeedAccuracyRows;
-    type Tables = Vec<Table>;
 
     fn pieces(&self) -> Vec<NamedPiece> {
         let parts = [

@@ -1,9 +1,8 @@
 //! A study of stability as it is written.
 
-use crate::error::Result;
 use crate::study::Axis;
 use crate::study::defaults::number;
-use crate::toml_text;
+use crate::toml_text::toml_file;
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
 
@@ -125,12 +124,7 @@ impl ContactMethod {
     }
 }
 
-impl StabilityStudySpec {
-    /// Reads a study; the error names the file, the line and the key.
-    pub fn parse(place: &str, text: &str) -> Result<Self> {
-        toml_text::read(place, text)
-    }
-}
+toml_file!(StabilityStudySpec);
 
 fn default_iterations() -> Axis<usize> {
     Axis::One(4)

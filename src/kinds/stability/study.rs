@@ -89,7 +89,6 @@ impl Kind for StabilityPlan {
 
 impl PieceStudy for StabilityPlan {
     type Rows = StabilityRows;
-    type Tables = Vec<Table>;
 
     fn pieces(&self) -> Vec<NamedPiece> {
         let piece = |(cell, stroke)| (name(cell, stroke), Piece::of_stage(0, planned_s(cell)));

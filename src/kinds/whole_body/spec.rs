@@ -1,10 +1,9 @@
 //! A study of a whole body as it is written.
 
-use crate::error::Result;
 use crate::sensing::Ensemble;
 use crate::study::default_seed;
 use crate::study::defaults::{count, number};
-use crate::toml_text;
+use crate::toml_text::toml_file;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::path::PathBuf;
@@ -204,12 +203,7 @@ impl BodyRecognitionSpec {
     }
 }
 
-impl WholeBodyStudySpec {
-    /// Reads a study; the error names the file, the line and the key.
-    pub fn parse(place: &str, text: &str) -> Result<Self> {
-        toml_text::read(place, text)
-    }
-}
+toml_file!(WholeBodyStudySpec);
 
 fn default_surface_error_mm() -> f64 {
     0.25

@@ -134,7 +134,6 @@ impl Kind for WholeBodyPlan {
 
 impl PieceStudy for WholeBodyPlan {
     type Rows = WholeBodyRows;
-    type Tables = Vec<Table>;
 
     /// Compressions and scenes need all that is learned; rungs need nothing.
     fn pieces(&self) -> Vec<NamedPiece> {

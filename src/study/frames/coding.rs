@@ -10,8 +10,9 @@ pub fn most_bytes(n_taxels: usize) -> usize {
     n_taxels.div_ceil(WORD) * 8 + 4 * n_taxels
 }
 
-/// Appends a frame.
-pub fn encode(frame: &[f32], out: &mut Vec<u8>) {
+/// A frame in bytes.
+pub fn encode(frame: &[f32]) -> Box<[u8]> {
+    let mut out = Vec::with_capacity(most_bytes(frame.len()));
     for taxels in frame.chunks(WORD) {
         let bit = |(place, &value): (usize, &f32)| u64::from(value != 0.0) << place;
         let word: u64 = taxels.iter().enumerate().map(bit).sum();
@@ -20,6 +21,7 @@ pub fn encode(frame: &[f32], out: &mut Vec<u8>) {
     for value in frame.iter().filter(|&&value| value != 0.0) {
         out.extend_from_slice(&value.to_le_bytes());
     }
+    out.into_boxed_slice()
 }
 
 /// Reads a frame back. The bytes are those of [`encode`] for as many taxels.
@@ -55,8 +57,7 @@ mod tests {
                         false => 0.0,
                     })
                     .collect();
-                let mut bytes = Vec::new();
-                encode(&frame, &mut bytes);
+                let bytes = encode(&frame);
                 assert!(bytes.len() <= most_bytes(n_taxels));
                 let mut back = vec![f64::NAN; n_taxels];
                 decode(&bytes, &mut back);
@@ -70,8 +71,6 @@ mod tests {
     fn a_usual_frame_takes_an_eighth() {
         let mut frame = vec![0.0; 4096];
         frame[1000..1400].fill(1e-3);
-        let mut bytes = Vec::new();
-        encode(&frame, &mut bytes);
-        assert_eq!(bytes.len(), 4096 / 8 + 4 * 400);
+        assert_eq!(encode(&frame).len(), 4096 / 8 + 4 * 400);
     }
 }

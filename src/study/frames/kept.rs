@@ -1,6 +1,6 @@
 //! Frames kept in memory, or in a temporary file and read as they are wanted.
 
-use super::coding::{decode, encode, most_bytes};
+use super::coding::decode;
 use crate::error::{Error, Result};
 use ndarray::{Array2, Axis};
 use rayon::prelude::*;
@@ -139,11 +139,4 @@ impl KeptFrames {
         })?;
         Ok(array)
     }
-}
-
-/// A frame as it is kept.
-pub(super) fn encoded(frame: &[f32]) -> Box<[u8]> {
-    let mut bytes = Vec::with_capacity(most_bytes(frame.len()));
-    encode(frame, &mut bytes);
-    bytes.into_boxed_slice()
 }

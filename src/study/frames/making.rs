@@ -1,6 +1,7 @@
 //! Frames made on all threads, and put down in their order.
 
-use super::kept::{FramePlace, KeptFrames, encoded};
+use super::coding::encode;
+use super::kept::{FramePlace, KeptFrames};
 use super::{FrameFacts, Frames};
 use crate::error::Result;
 use crate::study::progress::Progress;
@@ -62,7 +63,7 @@ impl Frames {
                     facts.n_missed += usize::from(missed);
                     facts.n_saturated += usize::from(saturated);
                     let rows = rows.outer_iter();
-                    frames.extend(rows.map(|row| encoded(row.to_slice().expect("a row"))));
+                    frames.extend(rows.map(|row| encode(row.to_slice().expect("a row"))));
                 }
                 progress.advance(touches.len() as u64);
                 facts.cpu_s = start.elapsed().as_secs_f64();

@@ -9,15 +9,13 @@ use crate::study::journal::Journal;
 use crate::study::progress::Progress;
 use crate::study::shard::Shard;
 use crate::study::time_left::Piece;
+use crate::table::Table;
 use std::collections::BTreeSet;
 
 /// A study that is ready to run, in pieces.
 pub trait PieceStudy {
     /// What a piece finds.
     type Rows: PieceRows;
-    /// What the rows of all pieces make.
-    type Tables;
-
     /// All pieces, in the order of their rows.
     fn pieces(&self) -> Vec<NamedPiece>;
 
@@ -45,7 +43,7 @@ pub trait PieceStudy {
     ///
     /// # Errors
     /// A file that tables need cannot be read.
-    fn tables(&self, rows: Self::Rows) -> Result<Self::Tables>;
+    fn tables(&self, rows: Self::Rows) -> Result<Vec<Table>>;
 }
 
 /// Which pieces of a study a run does.
