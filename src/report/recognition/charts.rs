@@ -4,8 +4,8 @@
 //! compression ratio if it varies, else another number; lines and panels take the next two; each combination of what
 //! is left gets a chart of its own.
 
-use super::{CELLS, GIVEN_UP_FIRST};
-use crate::report::swept::{Setting, Swept};
+use super::CELLS;
+use crate::report::swept::{Setting, Swept, without};
 use crate::table::{Along, At, ChartSpec, Data, Mark, Role, Rule, Shown, Table};
 
 /// Classifiers from which on a study is about choosing one.
@@ -107,17 +107,13 @@ fn chance(confusion: &Table) -> Option<Rule> {
 /// first values one at a time get charts of their own, along x.
 fn accuracy_charts(cells: &Table, chance: &Option<Rule>) -> Vec<ChartSpec> {
     let all: Vec<usize> = (0..cells.n_rows).collect();
-    let swept = Swept::of(cells, &all, &GIVEN_UP_FIRST);
+    let swept = Swept::of(cells, &all);
     if swept.one_at_a_time.is_empty() {
         return charts_along(cells, chance, None, &all, &[]);
     }
     let signal = &swept.one_at_a_time;
     let charts_of = |setting: &Setting| {
-        let others: Vec<Setting> = signal
-            .iter()
-            .filter(|other| other.column.name != setting.column.name)
-            .copied()
-            .collect();
+        let others = without(signal, setting);
         let is_at_base = |row: &usize| {
             others
                 .iter()
@@ -137,7 +133,8 @@ fn charts_along(
     rows: &[usize],
     base: &[Setting],
 ) -> Vec<ChartSpec> {
-    let mut free = Swept::of(cells, rows, &GIVEN_UP_FIRST).free;
+    let swept = Swept::of(cells, rows);
+    let mut free = swept.free.clone();
     let x = match x {
         Some(name) => take(&mut free, &[name], |_| true),
         // Words stand along x only if no number varies.
@@ -151,8 +148,9 @@ fn charts_along(
     let lines = take(&mut free, &AS_LINES, |_| true);
     let panels = take(&mut free, &AS_PANELS, |_| true);
     let mut charts = Vec::new();
-    for (fixed, rows) in combinations(&free, rows) {
-        let place = |setting: &Setting| shown(setting, rows[0]);
+    let fixed = free;
+    for rows in swept.groups(&fixed, rows) {
+        let place = |setting: &Setting| cells.shown(&setting.column.name, rows[0]);
         let chart = ChartSpec {
             name: format!("accuracy_by_{}{}", word(&x), name_ending(&fixed, rows[0])),
             title: title(cells, &x, [&lines, &panels], &fixed, rows[0]),
@@ -196,25 +194,6 @@ fn take<'a>(
     // What a study names itself, and what a skin does to a signal, comes after what people look for.
     let place = named.or_else(|| free.iter().position(&suits))?;
     Some(free.remove(place))
-}
-
-/// Every combination of values that rows have, with its rows.
-fn combinations<'a>(
-    settings: &[Setting<'a>],
-    rows: &[usize],
-) -> Vec<(Vec<Setting<'a>>, Vec<usize>)> {
-    let groups = crate::report::swept::groups(settings, rows);
-    groups
-        .into_iter()
-        .map(|rows| (settings.to_vec(), rows))
-        .collect()
-}
-
-fn shown(setting: &Setting, row: usize) -> Option<Shown> {
-    Some(Shown {
-        column: name_of(setting),
-        value: setting.data.value(row)?,
-    })
 }
 
 /// `Accuracy by compression, for each pitch and array size (noise 10 %)`.
@@ -273,7 +252,7 @@ fn name_ending(fixed: &[Setting], row: usize) -> String {
 /// one classifier, for each value of the first other choice that varies.
 fn time_charts(cells: &Table, chance: &Option<Rule>) -> Vec<ChartSpec> {
     let all: Vec<usize> = (0..cells.n_rows).collect();
-    let swept = Swept::of(cells, &all, &GIVEN_UP_FIRST);
+    let swept = Swept::of(cells, &all);
     let of = |role: Role| {
         swept
             .free
