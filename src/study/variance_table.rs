@@ -1,7 +1,7 @@
 //! How much of the spread of each cell's accuracy comes from splits, from projections, and from the rest.
 
 use super::evaluation::CONFIDENCE;
-use super::repeats::accuracies;
+use super::repeats::{Repeat, scores};
 use super::table::{Cell, TrialScore};
 use crate::columns;
 use crate::error::Result;
@@ -65,13 +65,11 @@ columns! { Variance {
 pub fn variances(rows: &[(Cell, TrialScore)]) -> Result<Vec<Variance>> {
     let mut table = Vec::new();
     for trials in rows.chunk_by(|a, b| a.0.cell == b.0.cell) {
-        let scores: Vec<&TrialScore> = trials.iter().map(|(_, score)| score).collect();
-        let Some(scores) = accuracies(&scores).filter(|scores| scores.ncols() > 1) else {
+        let trials_of = trials.iter().map(|(_, score)| Repeat::of(score));
+        let scores = scores(&trials_of.collect::<Vec<_>>());
+        let Some(scores) = scores.filter(|scores| scores.ncols() > 1 && scores.nrows() > 1) else {
             continue;
         };
-        if scores.nrows() < 2 {
-            continue;
-        }
         let found = components(scores.view(), CONFIDENCE)?;
         let parts = [
             (Source::Split, found.rows),

@@ -200,8 +200,8 @@ fn what_the_user_names_wrongly_is_refused_as_bad_input() {
     let before = case.names();
     for (arguments, words) in [
         ("report empty", &["empty/study.toml", "cannot be read"][..]),
-        ("compare empty empty", &["empty/accuracy.csv", "is missing"]),
-        ("compare nothere empty", &["nothere/accuracy.csv"]),
+        ("compare empty empty", &["empty/study.toml", "is missing"]),
+        ("compare nothere empty", &["nothere/study.toml"]),
         ("recording nothere.npz", &["nothere.npz", "is missing"]),
         ("press --mesh x.ply", &["x.ply: a folder"]),
         ("press --spheres x.csv", &["x.csv: a folder"]),

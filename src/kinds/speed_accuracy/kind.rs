@@ -87,19 +87,13 @@ impl Kind for SpeedAccuracyStudy {
         }
     }
 
-    fn read_tables(&self, folder: &Path) -> Result<Vec<Table>> {
-        let mut tables = Vec::new();
-        let parts = self.plan.parts();
-        if parts.contact.is_some() {
-            tables.extend(CONTACT.read(folder)?);
-        }
-        if parts.recognition.is_some() {
-            tables.extend(CHAINS.read(folder)?);
-        }
-        if parts.resolution.is_some() {
-            tables.extend(SIZES.read(folder)?);
-        }
-        Ok(tables)
+    fn read(folder: &Path) -> Result<Vec<Table>> {
+        let parts = [
+            CONTACT.read(folder)?,
+            CHAINS.read(folder)?,
+            SIZES.read(folder)?,
+        ];
+        Ok(parts.into_iter().flatten().collect())
     }
 
     fn charts(&self, tables: &[Table]) -> Vec<ChartSpec> {

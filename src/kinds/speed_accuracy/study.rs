@@ -181,13 +181,13 @@ impl<C: Columns, S: Columns, T: Columns, P: Columns> Part<C, S, T, P> {
         ])
     }
 
-    /// Of a folder.
-    pub fn read(&self, folder: &Path) -> Result<[Table; 3]> {
-        Ok([
-            self.scores.read(folder)?,
-            self.times.read(folder)?,
-            self.pareto.read(folder)?,
-        ])
+    /// Of a folder; none of a study without this part.
+    pub fn read(&self, folder: &Path) -> Result<Vec<Table>> {
+        let Some(pareto) = self.pareto.read_if_there(folder)? else {
+            return Ok(Vec::new());
+        };
+        let found = [self.scores.read(folder)?, self.times.read(folder)?];
+        Ok(found.into_iter().chain([pareto]).collect())
     }
 }
 
