@@ -57,13 +57,7 @@ impl<K: Kind> AnyStudy for Loaded<K> {
 
     fn plan(&self) -> Result<String> {
         let n_threads = threads_within(&self.kind.scale(), self.memory)?;
-        let manner = PieceManner {
-            journal: &Journal::none(),
-            fail_fast: true,
-            retries: false,
-            part: Part::All,
-            progress: &Silent,
-        };
+        let manner = PieceManner::whole(&Silent);
         let estimate = PieceEstimate {
             scale: self.kind.scale(),
             n_pieces: self.pieces.len(),
@@ -101,11 +95,8 @@ impl<K: Kind> AnyStudy for Loaded<K> {
     ) -> Result<String> {
         let chosen = drawn(&self.kind, &self.pieces, folder, (n, draw))?;
         let manner = PieceManner {
-            journal: &Journal::none(),
-            fail_fast: true,
-            retries: false,
             part: Part::Only(&chosen),
-            progress,
+            ..PieceManner::whole(progress)
         };
         let again = within_memory(&self.kind.scale(), self.memory, || {
             let run = PiecesRun::new(&self.kind, &self.pieces, &manner);

@@ -10,7 +10,7 @@ use crate::report::folder::Folder;
 use crate::report::page::StudyAbout;
 use crate::report::study_folder::{Found, folder_with};
 use crate::study::pieces::PieceFailure;
-use crate::study::provenance::{MANIFEST_FILE, Manifest, PROGRAM, RunFacts};
+use crate::study::provenance::{MANIFEST_FILE, Manifest, PROGRAM};
 use crate::table::Table;
 use std::path::Path;
 
@@ -62,11 +62,11 @@ impl<K: Kind> Results<'_, K> {
         let files = files.map(|table| (table.file, table.csv.clone()));
         let of_name = |name: &str| self.tables.iter().find(|table| table.file == name);
         let hashes = TableHashes::of(files, |name| of_name(name).is_some_and(|t| t.repeats));
-        let run = RunFacts {
+        let methods = facts.methods.iter();
+        Manifest {
             study: ended.name.clone(),
             command: ended.command.clone(),
             paths_from: ended.paths_from.clone(),
-            started: ended.started,
             seed: facts.seed,
             n_cells: self.study.pieces.len(),
             n_trials: 1,
@@ -74,9 +74,11 @@ impl<K: Kind> Results<'_, K> {
             n_failed: self.n_failed,
             tables_sha256: hashes.repeatable,
             times_sha256: hashes.times,
-            methods: facts.methods.clone(),
-        };
-        Manifest::new(identity, run)
+            methods: methods
+                .map(|(columns, method)| (columns.to_string(), method.to_string()))
+                .collect(),
+            ..Manifest::ended(identity, ended.started)
+        }
     }
 }
 

@@ -4,7 +4,7 @@
 //! value is an empty field. A table without rows has its header, but for columns that only some studies have.
 
 use crate::error::{Error, Result};
-use crate::study::ContentHash;
+use crate::study::sha256;
 use serde::de::DeserializeOwned;
 use std::collections::BTreeMap;
 use std::fs::File;
@@ -38,7 +38,7 @@ impl TableHashes {
                 true => &mut hashes.repeatable,
                 false => &mut hashes.times,
             };
-            known.insert(name, ContentHash::default().bytes(content).hex());
+            known.insert(name, sha256(content));
         }
         hashes
     }
@@ -50,7 +50,7 @@ const A_TABLE: &str = "a table of results as bubbletouch run writes it";
 /// SHA-256 of a file as it stands there.
 pub fn sha256_of(path: &Path) -> Result<String> {
     let content = std::fs::read(path).map_err(|e| Error::unreadable(path, A_TABLE, e))?;
-    Ok(ContentHash::default().bytes(content).hex())
+    Ok(sha256(content))
 }
 
 /// Reads a table; the error names the file and the line.

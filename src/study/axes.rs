@@ -360,7 +360,8 @@ fn scale(numbers: Option<Vec<f64>>) -> Scale {
     }
 }
 
-fn number(value: &toml::Value) -> Option<f64> {
+/// A number, whole or not.
+pub(super) fn number(value: &toml::Value) -> Option<f64> {
     let integer = || value.as_integer().map(|integer| integer as f64);
     value.as_float().or_else(integer)
 }

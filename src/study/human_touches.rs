@@ -1,6 +1,6 @@
 //! Human touches of a study: drawn once, recorded on each array.
 
-use super::frames::{FrameWriter, Frames, Making, Press};
+use super::frames::{FramePlace, Frames};
 use super::human_samples::human_samples;
 use super::measurement::TouchToRead;
 use super::plan::Plan;
@@ -128,7 +128,7 @@ impl TouchSet for HumanTouches {
     fn simulate(
         &self,
         (patch, n_frames): (&Patch, usize),
-        writer: FrameWriter,
+        place: &FramePlace,
         progress: &dyn Progress,
     ) -> Result<Frames> {
         let skin = self
@@ -136,9 +136,12 @@ impl TouchSet for HumanTouches {
             .skin(patch)
             .expect("the plan has checked that it fits");
         let interval = self.plan.interval;
-        let mut making = Making::new(writer, n_frames, progress);
-        making.make(&HandPress { skin, interval }, &self.touches)?;
-        making.finish()
+        let mut frames = Frames::new((patch.grid.n_taxels(), n_frames), place)?;
+        let record = |touch: &_, workspace: &mut _, rows: ArrayViewMut2<f32>| {
+            record_touch(&skin, touch, interval, rows, workspace)
+        };
+        frames.make(&self.touches, SkinWorkspace::new, record, progress)?;
+        Ok(frames)
     }
 
     fn to_read(&self, _plan: &Plan, _n_frames: usize, seed: &Seed) -> Vec<TouchToRead> {
@@ -184,30 +187,5 @@ impl TouchSet for HumanTouches {
 
     fn content(&self) -> BTreeMap<String, String> {
         BTreeMap::new()
-    }
-}
-
-/// Records hands on a skin.
-struct HandPress {
-    skin: SkinPatch,
-    /// Seconds between frames.
-    interval: f64,
-}
-
-impl Press for HandPress {
-    type Touch = RecordedTouch;
-    type Workspace = SkinWorkspace;
-
-    fn workspace(&self) -> SkinWorkspace {
-        SkinWorkspace::new()
-    }
-
-    fn press(
-        &self,
-        touch: &RecordedTouch,
-        workspace: &mut SkinWorkspace,
-        rows: ArrayViewMut2<f32>,
-    ) -> (bool, bool) {
-        record_touch(&self.skin, touch, self.interval, rows, workspace)
     }
 }

@@ -1,6 +1,6 @@
 //! Objects from where a study finds them: built-in sets, TOML files, folders of meshes.
 
-use super::content_hash::ContentHash;
+use super::content_hash::sha256;
 use super::packings::pack_within;
 use super::spec::{ModelSpec, ObjectsSpec};
 use crate::error::{Error, Result};
@@ -88,8 +88,7 @@ pub fn objects_content(spec: &ObjectsSpec) -> Result<BTreeMap<String, String>> {
     let mut content = BTreeMap::new();
     for set in &spec.sets {
         for entry in set_entries(set, spec.names.as_deref())? {
-            let hash = ContentHash::default().bytes(format!("{:?}", entry.solid));
-            content.insert(entry.name, hash.hex());
+            content.insert(entry.name, sha256(format!("{:?}", entry.solid)));
         }
     }
     if let Some(folder) = &spec.meshes {
@@ -106,7 +105,7 @@ pub fn objects_content(spec: &ObjectsSpec) -> Result<BTreeMap<String, String>> {
 /// It cannot be read.
 pub fn file_content(path: &Path) -> Result<String> {
     let bytes = std::fs::read(path).map_err(|e| Error::io(path, "read", e))?;
-    Ok(ContentHash::default().bytes(bytes).hex())
+    Ok(sha256(bytes))
 }
 
 /// What a PLY, OBJ or STL file holds, in metres; without a unit its numbers are metres, and must be such as `sizes` allow.

@@ -1,12 +1,10 @@
 //! Which kind of touch: the checks of `[human_touch]`.
 
-use super::check::{Check, positive};
+use super::check::Check;
 use super::plan::{MM, MOST_FRAMES};
 use super::spec::{ObjectsSpec, StudySpec, TouchesSpec};
 use crate::error::Result;
-use crate::world::{
-    Layout, MOST_TOUCHES, Patch, Placement, RestPoses, SkinPatch, Spread, Taxels, TouchKind,
-};
+use crate::world::{Layout, Patch, Placement, RestPoses, SkinPatch, Spread, Taxels, TouchKind};
 
 /// Human touches of a study.
 #[derive(Clone, Debug, PartialEq)]
@@ -58,12 +56,8 @@ impl Check<'_> {
             return Ok(None);
         };
         if spec.objects != ObjectsSpec::default() || spec.touches != TouchesSpec::default() {
-            let given = "beside [objects] or [touches]";
-            return Err(self.error(
-                "human_touch",
-                given,
-                "it alone: it is what touches, and how",
-            ));
+            let allowed = "it alone: it is what touches, and how";
+            return Err(self.error("human_touch", "beside [objects] or [touches]", allowed));
         }
         if spec.recognition.keep_together.is_some() {
             let allowed = "no such key: human touches have no groups";
@@ -74,20 +68,17 @@ impl Check<'_> {
             let given = spec.skin.damping_n_s_per_m;
             return Err(self.error("skin.damping_n_s_per_m", given, allowed));
         }
-        let key = |name: &str| format!("human_touch.{name}");
-        let number =
-            |name: &str, value: f64| self.value(&key(name), value, positive, "a positive number");
-        let frames_hz = number("frames_hz", human.frames_hz)?;
-        let n_frames = (number("duration_s", human.duration_s)? * frames_hz).round() + 1.0;
+        self.table("human_touch", human)?;
+        let n_frames = (human.duration_s * human.frames_hz).round() + 1.0;
         if !(2.0..=MOST_FRAMES as f64).contains(&n_frames) {
             let allowed = format!("2 to {MOST_FRAMES} frames in duration_s at frames_hz");
             return Err(self.error("human_touch", format!("{n_frames} frames a touch"), allowed));
         }
         let plan = HumanTouchPlan {
-            kinds: self.list(&key("kinds"), human.kinds.clone())?,
-            per_kind: self.count(&key("per_kind"), human.per_kind, MOST_TOUCHES)?,
-            surface: number("arm_radius_mm", human.arm_radius_mm)? * MM,
-            interval: 1.0 / frames_hz,
+            kinds: human.kinds.clone(),
+            per_kind: human.per_kind,
+            surface: human.arm_radius_mm * MM,
+            interval: 1.0 / human.frames_hz,
             n_frames: n_frames as usize,
         };
         for patch in arrays {

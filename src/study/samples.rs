@@ -67,7 +67,7 @@ pub fn sample_frames(plan: &Plan, sweep: &Sweep, touched: &[TouchedObject]) -> R
             }
             let remembers =
                 |step: &StepSpec| matches!(step, StepSpec::Error(error) if error.about().remembers);
-            let after = match plan.steps.iter().any(remembers) {
+            let after = match plan.spec.signal.steps.iter().any(remembers) {
                 true => format!(", after one of the {},", name(before)),
                 false => String::new(),
             };
@@ -149,18 +149,20 @@ fn steps(plan: &Plan, group: &Group) -> Vec<SignalStep> {
 /// In a study of one sensor error at a time: the first group of an array, then for each error the group that has it at
 /// its last value, with what to call them. A scan is left out: it does not change a touch that is read once.
 fn imperfect_groups<'a>(plan: &Plan, sweep: &'a Sweep, array: usize) -> Vec<(String, &'a Group)> {
-    if plan.combine != CombineSpec::OneAtATime {
+    let signal = &plan.spec.signal;
+    if signal.combine != CombineSpec::OneAtATime {
         return Vec::new();
     }
     let groups = || sweep.groups.iter().filter(|group| group.array == array);
     let mut chosen = Vec::new();
-    for (strength, values) in &plan.sensor_errors {
-        let Some(column) = strength_columns().iter().find(|c| c.name == strength.key) else {
+    for (key, _, axis) in signal.axes.given() {
+        let Some(column) = strength_columns().iter().find(|c| c.name == *key) else {
             continue;
         };
+        let values = axis.values();
         let last = *values.last().unwrap_or(&0.0);
         let shows = |(error, own, value): (SensorError, &Strength, f64)| {
-            own == *strength && value == last && !error.about().needs_motion
+            own.key == *key && value == last && !error.about().needs_motion
         };
         let has_it = |group: &&Group| group.condition.strengths.given().any(shows);
         if let Some(group) = groups().find(has_it)

@@ -5,7 +5,6 @@
 use super::axes::{self, AxisRules, StudyAxes};
 use super::axis::Axis;
 use super::cell::Cell;
-use super::sensor_errors::all_strengths;
 pub use super::spec_human::*;
 pub use super::spec_scene::*;
 pub use super::spec_signal::*;
@@ -64,17 +63,19 @@ pub struct StudySpec {
     pub axes: StudyAxes,
 }
 
-/// Keys that are axes where they stand, beside the strengths of sensor errors.
-const AXIS_KEYS: [&str; 20] = [
+/// Words, and keys that are axes where they stand: what may change while finished work is kept, since each work item goes by all that it
+/// depends on. Of `[signal]` all keys but the steps are axes.
+pub(crate) const MAY_CHANGE: &[&str] = &[
+    "question",
+    "expected",
+    "report",
+    "axes",
+    "trials",
     "skin.pitch_mm",
     "skin.size_mm",
     "skin.taxels",
     "touches.frames",
-    "signal.noise_std_full_scale",
-    "signal.noise_std_mm",
-    "signal.noise_std_n",
-    "signal.smoothing_mm",
-    "signal.tested_on",
+    "signal",
     "sensing.ensemble",
     "sensing.ratio",
     "sensing.measurements",
@@ -90,10 +91,9 @@ const AXIS_KEYS: [&str; 20] = [
 
 /// Trials split the same touches again, and words and reports are of the whole study.
 const AXIS_RULES: AxisRules = AxisRules {
-    in_place: |key| {
-        let signal = key.strip_prefix("signal.");
-        let is_strength = |key| all_strengths().any(|(_, strength)| strength.key == key);
-        AXIS_KEYS.contains(&key) || signal.is_some_and(is_strength)
+    in_place: |key| match key.strip_prefix("signal.") {
+        Some(key) => !matches!(key, "steps" | "combine"),
+        None => key.contains('.') && MAY_CHANGE.contains(&key),
     },
     refused: &[
         "question",

@@ -12,9 +12,7 @@
 //! Deflections are what the press gives: no noise, no smoothing, none of the sensor errors of `[signal]`. Frames as a cell reads them
 //! ([`ReadFrames`]) have all of these, in metres or, with the step `force`, in newtons; only `frames.npy` differs.
 
-use super::feature_files::find;
-use super::frames::FrameWriter;
-use super::measurement::measure_group;
+use super::feature_files::{find, measured, write_npy};
 use super::plan::Plan;
 use super::progress::Progress;
 use super::simulation::describe;
@@ -28,8 +26,8 @@ use crate::objects::Object;
 use crate::random::Seed;
 use crate::sensing::Ensemble;
 use crate::world::{Patch, Placement, RestPose, Scene, Touch, TouchSource};
-use ndarray::Array2;
-use ndarray_npy::{WritableElement, write_zeroed_npy};
+use ndarray::{Array1, Array2};
+use ndarray_npy::write_zeroed_npy;
 use rayon::prelude::*;
 use serde::Serialize;
 use std::io::{self, Seek, SeekFrom, Write};
@@ -94,26 +92,14 @@ impl ReadFrames {
     ) -> Result<Self> {
         let (group, cell) = find(sweep, cell)?;
         let split = sweep.split(plan, cell, trial)?;
-        let patch = &plan.arrays[group.array];
-        progress.stage(
-            &format!("read {}", describe(patch)),
-            sweep.labels.len() as u64,
-        );
-        let writer = FrameWriter::in_memory(patch.grid.n_taxels());
-        let frames = touched.simulate((patch, group.frames), writer, progress)?;
         // What the identity measures are the frames themselves.
         let identity = Group {
             ensemble: Ensemble::Identity,
             ..group.clone()
         };
-        let n_taxels = patch.grid.n_taxels();
-        let read = measure_group(
-            plan,
-            &identity,
-            (touched, &frames),
-            (trial, &split),
-            n_taxels,
-        )?;
+        let n_taxels = plan.arrays[group.array].grid.n_taxels();
+        let of = (touched, &identity, n_taxels);
+        let read = measured(plan, of, (trial, &split), ("read", progress))?;
         Ok(Self {
             array: group.array,
             values: read.values,
@@ -174,7 +160,7 @@ pub fn write_touches(
                 .collect();
             for (touch, reading) in &mut block {
                 if let Some(read) = read {
-                    reading.frame = read.frame(files.n_written);
+                    reading.frame = read.frame(files.labels.len());
                 }
                 files.add(label, &object.name, touch, reading)?;
             }
@@ -182,7 +168,7 @@ pub fn write_touches(
         }
     }
     table.commit()?;
-    files.commit()?;
+    files.commit(folder)?;
     Ok(n_touches)
 }
 
@@ -199,41 +185,39 @@ fn pressed(scene: &Scene, rest: &RestPose, touch: &Touch, workspace: &mut Worksp
     }
 }
 
-/// The files with one entry a touch.
+/// The files with one entry a touch: those of frames and rows grow with it.
 struct TouchFiles {
     frames: WholeFile,
-    labels: WholeFile,
-    poses: WholeFile,
-    depths: WholeFile,
     table: CsvFile,
-    n_written: usize,
+    labels: Vec<i64>,
+    poses: Vec<f64>,
+    depths: Vec<f64>,
 }
 
 impl TouchFiles {
     fn create(folder: &Path, n: usize, patch: &Patch) -> Result<Self> {
         let shape = [n, patch.grid.ny, patch.grid.nx];
+        let mut frames = WholeFile::create(&folder.join("frames.npy"))?;
+        // Its header now, its data (little-endian, row by row) as it comes.
+        frames.write(|writer| {
+            write_zeroed_npy::<f32, _>(writer.get_ref(), shape).map_err(io::Error::other)?;
+            let n_bytes = shape.iter().product::<usize>() * size_of::<f32>();
+            writer.seek(SeekFrom::End(-(n_bytes as i64))).map(|_| ())
+        })?;
         Ok(Self {
-            frames: start_npy::<f32>(&folder.join("frames.npy"), &shape)?,
-            labels: start_npy::<i64>(&folder.join("labels.npy"), &[n])?,
-            poses: start_npy::<f64>(&folder.join("poses.npy"), &[n, 7])?,
-            depths: start_npy::<f64>(&folder.join("depths.npy"), &[n])?,
+            frames,
             table: CsvFile::create(&folder.join("touches.csv"))?,
-            n_written: 0,
+            labels: Vec::with_capacity(n),
+            poses: Vec::with_capacity(7 * n),
+            depths: Vec::with_capacity(n),
         })
     }
 
     fn add(&mut self, label: usize, object: &str, touch: &Touch, reading: &Reading) -> Result<()> {
-        let numbers =
-            |values: &[f64]| -> Vec<u8> { values.iter().flat_map(|v| v.to_le_bytes()).collect() };
         let frame: Vec<u8> = reading.frame.iter().flat_map(|v| v.to_le_bytes()).collect();
         self.frames.write(|w| w.write_all(&frame))?;
-        self.labels
-            .write(|w| w.write_all(&(label as i64).to_le_bytes()))?;
-        self.poses.write(|w| w.write_all(&numbers(&reading.pose)))?;
-        self.depths
-            .write(|w| w.write_all(&numbers(&[touch.depth])))?;
         self.table.row(TouchRow {
-            touch: self.n_written,
+            touch: self.labels.len(),
             label,
             object,
             rest: touch.rest,
@@ -246,26 +230,19 @@ impl TouchFiles {
             n_touched: reading.n_touched,
             n_saturated: reading.n_saturated,
         })?;
-        self.n_written += 1;
+        self.labels.push(label as i64);
+        self.poses.extend(reading.pose);
+        self.depths.push(touch.depth);
         Ok(())
     }
 
-    fn commit(self) -> Result<()> {
+    fn commit(self, folder: &Path) -> Result<()> {
+        let shape = (self.labels.len(), 7);
+        let poses = Array2::from_shape_vec(shape, self.poses).expect("seven a touch");
+        write_npy(&folder.join("labels.npy"), &Array1::from(self.labels))?;
+        write_npy(&folder.join("poses.npy"), &poses)?;
+        write_npy(&folder.join("depths.npy"), &Array1::from(self.depths))?;
         self.frames.commit()?;
-        self.labels.commit()?;
-        self.poses.commit()?;
-        self.depths.commit()?;
         self.table.commit()
     }
-}
-
-/// Starts an array file: its header now, its data (little-endian, row by row) as it comes.
-fn start_npy<A: WritableElement>(path: &Path, shape: &[usize]) -> Result<WholeFile> {
-    let mut file = WholeFile::create(path)?;
-    file.write(|writer| {
-        write_zeroed_npy::<A, _>(writer.get_ref(), shape).map_err(io::Error::other)?;
-        let n_bytes = shape.iter().product::<usize>() * size_of::<A>();
-        writer.seek(SeekFrom::End(-(n_bytes as i64))).map(|_| ())
-    })?;
-    Ok(file)
 }

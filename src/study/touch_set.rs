@@ -1,7 +1,7 @@
 //! What a recognition study asks of its touches: of pressed objects, or of human touches.
 
-use super::content_hash::ContentHash;
-use super::frames::{FrameWriter, Frames};
+use super::content_hash::{bytes_of_model, sha256};
+use super::frames::{FramePlace, Frames};
 use super::measurement::{TouchToRead, touches_of_study};
 use super::plan::Plan;
 use super::pose_groups::KeepTogether;
@@ -35,11 +35,11 @@ pub trait TouchSet: Sync {
     /// Makes all touches on an array, F frames each; the same bytes at any number of threads.
     ///
     /// # Errors
-    /// The writer's file cannot be written.
+    /// The file of frames cannot be written.
     fn simulate(
         &self,
         on: (&Patch, usize),
-        writer: FrameWriter,
+        place: &FramePlace,
         progress: &dyn Progress,
     ) -> Result<Frames>;
 
@@ -84,10 +84,10 @@ impl TouchSet for Vec<TouchedObject> {
     fn simulate(
         &self,
         on: (&Patch, usize),
-        writer: FrameWriter,
+        place: &FramePlace,
         progress: &dyn Progress,
     ) -> Result<Frames> {
-        simulate_into(self, on, writer, progress)
+        simulate_into(self, on, place, progress)
     }
 
     fn to_read(&self, plan: &Plan, n_frames: usize, seed: &Seed) -> Vec<TouchToRead> {
@@ -137,10 +137,8 @@ impl TouchSet for Vec<TouchedObject> {
     }
 
     fn content(&self) -> BTreeMap<String, String> {
-        let hash = |t: &TouchedObject| {
-            let model = ContentHash::default().model(&t.object.model);
-            (t.object.name.clone(), model.hex())
-        };
-        self.iter().map(hash).collect()
+        let objects = self.iter().map(|t| &t.object);
+        let hashed = objects.map(|o| (o.name.clone(), sha256(bytes_of_model(&o.model))));
+        hashed.collect()
     }
 }

@@ -126,7 +126,11 @@ fn sizes_that_make_no_array_are_refused() {
         "pitch_mm = nan",
         &["skin.pitch_mm", "NaN"],
     );
-    Case::new().refuses("size_mm = 64.0", "taxels = 0", &["skin.taxels", "0 taxels"]);
+    Case::new().refuses(
+        "size_mm = 64.0",
+        "taxels = 0",
+        &["skin.taxels", "at most 4096"],
+    );
     Case::new().refuses(
         "size_mm = 64.0",
         "size_mm = 63.0",
@@ -559,7 +563,7 @@ fn keys_of_single_classifiers_are_checked_and_belong_to_one_of_the_study() {
     refuses(
         "polynomial_svm",
         "degree = 21",
-        &["recognition.degree", "from 1 to 20"],
+        &["recognition.degree", "at most 20"],
     );
 }
 

@@ -7,7 +7,7 @@ use bubbletouch::objects::{FingerPose, Model};
 use bubbletouch::random::Seed;
 use bubbletouch::study::progress::Silent;
 use bubbletouch::study::{
-    FrameWriter, HumanTouches, Plan, StudySpec, Sweep, TouchSet, record_touch,
+    FramePlace, HumanTouches, Plan, StudySpec, Sweep, TouchSet, record_touch,
 };
 use bubbletouch::world::{
     HandState, HumanTouch, Layout, SkinPatch, TOUCH_KINDS, Taxel, Taxels, TouchKind, TouchRanges,
@@ -411,8 +411,7 @@ fn touches_are_balanced_and_alone_the_same() {
     let human = plan.human_touch.as_ref().unwrap();
     let patch = plan.arrays[0];
     let skin = human.skin(&patch).unwrap();
-    let writer = FrameWriter::in_memory(1024);
-    let frames = touches.simulate((&patch, human.n_frames), writer, &Silent);
+    let frames = touches.simulate((&patch, human.n_frames), &FramePlace::Memory, &Silent);
     let deflection = frames.unwrap().kept.to_array().unwrap();
     assert_eq!(deflection.dim(), (240 * 49, 1024));
     let mut workspace = SkinWorkspace::new();

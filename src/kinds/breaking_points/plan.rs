@@ -3,6 +3,7 @@
 use super::scale::WayScale;
 use super::spec::{BreakingPointsSpec, DrivenAs, DrivenTouches, WaySpec};
 use crate::error::{Error, Result};
+use crate::study::Axis;
 use crate::study::axes::with_value;
 use crate::study::check::Check;
 use crate::study::plan::Plan;
@@ -185,23 +186,19 @@ impl Way<'_> {
 
 /// Every axis but that of classifiers has one value.
 fn check_single(check: &Check, plan: &Plan) -> Result<()> {
-    let of_signal = plan.conditions().len() * plan.tested_on.len();
-    let of_recognition = plan.over_time.len()
-        * plan.features.len()
-        * plan.penalties.len()
-        * plan.train_touches.len()
-        * plan.mislabelled.len()
-        * plan.class_imbalance.len()
-        * plan.fused_touches.len();
-    let of_sensing = plan.ensembles.len() * plan.amounts.len();
+    let n_classifiers = plan.spec.recognition.classifier.values().len() as f64;
+    let of_skins = Axis::of(&plan.spec.signal.tested_on).len();
+    let of_signal = (plan.conditions().len() * of_skins) as f64;
+    let of_sensing = (plan.spec.sensing.ensemble.values().len() * plan.amounts.len()) as f64;
+    let before = plan.arrays.len() as f64 * plan.frames.len() as f64 * of_signal * of_sensing;
     for (key, n) in [
-        ("skin", plan.arrays.len()),
-        ("touches.frames", plan.frames.len()),
+        ("skin", plan.arrays.len() as f64),
+        ("touches.frames", plan.frames.len() as f64),
         ("signal", of_signal),
         ("sensing", of_sensing),
-        ("recognition", of_recognition),
+        ("recognition", plan.n_cells() / before / n_classifiers),
     ] {
-        if n != 1 {
+        if n != 1.0 {
             let allowed = "one: values are swept by breaking_points, and only classifiers compared";
             return Err(check.error(key, format!("{n} settings"), allowed));
         }

@@ -4,7 +4,7 @@ use super::rows::{CellRow, RecognitionRows, TouchRow};
 use super::study::{RecognitionStudy, in_frames};
 use crate::error::Result;
 use crate::study::evaluation::Trial;
-use crate::study::frames::{FrameWriter, Frames};
+use crate::study::frames::Frames;
 use crate::study::measurement::{Measurements, measure_group};
 use crate::study::pieces::PiecesLeft;
 use crate::study::progress::{Progress, Silent};
@@ -102,8 +102,8 @@ impl RecognitionStudy {
         }
         let make = || {
             left.during(&self.touch_work(on), || {
-                let writer = FrameWriter::new(patch.grid.n_taxels(), &self.place)?;
-                part.touched.simulate((patch, n_frames), writer, touched)
+                let on = (patch, n_frames);
+                part.touched.simulate(on, &self.place, touched)
             })
         };
         let Some(frames) = left.prepare_numbers(&need, make)? else {

@@ -7,6 +7,7 @@ use crate::random::Seed;
 use crate::sensing::{Basis, Dictionary, Effort, Ensemble, Projection, Solver};
 use crate::signal::{Noise, NoiseUnit, Quantity, SignalStep};
 use crate::study::Amount;
+use crate::study::plan::MM;
 use crate::study::{Check, positive};
 use crate::study::{SignalSpec, StepSpec};
 use crate::world::{Grid, Patch, Placement};
@@ -60,7 +61,7 @@ impl ReconstructionPlan {
         let wanted = &spec.reconstruction;
         let dictionaries = check.dictionaries(wanted, &patch.grid)?;
         let solvers = check.list("reconstruction.solver", wanted.solver.values())?;
-        let speed = check.speed(&spec.touches)?;
+        let speed = spec.touches.speed_mm_per_s * MM;
         let effort = check.effort(wanted)?;
         check.value(
             "reconstruction.test_fraction",
@@ -174,7 +175,7 @@ impl ReconstructionPlan {
 impl Check<'_> {
     /// Solvers assume independent noise on every taxel, and a clean frame to compare with: nothing may follow the noise.
     fn noise_is_last(&self, signal: &SignalSpec) -> Result<()> {
-        if signal.smoothing_mm.is_some() {
+        if signal.axes.of("smoothing_mm").is_some() {
             return Err(self.error(
                 "signal.smoothing_mm",
                 "smoothing before reconstruction",
