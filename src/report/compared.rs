@@ -80,7 +80,6 @@ pub fn differences_page(
         &Found {
             tables: &[values, costs],
             charts: &charts,
-            pictures: &[],
             answers: &sentences(found),
         },
     )
