@@ -304,6 +304,23 @@ fn time_charts(cells: &Table, chance: &Option<Rule>) -> Vec<ChartSpec> {
     costs.map(chart).into()
 }
 
+/// What tells a cell from the others, and its accuracy.
+fn words_of(cells: &Table, row: usize) -> String {
+    let all: Vec<usize> = (0..cells.n_rows).collect();
+    let swept = Swept::of(cells, &all);
+    let accuracy = format!("accuracy {:.2}", cells.number("accuracy", row));
+    let words = [
+        swept.condition_words(row),
+        swept.choice_words(row),
+        accuracy,
+    ];
+    let words: Vec<String> = words
+        .into_iter()
+        .filter(|words| !words.is_empty())
+        .collect();
+    format!(" ({})", words.join(", "))
+}
+
 /// What the best cell takes for what.
 fn confusion_chart(cells: &Table, confusion: &Table) -> Option<ChartSpec> {
     let accuracy = cells.numbers("accuracy")?;
@@ -312,7 +329,7 @@ fn confusion_chart(cells: &Table, confusion: &Table) -> Option<ChartSpec> {
     confusion.numbers("cell")?.contains(&cell).then(|| ChartSpec {
         name: "confusion".to_owned(),
         title: "What was taken for what".to_owned(),
-        note: "Rows were touched, columns are what they were taken for, all trials together; at first of the most accurate cell.".to_owned(),
+        note: format!("Rows were touched, columns are what they were taken for, all trials together. Of the most accurate cell{}.", words_of(cells, best)),
         table: "confusion.csv",
         shown: vec![Shown {
             column: "cell".to_owned(),
