@@ -3,7 +3,7 @@
 use super::any_study::{AnyOutcome, AnyStudy, ReportAbout};
 use super::ceiling::{threads_within, within_memory};
 use super::kind::{Facts, Kind};
-use super::results::{Results, failures_table};
+use super::results::{Results, failures_table, read_failures};
 use super::source::Source;
 use super::verified::{changed_row, drawn};
 use crate::error::Result;
@@ -123,7 +123,8 @@ impl<K: Kind> AnyStudy for Loaded<K> {
     }
 
     fn report(&self, folder: &Path, about: &ReportAbout) -> Result<()> {
-        let tables = self.kind.read_tables(folder)?;
+        let mut tables = self.kind.read_tables(folder)?;
+        tables.extend(read_failures(folder)?);
         let wall_s = about
             .manifest
             .as_ref()

@@ -5,7 +5,7 @@ use super::kind::Kind;
 use super::loaded::Loaded;
 use crate::error::Result;
 use crate::files::write_bytes;
-use crate::report::csv_tables::{FAILURES_FILE, TableHashes};
+use crate::report::csv_tables::{FAILURES_FILE, TableHashes, read_rows};
 use crate::report::folder::Folder;
 use crate::report::page::StudyAbout;
 use crate::report::study_folder::{Found, folder_with};
@@ -24,6 +24,15 @@ pub struct Results<'a, K> {
 /// Work items that failed.
 pub fn failures_table(failures: &[PieceFailure]) -> Result<Table> {
     Table::of(FAILURES_FILE, "What failed, and why", failures)
+}
+
+/// The same, of a folder; none where no run left the file.
+pub fn read_failures(folder: &Path) -> Result<Option<Table>> {
+    let path = folder.join(FAILURES_FILE);
+    match path.exists() {
+        true => failures_table(&read_rows(&path)?).map(Some),
+        false => Ok(None),
+    }
 }
 
 impl<K: Kind> Loaded<K> {

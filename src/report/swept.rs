@@ -161,9 +161,12 @@ impl<'a> Swept<'a> {
 
     /// The choices of a row that vary, in words.
     pub fn choice_words(&self, row: usize) -> String {
-        let choices = self.of_role(Role::Choice).into_iter();
-        let said: Vec<String> = choices.map(|one| one.phrase(row)).collect();
-        said.join(", ")
+        // What does not apply to a row is not said of it.
+        let applies =
+            |one: &&Setting| one.data.value(row).is_some() || !one.column.word("").is_empty();
+        let choices = self.of_role(Role::Choice);
+        let said = choices.iter().filter(applies).map(|one| one.phrase(row));
+        said.collect::<Vec<_>>().join(", ")
     }
 
     /// Rows by their conditions, in the order in which rows first have them.

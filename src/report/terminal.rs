@@ -138,7 +138,8 @@ fn shown_columns(table: &Table) -> impl Iterator<Item = (&Column, &Data)> {
     };
     let rows: Vec<usize> = (0..table.n_rows).collect();
     let is_shown = move |rank: usize, setting: Setting| match rank {
-        0 => setting.varies(&rows),
+        // Of one row, the subject says what it is about.
+        0 => setting.varies(&rows) || rows.len() == 1 && setting.column.role == Role::Subject,
         // What is the same for all, or for none, says nothing.
         _ if setting.is_number() => rows.iter().any(|&row| setting.data.value(row).is_some()),
         _ => setting.varies(&rows),

@@ -153,7 +153,7 @@ impl Check<'_> {
             if signal.steps[..index].contains(step) {
                 return Err(self.error(
                     "signal.steps",
-                    format!("{step:?} twice"),
+                    format!("{} twice", step.word()),
                     "each step at most once",
                 ));
             }

@@ -190,7 +190,7 @@ fn cpu() -> String {
     name.unwrap_or_else(|| "unknown".to_owned())
 }
 
-/// `2026-11-22T06:30:00Z`
+/// `2026-11-22T06:30:00.250Z`
 fn time(time: SystemTime) -> String {
-    DateTime::<Utc>::from(time).to_rfc3339_opts(SecondsFormat::Secs, true)
+    DateTime::<Utc>::from(time).to_rfc3339_opts(SecondsFormat::Millis, true)
 }

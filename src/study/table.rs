@@ -259,7 +259,7 @@ columns! { Confusion {
 } }
 
 columns! { Confused {
-    cell: Note: Linear;
+    cell: Subject: Linear;
     object: Subject;
     predicted: Subject "taken for";
     count: Note "test rows": Log;
@@ -268,8 +268,8 @@ columns! { Confused {
 } }
 
 columns! { Published {
-    claim: Note;
-    source: Note;
+    claim: Subject;
+    source: Subject;
     published_accuracy: Value(Neither) "published accuracy": Share;
     accuracy: Value(More): Share between [accuracy_low, accuracy_high];
     accuracy_low: Note "95 % interval, lower end": Share;
@@ -279,7 +279,7 @@ columns! { Published {
 } }
 
 columns! { Comparison {
-    cell: Note: Linear;
+    cell: Subject: Linear;
     best_cell: Note "best cell": Linear;
     n_trials: Note "trials of both": Linear;
     difference: Value(More) "difference to the best": Linear between [difference_low, difference_high];

@@ -48,7 +48,7 @@ pub struct Variance {
 }
 
 columns! { Variance {
-    cell: Note: Linear;
+    cell: Subject: Linear;
     source: Subject "source of variance";
     n_levels: Note "levels": Linear;
     degrees_of_freedom: Note: Linear;

@@ -572,7 +572,7 @@ fn a_published_accuracy_about_no_cell_is_refused_before_the_study_runs() {
         )
     };
     for (keys, words) in [
-        ("ratio = 64", ["claim '98 %', ratio", "one of 4.0, 16.0"]),
+        ("ratio = 64", ["claim '98 %', ratio", "one of 4, 16"]),
         ("kernel = \"rbf\"", ["kernel: is no setting", "classifier"]),
         ("classifier = \"rbf_svm\"", ["rbf_svm", "linear_svm"]),
     ] {
@@ -586,7 +586,8 @@ fn a_published_accuracy_is_shown_beside_ours_and_kept_in_a_table() {
     let published = "\n[report]\npublished = [{ claim = \"98 % at 16:1\", accuracy = 0.98, source = \"[CL]\", ratio = 16, noise = 0 }]\n";
     case.file("study.toml", STUDY.to_owned() + published);
     let (said, _) = case.succeeds(&["run", "study.toml"]);
-    assert!(said.contains("98 % at 16:1 [CL]"), "{said}");
+    let row = said.lines().find(|line| line.starts_with("98 % at 16:1"));
+    assert!(row.is_some_and(|row| row.contains("[CL]")), "{said}");
     let table = fs::read_to_string(case.path("results/study/published.csv")).unwrap();
     assert!(
         table.lines().count() == 2 && table.contains("98 % at 16:1,[CL],0.98,"),

@@ -315,7 +315,7 @@ fn keys_that_make_no_sense_are_refused_with_what_does() {
         ),
         (
             "steps = [\"gain\", \"gain\"]\ngain_std = 0.1",
-            "Gain twice; each step at most once",
+            "gain twice; each step at most once",
         ),
     ] {
         assert_refused(&with_signal(signal), said);

@@ -1,12 +1,13 @@
 //! What is charted of a study of recognition.
 //!
-//! Every setting that varies has a place, so no chart mixes cells that differ in something it does not show: x takes the
-//! compression ratio if it varies, else another number; lines and panels take the next two; each combination of what
+//! Every setting that varies has a place, so no chart mixes cells that differ in something it does not show: x takes the first of the
+//! study's own axes, else the compression ratio if it varies, else another number; lines and panels take the next two; each combination of what
 //! is left gets a chart of its own.
 
 use super::CELLS;
 use crate::report::swept::{Setting, Swept, without};
-use crate::table::{Along, At, ChartSpec, Data, Mark, Role, Rule, Shown, Table};
+use crate::study::table::Cell;
+use crate::table::{Along, At, ChartSpec, Columns, Data, Mark, Role, Rule, Shown, Table};
 
 /// Classifiers from which on a study is about choosing one.
 const MANY_CLASSIFIERS: usize = 3;
@@ -137,8 +138,9 @@ fn charts_along(
     let mut free = swept.free.clone();
     let x = match x {
         Some(name) => take(&mut free, &[name], |_| true),
-        // Words stand along x only if no number varies.
-        None => take(&mut free, &ALONG_X, |setting| setting.is_number())
+        // What a study has axes for is what it asks about. Words stand along x only if no number varies.
+        None => take_own(&mut free)
+            .or_else(|| take(&mut free, &ALONG_X, |setting| setting.is_number()))
             .or_else(|| take(&mut free, &AS_LINES, |_| true)),
     };
     let x = x.map_or_else(
@@ -191,8 +193,16 @@ fn take<'a>(
             .position(|one| one.column.name == *name && suits(one))
     };
     let named = order.iter().find_map(of_name);
-    // What a study names itself, and what a skin does to a signal, comes after what people look for.
+    // What a skin does to a signal comes after what people look for.
     let place = named.or_else(|| free.iter().position(&suits))?;
+    Some(free.remove(place))
+}
+
+/// The first number that only this study has a column for.
+fn take_own<'a>(free: &mut Vec<Setting<'a>>) -> Option<Setting<'a>> {
+    let usual = Cell::columns();
+    let is_own = |one: &Setting| usual.iter().all(|column| column.name != one.column.name);
+    let place = free.iter().position(|one| one.is_number() && is_own(one))?;
     Some(free.remove(place))
 }
 

@@ -56,7 +56,9 @@ fn settings_html(settings: &[(String, String)], tables: &[Table]) -> String {
 fn limits_html(tables: &[Table]) -> String {
     let table = tables.iter().find(|table| table.file == LIMITS_FILE);
     let Some(table) = table.filter(|table| table.n_rows > 0) else {
-        return String::new();
+        return format!(
+            "<p>Which limits were reached is not known: there is no {LIMITS_FILE}.</p>"
+        );
     };
     let item = |row: usize| {
         let (count, of) = (table.number("count", row), table.number("of", row));
