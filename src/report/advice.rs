@@ -128,7 +128,9 @@ impl<'a> Offers<'a> {
             ("--cost", cost.as_deref().unwrap_or_default()),
             &known,
         )?;
-        let table = offering[0];
+        // Of several, one that says how sure its values are.
+        let has_interval = |table: &&&Table| values(table, value)[0].interval.is_some();
+        let table = *offering.iter().find(has_interval).unwrap_or(&offering[0]);
         let rows: Vec<usize> = (0..table.n_rows).collect();
         let mut found = Self {
             table,

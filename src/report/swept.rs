@@ -163,10 +163,10 @@ impl<'a> Swept<'a> {
     pub fn choice_words(&self, row: usize) -> String {
         // What does not apply to a row is not said of it.
         let applies =
-            |one: &Setting| one.data.value(row).is_some() || !one.column.word("").is_empty();
-        let choices = self.of_role(Role::Choice).into_iter().filter(applies);
-        let said: Vec<String> = choices.map(|one| one.phrase(row)).collect();
-        said.join(", ")
+            |one: &&Setting| one.data.value(row).is_some() || !one.column.word("").is_empty();
+        let choices = self.of_role(Role::Choice);
+        let said = choices.iter().filter(applies).map(|one| one.phrase(row));
+        said.collect::<Vec<_>>().join(", ")
     }
 
     /// Rows by their conditions, in the order in which rows first have them.

@@ -259,7 +259,7 @@ columns! { Confusion {
 } }
 
 columns! { Confused {
-    cell: Note: Linear;
+    cell: Subject: Linear;
     object: Subject;
     predicted: Subject "taken for";
     count: Note "test rows": Log;
@@ -279,7 +279,7 @@ columns! { Published {
 } }
 
 columns! { Comparison {
-    cell: Note: Linear;
+    cell: Subject: Linear;
     best_cell: Note "best cell": Linear;
     n_trials: Note "trials of both": Linear;
     difference: Value(More) "difference to the best": Linear between [difference_low, difference_high];

@@ -24,7 +24,7 @@ row! {
 /// What a source adds to the variance of a cell's accuracy: a row of `variance.csv`, for studies with `projections_per_split`.
 pub struct Variance {
     /// Number of the cell.
-    cell: usize => Note: Linear;
+    cell: usize => Subject: Linear;
     /// The source.
     source: Source => Subject "source of variance";
     /// How many of it were drawn; of the rest: trials.

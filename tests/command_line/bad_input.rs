@@ -576,7 +576,7 @@ fn a_published_accuracy_about_no_cell_is_refused_before_the_study_runs() {
         )
     };
     for (keys, words) in [
-        ("ratio = 64", ["claim '98 %', ratio", "one of 4.0, 16.0"]),
+        ("ratio = 64", ["claim '98 %', ratio", "one of 4, 16"]),
         ("kernel = \"rbf\"", ["kernel: is no setting", "classifier"]),
         ("classifier = \"rbf_svm\"", ["rbf_svm", "linear_svm"]),
     ] {

@@ -8,7 +8,7 @@ use crate::study::table::{
     Cell, CellScore, Comparison, Confused, Confusion, Limit, Pareto, Published, StageTime, Tables,
     TrialScore, TrialTime, Variance,
 };
-use crate::table::{Better, Column, Columns, Data, File, Role, Scale, Table};
+use crate::table::{Better, Column, Columns, Data, File, Role, Scale, Table, Value};
 use serde::de::IntoDeserializer;
 use serde::de::value::StrDeserializer;
 use serde::{Deserialize, Serialize};
@@ -117,8 +117,7 @@ impl From<'_> {
         if has_limits {
             tables.push(self.table(&LIMITS, |tables| &tables.limits, &[])?);
         }
-        tables.iter_mut().for_each(say_noise_unit);
-        tables.iter_mut().for_each(say_no_choice_of_c);
+        tables.iter_mut().for_each(say);
         let cells = cells_of(&tables);
         tables.extend(cells);
         Ok(tables)
@@ -140,39 +139,40 @@ impl From<'_> {
     }
 }
 
-/// Noise may be measured in millimetres or newtons.
-fn say_noise_unit(table: &mut Table) {
+/// What only the rows tell: the unit of noise, and what C is where it is absent.
+fn say(table: &mut Table) {
     let unit = match table.column("noise_unit") {
         Some((_, Data::Words { levels, .. })) => levels.first().map(|level| &level[..]),
         _ => None,
     };
     let unit = match unit {
-        Some("mm") => "mm",
-        Some("n") => "N",
-        _ => return,
+        Some("mm") => Some("mm"),
+        Some("n") => Some("N"),
+        _ => None,
     };
-    if let Some(place) = table.place("noise_std") {
+    if let (Some(unit), Some(place)) = (unit, table.place("noise_std")) {
         let column = &mut table.columns[place];
         (column.unit, column.scale) = (unit.into(), Scale::Linear);
     }
-}
-
-/// An absent C was chosen, unless some rows are of a classifier that has none.
-fn say_no_choice_of_c(table: &mut Table) {
-    let (Some(c), Some(_)) = (table.numbers("c"), table.place("classifier")) else {
-        return;
-    };
-    let has_c = |row: usize| {
-        let word = table.word("classifier", row);
-        let word: StrDeserializer<serde::de::value::Error> = word.into_deserializer();
-        ClassifierKind::deserialize(word).is_ok_and(ClassifierKind::has_c)
-    };
-    let mut absent = (0..table.n_rows).filter(|&row| c[row].is_nan());
-    if !absent.all(has_c)
-        && let Some(place) = table.place("c")
-    {
+    if let (Some(place), false) = (table.place("c"), has_chosen_c(table)) {
         table.columns[place].names = &[];
     }
+}
+
+/// Whether C is absent only where a classifier that has one chooses it.
+fn has_chosen_c(table: &Table) -> bool {
+    let (Some(c), Some((_, classifiers))) = (table.numbers("c"), table.column("classifier")) else {
+        return false;
+    };
+    let has_c = |row: usize| match classifiers.value(row) {
+        Some(Value::Word(word)) => {
+            let word: StrDeserializer<serde::de::value::Error> = word.as_str().into_deserializer();
+            ClassifierKind::deserialize(word).is_ok_and(ClassifierKind::has_c)
+        }
+        _ => false,
+    };
+    let mut absent = (0..table.n_rows).filter(|&row| c[row].is_nan());
+    absent.all(has_c)
 }
 
 /// Each cell with its distance to the best of its condition and with what it costs.
