@@ -1,7 +1,6 @@
 //! Checks of single keys: each error names the file and the key, what was given and what is allowed.
 
-use super::axes::number;
-use super::axis::Axis;
+use super::axes::{number, value_at};
 use super::memory::{check_memory, machine_memory};
 use super::plan::{MM, MOST_FRAMES, millimetres};
 use super::plan_scene::MOST_SIDE;
@@ -29,13 +28,18 @@ const MOST_CONFIGURATIONS: f64 = 1e6;
 
 /// What the numbers of a key may be.
 #[derive(Clone, Copy)]
-enum Range {
+pub enum Range {
+    /// Above zero.
     Positive,
+    /// Zero or above.
     NotNegative,
+    /// Any but infinite ones.
+    Finite,
     /// Of one, ends included.
     Fraction,
     /// Of one, ends excluded.
     Part,
+    /// From one on.
     AtLeastOne,
     /// Whole numbers from one to another.
     Count(usize, usize),
@@ -48,6 +52,7 @@ impl Range {
         match self {
             Self::Positive => positive(value),
             Self::NotNegative => not_negative(value),
+            Self::Finite => value.is_finite(),
             Self::Fraction => (0.0..=1.0).contains(&value),
             Self::Part => value > 0.0 && value < 1.0,
             Self::AtLeastOne => value.is_finite() && value >= 1.0,
@@ -62,6 +67,7 @@ impl fmt::Display for Range {
         match self {
             Self::Positive => write!(f, "a positive number"),
             Self::NotNegative => write!(f, "zero or a positive number"),
+            Self::Finite => write!(f, "a finite number"),
             Self::Fraction => write!(f, "a fraction, 0 to 1"),
             Self::Part => write!(f, "between 0 and 1"),
             Self::AtLeastOne => write!(f, "a number of at least 1"),
@@ -72,7 +78,10 @@ impl fmt::Display for Range {
 }
 
 /// From 1 to what memory holds.
-const COUNT: Range = Range::Count(1, MOST_COUNTED);
+pub const COUNT: Range = Range::Count(1, MOST_COUNTED);
+
+/// So many touches an object.
+pub const TOUCHES: Range = Range::Count(1, MOST_TOUCHES);
 
 /// The keys of the tables that kinds of study share, and what their numbers may be. A list has values, and none twice.
 const KEYS: [(&str, Range); 48] = [
@@ -86,11 +95,11 @@ const KEYS: [(&str, Range); 48] = [
     ("skin.stroke_mm", Range::Positive),
     ("skin.stiffness_n_per_m", Range::Positive),
     ("skin.damping_n_s_per_m", Range::NotNegative),
-    ("touches.per_object", Range::Count(1, MOST_TOUCHES)),
+    ("touches.per_object", TOUCHES),
     ("touches.frames", Range::Count(1, MOST_FRAMES)),
     ("touches.speed_mm_per_s", Range::NotNegative),
     ("human_touch.kinds", Range::Any),
-    ("human_touch.per_kind", Range::Count(1, MOST_TOUCHES)),
+    ("human_touch.per_kind", TOUCHES),
     ("human_touch.arm_radius_mm", Range::Positive),
     ("human_touch.frames_hz", Range::Positive),
     ("human_touch.duration_s", Range::Positive),
@@ -137,16 +146,28 @@ impl Check<'_> {
         Error::input(format!("{}, key {key}", self.place), given, allowed)
     }
 
-    /// The keys of a table that a study shares with others; which of them it gives.
+    /// The keys of a table that kinds of study share; which of them it gives.
     pub fn table(&self, name: &str, table: &impl Serialize) -> Result<toml::Table> {
+        let key = |path: &'static str| path.strip_prefix(name)?.strip_prefix('.');
+        let keys = KEYS
+            .into_iter()
+            .filter_map(|(path, range)| Some((key(path)?, range)));
+        self.keys(name, table, keys)
+    }
+
+    /// Keys of a table, with points between those of tables in it: each number in its range, each list with values and none twice.
+    pub fn keys<'k>(
+        &self,
+        name: &str,
+        table: &impl Serialize,
+        keys: impl IntoIterator<Item = (&'k str, Range)>,
+    ) -> Result<toml::Table> {
         let table = toml::Table::try_from(table).expect("every field of a study has a TOML form");
-        for (path, range) in KEYS {
-            let key = path
-                .strip_prefix(name)
-                .and_then(|key| key.strip_prefix('.'));
-            let Some(value) = key.and_then(|key| table.get(key)) else {
+        for (key, range) in keys {
+            let Some(value) = value_at(&table, key) else {
                 continue;
             };
+            let path = &format!("{name}.{key}");
             let one = std::slice::from_ref(value);
             let values = value.as_array().map_or(one, |values| &values[..]);
             let words: Vec<&str> = values.iter().filter_map(|value| value.as_str()).collect();
@@ -160,7 +181,7 @@ impl Check<'_> {
                 }
                 true => self.list(path, numbers.clone()).map(drop)?,
             }
-            if let Some(number) = numbers.iter().find(|&&number| !range.has(number)) {
+            if let Some(number) = numbers.into_iter().find(|&number| !range.has(number)) {
                 return Err(self.error(path, number, range));
             }
         }
@@ -178,10 +199,6 @@ impl Check<'_> {
             return Ok(value);
         }
         Err(self.error(key, value, allowed))
-    }
-
-    pub fn positive_count(&self, key: &str, count: usize) -> Result<usize> {
-        self.count(key, count, MOST_COUNTED)
     }
 
     /// From 1 to so many.
@@ -225,45 +242,14 @@ impl Check<'_> {
         if values.is_empty() {
             return Err(self.error(key, "an empty list", "at least one value"));
         }
-        self.axis_length(key, values.len())?;
+        if values.len() > MOST_VALUES {
+            let allowed = format!("at most {MOST_VALUES} values");
+            return Err(self.error(key, format!("{} values", values.len()), allowed));
+        }
         for (index, value) in values.iter().enumerate() {
             if values[..index].contains(value) {
                 return Err(self.error(key, format!("{value:?} twice"), "each value once"));
             }
-        }
-        Ok(values)
-    }
-
-    /// An axis of so many values is one that a study can mean.
-    pub fn axis_length(&self, key: &str, n_values: usize) -> Result<()> {
-        match n_values {
-            0..=MOST_VALUES => Ok(()),
-            n => Err(self.error(
-                key,
-                format!("{n} values"),
-                format!("at most {MOST_VALUES} values"),
-            )),
-        }
-    }
-
-    pub fn counts(&self, key: &str, axis: &Axis<usize>) -> Result<Vec<usize>> {
-        let counts = self.list(key, axis.values())?;
-        for &count in &counts {
-            self.positive_count(key, count)?;
-        }
-        Ok(counts)
-    }
-
-    pub fn axis(
-        &self,
-        key: &str,
-        axis: &Axis<f64>,
-        is_allowed: fn(f64) -> bool,
-        allowed: &str,
-    ) -> Result<Vec<f64>> {
-        let values = self.list(key, axis.values())?;
-        for &value in &values {
-            self.value(key, value, is_allowed, allowed)?;
         }
         Ok(values)
     }

@@ -66,13 +66,12 @@ pub use feature_files::{FeatureSet, cell_features, read_features, write_features
 pub use frames::{FrameFacts, FramePlace, Frames, KeptFrames};
 pub use human_touches::{HumanTouches, RecordedTouch, record_touch};
 pub use object_files::{
-    MeshUse, NamedMesh, file_content, load_catalogue, load_mesh, load_named_meshes, load_objects,
+    NamedMesh, file_content, load_catalogue, load_mesh, load_named_meshes, load_objects,
     load_spheres, objects_content, read_mesh_file,
 };
 pub use packings::{Packed, pack_within, packing_path};
 pub(crate) use plan::MM;
 pub use plan::{Amount, Plan, SplitKind, SplitPlan, millimetres};
-pub use plan_human::HumanTouchPlan;
 pub use plan_signal::Condition;
 pub use pose_groups::KeepTogether;
 pub use repeats::Repeats;

@@ -2,13 +2,11 @@
 //!
 //! This is the only place where millimetres, degrees and fractions become metres, radians and absolute values.
 
-use super::axes::{AxisValues, Variant};
-use super::axis::Axis;
+use super::axes::AxisValues;
 use super::check::Check;
-use super::plan_human::{HumanTouchPlan, no_placement};
 use super::pose_groups::KeepTogether;
 use super::repeats::Repeats;
-use super::spec::StudySpec;
+use super::spec::{SpreadSpec, StudySpec, TouchesSpec};
 use super::training::ChoicePlan;
 use crate::error::Result;
 use crate::sensing::Ensemble;
@@ -38,8 +36,6 @@ pub struct Plan {
     pub arrays: Vec<Patch>,
     /// How touches are drawn; of nothing in a study of human touches.
     pub placement: Placement,
-    /// Human touches in place of objects.
-    pub human_touch: Option<HumanTouchPlan>,
     /// Approach speed at the moment of reading, m/s.
     pub speed: f64,
     /// What the noise axis is measured in.
@@ -98,14 +94,16 @@ impl Plan {
     pub fn new(place: &str, mut spec: StudySpec) -> Result<Self> {
         let check = Check { place };
         check.count("trials", spec.trials, MOST_TRIALS)?;
-        if spec.human_touch.is_none() {
-            check.objects(&spec.objects)?;
-        }
         let arrays = check.arrays(&spec.skin)?;
-        let human_touch = check.human_touch(&spec, &arrays)?;
-        let placement = match human_touch {
-            Some(_) => no_placement(),
+        check.human_touch(&spec, &arrays)?;
+        let placement = match spec.human_touch {
+            // It places no objects.
+            Some(_) => check.placement(&TouchesSpec {
+                depth_mm: SpreadSpec::One(1.0),
+                ..TouchesSpec::default()
+            })?,
             None => {
+                check.objects(&spec.objects)?;
                 spec.objects.settle_surface_error(&arrays);
                 check.placement(&spec.touches)?
             }
@@ -115,8 +113,8 @@ impl Plan {
         check.steps(&spec.signal)?;
         check.tested_on(&spec.signal)?;
         let amounts = check.amounts(&spec.sensing, &arrays)?;
-        let frames = match &human_touch {
-            Some(human) => vec![human.n_frames],
+        let frames = match &spec.human_touch {
+            Some(human) => vec![human.n_frames()],
             None => spec.touches.frames.values(),
         };
         check.recognition(&spec.recognition)?;
@@ -128,7 +126,6 @@ impl Plan {
             repeats: check.repeats(&spec)?,
             arrays,
             placement,
-            human_touch,
             noise_unit,
             amounts,
             frames,
@@ -150,7 +147,7 @@ impl Plan {
         check.configurations(spec.axes.n_combinations())?;
         let (axes, columns) = (spec.axes.clone(), spec.axis_columns());
         let variants = axes.variants(place, &spec)?.into_iter().enumerate();
-        let plans = variants.map(|(number, Variant { values, study })| {
+        let plans = variants.map(|(number, (values, study))| {
             let study = StudySpec {
                 axes: axes.clone(),
                 ..study
@@ -167,32 +164,8 @@ impl Plan {
     /// How many cells the study has at most, counted without laying any out: values that name the same m twice, or a C for a classifier
     /// that has none, make no further cells.
     pub fn n_cells(&self) -> f64 {
-        fn n<T: Clone>(axis: &Option<Axis<T>>) -> usize {
-            axis.as_ref().map_or(1, |axis| axis.values().len())
-        }
-        let StudySpec {
-            signal,
-            sensing,
-            recognition,
-            ..
-        } = &self.spec;
-        let lengths = [
-            self.arrays.len(),
-            self.frames.len(),
-            n(&signal.tested_on),
-            sensing.ensemble.values().len(),
-            self.amounts.len(),
-            n(&recognition.over_time),
-            recognition.features.values().len(),
-            recognition.classifier.values().len(),
-            n(&recognition.c),
-            n(&recognition.train_touches),
-            n(&recognition.mislabelled_fraction),
-            n(&recognition.class_imbalance),
-            recognition.fused_touches.values().len(),
-        ];
-        let others: f64 = lengths.iter().map(|&n| n as f64).product();
-        signal.n_conditions() * others
+        let lengths = self.spec.axis_lengths().map(|(_, n)| n as f64);
+        self.spec.signal.n_conditions() * lengths.product::<f64>()
     }
 
     /// The m axis on an array; a ratio axis can name the same m twice on a small one.

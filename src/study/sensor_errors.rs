@@ -44,20 +44,13 @@ pub fn all_strengths() -> impl Iterator<Item = (SensorError, &'static Strength)>
 pub fn strength_columns() -> &'static [Column] {
     static COLUMNS: LazyLock<Vec<Column>> = LazyLock::new(|| {
         let column = |(_, strength): (SensorError, &'static Strength)| {
-            let scale = if strength.unit == "%" {
-                Scale::Share
-            } else {
-                Scale::Linear
+            let scale = match strength.unit {
+                "%" => Scale::Share,
+                _ => Scale::Linear,
             };
-            let Strength {
-                key,
-                words,
-                unit,
-                names,
-                ..
-            } = *strength;
+            let (key, words, unit) = (strength.key, strength.words, strength.unit);
             let column = Column::new(key, Role::Condition, words, unit, scale);
-            column.named(names).optional()
+            column.named(strength.names).optional()
         };
         all_strengths().map(column).collect()
     });

@@ -17,7 +17,6 @@ pub struct SignalSpec {
     #[serde(flatten)]
     pub axes: SignalAxes,
     /// Axis: the skin that test touches are made with, `same_skin` (as training touches; when left out) or `another_skin`.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub tested_on: Option<Axis<TestedOn>>,
     /// How the axes above are combined with each other. (With other axes they always are.)
     #[serde(skip_serializing_if = "CombineSpec::is_default")]

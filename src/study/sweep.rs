@@ -28,15 +28,17 @@ use ndarray::Array1;
 
 /// Loops within loops: the first changes slowest.
 macro_rules! nested {
-    ($name:ident in $values:expr; $($rest:tt)*) => {
+    ($name:pat in $values:expr; $($rest:tt)*) => {
         for $name in $values {
-            nested!($($rest)*)
+            $crate::study::sweep::nested!($($rest)*)
         }
     };
     ($body:expr) => {
         $body
     };
 }
+
+pub(crate) use nested;
 
 /// Everything that is decided before the first touch is simulated.
 #[derive(Clone, Debug)]
@@ -114,7 +116,7 @@ impl Sweep {
         named_samples(plan, &classes)?;
         let n_classes = classes.len();
         if n_classes < 2 {
-            let (place, given, allowed) = match plan.human_touch {
+            let (place, given, allowed) = match plan.spec.human_touch {
                 Some(_) => ("key human_touch.kinds", "kind", "kinds"),
                 None => ("objects", "object", "objects"),
             };

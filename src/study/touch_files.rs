@@ -12,7 +12,8 @@
 //! Deflections are what the press gives: no noise, no smoothing, none of the sensor errors of `[signal]`. Frames as a cell reads them
 //! ([`ReadFrames`]) have all of these, in metres or, with the step `force`, in newtons; only `frames.npy` differs.
 
-use super::feature_files::{find, measured, write_npy};
+use super::content_hash::bytes_of_numbers;
+use super::feature_files::{find, measured};
 use super::plan::Plan;
 use super::progress::Progress;
 use super::simulation::describe;
@@ -26,8 +27,8 @@ use crate::objects::Object;
 use crate::random::Seed;
 use crate::sensing::Ensemble;
 use crate::world::{Patch, Placement, RestPose, Scene, Touch, TouchSource};
-use ndarray::{Array1, Array2};
-use ndarray_npy::write_zeroed_npy;
+use ndarray::Array2;
+use ndarray_npy::{WritableElement, write_zeroed_npy};
 use rayon::prelude::*;
 use serde::Serialize;
 use std::io::{self, Seek, SeekFrom, Write};
@@ -160,7 +161,7 @@ pub fn write_touches(
                 .collect();
             for (touch, reading) in &mut block {
                 if let Some(read) = read {
-                    reading.frame = read.frame(files.labels.len());
+                    reading.frame = read.frame(files.n_written);
                 }
                 files.add(label, &object.name, touch, reading)?;
             }
@@ -168,7 +169,7 @@ pub fn write_touches(
         }
     }
     table.commit()?;
-    files.commit(folder)?;
+    files.commit()?;
     Ok(n_touches)
 }
 
@@ -185,39 +186,41 @@ fn pressed(scene: &Scene, rest: &RestPose, touch: &Touch, workspace: &mut Worksp
     }
 }
 
-/// The files with one entry a touch: those of frames and rows grow with it.
+/// The files with one entry a touch.
 struct TouchFiles {
-    frames: WholeFile,
+    /// Frames, labels, poses, depths.
+    arrays: [WholeFile; 4],
     table: CsvFile,
-    labels: Vec<i64>,
-    poses: Vec<f64>,
-    depths: Vec<f64>,
+    n_written: usize,
 }
 
 impl TouchFiles {
     fn create(folder: &Path, n: usize, patch: &Patch) -> Result<Self> {
         let shape = [n, patch.grid.ny, patch.grid.nx];
-        let mut frames = WholeFile::create(&folder.join("frames.npy"))?;
-        // Its header now, its data (little-endian, row by row) as it comes.
-        frames.write(|writer| {
-            write_zeroed_npy::<f32, _>(writer.get_ref(), shape).map_err(io::Error::other)?;
-            let n_bytes = shape.iter().product::<usize>() * size_of::<f32>();
-            writer.seek(SeekFrom::End(-(n_bytes as i64))).map(|_| ())
-        })?;
         Ok(Self {
-            frames,
+            arrays: [
+                start_npy::<f32>(&folder.join("frames.npy"), &shape)?,
+                start_npy::<i64>(&folder.join("labels.npy"), &[n])?,
+                start_npy::<f64>(&folder.join("poses.npy"), &[n, 7])?,
+                start_npy::<f64>(&folder.join("depths.npy"), &[n])?,
+            ],
             table: CsvFile::create(&folder.join("touches.csv"))?,
-            labels: Vec::with_capacity(n),
-            poses: Vec::with_capacity(7 * n),
-            depths: Vec::with_capacity(n),
+            n_written: 0,
         })
     }
 
     fn add(&mut self, label: usize, object: &str, touch: &Touch, reading: &Reading) -> Result<()> {
-        let frame: Vec<u8> = reading.frame.iter().flat_map(|v| v.to_le_bytes()).collect();
-        self.frames.write(|w| w.write_all(&frame))?;
+        let entries: [Vec<u8>; 4] = [
+            reading.frame.iter().flat_map(|v| v.to_le_bytes()).collect(),
+            (label as i64).to_le_bytes().to_vec(),
+            bytes_of_numbers(reading.pose),
+            bytes_of_numbers([touch.depth]),
+        ];
+        for (file, entry) in self.arrays.iter_mut().zip(entries) {
+            file.write(|writer| writer.write_all(&entry))?;
+        }
         self.table.row(TouchRow {
-            touch: self.labels.len(),
+            touch: self.n_written,
             label,
             object,
             rest: touch.rest,
@@ -230,19 +233,23 @@ impl TouchFiles {
             n_touched: reading.n_touched,
             n_saturated: reading.n_saturated,
         })?;
-        self.labels.push(label as i64);
-        self.poses.extend(reading.pose);
-        self.depths.push(touch.depth);
+        self.n_written += 1;
         Ok(())
     }
 
-    fn commit(self, folder: &Path) -> Result<()> {
-        let shape = (self.labels.len(), 7);
-        let poses = Array2::from_shape_vec(shape, self.poses).expect("seven a touch");
-        write_npy(&folder.join("labels.npy"), &Array1::from(self.labels))?;
-        write_npy(&folder.join("poses.npy"), &poses)?;
-        write_npy(&folder.join("depths.npy"), &Array1::from(self.depths))?;
-        self.frames.commit()?;
+    fn commit(self) -> Result<()> {
+        self.arrays.into_iter().try_for_each(WholeFile::commit)?;
         self.table.commit()
     }
+}
+
+/// Starts an array file: its header now, its data (little-endian, row by row) as it comes.
+fn start_npy<A: WritableElement>(path: &Path, shape: &[usize]) -> Result<WholeFile> {
+    let mut file = WholeFile::create(path)?;
+    file.write(|writer| {
+        write_zeroed_npy::<A, _>(writer.get_ref(), shape).map_err(io::Error::other)?;
+        let n_bytes = shape.iter().product::<usize>() * size_of::<A>();
+        writer.seek(SeekFrom::End(-(n_bytes as i64))).map(|_| ())
+    })?;
+    Ok(file)
 }

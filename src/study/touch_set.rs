@@ -10,7 +10,7 @@ use super::samples::{Samples, sample_frames};
 use super::simulation::{TouchedObject, simulate_into, touch_labels};
 use super::sweep::Sweep;
 use crate::contact::saturation_limit;
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::objects::Model;
 use crate::random::Seed;
 use crate::world::Patch;
@@ -27,7 +27,14 @@ pub trait TouchSet: Sync {
     fn labels(&self) -> Array1<usize>;
 
     /// Group of every touch, for splits that keep groups together; the error says that these touches have no such groups.
-    fn group_keys(&self, together: &KeepTogether) -> Result<Array1<usize>>;
+    fn group_keys(&self, _together: &KeepTogether) -> Result<Array1<usize>> {
+        let allowed = "no such key: these touches have no groups";
+        Err(Error::input(
+            "key recognition.keep_together",
+            "given",
+            allowed,
+        ))
+    }
 
     /// Makes what all touches need on all threads now; the first touches would make it one after the other.
     fn prepare(&self) {}
@@ -61,7 +68,9 @@ pub trait TouchSet: Sync {
     fn settings(&self) -> Vec<(String, String)>;
 
     /// SHA-256 of what each object is made of, by its name; empty if the study's text says all.
-    fn content(&self) -> BTreeMap<String, String>;
+    fn content(&self) -> BTreeMap<String, String> {
+        BTreeMap::new()
+    }
 }
 
 impl TouchSet for Vec<TouchedObject> {

@@ -3,7 +3,6 @@
 use super::scale::WayScale;
 use super::spec::{BreakingPointsSpec, DrivenAs, DrivenTouches, WaySpec};
 use crate::error::{Error, Result};
-use crate::study::Axis;
 use crate::study::axes::with_value;
 use crate::study::check::Check;
 use crate::study::plan::Plan;
@@ -186,22 +185,13 @@ impl Way<'_> {
 
 /// Every axis but that of classifiers has one value.
 fn check_single(check: &Check, plan: &Plan) -> Result<()> {
-    let n_classifiers = plan.spec.recognition.classifier.values().len() as f64;
-    let of_skins = Axis::of(&plan.spec.signal.tested_on).len();
-    let of_signal = (plan.conditions().len() * of_skins) as f64;
-    let of_sensing = (plan.spec.sensing.ensemble.values().len() * plan.amounts.len()) as f64;
-    let before = plan.arrays.len() as f64 * plan.frames.len() as f64 * of_signal * of_sensing;
-    for (key, n) in [
-        ("skin", plan.arrays.len() as f64),
-        ("touches.frames", plan.frames.len() as f64),
-        ("signal", of_signal),
-        ("sensing", of_sensing),
-        ("recognition", plan.n_cells() / before / n_classifiers),
-    ] {
-        if n != 1.0 {
+    let of_signal = ("signal", plan.conditions().len());
+    let mut lengths = plan.spec.axis_lengths().chain([of_signal]);
+    match lengths.find(|(key, n)| *n != 1 && *key != "recognition.classifier") {
+        None => Ok(()),
+        Some((key, n)) => {
             let allowed = "one: values are swept by breaking_points, and only classifiers compared";
-            return Err(check.error(key, format!("{n} settings"), allowed));
+            Err(check.error(key, format!("{n} settings"), allowed))
         }
     }
-    Ok(())
 }

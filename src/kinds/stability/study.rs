@@ -15,6 +15,7 @@ use crate::study::millimetres;
 use crate::study::pieces::{NamedPiece, PieceRows, PieceStudy, PiecesLeft, Scale};
 use crate::study::time_left::Piece;
 use crate::table::{ChartSpec, File, Table};
+use crate::toml_text;
 use rayon::prelude::*;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
@@ -52,7 +53,7 @@ impl Kind for StabilityPlan {
     }
 
     fn facts(&self) -> Result<Facts> {
-        Ok(Facts::of(self.spec.to_toml(), BTreeMap::new()))
+        Ok(Facts::of(toml_text::write(&self.spec), BTreeMap::new()))
     }
 
     fn scale(&self) -> Scale {

@@ -1,6 +1,7 @@
 //! What a study's results depend on.
 
 use crate::error::{Error, Result};
+use crate::study::axes::is_at;
 use crate::study::content_hash::short_hash;
 use crate::toml_text;
 use serde::{Deserialize, Serialize};
@@ -83,17 +84,11 @@ impl Identity {
 
     /// All that counts, by name: of the study the values of its keys, but for those that may change.
     fn facts(&self, may_change: &[&str]) -> BTreeMap<String, String> {
-        let is_fixed = |key: &String| {
-            !may_change.iter().any(|name| {
-                let rest = key.strip_prefix(name);
-                rest.is_some_and(|rest| rest.is_empty() || rest.starts_with('.'))
-            })
-        };
         let mut facts = BTreeMap::new();
         if let Some(table) = toml_text::table(&self.study) {
             add_keys("", &table, &mut facts);
         }
-        facts.retain(|key, _| is_fixed(key));
+        facts.retain(|key, _| !may_change.iter().any(|name| is_at(key, name)));
         facts.insert("program".to_owned(), self.program.clone());
         facts.insert("program's sources".to_owned(), self.source.clone());
         let objects = self.objects.iter();
