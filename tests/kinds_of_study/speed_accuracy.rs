@@ -3,7 +3,7 @@
 use crate::command::Case;
 use bubbletouch::kinds;
 use bubbletouch::kinds::speed_accuracy::rows::{
-    ChainScore, ChainTime, ContactCell, ContactPoint, ContactScore, ContactWay, Resolved, StudySize,
+    ChainScore, ChainTime, ContactCell, ContactPoint, ContactScore, ContactWay,
 };
 use bubbletouch::kinds::speed_accuracy::{SpeedAccuracyPlan, SpeedAccuracyStudySpec};
 use bubbletouch::report::csv_tables::read_rows;
@@ -50,11 +50,6 @@ noise_std_full_scale = 0.01
 training_touches = 12
 test_touches = 6
 timed_touches = 5
-
-[speed_accuracy.resolution]
-touches = [8, 24]
-trials = [3, 9]
-ratio = [4.0, 16.0]
 "#;
 
 const PEERS: &str = "date,program,version,method,setting,object,us_per_touch,error_mm\n\
@@ -71,12 +66,7 @@ fn every_point_is_a_row_fronts_are_fronts_and_threads_change_no_byte_but_times()
         "{said}"
     );
     case.succeeds(&["run", "study.toml", "--threads", "2", "--out", "2"]);
-    for name in [
-        "contact.csv",
-        "recognition.csv",
-        "resolution.csv",
-        "study.toml",
-    ] {
+    for name in ["contact.csv", "recognition.csv", "study.toml"] {
         let [one, two] = ["1", "2"].map(|folder| fs::read(case.path(folder).join(name)).unwrap());
         assert!(!one.is_empty() && one == two, "{name}");
     }
@@ -114,13 +104,7 @@ fn every_point_is_a_row_fronts_are_fronts_and_threads_change_no_byte_but_times()
         let parts = time.sense_us + time.project_us + time.classify_us;
         assert!(parts == time.decision_us && time.fit_s > 0.0, "{time:?}");
     }
-    for name in [
-        "contact",
-        "decision",
-        "training",
-        "resolution",
-        "difference",
-    ] {
+    for name in ["contact", "decision", "training"] {
         let svg =
             fs::read_to_string(case.path("1").join(format!("speed_accuracy_{name}.svg"))).unwrap();
         assert!(svg.contains("Pareto front"));
@@ -131,23 +115,6 @@ fn every_point_is_a_row_fronts_are_fronts_and_threads_change_no_byte_but_times()
     let chance = 0.25;
     let best = answers.iter().map(|row| row.accuracy).fold(0.0, f64::max);
     assert!(best > 2.0 * chance, "{best}");
-    let sizes: Vec<StudySize> = read_rows(&case.path("1/resolution.csv")).unwrap();
-    let resolved: Vec<Resolved> = read_rows(&case.path("1/resolution.csv")).unwrap();
-    let half = |touches, trials| {
-        let place = sizes
-            .iter()
-            .position(|s| (s.touches, s.trials) == (touches, trials));
-        resolved[place.unwrap()].clone()
-    };
-    assert!(half(24, 3).accuracy_half_width < half(8, 3).accuracy_half_width);
-    // Three trials say little of their own spread: both sizes together.
-    let of_difference = |trials| -> f64 {
-        [8, 24]
-            .map(|n| half(n, trials).difference_half_width)
-            .iter()
-            .sum()
-    };
-    assert!(of_difference(9) < of_difference(3));
 }
 
 #[test]
@@ -183,11 +150,6 @@ fn keys_that_are_out_of_range_are_named() {
             "objects = 4",
             "objects = 1",
             "key speed_accuracy.recognition.objects: 1",
-        ),
-        (
-            "trials = [3, 9]",
-            "trials = [1]",
-            "key speed_accuracy.resolution.trials: 1",
         ),
         (
             "sets = [\"cans\"]",
