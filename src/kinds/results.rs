@@ -8,7 +8,7 @@ use crate::files::write_bytes;
 use crate::report::csv_tables::{FAILURES_FILE, TableHashes, read_rows};
 use crate::report::folder::Folder;
 use crate::report::page::StudyAbout;
-use crate::report::study_folder::{Found, folder_with};
+use crate::report::study_folder::{Beyond, Found, folder_with};
 use crate::study::pieces::PieceFailure;
 use crate::study::provenance::{MANIFEST_FILE, Manifest, PROGRAM};
 use crate::table::Table;
@@ -46,10 +46,14 @@ impl<K: Kind> Loaded<K> {
         let found = Found {
             tables,
             charts: &self.kind.charts(tables),
-            pictures: &self.kind.pictures(tables)?,
             answers: &self.kind.answers(tables),
         };
-        folder_with(folder, about, &found, self.kind.sections(tables)?)
+        folder_with(folder, about, &found, || {
+            Ok(Beyond {
+                pictures: self.kind.pictures(tables)?,
+                sections: self.kind.sections(tables)?,
+            })
+        })
     }
 }
 

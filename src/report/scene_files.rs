@@ -2,7 +2,7 @@
 
 use super::recording::contact_table::{ContactTable, PatchContact};
 use super::recording::{
-    ForceKind, Forces, PatchFrame, Precision, RecordedPatch, RecordingHeader, RecordingWriter,
+    ForceKind, Forces, PatchFrame, RecordedPatch, RecordingHeader, RecordingWriter,
 };
 use crate::contact::GripCounts;
 use crate::error::Result;
@@ -33,7 +33,6 @@ impl SceneFiles {
                 .iter()
                 .map(|object| object.name.clone())
                 .collect(),
-            precision: Precision::default(),
             about: serde_json::json!({
                 "title": plan.spec.title,
                 "dt_ms": plan.spec.dt_ms,

@@ -293,7 +293,10 @@ impl StudyAxis {
             (!words.is_empty()).then_some((words, *unit))
         });
         let (words, unit) = found.unwrap_or((last, ""));
-        let words = words.replace('_', " ");
+        let mut words = words.replace('_', " ");
+        if let (true, Some((table, _))) = (words.starts_with("per "), self.key.split_once('.')) {
+            words = format!("{table} {words}");
+        }
         let numbers: Option<Vec<f64>> = self.values.iter().map(number).collect();
         Column::new(name, self.role(), words, unit, scale(numbers)).optional()
     }

@@ -6,14 +6,13 @@
 //! Threads live here. Whatever their number, a study's tables are the same bytes, times apart: every touch, split, noise and
 //! projection is drawn from its own named stream, and sums are taken in a fixed order.
 
-pub mod advice;
 mod attempt;
 pub mod axes;
 pub(crate) mod axis;
 mod cell;
 pub(crate) mod cell_content;
 pub(crate) mod check;
-mod compare_runs;
+mod conditions;
 mod content_hash;
 pub(crate) mod defaults;
 pub(crate) mod evaluation;
@@ -27,7 +26,6 @@ pub mod memory;
 mod npy_numbers;
 pub(crate) mod object_files;
 pub(crate) mod packings;
-mod pareto;
 pub mod pieces;
 pub(crate) mod plan;
 mod plan_human;
@@ -39,7 +37,6 @@ pub mod progress;
 pub mod provenance;
 pub(crate) mod published;
 pub(crate) mod repeats;
-mod role;
 mod samples;
 mod sensor_errors;
 mod shard;
@@ -62,7 +59,7 @@ mod variance_table;
 pub use crate::table::Role;
 pub use axis::Axis;
 pub(crate) use check::{Check, not_negative, positive};
-pub use compare_runs::{RunComparison, RunDifference, compare_runs};
+pub(crate) use conditions::column_name;
 pub(crate) use content_hash::{sha256, short_hash};
 pub use evaluation::CONFIDENCE;
 pub use feature_files::{FeatureSet, cell_features, read_features, write_features, write_npy};
@@ -78,7 +75,6 @@ pub use plan::{Amount, Plan, SplitKind, SplitPlan, millimetres};
 pub use plan_signal::Condition;
 pub use pose_groups::KeepTogether;
 pub use repeats::Repeats;
-pub use role::{agree, column_name, condition_numbers, most_accurate, one_of, role_of};
 pub use samples::{Samples, sample_frames};
 pub use sensor_errors::{Strengths, TestedOn, all_strengths, strength_columns};
 pub use shard::Shard;

@@ -1,7 +1,7 @@
 //! How much of the spread of each cell's accuracy comes from splits, from projections, and from the rest.
 
 use super::evaluation::CONFIDENCE;
-use super::repeats::accuracies;
+use super::repeats::{Repeat, scores};
 use super::table::{Cell, TrialScore};
 use crate::error::Result;
 use crate::recognition::variance::{Component, components};
@@ -24,7 +24,7 @@ row! {
 /// What a source adds to the variance of a cell's accuracy: a row of `variance.csv`, for studies with `projections_per_split`.
 pub struct Variance {
     /// Number of the cell.
-    cell: usize => Note: Linear;
+    cell: usize => Subject: Linear;
     /// The source.
     source: Source => Subject "source of variance";
     /// How many of it were drawn; of the rest: trials.
@@ -51,13 +51,11 @@ pub struct Variance {
 pub fn variances(rows: &[(Cell, TrialScore)]) -> Result<Vec<Variance>> {
     let mut table = Vec::new();
     for trials in rows.chunk_by(|a, b| a.0.cell == b.0.cell) {
-        let scores: Vec<&TrialScore> = trials.iter().map(|(_, score)| score).collect();
-        let Some(scores) = accuracies(&scores).filter(|scores| scores.ncols() > 1) else {
+        let trials_of = trials.iter().map(|(_, score)| Repeat::of(score));
+        let scores = scores(&trials_of.collect::<Vec<_>>());
+        let Some(scores) = scores.filter(|scores| scores.ncols() > 1 && scores.nrows() > 1) else {
             continue;
         };
-        if scores.nrows() < 2 {
-            continue;
-        }
         let found = components(scores.view(), CONFIDENCE)?;
         let parts = [
             (Source::Split, found.rows),

@@ -33,13 +33,14 @@ impl Taxel {
 }
 
 /// A rectangular grid of rest positions, centred on the patch's origin.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Grid {
     /// Columns, along patch x.
     pub nx: usize,
     /// Rows, along patch y.
     pub ny: usize,
     /// Metres between neighbours, positive.
+    #[serde(rename = "pitch_m")]
     pub pitch: f64,
 }
 

@@ -204,8 +204,8 @@ fn what_the_user_names_wrongly_is_refused_as_bad_input() {
     let before = case.names();
     for (arguments, words) in [
         ("report empty", &["empty/study.toml", "cannot be read"][..]),
-        ("compare empty empty", &["empty/accuracy.csv", "is missing"]),
-        ("compare nothere empty", &["nothere/accuracy.csv"]),
+        ("compare empty empty", &["empty/study.toml", "is missing"]),
+        ("compare nothere empty", &["nothere/study.toml"]),
         ("recording nothere.npz", &["nothere.npz", "is missing"]),
         ("press --mesh x.ply", &["x.ply: a folder"]),
         ("press --spheres x.csv", &["x.csv: a folder"]),
@@ -576,7 +576,7 @@ fn a_published_accuracy_about_no_cell_is_refused_before_the_study_runs() {
         )
     };
     for (keys, words) in [
-        ("ratio = 64", ["claim '98 %', ratio", "one of 4.0, 16.0"]),
+        ("ratio = 64", ["claim '98 %', ratio", "one of 4, 16"]),
         ("kernel = \"rbf\"", ["kernel: is no setting", "classifier"]),
         ("classifier = \"rbf_svm\"", ["rbf_svm", "linear_svm"]),
     ] {

@@ -2,6 +2,8 @@
 
 #[path = "../fixtures/command/mod.rs"]
 mod command;
+#[path = "../fixtures/recording/mod.rs"]
+mod stored;
 #[path = "../fixtures/study/mod.rs"]
 mod study;
 

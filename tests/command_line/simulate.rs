@@ -2,7 +2,6 @@
 #![cfg(unix)]
 
 use crate::command::Case;
-use bubbletouch::report::recording::read_recording;
 use bubbletouch::scene::{Frame, ScenePlan, Simulation, Stepping};
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -56,7 +55,7 @@ fn the_files_hold_what_the_library_computes() {
     let mut frames: Vec<Frame> = Vec::new();
     let mut simulation = Simulation::new(&plan, Stepping::AsNeeded);
     simulation.run(&mut [&mut frames]).unwrap();
-    let recording = read_recording(&case.path("o/recording.npz")).unwrap();
+    let recording = crate::stored::read_recording(&case.path("o/recording.npz")).unwrap();
     assert_eq!(recording.time.len(), frames.len());
     for (number, frame) in frames.iter().enumerate() {
         for (stored, reading) in recording.patches.iter().zip(&frame.patches) {

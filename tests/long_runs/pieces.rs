@@ -495,18 +495,6 @@ fn counts_that_no_memory_holds_are_refused_before_it_is_taken_in_studies_of_ever
             "training_touches",
             "speed_accuracy.recognition.training_touches",
         ),
-        (
-            Kind::SPEED_ACCURACY,
-            "touches = [8, 12]",
-            "touches",
-            "speed_accuracy.resolution.touches",
-        ),
-        (
-            Kind::SPEED_ACCURACY,
-            "trials = [2, 3]",
-            "trials",
-            "speed_accuracy.resolution.trials",
-        ),
         (Kind::WHOLE_BODY, "steps = 10", "steps", "whole_body.steps"),
         (
             Kind::WHOLE_BODY,

@@ -8,6 +8,8 @@ mod chart_tables;
 mod counting;
 #[path = "../fixtures/report_synthetic/mod.rs"]
 mod report_synthetic;
+#[path = "../fixtures/recording/mod.rs"]
+mod stored;
 
 mod asked;
 mod charts;

@@ -2,7 +2,6 @@
 
 use bubbletouch::contact::{FrictionState, NormalForce, SkinWorkspace, press_skin};
 use bubbletouch::geometry::Pose;
-use bubbletouch::report::recording::read_recording;
 use bubbletouch::report::scene_files::SceneFiles;
 use bubbletouch::scene::{
     Frame, FrameSink, Held, PatchReading, ScenePlan, SceneSpec, Simulation, Stepping, Summary,
@@ -204,7 +203,7 @@ fn a_recording_of_a_patch_with_friction_has_forces_in_three_dimensions() {
         files.frame(frame).unwrap();
     }
     files.finish().unwrap();
-    let recording = read_recording(&folder.path().join("recording.npz")).unwrap();
+    let recording = crate::stored::read_recording(&folder.path().join("recording.npz")).unwrap();
     let stored = &recording.patches[0].force;
     assert_eq!(stored.dim(), (all.len(), 280, 3));
     for (number, frame) in all.iter().enumerate() {

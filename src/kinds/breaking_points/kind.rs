@@ -59,7 +59,7 @@ impl Kind for BreakingPointsStudy {
         }
     }
 
-    fn read_tables(&self, folder: &Path) -> Result<Vec<Table>> {
+    fn read(folder: &Path) -> Result<Vec<Table>> {
         Ok(vec![
             ACCURACY.read(folder)?,
             SUMMARY.read(folder)?,

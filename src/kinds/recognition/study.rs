@@ -370,7 +370,6 @@ impl RecognitionStudy {
         let mut outcome = Outcome {
             tables: Default::default(),
             arrays: Vec::new(),
-            limits: Vec::new(),
         };
         self.add_arrays(&mut outcome, &rows);
         let scored = rows.cells.into_iter().map(|row| {
@@ -381,8 +380,8 @@ impl RecognitionStudy {
         let name = |cell: &Cell, label: usize| names[cell.variant.number][label].to_owned();
         tabulate(&mut outcome.tables, scored.collect(), name)?;
         let published = &self.first().plan.spec.report.published;
-        outcome.tables.published = compare_with_published(published, &outcome.tables.summary);
-        outcome.limits = self.limits(&outcome.tables, &outcome.arrays);
+        outcome.tables.published = compare_with_published(published, &outcome.tables.summary)?;
+        outcome.tables.limits = self.limits(&outcome.tables, &outcome.arrays);
         Ok(outcome)
     }
 
@@ -486,8 +485,7 @@ impl PieceStudy for RecognitionStudy {
     }
 
     fn tables(&self, rows: RecognitionRows) -> Result<Vec<Table>> {
-        let outcome = self.outcome(rows)?;
-        tables_of(&outcome.tables, &outcome.limits)
+        tables_of(&self.outcome(rows)?.tables)
     }
 }
 

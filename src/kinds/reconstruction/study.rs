@@ -108,7 +108,7 @@ impl Kind for ReconstructionStudy {
         }
     }
 
-    fn read_tables(&self, folder: &Path) -> Result<Vec<Table>> {
+    fn read(folder: &Path) -> Result<Vec<Table>> {
         Ok(vec![
             CELLS.read(folder)?,
             ENSEMBLES.read(folder)?,

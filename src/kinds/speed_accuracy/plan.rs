@@ -4,7 +4,6 @@ use super::spec::{RecognitionSweepSpec, ScansSpec, SpeedAccuracySpec, SpeedAccur
 use crate::error::Result;
 use crate::study::axis::Axis;
 use crate::study::check::{Check, Range, TOUCHES};
-use crate::study::plan::MOST_TRIALS;
 use crate::study::spec::{ObjectsSpec, SkinSpec};
 use crate::world::{MOST_TOUCHES, Patch, Placement};
 use std::path::{Path, PathBuf};
@@ -39,8 +38,8 @@ pub struct RecognitionSweep {
     pub levels: Vec<f64>,
 }
 
-/// What the numbers of `[speed_accuracy]` may be. Fewer touches than four leave none to test in a quarter of them, and one trial has no spread.
-const KEYS: [(&str, Range); 19] = [
+/// What the numbers of `[speed_accuracy]` may be.
+const KEYS: [(&str, Range); 16] = [
     ("tolerances_mm", Range::Positive),
     ("contact.objects", TOUCHES),
     ("contact.touches", TOUCHES),
@@ -57,9 +56,6 @@ const KEYS: [(&str, Range); 19] = [
     ("recognition.classifier", Range::Any),
     ("recognition.noise_std_full_scale", Range::NotNegative),
     ("recognition.ratio", Range::AtLeastOne),
-    ("resolution.touches", Range::Count(4, MOST_TOUCHES)),
-    ("resolution.trials", Range::Count(2, MOST_TRIALS)),
-    ("resolution.ratio", Range::AtLeastOne),
 ];
 
 impl SpeedAccuracyPlan {
@@ -103,8 +99,8 @@ impl SpeedAccuracyPlan {
         let contact = wanted.contact.as_ref();
         let sweep = wanted.recognition.as_ref();
         let sweep = sweep.map(|sweep| check_recognition(&check, &spec.skin, &levels, sweep));
-        if contact.is_none() && sweep.is_none() && wanted.resolution.is_none() {
-            let allowed = "at least one of the tables contact, recognition, resolution";
+        if contact.is_none() && sweep.is_none() {
+            let allowed = "at least one of the tables contact and recognition";
             return Err(check.error("speed_accuracy", "no part", allowed));
         }
         let peers = contact.and_then(|contact| contact.peers.as_ref());

@@ -39,8 +39,6 @@ pub struct SpeedAccuracySpec {
     pub contact: Option<ContactSpec>,
     /// Part: recognition.
     pub recognition: Option<RecognitionSweepSpec>,
-    /// Part: what a study of some size resolves.
-    pub resolution: Option<ResolutionSpec>,
 }
 
 /// `[speed_accuracy.contact]`
@@ -99,18 +97,6 @@ pub struct RecognitionSweepSpec {
     pub test_touches: usize,
     /// Touches whose way from contact to answer is timed.
     pub timed_touches: usize,
-}
-
-/// `[speed_accuracy.resolution]`
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct ResolutionSpec {
-    /// Touches an object.
-    pub touches: Vec<usize>,
-    /// Trials, at least 2.
-    pub trials: Vec<usize>,
-    /// The two ratios whose accuracies are compared.
-    pub ratio: [f64; 2],
 }
 
 toml_file!(SpeedAccuracyStudySpec);

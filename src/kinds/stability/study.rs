@@ -69,13 +69,19 @@ impl Kind for StabilityPlan {
         }
     }
 
-    fn read_tables(&self, folder: &Path) -> Result<Vec<Table>> {
+    fn read(folder: &Path) -> Result<Vec<Table>> {
         Ok(vec![
-            CELLS.read(folder)?.noted(peer_rows(self)?.1),
+            CELLS.read(folder)?,
             SUMMARY.read(folder)?,
             TIMING.read(folder)?,
             JOINTS.read(folder)?,
         ])
+    }
+
+    fn read_tables(&self, folder: &Path) -> Result<Vec<Table>> {
+        let mut tables = Self::read(folder)?;
+        tables[0].note = peer_rows(self)?.1;
+        Ok(tables)
     }
 
     fn charts(&self, tables: &[Table]) -> Vec<ChartSpec> {

@@ -101,7 +101,7 @@ impl Kind for WholeBodyPlan {
         }
     }
 
-    fn read_tables(&self, folder: &std::path::Path) -> Result<Vec<Table>> {
+    fn read(folder: &std::path::Path) -> Result<Vec<Table>> {
         Ok(vec![
             CASES.read(folder)?,
             RECOGNITION.read(folder)?,

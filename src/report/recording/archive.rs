@@ -1,21 +1,21 @@
 //! A zip of stored members whose sizes are known before their bytes: each has its place, so they can grow side by side.
 //!
 //! A member is a local header, its name, and its bytes; behind all of them the directory says where each begins. Only the
-//! checksums come with the bytes: they are put into the local headers at the end. What is 4 GiB or more is written as ZIP64 has it
-//! (PKWARE's APPNOTE 6.3.10, §4.3 and §4.5.3).
+//! checksums come with the bytes: they are put into the local headers at the end. Sizes and places are written as ZIP64 has them
+//! (PKWARE's APPNOTE 6.3.10, §4.3 and §4.5.3), of small members too: one form for all.
 
 use crc32fast::Hasher;
 use std::io::{self, Seek, SeekFrom, Write};
 
-/// What a field of four bytes cannot say.
-const LARGE: u64 = u32::MAX as u64;
-/// What a field of two bytes cannot say.
-const MANY: usize = u16::MAX as usize;
-/// 1980-01-01, 00:00: equal recordings are equal bytes.
-const DATE: u16 = 1 << 5 | 1;
-/// Made on Unix: a file that all may read and its owner may write.
-const UNIX: u16 = 3 << 8;
+/// What a field says of which ZIP64's holds the number.
+const ELSEWHERE: [u8; 4] = [0xff; 4];
+/// The version that knows ZIP64; an entry of the directory says with it that it was made on Unix.
+const VERSION: [u8; 2] = [45, 0];
+const MADE_BY: [u8; 2] = [45, 3];
+/// Of a file that all may read and its owner may write.
 const PERMISSIONS: u32 = 0o100_644 << 16;
+/// A name in UTF-8, stored bytes, and 1980-01-01, 00:00: equal recordings are equal bytes.
+const FLAGS_METHOD_TIME: [u8; 8] = [0, 8, 0, 0, 0, 0, 33, 0];
 
 /// A member of stored bytes.
 #[derive(Clone, Debug)]
@@ -71,14 +71,9 @@ impl Archive {
     /// Writes headers and directory; the error is a member that has not got all its bytes.
     pub fn finish(&self, file: &mut (impl Write + Seek)) -> io::Result<()> {
         for member in &self.members {
-            if member.n_written != member.size {
-                let Member {
-                    name,
-                    size,
-                    n_written,
-                    ..
-                } = member;
-                let said = format!("member {name} has {n_written} of its {size} bytes");
+            let (name, size, n) = (&member.name, member.size, member.n_written);
+            if n != size {
+                let said = format!("member {name} has {n} of its {size} bytes");
                 return Err(io::Error::other(said));
             }
             file.seek(SeekFrom::Start(member.start))?;
@@ -90,25 +85,24 @@ impl Archive {
 
     fn directory(&self) -> Vec<u8> {
         let mut bytes: Vec<u8> = self.members.iter().flat_map(Member::entry).collect();
-        let (n, size) = (self.members.len(), bytes.len() as u64);
-        if n > MANY || size.max(self.end) > LARGE {
-            let record = self.end + size;
-            bytes.extend(b"PK\x06\x06");
-            bytes.extend(44_u64.to_le_bytes());
-            bytes.extend([45; 2].into_iter().flat_map(u16::to_le_bytes));
-            bytes.extend([0; 2].into_iter().flat_map(u32::to_le_bytes));
-            let numbers = [n as u64, n as u64, size, self.end];
-            bytes.extend(numbers.into_iter().flat_map(u64::to_le_bytes));
-            bytes.extend(b"PK\x06\x07");
-            bytes.extend(0_u32.to_le_bytes());
-            bytes.extend(record.to_le_bytes());
-            bytes.extend(1_u32.to_le_bytes());
-        }
-        bytes.extend(b"PK\x05\x06");
-        let n = n.min(MANY) as u16;
-        bytes.extend([0, 0, n, n].into_iter().flat_map(u16::to_le_bytes));
-        bytes.extend([size, self.end].into_iter().flat_map(short));
-        bytes.extend(0_u16.to_le_bytes());
+        let (n, size) = (self.members.len() as u64, bytes.len() as u64);
+        let record = self.end + size;
+        bytes.extend(b"PK\x06\x06");
+        bytes.extend(44_u64.to_le_bytes());
+        bytes.extend([MADE_BY, VERSION].concat());
+        bytes.extend([0; 8]);
+        bytes.extend(
+            [n, n, size, self.end]
+                .into_iter()
+                .flat_map(u64::to_le_bytes),
+        );
+        bytes.extend(b"PK\x06\x07\0\0\0\0");
+        bytes.extend(record.to_le_bytes());
+        bytes.extend(1_u32.to_le_bytes());
+        bytes.extend(b"PK\x05\x06\0\0\0\0");
+        // Numbers, size and place are in the record; no comment.
+        bytes.extend([ELSEWHERE; 3].concat());
+        bytes.extend([0; 2]);
         bytes
     }
 }
@@ -116,73 +110,38 @@ impl Archive {
 impl Member {
     /// Where its bytes begin.
     fn data(&self) -> u64 {
-        self.start + 30 + self.name.len() as u64 + self.sizes().len() as u64
+        self.start + self.local_header().len() as u64
     }
 
     fn local_header(&self) -> Vec<u8> {
-        let sizes = self.sizes();
         let mut bytes = b"PK\x03\x04".to_vec();
-        self.common(&mut bytes, sizes.len());
-        bytes.extend(self.name.as_bytes());
-        bytes.extend(sizes);
+        self.describe(&mut bytes, &[self.size; 2], &[]);
         bytes
     }
 
     /// In the directory.
     fn entry(&self) -> Vec<u8> {
-        let mut extra = self.sizes();
-        if self.start >= LARGE {
-            // The place comes behind the sizes in the same field, which may not be there yet.
-            if extra.is_empty() {
-                extra.extend([1, 0, 0, 0]);
-            }
-            extra.extend(self.start.to_le_bytes());
-            extra[2] = extra.len() as u8 - 4;
-        }
-        let mut bytes = b"PK\x01\x02".to_vec();
-        bytes.extend((UNIX | self.version(!extra.is_empty())).to_le_bytes());
-        self.common(&mut bytes, extra.len());
+        let mut bytes = [b"PK\x01\x02", &MADE_BY[..]].concat();
         // No comment, the first disk, nothing known of the bytes.
-        bytes.extend([0; 3].into_iter().flat_map(u16::to_le_bytes));
-        bytes.extend(PERMISSIONS.to_le_bytes());
-        bytes.extend(short(self.start));
-        bytes.extend(self.name.as_bytes());
-        bytes.extend(extra);
+        let more = [&[0; 6], &PERMISSIONS.to_le_bytes()[..], &ELSEWHERE].concat();
+        self.describe(&mut bytes, &[self.size, self.size, self.start], &more);
         bytes
     }
 
-    /// What both headers have, from the version to the lengths of name and extra field.
-    fn common(&self, bytes: &mut Vec<u8>, n_extra: usize) {
-        // A name beyond ASCII is UTF-8.
-        let flags = u16::from(!self.name.is_ascii()) << 11;
-        let stored = 0;
-        let numbers = [self.version(n_extra > 0), flags, stored, 0, DATE];
-        bytes.extend(numbers.into_iter().flat_map(u16::to_le_bytes));
+    /// What both headers have, from the version to ZIP64's field, with what one has more before the name.
+    fn describe(&self, bytes: &mut Vec<u8>, numbers: &[u64], more: &[u8]) {
+        let numbers: Vec<u8> = numbers.iter().flat_map(|n| n.to_le_bytes()).collect();
+        bytes.extend(VERSION);
+        bytes.extend(FLAGS_METHOD_TIME);
         bytes.extend(self.hasher.clone().finalize().to_le_bytes());
-        bytes.extend([self.size; 2].into_iter().flat_map(short));
-        let lengths = [self.name.len() as u16, n_extra as u16];
+        bytes.extend([ELSEWHERE; 2].concat());
+        let lengths = [self.name.len(), numbers.len() + 4].map(|n| n as u16);
         bytes.extend(lengths.into_iter().flat_map(u16::to_le_bytes));
+        bytes.extend(more);
+        bytes.extend(self.name.as_bytes());
+        bytes.extend([1, 0, numbers.len() as u8, 0]);
+        bytes.extend(numbers);
     }
-
-    fn version(&self, is_zip64: bool) -> u16 {
-        if is_zip64 { 45 } else { 10 }
-    }
-
-    /// ZIP64's extra field of a member that is too large for four bytes.
-    fn sizes(&self) -> Vec<u8> {
-        if self.size < LARGE {
-            return Vec::new();
-        }
-        let mut field = vec![1, 0, 16, 0];
-        field.extend(self.size.to_le_bytes());
-        field.extend(self.size.to_le_bytes());
-        field
-    }
-}
-
-/// A number of four bytes; of a larger one, that it is elsewhere.
-fn short(number: u64) -> [u8; 4] {
-    (number.min(LARGE) as u32).to_le_bytes()
 }
 
 #[cfg(test)]

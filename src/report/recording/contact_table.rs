@@ -31,47 +31,6 @@ pub struct PatchContact<'a> {
     pub grips: Option<GripCounts>,
 }
 
-impl<'a> PatchContact<'a> {
-    /// The sum over taxels of forces that act at places (newtons, metres, one frame); a taxel is in contact if its force is
-    /// not zero.
-    ///
-    /// The weight of the centre of pressure is the length of the force.
-    ///
-    /// # Panics
-    /// If there are not as many forces as places.
-    pub fn of_taxels(
-        patch: &'a str,
-        places: &[DVec3],
-        forces: &[DVec3],
-        n_saturated: usize,
-    ) -> Self {
-        assert_eq!(places.len(), forces.len(), "one force a place");
-        let mut sum = Self {
-            patch,
-            n_touched: 0,
-            n_saturated,
-            force: DVec3::ZERO,
-            torque: DVec3::ZERO,
-            center_of_pressure: None,
-            grips: None,
-        };
-        let (mut weight, mut weighted) = (0.0, DVec3::ZERO);
-        for (&place, &force) in places.iter().zip(forces) {
-            let length = force.length();
-            if length == 0.0 {
-                continue;
-            }
-            sum.n_touched += 1;
-            sum.force += force;
-            sum.torque += place.cross(force);
-            weight += length;
-            weighted += length * place;
-        }
-        sum.center_of_pressure = (weight > 0.0).then(|| weighted / weight);
-        sum
-    }
-}
-
 /// The table in the making. [`commit`](Self::commit) puts it in place; dropped before, it leaves nothing behind.
 pub struct ContactTable {
     path: PathBuf,

@@ -7,25 +7,6 @@ use glam::DVec3;
 use serde::{Deserialize, Serialize};
 use std::collections::HashSet;
 
-/// How deflections and forces are stored.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
-pub enum Precision {
-    /// f32, rounded: 7 digits at half the size.
-    #[default]
-    Single,
-    /// f64: to the bit.
-    Double,
-}
-
-impl Precision {
-    pub(super) fn element(self) -> Element {
-        match self {
-            Self::Single => Element::Single,
-            Self::Double => Element::Double,
-        }
-    }
-}
-
 /// What is known of the force on a taxel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
@@ -47,15 +28,18 @@ impl ForceKind {
 }
 
 /// A patch as a recording knows it.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct RecordedPatch {
     /// Unlike that of any other patch or object.
     pub name: String,
     /// Where the taxels rest, metres, patch frame; at least one.
+    #[serde(rename = "n_taxels", serialize_with = "length", skip_deserializing)]
     pub centers: Vec<DVec3>,
     /// Unit vectors away from the substrate, one a taxel.
+    #[serde(skip)]
     pub axes: Vec<DVec3>,
     /// The grid, where the taxels are one: taxel = row · nx + column.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub grid: Option<Grid>,
     /// What is recorded of the forces.
     pub force: ForceKind,
@@ -110,15 +94,14 @@ impl RecordedPatch {
 }
 
 /// What a recording is of.
-#[derive(Clone, Debug, PartialEq, Default)]
+#[derive(Clone, Debug, PartialEq, Default, Serialize, Deserialize)]
 pub struct RecordingHeader {
     /// The skin.
     pub patches: Vec<RecordedPatch>,
     /// Names of the objects whose poses are recorded.
     pub objects: Vec<String>,
-    /// How deflections and forces are stored.
-    pub precision: Precision,
     /// What else is to be known of it (seed, step, scene …), any JSON.
+    #[serde(default)]
     pub about: serde_json::Value,
 }
 
@@ -179,7 +162,7 @@ impl RecordingHeader {
 
     /// Members with one row a frame: time, then deflection, force and pose of each patch, then each object's pose.
     pub(super) fn streams(&self) -> Vec<Stream> {
-        let element = self.precision.element();
+        let element = Element::Single;
         let mut streams = vec![Stream::new("time", Element::Double, &[])];
         for patch in &self.patches {
             let (name, n) = (&patch.name, patch.n_taxels());
@@ -199,51 +182,21 @@ impl RecordingHeader {
 
     /// The text of `meta`.
     pub(super) fn meta(&self) -> String {
-        let patches = self.patches.iter().map(|patch| MetaPatch {
-            name: patch.name.clone(),
-            n_taxels: patch.n_taxels(),
-            force: patch.force,
-            grid: patch.grid.map(|grid| MetaGrid {
-                nx: grid.nx,
-                ny: grid.ny,
-                pitch_m: grid.pitch,
-            }),
-        });
         let meta = Meta {
             format: FORMAT.to_owned(),
             version: VERSION,
-            patches: patches.collect(),
-            objects: self.objects.clone(),
-            about: self.about.clone(),
+            header: self,
         };
         serde_json::to_string(&meta).expect("strings and numbers make JSON")
     }
 
-    /// The header that `meta` tells of, still without centres, axes and precision; the error says what is wrong with it.
-    pub(super) fn of_meta(text: &str) -> std::result::Result<(Self, Vec<usize>), String> {
-        let meta: Meta = serde_json::from_str(text).map_err(|e| e.to_string())?;
-        if meta.format != FORMAT || meta.version != VERSION {
-            return Err(format!("{} of version {}", meta.format, meta.version));
+    /// The header that `meta` tells of, still without centres and axes; the error says what is wrong with it.
+    pub(super) fn of_meta(text: &str) -> std::result::Result<Self, String> {
+        let meta: Meta<Self> = serde_json::from_str(text).map_err(|e| e.to_string())?;
+        match (&meta.format[..], meta.version) {
+            (FORMAT, VERSION) => Ok(meta.header),
+            (format, version) => Err(format!("{format} of version {version}")),
         }
-        let n_taxels = meta.patches.iter().map(|patch| patch.n_taxels).collect();
-        let patches = meta.patches.into_iter().map(|patch| RecordedPatch {
-            name: patch.name,
-            centers: Vec::new(),
-            axes: Vec::new(),
-            grid: patch.grid.map(|grid| Grid {
-                nx: grid.nx,
-                ny: grid.ny,
-                pitch: grid.pitch_m,
-            }),
-            force: patch.force,
-        });
-        let header = Self {
-            patches: patches.collect(),
-            objects: meta.objects,
-            precision: Precision::default(),
-            about: meta.about,
-        };
-        Ok((header, n_taxels))
     }
 }
 
@@ -251,27 +204,17 @@ const FORMAT: &str = "bubbletouch recording";
 const VERSION: u32 = 1;
 
 #[derive(Serialize, Deserialize)]
-struct Meta {
+struct Meta<H> {
     format: String,
     version: u32,
-    patches: Vec<MetaPatch>,
-    objects: Vec<String>,
-    #[serde(default)]
-    about: serde_json::Value,
+    #[serde(flatten)]
+    header: H,
 }
 
-#[derive(Serialize, Deserialize)]
-struct MetaPatch {
-    name: String,
-    n_taxels: usize,
-    force: ForceKind,
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    grid: Option<MetaGrid>,
-}
-
-#[derive(Serialize, Deserialize)]
-struct MetaGrid {
-    nx: usize,
-    ny: usize,
-    pitch_m: f64,
+/// Places stand in members of their own.
+fn length<S: serde::Serializer>(
+    places: &[DVec3],
+    serializer: S,
+) -> std::result::Result<S::Ok, S::Error> {
+    places.len().serialize(serializer)
 }

@@ -2,7 +2,7 @@
 //!
 //! In: one [`PatchFrame`] a patch and one pose an object, frame by frame ([`RecordingWriter`]). Out: a zip of `.npy`
 //! members, stored without compression, ZIP64 where it is needed; `np.load(path)` opens it without pickle. Nothing but a block
-//! of rows is held in memory. [`RecordingFile`] reads it back row by row, [`read_recording`] at once.
+//! of rows is held in memory. [`RecordingFile`] reads it back row by row.
 //!
 //! | member | shape | holds |
 //! |---|---|---|
@@ -10,8 +10,8 @@
 //! | `time` | n_frames | f64, seconds, increasing |
 //! | `PATCH/centers` | n_taxels × 3 | f64, metres, patch frame: where the taxels rest |
 //! | `PATCH/axes` | n_taxels × 3 | f64, unit vectors, patch frame: away from the substrate |
-//! | `PATCH/deflection` | n_frames × n_taxels | f32 or f64, metres |
-//! | `PATCH/force` | n_frames × n_taxels (normal) or n_frames × n_taxels × 3 (vectors, patch frame) | f32 or f64, newtons |
+//! | `PATCH/deflection` | n_frames × n_taxels | f32, metres |
+//! | `PATCH/force` | n_frames × n_taxels (normal) or n_frames × n_taxels × 3 (vectors, patch frame) | f32, newtons |
 //! | `PATCH/pose` | n_frames × 7 | f64, world from patch: x, y, z in metres, unit quaternion x, y, z, w |
 //! | `OBJECT/pose` | n_frames × 7 | f64, world from object, the same |
 //!
@@ -33,13 +33,11 @@ mod pixels;
 mod reader;
 mod rows;
 pub mod skin_picture;
-mod stored;
 mod summary;
 mod unrolled;
 mod writer;
 
-pub use header::{ForceKind, Precision, RecordedPatch, RecordingHeader};
+pub use header::{ForceKind, RecordedPatch, RecordingHeader};
 pub use reader::RecordingFile;
-pub use stored::{StoredPatch, StoredRecording, read_recording};
-pub use summary::{PatchSummary, recording_table, summarise};
+pub use summary::recording_table;
 pub use writer::{Forces, PatchFrame, RecordingWriter};

@@ -57,6 +57,15 @@ impl NpyHeader {
         lengths.try_fold(self.element.n_bytes(), |product, &n| product.checked_mul(n))
     }
 
+    /// The error says what it is, and what it should be.
+    pub fn check(&self, element: Element, shape: &[usize]) -> Result<(), (String, String)> {
+        let said = |element: Element, shape: &[usize]| format!("{element:?} of shape {shape:?}");
+        match (self.element, &self.shape[..]) == (element, shape) {
+            true => Ok(()),
+            false => Err((said(self.element, &self.shape), said(element, shape))),
+        }
+    }
+
     /// The header as it stands in the file, a multiple of 64 bytes long.
     pub fn bytes(&self) -> Vec<u8> {
         let shape = match &self.shape[..] {

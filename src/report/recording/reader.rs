@@ -1,12 +1,11 @@
 //! A recording read back from its file, a row or a block of rows at a time.
 
-use super::header::{Precision, RecordedPatch, RecordingHeader, Stream};
+use super::header::{RecordedPatch, RecordingHeader, Stream};
 use super::npy::{Element, NpyHeader};
 use super::rows::{decode, read_rows};
 use crate::error::{Error, Result};
-use crate::geometry::Pose;
 use crate::signal::Quantity;
-use glam::{DQuat, DVec3};
+use glam::DVec3;
 use std::collections::HashMap;
 use std::fs::File;
 use std::io::{self, BufReader, Read, Seek, SeekFrom};
@@ -41,18 +40,16 @@ impl RecordingFile {
             time: Vec::new(),
             streams: HashMap::new(),
         };
-        let (header, n_taxels) = open.read_meta()?;
-        open.header = header;
-        for (patch, n) in n_taxels.into_iter().enumerate() {
+        open.header = open.read_meta()?;
+        for patch in 0..open.header.patches.len() {
             let name = open.header.patches[patch].name.clone();
-            open.header.patches[patch].centers = open.vectors(&name, "centers", n)?;
-            open.header.patches[patch].axes = open.vectors(&name, "axes", n)?;
+            open.header.patches[patch].centers = open.vectors(&name, "centers")?;
+            open.header.patches[patch].axes = open.vectors(&name, "axes")?;
         }
-        open.header.precision = open.precision()?;
         open.header
             .check()
             .map_err(|e| open.damaged("meta", e, "as it was written"))?;
-        open.time = open.whole("time", None)?;
+        open.time = open.whole("time", &[])?;
         let n_frames = open.time.len();
         for stream in open.header.streams() {
             open.check_member(&stream.name, stream.element, &stream.shape(n_frames))?;
@@ -153,18 +150,6 @@ impl RecordingFile {
         read.map_err(|e| self.damaged(member, e, "rows as they were written"))
     }
 
-    /// The poses of a patch or an object, one a frame.
-    pub fn poses(&mut self, name: &str) -> Result<Vec<Pose>> {
-        let mut poses = Vec::with_capacity(self.time.len());
-        self.each_row(&format!("{name}/pose"), |_, row| {
-            poses.push(Pose::new(
-                DQuat::from_xyzw(row[3], row[4], row[5], row[6]),
-                DVec3::new(row[0], row[1], row[2]),
-            ));
-        })?;
-        Ok(poses)
-    }
-
     fn member_of(&self, patch: usize, quantity: Quantity) -> String {
         format!("{}/{}", self.header.patches[patch].name, quantity.name())
     }
@@ -187,7 +172,7 @@ impl RecordingFile {
         })
     }
 
-    fn read_meta(&mut self) -> Result<(RecordingHeader, Vec<usize>)> {
+    fn read_meta(&mut self) -> Result<RecordingHeader> {
         let bytes = self.bytes("meta").and_then(|(array, bytes)| {
             let is_text = matches!(array.element, Element::Text(_)) && array.shape.is_empty();
             match is_text {
@@ -204,42 +189,20 @@ impl RecordingFile {
             .map_err(|e| self.damaged("meta", e, "what a bubbletouch recording says of itself"))
     }
 
-    fn vectors(&mut self, patch: &str, what: &str, n: usize) -> Result<Vec<DVec3>> {
-        let numbers = self.whole(&format!("{patch}/{what}"), Some(&[n, 3]))?;
+    fn vectors(&mut self, patch: &str, what: &str) -> Result<Vec<DVec3>> {
+        let numbers = self.whole(&format!("{patch}/{what}"), &[3])?;
         let vectors = numbers.as_chunks().0.iter();
         Ok(vectors.map(|&v: &[f64; 3]| DVec3::from(v)).collect())
     }
 
-    /// That of the first deflection; all must be the same, which is checked with the shapes.
-    fn precision(&mut self) -> Result<Precision> {
-        let Some(first) = self.header.patches.first() else {
-            return Ok(Precision::default());
-        };
-        let member = format!("{}/deflection", first.name);
-        let header = self.npy_header(&member);
-        let header = header.map_err(|e| self.damaged(&member, e, "an array"))?;
-        Ok(match header.element {
-            Element::Double => Precision::Double,
-            _ => Precision::Single,
-        })
-    }
-
-    /// A member of numbers in f64, at once; its shape is one axis long unless given.
-    fn whole(&mut self, member: &str, shape: Option<&[usize]>) -> Result<Vec<f64>> {
+    /// A member of numbers in f64 with rows of a shape, at once.
+    fn whole(&mut self, member: &str, row: &[usize]) -> Result<Vec<f64>> {
         let read = self.bytes(member);
         let (array, bytes) = read.map_err(|e| self.damaged(member, e, "an array"))?;
-        let is_right = match shape {
-            Some(shape) => array.shape == shape,
-            None => array.shape.len() == 1,
-        };
-        if !is_right || array.element != Element::Double {
-            let expected = shape.map_or("(frames,)".to_owned(), |shape| format!("{shape:?}"));
-            return Err(self.damaged(
-                member,
-                format!("{:?} of shape {:?}", array.element, array.shape),
-                format!("Double of shape {expected}"),
-            ));
-        }
+        let n_rows = array.shape.first().copied().unwrap_or(0);
+        array
+            .check(Element::Double, &[&[n_rows], row].concat())
+            .map_err(|(given, allowed)| self.damaged(member, given, allowed))?;
         let mut values = Vec::new();
         decode(&bytes, array.element, &mut values);
         Ok(values)
@@ -272,14 +235,9 @@ impl RecordingFile {
     fn check_member(&mut self, member: &str, element: Element, shape: &[usize]) -> Result<()> {
         let header = self.npy_header(member);
         let header = header.map_err(|e| self.damaged(member, e, "an array"))?;
-        if header.element == element && header.shape == shape {
-            return Ok(());
-        }
-        Err(self.damaged(
-            member,
-            format!("{:?} of shape {:?}", header.element, header.shape),
-            format!("{element:?} of shape {shape:?}"),
-        ))
+        header
+            .check(element, shape)
+            .map_err(|(given, allowed)| self.damaged(member, given, allowed))
     }
 
     fn per_taxel(&self, patch: usize, row: Vec<f64>) -> Vec<f64> {

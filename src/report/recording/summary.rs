@@ -8,19 +8,19 @@ use comfy_table::{CellAlignment, Table, presets::NOTHING};
 
 /// The largest values of a patch over all frames.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
-pub struct PatchSummary {
+struct PatchSummary {
     /// Metres; 0 if nothing was ever touched.
-    pub peak_deflection: f64,
+    peak_deflection: f64,
     /// The first frame with it.
-    pub peak_frame: usize,
+    peak_frame: usize,
     /// Newtons on one taxel.
-    pub peak_force: f64,
+    peak_force: f64,
     /// Taxels pushed in in one frame, at most.
-    pub most_touched: usize,
+    most_touched: usize,
 }
 
 /// Reads a patch through once, in bounded memory.
-pub fn summarise(file: &mut RecordingFile, patch: usize) -> Result<PatchSummary> {
+fn summarise(file: &mut RecordingFile, patch: usize) -> Result<PatchSummary> {
     let mut summary = PatchSummary::default();
     file.each_frame(patch, Quantity::Deflection, |frame, values| {
         let n_touched = values.iter().filter(|&&value| value > 0.0).count();

@@ -76,7 +76,7 @@ impl RecordingWriter {
     pub fn push(&mut self, time: f64, patches: &[PatchFrame], objects: &[Pose]) -> Result<()> {
         self.check(time, patches, objects)?;
         self.last_time = time;
-        let element = self.header.precision.element();
+        let element = Element::Single;
         let block = &mut self.block;
         put(block.row(0), Element::Double, [time]);
         let mut column = 1;
