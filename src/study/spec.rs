@@ -246,7 +246,13 @@ impl StudySpec {
 
     /// How many values each key has that is an axis where it stands, but for those of the signal, which may be combined in another way.
     pub(crate) fn axis_lengths(&self) -> impl Iterator<Item = (&'static str, usize)> {
-        let table = toml::Table::try_from(self).expect("every field of a study has a TOML form");
+        // A seed of the command line may be larger than TOML's numbers.
+        let without_seed = Self {
+            seed: 0,
+            ..self.clone()
+        };
+        let table = toml::Table::try_from(without_seed);
+        let table = table.expect("every other field of a study has a TOML form");
         let keys = MAY_CHANGE.iter().filter(|key| key.contains('.'));
         keys.chain(&["signal.tested_on"]).map(move |key| {
             let values = axes::value_at(&table, key).and_then(toml::Value::as_array);

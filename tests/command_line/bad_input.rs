@@ -602,3 +602,10 @@ fn a_published_accuracy_is_shown_beside_ours_and_kept_in_a_table() {
     case.file("again.toml", again);
     case.succeeds(&["plan", "again.toml"]);
 }
+
+#[test]
+fn a_seed_of_the_command_line_may_be_larger_than_any_of_a_file() {
+    let case = Case::new();
+    case.file("study.toml", STUDY);
+    case.succeeds(&["plan", "study.toml", "--seed", &u64::MAX.to_string()]);
+}
