@@ -12,13 +12,7 @@ impl Table {
     ) -> Vec<Vec<usize>> {
         let columns = columns.iter().filter_map(|name| self.column(name));
         let columns: Vec<&Data> = columns.map(|(_, data)| data).collect();
-        let key = |row: usize| -> Vec<u64> {
-            let bits = |data: &&Data| match data {
-                Data::Numbers(numbers) => numbers[row].to_bits(),
-                Data::Words { codes, .. } => u64::from(codes[row]),
-            };
-            columns.iter().map(bits).collect()
-        };
+        let key = |row: usize| -> Vec<u64> { columns.iter().map(|data| data.key(row)).collect() };
         let mut places = HashMap::new();
         let mut groups: Vec<Vec<usize>> = Vec::new();
         for row in rows {
