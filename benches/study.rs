@@ -9,7 +9,7 @@ use bubbletouch::kinds::recognition::{RecognitionRows, RecognitionStudy};
 use bubbletouch::random::Seed;
 use bubbletouch::study::journal::{Identity, JOURNAL_FILE, Journal};
 use bubbletouch::study::pieces::{
-    NamedPiece, Part, PieceManner, PieceRows, PieceStudy, PiecesLeft, n_pieces_left, run_pieces,
+    NamedPiece, Part, PieceManner, PieceRows, PieceStudy, PiecesLeft, PiecesRun, n_pieces_left,
 };
 use bubbletouch::study::progress::{Progress, Silent};
 use bubbletouch::study::time_left::Piece;
@@ -145,7 +145,8 @@ fn time_pieces(folder: &Path) -> Result<()> {
             part: Part::All,
             progress: &Silent,
         };
-        let finished = run_pieces(&Nothing, &manner)?;
+        let pieces = Nothing.pieces();
+        let finished = PiecesRun::new(&Nothing, &pieces, &manner).run()?;
         journal.sync()?;
         assert_eq!(finished.rows.rows.len(), N_PIECES);
         let seconds = start.elapsed().as_secs_f64();
@@ -215,7 +216,8 @@ fn time_run(folder: &Path, study: &RecognitionStudy) -> Result<(f64, f64)> {
         part: Part::All,
         progress: &worked,
     };
-    let finished = run_pieces(study, &manner)?;
+    let pieces = study.pieces();
+    let finished = PiecesRun::new(study, &pieces, &manner).run()?;
     let failures = finished.failures;
     assert!(failures.is_empty(), "{:?}", failures[0]);
     let outcome = study.outcome(finished.rows)?;

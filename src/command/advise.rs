@@ -1,12 +1,8 @@
 //! `bubbletouch advise`: which setting to take.
 
-use super::classify::word;
 use super::streams::say;
-use bubbletouch::report::offers::{Given, read_offers};
-use bubbletouch::study::advice::{
-    Advice, Cost, Offer, Wish, advise as choose, by_condition, worst_of,
-};
-use bubbletouch::{Error, Result};
+use bubbletouch::report::advice::{Advice, Asked, Offer, Offers, Wish};
+use bubbletouch::{Error, Result, kinds};
 use std::path::PathBuf;
 
 /// Say which setting is the cheapest that is accurate enough, or the most accurate that is cheap enough.
@@ -14,9 +10,9 @@ use std::path::PathBuf;
 /// Noise, sensor errors and whatever else the world sets are conditions, not choices: each condition of a study is answered for, or
 /// those that are given, or the worst.
 ///
-/// It reads what a run measured: `pareto.csv` of a study of what accuracy costs, or `pareto.csv` and `summary.csv` of a study that
-/// recognises objects (whose times are those of the classifier alone). Accuracies are of simulated touches, times of the machine that
-/// measured.
+/// It reads what a run measured: of a study of any kind, the first table whose rows are choices with a value and a cost (of a study that
+/// recognises objects all that is known of its cells, with the times of the classifier alone). Accuracies are of simulated touches, times
+/// of the machine that measured.
 #[derive(clap::Args)]
 pub struct Args {
     /// A folder of results
@@ -24,9 +20,16 @@ pub struct Args {
     results: PathBuf,
     #[command(flatten)]
     wish: WishArgs,
-    /// What is to be small: decision_time, training_time, taxels or measurements (of a decision)
-    #[arg(long, value_name = "COST", default_value = "decision_time", value_parser = word::<Cost>)]
-    cost: Cost,
+    /// What is to be small: decision_time, training_time, taxels, measurements (of a decision), or any column of costs [default:
+    /// decision_time, or the first cost of the table]
+    #[arg(long, value_name = "COST")]
+    cost: Option<String>,
+    /// What is to be good: a column of values [default: accuracy, or the first value of the table]
+    #[arg(long, value_name = "COLUMN", conflicts_with = "accuracy")]
+    value: Option<String>,
+    /// The table that is read, by its file's name, where several offer choices
+    #[arg(long, value_name = "FILE")]
+    table: Option<String>,
     /// Only where a condition has this value: noise=0.05, gain_std=0.2, tested_on=another_skin; as often as needed
     #[arg(long, value_name = "CONDITION=VALUE")]
     given: Vec<String>,
@@ -47,7 +50,10 @@ struct WishArgs {
     /// The share of right decisions that is needed, such as 0.9
     #[arg(long, value_name = "SHARE")]
     accuracy: Option<f64>,
-    /// How much it may cost: microseconds a decision, seconds to train, taxels, or measurements a decision
+    /// The value that is needed, in the unit of its column: at least so much, or at most where less is better
+    #[arg(long, value_name = "N", allow_negative_numbers = true)]
+    reach: Option<f64>,
+    /// How much it may cost, in the unit of its column: microseconds a decision, seconds to train, taxels, measurements a decision …
     #[arg(long, value_name = "N")]
     budget: Option<f64>,
 }
@@ -57,15 +63,6 @@ fn renamed(_: &str) -> std::result::Result<f64, String> {
     Err("it is called --budget, in the unit of --cost (microseconds a decision if that is left out)".to_owned())
 }
 
-impl WishArgs {
-    fn wish(&self) -> Wish {
-        match (self.accuracy, self.budget) {
-            (Some(share), _) => Wish::Accuracy(share),
-            (None, most) => Wish::Budget(most.unwrap_or(f64::NAN)),
-        }
-    }
-}
-
 /// What is advised in a condition, or why nothing is.
 struct Answer {
     condition: String,
@@ -73,46 +70,59 @@ struct Answer {
 }
 
 pub fn advise(args: &Args) -> Result<()> {
-    let given = args.given.iter().map(|text| Given::parse(text));
-    let offers = read_offers(&args.results, &given.collect::<Result<Vec<_>>>()?)?;
+    let place = format!("{}: ", args.results.display());
+    let (_, tables) = kinds::read_tables(&args.results)?;
+    let asked = Asked {
+        table: args.table.clone(),
+        value: match args.wish.accuracy {
+            Some(_) => Some("accuracy".to_owned()),
+            None => args.value.clone(),
+        },
+        cost: args.cost.clone(),
+        given: args.given.clone(),
+    };
+    let offers = Offers::of(&tables, &asked).map_err(|error| error.under(place))?;
     let answers = args.answers(&offers)?;
     match args.json {
-        true => say(args.json_of(&answers)),
+        true => say(json_of(&offers, &answers)),
         false => {
-            let texts: Vec<String> = answers.iter().map(|answer| args.in_words(answer)).collect();
-            say(texts.join("\n\n"))
+            let texts = answers.iter().map(|answer| args.in_words(&offers, answer));
+            say(texts.collect::<Vec<_>>().join("\n\n"))
         }
     }
 }
 
 impl Args {
     /// An answer a condition; an error if there is advice in none.
-    fn answers(&self, offers: &[Offer]) -> Result<Vec<Answer>> {
-        let answer = |condition: String, offers: &[Offer]| Answer {
-            condition,
-            advice: choose(offers, self.wish.wish(), self.cost),
+    fn answers(&self, offers: &Offers) -> Result<Vec<Answer>> {
+        let wish = match (self.wish.accuracy.or(self.wish.reach), self.wish.budget) {
+            (Some(value), _) => Wish::Value(value),
+            (None, most) => Wish::Budget(most.unwrap_or(f64::NAN)),
         };
-        let conditions = by_condition(offers);
-        let mut answers: Vec<Answer> = match self.worst {
-            true => {
-                let words = match conditions.len() {
-                    1 => conditions[0][0].condition.clone(),
-                    n => format!("the worst of {n} conditions"),
-                };
-                vec![answer(words, &worst_of(offers))]
+        let answer = |condition: String, choices: &[Offer]| Answer {
+            condition,
+            advice: offers.advise(choices, wish),
+        };
+        let conditions = offers.by_condition();
+        let words = |choices: &[Offer]| offers.condition(&choices[0]);
+        let mut answers: Vec<Answer> = match (self.worst, conditions.len()) {
+            (true, 2..) => {
+                let words = format!("the worst of {} conditions", conditions.len());
+                vec![answer(words, &offers.worst())]
             }
-            false => conditions
-                .iter()
-                .map(|offers| answer(offers[0].condition.clone(), offers))
-                .collect(),
+            _ => {
+                let conditions = conditions.iter();
+                conditions
+                    .map(|choices| answer(words(choices), choices))
+                    .collect()
+            }
         };
         match answers.iter().any(|answer| answer.advice.is_ok()) {
             true => Ok(answers),
-            false if answers.is_empty() => Err(Error::input(
-                self.results.display(),
-                "no settings",
-                "at least one",
-            )),
+            false if answers.is_empty() => {
+                let given = "no choice whose value and cost are known";
+                Err(Error::input(self.results.display(), given, "at least one"))
+            }
             false => {
                 // Of several conditions the first speaks for all.
                 let Answer { condition, advice } = answers.swap_remove(0);
@@ -125,72 +135,65 @@ impl Args {
         }
     }
 
-    fn json_of(&self, answers: &[Answer]) -> serde_json::Value {
-        let answers = answers
-            .iter()
-            .map(|Answer { condition, advice }| match advice {
-                Ok(advice) => serde_json::json!({
-                    "condition": condition,
-                    "choice": advice.choice,
-                    "certain": advice.certain,
-                    "next_up": advice.next_up,
-                }),
-                Err(refused) => {
-                    serde_json::json!({ "condition": condition, "refused": refused.to_string() })
-                }
-            });
-        serde_json::json!({ "cost": self.cost, "answers": answers.collect::<Vec<_>>() })
-    }
-
-    fn in_words(&self, Answer { condition, advice }: &Answer) -> String {
+    fn in_words(&self, offers: &Offers, Answer { condition, advice }: &Answer) -> String {
         let head = match &condition[..] {
             "" => String::new(),
             words => format!("With {words}:\n"),
         };
         match advice {
-            Ok(advice) => head + &self.advice_in_words(advice),
+            Ok(advice) => head + &self.advice_in_words(offers, advice),
             Err(refused) => format!("{head}nothing: {refused}"),
         }
     }
 
-    fn advice_in_words(&self, advice: &Advice) -> String {
-        let Advice {
-            choice,
-            certain,
-            next_up,
-        } = advice;
-        let cost = self.cost;
-        let mut text = choice.setting.clone();
+    fn advice_in_words(&self, offers: &Offers, advice: &Advice) -> String {
+        let choice = &advice.choice;
+        let mut text = offers.setting(choice);
         // That of the worst of several conditions says which.
-        if self.worst && !choice.condition.is_empty() {
-            text += &format!("\n  worst with {}", choice.condition);
+        let condition = offers.condition(choice);
+        if self.worst && !condition.is_empty() {
+            text += &format!("\n  worst with {condition}");
         }
-        text += &format!(
-            "\n  right in {:.3} of the decisions (95 % interval {:.3} to {:.3}), {}",
-            choice.accuracy,
-            choice.accuracy_low,
-            choice.accuracy_high,
-            cost.in_words(cost.of(choice))
-        );
-        if let Some(certain) = certain {
-            text += &format!(
-                "\nWith the whole interval above: {}",
-                certain.in_words(cost)
-            );
+        text += &format!("\n  {}", offers.gives(choice));
+        if let Some(certain) = &advice.certain {
+            let certain = offers.in_words(certain);
+            text += &format!("\nWith the whole interval good enough: {certain}");
         }
-        match next_up {
+        match &advice.next_up {
             Some(next) => {
-                let (more, now) = (cost.of(next), cost.of(choice));
                 text += &format!(
-                    "\nThe next step up gains {:.3} and costs {} more ({:.1} times as much): {}",
-                    next.accuracy - choice.accuracy,
-                    cost.in_words(more - now),
-                    more / now,
-                    next.in_words(cost)
+                    "\nThe next step up gains {} and costs {} more ({:.1} times as much): {}",
+                    offers.value_words((next.value - choice.value).abs()),
+                    offers.cost.number_words(next.cost - choice.cost),
+                    next.cost / choice.cost,
+                    offers.in_words(next)
                 );
             }
-            None => text += "\nNothing here is more accurate",
+            None => text += "\nNothing here is better",
         }
         text
     }
+}
+
+fn json_of(offers: &Offers, answers: &[Answer]) -> serde_json::Value {
+    let in_json = |offer: &Offer| offers.json(offer);
+    let answers = answers
+        .iter()
+        .map(|Answer { condition, advice }| match advice {
+            Ok(advice) => serde_json::json!({
+                "condition": condition,
+                "choice": in_json(&advice.choice),
+                "certain": advice.certain.as_ref().map(in_json),
+                "next_up": advice.next_up.as_ref().map(in_json),
+            }),
+            Err(refused) => {
+                serde_json::json!({ "condition": condition, "refused": refused.to_string() })
+            }
+        });
+    serde_json::json!({
+        "table": offers.table.file,
+        "value": offers.value.name,
+        "cost": offers.cost.name,
+        "answers": answers.collect::<Vec<_>>(),
+    })
 }

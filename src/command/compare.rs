@@ -2,24 +2,23 @@
 
 use super::output::{check_ending, terminal_width};
 use super::streams::{say, write_out};
-use bubbletouch::Result;
 use bubbletouch::files::{CsvFile, write_bytes};
-use bubbletouch::report::csv_tables::read_tables;
-use bubbletouch::report::run_differences::{differences_page, differences_text};
-use bubbletouch::study::compare_runs;
+use bubbletouch::report::compared::{differences_page, differences_text};
+use bubbletouch::report::differences::differences;
 use bubbletouch::study::provenance::PROGRAM;
+use bubbletouch::{Error, Result, kinds};
 use std::path::PathBuf;
 
 #[derive(clap::Args)]
 pub struct Args {
     /// A folder that `bubbletouch run` wrote
     first: PathBuf,
-    /// Another one
+    /// Another one, of a study of the same kind
     second: PathBuf,
-    /// Write every cell that both have to a CSV file
+    /// Write every value and every cost that both have to a CSV file
     #[arg(long, value_name = "FILE.csv")]
     out: Option<PathBuf>,
-    /// Write sentences, a chart and the cells to a page
+    /// Write sentences, charts and tables to a page
     #[arg(long, value_name = "FILE.html")]
     html: Option<PathBuf>,
 }
@@ -31,26 +30,27 @@ pub fn compare(args: &Args) -> Result<()> {
     if let Some(html) = &args.html {
         check_ending(html, "html")?;
     }
-    let (first, second) = (read_tables(&args.first)?, read_tables(&args.second)?);
-    let place = format!("{} and {}: ", args.first.display(), args.second.display());
-    let comparison =
-        compare_runs(&first.accuracy, &second.accuracy).map_err(|error| error.under(place))?;
+    let (kind, first) = kinds::read_tables(&args.first)?;
+    let (other, second) = kinds::read_tables(&args.second)?;
+    let [first_name, second_name] =
+        [&args.first, &args.second].map(|path| path.display().to_string());
+    if kind.table != other.table {
+        let allowed = format!("a folder of {}, as {first_name} is", kind.words);
+        return Err(Error::input(second_name, other.words, allowed));
+    }
+    let place = format!("{first_name} and {second_name}: ");
+    let found = differences(&first, &second).map_err(|error| error.under(place))?;
     if let Some(out) = &args.out {
         let mut file = CsvFile::create(out)?;
-        for row in &comparison.both {
+        for row in found.iter().flat_map(|column| &column.rows) {
             file.row(row)?;
         }
         file.commit()?;
     }
     if let Some(html) = &args.html {
-        let [first, second] = [&args.first, &args.second].map(|path| path.display().to_string());
-        let page = differences_page(&comparison, (&first, &second), PROGRAM)?;
+        let page = differences_page(&found, (&first_name, &second_name), PROGRAM)?;
         write_bytes(html, page.as_bytes())?;
     }
-    say(format_args!(
-        "First: {}; second: {}.",
-        args.first.display(),
-        args.second.display()
-    ))?;
-    write_out(differences_text(&comparison, terminal_width())?.as_bytes())
+    say(format_args!("First: {first_name}; second: {second_name}."))?;
+    write_out(differences_text(&found, terminal_width())?.as_bytes())
 }

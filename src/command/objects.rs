@@ -9,7 +9,7 @@ use bubbletouch::files::write_bytes;
 use bubbletouch::mesh::{LengthUnit, MeshReport, SizeLimits};
 use bubbletouch::objects::{Catalogue, Entry, Object, SphereUnion};
 use bubbletouch::report::object_picture::{contact_sheet, object_picture};
-use bubbletouch::study::{MeshUse, ModelSpec, load_mesh, read_mesh_file};
+use bubbletouch::study::{ObjectsSpec, load_mesh, read_mesh_file};
 use comfy_table::{CellAlignment, Table, presets::NOTHING};
 use rayon::prelude::*;
 use std::path::PathBuf;
@@ -117,17 +117,13 @@ impl Listed {
 impl Args {
     fn build(&self) -> Result<Vec<Listed>> {
         if let Some(path) = &self.mesh {
-            let wanted = MeshUse {
+            let spec = ObjectsSpec {
                 unit: self.unit,
-                sizes: SizeLimits::ANY,
-                model: ModelSpec::VertexSpheres,
-                surface_error: self.surface_error_mm * 1e-3,
-                packings: None,
-                close_holes: None,
+                ..ObjectsSpec::default()
             };
             return Ok(vec![Listed {
                 set: "mesh".to_owned(),
-                object: load_mesh(path, &wanted)?,
+                object: load_mesh(path, &spec, None)?,
             }]);
         }
         let catalogue = catalogue(self.objects.as_deref())?;

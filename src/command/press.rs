@@ -13,7 +13,7 @@ use bubbletouch::report::frame_files::write_frame;
 use bubbletouch::report::pressure_map::pressure_text;
 use bubbletouch::report::terminal::Ink;
 use bubbletouch::signal::Quantity;
-use bubbletouch::study::{MeshUse, ModelSpec, load_mesh, load_spheres, millimetres};
+use bubbletouch::study::{ModelSpec, ObjectsSpec, load_mesh, load_spheres, millimetres};
 use bubbletouch::world::{Grid, Patch, Scene, Taxel};
 use bubbletouch::{Error, Result};
 use ndarray::Array2;
@@ -202,7 +202,7 @@ impl Args {
                 let spheres = load_spheres(path, self.unit, &self.sizes())?;
                 return Ok((spheres.into(), Pose::IDENTITY));
             }
-            (_, Some(path), _) => load_mesh(path, &self.mesh_use())?.model,
+            (_, Some(path), _) => load_mesh(path, &self.mesh_spec(), None)?.model,
             (_, _, Some(name)) => self.build(name)?,
             (None, None, None) => unreachable!("the command line requires one source"),
         };
@@ -213,14 +213,13 @@ impl Args {
         Ok((model, pose))
     }
 
-    fn mesh_use(&self) -> MeshUse<'_> {
-        MeshUse {
+    fn mesh_spec(&self) -> ObjectsSpec {
+        ObjectsSpec {
             unit: self.unit,
-            sizes: self.sizes(),
-            model: self.model.unwrap_or_default(),
-            surface_error: self.surface_error(),
-            packings: None,
-            close_holes: None,
+            sizes: Some(self.sizes()),
+            model: self.model,
+            surface_error_mm: Some(self.surface_error_mm()),
+            ..ObjectsSpec::default()
         }
     }
 
@@ -234,14 +233,14 @@ impl Args {
 
     fn build(&self, name: &str) -> Result<Model> {
         let catalogue = catalogue(self.objects.as_deref())?;
-        Ok(catalogue.object(name)?.build(self.surface_error())?.model)
+        let surface_error = MM * self.surface_error_mm();
+        Ok(catalogue.object(name)?.build(surface_error)?.model)
     }
 
-    /// Metres.
-    fn surface_error(&self) -> f64 {
+    fn surface_error_mm(&self) -> f64 {
         let model = self.model.unwrap_or_default();
         let default = || model.default_surface_error_mm(self.pitch_mm);
-        MM * self.surface_error_mm.unwrap_or_else(default)
+        self.surface_error_mm.unwrap_or_else(default)
     }
 
     fn contact(&self, scene: &Scene, pose: Pose, workspace: &mut Workspace) -> Result<Contact> {

@@ -90,7 +90,7 @@ pub fn touches(args: &Args) -> Result<()> {
 impl Args {
     /// An error for human touches, which no object makes.
     fn check(&self, plan: &Plan) -> Result<()> {
-        if plan.human_touch.is_none() {
+        if plan.spec.human_touch.is_none() {
             return Ok(());
         }
         let place = self.study.study.display();

@@ -76,11 +76,19 @@ pub trait Kind: PieceStudy<Tables = Vec<Table>> + Sized + Sync + 'static {
     /// How large it is.
     fn scale(&self) -> Scale;
 
-    /// The tables of [`PieceStudy::tables`], from the files of a folder.
+    /// The tables of [`PieceStudy::tables`], from the files of a folder; those of parts that a study may leave out, where there are any.
     ///
     /// # Errors
     /// A table that cannot be read, or has other columns.
-    fn read_tables(&self, folder: &Path) -> Result<Vec<Table>>;
+    fn read(folder: &Path) -> Result<Vec<Table>>;
+
+    /// The same, with what this study says of them.
+    ///
+    /// # Errors
+    /// Those of [`read`](Self::read).
+    fn read_tables(&self, folder: &Path) -> Result<Vec<Table>> {
+        Self::read(folder)
+    }
 
     /// What is charted, the most telling first.
     fn charts(&self, tables: &[Table]) -> Vec<ChartSpec>;

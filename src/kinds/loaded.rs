@@ -3,7 +3,7 @@
 use super::any_study::{AnyOutcome, AnyStudy, ReportAbout};
 use super::ceiling::{threads_within, within_memory};
 use super::kind::{Facts, Kind};
-use super::results::{Results, failures_table};
+use super::results::{Results, failures_table, read_failures};
 use super::source::Source;
 use super::verified::{changed_row, drawn};
 use crate::error::Result;
@@ -57,13 +57,7 @@ impl<K: Kind> AnyStudy for Loaded<K> {
 
     fn plan(&self) -> Result<String> {
         let n_threads = threads_within(&self.kind.scale(), self.memory)?;
-        let manner = PieceManner {
-            journal: &Journal::none(),
-            fail_fast: true,
-            retries: false,
-            part: Part::All,
-            progress: &Silent,
-        };
+        let manner = PieceManner::whole(&Silent);
         let estimate = PieceEstimate {
             scale: self.kind.scale(),
             n_pieces: self.pieces.len(),
@@ -101,11 +95,8 @@ impl<K: Kind> AnyStudy for Loaded<K> {
     ) -> Result<String> {
         let chosen = drawn(&self.kind, &self.pieces, folder, (n, draw))?;
         let manner = PieceManner {
-            journal: &Journal::none(),
-            fail_fast: true,
-            retries: false,
             part: Part::Only(&chosen),
-            progress,
+            ..PieceManner::whole(progress)
         };
         let again = within_memory(&self.kind.scale(), self.memory, || {
             let run = PiecesRun::new(&self.kind, &self.pieces, &manner);
@@ -123,7 +114,8 @@ impl<K: Kind> AnyStudy for Loaded<K> {
     }
 
     fn report(&self, folder: &Path, about: &ReportAbout) -> Result<()> {
-        let tables = self.kind.read_tables(folder)?;
+        let mut tables = self.kind.read_tables(folder)?;
+        tables.extend(read_failures(folder)?);
         let wall_s = about
             .manifest
             .as_ref()

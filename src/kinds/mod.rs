@@ -26,15 +26,17 @@ pub use kind::{About, Facts, Kind};
 pub use loaded::Loaded;
 pub use source::Source;
 
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::table::Table;
 use crate::toml_text;
 use serde::de::DeserializeOwned;
+use std::path::Path;
 
 /// A kind, for those who do not know which.
 struct Entry {
     about: About,
     load: fn(&Source) -> Result<Box<dyn AnyStudy>>,
+    read: fn(&Path) -> Result<Vec<Table>>,
 }
 
 /// All kinds.
@@ -55,6 +57,7 @@ const fn entry<K: Kind>() -> Entry {
     Entry {
         about: K::ABOUT,
         load: |source| Ok(Box::new(Loaded::<K>::load(source)?)),
+        read: K::read,
     }
 }
 
@@ -70,6 +73,19 @@ pub fn about(text: &str) -> Option<About> {
 pub fn load(source: &Source) -> Result<Box<dyn AnyStudy>> {
     let entry = find(&source.text).unwrap_or(&RECOGNITION);
     (entry.load)(source)
+}
+
+/// The tables of a folder of results of any kind, and which kind that is. Nothing that the study is about is loaded.
+///
+/// # Errors
+/// A folder without a study; a table that cannot be read, or has other columns.
+pub fn read_tables(folder: &Path) -> Result<(About, Vec<Table>)> {
+    let path = folder.join("study.toml");
+    let text = std::fs::read_to_string(&path).map_err(|e| {
+        Error::unreadable(&path, "the study of a folder that bubbletouch run wrote", e)
+    })?;
+    let entry = find(&text).unwrap_or(&RECOGNITION);
+    Ok((entry.about, (entry.read)(folder)?))
 }
 
 /// Text that is not TOML is told so by whoever reads the study.

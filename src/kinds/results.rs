@@ -5,12 +5,12 @@ use super::kind::Kind;
 use super::loaded::Loaded;
 use crate::error::Result;
 use crate::files::write_bytes;
-use crate::report::csv_tables::{FAILURES_FILE, TableHashes};
+use crate::report::csv_tables::{FAILURES_FILE, TableHashes, read_rows};
 use crate::report::folder::Folder;
 use crate::report::page::StudyAbout;
-use crate::report::study_folder::{Found, folder_with};
+use crate::report::study_folder::{Beyond, Found, folder_with};
 use crate::study::pieces::PieceFailure;
-use crate::study::provenance::{MANIFEST_FILE, Manifest, PROGRAM, RunFacts};
+use crate::study::provenance::{MANIFEST_FILE, Manifest, PROGRAM};
 use crate::table::Table;
 use std::path::Path;
 
@@ -26,6 +26,15 @@ pub fn failures_table(failures: &[PieceFailure]) -> Result<Table> {
     Table::of(FAILURES_FILE, "What failed, and why", failures)
 }
 
+/// The same, of a folder; none where no run left the file.
+pub fn read_failures(folder: &Path) -> Result<Option<Table>> {
+    let path = folder.join(FAILURES_FILE);
+    match path.exists() {
+        true => failures_table(&read_rows(&path)?).map(Some),
+        false => Ok(None),
+    }
+}
+
 impl<K: Kind> Loaded<K> {
     /// Charts, pictures and page, for a folder: nothing is written yet.
     pub(super) fn folder_of<'a>(
@@ -37,10 +46,14 @@ impl<K: Kind> Loaded<K> {
         let found = Found {
             tables,
             charts: &self.kind.charts(tables),
-            pictures: &self.kind.pictures(tables)?,
             answers: &self.kind.answers(tables),
         };
-        folder_with(folder, about, &found, self.kind.sections(tables)?)
+        folder_with(folder, about, &found, || {
+            Ok(Beyond {
+                pictures: self.kind.pictures(tables)?,
+                sections: self.kind.sections(tables)?,
+            })
+        })
     }
 }
 
@@ -53,11 +66,11 @@ impl<K: Kind> Results<'_, K> {
         let files = files.map(|table| (table.file, table.csv.clone()));
         let of_name = |name: &str| self.tables.iter().find(|table| table.file == name);
         let hashes = TableHashes::of(files, |name| of_name(name).is_some_and(|t| t.repeats));
-        let run = RunFacts {
+        let methods = facts.methods.iter();
+        Manifest {
             study: ended.name.clone(),
             command: ended.command.clone(),
             paths_from: ended.paths_from.clone(),
-            started: ended.started,
             seed: facts.seed,
             n_cells: self.study.pieces.len(),
             n_trials: 1,
@@ -65,9 +78,11 @@ impl<K: Kind> Results<'_, K> {
             n_failed: self.n_failed,
             tables_sha256: hashes.repeatable,
             times_sha256: hashes.times,
-            methods: facts.methods.clone(),
-        };
-        Manifest::new(identity, run)
+            methods: methods
+                .map(|(columns, method)| (columns.to_string(), method.to_string()))
+                .collect(),
+            ..Manifest::ended(identity, ended.started)
+        }
     }
 }
 

@@ -71,6 +71,20 @@ impl<'a> Folder<'a> {
         self.add(format!("{name}.svg"), drawing.svg(title));
     }
 
+    /// The same with every PNG drawn.
+    ///
+    /// # Errors
+    /// A picture that cannot be drawn.
+    pub(super) fn drawn(self) -> Result<Self> {
+        let path = self.path;
+        let files = self.into_files()?.into_iter();
+        let files = files.map(|(name, bytes)| (name, Content::Bytes(bytes)));
+        Ok(Self {
+            path,
+            files: files.collect(),
+        })
+    }
+
     /// Every file whole, name and content.
     fn into_files(self) -> Result<Vec<(String, Vec<u8>)>> {
         let whole = |(name, content)| match content {

@@ -8,10 +8,13 @@
 //! [`frame_files::write_frame`] and [`pressure_map`] show a single frame; [`recording`] streams frames over time to a file and
 //! draws them, also moving.
 
+pub mod advice;
 pub(crate) mod canvas;
 pub mod chart;
 pub mod colours;
+pub mod compared;
 pub mod csv_tables;
+pub mod differences;
 pub mod drawing;
 pub mod fit_picture;
 pub mod folder;
@@ -19,7 +22,6 @@ pub mod frame_files;
 pub mod heat_map;
 mod legend;
 pub mod object_picture;
-pub mod offers;
 pub mod page;
 pub(crate) mod picture;
 pub mod pressure_map;
@@ -27,9 +29,7 @@ pub mod progress;
 mod raster;
 pub mod recognition;
 pub mod recording;
-pub mod results;
 mod run_clock;
-pub mod run_differences;
 pub mod scene_files;
 pub mod scene_summary;
 pub(crate) mod shaded_view;

@@ -34,10 +34,17 @@ pub struct Found<'a> {
     pub tables: &'a [Table],
     /// What is charted, the most telling first.
     pub charts: &'a [ChartSpec],
-    /// What else is shown.
-    pub pictures: &'a [NamedPicture],
     /// What was found, in sentences.
     pub answers: &'a [String],
+}
+
+/// What a folder has beside tables, charts and answers.
+#[derive(Default)]
+pub struct Beyond {
+    /// Pictures that are no charts.
+    pub pictures: Vec<NamedPicture>,
+    /// Sections of the page.
+    pub sections: Vec<Section>,
 }
 
 /// Charts that are drawn, unless all are asked for; of all, those in the page (for readers without script) and as PNG. More: a page too
@@ -52,21 +59,18 @@ const LIGHT: usize = 300_000;
 /// # Errors
 /// What cannot be drawn.
 pub fn folder_of<'a>(dir: &'a Path, about: &StudyAbout, found: &Found) -> Result<Folder<'a>> {
-    folder_with(dir, about, found, Vec::new())
+    folder_with(dir, about, found, || Ok(Beyond::default()))
 }
 
-/// The same with sections of its own on the page.
+/// The same with what else there is, which is made while charts are drawn.
 pub fn folder_with<'a>(
     dir: &'a Path,
     about: &StudyAbout,
     found: &Found,
-    sections: Vec<Section>,
+    beyond: impl FnOnce() -> Result<Beyond> + Send,
 ) -> Result<Folder<'a>> {
     let mut folder = Folder::new(dir);
-    let mut beside = Beside {
-        sections,
-        ..Beside::default()
-    };
+    let mut beside = Beside::default();
     let mut charts = Vec::new();
     for spec in found.charts {
         if charts.len() >= MOST_CHARTS && !about.all_charts {
@@ -86,7 +90,10 @@ pub fn folder_with<'a>(
             folder.add(format!("{}.svg", spec.name), drawing.svg(&spec.title));
         }
     }
-    for NamedPicture { name, title, image } in found.pictures {
+    let (folder, beyond) = rayon::join(|| folder.drawn(), beyond);
+    let (mut folder, beyond) = (folder?, beyond?);
+    beside.sections = beyond.sections;
+    for NamedPicture { name, title, image } in &beyond.pictures {
         beside.pictures.push(match image {
             Image::Drawing(drawing) => {
                 folder.add_chart(name, title, drawing);

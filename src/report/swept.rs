@@ -4,7 +4,28 @@
 //! varying ones (the ratio, when m and the array are chosen) follows them and gets no place of its own.
 
 use crate::table::{Column, Data, Role, Table, Value};
-use std::collections::{HashMap, HashSet};
+use std::collections::HashSet;
+
+/// Settings that follow from others are given up in this order: m and the ratio say the same twice at one array; the array's sides follow
+/// its pitch when nx stays. One that a study can only choose directly is dropped last.
+const GIVEN_UP_FIRST: [&str; 16] = [
+    "nx",
+    "ny",
+    "measurements",
+    "ratio",
+    "size_mm",
+    "pitch_mm",
+    "c",
+    "train_touches",
+    "mislabelled_fraction",
+    "class_imbalance",
+    "fused_touches",
+    "smoothing_mm",
+    "noise_std",
+    "frames",
+    "over_time",
+    "features",
+];
 
 /// A column with its values.
 #[derive(Clone, Copy)]
@@ -17,6 +38,7 @@ pub struct Setting<'a> {
 
 /// The choices and conditions of a table, by whether they vary.
 pub struct Swept<'a> {
+    table: &'a Table,
     /// Those that vary by themselves, in the order of the table.
     pub free: Vec<Setting<'a>>,
     /// Those that vary only because others do.
@@ -73,8 +95,8 @@ impl<'a> Setting<'a> {
 }
 
 impl<'a> Swept<'a> {
-    /// Of some rows of a table; of columns that follow from each other, those that are named first are given up first.
-    pub fn of(table: &'a Table, rows: &[usize], given_up_first: &[&str]) -> Self {
+    /// Of some rows of a table.
+    pub fn of(table: &'a Table, rows: &[usize]) -> Self {
         let columns = table.columns.iter().zip(&table.data);
         let all =
             columns.filter(|(column, _)| matches!(column.role, Role::Choice | Role::Condition));
@@ -82,33 +104,38 @@ impl<'a> Swept<'a> {
         let (mut free, fixed): (Vec<Setting>, Vec<Setting>) =
             all.partition(|setting| !rows.is_empty() && setting.varies(rows));
         let place = |setting: &Setting| {
-            given_up_first
-                .iter()
-                .position(|name| *name == setting.column.name)
+            let mut given_up = GIVEN_UP_FIRST.iter();
+            given_up.position(|name| *name == setting.column.name)
         };
-        let mut order: Vec<&Column> = free.iter().map(|setting| setting.column).collect();
-        order.sort_by_key(|column| {
-            given_up_first
-                .iter()
-                .position(|name| *name == column.name)
-                .unwrap_or(usize::MAX)
-        });
+        let mut order = free.clone();
+        order.sort_by_key(|setting| place(setting).unwrap_or(usize::MAX));
         let mut following = Vec::new();
-        for column in order {
-            let (others, own): (Vec<Setting>, Vec<Setting>) =
-                free.iter().partition(|one| one.column.name != column.name);
-            if !others.is_empty() && follows(own[0], &others, rows) {
-                following.extend(own);
+        for one in order {
+            let others = without(&free, &one);
+            if !others.is_empty() && follows(table, &one, &others, rows) {
+                following.push(one);
                 free = others;
             }
         }
         following.sort_by_key(|setting| place(setting).is_none());
         Self {
+            table,
             one_at_a_time: one_at_a_time(&free, rows),
             free,
             following,
             fixed,
         }
+    }
+
+    /// Rows by the values of some settings, in the order in which rows first have them.
+    pub fn groups(&self, settings: &[Setting], rows: &[usize]) -> Vec<Vec<usize>> {
+        groups(self.table, settings, rows)
+    }
+
+    /// Those that vary and have a role.
+    pub fn of_role(&self, role: Role) -> Vec<Setting<'a>> {
+        let of_role = self.varying().filter(|one| one.column.role == role);
+        of_role.copied().collect()
     }
 
     /// Those that vary, by themselves or with others.
@@ -118,22 +145,14 @@ impl<'a> Swept<'a> {
 
     /// The conditions of the world in a row, in words; where one thing at a time happens, that one. Empty if there is one condition.
     pub fn condition_words(&self, row: usize) -> String {
-        let conditions = self
-            .varying()
-            .filter(|setting| setting.column.role == Role::Condition);
-        let conditions: Vec<&Setting> = conditions.collect();
+        let conditions = self.of_role(Role::Condition);
         let is_absent = |setting: &Setting| {
-            let is_one = self
-                .one_at_a_time
-                .iter()
-                .any(|one| one.column.name == setting.column.name);
-            is_one && setting.data.value(row) == Some(Value::Number(0.0))
+            let mut one_at_a_time = self.one_at_a_time.iter();
+            one_at_a_time.any(|one| one.column.name == setting.column.name)
+                && setting.data.value(row) == Some(Value::Number(0.0))
         };
-        let said: Vec<String> = conditions
-            .iter()
-            .filter(|one| !is_absent(one))
-            .map(|one| one.phrase(row))
-            .collect();
+        let said = conditions.iter().filter(|one| !is_absent(one));
+        let said: Vec<String> = said.map(|one| one.phrase(row)).collect();
         match said.is_empty() && !conditions.is_empty() {
             true => "an ideal signal".to_owned(),
             false => said.join(", "),
@@ -142,51 +161,37 @@ impl<'a> Swept<'a> {
 
     /// The choices of a row that vary, in words.
     pub fn choice_words(&self, row: usize) -> String {
-        let choices = self
-            .varying()
-            .filter(|setting| setting.column.role == Role::Choice);
-        choices
-            .map(|setting| setting.phrase(row))
-            .collect::<Vec<_>>()
-            .join(", ")
+        // What does not apply to a row is not said of it.
+        let applies =
+            |one: &&Setting| one.data.value(row).is_some() || !one.column.word("").is_empty();
+        let choices = self.of_role(Role::Choice);
+        let said = choices.iter().filter(applies).map(|one| one.phrase(row));
+        said.collect::<Vec<_>>().join(", ")
     }
 
     /// Rows by their conditions, in the order in which rows first have them.
     pub fn by_condition(&self, rows: &[usize]) -> Vec<Vec<usize>> {
-        let conditions: Vec<Setting> = self
-            .varying()
-            .filter(|s| s.column.role == Role::Condition)
-            .copied()
-            .collect();
-        groups(&conditions, rows)
+        self.groups(&self.of_role(Role::Condition), rows)
     }
 }
 
-/// Rows by the values of some settings, in the order in which rows first have them.
-pub fn groups(settings: &[Setting], rows: &[usize]) -> Vec<Vec<usize>> {
-    let mut known: HashMap<Vec<u64>, usize> = HashMap::new();
-    let mut found: Vec<Vec<usize>> = Vec::new();
-    for &row in rows {
-        let key = settings
-            .iter()
-            .map(|setting| setting.data.key(row))
-            .collect();
-        let group = *known.entry(key).or_insert_with(|| {
-            found.push(Vec::new());
-            found.len() - 1
-        });
-        found[group].push(row);
-    }
-    found
+/// All settings but one.
+pub fn without<'a>(settings: &[Setting<'a>], one: &Setting) -> Vec<Setting<'a>> {
+    let others = settings.iter().copied();
+    others
+        .filter(|other| other.column.name != one.column.name)
+        .collect()
+}
+
+fn groups(table: &Table, settings: &[Setting], rows: &[usize]) -> Vec<Vec<usize>> {
+    let names: Vec<&str> = settings.iter().map(|one| &one.column.name[..]).collect();
+    table.groups(&names, rows.iter().copied())
 }
 
 /// Whether others say what the value of a setting is.
-fn follows(setting: Setting, others: &[Setting], rows: &[usize]) -> bool {
-    let mut known: HashMap<Vec<u64>, u64> = HashMap::new();
-    rows.iter().all(|&row| {
-        let key = others.iter().map(|other| other.data.key(row)).collect();
-        *known.entry(key).or_insert_with(|| setting.data.key(row)) == setting.data.key(row)
-    })
+fn follows(table: &Table, setting: &Setting, others: &[Setting], rows: &[usize]) -> bool {
+    let alike = groups(table, others, rows);
+    alike.iter().all(|rows| !setting.varies(rows))
 }
 
 /// The numbers of the signal, where each row leaves the first row's value of at most one of them.

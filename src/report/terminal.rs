@@ -1,7 +1,7 @@
 //! What a run prints at its end: tables at the width of the terminal.
 
 use crate::report::colours::Rgb;
-use crate::report::swept::{Setting, Swept, groups};
+use crate::report::swept::{Setting, Swept, without};
 use crate::report::text_width::break_lines;
 use crate::table::{Column, Data, Role, Scale, Table, Value};
 use comfy_table::{
@@ -138,7 +138,8 @@ fn shown_columns(table: &Table) -> impl Iterator<Item = (&Column, &Data)> {
     };
     let rows: Vec<usize> = (0..table.n_rows).collect();
     let is_shown = move |rank: usize, setting: Setting| match rank {
-        0 => setting.varies(&rows),
+        // Of one row, the subject says what it is about.
+        0 => setting.varies(&rows) || rows.len() == 1 && setting.column.role == Role::Subject,
         // What is the same for all, or for none, says nothing.
         _ if setting.is_number() => rows.iter().any(|&row| setting.data.value(row).is_some()),
         _ => setting.varies(&rows),
@@ -189,7 +190,7 @@ fn constants(table: &Table, rows: &[usize], width: usize) -> String {
     if rows.len() < 2 {
         return String::new();
     }
-    let fixed = Swept::of(table, rows, &[]).fixed;
+    let fixed = Swept::of(table, rows).fixed;
     // An ideal world goes without saying.
     let is_said = |setting: &&Setting| {
         let value = setting.data.value(rows[0]);
@@ -207,24 +208,16 @@ fn constants(table: &Table, rows: &[usize], width: usize) -> String {
 }
 
 /// One setting across, the others down, and of each combination a value: for tables of more rows than a terminal has.
-pub fn pivot_text(
-    table: &Table,
-    (across, value): (&str, &str),
-    given_up_first: &[&str],
-    width: usize,
-) -> String {
+pub fn pivot_text(table: &Table, (across, value): (&str, &str), width: usize) -> String {
     let rows: Vec<usize> = (0..table.n_rows).collect();
-    let free = Swept::of(table, &rows, given_up_first).free;
+    let swept = Swept::of(table, &rows);
     let (Some((column, data)), Some(values)) = (table.column(across), table.numbers(value)) else {
         return table_text(table, width);
     };
     let setting = Setting { column, data };
     let levels = setting.levels(&rows);
-    let down: Vec<Setting> = free
-        .into_iter()
-        .filter(|one| one.column.name != across)
-        .collect();
-    let lines = groups(&down, &rows);
+    let down = without(&swept.free, &setting);
+    let lines = swept.groups(&down, &rows);
     let labels_wide: usize = down
         .iter()
         .map(|one| {

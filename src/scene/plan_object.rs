@@ -8,7 +8,7 @@ use crate::error::Result;
 use crate::geometry::Pose;
 use crate::mesh::SizeLimits;
 use crate::objects::{Catalogue, Model};
-use crate::study::{MeshUse, load_catalogue, load_mesh, load_spheres, positive};
+use crate::study::{ObjectsSpec, load_catalogue, load_mesh, load_spheres, positive};
 use crate::world::{Body, Motion};
 use glam::DVec3;
 
@@ -123,15 +123,14 @@ impl Reader<'_> {
             (None, None, Some(path)) => {
                 let key = &format!("{key}.mesh");
                 self.open(key, path)?;
-                let wanted = MeshUse {
+                let wanted = ObjectsSpec {
                     unit: spec.unit,
-                    sizes: SizeLimits::ANY,
-                    model: spec.model.unwrap_or_default(),
-                    surface_error,
-                    packings: None,
-                    close_holes: None,
+                    model: spec.model,
+                    surface_error_mm: Some(error_mm),
+                    ..ObjectsSpec::default()
                 };
-                Ok(self.under(key, load_mesh(&self.path(path), &wanted))?.model)
+                let mesh = load_mesh(&self.path(path), &wanted, None);
+                Ok(self.under(key, mesh)?.model)
             }
             _ => Err(self.check.error(
                 key,

@@ -43,15 +43,6 @@ pub struct StudyAxis {
     pub line: Option<usize>,
 }
 
-/// One combination of the axes' values, and the study that has it.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Variant<S> {
-    /// A value of each axis.
-    pub values: Vec<toml::Value>,
-    /// The study.
-    pub study: S,
-}
-
 /// Where a configuration is on the axes of its study.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct AxisValues {
@@ -105,29 +96,35 @@ fn known_column(column: &Column) -> &'static Column {
     known[known.len() - 1]
 }
 
+/// What a table has at a path of keys.
+pub fn value_at<'t>(table: &'t toml::Table, path: &str) -> Option<&'t toml::Value> {
+    let mut names = path.split('.');
+    let first = table.get(names.next()?)?;
+    names.try_fold(first, |value, name| value.get(name))
+}
+
 /// A table with a value at a path of keys, in place of what was there; tables on the way are made.
 ///
 /// # Errors
 /// A path without a key, or through something that is no table.
 pub fn with_value(table: &toml::Table, key: &str, value: toml::Value) -> Result<toml::Table> {
+    fn put(table: &mut toml::Table, key: &str, value: toml::Value) -> Option<()> {
+        if let Some((first, rest)) = key.split_once('.') {
+            let inner = table.entry(first);
+            let inner = inner.or_insert_with(|| toml::Table::new().into());
+            return put(inner.as_table_mut()?, rest, value);
+        }
+        table.insert(key.to_owned(), value);
+        Some(())
+    }
     let mut changed = table.clone();
-    let mut at = &mut changed;
-    let (path, last) = key.rsplit_once('.').unwrap_or(("", key));
-    let names = path.split('.').filter(|_| !path.is_empty());
-    for (place, name) in names.clone().enumerate() {
-        let next = at.entry(name).or_insert_with(|| toml::Table::new().into());
-        at = next.as_table_mut().ok_or_else(|| {
-            let above: Vec<&str> = names.clone().take(place + 1).collect();
-            let given = format!("below {}, which is no table", above.join("."));
-            Error::input(format!("key {key}"), given, "a key of a table")
-        })?;
+    match put(&mut changed, key, value) {
+        Some(()) if !key.split('.').any(str::is_empty) => Ok(changed),
+        _ => {
+            let allowed = "names of tables and of a key, with a point between them: skin.stroke_mm";
+            Err(Error::input("key", format!("{key:?}"), allowed))
+        }
     }
-    if last.is_empty() || key.split('.').any(str::is_empty) {
-        let allowed = "names of tables and of a key, with a point between them: skin.stroke_mm";
-        return Err(Error::input("key", format!("{key:?}"), allowed));
-    }
-    at.insert(last.to_owned(), value);
-    Ok(changed)
 }
 
 /// A study and its axes; in the study each of their keys has its first value, but keys of lists have all.
@@ -248,47 +245,45 @@ impl StudyAxis {
     }
 
     fn check(&self, place: &str, rules: AxisRules) -> Result<()> {
-        let is_below = |name: &&&str| {
-            let rest = self.key.strip_prefix(**name);
-            rest.is_some_and(|rest| rest.is_empty() || rest.starts_with('.'))
+        let refused = rules.refused.iter();
+        let refused = refused.copied().find(|name| is_at(&self.key, name));
+        let same = |one: &toml::Value, other: &toml::Value| match (number(one), number(other)) {
+            (Some(one), Some(other)) => one == other,
+            _ => one == other,
         };
-        if let Some(refused) = rules.refused.iter().find(is_below) {
-            let given = format!("{refused} as an axis");
-            return Err(self.error(place, given, "a key that may differ within a study"));
-        }
-        if self.key.split('.').any(str::is_empty) {
-            let allowed = "the path of a key: \"skin.stroke_mm\"";
-            return Err(self.error(place, "no path", allowed));
-        }
-        match self.values.len() {
-            0 => {
-                return Err(self.error(
-                    place,
-                    "no list of values",
-                    "at least one value: [1.0, 2.0]",
-                ));
-            }
-            n if n > MOST_VALUES => {
-                let allowed = format!("at most {MOST_VALUES} values");
-                return Err(self.error(place, format!("{n} values"), allowed));
-            }
-            _ => {}
-        }
-        for (place_in, value) in self.values.iter().enumerate() {
-            let same = |other: &toml::Value| match (number(other), number(value)) {
-                (Some(other), Some(value)) => other == value,
-                _ => other == value,
-            };
-            if self.values[..place_in].iter().any(same) {
-                return Err(self.error(place, format!("{value} twice"), "each value once"));
-            }
-        }
-        Ok(())
+        let twice = self.values.iter().enumerate().find(|(place, value)| {
+            let before = self.values[..*place].iter();
+            before.take(MOST_VALUES).any(|other| same(other, value))
+        });
+        let n = self.values.len();
+        let (given, allowed) = match (refused, twice) {
+            (Some(key), _) => (
+                format!("{key} as an axis"),
+                "a key that may differ within a study",
+            ),
+            _ if self.key.split('.').any(str::is_empty) => (
+                "no path".to_owned(),
+                "the path of a key: \"skin.stroke_mm\"",
+            ),
+            _ if n == 0 => (
+                "no list of values".to_owned(),
+                "at least one value: [1.0, 2.0]",
+            ),
+            _ if n > MOST_VALUES => (format!("{n} values"), "at most 10000 values"),
+            (_, Some((_, value))) => (format!("{value} twice"), "each value once"),
+            _ => return Ok(()),
+        };
+        Err(self.error(place, given, allowed))
+    }
+
+    /// The key alone, without its tables.
+    fn last(&self) -> &str {
+        self.key.rsplit('.').next().unwrap_or(&self.key)
     }
 
     /// Its column in tables of results, where the names of others are taken.
     pub fn column(&self, is_taken: impl Fn(&str) -> bool) -> Column {
-        let last = self.key.rsplit('.').next().unwrap_or(&self.key);
+        let last = self.last();
         let name = match is_taken(last) {
             true => self.key.replace('.', "_"),
             false => last.to_owned(),
@@ -298,7 +293,10 @@ impl StudyAxis {
             (!words.is_empty()).then_some((words, *unit))
         });
         let (words, unit) = found.unwrap_or((last, ""));
-        let words = words.replace('_', " ");
+        let mut words = words.replace('_', " ");
+        if let (true, Some((table, _))) = (words.starts_with("per "), self.key.split_once('.')) {
+            words = format!("{table} {words}");
+        }
         let numbers: Option<Vec<f64>> = self.values.iter().map(number).collect();
         Column::new(name, self.role(), words, unit, scale(numbers)).optional()
     }
@@ -360,7 +358,8 @@ fn scale(numbers: Option<Vec<f64>>) -> Scale {
     }
 }
 
-fn number(value: &toml::Value) -> Option<f64> {
+/// A number, whole or not.
+pub(super) fn number(value: &toml::Value) -> Option<f64> {
     let integer = || value.as_integer().map(|integer| integer as f64);
     value.as_float().or_else(integer)
 }
@@ -373,14 +372,9 @@ impl StudyAxes {
 
     /// The column of each, where the names of others are taken.
     pub fn columns(&self, is_taken: impl Fn(&str) -> bool) -> Vec<Column> {
-        let last = |axis: &StudyAxis| axis.key.rsplit('.').next().map(str::to_owned);
         let column = |axis: &StudyAxis| {
-            let is_shared = self
-                .0
-                .iter()
-                .filter(|other| last(other) == last(axis))
-                .count()
-                > 1;
+            let alike = self.0.iter().filter(|other| other.last() == axis.last());
+            let is_shared = alike.count() > 1;
             axis.column(|name| is_shared || is_taken(name))
         };
         self.0.iter().map(column).collect()
@@ -420,7 +414,7 @@ impl StudyAxes {
         all
     }
 
-    /// The study of each combination: `study` with other values at the axes' keys.
+    /// Each combination of values with the study that has it: `study` with these at the axes' keys.
     ///
     /// # Errors
     /// A value that the study's reader refuses; the error names the axis.
@@ -428,7 +422,7 @@ impl StudyAxes {
         &self,
         place: &str,
         study: &S,
-    ) -> Result<Vec<Variant<S>>> {
+    ) -> Result<Vec<(Vec<toml::Value>, S)>> {
         let table = toml::Table::try_from(study).expect("every field of a study has a TOML form");
         let with = |table: &toml::Table, axis: &StudyAxis, value: &toml::Value| {
             with_value(table, &axis.key, value.clone())
@@ -448,7 +442,7 @@ impl StudyAxes {
             }
             let study = table.try_into();
             let study = study.map_err(|error| self.refused(place, &values, &error.to_string()))?;
-            Ok(Variant { values, study })
+            Ok((values, study))
         });
         all.collect()
     }
@@ -485,6 +479,12 @@ pub fn to_toml<S: Serialize>(study: &S, axes: &StudyAxes) -> String {
         lines.push_str(&format!("{:?} = {values}\n", key));
     }
     toml::to_string(&table).expect(HAS_FORM) + &lines
+}
+
+/// Whether a key is one of a name, or below it.
+pub(crate) fn is_at(key: &str, name: &str) -> bool {
+    let rest = key.strip_prefix(name);
+    rest.is_some_and(|rest| rest.is_empty() || rest.starts_with('.'))
 }
 
 fn remove(table: &mut toml::Table, key: &str) {
@@ -544,13 +544,13 @@ mod tests {
         let variants = axes.variants("s.toml", &study).unwrap();
         let found = variants
             .iter()
-            .map(|v| (v.study.skin.stroke_mm, v.study.seed));
+            .map(|(_, study)| (study.skin.stroke_mm, study.seed));
         let found: Vec<(f64, u64)> = found.collect();
         assert_eq!(found, [(5.0, 3), (5.0, 1), (1.0, 3), (1.0, 1)]);
         assert!(
             variants
                 .iter()
-                .all(|v| v.study.skin.words == "a" && v.study.ratio.len() == 2)
+                .all(|(_, study)| study.skin.words == "a" && study.ratio.len() == 2)
         );
         assert_eq!(axes.n_combinations(), 4.0);
     }

@@ -24,6 +24,12 @@ impl<T: Clone> Axis<T> {
             Self::Many(values) => values.clone(),
         }
     }
+
+    /// Those of a key that may be left out, which is one value.
+    pub fn of(axis: &Option<Self>) -> Vec<Option<T>> {
+        let values = axis.as_ref().map(Self::values);
+        values.map_or(vec![None], |values| values.into_iter().map(Some).collect())
+    }
 }
 
 /// Written out, because an untagged enum forgets which value was wrong and what would have been right.

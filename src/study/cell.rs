@@ -1,7 +1,7 @@
 //! The settings of a cell: every axis of a study at one value. The first columns of a row of results.
 
-use super::axes::{AxisValue, AxisValues};
-use super::sensor_errors::{Strengths, TestedOn, all_strengths, strength_columns};
+use super::axes::AxisValues;
+use super::sensor_errors::{Strengths, TestedOn, strength_columns};
 use crate::recognition::ClassifierKind;
 use crate::recognition::features::Features;
 use crate::recognition::over_time::OverTime;
@@ -9,11 +9,19 @@ use crate::sensing::Ensemble;
 use crate::signal::NoiseUnit;
 use crate::table::{Column, Columns, Role, Scale};
 use serde::ser::SerializeStruct;
-use serde::{Deserialize, Serialize, Serializer};
+use serde::{Serialize, Serializer};
 use std::borrow::Cow;
 
+const FEATURES: &[(&str, &str)] = &[("centred_unit_norm", "centred, unit norm")];
+const OVER_TIME: &[(&str, &str)] = &[
+    ("", "all frames"),
+    ("deepest", "deepest frame"),
+    ("summarised", "moments and course"),
+];
+const CHOSEN: &[(&str, &str)] = &[("", "chosen")];
+
 /// The settings of one cell of a sweep: every axis at one value.
-#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Cell {
     /// Number of the cell, from 0, in sweep order.
     pub cell: usize,
@@ -32,10 +40,8 @@ pub struct Cell {
     /// Standard deviation of the Gaussian smoothing, millimetres; 0 for none.
     pub smoothing_mm: f64,
     /// How strong each sensor error is: a column for each strength that the study has.
-    #[serde(skip)]
     pub strengths: Strengths,
     /// The skin that test touches are made with; only if the study has the key.
-    #[serde(default)]
     pub tested_on: Option<TestedOn>,
     /// How measurements are made.
     pub ensemble: Ensemble,
@@ -46,7 +52,6 @@ pub struct Cell {
     /// Frames a touch, F: a row of features has F · m values.
     pub frames: usize,
     /// What is made of the frames, if not all of them one after the other; only if the study has the key.
-    #[serde(default)]
     pub over_time: Option<OverTime>,
     /// What is made of the measurements.
     pub features: Features,
@@ -57,15 +62,12 @@ pub struct Cell {
     /// Training touches an object, at most.
     pub train_touches: usize,
     /// Fraction of them with another object's label; only if the study has the key.
-    #[serde(default)]
     pub mislabelled_fraction: Option<f64>,
     /// How many times as many the most frequent object has as the rarest; only if the study has the key.
-    #[serde(default)]
     pub class_imbalance: Option<f64>,
     /// Test touches of an object that are decided on together, by the sum of their scores.
     pub fused_touches: usize,
     /// Where it is on the study's own axes: a column for each.
-    #[serde(skip)]
     pub variant: AxisValues,
 }
 
@@ -125,8 +127,9 @@ impl Columns for Cell {
         let mut columns = vec![
             Column::new("cell", Note, "cell", "", Linear),
             Column::new("pitch_mm", Choice, "pitch", "mm", Linear),
-            Column::new("nx", Choice, "taxels along x", "", Linear),
-            Column::new("ny", Choice, "taxels along y", "", Linear),
+            // The pitch and the size say them.
+            Column::new("nx", Note, "taxels along x", "", Linear),
+            Column::new("ny", Note, "taxels along y", "", Linear),
             Column::new("size_mm", Choice, "array size", "mm", Linear),
             Column::new("noise_std", Condition, "noise", "%", Share),
             Column::new("noise_unit", Note, "noise unit", "", Words),
@@ -139,10 +142,12 @@ impl Columns for Cell {
             Column::new("measurements", Choice, "m", "", Log),
             Column::new("ratio", Choice, "compression", ":1", Log),
             Column::new("frames", Choice, "frames a touch", "", Log),
-            Column::new("over_time", Choice, "over time", "", Words).optional(),
-            Column::new("features", Choice, "features", "", Words),
+            Column::new("over_time", Choice, "over time", "", Words)
+                .named(OVER_TIME)
+                .optional(),
+            Column::new("features", Choice, "features", "", Words).named(FEATURES),
             Column::new("classifier", Choice, "classifier", "", Words).named(ClassifierKind::NAMES),
-            Column::new("c", Choice, "C", "", Log),
+            Column::new("c", Choice, "C", "", Log).named(CHOSEN),
             Column::new("train_touches", Choice, "training touches", "", Log),
             Column::new("mislabelled_fraction", Condition, "mislabelled", "%", Share).optional(),
             Column::new("class_imbalance", Condition, "class imbalance", ":1", Log).optional(),
@@ -164,20 +169,6 @@ impl Cell {
     /// Numbers that are read for one decision: measurements of each frame of each fused touch.
     pub fn measurements_of_decision(&self) -> usize {
         self.measurements * self.frames * self.fused_touches
-    }
-
-    /// The same with the sensor errors and the axes that a row of a file has, by its columns.
-    pub fn with_row<'a>(mut self, axes: &[Column], row: impl Fn(&str) -> Option<&'a str>) -> Self {
-        for (_, strength) in all_strengths() {
-            let value = row(strength.key).and_then(|text| text.parse().ok());
-            self.strengths = self.strengths.with(strength.key, value);
-        }
-        let values = axes.iter().filter_map(|column| {
-            let text = row(&column.name)?;
-            Some(AxisValue::of_text(column, text))
-        });
-        self.variant.values = values.collect();
-        self
     }
 }
 

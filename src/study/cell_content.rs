@@ -4,7 +4,7 @@
 //! drawn by its number either: streams go by the study's seed, the trial, and what is touched.
 
 use super::axes::AxisValues;
-use super::content_hash::ContentHash;
+use super::content_hash::short_hash;
 use super::plan::Plan;
 use super::sensor_errors::{Strengths, TestedOn, all_strengths};
 use super::spec::StepSpec;
@@ -22,10 +22,10 @@ pub fn family_name(plan: &Plan, family: &[Cell]) -> String {
     let settings = settings(plan, &family[0]);
     let differ = family.iter().map(|cell| (cell.c, cell.fused_touches));
     let differ: Vec<_> = differ.collect();
-    let said = format!("{settings:?} {steps:?} {path:?} {differ:?}");
-    let mut digits = ContentHash::default().bytes(said).hex();
-    digits.truncate(DIGITS);
-    digits
+    short_hash(
+        format!("{settings:?} {steps:?} {path:?} {differ:?}"),
+        DIGITS,
+    )
 }
 
 /// A cell without its number, and with all that is left out said: an axis that a study does not have is one whose value does nothing.
@@ -59,7 +59,13 @@ fn active_steps(plan: &Plan, cell: &Cell) -> Vec<StepSpec> {
         StepSpec::Smoothing => cell.smoothing_mm != 0.0,
         StepSpec::Error(error) => cell.strengths.present().any(|(own, ..)| own == *error),
     };
-    plan.steps.iter().filter(is_active).copied().collect()
+    plan.spec
+        .signal
+        .steps
+        .iter()
+        .filter(is_active)
+        .copied()
+        .collect()
 }
 
 /// The C's of which each is solved from where the last one ended: the last digits of a solution depend on them all. None where each fit

@@ -1,8 +1,13 @@
 //! Checks of single keys: each error names the file and the key, what was given and what is allowed.
 
-use super::axis::Axis;
+use super::axes::{number, value_at};
 use super::memory::{check_memory, machine_memory};
+use super::plan::{MM, MOST_FRAMES, millimetres};
+use super::plan_scene::MOST_SIDE;
 use crate::error::{Error, Result};
+use crate::world::MOST_TOUCHES;
+use serde::Serialize;
+use std::fmt;
 
 pub fn positive(value: f64) -> bool {
     value.is_finite() && value > 0.0
@@ -21,6 +26,115 @@ const MOST_COUNTED: usize = 100_000_000;
 /// Configurations of a study, at most: all are laid out before the first runs.
 const MOST_CONFIGURATIONS: f64 = 1e6;
 
+/// What the numbers of a key may be.
+#[derive(Clone, Copy)]
+pub enum Range {
+    /// Above zero.
+    Positive,
+    /// Zero or above.
+    NotNegative,
+    /// Any but infinite ones.
+    Finite,
+    /// Of one, ends included.
+    Fraction,
+    /// Of one, ends excluded.
+    Part,
+    /// From one on.
+    AtLeastOne,
+    /// Whole numbers from one to another.
+    Count(usize, usize),
+    /// Words, or numbers that something else checks.
+    Any,
+}
+
+impl Range {
+    fn has(self, value: f64) -> bool {
+        match self {
+            Self::Positive => positive(value),
+            Self::NotNegative => not_negative(value),
+            Self::Finite => value.is_finite(),
+            Self::Fraction => (0.0..=1.0).contains(&value),
+            Self::Part => value > 0.0 && value < 1.0,
+            Self::AtLeastOne => value.is_finite() && value >= 1.0,
+            Self::Count(least, most) => (least as f64..=most as f64).contains(&value),
+            Self::Any => true,
+        }
+    }
+}
+
+impl fmt::Display for Range {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        match self {
+            Self::Positive => write!(f, "a positive number"),
+            Self::NotNegative => write!(f, "zero or a positive number"),
+            Self::Finite => write!(f, "a finite number"),
+            Self::Fraction => write!(f, "a fraction, 0 to 1"),
+            Self::Part => write!(f, "between 0 and 1"),
+            Self::AtLeastOne => write!(f, "a number of at least 1"),
+            Self::Count(least, most) => write!(f, "at least {least} and at most {most}"),
+            Self::Any => write!(f, "any value"),
+        }
+    }
+}
+
+/// From 1 to what memory holds.
+pub const COUNT: Range = Range::Count(1, MOST_COUNTED);
+
+/// So many touches an object.
+pub const TOUCHES: Range = Range::Count(1, MOST_TOUCHES);
+
+/// The keys of the tables that kinds of study share, and what their numbers may be. A list has values, and none twice.
+const KEYS: [(&str, Range); 48] = [
+    ("objects.surface_error_mm", Range::Positive),
+    ("objects.close_holes_mm", Range::Positive),
+    ("objects.names", Range::Any),
+    ("skin.pitch_mm", Range::Positive),
+    ("skin.size_mm", Range::Positive),
+    ("skin.taxels", Range::Count(1, MOST_SIDE)),
+    ("skin.taxel_radius_mm", Range::Positive),
+    ("skin.stroke_mm", Range::Positive),
+    ("skin.stiffness_n_per_m", Range::Positive),
+    ("skin.damping_n_s_per_m", Range::NotNegative),
+    ("touches.per_object", TOUCHES),
+    ("touches.frames", Range::Count(1, MOST_FRAMES)),
+    ("touches.speed_mm_per_s", Range::NotNegative),
+    ("human_touch.kinds", Range::Any),
+    ("human_touch.per_kind", TOUCHES),
+    ("human_touch.arm_radius_mm", Range::Positive),
+    ("human_touch.frames_hz", Range::Positive),
+    ("human_touch.duration_s", Range::Positive),
+    ("signal.noise_std_full_scale", Range::NotNegative),
+    ("signal.noise_std_mm", Range::NotNegative),
+    ("signal.noise_std_n", Range::NotNegative),
+    ("signal.smoothing_mm", Range::NotNegative),
+    ("signal.tested_on", Range::Any),
+    ("sensing.ensemble", Range::Any),
+    ("sensing.ratio", Range::AtLeastOne),
+    ("sensing.measurements", COUNT),
+    ("recognition.features", Range::Any),
+    ("recognition.over_time", Range::Any),
+    ("recognition.classifier", Range::Any),
+    ("recognition.c", Range::Positive),
+    ("recognition.choose_c", Range::Positive),
+    ("recognition.choose_gamma", Range::Positive),
+    ("recognition.choose_folds", Range::Count(2, MOST_COUNTED)),
+    ("recognition.choose_touches", COUNT),
+    ("recognition.degree", Range::Count(1, 20)),
+    ("recognition.coef0", Range::NotNegative),
+    ("recognition.n_neighbours", COUNT),
+    ("recognition.n_trees", COUNT),
+    ("recognition.max_depth", COUNT),
+    ("recognition.solver_memory_gib", Range::Positive),
+    ("recognition.train_touches", COUNT),
+    ("recognition.mislabelled_fraction", Range::Fraction),
+    ("recognition.class_imbalance", Range::AtLeastOne),
+    ("recognition.fused_touches", COUNT),
+    ("recognition.test_fraction", Range::Part),
+    ("recognition.folds", Range::Count(2, MOST_COUNTED)),
+    ("recognition.keep_together_mm", Range::Positive),
+    ("recognition.keep_together_deg", Range::Positive),
+];
+
 /// Checks of one file's keys.
 pub struct Check<'a> {
     /// The study's file.
@@ -30,6 +144,48 @@ pub struct Check<'a> {
 impl Check<'_> {
     pub fn error(&self, key: &str, given: impl ToString, allowed: impl ToString) -> Error {
         Error::input(format!("{}, key {key}", self.place), given, allowed)
+    }
+
+    /// The keys of a table that kinds of study share; which of them it gives.
+    pub fn table(&self, name: &str, table: &impl Serialize) -> Result<toml::Table> {
+        let key = |path: &'static str| path.strip_prefix(name)?.strip_prefix('.');
+        let keys = KEYS
+            .into_iter()
+            .filter_map(|(path, range)| Some((key(path)?, range)));
+        self.keys(name, table, keys)
+    }
+
+    /// Keys of a table, with points between those of tables in it: each number in its range, each list with values and none twice.
+    pub fn keys<'k>(
+        &self,
+        name: &str,
+        table: &impl Serialize,
+        keys: impl IntoIterator<Item = (&'k str, Range)>,
+    ) -> Result<toml::Table> {
+        let table = toml::Table::try_from(table).expect("every field of a study has a TOML form");
+        for (key, range) in keys {
+            let Some(value) = value_at(&table, key) else {
+                continue;
+            };
+            let path = &format!("{name}.{key}");
+            let one = std::slice::from_ref(value);
+            let values = value.as_array().map_or(one, |values| &values[..]);
+            let words: Vec<&str> = values.iter().filter_map(|value| value.as_str()).collect();
+            let numbers: Vec<f64> = values.iter().filter_map(number).collect();
+            match words.is_empty() {
+                false => self.list(path, words).map(drop)?,
+                // Two that tables show alike would be taken for one.
+                true if path.ends_with("_mm") => {
+                    let shown = numbers.iter().map(|&mm| millimetres(mm * MM));
+                    self.list(path, shown.collect()).map(drop)?;
+                }
+                true => self.list(path, numbers.clone()).map(drop)?,
+            }
+            if let Some(number) = numbers.into_iter().find(|&number| !range.has(number)) {
+                return Err(self.error(path, number, range));
+            }
+        }
+        Ok(table)
     }
 
     pub fn value(
@@ -43,10 +199,6 @@ impl Check<'_> {
             return Ok(value);
         }
         Err(self.error(key, value, allowed))
-    }
-
-    pub fn positive_count(&self, key: &str, count: usize) -> Result<usize> {
-        self.count(key, count, MOST_COUNTED)
     }
 
     /// From 1 to so many.
@@ -90,45 +242,14 @@ impl Check<'_> {
         if values.is_empty() {
             return Err(self.error(key, "an empty list", "at least one value"));
         }
-        self.axis_length(key, values.len())?;
+        if values.len() > MOST_VALUES {
+            let allowed = format!("at most {MOST_VALUES} values");
+            return Err(self.error(key, format!("{} values", values.len()), allowed));
+        }
         for (index, value) in values.iter().enumerate() {
             if values[..index].contains(value) {
                 return Err(self.error(key, format!("{value:?} twice"), "each value once"));
             }
-        }
-        Ok(values)
-    }
-
-    /// An axis of so many values is one that a study can mean.
-    pub fn axis_length(&self, key: &str, n_values: usize) -> Result<()> {
-        match n_values {
-            0..=MOST_VALUES => Ok(()),
-            n => Err(self.error(
-                key,
-                format!("{n} values"),
-                format!("at most {MOST_VALUES} values"),
-            )),
-        }
-    }
-
-    pub fn counts(&self, key: &str, axis: &Axis<usize>) -> Result<Vec<usize>> {
-        let counts = self.list(key, axis.values())?;
-        for &count in &counts {
-            self.positive_count(key, count)?;
-        }
-        Ok(counts)
-    }
-
-    pub fn axis(
-        &self,
-        key: &str,
-        axis: &Axis<f64>,
-        is_allowed: fn(f64) -> bool,
-        allowed: &str,
-    ) -> Result<Vec<f64>> {
-        let values = self.list(key, axis.values())?;
-        for &value in &values {
-            self.value(key, value, is_allowed, allowed)?;
         }
         Ok(values)
     }

@@ -1,59 +1,45 @@
 //! SHA-256 of what things are made of, to name them by their content.
 
 use crate::mesh::TriangleMesh;
-use crate::objects::{Model, SphereUnion};
+use crate::objects::Model;
 use sha2::{Digest, Sha256};
 
-/// A hash in the making.
-#[derive(Clone, Default)]
-pub struct ContentHash(Sha256);
+/// The hash of bytes or a text, in 64 hexadecimal digits.
+pub fn sha256(bytes: impl AsRef<[u8]>) -> String {
+    let digits = Sha256::digest(bytes);
+    digits.iter().map(|byte| format!("{byte:02x}")).collect()
+}
 
-impl ContentHash {
-    /// Adds bytes or a text.
-    pub fn bytes(mut self, bytes: impl AsRef<[u8]>) -> Self {
-        self.0.update(bytes);
-        self
-    }
+/// The first digits of the hash of what something says of itself. Fewer: two of them may be taken for each other.
+pub fn short_hash(said: impl AsRef<[u8]>, n_digits: usize) -> String {
+    let mut digits = sha256(said);
+    digits.truncate(n_digits);
+    digits
+}
 
-    /// Adds numbers, bit by bit.
-    pub fn numbers(mut self, numbers: impl IntoIterator<Item = f64>) -> Self {
-        for number in numbers {
-            self.0.update(number.to_le_bytes());
+/// Numbers, bit by bit.
+pub fn bytes_of_numbers(numbers: impl IntoIterator<Item = f64>) -> Vec<u8> {
+    numbers.into_iter().flat_map(f64::to_le_bytes).collect()
+}
+
+/// Vertices (metres) and triangles.
+pub fn bytes_of_mesh(mesh: &TriangleMesh) -> Vec<u8> {
+    let vertices = mesh.vertices();
+    let mut bytes = (vertices.len() as u64).to_le_bytes().to_vec();
+    bytes.extend(bytes_of_numbers(vertices.iter().flat_map(|v| v.to_array())));
+    let corners = mesh.triangles().iter().flatten();
+    bytes.extend(corners.flat_map(|corner| corner.to_le_bytes()));
+    bytes
+}
+
+/// What taxels touch: centres and radii of spheres, metres, or a mesh.
+pub fn bytes_of_model(model: &Model) -> Vec<u8> {
+    match model {
+        Model::Spheres(union) => {
+            let spheres = union.spheres().iter();
+            let numbers = spheres.flat_map(|s| [s.center.x, s.center.y, s.center.z, s.radius]);
+            [b"spheres".to_vec(), bytes_of_numbers(numbers)].concat()
         }
-        self
-    }
-
-    /// Adds vertices (metres) and triangles.
-    pub fn mesh(self, mesh: &TriangleMesh) -> Self {
-        let vertices = mesh.vertices();
-        let counted = self.bytes((vertices.len() as u64).to_le_bytes());
-        let mut hash = counted.numbers(vertices.iter().flat_map(|v| v.to_array()));
-        for corner in mesh.triangles().iter().flatten() {
-            hash = hash.bytes(corner.to_le_bytes());
-        }
-        hash
-    }
-
-    /// Adds centres and radii, metres.
-    fn spheres(self, spheres: &SphereUnion) -> Self {
-        let numbers = spheres.spheres().iter().flat_map(|sphere| {
-            let [x, y, z] = sphere.center.to_array();
-            [x, y, z, sphere.radius]
-        });
-        self.numbers(numbers)
-    }
-
-    /// Adds what taxels touch.
-    pub fn model(self, model: &Model) -> Self {
-        match model {
-            Model::Spheres(spheres) => self.bytes("spheres").spheres(spheres),
-            Model::Mesh(mesh) => self.bytes("mesh").mesh(mesh.mesh()),
-        }
-    }
-
-    /// The hash in 64 hexadecimal digits.
-    pub fn hex(self) -> String {
-        let digits = self.0.finalize();
-        digits.iter().map(|byte| format!("{byte:02x}")).collect()
+        Model::Mesh(mesh) => [b"mesh".to_vec(), bytes_of_mesh(mesh.mesh())].concat(),
     }
 }

@@ -9,8 +9,8 @@
 //! | `objects.csv` | one row an object: number, name |
 //! | `cell.toml` | the settings of the cell and the trial |
 
-use super::frames::FrameWriter;
-use super::measurement::measure_group;
+use super::frames::FramePlace;
+use super::measurement::{Measurements, measure_group};
 use super::npy_numbers::{read_labels, read_matrix, read_rows};
 use super::plan::Plan;
 use super::progress::Progress;
@@ -20,7 +20,7 @@ use super::sweep::{Group, Sweep};
 use super::table::Cell;
 use super::touch_set::TouchSet;
 use crate::error::{Error, Result};
-use crate::files::{write_bytes, write_whole};
+use crate::files::{CsvFile, write_bytes, write_whole};
 use crate::recognition::dataset::{Dataset, dataset, rows};
 use crate::recognition::split::Split;
 use ndarray::{Array1, ArrayBase, Data, Dimension};
@@ -69,27 +69,35 @@ pub fn cell_features(
 ) -> Result<FeatureSet> {
     let (group, cell) = find(sweep, cell)?;
     let split = sweep.split(plan, cell, trial)?;
-    let patch = &plan.arrays[group.array];
-    progress.stage(
-        &format!("touch {}", describe(patch)),
-        sweep.labels.len() as u64,
-    );
-    let writer = FrameWriter::in_memory(patch.grid.n_taxels());
-    let frames = touched.simulate((patch, group.frames), writer, progress)?;
     // As the run does it: nested measurements are the leading ones of the largest m.
     let n_projected = group
         .projected()
         .into_iter()
         .find(|&m| group.ensemble.is_prefix_nested() || m == cell.measurements)
         .unwrap_or(cell.measurements);
-    let touches = (touched, &frames);
-    let measured = measure_group(plan, group, touches, (trial, &split), n_projected)?;
+    let of = (touched, group, n_projected);
+    let measured = measured(plan, of, (trial, &split), ("touch", progress))?;
     let all: Vec<usize> = (0..sweep.labels.len()).collect();
     let features = measured.features(cell, &all);
     Ok(FeatureSet {
         data: dataset(features, sweep.learned_labels(plan, (cell, trial), &split)?)?,
         split,
     })
+}
+
+/// Makes the touches of a group, held in memory, and reads and measures them in a trial.
+pub(super) fn measured(
+    plan: &Plan,
+    (touched, group, n_measurements): (&dyn TouchSet, &Group, usize),
+    trial: (usize, &Split),
+    (stage, progress): (&str, &dyn Progress),
+) -> Result<Measurements> {
+    let patch = &plan.arrays[group.array];
+    let n_touches = touched.labels().len() as u64;
+    progress.stage(&format!("{stage} {}", describe(patch)), n_touches);
+    let on = (patch, group.frames);
+    let frames = touched.simulate(on, &FramePlace::Memory, progress)?;
+    measure_group(plan, group, (touched, &frames), trial, n_measurements)
 }
 
 /// Writes the measurements of one cell in one trial into a folder that exists.
@@ -107,20 +115,20 @@ pub fn write_features(
     let set = cell_features(plan, sweep, touched, (cell, trial), progress)?;
     let Split { train, test } = &set.split;
     write_npy(&folder.join("features.npy"), &set.data.records)?;
-    write_npy(
-        &folder.join("labels.npy"),
-        &whole_numbers(&set.data.targets),
-    )?;
-    write_npy(&folder.join("train.npy"), &whole_numbers(train))?;
-    write_npy(&folder.join("test.npy"), &whole_numbers(test))?;
-    write_whole(&folder.join("objects.csv"), |writer| {
-        let mut csv = csv::Writer::from_writer(writer);
-        for (label, object) in touched.class_names().into_iter().enumerate() {
-            csv.serialize(ObjectRow { label, object })
-                .map_err(io::Error::other)?;
-        }
-        csv.flush()
-    })?;
+    let of_rows: [(&str, &[usize]); 3] = [
+        ("labels.npy", &set.data.targets.to_vec()),
+        ("train.npy", train),
+        ("test.npy", test),
+    ];
+    for (name, numbers) in of_rows {
+        let numbers: Array1<i64> = numbers.iter().map(|&number| number as i64).collect();
+        write_npy(&folder.join(name), &numbers)?;
+    }
+    let mut objects = CsvFile::create(&folder.join("objects.csv"))?;
+    for (label, object) in touched.class_names().into_iter().enumerate() {
+        objects.row(ObjectRow { label, object })?;
+    }
+    objects.commit()?;
     let settings = Settings {
         question: &plan.spec.question,
         seed: plan.spec.seed,
@@ -199,10 +207,6 @@ where
     write_whole(path, |writer| {
         array.write_npy(writer).map_err(io::Error::other)
     })
-}
-
-fn whole_numbers<'a>(numbers: impl IntoIterator<Item = &'a usize>) -> Array1<i64> {
-    numbers.into_iter().map(|&number| number as i64).collect()
 }
 
 /// Refuses a row that is named twice: a tested row must not have been trained on, and none may count twice.

@@ -3,12 +3,12 @@
 use super::human_touches::{HumanTouches, record_touch};
 use super::plan::{Plan, millimetres};
 use super::samples::{Samples, named_samples};
-use super::sweep::Sweep;
 use super::touch_set::TouchSet;
 use crate::contact::SkinWorkspace;
 use crate::error::{Error, Result};
 use crate::signal::Quantity;
-use ndarray::{Array1, Array2};
+use crate::world::Patch;
+use ndarray::Array2;
 use rayon::prelude::*;
 
 /// Frames of a strip: a row of the picture.
@@ -19,30 +19,24 @@ const N_LOOKED_AT: usize = 10;
 
 /// Of the kinds that the study names for its picture (else of all), the firmest of the first touches, at four instants evenly between
 /// those when its first and its last taxel are touched; on the study's finest array, without noise.
-pub fn human_samples(plan: &Plan, sweep: &Sweep, touches: &HumanTouches) -> Result<Samples> {
-    let group = sweep.groups.iter().max_by_key(|group| {
-        // The first of several.
-        (
-            plan.arrays[group.array].grid.n_taxels(),
-            std::cmp::Reverse(group.array),
-        )
-    });
-    let group =
-        group.ok_or_else(|| Error::input("study", "no cells", "at least one value an axis"))?;
-    let patch = plan.arrays[group.array];
+pub fn human_samples(plan: &Plan, touches: &HumanTouches) -> Result<Samples> {
+    let n_taxels = |patch: &&Patch| patch.grid.n_taxels();
+    // The first of several.
+    let patch = plan.arrays.iter().rev().max_by_key(n_taxels).copied();
+    let patch =
+        patch.ok_or_else(|| Error::input("study", "no cells", "at least one value an axis"))?;
     let grid = patch.grid;
-    let skin = touches.plan.skin(&patch)?;
-    let interval = touches.plan.interval;
+    let skin = touches.spec.skin(&patch)?;
+    let interval = touches.spec.interval();
     let mut frames = Vec::new();
-    for label in chosen(plan, touches)? {
-        let first: Vec<_> = touches.of(label).iter().take(N_LOOKED_AT).collect();
-        let recorded = first
-            .par_iter()
-            .map_init(SkinWorkspace::new, |room, touch| {
-                let mut rows = Array2::zeros((touches.plan.n_frames, grid.n_taxels()));
-                record_touch(&skin, touch, interval, rows.view_mut(), room);
-                rows
-            });
+    let chosen = named_samples(plan, &touches.class_names())?;
+    for label in chosen.unwrap_or_else(|| (0..touches.spec.kinds.len()).collect()) {
+        let first = touches.of(label).par_iter().take(N_LOOKED_AT);
+        let recorded = first.map_init(SkinWorkspace::new, |room, touch| {
+            let mut rows = Array2::zeros((touches.spec.n_frames(), grid.n_taxels()));
+            record_touch(&skin, touch, interval, rows.view_mut(), room);
+            rows
+        });
         let recorded: Vec<_> = recorded.collect();
         let firmest = recorded
             .into_iter()
@@ -57,14 +51,12 @@ pub fn human_samples(plan: &Plan, sweep: &Sweep, touches: &HumanTouches) -> Resu
             let frame = first + (part * (last - first) + N_FRAMES / 2) / (N_FRAMES - 1);
             let name = format!(
                 "{} {:.2} s",
-                touches.plan.kinds[label].name(),
+                touches.spec.kinds[label].name(),
                 (frame - first) as f64 * interval
             );
-            let values: Array1<f64> = rows.row(frame).mapv(f64::from);
-            let shape = (grid.ny, grid.nx);
-            let frame = values
-                .into_shape_with_order(shape)
-                .expect("one value a taxel");
+            let row = rows.row(frame).mapv(f64::from);
+            let frame = row.into_shape_with_order((grid.ny, grid.nx));
+            let frame = frame.expect("one value a taxel");
             frames.push((name, frame));
         }
     }
@@ -80,10 +72,4 @@ pub fn human_samples(plan: &Plan, sweep: &Sweep, touches: &HumanTouches) -> Resu
         each: Vec::new(),
         each_caption: String::new(),
     })
-}
-
-/// Labels of the kinds to show.
-fn chosen(plan: &Plan, touches: &HumanTouches) -> Result<Vec<usize>> {
-    let named = named_samples(plan, &touches.class_names())?;
-    Ok(named.unwrap_or_else(|| (0..touches.plan.kinds.len()).collect()))
 }

@@ -1,13 +1,12 @@
 //! Human touches of a study: drawn once, recorded on each array.
 
-use super::frames::{FrameWriter, Frames, Making, Press};
+use super::frames::{FramePlace, Frames};
 use super::human_samples::human_samples;
 use super::measurement::TouchToRead;
 use super::plan::Plan;
-use super::plan_human::HumanTouchPlan;
-use super::pose_groups::KeepTogether;
 use super::progress::Progress;
 use super::samples::Samples;
+use super::spec::HumanTouchSpec;
 use super::sweep::Sweep;
 use super::touch_set::TouchSet;
 use crate::contact::{SkinWorkspace, press_skin};
@@ -18,7 +17,6 @@ use crate::world::{HumanTouch, Patch, SkinPatch, TouchRanges};
 use ndarray::{Array1, ArrayViewMut2};
 use rand::Rng;
 use rayon::prelude::*;
-use std::collections::BTreeMap;
 
 /// Seconds to bring a hand to the skin once, and of a moving one to make its spheres.
 const PLACE_HAND_S: f64 = 6e-5;
@@ -27,7 +25,7 @@ const PLACE_HAND_S: f64 = 6e-5;
 #[derive(Clone, Debug)]
 pub struct HumanTouches {
     /// What they are and how they are recorded.
-    pub plan: HumanTouchPlan,
+    pub spec: HumanTouchSpec,
     /// As many a kind.
     pub touches: Vec<RecordedTouch>,
 }
@@ -46,20 +44,20 @@ impl HumanTouches {
     ///
     /// # Errors
     /// A touch that is longer than a recording.
-    pub fn draw(plan: &HumanTouchPlan, seed: &Seed) -> Result<Self> {
+    pub fn draw(spec: &HumanTouchSpec, seed: &Seed) -> Result<Self> {
         let seed = seed.named("human touches");
-        let kinds = plan.kinds.iter();
-        let all = kinds.flat_map(|&kind| (0..plan.per_kind as u64).map(move |k| (kind, k)));
+        let kinds = spec.kinds.iter();
+        let all = kinds.flat_map(|&kind| (0..spec.per_kind as u64).map(move |k| (kind, k)));
         let all: Vec<_> = all.collect();
         let touches = all
             .into_par_iter()
             .map(|(kind, number)| {
                 let seed = seed.named(kind.name()).numbered(number);
                 let ranges = TouchRanges::usual(kind);
-                let touch = HumanTouch::draw(kind, &ranges, plan.surface, &seed)?;
-                let spare = plan.duration() - touch.duration();
+                let touch = HumanTouch::draw(kind, &ranges, spec.surface(), &seed)?;
+                let spare = spec.duration() - touch.duration();
                 if spare < 0.0 {
-                    let given = format!("{} s", plan.duration());
+                    let given = format!("{} s", spec.duration());
                     let allowed = format!("more: a {} of {:.2} s", kind.name(), touch.duration());
                     return Err(Error::input("key human_touch.duration_s", given, allowed));
                 }
@@ -68,14 +66,14 @@ impl HumanTouches {
             })
             .collect::<Result<_>>()?;
         Ok(Self {
-            plan: plan.clone(),
+            spec: spec.clone(),
             touches,
         })
     }
 
     /// The touches of a kind, by its label.
     pub fn of(&self, label: usize) -> &[RecordedTouch] {
-        &self.touches[label * self.plan.per_kind..][..self.plan.per_kind]
+        &self.touches[label * self.spec.per_kind..][..self.spec.per_kind]
     }
 }
 
@@ -107,58 +105,52 @@ pub fn record_touch(
 
 impl TouchSet for HumanTouches {
     fn class_names(&self) -> Vec<&str> {
-        self.plan.kinds.iter().map(|kind| kind.name()).collect()
+        self.spec.kinds.iter().map(|kind| kind.name()).collect()
     }
 
     fn labels(&self) -> Array1<usize> {
-        let labels = 0..self.plan.kinds.len();
-        let labels = labels.flat_map(|label| std::iter::repeat_n(label, self.plan.per_kind));
+        let labels = 0..self.spec.kinds.len();
+        let labels = labels.flat_map(|label| std::iter::repeat_n(label, self.spec.per_kind));
         labels.collect()
-    }
-
-    fn group_keys(&self, _together: &KeepTogether) -> Result<Array1<usize>> {
-        let allowed = "no such key: human touches have no groups";
-        Err(Error::input(
-            "key recognition.keep_together",
-            "given",
-            allowed,
-        ))
     }
 
     fn simulate(
         &self,
         (patch, n_frames): (&Patch, usize),
-        writer: FrameWriter,
+        place: &FramePlace,
         progress: &dyn Progress,
     ) -> Result<Frames> {
         let skin = self
-            .plan
+            .spec
             .skin(patch)
             .expect("the plan has checked that it fits");
-        let interval = self.plan.interval;
-        let mut making = Making::new(writer, n_frames, progress);
-        making.make(&HandPress { skin, interval }, &self.touches)?;
-        making.finish()
+        let interval = self.spec.interval();
+        let mut frames = Frames::new((patch.grid.n_taxels(), n_frames), place)?;
+        let record = |touch: &_, workspace: &mut _, rows: ArrayViewMut2<f32>| {
+            record_touch(&skin, touch, interval, rows, workspace)
+        };
+        frames.make(&self.touches, SkinWorkspace::new, record, progress)?;
+        Ok(frames)
     }
 
     fn to_read(&self, _plan: &Plan, _n_frames: usize, seed: &Seed) -> Vec<TouchToRead> {
         let of_kind = |(label, name): (usize, &'static str)| {
             let kind = seed.named(name);
-            let n = self.plan.per_kind;
+            let n = self.spec.per_kind;
             (0..n).map(move |touch| TouchToRead {
                 number: label * n + touch,
                 seed: kind.numbered(touch as u64),
-                interval: Some(self.plan.interval),
+                interval: Some(self.spec.interval()),
                 before: None,
                 skin: 0,
             })
         };
-        let names = self.plan.kinds.iter().map(|kind| kind.name());
+        let names = self.spec.kinds.iter().map(|kind| kind.name());
         names.enumerate().flat_map(of_kind).collect()
     }
 
-    fn samples(&self, plan: &Plan, sweep: &Sweep) -> Result<Samples> {
-        human_samples(plan, sweep, self)
+    fn samples(&self, plan: &Plan, _sweep: &Sweep) -> Result<Samples> {
+        human_samples(plan, self)
     }
 
     fn place_s(&self) -> f64 {
@@ -168,7 +160,7 @@ impl TouchSet for HumanTouches {
     fn settings(&self) -> Vec<(String, String)> {
         let row = |name: &str, value: String| (name.to_owned(), value);
         let names = self.class_names();
-        let hz = 1.0 / self.plan.interval;
+        let hz = 1.0 / self.spec.interval();
         vec![
             row(
                 "Kinds of touch",
@@ -176,38 +168,9 @@ impl TouchSet for HumanTouches {
             ),
             row(
                 "Frames a touch",
-                format!("{} at {hz:.0} Hz", self.plan.n_frames),
+                format!("{} at {hz:.0} Hz", self.spec.n_frames()),
             ),
-            row("Arm", format!("{:.0} mm across", 2e3 * self.plan.surface)),
+            row("Arm", format!("{:.0} mm across", 2e3 * self.spec.surface())),
         ]
-    }
-
-    fn content(&self) -> BTreeMap<String, String> {
-        BTreeMap::new()
-    }
-}
-
-/// Records hands on a skin.
-struct HandPress {
-    skin: SkinPatch,
-    /// Seconds between frames.
-    interval: f64,
-}
-
-impl Press for HandPress {
-    type Touch = RecordedTouch;
-    type Workspace = SkinWorkspace;
-
-    fn workspace(&self) -> SkinWorkspace {
-        SkinWorkspace::new()
-    }
-
-    fn press(
-        &self,
-        touch: &RecordedTouch,
-        workspace: &mut SkinWorkspace,
-        rows: ArrayViewMut2<f32>,
-    ) -> (bool, bool) {
-        record_touch(&self.skin, touch, self.interval, rows, workspace)
     }
 }

@@ -195,7 +195,7 @@ pub fn signal_steps(plan: &Plan, group: &Group, skin: &Seed) -> Vec<SignalStep> 
         },
         StepSpec::Error(error) => condition.strengths.step(error, skin),
     };
-    plan.steps.iter().map(step).collect()
+    plan.spec.signal.steps.iter().map(step).collect()
 }
 
 /// The skin of training touches, and that of test touches if it is another.

@@ -54,7 +54,7 @@ pub(super) fn check_memory(
 /// # Errors
 /// They take more; the error names the key that says how many they are.
 pub fn check_touches(plan: &Plan, n_classes: usize, ceiling: Option<u64>) -> Result<()> {
-    let (key, n_each) = match &plan.human_touch {
+    let (key, n_each) = match &plan.spec.human_touch {
         Some(human) => ("human_touch.per_kind", human.per_kind as f64),
         None => ("touches.per_object", plan.placement.n_touches()),
     };

@@ -6,14 +6,13 @@
 //! Threads live here. Whatever their number, a study's tables are the same bytes, times apart: every touch, split, noise and
 //! projection is drawn from its own named stream, and sums are taken in a fixed order.
 
-pub mod advice;
 mod attempt;
 pub mod axes;
 pub(crate) mod axis;
 mod cell;
 pub(crate) mod cell_content;
 pub(crate) mod check;
-mod compare_runs;
+mod conditions;
 mod content_hash;
 pub(crate) mod defaults;
 pub(crate) mod evaluation;
@@ -26,24 +25,19 @@ pub(crate) mod measurement;
 pub mod memory;
 mod npy_numbers;
 pub(crate) mod object_files;
-pub(crate) mod packing_cache;
 pub(crate) mod packings;
-mod pareto;
 pub mod pieces;
 pub(crate) mod plan;
 mod plan_human;
 mod plan_learning;
 mod plan_scene;
 mod plan_signal;
-mod plan_training;
 mod pose_groups;
 pub mod progress;
 pub mod provenance;
 pub(crate) mod published;
 pub(crate) mod repeats;
-mod role;
 mod samples;
-mod sealed;
 mod sensor_errors;
 mod shard;
 pub(crate) mod simulation;
@@ -65,26 +59,24 @@ mod variance_table;
 pub use crate::table::Role;
 pub use axis::Axis;
 pub(crate) use check::{Check, not_negative, positive};
-pub use compare_runs::{RunComparison, RunDifference, compare_runs};
-pub(crate) use content_hash::ContentHash;
+pub(crate) use conditions::column_name;
+pub(crate) use content_hash::{sha256, short_hash};
 pub use evaluation::CONFIDENCE;
 pub use feature_files::{FeatureSet, cell_features, read_features, write_features, write_npy};
-pub use frames::{FrameFacts, FramePlace, FrameWriter, Frames, KeptFrames};
+pub use frames::{FrameFacts, FramePlace, Frames, KeptFrames};
 pub use human_touches::{HumanTouches, RecordedTouch, record_touch};
 pub use object_files::{
-    MeshUse, NamedMesh, file_content, load_catalogue, load_mesh, load_named_meshes, load_objects,
+    NamedMesh, file_content, load_catalogue, load_mesh, load_named_meshes, load_objects,
     load_spheres, objects_content, read_mesh_file,
 };
-pub use packing_cache::{CachedPacking, PackingCache};
+pub use packings::{Packed, pack_within, packing_path};
 pub(crate) use plan::MM;
 pub use plan::{Amount, Plan, SplitKind, SplitPlan, millimetres};
-pub use plan_human::HumanTouchPlan;
 pub use plan_signal::Condition;
 pub use pose_groups::KeepTogether;
 pub use repeats::Repeats;
-pub use role::{agree, column_name, condition_numbers, most_accurate, one_of, role_of};
 pub use samples::{Samples, sample_frames};
-pub use sensor_errors::{StrengthAxes, Strengths, TestedOn, all_strengths, strength_columns};
+pub use sensor_errors::{Strengths, TestedOn, all_strengths, strength_columns};
 pub use shard::Shard;
 pub use simulation::{TouchedObject, draw_touches, simulate_array};
 pub(crate) use spec::default_seed;

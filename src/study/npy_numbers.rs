@@ -7,25 +7,21 @@ use std::fs::File;
 use std::io::BufReader;
 use std::path::Path;
 
+/// What a file holds.
+#[derive(Clone, Copy, PartialEq)]
+enum Elements {
+    Floats,
+    Integers,
+    Truths,
+}
+
 /// Reads a matrix of any type of float, integer or bool.
 ///
 /// # Errors
 /// No such file; no `.npy` file of two dimensions and one of these types.
 pub fn read_matrix(path: &Path) -> Result<Array2<f64>> {
     const WHAT: &str = "n × m of float64, float32, int8 to int64, uint8 to uint32 or bool";
-    if let Some(exact) = read_as::<f64, _>(path, WHAT)? {
-        return Ok(exact);
-    }
-    if let Some(single) = read_as::<f32, _>(path, WHAT)? {
-        return Ok(single.mapv(f64::from));
-    }
-    if let Some(mask) = read_as::<bool, _>(path, WHAT)? {
-        return Ok(mask.mapv(|value| f64::from(u8::from(value))));
-    }
-    match read_integers(path, WHAT)? {
-        Some(integers) => Ok(integers.mapv(|value| value as f64)),
-        None => Err(wrong_type(path, WHAT)),
-    }
+    Ok(read(path, WHAT)?.0)
 }
 
 /// Reads a class for each row of features, below the number of rows; of two classes also false and true.
@@ -34,11 +30,13 @@ pub fn read_matrix(path: &Path) -> Result<Array2<f64>> {
 /// No such file; another type, or other dimensions; no labels; one out of its range, by its position.
 pub fn read_labels(path: &Path, n_rows: usize) -> Result<Vec<usize>> {
     const WHAT: &str = "one dimension of int8 to int64, uint8 to uint32 or bool";
-    if let Some(labels) = read_as::<bool, _>(path, WHAT)? {
-        return some(path, labels.mapv(usize::from).to_vec(), "labels");
+    let (labels, elements) = read(path, WHAT)?;
+    match elements {
+        Elements::Floats => Err(wrong_type(path, WHAT)),
+        // Of a single row, too.
+        Elements::Truths => indices((path, "labels"), &labels, n_rows.max(2)),
+        Elements::Integers => indices((path, "labels"), &labels, n_rows),
     }
-    let labels = read_indices(path, WHAT, n_rows)?;
-    some(path, labels, "labels")
 }
 
 /// Reads numbers of rows, or a mask: a bool for each row.
@@ -48,62 +46,61 @@ pub fn read_labels(path: &Path, n_rows: usize) -> Result<Vec<usize>> {
 pub fn read_rows(path: &Path, n_rows: usize) -> Result<Vec<usize>> {
     const WHAT: &str =
         "one dimension of int8 to int64 or uint8 to uint32, or a bool for each row of features";
-    let Some(mask) = read_as::<bool, _>(path, WHAT)? else {
-        let rows = read_indices(path, WHAT, n_rows)?;
-        return some(path, rows, "rows");
-    };
-    let mask: Array1<bool> = mask;
-    if mask.len() != n_rows {
-        let given = format!("a mask of {} rows", mask.len());
-        let allowed = format!("one of {n_rows}, as there are rows of features");
-        return Err(Error::input(path.display(), given, allowed));
+    let (mut rows, elements) = read(path, WHAT)?;
+    match elements {
+        Elements::Floats => return Err(wrong_type(path, WHAT)),
+        Elements::Truths if rows.len() != n_rows => {
+            let given = format!("a mask of {} rows", rows.len());
+            let allowed = format!("one of {n_rows}, as there are rows of features");
+            return Err(Error::input(path.display(), given, allowed));
+        }
+        Elements::Truths => {
+            let chosen = (0..n_rows).filter(|&row| rows[row] > 0.0);
+            rows = chosen.map(|row| row as f64).collect();
+        }
+        Elements::Integers => {}
     }
-    let rows = (0..n_rows).filter(|&row| mask[row]).collect();
-    some(path, rows, "rows")
+    indices((path, "rows"), &rows, n_rows)
 }
 
-fn some(path: &Path, numbers: Vec<usize>, what: &str) -> Result<Vec<usize>> {
-    match numbers.is_empty() {
-        true => Err(Error::input(
-            path.display(),
-            format!("no {what}"),
-            "at least one",
-        )),
-        false => Ok(numbers),
+/// At least one number, each from 0 to below `n_rows`.
+fn indices(
+    (path, what): (&Path, &str),
+    numbers: &Array1<f64>,
+    n_rows: usize,
+) -> Result<Vec<usize>> {
+    if numbers.is_empty() {
+        let given = format!("no {what}");
+        return Err(Error::input(path.display(), given, "at least one"));
     }
+    let wrong = |&number: &f64| !(0.0..n_rows as f64).contains(&number);
+    if let Some(position) = numbers.iter().position(wrong) {
+        let place = format!("{}, position {position}", path.display());
+        let last = n_rows.saturating_sub(1);
+        let allowed = format!("0 to {last}, as there are {n_rows} rows of features");
+        return Err(Error::input(place, numbers[position], allowed));
+    }
+    Ok(numbers.iter().map(|&number| number as usize).collect())
 }
 
-/// Whole numbers from 0 to below `n_rows`.
-fn read_indices(path: &Path, what: &str, n_rows: usize) -> Result<Vec<usize>> {
-    let numbers: Option<Array1<i64>> = read_integers(path, what)?;
-    let numbers = numbers.ok_or_else(|| wrong_type(path, what))?;
-    let index = |(position, &number): (usize, &i64)| {
-        let index = usize::try_from(number).ok().filter(|&index| index < n_rows);
-        index.ok_or_else(|| {
-            Error::input(
-                format!("{}, position {position}", path.display()),
-                number,
-                format!(
-                    "0 to {}, as there are {n_rows} rows of features",
-                    n_rows.saturating_sub(1)
-                ),
-            )
-        })
-    };
-    numbers.iter().enumerate().map(index).collect()
-}
-
-/// Integers of any type that an i64 holds; `None` if the file has others.
-fn read_integers<D: Dimension>(path: &Path, what: &str) -> Result<Option<Array<i64, D>>> {
+/// The numbers of a file, and what they were.
+fn read<D: Dimension>(path: &Path, what: &str) -> Result<(Array<f64, D>, Elements)> {
+    if let Some(exact) = read_as::<f64, D>(path, what)? {
+        return Ok((exact, Elements::Floats));
+    }
+    if let Some(truths) = read_as::<bool, D>(path, what)? {
+        return Ok((truths.mapv(f64::from), Elements::Truths));
+    }
     macro_rules! first_of {
-        ($($integer:ty),*) => {
-            $(if let Some(integers) = read_as::<$integer, D>(path, what)? {
-                return Ok(Some(integers.mapv(i64::from)));
+        ($($type:ty: $elements:expr),*) => {
+            $(if let Some(numbers) = read_as::<$type, D>(path, what)? {
+                return Ok((numbers.mapv(|number| number as f64), $elements));
             })*
         };
     }
-    first_of!(i64, i32, i16, i8, u32, u16, u8);
-    Ok(None)
+    use Elements::{Floats, Integers as I};
+    first_of!(f32: Floats, i64: I, i32: I, i16: I, i8: I, u32: I, u16: I, u8: I);
+    Err(wrong_type(path, what))
 }
 
 /// An array whose elements are of this type; `None` if they are of another.

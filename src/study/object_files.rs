@@ -1,6 +1,6 @@
 //! Objects from where a study finds them: built-in sets, TOML files, folders of meshes.
 
-use super::content_hash::ContentHash;
+use super::content_hash::sha256;
 use super::packings::pack_within;
 use super::spec::{ModelSpec, ObjectsSpec};
 use crate::error::{Error, Result};
@@ -14,23 +14,6 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::fs::File;
 use std::io::{BufReader, Write};
 use std::path::{Path, PathBuf};
-
-/// What a mesh file becomes.
-#[derive(Clone, Copy, Debug)]
-pub struct MeshUse<'a> {
-    /// Of the file's numbers; metres if it is `None`, and then the object must be as large as `sizes` allow.
-    pub unit: Option<LengthUnit>,
-    /// What can be felt.
-    pub sizes: SizeLimits,
-    /// Spheres or triangles.
-    pub model: ModelSpec,
-    /// How far packed spheres may be from the mesh, metres.
-    pub surface_error: f64,
-    /// Where packings are looked for and kept; nowhere if it is `None`.
-    pub packings: Option<&'a Path>,
-    /// Holes at most this wide are closed, and that is said, metres; `None` closes none. Of no use to vertex spheres.
-    pub close_holes: Option<f64>,
-}
 
 /// A mesh of a study.
 #[derive(Clone, Debug)]
@@ -88,8 +71,7 @@ pub fn objects_content(spec: &ObjectsSpec) -> Result<BTreeMap<String, String>> {
     let mut content = BTreeMap::new();
     for set in &spec.sets {
         for entry in set_entries(set, spec.names.as_deref())? {
-            let hash = ContentHash::default().bytes(format!("{:?}", entry.solid));
-            content.insert(entry.name, hash.hex());
+            content.insert(entry.name, sha256(format!("{:?}", entry.solid)));
         }
     }
     if let Some(folder) = &spec.meshes {
@@ -106,7 +88,7 @@ pub fn objects_content(spec: &ObjectsSpec) -> Result<BTreeMap<String, String>> {
 /// It cannot be read.
 pub fn file_content(path: &Path) -> Result<String> {
     let bytes = std::fs::read(path).map_err(|e| Error::io(path, "read", e))?;
-    Ok(ContentHash::default().bytes(bytes).hex())
+    Ok(sha256(bytes))
 }
 
 /// What a PLY, OBJ or STL file holds, in metres; without a unit its numbers are metres, and must be such as `sizes` allow.
@@ -170,19 +152,22 @@ fn check_regular(path: &Path) -> Result<()> {
     Err(Error::input(path.display(), given, allowed))
 }
 
-/// A mesh file as an object; its name is the file's without the ending.
-pub fn load_mesh(path: &Path, wanted: &MeshUse) -> Result<Object> {
+/// A mesh file as an object, as a study's objects say; its name is the file's without the ending. Packings are looked for and kept in the folder
+/// `packings`, if one is given.
+///
+/// # Errors
+/// A file that cannot be read, or is of another size than can be felt; a mesh that cannot be what it is to become.
+pub fn load_mesh(path: &Path, spec: &ObjectsSpec, packings: Option<&Path>) -> Result<Object> {
     let place = path.display().to_string();
-    let mesh = read_mesh_file(path, wanted.unit, &wanted.sizes)?;
-    let model = match wanted.model {
+    let mesh = read_mesh_file(path, spec.unit, &spec.sizes())?;
+    let closed = |mesh| closed(mesh, &place, spec.close_holes());
+    let model = match spec.model.unwrap_or_default() {
         ModelSpec::VertexSpheres => vertex_spheres(&place, mesh.vertices())?.into(),
-        ModelSpec::Mesh => MeshModel::new(closed(mesh, &place, wanted.close_holes)?).into(),
+        ModelSpec::Mesh => MeshModel::new(closed(mesh)?).into(),
         ModelSpec::Packed => {
-            let surface = Surface::new(closed(mesh, &place, wanted.close_holes)?);
-            let tolerance = wanted.surface_error;
-            pack_within(&place, &surface, tolerance, wanted.packings)?
-                .spheres
-                .into()
+            let surface = Surface::new(closed(mesh)?);
+            let packed = pack_within(&place, &surface, spec.surface_error(), packings)?;
+            packed.spheres.into()
         }
     };
     Ok(Object::of_one_part(stem(path), model))
@@ -236,25 +221,14 @@ fn load_set(set: &str, names: Option<&[String]>, tolerance: f64) -> Result<Vec<O
 }
 
 fn load_meshes(folder: &Path, spec: &ObjectsSpec, packings: Option<&Path>) -> Result<Vec<Object>> {
-    let wanted = MeshUse {
-        unit: spec.unit,
-        sizes: spec.sizes(),
-        model: spec.model.unwrap_or_default(),
-        surface_error: spec.surface_error(),
-        packings,
-        close_holes: spec.close_holes(),
-    };
-    if wanted.close_holes.is_some() && wanted.model == ModelSpec::VertexSpheres {
-        return Err(Error::input(
-            "key objects.close_holes_mm",
-            "a study whose meshes become spheres around their vertices",
-            "it only with model = \"packed\" or \"mesh\"",
-        ));
+    if spec.close_holes_mm.is_some() && spec.model.unwrap_or_default() == ModelSpec::VertexSpheres {
+        let given = "a study whose meshes become spheres around their vertices";
+        let allowed = "it only with model = \"packed\" or \"mesh\"";
+        return Err(Error::input("key objects.close_holes_mm", given, allowed));
     }
-    mesh_paths(folder, spec)?
-        .par_iter()
-        .map(|path| load_mesh(path, &wanted))
-        .collect()
+    let paths = mesh_paths(folder, spec)?;
+    let meshes = paths.par_iter().map(|path| load_mesh(path, spec, packings));
+    meshes.collect()
 }
 
 fn stem(path: &Path) -> String {
@@ -265,42 +239,31 @@ fn stem(path: &Path) -> String {
 /// The files of a folder that are meshes and wanted, by name.
 fn mesh_paths(folder: &Path, spec: &ObjectsSpec) -> Result<Vec<PathBuf>> {
     let listing = std::fs::read_dir(folder).map_err(|e| {
-        Error::input(
-            folder.display(),
-            format!("cannot be read ({e})"),
-            "a folder of meshes",
-        )
+        let given = format!("cannot be read ({e})");
+        Error::input(folder.display(), given, "a folder of meshes")
     })?;
-    let mut paths: Vec<PathBuf> = Vec::new();
-    let mut n_unwanted = 0;
-    for entry in listing {
-        let path = entry.map_err(|e| Error::io(folder, "read", e))?.path();
-        if MeshFormat::of(&path).is_err() {
-            continue;
-        }
-        if !is_wanted(&stem(&path), spec.names.as_deref()) {
-            n_unwanted += 1;
-            continue;
-        }
-        check_regular(&path)?;
-        paths.push(path);
-    }
-    if paths.is_empty() && n_unwanted > 0 {
-        return Err(Error::input(
-            folder.display(),
-            format!("{n_unwanted} meshes, none of them named in objects.names"),
-            "no objects.names in the study, or names of these files without their endings",
-        ));
-    }
-    if paths.is_empty() {
-        return Err(Error::input(
-            folder.display(),
-            "no meshes",
+    let paths = listing.map(|entry| entry.map(|entry| entry.path()));
+    let paths = paths.collect::<std::io::Result<Vec<_>>>();
+    let mut paths = paths.map_err(|e| Error::io(folder, "read", e))?;
+    paths.retain(|path| MeshFormat::of(path).is_ok());
+    let n_meshes = paths.len();
+    paths.retain(|path| is_wanted(&stem(path), spec.names.as_deref()));
+    let (given, allowed) = match (paths.len(), n_meshes) {
+        (0, 0) => (
+            "no meshes".to_owned(),
             "at least two .ply, .obj or .stl files",
-        ));
-    }
-    paths.sort();
-    Ok(paths)
+        ),
+        (0, n) => (
+            format!("{n} meshes, none of them named in objects.names"),
+            "no objects.names in the study, or names of these files without their endings",
+        ),
+        _ => {
+            paths.sort();
+            paths.iter().try_for_each(|path| check_regular(path))?;
+            return Ok(paths);
+        }
+    };
+    Err(Error::input(folder.display(), given, allowed))
 }
 
 fn is_wanted(name: &str, names: Option<&[String]>) -> bool {
@@ -309,26 +272,24 @@ fn is_wanted(name: &str, names: Option<&[String]>) -> bool {
 
 fn check_names<'a>(names: impl Iterator<Item = &'a str>, spec: &ObjectsSpec) -> Result<()> {
     let mut seen = BTreeSet::new();
+    let key = "key objects";
     for name in names {
         if !seen.insert(name) {
+            let given = format!("two objects named {name}");
             return Err(Error::input(
-                "key objects",
-                format!("two objects named {name}"),
+                key,
+                given,
                 "each name once over all sets and meshes",
             ));
         }
     }
-    for name in spec.names.iter().flatten() {
-        if !seen.contains(name.as_str()) {
-            return Err(Error::input(
-                "key objects.names",
-                name,
-                "a name in the sets and meshes (bubbletouch objects lists them)",
-            ));
-        }
+    let mut wanted = spec.names.iter().flatten();
+    if let Some(name) = wanted.find(|name| !seen.contains(name.as_str())) {
+        let allowed = "a name in the sets and meshes (bubbletouch objects lists them)";
+        return Err(Error::input("key objects.names", name, allowed));
     }
-    if seen.is_empty() {
-        return Err(Error::input("key objects", "no objects", "at least two"));
+    match seen.is_empty() {
+        true => Err(Error::input(key, "no objects", "at least two")),
+        false => Ok(()),
     }
-    Ok(())
 }

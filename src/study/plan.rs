@@ -2,20 +2,15 @@
 //!
 //! This is the only place where millimetres, degrees and fractions become metres, radians and absolute values.
 
-use super::axes::{AxisValues, Variant};
+use super::axes::AxisValues;
 use super::check::Check;
-use super::plan_human::{HumanTouchPlan, no_placement};
 use super::pose_groups::KeepTogether;
 use super::repeats::Repeats;
-use super::sensor_errors::TestedOn;
-use super::spec::{CombineSpec, StepSpec, StudySpec};
+use super::spec::{SpreadSpec, StudySpec, TouchesSpec};
 use super::training::ChoicePlan;
 use crate::error::Result;
-use crate::recognition::ClassifierKind;
-use crate::recognition::features::Features;
-use crate::recognition::over_time::OverTime;
 use crate::sensing::Ensemble;
-use crate::signal::{NoiseUnit, Strength};
+use crate::signal::NoiseUnit;
 use crate::world::{Patch, Placement};
 use std::collections::HashSet;
 
@@ -32,55 +27,23 @@ pub fn millimetres(metres: f64) -> f64 {
     (metres * 1e9).round() / 1e6
 }
 
-/// Axes and settings of a study, ready to run.
+/// A study, ready to run: its axes and settings as they are written, and what these are in SI units.
 #[derive(Clone, Debug)]
 pub struct Plan {
-    /// As it was written; recognition and object keys are used as they are.
+    /// As it was written.
     pub spec: StudySpec,
     /// One patch per value of the resolution axis and the size axis.
     pub arrays: Vec<Patch>,
     /// How touches are drawn; of nothing in a study of human touches.
     pub placement: Placement,
-    /// Human touches in place of objects.
-    pub human_touch: Option<HumanTouchPlan>,
     /// Approach speed at the moment of reading, m/s.
     pub speed: f64,
-    /// Steps of the signal, in order.
-    pub steps: Vec<StepSpec>,
     /// What the noise axis is measured in.
     pub noise_unit: NoiseUnit,
-    /// The noise axis, in `noise_unit`.
-    pub noise: Vec<f64>,
-    /// The smoothing axis, metres.
-    pub smoothing: Vec<f64>,
-    /// The axes of the strengths of sensor errors, in the units of their keys.
-    pub sensor_errors: Vec<(&'static Strength, Vec<f64>)>,
-    /// How the axes of the signal are combined.
-    pub combine: CombineSpec,
-    /// The axis of skins that test touches are made with.
-    pub tested_on: Vec<TestedOn>,
-    /// The ensemble axis.
-    pub ensembles: Vec<Ensemble>,
     /// The axis of measurements.
     pub amounts: Vec<Amount>,
     /// The axis of frames a touch.
     pub frames: Vec<usize>,
-    /// The axis of what is made of the frames of a touch; `None` is all of them.
-    pub over_time: Vec<Option<OverTime>>,
-    /// The axis of features.
-    pub features: Vec<Features>,
-    /// The axis of classifiers.
-    pub classifiers: Vec<ClassifierKind>,
-    /// The C axis, for classifiers that have one; `None` is a C chosen by cross-validation.
-    pub penalties: Vec<Option<f64>>,
-    /// The axis of training touches an object; `None` is all of them.
-    pub train_touches: Vec<Option<usize>>,
-    /// The axis of training touches with another object's label, as a fraction; `None` without the key.
-    pub mislabelled: Vec<Option<f64>>,
-    /// The axis of class imbalance; `None` without the key.
-    pub class_imbalance: Vec<Option<f64>>,
-    /// The axis of test touches that are decided on together.
-    pub fused_touches: Vec<usize>,
     /// How C and γ are chosen where they are.
     pub choice: ChoicePlan,
     /// How touches are split.
@@ -131,75 +94,41 @@ impl Plan {
     pub fn new(place: &str, mut spec: StudySpec) -> Result<Self> {
         let check = Check { place };
         check.count("trials", spec.trials, MOST_TRIALS)?;
-        if spec.human_touch.is_none() {
-            check.objects(&spec.objects)?;
-        }
         let arrays = check.arrays(&spec.skin)?;
-        let human_touch = check.human_touch(&spec, &arrays)?;
-        let placement = match human_touch {
-            Some(_) => no_placement(),
+        check.human_touch(&spec, &arrays)?;
+        let placement = match spec.human_touch {
+            // It places no objects.
+            Some(_) => check.placement(&TouchesSpec {
+                depth_mm: SpreadSpec::One(1.0),
+                ..TouchesSpec::default()
+            })?,
             None => {
+                check.objects(&spec.objects)?;
                 spec.objects.settle_surface_error(&arrays);
                 check.placement(&spec.touches)?
             }
         };
-        let (noise_unit, noise) = check.noise(&spec.signal)?;
-        let smoothing = check.smoothing(&spec.signal)?;
-        let sensor_errors = check.sensor_errors(&spec.signal, &spec.touches)?;
+        let (noise_unit, _) = check.noise(&spec.signal)?;
+        check.sensor_errors(&spec.signal, &spec.touches)?;
         check.steps(&spec.signal)?;
-        let tested_on = check.tested_on(&spec.signal)?;
-        let ensembles = check.list("sensing.ensemble", spec.sensing.ensemble.values())?;
+        check.tested_on(&spec.signal)?;
         let amounts = check.amounts(&spec.sensing, &arrays)?;
-        let frames = match &human_touch {
-            Some(human) => vec![human.n_frames],
-            None => check.counts("touches.frames", &spec.touches.frames)?,
+        let frames = match &spec.human_touch {
+            Some(human) => vec![human.n_frames()],
+            None => spec.touches.frames.values(),
         };
-        for &count in &frames {
-            check.count("touches.frames", count, MOST_FRAMES)?;
-        }
-        let over_time = check.over_time(&spec.recognition, &frames)?;
-        check.kinds(&spec)?;
-        let features = check.list("recognition.features", spec.recognition.features.values())?;
-        let classifiers = check.list(
-            "recognition.classifier",
-            spec.recognition.classifier.values(),
-        )?;
-        let penalties = check.penalties(&spec)?;
-        let choice = check.choice(&spec)?;
-        let fused_touches =
-            check.counts("recognition.fused_touches", &spec.recognition.fused_touches)?;
-        let train_touches = check.train_touches(&spec)?;
-        let mislabelled = check.mislabelled(&spec)?;
-        let class_imbalance = check.class_imbalance(&spec)?;
-        let split = check.split(&spec)?;
-        let repeats = check.repeats(&spec)?;
-        let speed = check.speed(&spec.touches)?;
+        check.recognition(&spec.recognition)?;
+        check.over_time(&spec.recognition, &frames)?;
         let plan = Self {
+            speed: spec.touches.speed_mm_per_s * MM,
+            choice: spec.recognition.choice(),
+            split: check.split(&spec)?,
+            repeats: check.repeats(&spec)?,
             arrays,
             placement,
-            human_touch,
-            speed,
-            steps: spec.signal.steps.clone(),
             noise_unit,
-            noise,
-            smoothing,
-            sensor_errors,
-            combine: spec.signal.combine,
-            tested_on,
-            ensembles,
             amounts,
             frames,
-            over_time,
-            features,
-            classifiers,
-            penalties,
-            train_touches,
-            mislabelled,
-            class_imbalance,
-            fused_touches,
-            choice,
-            split,
-            repeats,
             spec,
         };
         check.configurations(plan.n_cells())?;
@@ -218,7 +147,7 @@ impl Plan {
         check.configurations(spec.axes.n_combinations())?;
         let (axes, columns) = (spec.axes.clone(), spec.axis_columns());
         let variants = axes.variants(place, &spec)?.into_iter().enumerate();
-        let plans = variants.map(|(number, Variant { values, study })| {
+        let plans = variants.map(|(number, (values, study))| {
             let study = StudySpec {
                 axes: axes.clone(),
                 ..study
@@ -232,42 +161,11 @@ impl Plan {
         Ok(plans)
     }
 
-    /// How many cells the study has, counted without laying any out.
+    /// How many cells the study has at most, counted without laying any out: values that name the same m twice, or a C for a classifier
+    /// that has none, make no further cells.
     pub fn n_cells(&self) -> f64 {
-        let product = |lengths: &[usize]| lengths.iter().map(|&n| n as f64).product::<f64>();
-        let conditions = self.n_conditions() * self.tested_on.len() as f64;
-        let sensed = self.n_sensed();
-        let penalties = |kind: &ClassifierKind| match kind.has_c() {
-            true => self.penalties.len(),
-            false => 1,
-        };
-        let fits: usize = self.classifiers.iter().map(penalties).sum();
-        let others = product(&[
-            self.frames.len(),
-            self.over_time.len(),
-            self.features.len(),
-            self.train_touches.len(),
-            self.class_imbalance.len(),
-            self.mislabelled.len(),
-            self.fused_touches.len(),
-        ]);
-        conditions * sensed * fits as f64 * others
-    }
-
-    /// Arrays × ensembles × m; of more than a million, also those are counted that name the same m twice.
-    fn n_sensed(&self) -> f64 {
-        let lengths = [self.arrays.len(), self.ensembles.len(), self.amounts.len()];
-        let most: f64 = lengths.iter().map(|&n| n as f64).product();
-        if most > 1e6 {
-            return most;
-        }
-        let on_array = |patch: &Patch| -> usize {
-            let counts = self.ensembles.iter();
-            counts
-                .map(|&ensemble| self.measurement_counts(patch, ensemble).len())
-                .sum()
-        };
-        self.arrays.iter().map(on_array).sum::<usize>() as f64
+        let lengths = self.spec.axis_lengths().map(|(_, n)| n as f64);
+        self.spec.signal.n_conditions() * lengths.product::<f64>()
     }
 
     /// The m axis on an array; a ratio axis can name the same m twice on a small one.

@@ -1,69 +1,59 @@
-//! Which kind of touch: the checks of `[human_touch]`.
+//! Which kind of touch: the checks of `[human_touch]`, and what its keys are in SI units.
 
-use super::check::{Check, positive};
-use super::plan::{MM, MOST_FRAMES};
-use super::spec::{ObjectsSpec, StudySpec, TouchesSpec};
+use super::check::Check;
+use super::plan::{MM, MOST_FRAMES, millimetres};
+use super::spec::{HumanTouchSpec, ObjectsSpec, StudySpec, TouchesSpec};
 use crate::error::Result;
-use crate::world::{
-    Layout, MOST_TOUCHES, Patch, Placement, RestPoses, SkinPatch, Spread, Taxels, TouchKind,
-};
+use crate::world::{Layout, Patch, SkinPatch, Taxels};
 
-/// Human touches of a study.
-#[derive(Clone, Debug, PartialEq)]
-pub struct HumanTouchPlan {
-    /// What to tell apart; the label is the place in this list.
-    pub kinds: Vec<TouchKind>,
-    /// Touches a kind.
-    pub per_kind: usize,
+impl HumanTouchSpec {
     /// From the axis of the arm to the outside of its skin, metres.
-    pub surface: f64,
-    /// Seconds between frames.
-    pub interval: f64,
-    /// F, frames a touch.
-    pub n_frames: usize,
-}
+    pub fn surface(&self) -> f64 {
+        self.arm_radius_mm * MM
+    }
 
-impl HumanTouchPlan {
+    /// Seconds between frames.
+    pub fn interval(&self) -> f64 {
+        1.0 / self.frames_hz
+    }
+
+    /// F, frames a touch.
+    pub fn n_frames(&self) -> usize {
+        (self.duration_s * self.frames_hz).round() as usize + 1
+    }
+
+    /// Seconds from the first frame to the last.
+    pub fn duration(&self) -> f64 {
+        (self.n_frames() - 1) as f64 * self.interval()
+    }
+
     /// An array bent around the arm: rows are rings, columns run along it, the middle is at +x.
     ///
     /// # Errors
     /// An array that does not fit around the arm.
     pub fn skin(&self, patch: &Patch) -> Result<SkinPatch> {
         let grid = &patch.grid;
-        let radius = self.surface - patch.taxel.radius;
+        let radius = self.surface() - patch.taxel.radius;
         let side = |n: usize| (n - 1) as f64 * grid.pitch;
         let arc = side(grid.nx) / radius;
         let layout = Layout::cylinder(radius, side(grid.ny), arc.max(1e-9), grid.pitch)?;
         SkinPatch::new("forearm", layout, Taxels::Equal(patch.taxel))
     }
-
-    /// Seconds from the first frame to the last.
-    pub fn duration(&self) -> f64 {
-        (self.n_frames - 1) as f64 * self.interval
-    }
 }
 
 impl Check<'_> {
     /// What a study has instead of objects, if it has; and nothing that only objects have.
-    pub fn human_touch(
-        &self,
-        spec: &StudySpec,
-        arrays: &[Patch],
-    ) -> Result<Option<HumanTouchPlan>> {
+    pub fn human_touch(&self, spec: &StudySpec, arrays: &[Patch]) -> Result<()> {
         let Some(human) = &spec.human_touch else {
             if spec.touches == TouchesSpec::default() {
                 let allowed = "a table [touches]: how the objects are touched";
                 return Err(self.error("touches", "no such table", allowed));
             }
-            return Ok(None);
+            return Ok(());
         };
         if spec.objects != ObjectsSpec::default() || spec.touches != TouchesSpec::default() {
-            let given = "beside [objects] or [touches]";
-            return Err(self.error(
-                "human_touch",
-                given,
-                "it alone: it is what touches, and how",
-            ));
+            let allowed = "it alone: it is what touches, and how";
+            return Err(self.error("human_touch", "beside [objects] or [touches]", allowed));
         }
         if spec.recognition.keep_together.is_some() {
             let allowed = "no such key: human touches have no groups";
@@ -74,62 +64,33 @@ impl Check<'_> {
             let given = spec.skin.damping_n_s_per_m;
             return Err(self.error("skin.damping_n_s_per_m", given, allowed));
         }
-        let key = |name: &str| format!("human_touch.{name}");
-        let number =
-            |name: &str, value: f64| self.value(&key(name), value, positive, "a positive number");
-        let frames_hz = number("frames_hz", human.frames_hz)?;
-        let n_frames = (number("duration_s", human.duration_s)? * frames_hz).round() + 1.0;
+        self.table("human_touch", human)?;
+        let n_frames = (human.duration_s * human.frames_hz).round() + 1.0;
         if !(2.0..=MOST_FRAMES as f64).contains(&n_frames) {
             let allowed = format!("2 to {MOST_FRAMES} frames in duration_s at frames_hz");
             return Err(self.error("human_touch", format!("{n_frames} frames a touch"), allowed));
         }
-        let plan = HumanTouchPlan {
-            kinds: self.list(&key("kinds"), human.kinds.clone())?,
-            per_kind: self.count(&key("per_kind"), human.per_kind, MOST_TOUCHES)?,
-            surface: number("arm_radius_mm", human.arm_radius_mm)? * MM,
-            interval: 1.0 / frames_hz,
-            n_frames: n_frames as usize,
-        };
-        for patch in arrays {
-            self.fits_around(&plan, patch)?;
-        }
-        Ok(Some(plan))
+        let mut arrays = arrays.iter();
+        arrays.try_for_each(|patch| self.fits_around(human, patch))
     }
 
     /// An array leaves a gap of a pitch at least on the arm's other side, and no layout rounds its rows and columns.
-    fn fits_around(&self, plan: &HumanTouchPlan, patch: &Patch) -> Result<()> {
+    fn fits_around(&self, human: &HumanTouchSpec, patch: &Patch) -> Result<()> {
         let grid = &patch.grid;
-        let radius = plan.surface - patch.taxel.radius;
+        let radius = human.surface() - patch.taxel.radius;
         let around = std::f64::consts::TAU * radius;
         let width = grid.nx as f64 * grid.pitch;
-        if radius > 0.0 && width <= around && plan.skin(patch)?.n_taxels() == grid.n_taxels() {
+        if radius > 0.0 && width <= around && human.skin(patch)?.n_taxels() == grid.n_taxels() {
             return Ok(());
         }
-        let given = format!(
-            "{} columns at {} mm, {:.1} mm together",
-            grid.nx,
-            super::millimetres(grid.pitch),
-            width / MM
-        );
-        let allowed = format!(
-            "at most {:.1} mm, once around the taxels' rest centres",
-            around.max(0.0) / MM
-        );
-        Err(self.error("skin", given, allowed))
-    }
-}
-
-/// Where objects would be: a study of human touches places none.
-pub(super) fn no_placement() -> Placement {
-    let none = || Spread::Values(vec![0.0]);
-    Placement {
-        rest: RestPoses::AsModelled,
-        offset_x: none(),
-        offset_y: none(),
-        yaw: none(),
-        tilt_x: none(),
-        tilt_y: none(),
-        depth: none(),
-        per_object: Some(0),
+        let (pitch_mm, width_mm) = (millimetres(grid.pitch), width / MM);
+        let columns = format!("{} columns at {pitch_mm} mm", grid.nx);
+        let around_mm = around.max(0.0) / MM;
+        let allowed = format!("at most {around_mm:.1} mm, once around the taxels' rest centres");
+        Err(self.error(
+            "skin",
+            format!("{columns}, {width_mm:.1} mm together"),
+            allowed,
+        ))
     }
 }

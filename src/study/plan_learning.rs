@@ -1,8 +1,9 @@
-//! From frames to objects: the checks of `[sensing]` and `[recognition]`.
+//! From frames to objects, and which touches train and which test: the checks of `[sensing]` and `[recognition]`.
 
 use super::axis::Axis;
-use super::check::{Check, not_negative, positive};
-use super::plan::Amount;
+use super::check::Check;
+use super::plan::{Amount, MM, SplitKind, SplitPlan};
+use super::pose_groups::KeepTogether;
 use super::spec::{RecognitionSpec, SensingSpec, StudySpec};
 use super::training::{ChoicePlan, DEFAULT_FOLDS};
 use crate::error::Result;
@@ -10,217 +11,117 @@ use crate::recognition::ClassifierKind;
 use crate::recognition::over_time::OverTime;
 use crate::world::Patch;
 
+/// What a classifier may have a use for.
+type Has = fn(ClassifierKind) -> bool;
+
+/// Keys that belong to some classifiers, and what those have: where no classifier of a study has it, the key would be silently ignored.
+const OF_SOME: [(&str, Has, &str); 7] = [
+    ("c", ClassifierKind::has_c, A_C),
+    ("choose_c", ClassifierKind::has_c, A_C),
+    ("gamma", ClassifierKind::has_gamma, A_GAMMA),
+    ("choose_gamma", ClassifierKind::has_gamma, A_GAMMA),
+    (
+        "n_neighbours",
+        |kind| kind.about().has_neighbours,
+        NEIGHBOURS,
+    ),
+    ("n_trees", |kind| kind.about().has_trees, TREES),
+    ("max_depth", |kind| kind.about().has_depth, A_DEPTH),
+];
+const A_C: &str = "a C (an SVM or logistic regression)";
+const A_GAMMA: &str = "a γ (an RBF or polynomial SVM)";
+const NEIGHBOURS: &str = "neighbours (k_nearest)";
+const TREES: &str = "trees (random_forest)";
+const A_DEPTH: &str = "a depth (decision_tree or random_forest)";
+
+/// Keys of which a study has one at most.
+const ONE_OF: [[&str; 2]; 3] = [
+    ["c", "choose_c"],
+    ["gamma", "choose_gamma"],
+    ["test_fraction", "folds"],
+];
+
+/// Keys that belong beside one of others.
+const BESIDE: [(&str, &[&str]); 4] = [
+    ("choose_folds", &["choose_c", "choose_gamma"]),
+    ("choose_touches", &["choose_c", "choose_gamma"]),
+    ("keep_together_mm", &["keep_together"]),
+    ("keep_together_deg", &["keep_together"]),
+];
+
 impl Check<'_> {
     pub fn amounts(&self, sensing: &SensingSpec, arrays: &[Patch]) -> Result<Vec<Amount>> {
+        self.table("sensing", sensing)?;
         let smallest = arrays.iter().map(|a| a.grid.n_taxels()).min().unwrap_or(0);
-        match (&sensing.ratio, &sensing.measurements) {
+        let (key, amounts): (_, Vec<Amount>) = match (&sensing.ratio, &sensing.measurements) {
+            (Some(_), Some(_)) => {
+                let given = "both ratio and measurements";
+                return Err(self.error("sensing", given, "one of them"));
+            }
+            (None, None) => return Ok(vec![Amount::Ratio(1.0)]),
             (Some(ratios), None) => {
-                let ratios = self.axis(
-                    "sensing.ratio",
-                    ratios,
-                    |r| r.is_finite() && r >= 1.0,
-                    "at least 1",
-                )?;
-                if let Some(ratio) = ratios.iter().find(|&&r| r > smallest as f64) {
-                    return Err(self.error(
-                        "sensing.ratio",
-                        ratio,
-                        format!("at most {smallest}, the taxels of the smallest array"),
-                    ));
-                }
-                Ok(ratios.into_iter().map(Amount::Ratio).collect())
+                let ratios = ratios.values().into_iter();
+                ("sensing.ratio", ratios.map(Amount::Ratio).collect())
             }
             (None, Some(counts)) => {
-                let counts = self.list("sensing.measurements", counts.values())?;
-                if let Some(m) = counts.iter().find(|&&m| m == 0 || m > smallest) {
-                    return Err(self.error(
-                        "sensing.measurements",
-                        m,
-                        format!("1 to {smallest}, the taxels of the smallest array"),
-                    ));
-                }
-                Ok(counts.into_iter().map(Amount::Measurements).collect())
+                let counts = counts.values().into_iter();
+                (
+                    "sensing.measurements",
+                    counts.map(Amount::Measurements).collect(),
+                )
             }
-            (Some(_), Some(_)) => {
-                Err(self.error("sensing", "both ratio and measurements", "one of them"))
-            }
-            (None, None) => Ok(vec![Amount::Ratio(1.0)]),
-        }
-    }
-
-    pub fn penalties(&self, spec: &StudySpec) -> Result<Vec<Option<f64>>> {
-        let allowed = "a positive number";
-        for (key, is_set) in [
-            ("recognition.c", spec.recognition.c.is_some()),
-            ("recognition.choose_c", spec.recognition.choose_c.is_some()),
-        ] {
-            self.is_of_use(
-                key,
-                is_set,
-                spec,
-                ClassifierKind::has_c,
-                "a C (an SVM or logistic regression)",
-            )?;
-        }
-        match (&spec.recognition.c, &spec.recognition.choose_c) {
-            (Some(_), Some(_)) => {
-                Err(self.error("recognition", "both c and choose_c", "one of them"))
-            }
-            (None, None) => Ok(vec![Some(1.0)]),
-            (Some(axis), None) => {
-                let values = self.axis("recognition.c", axis, positive, allowed)?;
-                Ok(values.into_iter().map(Some).collect())
-            }
-            (None, Some(candidates)) => {
-                self.axis(
-                    "recognition.choose_c",
-                    &Axis::Many(candidates.clone()),
-                    positive,
-                    allowed,
-                )?;
-                Ok(vec![None])
-            }
-        }
-    }
-
-    /// How C and γ are chosen, for fits that leave one of them open.
-    pub fn choice(&self, spec: &StudySpec) -> Result<ChoicePlan> {
-        let recognition = &spec.recognition;
-        if let (Some(_), Some(_)) = (recognition.gamma, &recognition.choose_gamma) {
-            return Err(self.error("recognition", "both gamma and choose_gamma", "one of them"));
-        }
-        for (key, is_set) in [
-            ("recognition.gamma", recognition.gamma.is_some()),
-            (
-                "recognition.choose_gamma",
-                recognition.choose_gamma.is_some(),
-            ),
-        ] {
-            self.is_of_use(
-                key,
-                is_set,
-                spec,
-                ClassifierKind::has_gamma,
-                "a γ (an RBF or polynomial SVM)",
-            )?;
-        }
-        let is_open = recognition.choose_c.is_some() || recognition.choose_gamma.is_some();
-        for (key, count) in [
-            ("recognition.choose_folds", recognition.choose_folds),
-            ("recognition.choose_touches", recognition.choose_touches),
-        ] {
-            let Some(count) = count else { continue };
-            self.positive_count(key, count)?;
-            if !is_open {
-                let allowed = "choose_c or choose_gamma beside it, which it belongs to";
-                return Err(self.error(key, count, allowed));
-            }
-        }
-        let folds = recognition.choose_folds.unwrap_or(DEFAULT_FOLDS);
-        if folds < 2 {
-            return Err(self.error("recognition.choose_folds", folds, "at least 2"));
-        }
-        let c = recognition.choose_c.clone().unwrap_or_default();
-        let gamma_multiples = match &recognition.choose_gamma {
-            None => Vec::new(),
-            Some(multiples) => self.axis(
-                "recognition.choose_gamma",
-                &Axis::Many(multiples.clone()),
-                positive,
-                "a positive number, times 'scale'",
-            )?,
         };
-        Ok(ChoicePlan {
-            c,
-            gamma_multiples,
-            folds,
-            touches: recognition.choose_touches,
-        })
-    }
-
-    /// Refuses a key that no swept classifier has a use for: it would be silently ignored.
-    fn is_of_use(
-        &self,
-        key: &str,
-        is_set: bool,
-        spec: &StudySpec,
-        has_it: fn(ClassifierKind) -> bool,
-        what: &str,
-    ) -> Result<()> {
-        let mut kinds = spec.recognition.classifier.values().into_iter();
-        if !is_set || kinds.any(has_it) {
-            return Ok(());
+        let too_large = amounts.iter().find_map(|amount| match *amount {
+            Amount::Ratio(ratio) => Some(ratio).filter(|&ratio| ratio > smallest as f64),
+            Amount::Measurements(m) => Some(m as f64).filter(|_| m > smallest),
+        });
+        if let Some(given) = too_large {
+            let allowed = format!("at most {smallest}, the taxels of the smallest array");
+            return Err(self.error(key, given, allowed));
         }
-        let given = "given, but no classifier of the study has a use for it";
-        Err(self.error(
-            key,
-            given,
-            format!("a classifier with {what}, or no such key"),
-        ))
+        Ok(amounts)
     }
 
-    /// Keys that belong to some kinds of classifiers: each in its range, and none that no classifier of the study has.
-    pub fn kinds(&self, spec: &StudySpec) -> Result<()> {
-        let recognition = &spec.recognition;
-        type Has = fn(ClassifierKind) -> bool;
-        let has_neighbours: Has = |kind| kind.about().has_neighbours;
-        let has_trees: Has = |kind| kind.about().has_trees;
-        let has_depth: Has = |kind| kind.about().has_depth;
-        for (key, given, has_it, what) in [
-            (
-                "recognition.n_neighbours",
-                recognition.n_neighbours,
-                has_neighbours,
-                "neighbours (k_nearest)",
-            ),
-            (
-                "recognition.n_trees",
-                recognition.n_trees,
-                has_trees,
-                "trees (random_forest)",
-            ),
-            (
-                "recognition.max_depth",
-                recognition.max_depth,
-                has_depth,
-                "a depth (decision_tree or random_forest)",
-            ),
-        ] {
-            self.is_of_use(key, given.is_some(), spec, has_it, what)?;
-            if let Some(count) = given {
-                self.positive_count(key, count)?;
+    /// The keys of `[recognition]`: each in its range, none that contradicts another, none that nothing has a use for.
+    pub fn recognition(&self, recognition: &RecognitionSpec) -> Result<()> {
+        let given = self.table("recognition", recognition)?;
+        for [first, second] in ONE_OF {
+            if given.contains_key(first) && given.contains_key(second) {
+                let both = format!("both {first} and {second}");
+                return Err(self.error("recognition", both, "one of them"));
             }
         }
-        if let Some(gib) = recognition.solver_memory_gib {
-            let allowed = "a positive number of gibibytes";
-            self.value("recognition.solver_memory_gib", gib, positive, allowed)?;
+        for (key, has_it, what) in OF_SOME {
+            let mut kinds = recognition.classifier.values().into_iter();
+            if given.contains_key(key) && !kinds.any(has_it) {
+                let key = format!("recognition.{key}");
+                let given = "given, but no classifier of the study has a use for it";
+                let allowed = format!("a classifier with {what}, or no such key");
+                return Err(self.error(&key, given, allowed));
+            }
         }
-        if !(1..=20).contains(&recognition.degree) {
-            let given = recognition.degree;
-            return Err(self.error("recognition.degree", given, "from 1 to 20"));
+        for (key, others) in BESIDE {
+            if let Some(value) = given.get(key)
+                && !others.iter().any(|other| given.contains_key(*other))
+            {
+                let allowed = format!("no such key without recognition.{}", others.join(" or "));
+                return Err(self.error(&format!("recognition.{key}"), value, allowed));
+            }
         }
-        let allowed = "zero or a positive number";
-        self.value(
-            "recognition.coef0",
-            recognition.coef0,
-            not_negative,
-            allowed,
-        )?;
+        // With folds there may be no rows of the rarest objects for them.
+        let is_open = recognition.choose_c.is_some() || recognition.choose_gamma.is_some();
+        if is_open && recognition.class_imbalance.is_some() {
+            let allowed = "a given c and gamma: folds need touches of every object";
+            let given = "given beside choose_c or choose_gamma";
+            return Err(self.error("recognition.class_imbalance", given, allowed));
+        }
         Ok(())
     }
 
     /// What is made of a touch's frames: no more of them than there are.
-    pub fn over_time(
-        &self,
-        spec: &RecognitionSpec,
-        frames: &[usize],
-    ) -> Result<Vec<Option<OverTime>>> {
-        let Some(axis) = &spec.over_time else {
-            return Ok(vec![None]);
-        };
-        let values = self.list("recognition.over_time", axis.values())?;
+    pub fn over_time(&self, recognition: &RecognitionSpec, frames: &[usize]) -> Result<()> {
         let fewest = frames.iter().copied().min().unwrap_or(0);
-        for &value in &values {
+        for value in recognition.over_time.iter().flat_map(Axis::values) {
             if let OverTime::Stacked(k) = value
                 && k > fewest
             {
@@ -228,6 +129,50 @@ impl Check<'_> {
                 return Err(self.error("recognition.over_time", String::from(value), allowed));
             }
         }
-        Ok(values.into_iter().map(Some).collect())
+        Ok(())
+    }
+
+    /// How touches are split, and how near is together where values are drawn.
+    pub fn split(&self, spec: &StudySpec) -> Result<SplitPlan> {
+        let recognition = &spec.recognition;
+        let kind = match recognition.folds {
+            None => SplitKind::HoldOut(recognition.test_fraction.unwrap_or(0.25)),
+            Some(k) if spec.trials.is_multiple_of(k) => SplitKind::Folds(k),
+            Some(k) => {
+                let allowed = format!("a multiple of recognition.folds = {k}");
+                return Err(self.error("trials", spec.trials, allowed));
+            }
+        };
+        let degree = std::f64::consts::PI / 180.0;
+        let keep_together = recognition.keep_together.map(|kind| KeepTogether {
+            kind,
+            metres: recognition.keep_together_mm.map(|mm| MM * mm),
+            radians: recognition.keep_together_deg.map(|deg| degree * deg),
+        });
+        Ok(SplitPlan {
+            kind,
+            keep_together,
+        })
+    }
+}
+
+impl RecognitionSpec {
+    /// How C and γ are chosen, for fits that leave one of them open.
+    pub fn choice(&self) -> ChoicePlan {
+        ChoicePlan {
+            c: self.choose_c.clone().unwrap_or_default(),
+            gamma_multiples: self.choose_gamma.clone().unwrap_or_default(),
+            folds: self.choose_folds.unwrap_or(DEFAULT_FOLDS),
+            touches: self.choose_touches,
+        }
+    }
+
+    /// The C axis, for classifiers that have one; `None` is a C chosen by cross-validation.
+    pub fn penalties(&self) -> Vec<Option<f64>> {
+        match (&self.c, &self.choose_c) {
+            (_, Some(_)) => vec![None],
+            (None, None) => vec![Some(1.0)],
+            (axis, None) => Axis::of(axis),
+        }
     }
 }

@@ -1,14 +1,15 @@
 //! The checks of `[signal]`, and the conditions that its axes make.
 
-use super::check::{Check, not_negative};
-use super::plan::{MM, Plan, millimetres};
-use super::sensor_errors::{Strengths, TestedOn, all_strengths};
+use super::check::Check;
+use super::plan::{MM, Plan};
+use super::sensor_errors::{Strengths, all_strengths};
 use super::spec::{CombineSpec, SignalSpec, StepSpec, TouchesSpec};
+use super::spec_signal::NOISES;
 use crate::error::Result;
 use crate::signal::{NoiseUnit, SENSOR_ERRORS, Strength};
 
 /// One value for each axis of the signal.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Condition {
     /// Noise standard deviation, in the plan's unit.
     pub noise: f64,
@@ -19,84 +20,55 @@ pub struct Condition {
 }
 
 impl Check<'_> {
-    /// The noise axis and its unit.
+    /// What the noise is measured in, and its axis.
     pub fn noise(&self, signal: &SignalSpec) -> Result<(NoiseUnit, Vec<f64>)> {
-        let given: Vec<_> = [
-            (
-                "signal.noise_std_full_scale",
-                &signal.noise_std_full_scale,
-                NoiseUnit::FullScale,
+        self.table("signal", signal)?;
+        let axis = |(key, unit)| Some((key, unit, signal.axes.of(key)?));
+        let mut given = NOISES.into_iter().filter_map(axis);
+        let Some((name, unit, axis)) = given.next() else {
+            return Ok((NoiseUnit::FullScale, vec![0.0]));
+        };
+        let key = format!("signal.{name}");
+        if let Some((second, ..)) = given.next() {
+            let given = format!("given beside {key}");
+            return Err(self.error(
+                &format!("signal.{second}"),
+                given,
+                "one unit of noise a study",
+            ));
+        }
+        let place = |wanted| signal.steps.iter().position(|step| *step == wanted);
+        let force = place(StepSpec::Force);
+        let of_force = force.is_some() && force < place(StepSpec::Noise);
+        let (given, allowed) = match (unit, of_force) {
+            (NoiseUnit::Mm, true) => (
+                "millimetres of noise on a force",
+                "noise_std_n or noise_std_full_scale, or noise before force in signal.steps",
             ),
-            ("signal.noise_std_mm", &signal.noise_std_mm, NoiseUnit::Mm),
-            ("signal.noise_std_n", &signal.noise_std_n, NoiseUnit::N),
-        ]
-        .into_iter()
-        .filter_map(|(key, axis, unit)| axis.as_ref().map(|axis| (key, axis, unit)))
-        .collect();
-        let (key, axis, unit) = match given[..] {
-            [] => return Ok((NoiseUnit::FullScale, vec![0.0])),
-            [one] => one,
-            [(first, ..), (second, ..), ..] => {
-                return Err(self.error(
-                    second,
-                    format!("given beside {first}"),
-                    "one unit of noise a study",
-                ));
-            }
+            (NoiseUnit::N, false) => (
+                "newtons of noise on a deflection",
+                "noise_std_mm or noise_std_full_scale, or force before noise in signal.steps",
+            ),
+            _ => return Ok((unit, axis.values())),
         };
-        let force = signal.steps.iter().position(|s| *s == StepSpec::Force);
-        let noise = signal.steps.iter().position(|s| *s == StepSpec::Noise);
-        let of_force = force.is_some() && force < noise;
-        match unit {
-            NoiseUnit::Mm if of_force => {
-                return Err(self.error(
-                    key,
-                    "millimetres of noise on a force",
-                    "noise_std_n or noise_std_full_scale, or noise before force in signal.steps",
-                ));
-            }
-            NoiseUnit::N if !of_force => {
-                return Err(self.error(
-                    key,
-                    "newtons of noise on a deflection",
-                    "noise_std_mm or noise_std_full_scale, or force before noise in signal.steps",
-                ));
-            }
-            _ => {}
-        }
-        let values = self.axis(key, axis, not_negative, "zero or a positive number")?;
-        Ok((unit, values))
+        Err(self.error(&key, given, allowed))
     }
 
-    /// The smoothing axis, metres.
-    pub fn smoothing(&self, signal: &SignalSpec) -> Result<Vec<f64>> {
-        let Some(axis) = &signal.smoothing_mm else {
-            return Ok(vec![0.0]);
+    /// The strengths of sensor errors, and that the press moves while frames are read where one shows only then.
+    pub fn sensor_errors(&self, signal: &SignalSpec, touches: &TouchesSpec) -> Result<()> {
+        let values = |strength: &Strength| {
+            let axis = signal.axes.of(strength.key);
+            axis.map_or_else(Vec::new, |axis| axis.values())
         };
-        let allowed = "zero or a positive number of millimetres";
-        let widths = self.axis("signal.smoothing_mm", axis, not_negative, allowed)?;
-        // Two that tables show alike would be taken for one.
-        let shown = widths.iter().map(|&mm| millimetres(mm * MM)).collect();
-        self.list("signal.smoothing_mm", shown)?;
-        Ok(widths.iter().map(|width| width * MM).collect())
-    }
-
-    /// The axes of the sensor errors that a study has, in the units of their keys.
-    pub fn sensor_errors(
-        &self,
-        signal: &SignalSpec,
-        touches: &TouchesSpec,
-    ) -> Result<Vec<(&'static Strength, Vec<f64>)>> {
-        let mut axes = Vec::new();
-        for (strength, axis) in signal.errors.given() {
-            let values = self.axis(&key(strength), axis, strength.is_allowed, strength.allowed)?;
-            axes.push((*strength, values));
+        for (_, strength) in all_strengths() {
+            for value in values(strength) {
+                self.value(&key(strength), value, strength.is_allowed, strength.allowed)?;
+            }
+            if signal.axes.of(strength.key).is_some() {
+                self.list(&key(strength), values(strength))?;
+            }
         }
-        let largest = |strength: &Strength| {
-            let axis = axes.iter().find(|(known, _)| *known == strength);
-            let values = axis.map_or(&[][..], |(_, values)| values);
-            values.iter().copied().fold(0.0, f64::max)
-        };
+        let largest = |strength| values(strength).into_iter().fold(0.0, f64::max);
         for error in SENSOR_ERRORS {
             let about = error.about();
             if let [first, second] = about.strengths
@@ -110,7 +82,7 @@ impl Check<'_> {
                 self.moves(&key(&about.strengths[0]), touches)?;
             }
         }
-        Ok(axes)
+        Ok(())
     }
 
     /// The press moves while frames are read.
@@ -126,67 +98,42 @@ impl Check<'_> {
         Ok(())
     }
 
-    /// The axis of test skins; another one shows only if something belongs to a skin.
-    pub fn tested_on(&self, signal: &SignalSpec) -> Result<Vec<TestedOn>> {
-        let Some(axis) = &signal.tested_on else {
-            return Ok(vec![TestedOn::SameSkin]);
-        };
+    /// Test skins: another one shows only if something belongs to a skin.
+    pub fn tested_on(&self, signal: &SignalSpec) -> Result<()> {
         let is_of_skin =
             |step: &StepSpec| matches!(step, StepSpec::Error(error) if error.about().is_of_skin);
-        if !signal.steps.iter().any(is_of_skin) {
-            let all = SENSOR_ERRORS.iter().map(|error| error.about());
-            let of_skin: Vec<&str> = all.filter(|e| e.is_of_skin).map(|e| e.step).collect();
-            let allowed = format!("{} among signal.steps beside it", of_skin.join(" or "));
-            return Err(self.error(
-                "signal.tested_on",
-                "given for skins without a difference",
-                allowed,
-            ));
+        if signal.tested_on.is_none() || signal.steps.iter().any(is_of_skin) {
+            return Ok(());
         }
-        self.list("signal.tested_on", axis.values())
+        let all = SENSOR_ERRORS.iter().map(|error| error.about());
+        let of_skin: Vec<&str> = all.filter(|e| e.is_of_skin).map(|e| e.step).collect();
+        let given = "given for skins without a difference";
+        let allowed = format!("{} among signal.steps beside it", of_skin.join(" or "));
+        Err(self.error("signal.tested_on", given, allowed))
     }
 
     /// Each step at most once, and none whose axis is set but which is not listed, nor the other way round if it does
     /// nothing without: it would be silently ignored.
     pub fn steps(&self, signal: &SignalSpec) -> Result<()> {
-        for (index, step) in signal.steps.iter().enumerate() {
-            if signal.steps[..index].contains(step) {
-                return Err(self.error(
-                    "signal.steps",
-                    format!("{step:?} twice"),
-                    "each step at most once",
-                ));
-            }
+        const KEY: &str = "signal.steps";
+        if !signal.steps.is_empty() {
+            self.list(KEY, signal.steps.iter().map(|step| step.word()).collect())?;
         }
-        let has_noise = signal.noise_std_full_scale.is_some()
-            || signal.noise_std_mm.is_some()
-            || signal.noise_std_n.is_some();
-        let mut set = vec![
-            (has_noise, StepSpec::Noise),
-            (signal.smoothing_mm.is_some(), StepSpec::Smoothing),
-        ];
-        set.extend(all_strengths().map(|(error, strength)| {
-            let is_set = signal.errors.of(strength.key).is_some();
-            (is_set, StepSpec::Error(error))
-        }));
-        for &(is_set, step) in &set {
+        let mut set = signal.axes.given().map(|(_, step, _)| step);
+        if let Some(step) = set.find(|step| !signal.steps.contains(step)) {
             let word = step.word();
-            if is_set && !signal.steps.contains(&step) {
-                return Err(self.error(
-                    "signal.steps",
-                    format!("no \"{word}\""),
-                    format!("\"{word}\" among the steps, since its axis is set"),
-                ));
-            }
+            let allowed = format!("\"{word}\" among the steps, since its axis is set");
+            return Err(self.error(KEY, format!("no \"{word}\""), allowed));
         }
         for step in &signal.steps {
+            let mut given = signal.axes.given();
             if let StepSpec::Error(error) = step
-                && !set.contains(&(true, *step))
+                && !given.any(|(_, given, _)| given == step)
             {
                 let keys: Vec<String> = error.about().strengths.iter().map(key).collect();
                 let given = format!("\"{}\" without a strength", step.word());
                 let allowed = format!("{} beside it", keys.join(" or "));
-                return Err(self.error("signal.steps", given, allowed));
+                return Err(self.error(KEY, given, allowed));
             }
         }
         Ok(())
@@ -197,64 +144,62 @@ fn key(strength: &Strength) -> String {
     format!("signal.{}", strength.key)
 }
 
-impl Plan {
-    /// How many conditions of the signal there are.
+impl SignalSpec {
+    /// How many conditions there are.
     pub(super) fn n_conditions(&self) -> f64 {
-        let errors = self.sensor_errors.iter().map(|(_, values)| values.len());
-        let axes = [self.noise.len(), self.smoothing.len()].into_iter();
-        let lengths = axes.chain(errors).map(|n| n as f64);
+        let lengths = self
+            .axes
+            .given()
+            .map(|(.., axis)| axis.values().len() as f64);
         match self.combine {
             CombineSpec::All => lengths.product(),
             CombineSpec::OneAtATime => 1.0 + lengths.map(|n| n - 1.0).sum::<f64>(),
         }
     }
+}
 
+impl Plan {
     /// Every condition of the signal that the study asks for: all combinations of its axes, or each axis alone.
     pub fn conditions(&self) -> Vec<Condition> {
-        let first = Condition {
-            noise: self.noise[0],
-            smoothing: self.smoothing[0],
-            strengths: self
-                .sensor_errors
-                .iter()
-                .fold(Strengths::default(), |strengths, (strength, values)| {
-                    strengths.with(strength.key, Some(values[0]))
-                }),
-        };
+        let signal = &self.spec.signal;
+        let axes = signal.axes.given();
+        let axes: Vec<_> = axes
+            .map(|(key, step, axis)| (*key, *step, axis.values()))
+            .collect();
+        let first = axes
+            .iter()
+            .fold(Condition::default(), |condition, (key, step, values)| {
+                condition.with((*key, *step), values[0])
+            });
         let mut conditions = vec![first];
-        for axis in 0..2 + self.sensor_errors.len() {
-            let n_values = match axis {
-                0 => self.noise.len(),
-                1 => self.smoothing.len(),
-                _ => self.sensor_errors[axis - 2].1.len(),
+        for (key, step, values) in axes {
+            let with = |condition: Condition, values: &[f64]| -> Vec<Condition> {
+                let values = values.iter();
+                values
+                    .map(|&value| condition.with((key, step), value))
+                    .collect()
             };
-            match self.combine {
-                CombineSpec::OneAtATime => {
-                    conditions.extend((1..n_values).map(|value| self.at(first, axis, value)));
-                }
+            match signal.combine {
+                CombineSpec::OneAtATime => conditions.extend(with(first, &values[1..])),
                 // The first axis changes slowest.
                 CombineSpec::All => {
-                    let all = conditions.iter();
-                    let longer = all.flat_map(|&condition| {
-                        (0..n_values).map(move |value| self.at(condition, axis, value))
-                    });
-                    conditions = longer.collect();
+                    let all = conditions.into_iter();
+                    conditions = all.flat_map(|condition| with(condition, &values)).collect();
                 }
             }
         }
         conditions
     }
+}
 
-    /// A condition with another value on one axis: noise, smoothing, sensor error after sensor error.
-    fn at(&self, mut condition: Condition, axis: usize, value: usize) -> Condition {
-        match axis {
-            0 => condition.noise = self.noise[value],
-            1 => condition.smoothing = self.smoothing[value],
-            _ => {
-                let (strength, values) = &self.sensor_errors[axis - 2];
-                condition.strengths = condition.strengths.with(strength.key, Some(values[value]));
-            }
+impl Condition {
+    /// The same with another value on an axis.
+    fn with(mut self, (key, step): (&str, StepSpec), value: f64) -> Self {
+        match step {
+            StepSpec::Noise => self.noise = value,
+            StepSpec::Smoothing => self.smoothing = value * MM,
+            _ => self.strengths = self.strengths.with(key, Some(value)),
         }
-        condition
+        self
     }
 }

@@ -28,7 +28,7 @@ const TARGET: &str = env!("BUBBLETOUCH_TARGET");
 pub const MANIFEST_FILE: &str = "manifest.json";
 
 /// `manifest.json`: where the files of a folder come from.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Manifest {
     /// The study's name; empty in manifests of earlier versions.
     #[serde(default)]
@@ -86,43 +86,10 @@ pub struct Manifest {
     pub methods: BTreeMap<String, String>,
 }
 
-/// What a run says of itself for its manifest.
-#[derive(Clone, Debug)]
-pub struct RunFacts {
-    /// The study's name.
-    pub study: String,
-    /// The command that makes the folder again.
-    pub command: String,
-    /// The folder of the study's file.
-    pub paths_from: PathBuf,
-    /// When it began.
-    pub started: SystemTime,
-    /// Root of all randomness.
-    pub seed: u64,
-    /// Cells of the study, or pieces of its work.
-    pub n_cells: usize,
-    /// Trials of each.
-    pub n_trials: usize,
-    /// Cells that it found finished, counted once a trial.
-    pub n_finished_before: usize,
-    /// Cells that failed, counted once a trial.
-    pub n_failed: usize,
-    /// SHA-256 of the tables that hold no times, by their file's name.
-    pub tables_sha256: BTreeMap<String, String>,
-    /// SHA-256 of those that do.
-    pub times_sha256: BTreeMap<String, String>,
-    /// How intervals and p-values are made, by table and columns.
-    pub methods: Vec<(&'static str, &'static str)>,
-}
-
 impl Manifest {
-    /// Of a run that ends now.
-    pub fn new(identity: &Identity, facts: RunFacts) -> Self {
-        let study = super::content_hash::ContentHash::default().bytes(&identity.study);
+    /// Of a run that began then and ends now, on this machine: what it is of, which is left open, is empty.
+    pub fn ended(identity: &Identity, started: SystemTime) -> Self {
         Self {
-            study: facts.study,
-            command: facts.command,
-            paths_from: facts.paths_from,
             program: identity.program.clone(),
             source: identity.source.clone(),
             commit: COMMIT.to_owned(),
@@ -131,23 +98,12 @@ impl Manifest {
             cpu: cpu(),
             cores: std::thread::available_parallelism().map_or(1, usize::from),
             threads: rayon::current_num_threads(),
-            started: time(facts.started),
+            started: time(started),
             ended: time(SystemTime::now()),
             peak_memory_bytes: super::memory::peak_memory(),
-            n_finished_before: facts.n_finished_before,
-            seed: facts.seed,
-            n_cells: facts.n_cells,
-            n_trials: facts.n_trials,
-            n_failed: facts.n_failed,
-            study_sha256: study.hex(),
+            study_sha256: super::content_hash::sha256(&identity.study),
             objects_sha256: identity.objects.clone(),
-            tables_sha256: facts.tables_sha256,
-            times_sha256: facts.times_sha256,
-            methods: facts
-                .methods
-                .into_iter()
-                .map(|(columns, method)| (columns.to_owned(), method.to_owned()))
-                .collect(),
+            ..Self::default()
         }
     }
 
@@ -190,7 +146,7 @@ fn cpu() -> String {
     name.unwrap_or_else(|| "unknown".to_owned())
 }
 
-/// `2026-11-22T06:30:00Z`
+/// `2026-11-22T06:30:00.250Z`
 fn time(time: SystemTime) -> String {
-    DateTime::<Utc>::from(time).to_rfc3339_opts(SecondsFormat::Secs, true)
+    DateTime::<Utc>::from(time).to_rfc3339_opts(SecondsFormat::Millis, true)
 }

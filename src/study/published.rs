@@ -1,11 +1,10 @@
 //! Published accuracies beside ours: which cells a claim is about, and the most accurate of them.
 
-use super::role::{agree, column_name as column, condition_numbers, most_accurate, one_of};
+use super::conditions::{by_condition, column_name, most_accurate, settings_of};
 use super::spec::PublishedSpec;
 use super::table::{Cell, CellScore, Published};
 use crate::error::{Error, Result};
-use std::collections::BTreeSet;
-use toml::{Table, Value};
+use crate::table::{Table, Value};
 
 /// Every claim is an accuracy about at least one cell.
 ///
@@ -13,79 +12,93 @@ use toml::{Table, Value};
 /// A claim whose accuracy is not from 0 to 1, a key that is no column of [`Cell`], a value that no cell has, or keys of which
 /// no cell has all.
 pub fn check_published(published: &[PublishedSpec], cells: &[&Cell]) -> Result<()> {
-    published.iter().try_for_each(|claim| check(claim, cells))
+    if published.is_empty() {
+        return Ok(());
+    }
+    let cells = settings_of(cells)?;
+    published.iter().try_for_each(|claim| check(claim, &cells))
 }
 
-fn check(claim: &PublishedSpec, cells: &[&Cell]) -> Result<()> {
+fn check(claim: &PublishedSpec, cells: &Table) -> Result<()> {
     let place = |key: &str| format!("key report.published, claim '{}', {key}", claim.claim);
     if !(0.0..=1.0).contains(&claim.accuracy) {
         let allowed = "a share of test touches, 0 to 1";
         return Err(Error::input(place("accuracy"), claim.accuracy, allowed));
     }
-    // One after the other: of many cells, all rows at once would be gigabytes.
-    let rows = || cells.iter().map(|cell| cell.settings());
+    let known = |name: &str| match name {
+        "cell" => String::new(),
+        name => cells.one_of(name, 0..cells.n_rows),
+    };
     for (key, wanted) in &claim.at {
-        let of_key = || rows().filter_map(|mut row| row.remove(column(key)));
-        if of_key().any(|value| agree(&value, wanted)) {
-            continue;
+        let (name, wanted) = (column_name(key), setting(wanted));
+        let values = known(name);
+        if values.is_empty() {
+            let names = cells.columns.iter().map(|column| &column.name[..]);
+            let names: Vec<&str> = names.filter(|name| !known(name).is_empty()).collect();
+            let allowed = format!("one of {}", names.join(", "));
+            return Err(Error::input(
+                place(key),
+                "is no setting of this study",
+                allowed,
+            ));
         }
-        let mut values: Vec<Value> = Vec::new();
-        for value in of_key() {
-            if !values.contains(&value) {
-                values.push(value);
-            }
+        if !(0..cells.n_rows).any(|row| cells.has_setting(name, row, &wanted)) {
+            return Err(Error::input(place(key), wanted, values));
         }
-        let known: BTreeSet<String> = rows()
-            .flat_map(|row| row.into_iter().map(|(k, _)| k))
-            .collect();
-        let known: Vec<String> = known.into_iter().collect();
-        let (given, allowed) = match values.is_empty() {
-            true => ("is no setting of this study".to_owned(), one_of(known)),
-            false => {
-                let values = values.iter().map(ToString::to_string);
-                (wanted.to_string(), one_of(values))
-            }
-        };
-        return Err(Error::input(place(key), given, allowed));
     }
-    match rows().any(|row| is_about(claim, &row)) {
+    match (0..cells.n_rows).any(|row| is_about(claim, cells, row)) {
         true => Ok(()),
         false => Err(Error::input(
             place("all keys together"),
-            Value::Table(claim.at.clone()),
+            &claim.at,
             "values that one cell of the study has together",
         )),
     }
 }
 
+/// A value as a study writes it.
+fn setting(written: &toml::Value) -> Value {
+    let number = written.as_integer().map(|integer| integer as f64);
+    match (number.or(written.as_float()), written.as_str()) {
+        (Some(number), _) => Value::Number(number),
+        (_, Some(word)) => Value::Word(word.to_owned()),
+        _ => Value::Word(written.to_string()),
+    }
+}
+
+fn is_about(claim: &PublishedSpec, cells: &Table, row: usize) -> bool {
+    let mut keys = claim.at.iter();
+    keys.all(|(key, wanted)| cells.has_setting(column_name(key), row, &setting(wanted)))
+}
+
 /// Each claim beside the cell with the highest mean accuracy (the first of equals) among those it is about; once for each condition
 /// that these cells have.
+///
+/// # Errors
+/// A cell that has no form in a table.
 pub fn compare_with_published(
     published: &[PublishedSpec],
     summary: &[(Cell, CellScore)],
-) -> Vec<(Cell, Published)> {
-    let columns: Vec<Table> = summary.iter().map(|(cell, _)| cell.settings()).collect();
-    let conditions = condition_numbers(summary.iter().map(|(cell, _)| cell));
-    let n_conditions = conditions.iter().max().map_or(0, |last| last + 1);
+) -> Result<Vec<(Cell, Published)>> {
+    let cells = || summary.iter().map(|(cell, _)| cell);
+    let settings = settings_of(&cells().collect::<Vec<_>>())?;
+    let conditions = by_condition(cells())?;
     let mut rows = Vec::new();
     for claim in published {
-        let about = (0..summary.len()).filter(|&place| is_about(claim, &columns[place]));
-        let about: Vec<usize> = about.collect();
-        for condition in 0..n_conditions {
-            let within = about
+        for alike in &conditions {
+            let about = alike
                 .iter()
-                .copied()
-                .filter(|&place| conditions[place] == condition);
-            let within: Vec<usize> = within.collect();
-            let accuracies = within
+                .filter(|&&place| is_about(claim, &settings, place));
+            let about: Vec<usize> = about.copied().collect();
+            let accuracies = about
                 .iter()
                 .map(|&place| (place, summary[place].1.accuracy));
             if let Some(best) = most_accurate(accuracies) {
-                rows.push(beside(claim, &summary[best], within.len()));
+                rows.push(beside(claim, &summary[best], about.len()));
             }
         }
     }
-    rows
+    Ok(rows)
 }
 
 fn beside(
@@ -104,14 +117,6 @@ fn beside(
         n_matching,
     };
     (cell.clone(), ours)
-}
-
-fn is_about(claim: &PublishedSpec, row: &Table) -> bool {
-    let mut keys = claim.at.iter();
-    keys.all(|(key, wanted)| {
-        row.get(column(key))
-            .is_some_and(|value| agree(value, wanted))
-    })
 }
 
 #[cfg(test)]
@@ -178,7 +183,7 @@ mod tests {
             let all: Vec<&Cell> = summary.iter().map(|(cell, _)| cell).collect();
             let claims = [claim(keys)];
             check_published(&claims, &all).unwrap();
-            let found = compare_with_published(&claims, &summary);
+            let found = compare_with_published(&claims, &summary).unwrap();
             let of_cells: Vec<usize> = found.iter().map(|(cell, _)| cell.cell).collect();
             assert_eq!(of_cells, cells, "{keys}");
             for (cell, row) in found {
@@ -196,12 +201,12 @@ mod tests {
         for (keys, said) in [
             ("colour = 1", "colour: is no setting of this study; one of "),
             ("cell = 0", "cell: is no setting of this study; one of "),
-            ("ratio = 16.0", "ratio: 16.0; one of 64.0, 99.9"),
+            ("ratio = 16.0", "ratio: 16; one of 64, 99.9"),
             (
                 "classifier = \"rbf_svm\"",
-                "classifier: \"rbf_svm\"; one of \"linear_svm\", \"k_nearest\"",
+                "classifier: rbf_svm; one of linear_svm, k_nearest",
             ),
-            ("classifier = 3", "classifier: 3; one of \"linear_svm\""),
+            ("classifier = 3", "classifier: 3; one of linear_svm"),
             (
                 "classifier = \"k_nearest\"\nc = 1.0",
                 "values that one cell of the study has together",

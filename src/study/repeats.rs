@@ -3,7 +3,7 @@
 use super::check::Check;
 use super::evaluation::CONFIDENCE;
 use super::spec::StudySpec;
-use super::table::{Cell, PStatus, TrialScore};
+use super::table::{PStatus, TrialScore};
 use crate::error::Result;
 use crate::recognition::comparison::{
     Comparison, TrialSize, compare, compare_crossed, trials_needed,
@@ -74,27 +74,44 @@ impl Check<'_> {
     }
 }
 
-/// Accuracies of a cell's trials: one row a trial; or splits × projections where they are crossed, `None` if some of those
-/// are missing.
-pub fn accuracies(trials: &[&TrialScore]) -> Option<Array2<f64>> {
-    let mut numbers = trials.iter().map(|trial| (trial.split, trial.projection));
-    if numbers.any(|(split, projection)| split.is_none() || projection.is_none()) {
-        let column = trials.iter().map(|trial| trial.accuracy).collect();
+/// A score of one trial.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Repeat {
+    /// The trial, from 0.
+    pub trial: usize,
+    /// The numbers of its split and its projection, where trials are crossed.
+    pub place: Option<(usize, usize)>,
+    /// What it scored.
+    pub score: f64,
+}
+
+impl Repeat {
+    /// The accuracy of a trial.
+    pub fn of(trial: &TrialScore) -> Self {
+        Self {
+            trial: trial.trial,
+            place: trial.split.zip(trial.projection),
+            score: trial.accuracy,
+        }
+    }
+}
+
+/// Scores of a configuration: one row a trial; or splits × projections where they are crossed, `None` if some of those are missing.
+pub fn scores(trials: &[Repeat]) -> Option<Array2<f64>> {
+    if trials.iter().any(|trial| trial.place.is_none()) {
+        let column = trials.iter().map(|trial| trial.score).collect();
         return Array2::from_shape_vec((trials.len(), 1), column).ok();
     }
-    let different = |number: fn(&TrialScore) -> Option<usize>| -> BTreeSet<usize> {
-        trials.iter().filter_map(|trial| number(trial)).collect()
-    };
-    let n_splits = different(|trial| trial.split).len();
-    let n_projections = different(|trial| trial.projection).len();
     let mut ordered = trials.to_vec();
-    ordered.sort_by_key(|trial| (trial.split, trial.projection));
-    let places = ordered.iter().map(|trial| (trial.split, trial.projection));
-    if places.collect::<BTreeSet<_>>().len() != trials.len() {
+    ordered.sort_by_key(|trial| trial.place);
+    let places: BTreeSet<_> = trials.iter().filter_map(|trial| trial.place).collect();
+    if places.len() != trials.len() {
         return None;
     }
-    let values = ordered.iter().map(|trial| trial.accuracy).collect();
-    Array2::from_shape_vec((n_splits, n_projections), values).ok()
+    let splits: BTreeSet<usize> = places.iter().map(|place| place.0).collect();
+    let projections: BTreeSet<usize> = places.iter().map(|place| place.1).collect();
+    let values = ordered.iter().map(|trial| trial.score).collect();
+    Array2::from_shape_vec((splits.len(), projections.len()), values).ok()
 }
 
 /// What a test of two cells says.
@@ -109,31 +126,22 @@ pub struct Tested {
     pub n_needed: Option<usize>,
 }
 
-/// Scores of two cells, in the trials that both have.
-pub struct Paired<'a> {
-    ours: Vec<&'a TrialScore>,
-    theirs: Vec<&'a TrialScore>,
+/// Scores of two configurations, in the trials that both have.
+pub struct Paired {
+    ours: Vec<Repeat>,
+    theirs: Vec<Repeat>,
     size: TrialSize,
 }
 
-impl<'a> Paired<'a> {
-    /// The trials of two cells by their numbers.
-    pub fn of(ours: &'a [(Cell, TrialScore)], theirs: &'a [(Cell, TrialScore)]) -> Self {
-        let pairs = ours.iter().filter_map(|(_, ours)| {
-            let mut theirs = theirs.iter().map(|(_, theirs)| theirs);
-            Some((ours, theirs.find(|theirs| theirs.trial == ours.trial)?))
+impl Paired {
+    /// The trials of two configurations by their numbers; how they split the touches.
+    pub fn of(ours: &[Repeat], theirs: &[Repeat], size: TrialSize) -> Self {
+        let pairs = ours.iter().filter_map(|ours| {
+            let theirs = theirs.iter().find(|theirs| theirs.trial == ours.trial);
+            Some((*ours, *theirs?))
         });
-        let (cell, first) = &ours[0];
         let (ours, theirs) = pairs.unzip();
-        Self {
-            ours,
-            theirs,
-            // How much the trials overlap is a matter of touches, however many of them one decision takes.
-            size: TrialSize {
-                n_train: first.n_train,
-                n_test: first.n_test * cell.fused_touches,
-            },
-        }
+        Self { ours, theirs, size }
     }
 
     /// How many trials both have.
@@ -141,22 +149,18 @@ impl<'a> Paired<'a> {
         self.ours.len()
     }
 
-    /// Mean accuracies in these trials, ours and theirs; NaN if there are none.
+    /// Mean scores in these trials, ours and theirs; NaN if there are none.
     pub fn means(&self) -> (f64, f64) {
-        let mean = |trials: &[&TrialScore]| {
-            trials.iter().map(|t| t.accuracy).sum::<f64>() / trials.len() as f64
-        };
+        let mean =
+            |trials: &[Repeat]| trials.iter().map(|t| t.score).sum::<f64>() / trials.len() as f64;
         (mean(&self.ours), mean(&self.theirs))
     }
 
     /// The test of no difference, if there are trials enough for one.
     pub fn tested(&self) -> Result<Tested> {
         let n_needed = trials_needed(self.size, CONFIDENCE)?;
-        let mut splits: Vec<usize> = self
-            .ours
-            .iter()
-            .map(|t| t.split.unwrap_or(t.trial))
-            .collect();
+        let split = |trial: &Repeat| trial.place.map_or(trial.trial, |(split, _)| split);
+        let mut splits: Vec<usize> = self.ours.iter().map(split).collect();
         splits.sort_unstable();
         splits.dedup();
         let is_enough = n_needed.is_some_and(|needed| splits.len() >= needed);
@@ -181,8 +185,7 @@ impl<'a> Paired<'a> {
 
     /// Ours less theirs; `None` for a single trial, and for crossed trials of which some are missing.
     fn test(&self) -> Result<Option<Comparison>> {
-        let scores = (accuracies(&self.ours), accuracies(&self.theirs));
-        let (Some(ours), Some(theirs)) = scores else {
+        let (Some(ours), Some(theirs)) = (scores(&self.ours), scores(&self.theirs)) else {
             return Ok(None);
         };
         match (ours.ncols(), theirs.ncols()) {
@@ -199,23 +202,12 @@ impl<'a> Paired<'a> {
 mod tests {
     use super::*;
 
-    fn trial(trial: usize, repeats: Repeats, accuracy: f64) -> TrialScore {
+    fn trial(trial: usize, repeats: Repeats, score: f64) -> Repeat {
         let (split, projection) = repeats.numbers(trial);
-        TrialScore {
+        Repeat {
             trial,
-            split,
-            projection,
-            n_train: 300,
-            n_test: 100,
-            n_left_out: 0,
-            n_correct: (100.0 * accuracy) as usize,
-            accuracy,
-            accuracy_low: 0.0,
-            accuracy_high: 1.0,
-            macro_f1: accuracy,
-            c_used: None,
-            gamma_used: None,
-            n_capped: 0,
+            place: split.zip(projection),
+            score,
         }
     }
 
@@ -237,17 +229,13 @@ mod tests {
     #[test]
     fn scores_stand_in_the_place_of_their_split_and_projection_whatever_their_order() {
         let crossed = Repeats::Crossed(2);
-        let trials: Vec<TrialScore> = [5, 0, 3, 1, 4, 2]
-            .map(|t| trial(t, crossed, t as f64 / 10.0))
-            .to_vec();
-        let all: Vec<&TrialScore> = trials.iter().collect();
+        let all = [5, 0, 3, 1, 4, 2].map(|t| trial(t, crossed, t as f64 / 10.0));
         let expected = ndarray::array![[0.0, 0.1], [0.2, 0.3], [0.4, 0.5]];
-        assert_eq!(accuracies(&all), Some(expected));
-        assert_eq!(accuracies(&all[1..]), None, "one is missing");
+        assert_eq!(scores(&all), Some(expected));
+        assert_eq!(scores(&all[1..]), None, "one is missing");
         let twice = [all[0], all[1], all[1], all[3]];
-        assert_eq!(accuracies(&twice), None);
-        let own: Vec<TrialScore> = (0..3).map(|t| trial(t, Repeats::Own, 0.5)).collect();
-        let own: Vec<&TrialScore> = own.iter().collect();
-        assert_eq!(accuracies(&own), Some(Array2::from_elem((3, 1), 0.5)));
+        assert_eq!(scores(&twice), None);
+        let own: Vec<Repeat> = (0..3).map(|t| trial(t, Repeats::Own, 0.5)).collect();
+        assert_eq!(scores(&own), Some(Array2::from_elem((3, 1), 0.5)));
     }
 }

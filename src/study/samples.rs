@@ -1,18 +1,17 @@
 //! Sample touches for the eye: what the array feels of a few objects, noise included.
 
-use super::measurement::rates_of;
-use super::measurement::signal_steps;
+use super::measurement::{Reading, measure, signal_steps, touches_to_read};
 use super::plan::{Plan, millimetres};
+use super::progress::Silent;
 use super::sensor_errors::{skin, strength_columns};
-use super::simulation::TouchedObject;
+use super::simulation::{TouchedObject, simulate_array};
 use super::spec::{CombineSpec, StepSpec};
 use super::sweep::{Group, Sweep};
-use crate::contact::{Workspace, press_to_depth};
 use crate::error::{Error, Result};
 use crate::random::Seed;
-use crate::signal::{Chain, Quantity, Recording, Scratch, SensorError, SignalStep, Strength};
-use crate::world::{Patch, Scene};
-use ndarray::Array2;
+use crate::sensing::{Ensemble, Projection};
+use crate::signal::{Chain, Quantity, SensorError, SignalStep, Strength};
+use ndarray::{Array2, ArrayView1};
 
 /// How many objects a picture of samples shows when the study names none.
 const N_SAMPLES: usize = 4;
@@ -42,48 +41,50 @@ pub fn sample_frames(plan: &Plan, sweep: &Sweep, touched: &[TouchedObject]) -> R
     let group = loudest_group(plan, sweep)
         .ok_or_else(|| Error::input("study", "no cells", "at least one value an axis"))?;
     let patch = &plan.arrays[group.array];
-    let objects = chosen(plan, touched)?;
-    let before = objects.last().copied().unwrap_or(&touched[0]);
+    let names: Vec<&str> = touched.iter().map(|t| t.object.name.as_str()).collect();
+    let n = N_SAMPLES.min(names.len());
+    let chosen = named_samples(plan, &names)?;
+    let chosen = chosen.unwrap_or_else(|| (0..n).map(|k| k * names.len() / n).collect());
+    let before = chosen.last().copied().unwrap_or(0);
+    let name = |label: usize| names[label].replace('_', " ");
     let grid = &patch.grid;
     let pitch_mm = millimetres(grid.pitch);
     let array = format!("{} × {} taxels at {pitch_mm} mm", grid.nx, grid.ny);
-    let name = |object: &TouchedObject| object.object.name.replace('_', " ");
     let quantity = Chain::new(&steps(plan, group), patch)?.quantity();
-    let mut frames = Vec::new();
-    let groups = imperfect_groups(plan, sweep, group.array);
     let noise = match group.condition.noise {
         0.0 => "no noise".to_owned(),
         level => format!("noise of {}", plan.describe_noise(level)),
     };
     let each_caption = format!("One touch each on {array}, {noise}");
-    let caption = match objects.first() {
-        Some(first) if !groups.is_empty() => {
+    let each = read(plan, group, (touched, before))?
+        .into_iter()
+        .enumerate();
+    let each: Vec<_> = each.map(|(label, frame)| (name(label), frame)).collect();
+    let groups = imperfect_groups(plan, sweep, group.array);
+    let (frames, caption) = match chosen.first() {
+        Some(&first) if !groups.is_empty() => {
             // One taxel of a large gain would take the colours of all others.
             let full_scale = quantity.full_scale(&patch.taxel);
-            for (words, group) in groups {
-                let mut frame = read(plan, group, first, before)?;
-                frame.mapv_inplace(|value| value.min(full_scale));
-                frames.push((words, frame));
-            }
+            let shown = groups.into_iter().map(|(words, group)| {
+                let frame = read(plan, group, (touched, before))?.swap_remove(first);
+                Ok((words, frame.mapv_into(|value| value.min(full_scale))))
+            });
             let remembers =
                 |step: &StepSpec| matches!(step, StepSpec::Error(error) if error.about().remembers);
-            let after = match plan.steps.iter().any(remembers) {
+            let after = match plan.spec.signal.steps.iter().any(remembers) {
                 true => format!(", after one of the {},", name(before)),
                 false => String::new(),
             };
             let first = name(first);
-            format!("A touch of the {first}{after} on {array}; colours end at the full scale")
+            let caption =
+                format!("A touch of the {first}{after} on {array}; colours end at the full scale");
+            (shown.collect::<Result<_>>()?, caption)
         }
         _ => {
-            for object in objects {
-                frames.push((name(object), read(plan, group, object, before)?));
-            }
-            each_caption.clone()
+            let frames = chosen.iter().map(|&label| each[label].clone());
+            (frames.collect(), each_caption.clone())
         }
     };
-    let each = touched.iter();
-    let each = each.map(|object| Ok((name(object), read(plan, group, object, before)?)));
-    let each = each.collect::<Result<_>>()?;
     Ok(Samples {
         frames,
         pitch_mm,
@@ -94,48 +95,38 @@ pub fn sample_frames(plan: &Plan, sweep: &Sweep, touched: &[TouchedObject]) -> R
     })
 }
 
-/// What an array of a group reads of an object's first touch, ny × nx; a skin that remembers was touched by another before.
+/// What an array of a group reads of each object's first touch, ny × nx; a skin that remembers was touched by one of them before.
 fn read(
     plan: &Plan,
     group: &Group,
-    object: &TouchedObject,
-    before: &TouchedObject,
-) -> Result<Array2<f64>> {
+    (touched, before): (&[TouchedObject], usize),
+) -> Result<Vec<Array2<f64>>> {
     let patch = plan.arrays[group.array];
-    let chain = Chain::new(&steps(plan, group), &patch)?;
+    let shape = (patch.grid.ny, patch.grid.nx);
     let n_taxels = patch.grid.n_taxels();
-    let mut frames = Vec::new();
-    if chain.remembers() {
-        frames.extend(press(&patch, before));
-        frames.resize(2 * n_taxels, 0.0);
-    }
-    let n_before = frames.len() / n_taxels;
-    frames.extend(press(&patch, object));
-    let seed = Seed::new(plan.spec.seed).named("signal").numbered(0);
-    let seed = seed.named(&object.object.name).numbered(0);
-    let mut rates = Vec::new();
-    let rates = rates_of(&frames, &patch.taxel, plan.speed, &mut rates);
-    let recording = Recording {
-        frames: &mut frames,
-        rates,
-        n_before,
-        interval: None,
+    let seed = Seed::new(plan.spec.seed);
+    let first = |t: &TouchedObject| TouchedObject {
+        touches: t.touches[..1].to_vec(),
+        ..t.clone()
     };
-    chain.apply_recording(recording, &seed, &mut Scratch::default());
-    let frame = frames.split_off(n_before * n_taxels);
-    let frame =
-        Array2::from_shape_vec((patch.grid.ny, patch.grid.nx), frame).expect("one value a taxel");
-    Ok(frame)
-}
-
-/// The deflections of an object's first touch.
-fn press(patch: &Patch, object: &TouchedObject) -> Vec<f64> {
-    let touch = &object.touches[0];
-    let scene = Scene::of_one(patch, &object.object.model);
-    let pose = touch.patch_from_object(&object.rests[touch.rest]);
-    let mut workspace = Workspace::new();
-    press_to_depth(&scene, &[pose], touch.depth, &mut workspace);
-    workspace.deflections().to_vec()
+    let firsts: Vec<TouchedObject> = touched.iter().map(first).collect();
+    let frames = simulate_array(&firsts, &patch, 1, &Silent);
+    let mut touches = touches_to_read(&firsts, &seed.named("signal").numbered(0));
+    for touch in &mut touches {
+        touch.before = Some(before);
+    }
+    let reading = Reading {
+        chains: &[Chain::new(&steps(plan, group), &patch)?],
+        projection: &Projection::new(Ensemble::Identity, shape, n_taxels, &seed)?,
+        taxel: patch.taxel,
+        speed: plan.speed,
+    };
+    let (values, _) = measure(reading, (&frames.kept, 1), &touches)?;
+    let frame = |row: ArrayView1<f64>| Array2::from_shape_vec(shape, row.to_vec());
+    let frames = values.outer_iter().map(frame);
+    Ok(frames
+        .map(|frame| frame.expect("a value a taxel"))
+        .collect())
 }
 
 /// The signal's steps but for smoothing, which hides what it is there to hide.
@@ -149,18 +140,20 @@ fn steps(plan: &Plan, group: &Group) -> Vec<SignalStep> {
 /// In a study of one sensor error at a time: the first group of an array, then for each error the group that has it at
 /// its last value, with what to call them. A scan is left out: it does not change a touch that is read once.
 fn imperfect_groups<'a>(plan: &Plan, sweep: &'a Sweep, array: usize) -> Vec<(String, &'a Group)> {
-    if plan.combine != CombineSpec::OneAtATime {
+    let signal = &plan.spec.signal;
+    if signal.combine != CombineSpec::OneAtATime {
         return Vec::new();
     }
     let groups = || sweep.groups.iter().filter(|group| group.array == array);
     let mut chosen = Vec::new();
-    for (strength, values) in &plan.sensor_errors {
-        let Some(column) = strength_columns().iter().find(|c| c.name == strength.key) else {
+    for (key, _, axis) in signal.axes.given() {
+        let Some(column) = strength_columns().iter().find(|c| c.name == *key) else {
             continue;
         };
+        let values = axis.values();
         let last = *values.last().unwrap_or(&0.0);
         let shows = |(error, own, value): (SensorError, &Strength, f64)| {
-            own == *strength && value == last && !error.about().needs_motion
+            own.key == *key && value == last && !error.about().needs_motion
         };
         let has_it = |group: &&Group| group.condition.strengths.given().any(shows);
         if let Some(group) = groups().find(has_it)
@@ -180,16 +173,10 @@ fn imperfect_groups<'a>(plan: &Plan, sweep: &'a Sweep, array: usize) -> Vec<(Str
 
 /// The group with the most taxels and, among those, the most noise.
 fn loudest_group<'a>(plan: &Plan, sweep: &'a Sweep) -> Option<&'a Group> {
+    let n_taxels = |group: &Group| plan.arrays[group.array].grid.n_taxels();
     sweep.groups.iter().max_by(|a, b| {
-        let key = |g: &Group| {
-            (
-                plan.arrays[g.array].grid.n_taxels() as f64,
-                g.condition.noise,
-            )
-        };
-        key(a)
-            .partial_cmp(&key(b))
-            .unwrap_or(std::cmp::Ordering::Equal)
+        let by_size = n_taxels(a).cmp(&n_taxels(b));
+        by_size.then(a.condition.noise.total_cmp(&b.condition.noise))
     })
 }
 
@@ -209,13 +196,4 @@ pub(super) fn named_samples(plan: &Plan, classes: &[&str]) -> Result<Option<Vec<
     names
         .map(|names| names.iter().map(label).collect())
         .transpose()
-}
-
-fn chosen<'a>(plan: &Plan, touched: &'a [TouchedObject]) -> Result<Vec<&'a TouchedObject>> {
-    let names: Vec<&str> = touched.iter().map(|t| t.object.name.as_str()).collect();
-    if let Some(labels) = named_samples(plan, &names)? {
-        return Ok(labels.into_iter().map(|label| &touched[label]).collect());
-    }
-    let n = N_SAMPLES.min(touched.len());
-    Ok((0..n).map(|k| &touched[k * touched.len() / n]).collect())
 }

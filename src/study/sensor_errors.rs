@@ -1,13 +1,10 @@
-//! Sensor errors as a study has them: the axes of their strengths, and which skin tests.
+//! Sensor errors as a study has them: their strengths, and which skin tests.
 
-use super::axis::Axis;
 use crate::random::Seed;
 use crate::signal::{MOST_STRENGTHS, SENSOR_ERRORS, SensorError, SignalStep, Strength};
 use crate::table::{Column, Role, Scale};
 use crate::world::Grid;
-
-use serde::ser::SerializeMap;
-use serde::{Deserialize, Serialize, Serializer};
+use serde::{Deserialize, Serialize};
 use std::sync::LazyLock;
 
 /// The skin that tells whether a classifier has learned.
@@ -47,20 +44,13 @@ pub fn all_strengths() -> impl Iterator<Item = (SensorError, &'static Strength)>
 pub fn strength_columns() -> &'static [Column] {
     static COLUMNS: LazyLock<Vec<Column>> = LazyLock::new(|| {
         let column = |(_, strength): (SensorError, &'static Strength)| {
-            let scale = if strength.unit == "%" {
-                Scale::Share
-            } else {
-                Scale::Linear
+            let scale = match strength.unit {
+                "%" => Scale::Share,
+                _ => Scale::Linear,
             };
-            let Strength {
-                key,
-                words,
-                unit,
-                names,
-                ..
-            } = *strength;
+            let (key, words, unit) = (strength.key, strength.words, strength.unit);
             let column = Column::new(key, Role::Condition, words, unit, scale);
-            column.named(names).optional()
+            column.named(strength.names).optional()
         };
         all_strengths().map(column).collect()
     });
@@ -105,44 +95,6 @@ impl Strengths {
             *to = self.of(strength.key).unwrap_or(0.0);
         }
         error.step(&strengths, *skin)
-    }
-}
-
-/// The axes of the strengths that a study has, in the order of tables.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct StrengthAxes(Vec<(&'static Strength, Axis<f64>)>);
-
-impl StrengthAxes {
-    /// The axis of a key.
-    pub fn of(&self, key: &str) -> Option<&Axis<f64>> {
-        let mut given = self.0.iter();
-        given.find_map(|(strength, axis)| (strength.key == key).then_some(axis))
-    }
-
-    /// Those that a study has.
-    pub fn given(&self) -> impl Iterator<Item = &(&'static Strength, Axis<f64>)> {
-        self.0.iter()
-    }
-
-    /// Puts an axis at a key; whether there is such a key.
-    pub fn set(&mut self, key: &str, axis: Axis<f64>) -> bool {
-        let found = all_strengths().find(|(_, strength)| strength.key == key);
-        if let Some((_, strength)) = found {
-            self.0.push((strength, axis));
-            let place = |known: &&Strength| all_strengths().position(|(_, s)| s.key == known.key);
-            self.0.sort_by_key(|(strength, _)| place(strength));
-        }
-        found.is_some()
-    }
-}
-
-impl Serialize for StrengthAxes {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        let mut map = serializer.serialize_map(Some(self.0.len()))?;
-        for (strength, axis) in &self.0 {
-            map.serialize_entry(strength.key, axis)?;
-        }
-        map.end()
     }
 }
 

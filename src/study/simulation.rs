@@ -1,6 +1,6 @@
 //! Touches of an array: made once, shared by all cells.
 
-use super::frames::{FrameWriter, Frames, Making, Press};
+use super::frames::{FramePlace, Frames};
 use super::plan::millimetres;
 use super::progress::Progress;
 use crate::contact::{Contact, Workspace, press_to_depth};
@@ -70,19 +70,18 @@ pub fn simulate_array(
     n_frames: usize,
     progress: &dyn Progress,
 ) -> Frames {
-    let writer = FrameWriter::in_memory(patch.grid.n_taxels());
-    let frames = simulate_into(touched, (patch, n_frames), writer, progress);
+    let frames = simulate_into(touched, (patch, n_frames), &FramePlace::Memory, progress);
     frames.expect("memory takes all frames")
 }
 
-/// The same into a writer.
+/// The same into a place.
 pub(super) fn simulate_into(
     touched: &[TouchedObject],
     (patch, n_frames): (&Patch, usize),
-    writer: FrameWriter,
+    place: &FramePlace,
     progress: &dyn Progress,
 ) -> Result<Frames> {
-    let mut making = Making::new(writer, n_frames, progress);
+    let mut frames = Frames::new((patch.grid.n_taxels(), n_frames), place)?;
     for TouchedObject {
         object,
         rests,
@@ -90,42 +89,20 @@ pub(super) fn simulate_into(
     } in touched
     {
         let scene = Scene::of_one(patch, &object.model);
-        making.make(&ObjectPress { scene, rests }, touches)?;
-    }
-    making.finish()
-}
-
-/// Presses an object that lies at rest.
-struct ObjectPress<'a> {
-    scene: Scene,
-    rests: &'a [RestPose],
-}
-
-impl Press for ObjectPress<'_> {
-    type Touch = Touch;
-    type Workspace = Workspace;
-
-    fn workspace(&self) -> Workspace {
-        Workspace::new()
-    }
-
-    fn press(
-        &self,
-        touch: &Touch,
-        workspace: &mut Workspace,
-        mut rows: ArrayViewMut2<f32>,
-    ) -> (bool, bool) {
-        let pose = touch.patch_from_object(&self.rests[touch.rest]);
-        let n_frames = rows.nrows();
-        let mut contact = None;
-        for (frame, row) in rows.outer_iter_mut().enumerate() {
-            let part = (frame + 1) as f64 / n_frames as f64;
-            contact = press_to_depth(&self.scene, &[pose], touch.depth * part, workspace);
-            for (to, &from) in row.into_iter().zip(workspace.deflections()) {
-                *to = from as f32;
+        let press = |touch: &Touch, workspace: &mut Workspace, mut rows: ArrayViewMut2<f32>| {
+            let pose = touch.patch_from_object(&rests[touch.rest]);
+            let mut contact = None;
+            for (frame, row) in rows.outer_iter_mut().enumerate() {
+                let part = (frame + 1) as f64 / n_frames as f64;
+                contact = press_to_depth(&scene, &[pose], touch.depth * part, workspace);
+                for (to, &from) in row.into_iter().zip(workspace.deflections()) {
+                    *to = from as f32;
+                }
             }
-        }
-        let reads_any = |count: fn(Contact) -> usize| contact.is_some_and(|c| count(c) > 0);
-        (!reads_any(|c| c.n_touched), reads_any(|c| c.n_saturated))
+            let reads_any = |count: fn(Contact) -> usize| contact.is_some_and(|c| count(c) > 0);
+            (!reads_any(|c| c.n_touched), reads_any(|c| c.n_saturated))
+        };
+        frames.make(touches, Workspace::new, press, progress)?;
     }
+    Ok(frames)
 }

@@ -5,7 +5,7 @@
 use super::axes::{self, AxisRules, StudyAxes};
 use super::axis::Axis;
 use super::cell::Cell;
-use super::sensor_errors::all_strengths;
+use super::defaults::{count, number};
 pub use super::spec_human::*;
 pub use super::spec_scene::*;
 pub use super::spec_signal::*;
@@ -32,11 +32,10 @@ pub struct StudySpec {
     #[serde(default = "default_seed")]
     pub seed: u64,
     /// How often each cell is repeated with a new split, projection and noise.
-    #[serde(default = "one")]
+    #[serde(default = "count::<1>")]
     pub trials: usize,
     /// Instead of a projection of its own for each trial: so many projections, each with each of `trials` / so many splits. It
     /// tells what the projection does to the accuracy from what the split does (`variance.csv`).
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub projections_per_split: Option<usize>,
     /// What is touched.
     #[serde(default, skip_serializing_if = "is_default")]
@@ -47,7 +46,6 @@ pub struct StudySpec {
     #[serde(default, skip_serializing_if = "is_default")]
     pub touches: TouchesSpec,
     /// Instead of objects and how they are touched: which kind of touch is it?
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub human_touch: Option<HumanTouchSpec>,
     /// What happens to a frame before it is sensed.
     #[serde(default)]
@@ -64,17 +62,19 @@ pub struct StudySpec {
     pub axes: StudyAxes,
 }
 
-/// Keys that are axes where they stand, beside the strengths of sensor errors.
-const AXIS_KEYS: [&str; 20] = [
+/// Words, and keys that are axes where they stand: what may change while finished work is kept, since each work item goes by all that it
+/// depends on. Of `[signal]` all keys but the steps are axes.
+pub(crate) const MAY_CHANGE: &[&str] = &[
+    "question",
+    "expected",
+    "report",
+    "axes",
+    "trials",
     "skin.pitch_mm",
     "skin.size_mm",
     "skin.taxels",
     "touches.frames",
-    "signal.noise_std_full_scale",
-    "signal.noise_std_mm",
-    "signal.noise_std_n",
-    "signal.smoothing_mm",
-    "signal.tested_on",
+    "signal",
     "sensing.ensemble",
     "sensing.ratio",
     "sensing.measurements",
@@ -90,10 +90,9 @@ const AXIS_KEYS: [&str; 20] = [
 
 /// Trials split the same touches again, and words and reports are of the whole study.
 const AXIS_RULES: AxisRules = AxisRules {
-    in_place: |key| {
-        let signal = key.strip_prefix("signal.");
-        let is_strength = |key| all_strengths().any(|(_, strength)| strength.key == key);
-        AXIS_KEYS.contains(&key) || signal.is_some_and(is_strength)
+    in_place: |key| match key.strip_prefix("signal.") {
+        Some(key) => !matches!(key, "steps" | "combine"),
+        None => key.contains('.') && MAY_CHANGE.contains(&key),
     },
     refused: &[
         "question",
@@ -113,10 +112,8 @@ pub struct SensingSpec {
     #[serde(default = "default_ensemble")]
     pub ensemble: Axis<Ensemble>,
     /// Axis: compression ratio, taxels per measurement.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub ratio: Option<Axis<f64>>,
     /// Axis, instead of `ratio`: measurements a touch.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub measurements: Option<Axis<usize>>,
 }
 
@@ -130,7 +127,6 @@ pub struct RecognitionSpec {
     pub features: Axis<Features>,
     /// Axis: what is made of the frames of a touch; all of them one after the other when left out. `deepest` frame, `stacked_8` evenly
     /// in time (or another number), `moments` of each measurement, `course` of the touch, or `summarised`: moments and course.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub over_time: Option<Axis<OverTime>>,
     /// Axis: which classifier.
     pub classifier: Axis<ClassifierKind>,
@@ -144,72 +140,54 @@ pub struct RecognitionSpec {
     #[serde(default)]
     pub scaling: Scaling,
     /// Axis: soft-margin penalty of the classifiers that have one; 1 when left out.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub c: Option<Axis<f64>>,
     /// Instead of `c`: candidates of which each fit chooses one by cross-validation within its training rows.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub choose_c: Option<Vec<f64>>,
     /// γ of the RBF and polynomial kernels; 1 / (F · m · variance), 'scale', when left out.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub gamma: Option<f64>,
     /// Instead of `gamma`: candidates as multiples of 'scale', of which each fit chooses one together with C.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub choose_gamma: Option<Vec<f64>>,
     /// Folds of the cross-validation that chooses C and γ; 5 when left out. What the split keeps together, they do.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub choose_folds: Option<usize>,
     /// Training touches an object that take part in that choice, at most; all when left out.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub choose_touches: Option<usize>,
     /// d of the polynomial kernel.
     #[serde(default = "default_degree")]
     pub degree: u32,
     /// c₀ of the polynomial kernel.
-    #[serde(default = "default_coef0")]
+    #[serde(default = "number::<1>")]
     pub coef0: f64,
     /// k of the k nearest neighbours; 5 when left out.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub n_neighbours: Option<usize>,
     /// Trees of a random forest; 100 when left out.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub n_trees: Option<usize>,
     /// Splits below each other in a tree or in a forest's trees; until leaves are pure when left out.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub max_depth: Option<usize>,
     /// Most gibibytes of kernel values that an SVM's solver holds at once; 2 when left out. Above it values are computed again,
     /// which takes longer and may change last digits.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub solver_memory_gib: Option<f64>,
     /// Axis: training touches an object, at most; all of the training split when left out.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub train_touches: Option<Axis<usize>>,
     /// Axis: fraction of each object's training touches that are labelled as another object, drawn at random, 0 to 1.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub mislabelled_fraction: Option<Axis<f64>>,
     /// Axis: how many times as many training touches the most frequent object has as the rarest, at least 1; the others lie
     /// between by equal ratios, in an order of each trial's own. Test touches stay as many of each.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub class_imbalance: Option<Axis<f64>>,
     /// Axis: k, test touches of an object that are decided on together by the sum of their scores. An object's test touches
     /// are grouped at random; fewer than k that remain are left out.
     #[serde(default = "one_value")]
     pub fused_touches: Axis<usize>,
     /// Fraction of the touches held out for testing (without `folds`; 0.25 when both are left out).
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub test_fraction: Option<f64>,
     /// Instead of `test_fraction`: k of a k-fold split; `trials` is then a multiple of k.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub folds: Option<usize>,
     /// Touches that share this (`pose`, `offset`, `yaw`, `tilt`, `rest` or `depth`) are never on both sides of the split. Where its
     /// values are drawn (`{ uniform = … }`), touches of an object that neighbours connect stay together: those nearer than the next
     /// two keys say, on each drawn axis.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub keep_together: Option<GroupSpec>,
     /// Drawn offsets and depths nearer than this are neighbours.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub keep_together_mm: Option<f64>,
     /// Drawn yaws and tilts nearer than this are neighbours.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub keep_together_deg: Option<f64>,
 }
 
@@ -218,10 +196,8 @@ pub struct RecognitionSpec {
 #[serde(deny_unknown_fields)]
 pub struct ReportSpec {
     /// Objects whose touches are drawn side by side; four spread over the list when left out.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub samples: Option<Vec<String>>,
     /// Whether to chart accuracy against time with its Pareto front; when left out, if at least three classifiers are swept.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub pareto: Option<bool>,
     /// Accuracies that others published, shown beside the best of the cells that each is about.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
@@ -268,6 +244,16 @@ impl StudySpec {
         Ok(Self { axes, ..spec })
     }
 
+    /// How many values each key has that is an axis where it stands, but for those of the signal, which may be combined in another way.
+    pub(crate) fn axis_lengths(&self) -> impl Iterator<Item = (&'static str, usize)> {
+        let table = toml::Table::try_from(self).expect("every field of a study has a TOML form");
+        let keys = MAY_CHANGE.iter().filter(|key| key.contains('.'));
+        keys.chain(&["signal.tested_on"]).map(move |key| {
+            let values = axes::value_at(&table, key).and_then(toml::Value::as_array);
+            (*key, values.map_or(1, Vec::len))
+        })
+    }
+
     /// The columns of its own axes in tables of results.
     pub fn axis_columns(&self) -> Vec<Column> {
         let known = Cell::columns();
@@ -290,10 +276,6 @@ fn is_default<T: Default + PartialEq>(value: &T) -> bool {
     *value == T::default()
 }
 
-fn one() -> usize {
-    1
-}
-
 /// An axis of the number one.
 pub(super) fn one_value() -> Axis<usize> {
     Axis::One(1)
@@ -309,8 +291,4 @@ fn default_ensemble() -> Axis<Ensemble> {
 
 fn default_degree() -> u32 {
     3
-}
-
-fn default_coef0() -> f64 {
-    1.0
 }

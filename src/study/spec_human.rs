@@ -1,5 +1,6 @@
 //! Human touches as they are written: `[human_touch]`, in place of `[objects]` and `[touches]`.
 
+use super::defaults::number;
 use crate::world::TouchKind;
 use serde::{Deserialize, Serialize};
 
@@ -13,7 +14,7 @@ pub struct HumanTouchSpec {
     /// Touches a kind.
     pub per_kind: usize,
     /// From the axis of the arm to the outside of its skin, mm.
-    #[serde(default = "forearm")]
+    #[serde(default = "number::<43>")]
     pub arm_radius_mm: f64,
     /// Frames a second.
     pub frames_hz: f64,
@@ -23,8 +24,4 @@ pub struct HumanTouchSpec {
 
 fn all_kinds() -> Vec<TouchKind> {
     crate::world::TOUCH_KINDS.to_vec()
-}
-
-fn forearm() -> f64 {
-    43.0
 }

@@ -1,6 +1,7 @@
 //! What touches what, as it is written: `[objects]`, `[skin]` and `[touches]`.
 
 use super::axis::Axis;
+use super::defaults::number;
 use super::spec::one_value;
 use crate::mesh::{LengthUnit, SizeLimits};
 use serde::{Deserialize, Serialize};
@@ -14,16 +15,13 @@ pub struct ObjectsSpec {
     #[serde(default)]
     pub sets: Vec<String>,
     /// Only these objects of the sets and meshes; all when left out.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub names: Option<Vec<String>>,
     /// A folder of PLY, OBJ or STL meshes, one object a file.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub meshes: Option<PathBuf>,
     /// What the meshes become; spheres around their vertices when left out.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub model: Option<ModelSpec>,
     /// The unit of the meshes' files. When left out, metres, and each must be of a size that the arrays can feel.
-    #[serde(default, alias = "mesh_unit", skip_serializing_if = "Option::is_none")]
+    #[serde(alias = "mesh_unit")]
     pub unit: Option<LengthUnit>,
     /// That size: a plan knows the arrays.
     #[serde(skip)]
@@ -31,10 +29,8 @@ pub struct ObjectsSpec {
     /// How far the surface of a solid, or of a packed mesh, may be outside its spheres, mm; they reach at most half of it outside
     /// the solid, so that the two are equally high on average. When left out, 0.25; with
     /// `model = "packed"` a tenth of the finest pitch, which leaves a mean deflection error of about 2 % of the pitch.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub surface_error_mm: Option<f64>,
     /// Holes of the meshes at most this wide are closed before they are packed, or touched as they are, mm; none when left out.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub close_holes_mm: Option<f64>,
 }
 
@@ -45,18 +41,15 @@ pub struct SkinSpec {
     /// Axis: distance between taxels, mm.
     pub pitch_mm: Axis<f64>,
     /// Axis: side length of the square array, mm; a whole number of pitches.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub size_mm: Option<Axis<f64>>,
     /// Axis, instead of `size_mm`: taxels along a side.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub taxels: Option<Axis<usize>>,
     /// ρ, mm; half the pitch when left out.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub taxel_radius_mm: Option<f64>,
     /// s, mm.
     pub stroke_mm: f64,
     /// k, N/m.
-    #[serde(default = "default_stiffness")]
+    #[serde(default = "number::<100>")]
     pub stiffness_n_per_m: f64,
     /// c, N·s/m.
     #[serde(default)]
@@ -65,57 +58,39 @@ pub struct SkinSpec {
 
 /// `[touches]`
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[serde(default, deny_unknown_fields)]
 pub struct TouchesSpec {
     /// How the object lies on the table.
-    #[serde(default)]
     pub rest: RestSpec,
     /// Touches an object; all combinations when left out.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub per_object: Option<usize>,
     /// Where the patch's centre is over the object's, along table x, mm.
-    #[serde(default = "zero")]
     pub offset_x_mm: SpreadSpec,
     /// The same along table y, mm.
-    #[serde(default = "zero")]
     pub offset_y_mm: SpreadSpec,
     /// How the object is turned about the vertical, degrees.
-    #[serde(default = "zero")]
     pub yaw_deg: SpreadSpec,
     /// How the patch is tilted about its x axis, degrees.
-    #[serde(default = "zero")]
     pub tilt_x_deg: SpreadSpec,
     /// The same about its y axis, degrees.
-    #[serde(default = "zero")]
     pub tilt_y_deg: SpreadSpec,
     /// How far the patch goes past first contact, mm; beyond the stroke taxels stay saturated.
     pub depth_mm: SpreadSpec,
     /// Axis: F, frames a touch: it is read at the depths d/F, 2d/F … d, each frame with noise of its own, and the measurements
     /// of all of them are its features.
-    #[serde(default = "one_value")]
     pub frames: Axis<usize>,
     /// Approach speed at the moment of reading, mm/s: what the damper feels.
-    #[serde(default)]
     pub speed_mm_per_s: f64,
 }
 
 impl TouchesSpec {
     /// Says which keys have a list of values, which looks like an axis and is none; `None` where no key has.
     pub fn mixed_values(&self) -> Option<String> {
-        let spreads = [
-            ("offset_x_mm", &self.offset_x_mm),
-            ("offset_y_mm", &self.offset_y_mm),
-            ("yaw_deg", &self.yaw_deg),
-            ("tilt_x_deg", &self.tilt_x_deg),
-            ("tilt_y_deg", &self.tilt_y_deg),
-            ("depth_mm", &self.depth_mm),
-        ];
-        let lists = spreads
-            .into_iter()
-            .filter_map(|(key, spread)| match spread {
-                SpreadSpec::List(values) if values.len() > 1 => Some(format!("{key} = {values:?}")),
-                _ => None,
-            });
+        let table = toml::Table::try_from(self).expect("every field of a study has a TOML form");
+        let lists = table.iter().filter_map(|(key, spread)| {
+            let is_list = spread.as_array().is_some_and(|values| values.len() > 1);
+            (is_list && key != "frames").then(|| format!("{key} = {spread}"))
+        });
         let lists: Vec<String> = lists.collect();
         (!lists.is_empty()).then(|| {
             format!(
@@ -197,8 +172,4 @@ pub enum RangeSpec {
 
 fn zero() -> SpreadSpec {
     SpreadSpec::One(0.0)
-}
-
-fn default_stiffness() -> f64 {
-    100.0
 }

@@ -1,10 +1,11 @@
 //! What happens to a frame, as it is written: `[signal]`.
 
 use super::axis::Axis;
-use super::sensor_errors::{StrengthAxes, TestedOn, all_strengths};
-use crate::signal::{SENSOR_ERRORS, SensorError};
+use super::sensor_errors::{TestedOn, all_strengths};
+use crate::signal::{NoiseUnit, SENSOR_ERRORS, SensorError};
 use serde::de::{Error as _, MapAccess, Visitor};
-use serde::{Deserialize, Deserializer, Serialize};
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
+use std::collections::BTreeMap;
 use std::fmt;
 
 /// `[signal]`
@@ -12,31 +13,70 @@ use std::fmt;
 pub struct SignalSpec {
     /// What is done to a frame of deflections, in this order; each step at most once.
     pub steps: Vec<StepSpec>,
-    /// Axis: noise standard deviation as a fraction of the full scale.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub noise_std_full_scale: Option<Axis<f64>>,
-    /// Axis, instead: the same in millimetres (of deflection).
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub noise_std_mm: Option<Axis<f64>>,
-    /// Axis, instead: the same in newtons (of force).
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub noise_std_n: Option<Axis<f64>>,
-    /// Axis: standard deviation of the Gaussian that smooths, mm.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub smoothing_mm: Option<Axis<f64>>,
-    /// Axes of the strengths of sensor errors, each by its [key](crate::signal::Strength::key). Hysteresis: each touch comes after
-    /// another of the study, drawn at random and let go. Gains, drift and faults belong to a skin: they follow from the seed and the
-    /// array and are the same in all touches and trials. Drift: a session is the study's touches in random order, trial by trial; it
-    /// begins with every zero at zero. Scan: the press goes on at `touches.speed_mm_per_s` while the array is read; the last frame
-    /// of a touch is read at rest.
+    /// How much of it is done.
     #[serde(flatten)]
-    pub errors: StrengthAxes,
+    pub axes: SignalAxes,
     /// Axis: the skin that test touches are made with, `same_skin` (as training touches; when left out) or `another_skin`.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub tested_on: Option<Axis<TestedOn>>,
-    /// How the axes of strengths above are combined with each other. (With other axes they always are.)
+    /// How the axes above are combined with each other. (With other axes they always are.)
     #[serde(skip_serializing_if = "CombineSpec::is_default")]
     pub combine: CombineSpec,
+}
+
+/// Axes of numbers, each with the step that it belongs to: the standard deviation of the noise as a fraction of the full scale, in
+/// millimetres (of deflection) or in newtons (of force), which is one axis; that of the Gaussian that smooths, mm; and the strengths of sensor
+/// errors, each by its [key](crate::signal::Strength::key).
+///
+/// Hysteresis: each touch comes after another of the study, drawn at random and let go. Gains, drift and faults belong to a skin: they
+/// follow from the seed and the array and are the same in all touches and trials. Drift: a session is the study's touches in random order,
+/// trial by trial; it begins with every zero at zero. Scan: the press goes on at `touches.speed_mm_per_s` while the array is read; the last
+/// frame of a touch is read at rest.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct SignalAxes(BTreeMap<usize, (&'static str, StepSpec, Axis<f64>)>);
+
+/// All of them, in the order in which conditions go through them.
+fn all_axes() -> impl Iterator<Item = (&'static str, StepSpec)> {
+    let errors = all_strengths().map(|(error, strength)| (strength.key, StepSpec::Error(error)));
+    NOISES
+        .iter()
+        .map(|(key, _)| (*key, StepSpec::Noise))
+        .chain([("smoothing_mm", StepSpec::Smoothing)])
+        .chain(errors)
+}
+
+/// What noise is measured in.
+pub(super) const NOISES: [(&str, NoiseUnit); 3] = [
+    ("noise_std_full_scale", NoiseUnit::FullScale),
+    ("noise_std_mm", NoiseUnit::Mm),
+    ("noise_std_n", NoiseUnit::N),
+];
+
+impl SignalAxes {
+    /// The axis of a key.
+    pub fn of(&self, key: &str) -> Option<&Axis<f64>> {
+        let mut given = self.given();
+        given.find_map(|(known, _, axis)| (*known == key).then_some(axis))
+    }
+
+    /// Those that a study has.
+    pub fn given(&self) -> impl Iterator<Item = &(&'static str, StepSpec, Axis<f64>)> {
+        self.0.values()
+    }
+
+    /// Puts an axis at a key; whether there is such a key.
+    pub fn set(&mut self, key: &str, axis: Axis<f64>) -> bool {
+        let found = all_axes().enumerate().find(|(_, (known, _))| *known == key);
+        if let Some((place, (key, step))) = found {
+            self.0.insert(place, (key, step, axis));
+        }
+        found.is_some()
+    }
+}
+
+impl Serialize for SignalAxes {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_map(self.given().map(|(key, _, axis)| (key, axis)))
+    }
 }
 
 /// How axes are combined.
@@ -116,23 +156,12 @@ fn unknown(what: &str, given: &str, known: impl Iterator<Item = &'static str>) -
 /// A key of `[signal]`.
 struct Key(String);
 
-/// Keys but for those of sensor errors.
-const KEYS: [&str; 7] = [
-    "steps",
-    "noise_std_full_scale",
-    "noise_std_mm",
-    "noise_std_n",
-    "smoothing_mm",
-    "tested_on",
-    "combine",
-];
-
 impl<'de> Deserialize<'de> for Key {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         let key = String::deserialize(deserializer)?;
         let all = || {
-            KEYS.into_iter()
-                .chain(all_strengths().map(|(_, strength)| strength.key))
+            let axes = all_axes().map(|(key, _)| key);
+            ["steps", "tested_on", "combine"].into_iter().chain(axes)
         };
         match all().any(|known| known == key) {
             true => Ok(Self(key)),
@@ -162,16 +191,9 @@ impl<'de> Visitor<'de> for SpecVisitor {
         while let Some(Key(key)) = map.next_key()? {
             match &key[..] {
                 "steps" => spec.steps = map.next_value()?,
-                "noise_std_full_scale" => spec.noise_std_full_scale = Some(map.next_value()?),
-                "noise_std_mm" => spec.noise_std_mm = Some(map.next_value()?),
-                "noise_std_n" => spec.noise_std_n = Some(map.next_value()?),
-                "smoothing_mm" => spec.smoothing_mm = Some(map.next_value()?),
                 "tested_on" => spec.tested_on = Some(map.next_value()?),
                 "combine" => spec.combine = map.next_value()?,
-                strength => {
-                    let axis = map.next_value()?;
-                    spec.errors.set(strength, axis);
-                }
+                axis => drop(spec.axes.set(axis, map.next_value()?)),
             }
         }
         Ok(spec)
@@ -182,11 +204,7 @@ impl Default for SignalSpec {
     fn default() -> Self {
         Self {
             steps: vec![StepSpec::Noise, StepSpec::Smoothing],
-            noise_std_full_scale: None,
-            noise_std_mm: None,
-            noise_std_n: None,
-            smoothing_mm: None,
-            errors: StrengthAxes::default(),
+            axes: SignalAxes::default(),
             tested_on: None,
             combine: CombineSpec::default(),
         }

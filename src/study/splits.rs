@@ -1,5 +1,6 @@
 //! Which touches train and which test, trial by trial, and whether they are enough for what is asked of them.
 
+use super::axis::Axis;
 use super::plan::{Plan, SplitKind};
 use crate::error::{Error, Result};
 use crate::random::Seed;
@@ -36,64 +37,44 @@ pub fn draw_split(
     }
 }
 
-/// The training-touches axis: what is asked for, or all that the smallest training split has for every object.
+/// The training-touches axis: what is asked for, or all that the smallest training split has for every object. Every object has test touches
+/// for at least one group in every trial, a training touch for each fold where C or γ is chosen, and one at every imbalance.
 pub fn train_touches(plan: &Plan, splits: &[Split], labels: &Array1<usize>) -> Result<Vec<usize>> {
+    let recognition = &plan.spec.recognition;
+    let at_most = |key: &str, given: f64, most: usize, what: &str| {
+        if given <= most as f64 {
+            return Ok(());
+        }
+        let (key, allowed) = (
+            format!("key recognition.{key}"),
+            format!("at most {most}, {what}"),
+        );
+        Err(Error::input(key, given, allowed))
+    };
     let fewest = fewest_per_object(splits.iter().map(|split| &split.train), labels);
-    plan.train_touches
-        .iter()
-        .map(|asked| match *asked {
-            None => Ok(fewest),
-            Some(count) if count <= fewest => Ok(count),
-            Some(count) => Err(Error::input(
-                "key recognition.train_touches",
-                count,
-                format!("at most {fewest}, the training touches of every object in every trial"),
-            )),
-        })
-        .collect()
-}
-
-/// Every object has test touches for at least one group in every trial.
-pub fn check_fused_touches(plan: &Plan, splits: &[Split], labels: &Array1<usize>) -> Result<()> {
-    let fewest = fewest_per_object(splits.iter().map(|split| &split.test), labels);
-    match plan.fused_touches.iter().find(|&&k| k > fewest) {
-        None => Ok(()),
-        Some(k) => Err(Error::input(
-            "key recognition.fused_touches",
-            k,
-            format!("at most {fewest}, the test touches of every object in every trial"),
-        )),
+    let asked = Axis::of(&recognition.train_touches).into_iter();
+    let train_touches: Vec<usize> = asked.map(|asked| asked.unwrap_or(fewest)).collect();
+    for &count in &train_touches {
+        let what = "the training touches of every object in every trial";
+        at_most("train_touches", count as f64, fewest, what)?;
     }
-}
-
-/// Where C or γ is chosen, every object has a training touch for each fold.
-pub fn check_folds(plan: &Plan, train_touches: &[usize]) -> Result<()> {
+    let fewest_tested = fewest_per_object(splits.iter().map(|split| &split.test), labels);
+    for k in recognition.fused_touches.values() {
+        let what = "the test touches of every object in every trial";
+        at_most("fused_touches", k as f64, fewest_tested, what)?;
+    }
+    let least = train_touches.iter().min().copied().unwrap_or(0);
     let choice = &plan.choice;
-    let fewest = train_touches.iter().min().copied().unwrap_or(0);
-    let fewest = choice.touches.map_or(fewest, |most| fewest.min(most));
-    let is_open = !(choice.c.is_empty() && choice.gamma_multiples.is_empty());
-    if is_open && choice.folds > fewest {
-        return Err(Error::input(
-            "key recognition.choose_folds",
-            choice.folds,
-            format!("at most {fewest}, the training touches of every object that take part"),
-        ));
+    if !(choice.c.is_empty() && choice.gamma_multiples.is_empty()) {
+        let of_folds = choice.touches.map_or(least, |most| least.min(most));
+        let what = "the training touches of every object that take part";
+        at_most("choose_folds", choice.folds as f64, of_folds, what)?;
     }
-    Ok(())
-}
-
-/// No imbalance leaves an object without a training touch.
-pub fn check_imbalance(plan: &Plan, train_touches: &[usize]) -> Result<()> {
-    let most = 2.0 * train_touches.iter().min().copied().unwrap_or(0) as f64;
-    let ratios = plan.class_imbalance.iter().flatten();
-    match ratios.copied().find(|&ratio| ratio > most) {
-        None => Ok(()),
-        Some(ratio) => Err(Error::input(
-            "key recognition.class_imbalance",
-            ratio,
-            format!("at most {most}, twice the training touches of every object"),
-        )),
+    for ratio in recognition.class_imbalance.iter().flat_map(Axis::values) {
+        let what = "twice the training touches of every object";
+        at_most("class_imbalance", ratio, 2 * least, what)?;
     }
+    Ok(train_touches)
 }
 
 /// The touches of the object that has fewest among any of some rows.

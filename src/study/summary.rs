@@ -1,16 +1,17 @@
 //! Trials → cells: means, intervals, and every cell against the best one.
 
+use super::conditions::{by_condition, most_accurate};
 use super::evaluation::CONFIDENCE;
-use super::pareto::{Choice, unbeaten};
-use super::repeats::{Paired, accuracies};
-use super::role::{condition_numbers, most_accurate};
+use super::repeats::{Paired, Repeat, scores};
 use super::table::{
     Cell, CellScore, Comparison, Confused, Confusion, Pareto, TrialScore, TrialTime,
 };
 use crate::error::Result;
 use crate::recognition::bootstrap::Bootstrap;
+use crate::recognition::comparison::TrialSize;
 use crate::recognition::interval::Interval;
 use crate::recognition::many_tests::holm_of_some;
+use crate::table::front;
 use std::collections::BTreeMap;
 
 /// A row of the accuracy table.
@@ -37,7 +38,8 @@ pub fn score(trials: &[&TrialScore], bootstrap: &mut Bootstrap) -> Result<CellSc
     let n_test = trials.iter().map(|t| t.n_test).min().unwrap_or(0);
     let n_correct = (accuracy * n_test as f64).round() as usize;
     let interval = Interval::wilson(n_correct, n_test, CONFIDENCE)?;
-    let of_mean = match accuracies(trials) {
+    let repeats: Vec<Repeat> = trials.iter().map(|trial| Repeat::of(trial)).collect();
+    let of_mean = match scores(&repeats) {
         Some(scores) => bootstrap.mean(scores.view(), CONFIDENCE)?,
         None => None,
     };
@@ -65,18 +67,18 @@ fn mean(trials: &[Row], value: fn(&TrialScore) -> f64) -> f64 {
 /// Every cell against the one with the highest mean accuracy in its condition (the first of equals), paired trial by trial.
 pub fn compare_with_best(rows: &[Row]) -> Result<Vec<Comparison>> {
     let cells: Vec<&[Row]> = rows.chunk_by(|a, b| a.0.cell == b.0.cell).collect();
-    let conditions = condition_numbers(cells.iter().map(|trials| &trials[0].0));
-    let n_conditions = conditions.iter().max().map_or(0, |last| last + 1);
-    let mut of_condition: Vec<Vec<(usize, f64)>> = vec![Vec::new(); n_conditions];
-    for (place, trials) in cells.iter().enumerate() {
-        of_condition[conditions[place]].push((place, mean(trials, |t| t.accuracy)));
+    let mut table = Vec::with_capacity(cells.len());
+    for alike in by_condition(cells.iter().map(|trials| &trials[0].0))? {
+        let accuracies = alike
+            .iter()
+            .map(|&place| (place, mean(cells[place], |t| t.accuracy)));
+        let best = most_accurate(accuracies).expect("a condition has the cell that has it");
+        for place in alike {
+            table.push((place, against(cells[place], cells[best])?));
+        }
     }
-    let best: Vec<Option<usize>> = of_condition.into_iter().map(most_accurate).collect();
-    let compared = cells.iter().zip(&conditions).map(|(trials, &condition)| {
-        let best = best[condition].expect("a condition has the cell that has it");
-        against(trials, cells[best])
-    });
-    let mut table = compared.collect::<Result<Vec<_>>>()?;
+    table.sort_by_key(|(place, _)| *place);
+    let mut table: Vec<Comparison> = table.into_iter().map(|(_, row)| row).collect();
     let is_other = |row: &Comparison| row.cell != row.best_cell;
     let p_values = table
         .iter()
@@ -90,7 +92,17 @@ pub fn compare_with_best(rows: &[Row]) -> Result<Vec<Comparison>> {
 
 fn against(trials: &[Row], best: &[Row]) -> Result<Comparison> {
     // A cell may have failed in some trials.
-    let paired = Paired::of(trials, best);
+    let [ours, theirs] = [trials, best].map(|trials| {
+        let scores = trials.iter().map(|(_, score)| Repeat::of(score));
+        scores.collect::<Vec<_>>()
+    });
+    let (cell, first) = &trials[0];
+    // How much the trials overlap is a matter of touches, however many of them one decision takes.
+    let size = TrialSize {
+        n_train: first.n_train,
+        n_test: first.n_test * cell.fused_touches,
+    };
+    let paired = Paired::of(&ours, &theirs, size);
     let (ours, theirs) = match paired.n_trials() {
         0 => (mean(trials, |t| t.accuracy), mean(best, |t| t.accuracy)),
         _ => paired.means(),
@@ -141,7 +153,7 @@ pub fn most_confused(confusion: &[Confusion], cell: usize) -> Vec<Confused> {
 }
 
 /// What the accuracy of every cell costs, and which cells are worth their cost; both tables have the same rows.
-pub fn pareto(rows: &[Row], times: &[(Cell, TrialTime)]) -> Vec<(Cell, Pareto)> {
+pub fn pareto(rows: &[Row], times: &[(Cell, TrialTime)]) -> Result<Vec<(Cell, Pareto)>> {
     let same_cell = |a: &(Cell, TrialTime), b: &(Cell, TrialTime)| a.0.cell == b.0.cell;
     let mut table: Vec<(Cell, Pareto)> = rows
         .chunk_by(|a, b| a.0.cell == b.0.cell)
@@ -165,24 +177,26 @@ pub fn pareto(rows: &[Row], times: &[(Cell, TrialTime)]) -> Vec<(Cell, Pareto)> 
             (cell.clone(), row)
         })
         .collect();
-    let on_training = on_front(&table, |row| row.fit_s);
-    let on_prediction = on_front(&table, |row| row.predict_us_per_decision);
-    for (((_, row), training), prediction) in table.iter_mut().zip(on_training).zip(on_prediction) {
-        row.on_training_front = training;
-        row.on_prediction_front = prediction;
-    }
-    table
+    mark_fronts(&mut table)?;
+    Ok(table)
 }
 
-/// For each cell, whether no cell of the same condition beats it.
-fn on_front(table: &[(Cell, Pareto)], cost: fn(&Pareto) -> f64) -> Vec<bool> {
-    let conditions = condition_numbers(table.iter().map(|(cell, _)| cell));
-    let choices = table.iter().zip(conditions);
-    let choices = choices.map(|((_, row), condition)| Choice {
-        level: condition as f64,
-        costs: [-row.accuracy, cost(row)],
-    });
-    unbeaten(&choices.collect::<Vec<_>>())
+/// Says of each cell whether none of the same condition beats it.
+fn mark_fronts(table: &mut [(Cell, Pareto)]) -> Result<()> {
+    for alike in by_condition(table.iter().map(|(cell, _)| cell))? {
+        let on_front = |cost: fn(&Pareto) -> f64| {
+            let points = alike.iter().map(|&place| &table[place].1);
+            let points = points.map(|row| (cost(row), row.accuracy));
+            front(&points.collect::<Vec<_>>(), |a, b| a > b)
+        };
+        let training = on_front(|row| row.fit_s);
+        let prediction = on_front(|row| row.predict_us_per_decision);
+        for (place, on) in alike.iter().zip(training.into_iter().zip(prediction)) {
+            let row = &mut table[*place].1;
+            (row.on_training_front, row.on_prediction_front) = on;
+        }
+    }
+    Ok(())
 }
 
 #[cfg(test)]
@@ -241,7 +255,7 @@ mod tests {
 
     #[test]
     fn a_cell_is_on_the_front_unless_one_of_the_same_noise_is_no_worse_and_better_in_something() {
-        let table = [
+        let mut table = [
             cell(0, 0.0, (0.9, 1.0)),
             cell(1, 0.0, (0.9, 2.0)), // as accurate, slower than 0
             cell(2, 0.0, (0.95, 3.0)),
@@ -250,7 +264,8 @@ mod tests {
             cell(5, 0.0, (0.95, 3.0)), // the same as 2
             cell(6, 0.1, (0.1, 9.0)),  // alone with its noise
         ];
-        let on = on_front(&table, |row| row.fit_s);
+        mark_fronts(&mut table).unwrap();
+        let on = table.map(|(_, row)| row.on_training_front);
         assert_eq!(on, [true, false, true, true, false, true, true]);
     }
 }

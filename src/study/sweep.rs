@@ -9,20 +9,36 @@
 //! ```
 
 use super::axes::AxisValues;
+use super::axis::Axis;
 use super::plan::{Plan, millimetres};
 use super::plan_signal::Condition;
 use super::published::check_published;
 use super::samples::named_samples;
 use super::sensor_errors::TestedOn;
-use super::splits::{check_folds, check_fused_touches, check_imbalance, draw_split, train_touches};
+use super::splits::{draw_split, train_touches};
 use super::table::Cell;
 use super::touch_set::TouchSet;
 use crate::error::{Error, Result};
 use crate::random::Seed;
+use crate::recognition::ClassifierKind;
 use crate::recognition::split::Split;
 use crate::recognition::spoiled::mislabelled;
 use crate::sensing::Ensemble;
 use ndarray::Array1;
+
+/// Loops within loops: the first changes slowest.
+macro_rules! nested {
+    ($name:pat in $values:expr; $($rest:tt)*) => {
+        for $name in $values {
+            $crate::study::sweep::nested!($($rest)*)
+        }
+    };
+    ($body:expr) => {
+        $body
+    };
+}
+
+pub(crate) use nested;
 
 /// Everything that is decided before the first touch is simulated.
 #[derive(Clone, Debug)]
@@ -100,7 +116,7 @@ impl Sweep {
         named_samples(plan, &classes)?;
         let n_classes = classes.len();
         if n_classes < 2 {
-            let (place, given, allowed) = match plan.human_touch {
+            let (place, given, allowed) = match plan.spec.human_touch {
                 Some(_) => ("key human_touch.kinds", "kind", "kinds"),
                 None => ("objects", "object", "objects"),
             };
@@ -121,18 +137,28 @@ impl Sweep {
             .map(|trial| draw_split(plan, &labels, keys.as_ref(), trial))
             .collect::<Result<Vec<_>>>()?;
         let train_touches = train_touches(plan, &splits, &labels)?;
-        check_fused_touches(plan, &splits, &labels)?;
-        check_folds(plan, &train_touches)?;
-        check_imbalance(plan, &train_touches)?;
         let mut sweep = Self {
             groups: Vec::new(),
             splits,
             labels,
             group_keys: keys,
         };
-        for array in 0..plan.arrays.len() {
-            for &frames in &plan.frames {
-                sweep.add_groups(plan, (array, frames), &train_touches);
+        nested! {
+            array in 0..plan.arrays.len();
+            frames in plan.frames.iter().copied();
+            condition in plan.conditions();
+            tested_on in Axis::of(&plan.spec.signal.tested_on);
+            ensemble in plan.spec.sensing.ensemble.values();
+            {
+                let group = Group {
+                    array,
+                    frames,
+                    condition,
+                    tested_on: tested_on.unwrap_or_default(),
+                    ensemble,
+                    cells: Vec::new(),
+                };
+                sweep.add_group(plan, group, &train_touches);
             }
         }
         Ok(sweep)
@@ -184,24 +210,6 @@ impl Sweep {
         Ok(labels)
     }
 
-    fn add_groups(&mut self, plan: &Plan, (array, frames): (usize, usize), train: &[usize]) {
-        for condition in plan.conditions() {
-            for &tested_on in &plan.tested_on {
-                for &ensemble in &plan.ensembles {
-                    let group = Group {
-                        array,
-                        frames,
-                        condition,
-                        tested_on,
-                        ensemble,
-                        cells: Vec::new(),
-                    };
-                    self.add_group(plan, group, train);
-                }
-            }
-        }
-    }
-
     /// All cells, in their order.
     pub fn cells(&self) -> impl Iterator<Item = &Cell> {
         self.groups.iter().flat_map(|group| &group.cells)
@@ -214,16 +222,50 @@ impl Sweep {
 
     fn add_group(&mut self, plan: &Plan, mut group: Group, train_touches: &[usize]) {
         let patch = &plan.arrays[group.array];
+        let grid = &patch.grid;
+        let learned = &plan.spec.recognition;
+        let penalties = |classifier: ClassifierKind| match classifier.has_c() {
+            true => learned.penalties(),
+            false => vec![None],
+        };
         // Counted from the last group on: all cells would be counted once a group.
         let last = self.groups.last().and_then(|group| group.cells.last());
         let first = last.map_or(0, |cell| cell.cell + 1);
-        for measurements in plan.measurement_counts(patch, group.ensemble) {
-            for family in families(plan, &group_cell(plan, &group, measurements), train_touches) {
-                group.cells.extend(family_cells(plan, &family));
-            }
-        }
-        for (number, cell) in group.cells.iter_mut().enumerate() {
-            cell.cell = first + number;
+        nested! {
+            measurements in plan.measurement_counts(patch, group.ensemble);
+            over_time in Axis::of(&learned.over_time);
+            features in learned.features.values();
+            classifier in learned.classifier.values();
+            train_touches in train_touches.iter().copied();
+            class_imbalance in Axis::of(&learned.class_imbalance);
+            mislabelled_fraction in Axis::of(&learned.mislabelled_fraction);
+            c in penalties(classifier);
+            fused_touches in learned.fused_touches.values();
+            group.cells.push(Cell {
+                cell: first + group.cells.len(),
+                pitch_mm: millimetres(grid.pitch),
+                nx: grid.nx,
+                ny: grid.ny,
+                size_mm: millimetres(grid.pitch * grid.nx as f64),
+                noise_std: group.condition.noise,
+                noise_unit: plan.noise_unit,
+                smoothing_mm: millimetres(group.condition.smoothing),
+                strengths: group.condition.strengths,
+                tested_on: plan.spec.signal.tested_on.as_ref().map(|_| group.tested_on),
+                ensemble: group.ensemble,
+                measurements,
+                ratio: grid.n_taxels() as f64 / measurements as f64,
+                frames: group.frames,
+                over_time,
+                features,
+                classifier,
+                c,
+                train_touches,
+                mislabelled_fraction,
+                class_imbalance,
+                fused_touches,
+                variant: AxisValues::default(),
+            })
         }
         // Of many groups of few cells, room for more would be most of the memory.
         group.cells.shrink_to_fit();
@@ -235,85 +277,4 @@ impl Sweep {
 fn training_stream(plan: &Plan, trial: usize) -> Seed {
     let seed = Seed::new(plan.spec.seed).named("training rows");
     seed.numbered(trial as u64)
-}
-
-/// Over time × features × classifier × training touches × what spoils them: the first cell of each family with a number of
-/// measurements.
-fn families(plan: &Plan, first: &Cell, train_touches: &[usize]) -> Vec<Cell> {
-    let mut families = Vec::new();
-    for &over_time in &plan.over_time {
-        for &features in &plan.features {
-            for &classifier in &plan.classifiers {
-                for &train_touches in train_touches {
-                    families.extend(spoiled(plan).map(|[imbalance, mislabelled]| Cell {
-                        over_time,
-                        features,
-                        classifier,
-                        train_touches,
-                        class_imbalance: imbalance,
-                        mislabelled_fraction: mislabelled,
-                        ..first.clone()
-                    }));
-                }
-            }
-        }
-    }
-    families
-}
-
-/// Class imbalance × mislabelled fraction.
-fn spoiled(plan: &Plan) -> impl Iterator<Item = [Option<f64>; 2]> {
-    let imbalances = plan.class_imbalance.iter();
-    imbalances.flat_map(|&imbalance| plan.mislabelled.iter().map(move |&part| [imbalance, part]))
-}
-
-/// The cells of a family: every C that its classifier has a use for, with every number of fused touches.
-fn family_cells(plan: &Plan, family: &Cell) -> Vec<Cell> {
-    let penalties = match family.classifier.has_c() {
-        true => &plan.penalties[..],
-        false => &[None],
-    };
-    let of_penalty = |&c: &Option<f64>| {
-        plan.fused_touches.iter().map(move |&fused_touches| Cell {
-            c,
-            fused_touches,
-            ..family.clone()
-        })
-    };
-    penalties.iter().flat_map(of_penalty).collect()
-}
-
-/// A cell of a group, with m and with the first value of each axis that the group leaves open.
-fn group_cell(plan: &Plan, group: &Group, measurements: usize) -> Cell {
-    let grid = &plan.arrays[group.array].grid;
-    let Condition {
-        noise,
-        smoothing,
-        strengths,
-    } = group.condition;
-    Cell {
-        cell: 0,
-        pitch_mm: millimetres(grid.pitch),
-        nx: grid.nx,
-        ny: grid.ny,
-        size_mm: millimetres(grid.pitch * grid.nx as f64),
-        noise_std: noise,
-        noise_unit: plan.noise_unit,
-        smoothing_mm: millimetres(smoothing),
-        strengths,
-        tested_on: plan.spec.signal.tested_on.as_ref().map(|_| group.tested_on),
-        ensemble: group.ensemble,
-        measurements,
-        ratio: grid.n_taxels() as f64 / measurements as f64,
-        frames: group.frames,
-        over_time: plan.over_time[0],
-        features: plan.features[0],
-        classifier: plan.classifiers[0],
-        c: None,
-        train_touches: 0,
-        mislabelled_fraction: None,
-        class_imbalance: None,
-        fused_touches: plan.fused_touches[0],
-        variant: AxisValues::default(),
-    }
 }

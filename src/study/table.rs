@@ -254,21 +254,22 @@ columns! { Confusion {
     cell: Subject: Linear;
     object: Subject;
     predicted: Subject "taken for";
-    count: Value(Neither) "test rows": Linear;
+    // Rare confusions are seen, too.
+    count: Value(Neither) "test rows": Log;
 } }
 
 columns! { Confused {
-    cell: Note: Linear;
+    cell: Subject: Linear;
     object: Subject;
     predicted: Subject "taken for";
-    count: Note "test rows": Linear;
+    count: Note "test rows": Log;
     n_test: Note "test rows of the object": Linear;
     share: Value(Less) "share of the object's test rows": Share;
 } }
 
 columns! { Published {
-    claim: Note;
-    source: Note;
+    claim: Subject;
+    source: Subject;
     published_accuracy: Value(Neither) "published accuracy": Share;
     accuracy: Value(More): Share between [accuracy_low, accuracy_high];
     accuracy_low: Note "95 % interval, lower end": Share;
@@ -278,7 +279,7 @@ columns! { Published {
 } }
 
 columns! { Comparison {
-    cell: Note: Linear;
+    cell: Subject: Linear;
     best_cell: Note "best cell": Linear;
     n_trials: Note "trials of both": Linear;
     difference: Value(More) "difference to the best": Linear between [difference_low, difference_high];
@@ -331,7 +332,7 @@ pub struct Limit {
 
 columns! { Limit {
     what: Subject "limit";
-    count: Note: Linear;
+    count: Note: Log;
     of: Note: Linear;
     meaning: Note;
 } }
@@ -359,4 +360,6 @@ pub struct Tables {
     pub published: Vec<(Cell, Published)>,
     /// Three rows per cell, for studies with `projections_per_split`.
     pub variance: Vec<Variance>,
+    /// How often limits of the model were reached.
+    pub limits: Vec<Limit>,
 }

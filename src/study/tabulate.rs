@@ -1,7 +1,7 @@
 //! Finished cells → tables: by cell, then by trial.
 
+use super::conditions::most_accurate;
 use super::evaluation::Evaluation;
-use super::role::most_accurate;
 use super::summary::{compare_with_best, most_confused, pareto, summarise};
 use super::table::{Cell, Confusion, Tables};
 use super::variance_table::variances;
@@ -45,6 +45,6 @@ pub fn tabulate(
     if let Some(best) = most_accurate(accuracies) {
         tables.confused = most_confused(&tables.confusion, best);
     }
-    tables.pareto = pareto(&tables.accuracy, &tables.timing);
+    tables.pareto = pareto(&tables.accuracy, &tables.timing)?;
     Ok(())
 }

@@ -12,9 +12,8 @@
 //! Deflections are what the press gives: no noise, no smoothing, none of the sensor errors of `[signal]`. Frames as a cell reads them
 //! ([`ReadFrames`]) have all of these, in metres or, with the step `force`, in newtons; only `frames.npy` differs.
 
-use super::feature_files::find;
-use super::frames::FrameWriter;
-use super::measurement::measure_group;
+use super::content_hash::bytes_of_numbers;
+use super::feature_files::{find, measured};
 use super::plan::Plan;
 use super::progress::Progress;
 use super::simulation::describe;
@@ -94,26 +93,14 @@ impl ReadFrames {
     ) -> Result<Self> {
         let (group, cell) = find(sweep, cell)?;
         let split = sweep.split(plan, cell, trial)?;
-        let patch = &plan.arrays[group.array];
-        progress.stage(
-            &format!("read {}", describe(patch)),
-            sweep.labels.len() as u64,
-        );
-        let writer = FrameWriter::in_memory(patch.grid.n_taxels());
-        let frames = touched.simulate((patch, group.frames), writer, progress)?;
         // What the identity measures are the frames themselves.
         let identity = Group {
             ensemble: Ensemble::Identity,
             ..group.clone()
         };
-        let n_taxels = patch.grid.n_taxels();
-        let read = measure_group(
-            plan,
-            &identity,
-            (touched, &frames),
-            (trial, &split),
-            n_taxels,
-        )?;
+        let n_taxels = plan.arrays[group.array].grid.n_taxels();
+        let of = (touched, &identity, n_taxels);
+        let read = measured(plan, of, (trial, &split), ("read", progress))?;
         Ok(Self {
             array: group.array,
             values: read.values,
@@ -201,10 +188,8 @@ fn pressed(scene: &Scene, rest: &RestPose, touch: &Touch, workspace: &mut Worksp
 
 /// The files with one entry a touch.
 struct TouchFiles {
-    frames: WholeFile,
-    labels: WholeFile,
-    poses: WholeFile,
-    depths: WholeFile,
+    /// Frames, labels, poses, depths.
+    arrays: [WholeFile; 4],
     table: CsvFile,
     n_written: usize,
 }
@@ -213,25 +198,27 @@ impl TouchFiles {
     fn create(folder: &Path, n: usize, patch: &Patch) -> Result<Self> {
         let shape = [n, patch.grid.ny, patch.grid.nx];
         Ok(Self {
-            frames: start_npy::<f32>(&folder.join("frames.npy"), &shape)?,
-            labels: start_npy::<i64>(&folder.join("labels.npy"), &[n])?,
-            poses: start_npy::<f64>(&folder.join("poses.npy"), &[n, 7])?,
-            depths: start_npy::<f64>(&folder.join("depths.npy"), &[n])?,
+            arrays: [
+                start_npy::<f32>(&folder.join("frames.npy"), &shape)?,
+                start_npy::<i64>(&folder.join("labels.npy"), &[n])?,
+                start_npy::<f64>(&folder.join("poses.npy"), &[n, 7])?,
+                start_npy::<f64>(&folder.join("depths.npy"), &[n])?,
+            ],
             table: CsvFile::create(&folder.join("touches.csv"))?,
             n_written: 0,
         })
     }
 
     fn add(&mut self, label: usize, object: &str, touch: &Touch, reading: &Reading) -> Result<()> {
-        let numbers =
-            |values: &[f64]| -> Vec<u8> { values.iter().flat_map(|v| v.to_le_bytes()).collect() };
-        let frame: Vec<u8> = reading.frame.iter().flat_map(|v| v.to_le_bytes()).collect();
-        self.frames.write(|w| w.write_all(&frame))?;
-        self.labels
-            .write(|w| w.write_all(&(label as i64).to_le_bytes()))?;
-        self.poses.write(|w| w.write_all(&numbers(&reading.pose)))?;
-        self.depths
-            .write(|w| w.write_all(&numbers(&[touch.depth])))?;
+        let entries: [Vec<u8>; 4] = [
+            reading.frame.iter().flat_map(|v| v.to_le_bytes()).collect(),
+            (label as i64).to_le_bytes().to_vec(),
+            bytes_of_numbers(reading.pose),
+            bytes_of_numbers([touch.depth]),
+        ];
+        for (file, entry) in self.arrays.iter_mut().zip(entries) {
+            file.write(|writer| writer.write_all(&entry))?;
+        }
         self.table.row(TouchRow {
             touch: self.n_written,
             label,
@@ -251,10 +238,7 @@ impl TouchFiles {
     }
 
     fn commit(self) -> Result<()> {
-        self.frames.commit()?;
-        self.labels.commit()?;
-        self.poses.commit()?;
-        self.depths.commit()?;
+        self.arrays.into_iter().try_for_each(WholeFile::commit)?;
         self.table.commit()
     }
 }

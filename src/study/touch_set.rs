@@ -1,7 +1,7 @@
 //! What a recognition study asks of its touches: of pressed objects, or of human touches.
 
-use super::content_hash::ContentHash;
-use super::frames::{FrameWriter, Frames};
+use super::content_hash::{bytes_of_model, sha256};
+use super::frames::{FramePlace, Frames};
 use super::measurement::{TouchToRead, touches_of_study};
 use super::plan::Plan;
 use super::pose_groups::KeepTogether;
@@ -10,7 +10,7 @@ use super::samples::{Samples, sample_frames};
 use super::simulation::{TouchedObject, simulate_into, touch_labels};
 use super::sweep::Sweep;
 use crate::contact::saturation_limit;
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::objects::Model;
 use crate::random::Seed;
 use crate::world::Patch;
@@ -27,7 +27,14 @@ pub trait TouchSet: Sync {
     fn labels(&self) -> Array1<usize>;
 
     /// Group of every touch, for splits that keep groups together; the error says that these touches have no such groups.
-    fn group_keys(&self, together: &KeepTogether) -> Result<Array1<usize>>;
+    fn group_keys(&self, _together: &KeepTogether) -> Result<Array1<usize>> {
+        let allowed = "no such key: these touches have no groups";
+        Err(Error::input(
+            "key recognition.keep_together",
+            "given",
+            allowed,
+        ))
+    }
 
     /// Makes what all touches need on all threads now; the first touches would make it one after the other.
     fn prepare(&self) {}
@@ -35,11 +42,11 @@ pub trait TouchSet: Sync {
     /// Makes all touches on an array, F frames each; the same bytes at any number of threads.
     ///
     /// # Errors
-    /// The writer's file cannot be written.
+    /// The file of frames cannot be written.
     fn simulate(
         &self,
         on: (&Patch, usize),
-        writer: FrameWriter,
+        place: &FramePlace,
         progress: &dyn Progress,
     ) -> Result<Frames>;
 
@@ -61,7 +68,9 @@ pub trait TouchSet: Sync {
     fn settings(&self) -> Vec<(String, String)>;
 
     /// SHA-256 of what each object is made of, by its name; empty if the study's text says all.
-    fn content(&self) -> BTreeMap<String, String>;
+    fn content(&self) -> BTreeMap<String, String> {
+        BTreeMap::new()
+    }
 }
 
 impl TouchSet for Vec<TouchedObject> {
@@ -84,10 +93,10 @@ impl TouchSet for Vec<TouchedObject> {
     fn simulate(
         &self,
         on: (&Patch, usize),
-        writer: FrameWriter,
+        place: &FramePlace,
         progress: &dyn Progress,
     ) -> Result<Frames> {
-        simulate_into(self, on, writer, progress)
+        simulate_into(self, on, place, progress)
     }
 
     fn to_read(&self, plan: &Plan, n_frames: usize, seed: &Seed) -> Vec<TouchToRead> {
@@ -137,10 +146,8 @@ impl TouchSet for Vec<TouchedObject> {
     }
 
     fn content(&self) -> BTreeMap<String, String> {
-        let hash = |t: &TouchedObject| {
-            let model = ContentHash::default().model(&t.object.model);
-            (t.object.name.clone(), model.hex())
-        };
-        self.iter().map(hash).collect()
+        let objects = self.iter().map(|t| &t.object);
+        let hashed = objects.map(|o| (o.name.clone(), sha256(bytes_of_model(&o.model))));
+        hashed.collect()
     }
 }

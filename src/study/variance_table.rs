@@ -1,11 +1,11 @@
 //! How much of the spread of each cell's accuracy comes from splits, from projections, and from the rest.
 
 use super::evaluation::CONFIDENCE;
-use super::repeats::accuracies;
+use super::repeats::{Repeat, scores};
 use super::table::{Cell, TrialScore};
-use crate::columns;
 use crate::error::Result;
 use crate::recognition::variance::{Component, components};
+use crate::row;
 use serde::{Deserialize, Serialize};
 
 /// What makes the accuracies of a cell's trials differ.
@@ -20,58 +20,42 @@ pub enum Source {
     Rest,
 }
 
+row! {
 /// What a source adds to the variance of a cell's accuracy: a row of `variance.csv`, for studies with `projections_per_split`.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Variance {
     /// Number of the cell.
-    pub cell: usize,
+    cell: usize => Subject: Linear;
     /// The source.
-    pub source: Source,
+    source: Source => Subject "source of variance";
     /// How many of it were drawn; of the rest: trials.
-    pub n_levels: usize,
+    n_levels: usize => Note "levels": Linear;
     /// Degrees of freedom of its mean square.
-    pub degrees_of_freedom: usize,
+    degrees_of_freedom: usize => Note: Linear;
     /// Its mean square.
-    pub mean_square: f64,
+    mean_square: f64 => Note: Linear;
     /// Unbiased estimate of its variance (method of moments); below zero by chance if it is small.
-    pub estimate: f64,
+    estimate: f64 => Note "variance": Linear;
     /// Standard deviation that it alone gives the accuracy: the root of the estimate, 0 if that is below zero.
-    pub accuracy_std: f64,
+    accuracy_std: f64 => Value(Less) "standard deviation of the accuracy": Linear between [accuracy_std_low, accuracy_std_high];
     /// Lower end of the 95 % interval of that standard deviation (modified large samples; of the rest χ²).
-    pub accuracy_std_low: f64,
+    accuracy_std_low: f64 => Note "standard deviation, lower end": Linear;
     /// Upper end of the same interval.
-    pub accuracy_std_high: f64,
+    accuracy_std_high: f64 => Note "standard deviation, upper end": Linear;
     /// Share of the variance of a trial, estimates below zero taken as zero; empty if nothing varies.
-    pub share: Option<f64>,
+    share: Option<f64> => Value(Less) "share of the variance": Share;
     /// p-value of the F test that it adds nothing; empty for the rest.
-    pub p_value: Option<f64>,
-}
-
-columns! { Variance {
-    cell: Note: Linear;
-    source: Subject "source of variance";
-    n_levels: Note "levels": Linear;
-    degrees_of_freedom: Note: Linear;
-    mean_square: Note: Linear;
-    estimate: Note "variance": Linear;
-    accuracy_std: Value(Less) "standard deviation of the accuracy": Linear between [accuracy_std_low, accuracy_std_high];
-    accuracy_std_low: Note "standard deviation, lower end": Linear;
-    accuracy_std_high: Note "standard deviation, upper end": Linear;
-    share: Value(Less) "share of the variance": Share;
-    p_value: Value(Neither) "p-value": Linear;
+    p_value: Option<f64> => Value(Neither) "p-value": Linear;
 } }
 
 /// Three rows a cell whose trials combine every split with every projection; none for other cells.
 pub fn variances(rows: &[(Cell, TrialScore)]) -> Result<Vec<Variance>> {
     let mut table = Vec::new();
     for trials in rows.chunk_by(|a, b| a.0.cell == b.0.cell) {
-        let scores: Vec<&TrialScore> = trials.iter().map(|(_, score)| score).collect();
-        let Some(scores) = accuracies(&scores).filter(|scores| scores.ncols() > 1) else {
+        let trials_of = trials.iter().map(|(_, score)| Repeat::of(score));
+        let scores = scores(&trials_of.collect::<Vec<_>>());
+        let Some(scores) = scores.filter(|scores| scores.ncols() > 1 && scores.nrows() > 1) else {
             continue;
         };
-        if scores.nrows() < 2 {
-            continue;
-        }
         let found = components(scores.view(), CONFIDENCE)?;
         let parts = [
             (Source::Split, found.rows),

@@ -1,6 +1,6 @@
 //! A file of rows, before there are any.
 
-use super::{Columns, Table};
+use super::{Column, Columns, Table};
 use crate::error::Result;
 use serde::Serialize;
 use std::marker::PhantomData;
@@ -49,12 +49,24 @@ impl<R: Columns> File<R> {
     /// The table of some rows.
     ///
     /// # Errors
-    /// Those of [`Table::of`].
+    /// Rows that have no form in a file; the error names it.
     pub fn of(&self, rows: &[R]) -> Result<Table>
     where
         R: Serialize,
     {
-        Ok(self.described(Table::of(self.name, self.title, rows)?))
+        self.of_columns(R::columns(), rows)
+    }
+
+    /// The same of rows that have other columns than their type says: those of axes that a study names itself.
+    ///
+    /// # Errors
+    /// Those of [`of`](Self::of); a row with other columns.
+    pub fn of_columns(&self, columns: Vec<Column>, rows: &[R]) -> Result<Table>
+    where
+        R: Serialize,
+    {
+        let made = Table::of_columns((self.name, self.title), columns, rows)?;
+        Ok(self.described(made))
     }
 
     /// The table that stands in a folder.
@@ -62,8 +74,25 @@ impl<R: Columns> File<R> {
     /// # Errors
     /// Those of [`Table::read`].
     pub fn read(&self, folder: &Path) -> Result<Table> {
-        let table = Table::read::<R>(self.name, self.title, folder)?;
-        Ok(self.described(table))
+        self.read_columns(R::columns(), folder)
+    }
+
+    /// The same of a file that has these columns.
+    ///
+    /// # Errors
+    /// Those of [`read`](Self::read).
+    pub fn read_columns(&self, columns: Vec<Column>, folder: &Path) -> Result<Table> {
+        let read = Table::read_columns((self.name, self.title), columns, folder)?;
+        Ok(self.described(read))
+    }
+
+    /// The same where there is such a file: of a part that a study may leave out.
+    ///
+    /// # Errors
+    /// Those of [`Table::read`].
+    pub fn read_if_there(&self, folder: &Path) -> Result<Option<Table>> {
+        let is_there = folder.join(self.name).exists();
+        is_there.then(|| self.read(folder)).transpose()
     }
 
     fn described(&self, table: Table) -> Table {

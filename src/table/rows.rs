@@ -1,6 +1,6 @@
 //! Rows of a table by their values.
 
-use super::{Data, Shown, Table};
+use super::{Data, Role, Shown, Table, Value};
 use std::collections::HashMap;
 
 impl Table {
@@ -30,6 +30,30 @@ impl Table {
         let value = self.column(column)?.1.value(row)?;
         let column = column.to_owned();
         Some(Shown { column, value })
+    }
+
+    /// The names of its columns of a role.
+    pub fn of_role(&self, role: Role) -> Vec<&str> {
+        let columns = self.columns.iter().filter(|column| column.role == role);
+        columns.map(|column| column.name.as_ref()).collect()
+    }
+
+    /// Whether a row has a setting.
+    pub fn has_setting(&self, column: &str, row: usize, wanted: &Value) -> bool {
+        let known = self.column(column).and_then(|(_, data)| data.value(row));
+        known.is_some_and(|known| known.agrees(wanted))
+    }
+
+    /// The values of a column, each once, for an error: `one of 16, 64`; empty if it has none.
+    pub fn one_of(&self, column: &str, rows: impl IntoIterator<Item = usize>) -> String {
+        let firsts = self.groups(&[column], rows);
+        let data = self.column(column).map(|(_, data)| data);
+        let values = firsts.iter().filter_map(|rows| data?.value(rows[0]));
+        let values: Vec<String> = values.map(|value| value.to_string()).collect();
+        match values.is_empty() {
+            true => String::new(),
+            false => format!("one of {}", values.join(", ")),
+        }
     }
 
     /// A number; NaN where it is absent.

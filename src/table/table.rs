@@ -5,6 +5,7 @@ use crate::error::{Error, Result};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 use std::collections::HashMap;
+use std::fmt;
 use std::path::Path;
 
 /// A table of a study's results.
@@ -63,6 +64,32 @@ impl From<f64> for Value {
 impl From<&str> for Value {
     fn from(word: &str) -> Self {
         Self::Word(word.to_owned())
+    }
+}
+
+/// As files have it.
+impl fmt::Display for Value {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        match self {
+            Self::Number(number) => write!(f, "{number}"),
+            Self::Word(word) => f.write_str(word),
+        }
+    }
+}
+
+/// Numbers this close, relative to the larger, are the same setting: a ratio of 100 on 4,096 taxels is 41 measurements, which
+/// are 99.90:1. Larger, and neighbouring settings would be taken for each other; smaller, and that ratio would be refused.
+const SAME_SETTING: f64 = 1e-3;
+
+impl Value {
+    /// Whether it is the same setting as another.
+    pub fn agrees(&self, wanted: &Self) -> bool {
+        match (self, wanted) {
+            (Self::Number(a), Self::Number(b)) => {
+                (a - b).abs() <= SAME_SETTING * a.abs().max(b.abs())
+            }
+            _ => self == wanted,
+        }
     }
 }
 
@@ -151,18 +178,6 @@ impl Table {
         Self::from_csv((file, title), columns, &path, csv)
     }
 
-    /// The same, of times: no two runs give the same bytes.
-    pub fn of_times(mut self) -> Self {
-        self.repeats = false;
-        self
-    }
-
-    /// The same, made of the rows of all work items.
-    pub fn summary(mut self) -> Self {
-        self.is_summary = true;
-        self
-    }
-
     /// The same with a note.
     pub fn noted(mut self, note: impl Into<String>) -> Self {
         self.note = note.into();
@@ -171,18 +186,18 @@ impl Table {
 
     /// Whether its rows are choices of a designer that have a value and a cost.
     pub fn offers_choices(&self) -> bool {
-        let varies = |data: &Data| match data {
-            Data::Words { levels, .. } => levels.len() > 1,
-            Data::Numbers(numbers) => numbers.iter().any(|n| n.to_bits() != numbers[0].to_bits()),
-        };
+        let varies = |data: &Data| (1..self.n_rows).any(|row| data.key(row) != data.key(0));
         let columns = self.columns.iter().zip(&self.data);
-        let varying: Vec<Role> = columns
-            .filter(|(_, data)| varies(data))
-            .map(|(column, _)| column.role)
-            .collect();
-        let has = |role: Role| varying.contains(&role);
-        let has_value = has(Role::Value(Better::More)) || has(Role::Value(Better::Less));
-        has(Role::Choice) && has(Role::Cost) && has_value && !has(Role::Subject)
+        let varying = columns.filter(|(_, data)| varies(data));
+        offer_choices(varying.map(|(column, _)| column.role))
+    }
+
+    /// Whether its rows would be choices that have a value and a cost, if there were more of them.
+    pub fn offers_a_choice(&self) -> bool {
+        self.n_rows == 1 && {
+            let roles = self.columns.iter().map(|column| column.role);
+            offer_choices(roles.filter(|role| *role != Role::Subject))
+        }
     }
 
     /// The place of a column by its name.
@@ -326,6 +341,14 @@ impl Table {
             csv,
         })
     }
+}
+
+/// Whether these are the roles of columns that tell choices, without a subject, and what they give and cost.
+fn offer_choices(roles: impl Iterator<Item = Role>) -> bool {
+    let roles: Vec<Role> = roles.collect();
+    let has = |role: Role| roles.contains(&role);
+    let has_value = has(Role::Value(Better::More)) || has(Role::Value(Better::Less));
+    has(Role::Choice) && has(Role::Cost) && has_value && !has(Role::Subject)
 }
 
 /// A table of no rows has the header of those columns that every study has.

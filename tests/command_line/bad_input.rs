@@ -126,7 +126,11 @@ fn sizes_that_make_no_array_are_refused() {
         "pitch_mm = nan",
         &["skin.pitch_mm", "NaN"],
     );
-    Case::new().refuses("size_mm = 64.0", "taxels = 0", &["skin.taxels", "0 taxels"]);
+    Case::new().refuses(
+        "size_mm = 64.0",
+        "taxels = 0",
+        &["skin.taxels", "at most 4096"],
+    );
     Case::new().refuses(
         "size_mm = 64.0",
         "size_mm = 63.0",
@@ -200,8 +204,8 @@ fn what_the_user_names_wrongly_is_refused_as_bad_input() {
     let before = case.names();
     for (arguments, words) in [
         ("report empty", &["empty/study.toml", "cannot be read"][..]),
-        ("compare empty empty", &["empty/accuracy.csv", "is missing"]),
-        ("compare nothere empty", &["nothere/accuracy.csv"]),
+        ("compare empty empty", &["empty/study.toml", "is missing"]),
+        ("compare nothere empty", &["nothere/study.toml"]),
         ("recording nothere.npz", &["nothere.npz", "is missing"]),
         ("press --mesh x.ply", &["x.ply: a folder"]),
         ("press --spheres x.csv", &["x.csv: a folder"]),
@@ -559,7 +563,7 @@ fn keys_of_single_classifiers_are_checked_and_belong_to_one_of_the_study() {
     refuses(
         "polynomial_svm",
         "degree = 21",
-        &["recognition.degree", "from 1 to 20"],
+        &["recognition.degree", "at most 20"],
     );
 }
 
@@ -572,7 +576,7 @@ fn a_published_accuracy_about_no_cell_is_refused_before_the_study_runs() {
         )
     };
     for (keys, words) in [
-        ("ratio = 64", ["claim '98 %', ratio", "one of 4.0, 16.0"]),
+        ("ratio = 64", ["claim '98 %', ratio", "one of 4, 16"]),
         ("kernel = \"rbf\"", ["kernel: is no setting", "classifier"]),
         ("classifier = \"rbf_svm\"", ["rbf_svm", "linear_svm"]),
     ] {
@@ -586,7 +590,8 @@ fn a_published_accuracy_is_shown_beside_ours_and_kept_in_a_table() {
     let published = "\n[report]\npublished = [{ claim = \"98 % at 16:1\", accuracy = 0.98, source = \"[CL]\", ratio = 16, noise = 0 }]\n";
     case.file("study.toml", STUDY.to_owned() + published);
     let (said, _) = case.succeeds(&["run", "study.toml"]);
-    assert!(said.contains("98 % at 16:1 [CL]"), "{said}");
+    let row = said.lines().find(|line| line.starts_with("98 % at 16:1"));
+    assert!(row.is_some_and(|row| row.contains("[CL]")), "{said}");
     let table = fs::read_to_string(case.path("results/study/published.csv")).unwrap();
     assert!(
         table.lines().count() == 2 && table.contains("98 % at 16:1,[CL],0.98,"),

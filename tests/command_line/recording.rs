@@ -36,7 +36,6 @@ fn recorded() -> Case {
         ],
         objects: vec!["mug".to_owned()],
         about: serde_json::json!({"seed": 2018}),
-        ..RecordingHeader::default()
     };
     let mut writer = RecordingWriter::create(&case.path("touch.npz"), header, 30).unwrap();
     for k in 0..30 {

@@ -4,10 +4,10 @@ use bubbletouch::contact::{
     Workspace, first_contact, press_at_pose, press_to_depth, press_to_travel, simulate,
 };
 use bubbletouch::geometry::Pose;
-use bubbletouch::mesh::{LengthUnit, SizeLimits};
+use bubbletouch::mesh::LengthUnit;
 use bubbletouch::objects::{Catalogue, Model, Sphere, SphereUnion};
 use bubbletouch::random::Seed;
-use bubbletouch::study::{MeshUse, ModelSpec, load_mesh};
+use bubbletouch::study::{ModelSpec, ObjectsSpec, load_mesh};
 use bubbletouch::world::{Grid, Patch, Phase, RestPoses, Scene, Taxel, Touch, VelocityPlan};
 use glam::{DQuat, DVec3};
 use rand::Rng;
@@ -415,15 +415,12 @@ fn no_scanned_object_is_felt_less_the_deeper_it_is_pressed_as_a_mesh_or_as_spher
             continue;
         }
         for model in [ModelSpec::Mesh, ModelSpec::VertexSpheres] {
-            let how = MeshUse {
+            let spec = ObjectsSpec {
                 unit: Some(LengthUnit::default()),
-                model,
-                surface_error: 1e-3,
-                packings: None,
-                sizes: SizeLimits::ANY,
-                close_holes: None,
+                model: Some(model),
+                ..ObjectsSpec::default()
             };
-            let object = load_mesh(&path, &how).unwrap();
+            let object = load_mesh(&path, &spec, None).unwrap();
             deeper_is_never_less(&object.name, &object.model, &mut workspace);
         }
         n_meshes += 1;

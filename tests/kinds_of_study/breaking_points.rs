@@ -223,7 +223,11 @@ fn keys_that_are_out_of_range_are_named_with_their_way() {
             "name = \"a b\"",
             "breaking_points[2], key name: 'a b'",
         ),
-        ("ratio = 4", "ratio = [4, 8]", "key sensing: 2 settings"),
+        (
+            "ratio = 4",
+            "ratio = [4, 8]",
+            "key sensing.ratio: 2 settings",
+        ),
         (
             "touches = \"test\"",
             "touches = \"some\"",

@@ -2,9 +2,12 @@
 
 #[path = "../fixtures/command/mod.rs"]
 mod command;
+#[path = "../fixtures/kinds/mod.rs"]
+mod kinds;
 #[path = "../fixtures/mesh_shapes/mod.rs"]
 mod mesh_shapes;
 
+mod asked;
 mod breaking_points;
 mod object_detail;
 mod reconstruction;

@@ -32,7 +32,8 @@ fn assert_progress_ends(said: &str) {
         .iter()
         .map(|event| event["run_left_s"].as_f64().expect("seconds left"))
         .collect();
-    assert!(left.len() > 1 && left[0] > 0.0, "{left:?}");
+    // A study of stability takes no millisecond here.
+    assert!(left.len() > 1 && left[0] >= 0.0, "{left:?}");
     assert_eq!(left.last(), Some(&0.0), "{left:?}");
 }
 
@@ -80,7 +81,7 @@ impl Faults {
         assert_eq!(manifest["n_failed"], 0);
         let hashes = manifest["tables_sha256"].as_object().unwrap();
         let names = hashes.keys().map(String::as_str);
-        let names: Vec<&str> = names.filter(|name| *name != "failures.csv").collect();
+        let names: Vec<&str> = names.collect();
         let mut expected = faults.kind.repeatable.to_vec();
         expected.push("failures.csv");
         expected.sort_unstable();
@@ -358,6 +359,7 @@ macro_rules! through_all_faults {
 
 through_all_faults! {
     a_study_of_recognition_goes_through_all_faults: RECOGNITION;
+    a_study_with_axes_of_its_own_goes_through_all_faults: AXES;
     a_study_of_reconstruction_goes_through_all_faults: RECONSTRUCTION;
     a_study_of_object_detail_goes_through_all_faults: OBJECT_DETAIL;
     a_study_of_a_whole_body_goes_through_all_faults: WHOLE_BODY;
@@ -492,18 +494,6 @@ fn counts_that_no_memory_holds_are_refused_before_it_is_taken_in_studies_of_ever
             "training_touches = 10",
             "training_touches",
             "speed_accuracy.recognition.training_touches",
-        ),
-        (
-            Kind::SPEED_ACCURACY,
-            "touches = [8, 12]",
-            "touches",
-            "speed_accuracy.resolution.touches",
-        ),
-        (
-            Kind::SPEED_ACCURACY,
-            "trials = [2, 3]",
-            "trials",
-            "speed_accuracy.resolution.trials",
         ),
         (Kind::WHOLE_BODY, "steps = 10", "steps", "whole_body.steps"),
         (

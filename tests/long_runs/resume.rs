@@ -429,12 +429,15 @@ fn two_runs_side_by_side_say_what_moved() {
     case.succeeds(&["run", "noisy.toml", "--out", "noisy"]);
     let (output, _) = case.succeeds(&["compare", "whole", "noisy", "--out", "moved.csv"]);
     assert!(
-        output.contains("16 cells are in both runs, 16 in the first alone, 16 in the second"),
+        output.contains(
+            "accuracy.csv: 16 settings are in both runs, 16 in the first alone, 16 in the second"
+        ),
         "{output}"
     );
-    assert!(output.contains("16 have the same accuracy"), "{output}");
+    assert!(output.contains("accuracy: 16 the same"), "{output}");
     let moved = fs::read_to_string(case.path("moved.csv")).unwrap();
-    assert_eq!(moved.lines().count(), 1 + 16);
+    let of_accuracy = |line: &&str| line.starts_with("accuracy.csv,accuracy,");
+    assert_eq!(moved.lines().filter(of_accuracy).count(), 16);
     assert!(
         moved
             .lines()
@@ -446,5 +449,5 @@ fn two_runs_side_by_side_say_what_moved() {
     case.succeeds(&["run", "other.toml", "--out", "other"]);
     let output = case.run(&["compare", "whole", "other"]);
     assert_eq!(output.status.code(), Some(2));
-    assert!(said(&output).contains("no cell"), "{}", said(&output));
+    assert!(said(&output).contains("no row"), "{}", said(&output));
 }

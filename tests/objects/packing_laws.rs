@@ -1,12 +1,14 @@
 //! Laws of sphere packing: what is promised holds on shapes of every kind, measured at points of the test's own choice.
 
+use bubbletouch::Result;
 use bubbletouch::geometry::Pose;
 use bubbletouch::mesh::{MeshReport, Surface, TriangleMesh, read_ply};
 use bubbletouch::packing::{Body, DetailChain, pack_mesh, packing_error};
-use bubbletouch::study::PackingCache;
+use bubbletouch::study::{Packed, pack_within, packing_path};
 use glam::{DQuat, DVec2, DVec3};
 use rayon::prelude::*;
 use std::f64::consts::TAU;
+use std::path::Path;
 
 use crate::mesh_shapes::{cuboid, icosphere};
 use crate::overlapping::{Judge, together, turned};
@@ -214,40 +216,33 @@ fn what_cannot_be_packed_is_an_error() {
     assert!(error.to_string().contains("volume"), "{error}");
 }
 
+fn kept(folder: &Path, surface: &Surface, tolerance: f64) -> Result<Packed> {
+    pack_within("box", surface, tolerance, Some(folder))
+}
+
 #[test]
-fn the_cache_gives_back_what_was_packed_and_knows_what_from() {
+fn a_folder_gives_back_what_was_packed_and_knows_what_from() {
     let folder = tempfile::tempdir().unwrap();
-    let cache = PackingCache::new(folder.path());
     let surface = Surface::new(cuboid(DVec3::new(4.0, 3.0, 2.0) * MM));
-    let mut n_calls = 0;
-    let mut pack = |tolerance| {
-        let watch = &mut |_| n_calls += 1;
-        cache
-            .pack_mesh(&surface, Body::Solid, tolerance, watch)
-            .unwrap()
-            .packing
-    };
-    let first = pack(0.3 * MM);
-    let again = pack(0.3 * MM);
-    let finer = pack(0.2 * MM);
-    assert_eq!(first, again);
+    let pack = |tolerance| kept(folder.path(), &surface, tolerance).unwrap();
+    let (first, again, finer) = (pack(0.3 * MM), pack(0.3 * MM), pack(0.2 * MM));
+    let was_kept = [&first, &again, &finer].map(|packed| packed.was_kept);
+    assert_eq!(was_kept, [false, true, false]);
+    assert_eq!(first.spheres, again.spheres);
     assert_ne!(first.spheres, finer.spheres);
-    assert!(n_calls > 0);
     assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 2);
-    let kept = cache.path(surface.mesh(), Body::Solid, 0.3 * MM);
+    let path = |mesh| packing_path(folder.path(), mesh, 0.3 * MM);
     let other = cuboid(DVec3::new(4.0, 3.0, 2.1) * MM);
-    assert_ne!(kept, cache.path(&other, Body::Solid, 0.3 * MM));
-    assert_ne!(kept, cache.path(surface.mesh(), Body::Sheet, 0.3 * MM));
+    assert_ne!(path(surface.mesh()), path(&other));
 }
 
 #[test]
 fn a_kept_packing_that_is_damaged_in_any_way_is_made_again() {
     let folder = tempfile::tempdir().unwrap();
-    let cache = PackingCache::new(folder.path());
     let surface = Surface::new(cuboid(DVec3::new(4.0, 3.0, 2.0) * MM));
-    let pack = || cache.pack_mesh(&surface, Body::Solid, 0.3 * MM, &mut |_| {});
-    let fresh = pack().unwrap().packing;
-    let path = cache.path(surface.mesh(), Body::Solid, 0.3 * MM);
+    let pack = || kept(folder.path(), &surface, 0.3 * MM);
+    let fresh = pack().unwrap().spheres;
+    let path = packing_path(folder.path(), surface.mesh(), 0.3 * MM);
     let whole = std::fs::read(&path).unwrap();
     assert!(pack().unwrap().was_kept);
     let lines: Vec<&[u8]> = whole.split_inclusive(|&byte| byte == b'\n').collect();
@@ -280,40 +275,24 @@ fn a_kept_packing_that_is_damaged_in_any_way_is_made_again() {
         assert_ne!(bytes, whole, "{what}");
         std::fs::write(&path, bytes).unwrap();
         let again = pack().unwrap();
-        assert_eq!((again.was_kept, &again.packing), (false, &fresh), "{what}");
+        assert_eq!((again.was_kept, &again.spheres), (false, &fresh), "{what}");
         assert_eq!(std::fs::read(&path).unwrap(), whole, "{what}");
     }
-    // What is no file makes way, with all that it holds.
     std::fs::remove_file(&path).unwrap();
     std::fs::create_dir(&path).unwrap();
-    std::fs::write(path.join("mine.txt"), "mine").unwrap();
-    assert_eq!(pack().unwrap().packing, fresh);
-    assert_eq!(std::fs::read(&path).unwrap(), whole);
-    let aside = folder
-        .path()
-        .read_dir()
-        .unwrap()
-        .map(|entry| entry.unwrap().path());
-    let aside = aside.filter(|entry| entry.is_dir()).collect::<Vec<_>>();
-    assert_eq!(std::fs::read(aside[0].join("mine.txt")).unwrap(), b"mine");
-    assert!(pack().unwrap().was_kept);
+    assert_eq!(pack().unwrap_err().exit_code(), 2);
 }
 
 #[test]
 fn many_threads_may_pack_the_same_mesh_into_one_folder() {
     let folder = tempfile::tempdir().unwrap();
-    let cache = PackingCache::new(folder.path());
     let surface = Surface::new(cuboid(DVec3::new(2.0, 1.5, 1.0) * MM));
-    let pack = || {
-        cache
-            .pack_mesh(&surface, Body::Solid, 0.5 * MM, &mut |_| {})
-            .unwrap()
-    };
+    let pack = || kept(folder.path(), &surface, 0.5 * MM).unwrap();
     let packings: Vec<_> = std::thread::scope(|scope| {
         let threads: Vec<_> = (0..16).map(|_| scope.spawn(pack)).collect();
         threads
             .into_iter()
-            .map(|thread| thread.join().unwrap().packing)
+            .map(|thread| thread.join().unwrap().spheres)
             .collect()
     });
     assert!(packings.windows(2).all(|pair| pair[0] == pair[1]));

@@ -11,12 +11,15 @@ use bubbletouch::kinds::stability::{StabilityPlan, StabilityStudySpec};
 use bubbletouch::kinds::whole_body::{WholeBodyPlan, WholeBodyStudySpec};
 use bubbletouch::mesh::{LengthUnit, MeshFormat};
 use bubbletouch::objects::{Catalogue, read_spheres};
-use bubbletouch::report::csv_tables::{TABLE_FILES, VARIANCE_FILE, read_tables, write_tables};
-use bubbletouch::report::offers::read_offers;
+use bubbletouch::report::advice::{Asked, Offers, Wish};
+use bubbletouch::report::compared::differences_text;
+use bubbletouch::report::differences::differences;
+use bubbletouch::report::folder::Folder;
+use bubbletouch::report::recognition::{read_tables, tables_of};
 use bubbletouch::scene::{ScenePlan, SceneSpec};
 use bubbletouch::study::journal::{Identity, Journal};
-use bubbletouch::study::table::Tables;
-use bubbletouch::study::{Plan, StudySpec, compare_runs};
+use bubbletouch::study::{Plan, StudySpec};
+use bubbletouch::table::Table;
 use bubbletouch::world::{Interpolation, PoseTrajectory, Robot};
 use bubbletouch::{Error, Result};
 use std::fs;
@@ -424,7 +427,7 @@ fn way_points() {
 }
 
 /// Tables of a study of two small cells.
-fn study_tables() -> Tables {
+fn study_tables() -> Vec<Table> {
     const TEXT: &str = r#"
 question = "What do tables look like?"
 trials = 4
@@ -448,16 +451,17 @@ classifier = ["linear_svm", "k_nearest"]
 [report]
 published = [{ claim = "all", accuracy = 1.0, source = "nobody" }]
 "#;
-    crate::study::Study::new(TEXT).run().tables
+    tables_of(&crate::study::Study::new(TEXT).run().tables).unwrap()
 }
 
 #[test]
 fn tables_of_results() {
     let tables = study_tables();
     let at = folder_in_memory();
-    write_tables(at.path(), &tables).unwrap();
+    Folder::of_tables(at.path(), &tables).write().unwrap();
     // The first byte of an input says which of the tables it stands for.
-    let names: Vec<&str> = TABLE_FILES.into_iter().chain([VARIANCE_FILE]).collect();
+    let files = tables.iter().filter(|table| !table.csv.is_empty());
+    let names: Vec<&str> = files.map(|table| table.file).collect();
     let seeds = names.iter().enumerate().map(|(number, name)| {
         let content = fs::read(at.path().join(name)).unwrap();
         [vec![number as u8], content].concat()
@@ -489,10 +493,14 @@ fn tables_of_results() {
             let valid = fs::read(&path).unwrap();
             fs::write(&path, content).unwrap();
             let read = read_tables(at.path());
-            let offers = read_offers(at.path(), &[]);
             fs::write(&path, valid).unwrap();
-            offers?;
-            compare_runs(&tables.accuracy, &read?.accuracy).map(drop)
+            let read = read?;
+            let offers = Offers::of(&read, &Asked::default())?;
+            for choices in offers.by_condition() {
+                let advice = offers.advise(&choices, Wish::Budget(1.0));
+                advice.map(|advice| offers.in_words(&advice.choice)).ok();
+            }
+            differences_text(&differences(&tables, &read)?, 80).map(drop)
         },
     }
     .run();

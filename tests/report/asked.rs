@@ -3,8 +3,8 @@
 use crate::browser::shown::{Shown, show};
 use crate::browser::{ARROW_RIGHT, Browser};
 use crate::report_synthetic::{about, noise_cells, quickstart_cells, tables};
-use bubbletouch::report::offers::cell_offers;
-use bubbletouch::study::advice::{Cost, Wish, advise, by_condition};
+use bubbletouch::report::advice::{Asked, Offers, Wish};
+use bubbletouch::report::recognition::{CELLS, tables_of};
 use std::thread::sleep;
 use std::time::Duration;
 
@@ -109,30 +109,33 @@ fn the_page_advises_in_each_condition_what_the_library_advises() {
     let Some(Shown { browser, .. }) = show(&made, &about()) else {
         return;
     };
-    let offers = cell_offers(&made.pareto, &made.summary, &[]).unwrap();
-    let conditions = by_condition(&offers);
-    assert_eq!(conditions.len(), 5, "noises");
+    let tables = tables_of(&made).unwrap();
+    let cells = tables.iter().find(|table| table.file == CELLS).unwrap();
     let costs = [
-        (Cost::DecisionTime, "time of a decision"),
-        (Cost::TrainingTime, "time to train"),
+        ("decision_time", "time of a decision"),
+        ("training_time", "time to train"),
     ];
     let mut n_advised = 0;
     for (cost, name) in costs {
         browser.choose("#choices label:nth-of-type(3) select", name);
+        let asked = Asked {
+            cost: Some(cost.to_owned()),
+            ..Asked::default()
+        };
+        let offers = Offers::of(&tables, &asked).unwrap();
+        let conditions = offers.by_condition();
+        assert_eq!(conditions.len(), 5, "noises");
         // Just below the best of each condition: the noisier ones do not fulfil the wish of the others.
-        for offers in &conditions {
-            let best = offers
-                .iter()
-                .map(|offer| offer.accuracy)
-                .fold(0.0, f64::max);
+        for choices in &conditions {
+            let best = choices.iter().map(|offer| offer.value).fold(0.0, f64::max);
             let wish = (100.0 * best - 1.0).floor() / 100.0;
             browser.run(&format!(
                 "const wish = document.querySelector('#choices input'); wish.value = {wish}; wish.dispatchEvent(new Event('input'))"
             ));
-            let advised = conditions.iter().map(|offers| {
-                let advice = advise(offers, Wish::Accuracy(wish), cost);
+            let advised = conditions.iter().map(|choices| {
+                let advice = offers.advise(choices, Wish::Value(wish));
                 advice.map_or(String::new(), |advice| {
-                    advice.choice.cell.unwrap().to_string()
+                    cells.number("cell", advice.choice.row).to_string()
                 })
             });
             let advised: Vec<String> = advised.collect();

@@ -2,18 +2,18 @@
 
 use crate::browser::shown::html;
 use crate::report_synthetic::{
-    about, add_headlines, cell, many_cells, noise_cells, quickstart_cells, tables,
+    ReportPage, about, add_headlines, cell, many_cells, noise_cells, quickstart_cells, tables,
 };
-use bubbletouch::report::page::{Limit, ReportPage};
+use bubbletouch::report::page::StudyAbout;
 use bubbletouch::report::recognition::{answers, tables_of, words};
-use bubbletouch::study::table::{Cell, Tables};
+use bubbletouch::study::table::{Cell, Limit, Tables};
 
 fn words_of(made: &Tables, width: usize) -> String {
-    words(&tables_of(made, &[]).unwrap(), width)
+    words(&tables_of(made).unwrap(), width)
 }
 
 fn answers_of(made: &Tables) -> Vec<String> {
-    answers(&tables_of(made, &[]).unwrap())
+    answers(&tables_of(made).unwrap())
 }
 
 #[test]
@@ -240,9 +240,15 @@ fn the_page_needs_no_network_and_says_what_it_is() {
 fn nothing_a_user_writes_becomes_markup() {
     let evil = "<img src=x onerror=alert(1)>\"'&{{command}}".to_owned();
     let page = ReportPage {
-        name: evil.clone(),
-        question: evil.clone(),
-        expected: evil.clone(),
+        about: StudyAbout {
+            name: evil.clone(),
+            question: evil.clone(),
+            expected: evil.clone(),
+            command: evil.clone(),
+            program: evil.clone(),
+            wall_s: f64::NAN,
+            ..StudyAbout::default()
+        },
         settings: vec![(evil.clone(), evil.clone())],
         limits: vec![Limit {
             what: evil.clone(),
@@ -250,8 +256,6 @@ fn nothing_a_user_writes_becomes_markup() {
             of: 0,
             meaning: evil.clone(),
         }],
-        command: evil.clone(),
-        program: evil.clone(),
         ..ReportPage::default()
     };
     let mut made = tables(vec![cell()], 1, 3);

@@ -27,7 +27,7 @@ fn of_three_classifiers() -> Vec<Cell> {
 }
 
 fn fronts(cells: Vec<Cell>, asked: Option<bool>) -> (Vec<Table>, Vec<ChartSpec>) {
-    let made = tables_of(&tables(cells, 3, 24), &[]).unwrap();
+    let made = tables_of(&tables(cells, 3, 24)).unwrap();
     let mut specs = charts(&made, asked);
     specs.retain(|spec| spec.front);
     (made, specs)

@@ -41,7 +41,7 @@ fn every_cell_is_a_point_in_exactly_one_of_the_main_charts() {
         (vec![cell()], 1),
     ] {
         let n_cells = cells.len();
-        let made = tables_of(&tables(cells, 2, 4), &[]).unwrap();
+        let made = tables_of(&tables(cells, 2, 4)).unwrap();
         let specs = main_charts(&made);
         assert_eq!(specs.len(), n_charts);
         let mut rows: Vec<usize> = Vec::new();
@@ -55,7 +55,7 @@ fn every_cell_is_a_point_in_exactly_one_of_the_main_charts() {
 
 #[test]
 fn a_chart_has_its_ticks_at_the_ratios_of_the_study() {
-    let made = tables_of(&tables(quickstart_cells(), 1, 24), &[]).unwrap();
+    let made = tables_of(&tables(quickstart_cells(), 1, 24)).unwrap();
     let spec = charts(&made, None).swap_remove(0);
     assert_eq!(spec.name, "accuracy_by_ratio");
     assert_eq!(
@@ -80,7 +80,7 @@ fn a_chart_has_its_ticks_at_the_ratios_of_the_study() {
 
 #[test]
 fn pictures_are_png_files_with_two_elements_a_pixel() {
-    let made = tables_of(&tables(quickstart_cells(), 1, 43), &[]).unwrap();
+    let made = tables_of(&tables(quickstart_cells(), 1, 43)).unwrap();
     let specs = charts(&made, None);
     let of =
         |name: &str| draw(specs.iter().find(|spec| spec.name == name).unwrap(), &made).unwrap();
@@ -102,7 +102,7 @@ fn pictures_are_png_files_with_two_elements_a_pixel() {
 #[test]
 fn a_confusion_matrix_holds_every_count_of_the_best_cell() {
     let typed = tables(quickstart_cells(), 3, 24);
-    let made = tables_of(&typed, &[]).unwrap();
+    let made = tables_of(&typed).unwrap();
     let spec = charts(&made, None)
         .into_iter()
         .find(|spec| spec.name == "confusion")
@@ -126,7 +126,7 @@ fn a_confusion_matrix_holds_every_count_of_the_best_cell() {
     if let Ok(folder) = std::env::var("BUBBLETOUCH_PICTURES") {
         std::fs::write(format!("{folder}/confusion.png"), drawing.png().unwrap()).unwrap();
     }
-    assert!(charts(&tables_of(&Tables::default(), &[]).unwrap(), None).is_empty());
+    assert!(charts(&tables_of(&Tables::default()).unwrap(), None).is_empty());
 }
 
 #[test]
@@ -286,7 +286,7 @@ fn between_words_nothing_is_drawn_and_many_lines_have_whiskers() {
     });
     let count = |svg: &str, what: &str| svg.matches(what).count();
     let first = |cells: Vec<Cell>| {
-        let made = tables_of(&tables(cells, 1, 4), &[]).unwrap();
+        let made = tables_of(&tables(cells, 1, 4)).unwrap();
         let spec = charts(&made, None).swap_remove(0);
         let svg = draw(&spec, &made).unwrap().svg("");
         (spec.name, svg)

@@ -27,7 +27,6 @@ fn written(tables: &[Table], charts: &[ChartSpec]) -> (TempDir, PathBuf) {
     let found = Found {
         tables,
         charts,
-        pictures: &[],
         answers: &answers,
     };
     folder_of(folder.path(), &about, &found)

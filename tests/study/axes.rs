@@ -3,7 +3,8 @@
 use crate::command::Case;
 use crate::study::Study;
 use bubbletouch::kinds::recognition::{Outcome, RecognitionStudy};
-use bubbletouch::report::csv_tables::{read_tables, write_tables};
+use bubbletouch::report::folder::Folder;
+use bubbletouch::report::recognition::{read_tables, tables_of};
 use bubbletouch::study::pieces::PieceStudy;
 use bubbletouch::study::progress::Silent;
 use bubbletouch::study::table::TrialScore;
@@ -137,14 +138,15 @@ fn tables_of_a_study_with_axes_read_back_as_they_are() {
         study.first().plan.spec.to_toml(),
     )
     .unwrap();
-    write_tables(folder.path(), &tables).unwrap();
-    assert_eq!(read_tables(folder.path()).unwrap().accuracy, {
-        let mut rows = tables.accuracy;
-        for (cell, _) in &mut rows {
-            cell.variant.number = 0;
-        }
-        rows
-    });
+    let made = tables_of(&tables).unwrap();
+    Folder::of_tables(folder.path(), &made).write().unwrap();
+    let read = read_tables(folder.path()).unwrap();
+    assert_eq!(read.len(), made.len());
+    for (read, made) in read.iter().zip(&made) {
+        assert_eq!(read.columns, made.columns, "{}", made.file);
+        assert!(read.csv == made.csv, "{}", made.file);
+    }
+    assert!(made[0].column("depth_mm").is_some());
 }
 
 #[test]

@@ -112,7 +112,7 @@ fn a_skin_without_strength_scores_as_one_without_the_keys_and_only_used_keys_are
         assert_eq!(strengths.of("gain_std"), None);
     }
     let header = |tables: &_| {
-        let accuracy = tables_of(tables, &[]).unwrap().swap_remove(0);
+        let accuracy = tables_of(tables).unwrap().swap_remove(0);
         let text = String::from_utf8(accuracy.csv).unwrap();
         text.lines().next().unwrap().to_owned()
     };
@@ -244,7 +244,7 @@ fn the_tables_are_the_same_bytes_at_any_number_of_threads() {
 #[test]
 fn every_strength_gets_its_chart_and_every_imperfection_its_picture() {
     let study = Study::new(&with_signal(ALL));
-    let mut charts = charts(&tables_of(&study.run().tables, &[]).unwrap(), None);
+    let mut charts = charts(&tables_of(&study.run().tables).unwrap(), None);
     charts.retain(|spec| spec.y == "accuracy");
     let names: Vec<&str> = charts.iter().map(|spec| spec.name.as_str()).collect();
     let expected = [
@@ -315,7 +315,7 @@ fn keys_that_make_no_sense_are_refused_with_what_does() {
         ),
         (
             "steps = [\"gain\", \"gain\"]\ngain_std = 0.1",
-            "Gain twice; each step at most once",
+            "signal.steps: \"gain\" twice; each value once",
         ),
     ] {
         assert_refused(&with_signal(signal), said);

@@ -2,9 +2,11 @@
 
 use crate::study::Study;
 use bubbletouch::kinds::recognition::Outcome;
-use bubbletouch::report::csv_tables::{VARIANCE_FILE, read_tables, write_tables};
+use bubbletouch::report::folder::Folder;
+use bubbletouch::report::recognition::{read_tables, tables_of};
 use bubbletouch::study::table::{Cell, PStatus, Source, TrialScore, Variance};
 use bubbletouch::study::{Plan, StudySpec};
+use std::path::Path;
 
 /// Three objects that are hard to tell apart, with few measurements.
 fn text(repeats: &str, ensemble: &str, noise: f64) -> String {
@@ -137,17 +139,23 @@ fn the_table_is_written_only_where_it_has_rows_and_is_read_again() {
     };
     let crossed = study("trials = 25\nprojections_per_split = 5");
     assert!(crossed.summary[0].1.bootstrap_low.unwrap() < crossed.summary[0].1.accuracy);
-    write_tables(folder.path(), &crossed).unwrap();
-    assert_eq!(read_tables(folder.path()).unwrap(), crossed);
+    let written = |folder: &Path, tables| {
+        let made = tables_of(tables).unwrap();
+        Folder::of_tables(folder, &made).write().unwrap();
+        let read = read_tables(folder).unwrap();
+        assert_eq!(read.len(), made.len());
+        assert!(read.iter().zip(&made).all(|(a, b)| a.csv == b.csv));
+    };
+    written(folder.path(), &crossed);
     let other = tempfile::tempdir().unwrap();
     let own = study("trials = 4");
     assert_eq!(
         own.summary[0].1.bootstrap_low, None,
         "four trials are too few"
     );
-    write_tables(other.path(), &own).unwrap();
-    assert!(!other.path().join(VARIANCE_FILE).exists());
-    assert_eq!(read_tables(other.path()).unwrap(), own);
+    written(other.path(), &own);
+    assert!(folder.path().join("variance.csv").exists());
+    assert!(!other.path().join("variance.csv").exists());
     let header = std::fs::read_to_string(other.path().join("accuracy.csv")).unwrap();
     assert!(
         !header.lines().next().unwrap().contains("split"),

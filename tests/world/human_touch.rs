@@ -7,7 +7,7 @@ use bubbletouch::objects::{FingerPose, Model};
 use bubbletouch::random::Seed;
 use bubbletouch::study::progress::Silent;
 use bubbletouch::study::{
-    FrameWriter, HumanTouches, Plan, StudySpec, Sweep, TouchSet, record_touch,
+    FramePlace, HumanTouches, Plan, StudySpec, Sweep, TouchSet, record_touch,
 };
 use bubbletouch::world::{
     HandState, HumanTouch, Layout, SkinPatch, TOUCH_KINDS, Taxel, Taxels, TouchKind, TouchRanges,
@@ -349,7 +349,11 @@ c = 10.0
 fn laid_out(text: &str) -> bubbletouch::Result<(Plan, HumanTouches, Sweep)> {
     let spec = StudySpec::parse("study.toml", text)?;
     let plan = Plan::new("study.toml", spec)?;
-    let human = plan.human_touch.as_ref().expect("a study of human touches");
+    let human = plan
+        .spec
+        .human_touch
+        .as_ref()
+        .expect("a study of human touches");
     let touches = HumanTouches::draw(human, &Seed::new(plan.spec.seed))?;
     let sweep = Sweep::new(&plan, &touches)?;
     Ok((plan, touches, sweep))
@@ -408,35 +412,34 @@ fn touches_are_balanced_and_alone_the_same() {
     assert_eq!(fewer.of(0), &touches.of(4)[..12]);
     assert_eq!(fewer.of(1), &touches.of(0)[..12]);
     // Frame by frame as pressed by hand, with new spheres each time.
-    let human = plan.human_touch.as_ref().unwrap();
+    let human = plan.spec.human_touch.as_ref().unwrap();
     let patch = plan.arrays[0];
     let skin = human.skin(&patch).unwrap();
-    let writer = FrameWriter::in_memory(1024);
-    let frames = touches.simulate((&patch, human.n_frames), writer, &Silent);
+    let frames = touches.simulate((&patch, human.n_frames()), &FramePlace::Memory, &Silent);
     let deflection = frames.unwrap().kept.to_array().unwrap();
     assert_eq!(deflection.dim(), (240 * 49, 1024));
     let mut workspace = SkinWorkspace::new();
     for number in [3, 100, 205] {
         let recorded = &touches.touches[number];
-        for frame in 0..human.n_frames {
+        for frame in 0..human.n_frames() {
             let state = recorded.touch.at(frame as f64 / 15.0 - recorded.onset);
             let hand: [Model; 1] = [state.spheres().into()];
             press_skin(&skin, &hand, &[state.patch_from_hand], &mut workspace);
-            let row = deflection.row(number * human.n_frames + frame);
+            let row = deflection.row(number * human.n_frames() + frame);
             for (&stored, &pressed) in row.iter().zip(workspace.deflections()) {
                 assert!((stored - pressed).abs() < 1e-8);
             }
         }
-        let mut alone = Array2::zeros((human.n_frames, 1024));
+        let mut alone = Array2::zeros((human.n_frames(), 1024));
         record_touch(
             &skin,
             recorded,
-            human.interval,
+            human.interval(),
             alone.view_mut(),
             &mut workspace,
         );
-        let first = number * human.n_frames;
-        let rows = deflection.slice(ndarray::s![first..first + human.n_frames, ..]);
+        let first = number * human.n_frames();
+        let rows = deflection.slice(ndarray::s![first..first + human.n_frames(), ..]);
         assert_eq!(alone.mapv(f64::from), rows);
     }
 }
@@ -444,7 +447,7 @@ fn touches_are_balanced_and_alone_the_same() {
 #[test]
 fn rows_and_columns_of_the_array_run_along_and_around_the_arm() {
     let (plan, touches, _) = laid_out(&STUDY.replace("KINDS", "")).unwrap();
-    let skin = touches.plan.skin(&plan.arrays[0]).unwrap();
+    let skin = touches.spec.skin(&plan.arrays[0]).unwrap();
     let centers = skin.layout().centers();
     let place = |row: usize, column: usize| {
         let p = centers[row * 32 + column];
@@ -483,7 +486,7 @@ fn the_tables_are_the_same_bytes_at_any_number_of_threads() {
     let text = String::from_utf8(read("1", "summary.csv")).unwrap();
     assert!(text.contains(",frames,over_time,features,") && text.contains(",49,stacked_8,raw,"));
     let picture = String::from_utf8(read("1", "confusion.svg")).unwrap();
-    assert!(picture.contains("What each kind of touch was taken for"));
+    assert!(picture.contains("What was taken for what"));
     // What was resolved can run again.
     let again = String::from_utf8(read("1", "study.toml")).unwrap();
     assert!(!again.contains("[objects]") && !again.contains("[touches]"));

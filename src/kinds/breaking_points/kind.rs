@@ -51,14 +51,16 @@ impl Kind for BreakingPointsStudy {
                 "up to {} of each object at each value",
                 touches.max().unwrap_or(0)
             ),
-            n_configurations: values().map(|value| value.learned.classifiers.len()).sum(),
+            n_configurations: values()
+                .map(|value| value.learned.spec.recognition.classifier.values().len())
+                .sum(),
             // Frames in single precision.
             item_bytes: 4.0 * (N_OBJECTS * most_read) as f64,
             ..Scale::default()
         }
     }
 
-    fn read_tables(&self, folder: &Path) -> Result<Vec<Table>> {
+    fn read(folder: &Path) -> Result<Vec<Table>> {
         Ok(vec![
             ACCURACY.read(folder)?,
             SUMMARY.read(folder)?,

@@ -67,16 +67,14 @@ impl Kind for ObjectDetailStudy {
         }
     }
 
-    fn read_tables(&self, folder: &Path) -> Result<Vec<Table>> {
+    fn read(folder: &Path) -> Result<Vec<Table>> {
         let mut tables = vec![
             DETAIL.read(folder)?,
             SUMMARY.read(folder)?,
             TIMING.read(folder)?,
             COST.read(folder)?,
         ];
-        if self.plan.recognition().is_some() {
-            tables.push(RECOGNITION.read(folder)?);
-        }
+        tables.extend(RECOGNITION.read_if_there(folder)?);
         Ok(tables)
     }
 

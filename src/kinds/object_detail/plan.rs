@@ -2,8 +2,8 @@
 
 use super::spec::{DetailMethod, DetailRecognitionSpec, ObjectDetailStudySpec};
 use crate::error::Result;
-use crate::study::check::{Check, positive};
-use crate::world::{MOST_TOUCHES, Patch, Placement};
+use crate::study::check::{Check, Range, TOUCHES};
+use crate::world::{Patch, Placement};
 use std::path::{Path, PathBuf};
 
 /// Settings of a study of object detail, ready to run.
@@ -20,6 +20,17 @@ pub struct ObjectDetailPlan {
 
 /// Points of a mesh, at most: all are in memory at once.
 const MOST_POINTS: usize = 10_000_000;
+
+/// What the numbers of `[object_detail]` may be.
+const KEYS: [(&str, Range); 7] = [
+    ("tolerances_mm", Range::Positive),
+    ("methods", Range::Any),
+    ("surface_points", Range::Count(1, MOST_POINTS)),
+    ("recognition.measurements", TOUCHES),
+    ("recognition.training_touches", TOUCHES),
+    ("recognition.test_touches", TOUCHES),
+    ("recognition.classifiers", Range::Any),
+];
 
 impl ObjectDetailPlan {
     /// Checks a study; the error names `place` (the file) and the first key that is out of its range.
@@ -45,19 +56,11 @@ impl ObjectDetailPlan {
         }
         let placement = check.placement(&spec.touches)?;
         let wanted = &spec.object_detail;
-        let key = "object_detail.tolerances_mm";
-        for tolerance in check.list(key, wanted.tolerances_mm.clone())? {
-            let allowed = "positive numbers of millimetres";
-            check.value(key, tolerance, positive, allowed)?;
-        }
-        let key = "object_detail.methods";
-        check.list(key, wanted.methods.clone())?;
+        check.keys("object_detail", wanted, KEYS)?;
         if wanted.methods.contains(&DetailMethod::Mesh) {
             let allowed = "packing, vertex_spheres, decimated_vertex_spheres, medial_spheres: the mesh is what they are compared with";
-            return Err(check.error(key, "mesh", allowed));
+            return Err(check.error("object_detail.methods", "mesh", allowed));
         }
-        let key = "object_detail.surface_points";
-        check.count(key, wanted.surface_points, MOST_POINTS)?;
         let recognition = wanted.recognition.as_ref();
         recognition.map_or(Ok(()), |wanted| check_recognition(&check, wanted, &patch))?;
         Ok(Self {
@@ -81,19 +84,15 @@ impl ObjectDetailPlan {
 
 fn check_recognition(check: &Check, wanted: &DetailRecognitionSpec, patch: &Patch) -> Result<()> {
     let key = |name: &str| format!("object_detail.recognition.{name}");
-    let count = |name: &str, count| check.count(&key(name), count, MOST_TOUCHES);
-    let n_measurements = count("measurements", wanted.measurements)?;
+    let n_measurements = wanted.measurements;
     let n_taxels = patch.grid.n_taxels();
     if n_measurements > n_taxels {
         let allowed = format!("at most {n_taxels}, the taxels of the array");
         return Err(check.error(&key("measurements"), n_measurements, allowed));
     }
-    let n_training = count("training_touches", wanted.training_touches)?;
-    let n_touches = n_training + count("test_touches", wanted.test_touches)?;
+    let n_touches = wanted.training_touches + wanted.test_touches;
     // Of two objects, the fewest; with more it takes more.
     let bytes = 16.0 * n_touches as f64 * n_measurements as f64;
     let what = "the measurements of all touches";
-    check.memory(&key("training_touches"), n_touches, bytes, what)?;
-    check.list(&key("classifiers"), wanted.classifiers.clone())?;
-    Ok(())
+    check.memory(&key("training_touches"), n_touches, bytes, what)
 }

@@ -3,6 +3,7 @@
 use crate::error::Result;
 use crate::recognition::ClassifierKind;
 use crate::sensing::Ensemble;
+use crate::study::defaults::count;
 use crate::study::spec::{ObjectsSpec, SkinSpec, TouchesSpec, default_seed};
 use crate::toml_text;
 use serde::{Deserialize, Serialize};
@@ -38,7 +39,7 @@ pub struct ObjectDetailSpec {
     /// What stands for the mesh.
     pub methods: Vec<DetailMethod>,
     /// Points of a mesh at which the distance to the spheres is measured.
-    #[serde(default = "default_surface_points")]
+    #[serde(default = "count::<5000>")]
     pub surface_points: usize,
     /// Classifiers that learn from the models and are tested on the meshes; none when left out.
     #[serde(default)]
@@ -105,10 +106,6 @@ impl DetailMethod {
             Self::MedialSpheres => "medial spheres",
         }
     }
-}
-
-fn default_surface_points() -> usize {
-    5000
 }
 
 fn default_ensemble() -> Ensemble {

@@ -4,10 +4,8 @@ use super::load::load_study;
 use super::study::RecognitionStudy;
 use crate::error::Result;
 use crate::kinds::kind::{About, Facts, Kind};
-use crate::kinds::rows_of;
 use crate::kinds::source::Source;
-use crate::report::csv_tables::LIMITS_FILE;
-use crate::report::page::{ReportPage, Section, Snapshots};
+use crate::report::page::{Section, Snapshots};
 use crate::report::recognition;
 use crate::report::snapshots::snapshots;
 use crate::report::study_folder::{Image, NamedPicture};
@@ -64,7 +62,7 @@ impl Kind for RecognitionStudy {
         self.scale.clone()
     }
 
-    fn read_tables(&self, folder: &Path) -> Result<Vec<Table>> {
+    fn read(folder: &Path) -> Result<Vec<Table>> {
         recognition::read_tables(folder)
     }
 
@@ -96,13 +94,7 @@ impl Kind for RecognitionStudy {
             row("Trials", spec.trials.to_string()),
             row("Seed", spec.seed.to_string()),
         ]);
-        let page = ReportPage {
-            settings,
-            limits: rows_of(tables, LIMITS_FILE),
-            gallery: gallery(self.samples()?),
-            ..ReportPage::default()
-        };
-        recognition::sections(&page, tables)
+        recognition::sections(&settings, &gallery(self.samples()?), tables)
     }
 
     fn answers(&self, tables: &[Table]) -> Vec<String> {

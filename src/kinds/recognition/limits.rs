@@ -23,7 +23,7 @@ impl RecognitionStudy {
             limit(
                 "touches that met nothing",
                 (sum(|a| a.n_missed), n_touches),
-                match self.first().plan.human_touch {
+                match self.first().plan.spec.human_touch {
                     Some(_) => {
                         "the hand was beyond the array or between its taxels; their frames hold no contact"
                     }

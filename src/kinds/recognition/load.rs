@@ -74,7 +74,7 @@ impl RecognitionStudy {
         for (variant, plan) in plans {
             let built = format!("{:?}", plan.spec.objects);
             let (key, seed) = (touch_content(&plan), plan.spec.seed);
-            let touched = match (drawn.get(&key), &plan.human_touch) {
+            let touched = match (drawn.get(&key), &plan.spec.human_touch) {
                 (Some(known), _) => known.clone(),
                 (None, Some(human)) => {
                     check_touches(&plan, human.kinds.len(), ceiling)?;
@@ -101,13 +101,10 @@ impl RecognitionStudy {
 /// All that the touches of a plan depend on, beside the array and the files of its objects.
 pub(super) fn touch_content(plan: &Plan) -> String {
     let Plan {
-        spec,
-        placement,
-        human_touch,
-        ..
+        spec, placement, ..
     } = plan;
     format!(
-        "{:?} {placement:?} {human_touch:?} {}",
-        spec.objects, spec.seed
+        "{:?} {placement:?} {:?} {}",
+        spec.objects, spec.human_touch, spec.seed
     )
 }

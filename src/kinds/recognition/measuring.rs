@@ -4,9 +4,10 @@ use super::rows::{CellRow, RecognitionRows, TouchRow};
 use super::study::{RecognitionStudy, in_frames};
 use crate::error::Result;
 use crate::study::evaluation::Trial;
-use crate::study::frames::{FrameWriter, Frames};
+use crate::study::frames::Frames;
 use crate::study::measurement::{Measurements, measure_group};
 use crate::study::pieces::PiecesLeft;
+use crate::study::progress::{Progress, Silent};
 use crate::study::simulation::describe;
 use rayon::prelude::*;
 use std::cmp::Reverse;
@@ -30,9 +31,27 @@ impl RecognitionStudy {
         let mut order: Vec<usize> = (0..all.len()).collect();
         // Most frames first: what learns from them takes longest, and how much longer than planned is then known early.
         order.sort_by_key(|&t| (all[t].part, all[t].array, Reverse(all[t].n_frames)));
-        order
+        let jobs = order
             .into_iter()
-            .try_for_each(|touches| self.on_touches(left, touches))
+            .map(|touches| (touches, self.jobs(left, touches)));
+        let is_left = |(touches, jobs): &(usize, Vec<Job>)| {
+            !jobs.is_empty() || left.has_number(self.touches_item(*touches))
+        };
+        let jobs: Vec<(usize, Vec<Job>)> = jobs.filter(is_left).collect();
+        if self.has_axes() {
+            // A line for the touches of each combination would hide the others.
+            let n_items =
+                |(_, jobs): &(usize, Vec<Job>)| 1 + jobs.iter().flat_map(Job::items).count();
+            let n_items: usize = jobs.iter().map(n_items).sum();
+            left.progress.stage("work items", n_items as u64);
+        }
+        jobs.into_iter()
+            .try_for_each(|(touches, jobs)| self.on_touches(left, touches, jobs))
+    }
+
+    /// Whether the study has axes of its own.
+    fn has_axes(&self) -> bool {
+        self.parts().len() > 1
     }
 
     /// Groups in trials of which some families are left, of some touches; those that are measured alike together.
@@ -61,30 +80,38 @@ impl RecognitionStudy {
     }
 
     /// Does what is left of some touches.
-    fn on_touches(&self, left: &PiecesLeft<RecognitionRows>, on: usize) -> Result<()> {
-        let jobs = self.jobs(left, on);
+    fn on_touches(
+        &self,
+        left: &PiecesLeft<RecognitionRows>,
+        on: usize,
+        jobs: Vec<Job>,
+    ) -> Result<()> {
         let touches = self.touches_item(on);
-        if jobs.is_empty() && !left.has_number(touches) {
-            return Ok(());
-        }
         let (part, patch, n_frames) = self.on(on);
         let mut need: Vec<usize> = jobs.iter().flat_map(Job::items).collect();
         let n_families = need.len();
         need.push(touches);
-        let stage = in_frames(&format!("touch {}", describe(patch)), n_frames);
-        left.progress.stage(&stage, part.sweep.labels.len() as u64);
+        let stage = |name: &str, total: usize| {
+            let stage = in_frames(&format!("{name} {}", describe(patch)), n_frames);
+            left.progress.stage(&stage, total as u64);
+        };
+        let mut touched: &dyn Progress = &Silent;
+        if !self.has_axes() {
+            stage("touch", part.sweep.labels.len());
+            touched = left.progress;
+        }
         let make = || {
             left.during(&self.touch_work(on), || {
-                let writer = FrameWriter::new(patch.grid.n_taxels(), &self.place)?;
-                part.touched
-                    .simulate((patch, n_frames), writer, left.progress)
+                let on = (patch, n_frames);
+                part.touched.simulate(on, &self.place, touched)
             })
         };
         let Some(frames) = left.prepare_numbers(&need, make)? else {
             return Ok(());
         };
-        let stage = in_frames(&format!("recognise {}", describe(patch)), n_frames);
-        left.progress.stage(&stage, n_families as u64 + 1);
+        if !self.has_axes() {
+            stage("recognise", n_families + 1);
+        }
         left.finish_number(touches, || {
             let row = TouchRow {
                 is_made: true,

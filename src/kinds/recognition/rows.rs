@@ -2,7 +2,7 @@
 
 use crate::study::evaluation::Evaluation;
 use crate::study::pieces::PieceRows;
-use crate::study::table::{Limit, Tables};
+use crate::study::table::Tables;
 use crate::world::Patch;
 use serde::{Deserialize, Serialize};
 
@@ -59,8 +59,6 @@ pub struct Outcome {
     pub tables: Tables,
     /// What happened while the touches of each array were made.
     pub arrays: Vec<ArrayOutcome>,
-    /// How often limits of the model were reached.
-    pub limits: Vec<Limit>,
 }
 
 /// What happened while the touches of an array were made.

@@ -84,7 +84,13 @@ impl Rows {
     fn family_bytes(&self, plan: &Plan, cell: &Cell) -> f64 {
         let m = cell.n_features() as f64;
         let n_train = (cell.train_touches * self.n_classes) as f64;
-        let fuses = plan.fused_touches.iter().any(|&k| k > 1);
+        let fuses = plan
+            .spec
+            .recognition
+            .fused_touches
+            .values()
+            .iter()
+            .any(|&k| k > 1);
         let n_scores = match (cell.classifier.has_c(), plan.spec.recognition.multiclass) {
             // Some rows at a time, unless scores are fused.
             (true, _) if !fuses => 0,

@@ -6,17 +6,17 @@ use super::rows::{ArrayOutcome, Outcome, RecognitionRows};
 use crate::error::Result;
 use crate::random::Seed;
 use crate::report::recognition::tables_of;
-use crate::study::ContentHash;
 use crate::study::Samples;
 use crate::study::TestedOn;
 use crate::study::axes::AxisValues;
 use crate::study::cell_content::family_name;
 use crate::study::frames::FramePlace;
 use crate::study::measurement::signal_steps;
-use crate::study::pieces::{NamedPiece, PieceStudy, PiecesLeft, Scale, run_whole};
+use crate::study::pieces::{NamedPiece, PieceStudy, PiecesLeft, Scale, Shared, run_whole};
 use crate::study::plan::{Plan, millimetres};
 use crate::study::progress::Progress;
 use crate::study::published::{check_published, compare_with_published};
+use crate::study::short_hash;
 use crate::study::sweep::{Group, Sweep};
 use crate::study::table::{Cell, StageTime};
 use crate::study::tabulate::tabulate;
@@ -26,7 +26,7 @@ use crate::table::Table;
 use crate::world::Patch;
 use std::collections::{BTreeMap, HashMap, HashSet};
 use std::ops::Range;
-use std::sync::{Arc, OnceLock};
+use std::sync::Arc;
 
 /// Stages, for the time left; each classifier has its own.
 const TOUCH: u8 = 0;
@@ -42,7 +42,7 @@ pub struct RecognitionStudy {
     /// How large it is.
     pub(super) scale: Scale,
     /// A few touches for the eye, once something showed them.
-    samples: OnceLock<Samples>,
+    samples: Shared<Samples>,
     /// All touches that are made, those of the same content once.
     pub(super) touch_sets: Vec<Touches>,
     /// All groups, part by part.
@@ -113,7 +113,7 @@ impl RecognitionStudy {
             parts: Vec::with_capacity(variants.len()),
             place: FramePlace::Memory,
             scale: Scale::default(),
-            samples: OnceLock::new(),
+            samples: Shared::default(),
             touch_sets: Vec::new(),
             groups: Vec::new(),
             families: Vec::new(),
@@ -156,7 +156,6 @@ impl RecognitionStudy {
                 let next = self.touch_sets.len();
                 let touches = *known_touches.entry(made.clone()).or_insert(next);
                 if touches == next {
-                    let key = ContentHash::default().bytes(&made).hex();
                     self.touch_sets.push(Touches {
                         part,
                         array: group.array,
@@ -164,7 +163,7 @@ impl RecognitionStudy {
                         key: if is_one {
                             String::new()
                         } else {
-                            format!(", {}", &key[..12])
+                            format!(", {}", short_hash(&made, 12))
                         },
                     });
                 }
@@ -371,7 +370,6 @@ impl RecognitionStudy {
         let mut outcome = Outcome {
             tables: Default::default(),
             arrays: Vec::new(),
-            limits: Vec::new(),
         };
         self.add_arrays(&mut outcome, &rows);
         let scored = rows.cells.into_iter().map(|row| {
@@ -382,19 +380,16 @@ impl RecognitionStudy {
         let name = |cell: &Cell, label: usize| names[cell.variant.number][label].to_owned();
         tabulate(&mut outcome.tables, scored.collect(), name)?;
         let published = &self.first().plan.spec.report.published;
-        outcome.tables.published = compare_with_published(published, &outcome.tables.summary);
-        outcome.limits = self.limits(&outcome.tables, &outcome.arrays);
+        outcome.tables.published = compare_with_published(published, &outcome.tables.summary)?;
+        outcome.tables.limits = self.limits(&outcome.tables, &outcome.arrays);
         Ok(outcome)
     }
 
     /// A few touches for the eye, of the first combination of the study's own axes.
     pub(super) fn samples(&self) -> Result<&Samples> {
-        if let Some(samples) = self.samples.get() {
-            return Ok(samples);
-        }
         let first = self.first();
-        let made = first.touched.samples(&first.plan, &first.sweep)?;
-        Ok(self.samples.get_or_init(|| made))
+        let make = || first.touched.samples(&first.plan, &first.sweep);
+        self.samples.get(make)
     }
 }
 
@@ -491,8 +486,7 @@ impl PieceStudy for RecognitionStudy {
     }
 
     fn tables(&self, rows: RecognitionRows) -> Result<Vec<Table>> {
-        let outcome = self.outcome(rows)?;
-        tables_of(&outcome.tables, &outcome.limits)
+        tables_of(&self.outcome(rows)?.tables)
     }
 }
 

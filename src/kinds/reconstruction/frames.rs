@@ -36,7 +36,7 @@ impl ReconstructionStudy {
             let dictionary = touches.learn(&self.plan, cell.dictionary)?;
             let projection = self.plan.projection(cell.ensemble, cell.measurements)?;
             let sensed = SensedDictionary::new(&projection, &dictionary)?;
-            let effort = &self.plan.effort;
+            let effort = &self.plan.spec.reconstruction.effort();
             let reconstructor = Reconstructor::new(cell.solver, &sensed, effort, noisy.std)?;
             Ok(reconstructor
                 .reconstruct(projection.measure(read.view()).view())?

@@ -15,7 +15,8 @@ pub(super) fn statistics(
     let coherence = sensed.coherence();
     let n_subsets = plan.spec.reconstruction.isometry_subsets;
     let seed = Seed::new(plan.spec.seed);
-    let rows = plan.isometry_sparsity.iter().map(|&sparsity| {
+    let sizes = plan.spec.reconstruction.isometry_sparsity.values();
+    let rows = sizes.into_iter().map(|sparsity| {
         let sparsity = sparsity.min(dictionary.n_atoms());
         let extremes = sensed.isometry(sparsity, n_subsets, &seed)?;
         let quantile = |of: fn(&Extremes) -> f64, part: f64| {

@@ -77,7 +77,7 @@ impl OnMeasured<'_> {
         measurements: &Array2<f64>,
     ) -> Result<ReconstructionRows> {
         let start = Instant::now();
-        let effort = &self.plan.effort;
+        let effort = &self.plan.spec.reconstruction.effort();
         let reconstructor = Reconstructor::new(cell.solver, sensed, effort, noisy.std)?;
         let prepare_s = start.elapsed().as_secs_f64();
         let blocks = measurements

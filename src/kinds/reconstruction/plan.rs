@@ -4,10 +4,12 @@ use super::rows::ReconstructionCell;
 use super::spec::{ReconstructionSpec, ReconstructionStudySpec};
 use crate::error::Result;
 use crate::random::Seed;
-use crate::sensing::{Basis, Dictionary, Effort, Ensemble, Projection, Solver};
+use crate::sensing::{Basis, Dictionary, Ensemble, Projection};
 use crate::signal::{Noise, NoiseUnit, Quantity, SignalStep};
 use crate::study::Amount;
-use crate::study::{Check, positive};
+use crate::study::check::{COUNT, Check, Range};
+use crate::study::plan::MM;
+use crate::study::sweep::nested;
 use crate::study::{SignalSpec, StepSpec};
 use crate::world::{Grid, Patch, Placement};
 
@@ -26,22 +28,28 @@ pub struct ReconstructionPlan {
     pub noise_unit: NoiseUnit,
     /// The noise axis, in `noise_unit`.
     pub noise: Vec<f64>,
-    /// The ensemble axis.
-    pub ensembles: Vec<Ensemble>,
     /// The axis of measurements.
     pub amounts: Vec<Amount>,
     /// The dictionary axis.
     pub dictionaries: Vec<Basis>,
-    /// The solver axis.
-    pub solvers: Vec<Solver>,
-    /// What bounds the solvers' work.
-    pub effort: Effort,
-    /// Sizes of the supports whose isometry is sampled.
-    pub isometry_sparsity: Vec<usize>,
 }
 
 /// Supports that are drawn of each size, at most: all are in memory at once.
 const MOST_SUBSETS: usize = 1_000_000;
+
+/// What the numbers of `[reconstruction]` may be.
+const KEYS: [(&str, Range); 10] = [
+    ("dictionary", Range::Any),
+    ("atoms", COUNT),
+    ("solver", Range::Any),
+    ("most_atoms", COUNT),
+    ("most_steps", COUNT),
+    ("lambda_scale", Range::Positive),
+    ("tolerance", Range::Positive),
+    ("test_fraction", Range::Part),
+    ("isometry_sparsity", COUNT),
+    ("isometry_subsets", Range::Count(1, MOST_SUBSETS)),
+];
 
 impl ReconstructionPlan {
     /// Checks a study; the error names `place` (the file) and the first key that is out of its range.
@@ -55,40 +63,26 @@ impl ReconstructionPlan {
         let (noise_unit, noise) = check.noise(&spec.signal)?;
         check.steps(&spec.signal)?;
         check.noise_is_last(&spec.signal)?;
-        let ensembles = check.list("sensing.ensemble", spec.sensing.ensemble.values())?;
         let amounts = check.amounts(&spec.sensing, &[patch])?;
         let wanted = &spec.reconstruction;
+        check.keys("reconstruction", wanted, KEYS)?;
         let dictionaries = check.dictionaries(wanted, &patch.grid)?;
-        let solvers = check.list("reconstruction.solver", wanted.solver.values())?;
-        let speed = check.speed(&spec.touches)?;
-        let effort = check.effort(wanted)?;
-        check.value(
-            "reconstruction.test_fraction",
-            wanted.test_fraction,
-            |f| f > 0.0 && f < 1.0,
-            "between 0 and 1",
-        )?;
-        let isometry_sparsity = check.isometry(wanted)?;
         let axes = [
-            ensembles.len(),
+            spec.sensing.ensemble.values().len(),
             amounts.len(),
             noise.len(),
             dictionaries.len(),
-            solvers.len(),
+            wanted.solver.values().len(),
         ];
         check.configurations(axes.iter().map(|&n| n as f64).product())?;
         Ok(Self {
             patch,
             placement,
-            speed,
+            speed: spec.touches.speed_mm_per_s * MM,
             noise_unit,
             noise,
-            ensembles,
             amounts,
             dictionaries,
-            solvers,
-            effort,
-            isometry_sparsity,
             spec,
         })
     }
@@ -144,29 +138,24 @@ impl ReconstructionPlan {
     pub fn cells(&self) -> Vec<ReconstructionCell> {
         let n_taxels = self.patch.grid.n_taxels() as f64;
         let mut cells = Vec::new();
-        for &ensemble in &self.ensembles {
-            for measurements in self.measurement_counts(ensemble) {
-                for &noise_std in &self.noise {
-                    for &dictionary in &self.dictionaries {
-                        cells.extend(self.solvers.iter().map(|&solver| ReconstructionCell {
-                            cell: 0,
-                            noise_std,
-                            noise_unit: self.noise_unit,
-                            ensemble,
-                            measurements,
-                            ratio: n_taxels / measurements as f64,
-                            dictionary,
-                            atoms: 0,
-                            solver,
-                        }));
-                    }
-                }
-            }
+        nested! {
+            ensemble in self.spec.sensing.ensemble.values();
+            measurements in self.measurement_counts(ensemble);
+            &noise_std in &self.noise;
+            &dictionary in &self.dictionaries;
+            solver in self.spec.reconstruction.solver.values();
+            cells.push(ReconstructionCell {
+                cell: cells.len(),
+                noise_std,
+                noise_unit: self.noise_unit,
+                ensemble,
+                measurements,
+                ratio: n_taxels / measurements as f64,
+                dictionary,
+                atoms: 0,
+                solver,
+            })
         }
-        cells
-            .iter_mut()
-            .enumerate()
-            .for_each(|(number, cell)| cell.cell = number);
         cells
     }
 }
@@ -174,7 +163,7 @@ impl ReconstructionPlan {
 impl Check<'_> {
     /// Solvers assume independent noise on every taxel, and a clean frame to compare with: nothing may follow the noise.
     fn noise_is_last(&self, signal: &SignalSpec) -> Result<()> {
-        if signal.smoothing_mm.is_some() {
+        if signal.axes.of("smoothing_mm").is_some() {
             return Err(self.error(
                 "signal.smoothing_mm",
                 "smoothing before reconstruction",
@@ -205,7 +194,7 @@ impl Check<'_> {
 
     fn dictionaries(&self, wanted: &ReconstructionSpec, grid: &Grid) -> Result<Vec<Basis>> {
         let key = "reconstruction.dictionary";
-        let bases = self.list(key, wanted.dictionary.values())?;
+        let bases = wanted.dictionary.values();
         for &basis in bases.iter().filter(|&&basis| basis != Basis::Pca) {
             if let Err(error) = Dictionary::complete(basis, (grid.ny, grid.nx)) {
                 return Err(self.error(
@@ -215,36 +204,6 @@ impl Check<'_> {
                 ));
             }
         }
-        if let Some(count) = wanted.atoms {
-            self.positive_count("reconstruction.atoms", count)?;
-        }
         Ok(bases)
-    }
-
-    fn effort(&self, wanted: &ReconstructionSpec) -> Result<Effort> {
-        for (key, count) in [
-            ("reconstruction.most_atoms", wanted.most_atoms),
-            ("reconstruction.most_steps", wanted.most_steps),
-        ] {
-            self.positive_count(key, count)?;
-        }
-        for (key, value) in [
-            ("reconstruction.lambda_scale", wanted.lambda_scale),
-            ("reconstruction.tolerance", wanted.tolerance),
-        ] {
-            self.value(key, value, positive, "a positive number")?;
-        }
-        Ok(wanted.effort())
-    }
-
-    fn isometry(&self, wanted: &ReconstructionSpec) -> Result<Vec<usize>> {
-        let key = "reconstruction.isometry_sparsity";
-        let sizes = self.list(key, wanted.isometry_sparsity.values())?;
-        for &size in &sizes {
-            self.positive_count(key, size)?;
-        }
-        let key = "reconstruction.isometry_subsets";
-        self.count(key, wanted.isometry_subsets, MOST_SUBSETS)?;
-        Ok(sizes)
     }
 }

@@ -45,7 +45,6 @@ pub struct ReconstructionSpec {
     /// Axis: what frames are made of: `dct`, `haar`, `daubechies4`, `pca`.
     pub dictionary: Axis<Basis>,
     /// Atoms of a dictionary, at most: those that carry most of the training frames. All (of PCA 256) when left out.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub atoms: Option<usize>,
     /// Atoms that matching pursuit may choose a frame.
     #[serde(default = "default_most_atoms")]
@@ -74,11 +73,6 @@ impl ReconstructionStudySpec {
     /// Reads a study; the error names the file, the line and the key.
     pub fn parse(place: &str, text: &str) -> Result<Self> {
         toml_text::read(place, text)
-    }
-
-    /// Writes the study with every default spelt out.
-    pub fn to_toml(&self) -> String {
-        toml::to_string(self).expect("every field of a study has a TOML form")
     }
 }
 

@@ -20,6 +20,7 @@ use crate::study::progress::Progress;
 use crate::study::time_left::Piece;
 use crate::study::{TouchedObject, draw_touches, load_objects, objects_content};
 use crate::table::{ChartSpec, File, Table};
+use crate::toml_text;
 use std::collections::BTreeMap;
 use std::path::Path;
 
@@ -91,7 +92,10 @@ impl Kind for ReconstructionStudy {
 
     fn facts(&self) -> Result<Facts> {
         let spec = &self.plan.spec;
-        Ok(Facts::of(spec.to_toml(), objects_content(&spec.objects)?))
+        Ok(Facts::of(
+            toml_text::write(spec),
+            objects_content(&spec.objects)?,
+        ))
     }
 
     fn scale(&self) -> Scale {
@@ -108,7 +112,7 @@ impl Kind for ReconstructionStudy {
         }
     }
 
-    fn read_tables(&self, folder: &Path) -> Result<Vec<Table>> {
+    fn read(folder: &Path) -> Result<Vec<Table>> {
         Ok(vec![
             CELLS.read(folder)?,
             ENSEMBLES.read(folder)?,

@@ -1,9 +1,9 @@
 //! What is charted: what each choice costs and gives, with the fronts.
 
-use super::study::{CHAINS, CONTACT, SIZES};
+use super::study::{CHAINS, CONTACT};
 use crate::table::{ChartSpec, Mark, Table};
 
-/// A chart of contact, of decisions, of trainings and of studies: of those parts that there are.
+/// A chart of contact, of decisions and of trainings: of those parts that there are.
 pub(super) fn charts(tables: &[Table]) -> Vec<ChartSpec> {
     let chart = |name: &str, (table, x, y): (&'static str, &str, &str)| ChartSpec {
         name: format!("speed_accuracy_{name}"),
@@ -36,25 +36,7 @@ pub(super) fn charts(tables: &[Table]) -> Vec<ChartSpec> {
         lines: vec!["classifier".to_owned()],
         ..chart("training", (CHAINS.pareto.name(), "fit_s", "accuracy"))
     };
-    let resolution = ChartSpec {
-        title: "Studies: how near an accuracy is told by the time that it takes".to_owned(),
-        note: "At one trial's test touches.".to_owned(),
-        lines: vec!["touches".to_owned()],
-        ..chart(
-            "resolution",
-            (SIZES.pareto.name(), "cpu_s", "accuracy_half_width"),
-        )
-    };
-    let difference = ChartSpec {
-        title: "Studies: which differences are told by the time that it takes".to_owned(),
-        note: "Of two settings, by the corrected t-test.".to_owned(),
-        lines: vec!["touches".to_owned()],
-        ..chart(
-            "difference",
-            (SIZES.pareto.name(), "cpu_s", "difference_half_width"),
-        )
-    };
-    let all = [contact, decision, training, resolution, difference].into_iter();
+    let all = [contact, decision, training].into_iter();
     let is_there = |chart: &ChartSpec| {
         let table = tables.iter().find(|table| table.file == chart.table);
         table.is_some_and(|table| table.n_rows > 0)

@@ -2,7 +2,7 @@
 
 use super::plan::SpeedAccuracyPlan;
 use super::spec::SpeedAccuracyStudySpec;
-use super::study::{CHAINS, CONTACT, SIZES, SpeedAccuracyStudy};
+use super::study::{CHAINS, CONTACT, SpeedAccuracyStudy};
 use super::subject::load_subjects;
 use super::{answers, charts};
 use crate::error::Result;
@@ -26,7 +26,6 @@ impl Kind for SpeedAccuracyStudy {
             "speed_accuracy.recognition.ensemble",
             "speed_accuracy.recognition.ratio",
             "speed_accuracy.recognition.classifier",
-            "speed_accuracy.resolution.touches",
         ],
     };
 
@@ -74,10 +73,6 @@ impl Kind for SpeedAccuracyStudy {
             let n_taxels = n_taxels.max().unwrap_or(0);
             bytes = 8.0 * (spec.objects * per_object * n_taxels) as f64;
         }
-        if let Some(resolution) = &self.plan.parts().resolution {
-            let most = resolution.touches.iter().max().copied();
-            touches.push(format!("up to {} of each in resolution", most.unwrap_or(0)));
-        }
         Scale {
             objects: self.subjects.len().to_string(),
             touches: touches.join(", "),
@@ -87,19 +82,9 @@ impl Kind for SpeedAccuracyStudy {
         }
     }
 
-    fn read_tables(&self, folder: &Path) -> Result<Vec<Table>> {
-        let mut tables = Vec::new();
-        let parts = self.plan.parts();
-        if parts.contact.is_some() {
-            tables.extend(CONTACT.read(folder)?);
-        }
-        if parts.recognition.is_some() {
-            tables.extend(CHAINS.read(folder)?);
-        }
-        if parts.resolution.is_some() {
-            tables.extend(SIZES.read(folder)?);
-        }
-        Ok(tables)
+    fn read(folder: &Path) -> Result<Vec<Table>> {
+        let parts = [CONTACT.read(folder)?, CHAINS.read(folder)?];
+        Ok(parts.into_iter().flatten().collect())
     }
 
     fn charts(&self, tables: &[Table]) -> Vec<ChartSpec> {

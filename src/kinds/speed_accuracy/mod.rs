@@ -1,7 +1,7 @@
 //! What does accuracy cost, for every choice there is here?
 //!
 //! A file with a `[speed_accuracy]` table is such a study: [`SpeedAccuracyStudySpec`] (as written) → [`SpeedAccuracyPlan`] (checked, SI) →
-//! [`SpeedAccuracyStudy`] → tables of [`rows`]. It has three parts, each left out where its table is:
+//! [`SpeedAccuracyStudy`] → tables of [`rows`]. It has two parts, each left out where its table is:
 //!
 //! - **contact**: time of a touch against its deflection error, of models of objects (packed spheres, a sphere a vertex, the mesh itself,
 //!   solids by their distance functions), of singles, of time steps, and of methods whose taxels have mass. Exact contact says what is
@@ -10,7 +10,6 @@
 //! - **recognition**: share of right answers against the time of a decision (touch, compress, classify: one touch at a time on one thread) and
 //!   of a training (one thread), over pitch, detail of the objects, ensemble, ratio and classifier. Learned from objects of that
 //!   detail, tested on other touches of the exact ones.
-//! - **resolution**: half the width of intervals against the time of the study that it takes, over touches an object and trials.
 //!
 //! Each part has a table of what it found, one of times, and one of both together.
 
@@ -25,7 +24,6 @@ mod kind;
 mod models;
 mod plan;
 mod recognition;
-mod resolution;
 pub mod rows;
 mod solid_contact;
 mod spec;
@@ -34,7 +32,6 @@ mod subject;
 
 pub use plan::{RecognitionSweep, SpeedAccuracyPlan};
 pub use spec::{
-    ContactSpec, RecognitionSweepSpec, ResolutionSpec, ScansSpec, SpeedAccuracySpec,
-    SpeedAccuracyStudySpec,
+    ContactSpec, RecognitionSweepSpec, ScansSpec, SpeedAccuracySpec, SpeedAccuracyStudySpec,
 };
 pub use study::{SpeedAccuracyRows, SpeedAccuracyStudy};

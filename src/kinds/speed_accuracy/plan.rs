@@ -1,13 +1,9 @@
 //! A study of speed against accuracy that can run: every key checked, every unit SI.
 
-use super::spec::{
-    ContactSpec, RecognitionSweepSpec, ResolutionSpec, ScansSpec, SpeedAccuracySpec,
-    SpeedAccuracyStudySpec,
-};
+use super::spec::{RecognitionSweepSpec, ScansSpec, SpeedAccuracySpec, SpeedAccuracyStudySpec};
 use crate::error::Result;
 use crate::study::axis::Axis;
-use crate::study::check::{Check, not_negative, positive};
-use crate::study::plan::MOST_TRIALS;
+use crate::study::check::{Check, Range, TOUCHES};
 use crate::study::spec::{ObjectsSpec, SkinSpec};
 use crate::world::{MOST_TOUCHES, Patch, Placement};
 use std::path::{Path, PathBuf};
@@ -41,6 +37,26 @@ pub struct RecognitionSweep {
     /// Levels of detail, mm, coarsest first.
     pub levels: Vec<f64>,
 }
+
+/// What the numbers of `[speed_accuracy]` may be.
+const KEYS: [(&str, Range); 16] = [
+    ("tolerances_mm", Range::Positive),
+    ("contact.objects", TOUCHES),
+    ("contact.touches", TOUCHES),
+    ("contact.stepped_objects", TOUCHES),
+    ("contact.stepped_touches", TOUCHES),
+    ("contact.scans.names", Range::Any),
+    ("contact.dt_ms", Range::Positive),
+    ("recognition.training_touches", TOUCHES),
+    ("recognition.test_touches", TOUCHES),
+    ("recognition.timed_touches", TOUCHES),
+    ("recognition.objects", Range::Count(2, MOST_TOUCHES)),
+    ("recognition.tolerances_mm", Range::Positive),
+    ("recognition.ensemble", Range::Any),
+    ("recognition.classifier", Range::Any),
+    ("recognition.noise_std_full_scale", Range::NotNegative),
+    ("recognition.ratio", Range::AtLeastOne),
+];
 
 impl SpeedAccuracyPlan {
     /// What is swept.
@@ -78,16 +94,13 @@ impl SpeedAccuracyPlan {
         spec.objects.settle_sizes(&[patch]);
         let placement = check.placement(&spec.touches)?;
         let wanted = &spec.speed_accuracy;
-        let key = "speed_accuracy.tolerances_mm";
-        let levels = tolerances(&check, key, &wanted.tolerances_mm)?;
+        check.keys("speed_accuracy", wanted, KEYS)?;
+        let levels = coarsest_first(&wanted.tolerances_mm);
         let contact = wanted.contact.as_ref();
-        contact.map_or(Ok(()), |contact| check_contact(&check, contact))?;
         let sweep = wanted.recognition.as_ref();
         let sweep = sweep.map(|sweep| check_recognition(&check, &spec.skin, &levels, sweep));
-        let resolution = wanted.resolution.as_ref();
-        resolution.map_or(Ok(()), |resolution| check_resolution(&check, resolution))?;
-        if contact.is_none() && sweep.is_none() && resolution.is_none() {
-            let allowed = "at least one of the tables contact, recognition, resolution";
+        if contact.is_none() && sweep.is_none() {
+            let allowed = "at least one of the tables contact and recognition";
             return Err(check.error("speed_accuracy", "no part", allowed));
         }
         let peers = contact.and_then(|contact| contact.peers.as_ref());
@@ -104,29 +117,10 @@ impl SpeedAccuracyPlan {
 }
 
 /// Levels of detail, coarsest first.
-fn tolerances(check: &Check, key: &str, written: &[f64]) -> Result<Vec<f64>> {
-    let axis = Axis::Many(written.to_vec());
-    let mut levels = check.axis(key, &axis, positive, "positive numbers of millimetres")?;
+fn coarsest_first(levels: &[f64]) -> Vec<f64> {
+    let mut levels = levels.to_vec();
     levels.sort_by(|a, b| b.total_cmp(a));
-    Ok(levels)
-}
-
-fn check_contact(check: &Check, spec: &ContactSpec) -> Result<()> {
-    let key = |name: &str| format!("speed_accuracy.contact.{name}");
-    for (name, count) in [
-        ("objects", spec.objects),
-        ("touches", spec.touches),
-        ("stepped_objects", spec.stepped_objects),
-        ("stepped_touches", spec.stepped_touches),
-    ] {
-        check.count(&key(name), count, MOST_TOUCHES)?;
-    }
-    if let Some(scans) = &spec.scans {
-        check.list(&key("scans.names"), scans.names.clone())?;
-    }
-    let dts = Axis::Many(spec.dt_ms.clone());
-    check.axis(&key("dt_ms"), &dts, positive, "positive numbers")?;
-    Ok(())
+    levels
 }
 
 fn check_recognition(
@@ -136,30 +130,11 @@ fn check_recognition(
     spec: &RecognitionSweepSpec,
 ) -> Result<RecognitionSweep> {
     let key = |name: &str| format!("speed_accuracy.recognition.{name}");
-    for (name, count) in [
-        ("training_touches", spec.training_touches),
-        ("test_touches", spec.test_touches),
-        ("timed_touches", spec.timed_touches),
-    ] {
-        check.count(&key(name), count, MOST_TOUCHES)?;
-    }
-    if spec.objects < 2 {
-        return Err(check.error(&key("objects"), spec.objects, "at least 2 to tell apart"));
-    }
-    let levels = tolerances(check, &key("tolerances_mm"), &spec.tolerances_mm)?;
+    let levels = coarsest_first(&spec.tolerances_mm);
     if let Some(level) = levels.iter().find(|level| !all_levels.contains(level)) {
         let allowed = "values of speed_accuracy.tolerances_mm";
         return Err(check.error(&key("tolerances_mm"), level, allowed));
     }
-    check.list(&key("ensemble"), spec.ensemble.clone())?;
-    check.list(&key("classifier"), spec.classifier.clone())?;
-    let noise = spec.noise_std_full_scale;
-    check.value(
-        &key("noise_std_full_scale"),
-        noise,
-        not_negative,
-        "0 or more",
-    )?;
     let patches = check.arrays(&SkinSpec {
         pitch_mm: Axis::Many(spec.pitch_mm.clone()),
         size_mm: Some(Axis::One(spec.size_mm)),
@@ -169,8 +144,7 @@ fn check_recognition(
     })?;
     let fewest = patches.iter().map(|patch| patch.grid.n_taxels()).min();
     let fewest = fewest.unwrap_or(1) as f64;
-    let ratios = check.list(&key("ratio"), spec.ratio.clone())?;
-    if let Some(ratio) = ratios.iter().find(|&&r| !(1.0..=fewest).contains(&r)) {
+    if let Some(ratio) = spec.ratio.iter().find(|&&ratio| ratio > fewest) {
         let allowed = format!("1 to {fewest}, the taxels of the coarsest array");
         return Err(check.error(&key("ratio"), ratio, allowed));
     }
@@ -178,7 +152,7 @@ fn check_recognition(
         patches.len(),
         levels.len(),
         spec.ensemble.len(),
-        ratios.len(),
+        spec.ratio.len(),
         spec.classifier.len(),
     ];
     check.configurations(axes.iter().map(|&n| n as f64).product())?;
@@ -192,37 +166,4 @@ fn check_recognition(
         patches,
         levels,
     })
-}
-
-fn check_resolution(check: &Check, spec: &ResolutionSpec) -> Result<()> {
-    let key = |name: &str| format!("speed_accuracy.resolution.{name}");
-    for (name, counts, (least, why), most) in [
-        // Fewer leave no test touch in a quarter of them.
-        (
-            "touches",
-            &spec.touches,
-            (4, "a quarter of them test"),
-            MOST_TOUCHES,
-        ),
-        (
-            "trials",
-            &spec.trials,
-            (2, "one trial has no spread"),
-            MOST_TRIALS,
-        ),
-    ] {
-        for count in check.list(&key(name), counts.clone())? {
-            check.count(&key(name), count, most)?;
-            if count < least {
-                return Err(check.error(&key(name), count, format!("at least {least}: {why}")));
-            }
-        }
-    }
-    let [a, b] = spec.ratio;
-    let is_ratio = |ratio: f64| ratio >= 1.0 && ratio.is_finite();
-    if !(is_ratio(a) && is_ratio(b)) || a == b {
-        let allowed = "two different ratios from 1 on";
-        return Err(check.error(&key("ratio"), format!("{a}, {b}"), allowed));
-    }
-    Ok(())
 }

@@ -131,37 +131,6 @@ pub struct ChainTime {
     fit_s: f64 => Cost "time of a training" in "s": Log;
 } }
 
-row! {
-/// A study of some size: a row of `resolution.csv` begins with it, and one of `resolution_timing.csv`.
-pub struct StudySize {
-    /// Touches an object, three quarters of which train.
-    touches: usize => Choice "touches an object": Log;
-    /// Trials.
-    trials: usize => Choice: Log;
-} }
-
-row! {
-/// What it resolves (with the [`StudySize`] before it: a row of `resolution.csv`).
-pub struct Resolved {
-    /// Test touches of a trial, all objects.
-    n_test: usize => Note "test touches": Linear;
-    /// Mean accuracy at the first ratio.
-    accuracy: f64 => Value(Neither): Share;
-    /// Half the width of its 95 % Wilson interval at one trial's test touches, as studies report it.
-    accuracy_half_width: f64 => Value(Less) "half width of the interval of an accuracy": Log;
-    /// Accuracy at the first ratio − at the second.
-    difference: f64 => Value(Neither) "difference of two accuracies": Share;
-    /// Half the width of its 95 % interval, by the corrected resampled t-test.
-    difference_half_width: f64 => Value(Less) "half width of the interval of a difference": Log;
-} }
-
-row! {
-/// What it costs (with the [`StudySize`] before it: a row of `resolution_timing.csv`).
-pub struct StudyTime {
-    /// Processor-seconds: touches, measurements, fits and predictions of both ratios.
-    cpu_s: f64 => Cost "processor time of the study" in "s": Log;
-} }
-
 /// What another program takes for the same press: a row of `results/peers/contact.csv`, of which the columns that are not here do not
 /// matter.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

@@ -37,14 +37,9 @@ pub struct SpeedAccuracySpec {
     /// How far spheres may be from an object's surface, mm: a level of detail each.
     pub tolerances_mm: Vec<f64>,
     /// Part: contact.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub contact: Option<ContactSpec>,
     /// Part: recognition.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub recognition: Option<RecognitionSweepSpec>,
-    /// Part: what a study of some size resolves.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub resolution: Option<ResolutionSpec>,
 }
 
 /// `[speed_accuracy.contact]`
@@ -62,10 +57,8 @@ pub struct ContactSpec {
     /// Time steps of those methods, ms.
     pub dt_ms: Vec<f64>,
     /// A table that other programs wrote (`benches/peers/contact.py`), beside the study's file; left out where it is not.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub peers: Option<PathBuf>,
     /// Closed meshes that are touched beside the study's objects.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub scans: Option<ScansSpec>,
 }
 
@@ -105,18 +98,6 @@ pub struct RecognitionSweepSpec {
     pub test_touches: usize,
     /// Touches whose way from contact to answer is timed.
     pub timed_touches: usize,
-}
-
-/// `[speed_accuracy.resolution]`
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct ResolutionSpec {
-    /// Touches an object.
-    pub touches: Vec<usize>,
-    /// Trials, at least 2.
-    pub trials: Vec<usize>,
-    /// The two ratios whose accuracies are compared.
-    pub ratio: [f64; 2],
 }
 
 impl SpeedAccuracyStudySpec {

@@ -5,10 +5,9 @@ use super::contact_points::contact_points;
 use super::models::ContactRow;
 use super::plan::SpeedAccuracyPlan;
 use super::recognition::RecognitionPart;
-use super::resolution::ResolutionPart;
 use super::rows::{
     ChainCell, ChainScore, ChainTime, ContactCell, ContactPoint, ContactScore, ContactTime,
-    PeerRow, Resolved, StudySize, StudyTime, Touched,
+    PeerRow, Touched,
 };
 use super::subject::{Subject, spread_evenly};
 use crate::error::Result;
@@ -28,23 +27,20 @@ pub struct SpeedAccuracyStudy {
     pub(super) packings: Option<PathBuf>,
 }
 
-/// A chain and a size of a study: what it is, what it gives, and what it costs.
+/// A chain: what it is, what it gives, and what it costs.
 pub(super) type ChainRow = (ChainCell, ChainScore, ChainTime);
-pub(super) type SizeRow = (StudySize, Resolved, StudyTime);
 
 /// What work items of the study found: a setting, how near or how often right it is, and what it costs.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub struct SpeedAccuracyRows {
     pub(super) contact: Vec<ContactRow>,
     pub(super) chains: Vec<ChainRow>,
-    pub(super) sizes: Vec<SizeRow>,
 }
 
 impl PieceRows for SpeedAccuracyRows {
     fn append(&mut self, next: Self) {
         self.contact.extend(next.contact);
         self.chains.extend(next.chains);
-        self.sizes.extend(next.sizes);
     }
 }
 
@@ -78,18 +74,6 @@ pub(super) const CHAINS: Part<ChainCell, ChainScore, ChainTime, ChainRow> = Part
         .of_times()
         .summary(),
 };
-pub(super) const SIZES: Part<StudySize, Resolved, StudyTime, SizeRow> = Part {
-    scores: File::new("resolution.csv", "Studies: what they resolve", ""),
-    times: File::new("resolution_timing.csv", "Studies: what they cost", "").of_times(),
-    pareto: File::new(
-        "resolution_pareto.csv",
-        "Studies: resolution against time",
-        "",
-    )
-    .of_times()
-    .summary(),
-};
-
 impl SpeedAccuracyStudy {
     fn contact(&self) -> Option<ContactPart<'_>> {
         let spec = self.plan.parts().contact.as_ref()?;
@@ -109,15 +93,6 @@ impl SpeedAccuracyStudy {
         let objects = (self.subjects.as_slice(), self.packings.as_deref());
         Some(RecognitionPart::new(&self.plan, sweep, objects))
     }
-
-    fn resolution(&self) -> Option<ResolutionPart<'_>> {
-        Some(ResolutionPart {
-            plan: &self.plan,
-            spec: self.plan.parts().resolution.as_ref()?,
-            subjects: &self.subjects,
-            packings: self.packings.as_deref(),
-        })
-    }
 }
 
 impl PieceStudy for SpeedAccuracyStudy {
@@ -128,7 +103,6 @@ impl PieceStudy for SpeedAccuracyStudy {
         let parts = [
             self.contact().map(|part| part.pieces()),
             self.recognition().map(|part| part.pieces()),
-            self.resolution().map(|part| part.pieces()),
         ];
         let mut pieces: Vec<NamedPiece> = Vec::new();
         for mut part in parts.into_iter().flatten() {
@@ -142,9 +116,7 @@ impl PieceStudy for SpeedAccuracyStudy {
 
     fn measure(&self, left: &PiecesLeft<SpeedAccuracyRows>) -> Result<()> {
         self.contact().map_or(Ok(()), |part| part.measure(left))?;
-        self.recognition()
-            .map_or(Ok(()), |part| part.measure(left))?;
-        self.resolution().map_or(Ok(()), |part| part.measure(left))
+        self.recognition().map_or(Ok(()), |part| part.measure(left))
     }
 
     fn tables(&self, rows: SpeedAccuracyRows) -> Result<Vec<Table>> {
@@ -156,9 +128,6 @@ impl PieceStudy for SpeedAccuracyStudy {
         }
         if parts.recognition.is_some() {
             tables.extend(CHAINS.of(&rows.chains, &rows.chains)?);
-        }
-        if parts.resolution.is_some() {
-            tables.extend(SIZES.of(&rows.sizes, &rows.sizes)?);
         }
         Ok(tables)
     }
@@ -181,13 +150,13 @@ impl<C: Columns, S: Columns, T: Columns, P: Columns> Part<C, S, T, P> {
         ])
     }
 
-    /// Of a folder.
-    pub fn read(&self, folder: &Path) -> Result<[Table; 3]> {
-        Ok([
-            self.scores.read(folder)?,
-            self.times.read(folder)?,
-            self.pareto.read(folder)?,
-        ])
+    /// Of a folder; none of a study without this part.
+    pub fn read(&self, folder: &Path) -> Result<Vec<Table>> {
+        let Some(pareto) = self.pareto.read_if_there(folder)? else {
+            return Ok(Vec::new());
+        };
+        let found = [self.scores.read(folder)?, self.times.read(folder)?];
+        Ok(found.into_iter().chain([pareto]).collect())
     }
 }
 

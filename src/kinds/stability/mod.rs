@@ -1,7 +1,7 @@
 //! Where does each way to simulate contact break?
 //!
 //! A file with a `[stability]` table is such a study: [`StabilityStudySpec`] (as written) → [`StabilityPlan`] (checked, SI) →
-//! [`run_whole_study`](crate::study::pieces::run_whole_study) → [its tables](rows).
+//! [`run_whole`](crate::study::pieces::run_whole) → [its tables](rows).
 //!
 //! A ball comes down on a **cradle**, a square patch whose taxels it meets nearly all at once (all within a quarter of their stroke), in
 //! one of three [scenes](StabilityScene). Every scene has a moment at which the exact answer is known without any time stepping (the

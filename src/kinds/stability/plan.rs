@@ -3,9 +3,9 @@
 use super::rows::StabilityCell;
 use super::spec::{ContactMethod, StabilityPartSpec, StabilityScene, StabilityStudySpec};
 use crate::error::Result;
-use crate::study::Axis;
 use crate::study::MM;
-use crate::study::{Check, positive};
+use crate::study::check::{COUNT, Check, Range};
+use crate::study::sweep::nested;
 use std::path::{Path, PathBuf};
 
 /// Settings of a study of stability, ready to run.
@@ -33,13 +33,25 @@ pub struct StabilityPart {
 /// Taxels a side, at most: a million and more of bodies is no question of stability.
 const MOST_TAXELS: usize = 256;
 
+/// What the numbers of a part may be.
+const KEYS: [(&str, Range); 9] = [
+    ("methods", Range::Any),
+    ("taxels", COUNT),
+    ("stroke_mm", Range::Positive),
+    ("stiffness_n_per_m", Range::Positive),
+    ("taxel_mass_kg", Range::Positive),
+    ("object_mass_kg", Range::Positive),
+    ("object_mass_per_taxel_kg", Range::Positive),
+    ("dt_s", Range::Positive),
+    ("solver_iterations", COUNT),
+];
+
 impl StabilityPlan {
     /// Checks a study that lies in `folder`; the error names `place` (the file) and the first key that is out of its range.
     pub fn new(place: &str, folder: &Path, spec: StabilityStudySpec) -> Result<Self> {
         let check = Check { place };
         let wanted = &spec.stability;
-        let millimetres = "a positive number of millimetres";
-        let pitch = check.value("stability.pitch_mm", wanted.pitch_mm, positive, millimetres)?;
+        check.keys("stability", wanted, [("pitch_mm", Range::Positive)])?;
         check.list("stability.parts", wanted.parts.clone())?;
         let parts = wanted.parts.iter().enumerate();
         let parts = parts.map(|(number, part)| {
@@ -52,7 +64,7 @@ impl StabilityPlan {
         });
         let parts = parts.collect::<Result<Vec<_>>>()?;
         Ok(Self {
-            pitch: pitch * MM,
+            pitch: wanted.pitch_mm * MM,
             parts,
             peers: wanted.peers.as_ref().map(|path| folder.join(path)),
             spec,
@@ -78,48 +90,30 @@ impl PartCheck<'_> {
         format!("stability.parts[{}].{name}", self.number + 1)
     }
 
-    fn positive(&self, name: &str, axis: &Axis<f64>) -> Result<Vec<f64>> {
-        let allowed = "positive numbers";
-        self.check.axis(&self.key(name), axis, positive, allowed)
-    }
-
     fn lay_out(&self) -> Result<StabilityPart> {
         let part = self.part;
-        let methods = self
-            .check
-            .list(&self.key("methods"), part.methods.clone())?;
-        if methods.iter().any(|method| method.is_peer()) {
+        let name = format!("stability.parts[{}]", self.number + 1);
+        self.check.keys(&name, part, KEYS)?;
+        if part.methods.iter().any(|method| method.is_peer()) {
             let allowed =
                 "methods of this program: other programs leave their rows in stability.peers";
             return Err(self.check.error(&self.key("methods"), "MuJoCo", allowed));
         }
         let sides = self.sides()?;
-        let stroke = self.positive("stroke_mm", &Axis::One(part.stroke_mm))?[0];
-        let stiffnesses = self.positive("stiffness_n_per_m", &part.stiffness_n_per_m)?;
-        let taxel_masses = self.positive("taxel_mass_kg", &part.taxel_mass_kg)?;
+        let stiffnesses = part.stiffness_n_per_m.values();
+        let taxel_masses = part.taxel_mass_kg.values();
         let masses = self.object_masses()?;
-        let dts = self.positive("dt_s", &part.dt_s)?;
-        let iterations = self.key("solver_iterations");
-        let iterations = self.check.counts(&iterations, &part.solver_iterations)?;
-        let base = StabilityCell {
-            part: self.number + 1,
-            scene: part.scene,
-            method: ContactMethod::QuasiStatic,
-            solver_iterations: None,
-            taxels: 0,
-            stiffness_n_per_m: 0.0,
-            taxel_mass_kg: 0.0,
-            object_mass_kg: None,
-            dt_s: 0.0,
-        };
-        let built: Vec<ContactMethod> = methods.into_iter().filter(|m| m.is_built()).collect();
-        let ways = built.iter().flat_map(|method| {
-            let n = if method.is_engine() {
-                iterations.len()
+        let dts = part.dt_s.values();
+        let iterations = part.solver_iterations.values();
+        let built = part.methods.iter().filter(|method| method.is_built());
+        let ways = built.flat_map(|&method| {
+            let engine = iterations.iter().map(|&n| Some(n)).collect();
+            let counts: Vec<_> = if method.is_engine() {
+                engine
             } else {
-                1
+                vec![None]
             };
-            (0..n).map(|k| (*method, method.is_engine().then(|| iterations[k])))
+            counts.into_iter().map(move |n| (method, n))
         });
         let ways: Vec<(ContactMethod, Option<usize>)> = ways.collect();
         let axes = [
@@ -132,30 +126,42 @@ impl PartCheck<'_> {
         ];
         let n_all = axes.iter().map(|&n| n as f64).product();
         self.check.configurations(n_all)?;
-        let cells = vec![base];
-        let cells = swept(cells, &ways, |cell, (method, iterations)| {
-            (cell.method, cell.solver_iterations) = (method, iterations);
-        });
-        let cells = swept(cells, &sides, |cell, side| cell.taxels = side);
-        let cells = swept(cells, &stiffnesses, |cell, k| cell.stiffness_n_per_m = k);
-        let cells = swept(cells, &masses, |cell, mass| {
-            let n_shares = match part.object_mass_per_taxel_kg {
-                Some(_) => cell.n_taxels(),
-                None => 1,
-            };
-            cell.object_mass_kg = mass.map(|mass| n_shares as f64 * mass);
-        });
-        let cells = swept(cells, &taxel_masses, |cell, mass| cell.taxel_mass_kg = mass);
+        let mut cells = Vec::new();
+        nested! {
+            (method, solver_iterations) in ways;
+            &taxels in &sides;
+            &stiffness_n_per_m in &stiffnesses;
+            &mass in &masses;
+            &taxel_mass_kg in &taxel_masses;
+            &dt_s in &dts;
+            {
+                let mut cell = StabilityCell {
+                    part: self.number + 1,
+                    scene: part.scene,
+                    method,
+                    solver_iterations,
+                    taxels,
+                    stiffness_n_per_m,
+                    taxel_mass_kg,
+                    object_mass_kg: mass,
+                    dt_s,
+                };
+                if part.object_mass_per_taxel_kg.is_some() {
+                    cell.object_mass_kg = mass.map(|mass| cell.n_taxels() as f64 * mass);
+                }
+                cells.push(cell);
+            }
+        }
         Ok(StabilityPart {
-            stroke: stroke * MM,
-            cells: swept(cells, &dts, |cell, dt| cell.dt_s = dt),
+            stroke: part.stroke_mm * MM,
+            cells,
         })
     }
 
     /// Even, so that the ball lies between four taxels and not on one.
     fn sides(&self) -> Result<Vec<usize>> {
         let key = self.key("taxels");
-        let sides = self.check.counts(&key, &self.part.taxels)?;
+        let sides = self.part.taxels.values();
         match sides.iter().find(|&&n| n % 2 != 0 || n > MOST_TAXELS) {
             Some(n) => {
                 let allowed = format!("even numbers from 2 to {MOST_TAXELS}");
@@ -186,28 +192,10 @@ impl PartCheck<'_> {
             }
             (None, ..) => ("object_mass_kg", "none", "a mass: the ball is free"),
             (_, Some((name, _)), _) => (name, "a mass", "one of this key and object_mass_kg"),
-            (Some((name, axis)), None, _) => {
-                let masses = self.positive(name, axis)?.into_iter();
-                return Ok(masses.map(Some).collect());
+            (Some((_, axis)), None, _) => {
+                return Ok(axis.values().into_iter().map(Some).collect());
             }
         };
         Err(self.check.error(&self.key(name), given, allowed))
     }
-}
-
-/// Each of some cells at each value of an axis.
-fn swept<T: Copy>(
-    cells: Vec<StabilityCell>,
-    values: &[T],
-    set: impl Fn(&mut StabilityCell, T),
-) -> Vec<StabilityCell> {
-    let mut all = Vec::with_capacity(cells.len() * values.len());
-    for cell in cells {
-        for &value in values {
-            let mut cell = cell.clone();
-            set(&mut cell, value);
-            all.push(cell);
-        }
-    }
-    all
 }

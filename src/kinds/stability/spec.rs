@@ -28,7 +28,6 @@ pub struct StabilitySpec {
     #[serde(default = "number::<4>")]
     pub pitch_mm: f64,
     /// A table that other programs wrote (`benches/peers/stability.py`), beside the study's file; left out where it is not.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub peers: Option<PathBuf>,
     /// Products of axes that are tried, one after the other.
     pub parts: Vec<StabilityPartSpec>,
@@ -52,10 +51,8 @@ pub struct StabilityPartSpec {
     /// Axis: m. (Quasi-static taxels have none.)
     pub taxel_mass_kg: Axis<f64>,
     /// Axis: M of the ball; needed where it is free, not there where its motion is imposed.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub object_mass_kg: Option<Axis<f64>>,
     /// In its place: M over the number of taxels, so that each carries the same on all arrays.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub object_mass_per_taxel_kg: Option<Axis<f64>>,
     /// Axis: Δt.
     pub dt_s: Axis<f64>,
@@ -132,11 +129,6 @@ impl StabilityStudySpec {
     /// Reads a study; the error names the file, the line and the key.
     pub fn parse(place: &str, text: &str) -> Result<Self> {
         toml_text::read(place, text)
-    }
-
-    /// Writes the study with every default spelt out.
-    pub fn to_toml(&self) -> String {
-        toml::to_string(self).expect("every field of a study has a TOML form")
     }
 }
 

@@ -15,6 +15,7 @@ use crate::study::millimetres;
 use crate::study::pieces::{NamedPiece, PieceRows, PieceStudy, PiecesLeft, Scale};
 use crate::study::time_left::Piece;
 use crate::table::{ChartSpec, File, Table};
+use crate::toml_text;
 use rayon::prelude::*;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
@@ -52,7 +53,7 @@ impl Kind for StabilityPlan {
     }
 
     fn facts(&self) -> Result<Facts> {
-        Ok(Facts::of(self.spec.to_toml(), BTreeMap::new()))
+        Ok(Facts::of(toml_text::write(&self.spec), BTreeMap::new()))
     }
 
     fn scale(&self) -> Scale {
@@ -69,13 +70,19 @@ impl Kind for StabilityPlan {
         }
     }
 
-    fn read_tables(&self, folder: &Path) -> Result<Vec<Table>> {
+    fn read(folder: &Path) -> Result<Vec<Table>> {
         Ok(vec![
-            CELLS.read(folder)?.noted(peer_rows(self)?.1),
+            CELLS.read(folder)?,
             SUMMARY.read(folder)?,
             TIMING.read(folder)?,
             JOINTS.read(folder)?,
         ])
+    }
+
+    fn read_tables(&self, folder: &Path) -> Result<Vec<Table>> {
+        let mut tables = Self::read(folder)?;
+        tables[0].note = peer_rows(self)?.1;
+        Ok(tables)
     }
 
     fn charts(&self, tables: &[Table]) -> Vec<ChartSpec> {

@@ -1,15 +1,13 @@
 //! A study of a whole body that can run: every key checked, every unit SI.
 
 use super::path::Path as ObjectPath;
-use super::spec::{
-    BodyRecognitionSpec, BodySceneSpec, BodySensingSpec, LaddersSpec, WholeBodySpec,
-    WholeBodyStudySpec,
-};
+use super::spec::{BodyRecognitionSpec, BodySceneSpec, BodySensingSpec, WholeBodyStudySpec};
 use crate::error::Result;
 use crate::geometry::{Pose, rotation_from_rpy};
 use crate::sensing::Ensemble;
-use crate::study::{Check, MM, not_negative, positive};
-use crate::world::{MOST_TOUCHES, Robot, Taxel};
+use crate::study::MM;
+use crate::study::check::{COUNT, Check, Range, TOUCHES};
+use crate::world::{Robot, Taxel};
 use glam::DVec3;
 use std::path::{Path, PathBuf};
 
@@ -69,6 +67,40 @@ const MOST_STEPS: usize = 10_000_000;
 /// Spheres of a cushion, at most.
 const MOST_SPHERES: usize = 10_000_000;
 
+/// What the numbers of `[whole_body]` may be.
+const KEYS: [(&str, Range); 23] = [
+    ("pitch_mm", Range::Positive),
+    ("taxel_radius_mm", Range::Positive),
+    ("stiffness_n_per_m", Range::Positive),
+    ("damping_n_s_per_m", Range::NotNegative),
+    ("stroke_mm", Range::Positive),
+    ("patch_mm", Range::Positive),
+    ("step_ms", Range::Positive),
+    ("surface_error_mm", Range::Positive),
+    ("steps", Range::Count(1, MOST_STEPS)),
+    ("sensing.measurements", COUNT),
+    ("sensing.ensembles", Range::Any),
+    ("sensing.sbhe_blocks", Range::Any),
+    ("recognition.objects", Range::Any),
+    ("recognition.offset_mm", Range::NotNegative),
+    ("recognition.yaw_deg", Range::NotNegative),
+    ("recognition.training_touches", TOUCHES),
+    ("recognition.test_touches", TOUCHES),
+    ("ladders.taxels", COUNT),
+    ("ladders.touched_at_taxels", COUNT),
+    ("ladders.touched", COUNT),
+    ("ladders.spheres", Range::Count(1, MOST_SPHERES)),
+    ("ladders.touched_at_spheres", COUNT),
+    ("ladders.taxels_at_touch", COUNT),
+];
+
+/// What those of a scene may be.
+const SCENE_KEYS: [(&str, Range); 3] = [
+    ("depth_mm", Range::Positive),
+    ("period_ms", Range::Positive),
+    ("swing_deg", Range::Finite),
+];
+
 impl WholeBodyPlan {
     /// Checks a study whose robot lies beside `folder`; the error names `place` (the file) and the first key that is out of its range.
     pub fn new(place: &str, folder: &Path, spec: WholeBodyStudySpec) -> Result<Self> {
@@ -76,7 +108,7 @@ impl WholeBodyPlan {
         let wanted = &spec.whole_body;
         let robot_file = folder.join(&wanted.robot);
         let robot = Robot::read_urdf(&robot_file)?;
-        let pitch = check.length("pitch_mm", wanted.pitch_mm)?;
+        check.keys("whole_body", wanted, KEYS)?;
         let scenes = wanted.scenes.iter().enumerate();
         let scenes = scenes
             .map(|(number, scene)| check.scene(number, scene, &robot))
@@ -85,16 +117,18 @@ impl WholeBodyPlan {
         check.list("whole_body.scenes", names.collect())?;
         let compressions = check.compressions(&wanted.sensing)?;
         let n_measured = compressions.len() * wanted.sensing.measurements;
-        check.count("whole_body.steps", wanted.steps, MOST_STEPS)?;
-        if let Some(ladders) = &wanted.ladders {
-            check.ladders(ladders)?;
-        }
+        let radius_mm = wanted.taxel_radius_mm.unwrap_or(0.5 * wanted.pitch_mm);
         Ok(Self {
-            taxel: check.taxel(wanted)?,
-            pitch,
-            side: check.length("patch_mm", wanted.patch_mm)?,
-            dt: check.length("step_ms", wanted.step_ms)?,
-            surface_error: check.length("surface_error_mm", wanted.surface_error_mm)?,
+            taxel: Taxel {
+                radius: MM * radius_mm,
+                stiffness: wanted.stiffness_n_per_m,
+                damping: wanted.damping_n_s_per_m,
+                stroke: MM * wanted.stroke_mm,
+            },
+            pitch: MM * wanted.pitch_mm,
+            side: MM * wanted.patch_mm,
+            dt: MM * wanted.step_ms,
+            surface_error: MM * wanted.surface_error_mm,
             scenes,
             aim: check.body_recognition(&wanted.recognition, (&robot, n_measured))?,
             compressions,
@@ -116,27 +150,6 @@ impl WholeBodyPlan {
 }
 
 impl Check<'_> {
-    /// Thousandths that are positive: of a metre, or of a second.
-    fn length(&self, key: &str, value: f64) -> Result<f64> {
-        let key = format!("whole_body.{key}");
-        Ok(MM * self.value(&key, value, positive, "a positive number")?)
-    }
-
-    fn taxel(&self, wanted: &WholeBodySpec) -> Result<Taxel> {
-        let radius = wanted.taxel_radius_mm.unwrap_or(0.5 * wanted.pitch_mm);
-        let key = "whole_body.stiffness_n_per_m";
-        let stiffness = self.value(key, wanted.stiffness_n_per_m, positive, "a positive number")?;
-        let key = "whole_body.damping_n_s_per_m";
-        let allowed = "zero or a positive number";
-        let damping = self.value(key, wanted.damping_n_s_per_m, not_negative, allowed)?;
-        Ok(Taxel {
-            radius: self.length("taxel_radius_mm", radius)?,
-            stiffness,
-            damping,
-            stroke: self.length("stroke_mm", wanted.stroke_mm)?,
-        })
-    }
-
     fn scene(&self, number: usize, scene: &BodySceneSpec, robot: &Robot) -> Result<ScenePlan> {
         let prefix = format!("whole_body.scenes[{number}]");
         let key = |name: &str| format!("{prefix}.{name}");
@@ -144,19 +157,7 @@ impl Check<'_> {
             let given = "both or neither of object and parts";
             return Err(self.error(&key("object"), given, "one of object and parts"));
         }
-        let finite: fn(f64) -> bool = f64::is_finite;
-        for (name, value, is_allowed, allowed) in [
-            (
-                "depth_mm",
-                scene.depth_mm.unwrap_or(1.0),
-                positive as fn(f64) -> bool,
-                "a positive number",
-            ),
-            ("period_ms", scene.period_ms, positive, "a positive number"),
-            ("swing_deg", scene.swing_deg, finite, "finite degrees"),
-        ] {
-            self.value(&key(name), value, is_allowed, allowed)?;
-        }
+        self.keys(&prefix, scene, SCENE_KEYS)?;
         let aim = self.aim(&prefix, (&scene.link, scene.at_mm, scene.from), robot)?;
         let turn = self.vector(&key("turn_deg"), scene.turn_deg)?;
         let turn = rotation_from_rpy(turn.map(f64::to_radians));
@@ -217,16 +218,13 @@ impl Check<'_> {
     }
 
     fn compressions(&self, wanted: &BodySensingSpec) -> Result<Vec<(Ensemble, Option<usize>)>> {
-        self.positive_count("whole_body.sensing.measurements", wanted.measurements)?;
         let key = "whole_body.sensing.ensembles";
-        let ensembles = self.list(key, wanted.ensembles.clone())?;
-        let key_of_blocks = "whole_body.sensing.sbhe_blocks";
-        let blocks = self.list(key_of_blocks, wanted.sbhe_blocks.clone())?;
+        let blocks = &wanted.sbhe_blocks;
         if let Some(block) = blocks.iter().find(|block| !block.is_power_of_two()) {
-            return Err(self.error(key_of_blocks, block, "powers of two"));
+            return Err(self.error("whole_body.sensing.sbhe_blocks", block, "powers of two"));
         }
         let mut compressions = Vec::new();
-        for ensemble in ensembles {
+        for &ensemble in &wanted.ensembles {
             match ensemble {
                 Ensemble::Sbhe => {
                     compressions.extend(blocks.iter().map(|&block| (ensemble, Some(block))));
@@ -248,8 +246,7 @@ impl Check<'_> {
     ) -> Result<Aim> {
         let prefix = "whole_body.recognition";
         let key = |name: &str| format!("{prefix}.{name}");
-        let objects = self.list(&key("objects"), wanted.objects.clone())?;
-        if objects.len() < 2 {
+        if wanted.objects.len() < 2 {
             return Err(self.error(&key("objects"), "one object", "at least two"));
         }
         let [least, most] = wanted.depth_mm;
@@ -257,40 +254,11 @@ impl Check<'_> {
             let given = format!("{:?}", wanted.depth_mm);
             return Err(self.error(&key("depth_mm"), given, "two positive numbers that ascend"));
         }
-        for (name, value) in [("offset_mm", wanted.offset_mm), ("yaw_deg", wanted.yaw_deg)] {
-            self.value(&key(name), value, not_negative, "zero or a positive number")?;
-        }
-        self.count(
-            &key("training_touches"),
-            wanted.training_touches,
-            MOST_TOUCHES,
-        )?;
-        self.count(&key("test_touches"), wanted.test_touches, MOST_TOUCHES)?;
         let n_touches = wanted.n_touches();
         let bytes = 8.0 * n_touches as f64 * n_measured as f64;
         let what = format!("{n_measured} measurements of each of {n_touches} touches");
         let of_each = wanted.training_touches + wanted.test_touches;
         self.memory(&key("training_touches"), of_each, bytes, &what)?;
         self.aim(prefix, (&wanted.link, wanted.at_mm, wanted.from), robot)
-    }
-
-    fn ladders(&self, rungs: &LaddersSpec) -> Result<()> {
-        let key = |name: &str| format!("whole_body.ladders.{name}");
-        for (name, counts) in [
-            ("taxels", &rungs.taxels),
-            ("touched_at_taxels", &rungs.touched_at_taxels),
-            ("touched", &rungs.touched),
-            ("spheres", &rungs.spheres),
-            ("touched_at_spheres", &vec![rungs.touched_at_spheres]),
-            ("taxels_at_touch", &vec![rungs.taxels_at_touch]),
-        ] {
-            for &count in &self.list(&key(name), counts.clone())? {
-                match name {
-                    "spheres" => self.count(&key(name), count, MOST_SPHERES)?,
-                    _ => self.positive_count(&key(name), count)?,
-                };
-            }
-        }
-        Ok(())
     }
 }

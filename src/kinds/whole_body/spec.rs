@@ -38,7 +38,6 @@ pub struct WholeBodySpec {
     #[serde(default = "number::<100>")]
     pub patch_mm: f64,
     /// ρ, mm; half the pitch when left out.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub taxel_radius_mm: Option<f64>,
     /// s, mm.
     #[serde(default = "number::<2>")]
@@ -65,7 +64,6 @@ pub struct WholeBodySpec {
     /// What is recognised.
     pub recognition: BodyRecognitionSpec,
     /// What a step costs by size; nothing of it when left out.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub ladders: Option<LaddersSpec>,
 }
 
@@ -76,7 +74,6 @@ pub struct BodySceneSpec {
     /// What the scene is called.
     pub name: String,
     /// A built-in object, its box about its own origin; or `parts`.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub object: Option<String>,
     /// What the object is made of, in its own frame.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
@@ -93,7 +90,6 @@ pub struct BodySceneSpec {
     #[serde(default = "default_from")]
     pub from: [f64; 3],
     /// How far it goes past first contact, mm. When left out, it is at `at_mm` itself.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub depth_mm: Option<f64>,
     /// To and fro by so much, mm, as a sine of the period.
     #[serde(default)]
@@ -212,11 +208,6 @@ impl WholeBodyStudySpec {
     /// Reads a study; the error names the file, the line and the key.
     pub fn parse(place: &str, text: &str) -> Result<Self> {
         toml_text::read(place, text)
-    }
-
-    /// Writes the study with every default spelt out.
-    pub fn to_toml(&self) -> String {
-        toml::to_string(self).expect("every field of a study has a TOML form")
     }
 }
 

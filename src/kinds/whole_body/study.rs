@@ -23,6 +23,7 @@ use crate::study::pieces::{NamedPiece, PieceRows, PieceStudy, PiecesLeft, Scale,
 use crate::study::time_left::Piece;
 use crate::study::{MM, file_content};
 use crate::table::{ChartSpec, File, Table};
+use crate::toml_text;
 use crate::whole_body::CoveredRobot;
 
 const CASES: File<(BodyCase, BodyCount)> = File::new("whole_body.csv", "Scenes and rungs", "");
@@ -80,7 +81,7 @@ impl Kind for WholeBodyPlan {
     fn facts(&self) -> Result<Facts> {
         let robot = file_content(&self.robot_file)?;
         Ok(Facts::of(
-            self.spec.to_toml(),
+            toml_text::write(&self.spec),
             [("robot".to_owned(), robot)].into(),
         ))
     }
@@ -104,7 +105,7 @@ impl Kind for WholeBodyPlan {
         }
     }
 
-    fn read_tables(&self, folder: &std::path::Path) -> Result<Vec<Table>> {
+    fn read(folder: &std::path::Path) -> Result<Vec<Table>> {
         Ok(vec![
             CASES.read(folder)?,
             RECOGNITION.read(folder)?,

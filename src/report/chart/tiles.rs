@@ -3,7 +3,7 @@
 use super::layout::{Layout, TICK};
 use super::rules;
 use super::view::View;
-use crate::report::colours::{INK, LINES, PAPER, Rgb, share, text_on};
+use crate::report::colours::{GRID, INK, LINES, PAPER, Rgb, share, text_on};
 use crate::report::drawing::{Align, Area, Drawing, Stroke, TextStyle};
 use crate::report::legend::{LegendEntry, Mark};
 use crate::report::text_width::{text_width, wrap};
@@ -14,6 +14,8 @@ const OUTCOMES: [Rgb; 8] = [
     LINES[5], LINES[4], LINES[1], LINES[7], INK, LINES[2], LINES[3], LINES[0],
 ];
 const SIGN: u32 = 11;
+/// Rows and columns from which on tiles are small.
+const MANY: usize = 20;
 
 /// How tiles look.
 struct Look<'a> {
@@ -43,10 +45,12 @@ pub(super) fn draw(view: &View) -> Drawing {
         .iter()
         .map(|tick| text_width(&tick.label, TICK))
         .take(if view.x.is_words() { 0 } else { 99 });
-    let widest = signs.chain(ticks).fold(20.0, f64::max) + 8.0;
+    let is_many = view.x.n_levels().min(view.y.n_levels()) >= MANY;
+    let (margin, high) = if is_many { (4.0, 18.0) } else { (8.0, 22.0) };
+    let widest = signs.chain(ticks).fold(14.0, f64::max) + margin;
     let most = 640.0 / (view.x.n_levels() * n_columns) as f64;
     let width = widest.max(most.min(64.0)) * view.x.n_levels() as f64;
-    let height = 22.0 * view.y.n_levels() as f64;
+    let height = high * view.y.n_levels() as f64;
     let titles = view
         .panels
         .names
@@ -102,6 +106,9 @@ pub(super) fn draw(view: &View) -> Drawing {
                 (area, look.fill(place.row), look.sign(place.row))
             })
             .collect();
+        if is_many {
+            draw_grid(&mut drawing, view, frame);
+        }
         for (area, fill, _) in &tiles {
             drawing.area(*area, *fill);
             drawing.frame(*area, Stroke::new(PAPER, 1.0));
@@ -113,6 +120,19 @@ pub(super) fn draw(view: &View) -> Drawing {
         drawing.frame(frame, Stroke::new(INK, 1.0));
     }
     drawing
+}
+
+/// Lines between tiles, which lead the eye where most places are empty.
+fn draw_grid(drawing: &mut Drawing, view: &View, frame: Area) {
+    let stroke = Stroke::new(GRID, 1.0);
+    for column in 1..view.x.n_levels() {
+        let x = frame.x + frame.width * column as f64 / view.x.n_levels() as f64;
+        drawing.line((x, frame.y), (x, frame.y + frame.height), stroke);
+    }
+    for row in 1..view.y.n_levels() {
+        let y = frame.y + frame.height * row as f64 / view.y.n_levels() as f64;
+        drawing.line((frame.x, y), (frame.x + frame.width, y), stroke);
+    }
 }
 
 /// The colour of a number between the least and the most: the least is not yet white, which is none.

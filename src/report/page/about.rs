@@ -2,41 +2,9 @@
 
 use crate::signal::Quantity;
 use crate::study::provenance::Manifest;
-use crate::study::table::Limit;
 use ndarray::Array2;
 
 /// What a study says of itself, beside its tables.
-#[derive(Clone, Debug, Default)]
-pub struct ReportPage {
-    /// The study's name.
-    pub name: String,
-    /// What it asks.
-    pub question: String,
-    /// What was expected before it ran; may be empty.
-    pub expected: String,
-    /// Settings worth knowing that no table holds: objects, touches, placement, seed. Name and value.
-    pub settings: Vec<(String, String)>,
-    /// Limits that were reached.
-    pub limits: Vec<Limit>,
-    /// Sample touches for a picture.
-    pub snapshots: Option<Snapshots>,
-    /// Sample touches for the page; if there are none, those of the picture.
-    pub gallery: Vec<Snapshots>,
-    /// Whether all static charts are drawn, however many they are.
-    pub all_charts: bool,
-    /// Whether accuracy is charted against time; `None` leaves it to the number of classifiers.
-    pub pareto: Option<bool>,
-    /// Seconds from start to end, if known.
-    pub wall_s: Option<f64>,
-    /// The command that makes the folder again.
-    pub command: String,
-    /// Program and version: `bubbletouch 0.1.0`.
-    pub program: String,
-    /// Where the results come from, if known.
-    pub manifest: Option<Manifest>,
-}
-
-/// What a study that is not of recognition says of itself, beside its tables.
 #[derive(Clone, Debug, Default)]
 pub struct StudyAbout {
     /// The study's name.

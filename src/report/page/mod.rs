@@ -12,8 +12,7 @@ mod provenance;
 mod study;
 mod touches;
 
-pub use crate::study::table::Limit;
-pub use about::{ReportPage, Snapshots, StudyAbout};
+pub use about::{Snapshots, StudyAbout};
 pub use frame::Section;
 pub use picture::Picture;
 pub(super) use study::{Beside, page as study_page};

@@ -1,7 +1,7 @@
 //! What a study of recognition found, in sentences made from its tables.
 
-use super::{CELLS, GIVEN_UP_FIRST};
-use crate::report::swept::{Setting, Swept, groups};
+use super::CELLS;
+use crate::report::swept::{Setting, Swept, without};
 use crate::report::terminal::{MOST_LINES, paragraph, pivot_text, table_text};
 use crate::table::{Table, Value};
 
@@ -78,7 +78,6 @@ pub fn words(tables: &[Table], width: usize) -> String {
         n if n > MOST_LINES => pivot_text(
             found.table,
             (&super::charts::along(found.table), "accuracy"),
-            &GIVEN_UP_FIRST,
             width,
         ),
         _ => table_text(found.table, width),
@@ -115,7 +114,7 @@ impl<'a> Found<'a> {
             .find(|table| table.file == CELLS && table.n_rows > 0)?;
         let rows: Vec<usize> = (0..table.n_rows).collect();
         Some(Self {
-            swept: Swept::of(table, &rows, &GIVEN_UP_FIRST),
+            swept: Swept::of(table, &rows),
             accuracy: table.numbers("accuracy")?,
             low: table.numbers("accuracy_low")?,
             high: table.numbers("accuracy_high")?,
@@ -213,17 +212,13 @@ impl<'a> Found<'a> {
     /// Mean accuracy at each value of a setting, over those combinations of the others that have all of its values.
     fn effects(&self) -> Vec<String> {
         let effect = |setting: &Setting| {
-            let others: Vec<Setting> = self
-                .swept
-                .free
-                .iter()
-                .filter(|one| one.column.name != setting.column.name)
-                .copied()
-                .collect();
+            let others = without(&self.swept.free, setting);
             let levels = setting.levels(&self.rows);
             let is_level =
                 |row: usize, level: usize| setting.data.key(row) == setting.data.key(level);
-            let complete: Vec<Vec<f64>> = groups(&others, &self.rows)
+            let complete: Vec<Vec<f64>> = self
+                .swept
+                .groups(&others, &self.rows)
                 .iter()
                 .filter_map(|rows| {
                     let at = |&level: &usize| {

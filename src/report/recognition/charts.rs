@@ -1,12 +1,13 @@
 //! What is charted of a study of recognition.
 //!
-//! Every setting that varies has a place, so no chart mixes cells that differ in something it does not show: x takes the
-//! compression ratio if it varies, else another number; lines and panels take the next two; each combination of what
+//! Every setting that varies has a place, so no chart mixes cells that differ in something it does not show: x takes the first of the
+//! study's own axes, else the compression ratio if it varies, else another number; lines and panels take the next two; each combination of what
 //! is left gets a chart of its own.
 
-use super::{CELLS, GIVEN_UP_FIRST};
-use crate::report::swept::{Setting, Swept};
-use crate::table::{Along, At, ChartSpec, Data, Mark, Role, Rule, Shown, Table};
+use super::CELLS;
+use crate::report::swept::{Setting, Swept, without};
+use crate::study::table::Cell;
+use crate::table::{Along, At, ChartSpec, Columns, Data, Mark, Role, Rule, Shown, Table};
 
 /// Classifiers from which on a study is about choosing one.
 const MANY_CLASSIFIERS: usize = 3;
@@ -107,17 +108,13 @@ fn chance(confusion: &Table) -> Option<Rule> {
 /// first values one at a time get charts of their own, along x.
 fn accuracy_charts(cells: &Table, chance: &Option<Rule>) -> Vec<ChartSpec> {
     let all: Vec<usize> = (0..cells.n_rows).collect();
-    let swept = Swept::of(cells, &all, &GIVEN_UP_FIRST);
+    let swept = Swept::of(cells, &all);
     if swept.one_at_a_time.is_empty() {
         return charts_along(cells, chance, None, &all, &[]);
     }
     let signal = &swept.one_at_a_time;
     let charts_of = |setting: &Setting| {
-        let others: Vec<Setting> = signal
-            .iter()
-            .filter(|other| other.column.name != setting.column.name)
-            .copied()
-            .collect();
+        let others = without(signal, setting);
         let is_at_base = |row: &usize| {
             others
                 .iter()
@@ -137,11 +134,13 @@ fn charts_along(
     rows: &[usize],
     base: &[Setting],
 ) -> Vec<ChartSpec> {
-    let mut free = Swept::of(cells, rows, &GIVEN_UP_FIRST).free;
+    let swept = Swept::of(cells, rows);
+    let mut free = swept.free.clone();
     let x = match x {
         Some(name) => take(&mut free, &[name], |_| true),
-        // Words stand along x only if no number varies.
-        None => take(&mut free, &ALONG_X, |setting| setting.is_number())
+        // What a study has axes for is what it asks about. Words stand along x only if no number varies.
+        None => take_own(&mut free)
+            .or_else(|| take(&mut free, &ALONG_X, |setting| setting.is_number()))
             .or_else(|| take(&mut free, &AS_LINES, |_| true)),
     };
     let x = x.map_or_else(
@@ -151,8 +150,9 @@ fn charts_along(
     let lines = take(&mut free, &AS_LINES, |_| true);
     let panels = take(&mut free, &AS_PANELS, |_| true);
     let mut charts = Vec::new();
-    for (fixed, rows) in combinations(&free, rows) {
-        let place = |setting: &Setting| shown(setting, rows[0]);
+    let fixed = free;
+    for rows in swept.groups(&fixed, rows) {
+        let place = |setting: &Setting| cells.shown(&setting.column.name, rows[0]);
         let chart = ChartSpec {
             name: format!("accuracy_by_{}{}", word(&x), name_ending(&fixed, rows[0])),
             title: title(cells, &x, [&lines, &panels], &fixed, rows[0]),
@@ -193,28 +193,17 @@ fn take<'a>(
             .position(|one| one.column.name == *name && suits(one))
     };
     let named = order.iter().find_map(of_name);
-    // What a study names itself, and what a skin does to a signal, comes after what people look for.
+    // What a skin does to a signal comes after what people look for.
     let place = named.or_else(|| free.iter().position(&suits))?;
     Some(free.remove(place))
 }
 
-/// Every combination of values that rows have, with its rows.
-fn combinations<'a>(
-    settings: &[Setting<'a>],
-    rows: &[usize],
-) -> Vec<(Vec<Setting<'a>>, Vec<usize>)> {
-    let groups = crate::report::swept::groups(settings, rows);
-    groups
-        .into_iter()
-        .map(|rows| (settings.to_vec(), rows))
-        .collect()
-}
-
-fn shown(setting: &Setting, row: usize) -> Option<Shown> {
-    Some(Shown {
-        column: name_of(setting),
-        value: setting.data.value(row)?,
-    })
+/// The first number that only this study has a column for.
+fn take_own<'a>(free: &mut Vec<Setting<'a>>) -> Option<Setting<'a>> {
+    let usual = Cell::columns();
+    let is_own = |one: &Setting| usual.iter().all(|column| column.name != one.column.name);
+    let place = free.iter().position(|one| one.is_number() && is_own(one))?;
+    Some(free.remove(place))
 }
 
 /// `Accuracy by compression, for each pitch and array size (noise 10 %)`.
@@ -273,7 +262,7 @@ fn name_ending(fixed: &[Setting], row: usize) -> String {
 /// one classifier, for each value of the first other choice that varies.
 fn time_charts(cells: &Table, chance: &Option<Rule>) -> Vec<ChartSpec> {
     let all: Vec<usize> = (0..cells.n_rows).collect();
-    let swept = Swept::of(cells, &all, &GIVEN_UP_FIRST);
+    let swept = Swept::of(cells, &all);
     let of = |role: Role| {
         swept
             .free
@@ -315,6 +304,23 @@ fn time_charts(cells: &Table, chance: &Option<Rule>) -> Vec<ChartSpec> {
     costs.map(chart).into()
 }
 
+/// What tells a cell from the others, and its accuracy.
+fn words_of(cells: &Table, row: usize) -> String {
+    let all: Vec<usize> = (0..cells.n_rows).collect();
+    let swept = Swept::of(cells, &all);
+    let accuracy = format!("accuracy {:.2}", cells.number("accuracy", row));
+    let words = [
+        swept.condition_words(row),
+        swept.choice_words(row),
+        accuracy,
+    ];
+    let words: Vec<String> = words
+        .into_iter()
+        .filter(|words| !words.is_empty())
+        .collect();
+    format!(" ({})", words.join(", "))
+}
+
 /// What the best cell takes for what.
 fn confusion_chart(cells: &Table, confusion: &Table) -> Option<ChartSpec> {
     let accuracy = cells.numbers("accuracy")?;
@@ -323,7 +329,7 @@ fn confusion_chart(cells: &Table, confusion: &Table) -> Option<ChartSpec> {
     confusion.numbers("cell")?.contains(&cell).then(|| ChartSpec {
         name: "confusion".to_owned(),
         title: "What was taken for what".to_owned(),
-        note: "Rows were touched, columns are what they were taken for, all trials together; at first of the most accurate cell.".to_owned(),
+        note: format!("Rows were touched, columns are what they were taken for, all trials together. Of the most accurate cell{}.", words_of(cells, best)),
         table: "confusion.csv",
         shown: vec![Shown {
             column: "cell".to_owned(),

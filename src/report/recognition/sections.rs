@@ -1,9 +1,10 @@
 //! What the page of a study of recognition has beside that of any study: sample touches, settings, and how often limits were reached.
 
 use crate::error::Result;
+use crate::report::csv_tables::LIMITS_FILE;
 use crate::report::drawing::escape;
-use crate::report::page::{Limit, ReportPage, Section, touches_html};
-use crate::report::swept::{Setting, Swept};
+use crate::report::page::{Section, Snapshots, touches_html};
+use crate::report::swept::Swept;
 use crate::table::{Table, short_number};
 use std::fmt::Write;
 
@@ -11,78 +12,60 @@ use std::fmt::Write;
 ///
 /// # Errors
 /// A sample touch that nobody can draw.
-pub fn sections(about: &ReportPage, tables: &[Table]) -> Result<Vec<Section>> {
-    let touches: String = match about.gallery.is_empty() {
-        true => about
-            .snapshots
-            .iter()
-            .map(touches_html)
-            .collect::<Result<_>>()?,
-        false => about
-            .gallery
-            .iter()
-            .map(touches_html)
-            .collect::<Result<_>>()?,
-    };
+pub fn sections(
+    settings: &[(String, String)],
+    gallery: &[Snapshots],
+    tables: &[Table],
+) -> Result<Vec<Section>> {
+    let touches: String = gallery.iter().map(touches_html).collect::<Result<_>>()?;
     Ok(vec![
         Section::new("touches", "Sample touches", touches),
-        Section::new("settings", "Settings", settings_html(about, tables)),
-        Section::new("limits", "Limits", limits_html(&about.limits)),
+        Section::new("settings", "Settings", settings_html(settings, tables)),
+        Section::new("limits", "Limits", limits_html(tables)),
     ])
 }
 
-fn settings_html(about: &ReportPage, tables: &[Table]) -> String {
+fn settings_html(settings: &[(String, String)], tables: &[Table]) -> String {
     let mut html = String::from("<dl>");
-    for (name, value) in &about.settings {
+    for (name, value) in settings {
         let class = match value.len() > 60 {
             true => " class=\"long\"",
             false => "",
         };
-        let _ = write!(
-            html,
-            "<div{class}><dt>{}</dt><dd>{}</dd></div>",
-            escape(name),
-            escape(value)
-        );
+        let (name, value) = (escape(name), escape(value));
+        let _ = write!(html, "<div{class}><dt>{name}</dt><dd>{value}</dd></div>");
     }
     if let Some(cells) = tables.iter().find(|table| table.file == super::CELLS) {
         let rows: Vec<usize> = (0..cells.n_rows).collect();
-        let swept = Swept::of(cells, &rows, &super::GIVEN_UP_FIRST);
-        let mut write_one = |setting: &Setting, mark: &str| {
-            let values: Vec<String> = setting
-                .levels(&rows)
-                .iter()
-                .map(|&row| escape(&setting.label(row)))
-                .collect();
-            let (name, values) = (escape(&setting.column.words), values.join(", "));
-            let _ = write!(html, "<div><dt>{name}{mark}</dt><dd>{values}</dd></div>");
-        };
-        swept
+        let swept = Swept::of(cells, &rows);
+        let swept_ones = swept
             .free
             .iter()
-            .for_each(|setting| write_one(setting, " <span class=\"tag\">swept</span>"));
-        swept
-            .fixed
-            .iter()
-            .for_each(|setting| write_one(setting, ""));
+            .map(|one| (one, " <span class=\"tag\">swept</span>"));
+        for (setting, mark) in swept_ones.chain(swept.fixed.iter().map(|one| (one, ""))) {
+            let values = setting.levels(&rows).into_iter();
+            let values: Vec<String> = values.map(|row| escape(&setting.label(row))).collect();
+            let (name, values) = (escape(&setting.column.words), values.join(", "));
+            let _ = write!(html, "<div><dt>{name}{mark}</dt><dd>{values}</dd></div>");
+        }
     }
     html + "</dl>"
 }
 
 /// Limits of the model and of the solver that were reached.
-fn limits_html(limits: &[Limit]) -> String {
-    let item = |limit: &Limit| {
-        let share = 100.0 * limit.count as f64 / limit.of.max(1) as f64;
-        let (what, meaning) = (escape(&limit.what), escape(&limit.meaning));
-        format!(
-            "<li><b>{} of {}</b> {what} ({} %). {meaning}</li>",
-            limit.count,
-            limit.of,
-            short_number(share)
-        )
+fn limits_html(tables: &[Table]) -> String {
+    let table = tables.iter().find(|table| table.file == LIMITS_FILE);
+    let Some(table) = table.filter(|table| table.n_rows > 0) else {
+        return format!(
+            "<p>Which limits were reached is not known: there is no {LIMITS_FILE}.</p>"
+        );
     };
-    match limits.is_empty() {
-        true => String::new(),
-        false => format!("<ul>{}</ul>", limits.iter().map(item).collect::<String>()),
-    }
+    let item = |row: usize| {
+        let (count, of) = (table.number("count", row), table.number("of", row));
+        let share = short_number(100.0 * count / of.max(1.0));
+        let [what, meaning] = ["what", "meaning"].map(|name| escape(table.word(name, row)));
+        format!("<li><b>{count} of {of}</b> {what} ({share} %). {meaning}</li>")
+    };
+    let items: String = (0..table.n_rows).map(item).collect();
+    format!("<ul>{items}</ul>")
 }

@@ -1,7 +1,6 @@
 //! Frames made on all threads, and put down in their order.
 
-use super::coding::encode;
-use super::kept::FrameWriter;
+use super::kept::{FramePlace, KeptFrames, encoded};
 use super::{FrameFacts, Frames};
 use crate::error::Result;
 use crate::study::progress::Progress;
@@ -24,105 +23,58 @@ pub fn made_at_once(n_frames: usize) -> usize {
     block(n_frames) * BLOCKS_A_THREAD * rayon::current_num_threads()
 }
 
-/// What presses touches, with a workspace that each thread has of its own.
-pub trait Press: Sync {
-    /// A touch to make.
-    type Touch: Sync;
-    /// What a thread works in.
-    type Workspace;
-
-    /// A workspace for a thread.
-    fn workspace(&self) -> Self::Workspace;
-
-    /// Writes a touch into its F frames (F × n_taxels, metres); whether it met nothing, and whether it saturated a taxel when it
-    /// was deepest.
-    fn press(
-        &self,
-        touch: &Self::Touch,
-        workspace: &mut Self::Workspace,
-        rows: ArrayViewMut2<f32>,
-    ) -> (bool, bool);
-}
-
-/// Frames in the making.
-pub struct Making<'a> {
-    writer: FrameWriter,
-    facts: FrameFacts,
-    progress: &'a dyn Progress,
-}
-
-/// What a block of touches gave.
-struct Block {
-    frames: Vec<Box<[u8]>>,
-    n_missed: usize,
-    n_saturated: usize,
-    cpu_s: f64,
-}
-
-impl<'a> Making<'a> {
-    /// Of `n_frames` a touch.
-    pub fn new(writer: FrameWriter, n_frames: usize, progress: &'a dyn Progress) -> Self {
+impl Frames {
+    /// None yet, of so many a touch.
+    ///
+    /// # Errors
+    /// They cannot be kept where they are to be.
+    pub fn new((n_taxels, n_frames): (usize, usize), place: &FramePlace) -> Result<Self> {
         let facts = FrameFacts {
             n_frames,
             ..FrameFacts::default()
         };
-        Self {
-            writer,
-            facts,
-            progress,
-        }
+        let kept = KeptFrames::new(n_taxels, place)?;
+        Ok(Self { kept, facts })
     }
 
-    /// Makes touches; the same bytes at any number of threads.
-    pub fn make<P: Press>(&mut self, press: &P, touches: &[P::Touch]) -> Result<()> {
-        let n_frames = self.facts.n_frames;
-        for touches in touches.chunks(made_at_once(n_frames)) {
-            let blocks: Vec<Block> = touches
-                .par_chunks(block(n_frames))
-                .map_init(
-                    || press.workspace(),
-                    |work, touches| self.block(press, touches, work),
-                )
-                .collect();
-            for block in blocks {
-                self.facts.n_missed += block.n_missed;
-                self.facts.n_saturated += block.n_saturated;
-                self.facts.cpu_s += block.cpu_s;
-                for frame in block.frames {
-                    self.writer.put(frame)?;
+    /// Makes the frames of some touches, each thread in a workspace of its own; the same bytes at any number of threads. `press` writes a touch
+    /// into its F frames (F × n_taxels, metres), and says whether it met nothing, and whether it saturated a taxel when it was deepest.
+    ///
+    /// # Errors
+    /// The file of frames cannot be written.
+    pub fn make<T: Sync, W>(
+        &mut self,
+        touches: &[T],
+        workspace: impl Fn() -> W + Sync,
+        press: impl Fn(&T, &mut W, ArrayViewMut2<f32>) -> (bool, bool) + Sync,
+        progress: &dyn Progress,
+    ) -> Result<()> {
+        let shape = (self.facts.n_frames, self.kept.n_taxels());
+        for touches in touches.chunks(made_at_once(shape.0)) {
+            let blocks = touches.par_chunks(block(shape.0));
+            let made = blocks.map_init(&workspace, |workspace, touches: &[T]| {
+                let start = Instant::now();
+                let mut rows = Array2::zeros(shape);
+                let mut frames = Vec::with_capacity(touches.len() * shape.0);
+                let mut facts = FrameFacts::default();
+                for touch in touches {
+                    let (missed, saturated) = press(touch, workspace, rows.view_mut());
+                    facts.n_missed += usize::from(missed);
+                    facts.n_saturated += usize::from(saturated);
+                    let rows = rows.outer_iter();
+                    frames.extend(rows.map(|row| encoded(row.to_slice().expect("a row"))));
                 }
+                progress.advance(touches.len() as u64);
+                facts.cpu_s = start.elapsed().as_secs_f64();
+                (frames, facts)
+            });
+            for (frames, facts) in made.collect::<Vec<_>>() {
+                self.facts.n_missed += facts.n_missed;
+                self.facts.n_saturated += facts.n_saturated;
+                self.facts.cpu_s += facts.cpu_s;
+                self.kept.put(frames)?;
             }
         }
         Ok(())
-    }
-
-    fn block<P: Press>(&self, press: &P, touches: &[P::Touch], work: &mut P::Workspace) -> Block {
-        let start = Instant::now();
-        let mut rows = Array2::zeros((self.facts.n_frames, self.writer.n_taxels()));
-        let mut block = Block {
-            frames: Vec::with_capacity(touches.len() * self.facts.n_frames),
-            n_missed: 0,
-            n_saturated: 0,
-            cpu_s: 0.0,
-        };
-        let mut bytes = Vec::new();
-        for touch in touches {
-            let (missed, saturated) = press.press(touch, work, rows.view_mut());
-            block.n_missed += usize::from(missed);
-            block.n_saturated += usize::from(saturated);
-            for row in rows.outer_iter() {
-                bytes.clear();
-                encode(row.to_slice().expect("rows of a new array"), &mut bytes);
-                block.frames.push(bytes.as_slice().into());
-            }
-        }
-        self.progress.advance(touches.len() as u64);
-        block.cpu_s = start.elapsed().as_secs_f64();
-        block
-    }
-
-    /// All of them.
-    pub fn finish(self) -> Result<Frames> {
-        self.writer.finish(self.facts)
     }
 }

@@ -5,9 +5,8 @@ mod kept;
 mod making;
 
 pub(crate) use coding::most_bytes;
-pub use kept::{FramePlace, FrameWriter, KeptFrames};
+pub use kept::{FramePlace, KeptFrames};
 pub(crate) use making::made_at_once;
-pub(super) use making::{Making, Press};
 
 /// Frames of an array and what happened while they were made.
 #[derive(Debug)]

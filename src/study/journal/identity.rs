@@ -1,10 +1,11 @@
 //! What a study's results depend on.
 
 use crate::error::{Error, Result};
-use crate::study::content_hash::ContentHash;
+use crate::study::axes::is_at;
+use crate::study::content_hash::short_hash;
 use crate::toml_text;
 use serde::{Deserialize, Serialize};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// Hexadecimal digits of what binds a line to its study. Fewer: lines of two studies may be taken for each other's.
 const BINDING_DIGITS: usize = 16;
@@ -46,21 +47,17 @@ impl Identity {
 
     /// What another one, of a study that is here, has that this one has not, and the reverse, a line each.
     pub fn differences(&self, other: &Self) -> Vec<String> {
-        let mut lines = Vec::new();
-        let parts = [
-            ("program", &self.program, &other.program),
-            ("program's sources", &self.source, &other.source),
-        ];
-        for (name, ours, theirs) in parts {
-            lines.extend(changed(name, Some(ours), Some(theirs)));
-        }
-        lines.extend(all_changed(
-            "",
-            &self.fixed_keys(other.may_change),
-            &other.fixed_keys(other.may_change),
-        ));
-        lines.extend(all_changed("object ", &self.objects, &other.objects));
-        lines
+        let [ours, theirs] = [self, other].map(|identity| identity.facts(other.may_change));
+        let names: BTreeSet<&String> = ours.keys().chain(theirs.keys()).collect();
+        let differ = names
+            .into_iter()
+            .filter(|name| ours.get(*name) != theirs.get(*name));
+        let words = |value: Option<&String>| value.map_or("nothing".to_owned(), String::clone);
+        let line = |name: &String| {
+            let (was, is) = (words(ours.get(name)), words(theirs.get(name)));
+            format!("{name}: was {was}, is {is}")
+        };
+        differ.map(line).collect()
     }
 
     /// An error that says what differs unless the other is the same study; `place` is where this one stands.
@@ -81,63 +78,26 @@ impl Identity {
 
     /// What every line of a journal carries: the same for the same study, another for every other.
     pub(super) fn binding(&self) -> String {
-        let Self {
-            program,
-            source,
-            objects,
-            ..
-        } = self;
-        let said = format!(
-            "{program:?} {source:?} {:?} {objects:?}",
-            self.fixed_keys(self.may_change)
-        );
-        let mut digits = ContentHash::default().bytes(said).hex();
-        digits.truncate(BINDING_DIGITS);
-        digits
+        let facts = self.facts(self.may_change);
+        short_hash(format!("{facts:?}"), BINDING_DIGITS)
     }
 
-    /// The values of the study's keys, but for those that may change.
-    fn fixed_keys(&self, may_change: &[&str]) -> BTreeMap<String, String> {
-        let is_fixed = |key: &String| {
-            !may_change.iter().any(|name| {
-                let rest = key.strip_prefix(name);
-                rest.is_some_and(|rest| rest.is_empty() || rest.starts_with('.'))
-            })
-        };
-        let mut fixed = keys(&self.study);
-        fixed.retain(|key, _| is_fixed(key));
-        fixed
+    /// All that counts, by name: of the study the values of its keys, but for those that may change.
+    fn facts(&self, may_change: &[&str]) -> BTreeMap<String, String> {
+        let mut facts = BTreeMap::new();
+        if let Some(table) = toml_text::table(&self.study) {
+            add_keys("", &table, &mut facts);
+        }
+        facts.retain(|key, _| !may_change.iter().any(|name| is_at(key, name)));
+        facts.insert("program".to_owned(), self.program.clone());
+        facts.insert("program's sources".to_owned(), self.source.clone());
+        let objects = self.objects.iter();
+        facts.extend(objects.map(|(name, hash)| (format!("object {name}"), hash.clone())));
+        facts
     }
 }
 
-fn all_changed(
-    what: &str,
-    ours: &BTreeMap<String, String>,
-    theirs: &BTreeMap<String, String>,
-) -> Vec<String> {
-    let mut names: Vec<&String> = ours.keys().chain(theirs.keys()).collect();
-    names.sort();
-    names.dedup();
-    let lines = names
-        .into_iter()
-        .filter_map(|name| changed(&format!("{what}{name}"), ours.get(name), theirs.get(name)));
-    lines.collect()
-}
-
-fn changed(name: &str, ours: Option<&String>, theirs: Option<&String>) -> Option<String> {
-    let words = |value: Option<&String>| value.map_or("nothing".to_owned(), String::clone);
-    (ours != theirs).then(|| format!("{name}: was {}, is {}", words(ours), words(theirs)))
-}
-
-/// Every value of a TOML text by its dotted key.
-fn keys(text: &str) -> BTreeMap<String, String> {
-    let mut values = BTreeMap::new();
-    if let Some(table) = toml_text::table(text) {
-        add_keys("", &table, &mut values);
-    }
-    values
-}
-
+/// Every value of a table by its dotted key.
 fn add_keys(prefix: &str, table: &toml::Table, values: &mut BTreeMap<String, String>) {
     for (key, value) in table {
         match value {
@@ -170,9 +130,9 @@ mod tests {
             &[("mug", "a2"), ("bowl", "b")],
         );
         let expected = [
+            "object mug: was a1, is a2",
             "skin.stiffness_n_per_m: was 100.0, is 200.0",
             "skin.stroke_mm: was nothing, is 5.0",
-            "object mug: was a1, is a2",
         ];
         assert_eq!(old.differences(&new), expected);
         assert!(old.check_same(&old.clone(), "x").is_ok());

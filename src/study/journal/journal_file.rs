@@ -1,7 +1,7 @@
 //! The journal of a run: one file, one writer at a time.
 
 use super::identity::Identity;
-use super::line::{Decoded, Records, decode, encode};
+use super::line::{Records, decode, encode};
 use crate::error::{Error, Result};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
@@ -9,7 +9,7 @@ use std::fs::{File, OpenOptions, TryLockError};
 use std::io::{self, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
-use std::sync::{Mutex, MutexGuard};
+use std::sync::{LazyLock, Mutex, MutexGuard};
 use std::time::{Duration, Instant};
 
 /// The journal's name in a folder of results.
@@ -30,6 +30,8 @@ pub struct Journal {
     /// What every line is bound to its study with.
     of: String,
     before: Records,
+    /// Bytes of whole lines when it was opened.
+    n_whole: usize,
     writer: Mutex<Option<Writer>>,
     /// Records after which the process ends; 0: it does not.
     aborts_after: AtomicUsize,
@@ -45,8 +47,9 @@ struct Writer {
 
 impl Journal {
     /// A journal that knows nothing and keeps nothing.
-    pub fn none() -> Self {
-        Self::default()
+    pub fn none() -> &'static Self {
+        static NONE: LazyLock<Journal> = LazyLock::new(Journal::default);
+        &NONE
     }
 
     /// Opens the journal of this study, or starts one, at `path` in a folder that exists. A torn last line is cut off.
@@ -56,31 +59,30 @@ impl Journal {
     /// which; it is damaged before its last line, or has lines of two studies; it cannot be read or written.
     pub fn open(path: &Path, identity: &Identity) -> Result<Self> {
         let (mut file, bytes) = read_locked(path)?;
-        let decoded = decode(&bytes);
+        let (begun, journal) = Self::of_bytes(path, &bytes)?;
         let of = identity.binding();
-        if let Some((begun, bound)) = begun_with(path, &decoded)? {
+        if let Some(begun) = &begun {
             begun.check_same(identity, &path.display().to_string())?;
-            check_bound(path, &bound, &of)?;
+            check_bound(path, &journal.of, &of)?;
         }
-        let read_error = |e| Error::io(path, "write", e);
-        file.set_len(decoded.n_whole as u64).map_err(read_error)?;
-        file.seek(SeekFrom::End(0)).map_err(read_error)?;
+        let n_whole = journal.n_whole as u64;
+        let cut = file
+            .set_len(n_whole)
+            .and_then(|()| file.seek(SeekFrom::End(0)));
+        cut.map_err(|e| Error::io(path, "write", e))?;
         let writer = Writer {
             file,
             synced: Instant::now(),
             is_broken: false,
         };
         let journal = Self {
-            path: path.to_owned(),
             of,
-            before: decoded.records,
             writer: Mutex::new(Some(writer)),
-            aborts_after: AtomicUsize::new(0),
+            ..journal
         };
-        if decoded.first.is_none() {
+        if begun.is_none() {
             journal.keep(HEADER, identity)?;
             journal.sync()?;
-            sync_folder(path)?;
         }
         Ok(journal)
     }
@@ -91,22 +93,37 @@ impl Journal {
     /// It cannot be read, or is damaged, as of [`open`](Self::open).
     pub fn read(path: &Path) -> Result<Option<(Identity, Self)>> {
         let bytes = match std::fs::read(path) {
-            Ok(bytes) => bytes,
             Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(None),
-            Err(error) => return Err(Error::io(path, "read", error)),
+            bytes => bytes.map_err(|e| Error::io(path, "read", e))?,
         };
-        let decoded = decode(&bytes);
-        let Some((identity, of)) = begun_with(path, &decoded)? else {
-            return Ok(None);
-        };
-        let journal = Self {
+        let (identity, journal) = Self::of_bytes(path, &bytes)?;
+        Ok(identity.map(|identity| (identity, journal)))
+    }
+
+    /// What a file holds, and the study that it was begun with: none where no line is whole.
+    fn of_bytes(path: &Path, bytes: &[u8]) -> Result<(Option<Identity>, Self)> {
+        let decoded = decode(bytes);
+        if let Some((line, given)) = decoded.damage {
+            return Err(damaged(path, line, given));
+        }
+        let mut journal = Self {
             path: path.to_owned(),
-            of,
             before: decoded.records,
-            writer: Mutex::new(None),
-            aborts_after: AtomicUsize::new(0),
+            n_whole: decoded.n_whole,
+            ..Self::default()
         };
-        Ok(Some((identity, journal)))
+        let Some(first) = decoded.first else {
+            return Ok((None, journal));
+        };
+        journal.of = first.of;
+        match serde_json::from_str(first.record.get()) {
+            Ok(begun) if first.key == HEADER => Ok((Some(begun), journal)),
+            _ => {
+                let given =
+                    "is no record of a study: nothing says which study the finished work is of";
+                Err(damaged(path, 1, given))
+            }
+        }
     }
 
     /// What was kept under a key before this journal was opened; `None` too for a record of another kind.
@@ -121,17 +138,13 @@ impl Journal {
 
     /// Keeps a record: when this returns, the end of the process cannot lose it.
     pub fn keep(&self, key: &str, record: &impl Serialize) -> Result<()> {
-        let mut guard = self.lock();
-        let Some(writer) = guard.as_mut() else {
-            return Ok(());
-        };
-        let line =
-            encode(&self.of, key, record).map_err(|e| Error::io(&self.path, "write", e.into()))?;
-        writer
-            .append(&line)
-            .map_err(|e| Error::io(&self.path, "write", e))?;
-        if self.aborts_after.load(Relaxed) > 0 && self.aborts_after.fetch_sub(1, Relaxed) == 1 {
-            std::process::abort();
+        if let Some(writer) = self.lock().as_mut() {
+            let line = encode(&self.of, key, record).map_err(io::Error::from);
+            let kept = line.and_then(|line| writer.append(&line));
+            kept.map_err(|e| Error::io(&self.path, "write", e))?;
+            if self.aborts_after.load(Relaxed) > 0 && self.aborts_after.fetch_sub(1, Relaxed) == 1 {
+                std::process::abort();
+            }
         }
         Ok(())
     }
@@ -158,22 +171,16 @@ impl Journal {
 
     /// Waits until everything is on the disk.
     pub fn sync(&self) -> Result<()> {
-        let mut guard = self.lock();
-        let Some(writer) = guard.as_mut() else {
-            return Ok(());
-        };
-        writer.sync().map_err(|e| Error::io(&self.path, "write", e))
+        let synced = self.lock().as_mut().map_or(Ok(()), Writer::sync);
+        synced.map_err(|e| Error::io(&self.path, "write", e))
     }
 
     /// As [`sync`](Self::sync), and no thread writes from then on: for a process that is about to end.
     pub fn stop(&self) -> Result<()> {
-        let guard = self.lock();
         // Never given back: who wants to write waits for the end.
-        let mut writer = std::mem::ManuallyDrop::new(guard);
-        let Some(writer) = writer.as_mut() else {
-            return Ok(());
-        };
-        writer.sync().map_err(|e| Error::io(&self.path, "write", e))
+        let mut writer = std::mem::ManuallyDrop::new(self.lock());
+        let synced = writer.as_mut().map_or(Ok(()), Writer::sync);
+        synced.map_err(|e| Error::io(&self.path, "write", e))
     }
 
     fn lock(&self) -> MutexGuard<'_, Option<Writer>> {
@@ -228,33 +235,6 @@ fn read_locked(path: &Path) -> Result<(File, Vec<u8>)> {
     Ok((file, bytes))
 }
 
-/// The study that a journal was begun with, by its first line, and what binds its lines to it; none where no line is whole.
-fn begun_with(path: &Path, decoded: &Decoded) -> Result<Option<(Identity, String)>> {
-    if let Some(line) = decoded.broken {
-        let given = "does not match its checksum, though lines follow it";
-        return Err(damaged(path, line, given));
-    }
-    if let Some(line) = decoded.foreign {
-        let given = "is of another study than line 1, or begins one anew";
-        return Err(damaged(path, line, given));
-    }
-    let Some(first) = &decoded.first else {
-        return Ok(None);
-    };
-    if first.key != HEADER {
-        let given = "is no record of a study: nothing says which study the finished work is of";
-        return Err(damaged(path, 1, given));
-    }
-    match serde_json::from_str(first.record.get()) {
-        Ok(begun) => Ok(Some((begun, first.of.clone()))),
-        Err(error) => Err(damaged(
-            path,
-            1,
-            &format!("is no record of a study ({error})"),
-        )),
-    }
-}
-
 /// Lines that are bound to a study are of the study that the first of them names.
 fn check_bound(path: &Path, of: &str, expected: &str) -> Result<()> {
     match of == expected {
@@ -271,19 +251,4 @@ fn damaged(path: &Path, line: usize, given: &str) -> Error {
     let allowed =
         "a journal as it was written; --fresh starts over and keeps the old results beside the new";
     Error::input(format!("{}: line {line}", path.display()), given, allowed)
-}
-
-/// A new file is on the disk when its folder is.
-fn sync_folder(path: &Path) -> Result<()> {
-    let folder = path
-        .parent()
-        .filter(|parent| !parent.as_os_str().is_empty());
-    let folder = folder.unwrap_or(Path::new("."));
-    // Not every system opens folders; those that do not have no such wait.
-    match File::open(folder) {
-        Ok(folder_file) => folder_file
-            .sync_all()
-            .map_err(|e| Error::io(folder, "write", e)),
-        Err(_) => Ok(()),
-    }
 }

@@ -47,10 +47,8 @@ pub struct Decoded {
     pub records: Records,
     /// Bytes up to the end of the last whole line.
     pub n_whole: usize,
-    /// Number from 1 of a line that is broken though others follow it: no interrupted write leaves that behind.
-    pub broken: Option<usize>,
-    /// Number from 1 of a line that begins a study anew, or is bound to another one than the first.
-    pub foreign: Option<usize>,
+    /// Number from 1 of a line that no interrupted write leaves behind, and what is wrong with it.
+    pub damage: Option<(usize, &'static str)>,
 }
 
 /// Reads lines up to the first that is torn, or foreign.
@@ -59,13 +57,15 @@ pub fn decode(bytes: &[u8]) -> Decoded {
     for (number, line) in bytes.split_inclusive(|&byte| byte == b'\n').enumerate() {
         let Some(read) = decode_line(line) else {
             let is_last = decoded.n_whole + line.len() == bytes.len();
-            decoded.broken = (!is_last).then_some(number + 1);
+            let given = "does not match its checksum, though lines follow it";
+            decoded.damage = (!is_last).then_some((number + 1, given));
             break;
         };
         match &decoded.first {
             None => decoded.first = Some(read),
             Some(first) if read.key == first.key || read.of != first.of => {
-                decoded.foreign = Some(number + 1);
+                let given = "is of another study than line 1, or begins one anew";
+                decoded.damage = Some((number + 1, given));
                 break;
             }
             Some(_) => {
@@ -106,8 +106,7 @@ mod tests {
     #[test]
     fn what_is_written_is_read_and_the_last_of_a_key_counts() {
         let decoded = decode(&file());
-        assert_eq!((decoded.n_whole, decoded.broken), (file().len(), None));
-        assert_eq!(decoded.foreign, None);
+        assert_eq!((decoded.n_whole, decoded.damage), (file().len(), None));
         assert_eq!(decoded.first.as_ref().unwrap().key, "study");
         assert_eq!(number(&decoded, "b\n\""), Some((2, 2.1)));
         assert_eq!(number(&decoded, "a"), Some((4, 4.1)));
@@ -122,7 +121,7 @@ mod tests {
             let whole = ends.iter().take_while(|&&end| end < n).count();
             let expected = whole.checked_sub(1).map_or(0, |last| ends[last] + 1);
             assert_eq!(
-                (decoded.n_whole, decoded.broken),
+                (decoded.n_whole, decoded.damage),
                 (expected, None),
                 "{n} bytes"
             );
@@ -139,7 +138,7 @@ mod tests {
             let mut bytes = bytes.clone();
             bytes[k] ^= 1;
             let decoded = decode(&bytes);
-            assert!(decoded.broken.is_some(), "byte {k}");
+            assert!(decoded.damage.is_some(), "byte {k}");
         }
     }
 
@@ -148,7 +147,7 @@ mod tests {
         for foreign in [line("2e", "d", 5), line("1f", "study", 5)] {
             let bytes = [file(), foreign.into_bytes(), file()].concat();
             let decoded = decode(&bytes);
-            assert_eq!((decoded.foreign, decoded.broken), (Some(6), None));
+            assert!(matches!(decoded.damage, Some((6, said)) if said.starts_with("is of another")));
         }
     }
 }

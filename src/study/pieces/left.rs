@@ -1,14 +1,14 @@
 //! The pieces that a run does.
 
-use super::NamedPiece;
-use super::record::{PieceResult, PieceRows, keep};
+use super::record::{PieceResult, PieceRows};
+use super::{NamedPiece, PieceManner};
 use crate::error::Result;
 use crate::study::attempt::attempt;
 use crate::study::journal::Journal;
 use crate::study::progress::Progress;
 use crate::study::time_left::Piece;
 use std::collections::{BTreeMap, HashMap};
-use std::sync::{Mutex, MutexGuard, OnceLock};
+use std::sync::{Mutex, OnceLock};
 use std::time::Instant;
 
 /// The pieces that are left to a run, for whoever measures them: by name, or by their number among all pieces.
@@ -29,15 +29,13 @@ pub struct PiecesLeft<'a, R> {
 impl<'a, R: PieceRows> PiecesLeft<'a, R> {
     /// Some of all pieces.
     pub(super) fn new(
-        journal: &'a Journal,
-        fail_fast: bool,
-        progress: &'a dyn Progress,
+        manner: &PieceManner<'a>,
         (pieces, is_left): (&'a [NamedPiece], Vec<bool>),
     ) -> Self {
         Self {
-            journal,
-            fail_fast,
-            progress,
+            journal: manner.journal,
+            fail_fast: manner.fail_fast,
+            progress: manner.progress,
             pieces,
             is_left,
             numbers: OnceLock::new(),
@@ -151,23 +149,26 @@ impl<'a, R: PieceRows> PiecesLeft<'a, R> {
     }
 
     fn keep(&self, number: usize, result: PieceResult<R>) -> Result<()> {
-        keep(self.journal, &self.pieces[number], &result)?;
-        self.results().insert(number, result);
+        let piece = &self.pieces[number];
+        debug_assert!(
+            serde_json::to_string(&result)
+                .is_ok_and(|json| serde_json::from_str::<PieceResult<R>>(&json).is_ok()),
+            "rows of {} have a number that JSON has not: any_number writes it",
+            piece.name
+        );
+        self.journal.keep(&piece.key(), &result)?;
+        // What a thread that panicked held is whole: nothing is inserted in parts.
+        let results = self.results.lock();
+        let mut results = results.unwrap_or_else(|poisoned| poisoned.into_inner());
+        results.insert(number, result);
         self.progress.advance(1);
         Ok(())
     }
 
-    /// What came of every piece that was to be done, by number; none of one that was passed over.
-    pub(super) fn into_results(self) -> impl FnMut(usize) -> Option<Option<PieceResult<R>>> {
+    /// Of each piece whether it was to be done, and what came of those that were and were not passed over, by number.
+    pub(super) fn into_results(self) -> (Vec<bool>, BTreeMap<usize, PieceResult<R>>) {
         let results = self.results.into_inner();
-        let mut results = results.unwrap_or_else(|poisoned| poisoned.into_inner());
-        move |number| self.is_left[number].then(|| results.remove(&number))
-    }
-
-    fn results(&self) -> MutexGuard<'_, BTreeMap<usize, PieceResult<R>>> {
-        // What a thread that panicked held is whole: nothing is inserted in parts.
-        self.results
-            .lock()
-            .unwrap_or_else(|poisoned| poisoned.into_inner())
+        let results = results.unwrap_or_else(|poisoned| poisoned.into_inner());
+        (self.is_left, results)
     }
 }

@@ -14,13 +14,13 @@ mod shared;
 pub use left::PiecesLeft;
 pub use piece_study::{
     FinishedPieces, Part, PieceFailure, PieceManner, PieceStudy, PiecesRun, n_pieces_left,
-    run_pieces, run_whole, run_whole_study,
+    run_whole,
 };
 pub use record::PieceRows;
 pub use scale::{PieceEstimate, Scale};
 pub use shared::Shared;
 
-use super::content_hash::ContentHash;
+use super::content_hash::short_hash;
 use super::time_left::Piece;
 
 /// Hexadecimal digits of what a piece depends on. Fewer: two of one name may be taken for each other.
@@ -59,11 +59,17 @@ impl NamedPiece {
         named.collect()
     }
 
+    /// What a journal calls it.
+    fn key(&self) -> String {
+        match self.content.is_empty() {
+            true => format!("piece {}", self.name),
+            false => format!("piece {} [{}]", self.name, self.content),
+        }
+    }
+
     /// The same, depending on something more.
     pub fn made_of(mut self, content: impl std::fmt::Debug) -> Self {
-        let mut digits = ContentHash::default().bytes(format!("{content:?}")).hex();
-        digits.truncate(CONTENT_DIGITS);
-        self.content = digits;
+        self.content = short_hash(format!("{content:?}"), CONTENT_DIGITS);
         self
     }
 }

@@ -2,14 +2,13 @@
 
 use super::NamedPiece;
 use super::left::PiecesLeft;
-use super::record::{PieceResult, PieceRows, in_journal};
-use crate::columns;
+use super::record::{PieceResult, PieceRows};
 use crate::error::Result;
+use crate::row;
 use crate::study::journal::Journal;
 use crate::study::progress::Progress;
 use crate::study::shard::Shard;
 use crate::study::time_left::Piece;
-use serde::{Deserialize, Serialize};
 use std::collections::BTreeSet;
 
 /// A study that is ready to run, in pieces.
@@ -75,18 +74,13 @@ pub struct PieceManner<'a> {
     pub progress: &'a dyn Progress,
 }
 
+row! {
 /// A piece that failed: a row of `failures.csv`.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct PieceFailure {
     /// The piece, in words.
-    pub work_item: String,
+    work_item: String => Subject "work item";
     /// What went wrong.
-    pub error: String,
-}
-
-columns! { PieceFailure {
-    work_item: Subject "work item";
-    error: Note;
+    error: String => Note;
 } }
 
 /// What came of all pieces, in this run and those before it.
@@ -96,10 +90,19 @@ pub struct FinishedPieces<R> {
     pub rows: R,
     /// Those that failed, in the same order.
     pub failures: Vec<PieceFailure>,
-    /// Pieces that nobody has done: those of other shards.
-    pub n_left: usize,
-    /// All pieces.
-    pub n_pieces: usize,
+}
+
+impl<'a> PieceManner<'a> {
+    /// All at once; nothing is kept, and the first piece that fails ends the run.
+    pub fn whole(progress: &'a dyn Progress) -> Self {
+        Self {
+            journal: Journal::none(),
+            fail_fast: true,
+            retries: false,
+            part: Part::All,
+            progress,
+        }
+    }
 }
 
 /// A run of a study's pieces that has read its journal.
@@ -111,26 +114,20 @@ pub struct PiecesRun<'a, S: PieceStudy> {
     left: PiecesLeft<'a, S::Rows>,
 }
 
-/// [`PiecesRun::run`] at once.
-///
-/// # Errors
-/// Those of it.
-pub fn run_pieces<S: PieceStudy>(
-    study: &S,
-    manner: &PieceManner,
-) -> Result<FinishedPieces<S::Rows>> {
-    PiecesRun::new(study, &study.pieces(), manner).run()
-}
-
 impl<'a, S: PieceStudy> PiecesRun<'a, S> {
     /// Of this study, with all its pieces.
     pub fn new(study: &'a S, pieces: &'a [NamedPiece], manner: &PieceManner<'a>) -> Self {
-        let (before, left) = before_and_left(pieces, manner);
+        let before = in_journal(pieces, manner.journal);
+        let is_in = is_in(pieces, manner.part);
+        let is_left = before.iter().enumerate().map(|(number, result)| {
+            let is_done = matches!(result, Some(Ok(_))) || (result.is_some() && !manner.retries);
+            !is_done && is_in(number)
+        });
         Self {
             study,
             pieces,
+            left: PiecesLeft::new(manner, (pieces, is_left.collect())),
             before,
-            left,
         }
     }
 
@@ -149,71 +146,45 @@ impl<'a, S: PieceStudy> PiecesRun<'a, S> {
     /// # Errors
     /// The journal cannot be written; what a piece fails of, if the first to fail ends the run; what no piece can do without.
     pub fn run(self) -> Result<FinishedPieces<S::Rows>> {
-        let Self {
-            study,
-            pieces,
-            before,
-            left,
-        } = self;
+        let Self { study, left, .. } = self;
         if left.n() > 0 {
             study.measure(&left)?;
         }
-        let mut now = left.into_results();
-        let mut finished = FinishedPieces {
-            rows: S::Rows::default(),
-            failures: Vec::new(),
-            n_left: 0,
-            n_pieces: pieces.len(),
-        };
-        for (number, (piece, before)) in pieces.iter().zip(before).enumerate() {
-            let result = match now(number) {
-                Some(Some(result)) => Some(result),
-                Some(None) => Some(Err("a defect of the program: it was passed over".to_owned())),
-                None => before,
+        let (is_left, mut now) = left.into_results();
+        let mut rows = S::Rows::default();
+        let mut failures = Vec::new();
+        for (number, (piece, before)) in self.pieces.iter().zip(self.before).enumerate() {
+            let passed_over = || Err("a defect of the program: it was passed over".to_owned());
+            let result = match is_left[number] {
+                true => Some(now.remove(&number).unwrap_or_else(passed_over)),
+                false => before,
             };
             match result {
-                Some(Ok(mut rows)) => {
-                    study.place(number, &mut rows);
-                    finished.rows.append(rows);
+                Some(Ok(mut found)) => {
+                    study.place(number, &mut found);
+                    rows.append(found);
                 }
-                Some(Err(error)) => finished.failures.push(PieceFailure {
+                Some(Err(error)) => failures.push(PieceFailure {
                     work_item: study.words(number, piece),
                     error,
                 }),
-                None => finished.n_left += 1,
+                // It is of another shard.
+                None => {}
             }
         }
-        Ok(finished)
+        Ok(FinishedPieces { rows, failures })
     }
 }
 
-/// What came of each piece before a run, and those that it does.
-fn before_and_left<'a, R: PieceRows>(
-    pieces: &'a [NamedPiece],
-    manner: &PieceManner<'a>,
-) -> (Vec<Option<PieceResult<R>>>, PiecesLeft<'a, R>) {
-    let is_in = is_in(pieces, manner.part);
-    let known = |piece: &NamedPiece| in_journal::<R>(manner.journal, piece);
-    let before: Vec<Option<PieceResult<R>>> = pieces.iter().map(known).collect();
-    let is_left = |(number, _): (usize, &NamedPiece)| {
-        let is_left = match &before[number] {
-            None => true,
-            Some(Err(_)) => manner.retries,
-            Some(Ok(_)) => false,
-        };
-        is_left && is_in(number)
-    };
-    let left = (pieces, pieces.iter().enumerate().map(is_left).collect());
-    let left = PiecesLeft::new(manner.journal, manner.fail_fast, manner.progress, left);
-    (before, left)
-}
-
-/// The tables of [`run_whole`].
-///
-/// # Errors
-/// What a piece fails of.
-pub fn run_whole_study<S: PieceStudy>(study: &S, progress: &dyn Progress) -> Result<S::Tables> {
-    study.tables(run_whole(study, progress)?)
+/// What a journal says came of each piece.
+fn in_journal<R: PieceRows>(
+    pieces: &[NamedPiece],
+    journal: &Journal,
+) -> Vec<Option<PieceResult<R>>> {
+    pieces
+        .iter()
+        .map(|piece| journal.get(&piece.key()))
+        .collect()
 }
 
 /// Runs a whole study at once, keeps nothing, and ends at the first piece that fails.
@@ -221,23 +192,18 @@ pub fn run_whole_study<S: PieceStudy>(study: &S, progress: &dyn Progress) -> Res
 /// # Errors
 /// What a piece fails of.
 pub fn run_whole<S: PieceStudy>(study: &S, progress: &dyn Progress) -> Result<S::Rows> {
-    let manner = PieceManner {
-        journal: &Journal::none(),
-        fail_fast: true,
-        retries: false,
-        part: Part::All,
-        progress,
-    };
-    Ok(run_pieces(study, &manner)?.rows)
+    let pieces = study.pieces();
+    let run = PiecesRun::new(study, &pieces, &PieceManner::whole(progress));
+    Ok(run.run()?.rows)
 }
 
 /// Pieces of a part of which a journal does not say what came of them.
 pub fn n_pieces_left<R: PieceRows>(pieces: &[NamedPiece], part: Part, journal: &Journal) -> usize {
     let is_in = is_in(pieces, part);
-    let is_left = |(number, piece): &(usize, &NamedPiece)| {
-        is_in(*number) && in_journal::<R>(journal, piece).is_none()
-    };
-    pieces.iter().enumerate().filter(is_left).count()
+    let results = in_journal::<R>(pieces, journal).into_iter().enumerate();
+    results
+        .filter(|(number, result)| result.is_none() && is_in(*number))
+        .count()
 }
 
 /// Whether a piece, by its number, belongs to a part.

@@ -1,10 +1,7 @@
 //! What a journal keeps of a piece.
 
-use super::NamedPiece;
-use crate::error::Result;
-use crate::study::journal::Journal;
+use serde::Serialize;
 use serde::de::DeserializeOwned;
-use serde::{Deserialize, Serialize};
 
 /// Rows of a study's tables, and what else its tables are made of. A journal has them as JSON: numbers that may be infinite say
 /// `#[serde(with = "any_number")]`.
@@ -16,56 +13,15 @@ pub trait PieceRows: Default + Serialize + DeserializeOwned + Send {
 /// What came of a piece: rows, or what went wrong.
 pub type PieceResult<R> = std::result::Result<R, String>;
 
-/// The same as it is written.
-#[derive(Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-enum Record<R> {
-    Found(R),
-    Failed(String),
-}
-
-/// What a journal has of a piece.
-pub fn in_journal<R: PieceRows>(journal: &Journal, piece: &NamedPiece) -> Option<PieceResult<R>> {
-    Some(match journal.get(&key(piece))? {
-        Record::Found(rows) => Ok(rows),
-        Record::Failed(said) => Err(said),
-    })
-}
-
-/// Keeps what came of a piece.
-pub fn keep<R: PieceRows>(
-    journal: &Journal,
-    piece: &NamedPiece,
-    result: &PieceResult<R>,
-) -> Result<()> {
-    let record = match result {
-        Ok(rows) => Record::Found(rows),
-        Err(said) => Record::Failed(said.clone()),
-    };
-    debug_assert!(
-        serde_json::to_string(&record)
-            .is_ok_and(|json| serde_json::from_str::<Record<R>>(&json).is_ok()),
-        "rows of {} have a number that JSON has not: any_number writes it",
-        piece.name
-    );
-    journal.keep(&key(piece), &record)
-}
-
-fn key(NamedPiece { name, content, .. }: &NamedPiece) -> String {
-    match content.is_empty() {
-        true => format!("piece {name}"),
-        false => format!("piece {name} [{content}]"),
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::study::journal::{Identity, JOURNAL_FILE};
-    use crate::study::pieces::any_number;
+    use crate::study::journal::{Identity, JOURNAL_FILE, Journal};
+    use crate::study::pieces::{NamedPiece, any_number};
     use crate::study::time_left::Piece;
     use rand::{Rng, SeedableRng};
     use rand_chacha::ChaCha8Rng;
+    use serde::Deserialize;
 
     #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
     struct Row {
@@ -119,21 +75,25 @@ mod tests {
         let identity = Identity::new("a = 1".to_owned(), Default::default(), &[]);
         let journal = Journal::open(&path, &identity).unwrap();
         let piece = |name: &str| NamedPiece::new(name.to_owned(), 0, Piece::of_stage(0, 1.0));
-        keep(&journal, &piece("one"), &Ok(rows.clone())).unwrap();
-        keep::<Rows>(&journal, &piece("two"), &Err("no\nroom".to_owned())).unwrap();
+        let keep =
+            |name: &str, result: PieceResult<Rows>| journal.keep(&piece(name).key(), &result);
+        keep("one", Ok(rows.clone())).unwrap();
+        keep("two", Err("no\nroom".to_owned())).unwrap();
         drop(journal);
         let journal = Journal::open(&path, &identity).unwrap();
-        let back: Rows = in_journal(&journal, &piece("one")).unwrap().unwrap();
+        let in_journal =
+            |piece: NamedPiece| -> Option<PieceResult<Rows>> { journal.get(&piece.key()) };
+        let back = in_journal(piece("one")).unwrap().unwrap();
         assert_eq!(back.rows[..500], rows.rows[..500]);
         let bits = |rows: &Rows| -> Vec<Option<u64>> {
             let numbers = rows.rows.iter().map(|(row, _)| row.other);
             numbers.map(|number| number.map(f64::to_bits)).collect()
         };
         assert_eq!(bits(&back), bits(&rows));
-        let failed = in_journal::<Rows>(&journal, &piece("two"));
+        let failed = in_journal(piece("two"));
         assert_eq!(failed, Some(Err("no\nroom".to_owned())));
-        assert_eq!(in_journal::<Rows>(&journal, &piece("three")), None);
+        assert_eq!(in_journal(piece("three")), None);
         let of_more = piece("one").made_of("more");
-        assert_eq!(in_journal::<Rows>(&journal, &of_more), None);
+        assert_eq!(in_journal(of_more), None);
     }
 }

@@ -73,25 +73,16 @@ impl fmt::Display for PieceEstimate {
             n_configurations,
             ..
         } = &self.scale;
+        let configurations = counted(*n_configurations, "configuration");
+        let bytes = Bytes(self.scale.bytes_at_once(self.n_threads));
+        let seconds = seconds(self.wall_s());
+        let threads = counted(self.n_threads, "thread");
         writeln!(f, "  objects  {objects}")?;
         writeln!(f, "  touches  {touches}")?;
-        writeln!(
-            f,
-            "  items    {}, of {}",
-            self.n_pieces,
-            counted(*n_configurations, "configuration")
-        )?;
-        writeln!(
-            f,
-            "  memory   about {}",
-            Bytes(self.scale.bytes_at_once(self.n_threads))
-        )?;
-        write!(
-            f,
-            "  time     about {} on {} (mostly right within a factor of 3)",
-            seconds(self.wall_s()),
-            counted(self.n_threads, "thread")
-        )
+        writeln!(f, "  items    {}, of {configurations}", self.n_pieces)?;
+        writeln!(f, "  memory   about {bytes}")?;
+        let right = "(mostly right within a factor of 3)";
+        write!(f, "  time     about {seconds} on {threads} {right}")
     }
 }
 

@@ -1,0 +1,637 @@
+//! Advice from a table by the roles of its columns: of the choices that were measured in a condition of the world, the cheapest whose
+//! value is enough, or the one of best value that is cheap enough.
+
+use crate::error::{Error, Result};
+use crate::report::swept::Swept;
+use crate::study::column_name;
+use crate::table::{Better, Column, Data, Role, Scale, Table, Value};
+use std::cmp::Ordering;
+
+/// Costs that people ask for by one name in every kind of study, with the columns that hold them.
+const COSTS: [(&str, &[&str]); 4] = [
+    ("decision_time", &["predict_us_per_decision", "decision_us"]),
+    ("training_time", &["fit_s"]),
+    ("taxels", &["taxels", "n_taxels"]),
+    (
+        "measurements",
+        &["measurements_per_decision", "measurements"],
+    ),
+];
+
+/// What is advised on; what is left out is found.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Asked {
+    /// The file of a table.
+    pub table: Option<String>,
+    /// What is to be good: a column of values.
+    pub value: Option<String>,
+    /// What is to be small: a column of costs, or one of the names that all kinds of study share.
+    pub cost: Option<String>,
+    /// Conditions: `noise=0.05`.
+    pub given: Vec<String>,
+}
+
+/// What is wished for.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Wish {
+    /// A value at least as good as this, for as little as possible.
+    Value(f64),
+    /// The best value for at most so much, positive.
+    Budget(f64),
+}
+
+/// A choice: a row of the table, what it gives, and what it costs.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Offer {
+    /// The row.
+    pub row: usize,
+    /// What it gives.
+    pub value: f64,
+    /// What it costs.
+    pub cost: f64,
+}
+
+/// An answer.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Advice {
+    /// The cheapest choice whose value is enough, or the best that is cheap enough.
+    pub choice: Offer,
+    /// The cheapest whose whole interval is enough, where that is another than the choice and there is one.
+    pub certain: Option<Offer>,
+    /// The next of the front: the cheapest that is better than the choice.
+    pub next_up: Option<Offer>,
+}
+
+/// The choices of a table, those of given conditions.
+pub struct Offers<'a> {
+    /// The table.
+    pub table: &'a Table,
+    /// What is to be good.
+    pub value: &'a Column,
+    /// What is to be small.
+    pub cost: &'a Column,
+    swept: Swept<'a>,
+    all: Vec<Offer>,
+}
+
+impl<'a> Offers<'a> {
+    /// Of the first table that offers what is asked: choices with such a value and such a cost.
+    ///
+    /// # Errors
+    /// No such table; a condition that it has not.
+    pub fn of(tables: &'a [Table], asked: &Asked) -> Result<Self> {
+        let mut offering: Vec<&Table> = tables.iter().filter(|t| t.offers_choices()).collect();
+        if offering.is_empty() {
+            offering.extend(tables.iter().filter(|table| table.offers_a_choice()));
+        }
+        if offering.is_empty() {
+            let allowed = "a study with a table of choices that have a value and a cost";
+            return Err(Error::input("advice", "no table offers choices", allowed));
+        }
+        if let Some(file) = &asked.table {
+            let known: Vec<&str> = offering.iter().map(|table| table.file).collect();
+            offering.retain(|table| table.file == file);
+            refuse_none(&offering, ("--table", file), &known)?;
+        }
+        let usual = Some("accuracy".to_owned());
+        let has_usual = |table: &&Table| !values(table, &usual).is_empty();
+        let value = match &asked.value {
+            None if offering.iter().any(has_usual) => &usual,
+            asked => asked,
+        };
+        let known: Vec<&str> = offering
+            .iter()
+            .flat_map(|t| values(t, &None))
+            .map(name)
+            .collect();
+        offering.retain(|table| !values(table, value).is_empty());
+        refuse_none(
+            &offering,
+            ("--value", value.as_deref().unwrap_or_default()),
+            &known,
+        )?;
+        let first = "decision_time".to_owned();
+        let has_first = |table: &&Table| !costs(table, &Some(first.clone())).is_empty();
+        let cost = match &asked.cost {
+            None if offering.iter().any(has_first) => &Some(first),
+            asked => asked,
+        };
+        let mut known: Vec<&str> = offering
+            .iter()
+            .flat_map(|t| costs(t, &None))
+            .map(name)
+            .collect();
+        known.extend(COSTS.map(|(name, _)| name));
+        offering.retain(|table| !costs(table, cost).is_empty());
+        refuse_none(
+            &offering,
+            ("--cost", cost.as_deref().unwrap_or_default()),
+            &known,
+        )?;
+        // Of several, one that says how sure its values are.
+        let has_interval = |table: &&&Table| values(table, value)[0].interval.is_some();
+        let table = *offering.iter().find(has_interval).unwrap_or(&offering[0]);
+        let rows: Vec<usize> = (0..table.n_rows).collect();
+        let mut found = Self {
+            table,
+            value: values(table, value)[0],
+            cost: costs(table, cost)[0],
+            swept: Swept::of(table, &rows),
+            all: Vec::new(),
+        };
+        let rows = asked
+            .given
+            .iter()
+            .try_fold(rows, |rows, text| given(table, rows, text))?;
+        found.all = rows
+            .into_iter()
+            .filter_map(|row| found.offer(row))
+            .collect();
+        Ok(found)
+    }
+
+    /// None for a row whose value or cost is not known.
+    fn offer(&self, row: usize) -> Option<Offer> {
+        let value = self.table.number(&self.value.name, row);
+        let cost = self.table.number(&self.cost.name, row);
+        let is_known = value.is_finite() && cost.is_finite();
+        is_known.then_some(Offer { row, value, cost })
+    }
+
+    /// Those of each condition, in the order in which conditions first come.
+    pub fn by_condition(&self) -> Vec<Vec<Offer>> {
+        let rows: Vec<usize> = self.all.iter().map(|offer| offer.row).collect();
+        let conditions = self.swept.by_condition(&rows).into_iter();
+        let offers =
+            |rows: Vec<usize>| rows.into_iter().filter_map(|row| self.offer(row)).collect();
+        conditions.map(offers).collect()
+    }
+
+    /// Each choice in the condition where its value is worst, at the most that it costs in any: what it gives whichever condition comes.
+    /// Choices that were not measured in every condition are left out.
+    pub fn worst(&self) -> Vec<Offer> {
+        let n_conditions = self.by_condition().len();
+        let rows: Vec<usize> = self.all.iter().map(|offer| offer.row).collect();
+        let choices = self.swept.groups(&self.swept.of_role(Role::Choice), &rows);
+        let measured = choices
+            .into_iter()
+            .filter(|rows| rows.len() == n_conditions);
+        let worst = |rows: Vec<usize>| {
+            let offers = rows.iter().filter_map(|&row| self.offer(row));
+            offers.reduce(|a, b| Offer {
+                cost: a.cost.max(b.cost),
+                ..if self.is_better(a.value, b.value) {
+                    b
+                } else {
+                    a
+                }
+            })
+        };
+        measured.filter_map(worst).collect()
+    }
+
+    /// Answers a wish from offers of one condition.
+    ///
+    /// # Errors
+    /// A wish out of its range; no offers; a wish that no offer fulfils: the error names the nearest.
+    pub fn advise(&self, offers: &[Offer], wish: Wish) -> Result<Advice> {
+        let (column, wanted, place) = match wish {
+            Wish::Value(wanted) => (self.value, wanted, "wish"),
+            Wish::Budget(most) => (self.cost, most, "budget"),
+        };
+        let given = column.phrase(&Value::Number(wanted));
+        let refuse = |allowed: String| Error::input(place, &given, allowed);
+        let is_share = column.scale == Scale::Share;
+        let (is_in_range, range) = match wish {
+            Wish::Value(share) if is_share => {
+                (share > 0.0 && share <= 1.0, "more than 0, at most 1")
+            }
+            Wish::Value(wanted) => (wanted.is_finite(), "a number"),
+            Wish::Budget(most) => (most > 0.0 && most.is_finite(), "a positive number"),
+        };
+        if !is_in_range {
+            return Err(refuse(range.to_owned()));
+        }
+        let front = self.front(offers);
+        let (Some(cheapest), Some(best)) = (front.first(), front.last()) else {
+            return Err(refuse(
+                "at least one choice whose value and cost are known".to_owned(),
+            ));
+        };
+        let place = match wish {
+            Wish::Value(wanted) => front
+                .iter()
+                .position(|offer| self.is_enough(offer.value, wanted)),
+            Wish::Budget(most) => front.iter().rposition(|offer| offer.cost <= most),
+        };
+        let Some(place) = place else {
+            return Err(refuse(match wish {
+                Wish::Value(_) => format!("the best here is {}", self.in_words(best)),
+                Wish::Budget(_) => format!("the cheapest here is {}", self.in_words(cheapest)),
+            }));
+        };
+        let certain = match wish {
+            Wish::Value(wanted) if self.value.interval.is_some() => {
+                let is_certain = |offer: &&Offer| self.is_enough(self.worse_end(offer), wanted);
+                let certain = offers
+                    .iter()
+                    .filter(is_certain)
+                    .min_by(|a, b| self.cheaper(a, b));
+                certain.filter(|certain| **certain != front[place])
+            }
+            _ => None,
+        };
+        Ok(Advice {
+            choice: front[place],
+            certain: certain.copied(),
+            next_up: front.get(place + 1).copied(),
+        })
+    }
+
+    /// The offers that no other beats: each better than all that cost as much or less. Cheapest first; of equals the first.
+    fn front(&self, offers: &[Offer]) -> Vec<Offer> {
+        let mut front = offers.to_vec();
+        // A stable sort: of equals the first stays first.
+        front.sort_by(|a, b| self.cheaper(a, b));
+        let mut best: Option<f64> = None;
+        front.retain(|offer| {
+            let is_better = best.is_none_or(|best| self.is_better(offer.value, best));
+            if is_better {
+                best = Some(offer.value);
+            }
+            is_better
+        });
+        front
+    }
+
+    /// The cheaper first, of equal costs the better.
+    fn cheaper(&self, a: &Offer, b: &Offer) -> Ordering {
+        let by_value = match self.wants_less() {
+            true => a.value.total_cmp(&b.value),
+            false => b.value.total_cmp(&a.value),
+        };
+        a.cost.total_cmp(&b.cost).then(by_value)
+    }
+
+    fn wants_less(&self) -> bool {
+        self.value.role == Role::Value(Better::Less)
+    }
+
+    fn is_better(&self, a: f64, b: f64) -> bool {
+        if self.wants_less() { a < b } else { a > b }
+    }
+
+    fn is_enough(&self, value: f64, wanted: f64) -> bool {
+        value == wanted || self.is_better(value, wanted)
+    }
+
+    /// The end of the value's interval that is worse: what a choice surely gives.
+    fn worse_end(&self, offer: &Offer) -> f64 {
+        let ends = self.value.interval.as_ref();
+        let end = ends.map(|[low, high]| if self.wants_less() { high } else { low });
+        end.map_or(f64::NAN, |name| self.table.number(name, offer.row))
+    }
+
+    /// `accuracy 0.830 (0.800 to 0.860), time of a decision 210 µs`.
+    pub fn gives(&self, offer: &Offer) -> String {
+        let ends = self.value.interval.as_ref();
+        let ends = ends.map(|ends| ends.each_ref().map(|end| self.table.number(end, offer.row)));
+        let interval = match ends {
+            Some([low, high]) if low.is_finite() && high.is_finite() => {
+                format!(" ({} to {})", self.value_words(low), self.value_words(high))
+            }
+            _ => String::new(),
+        };
+        let value = self.value_words(offer.value);
+        format!(
+            "{} {value}{interval}, {}",
+            self.value.words,
+            self.costs(offer.cost)
+        )
+    }
+
+    /// `time of a decision 210 µs`.
+    fn costs(&self, cost: f64) -> String {
+        self.cost.phrase(&Value::Number(cost))
+    }
+
+    /// A value, or a difference of two: shares to three digits.
+    pub fn value_words(&self, value: f64) -> String {
+        match self.value.scale == Scale::Share && self.value.unit.is_empty() {
+            true => format!("{value:.3}"),
+            false => self.value.number_words(value),
+        }
+    }
+
+    /// The same behind what it is: `accuracy 0.830, time of a decision 210 µs: RBF SVM, m = 64`.
+    pub fn in_words(&self, offer: &Offer) -> String {
+        format!("{}: {}", self.gives(offer), self.setting(offer))
+    }
+
+    /// The choices in words.
+    pub fn setting(&self, offer: &Offer) -> String {
+        match self.swept.choice_words(offer.row) {
+            words if words.is_empty() => "the only setting".to_owned(),
+            words => words,
+        }
+    }
+
+    /// The condition in words; empty where there is one.
+    pub fn condition(&self, offer: &Offer) -> String {
+        self.swept.condition_words(offer.row)
+    }
+
+    /// For a program: setting and condition in words, and every column by its name.
+    pub fn json(&self, offer: &Offer) -> serde_json::Value {
+        let mut row = serde_json::Map::new();
+        row.insert("setting".to_owned(), self.setting(offer).into());
+        row.insert("condition".to_owned(), self.condition(offer).into());
+        for (column, data) in self.table.columns.iter().zip(&self.table.data) {
+            row.insert(
+                column.name.to_string(),
+                serde_json::json!(data.value(offer.row)),
+            );
+        }
+        row.insert(self.cost.name.to_string(), offer.cost.into());
+        row.into()
+    }
+}
+
+fn name(column: &Column) -> &str {
+    &column.name
+}
+
+/// The columns of values that are wished for: of a name, or all that vary before those that do not.
+fn values<'a>(table: &'a Table, asked: &Option<String>) -> Vec<&'a Column> {
+    let is_value = |role| matches!(role, Role::Value(Better::More | Better::Less));
+    let is_asked = |name: &str| asked.as_deref().is_none_or(|asked| asked == name);
+    numbers(table, is_value, is_asked)
+}
+
+/// The columns of costs that are asked for, by their names or by those that all kinds share.
+fn costs<'a>(table: &'a Table, asked: &Option<String>) -> Vec<&'a Column> {
+    let shared = COSTS
+        .iter()
+        .find(|(name, _)| Some(*name) == asked.as_deref());
+    let is_asked = |name: &str| match (asked, shared) {
+        (None, _) => true,
+        (Some(asked), _) if asked == name => true,
+        (_, shared) => shared.is_some_and(|(_, columns)| columns.contains(&name)),
+    };
+    numbers(table, |role| role == Role::Cost, is_asked)
+}
+
+fn numbers(
+    table: &Table,
+    has_role: impl Fn(Role) -> bool,
+    is_asked: impl Fn(&str) -> bool,
+) -> Vec<&Column> {
+    let varies = |data: &Data| (1..table.n_rows).any(|row| data.key(row) != data.key(0));
+    let columns = table.columns.iter().zip(&table.data);
+    let mut found: Vec<_> = columns
+        .filter(|(column, data)| {
+            has_role(column.role) && is_asked(&column.name) && matches!(data, Data::Numbers(_))
+        })
+        .collect();
+    found.sort_by_key(|(_, data)| !varies(data));
+    found.into_iter().map(|(column, _)| column).collect()
+}
+
+fn refuse_none<T>(found: &[T], (option, given): (&str, &str), known: &[&str]) -> Result<()> {
+    let mut names: Vec<&str> = Vec::new();
+    for name in known {
+        if !names.contains(name) {
+            names.push(name);
+        }
+    }
+    match found.is_empty() {
+        true => Err(Error::input(
+            option,
+            given,
+            format!("one of {}", names.join(", ")),
+        )),
+        false => Ok(()),
+    }
+}
+
+/// Those of some rows that have a condition: `noise=0.05`.
+fn given(table: &Table, rows: Vec<usize>, text: &str) -> Result<Vec<usize>> {
+    let refuse = || Error::input("--given", text, "a condition and its value: noise=0.05");
+    let (key, value) = text.split_once('=').ok_or_else(refuse)?;
+    let (key, value) = (column_name(key.trim()), value.trim());
+    if key.is_empty() || value.is_empty() {
+        return Err(refuse());
+    }
+    let place = format!("--given {key}");
+    match table.column(key).map(|(column, _)| column.role) {
+        Some(Role::Condition) => {}
+        Some(Role::Choice) => {
+            let allowed = "a condition of the world; choices are what is advised";
+            return Err(Error::input(place, "is a choice", allowed));
+        }
+        _ => {
+            let allowed = match table.of_role(Role::Condition)[..] {
+                [] => "no such option: the study was made in one condition".to_owned(),
+                ref known => format!("one of {}", known.join(", ")),
+            };
+            return Err(Error::input(
+                place,
+                "is no condition of this study",
+                allowed,
+            ));
+        }
+    }
+    let wanted = match value.parse() {
+        Ok(number) => Value::Number(number),
+        Err(_) => Value::Word(value.to_owned()),
+    };
+    let known = table.one_of(key, rows.iter().copied());
+    let has_it = |row: &usize| table.has_setting(key, *row, &wanted);
+    let found: Vec<usize> = rows.into_iter().filter(has_it).collect();
+    match found.is_empty() {
+        true => Err(Error::input(place, value, known)),
+        false => Ok(found),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    crate::row! {
+    /// A setting.
+    pub struct Setting {
+        /// Which.
+        design: String => Choice;
+        /// The world.
+        world: String => Condition;
+        /// µs.
+        time: f64 => Cost in "µs": Linear;
+        /// How many.
+        taxels: f64 => Cost: Linear;
+        /// Known by nobody.
+        weight: Option<f64> => Cost: Linear;
+        /// Share.
+        accuracy: f64 => Value(More): Share between [low, high];
+        /// End.
+        low: f64 => Note: Share;
+        /// End.
+        high: f64 => Note: Share;
+        /// Of something.
+        error: f64 => Value(Less): Log;
+    } }
+
+    fn setting(design: &str, time: f64, accuracy: f64, half_width: f64) -> Setting {
+        Setting {
+            design: design.to_owned(),
+            world: "quiet".to_owned(),
+            time,
+            taxels: 300.0 - time,
+            weight: None,
+            accuracy,
+            low: accuracy - half_width,
+            high: accuracy + half_width,
+            error: 1.0 - accuracy,
+        }
+    }
+
+    fn table(rows: &[Setting]) -> [Table; 1] {
+        [Table::of("settings.csv", "Settings", rows).unwrap()]
+    }
+
+    fn settings() -> [Table; 1] {
+        table(&[
+            setting("dear and worse", 90.0, 0.70, 0.01),
+            setting("middle", 50.0, 0.91, 0.03),
+            setting("cheap", 10.0, 0.60, 0.02),
+            setting("best", 200.0, 0.97, 0.01),
+            setting("certain", 60.0, 0.905, 0.004),
+            setting("as good as the middle", 50.0, 0.91, 0.03),
+        ])
+    }
+
+    fn asked(value: &str, cost: &str) -> Asked {
+        Asked {
+            value: Some(value.to_owned()),
+            cost: Some(cost.to_owned()),
+            ..Asked::default()
+        }
+    }
+
+    /// The designs of choice, certain one and next step.
+    fn advised(asked: &Asked, wish: Wish) -> Result<[Option<String>; 3]> {
+        let tables = settings();
+        let offers = Offers::of(&tables, asked)?;
+        let advice = offers.advise(&offers.by_condition()[0], wish)?;
+        let design = |offer: Offer| tables[0].word("design", offer.row).to_owned();
+        let found = [Some(advice.choice), advice.certain, advice.next_up];
+        Ok(found.map(|offer| offer.map(design)))
+    }
+
+    fn choice(asked: &Asked, wish: Wish) -> String {
+        advised(asked, wish).unwrap()[0].clone().unwrap()
+    }
+
+    #[test]
+    fn nothing_beats_a_setting_of_the_front_and_something_beats_every_other() {
+        let tables = settings();
+        let offers = Offers::of(&tables, &Asked::default()).unwrap();
+        let front = offers.front(&offers.all);
+        let rows: Vec<usize> = front.iter().map(|offer| offer.row).collect();
+        assert_eq!(rows, [2, 1, 3]);
+        for offer in &offers.all {
+            let is_no_better_than = |on: &Offer| on.cost <= offer.cost && on.value >= offer.value;
+            assert!(front.iter().any(is_no_better_than), "{offer:?}");
+        }
+    }
+
+    #[test]
+    fn the_cheapest_that_is_good_enough_is_advised_with_the_certain_one_and_the_next() {
+        let some = |name: &str| Some(name.to_owned());
+        let accurate = asked("accuracy", "time");
+        let found = advised(&accurate, Wish::Value(0.9)).unwrap();
+        assert_eq!(found, [some("middle"), some("certain"), some("best")]);
+        let found = advised(&accurate, Wish::Value(0.95)).unwrap();
+        assert_eq!(found, [some("best"), None, None]);
+        // Less error is more accuracy.
+        let found = advised(&asked("error", "time"), Wish::Value(0.1)).unwrap();
+        assert_eq!(found, [some("middle"), None, some("best")]);
+    }
+
+    #[test]
+    fn another_cost_is_another_answer_and_one_that_nobody_knows_is_refused() {
+        let wish = Wish::Value(0.65);
+        assert_eq!(choice(&asked("accuracy", "time"), wish), "middle");
+        assert_eq!(choice(&asked("accuracy", "taxels"), wish), "best");
+        let tables = settings();
+        let unknown = Offers::of(&tables, &asked("accuracy", "weight")).unwrap();
+        assert!(unknown.by_condition().is_empty());
+        for (value, cost, said) in [
+            (
+                "accuracy",
+                "colour",
+                "--cost: colour; one of time, taxels, weight, decision_time",
+            ),
+            ("speed", "time", "--value: speed; one of accuracy, error"),
+        ] {
+            let error = advised(&asked(value, cost), wish).unwrap_err().to_string();
+            assert!(error.contains(said), "{error}");
+        }
+    }
+
+    #[test]
+    fn the_best_within_a_budget_is_advised_and_a_budget_is_a_limit_that_may_be_reached() {
+        for (budget, design) in [(10.0, "cheap"), (49.9, "cheap"), (199.0, "middle")] {
+            assert_eq!(choice(&Asked::default(), Wish::Budget(budget)), design);
+        }
+    }
+
+    #[test]
+    fn the_worst_condition_of_each_choice_is_where_it_is_least_good_and_what_it_costs_at_most() {
+        let at = |world: &str, setting: Setting| Setting {
+            world: world.to_owned(),
+            ..setting
+        };
+        let tables = table(&[
+            at("quiet", setting("a", 5.0, 0.99, 0.0)),
+            at("quiet", setting("b", 5.0, 0.90, 0.0)),
+            at("quiet", setting("only here", 1.0, 1.0, 0.0)),
+            at("noisy", setting("a", 6.0, 0.50, 0.0)),
+            at("noisy", setting("b", 4.0, 0.80, 0.0)),
+        ]);
+        let offers = Offers::of(&tables, &Asked::default()).unwrap();
+        assert_eq!(offers.by_condition().len(), 2);
+        let worst: Vec<(usize, f64, f64)> = offers
+            .worst()
+            .iter()
+            .map(|offer| (offer.row, offer.value, offer.cost))
+            .collect();
+        assert_eq!(worst, [(3, 0.50, 6.0), (4, 0.80, 5.0)]);
+    }
+
+    #[test]
+    fn a_wish_that_nothing_fulfils_is_an_error_that_names_the_nearest() {
+        let text = |value: &str, wish| {
+            let error = advised(&asked(value, "time"), wish).unwrap_err();
+            error.to_string()
+        };
+        let dear = text("accuracy", Wish::Value(0.99));
+        assert!(
+            dear.contains("the best here is accuracy 0.970") && dear.contains("best"),
+            "{dear}"
+        );
+        let fine = text("error", Wish::Value(1e-3));
+        assert!(fine.contains("the best here is error 0.03"), "{fine}");
+        let cheap = text("accuracy", Wish::Budget(5.0));
+        assert!(
+            cheap.contains("time 10 µs") && cheap.contains("cheap"),
+            "{cheap}"
+        );
+        for wish in [Wish::Value(0.0), Wish::Value(1.1)] {
+            assert!(text("accuracy", wish).contains("at most 1"));
+        }
+        assert!(text("accuracy", Wish::Budget(f64::NAN)).contains("positive"));
+        let error = Offers::of(&[], &Asked::default()).map(drop).unwrap_err();
+        assert!(error.to_string().contains("no table offers choices"));
+    }
+}

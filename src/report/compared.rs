@@ -1,0 +1,187 @@
+//! What moved between two folders of results: sentences, a table, and a page.
+
+use crate::error::Result;
+use crate::quantile::quantile;
+use crate::report::differences::{ColumnDifferences, Difference, Moved};
+use crate::report::page::StudyAbout;
+use crate::report::study_folder::{Found, MOST_CHARTS, page_of};
+use crate::report::terminal::{paragraph, table_text};
+use crate::spelling::counted;
+use crate::study::table::PStatus;
+use crate::table::{Along, At, Better, ChartSpec, Mark, Role, Rule, Shown, Table, short_number};
+
+/// Sentences and a table of lines at most `width` letters long: what moved most surely first.
+///
+/// # Errors
+/// Rows that have no form in a table.
+pub fn differences_text(found: &[ColumnDifferences], width: usize) -> Result<String> {
+    let sentences = sentences(found).into_iter();
+    let sentences: String = sentences.map(|said| paragraph(&said, width)).collect();
+    Ok(format!(
+        "{sentences}\n{}",
+        table_text(&values(found)?, width)
+    ))
+}
+
+/// The page of two folders by their names, and the program that made it.
+///
+/// # Errors
+/// As [`differences_text`]; a chart that cannot be drawn.
+pub fn differences_page(
+    found: &[ColumnDifferences],
+    (first, second): (&str, &str),
+    program: &str,
+) -> Result<String> {
+    let note = format!("First: {first}; second: {second}. What moved most surely comes first.");
+    let about = StudyAbout {
+        name: format!("{first} and {second}"),
+        program: program.to_owned(),
+        wall_s: f64::NAN,
+        ..StudyAbout::default()
+    };
+    let values = Table {
+        note,
+        ..values(found)?
+    };
+    let chart = |one: &ColumnDifferences| {
+        let Difference { table, column, .. } = one.rows.first()?;
+        let words = &one.column.words;
+        let shown = |column: &str, value: &str| Shown {
+            column: column.to_owned(),
+            value: value.into(),
+        };
+        Some(ChartSpec {
+            name: format!("{}_{column}", table.trim_end_matches(".csv")),
+            title: format!("{words} in both runs"),
+            note: format!("Up: {second}. Across: {first}. Each point is a setting of {table}."),
+            table: values.file,
+            shown: vec![shown("table", table), shown("column", column)],
+            x: "first".to_owned(),
+            y: "second".to_owned(),
+            lines: vec!["moved".to_owned()],
+            mark: Mark::Points,
+            rules: vec![Rule {
+                along: Along::Y,
+                at: At::Column("first".to_owned()),
+                words: "no difference".to_owned(),
+            }],
+            ..ChartSpec::default()
+        })
+    };
+    let charts = found.iter().filter(|one| !is_cost(one)).filter_map(chart);
+    let charts: Vec<ChartSpec> = charts.take(MOST_CHARTS).collect();
+    let costs = table(
+        "costs.csv",
+        "Costs of both runs",
+        found.iter().filter(|one| is_cost(one)),
+    )?;
+    page_of(
+        &about,
+        &Found {
+            tables: &[values, costs],
+            charts: &charts,
+            answers: &sentences(found),
+        },
+    )
+}
+
+fn is_cost(one: &ColumnDifferences) -> bool {
+    one.column.role == Role::Cost
+}
+
+fn values(found: &[ColumnDifferences]) -> Result<Table> {
+    let values = found.iter().filter(|one| !is_cost(one));
+    table("differences.csv", "Values of both runs", values)
+}
+
+/// Some columns, those rows first that moved most surely.
+fn table<'a>(
+    file: &'static str,
+    title: &'static str,
+    columns: impl Iterator<Item = &'a ColumnDifferences>,
+) -> Result<Table> {
+    let rows = columns.flat_map(|column| column.rows.iter().cloned());
+    let mut rows: Vec<Difference> = rows.collect();
+    rows.sort_by(|a, b| {
+        let p = |row: &Difference| row.p_holm.unwrap_or(1.0);
+        let size = |row: &Difference| row.difference.abs() / row.first.abs().max(row.second.abs());
+        let by_p = a.moved.cmp(&b.moved).then(p(a).total_cmp(&p(b)));
+        by_p.then(size(b).total_cmp(&size(a)))
+    });
+    Table::of(file, title, &rows)
+}
+
+/// What moved: of each table how much of it both have, then its values, then its costs.
+fn sentences(found: &[ColumnDifferences]) -> Vec<String> {
+    let mut said = Vec::new();
+    let mut tables: Vec<&str> = Vec::new();
+    for one in found {
+        let Some(Difference { table, .. }) = one.rows.first() else {
+            continue;
+        };
+        if !tables.contains(&&table[..]) {
+            tables.push(table);
+            said.push(format!(
+                "{table}: {} settings are in both runs, {} in the first alone, {} in the second alone.",
+                one.rows.len(),
+                one.n_first_only,
+                one.n_second_only
+            ));
+        }
+        match is_cost(one) {
+            true => said.push(cost_words(one)),
+            false => said.extend(value_words(one)),
+        }
+    }
+    said
+}
+
+/// `time to train: median 1.02 times that of the first run, 0.9 to 1.1 times.`
+fn cost_words(one: &ColumnDifferences) -> String {
+    let mut ratios: Vec<f64> = one.rows.iter().map(|row| row.second / row.first).collect();
+    let [middle, least, most] = [0.5, 0.0, 1.0].map(|q| short_number(quantile(&mut ratios, q)));
+    let words = &one.column.words;
+    format!("{words}: median {middle} times that of the first run, {least} to {most} times.")
+}
+
+fn value_words(one: &ColumnDifferences) -> Vec<String> {
+    let words = match one.column.role {
+        Role::Value(Better::Neither) => ["larger", "smaller"],
+        _ => ["better", "worse"],
+    };
+    let [better, worse] = one.counts(|_| true);
+    let n_same = one.rows.len() - better - worse;
+    let name = &one.column.words;
+    let mut said = vec![format!(
+        "{name}: {n_same} the same, {better} {} in the second, {worse} {}.",
+        words[0], words[1]
+    )];
+    let [better, worse] = one.counts(|row| row.moved == Moved::Surely);
+    let n_tested = one.rows.iter().filter(|row| row.p_holm.is_some()).count();
+    let has_trials = one.rows.iter().find(|row| row.p_status.is_some());
+    let too_few = one
+        .rows
+        .iter()
+        .find(|row| row.p_status == Some(PStatus::TooFewTrials));
+    let surely = format!(
+        "More than chance explains: {better} {}, {worse} {}",
+        words[0], words[1]
+    );
+    match (n_tested, has_trials, too_few) {
+        (0, None, _) if one.rows.iter().any(|row| row.moved == Moved::ByChance) || better + worse > 0 => {
+            said.push(format!("{surely} (intervals that are apart)."));
+        }
+        (0, None, _) => {}
+        (0, Some(_), too_few) => said.push(match too_few.and_then(|row| Some((row.n_trials, row.n_trials_needed?))) {
+            Some((n_trials, needed)) => format!(
+                "No p-values: {} a setting are too few to tell a difference from chance; {needed} are needed.",
+                counted(n_trials, "trial")
+            ),
+            None => "No p-values: more rows are tested than trained on, or trials are missing.".to_owned(),
+        }),
+        _ => said.push(format!(
+            "{surely} (t-test paired over trials, corrected for their overlap, p < 0.05 after Holm's correction for {n_tested} settings)."
+        )),
+    }
+    said
+}
