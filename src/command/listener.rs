@@ -2,8 +2,7 @@
 
 use super::streams::{note, say};
 use bubbletouch::Result;
-use bubbletouch::report::progress::to_stderr;
-use bubbletouch::report::progress_json::JsonLines;
+use bubbletouch::report::progress::{json_lines, to_stderr};
 use bubbletouch::study::progress::{Progress, Silent};
 use std::io::stdout;
 
@@ -22,7 +21,7 @@ impl Listener {
     pub fn progress(&self) -> Box<dyn Progress> {
         match (self.quiet, self.json) {
             (true, _) => Box::new(Silent),
-            (_, true) => Box::new(JsonLines::to(stdout())),
+            (_, true) => json_lines(stdout()),
             _ => to_stderr(),
         }
     }

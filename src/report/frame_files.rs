@@ -2,8 +2,10 @@
 
 use crate::error::{Error, Result};
 use crate::files::{write_bytes, write_whole};
-use crate::report::heat_map::check_frame;
-use crate::report::pressure_map::pressure_picture;
+use crate::report::heat_map::{ColourScale, check_frame};
+use crate::report::pressure_map::peak_sentence;
+use crate::report::recording::skin_picture::SkinPicture;
+use crate::report::recording::{ForceKind, RecordedPatch};
 use crate::signal::Quantity;
 use crate::world::Grid;
 use ndarray::{Array1, Array2};
@@ -33,8 +35,13 @@ pub fn write_frame(path: &Path, deflection: &Array2<f64>, grid: &Grid) -> Result
         Some("npz") => write_npz(path, deflection, grid),
         Some("png") => {
             check_frame(deflection)?;
-            let picture = pressure_picture(deflection, grid.pitch * 1e3, Quantity::Deflection)?;
-            write_bytes(path, &picture.png()?)
+            let quantity = Quantity::Deflection;
+            let title = peak_sentence(deflection, grid.pitch * 1e3, quantity);
+            let patch = RecordedPatch::of_grid(title, *grid, ForceKind::Normal);
+            let scale = ColourScale::over([deflection], quantity);
+            let values: Vec<f64> = deflection.iter().copied().collect();
+            let picture = SkinPicture::new(&patch, quantity, scale)?;
+            write_bytes(path, &picture.frame(&values, "")?.png()?)
         }
         _ => Err(Error::input(
             path.display(),

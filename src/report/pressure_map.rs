@@ -1,76 +1,20 @@
-//! One frame for the eye: a heat map as a picture, and a drawing in the terminal.
+//! One frame for the eye: a drawing in the terminal.
 
 use crate::error::Result;
-use crate::report::colours::{INK, MUTED, heat};
-use crate::report::drawing::{Area, Drawing, TextStyle};
-use crate::report::heat_map::{
-    ColourScale, block_sentence, check_frame, draw_colour_bar, draw_map, draw_x_axis, draw_y_axis,
-    grid_sentence, largest_of_blocks,
-};
+use crate::report::colours::heat;
+use crate::report::heat_map::{ColourScale, check_frame, grid_sentence, largest_of_blocks};
 use crate::report::terminal::Ink;
-use crate::report::text_width::wrap;
 use crate::signal::Quantity;
 use crate::table::short_number;
 use ndarray::Array2;
 
-/// Taxels that a picture shows each way, at most; longer arrays are shown by the largest value of blocks.
-const MOST_CELLS: usize = 512;
-
-/// Size of the text below the title, and from one of its lines to the next.
-const SMALL: u32 = 11;
-const LINE: f64 = 16.0;
-
 /// Darkness for the plain terminal, from nothing to the peak.
 const RAMP: &[u8] = b" .:-=+*#%@";
-
-/// A picture of a frame (ny × nx, row = y ascending) with a colour bar and axes in millimetres.
-///
-/// Errors: a frame without taxels, or with a value that is not finite.
-pub fn pressure_picture(frame: &Array2<f64>, pitch_mm: f64, quantity: Quantity) -> Result<Drawing> {
-    check_frame(frame)?;
-    let (ny, nx) = frame.dim();
-    let block = ny.max(nx).div_ceil(MOST_CELLS);
-    let shown = largest_of_blocks(frame, (block, block));
-    let (rows, columns) = shown.dim();
-    // Whole pixels a taxel: no seams between neighbours.
-    let side = (400.0 / rows.max(columns) as f64).floor().max(1.0);
-    let left = 70.0;
-    let width = (left + side * columns as f64 + 110.0).max(330.0);
-    let below = peak_sentence(frame, pitch_mm, quantity) + &block_sentence(block);
-    let below = wrap(&below, f64::from(SMALL), width - left - 8.0);
-    let area = Area {
-        x: left,
-        y: 40.0 + LINE * below.len() as f64,
-        width: side * columns as f64,
-        height: side * rows as f64,
-    };
-    let bar_height = area.height.max(90.0);
-    let mut drawing = Drawing::new(width, area.y + bar_height + 50.0);
-    let scale = ColourScale::over([frame], quantity);
-    let title = grid_sentence((nx, ny), pitch_mm);
-    drawing.text((area.x, 22.0), &title, TextStyle::new(13).colour(INK));
-    for (number, line) in below.iter().enumerate() {
-        let y = 40.0 + LINE * number as f64;
-        drawing.text((area.x, y), line, TextStyle::new(SMALL).colour(MUTED));
-    }
-    draw_map(&mut drawing, &shown, quantity, scale, area);
-    draw_x_axis(&mut drawing, area, nx as f64 * pitch_mm);
-    draw_y_axis(&mut drawing, area, ny as f64 * pitch_mm);
-    let bar = Area {
-        x: area.x + area.width + 18.0,
-        width: 16.0,
-        height: bar_height,
-        ..area
-    };
-    let bar_title = format!("{} ({})", quantity.name(), quantity.unit());
-    draw_colour_bar(&mut drawing, scale, &bar_title, bar);
-    Ok(drawing)
-}
 
 /// A frame drawn with characters, at most `width` columns wide, the highest y on top.
 ///
 /// With colours, half blocks show two rows of taxels a line; without, ten ASCII characters from blank to `@`. Long arrays
-/// are shown by the largest value of blocks, and the text says so. Errors as for [`pressure_picture`].
+/// are shown by the largest value of blocks, and the text says so. Errors: a frame without taxels, or with a value that is not finite.
 pub fn pressure_text(
     frame: &Array2<f64>,
     pitch_mm: f64,
@@ -121,7 +65,8 @@ pub fn pressure_text(
     Ok(text)
 }
 
-fn peak_sentence(frame: &Array2<f64>, pitch_mm: f64, quantity: Quantity) -> String {
+/// Where the largest value is, and how many taxels are above zero.
+pub(super) fn peak_sentence(frame: &Array2<f64>, pitch_mm: f64, quantity: Quantity) -> String {
     let (ny, nx) = frame.dim();
     let touched = frame.iter().filter(|&&value| value > 0.0).count();
     let mut peak = ((0, 0), f64::NEG_INFINITY);

@@ -1,17 +1,11 @@
 //! How long a run has gone on, and how long it still takes.
 
 use crate::study::time_left::{Piece, TimeLeft};
-use std::sync::Mutex;
 use std::time::Instant;
 
-/// Starts when a run says what it will do; runs that never say have no time left to tell.
-#[derive(Debug, Default)]
-pub struct RunClock {
-    state: Mutex<Option<Running>>,
-}
-
+/// Starts when a run says what it will do.
 #[derive(Debug)]
-struct Running {
+pub(super) struct RunClock {
     start: Instant,
     /// When work was last told of.
     told: Instant,
@@ -21,61 +15,38 @@ struct Running {
 /// Of the time in which nothing was told, the share that is left at least: what takes longer than planned is not over yet.
 const OVERDUE: f64 = 0.2;
 
-/// What the clock shows, seconds.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct RunTimes {
-    /// Since the run said what it will do.
-    pub elapsed_s: f64,
-    /// Until it ends.
-    pub left_s: f64,
-}
-
 impl RunClock {
     /// See [`Progress::expect`](crate::study::progress::Progress::expect).
-    pub fn expect(&self, work: &[Piece]) {
-        if let Ok(mut state) = self.state.lock() {
-            let now = Instant::now();
-            *state = Some(Running {
-                start: now,
-                told: now,
-                left: TimeLeft::new(work, rayon::current_num_threads()),
-            });
+    pub fn expect(work: &[Piece]) -> Self {
+        let now = Instant::now();
+        Self {
+            start: now,
+            told: now,
+            left: TimeLeft::new(work, rayon::current_num_threads()),
         }
     }
 
     /// See [`Progress::worked`](crate::study::progress::Progress::worked).
-    pub fn worked(&self, piece: &Piece, took_s: f64) {
-        if let Ok(mut state) = self.state.lock()
-            && let Some(running) = state.as_mut()
-        {
-            running.told = Instant::now();
-            running.left.worked(piece, took_s);
-        }
+    pub fn worked(&mut self, piece: &Piece, took_s: f64) {
+        self.told = Instant::now();
+        self.left.worked(piece, took_s);
     }
 
-    /// What it shows now.
-    pub fn times(&self) -> Option<RunTimes> {
-        let state = self.state.lock().ok()?;
-        state.as_ref().map(|running| running.at(Instant::now()))
+    /// Seconds since the run said what it will do.
+    pub fn elapsed_s(&self, now: Instant) -> f64 {
+        now.duration_since(self.start).as_secs_f64()
     }
-}
 
-impl Running {
-    /// What was left when work was last told of runs down from then on.
-    fn at(&self, now: Instant) -> RunTimes {
+    /// Seconds until it ends: what was left when work was last told of runs down from then on.
+    pub fn left_s(&self, now: Instant) -> f64 {
         let silent_s = now.duration_since(self.told).as_secs_f64();
-        let elapsed_s = now.duration_since(self.start).as_secs_f64();
         let left_s = self.left.left_s();
-        let runs_down_s = (left_s - silent_s).max(OVERDUE * silent_s);
-        RunTimes {
-            elapsed_s,
-            left_s: runs_down_s.min(left_s),
-        }
+        (left_s - silent_s).max(OVERDUE * silent_s).min(left_s)
     }
 }
 
 /// `about 3 min`: no more digits than an estimate has.
-pub fn in_words(seconds: f64) -> String {
+pub(super) fn in_words(seconds: f64) -> String {
     match seconds {
         s if s < 1.0 => "under 1 s".to_owned(),
         s if s < 99.5 => format!("{s:.0} s"),
@@ -91,29 +62,16 @@ mod tests {
     use std::time::Duration;
 
     #[test]
-    fn a_clock_knows_nothing_until_it_is_told_what_to_expect() {
-        let clock = RunClock::default();
-        let report = Piece::one_by_one(0, 5.0);
-        clock.worked(&report, 1.0);
-        assert_eq!(clock.times(), None);
-        clock.expect(&[report]);
-        let left_s = clock.times().unwrap().left_s;
-        assert!((4.0..=5.0).contains(&left_s), "{left_s}");
-        clock.worked(&report, report.spent_s(3.0));
-        assert_eq!(clock.times().map(|times| times.left_s), Some(0.0));
-    }
-
-    #[test]
     fn what_is_left_runs_down_while_nothing_is_told_but_not_to_nothing() {
         let half = Piece::one_by_one(0, 10.0);
         let start = Instant::now();
         let after = |seconds: u64| start + Duration::from_secs(seconds);
-        let mut running = Running {
+        let mut running = RunClock {
             start,
             told: start,
             left: TimeLeft::new(&[half, half], rayon::current_num_threads()),
         };
-        let left_s = |running: &Running, seconds| running.at(after(seconds)).left_s;
+        let left_s = |running: &RunClock, seconds| running.left_s(after(seconds));
         assert_eq!(left_s(&running, 0), 20.0);
         assert_eq!(left_s(&running, 8), 12.0);
         assert_eq!(left_s(&running, 30), 30.0 * OVERDUE);
@@ -122,7 +80,7 @@ mod tests {
         let told_s = left_s(&running, 30);
         assert!(told_s > 20.0, "{told_s}");
         assert_eq!(left_s(&running, 35), told_s - 5.0);
-        assert_eq!(running.at(after(35)).elapsed_s, 35.0);
+        assert_eq!(running.elapsed_s(after(35)), 35.0);
     }
 
     #[test]

@@ -96,16 +96,11 @@ impl Value {
 impl Data {
     /// Of words, row by row.
     pub fn of_words(words: impl IntoIterator<Item = String>) -> Self {
-        let mut known: HashMap<String, u32> = HashMap::new();
-        let mut levels: Vec<String> = Vec::new();
-        let mut code = |word: String| {
-            *known.entry(word).or_insert_with_key(|word| {
-                levels.push(word.clone());
-                levels.len() as u32 - 1
-            })
-        };
-        let codes = words.into_iter().map(&mut code).collect();
-        Self::Words { levels, codes }
+        let mut maker = Maker::new(Scale::Words);
+        for word in words {
+            maker.push(&word);
+        }
+        maker.data
     }
 
     /// A number a row that is equal for equal values only.
@@ -321,7 +316,7 @@ impl Table {
             let given = format!("no column {:?}", missing.name);
             return Err(bad(Some(1), given, "all columns of the table".to_owned()));
         }
-        let mut makers: Vec<Maker> = columns.iter().map(Maker::new).collect();
+        let mut makers: Vec<Maker> = columns.iter().map(|c| Maker::new(c.scale)).collect();
         let mut n_rows = 0;
         let mut record = csv::StringRecord::new();
         while reader.read_record(&mut record).map_err(broken)? {
@@ -381,8 +376,8 @@ struct Maker {
 }
 
 impl Maker {
-    fn new(column: &Column) -> Self {
-        let data = match column.scale {
+    fn new(scale: Scale) -> Self {
+        let data = match scale {
             Scale::Words => Data::Words {
                 levels: Vec::new(),
                 codes: Vec::new(),
@@ -404,15 +399,12 @@ impl Maker {
                 (false, Err(_)) => return false,
             },
             Data::Words { levels, codes } => {
-                let code = match self.known.get(text) {
-                    Some(&code) => code,
-                    None => {
-                        let code = levels.len() as u32;
-                        self.known.insert(text.to_owned(), code);
-                        levels.push(text.to_owned());
-                        code
-                    }
-                };
+                let code = self.known.get(text).copied().unwrap_or_else(|| {
+                    let code = levels.len() as u32;
+                    self.known.insert(text.to_owned(), code);
+                    levels.push(text.to_owned());
+                    code
+                });
                 codes.push(code);
             }
         }

@@ -4,8 +4,12 @@
 mod browser;
 #[path = "../fixtures/chart_tables/mod.rs"]
 mod chart_tables;
+#[path = "../fixtures/command/mod.rs"]
+mod command;
 #[path = "../fixtures/counting/mod.rs"]
 mod counting;
+#[path = "../fixtures/kinds/mod.rs"]
+mod kinds;
 #[path = "../fixtures/report_synthetic/mod.rs"]
 mod report_synthetic;
 #[path = "../fixtures/recording/mod.rs"]
@@ -13,6 +17,7 @@ mod stored;
 
 mod asked;
 mod charts;
+mod every_kind;
 mod everywhere;
 mod page;
 mod pareto;

@@ -4,7 +4,7 @@ use crate::report_synthetic::{cell, many_cells, noise_cells, press, quickstart_c
 use bubbletouch::report::chart::{draw, places};
 use bubbletouch::report::drawing::Drawing;
 use bubbletouch::report::frame_files::{frame_csv, write_frame};
-use bubbletouch::report::pressure_map::{pressure_picture, pressure_text};
+use bubbletouch::report::pressure_map::pressure_text;
 use bubbletouch::report::recognition::{charts, tables_of};
 use bubbletouch::report::snapshots::snapshots;
 use bubbletouch::report::terminal::Ink;
@@ -85,8 +85,7 @@ fn pictures_are_png_files_with_two_elements_a_pixel() {
     let of =
         |name: &str| draw(specs.iter().find(|spec| spec.name == name).unwrap(), &made).unwrap();
     let (chart, matrix) = (of("accuracy_by_ratio"), of("confusion"));
-    let map = pressure_picture(&press(64, 64, 0, 0.0), 2.0, Quantity::Force).unwrap();
-    for drawing in [chart, matrix, map] {
+    for drawing in [chart, matrix] {
         let (width, height, elements) = pixels(&drawing.png().unwrap());
         assert_eq!(
             (f64::from(width), f64::from(height)),

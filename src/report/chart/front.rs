@@ -8,9 +8,10 @@ use std::collections::{HashMap, HashSet};
 const MOST_NAMED: usize = 24;
 
 /// Points on fronts.
-pub(super) struct Front {
-    /// Of each front its panel, and its points along x by their number among the places.
-    fronts: Vec<(usize, Vec<usize>)>,
+pub(super) struct Front<'a> {
+    view: &'a View<'a>,
+    /// Of each front its panel, and its points along x.
+    fronts: Vec<(usize, Vec<&'a Place>)>,
     rows: HashSet<usize>,
 }
 
@@ -29,51 +30,41 @@ pub(super) fn words(view: &View) -> String {
     format!("Pareto front: nothing is both {cost} and as good")
 }
 
-impl Front {
+impl<'a> Front<'a> {
     /// Of a chart; without points if it has none.
-    pub fn of(view: &View) -> Self {
-        let mut found = Self {
-            fronts: Vec::new(),
-            rows: HashSet::new(),
-        };
-        if !view.spec.front {
-            return found;
-        }
-        let columns = view.table.columns.iter().zip(&view.table.data);
-        let conditions: Vec<&Data> = columns
-            .filter(|(c, _)| c.role == Role::Condition)
-            .map(|(_, data)| data)
-            .collect();
-        let mut groups: Vec<(usize, Vec<usize>)> = Vec::new();
-        let mut known: HashMap<(usize, Vec<u64>), usize> = HashMap::new();
-        for (number, place) in view.places.iter().enumerate() {
-            let of = |data: &&Data| data.key(place.row);
-            let key = (place.panel, conditions.iter().map(of).collect());
-            let group = *known.entry(key).or_insert_with(|| {
-                groups.push((place.panel, Vec::new()));
-                groups.len() - 1
-            });
-            groups[group].1.push(number);
-        }
+    pub fn of(view: &'a View) -> Self {
+        let conditions = view.table.columns.iter();
+        let conditions = conditions.filter(|column| column.role == Role::Condition);
+        let conditions: Vec<&str> = conditions.map(|column| &column.name[..]).collect();
         let more = is_more_better(view);
-        for (panel, group) in groups {
-            // Places keep the order of values, so they serve as well as these.
-            let points: Vec<(f64, f64)> = group
-                .iter()
-                .map(|&n| (view.places[n].x, view.places[n].y))
-                .collect();
-            let is_on = front(&points, |a, b| if more { a > b } else { a < b });
-            let mut on: Vec<usize> = group
-                .iter()
-                .zip(is_on)
-                .filter(|(_, on)| *on)
-                .map(|(&n, _)| n)
-                .collect();
-            on.sort_by(|&a, &b| view.places[a].x.total_cmp(&view.places[b].x));
-            found.rows.extend(on.iter().map(|&n| view.places[n].row));
-            found.fronts.push((panel, on));
+        let mut fronts = Vec::new();
+        let n_panels = if view.spec.front {
+            view.panels.names.len()
+        } else {
+            0
+        };
+        for panel in 0..n_panels {
+            let here = view.places.iter().filter(|place| place.panel == panel);
+            let places: HashMap<usize, &Place> =
+                here.clone().map(|place| (place.row, place)).collect();
+            let rows = here.map(|place| place.row);
+            for group in view.table.groups(&conditions, rows) {
+                let group = group.iter().map(|row| places[row]);
+                // Places keep the order of values, so they serve as well as these.
+                let points: Vec<(f64, f64)> = group.clone().map(|p| (p.x, p.y)).collect();
+                let is_on = front(&points, |a, b| if more { a > b } else { a < b });
+                let on = group.zip(is_on).filter(|(_, is_on)| *is_on);
+                let mut on: Vec<&Place> = on.map(|(place, _)| place).collect();
+                on.sort_by(|a, b| a.x.total_cmp(&b.x));
+                fronts.push((panel, on));
+            }
         }
-        found
+        let rows = fronts.iter().flat_map(|(_, front)| front);
+        Self {
+            rows: rows.map(|place| place.row).collect(),
+            view,
+            fronts,
+        }
     }
 
     /// Whether a row is on it.
@@ -82,38 +73,34 @@ impl Front {
     }
 
     /// The fronts of a panel.
-    pub fn of_panel(&self, panel: usize) -> impl Iterator<Item = &Vec<usize>> {
-        self.fronts
-            .iter()
-            .filter(move |front| front.0 == panel)
-            .map(|front| &front.1)
+    pub fn of_panel(&self, panel: usize) -> impl Iterator<Item = &Vec<&'a Place>> {
+        let here = self.fronts.iter().filter(move |front| front.0 == panel);
+        here.map(|front| &front.1)
     }
 
     /// Points with their numbers, panel by panel along x; none if they are too many.
-    pub fn numbered<'a>(&'a self, view: &'a View) -> impl Iterator<Item = (usize, &'a Place)> {
-        let n: usize = self.fronts.iter().map(|front| front.1.len()).sum();
+    pub fn numbered(&self) -> impl Iterator<Item = (usize, &'a Place)> {
         let all = self.fronts.iter().flat_map(|front| &front.1);
-        let all = all
-            .filter(move |_| n <= MOST_NAMED)
-            .map(|&place| &view.places[place]);
+        let n = all.clone().count();
+        let all = all.filter(move |_| n <= MOST_NAMED).copied();
         all.enumerate().map(|(number, place)| (number + 1, place))
     }
 
     /// A line a numbered point.
-    pub fn list(&self, view: &View) -> Vec<String> {
-        let numbered = self.numbered(view).map(|(_, place)| place);
-        Self::said(view, numbered)
+    pub fn list(&self) -> Vec<String> {
+        self.said(self.numbered().map(|(_, place)| place))
     }
 
     /// The ends of the first front, the cheaper first.
-    pub fn ends(&self, view: &View) -> Option<[String; 2]> {
+    pub fn ends(&self) -> Option<[String; 2]> {
         let (_, front) = self.fronts.first()?;
-        let ends = [front.first()?, front.last()?].map(|&place| &view.places[place]);
-        Self::said(view, ends.into_iter()).try_into().ok()
+        let ends = [*front.first()?, *front.last()?];
+        self.said(ends.into_iter()).try_into().ok()
     }
 
     /// Of each point what was chosen, what it reaches, and what it costs.
-    fn said<'a>(view: &View, places: impl Iterator<Item = &'a Place>) -> Vec<String> {
+    fn said(&self, places: impl Iterator<Item = &'a Place>) -> Vec<String> {
+        let view = self.view;
         let columns = view.table.columns.iter().zip(&view.table.data);
         let names: Vec<(&Column, &Data)> = columns
             .filter(|(c, _)| matches!(c.role, Role::Choice | Role::Condition | Role::Subject))

@@ -42,7 +42,7 @@ pub(super) fn draw(view: &View) -> Drawing {
         above,
     );
     let front = Front::of(view);
-    let list = front.list(view);
+    let list = front.list();
     let height =
         layout.bottom() + LINE * list.len() as f64 + if list.is_empty() { 0.0 } else { 16.0 };
     let mut drawing = Drawing::new(layout.width(), height);
@@ -112,7 +112,7 @@ struct Panel<'a> {
     view: &'a View<'a>,
     panel: usize,
     frame: Area,
-    front: &'a Front,
+    front: &'a Front<'a>,
 }
 
 impl Panel<'_> {
@@ -216,7 +216,7 @@ impl Panel<'_> {
         for front in self.front.of_panel(self.panel) {
             let mut steps: Vec<Point> = Vec::new();
             for place in front {
-                let at = self.at(&self.view.places[*place]);
+                let at = self.at(place);
                 if let Some(&last) = steps.last() {
                     steps.push((at.0, last.1));
                 }
@@ -237,7 +237,7 @@ impl Panel<'_> {
             17.0
         };
         let mut last = (f64::NEG_INFINITY, f64::NEG_INFINITY);
-        for (number, place) in self.front.numbered(self.view) {
+        for (number, place) in self.front.numbered() {
             if place.panel != self.panel {
                 continue;
             }

@@ -53,5 +53,5 @@ pub fn places(spec: &ChartSpec, tables: &[Table]) -> Result<Vec<Place>> {
 /// What the cheapest and the best point of a chart's first front are, in words; none without a front.
 pub fn front_ends(spec: &ChartSpec, tables: &[Table]) -> Option<[String; 2]> {
     let view = View::of(spec, tables).ok()?;
-    Front::of(&view).ends(&view)
+    Front::of(&view).ends()
 }

@@ -1,6 +1,6 @@
 //! Where values stand along an axis: the one scale of all charts.
 
-use crate::table::{Column, Data, Role, Scale as Spacing};
+use crate::table::{Along, Column, Data, Role, Scale as Spacing};
 
 /// Part of a logarithmic axis on which zero stands apart.
 pub(super) const SHELF: f64 = 0.09;
@@ -46,15 +46,6 @@ pub(super) struct Tick {
     pub label: String,
     /// Whether its label comes before its neighbours' where there is no room for all.
     pub is_round: bool,
-}
-
-/// Which axis.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Along {
-    /// Across.
-    X,
-    /// Up.
-    Y,
 }
 
 impl Scale {

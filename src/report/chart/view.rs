@@ -1,9 +1,8 @@
 //! What a chart shows of its table: rows, lines, panels, and where each row stands.
 
-use super::scale::{Along, Scale, values};
+use super::scale::{Scale, values};
 use crate::error::{Error, Result};
-use crate::table::{At, ChartSpec, Column, Data, Mark, Role, Rule, Table, Value};
-use std::collections::HashMap;
+use crate::table::{Along, At, ChartSpec, Column, Data, Mark, Role, Rule, Table, Value};
 
 /// Lines up to which bands do not hide each other; more lines get a whisker at each point.
 const MOST_BANDS: usize = 4;
@@ -52,7 +51,7 @@ pub(super) struct Groups {
     pub heading: String,
     /// Of each group its values in words; one empty name without columns.
     pub names: Vec<String>,
-    /// The group of each row that is shown.
+    /// The group of each row of the table; 0 of those that are not shown.
     pub of: Vec<usize>,
 }
 
@@ -78,14 +77,11 @@ impl<'a> View<'a> {
             shown.iter().all(has)
         };
         let rows: Vec<usize> = (0..table.n_rows).filter(is_shown).collect();
-        let columns_of = |names: &[String]| {
-            names
-                .iter()
-                .map(|name| column(name))
-                .collect::<Result<Vec<_>>>()
-        };
-        let lines = Groups::of(&columns_of(&spec.lines)?, &rows);
-        let panels = Groups::of(&columns_of(spec.panels.as_slice())?, &rows);
+        for name in spec.lines.iter().chain(&spec.panels) {
+            column(name)?;
+        }
+        let lines = Groups::of(table, &spec.lines, &rows);
+        let panels = Groups::of(table, spec.panels.as_slice(), &rows);
         let (mut x, y) = (column(&spec.x)?, column(&spec.y)?);
         x.0 = spec.x_is.as_ref().unwrap_or(x.0);
         let (mut x_values, y_values) = (values(x.0, x.1, &rows), values(y.0, y.1, &rows));
@@ -101,7 +97,7 @@ impl<'a> View<'a> {
             along: axis, at, ..
         } in &spec.rules
         {
-            let along = &mut along[usize::from(*axis == crate::table::Along::Y)];
+            let along = &mut along[usize::from(*axis == Along::Y)];
             match at {
                 At::Value(value) => along.push(*value),
                 At::Column(name) => {
@@ -147,10 +143,10 @@ impl<'a> View<'a> {
             };
             let end = |bound: &[f64]| self.y.place(bound[row]);
             let interval = interval.and_then(|[low, high]| Some([end(low)?, end(high)?]));
-            let line = self.lines.of[number];
+            let line = self.lines.of[row];
             places.push(Place {
                 row,
-                panel: self.panels.of[number],
+                panel: self.panels.of[row],
                 line,
                 x: x + self.beside(line),
                 y,
@@ -280,45 +276,27 @@ impl<'a> View<'a> {
 
 impl Groups {
     /// By the values of columns in the order of first rows; by one column of numbers in rising order.
-    fn of(columns: &[(&Column, &Data)], rows: &[usize]) -> Self {
-        let key = |row: usize| -> Vec<u64> {
-            let key = columns.iter().map(|(_, data)| data.key(row));
-            key.collect()
-        };
-        let mut known: HashMap<Vec<u64>, usize> = HashMap::new();
-        let mut firsts: Vec<usize> = Vec::new();
-        let mut of: Vec<usize> = Vec::with_capacity(rows.len());
-        for &row in rows {
-            let next = firsts.len();
-            let group = *known.entry(key(row)).or_insert(next);
-            if group == next {
-                firsts.push(row);
-            }
-            of.push(group);
+    fn of(table: &Table, names: &[String], rows: &[usize]) -> Self {
+        let names: Vec<&str> = names.iter().map(String::as_str).collect();
+        let mut groups = table.groups(&names, rows.iter().copied());
+        let columns = names.iter().filter_map(|name| table.column(name));
+        let columns: Vec<(&Column, &Data)> = columns.collect();
+        if let [(_, Data::Numbers(numbers))] = columns[..] {
+            groups.sort_by(|a, b| numbers[a[0]].total_cmp(&numbers[b[0]]));
         }
-        if let [(_, Data::Numbers(numbers))] = columns {
-            let mut order: Vec<usize> = (0..firsts.len()).collect();
-            order.sort_by(|&a, &b| numbers[firsts[a]].total_cmp(&numbers[firsts[b]]));
-            let mut place = vec![0; order.len()];
-            for (new, &old) in order.iter().enumerate() {
-                place[old] = new;
-            }
-            firsts = order.iter().map(|&old| firsts[old]).collect();
-            of.iter_mut().for_each(|group| *group = place[*group]);
+        let mut of = vec![0; table.n_rows];
+        for (group, rows) in groups.iter().enumerate() {
+            rows.iter().for_each(|&row| of[row] = group);
         }
-        let heading: Vec<&str> = columns
-            .iter()
-            .map(|(column, _)| &column.words[..])
-            .collect();
-        let name = |&row: &usize| {
-            let words = columns
-                .iter()
-                .map(|(column, data)| value_words(column, data, row));
+        let heading: Vec<&str> = columns.iter().map(|(c, _)| &c.words[..]).collect();
+        let name = |group: &Vec<usize>| {
+            let words = columns.iter();
+            let words = words.map(|(column, data)| value_words(column, data, group[0]));
             words.collect::<Vec<_>>().join(", ")
         };
         Self {
             heading: heading.join(", "),
-            names: firsts.iter().map(name).collect(),
+            names: groups.iter().map(name).collect(),
             of,
         }
     }
