@@ -1,6 +1,7 @@
 //! A frame as a heat map with axes in millimetres and a colour bar, part of a drawing.
 
 use crate::error::{Error, Result};
+use crate::report::chart::even_ticks;
 use crate::report::colours::{INK, Rgb, heat};
 use crate::report::drawing::{Align, Area, Drawing, Stroke, TextStyle};
 use crate::signal::Quantity;
@@ -128,7 +129,7 @@ pub fn draw_map(
 pub fn draw_x_axis(drawing: &mut Drawing, area: Area, width_mm: f64) {
     let style = TextStyle::new(12).align(Align::Middle);
     let bottom = area.y + area.height;
-    for tick in ticks(width_mm, tick_step(width_mm)) {
+    for tick in even_ticks(-0.5 * width_mm, 0.5 * width_mm) {
         let x = area.x + area.width * (tick / width_mm + 0.5);
         drawing.line((x, bottom), (x, bottom + 5.0), Stroke::new(INK, 1.0));
         drawing.text((x, bottom + 18.0), &short_number(tick), style);
@@ -140,7 +141,7 @@ pub fn draw_x_axis(drawing: &mut Drawing, area: Area, width_mm: f64) {
 /// Ticks and title in millimetres to the left of a map of an array centred on its origin.
 pub fn draw_y_axis(drawing: &mut Drawing, area: Area, height_mm: f64) {
     let style = TextStyle::new(12);
-    for tick in ticks(height_mm, tick_step(height_mm)) {
+    for tick in even_ticks(-0.5 * height_mm, 0.5 * height_mm) {
         let y = area.y + area.height * (0.5 - tick / height_mm);
         drawing.line((area.x - 5.0, y), (area.x, y), Stroke::new(INK, 1.0));
         let at = (area.x - 8.0, y + 4.5);
@@ -173,12 +174,8 @@ pub(super) fn draw_colours(
 /// A colour bar to the right of what it explains, `area` wide and high.
 pub fn draw_colour_bar(drawing: &mut Drawing, scale: ColourScale, title: &str, area: Area) {
     draw_colours(drawing, area, 64, heat);
-    let step = tick_step(scale.high - scale.low);
-    let first = (scale.low / step).ceil() as i64;
-    let last = (scale.high / step).floor() as i64;
     let right = area.x + area.width;
-    for tick in first..=last {
-        let value = tick as f64 * step;
+    for value in even_ticks(scale.low, scale.high) {
         let y = area.y + area.height * (1.0 - scale.place(value));
         drawing.line((right, y), (right + 4.0, y), Stroke::new(INK, 1.0));
         drawing.text(
@@ -190,22 +187,6 @@ pub fn draw_colour_bar(drawing: &mut Drawing, scale: ColourScale, title: &str, a
     let beside = (right + 52.0, area.y + area.height / 2.0);
     let style = TextStyle::new(12).align(Align::Middle).angle(-90.0);
     drawing.text(beside, title, style);
-}
-
-/// 1, 2 or 5 times a power of ten: about five steps over a length.
-fn tick_step(length: f64) -> f64 {
-    let raw = length / 5.0;
-    let power = 10f64.powf(raw.log10().floor());
-    let factor = [1.0, 2.0, 5.0, 10.0]
-        .into_iter()
-        .find(|f| f * power >= raw * 0.999);
-    factor.unwrap_or(10.0) * power
-}
-
-/// Multiples of a step within ± half a length.
-fn ticks(length: f64, step: f64) -> Vec<f64> {
-    let last = (0.5 * length / step * 1.000_001).floor() as i64;
-    (-last..=last).map(|tick| tick as f64 * step).collect()
 }
 
 #[cfg(test)]
@@ -221,13 +202,6 @@ mod tests {
             small,
             array![[11.0, 13.0, 14.0], [26.0, 28.0, 29.0], [31.0, 33.0, 34.0]]
         );
-    }
-
-    #[test]
-    fn ticks_are_round_and_inside() {
-        assert_eq!(ticks(128.0, tick_step(128.0)), [-50.0, 0.0, 50.0]);
-        assert_eq!(tick_step(5.0), 1.0);
-        assert_eq!(ticks(20.0, tick_step(20.0)), [-10.0, -5.0, 0.0, 5.0, 10.0]);
     }
 
     #[test]

@@ -139,9 +139,14 @@ fn tell_now_and_then<W: Write>(told: &Weak<Mutex<State<W>>>) {
 }
 
 impl<W: Write> State<W> {
-    /// A closed standard error must not end a run.
     fn write(&mut self, line: &impl std::fmt::Display) {
-        let _ = writeln!(self.writer, "{line}").and_then(|()| self.writer.flush());
+        self.write_whole(&format!("{line}\n"));
+    }
+
+    /// At once, so that nobody reads a part. A closed standard error must not end a run.
+    fn write_whole(&mut self, text: &str) {
+        let written = self.writer.write_all(text.as_bytes());
+        let _ = written.and_then(|()| self.writer.flush());
     }
 
     /// Where the stage is now.
@@ -168,7 +173,7 @@ impl<W: Write> State<W> {
                 let width = usize::from(console::Term::stderr().size().1);
                 let bar = stage.bar(self.clock.as_ref().map(|clock| clock.left_s(now)));
                 let shown: String = bar.chars().take(width.saturating_sub(1)).collect();
-                let _ = write!(self.writer, "\r{shown}\x1b[K").and_then(|()| self.writer.flush());
+                self.write_whole(&format!("\r{shown}\x1b[K"));
             }
         }
     }
@@ -188,7 +193,7 @@ impl<W: Write> State<W> {
     /// Takes the bar away.
     fn clear(&mut self) {
         if self.form == Form::Bar && self.stage.is_some() {
-            let _ = write!(self.writer, "\r\x1b[K").and_then(|()| self.writer.flush());
+            self.write_whole("\r\x1b[K");
         }
     }
 }

@@ -9,9 +9,6 @@ const ASCII: [u16; 95] = [
     278, 974, 634, 612, 635, 635, 411, 521, 392, 634, 592, 818, 592, 592, 525, 636, 337, 636, 838,
 ];
 
-/// Bold letters are wider by about this factor.
-const BOLD: f64 = 1.12;
-
 /// Width of one line of text at a font size, in the unit of the size.
 ///
 /// A letter outside ASCII counts as 0.7 em, a little more than its mean, so that reserved space suffices.
@@ -24,11 +21,6 @@ pub fn text_width(text: &str, size: f64) -> f64 {
         })
         .sum();
     thousandths as f64 * size / 1000.0
-}
-
-/// Width of one line of bold text.
-pub fn bold_width(text: &str, size: f64) -> f64 {
-    BOLD * text_width(text, size)
 }
 
 /// Breaks a text at spaces (not at U+00A0) into lines no wider than `width`; a longer word stands alone.

@@ -12,6 +12,7 @@ mod scale;
 mod tiles;
 mod view;
 
+pub(in crate::report) use scale::even_ticks;
 pub(in crate::report) use tiles::{draw_sign, tint};
 pub use view::Place;
 

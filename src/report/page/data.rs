@@ -11,7 +11,8 @@ const MOST_LEVELS: usize = 1000;
 
 /// What the script draws from.
 pub(super) struct PageData {
-    json: String,
+    /// Its text.
+    pub json: String,
     /// Files of the tables that are in it.
     held: HashSet<&'static str>,
 }
@@ -92,11 +93,6 @@ impl PageData {
     /// Whether a table is in it.
     pub fn holds(&self, file: &str) -> bool {
         self.held.contains(file)
-    }
-
-    /// Its text.
-    pub fn into_json(self) -> String {
-        self.json
     }
 }
 

@@ -76,7 +76,7 @@ pub(crate) fn page(about: &StudyAbout, found: &Found, beside: Beside) -> String 
         ));
     }
     page.add(Section::new("again", "Make it again", again(about)));
-    page.data = Some(data.into_json());
+    page.data = Some(data.json);
     page.html()
 }
 

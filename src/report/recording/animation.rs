@@ -140,18 +140,13 @@ fn film(
     shown: &[ShownFrame],
     mut picture: impl FnMut(usize) -> Result<Picture>,
 ) -> Result<()> {
-    let failed = |error| {
-        Error::io(
-            path,
-            "encode",
-            std::io::Error::other::<EncodingError>(error),
-        )
-    };
+    let failed = |error: EncodingError| Error::io(path, "encode", std::io::Error::other(error));
     let mut before = picture(shown[0].frame)?;
-    let mut writer = start(bytes, &before, shown.len(), &shown[0]).map_err(failed)?;
+    let mut writer = start(bytes, &before, shown.len()).map_err(failed)?;
+    add(&mut writer, None, &before, &shown[0]).map_err(failed)?;
     for one in &shown[1..] {
         let now = picture(one.frame)?;
-        add(&mut writer, &before, &now, one).map_err(failed)?;
+        add(&mut writer, Some(&before), &now, one).map_err(failed)?;
         before = now;
     }
     writer.finish().map_err(failed)
@@ -176,45 +171,35 @@ fn start<'a>(
     out: &'a mut Vec<u8>,
     picture: &Picture,
     n_shown: usize,
-    shown: &ShownFrame,
 ) -> std::result::Result<png::Writer<&'a mut Vec<u8>>, EncodingError> {
     let mut encoder = Encoder::new(out, picture.width as u32, picture.height as u32);
     encoder.set_color(ColorType::Rgba);
     encoder.set_depth(BitDepth::Eight);
     encoder.set_animated(n_shown as u32, 0)?;
-    let (numerator, denominator) = delay(shown.milliseconds);
-    encoder.set_frame_delay(numerator, denominator)?;
     encoder.set_blend_op(BlendOp::Over)?;
-    let mut writer = encoder.write_header()?;
-    let pixels = picture.rgb.as_chunks().0.iter();
-    let opaque: Vec<u8> = pixels.flat_map(|&[r, g, b]| [r, g, b, 255]).collect();
-    writer.write_image_data(&opaque)?;
-    Ok(writer)
+    encoder.write_header()
 }
 
-/// Draws only the rows that change, transparent where they do not: a tenth of the bytes.
+/// Draws only the rows that change since the frame before, transparent where they do not: a tenth of the bytes.
 fn add(
     film: &mut png::Writer<&mut Vec<u8>>,
-    before: &Picture,
+    before: Option<&Picture>,
     now: &Picture,
     shown: &ShownFrame,
 ) -> std::result::Result<(), EncodingError> {
-    let n_row = 3 * now.width;
-    let changed = |row: &usize| {
-        let bytes = row * n_row..(row + 1) * n_row;
-        before.rgb[bytes.clone()] != now.rgb[bytes]
-    };
+    let pixels = now.rgb.as_chunks::<3>().0;
+    let same =
+        |at: usize| before.is_some_and(|before| before.rgb[3 * at..3 * at + 3] == pixels[at]);
+    let changed = |row: &usize| !(row * now.width..(row + 1) * now.width).all(same);
     // A frame has at least one row.
     let first = (0..now.height).find(changed).unwrap_or(0);
     let last = (first..now.height).rfind(changed).unwrap_or(first);
-    let bytes = first * n_row..(last + 1) * n_row;
-    let old = before.rgb[bytes.clone()].as_chunks::<3>().0;
-    let new = now.rgb[bytes].as_chunks::<3>().0;
-    let pixels = old.iter().zip(new).flat_map(|(old, new)| match old == new {
-        true => [0; 4],
-        false => [new[0], new[1], new[2], 255],
+    let part = first * now.width..(last + 1) * now.width;
+    let part = part.flat_map(|at| match (same(at), pixels[at]) {
+        (true, _) => [0; 4],
+        (false, [r, g, b]) => [r, g, b, 255],
     });
-    let part: Vec<u8> = pixels.collect();
+    let part: Vec<u8> = part.collect();
     let (numerator, denominator) = delay(shown.milliseconds);
     film.set_frame_delay(numerator, denominator)?;
     // First back to the top: the rows must fit from wherever the last ones were.
