@@ -5,7 +5,7 @@ use super::listener::Listener;
 use super::output::{tell_where, terminal_width};
 use super::streams::write_out;
 use super::study_args::StudyArgs;
-use bubbletouch::kinds::{self, AnyOutcome, AnyStudy, EndedRun};
+use bubbletouch::kinds::{self, AnyStudy, EndedRun, Outcome};
 use bubbletouch::report::csv_tables::FAILURES_FILE;
 use bubbletouch::study::progress::Progress;
 use bubbletouch::{Error, Result};
@@ -26,12 +26,12 @@ pub fn load_study(
 /// Writes and tells what came of a study; an error if some of it failed.
 pub fn end(
     study: &dyn AnyStudy,
-    outcome: &dyn AnyOutcome,
+    outcome: &Outcome,
     run: &EndedRun,
     (listener, what): (Listener, &str),
 ) -> Result<()> {
     run.progress.stage("report", 1);
-    outcome.write(run)?;
+    study.write(outcome, run)?;
     run.progress.advance(1);
     let elapsed_s = run.wall_s();
     run.progress.finish(&format!("{what}{elapsed_s:.1} s"));
@@ -40,11 +40,11 @@ pub fn end(
         "folder": run.folder,
         "work_items": study.n_all(),
         "finished_before": run.n_before,
-        "failed": outcome.n_failed(),
+        "failed": outcome.n_failed,
         "elapsed_s": elapsed_s,
     }))?;
     if listener.is_person() {
-        write_out(outcome.words(terminal_width()).as_bytes())?;
+        write_out(study.words(outcome, terminal_width()).as_bytes())?;
         tell_where(run.folder)?;
     }
     failures(study, outcome, run.folder)
@@ -69,8 +69,8 @@ pub fn ended<'a>(
 }
 
 /// An error if some of a study failed.
-pub fn failures(study: &dyn AnyStudy, outcome: &dyn AnyOutcome, folder: &Path) -> Result<()> {
-    match outcome.n_failed() {
+pub fn failures(study: &dyn AnyStudy, outcome: &Outcome, folder: &Path) -> Result<()> {
+    match outcome.n_failed {
         0 => Ok(()),
         n_failed => Err(Error::WorkItems {
             path: folder.join(FAILURES_FILE),

@@ -64,12 +64,7 @@ pub fn merge(args: &Args) -> Result<()> {
     let times = (started, n_all);
     let ended = ended(&args.study, &folder, times, progress.as_ref())?;
     let what = format!("{n_journals} shards, ");
-    end(
-        study.as_ref(),
-        outcome.as_ref(),
-        &ended,
-        (args.listener, &what),
-    )
+    end(study.as_ref(), &outcome, &ended, (args.listener, &what))
 }
 
 /// Journals of shards in a folder, by name.

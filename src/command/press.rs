@@ -1,5 +1,6 @@
 //! `bubbletouch press`: one object, one patch, one reading.
 
+use super::classify::word;
 use super::output::terminal_width;
 use super::press_place::Place;
 use super::press_poses::{self, press_poses};
@@ -48,7 +49,7 @@ pub struct Args {
     #[command(flatten)]
     many: press_poses::Args,
     /// What a mesh becomes: vertex_spheres, mesh (itself) or packed [default: vertex_spheres]
-    #[arg(long, value_name = "MODEL", value_parser = parse_model)]
+    #[arg(long, value_name = "MODEL", value_parser = word::<ModelSpec>)]
     model: Option<ModelSpec>,
     /// Unit of the file of the mesh or the spheres: m, cm, mm or in [default: m, and of a size that the array can feel]
     #[arg(long, value_name = "UNIT")]
@@ -101,15 +102,6 @@ fn parse_taxels(text: &str) -> std::result::Result<(usize, usize), String> {
         _ => Err(format!(
             "expected columns x rows, each from 1 to {MOST}, such as 64x64"
         )),
-    }
-}
-
-fn parse_model(text: &str) -> std::result::Result<ModelSpec, String> {
-    match text {
-        "vertex_spheres" => Ok(ModelSpec::VertexSpheres),
-        "mesh" => Ok(ModelSpec::Mesh),
-        "packed" => Ok(ModelSpec::Packed),
-        _ => Err("expected vertex_spheres, mesh or packed".to_owned()),
     }
 }
 

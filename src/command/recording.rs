@@ -1,5 +1,6 @@
 //! `bubbletouch recording`: what a file of frames over time holds, as a table, a picture or an animation.
 
+use super::classify::word;
 use super::output::{check_ending, terminal_width};
 use super::streams::{note, write_out};
 use bubbletouch::files::write_bytes;
@@ -25,7 +26,7 @@ pub struct Args {
     #[arg(long, value_name = "NAME")]
     patch: Option<String>,
     /// What to draw: deflection or force
-    #[arg(long, value_name = "WHAT", default_value = "deflection", value_parser = parse_quantity)]
+    #[arg(long, value_name = "WHAT", default_value = "deflection", value_parser = word::<Quantity>)]
     quantity: Quantity,
     /// Draw this frame, counted from 0: to --out, or here if the patch is a grid
     #[arg(long, value_name = "K", conflicts_with = "animate")]
@@ -42,14 +43,6 @@ pub struct Args {
     /// Seconds of the recording in a second of the animation: 0.1 is ten times slower than it was
     #[arg(long, value_name = "X", default_value_t = Playback::default().speed, requires = "animate")]
     speed: f64,
-}
-
-fn parse_quantity(text: &str) -> std::result::Result<Quantity, String> {
-    match text {
-        "deflection" => Ok(Quantity::Deflection),
-        "force" => Ok(Quantity::Force),
-        _ => Err("expected deflection or force".to_owned()),
-    }
 }
 
 pub fn recording(args: &Args) -> Result<()> {

@@ -4,7 +4,7 @@ use super::any_study::load_study;
 use super::checked_manifest::checked_manifest;
 use super::streams::{note, say};
 use super::study_args::StudyArgs;
-use bubbletouch::kinds::ReportAbout;
+use bubbletouch::report::page::StudyAbout;
 use bubbletouch::study::provenance::MANIFEST_FILE;
 use bubbletouch::{Error, Result};
 use std::path::{Path, PathBuf};
@@ -39,13 +39,14 @@ pub fn report(args: &Args) -> Result<()> {
         Some(manifest) => manifest.command.clone(),
         None => format!("bubbletouch run {}", study.study.display()),
     };
-    let about = ReportAbout {
+    let about = StudyAbout {
         name,
         command,
         manifest,
         all_charts: args.all_charts,
+        ..StudyAbout::default()
     };
-    load_study(study, folder, None)?.report(folder, &about)?;
+    load_study(study, folder, None)?.report(folder, about)?;
     say(format_args!(
         "Wrote {}",
         folder.join("report.html").display()

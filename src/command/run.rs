@@ -98,16 +98,11 @@ pub fn run(args: &Args) -> Result<()> {
         args.listener.remark(&format!(
             "shard {shard} is done; when all are, put them together: {merge}"
         ));
-        return failures(study.as_ref(), outcome.as_ref(), &folder);
+        return failures(study.as_ref(), &outcome, &folder);
     }
     let times = (started, n_before);
     let ended = ended(&args.study, &folder, times, progress.as_ref())?;
-    let result = end(
-        study.as_ref(),
-        outcome.as_ref(),
-        &ended,
-        (args.listener, ""),
-    );
+    let result = end(study.as_ref(), &outcome, &ended, (args.listener, ""));
     let is_written = matches!(result, Ok(()) | Err(Error::WorkItems { .. }));
     if args.is_demonstration && is_written {
         kept.forget()?;

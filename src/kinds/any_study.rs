@@ -1,10 +1,11 @@
 //! A study of any kind, as the commands see it.
 
 use crate::error::Result;
+use crate::report::page::StudyAbout;
 use crate::study::journal::{Identity, Journal};
 use crate::study::pieces::{Part, PieceManner};
 use crate::study::progress::Progress;
-use crate::study::provenance::Manifest;
+use crate::table::Table;
 use std::path::{Path, PathBuf};
 use std::time::SystemTime;
 
@@ -29,7 +30,16 @@ pub trait AnyStudy {
     ///
     /// # Errors
     /// The journal cannot be written; what an item fails of, if the first to fail ends the run; too little memory for any item.
-    fn run<'a>(&'a self, manner: &PieceManner<'a>) -> Result<Box<dyn AnyOutcome + 'a>>;
+    fn run(&self, manner: &PieceManner) -> Result<Outcome>;
+
+    /// Writes tables, charts and page, the study and the manifest.
+    ///
+    /// # Errors
+    /// What cannot be drawn; a file that cannot be written.
+    fn write(&self, outcome: &Outcome, ended: &EndedRun) -> Result<()>;
+
+    /// What a person reads at the end, in lines of about `width` letters.
+    fn words(&self, outcome: &Outcome, width: usize) -> String;
 
     /// Runs `n` items again that are drawn by `draw`, and says what they were.
     ///
@@ -38,26 +48,19 @@ pub trait AnyStudy {
     fn verify(&self, folder: &Path, n: usize, draw: u64, progress: &dyn Progress)
     -> Result<String>;
 
-    /// Writes the charts, pictures and page of a folder again, from its tables.
+    /// Writes the charts, pictures and page of a folder again, from its tables; question and answers are the study's.
     ///
     /// # Errors
     /// A table that cannot be read; a file that cannot be written.
-    fn report(&self, folder: &Path, about: &ReportAbout) -> Result<()>;
+    fn report(&self, folder: &Path, about: StudyAbout) -> Result<()>;
 }
 
 /// What came of a study.
-pub trait AnyOutcome {
-    /// How much of it failed.
-    fn n_failed(&self) -> usize;
-
-    /// Writes tables, charts and page, the study and the manifest.
-    ///
-    /// # Errors
-    /// What cannot be drawn; a file that cannot be written.
-    fn write(&self, ended: &EndedRun) -> Result<()>;
-
-    /// What a person reads at the end, in lines of about `width` letters.
-    fn words(&self, width: usize) -> String;
+pub struct Outcome {
+    /// All tables, that of what failed among them.
+    pub tables: Vec<Table>,
+    /// How many work items failed.
+    pub n_failed: usize,
 }
 
 /// A run that has done its work, and where its files go.
@@ -83,17 +86,4 @@ impl EndedRun<'_> {
     pub fn wall_s(&self) -> f64 {
         self.started.elapsed().unwrap_or_default().as_secs_f64()
     }
-}
-
-/// A folder whose page is written again.
-#[derive(Clone, Debug, Default)]
-pub struct ReportAbout {
-    /// The study's name.
-    pub name: String,
-    /// The command that makes the folder again.
-    pub command: String,
-    /// What its run said of itself, if that is known.
-    pub manifest: Option<Manifest>,
-    /// Whether every chart is drawn as a file, however many there are.
-    pub all_charts: bool,
 }

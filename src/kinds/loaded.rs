@@ -1,9 +1,9 @@
 //! A study of a kind, for those who do not know which.
 
-use super::any_study::{AnyOutcome, AnyStudy, ReportAbout};
+use super::any_study::{AnyStudy, EndedRun, Outcome};
 use super::ceiling::{threads_within, within_memory};
 use super::kind::{Facts, Kind};
-use super::results::{Results, failures_table, read_failures};
+use super::results::{failures_table, read_failures};
 use super::source::Source;
 use super::verified::{changed_row, drawn};
 use crate::error::Result;
@@ -13,7 +13,6 @@ use crate::study::pieces::{
     FinishedPieces, NamedPiece, Part, PieceEstimate, PieceManner, PiecesRun, n_pieces_left,
 };
 use crate::study::progress::{Progress, Silent};
-use crate::study::provenance::PROGRAM;
 use std::path::Path;
 
 /// A study that is read and checked, and what its results depend on.
@@ -71,7 +70,7 @@ impl<K: Kind> AnyStudy for Loaded<K> {
         n_pieces_left::<K::Rows>(&self.pieces, part, journal)
     }
 
-    fn run<'a>(&'a self, manner: &PieceManner<'a>) -> Result<Box<dyn AnyOutcome + 'a>> {
+    fn run(&self, manner: &PieceManner) -> Result<Outcome> {
         let (finished, mut tables) = within_memory(&self.kind.scale(), self.memory, || {
             let pieces = PiecesRun::new(&self.kind, &self.pieces, manner);
             manner.progress.expect(&pieces.workload());
@@ -79,11 +78,17 @@ impl<K: Kind> AnyStudy for Loaded<K> {
             Ok((failures, self.kind.tables(rows)?))
         })?;
         tables.push(failures_table(&finished)?);
-        Ok(Box::new(Results {
-            study: self,
-            tables,
-            n_failed: finished.len(),
-        }))
+        let n_failed = finished.len();
+        Ok(Outcome { tables, n_failed })
+    }
+
+    fn write(&self, outcome: &Outcome, ended: &EndedRun) -> Result<()> {
+        self.write_results(outcome, ended)
+    }
+
+    fn words(&self, outcome: &Outcome, width: usize) -> String {
+        let found = self.kind.summary(&outcome.tables, width);
+        format!("{}\n\n{found}", self.facts.question)
     }
 
     fn verify(
@@ -113,23 +118,10 @@ impl<K: Kind> AnyStudy for Loaded<K> {
         ))
     }
 
-    fn report(&self, folder: &Path, about: &ReportAbout) -> Result<()> {
+    fn report(&self, folder: &Path, about: StudyAbout) -> Result<()> {
         let mut tables = self.kind.read_tables(folder)?;
         tables.extend(read_failures(folder)?);
-        let wall_s = about
-            .manifest
-            .as_ref()
-            .and_then(|manifest| manifest.wall_s());
-        let about = StudyAbout {
-            name: about.name.clone(),
-            question: self.facts.question.clone(),
-            expected: self.facts.expected.clone(),
-            wall_s: wall_s.unwrap_or(f64::NAN),
-            command: about.command.clone(),
-            program: PROGRAM.to_owned(),
-            manifest: about.manifest.clone(),
-            all_charts: about.all_charts,
-        };
+        let about = self.about(about);
         self.folder_of(folder, &about, &tables)?.write().map(|_| ())
     }
 }

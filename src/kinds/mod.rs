@@ -20,7 +20,7 @@ pub mod stability;
 mod verified;
 pub mod whole_body;
 
-pub use any_study::{AnyOutcome, AnyStudy, EndedRun, ReportAbout};
+pub use any_study::{AnyStudy, EndedRun, Outcome};
 pub use ceiling::{threads_within, within_memory};
 pub use kind::{About, Facts, Kind};
 pub use loaded::Loaded;

@@ -1,25 +1,19 @@
 //! The folder of a study of any kind.
 
-use super::any_study::{AnyOutcome, EndedRun};
+use super::any_study::{EndedRun, Outcome};
 use super::kind::Kind;
 use super::loaded::Loaded;
 use crate::error::Result;
 use crate::files::write_bytes;
-use crate::report::csv_tables::{FAILURES_FILE, TableHashes, read_rows};
+use crate::report::csv_tables::{FAILURES_FILE, read_rows};
 use crate::report::folder::Folder;
 use crate::report::page::StudyAbout;
 use crate::report::study_folder::{Beyond, Found, folder_with};
 use crate::study::pieces::PieceFailure;
 use crate::study::provenance::{MANIFEST_FILE, Manifest, PROGRAM};
+use crate::study::sha256;
 use crate::table::Table;
 use std::path::Path;
-
-/// What came of a study.
-pub struct Results<'a, K> {
-    pub study: &'a Loaded<K>,
-    pub tables: Vec<Table>,
-    pub n_failed: usize,
-}
 
 /// Work items that failed.
 pub fn failures_table(failures: &[PieceFailure]) -> Result<Table> {
@@ -55,67 +49,61 @@ impl<K: Kind> Loaded<K> {
             })
         })
     }
-}
 
-impl<K: Kind> Results<'_, K> {
-    fn manifest(&self, ended: &EndedRun) -> Manifest {
-        let Loaded {
-            facts, identity, ..
-        } = self.study;
-        let files = self.tables.iter().filter(|table| !table.csv.is_empty());
-        let files = files.map(|table| (table.file, table.csv.clone()));
-        let of_name = |name: &str| self.tables.iter().find(|table| table.file == name);
-        let hashes = TableHashes::of(files, |name| of_name(name).is_some_and(|t| t.repeats));
-        let methods = facts.methods.iter();
+    /// What the page says of the study itself, beside what is known of its run.
+    pub(super) fn about(&self, of_run: StudyAbout) -> StudyAbout {
+        let wall_s = of_run.manifest.as_ref().and_then(Manifest::wall_s);
+        StudyAbout {
+            question: self.facts.question.clone(),
+            expected: self.facts.expected.clone(),
+            wall_s: wall_s.unwrap_or(f64::NAN),
+            program: PROGRAM.to_owned(),
+            ..of_run
+        }
+    }
+
+    fn manifest(&self, outcome: &Outcome, ended: &EndedRun) -> Manifest {
+        let files = outcome.tables.iter().filter(|table| !table.csv.is_empty());
+        let hashes = files.map(|table| {
+            let hash = sha256(&table.csv);
+            (table.repeats, (table.file.to_owned(), hash))
+        });
+        let (repeatable, times): (Vec<_>, Vec<_>) = hashes.partition(|(repeats, _)| *repeats);
+        let hashes =
+            |of: Vec<(bool, (String, String))>| of.into_iter().map(|(_, hash)| hash).collect();
+        let methods = self.facts.methods.iter();
         Manifest {
             study: ended.name.clone(),
             command: ended.command.clone(),
             paths_from: ended.paths_from.clone(),
-            seed: facts.seed,
-            n_cells: self.study.pieces.len(),
+            seed: self.facts.seed,
+            n_cells: self.pieces.len(),
             n_trials: 1,
             n_finished_before: ended.n_before,
-            n_failed: self.n_failed,
-            tables_sha256: hashes.repeatable,
-            times_sha256: hashes.times,
+            n_failed: outcome.n_failed,
+            tables_sha256: hashes(repeatable),
+            times_sha256: hashes(times),
             methods: methods
                 .map(|(columns, method)| (columns.to_string(), method.to_string()))
                 .collect(),
-            ..Manifest::ended(identity, ended.started)
+            ..Manifest::ended(&self.identity, ended.started)
         }
     }
-}
 
-impl<K: Kind> AnyOutcome for Results<'_, K> {
-    fn n_failed(&self) -> usize {
-        self.n_failed
-    }
-
-    fn write(&self, ended: &EndedRun) -> Result<()> {
-        let facts = &self.study.facts;
-        let manifest = self.manifest(ended);
-        let about = StudyAbout {
+    pub(super) fn write_results(&self, outcome: &Outcome, ended: &EndedRun) -> Result<()> {
+        let manifest = self.manifest(outcome, ended);
+        let json = manifest.to_json();
+        let about = self.about(StudyAbout {
             name: ended.name.clone(),
-            question: facts.question.clone(),
-            expected: facts.expected.clone(),
-            wall_s: ended.wall_s(),
             command: ended.command.clone(),
-            program: PROGRAM.to_owned(),
-            manifest: Some(manifest.clone()),
-            all_charts: false,
-        };
-        let mut folder = Folder::of_tables(ended.folder, &self.tables);
-        folder.append(self.study.folder_of(ended.folder, &about, &self.tables)?);
+            manifest: Some(manifest),
+            ..StudyAbout::default()
+        });
+        let mut folder = Folder::of_tables(ended.folder, &outcome.tables);
+        folder.append(self.folder_of(ended.folder, &about, &outcome.tables)?);
         folder.write()?;
-        write_bytes(&ended.folder.join("study.toml"), facts.toml.as_bytes())?;
-        write_bytes(
-            &ended.folder.join(MANIFEST_FILE),
-            manifest.to_json().as_bytes(),
-        )
-    }
-
-    fn words(&self, width: usize) -> String {
-        let found = self.study.kind.summary(&self.tables, width);
-        format!("{}\n\n{found}", self.study.facts.question)
+        let study = self.facts.toml.as_bytes();
+        write_bytes(&ended.folder.join("study.toml"), study)?;
+        write_bytes(&ended.folder.join(MANIFEST_FILE), json.as_bytes())
     }
 }

@@ -6,7 +6,6 @@
 use crate::error::{Error, Result};
 use crate::study::sha256;
 use serde::de::DeserializeOwned;
-use std::collections::BTreeMap;
 use std::fs::File;
 use std::path::Path;
 
@@ -15,34 +14,6 @@ pub const FAILURES_FILE: &str = "failures.csv";
 
 /// How often limits of the model were reached, beside the tables.
 pub const LIMITS_FILE: &str = "limits.csv";
-
-/// SHA-256 of tables by their files' names.
-#[derive(Clone, Debug, Default)]
-pub struct TableHashes {
-    /// Of those without times: the same for the same study.
-    pub repeatable: BTreeMap<String, String>,
-    /// Of those with times, which no two runs share.
-    pub times: BTreeMap<String, String>,
-}
-
-impl TableHashes {
-    /// Of files, by the names of those that are the same for the same study.
-    pub fn of<N: Into<String>>(
-        files: impl IntoIterator<Item = (N, Vec<u8>)>,
-        is_repeatable: impl Fn(&str) -> bool,
-    ) -> Self {
-        let mut hashes = Self::default();
-        for (name, content) in files {
-            let name = name.into();
-            let known = match is_repeatable(&name) {
-                true => &mut hashes.repeatable,
-                false => &mut hashes.times,
-            };
-            known.insert(name, sha256(content));
-        }
-        hashes
-    }
-}
 
 /// What is asked for where a table is missing.
 const A_TABLE: &str = "a table of results as bubbletouch run writes it";

@@ -90,7 +90,8 @@ pub struct ColumnDifferences {
 pub fn differences(first: &[Table], second: &[Table]) -> Result<Vec<ColumnDifferences>> {
     let mut told = HashSet::new();
     let mut found = Vec::new();
-    for second in second {
+    // A table that is made of others tells nothing more.
+    for second in second.iter().filter(|table| !table.csv.is_empty()) {
         let Some(first) = first.iter().find(|first| first.file == second.file) else {
             continue;
         };

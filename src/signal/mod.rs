@@ -71,7 +71,8 @@ pub use step::SignalStep;
 use crate::world::Taxel;
 
 /// What the numbers of a frame are.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Deserialize)]
+#[serde(rename_all = "snake_case")]
 pub enum Quantity {
     /// Metres.
     Deflection,

@@ -384,10 +384,8 @@ impl Maker {
             },
             Scale::Linear | Scale::Log | Scale::Share => Data::Numbers(Vec::new()),
         };
-        Self {
-            data,
-            known: Default::default(),
-        }
+        let known = HashMap::new();
+        Self { data, known }
     }
 
     /// Whether the text is such a value.

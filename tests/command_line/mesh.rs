@@ -164,7 +164,7 @@ fn words_that_no_mesh_has_are_refused() {
     assert!(refused("objects mesh none.stl").contains("none.stl: cannot be opened"));
     assert!(
         refused("press --mesh cube.obj --model cage")
-            .contains("expected vertex_spheres, mesh or packed")
+            .contains("expected one of `vertex_spheres`, `mesh`, `packed`")
     );
     assert!(refused("press --object mug --model mesh").contains("--mesh"));
 }

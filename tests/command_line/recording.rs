@@ -171,7 +171,7 @@ fn what_cannot_be_shown_is_said_and_writes_nothing() {
         (
             &["touch.npz", "--quantity=heat"],
             2,
-            "expected deflection or force",
+            "expected `deflection` or `force`",
         ),
     ] {
         let output = case.run(&[&["recording"], arguments].concat());

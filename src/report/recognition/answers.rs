@@ -150,10 +150,12 @@ impl<'a> Found<'a> {
 
     /// `0.93 [0.90, 0.95]`.
     fn accuracy(&self, row: usize) -> String {
-        format!(
-            "{:.2} [{:.2}, {:.2}]",
-            self.accuracy[row], self.low[row], self.high[row]
-        )
+        let [accuracy, low, high] = [self.accuracy, self.low, self.high].map(|of| of[row]);
+        // Nearly always right is not always.
+        match accuracy {
+            0.995..1.0 => format!("{accuracy:.4} [{low:.4}, {high:.4}]"),
+            _ => format!("{accuracy:.2} [{low:.2}, {high:.2}]"),
+        }
     }
 
     fn best_of(&self, rows: &[usize]) -> Vec<String> {
@@ -169,8 +171,9 @@ impl<'a> Found<'a> {
             "" => String::new(),
             words => format!(" at {words}"),
         };
+        let colon = if with.is_empty() { "" } else { ":" };
         let mut sentences = vec![format!(
-            "Best accuracy{with} {}{}.",
+            "Best accuracy{with}{colon} {}{}.",
             self.accuracy(best),
             at(best)
         )];

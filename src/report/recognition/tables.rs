@@ -8,10 +8,8 @@ use crate::study::table::{
     Cell, CellScore, Comparison, Confused, Confusion, Limit, Pareto, Published, StageTime, Tables,
     TrialScore, TrialTime, Variance,
 };
-use crate::table::{Better, Column, Columns, Data, File, Role, Scale, Table, Value};
-use serde::de::IntoDeserializer;
-use serde::de::value::StrDeserializer;
-use serde::{Deserialize, Serialize};
+use crate::table::{Better, Column, Columns, Data, File, Role, Scale, Table};
+use serde::Serialize;
 use std::path::Path;
 
 /// The table of all that is known of each cell; it has no file.
@@ -164,12 +162,12 @@ fn has_chosen_c(table: &Table) -> bool {
     let (Some(c), Some((_, classifiers))) = (table.numbers("c"), table.column("classifier")) else {
         return false;
     };
-    let has_c = |row: usize| match classifiers.value(row) {
-        Some(Value::Word(word)) => {
-            let word: StrDeserializer<serde::de::value::Error> = word.as_str().into_deserializer();
-            ClassifierKind::deserialize(word).is_ok_and(ClassifierKind::has_c)
-        }
-        _ => false,
+    let has_c = |row: usize| {
+        let word = classifiers
+            .value(row)
+            .map(|word| toml::Value::from(word.to_string()));
+        let kind = word.and_then(|word| word.try_into::<ClassifierKind>().ok());
+        kind.is_some_and(ClassifierKind::has_c)
     };
     let mut absent = (0..table.n_rows).filter(|&row| c[row].is_nan());
     absent.all(has_c)
