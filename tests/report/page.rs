@@ -167,9 +167,9 @@ fn each_condition_has_a_best_of_its_own_and_one_answer_to_fewest_measurements() 
     }
     let said = answers_of(&made).join("\n");
     for wanted in [
-        "Best accuracy with noise 0 % 0.90 [0.89, 0.91] at",
+        "Best accuracy with noise 0 %: 0.90 [0.89, 0.91] at",
         "Within the interval of the best with noise 0 %, with the fewest measurements: 0.90 [0.89, 0.91] at",
-        "Best accuracy with noise 10 % 0.50 [0.49, 0.51] at",
+        "Best accuracy with noise 10 %: 0.50 [0.49, 0.51] at",
         "Within the interval of the best with noise 10 %, with the fewest measurements: 0.49 [",
     ] {
         assert!(said.contains(wanted), "{wanted}: {said}");
