@@ -1,10 +1,11 @@
 //! What is charted, and what was found in sentences.
 
+use super::memory_chart::memory_chart;
 use crate::table::{Along, At, ChartSpec, Mark, Rule, Shown, Table, Value, short_number};
 
 /// What a step costs by skin, by touch and by spheres, then where the time of a scene goes.
 pub(super) fn charts(tables: &[Table]) -> Vec<ChartSpec> {
-    let [_, _, _, timing, steps, ..] = tables else {
+    let [_, recognition, _, timing, steps, ..] = tables else {
         return Vec::new();
     };
     let ladder = |series: &str, name: &str, x: &str, lines: &[&str], title: &str| {
@@ -60,7 +61,8 @@ pub(super) fn charts(tables: &[Table]) -> Vec<ChartSpec> {
         rules: vec![millisecond(Along::X)],
         ..ChartSpec::default()
     });
-    ladders.into_iter().chain([by_stage]).flatten().collect()
+    let others = [by_stage, memory_chart(recognition)];
+    ladders.into_iter().chain(others).flatten().collect()
 }
 
 fn of_series(series: &str) -> Shown {
@@ -91,8 +93,8 @@ pub(super) fn answers(tables: &[Table]) -> Vec<String> {
             "From touch to answer on {} taxels: at most {} (median over steps; scene {}, {}).",
             timing.words("n_taxels", row),
             timing.words("us_median", row),
-            timing.word("name", row),
-            timing.word("compression", row)
+            timing.words("name", row),
+            timing.words("compression", row)
         )
     }));
     let skins = (0..steps.n_rows).filter(|&row| steps.word("series", row) == "skin");
@@ -100,11 +102,11 @@ pub(super) fn answers(tables: &[Table]) -> Vec<String> {
         let (first, last) = (rungs[0], rungs[rungs.len() - 1]);
         let growth = steps.number("us_median", last) / steps.number("us_median", first);
         answers.push(format!(
-            "From {} to {} taxels with {} touched, the time of a step grows {} times, to {} ({} steps/s).",
+            "From {} to {} taxels with {} touched, the time of a step is {} times as long: {} ({} steps/s).",
             steps.words("n_taxels", first),
             steps.words("n_taxels", last),
             steps.words("touched", last),
-            short_number(growth),
+            short_number((100.0 * growth).round() / 100.0),
             steps.words("us_median", last),
             short_number(steps.number("steps_per_s", last).round())
         ));

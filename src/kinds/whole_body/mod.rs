@@ -15,6 +15,7 @@ mod charts;
 mod drawn;
 mod drive;
 mod ladders;
+mod memory_chart;
 mod objects;
 mod path;
 mod picture;
