@@ -96,9 +96,9 @@ pub struct BodyRecognition {
     /// Share of the test touches that were recognised.
     accuracy: f64 => Value(More): Share between [accuracy_low, accuracy_high];
     /// Lower end of its 95 % interval.
-    accuracy_low: f64 => Note "accuracy, lower end": Share;
+    accuracy_low: f64 => Note "95 % interval, lower end": Share;
     /// Upper end of it.
-    accuracy_high: f64 => Note "accuracy, upper end": Share;
+    accuracy_high: f64 => Note "95 % interval, upper end": Share;
     /// Binary SVMs that stopped at the solver's iteration cap.
     n_capped: usize => Note "capped SVMs": Linear;
 } }

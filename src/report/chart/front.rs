@@ -24,7 +24,7 @@ pub(super) fn is_more_better(view: &View) -> bool {
 /// What the legend calls the front.
 pub(super) fn words(view: &View) -> String {
     let cost = match view.column(&view.spec.x) {
-        Some((column, _)) if column.unit.ends_with('s') => "faster",
+        Some((column, _)) if matches!(&column.unit[..], "s" | "ms" | "us" | "µs") => "faster",
         _ => "cheaper",
     };
     format!("Pareto front: nothing is both {cost} and as good")
