@@ -13,7 +13,7 @@ use bubbletouch::recognition::kernel::Gamma;
 use bubbletouch::recognition::scaling::Scaling;
 use bubbletouch::recognition::split::{Split, stratified_k_fold};
 use bubbletouch::recognition::svm::{Multiclass, Solver};
-use bubbletouch::study::{CONFIDENCE, FeatureSet, read_features, write_npy};
+use bubbletouch::study::{CONFIDENCE, FeatureSet, read_features, write_integers};
 use bubbletouch::{Error, Result};
 use ndarray::Array1;
 use serde::de::IntoDeserializer;
@@ -141,7 +141,7 @@ pub fn classify(args: &Args) -> Result<()> {
     let set = read_features(&args.folder)?;
     let (findings, predicted) = args.train_and_test(&set)?;
     if let Some(path) = &args.predictions {
-        write_npy(path, &predicted.mapv(|label| label as i64))?;
+        write_integers(path, predicted)?;
     }
     match args.json {
         true => {
@@ -246,43 +246,32 @@ fn svm_findings(trained: &TrainedClassifier) -> Option<SvmFindings> {
     })
 }
 
-fn tell(findings: &Findings) -> Result<()> {
-    let Findings {
-        n_train,
-        n_test,
-        n_measurements,
-        n_correct,
-        accuracy,
-        accuracy_low,
-        accuracy_high,
-        fit_median_s,
-        predict_median_s,
-        ..
-    } = findings;
+fn tell(found: &Findings) -> Result<()> {
     say(format_args!(
-        "rows      {n_train} to train on, {n_test} to test, {n_measurements} measurements each"
+        "rows      {} to train on, {} to test, {} measurements each",
+        found.n_train, found.n_test, found.n_measurements
     ))?;
     say(format_args!(
-        "accuracy  {accuracy:.4} ({accuracy_low:.4} to {accuracy_high:.4}): {n_correct} of {n_test}"
+        "accuracy  {:.4} ({:.4} to {:.4}): {} of {}",
+        found.accuracy, found.accuracy_low, found.accuracy_high, found.n_correct, found.n_test
     ))?;
-    if let Some(chosen) = &findings.chosen {
-        let best = &chosen.best;
-        let gamma = best
-            .gamma
-            .map_or_else(String::new, |gamma| format!(" and γ = {gamma:.3e}"));
+    if let Some(Chosen { best, tried, .. }) = &found.chosen {
+        let gamma = best.gamma.map(|gamma| format!(" and γ = {gamma:.3e}"));
         say(format_args!(
-            "choice    C = {}{gamma}, {:.4} on validation rows, of {} candidates",
+            "choice    C = {}{}, {:.4} on validation rows, of {} candidates",
             best.c,
+            gamma.unwrap_or_default(),
             best.accuracy,
-            chosen.tried.len()
+            tried.len()
         ))?;
     }
-    say(format_args!("training  {fit_median_s:.4} s"))?;
-    let each_us = 1e6 * predict_median_s / *n_test as f64;
+    say(format_args!("training  {:.4} s", found.fit_median_s))?;
+    let each_us = 1e6 * found.predict_median_s / found.n_test as f64;
     say(format_args!(
-        "testing   {predict_median_s:.4} s, {each_us:.1} µs a row"
+        "testing   {:.4} s, {each_us:.1} µs a row",
+        found.predict_median_s
     ))?;
-    if let Some(svm) = &findings.svm {
+    if let Some(svm) = &found.svm {
         say(format_args!(
             "SVM       {} support vectors, {} of {} problems stopped short of the tolerance, dual objective {:.6}",
             svm.n_support_vectors, svm.n_capped, svm.n_problems, svm.dual_objective

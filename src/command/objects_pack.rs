@@ -40,12 +40,12 @@ pub fn pack(args: &Args) -> Result<()> {
     check_ending(&args.out, "csv")?;
     let object = args.object.load()?;
     let tolerance = args.surface_error_mm * MM;
-    let spheres = object.pack(tolerance)?;
+    let spheres = args.object.pack(&object, tolerance)?;
     write_whole(&args.out, |sink| write_spheres(&spheres, sink))?;
     say(format_args!("spheres     {}", spheres.n_spheres()))?;
     match object {
         Loaded::Solid(solid) => say(describe_solid(&solid, &spheres, tolerance))?,
-        Loaded::Mesh { surface, body, .. } => {
+        Loaded::Mesh(surface, body) => {
             say(describe(&packing_error(&surface, body, &spheres, N_POINTS)))?;
         }
     }

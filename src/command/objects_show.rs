@@ -43,7 +43,7 @@ pub fn show(args: &Args) -> Result<()> {
     let object = args.object.load()?;
     let spheres = match &args.spheres {
         Some(path) => load_spheres(path, args.spheres_unit, &SizeLimits::ANY)?,
-        None => object.pack(args.surface_error_mm * 1e-3)?,
+        None => args.object.pack(&object, args.surface_error_mm * 1e-3)?,
     };
     let picture = fit_picture(
         &args.object.name(),

@@ -56,7 +56,7 @@ pub fn recording(args: &Args) -> Result<()> {
         (None, Some(path)) => animate(args, &mut file, path),
         (None, None) => {
             let table = recording_table(&mut file)?;
-            write_out(table.to_string().as_bytes())
+            write_out(table.as_bytes())
         }
     }
 }
@@ -64,18 +64,17 @@ pub fn recording(args: &Args) -> Result<()> {
 /// The number of the patch to draw.
 fn chosen_patch(args: &Args, file: &RecordingFile) -> Result<usize> {
     let patches = &file.header().patches;
-    match &args.patch {
-        Some(name) => file.patch(name),
-        None if patches.len() == 1 => Ok(0),
-        None => {
-            let names: Vec<&str> = patches.iter().map(|patch| &patch.name[..]).collect();
-            Err(Error::input(
-                args.file.display(),
-                format!("{} patches", patches.len()),
-                format!("--patch NAME, one of {}", names.join(", ")),
-            ))
-        }
-    }
+    let named = |name: &String| patches.iter().position(|patch| patch.name == *name);
+    let (found, given) = match &args.patch {
+        Some(name) => (named(name), format!("no patch {name}")),
+        None if patches.len() == 1 => return Ok(0),
+        None => (None, format!("{} patches", patches.len())),
+    };
+    found.ok_or_else(|| {
+        let names: Vec<&str> = patches.iter().map(|patch| &patch.name[..]).collect();
+        let allowed = format!("--patch NAME, one of {}", names.join(", "));
+        Error::input(args.file.display(), given, allowed)
+    })
 }
 
 fn draw_frame(args: &Args, file: &mut RecordingFile, frame: usize) -> Result<()> {

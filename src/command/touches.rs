@@ -5,7 +5,9 @@ use super::study_args::StudyArgs;
 use bubbletouch::kinds::recognition::{load_study, read_plan};
 use bubbletouch::random::Seed;
 use bubbletouch::report::progress;
-use bubbletouch::study::{Plan, ReadFrames, load_objects, millimetres, write_touches};
+use bubbletouch::study::{
+    Plan, ReadFrames, draw_touches, load_objects, millimetres, write_touches,
+};
 use bubbletouch::{Error, Result};
 use std::path::PathBuf;
 
@@ -50,12 +52,12 @@ pub fn touches(args: &Args) -> Result<()> {
     };
     args.check(&plan)?;
     let objects = load_objects(&plan.spec.objects, Some(&packings))?;
-    let seed = Seed::new(plan.spec.seed);
+    let touched = draw_touches(objects, &plan.placement, &Seed::new(plan.spec.seed))?;
     let mut n_touches = 0;
-    let is_written = |array: usize| read.as_ref().is_none_or(|read| read.array == array);
-    let arrays = plan.arrays.iter().enumerate();
-    let arrays = arrays.filter(|(array, _)| is_written(*array));
-    let arrays: Vec<_> = arrays.map(|(_, patch)| patch).collect();
+    let arrays: Vec<_> = match &read {
+        None => plan.arrays.iter().collect(),
+        Some(read) => vec![&plan.arrays[read.array]],
+    };
     for &patch in &arrays {
         let grid = &patch.grid;
         let folder = match arrays.len() {
@@ -67,14 +69,7 @@ pub fn touches(args: &Args) -> Result<()> {
             }
         };
         output_folder(&folder)?;
-        n_touches += write_touches(
-            &folder,
-            &objects,
-            &plan.placement,
-            (&seed, patch),
-            read.as_ref(),
-            progress.as_ref(),
-        )?;
+        n_touches += write_touches(&folder, &touched, patch, read.as_ref(), progress.as_ref())?;
     }
     let how = match args.cell {
         None => "without noise (--cell N writes them as cell N of the study reads them)".to_owned(),

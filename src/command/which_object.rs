@@ -30,11 +30,7 @@ pub struct WhichObject {
 
 /// An object before it is packed.
 pub enum Loaded {
-    Mesh {
-        file: String,
-        surface: Box<Surface>,
-        body: Body,
-    },
+    Mesh(Box<Surface>, Body),
     Solid(Solid),
 }
 
@@ -63,11 +59,7 @@ impl WhichObject {
         };
         let mesh = read_mesh_file(path, self.unit, &SizeLimits::ANY)?.into_mesh(&self.object)?;
         let surface = Box::new(Surface::new(self.closed(mesh)?));
-        Ok(Loaded::Mesh {
-            file: self.object.clone(),
-            surface,
-            body,
-        })
+        Ok(Loaded::Mesh(surface, body))
     }
 
     /// The mesh without the holes that are to be closed.
@@ -82,6 +74,27 @@ impl WhichObject {
         Ok(closed.mesh)
     }
 
+    /// Few spheres within a tolerance (metres) of what was loaded.
+    pub fn pack(&self, loaded: &Loaded, tolerance: f64) -> Result<SphereUnion> {
+        let (surface, body) = match loaded {
+            Loaded::Solid(solid) => return solid.pack(tolerance),
+            Loaded::Mesh(surface, body) => (surface, body),
+        };
+        const STEPS: u64 = 100;
+        let progress = to_stderr();
+        progress.stage("pack", STEPS);
+        let mut done = 0;
+        let packing = pack_mesh_watched(surface, *body, tolerance, &mut |share| {
+            let now = (share * STEPS as f64) as u64;
+            progress.advance(now.saturating_sub(done));
+            done = done.max(now);
+        });
+        let advice = "--close-holes-mm WIDTH closes holes up to that width, --as-sheet packs the surface without thickness";
+        let packing = packing.map_err(|error| error_of_file(error, &self.object, advice))?;
+        progress.finish("");
+        Ok(packing.spheres)
+    }
+
     /// Without folders and ending.
     pub fn name(&self) -> String {
         let stem = Path::new(&self.object).file_stem();
@@ -93,34 +106,9 @@ impl WhichObject {
 }
 
 impl Loaded {
-    /// Few spheres within a tolerance (metres) of the object.
-    pub fn pack(&self, tolerance: f64) -> Result<SphereUnion> {
-        let (file, surface, body) = match self {
-            Self::Solid(solid) => return solid.pack(tolerance),
-            Self::Mesh {
-                file,
-                surface,
-                body,
-            } => (file, surface, *body),
-        };
-        const STEPS: u64 = 100;
-        let progress = to_stderr();
-        progress.stage("pack", STEPS);
-        let mut done = 0;
-        let packing = pack_mesh_watched(surface, body, tolerance, &mut |share| {
-            let now = (share * STEPS as f64) as u64;
-            progress.advance(now.saturating_sub(done));
-            done = done.max(now);
-        });
-        let advice = "--close-holes-mm WIDTH closes holes up to that width, --as-sheet packs the surface without thickness";
-        let packing = packing.map_err(|error| error_of_file(error, file, advice))?;
-        progress.finish("");
-        Ok(packing.spheres)
-    }
-
     pub fn original(&self) -> Original<'_> {
         match self {
-            Self::Mesh { surface, body, .. } => Original::Mesh(surface, *body),
+            Self::Mesh(surface, body) => Original::Mesh(surface, *body),
             Self::Solid(solid) => Original::Solid(solid),
         }
     }

@@ -8,10 +8,10 @@ use crate::report::recording::skin_picture::SkinPicture;
 use crate::report::recording::{ForceKind, RecordedPatch};
 use crate::signal::Quantity;
 use crate::world::Grid;
-use ndarray::{Array1, Array2};
-use ndarray_npy::NpzWriter;
-use std::fmt::Write as _;
-use std::io::{Cursor, Write as _};
+use ndarray::{Array1, Array2, ArrayView1};
+use ndarray_npy::{NpzWriter, WriteNpzError};
+use std::fs::File;
+use std::io::BufWriter;
 use std::path::Path;
 
 /// Writes deflections of a grid (ny × nx, metres): `.csv`, `.npz` or `.png` by the name's ending.
@@ -56,32 +56,22 @@ pub fn write_frame(path: &Path, deflection: &Array2<f64>, grid: &Grid) -> Result
 
 /// A frame as CSV: every number with 17 significant digits, so that it reads back as the same bits.
 pub fn frame_csv(frame: &Array2<f64>) -> String {
-    let mut text = String::with_capacity(frame.len() * 24);
-    for row in frame.outer_iter() {
-        for (column, value) in row.iter().enumerate() {
-            if column > 0 {
-                text.push(',');
-            }
-            // Writing to a string cannot fail.
-            let _ = write!(text, "{value:.16e}");
-        }
-        text.push('\n');
-    }
-    text
+    let line = |row: ArrayView1<f64>| {
+        let numbers: Vec<String> = row.iter().map(|value| format!("{value:.16e}")).collect();
+        numbers.join(",") + "\n"
+    };
+    frame.outer_iter().map(line).collect()
 }
 
 fn write_npz(path: &Path, deflection: &Array2<f64>, grid: &Grid) -> Result<()> {
     let x: Array1<f64> = (0..grid.nx).map(|column| grid.x(column)).collect();
     let y: Array1<f64> = (0..grid.ny).map(|row| grid.y(row)).collect();
-    write_whole(path, |file| {
-        let mut bytes = Cursor::new(Vec::new());
-        let mut archive = NpzWriter::new(&mut bytes);
-        archive
-            .add_array("deflection", deflection)
-            .map_err(std::io::Error::other)?;
-        archive.add_array("x", &x).map_err(std::io::Error::other)?;
-        archive.add_array("y", &y).map_err(std::io::Error::other)?;
-        archive.finish().map_err(std::io::Error::other)?;
-        file.write_all(bytes.get_ref())
-    })
+    let write = |file: &mut BufWriter<File>| -> std::result::Result<(), WriteNpzError> {
+        let mut archive = NpzWriter::new(file);
+        archive.add_array("deflection", deflection)?;
+        archive.add_array("x", &x)?;
+        archive.add_array("y", &y)?;
+        archive.finish().map(drop)
+    };
+    write_whole(path, |file| write(file).map_err(std::io::Error::other))
 }

@@ -1,15 +1,35 @@
 //! A scene as files: a recording, a table of wrenches, and the scene as it was resolved.
 
-use super::recording::contact_table::{ContactTable, PatchContact};
-use super::recording::{
-    ForceKind, Forces, PatchFrame, RecordedPatch, RecordingHeader, RecordingWriter,
-};
-use crate::contact::GripCounts;
+use super::recording::{ForceKind, RecordedPatch, RecordingHeader, RecordingWriter};
 use crate::error::Result;
-use crate::files::write_bytes;
-use crate::geometry::Pose;
-use crate::scene::{Frame, FrameSink, PlannedPatch, ScenePlan};
+use crate::files::{CsvFile, write_bytes};
+use crate::scene::{Frame, FrameSink, PatchReading, PlannedPatch, ScenePlan};
+use serde::Serialize;
 use std::path::{Path, PathBuf};
+
+/// What a patch feels at one instant, all its taxels together, in its frame: a row of `wrenches.csv`. Numbers have as many digits as bring
+/// the same bits back.
+#[derive(Serialize)]
+struct WrenchRow<'a> {
+    time_s: f64,
+    patch: &'a str,
+    n_touched: usize,
+    n_saturated: usize,
+    fx_n: f64,
+    fy_n: f64,
+    fz_n: f64,
+    /// About the patch's origin.
+    tx_nm: f64,
+    ty_nm: f64,
+    tz_nm: f64,
+    /// The centre of pressure: empty where there is no contact.
+    cop_x_m: Option<f64>,
+    cop_y_m: Option<f64>,
+    cop_z_m: Option<f64>,
+    /// Empty for a patch without friction.
+    n_sticking: Option<usize>,
+    n_slipping: Option<usize>,
+}
 
 /// The files of a scene in the making: `recording.npz`, `wrenches.csv` (in the frame of each patch, on the patch) and `scene.toml`
 /// in one folder. [`finish`](Self::finish) puts them in place; dropped before, it leaves nothing behind.
@@ -18,7 +38,7 @@ pub struct SceneFiles {
     names: Vec<String>,
     scene: String,
     recording: RecordingWriter,
-    wrenches: ContactTable,
+    wrenches: CsvFile,
 }
 
 impl SceneFiles {
@@ -48,12 +68,8 @@ impl SceneFiles {
             folder: folder.to_owned(),
             names: names.collect(),
             scene: plan.spec.to_toml(),
-            recording: RecordingWriter::create(
-                &folder.join("recording.npz"),
-                header,
-                plan.n_frames,
-            )?,
-            wrenches: ContactTable::create(&folder.join("wrenches.csv"))?,
+            recording: RecordingWriter::create(&folder.join("recording.npz"), header)?,
+            wrenches: CsvFile::create(&folder.join("wrenches.csv"))?,
         })
     }
 
@@ -67,33 +83,33 @@ impl SceneFiles {
 
 impl FrameSink for SceneFiles {
     fn frame(&mut self, frame: &Frame) -> Result<()> {
-        let patches = frame.patches.iter().map(|patch| PatchFrame {
-            deflection: &patch.deflection,
-            force: match &patch.friction {
-                Some(friction) => Forces::Vector(&friction.force3),
-                None => Forces::Normal(&patch.force),
-            },
-            pose: patch.pose,
-        });
-        let patches: Vec<PatchFrame> = patches.collect();
-        let poses: Vec<Pose> = frame.objects.iter().map(|object| object.pose).collect();
-        self.recording.push(frame.time, &patches, &poses)?;
+        self.recording.push(frame)?;
         for (name, patch) in self.names.iter().zip(&frame.patches) {
-            let contact = PatchContact {
-                patch: name,
-                n_touched: patch.n_touched,
-                n_saturated: patch.n_saturated,
-                force: patch.wrench.force,
-                torque: patch.wrench.torque,
-                center_of_pressure: patch.center_of_pressure,
-                grips: patch.friction.as_ref().map(|friction| GripCounts {
-                    n_sticking: friction.n_sticking,
-                    n_slipping: friction.n_slipping,
-                }),
-            };
-            self.wrenches.row(frame.time, &contact)?;
+            self.wrenches.row(wrench_row(frame.time, name, patch))?;
         }
         Ok(())
+    }
+}
+
+fn wrench_row<'a>(time_s: f64, name: &'a str, patch: &PatchReading) -> WrenchRow<'a> {
+    let (force, torque) = (patch.wrench.force, patch.wrench.torque);
+    let (center, friction) = (patch.center_of_pressure, patch.friction.as_ref());
+    WrenchRow {
+        time_s,
+        patch: name,
+        n_touched: patch.n_touched,
+        n_saturated: patch.n_saturated,
+        fx_n: force.x,
+        fy_n: force.y,
+        fz_n: force.z,
+        tx_nm: torque.x,
+        ty_nm: torque.y,
+        tz_nm: torque.z,
+        cop_x_m: center.map(|c| c.x),
+        cop_y_m: center.map(|c| c.y),
+        cop_z_m: center.map(|c| c.z),
+        n_sticking: friction.map(|f| f.n_sticking),
+        n_slipping: friction.map(|f| f.n_slipping),
     }
 }
 

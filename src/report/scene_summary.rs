@@ -15,9 +15,7 @@ pub fn scene_table(plan: &ScenePlan, summary: &Summary) -> String {
 }
 
 fn patches(plan: &ScenePlan, summary: &Summary) -> Table {
-    let has_friction = plan.patches.iter().any(|patch| patch.shears.is_some());
-    let of_friction = ["most friction (N)", "most sticking", "most slipping"];
-    let header = [
+    let mut header = vec![
         "patch",
         "taxels",
         "deepest (mm)",
@@ -26,8 +24,10 @@ fn patches(plan: &ScenePlan, summary: &Summary) -> Table {
         "saturated",
         "grazing",
     ];
-    let shown = if has_friction { &of_friction[..] } else { &[] };
-    let mut table = table(header.iter().chain(shown));
+    if plan.patches.iter().any(|patch| patch.shears.is_some()) {
+        header.extend(["most friction (N)", "most sticking", "most slipping"]);
+    }
+    let mut table = table(&header, &[0]);
     for (patch, peaks) in plan.patches.iter().zip(&summary.patches) {
         let mut row = vec![
             patch.skin.name().to_owned(),
@@ -45,14 +45,11 @@ fn patches(plan: &ScenePlan, summary: &Summary) -> Table {
         }
         table.add_row(row);
     }
-    for column in table.column_iter_mut().skip(1) {
-        column.set_cell_alignment(CellAlignment::Right);
-    }
     table
 }
 
 fn objects(plan: &ScenePlan, summary: &Summary) -> Table {
-    let mut table = table(["object", "parts", "at the end"].iter());
+    let mut table = table(&["object", "parts", "at the end"], &[0, 1, 2]);
     let all = plan.objects.iter().zip(&plan.models);
     let counts = summary.n_unsettled.iter().zip(&summary.n_off);
     let ends = summary.objects.iter().zip(counts);
@@ -103,9 +100,14 @@ fn ending(movement: &Movement, held: &Held) -> String {
     }
 }
 
-fn table<'a>(header: impl Iterator<Item = &'a &'a str>) -> Table {
+/// A table without lines; numbers, which is all but the columns of texts, end at the right.
+pub(super) fn table(header: &[&str], texts: &[usize]) -> Table {
     let mut table = Table::new();
-    table.load_preset(NOTHING);
-    table.set_header(header);
+    table.load_preset(NOTHING).set_header(header);
+    for (number, column) in table.column_iter_mut().enumerate() {
+        if !texts.contains(&number) {
+            column.set_cell_alignment(CellAlignment::Right);
+        }
+    }
     table
 }

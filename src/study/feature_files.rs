@@ -11,6 +11,7 @@
 
 use super::frames::FramePlace;
 use super::measurement::{Measurements, measure_group};
+use super::npy::{write_integers, write_npy};
 use super::npy_numbers::{read_labels, read_matrix, read_rows};
 use super::plan::Plan;
 use super::progress::Progress;
@@ -20,13 +21,11 @@ use super::sweep::{Group, Sweep};
 use super::table::Cell;
 use super::touch_set::TouchSet;
 use crate::error::{Error, Result};
-use crate::files::{CsvFile, write_bytes, write_whole};
+use crate::files::{CsvFile, write_bytes};
 use crate::recognition::dataset::{Dataset, dataset, rows};
 use crate::recognition::split::Split;
-use ndarray::{Array1, ArrayBase, Data, Dimension};
-use ndarray_npy::{WritableElement, WriteNpyExt};
+use ndarray::Array1;
 use serde::Serialize;
-use std::io;
 use std::path::Path;
 
 /// Labelled measurements and the rows that one trial trains on and tests.
@@ -115,15 +114,9 @@ pub fn write_features(
     let set = cell_features(plan, sweep, touched, (cell, trial), progress)?;
     let Split { train, test } = &set.split;
     write_npy(&folder.join("features.npy"), &set.data.records)?;
-    let of_rows: [(&str, &[usize]); 3] = [
-        ("labels.npy", &set.data.targets.to_vec()),
-        ("train.npy", train),
-        ("test.npy", test),
-    ];
-    for (name, numbers) in of_rows {
-        let numbers: Array1<i64> = numbers.iter().map(|&number| number as i64).collect();
-        write_npy(&folder.join(name), &numbers)?;
-    }
+    write_integers(&folder.join("labels.npy"), set.data.targets.to_vec())?;
+    write_integers(&folder.join("train.npy"), train.clone())?;
+    write_integers(&folder.join("test.npy"), test.clone())?;
     let mut objects = CsvFile::create(&folder.join("objects.csv"))?;
     for (label, object) in touched.class_names().into_iter().enumerate() {
         objects.row(ObjectRow { label, object })?;
@@ -192,21 +185,6 @@ impl FeatureSet {
     pub fn test(&self) -> Result<Dataset> {
         rows(&self.data, &self.split.test)
     }
-}
-
-/// Writes an array as a whole `.npy` file.
-///
-/// # Errors
-/// A file that cannot be written.
-pub fn write_npy<A, S, D>(path: &Path, array: &ArrayBase<S, D>) -> Result<()>
-where
-    A: WritableElement,
-    S: Data<Elem = A>,
-    D: Dimension,
-{
-    write_whole(path, |writer| {
-        array.write_npy(writer).map_err(io::Error::other)
-    })
 }
 
 /// Refuses a row that is named twice: a tested row must not have been trained on, and none may count twice.

@@ -13,7 +13,7 @@ mod cell;
 pub(crate) mod cell_content;
 pub(crate) mod check;
 mod conditions;
-mod content_hash;
+pub(crate) mod content_hash;
 pub(crate) mod defaults;
 pub(crate) mod evaluation;
 mod feature_files;
@@ -23,6 +23,7 @@ mod human_touches;
 pub mod journal;
 pub(crate) mod measurement;
 pub mod memory;
+pub(crate) mod npy;
 mod npy_numbers;
 pub(crate) mod object_files;
 pub(crate) mod packings;
@@ -62,9 +63,10 @@ pub(crate) use check::{Check, not_negative, positive};
 pub(crate) use conditions::column_name;
 pub(crate) use content_hash::{sha256, short_hash};
 pub use evaluation::CONFIDENCE;
-pub use feature_files::{FeatureSet, cell_features, read_features, write_features, write_npy};
+pub use feature_files::{FeatureSet, cell_features, read_features, write_features};
 pub use frames::{FrameFacts, FramePlace, Frames, KeptFrames};
 pub use human_touches::{HumanTouches, RecordedTouch, record_touch};
+pub use npy::{write_integers, write_npy};
 pub use object_files::{
     NamedMesh, file_content, load_catalogue, load_mesh, load_named_meshes, load_objects,
     load_spheres, objects_content, read_mesh_file,

@@ -35,22 +35,15 @@ pub fn load_objects(spec: &ObjectsSpec, packings: Option<&Path>) -> Result<Vec<O
     let tolerance = spec.surface_error();
     let mut objects = Vec::new();
     for set in &spec.sets {
-        objects.extend(load_set(set, spec.names.as_deref(), tolerance)?);
+        let entries = set_entries(set, spec.names.as_deref())?;
+        let built = entries.par_iter().map(|entry| entry.build(tolerance));
+        objects.extend(built.collect::<Result<Vec<_>>>()?);
     }
     if let Some(folder) = &spec.meshes {
         objects.extend(load_meshes(folder, spec, packings)?);
     }
     check_names(objects.iter().map(|object| object.name.as_str()), spec)?;
     Ok(objects)
-}
-
-/// The built-in catalogue, or that of a TOML file, by the set's name.
-fn entries(set: &str) -> Result<Vec<Entry>> {
-    if !set.ends_with(".toml") {
-        let builtin = Catalogue::builtin()?;
-        return Ok(builtin.set(set)?.into_iter().cloned().collect());
-    }
-    Ok(load_catalogue(Path::new(set))?.entries().to_vec())
 }
 
 /// The objects of a TOML file ([its keys](crate::guide::own_objects)), in a set of the file's name.
@@ -100,9 +93,7 @@ pub fn read_mesh_file(
     let format = MeshFormat::of(path)?;
     check_regular(path)?;
     let place = path.display().to_string();
-    let file = File::open(path)
-        .map_err(|e| Error::input(&place, format!("cannot be opened ({e})"), "a mesh"))?;
-    let mesh = format.read(&place, unit.unwrap_or_default(), BufReader::new(file))?;
+    let mesh = format.read(&place, unit.unwrap_or_default(), open(path, "a mesh")?)?;
     if unit.is_none() {
         let vertices = mesh.vertices().iter();
         let points = vertices.map(|&point| Aabb {
@@ -123,21 +114,25 @@ pub fn load_spheres(
     sizes: &SizeLimits,
 ) -> Result<SphereUnion> {
     let place = path.display().to_string();
-    let file = File::open(path).map_err(|error| {
-        let given = format!("cannot be opened ({error})");
-        Error::input(&place, given, "a CSV of spheres")
-    })?;
-    let union = read_spheres(&place, BufReader::new(file))?;
-    let Some(unit) = unit else {
+    let union = read_spheres(&place, open(path, "a CSV of spheres")?)?;
+    if unit.is_none() {
         sizes.check(&place, union.bounds().size())?;
-        return Ok(union);
-    };
+    }
+    let metres = unit.unwrap_or_default().metres();
     let scaled = |sphere: &Sphere| Sphere {
-        center: unit.metres() * sphere.center,
-        radius: unit.metres() * sphere.radius,
+        center: metres * sphere.center,
+        radius: metres * sphere.radius,
     };
     let spheres = SphereUnion::new(union.spheres().iter().map(scaled).collect());
     spheres.map_err(|error| error.under(format!("{place}: ")))
+}
+
+fn open(path: &Path, allowed: &str) -> Result<BufReader<File>> {
+    let file = File::open(path).map_err(|error| {
+        let given = format!("cannot be opened ({error})");
+        Error::input(path.display(), given, allowed)
+    })?;
+    Ok(BufReader::new(file))
 }
 
 /// An error if a mesh is a folder, or a pipe or a device, from which nothing may ever come.
@@ -205,19 +200,18 @@ pub fn load_named_meshes(folder: &Path, spec: &ObjectsSpec) -> Result<Vec<NamedM
     Ok(meshes)
 }
 
-/// The wanted objects of a set, as solids.
+/// The wanted objects of a set, built-in or of a TOML file, as solids.
 pub(crate) fn set_entries(set: &str, names: Option<&[String]>) -> Result<Vec<Entry>> {
-    let entries = entries(set)?.into_iter();
-    Ok(entries
-        .filter(|entry| is_wanted(&entry.name, names))
-        .collect())
-}
-
-fn load_set(set: &str, names: Option<&[String]>, tolerance: f64) -> Result<Vec<Object>> {
-    set_entries(set, names)?
-        .par_iter()
-        .map(|entry| entry.build(tolerance))
-        .collect()
+    let mut entries = match set.ends_with(".toml") {
+        true => load_catalogue(Path::new(set))?.entries().to_vec(),
+        false => Catalogue::builtin()?
+            .set(set)?
+            .into_iter()
+            .cloned()
+            .collect(),
+    };
+    entries.retain(|entry| is_wanted(&entry.name, names));
+    Ok(entries)
 }
 
 fn load_meshes(folder: &Path, spec: &ObjectsSpec, packings: Option<&Path>) -> Result<Vec<Object>> {

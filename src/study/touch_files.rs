@@ -12,29 +12,25 @@
 //! Deflections are what the press gives: no noise, no smoothing, none of the sensor errors of `[signal]`. Frames as a cell reads them
 //! ([`ReadFrames`]) have all of these, in metres or, with the step `force`, in newtons; only `frames.npy` differs.
 
-use super::content_hash::bytes_of_numbers;
 use super::feature_files::{find, measured};
+use super::npy::{npy_header, write_integers, write_npy};
 use super::plan::Plan;
 use super::progress::Progress;
-use super::simulation::describe;
-use super::simulation::touch_stream;
+use super::simulation::{TouchedObject, describe, touch_labels};
 use super::sweep::{Group, Sweep};
 use super::touch_set::TouchSet;
 use crate::contact::{Workspace, press_to_depth};
 use crate::error::Result;
 use crate::files::{CsvFile, WholeFile};
-use crate::objects::Object;
-use crate::random::Seed;
 use crate::sensing::Ensemble;
-use crate::world::{Patch, Placement, RestPose, Scene, Touch, TouchSource};
-use ndarray::Array2;
-use ndarray_npy::{WritableElement, write_zeroed_npy};
+use crate::world::{Patch, RestPose, Scene, Touch};
+use ndarray::{Array1, Array2};
 use rayon::prelude::*;
 use serde::Serialize;
-use std::io::{self, Seek, SeekFrom, Write};
+use std::io::Write;
 use std::path::Path;
 
-/// Touches simulated before they are written: all that is held in memory at once.
+/// Frames simulated before they are written: all of them that are held in memory at once.
 const BLOCK: usize = 256;
 
 #[derive(Serialize)]
@@ -118,58 +114,55 @@ impl ReadFrames {
 /// returns how many.
 ///
 /// # Errors
-/// What [`TouchSource::new`] refuses; a file that cannot be written.
+/// A file that cannot be written.
 pub fn write_touches(
     folder: &Path,
-    objects: &[Object],
-    placement: &Placement,
-    (seed, patch): (&Seed, &Patch),
+    touched: &[TouchedObject],
+    patch: &Patch,
     read: Option<&ReadFrames>,
     progress: &dyn Progress,
 ) -> Result<usize> {
-    let rests: Vec<Vec<RestPose>> = objects
-        .par_iter()
-        .map(|object| placement.rest.of(&object.model))
-        .collect();
-    let sources = objects
-        .iter()
-        .zip(&rests)
-        .map(|(object, rests)| TouchSource::new(placement, rests, &touch_stream(seed, object)))
-        .collect::<Result<Vec<_>>>()?;
-    let n_touches = sources.iter().map(TouchSource::n_touches).sum();
+    let labels = touch_labels(touched);
+    let n_touches = labels.len();
     progress.stage(&format!("touch {}", describe(patch)), n_touches as u64);
-    let mut files = TouchFiles::create(folder, n_touches, patch)?;
-    let mut table = CsvFile::create(&folder.join("objects.csv"))?;
-    for (label, ((object, rests), source)) in objects.iter().zip(&rests).zip(&sources).enumerate() {
-        table.row(ObjectRow {
+    let mut frames = WholeFile::create(&folder.join("frames.npy"))?;
+    let shape = [n_touches, patch.grid.ny, patch.grid.nx];
+    frames.write(|file| file.write_all(&npy_header("<f4", &shape)))?;
+    let mut table = CsvFile::create(&folder.join("touches.csv"))?;
+    let mut objects = CsvFile::create(&folder.join("objects.csv"))?;
+    let (mut poses, mut depths) = (Vec::new(), Vec::new());
+    for (label, touched) in touched.iter().enumerate() {
+        let (object, touches) = (&touched.object, &touched.touches);
+        objects.row(ObjectRow {
             label,
             object: &object.name,
             n_spheres: object.model.n_spheres(),
-            n_touches: source.n_touches(),
+            n_touches: touches.len(),
         })?;
         let scene = Scene::of_one(patch, &object.model);
-        for first in (0..source.n_touches()).step_by(BLOCK) {
-            let numbers = first..source.n_touches().min(first + BLOCK);
-            let n_block = numbers.len() as u64;
-            let mut block: Vec<(Touch, Reading)> = numbers
-                .into_par_iter()
-                .map_init(Workspace::new, |workspace, number| {
-                    let touch = source.touch(number);
-                    let reading = pressed(&scene, &rests[touch.rest], &touch, workspace);
-                    (touch, reading)
-                })
-                .collect();
-            for (touch, reading) in &mut block {
-                if let Some(read) = read {
-                    reading.frame = read.frame(files.n_written);
-                }
-                files.add(label, &object.name, touch, reading)?;
+        for touches in touches.chunks(BLOCK) {
+            let press = |workspace: &mut Workspace, touch: &Touch| {
+                pressed(&scene, &touched.rests[touch.rest], touch, workspace)
+            };
+            let readings = touches.par_iter().map_init(Workspace::new, press);
+            for (touch, reading) in touches.iter().zip(readings.collect::<Vec<_>>()) {
+                let number = poses.len();
+                table.row(touch_row((number, label), &object.name, touch, &reading))?;
+                poses.push(reading.pose);
+                depths.push(touch.depth);
+                let frame = read.map_or(reading.frame, |read| read.frame(number));
+                let bytes: Vec<u8> = frame.into_iter().flat_map(f32::to_le_bytes).collect();
+                frames.write(|file| file.write_all(&bytes))?;
             }
-            progress.advance(n_block);
+            progress.advance(touches.len() as u64);
         }
     }
+    frames.commit()?;
+    write_integers(&folder.join("labels.npy"), labels)?;
+    write_npy(&folder.join("poses.npy"), &Array2::from(poses))?;
+    write_npy(&folder.join("depths.npy"), &Array1::from(depths))?;
     table.commit()?;
-    files.commit()?;
+    objects.commit()?;
     Ok(n_touches)
 }
 
@@ -186,70 +179,24 @@ fn pressed(scene: &Scene, rest: &RestPose, touch: &Touch, workspace: &mut Worksp
     }
 }
 
-/// The files with one entry a touch.
-struct TouchFiles {
-    /// Frames, labels, poses, depths.
-    arrays: [WholeFile; 4],
-    table: CsvFile,
-    n_written: usize,
-}
-
-impl TouchFiles {
-    fn create(folder: &Path, n: usize, patch: &Patch) -> Result<Self> {
-        let shape = [n, patch.grid.ny, patch.grid.nx];
-        Ok(Self {
-            arrays: [
-                start_npy::<f32>(&folder.join("frames.npy"), &shape)?,
-                start_npy::<i64>(&folder.join("labels.npy"), &[n])?,
-                start_npy::<f64>(&folder.join("poses.npy"), &[n, 7])?,
-                start_npy::<f64>(&folder.join("depths.npy"), &[n])?,
-            ],
-            table: CsvFile::create(&folder.join("touches.csv"))?,
-            n_written: 0,
-        })
+fn touch_row<'a>(
+    (number, label): (usize, usize),
+    object: &'a str,
+    touch: &Touch,
+    reading: &Reading,
+) -> TouchRow<'a> {
+    TouchRow {
+        touch: number,
+        label,
+        object,
+        rest: touch.rest,
+        offset_x_mm: 1e3 * touch.offset[0],
+        offset_y_mm: 1e3 * touch.offset[1],
+        yaw_deg: touch.yaw.to_degrees(),
+        tilt_x_deg: touch.tilt[0].to_degrees(),
+        tilt_y_deg: touch.tilt[1].to_degrees(),
+        depth_mm: 1e3 * touch.depth,
+        n_touched: reading.n_touched,
+        n_saturated: reading.n_saturated,
     }
-
-    fn add(&mut self, label: usize, object: &str, touch: &Touch, reading: &Reading) -> Result<()> {
-        let entries: [Vec<u8>; 4] = [
-            reading.frame.iter().flat_map(|v| v.to_le_bytes()).collect(),
-            (label as i64).to_le_bytes().to_vec(),
-            bytes_of_numbers(reading.pose),
-            bytes_of_numbers([touch.depth]),
-        ];
-        for (file, entry) in self.arrays.iter_mut().zip(entries) {
-            file.write(|writer| writer.write_all(&entry))?;
-        }
-        self.table.row(TouchRow {
-            touch: self.n_written,
-            label,
-            object,
-            rest: touch.rest,
-            offset_x_mm: 1e3 * touch.offset[0],
-            offset_y_mm: 1e3 * touch.offset[1],
-            yaw_deg: touch.yaw.to_degrees(),
-            tilt_x_deg: touch.tilt[0].to_degrees(),
-            tilt_y_deg: touch.tilt[1].to_degrees(),
-            depth_mm: 1e3 * touch.depth,
-            n_touched: reading.n_touched,
-            n_saturated: reading.n_saturated,
-        })?;
-        self.n_written += 1;
-        Ok(())
-    }
-
-    fn commit(self) -> Result<()> {
-        self.arrays.into_iter().try_for_each(WholeFile::commit)?;
-        self.table.commit()
-    }
-}
-
-/// Starts an array file: its header now, its data (little-endian, row by row) as it comes.
-fn start_npy<A: WritableElement>(path: &Path, shape: &[usize]) -> Result<WholeFile> {
-    let mut file = WholeFile::create(path)?;
-    file.write(|writer| {
-        write_zeroed_npy::<A, _>(writer.get_ref(), shape).map_err(io::Error::other)?;
-        let n_bytes = shape.iter().product::<usize>() * size_of::<A>();
-        writer.seek(SeekFrom::End(-(n_bytes as i64))).map(|_| ())
-    })?;
-    Ok(file)
 }

@@ -1,10 +1,9 @@
 //! `bubbletouch recording`: what is in a file, as a table, a picture and an animation; and NumPy opens it.
 
 use crate::command::Case;
+use crate::stored::{frame, normal, vectors};
 use bubbletouch::geometry::Pose;
-use bubbletouch::report::recording::{
-    ForceKind, Forces, PatchFrame, RecordedPatch, RecordingHeader, RecordingWriter,
-};
+use bubbletouch::report::recording::{ForceKind, RecordedPatch, RecordingHeader, RecordingWriter};
 use bubbletouch::world::Grid;
 use glam::DVec3;
 use std::fs;
@@ -37,23 +36,17 @@ fn recorded() -> Case {
         objects: vec!["mug".to_owned()],
         about: serde_json::json!({"seed": 2018}),
     };
-    let mut writer = RecordingWriter::create(&case.path("touch.npz"), header, 30).unwrap();
+    let mut writer = RecordingWriter::create(&case.path("touch.npz"), header).unwrap();
     for k in 0..30 {
         let mut palm = [0.0; 12];
         palm[k % 12] = 1e-4 * k as f64;
-        let palm = PatchFrame {
-            deflection: &palm,
-            force: Forces::Normal(&palm),
-            pose: Pose::from_translation(DVec3::new(0.0, 0.0, 0.01 * k as f64)),
-        };
-        let finger = PatchFrame {
-            deflection: &[0.0; 20],
-            force: Forces::Vector(&[DVec3::ZERO; 20]),
-            pose: Pose::IDENTITY,
-        };
-        writer
-            .push(0.02 * k as f64, &[palm, finger], &[Pose::IDENTITY])
-            .unwrap();
+        let pose = Pose::from_translation(DVec3::new(0.0, 0.0, 0.01 * k as f64));
+        let patches = vec![
+            normal(&palm, &palm, pose),
+            vectors(&[0.0; 20], &[DVec3::ZERO; 20], Pose::IDENTITY),
+        ];
+        let now = frame(0.02 * k as f64, patches, &[Pose::IDENTITY]);
+        writer.push(&now).unwrap();
     }
     writer.finish().unwrap();
     case
@@ -140,7 +133,7 @@ fn what_cannot_be_shown_is_said_and_writes_nothing() {
         (
             &["touch.npz", "--frame=0", "--patch=toe"],
             2,
-            "no patch toe; one of its patches: palm, finger",
+            "no patch toe; --patch NAME, one of palm, finger",
         ),
         (
             &["touch.npz", "--frame=30", "--patch=palm"],

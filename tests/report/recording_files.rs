@@ -1,10 +1,9 @@
 //! Recordings as files: what is read back is what was written, in bounded memory, whole or not at all.
 
-use crate::stored::read_recording;
+use crate::stored::{frame, normal, read_recording, vectors};
 use bubbletouch::geometry::Pose;
-use bubbletouch::report::recording::contact_table::{ContactTable, PatchContact};
 use bubbletouch::report::recording::{
-    ForceKind, Forces, PatchFrame, RecordedPatch, RecordingFile, RecordingHeader, RecordingWriter,
+    ForceKind, RecordedPatch, RecordingFile, RecordingHeader, RecordingWriter,
 };
 use bubbletouch::signal::Quantity;
 use bubbletouch::world::Grid;
@@ -75,22 +74,14 @@ fn pushed(n_frames: usize) -> Vec<Pushed> {
     frames
 }
 
-fn push(writer: &mut RecordingWriter, frame: &Pushed) -> bubbletouch::Result<()> {
-    let palm = PatchFrame {
-        deflection: &frame.palm,
-        force: Forces::Normal(&frame.palm_force),
-        pose: frame.poses[0],
-    };
-    let tip = PatchFrame {
-        deflection: &frame.tip,
-        force: Forces::Vector(&frame.tip_force),
-        pose: frame.poses[1],
-    };
-    writer.push(frame.time, &[palm, tip], &frame.poses[2..])
+fn push(writer: &mut RecordingWriter, pushed: &Pushed) -> bubbletouch::Result<()> {
+    let palm = normal(&pushed.palm, &pushed.palm_force, pushed.poses[0]);
+    let tip = vectors(&pushed.tip, &pushed.tip_force, pushed.poses[1]);
+    writer.push(&frame(pushed.time, vec![palm, tip], &pushed.poses[2..]))
 }
 
 fn write(path: &Path, frames: &[Pushed]) {
-    let mut writer = RecordingWriter::create(path, header(), frames.len()).unwrap();
+    let mut writer = RecordingWriter::create(path, header()).unwrap();
     frames
         .iter()
         .for_each(|frame| push(&mut writer, frame).unwrap());
@@ -177,7 +168,6 @@ fn single_rows_are_those_of_the_whole_and_vectors_have_lengths() {
     let frames = pushed(40);
     write(&path, &frames);
     let mut file = RecordingFile::open(&path).unwrap();
-    assert_eq!(file.patch("finger tip").unwrap(), 1);
     let mut visited = Vec::new();
     file.each_frame(1, Quantity::Force, |_, values| {
         visited.push(values.to_vec())
@@ -200,8 +190,6 @@ fn single_rows_are_those_of_the_whole_and_vectors_have_lengths() {
     }
     let said = file.frame(0, Quantity::Force, 40).unwrap_err().to_string();
     assert!(said.ends_with("touch.npz: frame 40; 0 to 39"), "{said}");
-    let said = file.patch("thumb").unwrap_err().to_string();
-    assert!(said.ends_with("no patch thumb; one of its patches: palm, finger tip"));
 }
 
 /// ndarray-npy knows nothing of our reader.
@@ -259,33 +247,10 @@ fn equal_recordings_are_equal_bytes() {
 }
 
 #[test]
-fn another_number_of_frames_than_was_said_is_an_error_and_no_file() {
-    let folder = tempfile::tempdir().unwrap();
-    let path = folder.path().join("touch.npz");
-    let frames = pushed(4);
-    let start = |n_frames| {
-        let mut writer = RecordingWriter::create(&path, header(), n_frames).unwrap();
-        let pushes = frames.iter().map(|frame| push(&mut writer, frame));
-        let pushed: Vec<_> = pushes.collect();
-        (writer, pushed)
-    };
-    let (writer, pushed) = start(3);
-    let error = pushed[3].as_ref().unwrap_err().to_string();
-    assert_eq!(error, "recording: 4 frames; 3");
-    assert_eq!(writer.finish().unwrap(), 3);
-    fs::remove_file(&path).unwrap();
-    let (writer, pushed) = start(5);
-    assert!(pushed.iter().all(Result::is_ok));
-    let error = writer.finish().unwrap_err().to_string();
-    assert_eq!(error, "recording: 4 frames; 5");
-    assert_eq!(names(folder.path()).len(), 0);
-}
-
-#[test]
 fn a_writer_dropped_half_way_leaves_what_was_there_before() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("touch.npz");
-    let mut writer = RecordingWriter::create(&path, header(), 10).unwrap();
+    let mut writer = RecordingWriter::create(&path, header()).unwrap();
     pushed(10)
         .iter()
         .for_each(|frame| push(&mut writer, frame).unwrap());
@@ -293,7 +258,7 @@ fn a_writer_dropped_half_way_leaves_what_was_there_before() {
     drop(writer);
     assert_eq!(names(folder.path()).len(), 0);
     fs::write(&path, "old").unwrap();
-    drop(RecordingWriter::create(&path, header(), 10).unwrap());
+    drop(RecordingWriter::create(&path, header()).unwrap());
     assert_eq!(fs::read(&path).unwrap(), b"old");
     assert_eq!(names(folder.path()), ["touch.npz"]);
 }
@@ -303,7 +268,7 @@ fn a_place_that_cannot_be_written_is_an_error_at_once() {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("file");
     fs::write(&file, "").unwrap();
-    let start = |path: &Path| match RecordingWriter::create(path, header(), 1) {
+    let start = |path: &Path| match RecordingWriter::create(path, header()) {
         Ok(_) => panic!("{} can be written", path.display()),
         Err(error) => error,
     };
@@ -327,11 +292,11 @@ fn a_full_disk_is_an_error() {
             .expect("standard error takes a line");
         return;
     }
-    // The headers are written at once.
-    let error = match RecordingWriter::create(full, header(), 500) {
-        Ok(_) => panic!("{} is full", full.display()),
-        Err(error) => error,
-    };
+    let mut writer = RecordingWriter::create(full, header()).unwrap();
+    for frame in &pushed(500) {
+        push(&mut writer, frame).unwrap();
+    }
+    let error = writer.finish().unwrap_err();
     assert_eq!(error.exit_code(), 1);
     assert!(
         error.to_string().starts_with("/dev/full: write failed: "),
@@ -349,42 +314,29 @@ fn frames_that_do_not_fit_are_refused_and_are_not_in_the_recording() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("touch.npz");
     let frames = pushed(3);
-    let mut writer = RecordingWriter::create(&path, header(), 2).unwrap();
+    let mut writer = RecordingWriter::create(&path, header()).unwrap();
     push(&mut writer, &frames[0]).unwrap();
     let said = push(&mut writer, &frames[0]).unwrap_err().to_string();
     assert_eq!(
         said,
         "recording, frame 1: 0.001 s after 0.001 s; finite times that increase"
     );
-    let palm = PatchFrame {
-        deflection: &frames[1].palm[1..],
-        force: Forces::Normal(&frames[1].palm),
-        pose: Pose::IDENTITY,
-    };
-    let tip = PatchFrame {
-        deflection: &frames[1].tip,
-        force: Forces::Normal(&frames[1].tip),
-        pose: Pose::IDENTITY,
-    };
     let poses = [Pose::IDENTITY; 2];
-    let said = writer
-        .push(0.5, &[palm, tip], &poses)
-        .unwrap_err()
-        .to_string();
+    let tip = vectors(&frames[1].tip, &frames[1].tip_force, poses[0]);
+    let palm = normal(&frames[1].palm[1..], &frames[1].palm, poses[0]);
+    let broken = frame(0.5, vec![palm, tip.clone()], &poses);
     assert_eq!(
-        said,
-        "recording, patch palm: 11 deflections and 12 forces (Normal); 12 of each, forces Normal"
+        writer.push(&broken).unwrap_err().to_string(),
+        "recording, frame 1: rows of [1, 11, 12, 7, 5, 15, 7, 7, 7] numbers; rows of [1, 12, 12, 7, 5, 15, 7, 7, 7] numbers"
     );
-    let palm = PatchFrame {
-        deflection: &frames[1].palm,
-        ..palm
-    };
-    let said = writer
-        .push(0.5, &[palm, tip], &poses)
-        .unwrap_err()
-        .to_string();
-    assert!(said.starts_with("recording, patch finger tip: 5 deflections and 5 forces (Normal)"));
-    assert!(writer.push(0.5, &[palm], &poses).is_err());
+    let palm = normal(&frames[1].palm, &frames[1].palm, poses[0]);
+    for broken in [
+        frame(0.5, vec![palm.clone(), palm.clone()], &poses),
+        frame(0.5, vec![palm.clone()], &poses),
+        frame(0.5, vec![palm, tip], &poses[..1]),
+    ] {
+        assert!(writer.push(&broken).is_err());
+    }
     push(&mut writer, &frames[1]).unwrap();
     assert_eq!(writer.finish().unwrap(), 2);
     let read = read_recording(&path).unwrap();
@@ -410,7 +362,7 @@ fn names_that_cannot_be_members_are_refused() {
     ] {
         let mut header = header();
         header.patches[0].name = name.to_owned();
-        let error = RecordingWriter::create(&folder.path().join("touch.npz"), header, 1).err();
+        let error = RecordingWriter::create(&folder.path().join("touch.npz"), header).err();
         let error = error.expect(name).to_string();
         assert!(error.contains(said), "{error}");
     }
@@ -463,14 +415,11 @@ fn array() -> RecordingHeader {
 fn stream(mut writer: RecordingWriter, n_frames: usize) {
     let mut deflection = vec![1e-3; 4096];
     let force = vec![0.1; 4096];
-    for frame in 0..n_frames {
-        deflection[frame % 4096] += 1e-4;
-        let palm = PatchFrame {
-            deflection: &deflection,
-            force: Forces::Normal(&force),
-            pose: Pose::IDENTITY,
-        };
-        writer.push(1e-3 * frame as f64, &[palm], &[]).unwrap();
+    for k in 0..n_frames {
+        deflection[k % 4096] += 1e-4;
+        let palm = normal(&deflection, &force, Pose::IDENTITY);
+        let now = frame(1e-3 * k as f64, vec![palm], &[]);
+        writer.push(&now).unwrap();
     }
     writer.finish().unwrap();
 }
@@ -479,7 +428,7 @@ fn stream(mut writer: RecordingWriter, n_frames: usize) {
 fn two_thousand_frames_stream_in_the_memory_of_five_hundred() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("touch.npz");
-    let write = |n| stream(RecordingWriter::create(&path, array(), n).unwrap(), n);
+    let write = |n| stream(RecordingWriter::create(&path, array()).unwrap(), n);
     let few = crate::counting::peak_bytes(|| write(500));
     let many = crate::counting::peak_bytes(|| write(2000));
     println!("{few} bytes for 500 frames, {many} for 2,000");
@@ -501,7 +450,7 @@ fn fifty_thousand_frames_of_4096_taxels() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("touch.npz");
     let start = Instant::now();
-    let writer = RecordingWriter::create(&path, array(), 50_000).unwrap();
+    let writer = RecordingWriter::create(&path, array()).unwrap();
     let peak = crate::counting::peak_bytes(|| stream(writer, 50_000));
     let seconds = start.elapsed().as_secs_f64();
     let bytes = fs::metadata(&path).unwrap().len();
@@ -521,44 +470,5 @@ fn fifty_thousand_frames_of_4096_taxels() {
     println!(
         "{:.1} s for as many bytes and nothing else",
         start.elapsed().as_secs_f64()
-    );
-}
-
-#[test]
-fn contact_rows_have_empty_centres_without_contact_and_the_digits_to_come_back() {
-    let folder = tempfile::tempdir().unwrap();
-    let path = folder.path().join("contact.csv");
-    let touched = PatchContact {
-        patch: "palm",
-        n_touched: 2,
-        n_saturated: 1,
-        force: DVec3::new(0.0, 0.0, 3.0),
-        torque: DVec3::new(0.0, -0.6, 0.0),
-        center_of_pressure: Some(DVec3::new(0.6 / 3.0, 0.0, 0.0)),
-        grips: None,
-    };
-    let free = PatchContact {
-        patch: "finger, left",
-        n_touched: 0,
-        n_saturated: 0,
-        force: DVec3::ZERO,
-        torque: DVec3::ZERO,
-        center_of_pressure: None,
-        grips: None,
-    };
-    let mut table = ContactTable::create(&path).unwrap();
-    table.row(0.1 + 0.2, &touched).unwrap();
-    table.row(0.1 + 0.2, &free).unwrap();
-    let broken = PatchContact {
-        force: DVec3::NAN,
-        ..free
-    };
-    assert_eq!(table.row(0.5, &broken).unwrap_err().exit_code(), 2);
-    table.commit().unwrap();
-    assert_eq!(
-        fs::read_to_string(&path).unwrap(),
-        "time_s,patch,n_touched,n_saturated,fx_n,fy_n,fz_n,tx_nm,ty_nm,tz_nm,cop_x_m,cop_y_m,cop_z_m,n_sticking,n_slipping\n\
-         0.30000000000000004,palm,2,1,0.0,0.0,3.0,0.0,-0.6,0.0,0.19999999999999998,0.0,0.0,,\n\
-         0.30000000000000004,\"finger, left\",0,0,0.0,0.0,0.0,0.0,0.0,0.0,,,,,\n"
     );
 }

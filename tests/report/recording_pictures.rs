@@ -1,12 +1,13 @@
 //! Recordings as pictures: every taxel is drawn once, in its colour and at its place, still and moving.
 
+use crate::stored::{frame, normal};
 use bubbletouch::geometry::Pose;
 use bubbletouch::report::colours::heat;
 use bubbletouch::report::heat_map::ColourScale;
 use bubbletouch::report::recording::animation::{Playback, frame_note, write_animation};
 use bubbletouch::report::recording::skin_picture::{Picture, SkinPicture};
 use bubbletouch::report::recording::{
-    ForceKind, Forces, PatchFrame, RecordedPatch, RecordingFile, RecordingHeader, RecordingWriter,
+    ForceKind, RecordedPatch, RecordingFile, RecordingHeader, RecordingWriter,
 };
 use bubbletouch::signal::Quantity;
 use bubbletouch::world::Grid;
@@ -103,7 +104,7 @@ fn write(path: &Path) {
         patches: patches.clone(),
         ..RecordingHeader::default()
     };
-    let mut writer = RecordingWriter::create(path, header, 40).unwrap();
+    let mut writer = RecordingWriter::create(path, header).unwrap();
     for k in 0..40 {
         let values: Vec<Vec<f64>> = patches
             .iter()
@@ -112,15 +113,9 @@ fn write(path: &Path) {
                 (0..patch.n_taxels()).map(spot).collect()
             })
             .collect();
-        let frames: Vec<PatchFrame> = values
-            .iter()
-            .map(|values| PatchFrame {
-                deflection: values,
-                force: Forces::Normal(values),
-                pose: Pose::IDENTITY,
-            })
-            .collect();
-        writer.push(0.01 * k as f64, &frames, &[]).unwrap();
+        let readings = values.iter().map(|v| normal(v, v, Pose::IDENTITY));
+        let now = frame(0.01 * k as f64, readings.collect(), &[]);
+        writer.push(&now).unwrap();
     }
     writer.finish().unwrap();
 }

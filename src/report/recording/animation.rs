@@ -58,51 +58,28 @@ pub fn shown_frames(time: &[f64], playback: &Playback) -> Result<Vec<ShownFrame>
     let (Some(first), Some(last)) = (time.first(), time.last()) else {
         return Err(Error::input("animation", "no frames", "at least one"));
     };
-    let frames = newest_at_ticks(
-        time,
-        (speed / fps).max((last - first) / (MOST_SHOWN - 2) as f64),
-    );
+    let tick = (speed / fps).max((last - first) / (MOST_SHOWN - 2) as f64);
+    // Times are sums of steps: a frame that is due at a tick may be off by their rounding.
+    let slack = 1e-6 * tick;
+    let n_ticks = ((last - first + slack) / tick) as usize;
+    let newest = |at: usize| {
+        let due = first + at as f64 * tick + slack;
+        time.partition_point(|&time| time <= due) - 1
+    };
+    let mut frames: Vec<usize> = (0..=n_ticks).map(newest).collect();
+    frames.push(time.len() - 1);
+    frames.dedup();
     let at = |frame: usize| ((time[frame] - first) / speed * 1e3).round() as u64;
-    let mut shown: Vec<ShownFrame> = frames
-        .windows(2)
-        .map(|pair| ShownFrame {
-            frame: pair[0],
-            milliseconds: at(pair[1]) - at(pair[0]),
-        })
-        .collect();
+    let pairs = frames.windows(2).map(|pair| ShownFrame {
+        frame: pair[0],
+        milliseconds: at(pair[1]) - at(pair[0]),
+    });
+    let mut shown: Vec<ShownFrame> = pairs.collect();
     shown.push(ShownFrame {
         frame: time.len() - 1,
         milliseconds: shown.last().map_or(1000, |before| before.milliseconds),
     });
     Ok(shown)
-}
-
-/// The last frame that is not after each tick, each once, and the last of all.
-fn newest_at_ticks(time: &[f64], tick: f64) -> Vec<usize> {
-    // Times are sums of steps: a frame that is due at a tick may be off by their rounding.
-    let slack = 1e-6 * tick;
-    let mut frames = vec![0];
-    let mut n_ticks = 1.0;
-    for (frame, now) in time.iter().enumerate().skip(1) {
-        let due = time[0] + n_ticks * tick;
-        if *now + slack < due {
-            continue;
-        }
-        // The newest frame at that tick was the one before, unless this one is just on it.
-        let newest = if *now <= due + slack {
-            frame
-        } else {
-            frame - 1
-        };
-        if frames.last() != Some(&newest) {
-            frames.push(newest);
-        }
-        n_ticks = ((now - time[0] + slack) / tick).floor() + 1.0;
-    }
-    if frames.last() != Some(&(time.len() - 1)) {
-        frames.push(time.len() - 1);
-    }
-    frames
 }
 
 /// Writes a patch of a recording as an animated PNG that loops, all frames on one scale; returns what it shows.
@@ -124,32 +101,19 @@ pub fn write_animation(
     })?;
     let scale = ColourScale::over_values(&range, quantity);
     let skin = SkinPicture::new(&recording.header().patches[patch], quantity, scale)?;
+    let failed = |error: EncodingError| Error::io(path, "encode", std::io::Error::other(error));
     let mut bytes = Vec::new();
-    let picture = |frame: usize| {
-        let values = recording.frame(patch, quantity, frame)?;
-        skin.frame(&values, &frame_note(recording.time(), frame))
-    };
-    film(&mut bytes, path, &shown, picture)?;
+    let mut film = start(&mut bytes, skin.size(), shown.len()).map_err(failed)?;
+    let mut before = None;
+    for one in &shown {
+        let values = recording.frame(patch, quantity, one.frame)?;
+        let now = skin.frame(&values, &frame_note(recording.time(), one.frame))?;
+        add(&mut film, before.as_ref(), &now, one).map_err(failed)?;
+        before = Some(now);
+    }
+    film.finish().map_err(failed)?;
     write_bytes(path, &bytes)?;
     Ok(shown)
-}
-
-fn film(
-    bytes: &mut Vec<u8>,
-    path: &Path,
-    shown: &[ShownFrame],
-    mut picture: impl FnMut(usize) -> Result<Picture>,
-) -> Result<()> {
-    let failed = |error: EncodingError| Error::io(path, "encode", std::io::Error::other(error));
-    let mut before = picture(shown[0].frame)?;
-    let mut writer = start(bytes, &before, shown.len()).map_err(failed)?;
-    add(&mut writer, None, &before, &shown[0]).map_err(failed)?;
-    for one in &shown[1..] {
-        let now = picture(one.frame)?;
-        add(&mut writer, Some(&before), &now, one).map_err(failed)?;
-        before = now;
-    }
-    writer.finish().map_err(failed)
 }
 
 /// The line above a frame: its time, with as many digits as the recording's steps need, and its number.
@@ -167,12 +131,12 @@ pub fn frame_note(time: &[f64], frame: usize) -> String {
     )
 }
 
-fn start<'a>(
-    out: &'a mut Vec<u8>,
-    picture: &Picture,
+fn start(
+    out: &mut Vec<u8>,
+    (width, height): (usize, usize),
     n_shown: usize,
-) -> std::result::Result<png::Writer<&'a mut Vec<u8>>, EncodingError> {
-    let mut encoder = Encoder::new(out, picture.width as u32, picture.height as u32);
+) -> std::result::Result<png::Writer<&mut Vec<u8>>, EncodingError> {
+    let mut encoder = Encoder::new(out, width as u32, height as u32);
     encoder.set_color(ColorType::Rgba);
     encoder.set_depth(BitDepth::Eight);
     encoder.set_animated(n_shown as u32, 0)?;

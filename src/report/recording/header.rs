@@ -1,10 +1,11 @@
 //! What a recording is of: everything that does not change with time.
 
-use super::npy::Element;
 use crate::error::{Error, Result};
+use crate::signal::Quantity;
 use crate::world::Grid;
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
+use serde_json::Value;
 use std::collections::HashSet;
 
 /// What is known of the force on a taxel.
@@ -17,23 +18,13 @@ pub enum ForceKind {
     Vector,
 }
 
-impl ForceKind {
-    /// Numbers a taxel.
-    pub fn n_components(self) -> usize {
-        match self {
-            Self::Normal => 1,
-            Self::Vector => 3,
-        }
-    }
-}
-
 /// A patch as a recording knows it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct RecordedPatch {
     /// Unlike that of any other patch or object.
     pub name: String,
     /// Where the taxels rest, metres, patch frame; at least one.
-    #[serde(rename = "n_taxels", serialize_with = "length", skip_deserializing)]
+    #[serde(skip)]
     pub centers: Vec<DVec3>,
     /// Unit vectors away from the substrate, one a taxel.
     #[serde(skip)]
@@ -102,20 +93,27 @@ pub struct RecordingHeader {
     pub objects: Vec<String>,
     /// What else is to be known of it (seed, step, scene …), any JSON.
     #[serde(default)]
-    pub about: serde_json::Value,
+    pub about: Value,
 }
 
-/// A member that has one row a frame.
+/// Floats as NumPy names them, least significant byte first: `<f4`, `<f8`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Element {
+    Single = 4,
+    Double = 8,
+}
+
+/// A member of numbers, row by row.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Stream {
+pub(super) struct Member {
     pub name: String,
     pub element: Element,
     /// Shape of one row.
     pub row: Vec<usize>,
 }
 
-impl Stream {
-    fn new(name: impl Into<String>, element: Element, row: &[usize]) -> Self {
+impl Member {
+    pub fn new(name: impl Into<String>, element: Element, row: &[usize]) -> Self {
         Self {
             name: name.into(),
             element,
@@ -123,13 +121,22 @@ impl Stream {
         }
     }
 
+    pub fn descr(&self) -> String {
+        format!("<f{}", self.element as usize)
+    }
+
+    /// Of one row.
+    pub fn n_numbers(&self) -> usize {
+        self.row.iter().product()
+    }
+
     pub fn row_bytes(&self) -> usize {
-        self.row.iter().product::<usize>() * self.element.n_bytes()
+        self.n_numbers() * self.element as usize
     }
 
     /// The array of so many rows.
-    pub fn shape(&self, n_frames: usize) -> Vec<usize> {
-        [&[n_frames], &self.row[..]].concat()
+    pub fn shape(&self, n_rows: usize) -> Vec<usize> {
+        [&[n_rows], &self.row[..]].concat()
     }
 }
 
@@ -161,60 +168,54 @@ impl RecordingHeader {
     }
 
     /// Members with one row a frame: time, then deflection, force and pose of each patch, then each object's pose.
-    pub(super) fn streams(&self) -> Vec<Stream> {
-        let element = Element::Single;
-        let mut streams = vec![Stream::new("time", Element::Double, &[])];
+    pub(super) fn members(&self) -> Vec<Member> {
+        use Element::{Double, Single};
+        let pose = |name: &String| Member::new(format!("{name}/pose"), Double, &[7]);
+        let mut members = vec![Member::new("time", Double, &[])];
         for patch in &self.patches {
             let (name, n) = (&patch.name, patch.n_taxels());
             let force = match patch.force {
-                ForceKind::Normal => vec![n],
-                ForceKind::Vector => vec![n, 3],
+                ForceKind::Normal => &[n][..],
+                ForceKind::Vector => &[n, 3],
             };
-            streams.push(Stream::new(format!("{name}/deflection"), element, &[n]));
-            streams.push(Stream::new(format!("{name}/force"), element, &force));
-            streams.push(Stream::new(format!("{name}/pose"), Element::Double, &[7]));
+            members.push(Member::new(format!("{name}/deflection"), Single, &[n]));
+            members.push(Member::new(format!("{name}/force"), Single, force));
+            members.push(pose(name));
         }
-        let poses = self.objects.iter();
-        streams
-            .extend(poses.map(|name| Stream::new(format!("{name}/pose"), Element::Double, &[7])));
-        streams
+        members.extend(self.objects.iter().map(pose));
+        members
+    }
+
+    /// The member with what a patch reported.
+    pub(super) fn member(&self, patch: usize, quantity: Quantity) -> Member {
+        let first = 1 + 3 * patch;
+        self.members().swap_remove(match quantity {
+            Quantity::Deflection => first,
+            Quantity::Force => first + 1,
+        })
     }
 
     /// The text of `meta`.
     pub(super) fn meta(&self) -> String {
-        let meta = Meta {
-            format: FORMAT.to_owned(),
-            version: VERSION,
-            header: self,
-        };
-        serde_json::to_string(&meta).expect("strings and numbers make JSON")
+        let mut meta = serde_json::to_value(self).expect("strings and numbers make JSON");
+        for (number, patch) in self.patches.iter().enumerate() {
+            meta["patches"][number]["n_taxels"] = patch.n_taxels().into();
+        }
+        meta["format"] = FORMAT.into();
+        meta["version"] = VERSION.into();
+        meta.to_string()
     }
 
     /// The header that `meta` tells of, still without centres and axes; the error says what is wrong with it.
     pub(super) fn of_meta(text: &str) -> std::result::Result<Self, String> {
-        let meta: Meta<Self> = serde_json::from_str(text).map_err(|e| e.to_string())?;
-        match (&meta.format[..], meta.version) {
-            (FORMAT, VERSION) => Ok(meta.header),
-            (format, version) => Err(format!("{format} of version {version}")),
+        let meta: Value = serde_json::from_str(text).map_err(|e| e.to_string())?;
+        let (format, version) = (&meta["format"], &meta["version"]);
+        if *format != FORMAT || *version != VERSION {
+            return Err(format!("{format} of version {version}"));
         }
+        serde_json::from_value(meta).map_err(|e| e.to_string())
     }
 }
 
 const FORMAT: &str = "bubbletouch recording";
 const VERSION: u32 = 1;
-
-#[derive(Serialize, Deserialize)]
-struct Meta<H> {
-    format: String,
-    version: u32,
-    #[serde(flatten)]
-    header: H,
-}
-
-/// Places stand in members of their own.
-fn length<S: serde::Serializer>(
-    places: &[DVec3],
-    serializer: S,
-) -> std::result::Result<S::Ok, S::Error> {
-    places.len().serialize(serializer)
-}

@@ -1,8 +1,8 @@
 //! Recordings as files: what a skin felt over time, streamed to an `.npz` that NumPy opens.
 //!
-//! In: one [`PatchFrame`] a patch and one pose an object, frame by frame ([`RecordingWriter`]). Out: a zip of `.npy`
+//! In: a scene's [`Frame`](crate::scene::Frame)s ([`RecordingWriter`]). Out: a zip of `.npy`
 //! members, stored without compression, ZIP64 where it is needed; `np.load(path)` opens it without pickle. Nothing but a block
-//! of rows is held in memory. [`RecordingFile`] reads it back row by row.
+//! of rows is held in memory: earlier blocks wait in a file without a name until the recording is whole. [`RecordingFile`] reads it back row by row.
 //!
 //! | member | shape | holds |
 //! |---|---|---|
@@ -19,19 +19,13 @@
 //! ("normal" or "vector") and, where the taxels are a grid, `grid` with `nx`, `ny`, `pitch_m`: taxel = row · nx + column),
 //! `objects` (names), and `about`: whatever the writer had to say.
 //!
-//! [`contact_table`] writes wrenches and centres of pressure as CSV; [`skin_picture`] and [`animation`] draw.
+//! [`skin_picture`] and [`animation`] draw.
 
 pub mod animation;
-mod archive;
-mod block;
-pub mod contact_table;
-mod dots;
+mod cells;
 mod header;
-mod members;
-mod npy;
 mod pixels;
 mod reader;
-mod rows;
 pub mod skin_picture;
 mod summary;
 mod unrolled;
@@ -40,4 +34,4 @@ mod writer;
 pub use header::{ForceKind, RecordedPatch, RecordingHeader};
 pub use reader::RecordingFile;
 pub use summary::recording_table;
-pub use writer::{Forces, PatchFrame, RecordingWriter};
+pub use writer::RecordingWriter;

@@ -1,16 +1,15 @@
 //! A recording read back from its file, a row or a block of rows at a time.
 
-use super::header::{RecordedPatch, RecordingHeader, Stream};
-use super::npy::{Element, NpyHeader};
-use super::rows::{decode, read_rows};
+use super::header::{Element, Member, RecordingHeader};
 use crate::error::{Error, Result};
 use crate::signal::Quantity;
+use crate::study::npy::{check_npy_header, read_npy_header};
 use glam::DVec3;
-use std::collections::HashMap;
 use std::fs::File;
 use std::io::{self, BufReader, Read, Seek, SeekFrom};
 use std::path::{Path, PathBuf};
 use zip::ZipArchive;
+use zip::read::ZipFile;
 
 /// What is asked for where there is none.
 const A_RECORDING: &str = "a whole recording as bubbletouch writes it";
@@ -21,7 +20,6 @@ pub struct RecordingFile {
     archive: ZipArchive<BufReader<File>>,
     header: RecordingHeader,
     time: Vec<f64>,
-    streams: HashMap<String, Stream>,
 }
 
 impl RecordingFile {
@@ -38,22 +36,27 @@ impl RecordingFile {
             archive,
             header: RecordingHeader::default(),
             time: Vec::new(),
-            streams: HashMap::new(),
         };
-        open.header = open.read_meta()?;
+        let meta = open.meta().map_err(|e| open.damaged("meta", e))?;
+        open.header = RecordingHeader::of_meta(&meta).map_err(|e| open.damaged("meta", e))?;
         for patch in 0..open.header.patches.len() {
             let name = open.header.patches[patch].name.clone();
-            open.header.patches[patch].centers = open.vectors(&name, "centers")?;
-            open.header.patches[patch].axes = open.vectors(&name, "axes")?;
+            open.header.patches[patch].centers = open.vectors(&format!("{name}/centers"))?;
+            open.header.patches[patch].axes = open.vectors(&format!("{name}/axes"))?;
         }
-        open.header
-            .check()
-            .map_err(|e| open.damaged("meta", e, "as it was written"))?;
-        open.time = open.whole("time", &[])?;
-        let n_frames = open.time.len();
-        for stream in open.header.streams() {
-            open.check_member(&stream.name, stream.element, &stream.shape(n_frames))?;
-            open.streams.insert(stream.name.clone(), stream);
+        open.header.check().map_err(|e| open.damaged("meta", e))?;
+        open.time = open.whole(&Member::new("time", Element::Double, &[]))?;
+        let increases = open.time.is_sorted_by(|a, b| a < b);
+        if !(increases && open.time.iter().all(|time| time.is_finite())) {
+            return Err(open.damaged("time", "times that do not increase"));
+        }
+        for member in open.header.members() {
+            let n_rows = open_rows(&mut open.archive, &member).map(|rows| rows.1);
+            let n_rows = n_rows.map_err(|e| open.damaged(&member.name, e))?;
+            if n_rows != open.time.len() {
+                let given = format!("{n_rows} rows for {} frames", open.time.len());
+                return Err(open.damaged(&member.name, given));
+            }
         }
         Ok(open)
     }
@@ -68,191 +71,138 @@ impl RecordingFile {
         &self.time
     }
 
-    /// The number of a patch by its name; the error lists the names there are.
-    pub fn patch(&self, name: &str) -> Result<usize> {
-        let mut names = self.header.patches.iter().map(|patch| &patch.name);
-        let found = names.position(|known| known == name);
-        found.ok_or_else(|| {
-            let names: Vec<&str> = self.header.patches.iter().map(|p| &p.name[..]).collect();
-            Error::input(
-                self.path.display(),
-                format!("no patch {name}"),
-                format!("one of its patches: {}", names.join(", ")),
-            )
-        })
-    }
-
-    /// What a member with one row a frame has of one frame; what stands before it is not read, and no checksum compared.
+    /// What a patch reported in one frame, one number a taxel: metres, or newtons (of vectors, the length). What stands before it in the
+    /// file is not read, and no checksum compared.
     ///
-    /// `member` is its name (`time`, `PATCH/deflection`, …). Errors: no such member or frame; a file that cannot be read.
-    pub fn row(&mut self, member: &str, frame: usize) -> Result<Vec<f64>> {
+    /// Errors: no such frame; a file that cannot be read.
+    pub fn frame(&mut self, patch: usize, quantity: Quantity, frame: usize) -> Result<Vec<f64>> {
         if frame >= self.time.len() {
+            let allowed = match self.time.len() {
+                0 => "no frame: the recording is empty".to_owned(),
+                n => format!("0 to {}", n - 1),
+            };
             return Err(Error::input(
                 self.path.display(),
                 format!("frame {frame}"),
-                match self.time.len() {
-                    0 => "no frame: the recording is empty".to_owned(),
-                    n => format!("0 to {}", n - 1),
-                },
+                allowed,
             ));
         }
-        let stream = self.stream(member)?;
-        let mut bytes = vec![0; stream.row_bytes()];
-        self.read_row(member, frame, &mut bytes)
-            .map_err(|e| self.damaged(member, e, "rows as they were written"))?;
-        let mut values = Vec::new();
-        decode(&bytes, stream.element, &mut values);
-        Ok(values)
+        let member = self.header.member(patch, quantity);
+        let row = read_row(&mut self.archive, &member, frame);
+        row.map_err(|e| self.damaged(&member.name, e))
     }
 
-    fn read_row(&mut self, member: &str, frame: usize, bytes: &mut [u8]) -> io::Result<()> {
-        let mut entry = self.archive.by_name_seek(&format!("{member}.npy"))?;
-        let (_, start) = NpyHeader::read(&mut entry)?;
-        let before = start as u64 + frame as u64 * bytes.len() as u64;
-        entry.seek(SeekFrom::Start(before))?;
-        entry.read_exact(bytes)
-    }
-
-    /// What a patch reported in one frame, one number a taxel: metres, or newtons (of vectors, the length).
-    pub fn frame(&mut self, patch: usize, quantity: Quantity, frame: usize) -> Result<Vec<f64>> {
-        let member = self.member_of(patch, quantity);
-        let row = self.row(&member, frame)?;
-        Ok(self.per_taxel(patch, row))
-    }
-
-    /// Visits what a patch reported in every frame, in time's order: `visit(frame, values)`; a megabyte of memory.
+    /// Visits what a patch reported in every frame, in time's order: `visit(frame, values)`; memory for one of them.
     ///
     /// The zip's checksum is checked at the end: then it is an error if a bit has changed.
     pub fn each_frame(
         &mut self,
         patch: usize,
         quantity: Quantity,
-        mut visit: impl FnMut(usize, &[f64]),
+        visit: impl FnMut(usize, &[f64]),
     ) -> Result<()> {
-        let n_components = self.n_components(patch, quantity);
-        let mut lengths = Vec::new();
-        let member = self.member_of(patch, quantity);
-        self.each_row(&member, |frame, row| {
-            if n_components == 1 {
-                return visit(frame, row);
-            }
-            lengths.clear();
-            lengths.extend(row.as_chunks().0.iter().map(|&v: &[f64; 3]| length(v)));
-            visit(frame, &lengths);
-        })
+        let member = self.header.member(patch, quantity);
+        self.visit(&member, visit)
     }
 
-    /// Visits the rows of a member in time's order; otherwise as [`each_frame`](Self::each_frame).
-    pub fn each_row(&mut self, member: &str, mut visit: impl FnMut(usize, &[f64])) -> Result<()> {
-        let stream = self.stream(member)?;
-        let n_frames = self.time.len();
-        let read = read_rows(&mut self.archive, &stream, n_frames, &mut visit);
-        read.map_err(|e| self.damaged(member, e, "rows as they were written"))
+    fn visit(&mut self, member: &Member, visit: impl FnMut(usize, &[f64])) -> Result<()> {
+        let visited = visit_rows(&mut self.archive, member, visit);
+        visited.map_err(|e| self.damaged(&member.name, e))
     }
 
-    fn member_of(&self, patch: usize, quantity: Quantity) -> String {
-        format!("{}/{}", self.header.patches[patch].name, quantity.name())
+    /// The text that describes the recording.
+    fn meta(&mut self) -> io::Result<String> {
+        let mut entry = self.archive.by_name("meta.npy")?;
+        read_npy_header(&mut entry)?;
+        let mut bytes = Vec::new();
+        entry.read_to_end(&mut bytes)?;
+        let code_points = bytes.as_chunks().0.iter().map(|&c| u32::from_le_bytes(c));
+        Ok(code_points.filter_map(char::from_u32).collect())
     }
 
-    fn n_components(&self, patch: usize, quantity: Quantity) -> usize {
-        let patch: &RecordedPatch = &self.header.patches[patch];
-        match quantity {
-            Quantity::Deflection => 1,
-            Quantity::Force => patch.force.n_components(),
-        }
-    }
-
-    fn stream(&self, member: &str) -> Result<Stream> {
-        self.streams.get(member).cloned().ok_or_else(|| {
-            Error::input(
-                self.path.display(),
-                format!("no member {member}"),
-                "a member with one row a frame",
-            )
-        })
-    }
-
-    fn read_meta(&mut self) -> Result<RecordingHeader> {
-        let bytes = self.bytes("meta").and_then(|(array, bytes)| {
-            let is_text = matches!(array.element, Element::Text(_)) && array.shape.is_empty();
-            match is_text {
-                true => Ok(bytes),
-                false => Err(io::Error::other("not a text")),
-            }
-        });
-        let bytes = bytes.map_err(|e| self.damaged("meta", e, "a text"))?;
-        let letters = bytes.as_chunks().0.iter();
-        let text: String = letters
-            .filter_map(|&code| char::from_u32(u32::from_le_bytes(code)))
-            .collect();
-        RecordingHeader::of_meta(&text)
-            .map_err(|e| self.damaged("meta", e, "what a bubbletouch recording says of itself"))
-    }
-
-    fn vectors(&mut self, patch: &str, what: &str) -> Result<Vec<DVec3>> {
-        let numbers = self.whole(&format!("{patch}/{what}"), &[3])?;
+    fn vectors(&mut self, name: &str) -> Result<Vec<DVec3>> {
+        let numbers = self.whole(&Member::new(name, Element::Double, &[3]))?;
         let vectors = numbers.as_chunks().0.iter();
         Ok(vectors.map(|&v: &[f64; 3]| DVec3::from(v)).collect())
     }
 
-    /// A member of numbers in f64 with rows of a shape, at once.
-    fn whole(&mut self, member: &str, row: &[usize]) -> Result<Vec<f64>> {
-        let read = self.bytes(member);
-        let (array, bytes) = read.map_err(|e| self.damaged(member, e, "an array"))?;
-        let n_rows = array.shape.first().copied().unwrap_or(0);
-        array
-            .check(Element::Double, &[&[n_rows], row].concat())
-            .map_err(|(given, allowed)| self.damaged(member, given, allowed))?;
+    fn whole(&mut self, member: &Member) -> Result<Vec<f64>> {
         let mut values = Vec::new();
-        decode(&bytes, array.element, &mut values);
+        self.visit(member, |_, row| values.extend_from_slice(row))?;
         Ok(values)
     }
 
-    fn npy_header(&mut self, member: &str) -> io::Result<NpyHeader> {
-        let mut entry = self.archive.by_name(&format!("{member}.npy"))?;
-        let size = entry.size();
-        let (header, start) = NpyHeader::read(&mut entry)?;
-        let n_bytes = header.n_bytes().unwrap_or(usize::MAX) as u64;
-        if n_bytes.checked_add(start as u64) != Some(size) {
-            return Err(io::Error::other(format!(
-                "{size} bytes for an array of shape {:?}",
-                header.shape
-            )));
-        }
-        Ok(header)
-    }
-
-    /// A member's bytes. What is reserved is what the file holds: a size that lies is found before.
-    fn bytes(&mut self, member: &str) -> io::Result<(NpyHeader, Vec<u8>)> {
-        let header = self.npy_header(member)?;
-        let mut entry = self.archive.by_name(&format!("{member}.npy"))?;
-        NpyHeader::read(&mut entry)?;
-        let mut bytes = Vec::new();
-        entry.read_to_end(&mut bytes)?;
-        Ok((header, bytes))
-    }
-
-    fn check_member(&mut self, member: &str, element: Element, shape: &[usize]) -> Result<()> {
-        let header = self.npy_header(member);
-        let header = header.map_err(|e| self.damaged(member, e, "an array"))?;
-        header
-            .check(element, shape)
-            .map_err(|(given, allowed)| self.damaged(member, given, allowed))
-    }
-
-    fn per_taxel(&self, patch: usize, row: Vec<f64>) -> Vec<f64> {
-        if row.len() == self.header.patches[patch].n_taxels() {
-            return row;
-        }
-        row.as_chunks().0.iter().map(|&v| length(v)).collect()
-    }
-
-    fn damaged(&self, member: &str, given: impl ToString, allowed: impl ToString) -> Error {
+    fn damaged(&self, member: &str, given: impl ToString) -> Error {
         let place = format!("{}, member {member}", self.path.display());
-        Error::input(place, given, allowed)
+        Error::input(place, given, A_RECORDING)
     }
 }
 
-fn length(vector: [f64; 3]) -> f64 {
-    DVec3::from(vector).length()
+/// A member behind its header, and its number of rows; the error is one that is missing or not as it should be. The number follows from
+/// the size that the zip says, and the header must say the same: nothing is reserved for it.
+fn open_rows<'a>(
+    archive: &'a mut ZipArchive<BufReader<File>>,
+    member: &Member,
+) -> io::Result<(ZipFile<'a, BufReader<File>>, usize)> {
+    let mut entry = archive.by_name(&format!("{}.npy", member.name))?;
+    let (text, start) = read_npy_header(&mut entry)?;
+    let n_bytes = entry.size().saturating_sub(start as u64);
+    let row_bytes = member.row_bytes() as u64;
+    let n_rows = (n_bytes / row_bytes) as usize;
+    check_npy_header(&text, &member.descr(), &member.shape(n_rows))?;
+    match n_bytes % row_bytes {
+        0 => Ok((entry, n_rows)),
+        _ => Err(io::Error::other(format!(
+            "{n_bytes} bytes for rows of {row_bytes}"
+        ))),
+    }
+}
+
+/// Visits all rows; the zip's checksum is compared at the end.
+fn visit_rows(
+    archive: &mut ZipArchive<BufReader<File>>,
+    member: &Member,
+    mut visit: impl FnMut(usize, &[f64]),
+) -> io::Result<()> {
+    let (mut entry, n_rows) = open_rows(archive, member)?;
+    let mut bytes = vec![0; member.row_bytes()];
+    for row in 0..n_rows {
+        entry.read_exact(&mut bytes)?;
+        visit(row, &decode(&bytes, member));
+    }
+    // Only the end of the member compares.
+    entry.read_to_end(&mut bytes).map(drop)
+}
+
+fn read_row(
+    archive: &mut ZipArchive<BufReader<File>>,
+    member: &Member,
+    row: usize,
+) -> io::Result<Vec<f64>> {
+    let mut entry = archive.by_name_seek(&format!("{}.npy", member.name))?;
+    let (_, start) = read_npy_header(&mut entry)?;
+    let mut bytes = vec![0; member.row_bytes()];
+    let before = start as u64 + (row * bytes.len()) as u64;
+    entry.seek(SeekFrom::Start(before))?;
+    entry.read_exact(&mut bytes)?;
+    Ok(decode(&bytes, member))
+}
+
+/// The numbers of a row; of forces as vectors their lengths, one a taxel.
+fn decode(bytes: &[u8], member: &Member) -> Vec<f64> {
+    let numbers: Vec<f64> = match member.element {
+        Element::Single => {
+            let singles = bytes.as_chunks().0.iter();
+            singles.map(|&b| f32::from_le_bytes(b).into()).collect()
+        }
+        Element::Double => {
+            let doubles = bytes.as_chunks().0.iter();
+            doubles.map(|&b| f64::from_le_bytes(b)).collect()
+        }
+    };
+    if member.row.len() < 2 {
+        return numbers;
+    }
+    let vectors = numbers.as_chunks().0.iter();
+    vectors.map(|&v| DVec3::from_array(v).length()).collect()
 }

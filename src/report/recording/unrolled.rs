@@ -5,7 +5,7 @@
 //! part along the cylinder's axis). All else is seen from the side that shows most, and from behind if some taxels face away.
 
 use crate::table::short_number;
-use glam::{DVec2, DVec3};
+use glam::{DMat3, DVec2, DVec3};
 
 /// Cosine of the angle between axes up to which a skin is flat: 10°, which shortens nothing by more than 1.5 %.
 const FLAT: f64 = 0.985;
@@ -14,84 +14,42 @@ const FIT: f64 = 0.05;
 /// Radians from the middle up to which a sphere is flattened: beyond, the rim is drawn more than twice as long as it is.
 const WIDEST_CAP: f64 = 1.9;
 
-/// Taxels in a plane, in one view or two.
+/// Taxels in a plane.
 pub(super) struct Unrolled {
-    /// Each taxel is in exactly one.
-    pub views: Vec<View>,
+    /// One a taxel: metres to the right and up.
+    pub places: Vec<DVec2>,
     /// How it was laid flat, for people.
     pub sentence: String,
 }
 
-/// One view.
-pub(super) struct View {
-    /// Empty if it is the only one.
-    pub name: &'static str,
-    /// Taxels and where they are: metres to the right and up.
-    pub places: Vec<(usize, DVec2)>,
+/// To the right, up and towards an eye that looks against `towards_eye`: y is up where it looks along z, as in a heat map; else z is.
+fn view_from(towards_eye: DVec3) -> DMat3 {
+    let is_above = towards_eye.z.abs() > 0.7;
+    upright(towards_eye, if is_above { DVec3::Y } else { DVec3::Z })
 }
 
-/// Right and up for an eye that looks against `towards_eye`.
-struct Eye {
-    towards_eye: DVec3,
-    right: DVec3,
-    up: DVec3,
-}
-
-impl Eye {
-    /// y is up where the eye looks along z, as in a heat map; else z is.
-    fn at(towards_eye: DVec3) -> Self {
-        let up = if towards_eye.z.abs() > 0.7 {
-            DVec3::Y
-        } else {
-            DVec3::Z
-        };
-        Self::upright(towards_eye, up)
-    }
-
-    /// `up` is not along the line of sight.
-    fn upright(towards_eye: DVec3, up: DVec3) -> Self {
-        let right = up.cross(towards_eye).normalize();
-        Self {
-            towards_eye,
-            right,
-            up: towards_eye.cross(right),
-        }
-    }
-
-    fn project(&self, vector: DVec3) -> DVec2 {
-        DVec2::new(vector.dot(self.right), vector.dot(self.up))
-    }
+/// The same; `up` is not along the line of sight.
+fn upright(towards_eye: DVec3, up: DVec3) -> DMat3 {
+    let right = up.cross(towards_eye).normalize();
+    DMat3::from_cols(right, towards_eye.cross(right), towards_eye).transpose()
 }
 
 /// Lays a skin flat; `axes` are unit vectors, one a place (metres).
 pub(super) fn unroll(centers: &[DVec3], axes: &[DVec3]) -> Unrolled {
-    let mean = mean(axes);
-    let middle = mean.try_normalize();
-    if let Some(middle) = middle
-        && axes.iter().all(|axis| axis.dot(middle) > FLAT)
-    {
-        let eye = Eye::at(middle);
-        let sentence = format!("seen from {}", direction(middle));
-        let places = centers.iter().map(|&center| eye.project(center));
-        return single(places, sentence);
-    }
-    cylinder(centers, axes)
-        .or_else(|| cap(centers, axes))
-        .unwrap_or_else(|| sides(centers, axes, mean))
-}
-
-fn single(places: impl Iterator<Item = DVec2>, sentence: String) -> Unrolled {
-    let places = places.enumerate().collect();
-    let views = vec![View { name: "", places }];
-    Unrolled { views, sentence }
+    let middle = mean(axes).normalize_or_zero();
+    let round = match axes.iter().all(|axis| axis.dot(middle) > FLAT) {
+        true => None,
+        false => cylinder(centers, axes).or_else(|| cap(centers, axes)),
+    };
+    round.unwrap_or_else(|| sides(centers, axes))
 }
 
 fn mean(vectors: &[DVec3]) -> DVec3 {
     vectors.iter().sum::<DVec3>() / vectors.len() as f64
 }
 
-/// c and R of p = c + R n (R negative: hollow), if the places obey it.
-fn round_fit(places: &[DVec3], axes: &[DVec3]) -> Option<(DVec3, f64)> {
+/// R of p = c + R n (negative: hollow), if the places obey it.
+fn radius_of(places: &[DVec3], axes: &[DVec3]) -> Option<f64> {
     let (mean_place, mean_axis) = (mean(places), mean(axes));
     let pairs = || places.iter().zip(axes);
     let spread: f64 = axes.iter().map(|n| (n - mean_axis).length_squared()).sum();
@@ -101,7 +59,7 @@ fn round_fit(places: &[DVec3], axes: &[DVec3]) -> Option<(DVec3, f64)> {
     let radius = along / spread;
     let center = mean_place - radius * mean_axis;
     let fits = |(p, n): (&DVec3, &DVec3)| (p - center - radius * n).length() < FIT * radius.abs();
-    (spread > 0.0 && pairs().all(fits)).then_some((center, radius))
+    (spread > 0.0 && pairs().all(fits)).then_some(radius)
 }
 
 fn cylinder(centers: &[DVec3], axes: &[DVec3]) -> Option<Unrolled> {
@@ -117,17 +75,17 @@ fn cylinder(centers: &[DVec3], axes: &[DVec3]) -> Option<Unrolled> {
     let flat = |v: &DVec3| v.reject_from_normalized(along);
     let rings: Vec<DVec3> = centers.iter().map(flat).collect();
     let spokes: Vec<DVec3> = axes.iter().map(|n| flat(n).normalize()).collect();
-    let (_, radius) = round_fit(&rings, &spokes)?;
+    let radius = radius_of(&rings, &spokes)?;
     let front = mean(&spokes);
     let front = if front.length() > 0.1 {
         flat(&front).normalize()
     } else {
         // All around: the cut is behind, seen from where the eye would stand.
-        flat(&Eye::at(along).right).normalize()
+        flat(&view_from(along).row(0)).normalize()
     };
-    let eye = Eye::upright(front, along);
+    let right = upright(front, along).row(0);
     let places = centers.iter().zip(&spokes).map(|(center, spoke)| {
-        let angle = spoke.dot(eye.right).atan2(spoke.dot(front));
+        let angle = spoke.dot(right).atan2(spoke.dot(front));
         // Which side of the cut a taxel on it is on, rounding shall not decide.
         let angle = if angle > std::f64::consts::PI - 1e-9 {
             -std::f64::consts::PI
@@ -143,31 +101,39 @@ fn cylinder(centers: &[DVec3], axes: &[DVec3]) -> Option<Unrolled> {
         direction(along),
         direction(front)
     );
-    Some(single(places, sentence))
+    Some(Unrolled {
+        places: places.collect(),
+        sentence,
+    })
 }
 
 fn cap(centers: &[DVec3], axes: &[DVec3]) -> Option<Unrolled> {
-    let (_, radius) = round_fit(centers, axes)?;
-    let eye = Eye::at(mean(axes).try_normalize()?);
-    let polar = |axis: &DVec3| axis.dot(eye.towards_eye).clamp(-1.0, 1.0).acos();
+    let radius = radius_of(centers, axes)?;
+    let middle = mean(axes).try_normalize()?;
+    let view = view_from(middle);
+    let polar = |axis: &DVec3| axis.dot(middle).clamp(-1.0, 1.0).acos();
     if axes.iter().any(|axis| polar(axis) > WIDEST_CAP) {
         return None;
     }
     let places = axes.iter().map(|axis| {
-        let heading = eye.project(*axis).normalize_or_zero();
+        let heading = (view * axis).truncate().normalize_or_zero();
         radius * polar(axis) * heading
     });
     let sentence = format!(
         "flattened from {} sphere of radius {} mm; middle: {}",
         hollow(radius),
         short_number(radius.abs() * 1e3),
-        direction(eye.towards_eye)
+        direction(middle)
     );
-    Some(single(places, sentence))
+    Some(Unrolled {
+        places: places.collect(),
+        sentence,
+    })
 }
 
 /// The side to which the axes point on the whole, or that of the two broad sides which is along +x, +y or +z.
-fn sides(centers: &[DVec3], axes: &[DVec3], mean: DVec3) -> Unrolled {
+fn sides(centers: &[DVec3], axes: &[DVec3]) -> Unrolled {
+    let mean = mean(axes);
     let towards_eye = if mean.length() > 0.1 {
         mean.normalize()
     } else {
@@ -176,38 +142,28 @@ fn sides(centers: &[DVec3], axes: &[DVec3], mean: DVec3) -> Unrolled {
         let thinnest = (high - low).min_position();
         DVec3::AXES[thinnest]
     };
-    let front = Eye::at(towards_eye);
-    let back = Eye {
-        towards_eye: -towards_eye,
-        right: -front.right,
-        up: front.up,
-    };
-    let faces_front = |taxel: &usize| axes[*taxel].dot(towards_eye) >= 0.0;
-    let (seen, hidden): (Vec<usize>, Vec<usize>) = (0..centers.len()).partition(faces_front);
-    let project = |eye: &Eye, taxels: Vec<usize>| -> Vec<(usize, DVec2)> {
-        let place = |taxel| (taxel, eye.project(centers[taxel]));
-        taxels.into_iter().map(place).collect()
-    };
+    let view = view_from(towards_eye);
+    let faces_away = |axis: &DVec3| axis.dot(towards_eye) < 0.0;
+    let mut places: Vec<DVec2> = centers
+        .iter()
+        .map(|center| (view * center).truncate())
+        .collect();
     let sentence = format!("seen from {}", direction(towards_eye));
-    if hidden.is_empty() {
-        let places = project(&front, seen);
-        return Unrolled {
-            views: vec![View { name: "", places }],
-            sentence,
-        };
+    if !axes.iter().any(faces_away) {
+        return Unrolled { places, sentence };
+    }
+    // Seen from behind, right is left; beside what is seen from the front, a tenth of its width and 2 mm apart.
+    let low = places.iter().fold(DVec2::INFINITY, |a, &b| a.min(b)).x;
+    let high = places.iter().fold(DVec2::NEG_INFINITY, |a, &b| a.max(b)).x;
+    let mirror = high + 0.05 * (high - low) + 1e-3;
+    for (place, axis) in places.iter_mut().zip(axes) {
+        if faces_away(axis) {
+            place.x = 2.0 * mirror - place.x;
+        }
     }
     Unrolled {
-        views: vec![
-            View {
-                name: "front",
-                places: project(&front, seen),
-            },
-            View {
-                name: "back",
-                places: project(&back, hidden),
-            },
-        ],
-        sentence: sentence + ", and the taxels that face away from behind",
+        places,
+        sentence: format!("left {sentence}, right the taxels that face away, from behind"),
     }
 }
 
@@ -249,10 +205,10 @@ mod tests {
     }
 
     fn distances_are_kept(unrolled: &Unrolled, expected: &[DVec2]) {
-        let places = &unrolled.views[0].places;
-        assert_eq!((unrolled.views.len(), places.len()), (1, expected.len()));
+        let places = &unrolled.places;
+        assert_eq!(places.len(), expected.len());
         for pair in places.windows(2).zip(expected.windows(2)) {
-            let (a, b) = (pair.0[1].1 - pair.0[0].1, pair.1[1] - pair.1[0]);
+            let (a, b) = (pair.0[1] - pair.0[0], pair.1[1] - pair.1[0]);
             assert!((a - b).length() < 1e-9, "{a}, {b}");
         }
     }
@@ -262,7 +218,7 @@ mod tests {
         let centers = [DVec3::ZERO, DVec3::new(0.1, 0.02, 0.0)];
         let unrolled = unroll(&centers, &[DVec3::Z; 2]);
         assert_eq!(unrolled.sentence, "seen from +z");
-        assert_eq!(unrolled.views[0].places[1], (1, DVec2::new(0.1, 0.02)));
+        assert_eq!(unrolled.places[1], DVec2::new(0.1, 0.02));
     }
 
     #[test]
@@ -314,7 +270,7 @@ mod tests {
                 .starts_with("flattened from a sphere of radius 50 mm")
         );
         let middle = mean(&axes).normalize();
-        for &(taxel, place) in &unrolled.views[0].places {
+        for (taxel, place) in unrolled.places.iter().enumerate() {
             let expected = 0.05 * axes[taxel].dot(middle).acos();
             assert!((place.length() - expected).abs() < 1e-9);
         }
@@ -333,18 +289,21 @@ mod tests {
         let scale = DVec3::new(0.08, 0.05, 0.02);
         let centers: Vec<DVec3> = axes.iter().map(|&axis| axis * scale).collect();
         let unrolled = unroll(&centers, &axes);
-        let names: Vec<&str> = unrolled.views.iter().map(|view| view.name).collect();
-        assert_eq!(names, ["front", "back"]);
-        let mut taxels: Vec<usize> = unrolled
-            .views
-            .iter()
-            .flat_map(|view| view.places.iter().map(|place| place.0))
-            .collect();
-        taxels.sort_unstable();
-        assert_eq!(taxels, (0..200).collect::<Vec<_>>());
-        // Seen from behind, right is left.
-        for &(taxel, place) in &unrolled.views[1].places {
-            assert!(axes[taxel].z < 0.0 && (place.x + centers[taxel].x).abs() < 1e-12);
+        assert!(
+            unrolled
+                .sentence
+                .starts_with("left seen from +z, right the")
+        );
+        // Seen from behind, right is left; no view covers another.
+        let shift = |taxel: usize| unrolled.places[taxel].x + centers[taxel].x;
+        let away = (0..200).find(|&taxel| axes[taxel].z < 0.0).unwrap();
+        for (taxel, place) in unrolled.places.iter().enumerate() {
+            let is_away = axes[taxel].z < 0.0;
+            assert_eq!(is_away, place.x > 0.08);
+            match is_away {
+                true => assert!((shift(taxel) - shift(away)).abs() < 1e-12),
+                false => assert_eq!(place.x, centers[taxel].x),
+            }
         }
     }
 }

@@ -1,193 +1,194 @@
 //! The writer: frames in as they come, an `.npz` out at the end.
 
-use super::archive::Archive;
-use super::block::Block;
-use super::header::{ForceKind, RecordedPatch, RecordingHeader, Stream};
-use super::members::{begin, first_stream, put};
-use super::npy::Element;
+use super::header::{Element, Member, RecordingHeader};
 use crate::error::{Error, Result};
 use crate::files::WholeFile;
 use crate::geometry::Pose;
-use glam::DVec3;
-use std::io::{self, Write};
+use crate::scene::Frame;
+use crate::study::content_hash::bytes_of_numbers;
+use crate::study::npy::npy_header;
+use std::fs::File;
+use std::io::{self, BufWriter, Read, Seek, SeekFrom, Write};
 use std::path::Path;
+use zip::write::SimpleFileOptions;
+use zip::{CompressionMethod, DateTime, ZipWriter};
 
-/// Forces on the taxels of a patch, newtons.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Forces<'a> {
-    /// Along the axes.
-    Normal(&'a [f64]),
-    /// In the patch frame.
-    Vector(&'a [DVec3]),
-}
-
-/// What one patch felt at one instant, and where it was.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct PatchFrame<'a> {
-    /// One a taxel, metres.
-    pub deflection: &'a [f64],
-    /// One a taxel, of the kind that the header says.
-    pub force: Forces<'a>,
-    /// World from patch.
-    pub pose: Pose,
-}
+/// Bytes of rows in memory. Smaller: more and shorter reads and writes; larger: the processor's caches no longer hold them when they are written.
+const BLOCK: usize = 2 << 20;
 
 /// An `.npz` in the making. [`finish`](Self::finish) puts it in place; dropped before, it leaves nothing behind.
 ///
-/// It holds about 2 MiB of rows in memory, whatever the number of frames (a frame, if that is larger), and writes each byte once, to
-/// its place: so the number of frames is to be known when it begins.
+/// It holds about 2 MiB of rows in memory, whatever the number of frames (a frame, if that is larger). A member of a zip stands in one
+/// piece, so earlier rows wait in a file without a name beside the target: while it is finished, the disk holds the numbers twice.
+///
+/// Invariant: `blocks` begins with `n_blocks` blocks, each with the rows of one member after those of another.
 pub struct RecordingWriter {
     header: RecordingHeader,
     target: WholeFile,
-    block: Block,
-    archive: Archive,
+    members: Vec<Member>,
+    /// Of each member, those since the last block.
+    rows: Vec<Vec<u8>>,
+    rows_per_block: usize,
+    blocks: File,
+    n_blocks: usize,
     n_frames: usize,
-    /// A block was written in part: what is behind it is not known.
-    is_broken: bool,
     last_time: f64,
 }
 
 impl RecordingWriter {
-    /// Starts a recording of `n_frames` frames that will stand at `path`.
+    /// Starts a recording that will stand at `path`.
     ///
     /// # Errors
     /// What [`RecordingHeader::check`] says, or why nothing can be written there.
-    pub fn create(path: &Path, header: RecordingHeader, n_frames: usize) -> Result<Self> {
+    pub fn create(path: &Path, header: RecordingHeader) -> Result<Self> {
         header.check()?;
-        let mut target = WholeFile::create(path)?;
-        let mut archive = Archive::default();
-        target.write(|file| begin(&header, n_frames, &mut archive, file))?;
-        let streams = header.streams();
+        let target = WholeFile::create(path)?;
+        let folder = match path.parent() {
+            Some(folder) if !folder.as_os_str().is_empty() => folder,
+            _ => Path::new("."),
+        };
+        let blocks = tempfile::tempfile_in(folder);
+        let members = header.members();
         Ok(Self {
-            block: Block::new(streams.iter().map(Stream::row_bytes).collect()),
-            header,
             target,
-            archive,
-            n_frames,
-            is_broken: false,
+            rows: vec![Vec::new(); members.len()],
+            rows_per_block: (BLOCK / frame_bytes(&members)).max(1),
+            members,
+            header,
+            blocks: blocks.map_err(|e| Error::io(folder, "write frames to", e))?,
+            n_blocks: 0,
+            n_frames: 0,
             last_time: f64::NEG_INFINITY,
         })
     }
 
-    /// Adds a frame: `time` in seconds, then each patch and each object (world from object) in the header's order.
+    /// Adds a frame, patches and objects in the header's order.
     ///
-    /// The error names a time that does not increase, or a number of patches, objects, deflections or forces that is not the
-    /// header's, or a frame beyond those that it was started for; the frame is then not in the recording.
-    pub fn push(&mut self, time: f64, patches: &[PatchFrame], objects: &[Pose]) -> Result<()> {
-        self.check(time, patches, objects)?;
-        self.last_time = time;
-        let element = Element::Single;
-        let block = &mut self.block;
-        put(block.row(0), Element::Double, [time]);
-        let mut column = 1;
-        for patch in patches {
-            put(block.row(column), element, patch.deflection.iter().copied());
-            match patch.force {
-                Forces::Normal(force) => {
-                    put(block.row(column + 1), element, force.iter().copied());
-                }
-                Forces::Vector(force) => {
-                    let numbers = force.iter().flat_map(|f| f.to_array());
-                    put(block.row(column + 1), element, numbers);
+    /// The error names a time that does not increase, or patches, objects or taxels that are not the header's, or says why nothing can be
+    /// written; the frame is then not in the recording.
+    pub fn push(&mut self, frame: &Frame) -> Result<()> {
+        let place = || format!("recording, frame {}", self.n_frames);
+        let (time, last) = (frame.time, self.last_time);
+        if !(time.is_finite() && time > last) {
+            let given = format!("{time} s after {last} s");
+            return Err(Error::input(place(), given, "finite times that increase"));
+        }
+        let numbers = numbers(frame);
+        let given: Vec<usize> = numbers.iter().map(Vec::len).collect();
+        let expected: Vec<usize> = self.members.iter().map(Member::n_numbers).collect();
+        if given != expected {
+            let [given, allowed] = [given, expected].map(|n| format!("rows of {n:?} numbers"));
+            return Err(Error::input(place(), given, allowed));
+        }
+        if self.n_frames == (self.n_blocks + 1) * self.rows_per_block {
+            let written = self.write_block();
+            written.map_err(|e| Error::io("recording", "write frames of", e))?;
+        }
+        for ((member, rows), numbers) in self.members.iter().zip(&mut self.rows).zip(numbers) {
+            for number in numbers {
+                match member.element {
+                    Element::Single => rows.extend_from_slice(&(number as f32).to_le_bytes()),
+                    Element::Double => rows.extend_from_slice(&number.to_le_bytes()),
                 }
             }
-            put(block.row(column + 2), Element::Double, seven(&patch.pose));
-            column += 3;
         }
-        for pose in objects {
-            put(block.row(column), Element::Double, seven(pose));
-            column += 1;
-        }
-        if block.end_row() {
-            return self.end_block();
-        }
+        self.last_time = time;
+        self.n_frames += 1;
         Ok(())
     }
 
-    fn check(&self, time: f64, patches: &[PatchFrame], objects: &[Pose]) -> Result<()> {
-        if !(time.is_finite() && time > self.last_time) {
-            let (frame, last) = (self.block.n_rows(), self.last_time);
-            return Err(Error::input(
-                format!("recording, frame {frame}"),
-                format!("{time} s after {last} s"),
-                "finite times that increase",
-            ));
+    fn write_block(&mut self) -> io::Result<()> {
+        let start = self.n_blocks * self.rows_per_block * frame_bytes(&self.members);
+        self.blocks.seek(SeekFrom::Start(start as u64))?;
+        for rows in &self.rows {
+            self.blocks.write_all(rows)?;
         }
-        if self.block.n_rows() == self.n_frames {
-            return Err(self.other_count(self.n_frames + 1));
-        }
-        let expected = (self.header.patches.len(), self.header.objects.len());
-        if (patches.len(), objects.len()) != expected {
-            return Err(Error::input(
-                "recording",
-                format!("{} patches and {} objects", patches.len(), objects.len()),
-                format!("{} patches and {} objects", expected.0, expected.1),
-            ));
-        }
-        let mut pairs = self.header.patches.iter().zip(patches);
-        pairs.try_for_each(|(patch, frame)| check_frame(patch, frame))
-    }
-
-    fn other_count(&self, given: usize) -> Error {
-        Error::input("recording", format!("{given} frames"), self.n_frames)
-    }
-
-    /// Writes what waits in memory. After an error, always an error.
-    fn end_block(&mut self) -> Result<()> {
-        let was_broken = std::mem::replace(&mut self.is_broken, true);
-        let first = first_stream(&self.header);
-        let (block, archive) = (&self.block, &mut self.archive);
-        self.target.write(|file| {
-            if was_broken {
-                let lost = "rows were lost when writing failed before";
-                return Err(io::Error::other(lost));
-            }
-            let mut columns = block.columns().iter().enumerate();
-            columns.try_for_each(|(column, rows)| archive.append(file, first + column, rows))
-        })?;
-        self.block.clear();
-        self.is_broken = false;
+        self.rows.iter_mut().for_each(Vec::clear);
+        self.n_blocks += 1;
         Ok(())
     }
 
     /// Puts the recording in its place; returns how many frames it has.
     ///
     /// # Errors
-    /// Why it cannot be written, or a number of frames that is not the one that it was started for.
+    /// Why it cannot be written.
     pub fn finish(mut self) -> Result<usize> {
-        let n_frames = self.block.n_rows();
-        if n_frames != self.n_frames {
-            return Err(self.other_count(n_frames));
-        }
-        self.end_block()?;
-        let archive = &self.archive;
+        let (rows_per_block, n_frames) = (self.rows_per_block as u64, self.n_frames);
+        let block_bytes = rows_per_block * frame_bytes(&self.members) as u64;
+        let (blocks, mut place) = (&mut self.blocks, 0);
         self.target.write(|file| {
-            archive.finish(file)?;
-            file.flush()
+            let mut zip = ZipWriter::new(file);
+            for (name, bytes) in constant_members(&self.header) {
+                start(&mut zip, &name)?;
+                zip.write_all(&bytes)?;
+            }
+            for (member, rows) in self.members.iter().zip(&self.rows) {
+                let header = npy_header(&member.descr(), &member.shape(n_frames));
+                start(&mut zip, &member.name)?;
+                zip.write_all(&header)?;
+                let n_bytes = member.row_bytes() as u64 * rows_per_block;
+                for block in 0..self.n_blocks as u64 {
+                    blocks.seek(SeekFrom::Start(block * block_bytes + place))?;
+                    io::copy(&mut blocks.take(n_bytes), &mut zip)?;
+                }
+                zip.write_all(rows)?;
+                place += n_bytes;
+            }
+            zip.finish().map(drop).map_err(io::Error::from)
         })?;
         self.target.commit()?;
-        Ok(n_frames)
+        Ok(self.n_frames)
     }
 }
 
-fn check_frame(patch: &RecordedPatch, frame: &PatchFrame) -> Result<()> {
-    let (kind, n_forces) = match frame.force {
-        Forces::Normal(force) => (ForceKind::Normal, force.len()),
-        Forces::Vector(force) => (ForceKind::Vector, force.len()),
-    };
-    let (n, n_deflections) = (patch.n_taxels(), frame.deflection.len());
-    if (n_deflections, n_forces, kind) == (n, n, patch.force) {
-        return Ok(());
+/// Of all members together.
+fn frame_bytes(members: &[Member]) -> usize {
+    members.iter().map(Member::row_bytes).sum()
+}
+
+/// Starts a member that may be beyond 4 GiB; all with the same time, so that equal recordings are equal bytes.
+fn start(zip: &mut ZipWriter<&mut BufWriter<File>>, name: &str) -> io::Result<()> {
+    let options = SimpleFileOptions::default()
+        .compression_method(CompressionMethod::Stored)
+        .last_modified_time(DateTime::default())
+        .large_file(true);
+    Ok(zip.start_file(format!("{name}.npy"), options)?)
+}
+
+/// What does not change with time: `meta`, centres and axes.
+fn constant_members(header: &RecordingHeader) -> Vec<(String, Vec<u8>)> {
+    let meta = header.meta();
+    let code_points = meta.chars().flat_map(|c| u32::from(c).to_le_bytes());
+    let mut bytes = npy_header(&format!("<U{}", meta.chars().count()), &[]);
+    bytes.extend(code_points);
+    let mut members = vec![("meta".to_owned(), bytes)];
+    for patch in &header.patches {
+        for (name, vectors) in [("centers", &patch.centers), ("axes", &patch.axes)] {
+            let mut bytes = npy_header("<f8", &[vectors.len(), 3]);
+            bytes.extend(bytes_of_numbers(vectors.iter().flat_map(|v| v.to_array())));
+            members.push((format!("{}/{name}", patch.name), bytes));
+        }
     }
-    Err(Error::input(
-        format!("recording, patch {}", patch.name),
-        format!("{n_deflections} deflections and {n_forces} forces ({kind:?})"),
-        format!("{n} of each, forces {:?}", patch.force),
-    ))
+    members
+}
+
+/// What each member gets of a frame.
+fn numbers(frame: &Frame) -> Vec<Vec<f64>> {
+    let mut numbers = vec![vec![frame.time]];
+    for patch in &frame.patches {
+        numbers.push(patch.deflection.clone());
+        numbers.push(match &patch.friction {
+            Some(friction) => friction.force3.iter().flat_map(|f| f.to_array()).collect(),
+            None => patch.force.clone(),
+        });
+        numbers.push(seven(&patch.pose));
+    }
+    numbers.extend(frame.objects.iter().map(|object| seven(&object.pose)));
+    numbers
 }
 
 /// Position and quaternion as they are stored.
-fn seven(pose: &Pose) -> [f64; 7] {
+fn seven(pose: &Pose) -> Vec<f64> {
     let (t, q) = (pose.translation, pose.rotation);
-    [t.x, t.y, t.z, q.x, q.y, q.z, q.w]
+    vec![t.x, t.y, t.z, q.x, q.y, q.z, q.w]
 }

@@ -1,0 +1,144 @@
+//! Where the taxels of a skin stand in its picture: a cell each, squares side by side for a grid, discs for any other skin.
+
+use super::header::RecordedPatch;
+use super::unrolled::unroll;
+use crate::report::colours::{GRID, INK};
+use crate::report::drawing::{Area, Drawing, Stroke, TextStyle};
+use crate::report::heat_map::{block_sentence, draw_x_axis, draw_y_axis, grid_sentence};
+use crate::report::picture::bar_length;
+use crate::table::short_number;
+use crate::world::Grid;
+use glam::DVec2;
+
+/// Pixels of a drawing along a map's height; it is at most twice as wide.
+const SIDE: f64 = 400.0;
+/// Cells of a grid that are shown each way, at most; longer grids are shown by the largest value of blocks.
+const MOST_CELLS: usize = 400;
+/// Where maps begin.
+pub(super) const LEFT: f64 = 70.0;
+const TOP: f64 = 76.0;
+/// The largest radius of a disc, pixels.
+const LARGEST_DISC: f64 = 24.0;
+
+/// The cells of a skin, pixels from the top left corner of the drawing.
+pub(super) struct Cells {
+    /// All cells.
+    pub area: Area,
+    /// The middle of each: of a grid row by row, else one a taxel.
+    pub places: Vec<DVec2>,
+    /// From the middle to the rim.
+    pub radius: f64,
+    /// How far a point is from the middle, by its distances along x and y: makes squares or discs.
+    pub distance: fn(f64, f64) -> f64,
+    /// Taxels of a grid that a cell is wide and high.
+    pub block: usize,
+    /// What is seen, for people.
+    pub sentence: String,
+    pub pixels_per_metre: f64,
+}
+
+impl Cells {
+    pub fn of(patch: &RecordedPatch) -> Self {
+        match &patch.grid {
+            Some(grid) => Self::of_grid(grid),
+            None => Self::of_skin(patch),
+        }
+    }
+
+    fn of_grid(grid: &Grid) -> Self {
+        let block = grid.nx.max(grid.ny).div_ceil(MOST_CELLS);
+        let (rows, columns) = (grid.ny.div_ceil(block), grid.nx.div_ceil(block));
+        // Whole pixels a cell: no seams between neighbours.
+        let side = (SIDE / rows.max(columns) as f64).floor().max(1.0);
+        let area = Area {
+            x: LEFT,
+            y: TOP,
+            width: side * columns as f64,
+            height: side * rows as f64,
+        };
+        let place = |cell: usize| {
+            let (row, column) = ((cell / columns) as f64, (cell % columns) as f64);
+            DVec2::new(
+                LEFT + (column + 0.5) * side,
+                TOP + area.height - (row + 0.5) * side,
+            )
+        };
+        let size = grid_sentence((grid.nx, grid.ny), grid.pitch * 1e3);
+        Self {
+            area,
+            places: (0..rows * columns).map(place).collect(),
+            radius: 0.5 * side,
+            distance: f64::max,
+            block,
+            sentence: size + &block_sentence(block),
+            pixels_per_metre: side / (block as f64 * grid.pitch),
+        }
+    }
+
+    fn of_skin(patch: &RecordedPatch) -> Self {
+        let unrolled = unroll(&patch.centers, &patch.axes);
+        let places = unrolled.places;
+        // A single taxel is drawn as if it had a neighbour a millimetre away.
+        let radius = 0.47 * typical_distance(&places).unwrap_or(1e-3);
+        let margin = DVec2::splat(1.6 * radius);
+        let low = places.iter().fold(DVec2::INFINITY, |a, &b| a.min(b)) - margin;
+        let high = places.iter().fold(DVec2::NEG_INFINITY, |a, &b| a.max(b)) + margin;
+        let size = high - low;
+        let widest = (2.0 * SIDE / size.x).min(SIDE / size.y);
+        let scale = widest.min(LARGEST_DISC / radius);
+        let place = |place: &DVec2| {
+            let [x, y] = [place.x - low.x, high.y - place.y];
+            DVec2::new(LEFT + scale * x, TOP + scale * y)
+        };
+        let plural = if places.len() == 1 { "" } else { "s" };
+        Self {
+            area: Area {
+                x: LEFT,
+                y: TOP,
+                width: scale * size.x,
+                height: scale * size.y,
+            },
+            places: places.iter().map(place).collect(),
+            radius: scale * radius,
+            distance: f64::hypot,
+            block: 1,
+            sentence: format!("{} taxel{plural}, {}", places.len(), unrolled.sentence),
+            pixels_per_metre: scale,
+        }
+    }
+
+    /// What is around the cells: axes in millimetres of a grid, a scale bar of another skin.
+    pub fn draw_frame(&self, drawing: &mut Drawing, is_grid: bool) {
+        if is_grid {
+            let size_mm = |pixels: f64| pixels / self.pixels_per_metre * 1e3;
+            draw_x_axis(drawing, self.area, size_mm(self.area.width));
+            draw_y_axis(drawing, self.area, size_mm(self.area.height));
+            drawing.frame(self.area, Stroke::new(INK, 1.0));
+            return;
+        }
+        drawing.area(self.area, GRID);
+        let millimetres = bar_length(0.3 * self.area.width / self.pixels_per_metre * 1e3);
+        let right = LEFT + millimetres * 1e-3 * self.pixels_per_metre;
+        let y = self.area.y + self.area.height + 18.0;
+        drawing.line((LEFT, y), (right, y), Stroke::new(INK, 2.0));
+        for end in [LEFT, right] {
+            drawing.line((end, y - 4.0), (end, y + 4.0), Stroke::new(INK, 1.0));
+        }
+        let text = format!("{} mm", short_number(millimetres));
+        drawing.text((right + 8.0, y + 4.5), &text, TextStyle::new(12));
+    }
+}
+
+/// The median of distances to the nearest taxel, metres; of about 200 taxels, since it is a look, no number.
+fn typical_distance(places: &[DVec2]) -> Option<f64> {
+    let sample = places.iter().step_by(places.len().div_ceil(200).max(1));
+    let nearest = sample.filter_map(|place| {
+        let squares = places.iter().map(|other| other.distance_squared(*place));
+        // Taxels behind each other have no distance in the picture.
+        let apart = squares.filter(|&square| square > 1e-12);
+        apart.min_by(f64::total_cmp).map(f64::sqrt)
+    });
+    let mut distances: Vec<f64> = nearest.collect();
+    distances.sort_by(f64::total_cmp);
+    distances.get(distances.len() / 2).copied()
+}
