@@ -2,10 +2,8 @@
 
 use super::skin_picture::{LEFT, SIDE, TOP};
 use super::unrolled::Unrolled;
-use crate::report::colours::INK;
-use crate::report::drawing::{Area, Drawing, Stroke, TextStyle};
-use crate::report::picture::bar_length;
-use crate::table::short_number;
+use crate::report::drawing::{Area, Drawing};
+use crate::report::picture_axes::draw_scale_bar;
 use glam::DVec2;
 
 /// The largest radius of a dot, pixels.
@@ -88,16 +86,9 @@ impl Dots {
 
     /// A bar of a round length, `below` pixels under the panels.
     pub fn draw_scale_bar(&self, drawing: &mut Drawing, below: f64) {
-        let millimetres = bar_length(0.3 * self.area.width / self.pixels_per_metre * 1e3);
-        let length = millimetres * 1e-3 * self.pixels_per_metre;
-        let y = self.area.y + self.area.height + below;
-        let right = LEFT + length;
-        drawing.line((LEFT, y), (right, y), Stroke::new(INK, 2.0));
-        for end in [LEFT, right] {
-            drawing.line((end, y - 4.0), (end, y + 4.0), Stroke::new(INK, 1.0));
-        }
-        let text = format!("{} mm", short_number(millimetres));
-        drawing.text((right + 8.0, y + 4.5), &text, TextStyle::new(12));
+        let (x, y) = self.area.at(0.5, 0.0);
+        let longest = 0.3 * self.area.width;
+        draw_scale_bar(drawing, (x, y + below), self.pixels_per_metre, longest);
     }
 }
 

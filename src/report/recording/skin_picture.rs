@@ -5,13 +5,11 @@ use super::header::RecordedPatch;
 use super::pixels::Painter;
 use super::unrolled::unroll;
 use crate::error::{Error, Result};
-use crate::report::colours::{GRID, INK, MUTED, Rgb, heat};
+use crate::report::colours::{GRID, INK, MUTED, Rgb};
 use crate::report::drawing::{Align, Area, Drawing, Stroke, TextStyle};
-use crate::report::heat_map::{
-    ColourScale, block_sentence, draw_colour_bar, draw_x_axis, draw_y_axis, grid_sentence,
-    largest_of_blocks,
-};
+use crate::report::heat_map::{ColourScale, block_sentence, grid_sentence, largest_of_blocks};
 pub use crate::report::picture::Picture;
+use crate::report::picture_axes::{draw_colour_bar, draw_map_axes};
 use crate::report::text_width::text_width;
 use crate::signal::Quantity;
 use crate::world::Grid;
@@ -77,7 +75,7 @@ impl SkinPicture {
     }
 
     fn colours(&self, values: &[f64]) -> Vec<Rgb> {
-        let colour = |value: &f64| heat(self.scale.place(value * self.quantity.factor()));
+        let colour = |value: &f64| self.scale.colour(*value, self.quantity);
         match self.grid {
             Some((grid, block)) if block > 1 => {
                 let frame = ArrayView2::from_shape((grid.ny, grid.nx), values)
@@ -109,8 +107,8 @@ impl SkinPicture {
         let below = grid_sentence((grid.nx, grid.ny), pitch_mm) + &block_sentence(block);
         let mut drawing = paper(patch, &below, area, quantity, scale);
         // Cells at the far edges may stand for less than a block.
-        draw_x_axis(&mut drawing, area, (columns * block) as f64 * pitch_mm);
-        draw_y_axis(&mut drawing, area, (rows * block) as f64 * pitch_mm);
+        let size = [columns, rows].map(|n| (n * block) as f64 * pitch_mm);
+        draw_map_axes(&mut drawing, area, size.into());
         drawing.frame(area, Stroke::new(INK, 1.0));
         let background = drawing.picture()?;
         let mut painter = Painter::new(background.width, background.height);
@@ -146,7 +144,7 @@ impl SkinPicture {
             drawing.text(name, view.name, TextStyle::new(12).align(Align::Middle));
         }
         let has_names = unrolled.views.len() > 1;
-        dots.draw_scale_bar(&mut drawing, if has_names { 34.0 } else { 18.0 });
+        dots.draw_scale_bar(&mut drawing, if has_names { 40.0 } else { 26.0 });
         let background = drawing.picture()?;
         let mut painter = Painter::new(background.width, background.height);
         for place in dots.places(&unrolled, patch.n_taxels()) {
@@ -183,8 +181,7 @@ fn paper(
     let mut drawing = Drawing::new(width, area.y + bar.height + 54.0);
     drawing.bold_text((LEFT, 22.0), &patch.name, TextStyle::new(13).colour(INK));
     drawing.text((LEFT, 40.0), below, TextStyle::new(11).colour(MUTED));
-    let title = format!("{} ({})", quantity.name(), quantity.unit());
-    draw_colour_bar(&mut drawing, scale, &title, bar);
+    draw_colour_bar(&mut drawing, scale, quantity, bar);
     drawing
 }
 
@@ -194,12 +191,7 @@ fn write_note(picture: &mut Picture, note: &str) -> Result<()> {
     }
     let mut drawing = Drawing::new(NOTE.2, NOTE.1);
     drawing.text((0.0, 13.0), note, TextStyle::new(12));
-    let line = drawing.picture()?;
-    let (left, top) = ((FINE * LEFT) as usize, (FINE * NOTE.0) as usize);
-    let n = line.width.min(picture.width - left);
-    for (row, pixels) in line.rgb.chunks(3 * line.width).enumerate() {
-        let at = 3 * ((top + row) * picture.width + left);
-        picture.rgb[at..at + 3 * n].copy_from_slice(&pixels[..3 * n]);
-    }
+    let corner = [LEFT, NOTE.0].map(|place| (FINE * place) as usize);
+    picture.paste(&drawing.picture()?, corner);
     Ok(())
 }
