@@ -4,9 +4,9 @@
 //! ten where a sweep needs them at its own values, and number their clip paths per process, so that the same table would
 //! not always be the same bytes.
 
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::report::colours::{INK, PAPER, Rgb};
-use crate::report::picture::Picture;
+use crate::report::picture::{Picture, unfit};
 use kuva::backend::svg::SvgBackend;
 use kuva::render::color::Color;
 pub use kuva::render::render::TextAnchor as Align;
@@ -261,7 +261,6 @@ impl Drawing {
                 *dashes = lengths.join(" ");
             }
         }
-        let unfit = |said| Error::input("picture", said, "a size that fits into a PNG file");
         let png = kuva::RasterBackend::new()
             .with_scale(scale as f32)
             .render_scene(&self.scene(elements));

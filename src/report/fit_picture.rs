@@ -70,10 +70,16 @@ pub fn fit_picture(
 
     let mut drawing = Drawing::new(3.0 * side, side);
     let style = TextStyle::new((0.030 * side).clamp(9.0, 18.0) as u32).align(Align::Middle);
+    let [lowest, highest] = [scale.lowest, scale.highest].map(signed_millimetres);
     let above = [
-        format!("{name}: {}", original.describe()),
+        match original {
+            Original::Mesh(surface, _) => {
+                format!("{name}: {} triangles", surface.mesh().n_triangles())
+            }
+            Original::Solid(_) => name.to_owned(),
+        },
         format!("{} spheres", spheres.n_spheres()),
-        scale.describe(),
+        format!("spheres outside (+) or inside (−): {lowest} to {highest} mm"),
     ];
     for (panel, text) in above.iter().enumerate() {
         let middle = (panel as f64 + 0.5) * side;
@@ -113,13 +119,6 @@ impl Original<'_> {
                 .closest(point, f64::INFINITY)
                 .map_or(f64::INFINITY, |closest| closest.distance),
             Self::Solid(solid) => solid.distance(point),
-        }
-    }
-
-    fn describe(&self) -> String {
-        match self {
-            Self::Mesh(surface, _) => format!("{} triangles", surface.mesh().n_triangles()),
-            Self::Solid(_) => "a solid of shapes".to_owned(),
         }
     }
 }
@@ -166,11 +165,6 @@ impl Scale {
             highest: of_part(1.0),
             end: of_part(0.005).abs().max(of_part(0.995).abs()).max(1e-9),
         }
-    }
-
-    fn describe(&self) -> String {
-        let [lowest, highest] = [self.lowest, self.highest].map(signed_millimetres);
-        format!("spheres outside (+) or inside (−): {lowest} to {highest} mm")
     }
 
     /// A bar under the third panel, with its ends and its middle in millimetres.

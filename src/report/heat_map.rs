@@ -29,13 +29,8 @@ pub struct ColourScale {
 }
 
 impl ColourScale {
-    /// The scale that covers all frames, in shown units. Frames of zeros get 0 … 1.
-    pub fn over<'a>(frames: impl IntoIterator<Item = &'a Array2<f64>>, quantity: Quantity) -> Self {
-        Self::over_values(frames.into_iter().flatten(), quantity)
-    }
-
-    /// The scale that covers values as they are stored, in shown units.
-    pub fn over_values<'a>(values: impl IntoIterator<Item = &'a f64>, quantity: Quantity) -> Self {
+    /// The scale that covers values as they are stored, in shown units. Zeros get 0 … 1.
+    pub fn over<'a>(values: impl IntoIterator<Item = &'a f64>, quantity: Quantity) -> Self {
         let mut scale = Self {
             low: 0.0,
             high: 0.0,

@@ -103,6 +103,6 @@ impl Picture {
     }
 }
 
-fn unfit(said: impl std::fmt::Display) -> Error {
+pub(super) fn unfit(said: impl std::fmt::Display) -> Error {
     Error::input("picture", said, "a size that fits into a PNG file")
 }

@@ -44,11 +44,13 @@ pub(crate) fn draw_axis(
     drawing.text(at, title, style.align(Align::Middle).angle(angle));
 }
 
-/// Axes in millimetres below and to the left of a map of an array centred on its origin, so many millimetres wide and high.
-pub(crate) fn draw_map_axes(drawing: &mut Drawing, area: Area, (width, height): (f64, f64)) {
-    let ends = |length: f64| (-0.5 * length, 0.5 * length);
-    draw_axis(drawing, area, Side::Below, ends(width), "x (mm)");
-    draw_axis(drawing, area, Side::Left, ends(height), "y (mm)");
+/// An axis in millimetres beside a map of an array centred on its origin, so many millimetres long: x below, y to the left.
+pub(crate) fn draw_map_axis(drawing: &mut Drawing, area: Area, side: Side, length: f64) {
+    let title = match side {
+        Side::Below => "x (mm)",
+        Side::Left | Side::Right => "y (mm)",
+    };
+    draw_axis(drawing, area, side, (-0.5 * length, 0.5 * length), title);
 }
 
 /// A bar of colours to the right of what it explains, `area` wide and high.

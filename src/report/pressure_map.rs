@@ -26,7 +26,7 @@ pub fn pressure_text(
     let (ny, nx) = frame.dim();
     let inside = width.saturating_sub(2).max(8);
     let block = nx.div_ceil(inside);
-    let scale = ColourScale::over([frame], quantity);
+    let scale = ColourScale::over(frame, quantity);
     let mut text = String::new();
     let (wide, lines) = match ink {
         Ink::Plain => {

@@ -5,7 +5,7 @@ use crate::report::colours::{INK, MUTED};
 use crate::report::drawing::{Align, Area, Drawing, Stroke, TextStyle};
 use crate::report::heat_map::{ColourScale, check_frame, largest_of_blocks};
 use crate::report::picture::Picture;
-use crate::report::picture_axes::{draw_colour_bar, draw_map_axes};
+use crate::report::picture_axes::{Side, draw_colour_bar, draw_map_axis};
 use crate::report::text_width::shorten;
 use crate::signal::Quantity;
 use ndarray::Array2;
@@ -31,7 +31,7 @@ pub fn snapshots(
     let Some(largest) = sides.max() else {
         return Err(Error::input("snapshots", "no frames", "at least one"));
     };
-    let scale = ColourScale::over(frames.iter().map(|(_, frame)| frame), quantity);
+    let scale = ColourScale::over(frames.iter().flat_map(|(_, frame)| frame), quantity);
     let block = largest.div_ceil(MOST_CELLS);
     // Whole pixels a cell: no seams between neighbours.
     let n_cells = largest.div_ceil(block) as f64;
@@ -58,11 +58,10 @@ pub fn snapshots(
         drawing.bold_text((middle, above - 10.0), &title, style);
         drawing.frame(area, Stroke::new(INK, 2.0));
         let (ny, nx) = frame.dim();
-        draw_map_axes(
-            &mut drawing,
-            area,
-            (nx as f64 * pitch_mm, ny as f64 * pitch_mm),
-        );
+        draw_map_axis(&mut drawing, area, Side::Below, nx as f64 * pitch_mm);
+        if index % MOST_COLUMNS == 0 {
+            draw_map_axis(&mut drawing, area, Side::Left, ny as f64 * pitch_mm);
+        }
         maps.push((area, shown));
     }
     let bar = Area {

@@ -50,12 +50,7 @@ pub struct Swept<'a> {
 }
 
 impl<'a> Setting<'a> {
-    /// The choices and conditions of a table.
-    pub fn all(table: &'a Table) -> impl Iterator<Item = Self> {
-        Self::of_roles(table, &[Role::Choice, Role::Condition])
-    }
-
-    /// Its columns of some roles.
+    /// The columns of a table that have one of some roles.
     pub fn of_roles(table: &'a Table, roles: &[Role]) -> impl Iterator<Item = Self> {
         let columns = table.columns.iter().zip(&table.data);
         let all = columns.map(|(column, data)| Self { column, data });
@@ -120,8 +115,9 @@ impl<'a> Setting<'a> {
 impl<'a> Swept<'a> {
     /// Of some rows of a table.
     pub fn of(table: &'a Table, rows: &[usize]) -> Self {
+        let all = Setting::of_roles(table, &[Role::Choice, Role::Condition]);
         let (mut free, fixed): (Vec<Setting>, Vec<Setting>) =
-            Setting::all(table).partition(|one| !rows.is_empty() && one.varies(rows));
+            all.partition(|one| !rows.is_empty() && one.varies(rows));
         let mut order = free.clone();
         order.sort_by_key(|one| {
             let mut given_up = GIVEN_UP_FIRST.iter();

@@ -90,9 +90,9 @@ impl<'a> Front<'a> {
             Setting::of_roles(view.table, &[Role::Choice, Role::Condition, Role::Subject]);
         let settings = settings.filter(|one| one.varies(&view.rows));
         let settings: Vec<Setting> = settings.collect();
-        let of = |name: &str, row: usize| {
-            let column = view.column(name);
-            column.map_or_else(|_| String::new(), |column| column.label(row))
+        let of = |name: &str, row| {
+            view.column(name)
+                .map_or_else(|_| String::new(), |c| c.label(row))
         };
         let said = places.map(|place| {
             let row = place.row;

@@ -27,7 +27,6 @@ const TITLE_LINE: f64 = 16.0;
 /// Where panels stand.
 pub(super) struct Layout {
     columns: usize,
-    n_panels: usize,
     /// Pixels across and down of one.
     size: (f64, f64),
     /// Left of the first.
@@ -36,6 +35,9 @@ pub(super) struct Layout {
     pub width: f64,
     /// Lines of text above each.
     titles: Vec<Vec<String>>,
+    /// Pixels above each row, and more above the first one.
+    above: f64,
+    above_first: f64,
     labels: XLabels,
     heading: Heading,
 }
@@ -56,16 +58,23 @@ impl Layout {
         let left = f64::max(LEFT, 44.0 + labels.fold(0.0, f64::max));
         let titles = view.titles.iter();
         let titles = titles.map(|title| wrap(title, 1.12 * f64::from(LABEL), size.0));
+        let titles: Vec<Vec<String>> = titles.collect();
+        let titled = TITLE_LINE * titles.iter().map(Vec::len).max().unwrap_or(0) as f64;
+        let (above, above_first) = match view.row_titles.is_empty() {
+            true => (10.0 + titled, 0.0),
+            false => (10.0 + TITLE_LINE, titled),
+        };
         let settings = [&view.spec.note[..], &view.constants()].join(" ");
         let panels_width = columns as f64 * (size.0 + GAP) - GAP;
         let width = f64::max(panels_width + left + RIGHT, NARROWEST);
         Self {
             columns,
-            n_panels: view.titles.len(),
             size,
             left,
             width,
-            titles: titles.collect(),
+            titles,
+            above,
+            above_first,
             labels: XLabels::of(&view.x, size.0),
             heading: Heading::of(&view.spec.title, settings.trim(), entries, width),
         }
@@ -79,23 +88,17 @@ impl Layout {
 
     /// From the first panel to the last.
     fn panels(&self) -> Area {
-        let (across, down) = (self.columns, self.n_panels.div_ceil(self.columns));
+        let (across, down) = (self.columns, self.titles.len().div_ceil(self.columns));
         Area {
             x: self.left,
-            y: self.heading.height() + self.above(),
+            y: self.heading.height() + self.above_first + self.above,
             width: across as f64 * (self.size.0 + GAP) - GAP,
             height: (down - 1) as f64 * self.pitch() + self.size.1,
         }
     }
 
-    /// Pixels above each panel.
-    fn above(&self) -> f64 {
-        let lines = self.titles.iter().map(Vec::len).max();
-        10.0 + TITLE_LINE * lines.unwrap_or(0) as f64
-    }
-
     fn pitch(&self) -> f64 {
-        self.above() + self.size.1 + self.labels.depth
+        self.above + self.size.1 + self.labels.depth
     }
 
     pub fn frame(&self, panel: usize) -> Area {
@@ -126,9 +129,17 @@ impl Layout {
     /// A panel's title, grid and labels.
     pub fn draw_axes(&self, drawing: &mut Drawing, view: &View, panel: usize) {
         let frame = self.frame(panel);
-        for (line, text) in self.titles[panel].iter().rev().enumerate() {
-            let at = (frame.x, frame.y - 8.0 - TITLE_LINE * line as f64);
-            drawing.bold_text(at, text, TextStyle::new(LABEL));
+        let style = TextStyle::new(LABEL);
+        let mut up = 8.0;
+        if let Some(text) = view.row_titles.get(panel / self.columns) {
+            if panel.is_multiple_of(self.columns) {
+                drawing.text((frame.x, frame.y - up), text, style.colour(MUTED));
+            }
+            up += TITLE_LINE;
+        }
+        for text in self.titles[panel].iter().rev() {
+            drawing.bold_text((frame.x, frame.y - up), text, style);
+            up += TITLE_LINE;
         }
         draw_grid(drawing, view, frame);
         self.labels.draw(drawing, &view.x, frame);

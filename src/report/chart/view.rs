@@ -3,7 +3,7 @@
 use super::scale::Scale;
 use crate::error::{Error, Result};
 use crate::report::swept::Setting;
-use crate::table::{Along, At, ChartSpec, Column, Data, Mark, Scale as Spacing, Table};
+use crate::table::{Along, At, ChartSpec, Data, Mark, Role, Scale as Spacing, Table};
 use std::collections::HashSet;
 
 /// Lines up to which bands do not hide each other; more lines get a whisker at each point.
@@ -25,8 +25,10 @@ pub(super) struct View<'a> {
     pub y: Scale,
     /// Whether lines are joined along x: between words, or a number and what stands for none of it, there is nothing.
     pub is_joined: bool,
-    /// Of each panel what it is: `noise 10 %`, `RBF SVM`; empty where there is one. Tiles have a row of panels for each line.
+    /// Of each panel what stands above it: `noise 10 %`, `RBF SVM`; empty where there is one, and in later rows of tiles.
     pub titles: Vec<String>,
+    /// Of each row of panels what it is: tiles have one for each of several lines.
+    pub row_titles: Vec<String>,
     /// Rows that have a place, line by line along x.
     pub places: Vec<Place>,
 }
@@ -84,13 +86,20 @@ impl<'a> View<'a> {
             Ok(Groups::of(table, &settings?, &rows))
         };
         let (lines, panels) = (groups(&spec.lines)?, groups(spec.panels.as_slice())?);
+        let is_tiles = matches!(spec.mark, Mark::Tiles { .. });
+        let (mut titles, mut row_titles) = (panels.titles.clone(), Vec::new());
+        if is_tiles && lines.names.len() > 1 {
+            titles.resize(titles.len() * lines.names.len(), String::new());
+            row_titles = lines.titles.clone();
+        }
         let (mut x, y) = (column(&spec.x)?, column(&spec.y)?);
         x.column = spec.x_is.as_ref().unwrap_or(x.column);
-        let is_tiles = matches!(spec.mark, Mark::Tiles { .. });
         let y_values = values(&y, &rows, &[]);
         // What is alike in rows and columns of tiles lies on the diagonal.
         let x_values = values(&x, &rows, if is_tiles { &y_values.1 } else { &[] });
-        let interval = interval_of(table, y.column);
+        let interval = y.column.interval.as_ref();
+        let interval =
+            interval.and_then(|[low, high]| Some([table.numbers(low)?, table.numbers(high)?]));
         let mut along = [x_values.0.clone(), y_values.0.clone()];
         for bound in interval.into_iter().flatten() {
             along[1].extend(rows.iter().map(|&row| bound[row]));
@@ -113,7 +122,8 @@ impl<'a> View<'a> {
         let mut view = Self {
             spec,
             table,
-            titles: titles(if is_tiles { &lines.titles } else { &[] }, &panels.titles),
+            titles,
+            row_titles,
             lines,
             panels,
             rows,
@@ -210,7 +220,8 @@ impl<'a> View<'a> {
             let value = self.rows.first().and_then(|&row| one.data.value(row));
             !is_used && value.is_some() && !one.varies(&self.rows)
         };
-        let constant = Setting::all(self.table).filter(is_constant);
+        let constant =
+            Setting::of_roles(self.table, &[Role::Choice, Role::Condition]).filter(is_constant);
         let phrases = constant.map(|one| one.phrase(self.rows[0]).replace(' ', "\u{a0}"));
         let phrases: Vec<String> = phrases.collect();
         match phrases.is_empty() {
@@ -247,18 +258,6 @@ impl Groups {
             of,
         }
     }
-}
-
-/// Of each panel of each row of panels what both are.
-fn titles(rows: &[String], panels: &[String]) -> Vec<String> {
-    let one = [String::new()];
-    let rows = if rows.is_empty() { &one } else { rows };
-    let title = |row: &String, panel: &String| {
-        let said = [panel, row].into_iter().filter(|title| !title.is_empty());
-        said.cloned().collect::<Vec<_>>().join(" · ")
-    };
-    let of_row = |row| panels.iter().map(move |panel| title(row, panel));
-    rows.iter().flat_map(of_row).collect()
 }
 
 /// Numbers of rows; of words, each row's place among them and the words that are there: in the order of `first`, then in that of the table.
@@ -298,9 +297,4 @@ fn column_of<'a>(spec: &ChartSpec, table: &'a Table, name: &str) -> Result<Setti
         let allowed = format!("one of {}", names.join(", "));
         Error::input(place, format!("column {name:?}"), allowed)
     })
-}
-
-fn interval_of<'a>(table: &'a Table, column: &Column) -> Option<[&'a [f64]; 2]> {
-    let [low, high] = column.interval.as_ref()?;
-    Some([table.numbers(low)?, table.numbers(high)?])
 }

@@ -9,7 +9,7 @@ use crate::report::colours::{GRID, INK, MUTED, Rgb};
 use crate::report::drawing::{Align, Area, Drawing, Stroke, TextStyle};
 use crate::report::heat_map::{ColourScale, block_sentence, grid_sentence, largest_of_blocks};
 pub use crate::report::picture::Picture;
-use crate::report::picture_axes::{draw_colour_bar, draw_map_axes};
+use crate::report::picture_axes::{Side, draw_colour_bar, draw_map_axis};
 use crate::report::text_width::text_width;
 use crate::signal::Quantity;
 use crate::world::Grid;
@@ -107,8 +107,9 @@ impl SkinPicture {
         let below = grid_sentence((grid.nx, grid.ny), pitch_mm) + &block_sentence(block);
         let mut drawing = paper(patch, &below, area, quantity, scale);
         // Cells at the far edges may stand for less than a block.
-        let size = [columns, rows].map(|n| (n * block) as f64 * pitch_mm);
-        draw_map_axes(&mut drawing, area, size.into());
+        for (side, n) in [(Side::Below, columns), (Side::Left, rows)] {
+            draw_map_axis(&mut drawing, area, side, (n * block) as f64 * pitch_mm);
+        }
         drawing.frame(area, Stroke::new(INK, 1.0));
         let background = drawing.picture()?;
         let mut painter = Painter::new(background.width, background.height);
