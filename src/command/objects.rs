@@ -8,7 +8,7 @@ use bubbletouch::Result;
 use bubbletouch::files::write_bytes;
 use bubbletouch::mesh::{LengthUnit, MeshReport, SizeLimits};
 use bubbletouch::objects::{Catalogue, Entry, Object, SphereUnion};
-use bubbletouch::report::object_picture::{contact_sheet, object_picture};
+use bubbletouch::report::object_picture::contact_sheet;
 use bubbletouch::study::{ObjectsSpec, load_mesh, read_mesh_file};
 use comfy_table::{CellAlignment, Table, presets::NOTHING};
 use rayon::prelude::*;
@@ -88,16 +88,12 @@ pub fn objects(args: &Args) -> Result<()> {
         return say(table(&listed));
     };
     check_ending(path, "png")?;
-    let picture = match &listed[..] {
-        [one] => object_picture(&one.object.name, one.spheres(), PICTURE, PICTURE)?,
-        many => {
-            let tiles: Vec<_> = many
-                .iter()
-                .map(|l| (l.object.name.as_str(), l.spheres()))
-                .collect();
-            contact_sheet(&tiles, COLUMNS.min(tiles.len()), TILE)?
-        }
-    };
+    let tiles: Vec<_> = listed
+        .iter()
+        .map(|l| (l.object.name.as_str(), l.spheres()))
+        .collect();
+    let tile = if tiles.len() == 1 { PICTURE } else { TILE };
+    let picture = contact_sheet(&tiles, COLUMNS, tile)?;
     write_bytes(path, &picture.png()?)
 }
 

@@ -84,7 +84,7 @@ fn draw_frame(args: &Args, file: &mut RecordingFile, frame: usize) -> Result<()>
     let said = frame_note(file.time(), frame);
     match (&args.out, patch.grid) {
         (Some(path), _) => {
-            let scale = ColourScale::over_values(&values, args.quantity);
+            let scale = ColourScale::over(&values, args.quantity);
             let skin = SkinPicture::new(patch, args.quantity, scale)?;
             write_bytes(path, &skin.frame(&values, &said)?.png()?)?;
         }

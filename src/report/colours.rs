@@ -29,53 +29,21 @@ pub const LINES: [Rgb; 8] = [
 
 /// Colour of a value between 0 and 1 (others are clamped) on a perceptually uniform map: dark is low.
 pub fn heat(value: f64) -> Rgb {
-    let (r, g, b) = ColorMap::Viridis
-        .map_rgb(value.clamp(0.0, 1.0))
-        .unwrap_or((0, 0, 0));
-    [r, g, b]
+    of_map(&ColorMap::Viridis, value)
 }
 
-/// Colour of a share between 0 and 1 on white paper: white is none, dark blue is all.
-pub fn share(value: f64) -> Rgb {
-    /// ColorBrewer's sequential blues.
-    const STOPS: [Rgb; 6] = [
-        [0xff, 0xff, 0xff],
-        [0xc6, 0xdb, 0xef],
-        [0x9e, 0xca, 0xe1],
-        [0x4d, 0x97, 0xc9],
-        [0x1f, 0x65, 0xae],
-        [0x08, 0x30, 0x6b],
-    ];
-    between(&STOPS, value)
+/// Colour of a number between the least, 0, and the most, 1 (others are clamped): pale to dark blue. The least is not white, which is none.
+pub fn tint(part: f64) -> Rgb {
+    of_map(&ColorMap::Blues, 0.12 + 0.88 * part.clamp(0.0, 1.0))
 }
 
 /// Colour of a value between −1 and 1 (others are clamped): dark blue, white at 0, dark red; the colour-blind tell them apart.
 pub fn diverging(value: f64) -> Rgb {
-    /// ColorBrewer's RdBu, reversed.
-    const STOPS: [Rgb; 9] = [
-        [0x05, 0x30, 0x61],
-        [0x21, 0x66, 0xac],
-        [0x43, 0x93, 0xc3],
-        [0x92, 0xc5, 0xde],
-        [0xf7, 0xf7, 0xf7],
-        [0xf4, 0xa5, 0x82],
-        [0xd6, 0x60, 0x4d],
-        [0xb2, 0x18, 0x2b],
-        [0x67, 0x00, 0x1f],
-    ];
-    between(&STOPS, 0.5 * (1.0 + value))
+    of_map(&ColorMap::RedBlue, 0.5 * (1.0 - value))
 }
 
-/// The colour at a place between 0, the first, and 1, the last.
-fn between(stops: &[Rgb], place: f64) -> Rgb {
-    let place = place.clamp(0.0, 1.0) * (stops.len() - 1) as f64;
-    let below = (place.floor() as usize).min(stops.len() - 2);
-    let part = place - below as f64;
-    std::array::from_fn(|channel| {
-        let low = f64::from(stops[below][channel]);
-        let high = f64::from(stops[below + 1][channel]);
-        (low + part * (high - low)).round() as u8
-    })
+fn of_map(map: &ColorMap, value: f64) -> Rgb {
+    map.map_rgb(value).map_or(INK, |(r, g, b)| [r, g, b])
 }
 
 /// Black or white, whichever is read more easily on the colour.
@@ -98,11 +66,11 @@ mod tests {
     }
 
     #[test]
-    fn heat_grows_lighter_and_share_grows_darker_all_the_way() {
+    fn heat_grows_lighter_and_tint_grows_darker_all_the_way() {
         for step in 0..32 {
             let (low, high) = (f64::from(step) / 32.0, f64::from(step + 1) / 32.0);
             assert!(luma(heat(low)) < luma(heat(high)), "{low}");
-            assert!(luma(share(low)) > luma(share(high)), "{low}");
+            assert!(luma(tint(low)) > luma(tint(high)), "{low}");
         }
     }
 
@@ -117,9 +85,9 @@ mod tests {
     }
 
     #[test]
-    fn text_stands_out_from_every_share() {
+    fn text_stands_out_from_every_tint() {
         for step in 0..=32 {
-            let ground = share(f64::from(step) / 32.0);
+            let ground = tint(f64::from(step) / 32.0);
             assert!((luma(text_on(ground)) - luma(ground)).abs() > 80.0);
         }
     }

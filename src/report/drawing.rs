@@ -6,11 +6,16 @@
 
 use crate::error::Result;
 use crate::report::colours::{INK, PAPER, Rgb};
-use crate::report::picture::Picture;
-use crate::report::raster::ToRaster;
+use crate::report::picture::{Picture, unfit};
 use kuva::backend::svg::SvgBackend;
 use kuva::render::color::Color;
-use kuva::render::render::{PathData, Primitive, Scene, TextAnchor, TextSpan, build_path};
+pub use kuva::render::render::TextAnchor as Align;
+use kuva::render::render::{PathData, Primitive, Scene, TextSpan, build_path};
+
+/// How much larger a drawing is drawn than it is, before [`Drawing::picture`] takes the mean of four elements.
+///
+/// kuva draws turned text and slanted lines jagged: at twice the size they become smooth. Smaller, and they do not.
+const FINE: u32 = 4;
 
 /// A place in a drawing, pixels from the top left corner: `(x, y)`.
 pub type Point = (f64, f64);
@@ -28,19 +33,18 @@ pub struct Area {
     pub height: f64,
 }
 
-/// Which part of a text stands at its place.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Align {
-    /// Its start.
-    Start,
-    /// Its middle.
-    Middle,
-    /// Its end.
-    End,
+impl Area {
+    /// A place in it by parts of its width, from the left, and of its height, from below.
+    pub fn at(&self, across: f64, up: f64) -> Point {
+        (
+            self.x + across * self.width,
+            self.y + (1.0 - up) * self.height,
+        )
+    }
 }
 
 /// How a text looks.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug)]
 pub struct TextStyle {
     /// Font size, pixels.
     pub size: u32,
@@ -105,37 +109,33 @@ impl Stroke {
 pub const N_MARKERS: usize = 8;
 
 /// A drawing on white paper.
+#[derive(Clone)]
 pub struct Drawing {
-    scene: Scene,
+    /// Pixels across.
+    pub width: f64,
+    /// Pixels down.
+    pub height: f64,
+    elements: Vec<Primitive>,
 }
 
 impl Drawing {
     /// An empty drawing of a size in pixels.
     pub fn new(width: f64, height: f64) -> Self {
-        let mut scene = Scene::new(width.ceil(), height.ceil());
-        scene.background_color = Some(colour(PAPER).to_svg_string());
-        scene.font_family = Some("DejaVu Sans, Verdana, sans-serif".to_owned());
-        Self { scene }
-    }
-
-    /// Pixels across.
-    pub fn width(&self) -> f64 {
-        self.scene.width
-    }
-
-    /// Pixels down.
-    pub fn height(&self) -> f64 {
-        self.scene.height
+        Self {
+            width: width.ceil(),
+            height: height.ceil(),
+            elements: Vec::new(),
+        }
     }
 
     /// One line of text whose baseline runs through `at`.
     pub fn text(&mut self, at: Point, text: &str, style: TextStyle) {
-        self.scene.add(Primitive::Text {
+        self.elements.push(Primitive::Text {
             x: snap(at.0),
             y: snap(at.1),
             content: literal(text),
             size: style.size,
-            anchor: anchor(style.align),
+            anchor: style.align,
             rotate: (style.angle != 0.0).then_some(style.angle),
             bold: false,
             color: Some(colour(style.colour)),
@@ -146,32 +146,24 @@ impl Drawing {
     pub fn bold_text(&mut self, at: Point, text: &str, style: TextStyle) {
         let mut span = TextSpan::plain(visible(text));
         span.bold = true;
-        self.scene.add(Primitive::RichText {
+        self.elements.push(Primitive::RichText {
             x: snap(at.0),
             y: snap(at.1),
             spans: vec![span],
             size: style.size,
-            anchor: anchor(style.align),
+            anchor: style.align,
             color: Some(colour(style.colour)),
         });
     }
 
     /// A straight line.
     pub fn line(&mut self, from: Point, to: Point, stroke: Stroke) {
-        self.scene.add(Primitive::Line {
-            x1: snap(from.0),
-            y1: snap(from.1),
-            x2: snap(to.0),
-            y2: snap(to.1),
-            stroke: colour(stroke.colour),
-            stroke_width: stroke.width,
-            stroke_dasharray: stroke.dash.map(|(on, off)| format!("{on} {off}")),
-        });
+        self.polyline(&[from, to], stroke);
     }
 
     /// A line through points.
     pub fn polyline(&mut self, points: &[Point], stroke: Stroke) {
-        self.scene.add(Primitive::PolyLine {
+        self.elements.push(Primitive::PolyLine {
             points: points.iter().map(|&(x, y)| (snap(x), snap(y))).collect(),
             stroke: colour(stroke.colour),
             stroke_width: stroke.width,
@@ -182,7 +174,7 @@ impl Drawing {
     /// A filled polygon; opacity from 0 to 1.
     pub fn polygon(&mut self, points: &[Point], fill: Rgb, opacity: f64) {
         let corners: Vec<Point> = points.iter().map(|&(x, y)| (snap(x), snap(y))).collect();
-        self.scene.add(Primitive::Path(Box::new(PathData {
+        self.elements.push(Primitive::Path(Box::new(PathData {
             d: build_path(&corners) + "Z",
             fill: Some(colour(fill)),
             stroke: Color::None,
@@ -194,7 +186,7 @@ impl Drawing {
 
     /// A filled area without a border.
     pub fn area(&mut self, area: Area, fill: Rgb) {
-        self.scene.add(Primitive::Rect {
+        self.elements.push(Primitive::Rect {
             x: snap(area.x),
             y: snap(area.y),
             width: snap(area.width),
@@ -208,48 +200,37 @@ impl Drawing {
 
     /// The border of an area.
     pub fn frame(&mut self, area: Area, stroke: Stroke) {
-        let (left, top) = (area.x, area.y);
-        let (right, bottom) = (area.x + area.width, area.y + area.height);
-        let corners = [
-            (left, top),
-            (right, top),
-            (right, bottom),
-            (left, bottom),
-            (left, top),
-        ];
-        for side in corners.windows(2) {
-            self.line(side[0], side[1], stroke);
-        }
+        let corners = [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0), (0.0, 0.0)];
+        let corners = corners.map(|(across, up)| area.at(across, up));
+        self.polyline(&corners, stroke);
     }
 
     /// The marker of a line's number, filled, of a radius in pixels, with a white rim that parts it from what lies below.
     pub fn marker(&mut self, line: usize, at: Point, radius: f64, fill: Rgb) {
-        if line.is_multiple_of(N_MARKERS) {
-            for (r, fill) in [(radius + 1.0, PAPER), (radius, fill)] {
-                self.scene.add(Primitive::Circle {
+        for (radius, fill) in [(radius + 1.2, PAPER), (radius, fill)] {
+            match line % N_MARKERS {
+                0 => self.elements.push(Primitive::Circle {
                     cx: snap(at.0),
                     cy: snap(at.1),
-                    r,
+                    r: radius,
                     fill: colour(fill),
                     fill_opacity: None,
                     stroke: None,
                     stroke_width: None,
-                });
+                }),
+                shape => self.polygon(&marker_outline(shape, at, radius), fill, 1.0),
             }
-            return;
         }
-        self.polygon(&marker_outline(line, at, radius + 1.4), PAPER, 1.0);
-        self.polygon(&marker_outline(line, at, radius), fill, 1.0);
     }
 
     /// The drawing as an SVG file that scales to the width it is given; `title` is read aloud by screen readers.
     pub fn svg(&self, title: &str) -> String {
-        let plain = SvgBackend::default().render_scene(&self.scene);
+        let plain = SvgBackend::default().render_scene(&self.scene(self.elements.clone()));
         let opening = r#"<svg xmlns="http://www.w3.org/2000/svg""#;
         let scaled = format!(
             r#"{opening} viewBox="0 0 {} {}" role="img" aria-label="{}""#,
-            self.scene.width,
-            self.scene.height,
+            self.width,
+            self.height,
             escape(title)
         );
         plain.replacen(opening, &scaled, 1) + "\n"
@@ -260,32 +241,50 @@ impl Drawing {
         self.picture()?.png()
     }
 
-    /// The drawing as pixels, two a pixel of its own each way.
+    /// The drawing as pixels, two a pixel of its own each way: a tenth of a second's work.
     pub fn picture(&self) -> Result<Picture> {
-        self.to_raster().picture()
+        Ok(self.pixels(FINE)?.halved())
     }
 
-    /// The same, to be made elsewhere.
-    pub(super) fn to_raster(&self) -> ToRaster {
-        ToRaster::new(&self.scene)
+    /// The drawing as pixels, so many a pixel of its own each way.
+    pub(super) fn pixels(&self, scale: u32) -> Result<Picture> {
+        let mut elements = self.elements.clone();
+        for element in &mut elements {
+            if let Primitive::PolyLine {
+                stroke_dasharray: Some(dashes),
+                ..
+            } = element
+            {
+                // kuva scales everything but these.
+                let lengths = dashes.split(' ').filter_map(|n| n.parse::<u32>().ok());
+                let lengths: Vec<String> = lengths.map(|n| (n * scale).to_string()).collect();
+                *dashes = lengths.join(" ");
+            }
+        }
+        let png = kuva::RasterBackend::new()
+            .with_scale(scale as f32)
+            .render_scene(&self.scene(elements));
+        Picture::of_png(&png.map_err(unfit)?)
+    }
+
+    fn scene(&self, elements: Vec<Primitive>) -> Scene {
+        let mut scene = Scene::new(self.width, self.height);
+        scene.background_color = Some(colour(PAPER).to_svg_string());
+        scene.font_family = Some("DejaVu Sans, Verdana, sans-serif".to_owned());
+        scene.elements = elements;
+        scene
     }
 }
 
 /// Text with the letters escaped that mean something in HTML and SVG.
 pub fn escape(text: &str) -> String {
-    let mut escaped = String::with_capacity(text.len());
-    for letter in text.chars() {
-        match letter {
-            '&' => escaped.push_str("&amp;"),
-            '<' => escaped.push_str("&lt;"),
-            '>' => escaped.push_str("&gt;"),
-            '"' => escaped.push_str("&quot;"),
-            '\'' => escaped.push_str("&#39;"),
-            control if control.is_control() && !matches!(control, '\n' | '\t') => escaped.push(' '),
-            other => escaped.push(other),
-        }
-    }
-    escaped
+    let is_forbidden = |letter: char| letter.is_control() && !matches!(letter, '\n' | '\t');
+    text.replace('&', "&amp;")
+        .replace('<', "&lt;")
+        .replace('>', "&gt;")
+        .replace('"', "&quot;")
+        .replace('\'', "&#39;")
+        .replace(is_forbidden, " ")
 }
 
 /// kuva reads `$…$` as mathematics; an object's name is never that.
@@ -307,17 +306,9 @@ fn colour([r, g, b]: Rgb) -> Color {
     Color::Rgb(r, g, b)
 }
 
-fn anchor(align: Align) -> TextAnchor {
-    match align {
-        Align::Start => TextAnchor::Start,
-        Align::Middle => TextAnchor::Middle,
-        Align::End => TextAnchor::End,
-    }
-}
-
 /// Corners of a regular polygon: square, triangle up, diamond, triangle down, pentagon, hexagon; then a star of four points.
-fn marker_outline(line: usize, (x, y): Point, radius: f64) -> Vec<Point> {
-    let (corners, turn, scale) = match line % N_MARKERS {
+fn marker_outline(shape: usize, (x, y): Point, radius: f64) -> Vec<Point> {
+    let (corners, turn, scale) = match shape {
         1 => (4, 45.0, 1.25),
         2 => (3, -90.0, 1.4),
         3 => (4, 0.0, 1.3),
@@ -326,19 +317,11 @@ fn marker_outline(line: usize, (x, y): Point, radius: f64) -> Vec<Point> {
         6 => (6, 0.0, 1.2),
         _ => (8, 0.0, 1.7),
     };
-    let is_star = corners == 8;
-    (0..corners)
-        .map(|corner| {
-            let angle = (turn + 360.0 * f64::from(corner) / f64::from(corners)).to_radians();
-            let inwards = if is_star && corner % 2 == 1 {
-                0.45
-            } else {
-                1.0
-            };
-            (
-                x + scale * inwards * radius * angle.cos(),
-                y + scale * inwards * radius * angle.sin(),
-            )
-        })
-        .collect()
+    let corner = |number: i32| {
+        let angle = (turn + 360.0 * f64::from(number) / f64::from(corners)).to_radians();
+        let is_inwards = corners == 8 && number % 2 == 1;
+        let radius = scale * radius * if is_inwards { 0.45 } else { 1.0 };
+        (x + radius * angle.cos(), y + radius * angle.sin())
+    };
+    (0..corners).map(corner).collect()
 }

@@ -1,14 +1,19 @@
 //! The picture of a fit: an object, the spheres that stand for it, and how far apart the two are.
 
-use super::canvas::Hit;
-use super::colours::{INK, diverging};
-use super::picture::{Label, Picture};
-use super::shaded_view::{Lighting, PAINT, Stage};
+use super::canvas::{Canvas, Hit, View};
+use super::colours::diverging;
+use super::drawing::{Align, Area, Drawing, TextStyle};
+use super::picture::Picture;
+use super::picture_axes::{draw_colours, draw_scale_bar};
+use super::shaded_view::{Lighting, PAINT};
 use crate::error::{Error, Result};
 use crate::mesh::Surface;
 use crate::objects::{Solid, SphereUnion};
 use crate::packing::Body;
+use crate::quantile::quantile;
+use crate::table::short_number;
 use glam::{DVec2, DVec3};
+use rayon::prelude::*;
 
 /// What spheres stand for.
 #[derive(Clone, Copy)]
@@ -39,43 +44,51 @@ pub fn fit_picture(
         ));
     }
     let mut picture = Picture::blank(3 * tile, tile)?;
-    let margin = 0.10 * tile as f64;
-    let room = DVec2::new(tile as f64 - 1.6 * margin, tile as f64 - 3.4 * margin);
-    let stage = Stage::new(spheres.spheres(), [tile, tile], room);
-    let size = (0.030 * tile as f64).clamp(9.0, 18.0) as u32;
-    let mut labels = Vec::new();
-    let mut label = |panel: usize, text: String, y: f64| {
-        let x = (panel as f64 + 0.5) * tile as f64;
-        labels.push(Label { text, x, y, size });
-    };
-    let seen = stage.canvas.hits(spheres.spheres());
-    let distances = stage.canvas.values(&seen, |point| original.distance(point));
-    let scale = Scale::of(&seen, &distances);
+    let side = tile as f64;
+    let margin = 0.10 * side;
+    let room = DVec2::new(side - 1.6 * margin, side - 3.4 * margin);
+    let canvas = Canvas::new(View::three_quarter(), spheres.spheres(), [tile; 2], room);
     let bounds = spheres.bounds();
     let (middle, radius) = (bounds.center(), bounds.size().length());
-    let whole = stage.canvas.cast(
+    let whole = canvas.cast(
         |start, direction| original.first_hit(start, direction, 2.0 * radius),
         middle,
         radius,
     );
-    let views = [
-        stage.view(&whole, Lighting::Plain, |_| PAINT),
-        stage.view(&seen, Lighting::Plain, |_| PAINT),
-        stage.view(&seen, Lighting::Unlit, |ray| {
-            diverging(distances[ray] / scale.end)
-        }),
+    let seen = canvas.hits(spheres.spheres());
+    let distance = |(ray, hit): (usize, &Option<Hit>)| {
+        let hit = hit.as_ref();
+        hit.map_or(0.0, |hit| original.distance(canvas.point(ray, hit.height)))
+    };
+    let distances: Vec<f64> = seen.par_iter().enumerate().map(distance).collect();
+    let scale = Scale::of(&seen, &distances);
+    let paint = |_: usize, _: &Hit| PAINT;
+    canvas.paint(&mut picture, [0, 0], &whole, Lighting::Plain, paint);
+    canvas.paint(&mut picture, [tile, 0], &seen, Lighting::Plain, paint);
+    let error = |ray: usize, _: &Hit| diverging(distances[ray] / scale.end);
+    canvas.paint(&mut picture, [2 * tile, 0], &seen, Lighting::Unlit, error);
+
+    let mut drawing = Drawing::new(3.0 * side, side);
+    let style = TextStyle::new((0.030 * side).clamp(9.0, 18.0) as u32).align(Align::Middle);
+    let [lowest, highest] = [scale.lowest, scale.highest].map(signed_millimetres);
+    let above = [
+        match original {
+            Original::Mesh(surface, _) => {
+                format!("{name}: {} triangles", surface.mesh().n_triangles())
+            }
+            Original::Solid(_) => name.to_owned(),
+        },
+        format!("{} spheres", spheres.n_spheres()),
+        format!("spheres outside (+) or inside (−): {lowest} to {highest} mm"),
     ];
-    for (panel, view) in views.iter().enumerate() {
-        picture.place(view, [panel * tile, 0], [tile, tile]);
+    for (panel, text) in above.iter().enumerate() {
+        let middle = (panel as f64 + 0.5) * side;
+        drawing.text((middle, 0.75 * margin), text, style);
     }
-    let above = 0.75 * margin;
-    label(0, format!("{name}: {}", original.describe()), above);
-    label(1, format!("{} spheres", spheres.n_spheres()), above);
-    label(2, scale.describe(), above);
-    let below = [0.5 * tile as f64, tile as f64 - 0.35 * margin];
-    labels.push(picture.draw_scale(stage.pixels_per_metre, tile as f64, below, size));
-    scale.draw(&mut picture, tile, size, &mut labels);
-    picture.write_labels(&labels)?;
+    let below = (0.5 * side, side - 0.35 * margin);
+    draw_scale_bar(&mut drawing, below, canvas.pixels_per_metre(), 0.22 * side);
+    scale.draw(&mut drawing, side, style);
+    picture.print(&drawing)?;
     Ok(picture)
 }
 
@@ -106,22 +119,6 @@ impl Original<'_> {
                 .closest(point, f64::INFINITY)
                 .map_or(f64::INFINITY, |closest| closest.distance),
             Self::Solid(solid) => solid.distance(point),
-        }
-    }
-
-    fn describe(&self) -> String {
-        match self {
-            Self::Mesh(surface, _) => format!("{} triangles", surface.mesh().n_triangles()),
-            Self::Solid(solid) => {
-                let parts = match solid.parts().len() {
-                    1 => "1 shape".to_owned(),
-                    n => format!("{n} shapes"),
-                };
-                match solid.cuts().len() {
-                    0 => parts,
-                    n => format!("{parts} less {n}"),
-                }
-            }
         }
     }
 }
@@ -162,59 +159,38 @@ impl Scale {
     fn of(seen: &[Option<Hit>], distances: &[f64]) -> Self {
         let of_hit = |(hit, &distance): (&Option<Hit>, &f64)| hit.is_some().then_some(distance);
         let mut distances: Vec<f64> = seen.iter().zip(distances).filter_map(of_hit).collect();
-        distances.sort_by(f64::total_cmp);
-        let of_part = |part: f64| {
-            let last = distances.len().saturating_sub(1);
-            distances
-                .get((part * last as f64) as usize)
-                .copied()
-                .unwrap_or(0.0)
-        };
-        let largest = of_part(0.005).abs().max(of_part(0.995).abs()).max(1e-9);
-        let power = 10f64.powf(largest.log10().floor());
-        let ends = [1.0, 1.5, 2.0, 3.0, 5.0, 7.0].map(|step| step * power);
-        let end = ends.into_iter().find(|&end| end >= largest);
+        let mut of_part = |part: f64| quantile(&mut distances, part);
         Self {
             lowest: of_part(0.0),
             highest: of_part(1.0),
-            end: end.unwrap_or(10.0 * power),
+            end: of_part(0.005).abs().max(of_part(0.995).abs()).max(1e-9),
         }
-    }
-
-    fn describe(&self) -> String {
-        let [lowest, highest] = [self.lowest, self.highest].map(signed_millimetres);
-        format!("spheres outside (+) or inside (−): {lowest} to {highest} mm")
     }
 
     /// A bar under the third panel, with its ends and its middle in millimetres.
-    fn draw(&self, picture: &mut Picture, tile: usize, size: u32, labels: &mut Vec<Label>) {
-        let (left, width) = (2 * tile + tile / 4, tile / 2);
-        let top = tile - tile / 14;
-        let height = (tile / 50).max(4);
-        for x in 0..width {
-            let value = 2.0 * (x as f64 + 0.5) / width as f64 - 1.0;
-            picture.fill(left + x..left + x + 1, top..top + height, diverging(value));
-        }
-        for place in [-1.0, 0.0, 1.0] {
-            let x = left as f64 + 0.5 * (1.0 + place) * width as f64;
-            let tick = x.round() as usize;
-            picture.fill(tick..tick + 1, top + height..top + height + 4, INK);
-            let text = match place {
-                0.0 => "0 mm".to_owned(),
-                _ => signed_millimetres(place * self.end),
-            };
-            let y = (top + height) as f64 + 5.0 + f64::from(size);
-            labels.push(Label { text, x, y, size });
+    fn draw(&self, drawing: &mut Drawing, side: f64, style: TextStyle) {
+        let bar = Area {
+            x: 2.25 * side,
+            y: (13.0 / 14.0 * side).floor(),
+            width: 0.5 * side,
+            height: (0.02 * side).max(4.0),
+        };
+        draw_colours(drawing, bar, |part| diverging(2.0 * part - 1.0));
+        for (part, text) in [
+            (0.0, signed_millimetres(-self.end)),
+            (0.5, "0 mm".to_owned()),
+            (1.0, signed_millimetres(self.end)),
+        ] {
+            let (x, y) = bar.at(part, 0.0);
+            drawing.text((x, y + 5.0 + f64::from(style.size)), &text, style);
         }
     }
 }
 
-/// With at most three decimals, and a true minus.
+/// With a sign always, a true minus.
 fn signed_millimetres(metres: f64) -> String {
     let sign = if metres < 0.0 { "−" } else { "+" };
-    let rounded = format!("{:.3}", metres.abs() * 1e3);
-    let digits = rounded.trim_end_matches('0').trim_end_matches('.');
-    format!("{sign}{digits}")
+    format!("{sign}{}", short_number((1e6 * metres.abs()).round() / 1e3))
 }
 
 #[cfg(test)]

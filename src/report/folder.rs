@@ -3,7 +3,6 @@
 use crate::error::{Error, Result};
 use crate::files::write_bytes;
 use crate::report::drawing::Drawing;
-use crate::report::raster::ToRaster;
 use crate::table::Table;
 use rayon::prelude::*;
 use std::fs;
@@ -19,7 +18,7 @@ pub struct Folder<'a> {
 enum Content {
     Bytes(Vec<u8>),
     /// A PNG that is still to be drawn.
-    Png(Box<ToRaster>),
+    Png(Drawing),
 }
 
 impl<'a> Folder<'a> {
@@ -61,7 +60,7 @@ impl<'a> Folder<'a> {
 
     /// Adds a drawing as PNG; its pixels are made with all others, on all threads.
     pub(super) fn add_png(&mut self, name: impl Into<String>, drawing: &Drawing) {
-        let content = Content::Png(Box::new(drawing.to_raster()));
+        let content = Content::Png(drawing.clone());
         self.files.push((name.into(), content));
     }
 
@@ -89,7 +88,7 @@ impl<'a> Folder<'a> {
     fn into_files(self) -> Result<Vec<(String, Vec<u8>)>> {
         let whole = |(name, content)| match content {
             Content::Bytes(bytes) => Ok((name, bytes)),
-            Content::Png(raster) => Ok((name, raster.picture()?.png()?)),
+            Content::Png(drawing) => Ok((name, drawing.png()?)),
         };
         self.files.into_par_iter().map(whole).collect()
     }

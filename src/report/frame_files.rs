@@ -38,7 +38,7 @@ pub fn write_frame(path: &Path, deflection: &Array2<f64>, grid: &Grid) -> Result
             let quantity = Quantity::Deflection;
             let title = peak_sentence(deflection, grid.pitch * 1e3, quantity);
             let patch = RecordedPatch::of_grid(title, *grid, ForceKind::Normal);
-            let scale = ColourScale::over([deflection], quantity);
+            let scale = ColourScale::over(deflection, quantity);
             let values: Vec<f64> = deflection.iter().copied().collect();
             let picture = SkinPicture::new(&patch, quantity, scale)?;
             write_bytes(path, &picture.frame(&values, "")?.png()?)

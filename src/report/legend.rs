@@ -1,8 +1,7 @@
 //! What stands above a chart's panels: title, fixed settings, and the legend.
 
-use crate::report::chart::{draw_sign, tint};
-use crate::report::colours::{INK, LINES, MUTED, Rgb};
-use crate::report::drawing::{Area, Drawing, Point, Stroke, TextStyle};
+use crate::report::colours::{INK, LINES, MUTED};
+use crate::report::drawing::{Area, Drawing, Stroke, TextStyle};
 use crate::report::text_width::{text_width, wrap};
 
 /// Left margin of a chart, pixels.
@@ -12,25 +11,13 @@ pub(super) const RIGHT: f64 = 18.0;
 /// Radius of a marker, pixels.
 pub(super) const MARKER_RADIUS: f64 = 4.2;
 /// The line of a Pareto front.
-pub(super) const FRONT: Stroke = Stroke {
-    colour: INK,
-    width: 1.4,
-    dash: None,
-};
+pub(super) const FRONT: Stroke = Stroke::new(INK, 1.4);
 const TITLE: u32 = 16;
 const SMALL: u32 = 12;
-const LINE_WIDTH: f64 = 2.0;
-/// Steps of a bar of colours.
-const BAR: u32 = 40;
-
-/// A dashed line of a width in pixels: something to compare data with.
-pub(super) const fn dashes(width: f64) -> Stroke {
-    Stroke {
-        colour: MUTED,
-        width,
-        dash: Some((5, 4)),
-    }
-}
+/// Pixels of the mark before a text, across and down, and of what it takes with the gap behind it.
+const SWATCH: [f64; 3] = [28.0, 16.0, 34.0];
+/// Pixels between two entries.
+const GAP: f64 = 20.0;
 
 /// Title, fixed settings and legend, above the panels, so that nothing covers data.
 pub(super) struct Heading {
@@ -42,30 +29,8 @@ pub(super) struct Heading {
 /// A mark and what it means.
 pub(super) struct LegendEntry {
     text: String,
-    mark: Mark,
-    width: f64,
-}
-
-/// What a legend entry shows before its text.
-pub(super) enum Mark {
-    /// Nothing: the legend's title.
-    None,
-    /// The line of a number with its marker.
-    Line(usize),
-    /// The marker of a number, without a line.
-    Point(usize),
-    /// The steps of a Pareto front.
-    Front,
-    /// A line across the chart.
-    Rule(Stroke),
-    /// A band around a line.
-    Band,
-    /// A bar through a marker.
-    Whisker,
-    /// A tile with its sign.
-    Tile(Rgb, String),
-    /// All colours of numbers.
-    Bar,
+    /// None of a text without a mark: the legend's title.
+    mark: Option<Box<dyn Fn(&mut Drawing, Area)>>,
 }
 
 impl Heading {
@@ -82,10 +47,8 @@ impl Heading {
 
     /// Pixels down.
     pub(super) fn height(&self) -> f64 {
-        16.0 + 21.0 * self.title.len() as f64
-            + 17.0 * self.settings.len() as f64
-            + 21.0 * self.legend.len() as f64
-            + 10.0
+        let rows = self.title.len() + self.legend.len();
+        26.0 + 21.0 * rows as f64 + 17.0 * self.settings.len() as f64
     }
 
     /// Draws it at the top of a drawing.
@@ -104,99 +67,49 @@ impl Heading {
             y += 21.0;
             let mut x = LEFT;
             for entry in row {
-                entry.draw(drawing, (x, y));
-                x += entry.width;
+                entry.draw(drawing, x, y);
+                x += entry.width();
             }
         }
     }
 }
 
 impl LegendEntry {
-    /// An entry as wide as its mark and text.
-    pub(super) fn new(text: String, mark: Mark) -> Self {
-        let mark_width = mark.width();
-        let gap = if matches!(mark, Mark::None) {
-            10.0
-        } else {
-            20.0
-        };
-        let width = mark_width + text_width(&text, f64::from(SMALL)) + gap;
-        Self { text, mark, width }
+    /// A text alone.
+    pub(super) fn title(text: String) -> Self {
+        Self { text, mark: None }
     }
 
-    fn draw(&self, drawing: &mut Drawing, (x, y): Point) {
-        let middle = y - 4.5;
-        let text_x = x + self.mark.width();
-        match &self.mark {
-            Mark::None => {}
-            Mark::Tile(fill, sign) => {
-                let area = Area {
-                    x,
-                    y: y - 12.0,
-                    width: 28.0,
-                    height: 16.0,
-                };
-                drawing.area(area, *fill);
-                draw_sign(drawing, area, *fill, sign);
-            }
-            Mark::Bar => {
-                for step in 0..BAR {
-                    let area = Area {
-                        x: x + 2.0 * f64::from(step),
-                        y: y - 12.0,
-                        width: 2.0,
-                        height: 14.0,
-                    };
-                    drawing.area(area, tint(f64::from(step) / f64::from(BAR - 1)));
-                }
-            }
-            Mark::Point(number) => {
-                let at = (x + 6.0, middle);
-                drawing.marker(*number, at, MARKER_RADIUS, point_colour(*number));
-            }
-            Mark::Front => {
-                let corner = (x + 14.0, middle + 4.0);
-                let steps = [
-                    (x, corner.1),
-                    corner,
-                    (corner.0, middle - 4.0),
-                    (x + 28.0, middle - 4.0),
-                ];
-                drawing.polyline(&steps, FRONT);
-            }
-            Mark::Line(line) => {
-                let stroke = line_stroke(*line);
-                drawing.line((x, middle), (x + 28.0, middle), stroke);
-                drawing.marker(*line, (x + 14.0, middle), MARKER_RADIUS, stroke.colour);
-            }
-            Mark::Rule(stroke) => drawing.line((x, middle), (x + 28.0, middle), *stroke),
-            Mark::Whisker => {
-                let centre = x + 14.0;
-                drawing.line(
-                    (centre, middle - 8.0),
-                    (centre, middle + 8.0),
-                    Stroke::new(MUTED, 1.5),
-                );
-            }
-            Mark::Band => {
-                let (top, bottom) = (middle - 6.0, middle + 6.0);
-                let corners = [(x, top), (x + 28.0, top), (x + 28.0, bottom), (x, bottom)];
-                drawing.polygon(&corners, MUTED, 0.25);
-            }
+    /// A text behind a mark, which is drawn into an area as it is drawn among data.
+    pub(super) fn new(text: String, mark: impl Fn(&mut Drawing, Area) + 'static) -> Self {
+        let mark: Box<dyn Fn(&mut Drawing, Area)> = Box::new(mark);
+        Self {
+            text,
+            mark: Some(mark),
         }
-        drawing.text((text_x, y), &self.text, TextStyle::new(SMALL));
     }
-}
 
-impl Mark {
-    /// Pixels that it takes before its text.
+    /// Pixels across.
     fn width(&self) -> f64 {
-        match self {
-            Self::None => 0.0,
-            Self::Point(_) => 18.0,
-            Self::Bar => 2.0 * f64::from(BAR) + 8.0,
-            _ => 34.0,
+        self.mark_width() + text_width(&self.text, f64::from(SMALL)) + GAP
+    }
+
+    fn mark_width(&self) -> f64 {
+        self.mark.as_ref().map_or(0.0, |_| SWATCH[2])
+    }
+
+    fn draw(&self, drawing: &mut Drawing, x: f64, y: f64) {
+        if let Some(mark) = &self.mark {
+            let area = Area {
+                x,
+                y: y - 12.0,
+                width: SWATCH[0],
+                height: SWATCH[1],
+            };
+            mark(drawing, area);
         }
+        let at = (x + self.mark_width(), y);
+        drawing.text(at, &self.text, TextStyle::new(SMALL));
     }
 }
 
@@ -205,11 +118,11 @@ fn flow(entries: Vec<LegendEntry>, width: f64) -> Vec<Vec<LegendEntry>> {
     let mut rows: Vec<Vec<LegendEntry>> = Vec::new();
     let mut used = f64::INFINITY;
     for entry in entries {
-        if used + entry.width > width + 20.0 {
+        if used + entry.width() > width + GAP {
             rows.push(Vec::new());
             used = 0.0;
         }
-        used += entry.width;
+        used += entry.width();
         if let Some(row) = rows.last_mut() {
             row.push(entry);
         }
@@ -217,26 +130,8 @@ fn flow(entries: Vec<LegendEntry>, width: f64) -> Vec<Vec<LegendEntry>> {
     rows
 }
 
-/// Colour of a line by its number.
-pub(super) fn line_colour(line: usize) -> Rgb {
-    LINES[line % LINES.len()]
-}
-
-/// Colour of points without a line: beyond the palette, shapes come again in other colours.
-pub(super) fn point_colour(number: usize) -> Rgb {
-    line_colour(number + 3 * (number / LINES.len()))
-}
-
-/// Beyond the palette, colours come again with dashes.
+/// The line of a number. Beyond the palette, shapes of markers come again in other colours.
 pub(super) fn line_stroke(line: usize) -> Stroke {
-    let dash = match line / LINES.len() {
-        0 => None,
-        1 => Some((7, 3)),
-        _ => Some((2, 3)),
-    };
-    Stroke {
-        colour: line_colour(line),
-        width: LINE_WIDTH,
-        dash,
-    }
+    let colour = line + 3 * (line / LINES.len());
+    Stroke::new(LINES[colour % LINES.len()], 2.0)
 }

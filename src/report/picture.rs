@@ -1,11 +1,11 @@
-//! A picture of pixels, the type on it, and the PNG file that holds it.
+//! A picture of pixels, and the PNG file that holds it.
 
-use super::canvas::BACKGROUND;
-use super::shaded_view::ShadedView;
 use crate::error::{Error, Result};
-use kuva::render::render::{Primitive, Scene, TextAnchor};
+use crate::report::drawing::Drawing;
 use std::ops::Range;
-use std::path::Path;
+
+/// Brightness of blank paper, 0 to 255.
+pub(crate) const BACKGROUND: u8 = 250;
 
 /// An opaque picture, rows from the top, 3 bytes a pixel.
 #[derive(Clone, Debug, PartialEq)]
@@ -18,37 +18,46 @@ pub struct Picture {
     pub rgb: Vec<u8>,
 }
 
-/// A line of text in the middle of a place.
-pub(crate) struct Label {
-    pub text: String,
-    /// Pixels from the left.
-    pub x: f64,
-    /// The baseline, pixels from the top.
-    pub y: f64,
-    /// Font size, pixels.
-    pub size: u32,
-}
-
 impl Picture {
     /// The picture as a PNG file's bytes.
     pub fn png(&self) -> Result<Vec<u8>> {
         let mut bytes = Vec::new();
-        let write = |bytes: &mut Vec<u8>| -> std::result::Result<(), png::EncodingError> {
-            let mut encoder = png::Encoder::new(bytes, self.width as u32, self.height as u32);
-            encoder.set_color(png::ColorType::Rgb);
-            encoder.set_depth(png::BitDepth::Eight);
-            let mut writer = encoder.write_header()?;
-            writer.write_image_data(&self.rgb)?;
-            writer.finish()
-        };
-        match write(&mut bytes) {
-            Ok(()) => Ok(bytes),
-            Err(error) => Err(Error::io(
-                Path::new("picture"),
-                "encode",
-                std::io::Error::other(error),
-            )),
+        let mut encoder = png::Encoder::new(&mut bytes, self.width as u32, self.height as u32);
+        encoder.set_color(png::ColorType::Rgb);
+        encoder.set_depth(png::BitDepth::Eight);
+        let mut writer = encoder.write_header().map_err(unfit)?;
+        writer.write_image_data(&self.rgb).map_err(unfit)?;
+        writer.finish().map_err(unfit)?;
+        Ok(bytes)
+    }
+
+    /// Of a PNG file's bytes; opaque.
+    pub(super) fn of_png(png: &[u8]) -> Result<Self> {
+        let mut reader = png::Decoder::new(std::io::Cursor::new(png))
+            .read_info()
+            .map_err(unfit)?;
+        let mut elements = vec![0; reader.output_buffer_size().unwrap_or(0)];
+        let info = reader.next_frame(&mut elements).map_err(unfit)?;
+        let pixels = elements.chunks_exact(info.color_type.samples());
+        Ok(Self {
+            width: info.width as usize,
+            height: info.height as usize,
+            rgb: pixels.flat_map(|pixel| &pixel[..3]).copied().collect(),
+        })
+    }
+
+    /// The same at half the size (rounded down), each pixel the mean of four.
+    pub(super) fn halved(&self) -> Self {
+        let (width, height) = (self.width / 2, self.height / 2);
+        let mut rgb = Vec::with_capacity(3 * width * height);
+        for y in 0..height {
+            let rows = [2 * y, 2 * y + 1].map(|row| &self.rgb[3 * row * self.width..]);
+            for value in (0..width).flat_map(|x| [6 * x, 6 * x + 1, 6 * x + 2]) {
+                let sum = |row: &[u8]| u16::from(row[value]) + u16::from(row[value + 3]);
+                rgb.push(((sum(rows[0]) + sum(rows[1]) + 2) / 4) as u8);
+            }
         }
+        Self { width, height, rgb }
     }
 
     /// Paper of a size in pixels, each side 64 to 20,000.
@@ -66,44 +75,21 @@ impl Picture {
         Ok(Self { width, height, rgb })
     }
 
-    /// Sets all labels at once, in the chart library's own type.
-    pub(crate) fn write_labels(&mut self, labels: &[Label]) -> Result<()> {
-        let mut scene = Scene::new(self.width as f64, self.height as f64);
-        for label in labels {
-            scene.add(Primitive::Text {
-                x: label.x,
-                y: label.y,
-                content: label.text.clone(),
-                size: label.size,
-                anchor: TextAnchor::Middle,
-                rotate: None,
-                bold: false,
-                color: None,
-            });
-        }
-        let failed = |e: String| {
-            Error::io(
-                Path::new("picture"),
-                "set type in",
-                std::io::Error::other(e),
-            )
-        };
-        let backend = kuva::RasterBackend::new().with_scale(1.0);
-        let page = backend.render_scene(&scene).map_err(failed)?;
-        let mut reader = png::Decoder::new(std::io::Cursor::new(page))
-            .read_info()
-            .map_err(|e| failed(e.to_string()))?;
-        let mut ink = vec![0; reader.output_buffer_size().unwrap_or(0)];
-        let info = reader
-            .next_frame(&mut ink)
-            .map_err(|e| failed(e.to_string()))?;
-        let samples = info.color_type.samples();
-        for (pixel, ink) in self.rgb.chunks_mut(3).zip(ink.chunks(samples)) {
-            for value in pixel {
-                *value = (u16::from(*value) * u16::from(ink[0]) / 255) as u8;
-            }
+    /// Prints a drawing of its size on it: what is white in the drawing stays as it is.
+    pub(crate) fn print(&mut self, drawing: &Drawing) -> Result<()> {
+        for (value, ink) in self.rgb.iter_mut().zip(drawing.pixels(1)?.rgb) {
+            *value = (*value).min(ink);
         }
         Ok(())
+    }
+
+    /// Copies another picture to a place from the top left corner, as far as it is on the paper.
+    pub(crate) fn paste(&mut self, other: &Self, [left, top]: [usize; 2]) {
+        let n = 3 * other.width.min(self.width - left);
+        let rows = self.rgb.chunks_mut(3 * self.width).skip(top);
+        for (row, pixels) in rows.zip(other.rgb.chunks(3 * other.width)) {
+            row[3 * left..3 * left + n].copy_from_slice(&pixels[..n]);
+        }
     }
 
     /// Fills the pixels of an area that are on the paper.
@@ -115,52 +101,8 @@ impl Picture {
             }
         }
     }
-
-    /// Copies a view to the area whose top left corner is given.
-    pub(crate) fn place(&mut self, view: &ShadedView, [left, top]: [usize; 2], size: [usize; 2]) {
-        for y in 0..size[1] {
-            for x in 0..size[0] {
-                let at = 3 * ((top + y) * self.width + left + x);
-                self.rgb[at..at + 3].copy_from_slice(&view.rgb(x, y));
-            }
-        }
-    }
-
-    /// Draws a bar of a round length of about a fifth of `width` pixels about a place, and returns its label.
-    pub(crate) fn draw_scale(
-        &mut self,
-        pixels_per_metre: f64,
-        width: f64,
-        [x, y]: [f64; 2],
-        size: u32,
-    ) -> Label {
-        let millimetres = bar_length(0.22 * width / pixels_per_metre * 1e3);
-        let length = millimetres * 1e-3 * pixels_per_metre;
-        let [first, last] = [x - 0.5 * length, x + 0.5 * length].map(|x| x.round() as usize);
-        self.fill(first..last, y as usize..y as usize + 2, [60; 3]);
-        let text = format!("{millimetres} mm");
-        let y = y - 5.0;
-        Label { text, x, y, size }
-    }
 }
 
-/// The longest of 1, 2, 5, 10, … that fits.
-pub(crate) fn bar_length(largest: f64) -> f64 {
-    let power = 10f64.powf(largest.log10().floor());
-    let steps = [5.0, 2.0, 1.0].map(|step| step * power);
-    steps.into_iter().find(|&s| s <= largest).unwrap_or(power)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn bars_are_the_longest_round_number_that_fits() {
-        let lengths = [1.0, 1.99, 2.5, 7.0, 12.0, 49.0, 0.03].map(bar_length);
-        let expected = [1.0, 1.0, 2.0, 5.0, 10.0, 20.0, 0.02];
-        for (length, expected) in lengths.into_iter().zip(expected) {
-            assert!((length - expected).abs() < 1e-12, "{length}");
-        }
-    }
+pub(super) fn unfit(said: impl std::fmt::Display) -> Error {
+    Error::input("picture", said, "a size that fits into a PNG file")
 }

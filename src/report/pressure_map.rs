@@ -26,28 +26,24 @@ pub fn pressure_text(
     let (ny, nx) = frame.dim();
     let inside = width.saturating_sub(2).max(8);
     let block = nx.div_ceil(inside);
-    let scale = ColourScale::over([frame], quantity);
+    let scale = ColourScale::over(frame, quantity);
     let mut text = String::new();
-    let (columns, lines) = match ink {
+    let (wide, lines) = match ink {
         Ink::Plain => {
             // A character is about twice as high as wide: two rows a line, or two characters a taxel where they fit.
-            let wide = if 2 * nx <= inside { 2 } else { 1 };
-            let down = if wide == 2 { 1 } else { 2 * block };
+            let (wide, down) = match 2 * nx <= inside {
+                true => (2, 1),
+                false => (1, 2 * block),
+            };
             let shown = largest_of_blocks(frame, (down, block));
-            (
-                shown.ncols() * wide,
-                ascii_lines(&shown, quantity, scale, wide),
-            )
+            (wide, ascii_lines(&shown, quantity, scale, wide))
         }
         Ink::Colours256 | Ink::TrueColour => {
             let shown = largest_of_blocks(frame, (block, block));
-            (
-                shown.ncols(),
-                half_block_lines(&shown, quantity, scale, ink),
-            )
+            (1, half_block_lines(&shown, quantity, scale, ink))
         }
     };
-    let border = format!("+{}+\n", "-".repeat(columns));
+    let border = format!("+{}+\n", "-".repeat(wide * nx.div_ceil(block)));
     text += &border;
     for line in lines {
         text += &format!("|{line}|\n");
@@ -69,16 +65,11 @@ pub fn pressure_text(
 pub(super) fn peak_sentence(frame: &Array2<f64>, pitch_mm: f64, quantity: Quantity) -> String {
     let (ny, nx) = frame.dim();
     let touched = frame.iter().filter(|&&value| value > 0.0).count();
-    let mut peak = ((0, 0), f64::NEG_INFINITY);
-    for (place, &value) in frame.indexed_iter() {
-        if value > peak.1 {
-            peak = (place, value);
-        }
-    }
     if touched == 0 {
         return "no taxel is touched".to_owned();
     }
-    let ((row, column), value) = peak;
+    let first_peak = frame.indexed_iter().min_by(|a, b| b.1.total_cmp(a.1));
+    let ((row, column), value) = first_peak.unwrap_or(((0, 0), &0.0));
     format!(
         "peak {} {} {} at x {} mm, y {} mm; {touched} of {} taxels above zero",
         quantity.name(),
@@ -135,24 +126,18 @@ fn half_block_lines(
     scale: ColourScale,
     ink: Ink,
 ) -> Vec<String> {
-    let (ny, nx) = shown.dim();
-    let colour =
-        |row: usize, column: usize| heat(scale.place(shown[(row, column)] * quantity.factor()));
-    let mut lines = Vec::new();
-    let mut upper = ny;
-    while upper > 0 {
-        upper -= 1;
+    let colour = |row, column| scale.colour(shown[(row, column)], quantity);
+    let rows: Vec<usize> = (0..shown.nrows()).rev().collect();
+    let line = |pair: &[usize]| {
         let mut line = String::new();
-        for column in 0..nx {
-            line += &ink.letter(colour(upper, column));
-            if upper > 0 {
-                line += &ink.ground(colour(upper - 1, column));
+        for column in 0..shown.ncols() {
+            line += &ink.letter(colour(pair[0], column));
+            if let Some(&lower) = pair.get(1) {
+                line += &ink.ground(colour(lower, column));
             }
             line.push('▀');
         }
-        line += ink.reset();
-        lines.push(line);
-        upper = upper.saturating_sub(1);
-    }
-    lines
+        line + ink.reset()
+    };
+    rows.chunks(2).map(line).collect()
 }

@@ -1,15 +1,13 @@
-//! Objects drawn for the eye: orthographic, softly lit, with outlines and a shadow on the floor.
+//! Surfaces drawn for the eye: orthographic, softly lit, with outlines.
 
-use super::canvas::{BACKGROUND, Canvas, Hit, View, extent};
-use crate::objects::Sphere;
-use glam::{DVec2, DVec3};
+use super::canvas::{Canvas, Hit};
+use super::colours::Rgb;
+use super::picture::{BACKGROUND, Picture};
+use glam::DVec3;
 use rayon::prelude::*;
 
-/// Rays a pixel, each way.
-const SUPERSAMPLING: usize = 2;
-
 /// Slate blue, for objects without colours of their own.
-pub(crate) const PAINT: [u8; 3] = [142, 178, 214];
+pub(crate) const PAINT: Rgb = [142, 178, 214];
 
 /// What light makes of a surface.
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -22,83 +20,83 @@ pub(crate) enum Lighting {
     Unlit,
 }
 
-/// Floor, lamp and eye set up around an object.
-pub(crate) struct Stage {
-    pub canvas: Canvas,
-    shadow: Vec<f32>,
-    /// Scale of the picture.
-    pub pixels_per_metre: f64,
-}
-
-/// An object as it is seen and lit, pixel by pixel.
-pub(crate) struct ShadedView {
-    /// Rays a row.
-    width: usize,
-    rays: Vec<Ray>,
-}
-
-/// What a ray brings back.
-struct Ray {
-    light: f64,
-    paint: [u8; 3],
-}
-
-impl Stage {
-    /// The spheres in the middle of width × height pixels, as large as `room` (pixels each way) allows.
-    pub fn new(spheres: &[Sphere], size: [usize; 2], room: DVec2) -> Self {
-        Self::seen(View::three_quarter(), spheres, size, room)
-    }
-
-    /// The same, seen from elsewhere.
-    pub fn seen(view: View, spheres: &[Sphere], [width, height]: [usize; 2], room: DVec2) -> Self {
-        let (low, high) = extent(&view, spheres);
-        let pixels_per_metre = (room / (high - low)).min_element();
-        let canvas = Canvas {
-            width: width * SUPERSAMPLING,
-            height: height * SUPERSAMPLING,
-            scale: pixels_per_metre * SUPERSAMPLING as f64,
-            middle: 0.5 * (low + high),
-            view,
-        };
-        Self {
-            shadow: canvas.shadow(spheres),
-            canvas,
-            pixels_per_metre,
-        }
-    }
-
-    /// What the rays met, painted ray by ray.
-    pub fn view(
+impl Canvas {
+    /// Paints what rays met, ray by ray, on the part of a picture whose top left corner is given.
+    pub fn paint(
         &self,
+        picture: &mut Picture,
+        corner: [usize; 2],
         hits: &[Option<Hit>],
         lighting: Lighting,
-        paint: impl Fn(usize) -> [u8; 3] + Sync,
-    ) -> ShadedView {
-        let canvas = &self.canvas;
+        paint: impl Fn(usize, &Hit) -> Rgb + Sync,
+    ) {
         let normals = match lighting {
-            Lighting::Smoothed => canvas.smooth_normals(hits),
+            Lighting::Smoothed => self.smooth_normals(hits),
             Lighting::Plain | Lighting::Unlit => normals_of(hits),
         };
-        let ray = |index: usize| match &hits[index] {
-            None => Ray {
-                light: 1.0 - 0.20 * f64::from(self.shadow[index]),
-                paint: [BACKGROUND; 3],
-            },
-            Some(hit) => {
-                let light = match lighting {
-                    Lighting::Unlit => 1.0,
-                    Lighting::Smoothed | Lighting::Plain => lit(normals[index]),
-                };
-                Ray {
-                    light: light * (1.0 - 0.55 * canvas.step_down(hits, index, hit)),
-                    paint: paint(index),
-                }
-            }
+        let ray = |index: usize| {
+            let Some(hit) = &hits[index] else {
+                return [BACKGROUND; 3];
+            };
+            let light = match lighting {
+                Lighting::Unlit => 1.0,
+                Lighting::Smoothed | Lighting::Plain => lit(normals[index]),
+            };
+            let outline = if self.is_outline(hits, index, hit) {
+                0.45
+            } else {
+                1.0
+            };
+            // A number beyond 255 becomes 255.
+            paint(index, hit).map(|value| (f64::from(value) * light * outline).round() as u8)
         };
-        ShadedView {
-            width: canvas.width,
-            rays: (0..hits.len()).into_par_iter().map(ray).collect(),
+        let rays: Vec<Rgb> = (0..hits.len()).into_par_iter().map(ray).collect();
+        let rays = Picture {
+            width: self.width,
+            height: self.height,
+            rgb: rays.into_flattened(),
+        };
+        picture.paste(&rays.halved(), corner);
+    }
+
+    /// Whether a neighbouring ray sees something far behind this one: an inner or outer outline of the object.
+    fn is_outline(&self, hits: &[Option<Hit>], index: usize, hit: &Hit) -> bool {
+        // A slope of 80° between rays is not yet a step.
+        let step = 8.0 / self.scale;
+        let is_behind = |ray: Option<usize>| match ray.and_then(|ray| hits.get(ray)) {
+            None => false,
+            Some(None) => true,
+            Some(Some(other)) => hit.height - other.height > step,
+        };
+        [1, self.width]
+            .into_iter()
+            .any(|stride| is_behind(index.checked_sub(stride)) || is_behind(Some(index + stride)))
+    }
+
+    /// Normals averaged over neighbours at like depth, so that the eye sees the shape and not its spheres.
+    fn smooth_normals(&self, hits: &[Option<Hit>]) -> Vec<DVec3> {
+        let reach = (self.width.min(self.height) / 150).max(1);
+        let mut normals = normals_of(hits);
+        for stride in [1, self.width] {
+            let smoothed = |index: usize| {
+                let Some(hit) = hits[index] else {
+                    return DVec3::ZERO;
+                };
+                let is_like = |other: &Hit| {
+                    (other.height - hit.height).abs() * self.scale < 3.0 * reach as f64
+                };
+                let before = (1..=reach).filter_map(|n| index.checked_sub(n * stride));
+                let after = (0..=reach).map(|n| index + n * stride);
+                let near = before.chain(after).filter(|&near| {
+                    let other = hits.get(near).and_then(Option::as_ref);
+                    other.is_some_and(is_like)
+                });
+                let sum: DVec3 = near.map(|near| normals[near]).sum();
+                sum.normalize_or(hit.normal)
+            };
+            normals = (0..hits.len()).into_par_iter().map(smoothed).collect();
         }
+        normals
     }
 }
 
@@ -112,68 +110,4 @@ fn lit(normal: DVec3) -> f64 {
 fn normals_of(hits: &[Option<Hit>]) -> Vec<DVec3> {
     let normal = |hit: &Option<Hit>| hit.map_or(DVec3::ZERO, |hit| hit.normal);
     hits.iter().map(normal).collect()
-}
-
-impl ShadedView {
-    /// Red, green, blue of a pixel, row 0 at the top.
-    pub fn rgb(&self, x: usize, y: usize) -> [u8; 3] {
-        let mut sum = [0.0; 3];
-        for row in y * SUPERSAMPLING..(y + 1) * SUPERSAMPLING {
-            for column in x * SUPERSAMPLING..(x + 1) * SUPERSAMPLING {
-                let ray = &self.rays[row * self.width + column];
-                for (total, paint) in sum.iter_mut().zip(ray.paint) {
-                    *total += (f64::from(paint) * ray.light).min(255.0);
-                }
-            }
-        }
-        sum.map(|total| (total / (SUPERSAMPLING * SUPERSAMPLING) as f64).round() as u8)
-    }
-}
-
-impl Canvas {
-    /// 1 where a neighbouring ray sees something far behind this one: the object's inner and outer outlines.
-    fn step_down(&self, hits: &[Option<Hit>], index: usize, hit: &Hit) -> f64 {
-        // A slope of 80° between rays is not yet a step.
-        let step = 8.0 / self.scale;
-        let neighbours = [1, self.width].into_iter().flat_map(|d| {
-            let before = index.checked_sub(d);
-            let after = Some(index + d).filter(|&i| i < hits.len());
-            [before, after]
-        });
-        let behind = neighbours.flatten().any(|i| match hits[i] {
-            None => true,
-            Some(other) => hit.height - other.height > step,
-        });
-        f64::from(u8::from(behind))
-    }
-
-    /// Normals averaged over neighbours at like depth, so that the eye sees the shape and not its spheres.
-    fn smooth_normals(&self, hits: &[Option<Hit>]) -> Vec<DVec3> {
-        let reach = (self.width.min(self.height) / 150).max(1) as isize;
-        let mut normals = normals_of(hits);
-        for stride in [1, self.width as isize] {
-            normals = (0..hits.len())
-                .map(|index| {
-                    let Some(hit) = hits[index] else {
-                        return DVec3::ZERO;
-                    };
-                    let mut sum = DVec3::ZERO;
-                    for k in -reach..=reach {
-                        let near = index as isize + k * stride;
-                        let Some(Some(other)) = usize::try_from(near)
-                            .ok()
-                            .map(|i| hits.get(i).copied().flatten())
-                        else {
-                            continue;
-                        };
-                        if (other.height - hit.height).abs() * self.scale < 3.0 * (reach as f64) {
-                            sum += normals[near as usize];
-                        }
-                    }
-                    sum.normalize_or(hit.normal)
-                })
-                .collect();
-        }
-        normals
-    }
 }

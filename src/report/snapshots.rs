@@ -1,19 +1,21 @@
 //! Frames side by side on one colour scale, as in Figure 4 of \[BT\].
 
 use crate::error::{Error, Result};
-use crate::report::colours::MUTED;
-use crate::report::drawing::{Align, Area, Drawing, TextStyle};
-use crate::report::heat_map::{
-    ColourScale, check_frame, draw_colour_bar, draw_map, draw_x_axis, draw_y_axis,
-    largest_of_blocks,
-};
+use crate::report::colours::{INK, MUTED};
+use crate::report::drawing::{Align, Area, Drawing, Stroke, TextStyle};
+use crate::report::heat_map::{ColourScale, check_frame, largest_of_blocks};
+use crate::report::picture::Picture;
+use crate::report::picture_axes::{Side, draw_colour_bar, draw_map_axis};
 use crate::report::text_width::shorten;
 use crate::signal::Quantity;
 use ndarray::Array2;
 
+/// Cells of a frame that are shown each way, at most; larger frames are shown by the largest value of blocks.
 const MOST_CELLS: usize = 128;
+/// Frames side by side, at most.
+const MOST_COLUMNS: usize = 4;
 
-/// Draws named frames (ny × nx, row = y ascending), four a row, with a common colour bar.
+/// Draws named frames (ny × nx, row = y ascending), four a row, with a common colour bar; two picture elements a pixel.
 ///
 /// `caption` stands below (what was pressed how, and the noise). Errors: no frames, or one that
 /// [`check_frame`] rejects.
@@ -22,60 +24,64 @@ pub fn snapshots(
     pitch_mm: f64,
     quantity: Quantity,
     caption: &str,
-) -> Result<Drawing> {
-    if frames.is_empty() {
-        return Err(Error::input("snapshots", "no frames", "at least one"));
-    }
-    for (_, frame) in frames {
-        check_frame(frame)?;
-    }
-    let scale = ColourScale::over(frames.iter().map(|(_, frame)| frame), quantity);
-    let columns = frames.len().min(4);
-    let rows = frames.len().div_ceil(4);
-    let largest = frames
+) -> Result<Picture> {
+    let sides = frames
         .iter()
-        .map(|(_, f)| f.nrows().max(f.ncols()))
-        .max()
-        .unwrap_or(1);
+        .map(|(_, frame)| frame.nrows().max(frame.ncols()));
+    let Some(largest) = sides.max() else {
+        return Err(Error::input("snapshots", "no frames", "at least one"));
+    };
+    let scale = ColourScale::over(frames.iter().flat_map(|(_, frame)| frame), quantity);
     let block = largest.div_ceil(MOST_CELLS);
-    // Whole pixels a taxel: no seams between neighbours.
-    let side = (192.0 / largest.div_ceil(block) as f64).floor().max(1.0);
-    let box_side = side * largest.div_ceil(block) as f64;
-    let (left, gap, top, row_height) = (66.0, 22.0, 34.0, box_side + 74.0);
-    let maps_right = left + columns as f64 * (box_side + gap);
-    let height = rows as f64 * row_height + 18.0 + 6.0;
-    let mut drawing = Drawing::new(maps_right + 84.0, height);
+    // Whole pixels a cell: no seams between neighbours.
+    let n_cells = largest.div_ceil(block) as f64;
+    let side = (192.0 / n_cells).floor().max(1.0);
+    let box_side = side * n_cells;
+    let (left, top) = (66.0, 34.0);
+    let (column_width, row_height) = (box_side + 22.0, box_side + 74.0);
+    let right = left + frames.len().min(MOST_COLUMNS) as f64 * column_width;
+    let height = frames.len().div_ceil(MOST_COLUMNS) as f64 * row_height + 24.0;
+    let mut drawing = Drawing::new(right + 84.0, height);
+    let mut maps = Vec::new();
     for (index, (name, frame)) in frames.iter().enumerate() {
-        let (row, column) = (index / 4, index % 4);
+        check_frame(frame)?;
         let shown = largest_of_blocks(frame, (block, block));
         let area = Area {
-            x: left + column as f64 * (box_side + gap),
-            y: top + row as f64 * row_height,
+            x: left + (index % MOST_COLUMNS) as f64 * column_width,
+            y: top + (index / MOST_COLUMNS) as f64 * row_height,
             width: side * shown.ncols() as f64,
             height: side * shown.nrows() as f64,
         };
+        let (middle, above) = area.at(0.5, 1.0);
         let title = shorten(name, 15.0, box_side);
-        let above = (area.x + area.width / 2.0, area.y - 10.0);
-        drawing.bold_text(above, &title, TextStyle::new(13).align(Align::Middle));
-        draw_map(&mut drawing, &shown, quantity, scale, area);
+        let style = TextStyle::new(13).align(Align::Middle);
+        drawing.bold_text((middle, above - 10.0), &title, style);
+        drawing.frame(area, Stroke::new(INK, 2.0));
         let (ny, nx) = frame.dim();
-        draw_x_axis(&mut drawing, area, nx as f64 * pitch_mm);
-        if column == 0 {
-            draw_y_axis(&mut drawing, area, ny as f64 * pitch_mm);
+        draw_map_axis(&mut drawing, area, Side::Below, nx as f64 * pitch_mm);
+        if index % MOST_COLUMNS == 0 {
+            draw_map_axis(&mut drawing, area, Side::Left, ny as f64 * pitch_mm);
         }
+        maps.push((area, shown));
     }
     let bar = Area {
-        x: maps_right,
+        x: right,
         y: top,
         width: 16.0,
         height: box_side,
     };
-    let title = format!("{} ({})", quantity.name(), quantity.unit());
-    draw_colour_bar(&mut drawing, scale, &title, bar);
-    drawing.text(
-        (left, height - 10.0),
-        caption,
-        TextStyle::new(12).colour(MUTED),
-    );
-    Ok(drawing)
+    draw_colour_bar(&mut drawing, scale, quantity, bar);
+    let style = TextStyle::new(12).colour(MUTED);
+    drawing.text((left, height - 10.0), caption, style);
+    let mut picture = drawing.picture()?;
+    for (area, shown) in &maps {
+        let (left, bottom) = area.at(0.0, 0.0);
+        for ((row, column), &value) in shown.indexed_iter() {
+            let fine = |place: f64| (2.0 * place) as usize;
+            let (x, y) = (left + column as f64 * side, bottom - row as f64 * side);
+            let colour = scale.colour(value, quantity);
+            picture.fill(fine(x)..fine(x + side), fine(y - side)..fine(y), colour);
+        }
+    }
+    Ok(picture)
 }

@@ -15,16 +15,10 @@ pub struct NamedPicture {
     pub name: String,
     /// What it shows, in words.
     pub title: String,
-    /// It.
-    pub image: Image,
-}
-
-/// What a picture is made of.
-pub enum Image {
-    /// Shapes: written as SVG and PNG.
-    Drawing(Drawing),
-    /// A PNG, with its width and height in pixels.
-    Png(Vec<u8>, (usize, usize)),
+    /// A PNG file's bytes.
+    pub png: Vec<u8>,
+    /// Width and height in the page, pixels.
+    pub size: (usize, usize),
 }
 
 /// What a study found, for whoever shows it.
@@ -93,17 +87,10 @@ pub fn folder_with<'a>(
     let (folder, beyond) = rayon::join(|| folder.drawn(), beyond);
     let (mut folder, beyond) = (folder?, beyond?);
     beside.sections = beyond.sections;
-    for NamedPicture { name, title, image } in &beyond.pictures {
-        beside.pictures.push(match image {
-            Image::Drawing(drawing) => {
-                folder.add_chart(name, title, drawing);
-                Picture::of(drawing, title)
-            }
-            Image::Png(png, size) => {
-                folder.add(format!("{name}.png"), png.clone());
-                Picture::of_png(png, *size, title)
-            }
-        });
+    for picture in beyond.pictures {
+        let in_page = Picture::of_png(&picture.png, picture.size, &picture.title);
+        beside.pictures.push(in_page);
+        folder.add(format!("{}.png", picture.name), picture.png);
     }
     // More would make the page slow; each can be arranged to show what the others do.
     charts.truncate(MOST_CHARTS);
@@ -134,7 +121,7 @@ fn light_picture(drawing: &Drawing, title: &str) -> Result<Picture> {
     if picture.element.len() <= LIGHT {
         return Ok(picture);
     }
-    let size = (drawing.width() as usize, drawing.height() as usize);
+    let size = (drawing.width as usize, drawing.height as usize);
     Ok(Picture::of_png(&drawing.png()?, size, title))
 }
 

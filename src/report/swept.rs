@@ -50,6 +50,19 @@ pub struct Swept<'a> {
 }
 
 impl<'a> Setting<'a> {
+    /// The columns of a table that have one of some roles.
+    pub fn of_roles(table: &'a Table, roles: &[Role]) -> impl Iterator<Item = Self> {
+        let columns = table.columns.iter().zip(&table.data);
+        let all = columns.map(|(column, data)| Self { column, data });
+        all.filter(|one| roles.contains(&one.column.role))
+    }
+
+    /// Rows of a table by the values of some of its settings, in the order in which rows first have them.
+    pub fn groups(settings: &[Self], table: &Table, rows: &[usize]) -> Vec<Vec<usize>> {
+        let names: Vec<&str> = settings.iter().map(|one| &one.column.name[..]).collect();
+        table.groups(&names, rows.iter().copied())
+    }
+
     /// Whether it varies over rows.
     pub fn varies(&self, rows: &[usize]) -> bool {
         rows.iter()
@@ -69,7 +82,7 @@ impl<'a> Setting<'a> {
         }
     }
 
-    /// Its value in a row.
+    /// Its value in a row; of an absent one, what the column calls it.
     pub fn label(&self, row: usize) -> String {
         match self.data.value(row) {
             Some(value) => self.column.value_words(&value),
@@ -79,17 +92,22 @@ impl<'a> Setting<'a> {
         }
     }
 
+    /// Its value in a row, for a title: a number says what it is of.
+    pub fn title(&self, row: usize) -> String {
+        match self.is_number() {
+            true => self.phrase(row),
+            false => self.label(row),
+        }
+    }
+
     /// A row for each of its values: numbers rising, words in the order of first rows.
     pub fn levels(&self, rows: &[usize]) -> Vec<usize> {
-        let mut known = HashSet::new();
-        let mut firsts: Vec<usize> = rows
-            .iter()
-            .copied()
-            .filter(|&row| known.insert(self.data.key(row)))
-            .collect();
+        let mut firsts = rows.to_vec();
         if let Data::Numbers(numbers) = self.data {
             firsts.sort_by(|&a, &b| numbers[a].total_cmp(&numbers[b]));
         }
+        let mut known = HashSet::new();
+        firsts.retain(|&row| known.insert(self.data.key(row)));
         firsts
     }
 }
@@ -97,27 +115,25 @@ impl<'a> Setting<'a> {
 impl<'a> Swept<'a> {
     /// Of some rows of a table.
     pub fn of(table: &'a Table, rows: &[usize]) -> Self {
-        let columns = table.columns.iter().zip(&table.data);
-        let all =
-            columns.filter(|(column, _)| matches!(column.role, Role::Choice | Role::Condition));
-        let all = all.map(|(column, data)| Setting { column, data });
+        let all = Setting::of_roles(table, &[Role::Choice, Role::Condition]);
         let (mut free, fixed): (Vec<Setting>, Vec<Setting>) =
-            all.partition(|setting| !rows.is_empty() && setting.varies(rows));
-        let place = |setting: &Setting| {
-            let mut given_up = GIVEN_UP_FIRST.iter();
-            given_up.position(|name| *name == setting.column.name)
-        };
+            all.partition(|one| !rows.is_empty() && one.varies(rows));
         let mut order = free.clone();
-        order.sort_by_key(|setting| place(setting).unwrap_or(usize::MAX));
+        order.sort_by_key(|one| {
+            let mut given_up = GIVEN_UP_FIRST.iter();
+            let place = given_up.position(|name| *name == one.column.name);
+            place.unwrap_or(GIVEN_UP_FIRST.len())
+        });
         let mut following = Vec::new();
         for one in order {
             let others = without(&free, &one);
-            if !others.is_empty() && follows(table, &one, &others, rows) {
+            // The others say what its value is.
+            let alike = Setting::groups(&others, table, rows);
+            if !others.is_empty() && alike.iter().all(|rows| !one.varies(rows)) {
                 following.push(one);
                 free = others;
             }
         }
-        following.sort_by_key(|setting| place(setting).is_none());
         Self {
             table,
             one_at_a_time: one_at_a_time(&free, rows),
@@ -129,7 +145,7 @@ impl<'a> Swept<'a> {
 
     /// Rows by the values of some settings, in the order in which rows first have them.
     pub fn groups(&self, settings: &[Setting], rows: &[usize]) -> Vec<Vec<usize>> {
-        groups(self.table, settings, rows)
+        Setting::groups(settings, self.table, rows)
     }
 
     /// Those that vary and have a role.
@@ -183,17 +199,6 @@ pub fn without<'a>(settings: &[Setting<'a>], one: &Setting) -> Vec<Setting<'a>> 
         .collect()
 }
 
-fn groups(table: &Table, settings: &[Setting], rows: &[usize]) -> Vec<Vec<usize>> {
-    let names: Vec<&str> = settings.iter().map(|one| &one.column.name[..]).collect();
-    table.groups(&names, rows.iter().copied())
-}
-
-/// Whether others say what the value of a setting is.
-fn follows(table: &Table, setting: &Setting, others: &[Setting], rows: &[usize]) -> bool {
-    let alike = groups(table, others, rows);
-    alike.iter().all(|rows| !setting.varies(rows))
-}
-
 /// The numbers of the signal, where each row leaves the first row's value of at most one of them.
 fn one_at_a_time<'a>(free: &[Setting<'a>], rows: &[usize]) -> Vec<Setting<'a>> {
     let is_signal = |setting: &&Setting| {
@@ -202,10 +207,8 @@ fn one_at_a_time<'a>(free: &[Setting<'a>], rows: &[usize]) -> Vec<Setting<'a>> {
     };
     let signal: Vec<Setting> = free.iter().filter(is_signal).copied().collect();
     let leaves = |row: usize| {
-        signal
-            .iter()
-            .filter(|one| one.data.key(row) != one.data.key(rows[0]))
-            .count()
+        let left = signal.iter().filter(|one| one.varies(&[rows[0], row]));
+        left.count()
     };
     match signal.len() > 1 && rows.iter().all(|&row| leaves(row) <= 1) {
         true => signal,

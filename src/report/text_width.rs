@@ -13,13 +13,11 @@ const ASCII: [u16; 95] = [
 ///
 /// A letter outside ASCII counts as 0.7 em, a little more than its mean, so that reserved space suffices.
 pub fn text_width(text: &str, size: f64) -> f64 {
-    let thousandths: u64 = text
-        .chars()
-        .map(|letter| {
-            let place = (letter as usize).wrapping_sub(0x20);
-            u64::from(ASCII.get(place).copied().unwrap_or(700))
-        })
-        .sum();
+    let advance = |letter: char| {
+        let place = (letter as usize).wrapping_sub(0x20);
+        u64::from(ASCII.get(place).copied().unwrap_or(700))
+    };
+    let thousandths: u64 = text.chars().map(advance).sum();
     thousandths as f64 * size / 1000.0
 }
 
@@ -49,14 +47,10 @@ pub fn shorten(text: &str, size: f64, width: f64) -> String {
     if text_width(text, size) <= width {
         return text.to_owned();
     }
-    let mut kept: Vec<char> = text.chars().collect();
-    while kept.pop().is_some() {
-        let shorter: String = kept.iter().collect::<String>() + "…";
-        if text_width(&shorter, size) <= width {
-            return shorter;
-        }
-    }
-    "…".to_owned()
+    let starts = text.char_indices().rev();
+    let mut shorter = starts.map(|(end, _)| format!("{}…", &text[..end]));
+    let fitting = shorter.find(|shorter| text_width(shorter, size) <= width);
+    fitting.unwrap_or_else(|| "…".to_owned())
 }
 
 #[cfg(test)]

@@ -51,8 +51,6 @@ pub enum Mark {
     /// Points joined along x; points alone where x is words.
     #[default]
     Line,
-    /// A value holds until the next x.
-    Step,
     /// Points alone.
     Points,
     /// A tile at each x and y.

@@ -2,7 +2,8 @@
 
 use crate::report_synthetic::{cell, many_cells, noise_cells, press, quickstart_cells, tables};
 use bubbletouch::report::chart::{draw, places};
-use bubbletouch::report::drawing::Drawing;
+use bubbletouch::report::colours::heat;
+use bubbletouch::report::drawing::{Drawing, TextStyle};
 use bubbletouch::report::frame_files::{frame_csv, write_frame};
 use bubbletouch::report::pressure_map::pressure_text;
 use bubbletouch::report::recognition::{charts, tables_of};
@@ -89,7 +90,7 @@ fn pictures_are_png_files_with_two_elements_a_pixel() {
         let (width, height, elements) = pixels(&drawing.png().unwrap());
         assert_eq!(
             (f64::from(width), f64::from(height)),
-            (2.0 * drawing.width(), 2.0 * drawing.height())
+            (2.0 * drawing.width, 2.0 * drawing.height)
         );
         let inked = elements
             .iter()
@@ -132,19 +133,41 @@ fn a_confusion_matrix_holds_every_count_of_the_best_cell() {
 #[test]
 fn a_name_is_drawn_letter_by_letter_whatever_it_holds() {
     let name = "<i>&\"$x^2$\u{1}";
-    let frames = [(name.to_owned(), press(8, 8, 0, 0.0))];
-    let svg = snapshots(&frames, 2.0, Quantity::Deflection, name)
-        .unwrap()
-        .svg(name);
-    assert!(svg.contains("&lt;i&gt;&amp;&quot;$x^2$ <"), "{svg}");
-    assert!(!svg.contains("<i>") && !svg.contains('\u{1}'));
-    let mut empty = Drawing::new(10.0, 10.0);
-    empty.text(
-        (1.0, 9.0),
-        "$\\alpha$",
-        bubbletouch::report::drawing::TextStyle::new(9),
+    let mut drawing = Drawing::new(10.0, 10.0);
+    for text in [name, "$\\alpha$"] {
+        drawing.text((1.0, 9.0), text, TextStyle::new(9));
+        drawing.bold_text((1.0, 9.0), text, TextStyle::new(9));
+    }
+    let svg = drawing.svg(name);
+    assert_eq!(
+        svg.matches("&lt;i&gt;&amp;&quot;$x^2$ <").count(),
+        2,
+        "{svg}"
     );
-    assert!(empty.svg("").contains("$\\alpha$"));
+    assert_eq!(svg.matches("$\\alpha$").count(), 2, "{svg}");
+    assert!(!svg.contains("<i>") && !svg.contains('\u{1}'));
+}
+
+#[test]
+fn snapshots_show_every_frame_on_one_scale() {
+    let frames: Vec<_> = (0..5)
+        .map(|n| (format!("object {n}"), press(8, 8, n, 0.0)))
+        .collect();
+    let picture = snapshots(&frames, 2.0, Quantity::Deflection, "a caption").unwrap();
+    // Four in the first row, one in the second: each has 8 × 24 pixels a side, of two elements.
+    let bare = heat(0.0);
+    let column = |x: usize, y: usize| {
+        let at = 3 * (y * picture.width + x);
+        picture.rgb[at..at + 3] == bare
+    };
+    for (across, down) in [(0, 0), (3, 0), (0, 1)] {
+        let (x, y) = (132 + across * 428, 68 + down * 532);
+        assert!(
+            column(x + 1, y + 1) && column(x + 382, y + 382),
+            "{across}, {down}"
+        );
+        assert!(!column(x + 390, y + 390), "{across}, {down}");
+    }
 }
 
 #[test]

@@ -8,7 +8,7 @@ use crate::kinds::source::Source;
 use crate::report::page::{Section, Snapshots};
 use crate::report::recognition;
 use crate::report::snapshots::snapshots;
-use crate::report::study_folder::{Image, NamedPicture};
+use crate::report::study_folder::NamedPicture;
 use crate::study::Samples;
 use crate::study::pieces::Scale;
 use crate::table::{ChartSpec, Table};
@@ -69,13 +69,12 @@ impl Kind for RecognitionStudy {
     fn pictures(&self, _tables: &[Table]) -> Result<Vec<NamedPicture>> {
         let samples = self.samples()?;
         let (pitch_mm, quantity) = (samples.pitch_mm, samples.quantity);
-        let drawing = snapshots(&samples.frames, pitch_mm, quantity, &samples.caption)?;
-        let size = (drawing.width() as usize, drawing.height() as usize);
+        let picture = snapshots(&samples.frames, pitch_mm, quantity, &samples.caption)?;
         Ok(vec![NamedPicture {
             name: "snapshots".to_owned(),
             title: samples.caption.clone(),
-            // As SVG, ten thousand noisy taxels would be a megabyte.
-            image: Image::Png(drawing.png()?, size),
+            png: picture.png()?,
+            size: (picture.width / 2, picture.height / 2),
         }])
     }
 

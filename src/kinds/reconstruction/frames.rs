@@ -4,7 +4,7 @@ use super::rows::ReconstructionCell;
 use super::study::ReconstructionStudy;
 use crate::error::Result;
 use crate::report::snapshots::snapshots;
-use crate::report::study_folder::{Image, NamedPicture};
+use crate::report::study_folder::NamedPicture;
 use crate::sensing::{Reconstructor, SensedDictionary};
 use crate::study::millimetres;
 use crate::study::progress::Silent;
@@ -65,13 +65,12 @@ impl ReconstructionStudy {
             .map(|&row| super::charts::cell_words(cells, row));
         let caption = format!("{noise}; {}", words.collect::<Vec<_>>().join("; "));
         let pitch_mm = millimetres(grid.pitch);
-        let drawing = snapshots(&frames, pitch_mm, self.plan.quantity(), &caption)?;
-        // As SVG, noisy taxels would be megabytes.
-        let size = (drawing.width() as usize, drawing.height() as usize);
+        let picture = snapshots(&frames, pitch_mm, self.plan.quantity(), &caption)?;
         Ok(vec![NamedPicture {
             name: "frames".to_owned(),
             title: "Sample frames and what came back of them".to_owned(),
-            image: Image::Png(drawing.png()?, size),
+            png: picture.png()?,
+            size: (picture.width / 2, picture.height / 2),
         }])
     }
 }

@@ -3,10 +3,13 @@
 use super::picture::BodyPicture;
 use crate::error::Result;
 use crate::objects::Sphere;
-use crate::report::canvas::{Hit, View};
-use crate::report::colours::share;
-use crate::report::picture::{Label, Picture};
-use crate::report::shaded_view::{Lighting, PAINT, Stage};
+use crate::report::canvas::{Canvas, Hit, View};
+use crate::report::colours::tint;
+use crate::report::drawing::{Align, Area, Drawing, TextStyle};
+use crate::report::picture::Picture;
+use crate::report::picture_axes::{draw_colours, draw_scale_bar};
+use crate::report::shaded_view::{Lighting, PAINT};
+use crate::table::short_number;
 use glam::{DQuat, DVec2, DVec3};
 use std::f64::consts::FRAC_PI_2;
 
@@ -36,67 +39,59 @@ pub fn whole_body_picture(scene: &BodyPicture) -> Result<Picture> {
     let object = scene.object.iter().map(|s| sphere(s.center, s.radius));
     let both: Vec<Sphere> = alone.iter().copied().chain(object).collect();
 
-    let [width, height] = PANEL;
-    let room = DVec2::new(0.62 * width as f64, height as f64 - 150.0);
-    let stage = Stage::seen(View::from_angles(AZIMUTH, ELEVATION), &both, PANEL, room);
+    let [width, height] = PANEL.map(|side| side as f64);
+    let room = DVec2::new(0.62 * width, height - 150.0);
+    let canvas = Canvas::new(View::from_angles(AZIMUTH, ELEVATION), &both, PANEL, room);
     let highest = scene.skin.iter().map(|place| place.1).fold(0.0, f64::max);
-    let pressure = |number: usize| match scene.skin.get(number) {
-        Some(&(_, pressure)) if pressure > 0.0 => share(0.15 + 0.85 * pressure / highest),
+    let pressure = |_: usize, hit: &Hit| match scene.skin.get(hit.part) {
+        Some(&(_, pressure)) if pressure > 0.0 => tint(pressure / highest),
         Some(_) => BARE,
         None => TOUCHED,
     };
-    let colour = |number: usize| match number {
-        number if number < scene.skin.len() => BARE,
-        number if number < alone.len() => TOUCHED,
+    let colour = |_: usize, hit: &Hit| match hit.part {
+        part if part < scene.skin.len() => BARE,
+        part if part < alone.len() => TOUCHED,
         _ => PAINT,
     };
-    let mut picture = Picture::blank(2 * width, height)?;
-    let hits = stage.canvas.hits(&both);
-    let number = |hits: &[Option<Hit>], ray: usize| hits[ray].map_or(0, |hit| hit.part);
-    let view = stage.view(&hits, Lighting::Smoothed, |ray| colour(number(&hits, ray)));
-    picture.place(&view, [0, 0], PANEL);
-    let hits = stage.canvas.hits(&alone);
-    let view = stage.view(&hits, Lighting::Smoothed, |ray| {
-        pressure(number(&hits, ray))
-    });
-    picture.place(&view, [width, 0], PANEL);
+    let mut picture = Picture::blank(2 * PANEL[0], PANEL[1])?;
+    let lighting = Lighting::Smoothed;
+    canvas.paint(&mut picture, [0, 0], &canvas.hits(&both), lighting, colour);
+    let right = [PANEL[0], 0];
+    canvas.paint(
+        &mut picture,
+        right,
+        &canvas.hits(&alone),
+        lighting,
+        pressure,
+    );
 
-    let label = |panel: f64, text: String, y: f64, size: u32| Label {
-        text,
-        x: (panel + 0.5) * width as f64,
-        y,
-        size,
+    let mut drawing = Drawing::new(2.0 * width, height);
+    let style = |size| TextStyle::new(size).align(Align::Middle);
+    let touched = format!("{} touched taxels in orange", scene.touched.len());
+    drawing.text((0.5 * width, 30.0), &scene.scene, style(16));
+    drawing.text(
+        (1.5 * width, 30.0),
+        "mean pressure on each patch",
+        style(16),
+    );
+    drawing.text((1.5 * width, 50.0), &touched, style(13));
+    let below = (0.5 * width, height - 24.0);
+    draw_scale_bar(&mut drawing, below, canvas.pixels_per_metre(), 0.22 * width);
+    let bar = Area {
+        x: 1.25 * width,
+        y: height - 40.0,
+        width: 0.5 * width,
+        height: 12.0,
     };
-    let n_touched = scene.touched.len();
-    let mut labels = vec![
-        label(0.0, scene.scene.clone(), 30.0, 16),
-        label(1.0, "mean pressure on each patch".to_owned(), 30.0, 16),
-        label(
-            1.0,
-            format!("{n_touched} touched taxels in orange"),
-            50.0,
-            13,
-        ),
-    ];
-    let below = [0.5 * width as f64, height as f64 - 24.0];
-    labels.push(picture.draw_scale(stage.pixels_per_metre, width as f64, below, 13));
-    draw_scale(&mut picture, width + width / 4, width / 2, height - 40);
-    for (place, pressure) in [(-0.25, 0.0), (0.0, 0.5), (0.25, 1.0)] {
-        let kilopascals = 1e-3 * pressure * highest;
-        let kilopascals = match highest >= 1e4 {
-            true => format!("{kilopascals:.0} kPa"),
-            false => format!("{kilopascals:.2} kPa"),
-        };
-        labels.push(label(1.0 + place, kilopascals, height as f64 - 12.0, 12));
+    draw_colours(&mut drawing, bar, tint);
+    for part in [0.0, 0.5, 1.0] {
+        let (x, y) = bar.at(part, 0.0);
+        let kilopascals = format!(
+            "{} kPa",
+            short_number((0.1 * part * highest).round() / 100.0)
+        );
+        drawing.text((x, y + 16.0), &kilopascals, style(12));
     }
-    picture.write_labels(&labels)?;
+    picture.print(&drawing)?;
     Ok(picture)
-}
-
-/// The colours from no pressure to the highest.
-fn draw_scale(picture: &mut Picture, left: usize, width: usize, top: usize) {
-    for column in 0..width {
-        let colour = share(0.15 + 0.85 * column as f64 / width as f64);
-        picture.fill(left + column..left + column + 1, top..top + 12, colour);
-    }
 }

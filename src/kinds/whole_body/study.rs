@@ -18,7 +18,7 @@ use crate::error::{Error, Result};
 use crate::geometry::Pose;
 use crate::kinds::{About, Facts, Kind, Source};
 use crate::objects::SphereUnion;
-use crate::report::study_folder::{Image, NamedPicture};
+use crate::report::study_folder::NamedPicture;
 use crate::study::pieces::{NamedPiece, PieceRows, PieceStudy, PiecesLeft, Scale, Shared};
 use crate::study::time_left::Piece;
 use crate::study::{MM, file_content};
@@ -123,7 +123,8 @@ impl Kind for WholeBodyPlan {
         Ok(vec![NamedPicture {
             name: "touched".to_owned(),
             title: format!("The scene {}, and the pressure on each patch", scene.scene),
-            image: Image::Png(drawn.png()?, (drawn.width, drawn.height)),
+            png: drawn.png()?,
+            size: (drawn.width, drawn.height),
         }])
     }
 

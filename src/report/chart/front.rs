@@ -1,8 +1,9 @@
 //! The Pareto front of a chart's points: one in each panel for each condition of the world, since nobody chooses that.
 
-use super::view::{Place, View, value_words};
-use crate::table::{Better, Column, Data, Role, front};
-use std::collections::{HashMap, HashSet};
+use super::view::{Place, View};
+use crate::report::swept::Setting;
+use crate::table::{Better, Role, front};
+use std::collections::HashMap;
 
 /// Points of fronts that are numbered and named below a chart, at most.
 const MOST_NAMED: usize = 24;
@@ -11,20 +12,19 @@ const MOST_NAMED: usize = 24;
 pub(super) struct Front<'a> {
     view: &'a View<'a>,
     /// Of each front its panel, and its points along x.
-    fronts: Vec<(usize, Vec<&'a Place>)>,
-    rows: HashSet<usize>,
+    pub fronts: Vec<(usize, Vec<&'a Place>)>,
 }
 
 /// Whether more of y is better.
 pub(super) fn is_more_better(view: &View) -> bool {
-    let y = view.column(&view.spec.y).map(|(column, _)| column.role);
-    !matches!(y, Some(Role::Value(Better::Less) | Role::Cost))
+    let y = view.column(&view.spec.y).map(|y| y.column.role);
+    !matches!(y, Ok(Role::Value(Better::Less) | Role::Cost))
 }
 
 /// What the legend calls the front.
 pub(super) fn words(view: &View) -> String {
     let cost = match view.column(&view.spec.x) {
-        Some((column, _)) if matches!(&column.unit[..], "s" | "ms" | "us" | "µs") => "faster",
+        Ok(x) if matches!(&x.column.unit[..], "s" | "ms" | "us" | "µs") => "faster",
         _ => "cheaper",
     };
     format!("Pareto front: nothing is both {cost} and as good")
@@ -33,22 +33,17 @@ pub(super) fn words(view: &View) -> String {
 impl<'a> Front<'a> {
     /// Of a chart; without points if it has none.
     pub fn of(view: &'a View) -> Self {
-        let conditions = view.table.columns.iter();
-        let conditions = conditions.filter(|column| column.role == Role::Condition);
-        let conditions: Vec<&str> = conditions.map(|column| &column.name[..]).collect();
+        let conditions = Setting::of_roles(view.table, &[Role::Condition]);
+        let conditions: Vec<Setting> = conditions.collect();
         let more = is_more_better(view);
         let mut fronts = Vec::new();
-        let n_panels = if view.spec.front {
-            view.panels.names.len()
-        } else {
-            0
-        };
-        for panel in 0..n_panels {
+        let panels = (0..view.panels.names.len()).filter(|_| view.spec.front);
+        for panel in panels {
             let here = view.places.iter().filter(|place| place.panel == panel);
             let places: HashMap<usize, &Place> =
                 here.clone().map(|place| (place.row, place)).collect();
-            let rows = here.map(|place| place.row);
-            for group in view.table.groups(&conditions, rows) {
+            let rows: Vec<usize> = here.map(|place| place.row).collect();
+            for group in Setting::groups(&conditions, view.table, &rows) {
                 let group = group.iter().map(|row| places[row]);
                 // Places keep the order of values, so they serve as well as these.
                 let points: Vec<(f64, f64)> = group.clone().map(|p| (p.x, p.y)).collect();
@@ -59,23 +54,13 @@ impl<'a> Front<'a> {
                 fronts.push((panel, on));
             }
         }
-        let rows = fronts.iter().flat_map(|(_, front)| front);
-        Self {
-            rows: rows.map(|place| place.row).collect(),
-            view,
-            fronts,
-        }
+        Self { view, fronts }
     }
 
     /// Whether a row is on it.
     pub fn has(&self, row: usize) -> bool {
-        self.rows.contains(&row)
-    }
-
-    /// The fronts of a panel.
-    pub fn of_panel(&self, panel: usize) -> impl Iterator<Item = &Vec<&'a Place>> {
-        let here = self.fronts.iter().filter(move |front| front.0 == panel);
-        here.map(|front| &front.1)
+        let mut points = self.fronts.iter().flat_map(|(_, front)| front);
+        points.any(|place| place.row == row)
     }
 
     /// Points with their numbers, panel by panel along x; none if they are too many.
@@ -101,35 +86,21 @@ impl<'a> Front<'a> {
     /// Of each point what was chosen, what it reaches, and what it costs.
     fn said(&self, places: impl Iterator<Item = &'a Place>) -> Vec<String> {
         let view = self.view;
-        let columns = view.table.columns.iter().zip(&view.table.data);
-        let names: Vec<(&Column, &Data)> = columns
-            .filter(|(c, _)| matches!(c.role, Role::Choice | Role::Condition | Role::Subject))
-            .filter(|(_, data)| varies(data, &view.rows))
-            .collect();
-        let of = |name: &str, row: usize| {
-            let found = view.column(name);
-            found.map_or_else(String::new, |(column, data)| value_words(column, data, row))
+        let settings =
+            Setting::of_roles(view.table, &[Role::Choice, Role::Condition, Role::Subject]);
+        let settings = settings.filter(|one| one.varies(&view.rows));
+        let settings: Vec<Setting> = settings.collect();
+        let of = |name: &str, row| {
+            view.column(name)
+                .map_or_else(|_| String::new(), |c| c.label(row))
         };
         let said = places.map(|place| {
-            let phrase = |(column, data): &(&Column, &Data)| match data.value(place.row) {
-                Some(value) => match data {
-                    Data::Words { .. } => column.value_words(&value),
-                    Data::Numbers(_) => column.phrase(&value),
-                },
-                None => String::new(),
-            };
-            let mut words: Vec<String> = names.iter().map(phrase).collect();
-            words.retain(|word| !word.is_empty());
-            let (y, x) = (of(&view.spec.y, place.row), of(&view.spec.x, place.row));
+            let row = place.row;
+            let given = settings.iter().filter(|one| one.data.value(row).is_some());
+            let words: Vec<String> = given.map(|one| one.title(row)).collect();
+            let (y, x) = (of(&view.spec.y, row), of(&view.spec.x, row));
             format!("{}: {y} at {x}", words.join(", "))
         });
         said.collect()
     }
-}
-
-fn varies(data: &Data, rows: &[usize]) -> bool {
-    let Some(first) = rows.first().map(|&row| data.value(row)) else {
-        return false;
-    };
-    rows.iter().any(|&row| data.value(row) != first)
 }

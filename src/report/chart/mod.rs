@@ -13,7 +13,6 @@ mod tiles;
 mod view;
 
 pub(in crate::report) use scale::even_ticks;
-pub(in crate::report) use tiles::{draw_sign, tint};
 pub use view::Place;
 
 use crate::error::{Error, Result};
@@ -36,10 +35,10 @@ pub fn draw(spec: &ChartSpec, tables: &[Table]) -> Result<Drawing> {
             "one at least",
         ));
     }
-    Ok(match spec.mark {
-        Mark::Tiles { .. } => tiles::draw(&view),
-        Mark::Line | Mark::Step | Mark::Points => marks::draw(&view),
-    })
+    match &spec.mark {
+        Mark::Tiles { fill, sign } => tiles::draw(&view, fill, sign.as_deref()),
+        Mark::Line | Mark::Points => Ok(marks::draw(&view)),
+    }
 }
 
 /// Where every row that a chart shows stands, as parts of the width and the height of its panel, from the left and from below.

@@ -3,11 +3,13 @@
 use super::layout::{Layout, TICK};
 use super::rules;
 use super::view::View;
-use crate::report::colours::{GRID, INK, LINES, PAPER, Rgb, share, text_on};
+use crate::error::Result;
+use crate::report::colours::{INK, LINES, PAPER, Rgb, text_on, tint};
 use crate::report::drawing::{Align, Area, Drawing, Stroke, TextStyle};
-use crate::report::legend::{LegendEntry, Mark};
-use crate::report::text_width::{text_width, wrap};
-use crate::table::{Column, Data, Mark as TableMark, Role, Scale};
+use crate::report::legend::LegendEntry;
+use crate::report::swept::Setting;
+use crate::report::text_width::text_width;
+use crate::table::{Data, Role, Scale, Value};
 
 /// Colours of outcomes in the order in which the table first has them; told apart by lightness, too.
 const OUTCOMES: [Rgb; 8] = [
@@ -19,175 +21,112 @@ const MANY: usize = 20;
 
 /// How tiles look.
 struct Look<'a> {
-    column: (&'a Column, &'a Data),
-    sign: Option<(&'a Column, &'a Data)>,
+    fill: Setting<'a>,
+    sign: Option<Setting<'a>>,
     /// The smallest and the largest number that is shown.
     ends: (f64, f64),
 }
 
-pub(super) fn draw(view: &View) -> Drawing {
-    let TableMark::Tiles { fill, sign } = &view.spec.mark else {
-        return Drawing::new(1.0, 1.0);
-    };
-    let Some(column) = view.column(fill) else {
-        return Drawing::new(1.0, 1.0);
-    };
-    let sign = sign.as_ref().and_then(|sign| view.column(sign));
-    let look = Look::of(view, column, sign);
-    let (n_rows, n_columns) = (view.lines.names.len(), view.panels.names.len());
+pub(super) fn draw(view: &View, fill: &str, sign: Option<&str>) -> Result<Drawing> {
+    let look = Look::of(
+        view,
+        view.column(fill)?,
+        sign.map(|sign| view.column(sign)).transpose()?,
+    );
+    let (across, down) = (view.x.n_levels, view.y.n_levels);
+    let columns = view.panels.names.len();
+    let is_many = across.min(down) >= MANY;
+    let (margin, high) = if is_many { (4.0, 18.0) } else { (8.0, 22.0) };
     let signs = view
         .rows
         .iter()
         .map(|&row| text_width(&look.sign(row), f64::from(SIGN)));
-    let ticks = view
-        .x
-        .ticks
-        .iter()
-        .map(|tick| text_width(&tick.label, TICK))
-        .take(if view.x.is_words() { 0 } else { 99 });
-    let is_many = view.x.n_levels().min(view.y.n_levels()) >= MANY;
-    let (margin, high) = if is_many { (4.0, 18.0) } else { (8.0, 22.0) };
+    let ticks = view.x.ticks.iter().filter(|_| !view.x.is_words);
+    let ticks = ticks.map(|tick| text_width(&tick.label, TICK));
     let widest = signs.chain(ticks).fold(14.0, f64::max) + margin;
-    let most = 640.0 / (view.x.n_levels() * n_columns) as f64;
-    let width = widest.max(most.min(64.0)) * view.x.n_levels() as f64;
-    let height = high * view.y.n_levels() as f64;
-    let titles = view
-        .panels
-        .names
-        .iter()
-        .map(|name| wrap(name, 15.0, width).len());
-    let titles = match n_columns {
-        1 => 0.0,
-        _ => 16.0 * titles.max().unwrap_or(1) as f64,
-    };
-    let (first, above) = match n_rows {
-        1 => (0.0, 8.0 + titles),
-        _ => (titles, 24.0),
-    };
-    let n_panels = n_rows * n_columns;
-    let mut layout = Layout::of(
-        view,
-        look.legend(view),
-        (n_panels, n_columns),
-        (width, height),
-        above,
-    );
-    layout.first = first;
-    let mut drawing = Drawing::new(layout.width(), layout.bottom());
-    layout.draw_heading(&mut drawing);
-    for panel in 0..n_panels {
+    let most = 640.0 / (across * columns) as f64;
+    let size = (widest.max(most.min(64.0)), high);
+    let panel = (size.0 * across as f64, size.1 * down as f64);
+    let layout = Layout::of(view, look.legend(view), columns, panel);
+    let mut drawing = Drawing::new(layout.width, layout.bottom());
+    layout.draw_titles(&mut drawing, view);
+    for panel in 0..view.titles.len() {
         let frame = layout.frame(panel);
-        let (row, column) = (panel / n_columns, panel % n_columns);
-        layout.draw_axes(&mut drawing, view, panel, false);
-        if n_columns > 1 && row == 0 {
-            let up = if n_rows > 1 { 24.0 } else { 8.0 };
-            layout.draw_title(&mut drawing, panel, &view.panel_title(column), up);
-        }
-        if n_rows > 1 && layout.is_first_in_row(panel) {
-            layout.draw_row_title(&mut drawing, panel, &view.row_title(row));
-        }
-        let here = view
-            .places
-            .iter()
-            .filter(|place| place.panel == column && place.line == row);
-        let here = here.filter(|place| look.column.1.value(place.row).is_some());
-        let size = (
-            width / view.x.n_levels() as f64,
-            height / view.y.n_levels() as f64,
-        );
+        layout.draw_axes(&mut drawing, view, panel);
+        let places = view.places.iter();
+        let here = places.filter(|place| view.panel_of(place) == panel);
+        let here = here.filter(|place| look.fill.data.value(place.row).is_some());
         let tiles: Vec<(Area, Rgb, String)> = here
             .map(|place| {
+                let (x, y) = frame.at(place.x, place.y);
                 let area = Area {
-                    x: frame.x + place.x * width - 0.5 * size.0,
-                    y: frame.y + (1.0 - place.y) * height - 0.5 * size.1,
+                    x: x - 0.5 * size.0,
+                    y: y - 0.5 * size.1,
                     width: size.0,
                     height: size.1,
                 };
-                (area, look.fill(place.row), look.sign(place.row))
+                (area, look.colour(place.row), look.sign(place.row))
             })
             .collect();
-        if is_many {
-            draw_grid(&mut drawing, view, frame);
-        }
-        for (area, fill, _) in &tiles {
-            drawing.area(*area, *fill);
+        for (area, colour, _) in &tiles {
+            drawing.area(*area, *colour);
             drawing.frame(*area, Stroke::new(PAPER, 1.0));
         }
         rules::draw(&mut drawing, view, panel, frame);
-        for (area, fill, sign) in &tiles {
-            draw_sign(&mut drawing, *area, *fill, sign);
+        for (area, colour, sign) in &tiles {
+            draw_sign(&mut drawing, *area, *colour, sign);
         }
         drawing.frame(frame, Stroke::new(INK, 1.0));
     }
-    drawing
-}
-
-/// Lines between tiles, which lead the eye where most places are empty.
-fn draw_grid(drawing: &mut Drawing, view: &View, frame: Area) {
-    let stroke = Stroke::new(GRID, 1.0);
-    for column in 1..view.x.n_levels() {
-        let x = frame.x + frame.width * column as f64 / view.x.n_levels() as f64;
-        drawing.line((x, frame.y), (x, frame.y + frame.height), stroke);
-    }
-    for row in 1..view.y.n_levels() {
-        let y = frame.y + frame.height * row as f64 / view.y.n_levels() as f64;
-        drawing.line((frame.x, y), (frame.x + frame.width, y), stroke);
-    }
-}
-
-/// The colour of a number between the least and the most: the least is not yet white, which is none.
-pub(in crate::report) fn tint(part: f64) -> Rgb {
-    share(0.12 + 0.88 * part.clamp(0.0, 1.0))
+    Ok(drawing)
 }
 
 /// On a ground of its own, so that no line runs through it: a minus would be read as a plus.
-pub(in crate::report) fn draw_sign(drawing: &mut Drawing, place: Area, fill: Rgb, sign: &str) {
+fn draw_sign(drawing: &mut Drawing, place: Area, colour: Rgb, sign: &str) {
     let width = text_width(sign, f64::from(SIGN)) + 4.0;
-    let (x, y) = (place.x + 0.5 * place.width, place.y + 0.5 * place.height);
+    let (x, y) = place.at(0.5, 0.5);
     let ground = Area {
         x: x - 0.5 * width,
         y: y - 7.0,
         width,
         height: 14.0,
     };
-    drawing.area(ground, fill);
+    drawing.area(ground, colour);
     let style = TextStyle::new(SIGN).align(Align::Middle);
-    drawing.text((x, y + 4.0), sign, style.colour(text_on(fill)));
+    drawing.text((x, y + 4.0), sign, style.colour(text_on(colour)));
 }
 
 impl<'a> Look<'a> {
-    fn of(
-        view: &View,
-        column: (&'a Column, &'a Data),
-        sign: Option<(&'a Column, &'a Data)>,
-    ) -> Self {
-        let ends = match column.1 {
-            Data::Numbers(numbers) => {
-                let shown = view.places.iter().map(|place| numbers[place.row]);
-                let shown =
-                    shown.filter(|&n| n.is_finite() && (column.0.scale != Scale::Log || n > 0.0));
-                shown.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), n| {
-                    (low.min(n), high.max(n))
-                })
+    fn of(view: &View, fill: Setting<'a>, sign: Option<Setting<'a>>) -> Self {
+        let column = fill.column;
+        let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
+        if let Data::Numbers(numbers) = fill.data {
+            let shown = view.places.iter().map(|place| numbers[place.row]);
+            for number in
+                shown.filter(|&n| n.is_finite() && (column.scale != Scale::Log || n > 0.0))
+            {
+                (low, high) = (low.min(number), high.max(number));
             }
-            Data::Words { .. } => (0.0, 1.0),
-        };
-        let ends = match column.0.scale == Scale::Share && column.0.role != Role::Condition {
-            true => (ends.0.min(0.0), ends.1.max(1.0)),
-            false => ends,
-        };
-        Self { column, sign, ends }
+        }
+        if column.scale == Scale::Share && column.role != Role::Condition {
+            (low, high) = (low.min(0.0), high.max(1.0));
+        }
+        Self {
+            fill,
+            sign,
+            ends: (low, high),
+        }
     }
 
-    fn fill(&self, row: usize) -> Rgb {
-        match self.column.1 {
+    fn colour(&self, row: usize) -> Rgb {
+        match self.fill.data {
             Data::Words { codes, .. } => OUTCOMES[codes[row] as usize % OUTCOMES.len()],
             Data::Numbers(numbers) => tint(self.part(numbers[row])),
         }
     }
 
     fn part(&self, number: f64) -> f64 {
-        let spaced = |n: f64| match self.column.0.scale {
+        let spaced = |n: f64| match self.fill.column.scale {
             Scale::Log => n.max(1e-300).log10(),
             _ => n,
         };
@@ -198,69 +137,70 @@ impl<'a> Look<'a> {
         }
     }
 
+    /// What is written on the tile of a row.
     fn sign(&self, row: usize) -> String {
-        if let Some((column, data)) = self.sign
-            && let Some(value) = data.value(row)
-        {
-            return match value {
-                crate::table::Value::Number(number) => column.tick(number),
-                crate::table::Value::Word(word) => column.word(&word),
-            };
+        let sign = self.sign.filter(|sign| sign.data.value(row).is_some());
+        let Setting { column, data } = sign.unwrap_or(self.fill);
+        match (data.value(row), data) {
+            (None, _) => String::new(),
+            (Some(Value::Number(number)), _) => column.tick(number),
+            (Some(Value::Word(word)), _) if sign.is_some() => column.word(&word),
+            (_, Data::Words { codes, .. }) => self.letter(codes[row] as usize),
+            (_, Data::Numbers(_)) => String::new(),
         }
-        let (column, data) = self.column;
-        match data {
-            Data::Words { levels, codes } => letter(column, levels, codes[row] as usize),
-            Data::Numbers(numbers) if numbers[row].is_nan() => String::new(),
-            Data::Numbers(numbers) => column.tick(numbers[row]),
-        }
+    }
+
+    /// The first letters of an outcome that none before it has.
+    fn letter(&self, code: usize) -> String {
+        let Data::Words { levels, .. } = self.fill.data else {
+            return String::new();
+        };
+        let words = levels
+            .iter()
+            .map(|level| self.fill.column.word(level).to_lowercase());
+        let words: Vec<String> = words.take(code + 1).collect();
+        let start = |word: &String, n: usize| word.chars().take(n).collect::<String>();
+        let is_free = |n: &usize| {
+            let mut before = words[..code].iter();
+            before.all(|other| start(other, *n) != start(&words[code], *n))
+        };
+        let n = (1..=3).find(is_free).unwrap_or(3);
+        start(&words[code], n)
     }
 
     fn legend(&self, view: &View) -> Vec<LegendEntry> {
-        let (column, data) = self.column;
-        let mut entries = vec![LegendEntry::new(format!("{}:", column.title()), Mark::None)];
-        match data {
+        let column = self.fill.column;
+        let tile = |text: String, colour: Rgb, sign: String| {
+            LegendEntry::new(text, move |drawing, area| {
+                drawing.area(area, colour);
+                draw_sign(drawing, area, colour, &sign);
+            })
+        };
+        let mut entries = vec![LegendEntry::title(format!("{}:", column.title()))];
+        match self.fill.data {
             Data::Words { levels, codes } => {
-                for (code, level) in levels.iter().enumerate() {
+                let is_shown = |code: &usize| {
                     let mut places = view.places.iter();
-                    if places.any(|place| codes[place.row] as usize == code) {
-                        let sign = letter(column, levels, code);
-                        let mark = Mark::Tile(OUTCOMES[code % OUTCOMES.len()], sign);
-                        entries.push(LegendEntry::new(column.word(level), mark));
-                    }
-                }
+                    places.any(|place| codes[place.row] as usize == *code)
+                };
+                entries.extend((0..levels.len()).filter(is_shown).map(|code| {
+                    let colour = OUTCOMES[code % OUTCOMES.len()];
+                    tile(column.word(&levels[code]), colour, self.letter(code))
+                }));
             }
             Data::Numbers(_) => {
                 let (low, high) = self.ends;
-                let text = format!("{} to {}", column.tick(low), column.tick(high));
-                entries.push(LegendEntry::new(text, Mark::Bar));
+                for end in [low, high] {
+                    let colour = tint(self.part(end));
+                    entries.push(tile(column.tick(end), colour, String::new()));
+                }
             }
         }
         entries.extend(rules::entries(view));
-        if let Some((column, _)) = self.sign {
-            entries.push(LegendEntry::new(
-                format!("written: {}", column.title()),
-                Mark::None,
-            ));
+        if let Some(sign) = self.sign {
+            let written = format!("written: {}", sign.column.title());
+            entries.push(LegendEntry::title(written));
         }
         entries
     }
-}
-
-/// The first letters of a word that no word before it has.
-fn letter(column: &Column, levels: &[String], code: usize) -> String {
-    let start = |level: &str, n: usize| {
-        column
-            .word(level)
-            .chars()
-            .take(n)
-            .collect::<String>()
-            .to_lowercase()
-    };
-    let is_free = |n: &usize| {
-        levels[..code]
-            .iter()
-            .all(|other| start(other, *n) != start(&levels[code], *n))
-    };
-    let n = (1..=3).find(is_free).unwrap_or(3);
-    start(&levels[code], n)
 }

@@ -1,8 +1,10 @@
 //! What a chart shows of its table: rows, lines, panels, and where each row stands.
 
-use super::scale::{Scale, values};
+use super::scale::Scale;
 use crate::error::{Error, Result};
-use crate::table::{Along, At, ChartSpec, Column, Data, Mark, Role, Rule, Table, Value};
+use crate::report::swept::Setting;
+use crate::table::{Along, At, ChartSpec, Data, Mark, Role, Scale as Spacing, Table};
+use std::collections::HashSet;
 
 /// Lines up to which bands do not hide each other; more lines get a whisker at each point.
 const MOST_BANDS: usize = 4;
@@ -23,6 +25,10 @@ pub(super) struct View<'a> {
     pub y: Scale,
     /// Whether lines are joined along x: between words, or a number and what stands for none of it, there is nothing.
     pub is_joined: bool,
+    /// Of each panel what stands above it: `noise 10 %`, `RBF SVM`; empty where there is one, and in later rows of tiles.
+    pub titles: Vec<String>,
+    /// Of each row of panels what it is: tiles have one for each of several lines.
+    pub row_titles: Vec<String>,
     /// Rows that have a place, line by line along x.
     pub places: Vec<Place>,
 }
@@ -51,6 +57,8 @@ pub(super) struct Groups {
     pub heading: String,
     /// Of each group its values in words; one empty name without columns.
     pub names: Vec<String>,
+    /// The same for a title: a number says what it is of.
+    titles: Vec<String>,
     /// The group of each row of the table; 0 of those that are not shown.
     pub of: Vec<usize>,
 }
@@ -68,67 +76,60 @@ impl<'a> View<'a> {
             )
         })?;
         let column = |name: &str| column_of(spec, table, name);
-        let mut shown = Vec::new();
-        for one in &spec.shown {
-            shown.push((column(&one.column)?.1, &one.value));
+        let mut rows: Vec<usize> = (0..table.n_rows).collect();
+        for shown in &spec.shown {
+            let data = column(&shown.column)?.data;
+            rows.retain(|&row| data.value(row).as_ref() == Some(&shown.value));
         }
-        let is_shown = |row: &usize| {
-            let has = |(data, value): &(&Data, &Value)| data.value(*row).as_ref() == Some(*value);
-            shown.iter().all(has)
+        let groups = |names: &[String]| -> Result<Groups> {
+            let settings: Result<Vec<Setting>> = names.iter().map(|name| column(name)).collect();
+            Ok(Groups::of(table, &settings?, &rows))
         };
-        let rows: Vec<usize> = (0..table.n_rows).filter(is_shown).collect();
-        for name in spec.lines.iter().chain(&spec.panels) {
-            column(name)?;
+        let (lines, panels) = (groups(&spec.lines)?, groups(spec.panels.as_slice())?);
+        let is_tiles = matches!(spec.mark, Mark::Tiles { .. });
+        let (mut titles, mut row_titles) = (panels.titles.clone(), Vec::new());
+        if is_tiles && lines.names.len() > 1 {
+            titles.resize(titles.len() * lines.names.len(), String::new());
+            row_titles = lines.titles.clone();
         }
-        let lines = Groups::of(table, &spec.lines, &rows);
-        let panels = Groups::of(table, spec.panels.as_slice(), &rows);
         let (mut x, y) = (column(&spec.x)?, column(&spec.y)?);
-        x.0 = spec.x_is.as_ref().unwrap_or(x.0);
-        let (mut x_values, y_values) = (values(x.0, x.1, &rows), values(y.0, y.1, &rows));
-        if matches!(spec.mark, Mark::Tiles { .. }) {
-            order_as(&mut x_values, &y_values.1);
-        }
-        let interval = interval_of(table, y.0);
+        x.column = spec.x_is.as_ref().unwrap_or(x.column);
+        let y_values = values(&y, &rows, &[]);
+        // What is alike in rows and columns of tiles lies on the diagonal.
+        let x_values = values(&x, &rows, if is_tiles { &y_values.1 } else { &[] });
+        let interval = y.column.interval.as_ref();
+        let interval =
+            interval.and_then(|[low, high]| Some([table.numbers(low)?, table.numbers(high)?]));
         let mut along = [x_values.0.clone(), y_values.0.clone()];
         for bound in interval.into_iter().flatten() {
             along[1].extend(rows.iter().map(|&row| bound[row]));
         }
-        for Rule {
-            along: axis, at, ..
-        } in &spec.rules
-        {
-            let along = &mut along[usize::from(*axis == Along::Y)];
-            match at {
+        for rule in &spec.rules {
+            let along = &mut along[usize::from(rule.along == Along::Y)];
+            match &rule.at {
                 At::Value(value) => along.push(*value),
-                At::Column(name) => {
-                    let numbers = table
-                        .numbers(name)
-                        .ok_or_else(|| no_column(spec, table, name))?;
-                    along.extend(rows.iter().map(|&row| numbers[row]));
-                }
+                At::Column(name) => along.extend(values(&column(name)?, &rows, &[]).0),
             }
         }
-        let is_tiles = matches!(spec.mark, Mark::Tiles { .. });
-        let (x_scale, y_scale) = match is_tiles {
-            true => (
-                Scale::of_tiles(x.0, (&x_values.0, &x_values.1), Along::X),
-                Scale::of_tiles(y.0, (&y_values.0, &y_values.1), Along::Y),
-            ),
-            false => (
-                Scale::of(x.0, (&along[0], &x_values.1), Along::X),
-                Scale::of(y.0, (&along[1], &y_values.1), Along::Y),
-            ),
+        let scale = |one: &Setting, own: &(Vec<f64>, Vec<String>), all: &[f64], side| match is_tiles
+            || one.column.scale == Spacing::Words
+        {
+            true => Scale::of_levels(one.column, (&own.0, &own.1), side),
+            false => Scale::of(one.column, all, side),
         };
-        let is_broken = x_scale.is_words() || x.0.has_named_numbers();
+        let x_scale = scale(&x, &x_values, &along[0], Along::X);
+        let is_broken = x_scale.is_words || x.column.has_named_numbers();
         let mut view = Self {
             spec,
             table,
-            rows,
+            titles,
+            row_titles,
             lines,
             panels,
+            rows,
             x: x_scale,
-            y: y_scale,
-            is_joined: spec.mark != Mark::Points && !is_broken,
+            y: scale(&y, &y_values, &along[1], Along::Y),
+            is_joined: spec.mark == Mark::Line && !is_broken,
             places: Vec::new(),
         };
         view.places = view.place_all((&x_values.0, &y_values.0), interval);
@@ -163,18 +164,17 @@ impl<'a> View<'a> {
 
     /// Lines stand beside each other at a word, so that their whiskers do not hide each other.
     fn beside(&self, line: usize) -> f64 {
-        if !self.x.is_words() || self.spec.mark != Mark::Line {
+        if !self.x.is_words || self.spec.mark != Mark::Line {
             return 0.0;
         }
         let n = self.lines.names.len() as f64;
-        let step = f64::min(0.14, 0.6 / n) / self.x.n_levels() as f64;
+        let step = f64::min(0.14, 0.6 / n) / self.x.n_levels as f64;
         step * (line as f64 - 0.5 * (n - 1.0))
     }
 
-    /// The line of a panel.
-    pub fn line(&self, panel: usize, line: usize) -> Vec<&Place> {
-        let is_it = |place: &&Place| place.panel == panel && place.line == line;
-        self.places.iter().filter(is_it).collect()
+    /// Whether it shows tiles.
+    pub fn is_tiles(&self) -> bool {
+        matches!(self.spec.mark, Mark::Tiles { .. })
     }
 
     /// Whether intervals are bands: of few lines.
@@ -182,62 +182,27 @@ impl<'a> View<'a> {
         self.has_interval() && self.is_joined && self.lines.names.len() <= MOST_BANDS
     }
 
-    /// Whether intervals are whiskers.
-    pub fn has_whiskers(&self) -> bool {
+    /// Whether intervals are drawn: as bands or as whiskers.
+    pub fn has_interval(&self) -> bool {
         let is_many = self.spec.mark == Mark::Points && self.places.len() > MOST_WHISKERS;
-        self.has_interval() && !self.has_bands() && !is_many
+        !is_many && self.places.iter().any(|place| place.interval.is_some())
     }
 
-    fn has_interval(&self) -> bool {
-        self.places.iter().any(|place| place.interval.is_some())
-    }
-
-    /// The number of the panel in which a place stands: tiles have a row of panels for each line.
+    /// The number of the panel in which a place stands.
     pub fn panel_of(&self, place: &Place) -> usize {
-        match self.spec.mark {
-            Mark::Tiles { .. } => place.line * self.panels.names.len() + place.panel,
-            _ => place.panel,
-        }
+        let row = if self.is_tiles() { place.line } else { 0 };
+        row * self.panels.names.len() + place.panel
     }
 
-    /// What a panel is: `noise 10 %`, `RBF SVM`.
-    pub fn panel_title(&self, panel: usize) -> String {
-        self.title(self.spec.panels.as_slice(), &self.panels.names[panel])
-    }
-
-    /// What a row of panels of tiles is.
-    pub fn row_title(&self, row: usize) -> String {
-        let name = &self.lines.names[row];
-        match &self.spec.lines[..] {
-            [_] => self.title(&self.spec.lines, name),
-            _ => format!("{}: {name}", self.lines.heading),
-        }
-    }
-
-    /// A number says what it is of.
-    fn title(&self, columns: &[String], name: &str) -> String {
-        match columns {
-            [column] => match self.column(column) {
-                Some((column, Data::Numbers(_))) => format!("{} {name}", column.words),
-                _ => name.to_owned(),
-            },
-            _ => name.to_owned(),
-        }
-    }
-
-    /// A column that the spec names.
-    pub fn column(&self, name: &str) -> Option<(&'a Column, &'a Data)> {
-        self.table.column(name)
+    /// A column by its name.
+    pub fn column(&self, name: &str) -> Result<Setting<'a>> {
+        column_of(self.spec, self.table, name)
     }
 
     /// What an interval is: what the words of its ends have in common before a comma, else both.
     pub fn interval_words(&self) -> Option<String> {
-        let (y, _) = self.column(&self.spec.y)?;
-        let [low, high] = y.interval.as_ref()?;
-        let words = |name: &str| {
-            self.column(name)
-                .map(|(column, _)| column.words.to_string())
-        };
+        let words = |name: &str| Some(self.column(name).ok()?.column.words.as_ref());
+        let [low, high] = self.column(&self.spec.y).ok()?.column.interval.as_ref()?;
         let (low, high) = (words(low)?, words(high)?);
         Some(match (low.split_once(", "), high.split_once(", ")) {
             (Some((same, _)), Some((other, _))) if same == other => same.to_owned(),
@@ -248,24 +213,16 @@ impl<'a> View<'a> {
     /// Choices and conditions that have one value in the chart and stand nowhere in it, in words.
     pub fn constants(&self) -> String {
         let spec = self.spec;
-        let used = |name: &str| {
-            [&spec.x, &spec.y]
-                .into_iter()
-                .chain(&spec.lines)
-                .chain(&spec.panels)
-                .any(|n| n == name)
+        let axes = [&spec.x, &spec.y].into_iter();
+        let used: Vec<&String> = axes.chain(&spec.lines).chain(&spec.panels).collect();
+        let is_constant = |one: &Setting| {
+            let is_used = used.iter().any(|name| *name == one.column.name.as_ref());
+            let value = self.rows.first().and_then(|&row| one.data.value(row));
+            !is_used && value.is_some() && !one.varies(&self.rows)
         };
-        let columns = self.table.columns.iter().zip(&self.table.data);
-        let columns = columns
-            .filter(|(c, _)| matches!(c.role, Role::Choice | Role::Condition) && !used(&c.name));
-        let phrases = columns.filter_map(|(column, data)| {
-            let first = data.value(*self.rows.first()?)?;
-            let is_same = |&row: &usize| data.value(row).as_ref() == Some(&first);
-            self.rows
-                .iter()
-                .all(is_same)
-                .then(|| column.phrase(&first).replace(' ', "\u{a0}"))
-        });
+        let constant =
+            Setting::of_roles(self.table, &[Role::Choice, Role::Condition]).filter(is_constant);
+        let phrases = constant.map(|one| one.phrase(self.rows[0]).replace(' ', "\u{a0}"));
         let phrases: Vec<String> = phrases.collect();
         match phrases.is_empty() {
             true => String::new(),
@@ -276,85 +233,68 @@ impl<'a> View<'a> {
 
 impl Groups {
     /// By the values of columns in the order of first rows; by one column of numbers in rising order.
-    fn of(table: &Table, names: &[String], rows: &[usize]) -> Self {
-        let names: Vec<&str> = names.iter().map(String::as_str).collect();
-        let mut groups = table.groups(&names, rows.iter().copied());
-        let columns = names.iter().filter_map(|name| table.column(name));
-        let columns: Vec<(&Column, &Data)> = columns.collect();
-        if let [(_, Data::Numbers(numbers))] = columns[..] {
+    fn of(table: &Table, settings: &[Setting], rows: &[usize]) -> Self {
+        let mut groups = Setting::groups(settings, table, rows);
+        if let [one] = settings
+            && let Data::Numbers(numbers) = one.data
+        {
             groups.sort_by(|a, b| numbers[a[0]].total_cmp(&numbers[b[0]]));
         }
         let mut of = vec![0; table.n_rows];
         for (group, rows) in groups.iter().enumerate() {
             rows.iter().for_each(|&row| of[row] = group);
         }
-        let heading: Vec<&str> = columns.iter().map(|(c, _)| &c.words[..]).collect();
-        let name = |group: &Vec<usize>| {
-            let words = columns.iter();
-            let words = words.map(|(column, data)| value_words(column, data, group[0]));
-            words.collect::<Vec<_>>().join(", ")
+        let joined = |words: &dyn Fn(&Setting) -> String| {
+            settings.iter().map(words).collect::<Vec<_>>().join(", ")
         };
+        let rows = groups.iter().map(|rows| rows[0]);
         Self {
-            heading: heading.join(", "),
-            names: groups.iter().map(name).collect(),
+            heading: joined(&|one| one.column.words.to_string()),
+            names: rows
+                .clone()
+                .map(|row| joined(&|one| one.label(row)))
+                .collect(),
+            titles: rows.map(|row| joined(&|one| one.title(row))).collect(),
             of,
         }
     }
 }
 
-/// Puts words in the order of others, those first that these have: what is alike in rows and columns lies on the diagonal.
-fn order_as((places, words): &mut (Vec<f64>, Vec<String>), others: &[String]) {
-    let rank = |word: &String| {
-        others
-            .iter()
-            .position(|other| other == word)
-            .unwrap_or(others.len())
+/// Numbers of rows; of words, each row's place among them and the words that are there: in the order of `first`, then in that of the table.
+fn values(one: &Setting, rows: &[usize], first: &[String]) -> (Vec<f64>, Vec<String>) {
+    let (levels, codes) = match one.data {
+        Data::Numbers(numbers) => {
+            return (rows.iter().map(|&row| numbers[row]).collect(), Vec::new());
+        }
+        Data::Words { levels, codes } => (levels, codes),
     };
-    let mut order: Vec<usize> = (0..words.len()).collect();
-    order.sort_by_key(|&word| rank(&words[word]));
-    let mut now = vec![0.0; words.len()];
-    for (place, &word) in order.iter().enumerate() {
-        now[word] = place as f64;
-    }
-    *words = order.iter().map(|&word| words[word].clone()).collect();
-    if !words.is_empty() {
-        places
-            .iter_mut()
-            .for_each(|place| *place = now[*place as usize]);
-    }
-}
-
-/// A value in words; of an absent one, what the column calls it.
-pub(super) fn value_words(column: &Column, data: &Data, row: usize) -> String {
-    match data.value(row) {
-        Some(value) => column.value_words(&value),
-        None => Some(column.word(""))
-            .filter(|word| !word.is_empty())
-            .unwrap_or_else(|| "none".to_owned()),
-    }
-}
-
-fn column_of<'a>(spec: &ChartSpec, table: &'a Table, name: &str) -> Result<(&'a Column, &'a Data)> {
-    table
-        .column(name)
-        .ok_or_else(|| no_column(spec, table, name))
-}
-
-fn no_column(spec: &ChartSpec, table: &Table, name: &str) -> Error {
-    let names: Vec<&str> = table
-        .columns
-        .iter()
-        .map(|column| &column.name[..])
+    let shown: HashSet<u32> = rows.iter().map(|&row| codes[row]).collect();
+    let mut order: Vec<u32> = (0..levels.len() as u32)
+        .filter(|code| shown.contains(code))
         .collect();
-    let place = format!("chart {} of {}", spec.name, table.file);
-    Error::input(
-        place,
-        format!("column {name:?}"),
-        format!("one of {}", names.join(", ")),
+    let word = |code: u32| one.column.word(&levels[code as usize]);
+    order.sort_by_key(|&code| {
+        let place = first.iter().position(|other| *other == word(code));
+        place.unwrap_or(first.len())
+    });
+    let mut places = vec![f64::NAN; levels.len()];
+    for (place, &code) in order.iter().enumerate() {
+        places[code as usize] = place as f64;
+    }
+    let of_row = |&row: &usize| places[codes[row] as usize];
+    (
+        rows.iter().map(of_row).collect(),
+        order.into_iter().map(word).collect(),
     )
 }
 
-fn interval_of<'a>(table: &'a Table, column: &Column) -> Option<[&'a [f64]; 2]> {
-    let [low, high] = column.interval.as_ref()?;
-    Some([table.numbers(low)?, table.numbers(high)?])
+fn column_of<'a>(spec: &ChartSpec, table: &'a Table, name: &str) -> Result<Setting<'a>> {
+    let found = table.column(name);
+    let found = found.map(|(column, data)| Setting { column, data });
+    found.ok_or_else(|| {
+        let names: Vec<&str> = table.columns.iter().map(|c| &c.name[..]).collect();
+        let place = format!("chart {} of {}", spec.name, table.file);
+        let allowed = format!("one of {}", names.join(", "));
+        Error::input(place, format!("column {name:?}"), allowed)
+    })
 }

@@ -21,7 +21,7 @@ pub fn touches_html(set: &Snapshots) -> Result<String> {
     for (name, frame) in &set.frames {
         check_frame(frame).map_err(|error| error.under(format!("{name}: ")))?;
     }
-    let scale = ColourScale::over(set.frames.iter().map(|(_, frame)| frame), set.quantity);
+    let scale = ColourScale::over(set.frames.iter().flat_map(|(_, frame)| frame), set.quantity);
     let largest = set.frames.iter().map(|(_, f)| f.nrows().max(f.ncols()));
     let block = largest.max().unwrap_or(1).div_ceil(MOST_CELLS);
     let mut html = format!(

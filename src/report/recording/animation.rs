@@ -99,7 +99,7 @@ pub fn write_animation(
             range = [range[0].min(value), range[1].max(value)];
         }
     })?;
-    let scale = ColourScale::over_values(&range, quantity);
+    let scale = ColourScale::over(&range, quantity);
     let skin = SkinPicture::new(&recording.header().patches[patch], quantity, scale)?;
     let failed = |error: EncodingError| Error::io(path, "encode", std::io::Error::other(error));
     let mut bytes = Vec::new();

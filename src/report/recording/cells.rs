@@ -3,10 +3,9 @@
 use super::header::RecordedPatch;
 use super::unrolled::unroll;
 use crate::report::colours::{GRID, INK};
-use crate::report::drawing::{Area, Drawing, Stroke, TextStyle};
-use crate::report::heat_map::{block_sentence, draw_x_axis, draw_y_axis, grid_sentence};
-use crate::report::picture::bar_length;
-use crate::table::short_number;
+use crate::report::drawing::{Area, Drawing, Stroke};
+use crate::report::heat_map::{block_sentence, grid_sentence};
+use crate::report::picture_axes::{Side, draw_map_axis, draw_scale_bar};
 use crate::world::Grid;
 use glam::DVec2;
 
@@ -110,22 +109,16 @@ impl Cells {
     /// What is around the cells: axes in millimetres of a grid, a scale bar of another skin.
     pub fn draw_frame(&self, drawing: &mut Drawing, is_grid: bool) {
         if is_grid {
-            let size_mm = |pixels: f64| pixels / self.pixels_per_metre * 1e3;
-            draw_x_axis(drawing, self.area, size_mm(self.area.width));
-            draw_y_axis(drawing, self.area, size_mm(self.area.height));
+            for (side, pixels) in [(Side::Below, self.area.width), (Side::Left, self.area.height)] {
+                draw_map_axis(drawing, self.area, side, pixels / self.pixels_per_metre * 1e3);
+            }
             drawing.frame(self.area, Stroke::new(INK, 1.0));
             return;
         }
         drawing.area(self.area, GRID);
-        let millimetres = bar_length(0.3 * self.area.width / self.pixels_per_metre * 1e3);
-        let right = LEFT + millimetres * 1e-3 * self.pixels_per_metre;
-        let y = self.area.y + self.area.height + 18.0;
-        drawing.line((LEFT, y), (right, y), Stroke::new(INK, 2.0));
-        for end in [LEFT, right] {
-            drawing.line((end, y - 4.0), (end, y + 4.0), Stroke::new(INK, 1.0));
-        }
-        let text = format!("{} mm", short_number(millimetres));
-        drawing.text((right + 8.0, y + 4.5), &text, TextStyle::new(12));
+        let (x, y) = self.area.at(0.5, 0.0);
+        let longest = 0.3 * self.area.width;
+        draw_scale_bar(drawing, (x, y + 26.0), self.pixels_per_metre, longest);
     }
 }
 

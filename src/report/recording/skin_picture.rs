@@ -4,10 +4,11 @@ use super::cells::{Cells, LEFT};
 use super::header::RecordedPatch;
 use super::pixels::paint;
 use crate::error::{Error, Result};
-use crate::report::colours::{INK, MUTED, Rgb, heat};
+use crate::report::colours::{INK, MUTED, Rgb};
 use crate::report::drawing::{Area, Drawing, TextStyle};
-use crate::report::heat_map::{ColourScale, draw_colour_bar, largest_of_blocks};
+use crate::report::heat_map::{ColourScale, largest_of_blocks};
 pub use crate::report::picture::Picture;
+use crate::report::picture_axes::draw_colour_bar;
 use crate::report::text_width::text_width;
 use crate::signal::Quantity;
 use crate::world::Grid;
@@ -78,7 +79,7 @@ impl SkinPicture {
     }
 
     fn colours(&self, values: &[f64]) -> Vec<Rgb> {
-        let colour = |value: &f64| heat(self.scale.place(value * self.quantity.factor()));
+        let colour = |value: &f64| self.scale.colour(*value, self.quantity);
         match self.grid {
             Some(grid) if self.cells.block > 1 => {
                 let frame = ArrayView2::from_shape((grid.ny, grid.nx), values)
@@ -106,8 +107,7 @@ fn paper(name: &str, cells: &Cells, quantity: Quantity, scale: ColourScale) -> D
     let mut drawing = Drawing::new(width, area.y + bar.height + 54.0);
     drawing.bold_text((LEFT, 22.0), name, TextStyle::new(13).colour(INK));
     drawing.text((LEFT, 40.0), below, TextStyle::new(11).colour(MUTED));
-    let title = format!("{} ({})", quantity.name(), quantity.unit());
-    draw_colour_bar(&mut drawing, scale, &title, bar);
+    draw_colour_bar(&mut drawing, scale, quantity, bar);
     drawing
 }
 
@@ -117,12 +117,7 @@ fn write_note(picture: &mut Picture, note: &str) -> Result<()> {
     }
     let mut drawing = Drawing::new(NOTE.2, NOTE.1);
     drawing.text((0.0, 13.0), note, TextStyle::new(12));
-    let line = drawing.picture()?;
-    let (left, top) = ((FINE * LEFT) as usize, (FINE * NOTE.0) as usize);
-    let n = line.width.min(picture.width - left);
-    for (row, pixels) in line.rgb.chunks(3 * line.width).enumerate() {
-        let at = 3 * ((top + row) * picture.width + left);
-        picture.rgb[at..at + 3 * n].copy_from_slice(&pixels[..3 * n]);
-    }
+    let corner = [LEFT, NOTE.0].map(|place| (FINE * place) as usize);
+    picture.paste(&drawing.picture()?, corner);
     Ok(())
 }

@@ -5,7 +5,6 @@ const SHAPES = [
   "M-4.6,-1.5h3.1v-3.1h3v3.1h3.1v3h-3.1v3.1h-3v-3.1h-3.1z", "M-4.8,0L-1.5,-4.2h3L4.8,0L1.5,4.2h-3z",
   "M-4.2,-4.2h2.2L0,-2L2,-4.2h2.2v2.2L2,0L4.2,2v2.2H2L0,2L-2,4.2h-2.2V2L-2,0L-4.2,-2z",
 ];
-const DASHES = ["none", "7 4", "2 4", "9 3 2 3"];
 const RULES = ["5 4", "2 3", "9 3", "1 2"];
 /** Colours of outcomes in the order in which the table first has them. */
 const OUTCOMES = ["#56b4e9", "#e69f00", "#d55e00", "#6a3d9a", "#1f2328", "#009e73", "#cc79a7", "#0072b2"];
@@ -13,7 +12,8 @@ const OUTCOMES = ["#56b4e9", "#e69f00", "#d55e00", "#6a3d9a", "#1f2328", "#009e7
 const TINTS = ["#ffffff", "#c6dbef", "#9ecae1", "#4d97c9", "#1f65ae", "#08306b"];
 const MANY = 1500;
 
-const colour = (line) => `var(--c${line % 8})`;
+/** Beyond the palette, shapes come again in other colours. */
+const colour = (line) => `var(--c${(line + 3 * Math.floor(line / 8)) % 8})`;
 const at1 = (number) => number.toFixed(1);
 
 function marker(line, x, y, more = {}) {
@@ -68,7 +68,7 @@ function legendOf(view, look) {
   } else if (spec.lines.length) {
     entries.push(make("span", { class: "name" }, `${lines.heading}:`));
     lines.names.forEach((name, line) => {
-      const stroke = draw("path", { d: "M-13,0H13", class: "line", style: `stroke: ${colour(line)}; stroke-dasharray: ${DASHES[Math.floor(line / 8) % 4]}` });
+      const stroke = draw("path", { d: "M-13,0H13", class: "line", style: `stroke: ${colour(line)}` });
       entries.push(legendEntry(name, ...(view.isJoined ? [stroke] : []), marker(line, 0, 0)));
     });
   }
@@ -176,8 +176,8 @@ function marksOf(view, places, { px, py }) {
       under.push(draw("path", { d, stroke: colour(line), class: "whisker" }));
     }
     if (view.isJoined && own.length > 1) {
-      const path = own.flatMap((place, k) => (view.kind === "step" && k ? [[place.x, own[k - 1].y], [place.x, place.y]] : [[place.x, place.y]]));
-      lines.push(draw("path", { d: pathOf(path, px, py), class: "line", style: `stroke: ${colour(line)}; stroke-dasharray: ${DASHES[Math.floor(line / 8) % 4]}` }));
+      const path = own.map((place) => [place.x, place.y]);
+      lines.push(draw("path", { d: pathOf(path, px, py), class: "line", style: `stroke: ${colour(line)}` }));
     }
     const [ahead, behind] = [own.filter((place) => view.onFront.has(place.row)), own.filter((place) => !view.onFront.has(place.row))];
     if (isMany) {

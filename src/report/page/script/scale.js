@@ -16,14 +16,12 @@ function evenTicks(low, high) {
 }
 
 function logTicks(low, high) {
-  const finer = [
-    [1], [1, 2, 5], [1, 1.5, 2, 3, 4, 5, 7], [1, 1.2, 1.4, 1.6, 1.8, 2, 2.2, 2.4, 2.6, 2.8, 3, 3.5, 4, 4.5, 5, 6, 7, 8, 9],
-  ].map((factors) => {
+  const multiples = (factors) => {
     const ticks = [];
     for (let power = Math.floor(low); power <= Math.ceil(high); power++) ticks.push(...factors.map((factor) => Number(`${factor}e${power}`)));
     return ticks.filter((tick) => Math.log10(tick) >= low && Math.log10(tick) <= high);
-  });
-  return finer.find((ticks) => ticks.length >= 3) ?? finer[3];
+  };
+  return [[1], [1, 2, 5]].map(multiples).find((ticks) => ticks.length >= 3) ?? evenTicks(10 ** low, 10 ** high);
 }
 
 function endsOf(values) {

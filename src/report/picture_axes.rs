@@ -1,0 +1,124 @@
+//! Axes, bars of colours and bars of length: what says how large and how much the things in a picture are.
+
+use super::chart::even_ticks;
+use super::colours::{INK, Rgb, heat};
+use super::drawing::{Align, Area, Drawing, Point, Stroke, TextStyle};
+use super::heat_map::ColourScale;
+use crate::signal::Quantity;
+use crate::table::short_number;
+
+/// Where an axis stands.
+#[derive(Clone, Copy)]
+pub(crate) enum Side {
+    Below,
+    Left,
+    Right,
+}
+
+/// Round ticks from the value at the left, or below, to that at the right, or above, and a title.
+pub(crate) fn draw_axis(
+    drawing: &mut Drawing,
+    area: Area,
+    side: Side,
+    (low, high): (f64, f64),
+    title: &str,
+) {
+    let style = TextStyle::new(12);
+    let moved = |(x, y): Point, right: f64, down: f64| (x + right, y + down);
+    for value in even_ticks(low, high) {
+        let part = (value - low) / (high - low);
+        let (at, end, text_at, align) = match side {
+            Side::Below => (area.at(part, 0.0), (0.0, 5.0), (0.0, 18.0), Align::Middle),
+            Side::Left => (area.at(0.0, part), (-5.0, 0.0), (-8.0, 4.5), Align::End),
+            Side::Right => (area.at(1.0, part), (4.0, 0.0), (8.0, 4.5), Align::Start),
+        };
+        drawing.line(at, moved(at, end.0, end.1), Stroke::new(INK, 1.0));
+        let text_at = moved(at, text_at.0, text_at.1);
+        drawing.text(text_at, &short_number(value), style.align(align));
+    }
+    let (at, angle) = match side {
+        Side::Below => (moved(area.at(0.5, 0.0), 0.0, 36.0), 0.0),
+        Side::Left => (moved(area.at(0.0, 0.5), -44.0, 0.0), -90.0),
+        Side::Right => (moved(area.at(1.0, 0.5), 52.0, 0.0), -90.0),
+    };
+    drawing.text(at, title, style.align(Align::Middle).angle(angle));
+}
+
+/// An axis in millimetres beside a map of an array centred on its origin, so many millimetres long: x below, y to the left.
+pub(crate) fn draw_map_axis(drawing: &mut Drawing, area: Area, side: Side, length: f64) {
+    let title = match side {
+        Side::Below => "x (mm)",
+        Side::Left | Side::Right => "y (mm)",
+    };
+    draw_axis(drawing, area, side, (-0.5 * length, 0.5 * length), title);
+}
+
+/// A bar of colours to the right of what it explains, `area` wide and high.
+pub(crate) fn draw_colour_bar(
+    drawing: &mut Drawing,
+    scale: ColourScale,
+    quantity: Quantity,
+    area: Area,
+) {
+    draw_colours(drawing, area, heat);
+    drawing.frame(area, Stroke::new(INK, 1.0));
+    let title = format!("{} ({})", quantity.name(), quantity.unit());
+    draw_axis(drawing, area, Side::Right, (scale.low, scale.high), &title);
+}
+
+/// Colours from 0 to 1 along the longer side of an area: rightwards, or up.
+pub(crate) fn draw_colours(drawing: &mut Drawing, area: Area, colour: impl Fn(f64) -> Rgb) {
+    const STEPS: usize = 64;
+    for step in 0..STEPS {
+        let [from, to] = [step, step + 1].map(|step| step as f64 / STEPS as f64);
+        // Each reaches to the end, so that no gap shines through between two steps.
+        let piece = if area.width > area.height {
+            Area {
+                x: area.at(from, 0.0).0,
+                width: area.width * (1.0 - from),
+                ..area
+            }
+        } else {
+            Area {
+                height: area.height * (1.0 - from),
+                ..area
+            }
+        };
+        drawing.area(piece, colour(0.5 * (from + to)));
+    }
+}
+
+/// A bar of a round length, at most so many pixels long, with its length above it.
+pub(crate) fn draw_scale_bar(
+    drawing: &mut Drawing,
+    (x, y): Point,
+    pixels_per_metre: f64,
+    longest: f64,
+) {
+    let millimetres = bar_length(longest / pixels_per_metre * 1e3);
+    let half = 0.5e-3 * millimetres * pixels_per_metre;
+    drawing.line((x - half, y), (x + half, y), Stroke::new(INK, 2.0));
+    let text = format!("{} mm", short_number(millimetres));
+    drawing.text((x, y - 5.0), &text, TextStyle::new(12).align(Align::Middle));
+}
+
+/// The longest of 1, 2, 5, 10, … that fits.
+fn bar_length(largest: f64) -> f64 {
+    let power = 10f64.powf(largest.log10().floor());
+    let steps = [5.0, 2.0, 1.0].map(|step| step * power);
+    steps.into_iter().find(|&s| s <= largest).unwrap_or(power)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn bars_are_the_longest_round_number_that_fits() {
+        let lengths = [1.0, 1.99, 2.5, 7.0, 12.0, 49.0, 0.03].map(bar_length);
+        let expected = [1.0, 1.0, 2.0, 5.0, 10.0, 20.0, 0.02];
+        for (length, expected) in lengths.into_iter().zip(expected) {
+            assert!((length - expected).abs() < 1e-12, "{length}");
+        }
+    }
+}
