@@ -3,7 +3,7 @@
 use super::source::Source;
 use crate::error::Result;
 use crate::report::page::Section;
-use crate::report::study_folder::{NamedPicture, words_of};
+use crate::report::study_folder::{NamedPicture, first_found, words_of};
 use crate::study::pieces::{PieceStudy, Scale};
 use crate::table::{ChartSpec, Table};
 use crate::toml_text;
@@ -117,7 +117,7 @@ pub trait Kind: PieceStudy + Sized + Sync + 'static {
 
     /// What a person reads at the end of a run below the question, in lines of about `width` letters.
     fn summary(&self, tables: &[Table], width: usize) -> String {
-        words_of(tables, &self.answers(tables), width)
+        words_of(first_found(tables).as_slice(), &self.answers(tables), width)
     }
 
     /// What was found, in sentences: at the top of the page and at the end of the run.

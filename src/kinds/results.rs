@@ -5,29 +5,18 @@ use super::kind::Kind;
 use super::loaded::Loaded;
 use crate::error::Result;
 use crate::files::write_bytes;
-use crate::report::csv_tables::{FAILURES_FILE, read_rows};
+use crate::report::csv_tables::FAILURES_FILE;
 use crate::report::folder::Folder;
 use crate::report::page::StudyAbout;
 use crate::report::study_folder::{Beyond, Found, folder_with};
 use crate::study::pieces::PieceFailure;
 use crate::study::provenance::{MANIFEST_FILE, Manifest, PROGRAM};
 use crate::study::sha256;
-use crate::table::Table;
+use crate::table::{File, Table};
 use std::path::Path;
 
-/// Work items that failed.
-pub fn failures_table(failures: &[PieceFailure]) -> Result<Table> {
-    Table::of(FAILURES_FILE, "What failed, and why", failures)
-}
-
-/// The same, of a folder; none where no run left the file.
-pub fn read_failures(folder: &Path) -> Result<Option<Table>> {
-    let path = folder.join(FAILURES_FILE);
-    match path.exists() {
-        true => failures_table(&read_rows(&path)?).map(Some),
-        false => Ok(None),
-    }
-}
+/// Work items that failed; none where no run left the file.
+pub const FAILURES: File<PieceFailure> = File::new(FAILURES_FILE, "What failed, and why", "");
 
 impl<K: Kind> Loaded<K> {
     /// Charts, pictures and page, for a folder: nothing is written yet.

@@ -4,19 +4,40 @@
 use crate::error::{Error, Result};
 use crate::report::swept::Swept;
 use crate::study::column_name;
-use crate::table::{Better, Column, Data, Role, Scale, Table, Value};
-use std::cmp::Ordering;
+use crate::table::{Better, Column, Data, Role, Scale, Table, Value, front};
 
-/// Costs that people ask for by one name in every kind of study, with the columns that hold them.
-const COSTS: [(&str, &[&str]); 4] = [
-    ("decision_time", &["predict_us_per_decision", "decision_us"]),
-    ("training_time", &["fit_s"]),
-    ("taxels", &["taxels", "n_taxels"]),
-    (
-        "measurements",
-        &["measurements_per_decision", "measurements"],
-    ),
-];
+/// A column that is sought in tables.
+struct Sought {
+    /// The option by which people name it.
+    option: &'static str,
+    /// What is taken if nobody names one, where a table has it; else the first.
+    usual: &'static str,
+    has_role: fn(Role) -> bool,
+    /// Names that every kind of study knows, with the columns that they mean.
+    shared: &'static [(&'static str, &'static [&'static str])],
+}
+
+const VALUE: Sought = Sought {
+    option: "--value",
+    usual: "accuracy",
+    has_role: |role| matches!(role, Role::Value(Better::More | Better::Less)),
+    shared: &[],
+};
+
+const COST: Sought = Sought {
+    option: "--cost",
+    usual: "decision_time",
+    has_role: |role| role == Role::Cost,
+    shared: &[
+        ("decision_time", &["predict_us_per_decision", "decision_us"]),
+        ("training_time", &["fit_s"]),
+        ("taxels", &["taxels", "n_taxels"]),
+        (
+            "measurements",
+            &["measurements_per_decision", "measurements"],
+        ),
+    ],
+};
 
 /// What is advised on; what is left out is found.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -71,7 +92,8 @@ pub struct Offers<'a> {
     /// What is to be small.
     pub cost: &'a Column,
     swept: Swept<'a>,
-    all: Vec<Offer>,
+    /// Rows of given conditions whose value and cost are known.
+    rows: Vec<usize>,
 }
 
 impl<'a> Offers<'a> {
@@ -81,9 +103,8 @@ impl<'a> Offers<'a> {
     /// No such table; a condition that it has not.
     pub fn of(tables: &'a [Table], asked: &Asked) -> Result<Self> {
         let mut offering: Vec<&Table> = tables.iter().filter(|t| t.offers_choices()).collect();
-        if offering.is_empty() {
-            offering.extend(tables.iter().filter(|table| table.offers_a_choice()));
-        }
+        let has_several = offering.iter().any(|table| table.n_rows > 1);
+        offering.retain(|table| table.n_rows > 1 || !has_several);
         if offering.is_empty() {
             let allowed = "a study with a table of choices that have a value and a cost";
             return Err(Error::input("advice", "no table offers choices", allowed));
@@ -93,61 +114,33 @@ impl<'a> Offers<'a> {
             offering.retain(|table| table.file == file);
             refuse_none(&offering, ("--table", file), &known)?;
         }
-        let usual = Some("accuracy".to_owned());
-        let has_usual = |table: &&Table| !values(table, &usual).is_empty();
-        let value = match &asked.value {
-            None if offering.iter().any(has_usual) => &usual,
-            asked => asked,
-        };
-        let known: Vec<&str> = offering
-            .iter()
-            .flat_map(|t| values(t, &None))
-            .map(name)
-            .collect();
-        offering.retain(|table| !values(table, value).is_empty());
-        refuse_none(
-            &offering,
-            ("--value", value.as_deref().unwrap_or_default()),
-            &known,
-        )?;
-        let first = "decision_time".to_owned();
-        let has_first = |table: &&Table| !costs(table, &Some(first.clone())).is_empty();
-        let cost = match &asked.cost {
-            None if offering.iter().any(has_first) => &Some(first),
-            asked => asked,
-        };
-        let mut known: Vec<&str> = offering
-            .iter()
-            .flat_map(|t| costs(t, &None))
-            .map(name)
-            .collect();
-        known.extend(COSTS.map(|(name, _)| name));
-        offering.retain(|table| !costs(table, cost).is_empty());
-        refuse_none(
-            &offering,
-            ("--cost", cost.as_deref().unwrap_or_default()),
-            &known,
-        )?;
+        let value = VALUE.narrow(&mut offering, asked.value.as_deref())?;
+        let cost = COST.narrow(&mut offering, asked.cost.as_deref())?;
+        let value = |table: &'a Table| VALUE.columns(table, value)[0];
         // Of several, one that says how sure its values are.
-        let has_interval = |table: &&&Table| values(table, value)[0].interval.is_some();
+        let has_interval = |table: &&&'a Table| value(table).interval.is_some();
         let table = *offering.iter().find(has_interval).unwrap_or(&offering[0]);
+        let mut found = Self::of_columns(table, value(table), COST.columns(table, cost)[0]);
+        let rows = (0..table.n_rows).collect();
+        let mut given = asked.given.iter();
+        let rows: Vec<usize> = given.try_fold(rows, |rows, text| given_rows(table, rows, text))?;
+        found.rows.retain(|row| rows.binary_search(row).is_ok());
+        Ok(found)
+    }
+
+    /// Of all rows of a table whose value and cost are known.
+    pub fn of_columns(table: &'a Table, value: &'a Column, cost: &'a Column) -> Self {
         let rows: Vec<usize> = (0..table.n_rows).collect();
         let mut found = Self {
             table,
-            value: values(table, value)[0],
-            cost: costs(table, cost)[0],
+            value,
+            cost,
             swept: Swept::of(table, &rows),
-            all: Vec::new(),
+            rows: Vec::new(),
         };
-        let rows = asked
-            .given
-            .iter()
-            .try_fold(rows, |rows, text| given(table, rows, text))?;
-        found.all = rows
-            .into_iter()
-            .filter_map(|row| found.offer(row))
-            .collect();
-        Ok(found)
+        let is_known = |row: &usize| found.offer(*row).is_some();
+        found.rows = rows.into_iter().filter(is_known).collect();
+        found
     }
 
     /// None for a row whose value or cost is not known.
@@ -160,8 +153,7 @@ impl<'a> Offers<'a> {
 
     /// Those of each condition, in the order in which conditions first come.
     pub fn by_condition(&self) -> Vec<Vec<Offer>> {
-        let rows: Vec<usize> = self.all.iter().map(|offer| offer.row).collect();
-        let conditions = self.swept.by_condition(&rows).into_iter();
+        let conditions = self.swept.by_condition(&self.rows).into_iter();
         let offers =
             |rows: Vec<usize>| rows.into_iter().filter_map(|row| self.offer(row)).collect();
         conditions.map(offers).collect()
@@ -170,21 +162,20 @@ impl<'a> Offers<'a> {
     /// Each choice in the condition where its value is worst, at the most that it costs in any: what it gives whichever condition comes.
     /// Choices that were not measured in every condition are left out.
     pub fn worst(&self) -> Vec<Offer> {
-        let n_conditions = self.by_condition().len();
-        let rows: Vec<usize> = self.all.iter().map(|offer| offer.row).collect();
-        let choices = self.swept.groups(&self.swept.of_role(Role::Choice), &rows);
-        let measured = choices
-            .into_iter()
-            .filter(|rows| rows.len() == n_conditions);
+        let n_conditions = self.swept.by_condition(&self.rows).len();
+        let choices = self.swept.of_role(Role::Choice);
+        let choices = self.swept.groups(&choices, &self.rows).into_iter();
+        let measured = choices.filter(|rows| rows.len() == n_conditions);
         let worst = |rows: Vec<usize>| {
             let offers = rows.iter().filter_map(|&row| self.offer(row));
-            offers.reduce(|a, b| Offer {
-                cost: a.cost.max(b.cost),
-                ..if self.is_better(a.value, b.value) {
+            offers.reduce(|a, b| {
+                let worse = if self.is_better(a.value, b.value) {
                     b
                 } else {
                     a
-                }
+                };
+                let cost = a.cost.max(b.cost);
+                Offer { cost, ..worse }
             })
         };
         measured.filter_map(worst).collect()
@@ -232,45 +223,31 @@ impl<'a> Offers<'a> {
         };
         let certain = match wish {
             Wish::Value(wanted) if self.value.interval.is_some() => {
-                let is_certain = |offer: &&Offer| self.is_enough(self.worse_end(offer), wanted);
-                let certain = offers
-                    .iter()
-                    .filter(is_certain)
-                    .min_by(|a, b| self.cheaper(a, b));
-                certain.filter(|certain| **certain != front[place])
+                let offers = offers.iter().copied();
+                let certain = offers.filter(|offer| self.is_enough(self.worse_end(offer), wanted));
+                let certain = self.front(&certain.collect::<Vec<_>>());
+                let cheapest = certain.first().copied();
+                cheapest.filter(|cheapest| *cheapest != front[place])
             }
             _ => None,
         };
         Ok(Advice {
             choice: front[place],
-            certain: certain.copied(),
+            certain,
             next_up: front.get(place + 1).copied(),
         })
     }
 
     /// The offers that no other beats: each better than all that cost as much or less. Cheapest first; of equals the first.
-    fn front(&self, offers: &[Offer]) -> Vec<Offer> {
-        let mut front = offers.to_vec();
+    pub fn front(&self, offers: &[Offer]) -> Vec<Offer> {
+        let points: Vec<(f64, f64)> = offers.iter().map(|o| (o.cost, o.value)).collect();
+        let is_on = front(&points, |a, b| self.is_better(a, b));
+        let on = offers.iter().zip(is_on).filter(|(_, is_on)| *is_on);
+        let mut front: Vec<Offer> = on.map(|(offer, _)| *offer).collect();
         // A stable sort: of equals the first stays first.
-        front.sort_by(|a, b| self.cheaper(a, b));
-        let mut best: Option<f64> = None;
-        front.retain(|offer| {
-            let is_better = best.is_none_or(|best| self.is_better(offer.value, best));
-            if is_better {
-                best = Some(offer.value);
-            }
-            is_better
-        });
+        front.sort_by(|a, b| a.cost.total_cmp(&b.cost));
+        front.dedup_by_key(|offer| offer.cost);
         front
-    }
-
-    /// The cheaper first, of equal costs the better.
-    fn cheaper(&self, a: &Offer, b: &Offer) -> Ordering {
-        let by_value = match self.wants_less() {
-            true => a.value.total_cmp(&b.value),
-            false => b.value.total_cmp(&a.value),
-        };
-        a.cost.total_cmp(&b.cost).then(by_value)
     }
 
     fn wants_less(&self) -> bool {
@@ -287,32 +264,25 @@ impl<'a> Offers<'a> {
 
     /// The end of the value's interval that is worse: what a choice surely gives.
     fn worse_end(&self, offer: &Offer) -> f64 {
-        let ends = self.value.interval.as_ref();
-        let end = ends.map(|[low, high]| if self.wants_less() { high } else { low });
-        end.map_or(f64::NAN, |name| self.table.number(name, offer.row))
+        let ends = self.table.interval(self.value, offer.row);
+        ends.map_or(
+            f64::NAN,
+            |[low, high]| if self.wants_less() { high } else { low },
+        )
     }
 
     /// `accuracy 0.830 (0.800 to 0.860), time of a decision 210 µs`.
     pub fn gives(&self, offer: &Offer) -> String {
-        let ends = self.value.interval.as_ref();
-        let ends = ends.map(|ends| ends.each_ref().map(|end| self.table.number(end, offer.row)));
-        let interval = match ends {
-            Some([low, high]) if low.is_finite() && high.is_finite() => {
-                format!(" ({} to {})", self.value_words(low), self.value_words(high))
+        let interval = match self.table.interval(self.value, offer.row) {
+            Some(ends) => {
+                let [low, high] = ends.map(|end| self.value_words(end));
+                format!(" ({low} to {high})")
             }
-            _ => String::new(),
+            None => String::new(),
         };
         let value = self.value_words(offer.value);
-        format!(
-            "{} {value}{interval}, {}",
-            self.value.words,
-            self.costs(offer.cost)
-        )
-    }
-
-    /// `time of a decision 210 µs`.
-    fn costs(&self, cost: f64) -> String {
-        self.cost.phrase(&Value::Number(cost))
+        let cost = self.cost.phrase(&Value::Number(offer.cost));
+        format!("{} {value}{interval}, {cost}", self.value.words)
     }
 
     /// A value, or a difference of two: shares to three digits.
@@ -330,10 +300,15 @@ impl<'a> Offers<'a> {
 
     /// The choices in words.
     pub fn setting(&self, offer: &Offer) -> String {
-        match self.swept.choice_words(offer.row) {
+        match self.choices(offer) {
             words if words.is_empty() => "the only setting".to_owned(),
             words => words,
         }
+    }
+
+    /// The same; empty where there is one.
+    pub fn choices(&self, offer: &Offer) -> String {
+        self.swept.choice_words(offer.row)
     }
 
     /// The condition in words; empty where there is one.
@@ -347,75 +322,69 @@ impl<'a> Offers<'a> {
         row.insert("setting".to_owned(), self.setting(offer).into());
         row.insert("condition".to_owned(), self.condition(offer).into());
         for (column, data) in self.table.columns.iter().zip(&self.table.data) {
-            row.insert(
-                column.name.to_string(),
-                serde_json::json!(data.value(offer.row)),
-            );
+            let value = serde_json::json!(data.value(offer.row));
+            row.insert(column.name.to_string(), value);
         }
         row.insert(self.cost.name.to_string(), offer.cost.into());
         row.into()
     }
 }
 
-fn name(column: &Column) -> &str {
-    &column.name
-}
+impl Sought {
+    /// The columns of numbers of a table that are it: those of a name, or all, those that vary before those that do not.
+    fn columns<'t>(&self, table: &'t Table, name: Option<&str>) -> Vec<&'t Column> {
+        let shared = self.shared.iter().find(|(known, _)| Some(*known) == name);
+        let is_named = |column: &str| match name {
+            Some(name) => {
+                name == column || shared.is_some_and(|(_, columns)| columns.contains(&column))
+            }
+            None => true,
+        };
+        let columns = table.columns.iter().zip(&table.data);
+        let is_sought = |(column, data): &(&Column, &Data)| {
+            (self.has_role)(column.role)
+                && is_named(&column.name)
+                && matches!(data, Data::Numbers(_))
+        };
+        let mut found: Vec<_> = columns.filter(is_sought).collect();
+        found.sort_by_key(|(_, data)| !data.varies(0..table.n_rows));
+        found.into_iter().map(|(column, _)| column).collect()
+    }
 
-/// The columns of values that are wished for: of a name, or all that vary before those that do not.
-fn values<'a>(table: &'a Table, asked: &Option<String>) -> Vec<&'a Column> {
-    let is_value = |role| matches!(role, Role::Value(Better::More | Better::Less));
-    let is_asked = |name: &str| asked.as_deref().is_none_or(|asked| asked == name);
-    numbers(table, is_value, is_asked)
-}
-
-/// The columns of costs that are asked for, by their names or by those that all kinds share.
-fn costs<'a>(table: &'a Table, asked: &Option<String>) -> Vec<&'a Column> {
-    let shared = COSTS
-        .iter()
-        .find(|(name, _)| Some(*name) == asked.as_deref());
-    let is_asked = |name: &str| match (asked, shared) {
-        (None, _) => true,
-        (Some(asked), _) if asked == name => true,
-        (_, shared) => shared.is_some_and(|(_, columns)| columns.contains(&name)),
-    };
-    numbers(table, |role| role == Role::Cost, is_asked)
-}
-
-fn numbers(
-    table: &Table,
-    has_role: impl Fn(Role) -> bool,
-    is_asked: impl Fn(&str) -> bool,
-) -> Vec<&Column> {
-    let varies = |data: &Data| (1..table.n_rows).any(|row| data.key(row) != data.key(0));
-    let columns = table.columns.iter().zip(&table.data);
-    let mut found: Vec<_> = columns
-        .filter(|(column, data)| {
-            has_role(column.role) && is_asked(&column.name) && matches!(data, Data::Numbers(_))
-        })
-        .collect();
-    found.sort_by_key(|(_, data)| !varies(data));
-    found.into_iter().map(|(column, _)| column).collect()
+    /// Keeps the tables that have one of the name that is asked for, or of the usual name where any has it; gives that name.
+    fn narrow<'n>(
+        &self,
+        tables: &mut Vec<&Table>,
+        asked: Option<&'n str>,
+    ) -> Result<Option<&'n str>> {
+        let has = |table: &&Table, name| !self.columns(table, name).is_empty();
+        let usual = Some(self.usual).filter(|usual| tables.iter().any(|t| has(t, Some(usual))));
+        let name = asked.or(usual);
+        let all = tables.iter().flat_map(|table| self.columns(table, None));
+        let mut known: Vec<&str> = all.map(|column| &column.name[..]).collect();
+        known.extend(self.shared.iter().map(|(name, _)| name));
+        tables.retain(|table| has(table, name));
+        refuse_none(tables, (self.option, name.unwrap_or_default()), &known)?;
+        Ok(name)
+    }
 }
 
 fn refuse_none<T>(found: &[T], (option, given): (&str, &str), known: &[&str]) -> Result<()> {
+    if !found.is_empty() {
+        return Ok(());
+    }
     let mut names: Vec<&str> = Vec::new();
     for name in known {
         if !names.contains(name) {
             names.push(name);
         }
     }
-    match found.is_empty() {
-        true => Err(Error::input(
-            option,
-            given,
-            format!("one of {}", names.join(", ")),
-        )),
-        false => Ok(()),
-    }
+    let allowed = format!("one of {}", names.join(", "));
+    Err(Error::input(option, given, allowed))
 }
 
 /// Those of some rows that have a condition: `noise=0.05`.
-fn given(table: &Table, rows: Vec<usize>, text: &str) -> Result<Vec<usize>> {
+fn given_rows(table: &Table, rows: Vec<usize>, text: &str) -> Result<Vec<usize>> {
     let refuse = || Error::input("--given", text, "a condition and its value: noise=0.05");
     let (key, value) = text.split_once('=').ok_or_else(refuse)?;
     let (key, value) = (column_name(key.trim()), value.trim());
@@ -434,11 +403,8 @@ fn given(table: &Table, rows: Vec<usize>, text: &str) -> Result<Vec<usize>> {
                 [] => "no such option: the study was made in one condition".to_owned(),
                 ref known => format!("one of {}", known.join(", ")),
             };
-            return Err(Error::input(
-                place,
-                "is no condition of this study",
-                allowed,
-            ));
+            let given = "is no condition of this study";
+            return Err(Error::input(place, given, allowed));
         }
     }
     let wanted = match value.parse() {
@@ -457,6 +423,7 @@ fn given(table: &Table, rows: Vec<usize>, text: &str) -> Result<Vec<usize>> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::table::File;
 
     crate::row! {
     /// A setting.
@@ -496,7 +463,7 @@ mod tests {
     }
 
     fn table(rows: &[Setting]) -> [Table; 1] {
-        [Table::of("settings.csv", "Settings", rows).unwrap()]
+        [File::new("settings.csv", "Settings", "").of(rows).unwrap()]
     }
 
     fn settings() -> [Table; 1] {
@@ -536,10 +503,11 @@ mod tests {
     fn nothing_beats_a_setting_of_the_front_and_something_beats_every_other() {
         let tables = settings();
         let offers = Offers::of(&tables, &Asked::default()).unwrap();
-        let front = offers.front(&offers.all);
+        let all = &offers.by_condition()[0];
+        let front = offers.front(all);
         let rows: Vec<usize> = front.iter().map(|offer| offer.row).collect();
         assert_eq!(rows, [2, 1, 3]);
-        for offer in &offers.all {
+        for offer in all {
             let is_no_better_than = |on: &Offer| on.cost <= offer.cost && on.value >= offer.value;
             assert!(front.iter().any(is_no_better_than), "{offer:?}");
         }

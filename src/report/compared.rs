@@ -8,7 +8,12 @@ use crate::report::study_folder::{Found, MOST_CHARTS, page_of};
 use crate::report::terminal::{paragraph, table_text};
 use crate::spelling::counted;
 use crate::study::table::PStatus;
-use crate::table::{Along, At, Better, ChartSpec, Mark, Role, Rule, Shown, Table, short_number};
+use crate::table::{
+    Along, At, Better, ChartSpec, File, Mark, Role, Rule, Shown, Table, short_number,
+};
+
+const VALUES: File<Difference> = File::new("differences.csv", "Values of both runs", "");
+const COSTS: File<Difference> = File::new("costs.csv", "Costs of both runs", "");
 
 /// Sentences and a table of lines at most `width` letters long: what moved most surely first.
 ///
@@ -39,42 +44,11 @@ pub fn differences_page(
         wall_s: f64::NAN,
         ..StudyAbout::default()
     };
-    let values = Table {
-        note,
-        ..values(found)?
-    };
-    let chart = |one: &ColumnDifferences| {
-        let Difference { table, column, .. } = one.rows.first()?;
-        let words = &one.column.words;
-        let shown = |column: &str, value: &str| Shown {
-            column: column.to_owned(),
-            value: value.into(),
-        };
-        Some(ChartSpec {
-            name: format!("{}_{column}", table.trim_end_matches(".csv")),
-            title: format!("{words} in both runs"),
-            note: format!("Up: {second}. Across: {first}. Each point is a setting of {table}."),
-            table: values.file,
-            shown: vec![shown("table", table), shown("column", column)],
-            x: "first".to_owned(),
-            y: "second".to_owned(),
-            lines: vec!["moved".to_owned()],
-            mark: Mark::Points,
-            rules: vec![Rule {
-                along: Along::Y,
-                at: At::Column("first".to_owned()),
-                words: "no difference".to_owned(),
-            }],
-            ..ChartSpec::default()
-        })
-    };
-    let charts = found.iter().filter(|one| !is_cost(one)).filter_map(chart);
+    let values = values(found)?.noted(note);
+    let charts = found.iter().filter(|one| !is_cost(one));
+    let charts = charts.filter_map(|one| Some(chart(one, one.rows.first()?, (first, second))));
     let charts: Vec<ChartSpec> = charts.take(MOST_CHARTS).collect();
-    let costs = table(
-        "costs.csv",
-        "Costs of both runs",
-        found.iter().filter(|one| is_cost(one)),
-    )?;
+    let costs = table(&COSTS, found.iter().filter(|one| is_cost(one)))?;
     page_of(
         &about,
         &Found {
@@ -85,19 +59,46 @@ pub fn differences_page(
     )
 }
 
+/// A column in the second run against the first.
+fn chart(
+    one: &ColumnDifferences,
+    Difference { table, column, .. }: &Difference,
+    (first, second): (&str, &str),
+) -> ChartSpec {
+    let shown = |column: &str, value: &str| Shown {
+        column: column.to_owned(),
+        value: value.into(),
+    };
+    ChartSpec {
+        name: format!("{}_{column}", table.trim_end_matches(".csv")),
+        title: format!("{} in both runs", one.column.words),
+        note: format!("Up: {second}. Across: {first}. Each point is a setting of {table}."),
+        table: VALUES.name(),
+        shown: vec![shown("table", table), shown("column", column)],
+        x: "first".to_owned(),
+        y: "second".to_owned(),
+        lines: vec!["moved".to_owned()],
+        mark: Mark::Points,
+        rules: vec![Rule {
+            along: Along::Y,
+            at: At::Column("first".to_owned()),
+            words: "no difference".to_owned(),
+        }],
+        ..ChartSpec::default()
+    }
+}
+
 fn is_cost(one: &ColumnDifferences) -> bool {
     one.column.role == Role::Cost
 }
 
 fn values(found: &[ColumnDifferences]) -> Result<Table> {
-    let values = found.iter().filter(|one| !is_cost(one));
-    table("differences.csv", "Values of both runs", values)
+    table(&VALUES, found.iter().filter(|one| !is_cost(one)))
 }
 
 /// Some columns, those rows first that moved most surely.
 fn table<'a>(
-    file: &'static str,
-    title: &'static str,
+    file: &File<Difference>,
     columns: impl Iterator<Item = &'a ColumnDifferences>,
 ) -> Result<Table> {
     let rows = columns.flat_map(|column| column.rows.iter().cloned());
@@ -108,19 +109,19 @@ fn table<'a>(
         let by_p = a.moved.cmp(&b.moved).then(p(a).total_cmp(&p(b)));
         by_p.then(size(b).total_cmp(&size(a)))
     });
-    Table::of(file, title, &rows)
+    file.of(&rows)
 }
 
 /// What moved: of each table how much of it both have, then its values, then its costs.
 fn sentences(found: &[ColumnDifferences]) -> Vec<String> {
     let mut said = Vec::new();
-    let mut tables: Vec<&str> = Vec::new();
+    let mut last = "";
     for one in found {
         let Some(Difference { table, .. }) = one.rows.first() else {
             continue;
         };
-        if !tables.contains(&&table[..]) {
-            tables.push(table);
+        // Those of a table stand together.
+        if std::mem::replace(&mut last, table) != table {
             said.push(format!(
                 "{table}: {} settings are in both runs, {} in the first alone, {} in the second alone.",
                 one.rows.len(),
@@ -144,6 +145,7 @@ fn cost_words(one: &ColumnDifferences) -> String {
     format!("{words}: median {middle} times that of the first run, {least} to {most} times.")
 }
 
+/// How many settings are better and worse, and how many of these by more than chance explains.
 fn value_words(one: &ColumnDifferences) -> Vec<String> {
     let words = match one.column.role {
         Role::Value(Better::Neither) => ["larger", "smaller"],
@@ -151,37 +153,35 @@ fn value_words(one: &ColumnDifferences) -> Vec<String> {
     };
     let [better, worse] = one.counts(|_| true);
     let n_same = one.rows.len() - better - worse;
-    let name = &one.column.words;
-    let mut said = vec![format!(
-        "{name}: {n_same} the same, {better} {} in the second, {worse} {}.",
-        words[0], words[1]
-    )];
+    let all = format!(
+        "{}: {n_same} the same, {better} {} in the second, {worse} {}.",
+        one.column.words, words[0], words[1]
+    );
     let [better, worse] = one.counts(|row| row.moved == Moved::Surely);
-    let n_tested = one.rows.iter().filter(|row| row.p_holm.is_some()).count();
-    let has_trials = one.rows.iter().find(|row| row.p_status.is_some());
-    let too_few = one
-        .rows
-        .iter()
-        .find(|row| row.p_status == Some(PStatus::TooFewTrials));
     let surely = format!(
         "More than chance explains: {better} {}, {worse} {}",
         words[0], words[1]
     );
-    match (n_tested, has_trials, too_few) {
-        (0, None, _) if one.rows.iter().any(|row| row.moved == Moved::ByChance) || better + worse > 0 => {
-            said.push(format!("{surely} (intervals that are apart)."));
-        }
-        (0, None, _) => {}
-        (0, Some(_), too_few) => said.push(match too_few.and_then(|row| Some((row.n_trials, row.n_trials_needed?))) {
-            Some((n_trials, needed)) => format!(
-                "No p-values: {} a setting are too few to tell a difference from chance; {needed} are needed.",
-                counted(n_trials, "trial")
-            ),
-            None => "No p-values: more rows are tested than trained on, or trials are missing.".to_owned(),
-        }),
-        _ => said.push(format!(
+    let rows = || one.rows.iter();
+    let n_tested = rows().filter(|row| row.p_holm.is_some()).count();
+    let has_intervals = rows().any(|row| matches!(row.moved, Moved::Surely | Moved::ByChance));
+    let too_few = rows().find(|row| row.p_status == Some(PStatus::TooFewTrials));
+    let needed =
+        too_few.and_then(|row| Some((counted(row.n_trials, "trial"), row.n_trials_needed?)));
+    let tested = if n_tested > 0 {
+        format!(
             "{surely} (t-test paired over trials, corrected for their overlap, p < 0.05 after Holm's correction for {n_tested} settings)."
-        )),
-    }
-    said
+        )
+    } else if let Some((trials, needed)) = needed {
+        format!(
+            "No p-values: {trials} a setting are too few to tell a difference from chance; {needed} are needed."
+        )
+    } else if rows().any(|row| row.p_status.is_some()) {
+        "No p-values: more rows are tested than trained on, or trials are missing.".to_owned()
+    } else if has_intervals {
+        format!("{surely} (intervals that are apart).")
+    } else {
+        return vec![all];
+    };
+    vec![all, tested]
 }

@@ -9,11 +9,11 @@ use crate::recognition::comparison::TrialSize;
 use crate::recognition::many_tests::holm_of_some;
 use crate::row;
 use crate::study::CONFIDENCE;
-use crate::study::repeats::{Paired, Repeat, Tested};
+use crate::study::repeats::{Paired, Repeat};
 use crate::study::table::PStatus;
 use crate::table::{Better, Column, Data, Role, Table};
 use serde::{Deserialize, Serialize};
-use std::collections::{HashMap, HashSet};
+use std::collections::{BTreeSet, HashMap, HashSet};
 
 /// Whether chance explains a difference.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
@@ -92,19 +92,16 @@ pub fn differences(first: &[Table], second: &[Table]) -> Result<Vec<ColumnDiffer
     let mut found = Vec::new();
     // A table that is made of others tells nothing more.
     for second in second.iter().filter(|table| !table.csv.is_empty()) {
-        let Some(first) = first.iter().find(|first| first.file == second.file) else {
-            continue;
-        };
-        let [Some(first), Some(second)] = [first, second].map(Settings::of) else {
+        let first = first.iter().find(|first| first.file == second.file);
+        let (Some(first), Some(second)) = (first.and_then(Settings::of), Settings::of(second))
+        else {
             continue;
         };
         for column in &second.table.columns {
             let is_told = matches!(column.role, Role::Value(_) | Role::Cost);
-            let is_number = matches!(
-                first.table.column(&column.name),
-                Some((_, Data::Numbers(_)))
-            );
-            let what = (second.columns.clone(), column.name.to_string());
+            let is_number = first.table.numbers(&column.name).is_some();
+            let settings = second.columns.iter().map(|(column, _)| &column.name);
+            let what = (settings.collect::<Vec<_>>(), &column.name);
             if is_told && is_number && told.insert(what) {
                 found.push(of_column(column, &first, &second)?);
             }
@@ -125,107 +122,82 @@ pub fn differences(first: &[Table], second: &[Table]) -> Result<Vec<ColumnDiffer
 struct Settings<'a> {
     table: &'a Table,
     /// The columns that tell them apart.
-    columns: Vec<&'a str>,
+    columns: Vec<(&'a Column, &'a Data)>,
     /// Rows of each, the trials of repeated ones; in the order of their first.
     groups: Vec<Vec<usize>>,
-    trials: Option<&'a [f64]>,
+    is_repeated: bool,
 }
 
 impl<'a> Settings<'a> {
     /// None of a table that names cells by their numbers, which other runs number otherwise, or whose rows nothing tells apart.
     fn of(table: &'a Table) -> Option<Self> {
-        let roles = [Role::Choice, Role::Condition, Role::Subject];
-        let columns = roles.iter().flat_map(|role| table.of_role(*role));
-        let columns: Vec<&str> = columns.filter(|name| *name != "trial").collect();
-        let groups = table.groups(&columns, 0..table.n_rows);
-        let trials = table.numbers("trial");
-        let is_told_apart = trials.is_some() || groups.len() == table.n_rows;
-        let is_known = !columns.is_empty() && !columns.contains(&"cell") && is_told_apart;
+        let columns = table.columns.iter().zip(&table.data);
+        let is_setting = |(column, _): &(&Column, &Data)| {
+            let role = column.role;
+            matches!(role, Role::Choice | Role::Condition | Role::Subject) && column.name != "trial"
+        };
+        let columns: Vec<_> = columns.filter(is_setting).collect();
+        let names: Vec<&str> = columns.iter().map(|(column, _)| &column.name[..]).collect();
+        let groups = table.groups(&names, 0..table.n_rows);
+        let is_repeated = table.place("trial").is_some();
+        let is_told_apart = is_repeated || groups.len() == table.n_rows;
+        let is_known = !names.is_empty() && !names.contains(&"cell") && is_told_apart;
         is_known.then_some(Self {
             table,
             columns,
             groups,
-            trials,
+            is_repeated,
         })
     }
 
     /// A setting by its values and their units; what is absent is left out.
-    fn key(&self, row: usize) -> String {
-        let columns = self
-            .columns
-            .iter()
-            .filter_map(|name| self.table.column(name));
+    fn key(&self, row: usize) -> BTreeSet<String> {
+        let columns = self.columns.iter();
         let said = columns.filter_map(|(column, data)| {
             let value = data.value(row)?;
             Some(format!("{} {} {value};", column.name, column.unit))
         });
-        let mut said: Vec<String> = said.collect();
-        said.sort();
-        said.concat()
+        said.collect()
     }
 
     /// The same in words: what varies.
     fn words(&self, row: usize) -> String {
-        let varies = |data: &Data| {
-            self.groups
-                .iter()
-                .any(|rows| data.key(rows[0]) != data.key(0))
-        };
-        let columns = self
-            .columns
-            .iter()
-            .filter_map(|name| self.table.column(name));
-        let said = columns.filter_map(|(column, data)| {
-            let value = data.value(row).filter(|_| varies(data))?;
-            Some(column.phrase(&value))
-        });
+        let columns = self.columns.iter();
+        let varying = columns.filter(|(_, data)| data.varies(0..self.table.n_rows));
+        let said = varying.filter_map(|(column, data)| Some(column.phrase(&data.value(row)?)));
         said.collect::<Vec<_>>().join(", ")
+    }
+
+    /// A count that a table may have.
+    fn count(&self, column: &str, row: usize) -> Option<usize> {
+        let numbers = self.table.numbers(column)?;
+        Some(numbers[row] as usize)
     }
 
     /// The numbers of a column in some rows.
     fn repeats(&self, column: &str, rows: &[usize]) -> Vec<Repeat> {
-        let of_row = |&row: &usize| {
-            let number = |name| {
-                self.table
-                    .numbers(name)
-                    .map(|numbers| numbers[row] as usize)
-            };
-            Repeat {
-                trial: self.trials.map_or(0, |trials| trials[row] as usize),
-                place: number("split").zip(number("projection")),
-                score: self.table.number(column, row),
-            }
-        };
-        let repeats = rows.iter().map(of_row);
+        let repeats = rows.iter().map(|&row| Repeat {
+            trial: self.count("trial", row).unwrap_or(0),
+            place: self.count("split", row).zip(self.count("projection", row)),
+            score: self.table.number(column, row),
+        });
         repeats.filter(|repeat| !repeat.score.is_nan()).collect()
     }
 
     /// How trials split the touches; none where nothing says so.
     fn trial_size(&self, row: usize) -> Option<TrialSize> {
-        let number = |name| {
-            self.table
-                .numbers(name)
-                .map(|numbers| numbers[row] as usize)
-        };
-        self.trials?;
+        self.is_repeated.then_some(())?;
         Some(TrialSize {
-            n_train: number("n_train")?,
+            n_train: self.count("n_train", row)?,
             // How much the trials overlap is a matter of touches, however many of them one decision takes.
-            n_test: number("n_test")? * number("fused_touches").unwrap_or(1),
+            n_test: self.count("n_test", row)? * self.count("fused_touches", row).unwrap_or(1),
         })
-    }
-
-    /// The interval of a value in a row.
-    fn interval(&self, column: &Column, row: usize) -> Option<[f64; 2]> {
-        let ends = column.interval.as_ref()?.each_ref();
-        let ends = ends.map(|end| self.table.number(end, row));
-        ends.iter().all(|end| !end.is_nan()).then_some(ends)
     }
 }
 
 fn of_column(column: &Column, first: &Settings, second: &Settings) -> Result<ColumnDifferences> {
     let known = first.groups.iter().map(|rows| (first.key(rows[0]), rows));
-    let known: HashMap<String, &Vec<usize>> = known.collect();
+    let known: HashMap<BTreeSet<String>, &Vec<usize>> = known.collect();
     let mut rows = Vec::new();
     let mut n_both = 0;
     for ours in &second.groups {
@@ -250,10 +222,9 @@ fn of_column(column: &Column, first: &Settings, second: &Settings) -> Result<Col
 }
 
 fn explained(is_by_chance: bool) -> Moved {
-    if is_by_chance {
-        Moved::ByChance
-    } else {
-        Moved::Surely
+    match is_by_chance {
+        true => Moved::ByChance,
+        false => Moved::Surely,
     }
 }
 
@@ -265,51 +236,34 @@ fn of_setting(
     (first, theirs): Rows,
     (second, ours): Rows,
 ) -> Result<Option<Difference>> {
-    let repeats = (
-        second.repeats(&column.name, ours),
-        first.repeats(&column.name, theirs),
-    );
-    if repeats.0.is_empty() || repeats.1.is_empty() {
+    let [ours_told, theirs_told] =
+        [(second, ours), (first, theirs)].map(|(of, rows)| of.repeats(&column.name, rows));
+    if ours_told.is_empty() || theirs_told.is_empty() {
         return Ok(None);
     }
     let size = second.trial_size(ours[0]);
-    let is_tested = column.role != Role::Cost;
-    let paired = Paired::of(
-        &repeats.0,
-        &repeats.1,
-        size.unwrap_or(TrialSize {
-            n_train: 1,
-            n_test: 1,
-        }),
-    );
+    let untested = TrialSize {
+        n_train: 1,
+        n_test: 1,
+    };
+    let paired = Paired::of(&ours_told, &theirs_told, size.unwrap_or(untested));
+    let setting = second.words(ours[0]);
     if paired.n_trials() == 0 {
-        let given = format!(
-            "{}: {}: no trial is in both",
-            second.table.file,
-            second.words(ours[0])
-        );
-        return Err(Error::input(
-            "two runs",
-            given,
-            "runs that share their trials",
-        ));
+        let given = format!("{}: {setting}: no trial is in both", second.table.file);
+        let allowed = "runs that share their trials";
+        return Err(Error::input("two runs", given, allowed));
     }
-    let tested: Option<Tested> = match size.filter(|_| is_tested) {
-        Some(_) => Some(paired.tested()?),
-        None => None,
-    };
+    let is_tested = size.is_some() && column.role != Role::Cost;
+    let tested = is_tested.then(|| paired.tested()).transpose()?;
+    let tested = tested.as_ref();
     let (ours_mean, theirs_mean) = paired.means();
-    let intervals = match first.trials.or(second.trials) {
-        Some(_) => None,
-        None => first
-            .interval(column, theirs[0])
-            .zip(second.interval(column, ours[0])),
-    };
-    let interval = tested.as_ref().and_then(|tested| tested.interval);
+    let intervals = first.table.interval(column, theirs[0]);
+    let intervals = intervals.zip(second.table.interval(column, ours[0]));
+    let interval = tested.and_then(|tested| tested.interval);
     Ok(Some(Difference {
         table: second.table.file.to_owned(),
         column: column.name.to_string(),
-        setting: second.words(ours[0]),
+        setting,
         row: ours[0],
         n_trials: paired.n_trials(),
         first: theirs_mean,
@@ -319,12 +273,15 @@ fn of_setting(
         difference_high: interval.map(|interval| interval.high),
         moved: match intervals {
             _ if ours_mean == theirs_mean => Moved::Same,
-            Some(([low, high], [from, to])) => explained(low <= to && from <= high),
-            None => Moved::Untested,
+            // Those of single trials say nothing of their means.
+            Some(([low, high], [from, to])) if !first.is_repeated && !second.is_repeated => {
+                explained(low <= to && from <= high)
+            }
+            _ => Moved::Untested,
         },
-        p_value: tested.as_ref().and_then(|tested| tested.p_value),
+        p_value: tested.and_then(|tested| tested.p_value),
         p_holm: None,
-        p_status: tested.as_ref().map(|tested| tested.p_status),
+        p_status: tested.map(|tested| tested.p_status),
         n_trials_needed: tested.and_then(|tested| tested.n_needed),
     }))
 }

@@ -7,6 +7,7 @@ use crate::report::folder::Folder;
 use crate::report::page::{Beside, Picture, Section, StudyAbout, study_page};
 use crate::report::terminal::{paragraph, table_text};
 use crate::table::{ChartSpec, Role, Table};
+use rayon::prelude::*;
 use std::path::Path;
 
 /// A picture that is no chart: frames, bodies, objects.
@@ -48,49 +49,55 @@ pub const MOST_CHARTS: usize = 24;
 /// Letters of a picture that stays an SVG in the page: a point a row of ten thousand is megabytes.
 const LIGHT: usize = 300_000;
 
-/// Charts, pictures and the page, for the folder `dir`: nothing is written yet. A chart that no row has a place in is left out.
+/// Charts, pictures and the page, for the folder `dir`, with what else there is, which is made while charts are drawn: nothing is written
+/// yet. A chart that no row has a place in is left out.
 ///
 /// # Errors
 /// What cannot be drawn.
-pub fn folder_of<'a>(dir: &'a Path, about: &StudyAbout, found: &Found) -> Result<Folder<'a>> {
-    folder_with(dir, about, found, || Ok(Beyond::default()))
-}
-
-/// The same with what else there is, which is made while charts are drawn.
 pub fn folder_with<'a>(
     dir: &'a Path,
     about: &StudyAbout,
     found: &Found,
     beyond: impl FnOnce() -> Result<Beyond> + Send,
 ) -> Result<Folder<'a>> {
-    let mut folder = Folder::new(dir);
     let mut beside = Beside::default();
     let mut charts = Vec::new();
     for spec in found.charts {
         if charts.len() >= MOST_CHARTS && !about.all_charts {
             beside.left_out.push(spec.name.clone());
-            continue;
-        }
-        if chart::places(spec, found.tables)?.is_empty() {
-            continue;
-        }
-        let number = charts.len();
-        charts.push(spec.clone());
-        let drawing = chart::draw(spec, found.tables)?;
-        if number < MOST_CHARTS {
-            beside.charts.push(light_picture(&drawing, &spec.title)?);
-            folder.add_chart(&spec.name, &spec.title, &drawing);
-        } else {
-            folder.add(format!("{}.svg", spec.name), drawing.svg(&spec.title));
+        } else if !chart::places(spec, found.tables)?.is_empty() {
+            charts.push(spec.clone());
         }
     }
-    let (folder, beyond) = rayon::join(|| folder.drawn(), beyond);
-    let (mut folder, beyond) = (folder?, beyond?);
+    let draw = |(number, spec): (usize, &ChartSpec)| {
+        let drawing = chart::draw(spec, found.tables)?;
+        let (name, title) = (&spec.name, &spec.title);
+        Ok(match number < MOST_CHARTS {
+            true => {
+                let files = picture_files(name, title, &drawing)?;
+                (files, Some(light_picture(&drawing, title)?))
+            }
+            false => (vec![svg_file(name, title, &drawing)], None),
+        })
+    };
+    let draw_all = || charts.par_iter().enumerate().map(draw).collect();
+    let (drawn, beyond): (Result<Vec<_>>, _) = rayon::join(draw_all, beyond);
+    let (drawn, beyond) = (drawn?, beyond?);
+    let mut folder = Folder::of_tables(dir, &[]);
+    for (files, picture) in drawn {
+        folder.files.extend(files);
+        beside.charts.extend(picture);
+    }
     beside.sections = beyond.sections;
-    for picture in beyond.pictures {
-        let in_page = Picture::of_png(&picture.png, picture.size, &picture.title);
-        beside.pictures.push(in_page);
-        folder.add(format!("{}.png", picture.name), picture.png);
+    for NamedPicture {
+        name,
+        title,
+        png,
+        size,
+    } in beyond.pictures
+    {
+        beside.pictures.push(Picture::of_png(&png, size, &title));
+        folder.files.push((format!("{name}.png"), png));
     }
     // More would make the page slow; each can be arranged to show what the others do.
     charts.truncate(MOST_CHARTS);
@@ -98,8 +105,19 @@ pub fn folder_with<'a>(
         charts: &charts,
         ..*found
     };
-    folder.add("report.html", study_page(about, &found, beside));
+    let page = study_page(about, &found, beside).into_bytes();
+    folder.files.push(("report.html".to_owned(), page));
     Ok(folder)
+}
+
+/// A drawing as PNG and as SVG; its name has no ending.
+fn picture_files(name: &str, title: &str, drawing: &Drawing) -> Result<Vec<(String, Vec<u8>)>> {
+    let png = (format!("{name}.png"), drawing.png()?);
+    Ok(vec![png, svg_file(name, title, drawing)])
+}
+
+fn svg_file(name: &str, title: &str, drawing: &Drawing) -> (String, Vec<u8>) {
+    (format!("{name}.svg"), drawing.svg(title).into_bytes())
 }
 
 /// A page alone.
@@ -125,20 +143,22 @@ fn light_picture(drawing: &Drawing, title: &str) -> Result<Picture> {
     Ok(Picture::of_png(&drawing.png()?, size, title))
 }
 
-/// What a person reads at the end of a run, in lines of about `width` letters: the first table in which something was found, and the answers.
-pub fn words_of(tables: &[Table], answers: &[String], width: usize) -> String {
-    let mut words = String::new();
-    let is_found = |table: &&Table| {
-        let roles = table.columns.iter().map(|column| column.role);
-        let mut roles = roles.filter(|role| matches!(role, Role::Value(_) | Role::Outcome));
-        table.n_rows > 0 && roles.next().is_some()
-    };
-    if let Some(table) = tables.iter().find(is_found) {
-        words += &table_text(table, width);
-        words.push('\n');
-    }
+/// What a person reads at the end of a run, in lines of about `width` letters: the first of some tables, the answers, then the others.
+pub fn words_of(tables: &[&Table], answers: &[String], width: usize) -> String {
+    let first = tables.first();
+    let mut words = first.map_or_else(String::new, |table| table_text(table, width) + "\n");
     for answer in answers {
         words += &paragraph(answer, width);
     }
+    for table in tables.iter().skip(1) {
+        words += &format!("\n{}\n{}", table.title, table_text(table, width));
+    }
     words
+}
+
+/// The first table in which something was found.
+pub fn first_found(tables: &[Table]) -> Option<&Table> {
+    let is_found = |role: Role| matches!(role, Role::Value(_) | Role::Outcome);
+    let mut tables = tables.iter().filter(|table| table.n_rows > 0);
+    tables.find(|table| table.columns.iter().any(|column| is_found(column.role)))
 }

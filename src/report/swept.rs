@@ -65,8 +65,7 @@ impl<'a> Setting<'a> {
 
     /// Whether it varies over rows.
     pub fn varies(&self, rows: &[usize]) -> bool {
-        rows.iter()
-            .any(|&row| self.data.key(row) != self.data.key(rows[0]))
+        self.data.varies(rows.iter().copied())
     }
 
     /// Whether its values are numbers.
@@ -157,6 +156,14 @@ impl<'a> Swept<'a> {
     /// Those that vary, by themselves or with others.
     pub fn varying(&self) -> impl Iterator<Item = &Setting<'a>> {
         self.free.iter().chain(&self.following)
+    }
+
+    /// What a chart and a table show first: of those that vary by themselves the number of most values, of equals the last, since what is done
+    /// with measurements stands behind how they are made; the first where none is a number.
+    pub fn main(&self, rows: &[usize]) -> Option<Setting<'a>> {
+        let numbers = self.free.iter().filter(|setting| setting.is_number());
+        let main = numbers.max_by_key(|setting| setting.levels(rows).len());
+        main.or(self.free.first()).copied()
     }
 
     /// The conditions of the world in a row, in words; where one thing at a time happens, that one. Empty if there is one condition.

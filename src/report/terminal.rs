@@ -3,7 +3,7 @@
 use crate::report::colours::Rgb;
 use crate::report::swept::{Setting, Swept, without};
 use crate::report::text_width::break_lines;
-use crate::table::{Column, Data, Role, Scale, Table, Value};
+use crate::table::{Column, Role, Table, Value};
 use comfy_table::{
     CellAlignment, ColumnConstraint, ContentArrangement, Table as TextTable, TableComponent,
     presets,
@@ -11,7 +11,7 @@ use comfy_table::{
 use std::io::IsTerminal;
 
 /// Lines of a table, at most.
-pub(super) const MOST_LINES: usize = 40;
+const MOST_LINES: usize = 40;
 
 /// Blanks between two columns.
 const COLUMN_GAP: usize = 3;
@@ -72,209 +72,186 @@ impl Ink {
     }
 }
 
+/// A column of a table as text.
+struct TextColumn {
+    head: String,
+    /// Of each line.
+    said: Vec<String>,
+    is_number: bool,
+}
+
 /// A table as text without escape codes, lines at most `width` letters long: settings that are the same in all rows once above it, then a
 /// line a row of what varies, was found and is the cost, as far as there is room.
 ///
-/// Of more than 40 rows the text has the first, and says how many there are.
+/// Of more than 40 rows one setting runs across where settings tell all rows apart; else the text has the first rows, and says how many
+/// there are.
 pub fn table_text(table: &Table, width: usize) -> String {
-    let rows: Vec<usize> = (0..table.n_rows).collect();
-    let mut text = constants(table, &rows, width);
-    let mut columns: Vec<(String, Vec<String>, bool)> = Vec::new();
-    let mut used = 0;
-    for (column, data) in shown_columns(table) {
-        let setting = Setting { column, data };
-        let said = rows
-            .iter()
-            .take(MOST_LINES)
-            .map(|&row| bounded(table, setting, row));
-        let said: Vec<String> = said.collect();
-        let head = column.words.to_string();
-        // A long note breaks over lines, a number never does.
-        let widest = said.iter().map(|text| letters(text)).max().unwrap_or(0);
-        let wide = widest
-            .min(if setting.is_number() { widest } else { 24 })
-            .max(letters(&head).min(widest.max(10)));
-        if !columns.is_empty() && used + wide + COLUMN_GAP > width {
-            break;
-        }
-        used += wide + COLUMN_GAP;
-        columns.push((head, said, setting.is_number()));
+    if table.n_rows > MOST_LINES
+        && let Some(text) = pivot_text(table, width)
+    {
+        return text;
     }
-    let mut lines = ruled_table(width);
-    lines.set_header(columns.iter().map(|(head, ..)| head));
-    for row in 0..table.n_rows.min(MOST_LINES) {
-        lines.add_row(columns.iter().map(|(_, said, _)| &said[row]));
-    }
-    for (place, (_, said, is_number)) in columns.iter().enumerate() {
-        if let Some(column) = lines.column_mut(place) {
-            column.set_padding((0, 2));
-            if *is_number {
-                column.set_cell_alignment(CellAlignment::Right);
-            }
-            if said.iter().any(|text| text.contains('[')) {
-                // An interval broken over two lines cannot be read down the column.
-                column.set_constraint(ColumnConstraint::ContentWidth);
-            }
-        }
-    }
-    text += &finish(&lines);
+    let n_lines = table.n_rows.min(MOST_LINES);
+    let columns = shown_columns(table).into_iter();
+    let columns = columns.map(|setting| TextColumn {
+        head: setting.column.words.to_string(),
+        said: (0..n_lines)
+            .map(|row| table.bounded(setting.column, row))
+            .collect(),
+        is_number: setting.is_number(),
+    });
+    let mut text = constants(table, width);
+    text += &columns_text(columns.collect(), n_lines, width).0;
     if table.n_rows > MOST_LINES {
         let (n, file) = (table.n_rows, table.file);
-        text += &paragraph(
-            &format!("The first {MOST_LINES} of {n} rows; all are in {file}."),
-            width,
-        );
+        let remark = format!("The first {MOST_LINES} of {n} rows; all are in {file}.");
+        text += &paragraph(&remark, width);
     }
     text
 }
 
 /// What a terminal has room for: what varies, then what came of it, then what it costs.
-fn shown_columns(table: &Table) -> impl Iterator<Item = (&Column, &Data)> {
-    let rank = |column: &Column| match column.role {
-        Role::Choice | Role::Condition | Role::Subject => Some(0),
-        Role::Value(_) | Role::Outcome => Some(1),
-        Role::Cost => Some(2),
-        Role::Note => None,
+fn shown_columns(table: &Table) -> Vec<Setting<'_>> {
+    let rank = |setting: &Setting| match setting.column.role {
+        Role::Choice | Role::Condition | Role::Subject => 0,
+        Role::Value(_) | Role::Outcome => 1,
+        Role::Cost => 2,
+        Role::Note => 3,
     };
-    let rows: Vec<usize> = (0..table.n_rows).collect();
-    let is_shown = move |rank: usize, setting: Setting| match rank {
-        // Of one row, the subject says what it is about.
-        0 => setting.varies(&rows) || rows.len() == 1 && setting.column.role == Role::Subject,
-        // What is the same for all, or for none, says nothing.
-        _ if setting.is_number() => rows.iter().any(|&row| setting.data.value(row).is_some()),
-        _ => setting.varies(&rows),
-    };
-    let columns = move |wanted: usize| {
-        let is_shown = is_shown.clone();
-        let all = table.columns.iter().zip(&table.data);
-        all.filter(move |&(column, data)| {
-            rank(column) == Some(wanted) && is_shown(wanted, Setting { column, data })
-        })
-    };
-    (0..3).flat_map(columns)
+    let columns = table.columns.iter().zip(&table.data);
+    let columns = columns.map(|(column, data)| Setting { column, data });
+    let mut shown: Vec<Setting> = columns.filter(|one| is_telling(table, one)).collect();
+    shown.sort_by_key(rank);
+    shown
 }
 
-/// A value with its interval: `0.93 [0.9, 0.95]`.
-fn bounded(table: &Table, setting: Setting, row: usize) -> String {
-    let Some(value) = setting.data.value(row) else {
-        return String::new();
-    };
-    let is_share = setting.column.scale == Scale::Share && setting.column.unit.is_empty();
-    let said = |number: f64| match is_share {
-        true => format!("{number:.2}"),
-        false => setting.column.tick(number),
-    };
-    let Value::Number(number) = value else {
-        return setting.column.value_words(&value);
-    };
-    let end = |name: &str| {
-        table
-            .numbers(name)
-            .map(|ends| ends[row])
-            .filter(|end| end.is_finite())
-    };
-    let ends = setting
-        .column
-        .interval
-        .as_ref()
-        .and_then(|[low, high]| Some([end(low)?, end(high)?]));
-    match ends {
-        Some([low, high]) => format!("{} [{}, {}]", said(number), said(low), said(high)),
-        None if is_share => said(number),
-        None => setting.column.number_words(number),
+/// Whether a column tells something of the rows.
+fn is_telling(table: &Table, setting: &Setting) -> bool {
+    let mut rows = 0..table.n_rows;
+    match setting.column.role {
+        Role::Note => false,
+        // Of one row, the subject says what it is about.
+        Role::Subject if table.n_rows == 1 => true,
+        // What is the same for all, or for none, says nothing.
+        Role::Value(_) | Role::Cost if setting.is_number() => {
+            rows.any(|row| setting.data.value(row).is_some())
+        }
+        _ => setting.data.varies(rows),
     }
+}
+
+/// So many lines of columns from the left, as many as there is room for, and how many these are.
+fn columns_text(mut columns: Vec<TextColumn>, n_lines: usize, width: usize) -> (String, usize) {
+    let mut used = 0;
+    let fits = |column: &TextColumn| {
+        let widest = column.said.iter().map(|text| letters(text)).max();
+        let widest = widest.unwrap_or(0);
+        // A long note breaks over lines, a number never does.
+        let wide = if column.is_number {
+            widest
+        } else {
+            widest.min(24)
+        };
+        used += wide.max(letters(&column.head).min(widest.max(10))) + COLUMN_GAP;
+        used <= width + COLUMN_GAP
+    };
+    let n = columns.iter().map(fits).take_while(|fits| *fits).count();
+    columns.truncate(n.max(1));
+    let mut shown = ruled_table(width);
+    shown.set_header(columns.iter().map(|column| &column.head));
+    for line in 0..n_lines {
+        shown.add_row(columns.iter().map(|column| &column.said[line]));
+    }
+    for (
+        TextColumn {
+            said, is_number, ..
+        },
+        column,
+    ) in columns.iter().zip(shown.column_iter_mut())
+    {
+        column.set_padding((0, 2));
+        if *is_number {
+            column.set_cell_alignment(CellAlignment::Right);
+        }
+        if said.iter().any(|text| text.contains('[')) {
+            // An interval broken over two lines cannot be read down the column.
+            column.set_constraint(ColumnConstraint::ContentWidth);
+        }
+    }
+    (finish(&shown), columns.len())
 }
 
 /// What is the same in all rows, in a line or more; empty if nothing is.
-fn constants(table: &Table, rows: &[usize], width: usize) -> String {
+fn constants(table: &Table, width: usize) -> String {
+    let rows: Vec<usize> = (0..table.n_rows).collect();
     if rows.len() < 2 {
         return String::new();
     }
-    let fixed = Swept::of(table, rows).fixed;
+    let fixed = Swept::of(table, &rows).fixed;
     // An ideal world goes without saying.
     let is_said = |setting: &&Setting| {
-        let value = setting.data.value(rows[0]);
-        value.is_some()
-            && !(setting.column.role == Role::Condition && value == Some(Value::Number(0.0)))
+        let value = setting.data.value(0);
+        let is_ideal = setting.column.role == Role::Condition && value == Some(Value::Number(0.0));
+        value.is_some() && !is_ideal
     };
-    let parts = fixed
-        .iter()
-        .filter(is_said)
-        .map(|setting| setting.phrase(rows[0]).replace(' ', "\u{a0}"));
-    match &parts.collect::<Vec<_>>()[..] {
-        [] => String::new(),
-        parts => paragraph(&format!("All rows: {}", parts.join("\u{a0}· ")), width) + "\n",
+    let said = fixed.iter().filter(is_said);
+    let said: Vec<String> = said
+        .map(|setting| setting.phrase(0).replace(' ', "\u{a0}"))
+        .collect();
+    match said.is_empty() {
+        true => String::new(),
+        false => paragraph(&format!("All rows: {}", said.join("\u{a0}· ")), width) + "\n",
     }
 }
 
-/// One setting across, the others down, and of each combination a value: for tables of more rows than a terminal has.
-pub fn pivot_text(table: &Table, (across, value): (&str, &str), width: usize) -> String {
+/// One setting across, the others down, and of each combination a value: for tables of more rows than a terminal has. None of a table whose
+/// rows settings do not tell apart.
+fn pivot_text(table: &Table, width: usize) -> Option<String> {
     let rows: Vec<usize> = (0..table.n_rows).collect();
     let swept = Swept::of(table, &rows);
-    let (Some((column, data)), Some(values)) = (table.column(across), table.numbers(value)) else {
-        return table_text(table, width);
-    };
-    let setting = Setting { column, data };
-    let levels = setting.levels(&rows);
-    let down = without(&swept.free, &setting);
+    let across = swept.main(&rows)?;
+    let mut values = table.columns.iter();
+    let value = values.find(|column| matches!(column.role, Role::Value(_)))?;
+    if swept.groups(&swept.free, &rows).len() < rows.len() {
+        return None;
+    }
+    let down = without(&swept.free, &across);
     let lines = swept.groups(&down, &rows);
-    let labels_wide: usize = down
-        .iter()
-        .map(|one| {
-            let widths = lines.iter().map(|line| letters(&one.label(line[0])));
-            widths.max().unwrap_or(0).max(letters(&one.column.words)) + COLUMN_GAP
-        })
-        .sum();
-    let ticks: Vec<String> = levels.iter().map(|&row| setting.label(row)).collect();
-    let mut used = labels_wide;
-    let mut n_columns = 0;
-    for tick in &ticks {
-        used += letters(tick).max(4) + COLUMN_GAP;
-        if n_columns > 0 && used > width {
-            break;
-        }
-        n_columns += 1;
-    }
-    let mut shown = ruled_table(width);
-    let names = down.iter().map(|one| one.column.words.to_string());
-    shown.set_header(names.chain(ticks[..n_columns].iter().cloned()));
-    for line in lines.iter().take(MOST_LINES) {
-        let at = |&level: &usize| {
-            let found = line.iter().find(|&&row| data.key(row) == data.key(level));
-            found.map_or_else(|| "-".to_owned(), |&row| format!("{:.2}", values[row]))
-        };
-        let labels = down.iter().map(|one| one.label(line[0]));
-        shown.add_row(labels.chain(levels[..n_columns].iter().map(at)));
-    }
-    for (place, column) in shown.column_iter_mut().enumerate() {
-        column.set_padding((0, 2));
-        if down.get(place).is_none_or(Setting::is_number) {
-            column.set_cell_alignment(CellAlignment::Right);
-        }
-    }
-    let mut text = constants(table, &rows, width);
-    let value = table
-        .column(value)
-        .map_or(value, |(column, _)| &column.words);
-    text += &format!("{value}; across: {}\n", column.words);
-    text += &finish(&shown);
-    let hidden = (
-        lines.len().saturating_sub(MOST_LINES),
-        levels.len() - n_columns,
-    );
-    let remark = match hidden {
-        (0, 0) => format!(
-            "All {} rows with their intervals are in the tables.",
-            table.n_rows
-        ),
-        (h, c) => format!(
-            "Left out here: {h} of {} lines, {c} of {} columns; all {} rows are in the tables.",
+    let shown = &lines[..lines.len().min(MOST_LINES)];
+    let labels = down.iter().map(|one| TextColumn {
+        head: one.column.words.to_string(),
+        said: shown.iter().map(|line| one.label(line[0])).collect(),
+        is_number: one.is_number(),
+    });
+    let alone = Column {
+        interval: None,
+        ..value.clone()
+    };
+    let levels = across.levels(&rows);
+    let at = |line: &Vec<usize>, level: usize| {
+        let mut line = line.iter();
+        let row = line.find(|&&row| across.data.key(row) == across.data.key(level));
+        row.map_or_else(|| "-".to_owned(), |&row| table.bounded(&alone, row))
+    };
+    let values = levels.iter().map(|&level| TextColumn {
+        head: across.label(level),
+        said: shown.iter().map(|line| at(line, level)).collect(),
+        is_number: true,
+    });
+    let columns = labels.chain(values).collect();
+    let (text, n_shown) = columns_text(columns, shown.len(), width);
+    let n_hidden = down.len() + levels.len() - n_shown;
+    let all = match (lines.len() - shown.len(), n_hidden) {
+        (0, 0) => "A".to_owned(),
+        (lines_hidden, columns_hidden) => format!(
+            "Left out here: {lines_hidden} of {} lines, {columns_hidden} of {} columns; a",
             lines.len(),
-            levels.len(),
-            table.n_rows
+            levels.len()
         ),
     };
-    text + &paragraph(&remark, width)
+    let remark = format!("{all}ll {} rows are in the tables.", table.n_rows);
+    let head = format!("{}; across: {}\n", value.words, across.column.words);
+    Some(constants(table, width) + &head + &text + &paragraph(&remark, width))
 }
 
 /// A table without lines that breaks its texts to fit a width, letters.

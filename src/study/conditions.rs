@@ -2,7 +2,7 @@
 
 use super::table::Cell;
 use crate::error::Result;
-use crate::table::{Columns, Role, Table};
+use crate::table::{Columns, File, Role, Table};
 
 /// The settings of some cells, without scores.
 ///
@@ -13,7 +13,7 @@ pub fn settings_of(cells: &[&Cell]) -> Result<Table> {
     let axes = axes.into_iter().flatten();
     let axes = axes.map(|axis| axis.column.clone().optional());
     let columns = Cell::columns().into_iter().chain(axes).collect();
-    Table::of_columns(("cells.csv", "Cells"), columns, cells)
+    File::<Cell>::new("cells.csv", "Cells", "").of_columns(columns, cells)
 }
 
 /// The places of cells that share a condition, in the order in which cells first have it.

@@ -66,7 +66,8 @@ macro_rules! columns {
 ///     error: f64 => Value(Less) "deflection error": Log;
 /// } }
 /// let row = Row { method: "press".to_owned(), error: 0.1 };
-/// assert_eq!(bubbletouch::table::Table::of("found.csv", "Found", &[row]).unwrap().csv, b"method,error\npress,0.1\n");
+/// let found = bubbletouch::table::File::new("found.csv", "Found", "").of(&[row]);
+/// assert_eq!(found.unwrap().csv, b"method,error\npress,0.1\n");
 /// ```
 #[macro_export]
 macro_rules! row {

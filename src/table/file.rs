@@ -1,7 +1,7 @@
 //! A file of rows, before there are any.
 
 use super::{Column, Columns, Table};
-use crate::error::Result;
+use crate::error::{Error, Result};
 use serde::Serialize;
 use std::marker::PhantomData;
 use std::path::Path;
@@ -46,10 +46,10 @@ impl<R: Columns> File<R> {
         self
     }
 
-    /// The table of some rows.
+    /// The table of some rows. Numbers are written in the shortest form that reads back as the same bits.
     ///
     /// # Errors
-    /// Rows that have no form in a file; the error names it.
+    /// Rows that have no such form; the error names the file.
     pub fn of(&self, rows: &[R]) -> Result<Table>
     where
         R: Serialize,
@@ -61,18 +61,16 @@ impl<R: Columns> File<R> {
     ///
     /// # Errors
     /// Those of [`of`](Self::of); a row with other columns.
-    pub fn of_columns(&self, columns: Vec<Column>, rows: &[R]) -> Result<Table>
-    where
-        R: Serialize,
-    {
-        let made = Table::of_columns((self.name, self.title), columns, rows)?;
-        Ok(self.described(made))
+    pub fn of_columns(&self, columns: Vec<Column>, rows: &[impl Serialize]) -> Result<Table> {
+        let csv = csv_of(rows, &columns);
+        let csv = csv.map_err(|e| Error::io(self.name, "write", std::io::Error::other(e)))?;
+        self.table(columns, Path::new(self.name), csv)
     }
 
     /// The table that stands in a folder.
     ///
     /// # Errors
-    /// Those of [`Table::read`].
+    /// A file that cannot be read, or has other columns or values; the error names file, line and column.
     pub fn read(&self, folder: &Path) -> Result<Table> {
         self.read_columns(R::columns(), folder)
     }
@@ -82,25 +80,45 @@ impl<R: Columns> File<R> {
     /// # Errors
     /// Those of [`read`](Self::read).
     pub fn read_columns(&self, columns: Vec<Column>, folder: &Path) -> Result<Table> {
-        let read = Table::read_columns((self.name, self.title), columns, folder)?;
-        Ok(self.described(read))
+        let path = folder.join(self.name);
+        let csv = std::fs::read(&path)
+            .map_err(|e| Error::unreadable(&path, "a table that bubbletouch run wrote", e))?;
+        self.table(columns, &path, csv)
     }
 
     /// The same where there is such a file: of a part that a study may leave out.
     ///
     /// # Errors
-    /// Those of [`Table::read`].
+    /// Those of [`read`](Self::read).
     pub fn read_if_there(&self, folder: &Path) -> Result<Option<Table>> {
         let is_there = folder.join(self.name).exists();
         is_there.then(|| self.read(folder)).transpose()
     }
 
-    fn described(&self, table: Table) -> Table {
-        Table {
+    fn table(&self, columns: Vec<Column>, path: &Path, csv: Vec<u8>) -> Result<Table> {
+        let read = Table::from_csv((self.name, self.title), columns, path, csv)?;
+        Ok(Table {
             note: self.note.to_owned(),
             repeats: self.repeats,
             is_summary: self.is_summary,
-            ..table
-        }
+            ..read
+        })
     }
+}
+
+/// A table of no rows has the header of those columns that every study has.
+fn csv_of<R: Serialize>(
+    rows: &[R],
+    columns: &[Column],
+) -> std::result::Result<Vec<u8>, csv::Error> {
+    let mut writer = csv::Writer::from_writer(Vec::new());
+    if rows.is_empty() {
+        let always = columns.iter().filter(|column| !column.is_optional);
+        writer.write_record(always.map(|column| column.name.as_bytes()))?;
+    }
+    for row in rows {
+        writer.serialize(row)?;
+    }
+    let bytes = writer.into_inner().map_err(|e| e.into_error());
+    bytes.map_err(csv::Error::from)
 }

@@ -2,7 +2,7 @@
 //!
 //! Rows stay typed structs, one field a column; [`columns!`](crate::columns) says of each field its words, unit, scale and [`Role`], and a field
 //! of which nothing is said does not compile; [`row!`](crate::row) makes struct and columns of one list. [`File`] knows what a table is before
-//! there are rows. [`Table::of`] makes a table of rows, [`Table::read`] of a file that a run wrote: both hold the same.
+//! there are rows: it makes the table of rows, and reads that of a file that a run wrote; both hold the same.
 //! A [`ChartSpec`] names the columns of a table that a chart shows; it holds no pixels.
 
 mod chart;

@@ -1,6 +1,6 @@
 //! Rows of a table by their values.
 
-use super::{Data, Role, Shown, Table, Value};
+use super::{Column, Data, Role, Scale, Shown, Table, Value};
 use std::collections::HashMap;
 
 impl Table {
@@ -53,6 +53,31 @@ impl Table {
         match values.is_empty() {
             true => String::new(),
             false => format!("one of {}", values.join(", ")),
+        }
+    }
+
+    /// The interval of a column's value in a row; none where an end is absent.
+    pub fn interval(&self, column: &Column, row: usize) -> Option<[f64; 2]> {
+        let ends = column.interval.as_ref()?.each_ref();
+        let ends = ends.map(|end| self.number(end, row));
+        ends.iter().all(|end| end.is_finite()).then_some(ends)
+    }
+
+    /// A value with its interval: `0.93 [0.90, 0.95]`; shares with two digits, and four where nearly all would be rounded to all. Empty where
+    /// it is absent.
+    pub fn bounded(&self, column: &Column, row: usize) -> String {
+        let value = self.number(&column.name, row);
+        let is_share = column.scale == Scale::Share && column.unit.is_empty();
+        let said = |number: f64| match value {
+            0.995..1.0 if is_share => format!("{number:.4}"),
+            _ if is_share => format!("{number:.2}"),
+            _ => column.tick(number),
+        };
+        match self.interval(column, row) {
+            _ if value.is_nan() => self.words(&column.name, row),
+            Some([low, high]) => format!("{} [{}, {}]", said(value), said(low), said(high)),
+            None if is_share => said(value),
+            None => column.number_words(value),
         }
     }
 

@@ -1,6 +1,6 @@
 //! A table: columns of numbers and words, and the bytes of its file.
 
-use super::{Better, Column, Columns, Role, Scale};
+use super::{Better, Column, Role, Scale};
 use crate::error::{Error, Result};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
@@ -94,13 +94,20 @@ impl Value {
 }
 
 impl Data {
-    /// Of words, row by row.
-    pub fn of_words(words: impl IntoIterator<Item = String>) -> Self {
-        let mut maker = Maker::new(Scale::Words);
-        for word in words {
-            maker.push(&word);
+    /// Of texts as files have them, row by row; empty ones are absent.
+    fn of_texts(scale: Scale, texts: impl IntoIterator<Item = String>) -> Self {
+        let mut maker = Maker::new(scale);
+        for text in texts {
+            maker.push(&text);
         }
         maker.data
+    }
+
+    /// Whether it has several values in some rows.
+    pub fn varies(&self, rows: impl IntoIterator<Item = usize>) -> bool {
+        let mut keys = rows.into_iter().map(|row| self.key(row));
+        keys.next()
+            .is_some_and(|first| keys.any(|key| key != first))
     }
 
     /// A number a row that is equal for equal values only.
@@ -125,79 +132,23 @@ impl Data {
 }
 
 impl Table {
-    /// Of typed rows. Numbers are written in the shortest form that reads back as the same bits.
-    ///
-    /// # Errors
-    /// Rows that have no such form; the error names the file.
-    pub fn of<R: Columns + Serialize>(
-        file: &'static str,
-        title: &'static str,
-        rows: &[R],
-    ) -> Result<Self> {
-        Self::of_columns((file, title), R::columns(), rows)
-    }
-
-    /// The same of rows that have other columns than their type says: those of axes that a study names itself.
-    ///
-    /// # Errors
-    /// Those of [`of`](Self::of); a row with other columns.
-    pub fn of_columns(
-        (file, title): (&'static str, &'static str),
-        columns: Vec<Column>,
-        rows: &[impl Serialize],
-    ) -> Result<Self> {
-        let csv = csv_of(rows, &columns);
-        let csv = csv.map_err(|e| Error::io(file, "write", std::io::Error::other(e)))?;
-        Self::from_csv((file, title), columns, Path::new(file), csv)
-    }
-
-    /// Of a file in a folder.
-    ///
-    /// # Errors
-    /// A file that cannot be read, or has other columns or values; the error names file, line and column.
-    pub fn read<R: Columns>(
-        file: &'static str,
-        title: &'static str,
-        folder: &Path,
-    ) -> Result<Self> {
-        Self::read_columns((file, title), R::columns(), folder)
-    }
-
-    /// The same of a file that has these columns.
-    ///
-    /// # Errors
-    /// Those of [`read`](Self::read).
-    pub fn read_columns(
-        (file, title): (&'static str, &'static str),
-        columns: Vec<Column>,
-        folder: &Path,
-    ) -> Result<Self> {
-        let path = folder.join(file);
-        let csv = std::fs::read(&path)
-            .map_err(|e| Error::unreadable(&path, "a table that bubbletouch run wrote", e))?;
-        Self::from_csv((file, title), columns, &path, csv)
-    }
-
     /// The same with a note.
     pub fn noted(mut self, note: impl Into<String>) -> Self {
         self.note = note.into();
         self
     }
 
-    /// Whether its rows are choices of a designer that have a value and a cost.
+    /// Whether its rows are choices of a designer that have a value and a cost: columns that vary say so, of a single row all but subjects.
     pub fn offers_choices(&self) -> bool {
-        let varies = |data: &Data| (1..self.n_rows).any(|row| data.key(row) != data.key(0));
         let columns = self.columns.iter().zip(&self.data);
-        let varying = columns.filter(|(_, data)| varies(data));
-        offer_choices(varying.map(|(column, _)| column.role))
-    }
-
-    /// Whether its rows would be choices that have a value and a cost, if there were more of them.
-    pub fn offers_a_choice(&self) -> bool {
-        self.n_rows == 1 && {
-            let roles = self.columns.iter().map(|column| column.role);
-            offer_choices(roles.filter(|role| *role != Role::Subject))
-        }
+        let counted = columns.filter(|(column, data)| match self.n_rows {
+            1 => column.role != Role::Subject,
+            n => data.varies(0..n),
+        });
+        let roles: Vec<Role> = counted.map(|(column, _)| column.role).collect();
+        let has = |role: Role| roles.contains(&role);
+        let has_value = has(Role::Value(Better::More)) || has(Role::Value(Better::Less));
+        has(Role::Choice) && has(Role::Cost) && has_value && !has(Role::Subject)
     }
 
     /// The place of a column by its name.
@@ -223,7 +174,7 @@ impl Table {
     pub fn with(
         &self,
         (file, title): (&'static str, &'static str),
-        more: Vec<(Column, Data)>,
+        more: impl IntoIterator<Item = (Column, Data)>,
     ) -> Self {
         let mut table = Self {
             file,
@@ -239,33 +190,18 @@ impl Table {
         table
     }
 
-    /// A column of another table for the rows of this one, found by a column of numbers that both have; absent for rows that the other
-    /// one lacks.
+    /// A column of another table for the rows of this one, found by a column that both have; absent for rows that the other one lacks.
     pub fn look_up(&self, other: &Self, key: &str, column: &str) -> Option<(Column, Data)> {
-        let (known, wanted) = (other.numbers(key)?, self.numbers(key)?);
-        let rows: HashMap<u64, usize> = known
-            .iter()
-            .enumerate()
-            .map(|(row, n)| (n.to_bits(), row))
-            .collect();
-        let row_of = |key: &f64| rows.get(&key.to_bits()).copied();
+        let ((_, known), (_, wanted)) = (other.column(key)?, self.column(key)?);
         let (column, data) = other.column(column)?;
-        let data = match data {
-            Data::Numbers(numbers) => Data::Numbers(
-                wanted
-                    .iter()
-                    .map(|key| row_of(key).map_or(f64::NAN, |row| numbers[row]))
-                    .collect(),
-            ),
-            Data::Words { .. } => {
-                let word = |key: &f64| row_of(key).and_then(|row| data.value(row));
-                Data::of_words(wanted.iter().map(|key| match word(key) {
-                    Some(Value::Word(word)) => word,
-                    _ => String::new(),
-                }))
-            }
+        let rows = (0..other.n_rows).map(|row| (known.key(row), row));
+        let rows: HashMap<u64, usize> = rows.collect();
+        let text = |row: usize| {
+            let value = data.value(*rows.get(&wanted.key(row))?)?;
+            Some(value.to_string())
         };
-        Some((column.clone(), data))
+        let texts = (0..self.n_rows).map(|row| text(row).unwrap_or_default());
+        Some((column.clone(), Data::of_texts(column.scale, texts)))
     }
 
     /// Its rows, typed; those that are not of the type are left out. Of a row of two structs each is read alone.
@@ -274,7 +210,8 @@ impl Table {
         rows.filter_map(|row| row.ok()).collect()
     }
 
-    fn from_csv(
+    /// Of the content of a file, which stands at a path.
+    pub(super) fn from_csv(
         (file, title): (&'static str, &'static str),
         known: Vec<Column>,
         path: &Path,
@@ -296,19 +233,16 @@ impl Table {
         let mut columns = Vec::with_capacity(header.len());
         let mut all = known.into_iter();
         for name in &header {
-            let found = all.by_ref().find(|column| {
-                // A column before it that every study has must not be passed over.
-                column.name == name || !column.is_optional
-            });
-            match found {
+            // A column before it that every study has must not be passed over.
+            match all.find(|column| column.name == name || !column.is_optional) {
                 Some(column) if column.name == name => columns.push(column),
-                Some(column) => {
+                other => {
                     let given = format!("column {name:?}");
-                    return Err(bad(Some(1), given, format!("column {:?}", column.name)));
-                }
-                None => {
-                    let given = format!("column {name:?}");
-                    return Err(bad(Some(1), given, "no such column".to_owned()));
+                    let allowed = match other {
+                        Some(column) => format!("column {:?}", column.name),
+                        None => "no such column".to_owned(),
+                    };
+                    return Err(bad(Some(1), given, allowed));
                 }
             }
         }
@@ -341,31 +275,6 @@ impl Table {
             csv,
         })
     }
-}
-
-/// Whether these are the roles of columns that tell choices, without a subject, and what they give and cost.
-fn offer_choices(roles: impl Iterator<Item = Role>) -> bool {
-    let roles: Vec<Role> = roles.collect();
-    let has = |role: Role| roles.contains(&role);
-    let has_value = has(Role::Value(Better::More)) || has(Role::Value(Better::Less));
-    has(Role::Choice) && has(Role::Cost) && has_value && !has(Role::Subject)
-}
-
-/// A table of no rows has the header of those columns that every study has.
-fn csv_of<R: Serialize>(
-    rows: &[R],
-    columns: &[Column],
-) -> std::result::Result<Vec<u8>, csv::Error> {
-    let mut writer = csv::Writer::from_writer(Vec::new());
-    if rows.is_empty() {
-        let always = columns.iter().filter(|column| !column.is_optional);
-        writer.write_record(always.map(|column| column.name.as_bytes()))?;
-    }
-    for row in rows {
-        writer.serialize(row)?;
-    }
-    let bytes = writer.into_inner().map_err(|e| e.into_error());
-    bytes.map_err(csv::Error::from)
 }
 
 /// Collects the values of a column.
@@ -414,6 +323,7 @@ impl Maker {
 mod tests {
     use super::*;
     use crate::columns;
+    use crate::table::File;
     use serde::Deserialize;
 
     #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -438,6 +348,8 @@ mod tests {
         error: Value(Less) "deflection error": Log;
     } }
 
+    const FOUND: File<(Setting, Found)> = File::new("found.csv", "Found", "");
+
     fn rows(leak: Option<f64>) -> Vec<(Setting, Found)> {
         let row = |method: &str, step_s, error| {
             let method = method.to_owned();
@@ -457,10 +369,9 @@ mod tests {
     fn a_table_holds_the_same_of_its_rows_and_of_its_file() {
         let folder = tempfile::tempdir().unwrap();
         for rows in [rows(Some(0.25)), rows(None), Vec::new()] {
-            let made = Table::of("found.csv", "Found", &rows).unwrap();
+            let made = FOUND.of(&rows).unwrap();
             std::fs::write(folder.path().join("found.csv"), &made.csv).unwrap();
-            let read = Table::read::<(Setting, Found)>("found.csv", "Found", folder.path());
-            let read = read.unwrap();
+            let read = FOUND.read(folder.path()).unwrap();
             assert_eq!((&read.columns, read.n_rows), (&made.columns, rows.len()));
             assert_eq!(read.csv, made.csv);
             let values = |table: &Table, row| -> Vec<Option<Value>> {
@@ -470,7 +381,7 @@ mod tests {
                 assert_eq!(values(&read, row), values(&made, row));
             }
         }
-        let made = Table::of("found.csv", "Found", &rows(None)).unwrap();
+        let made = FOUND.of(&rows(None)).unwrap();
         assert_eq!(made.place("leak"), None);
         let words = made.column("method").unwrap().1.value(0);
         assert_eq!(words, Some(Value::Word("003".to_owned())));
@@ -492,8 +403,7 @@ mod tests {
             ("method,step_s,error\na,1\n", "line 2"),
         ] {
             std::fs::write(folder.path().join("found.csv"), text).unwrap();
-            let read = Table::read::<(Setting, Found)>("found.csv", "Found", folder.path());
-            let said = read.unwrap_err().to_string();
+            let said = FOUND.read(folder.path()).unwrap_err().to_string();
             assert!(said.contains(wanted), "{said}");
         }
     }

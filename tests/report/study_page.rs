@@ -4,7 +4,7 @@ use crate::browser::{ARROW_RIGHT, Browser};
 use crate::chart_tables::{charts, tables};
 use bubbletouch::report::chart::places;
 use bubbletouch::report::page::StudyAbout;
-use bubbletouch::report::study_folder::{Found, folder_of};
+use bubbletouch::report::study_folder::{Beyond, Found, folder_with};
 use bubbletouch::table::{ChartSpec, Table};
 use serde_json::json;
 use std::path::PathBuf;
@@ -29,7 +29,7 @@ fn written(tables: &[Table], charts: &[ChartSpec]) -> (TempDir, PathBuf) {
         charts,
         answers: &answers,
     };
-    folder_of(folder.path(), &about, &found)
+    folder_with(folder.path(), &about, &found, || Ok(Beyond::default()))
         .unwrap()
         .write()
         .unwrap();

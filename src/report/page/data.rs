@@ -1,7 +1,7 @@
 //! Tables and charts as a page holds them: JSON, column by column, each value as short as it reads.
 
 use crate::table::{ChartSpec, Column, Data, Role, Table};
-use serde::{Serialize, Serializer};
+use serde::Serialize;
 use std::collections::{HashMap, HashSet};
 
 /// Letters of all tables of a page, at most: with pictures it stays below 3 MB. Tables that would be more lie beside it.
@@ -30,35 +30,21 @@ struct TableData<'a> {
 #[derive(Serialize)]
 #[serde(untagged)]
 enum ColumnData<'a> {
-    SameWord {
-        same: &'a str,
-    },
-    SameNumber {
-        same: Short,
-    },
-    Words {
-        levels: &'a [String],
-        codes: &'a [u32],
-    },
+    /// Each once, and the place of each row's in that list; no places where all rows have the same.
     Levels {
-        levels: Vec<Short>,
+        levels: Vec<Short<'a>>,
         codes: Vec<u32>,
     },
-    Numbers(Vec<Short>),
+    Each(Vec<Short<'a>>),
 }
 
-/// A number in as few letters as it needs; absent if it is none.
-#[derive(Clone, Copy)]
-struct Short(f64);
-
-impl Serialize for Short {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        match self.0 {
-            n if !n.is_finite() => serializer.serialize_none(),
-            n if n.fract() == 0.0 && n.abs() < 1e15 => serializer.serialize_i64(n as i64),
-            n => serializer.serialize_f64(n),
-        }
-    }
+/// A value in as few letters as it needs; a number that is none is null.
+#[derive(Serialize)]
+#[serde(untagged)]
+enum Short<'a> {
+    Word(&'a str),
+    Whole(i64),
+    Number(f64),
 }
 
 impl PageData {
@@ -117,42 +103,53 @@ impl<'a> TableData<'a> {
 
 impl<'a> ColumnData<'a> {
     fn of(column: &Column, data: &'a Data) -> Self {
-        match data {
-            Data::Words { levels, .. } if levels.len() == 1 => Self::SameWord { same: &levels[0] },
-            Data::Words { levels, codes } => Self::Words { levels, codes },
+        let (levels, codes): (Vec<Short>, Vec<u32>) = match data {
+            Data::Words { levels, codes } => {
+                let levels = levels.iter().map(|word| Short::Word(word));
+                (levels.collect(), codes.clone())
+            }
             Data::Numbers(numbers) => {
-                Self::of_numbers(numbers.iter().map(|&n| said(column, n)).collect())
+                let numbers: Vec<f64> = numbers.iter().map(|&n| said(column, n)).collect();
+                let (levels, codes) = coded(&numbers);
+                if levels.len() > (numbers.len() / 4).clamp(1, MOST_LEVELS) {
+                    return Self::Each(numbers.into_iter().map(short).collect());
+                }
+                (levels.into_iter().map(short).collect(), codes)
             }
-        }
+        };
+        let is_same = levels.len() == 1;
+        let codes = if is_same { Vec::new() } else { codes };
+        Self::Levels { levels, codes }
     }
+}
 
-    fn of_numbers(numbers: Vec<Short>) -> Self {
-        let mut places: HashMap<u64, u32> = HashMap::new();
-        let mut levels: Vec<Short> = Vec::new();
-        let mut codes: Vec<u32> = Vec::with_capacity(numbers.len());
-        for &number in &numbers {
-            let next = levels.len() as u32;
-            let code = *places.entry(number.0.to_bits()).or_insert(next);
-            if code == next {
-                levels.push(number);
-            }
-            codes.push(code);
-        }
-        match levels.len() {
-            1 => Self::SameNumber { same: levels[0] },
-            n if n <= MOST_LEVELS.min(numbers.len() / 4) => Self::Levels { levels, codes },
-            _ => Self::Numbers(numbers),
-        }
+/// Numbers, each once, and the place of each in that list.
+fn coded(numbers: &[f64]) -> (Vec<f64>, Vec<u32>) {
+    let mut places: HashMap<u64, u32> = HashMap::new();
+    let mut levels = Vec::new();
+    let code = |&number: &f64| {
+        let next = levels.len() as u32;
+        *places.entry(number.to_bits()).or_insert_with(|| {
+            levels.push(number);
+            next
+        })
+    };
+    let codes = numbers.iter().map(code).collect();
+    (levels, codes)
+}
+
+fn short<'a>(number: f64) -> Short<'a> {
+    match number.fract() == 0.0 && number.abs() < 1e15 {
+        true => Short::Whole(number as i64),
+        false => Short::Number(number),
     }
 }
 
 /// Settings as they are, since readers choose them; of all else six digits.
-fn said(column: &Column, number: f64) -> Short {
+fn said(column: &Column, number: f64) -> f64 {
     let is_setting = matches!(column.role, Role::Choice | Role::Condition | Role::Subject);
-    Short(
-        match is_setting || number.fract() == 0.0 || !number.is_finite() {
-            true => number,
-            false => format!("{number:.5e}").parse().unwrap_or(number),
-        },
-    )
+    match is_setting || number.fract() == 0.0 || !number.is_finite() {
+        true => number,
+        false => format!("{number:.5e}").parse().unwrap_or(number),
+    }
 }

@@ -1,5 +1,6 @@
 //! What every page has: head, question, contents, sections, foot.
 
+use super::about::StudyAbout;
 use crate::report::drawing::escape;
 
 const TEMPLATE: &str = include_str!("page.html");
@@ -21,23 +22,6 @@ const SCRIPT: [&str; 10] = [
     ),
 ];
 
-/// A page.
-#[derive(Clone, Debug, Default)]
-pub(crate) struct Page {
-    /// What it is called, above all.
-    pub name: String,
-    /// What was asked; may be empty.
-    pub question: String,
-    /// What was expected; may be empty.
-    pub expected: String,
-    /// What was found, section by section.
-    pub sections: Vec<Section>,
-    /// HTML of the foot.
-    pub foot: String,
-    /// JSON that the script draws from; none for a page without script.
-    pub data: Option<String>,
-}
-
 /// A part of a page with a heading.
 #[derive(Clone, Debug, Default)]
 pub struct Section {
@@ -51,8 +35,7 @@ pub struct Section {
 
 impl Section {
     /// A section.
-    pub fn new(id: &'static str, title: &'static str, body: impl Into<String>) -> Self {
-        let body = body.into();
+    pub fn new(id: &'static str, title: &'static str, body: String) -> Self {
         Self { id, title, body }
     }
 
@@ -68,60 +51,41 @@ impl Section {
     }
 }
 
-impl Page {
-    /// Adds a section, unless it is empty.
-    pub fn add(&mut self, section: Section) {
-        if !section.body.is_empty() {
-            self.sections.push(section);
-        }
-    }
-
-    /// The HTML.
-    pub fn html(&self) -> String {
-        let paragraph = |class: &str, before: &str, text: &str| match text {
-            "" => String::new(),
-            text => format!("<p class=\"{class}\">{before}{}</p>", escape(text)),
-        };
-        fill(TEMPLATE, |name| match name {
-            "style" => STYLE.to_owned(),
-            "name" => escape(&self.name),
-            "question" => paragraph("question", "", &self.question),
-            "expected" => paragraph("quiet", "Expected: ", &self.expected),
-            "contents" => self.contents(),
-            "sections" => self.sections.iter().map(Section::html).collect(),
-            "foot" => self.foot.clone(),
-            "script" => self.script(),
-            other => format!("(no value for {other})"),
-        })
-    }
-
-    fn contents(&self) -> String {
-        let links = self.sections.iter();
-        let links = links
-            .map(|Section { id, title, .. }| format!("<li><a href=\"#{id}\">{title}</a></li>"));
-        format!("<ul>{}</ul>", links.collect::<String>())
-    }
-
-    fn script(&self) -> String {
-        match &self.data {
-            None => String::new(),
-            Some(data) => {
-                // What ends an element of HTML has no place in JSON but within its strings.
-                let data = data.replace('<', "\\u003c");
-                let data =
-                    format!("<script type=\"application/json\" id=\"study\">{data}</script>");
-                format!("{data}\n{}", in_scope(&SCRIPT))
-            }
-        }
-    }
+/// A page of sections, those without a body left out; the HTML of its foot, and the JSON that the script draws from.
+pub(super) fn html(about: &StudyAbout, sections: &[Section], foot: &str, data: &str) -> String {
+    let sections = sections.iter().filter(|section| !section.body.is_empty());
+    let paragraph = |class: &str, before: &str, text: &str| match text {
+        "" => String::new(),
+        text => format!("<p class=\"{class}\">{before}{}</p>", escape(text)),
+    };
+    let link =
+        |Section { id, title, .. }: &Section| format!("<li><a href=\"#{id}\">{title}</a></li>");
+    fill(TEMPLATE, |name| match name {
+        "style" => STYLE.to_owned(),
+        "name" => escape(&about.name),
+        "question" => paragraph("question", "", &about.question),
+        "expected" => paragraph("quiet", "Expected: ", &about.expected),
+        "contents" => format!(
+            "<ul>{}</ul>",
+            sections.clone().map(link).collect::<String>()
+        ),
+        "sections" => sections.clone().map(Section::html).collect(),
+        "foot" => foot.to_owned(),
+        // What ends an element of HTML has no place in JSON but within its strings.
+        "data" => data.replace('<', "\\u003c"),
+        "script" => SCRIPT.join("\n"),
+        other => format!("(no value for {other})"),
+    })
 }
 
-/// Scripts that see each other, and are seen by nothing else.
-fn in_scope(scripts: &[&str]) -> String {
-    format!(
-        "<script>\n(() => {{\n\"use strict\";\n{}}})();\n</script>\n",
-        scripts.join("\n")
-    )
+/// What a name stands for, in a list of such; the name is HTML.
+pub(crate) fn definition(name: &str, value: &str) -> String {
+    let class = match value.len() > 60 {
+        true => " class=\"long\"",
+        false => "",
+    };
+    let value = escape(value);
+    format!("<div{class}><dt>{name}</dt><dd>{value}</dd></div>")
 }
 
 /// The first sentence large, the others as a list; empty if there is none.
@@ -177,11 +141,7 @@ mod tests {
 
     #[test]
     fn no_text_in_the_data_ends_the_script() {
-        let page = Page {
-            data: Some("[\"</script><b>\"]".to_owned()),
-            ..Page::default()
-        };
-        let html = page.html();
+        let html = html(&StudyAbout::default(), &[], "", "[\"</script><b>\"]");
         assert!(html.contains("[\"\\u003c/script>\\u003cb>\"]"));
         assert_eq!(html.matches("</script>").count(), 2);
     }

@@ -1,34 +1,23 @@
 //! Where the results come from, for the page.
 
+use super::frame::definition;
 use crate::report::drawing::escape;
 use crate::spelling::counted;
 use crate::study::provenance::Manifest;
 use std::collections::BTreeMap;
-use std::fmt::Write;
 
 /// Program, machine, times, and hashes.
 pub(super) fn provenance_html(manifest: &Manifest) -> String {
-    let Manifest {
-        program,
-        commit,
-        rustc,
-        target,
-        cpu,
-        cores,
-        threads,
-        ..
-    } = manifest;
+    let Manifest { program, cpu, .. } = manifest;
+    let [cores, threads] = [(manifest.cores, "core"), (manifest.threads, "thread")]
+        .map(|(number, one)| counted(number, one));
     let rows = [
-        ("Program", format!("{program}, commit {commit}")),
-        ("Built", format!("{rustc} for {target}")),
+        ("Program", format!("{program}, commit {}", manifest.commit)),
         (
-            "Machine",
-            format!(
-                "{cpu}, {}, {} used",
-                counted(*cores, "core"),
-                counted(*threads, "thread")
-            ),
+            "Built",
+            format!("{} for {}", manifest.rustc, manifest.target),
         ),
+        ("Machine", format!("{cpu}, {cores}, {threads} used")),
         (
             "Run (UTC)",
             format!("{} to {}", manifest.started, manifest.ended),
@@ -44,31 +33,22 @@ pub(super) fn provenance_html(manifest: &Manifest) -> String {
         ("Hash of the sources", manifest.source.clone()),
         ("SHA-256 of study.toml", manifest.study_sha256.clone()),
     ];
-    let mut html = "<dl>".to_owned();
-    for (name, value) in rows {
-        let _ = write!(
-            html,
-            "<div><dt>{name}</dt><dd>{}</dd></div>",
-            escape(&value)
-        );
-    }
-    html += "</dl>";
-    html += &listed("Methods of intervals and p-values", &manifest.methods);
-    html += &listed("Tables (SHA-256)", &manifest.tables_sha256);
-    html + &listed("Objects (SHA-256)", &manifest.objects_sha256)
+    let rows = rows.iter().map(|(name, value)| definition(name, value));
+    let listed = [
+        listed("Methods of intervals and p-values", &manifest.methods),
+        listed("Tables (SHA-256)", &manifest.tables_sha256),
+        listed("Objects (SHA-256)", &manifest.objects_sha256),
+    ];
+    format!("<dl>{}</dl>{}", rows.collect::<String>(), listed.concat())
 }
 
 fn listed(title: &str, known: &BTreeMap<String, String>) -> String {
     if known.is_empty() {
         return String::new();
     }
-    let rows = known.iter().map(|(name, hash)| {
-        format!(
-            "<div><dt>{}</dt><dd>{}</dd></div>",
-            escape(name),
-            escape(hash)
-        )
-    });
+    let rows = known
+        .iter()
+        .map(|(name, value)| definition(&escape(name), value));
     format!(
         "<details><summary>{title}: {}</summary><dl class=\"hashes\">{}</dl></details>",
         known.len(),

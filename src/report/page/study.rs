@@ -2,13 +2,12 @@
 
 use super::about::StudyAbout;
 use super::data::PageData;
-use super::frame::{Page, Section, sentences_html};
+use super::frame::{Section, html, sentences_html};
 use super::picture::{Picture, figure, figures};
 use super::provenance::provenance_html;
 use crate::report::drawing::escape;
 use crate::report::study_folder::Found;
-use crate::table::{ChartSpec, Data, Table, short_number};
-use std::fmt::Write;
+use crate::table::{ChartSpec, Column, Scale, Table, short_number};
 
 /// Letters of pictures for readers without script, at most: a study of thousands of rows has megabytes of them.
 const MOST_PICTURES: usize = 600_000;
@@ -33,86 +32,47 @@ pub(crate) struct Beside {
 /// The page.
 pub(crate) fn page(about: &StudyAbout, found: &Found, beside: Beside) -> String {
     let data = PageData::of(found.tables, found.charts);
-    let mut page = Page {
-        name: about.name.clone(),
-        question: about.question.clone(),
-        expected: about.expected.clone(),
-        foot: foot(about, found.tables),
-        ..Page::default()
-    };
-    page.add(Section::new(
-        "answer",
-        "Answer",
-        sentences_html(found.answers),
-    ));
-    page.add(Section::new(
-        "charts",
-        "Charts",
-        charts_html(found.charts, &data, &beside),
-    ));
-    page.add(Section::new(
-        "choices",
-        "What to choose",
-        advice_html(found, &data),
-    ));
-    page.add(Section::new(
-        "pictures",
-        "Pictures",
-        figures(&beside.pictures),
-    ));
-    for section in beside.sections {
-        page.add(section);
-    }
-    page.add(Section::new(
-        "tables",
-        "Tables",
-        tables_html(found.tables, &data),
-    ));
-    if let Some(manifest) = &about.manifest {
-        page.add(Section::new(
-            "provenance",
-            "Provenance",
-            provenance_html(manifest),
-        ));
-    }
-    page.add(Section::new("again", "Make it again", again(about)));
-    page.data = Some(data.json);
-    page.html()
+    let charts = charts_html(found.charts, &data, &beside);
+    let mut sections = vec![
+        Section::new("answer", "Answer", sentences_html(found.answers)),
+        Section::new("charts", "Charts", charts),
+        Section::new("choices", "What to choose", advice_html(found, &data)),
+        Section::new("pictures", "Pictures", figures(&beside.pictures)),
+    ];
+    sections.extend(beside.sections);
+    let provenance = about.manifest.as_ref().map(provenance_html);
+    sections.extend([
+        Section::new("tables", "Tables", tables_html(found.tables, &data)),
+        Section::new("provenance", "Provenance", provenance.unwrap_or_default()),
+        Section::new("again", "Make it again", again(about)),
+    ]);
+    html(about, &sections, &foot(about, found.tables), &data.json)
 }
 
 /// A chart that the script draws, and its picture for readers without.
 fn charts_html(charts: &[ChartSpec], data: &PageData, beside: &Beside) -> String {
     let mut letters = 0;
-    let mut html = String::new();
     let held = charts.iter().filter(|chart| data.holds(chart.table));
-    for (number, chart) in held.enumerate() {
-        let picture = beside
-            .charts
-            .iter()
-            .find(|picture| picture.title == chart.title);
-        let picture = picture.filter(|picture| {
-            letters += picture.element.len();
-            letters <= MOST_PICTURES
-        });
-        let without = match picture {
+    let place = |(number, chart): (usize, &ChartSpec)| {
+        let mut pictures = beside.charts.iter();
+        let picture = pictures.find(|picture| picture.title == chart.title);
+        letters += picture.map_or(0, |picture| picture.element.len());
+        let name = escape(&chart.name);
+        let without = match picture.filter(|_| letters <= MOST_PICTURES) {
             Some(picture) => figure(picture),
-            None => format!(
-                "<p>This chart lies beside the page: {}.svg.</p>",
-                escape(&chart.name)
-            ),
+            None => format!("<p>This chart lies beside the page: {name}.svg.</p>"),
         };
         let title = escape(&chart.title);
         let note = match chart.note.is_empty() {
             true => String::new(),
             false => format!("<p class=\"quiet\">{}</p>", escape(&chart.note)),
         };
-        let _ = write!(
-            html,
-            "<h3 id=\"chart-{}\">{title}</h3>{note}<div class=\"chart\" data-chart=\"{number}\"></div><noscript>{without}</noscript>",
-            escape(&chart.name)
-        );
-    }
-    html + &not_drawn(&beside.left_out)
+        format!(
+            "<h3 id=\"chart-{name}\">{title}</h3>{note}<div class=\"chart\" data-chart=\"{number}\"></div><noscript>{without}</noscript>"
+        )
+    };
+    let charts: String = held.enumerate().map(place).collect();
+    charts + &not_drawn(&beside.left_out)
 }
 
 /// Which charts have no file, and how they get one.
@@ -134,7 +94,9 @@ fn advice_html(found: &Found, data: &PageData) -> String {
     let charted = found.charts.iter().map(|chart| chart.table);
     let files = charted.chain(found.tables.iter().map(|table| table.file));
     let mut tables = files.filter_map(|file| found.tables.iter().find(|table| table.file == file));
-    let Some(table) = tables.find(|table| data.holds(table.file) && table.offers_choices()) else {
+    let Some(table) =
+        tables.find(|table| data.holds(table.file) && table.n_rows > 1 && table.offers_choices())
+    else {
         return String::new();
     };
     format!(
@@ -145,89 +107,73 @@ fn advice_html(found: &Found, data: &PageData) -> String {
 }
 
 fn tables_html(tables: &[Table], data: &PageData) -> String {
-    let mut html = String::new();
     let mut letters = 0;
-    for table in tables {
-        let (file, title) = (escape(table.file), escape(table.title));
-        let note = escape(&table.note);
-        let times = if table.repeats {
-            ""
-        } else {
-            " Times differ from run to run."
+    let place = |table: &Table| {
+        let (file, title, n) = (escape(table.file), escape(table.title), table.n_rows);
+        let times = match table.repeats {
+            true => "",
+            false => " Times differ from run to run.",
         };
-        let _ = write!(
-            html,
-            "<h3>{title}</h3><p class=\"quiet\">{file}. {note}{times}</p>"
-        );
-        if table.n_rows == 0 {
-            html += "<p>No rows.</p>";
+        let body = if n == 0 {
+            "<p>No rows.</p>".to_owned()
         } else if data.holds(table.file) {
-            let without = without_script(table);
-            letters += without.len();
+            let whole = without_script(table);
+            letters += whole.len();
             let without = match letters <= MOST_TABLES {
-                true => without,
+                true => whole,
                 false => format!("<p>It lies beside this page: {file}.</p>"),
             };
-            let _ = write!(
-                html,
-                "<div data-table=\"{file}\"></div><noscript>{without}</noscript>"
-            );
+            format!("<div data-table=\"{file}\"></div><noscript>{without}</noscript>")
         } else {
-            let _ = write!(
-                html,
-                "<p>Its {} rows are too many for a page and lie beside it: {file}.</p>",
-                table.n_rows
-            );
-        }
-    }
-    html
+            format!("<p>Its {n} rows are too many for a page and lie beside it: {file}.</p>")
+        };
+        let note = escape(&table.note);
+        format!("<h3>{title}</h3><p class=\"quiet\">{file}. {note}{times}</p>{body}")
+    };
+    tables.iter().map(place).collect()
 }
 
 fn without_script(table: &Table) -> String {
-    let title = escape(table.title);
-    let mut html = format!(
-        "<div class=\"wide\" tabindex=\"0\" role=\"region\" aria-label=\"{title}\"><table><thead><tr>"
-    );
-    for column in &table.columns {
-        let _ = write!(html, "<th scope=\"col\">{}</th>", escape(&column.title()));
-    }
-    html += "</tr></thead><tbody>";
-    for row in 0..table.n_rows.min(MOST_ROWS) {
-        html += "<tr>";
-        for (column, data) in table.columns.iter().zip(&table.data) {
-            let class = if matches!(data, Data::Words { .. }) {
-                " class=\"word\""
-            } else {
-                ""
-            };
-            let said = data
-                .value(row)
-                .map_or_else(String::new, |value| column.value_words(&value));
-            let _ = write!(html, "<td{class}>{}</td>", escape(&said));
-        }
-        html += "</tr>";
-    }
-    html += "</tbody></table></div>";
-    if table.n_rows > MOST_ROWS {
-        let _ = write!(
-            html,
-            "<p>The first {MOST_ROWS} of {} rows.</p>",
-            table.n_rows
-        );
-    }
-    html
+    let heads = table.columns.iter();
+    let heads = heads.map(|column| format!("<th scope=\"col\">{}</th>", escape(&column.title())));
+    let cell = |column: &Column, row: usize| {
+        let class = match column.scale {
+            Scale::Words => " class=\"word\"",
+            _ => "",
+        };
+        let said = table.words(&column.name, row);
+        format!("<td{class}>{}</td>", escape(&said))
+    };
+    let row = |row: usize| {
+        let cells = table.columns.iter().map(|column| cell(column, row));
+        format!("<tr>{}</tr>", cells.collect::<String>())
+    };
+    let more = match table.n_rows > MOST_ROWS {
+        true => format!("<p>The first {MOST_ROWS} of {} rows.</p>", table.n_rows),
+        false => String::new(),
+    };
+    format!(
+        "<div class=\"wide\" tabindex=\"0\" role=\"region\" aria-label=\"{}\"><table><thead><tr>{}</tr></thead><tbody>{}</tbody></table></div>{more}",
+        escape(table.title),
+        heads.collect::<String>(),
+        (0..table.n_rows.min(MOST_ROWS))
+            .map(row)
+            .collect::<String>()
+    )
 }
 
 fn again(about: &StudyAbout) -> String {
-    let mut html = String::new();
-    if about.wall_s.is_finite() {
-        let seconds = short_number(about.wall_s);
-        let _ = write!(html, "<p>The run took {seconds} s from start to end.</p>");
+    let took = match about.wall_s {
+        s if s.is_finite() => format!(
+            "<p>The run took {} s from start to end.</p>",
+            short_number(s)
+        ),
+        _ => String::new(),
+    };
+    match &about.command[..] {
+        "" => took,
+        command => format!("{took}<pre><code>{}</code></pre>", escape(command)),
     }
-    if !about.command.is_empty() {
-        let _ = write!(html, "<pre><code>{}</code></pre>", escape(&about.command));
-    }
-    html
 }
 
 fn foot(about: &StudyAbout, tables: &[Table]) -> String {

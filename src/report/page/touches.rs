@@ -1,11 +1,12 @@
 //! Sample touches as heat maps, side by side on one scale of colours.
 
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::report::colours::heat;
 use crate::report::drawing::escape;
 use crate::report::heat_map::{ColourScale, block_sentence, check_frame, largest_of_blocks};
 use crate::report::page::about::Snapshots;
 use crate::report::page::picture::Picture;
+use crate::report::picture::Picture as Pixels;
 use crate::table::short_number;
 use ndarray::Array2;
 
@@ -13,8 +14,8 @@ use ndarray::Array2;
 const MOST_CELLS: usize = 96;
 /// Touches in a page, at most: each is some kilobytes.
 const MOST_TOUCHES: usize = 120;
-/// Colours of a heat map.
-const N_COLOURS: usize = 128;
+/// Steps between the colours of a heat map.
+const N_COLOURS: f64 = 128.0;
 
 /// A set of touches; the error says which frame nobody can draw.
 pub fn touches_html(set: &Snapshots) -> Result<String> {
@@ -35,7 +36,7 @@ pub fn touches_html(set: &Snapshots) -> Result<String> {
         let shown = largest_of_blocks(frame, (block, block));
         let places = shown.mapv(|value| scale.place(value * set.quantity.factor()));
         let title = format!("{name}: largest {}", value_words(frame, set));
-        let image = Picture::of_png(&png(&places)?, (shown.ncols(), shown.nrows()), &title);
+        let image = image(&places, &title)?;
         html += &format!(
             "<figure>{}<figcaption>{}</figcaption></figure>",
             image.element,
@@ -57,8 +58,8 @@ fn value_words(frame: &Array2<f64>, set: &Snapshots) -> String {
 }
 
 fn colour_bar(set: &Snapshots, scale: ColourScale) -> Result<String> {
-    let bar = Array2::from_shape_fn((1, N_COLOURS), |(_, x)| x as f64 / (N_COLOURS - 1) as f64);
-    let image = Picture::of_png(&png(&bar)?, (N_COLOURS, 1), "dark is low, light is high");
+    let bar = Array2::from_shape_fn((1, 129), |(_, x)| x as f64 / N_COLOURS);
+    let image = image(&bar, "dark is low, light is high")?;
     let [low, high] = [scale.low, scale.high].map(|end| format!("{end:.2}").replace('-', "−"));
     let (name, unit) = (set.quantity.name(), set.quantity.unit());
     Ok(format!(
@@ -67,30 +68,23 @@ fn colour_bar(set: &Snapshots, scale: ColourScale) -> Result<String> {
     ))
 }
 
+fn image(places: &Array2<f64>, title: &str) -> Result<Picture> {
+    let pixels = pixels(places);
+    let size = (pixels.width, pixels.height);
+    Ok(Picture::of_png(&pixels.png()?, size, title))
+}
+
 /// A pixel a value between 0 and 1; row 0, the lowest y, at the bottom.
-fn png(places: &Array2<f64>) -> Result<Vec<u8>> {
-    let failed = |e: png::EncodingError| Error::input("picture", e, "a size that fits into a PNG");
+fn pixels(places: &Array2<f64>) -> Pixels {
     let (height, width) = places.dim();
-    let mut bytes = Vec::new();
-    let mut encoder = png::Encoder::new(&mut bytes, width as u32, height as u32);
-    encoder.set_color(png::ColorType::Indexed);
-    encoder.set_depth(png::BitDepth::Eight);
-    let palette = (0..N_COLOURS).flat_map(|i| heat(i as f64 / (N_COLOURS - 1) as f64));
-    encoder.set_palette(palette.collect::<Vec<u8>>());
-    encoder.set_compression(png::Compression::High);
     let rows = places.outer_iter().rev();
-    let last = (N_COLOURS - 1) as f64;
-    let pixels: Vec<u8> = rows
-        .flat_map(|row| {
-            row.iter()
-                .map(|v| (v * last).round() as u8)
-                .collect::<Vec<_>>()
-        })
-        .collect();
-    let mut writer = encoder.write_header().map_err(failed)?;
-    writer.write_image_data(&pixels).map_err(failed)?;
-    writer.finish().map_err(failed)?;
-    Ok(bytes)
+    // Few colours are small files.
+    let colour = |place: &f64| heat((place * N_COLOURS).round() / N_COLOURS);
+    Pixels {
+        width,
+        height,
+        rgb: rows.flatten().flat_map(colour).collect(),
+    }
 }
 
 #[cfg(test)]
@@ -99,18 +93,14 @@ mod tests {
     use ndarray::array;
 
     #[test]
-    fn the_lowest_row_is_at_the_bottom_and_colours_are_those_of_the_map() {
-        let bytes = png(&array![[0.0, 1.0], [0.5, 0.0], [0.25, 0.25]]).unwrap();
-        let mut decoder = png::Decoder::new(std::io::Cursor::new(bytes));
-        decoder.set_transformations(png::Transformations::EXPAND);
-        let mut reader = decoder.read_info().unwrap();
-        let mut pixels = vec![0; reader.output_buffer_size().unwrap()];
-        let info = reader.next_frame(&mut pixels).unwrap();
-        assert_eq!((info.width, info.height), (2, 3));
-        let pixel = |x: usize, y: usize| [0, 1, 2].map(|c| pixels[3 * (2 * y + x) + c]);
+    fn the_lowest_row_is_at_the_bottom() {
+        let places = array![[0.0, 1.0], [0.5, 0.0], [0.25, 0.25]];
+        let pixels = pixels(&places);
+        assert_eq!((pixels.width, pixels.height), (2, 3));
+        let pixel = |x: usize, y: usize| [0, 1, 2].map(|c| pixels.rgb[3 * (2 * y + x) + c]);
         assert_eq!(pixel(0, 2), heat(0.0));
         assert_eq!(pixel(1, 2), heat(1.0));
-        assert_eq!(pixel(0, 1), heat(64.0 / 127.0));
-        assert_eq!(pixel(0, 0), pixel(1, 0));
+        assert_eq!(pixel(0, 1), heat(0.5));
+        assert_eq!(pixel(0, 0), heat(0.25));
     }
 }

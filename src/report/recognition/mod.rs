@@ -6,6 +6,6 @@ mod sections;
 mod tables;
 
 pub use answers::{answers, words};
-pub use charts::{charts, is_wanted};
+pub use charts::charts;
 pub use sections::sections;
 pub use tables::{CELLS, read_tables, tables_of};

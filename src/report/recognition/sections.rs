@@ -3,10 +3,9 @@
 use crate::error::Result;
 use crate::report::csv_tables::LIMITS_FILE;
 use crate::report::drawing::escape;
-use crate::report::page::{Section, Snapshots, touches_html};
+use crate::report::page::{Section, Snapshots, definition, touches_html};
 use crate::report::swept::Swept;
 use crate::table::{Table, short_number};
-use std::fmt::Write;
 
 /// Sample touches, settings, limits.
 ///
@@ -25,40 +24,33 @@ pub fn sections(
     ])
 }
 
+/// What a study says of itself, then every setting with its values.
 fn settings_html(settings: &[(String, String)], tables: &[Table]) -> String {
-    let mut html = String::from("<dl>");
-    for (name, value) in settings {
-        let class = match value.len() > 60 {
-            true => " class=\"long\"",
-            false => "",
-        };
-        let (name, value) = (escape(name), escape(value));
-        let _ = write!(html, "<div{class}><dt>{name}</dt><dd>{value}</dd></div>");
-    }
+    let settings = settings.iter();
+    let mut html: String = settings
+        .map(|(name, value)| definition(&escape(name), value))
+        .collect();
     if let Some(cells) = tables.iter().find(|table| table.file == super::CELLS) {
         let rows: Vec<usize> = (0..cells.n_rows).collect();
-        let swept = Swept::of(cells, &rows);
-        let swept_ones = swept
-            .free
+        let Swept { free, fixed, .. } = Swept::of(cells, &rows);
+        let free = free
             .iter()
             .map(|one| (one, " <span class=\"tag\">swept</span>"));
-        for (setting, mark) in swept_ones.chain(swept.fixed.iter().map(|one| (one, ""))) {
+        for (setting, mark) in free.chain(fixed.iter().map(|one| (one, ""))) {
             let values = setting.levels(&rows).into_iter();
-            let values: Vec<String> = values.map(|row| escape(&setting.label(row))).collect();
-            let (name, values) = (escape(&setting.column.words), values.join(", "));
-            let _ = write!(html, "<div><dt>{name}{mark}</dt><dd>{values}</dd></div>");
+            let values: Vec<String> = values.map(|row| setting.label(row)).collect();
+            let name = escape(&setting.column.words) + mark;
+            html += &definition(&name, &values.join(", "));
         }
     }
-    html + "</dl>"
+    format!("<dl>{html}</dl>")
 }
 
 /// Limits of the model and of the solver that were reached.
 fn limits_html(tables: &[Table]) -> String {
-    let table = tables.iter().find(|table| table.file == LIMITS_FILE);
-    let Some(table) = table.filter(|table| table.n_rows > 0) else {
-        return format!(
-            "<p>Which limits were reached is not known: there is no {LIMITS_FILE}.</p>"
-        );
+    let mut tables = tables.iter().filter(|table| table.n_rows > 0);
+    let Some(table) = tables.find(|table| table.file == LIMITS_FILE) else {
+        return String::new();
     };
     let item = |row: usize| {
         let (count, of) = (table.number("count", row), table.number("of", row));

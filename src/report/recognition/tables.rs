@@ -61,24 +61,20 @@ const LIMITS: File<Limit> = File::new(LIMITS_FILE, "How often limits were reache
 /// A row that has no form in a file.
 pub fn tables_of(tables: &Tables) -> Result<Vec<Table>> {
     let first = tables.accuracy.first();
-    let axes = first
-        .into_iter()
-        .flat_map(|(cell, _)| cell.variant.values.iter());
-    let axes = axes.map(|axis| axis.column.clone().optional()).collect();
-    From::Rows(tables).all(axes)
+    let axes = first.map_or_else(Vec::new, |(cell, _)| cell.variant.values.to_vec());
+    let axes = axes.into_iter().map(|axis| axis.column.clone().optional());
+    From::Rows(tables).all(axes.collect())
 }
 
-/// The same of the files of a folder; without limits where an earlier version wrote none.
+/// The same of the files of a folder.
 ///
 /// # Errors
 /// A table that cannot be read, by its file, line and column.
 pub fn read_tables(folder: &Path) -> Result<Vec<Table>> {
     let study = folder.join("study.toml");
-    let axes = match std::fs::read_to_string(&study) {
-        Ok(text) => StudySpec::parse(&study.display().to_string(), &text)
-            .map_or_else(|_| Vec::new(), |study| study.axis_columns()),
-        Err(_) => Vec::new(),
-    };
+    let text = std::fs::read_to_string(&study).unwrap_or_default();
+    let study = StudySpec::parse(&study.display().to_string(), &text);
+    let axes = study.map_or_else(|_| Vec::new(), |study| study.axis_columns());
     From::Folder(folder).all(axes.into_iter().map(Column::optional).collect())
 }
 
@@ -102,19 +98,14 @@ impl From<'_> {
             self.table(&CONFUSED, |tables| &tables.confused, &[])?,
             self.table(&PUBLISHED, |tables| &tables.published, &axes)?,
         ];
-        let (has_variance, has_limits) = match self {
-            Self::Rows(tables) => (!tables.variance.is_empty(), true),
-            Self::Folder(folder) => {
-                let has = |file: &str| folder.join(file).exists();
-                (has(VARIANCE.name()), has(LIMITS.name()))
-            }
+        let has_variance = match self {
+            Self::Rows(tables) => !tables.variance.is_empty(),
+            Self::Folder(folder) => folder.join(VARIANCE.name()).exists(),
         };
         if has_variance {
             tables.push(self.table(&VARIANCE, |tables| &tables.variance, &[])?);
         }
-        if has_limits {
-            tables.push(self.table(&LIMITS, |tables| &tables.limits, &[])?);
-        }
+        tables.push(self.table(&LIMITS, |tables| &tables.limits, &[])?);
         tables.iter_mut().for_each(say);
         let cells = cells_of(&tables);
         tables.extend(cells);
@@ -139,75 +130,72 @@ impl From<'_> {
 
 /// What only the rows tell: the unit of noise, and what C is where it is absent.
 fn say(table: &mut Table) {
-    let unit = match table.column("noise_unit") {
-        Some((_, Data::Words { levels, .. })) => levels.first().map(|level| &level[..]),
-        _ => None,
+    let unit = match (table.n_rows > 0).then(|| table.word("noise_unit", 0)) {
+        Some("mm") => "mm",
+        Some("n") => "N",
+        _ => "",
     };
-    let unit = match unit {
-        Some("mm") => Some("mm"),
-        Some("n") => Some("N"),
-        _ => None,
+    let has_c = |row| {
+        let kind = toml::Value::from(table.word("classifier", row)).try_into();
+        kind.is_ok_and(ClassifierKind::has_c)
     };
-    if let (Some(unit), Some(place)) = (unit, table.place("noise_std")) {
-        let column = &mut table.columns[place];
-        (column.unit, column.scale) = (unit.into(), Scale::Linear);
+    // A classifier that has one chooses it.
+    let is_chosen = |row| !table.number("c", row).is_nan() || has_c(row);
+    let is_chosen = (0..table.n_rows).all(is_chosen);
+    for column in &mut table.columns {
+        match &column.name[..] {
+            "noise_std" if !unit.is_empty() => {
+                (column.unit, column.scale) = (unit.into(), Scale::Linear);
+            }
+            "c" if !is_chosen => column.names = &[],
+            _ => {}
+        }
     }
-    if let (Some(place), false) = (table.place("c"), has_chosen_c(table)) {
-        table.columns[place].names = &[];
-    }
-}
-
-/// Whether C is absent only where a classifier that has one chooses it.
-fn has_chosen_c(table: &Table) -> bool {
-    let (Some(c), Some((_, classifiers))) = (table.numbers("c"), table.column("classifier")) else {
-        return false;
-    };
-    let has_c = |row: usize| {
-        let word = classifiers
-            .value(row)
-            .map(|word| toml::Value::from(word.to_string()));
-        let kind = word.and_then(|word| word.try_into::<ClassifierKind>().ok());
-        kind.is_some_and(ClassifierKind::has_c)
-    };
-    let mut absent = (0..table.n_rows).filter(|&row| c[row].is_nan());
-    absent.all(has_c)
 }
 
 /// Each cell with its distance to the best of its condition and with what it costs.
 fn cells_of(tables: &[Table]) -> Option<Table> {
     let of = |file: &str| tables.iter().find(|table| table.file == file);
-    let (summary, comparison, pareto) = (
-        of(SUMMARY.name())?,
-        of(COMPARISON.name())?,
-        of(PARETO.name())?,
-    );
-    let compared =
-        ["difference", "p_holm", "p_status"].map(|name| summary.look_up(comparison, "cell", name));
-    let costs =
-        ["fit_s", "predict_us_per_decision"].map(|name| summary.look_up(pareto, "cell", name));
-    let product = |names: &[&str]| -> Option<Data> {
-        let columns = names.iter().map(|name| summary.numbers(name));
-        let columns: Vec<&[f64]> = columns.collect::<Option<_>>()?;
-        let of_row = |row: usize| columns.iter().map(|column| column[row]).product();
-        Some(Data::Numbers((0..summary.n_rows).map(of_row).collect()))
+    let summary = of(SUMMARY.name())?;
+    let found = |table: &Table, column| summary.look_up(table, "cell", column);
+    let (comparison, pareto) = (of(COMPARISON.name())?, of(PARETO.name())?);
+    let product = |name: &'static str, words: &'static str, factors: &[&str]| {
+        let of_row = |row| {
+            factors
+                .iter()
+                .map(|name| summary.number(name, row))
+                .product()
+        };
+        let column = Column::new(name, Role::Cost, words, "", Scale::Log);
+        Some((
+            column,
+            Data::Numbers((0..summary.n_rows).map(of_row).collect()),
+        ))
     };
-    let cost = |name: &'static str, words: &'static str| {
-        Column::new(name, Role::Cost, words, "", Scale::Log)
-    };
-    let mut more: Vec<(Column, Data)> = compared.into_iter().flatten().collect();
-    for (column, _) in &mut more {
-        column.interval = None;
-        if column.name == "difference" {
-            column.role = Role::Value(Better::Neither);
-        }
-    }
-    more.extend(costs.into_iter().flatten());
-    more.push((
-        cost("measurements_per_decision", "measurements a decision"),
-        product(&["measurements", "frames", "fused_touches"])?,
-    ));
-    more.push((cost("taxels", "taxels"), product(&["nx", "ny"])?));
-    let mut table = summary.with((CELLS, "All cells"), more);
-    table.note = "All that is known of each cell, from summary.csv, comparison.csv and pareto.csv. Costs of time are of this machine.".to_owned();
-    Some(table)
+    let more = [
+        found(comparison, "difference").map(|(column, data)| {
+            let column = Column {
+                role: Role::Value(Better::Neither),
+                interval: None,
+                ..column
+            };
+            (column, data)
+        }),
+        found(comparison, "p_holm"),
+        found(comparison, "p_status"),
+        found(pareto, "fit_s"),
+        found(pareto, "predict_us_per_decision"),
+        product(
+            "measurements_per_decision",
+            "measurements a decision",
+            &["measurements", "frames", "fused_touches"],
+        ),
+        product("taxels", "taxels", &["nx", "ny"]),
+    ];
+    let note = "All that is known of each cell, from summary.csv, comparison.csv and pareto.csv. Costs of time are of this machine.";
+    Some(
+        summary
+            .with((CELLS, "All cells"), more.into_iter().flatten())
+            .noted(note),
+    )
 }

@@ -27,9 +27,8 @@ class Column {
     this.names = new Map(about.names ?? []);
     this.isNumber = about.scale !== "words";
     this.seconds = about.scale === "log" ? { s: 1, ms: 1e-3, us: 1e-6, "µs": 1e-6 }[about.unit] : undefined;
-    const empty = this.isNumber ? null : "";
-    this.isSame = "same" in data;
-    if (this.isSame) this.values = Array(n).fill(data.same ?? empty);
+    this.isSame = data.codes?.length === 0;
+    if (this.isSame) this.values = Array(n).fill(data.levels[0]);
     else if (data.levels) this.values = data.codes.map((code) => data.levels[code]);
     else this.values = data;
   }
