@@ -6,6 +6,7 @@
 mod any_study;
 pub mod breaking_points;
 mod ceiling;
+mod groups;
 mod kind;
 mod loaded;
 mod median_time;
@@ -25,6 +26,8 @@ pub use ceiling::{threads_within, within_memory};
 pub use kind::{About, Facts, Kind};
 pub use loaded::Loaded;
 pub use source::Source;
+
+use groups::grouped;
 
 use crate::error::{Error, Result};
 use crate::table::Table;

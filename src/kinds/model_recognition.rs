@@ -2,13 +2,24 @@
 //!
 //! Every object has the same number of touches; the leading ones train, the others test.
 
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::recognition::classifier::TrainedClassifier;
 use crate::recognition::dataset::{Dataset, dataset};
 use crate::recognition::interval::Interval;
 use crate::study::CONFIDENCE;
 use ndarray::{Array1, ArrayView2, Axis, concatenate, s};
 use std::ops::Range;
+
+/// An error, of a place, unless there are so many objects that one can be taken for another.
+pub(super) fn check_apart(place: &str, n_objects: usize) -> Result<()> {
+    match n_objects {
+        0 | 1 => {
+            let given = format!("{n_objects} objects to recognise");
+            Err(Error::input(place, given, "at least 2 to tell apart"))
+        }
+        _ => Ok(()),
+    }
+}
 
 /// Some touches of every object (n_touches × m of each), with the object's number as their label.
 pub(super) fn touches_of<'a>(
@@ -23,24 +34,12 @@ pub(super) fn touches_of<'a>(
     dataset(features, Array1::from_iter(labels))
 }
 
-/// A share of right answers.
-pub(super) struct Accuracy {
-    /// 0 to 1.
-    pub share: f64,
-    /// Wilson's, 95 %.
-    pub interval: Interval,
-}
-
-impl Accuracy {
-    /// Of a classifier's answers to some touches.
-    pub fn of(classifier: &TrainedClassifier, test: &Dataset) -> Result<Self> {
-        let answers = classifier.labels(test.records.view())?;
-        let pairs = answers.iter().zip(&test.targets);
-        let n_right = pairs.filter(|(answer, truth)| answer == truth).count();
-        let n_test = test.targets.len();
-        Ok(Self {
-            share: n_right as f64 / n_test as f64,
-            interval: Interval::wilson(n_right, n_test, CONFIDENCE)?,
-        })
-    }
+/// The share of a classifier's right answers to some touches, 0 to 1, with its 95 % Wilson interval.
+pub(super) fn accuracy(classifier: &TrainedClassifier, test: &Dataset) -> Result<(f64, Interval)> {
+    let answers = classifier.labels(test.records.view())?;
+    let pairs = answers.iter().zip(&test.targets);
+    let n_right = pairs.filter(|(answer, truth)| answer == truth).count();
+    let n_test = test.targets.len();
+    let interval = Interval::wilson(n_right, n_test, CONFIDENCE)?;
+    Ok((n_right as f64 / n_test as f64, interval))
 }

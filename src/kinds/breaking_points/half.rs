@@ -1,15 +1,12 @@
 //! Where an accuracy falls to half of its best.
 //!
-//! The interval is by draws: each mean accuracy a of n test rows is drawn anew from Beta(a n + ½, (1 − a) n + ½), what Jeffreys'
-//! prior leaves of it, and the place found again, the best staying at its value; the middle 95 % of the places are the
-//! interval. A draw that does not fall so far counts as a place beyond the last value.
+//! The interval is by simulation: each mean accuracy a of n test rows is drawn from its posterior Beta(a n + ½, (1 − a) n + ½) under
+//! Jeffreys' prior, and the place is found again, with the best at the same value; the middle 95 % of the places are the interval. In a
+//! draw that does not fall so far the place is beyond the last value.
 
-use super::rows::{BreakingPoint, CellScore, Side};
+use super::rows::{BreakingPoint, CellScore, Side, WayCell};
 use super::scale::WayScale;
-use super::spec::WaySpec;
 use crate::random::Seed;
-use crate::recognition::ClassifierKind;
-use crate::recognition::interval::Interval;
 use crate::study::evaluation::CONFIDENCE;
 use rand_distr::{Beta, Distribution};
 
@@ -17,167 +14,132 @@ use rand_distr::{Beta, Distribution};
 const N_DRAWS: usize = 4000;
 
 /// A curve of mean accuracies over ascending values.
-struct Curve<'a> {
-    pub values: &'a [f64],
+struct Curve {
+    scale: WayScale,
+    values: Vec<f64>,
     /// Mean accuracies, one a value.
-    pub accuracy: &'a [f64],
+    accuracy: Vec<f64>,
     /// Test rows that each counts for.
-    pub n_test: &'a [usize],
-    pub scale: WayScale,
+    n_test: Vec<usize>,
 }
 
-/// Where a curve breaks on a side; places beyond the last value are infinite.
-#[derive(Clone, Copy, Debug, PartialEq)]
-struct Half {
-    pub at: f64,
-    pub interval: Interval,
-}
-
-impl Curve<'_> {
+impl Curve {
     /// The index of the highest accuracy, the first of equals.
-    pub fn best(&self) -> usize {
-        let mut best = 0;
-        for (index, accuracy) in self.accuracy.iter().enumerate() {
-            if *accuracy > self.accuracy[best] {
-                best = index;
-            }
-        }
-        best
+    fn best(&self) -> usize {
+        let higher = |best: usize, next: usize| match self.accuracy[next] > self.accuracy[best] {
+            true => next,
+            false => best,
+        };
+        (0..self.accuracy.len()).fold(0, higher)
     }
 
-    /// The sides on which there are values beside the best.
-    pub fn sides(&self) -> Vec<Side> {
-        let best = self.best();
-        let mut sides = Vec::new();
-        if best > 0 {
-            sides.push(Side::Smaller);
+    /// Indices from the best to the last value on a side.
+    fn outwards(&self, side: Side) -> Vec<usize> {
+        match side {
+            Side::Smaller => (0..=self.best()).rev().collect(),
+            Side::Larger => (self.best()..self.values.len()).collect(),
         }
-        if best + 1 < self.values.len() {
-            sides.push(Side::Larger);
-        }
-        sides
     }
 
-    /// Where it breaks on a side.
-    pub fn half(&self, side: Side, seed: &Seed) -> Half {
+    /// Where it breaks on a side, and both ends of the interval of that place; none beyond the last value.
+    fn half(&self, side: Side, seed: &Seed) -> [Option<f64>; 3] {
         let start = WayScale::start(self.values.iter().copied());
-        let places: Vec<f64> = self
-            .values
-            .iter()
-            .map(|&value| self.scale.place(value, start))
-            .collect();
-        let best = self.best();
-        let found = |accuracy: &[f64]| crossing(&places, accuracy, best, side);
-        let mut rng = seed.rng();
-        let beta = |(accuracy, n): (&f64, &usize)| {
-            let n = *n as f64;
+        let place = |&value: &f64| self.scale.place(value, start);
+        let places: Vec<f64> = self.values.iter().map(place).collect();
+        let outwards = self.outwards(side);
+        let beyond = match side {
+            Side::Smaller => f64::NEG_INFINITY,
+            Side::Larger => f64::INFINITY,
+        };
+        let found = |accuracy: &[f64]| {
+            let half = 0.5 * accuracy[outwards[0]];
+            let mut steps = outwards.windows(2);
+            let crossing = steps.find_map(|step| {
+                let (before, after) = (accuracy[step[0]], accuracy[step[1]]);
+                let part = (before - half) / (before - after);
+                let way = places[step[1]] - places[step[0]];
+                (after <= half).then(|| places[step[0]] + part * way)
+            });
+            crossing.unwrap_or(beyond)
+        };
+        let beta = |(accuracy, &n): (&f64, &usize)| {
+            let n = n as f64;
             let right = accuracy * n;
             Beta::new(right + 0.5, n - right + 0.5).expect("both are positive")
         };
-        let betas: Vec<Beta<f64>> = self.accuracy.iter().zip(self.n_test).map(beta).collect();
-        let mut drawn = vec![0.0; betas.len()];
-        let mut draws: Vec<f64> = (0..N_DRAWS)
-            .map(|_| {
-                for (drawn, beta) in drawn.iter_mut().zip(&betas) {
-                    *drawn = beta.sample(&mut rng);
-                }
-                found(&drawn)
-            })
-            .collect();
-        draws.sort_by(f64::total_cmp);
-        let tail = 0.5 * (1.0 - CONFIDENCE) * N_DRAWS as f64;
-        let value = |place: f64| match place.is_finite() {
-            true => self.scale.value(place, start),
-            false => place,
+        let betas: Vec<Beta<f64>> = self.accuracy.iter().zip(&self.n_test).map(beta).collect();
+        let mut rng = seed.rng();
+        let mut draw = || {
+            let drawn = betas.iter().map(|beta| beta.sample(&mut rng));
+            found(&drawn.collect::<Vec<_>>())
         };
-        let (low, high) = (draws[tail as usize], draws[N_DRAWS - 1 - tail as usize]);
-        Half {
-            at: value(found(self.accuracy)),
-            interval: Interval {
-                low: value(low),
-                high: value(high),
-            },
-        }
+        let mut draws: Vec<f64> = (0..N_DRAWS).map(|_| draw()).collect();
+        draws.sort_by(f64::total_cmp);
+        let tail = (0.5 * (1.0 - CONFIDENCE) * N_DRAWS as f64) as usize;
+        let ends = [
+            found(&self.accuracy),
+            draws[tail],
+            draws[N_DRAWS - 1 - tail],
+        ];
+        ends.map(|place| {
+            let is_there = place.is_finite();
+            is_there.then(|| self.scale.value(place, start))
+        })
     }
 }
 
-/// One row a side of the best of a curve: the values of a way, ascending, with what a classifier scored.
+/// Where a classifier breaks along a way, on each side of its best: a row each. Its scores are by ascending values.
 pub(super) fn breaking_points(
-    (way, classifier): (&WaySpec, ClassifierKind),
-    points: &[(f64, CellScore)],
+    scores: &[&(WayCell, CellScore)],
+    scale: WayScale,
     n_objects: usize,
     seed: &Seed,
 ) -> Vec<BreakingPoint> {
-    let values: Vec<f64> = points.iter().map(|(value, _)| *value).collect();
-    let accuracy: Vec<f64> = points.iter().map(|(_, score)| score.accuracy).collect();
-    let n_test: Vec<usize> = points.iter().map(|(_, score)| score.n_test).collect();
     let curve = Curve {
-        values: &values,
-        accuracy: &accuracy,
-        n_test: &n_test,
-        scale: way.scale,
+        scale,
+        values: scores.iter().map(|(cell, _)| cell.value).collect(),
+        accuracy: scores.iter().map(|(_, score)| score.accuracy).collect(),
+        n_test: scores.iter().map(|(_, score)| score.n_test).collect(),
     };
-    let (best, last) = (curve.best(), values.len() - 1);
+    let (cell, best) = scores[curve.best()];
     let row = |side| {
-        let half = curve.half(side, &seed.numbered(side as u64));
-        let end = match side {
-            Side::Smaller => 0,
-            Side::Larger => last,
-        };
-        let finite = |value: f64| value.is_finite().then_some(value);
-        BreakingPoint {
-            way: way.name.clone(),
-            classifier,
+        let outwards = curve.outwards(side);
+        let end = outwards[1..].last()?;
+        let [breaks_at, breaks_at_low, breaks_at_high] =
+            curve.half(side, &seed.numbered(side as u64));
+        Some(BreakingPoint {
+            way: cell.way.clone(),
+            classifier: cell.classifier,
             side,
-            best: accuracy[best],
-            best_low: points[best].1.accuracy_low,
-            best_high: points[best].1.accuracy_high,
-            best_at: values[best],
-            half: 0.5 * accuracy[best],
+            best: best.accuracy,
+            best_low: best.accuracy_low,
+            best_high: best.accuracy_high,
+            best_at: cell.value,
+            half: 0.5 * best.accuracy,
             chance: 1.0 / n_objects as f64,
-            is_reached: half.at.is_finite(),
-            breaks_at: finite(half.at),
-            breaks_at_low: finite(half.interval.low),
-            breaks_at_high: finite(half.interval.high),
-            end: values[end],
-            accuracy_at_end: accuracy[end],
-        }
+            is_reached: breaks_at.is_some(),
+            breaks_at,
+            breaks_at_low,
+            breaks_at_high,
+            end: curve.values[*end],
+            accuracy_at_end: curve.accuracy[*end],
+        })
     };
-    curve.sides().into_iter().map(row).collect()
-}
-
-/// The place at which the accuracy, going outwards from its best, first falls to half of it; infinite if it does not.
-fn crossing(places: &[f64], accuracy: &[f64], best: usize, side: Side) -> f64 {
-    let half = 0.5 * accuracy[best];
-    let step = |from: usize, to: usize| -> Option<f64> {
-        let (before, after) = (accuracy[from], accuracy[to]);
-        if after > half {
-            return None;
-        }
-        let part = (before - half) / (before - after);
-        Some(places[from] + part * (places[to] - places[from]))
-    };
-    match side {
-        Side::Larger => {
-            let mut steps = (best + 1..places.len()).filter_map(|to| step(to - 1, to));
-            steps.next().unwrap_or(f64::INFINITY)
-        }
-        Side::Smaller => {
-            let mut steps = (0..best).rev().filter_map(|to| step(to + 1, to));
-            steps.next().unwrap_or(f64::NEG_INFINITY)
-        }
-    }
+    [Side::Smaller, Side::Larger]
+        .into_iter()
+        .filter_map(row)
+        .collect()
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    fn curve<'a>(values: &'a [f64], accuracy: &'a [f64], n_test: &'a [usize]) -> Curve<'a> {
+    fn curve(values: &[f64], accuracy: &[f64], n_test: &[usize]) -> Curve {
         Curve {
-            values,
-            accuracy,
-            n_test,
+            values: values.to_vec(),
+            accuracy: accuracy.to_vec(),
+            n_test: n_test.to_vec(),
             scale: WayScale::Logarithmic,
         }
     }
@@ -187,15 +149,15 @@ mod tests {
         let values = [0.01, 0.1, 1.0, 10.0, 100.0];
         let accuracy = [0.2, 0.6, 0.8, 0.4, 0.1];
         let curve = curve(&values, &accuracy, &[1_000_000; 5]);
-        assert_eq!(curve.sides(), [Side::Smaller, Side::Larger]);
-        let larger = curve.half(Side::Larger, &Seed::new(1));
-        assert!((larger.at - 10.0).abs() < 1e-9, "exactly at a point");
+        let halves = [Side::Larger, Side::Smaller].map(|side| {
+            let half = curve.half(side, &Seed::new(1));
+            half.map(|place| place.unwrap())
+        });
+        assert!((halves[0][0] - 10.0).abs() < 1e-9, "exactly at a point");
         // Half way between 0.01 and 0.1 in the logarithm.
-        let smaller = curve.half(Side::Smaller, &Seed::new(1));
-        assert!((smaller.at - 0.1f64.powf(1.5)).abs() < 1e-9, "{smaller:?}");
-        for half in [larger, smaller] {
-            let Interval { low, high } = half.interval;
-            assert!(low < half.at && half.at < high && high < 1.05 * low);
+        assert!((halves[1][0] - 0.1f64.powf(1.5)).abs() < 1e-9, "{halves:?}");
+        for [at, low, high] in halves {
+            assert!(low < at && at < high && high < 1.05 * low);
         }
     }
 
@@ -203,15 +165,15 @@ mod tests {
     fn a_curve_that_does_not_fall_so_far_has_no_breaking_point() {
         let values = [0.0, 1.0, 2.0];
         let flat = curve(&values, &[0.9, 0.8, 0.6], &[100_000; 3]);
-        assert_eq!(flat.sides(), [Side::Larger]);
-        let half = flat.half(Side::Larger, &Seed::new(1));
-        assert_eq!(half.at, f64::INFINITY);
-        assert_eq!(half.interval.low, f64::INFINITY);
+        assert_eq!(flat.outwards(Side::Smaller), [0]);
+        assert_eq!(flat.outwards(Side::Larger), [0, 1, 2]);
+        let [at, low, _] = flat.half(Side::Larger, &Seed::new(1));
+        assert_eq!((at, low), (None, None));
         // With few test rows it may have one all the same.
         let unsure = curve(&values, &[0.9, 0.8, 0.5], &[12; 3]);
-        let half = unsure.half(Side::Larger, &Seed::new(1));
-        assert!(half.at.is_infinite() && half.interval.low < 2.0);
-        assert_eq!(half.interval.high, f64::INFINITY);
+        let [at, low, high] = unsure.half(Side::Larger, &Seed::new(1));
+        assert!(at.is_none() && low.unwrap() < 2.0);
+        assert_eq!(high, None);
     }
 
     /// Of many experiments on a curve that is known, the interval holds the true place in about 95 %.
@@ -224,9 +186,11 @@ mod tests {
             .map(|x| 0.9 / (1.0 + (x / 5.0).powi(4)))
             .collect();
         let n = 400;
-        let exact = curve(&values, &truth, &[n; 9])
-            .half(Side::Larger, &Seed::new(0))
-            .at;
+        let half = |accuracy: &[f64], seed| {
+            let half = curve(&values, accuracy, &[n; 9]).half(Side::Larger, &Seed::new(seed));
+            half.map(|place| place.unwrap_or(f64::INFINITY))
+        };
+        let [exact, ..] = half(&truth, 0);
         let n_cases = 300;
         let mut n_held = 0;
         for case in 0..n_cases {
@@ -235,8 +199,8 @@ mod tests {
                 .iter()
                 .map(|&p| Binomial::new(n as u64, p).unwrap().sample(&mut rng) as f64 / n as f64)
                 .collect();
-            let half = curve(&values, &seen, &[n; 9]).half(Side::Larger, &Seed::new(case));
-            n_held += usize::from(half.interval.low <= exact && exact <= half.interval.high);
+            let [_, low, high] = half(&seen, case);
+            n_held += usize::from(low <= exact && exact <= high);
         }
         let share = n_held as f64 / n_cases as f64;
         assert!((0.9..=0.995).contains(&share), "{share}");

@@ -9,10 +9,8 @@
 //! between two values where a straight line on the axis' scale says so. The interval of that place is from repeated draws of
 //! all accuracies out of what their test rows leave open (`half`).
 
-mod answers;
 mod charts;
 mod half;
-mod kind;
 mod plan;
 pub mod rows;
 mod scale;

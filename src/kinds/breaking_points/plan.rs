@@ -52,146 +52,122 @@ impl BreakingPointsPlan {
     /// at which a key is.
     pub fn new(place: &str, spec: BreakingPointsSpec) -> Result<Self> {
         let check = Check { place };
-        let base = spec.base();
-        check_single(&check, &Plan::new(place, base.clone())?)?;
-        if spec.breaking_points.is_empty() {
-            return Err(check.error("breaking_points", "none", "at least one way"));
-        }
-        let names: Vec<&str> = spec.breaking_points.iter().map(|w| &w.name[..]).collect();
-        check.list("breaking_points.name", names)?;
-        let base = Table::try_from(base).expect("every field of a study has a TOML form");
+        let mut base = Table::try_from(&spec).expect("every field of a study has a TOML form");
+        // The recognition study that the ways drive. Words are no part of what a value depends on.
+        base.remove("breaking_points");
+        base.remove("expected");
+        base.insert("question".to_owned(), String::new().into());
+        plan_at(place, base.clone())?;
+        let names = spec.breaking_points.iter().map(|way| &way.name[..]);
+        check.list("breaking_points.name", names.collect())?;
         let ways = spec.breaking_points.iter().enumerate();
-        let ways = ways.map(|(index, spec)| {
+        let ways = ways.map(|(index, way)| {
             let place = format!("{place}, breaking_points[{}]", index + 1);
-            Way { place, spec }.plan(&base)
+            plan_way(&place, way, &base)
         });
         let ways = ways.collect::<Result<_>>()?;
         Ok(Self { spec, ways })
     }
 }
 
-/// A way that is being checked.
-struct Way<'a> {
-    /// The file and the way's number, from 1.
-    place: String,
-    spec: &'a WaySpec,
-}
-
-impl Way<'_> {
-    fn error(&self, key: &str, given: impl ToString, allowed: impl ToString) -> Error {
-        Error::input(format!("{}, key {key}", self.place), given, allowed)
+/// Checks a way; `place` is the file and the way's number, from 1.
+fn plan_way(place: &str, spec: &WaySpec, base: &Table) -> Result<PlannedWay> {
+    let check = Check { place };
+    let is_word = |c: char| c.is_ascii_alphanumeric() || c == '_';
+    if spec.name.is_empty() || !spec.name.chars().all(is_word) {
+        let given = format!("'{}'", spec.name);
+        return Err(check.error("name", given, "letters, digits and _"));
     }
-
-    fn plan(&self, base: &Table) -> Result<PlannedWay> {
-        let spec = self.spec;
-        let is_word = |c: char| c.is_ascii_alphanumeric() || c == '_';
-        if spec.name.is_empty() || !spec.name.chars().all(is_word) {
-            let given = format!("'{}'", spec.name);
-            return Err(self.error("name", given, "letters, digits and _"));
-        }
-        if spec.keys.is_empty() {
-            return Err(self.error("keys", "an empty list", "at least one key of the study"));
-        }
-        let numbers = self.numbers()?;
-        let mut beside = base.clone();
-        for (key, value) in &spec.beside {
-            beside = self.with(&beside, key, value.clone())?;
-        }
-        let others = match spec.touches {
-            DrivenTouches::All => None,
-            _ => Some(self.study("beside", beside.clone())?),
-        };
-        let values = numbers.iter().zip(&spec.values).map(|(&value, given)| {
-            let mut table = beside.clone();
-            for key in &spec.keys {
-                table = self.with(&table, key, self.driven(given, value))?;
-            }
-            let driven = self.study(&format!("at {value}"), table)?;
-            let (learned, tested) = match (others.clone(), spec.touches) {
-                (Some(others), DrivenTouches::Training) => (driven, Some(others)),
-                (Some(others), DrivenTouches::Test) => (others, Some(driven)),
-                _ => (driven, None),
-            };
-            Ok(PlannedValue {
-                value,
-                learned,
-                tested,
-            })
-        });
-        Ok(PlannedWay {
-            values: values.collect::<Result<_>>()?,
-            spec: spec.clone(),
-        })
+    if spec.keys.is_empty() {
+        return Err(check.error("keys", "an empty list", "at least one key of the study"));
     }
-
-    /// The values as ascending numbers that the scale has places for.
-    fn numbers(&self) -> Result<Vec<f64>> {
-        let number = |value: &Value| match value {
-            Value::Integer(number) => Ok(*number as f64),
-            Value::Float(number) if number.is_finite() => Ok(*number),
-            other => Err(self.error("values", other, "finite numbers")),
-        };
-        let numbers = self.spec.values.iter().map(number);
-        let numbers = numbers.collect::<Result<Vec<_>>>()?;
-        if numbers.len() < 3 {
-            return Err(self.error("values", format!("{} values", numbers.len()), "at least 3"));
-        }
-        if let Some(pair) = numbers.windows(2).find(|pair| pair[0] >= pair[1]) {
-            let given = format!("{} before {}", pair[0], pair[1]);
-            return Err(self.error("values", given, "ascending values"));
-        }
-        let is_logarithmic = self.spec.scale == WayScale::Logarithmic;
-        if is_logarithmic && numbers[0] < 0.0 {
-            let allowed = "zero or more, or scale = \"linear\"";
-            return Err(self.error("values", numbers[0], allowed));
-        }
-        if self.spec.driven_as == DrivenAs::HalfWidth && numbers[0] < 0.0 {
-            return Err(self.error("values", numbers[0], "zero or more: half widths"));
-        }
-        Ok(numbers)
-    }
-
-    fn driven(&self, given: &Value, value: f64) -> Value {
-        match self.spec.driven_as {
-            DrivenAs::Value => given.clone(),
-            DrivenAs::HalfWidth if value == 0.0 => Value::Float(0.0),
-            DrivenAs::HalfWidth => {
-                let ends = [-value, value].map(Value::Float).to_vec();
-                let spread = [("uniform".to_owned(), Value::Array(ends))];
-                Value::Table(spread.into_iter().collect())
-            }
-        }
-    }
-
-    /// The study with a value at a key, such as `signal.noise_std_n`.
-    fn with(&self, study: &Table, key: &str, value: Value) -> Result<Table> {
+    let with = |study: &Table, key: &str, value: Value| {
         let allowed = "a key of the study, such as signal.smoothing_mm";
-        with_value(study, key, value).map_err(|_| self.error("keys", key, allowed))
+        with_value(study, key, value).map_err(|_| check.error("keys", key, allowed))
+    };
+    let numbers = numbers(&check, spec)?;
+    let mut beside = base.clone();
+    for (key, value) in &spec.beside {
+        beside = with(&beside, key, value.clone())?;
     }
+    let others = match spec.touches {
+        DrivenTouches::All => None,
+        _ => Some(plan_at(&format!("{place} beside"), beside.clone())?),
+    };
+    let values = numbers.iter().zip(&spec.values).map(|(&value, given)| {
+        let mut table = beside.clone();
+        for key in &spec.keys {
+            table = with(&table, key, driven(spec.driven_as, given, value))?;
+        }
+        let driven = plan_at(&format!("{place} at {value}"), table)?;
+        let (learned, tested) = match (others.clone(), spec.touches) {
+            (Some(others), DrivenTouches::Training) => (driven, Some(others)),
+            (Some(others), DrivenTouches::Test) => (others, Some(driven)),
+            _ => (driven, None),
+        };
+        Ok(PlannedValue {
+            value,
+            learned,
+            tested,
+        })
+    });
+    Ok(PlannedWay {
+        values: values.collect::<Result<_>>()?,
+        spec: spec.clone(),
+    })
+}
 
-    /// The recognition study that a table is.
-    fn study(&self, at: &str, table: Table) -> Result<Plan> {
-        let place = format!("{} {at}", self.place);
-        let spec: std::result::Result<StudySpec, _> = table.try_into();
-        let spec = spec.map_err(|error| {
-            let said = error.message().trim().replace('\n', " ");
-            Error::input(&place, said, "keys and values of a recognition study")
-        })?;
-        let plan = Plan::new(&place, spec)?;
-        check_single(&Check { place: &place }, &plan)?;
-        Ok(plan)
+/// The values as ascending numbers that the scale has places for.
+fn numbers(check: &Check, spec: &WaySpec) -> Result<Vec<f64>> {
+    let number = |value: &Value| match value {
+        Value::Integer(number) => Ok(*number as f64),
+        Value::Float(number) if number.is_finite() => Ok(*number),
+        other => Err(check.error("values", other, "finite numbers")),
+    };
+    let numbers = spec.values.iter().map(number);
+    let numbers = numbers.collect::<Result<Vec<_>>>()?;
+    if numbers.len() < 3 {
+        let given = format!("{} values", numbers.len());
+        return Err(check.error("values", given, "at least 3"));
+    }
+    if let Some(pair) = numbers.windows(2).find(|pair| pair[0] >= pair[1]) {
+        let given = format!("{} before {}", pair[0], pair[1]);
+        return Err(check.error("values", given, "ascending values"));
+    }
+    if spec.scale == WayScale::Logarithmic && numbers[0] < 0.0 {
+        let allowed = "zero or more, or scale = \"linear\"";
+        return Err(check.error("values", numbers[0], allowed));
+    }
+    Ok(numbers)
+}
+
+/// What a key makes of a value.
+fn driven(driven_as: DrivenAs, given: &Value, value: f64) -> Value {
+    match driven_as {
+        DrivenAs::Value => given.clone(),
+        DrivenAs::HalfWidth if value == 0.0 => Value::Float(0.0),
+        DrivenAs::HalfWidth => {
+            let ends = [-value, value].map(Value::Float).to_vec();
+            let spread = [("uniform".to_owned(), Value::Array(ends))];
+            Value::Table(spread.into_iter().collect())
+        }
     }
 }
 
-/// Every axis but that of classifiers has one value.
-fn check_single(check: &Check, plan: &Plan) -> Result<()> {
+/// The recognition study that a table is, every axis of which but that of classifiers has one value.
+fn plan_at(place: &str, table: Table) -> Result<Plan> {
+    let spec: std::result::Result<StudySpec, _> = table.try_into();
+    let spec = spec.map_err(|error| {
+        let said = error.message().trim().replace('\n', " ");
+        Error::input(place, said, "keys and values of a recognition study")
+    })?;
+    let plan = Plan::new(place, spec)?;
     let of_signal = ("signal", plan.conditions().len());
-    let mut lengths = plan.spec.axis_lengths().chain([of_signal]);
-    match lengths.find(|(key, n)| *n != 1 && *key != "recognition.classifier") {
-        None => Ok(()),
-        Some((key, n)) => {
-            let allowed = "one: values are swept by breaking_points, and only classifiers compared";
-            Err(check.error(key, format!("{n} settings"), allowed))
-        }
+    let lengths = || plan.spec.axis_lengths().chain([of_signal]);
+    let several = lengths().find(|(key, n)| *n != 1 && *key != "recognition.classifier");
+    if let Some((key, n)) = several {
+        let allowed = "one: values are swept by breaking_points, and only classifiers compared";
+        return Err(Check { place }.error(key, format!("{n} settings"), allowed));
     }
+    Ok(plan)
 }

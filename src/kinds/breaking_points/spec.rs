@@ -2,8 +2,7 @@
 
 use super::scale::WayScale;
 use crate::study::spec::{
-    ObjectsSpec, RecognitionSpec, SensingSpec, SignalSpec, SkinSpec, StudySpec, TouchesSpec,
-    default_seed,
+    ObjectsSpec, RecognitionSpec, SensingSpec, SignalSpec, SkinSpec, TouchesSpec, default_seed,
 };
 use crate::toml_text::toml_file;
 use serde::{Deserialize, Serialize};
@@ -60,7 +59,7 @@ pub struct WaySpec {
     /// Which touches have the value.
     #[serde(default)]
     pub touches: DrivenTouches,
-    /// Other keys of the study, and what they are while this way is gone.
+    /// Other keys of the study, and their values along this way.
     #[serde(default, skip_serializing_if = "toml::Table::is_empty")]
     pub beside: toml::Table,
 }
@@ -90,26 +89,3 @@ pub enum DrivenTouches {
 }
 
 toml_file!(BreakingPointsSpec);
-
-impl BreakingPointsSpec {
-    /// The recognition study that the ways drive.
-    pub(super) fn base(&self) -> StudySpec {
-        StudySpec {
-            // Words: no part of what a value depends on.
-            question: String::new(),
-            expected: String::new(),
-            seed: self.seed,
-            trials: self.trials,
-            projections_per_split: None,
-            objects: self.objects.clone(),
-            skin: self.skin.clone(),
-            touches: self.touches.clone(),
-            human_touch: None,
-            signal: self.signal.clone(),
-            sensing: self.sensing.clone(),
-            recognition: self.recognition.clone(),
-            report: Default::default(),
-            axes: Default::default(),
-        }
-    }
-}

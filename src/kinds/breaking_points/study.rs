@@ -1,22 +1,26 @@
-//! Runs a study of breaking points: every value of every way, on all threads.
+//! A study of breaking points: every value of every way, on all threads.
 
+use super::charts::{answers, charts};
 use super::half::breaking_points;
 use super::plan::{BreakingPointsPlan, PlannedValue, PlannedWay};
 use super::rows::{BreakingPoint, CellScore, TrialScore, TrialTime, WayCell};
+use super::spec::BreakingPointsSpec;
 use super::value::{ObjectSets, evaluate};
 use crate::error::Result;
+use crate::kinds::{About, Facts, Kind, Source, grouped};
 use crate::random::Seed;
-use crate::recognition::ClassifierKind;
 use crate::recognition::bootstrap::Bootstrap;
 use crate::study::Plan;
-use crate::study::pieces::{NamedPiece, PieceRows, PieceStudy, PiecesLeft};
+use crate::study::object_files::{load_objects, objects_content};
+use crate::study::pieces::{NamedPiece, PieceRows, PieceStudy, PiecesLeft, Scale};
+use crate::study::spec::ObjectsSpec;
 use crate::study::summary::score;
 use crate::study::time_left::Piece;
-use crate::table::{File, Table};
+use crate::table::{ChartSpec, File, Table};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// A study of breaking points, and where packings are looked for and kept, if anywhere.
 pub struct BreakingPointsStudy {
@@ -44,7 +48,7 @@ impl PieceRows for DrivenRows {
 }
 
 /// Tables.
-pub(super) const ACCURACY: File<(WayCell, TrialScore)> =
+const ACCURACY: File<(WayCell, TrialScore)> =
     File::new("accuracy.csv", "Accuracy of every trial", "");
 pub(super) const SUMMARY: File<(WayCell, CellScore)> =
     File::new("summary.csv", "Accuracy at every value", "");
@@ -54,26 +58,40 @@ pub(super) const BREAKS: File<BreakingPoint> = File::new(
     "Each setting alone is driven to its ends; the interval is that of the place where accuracy is half of its best.",
 )
 .summary();
-pub(super) const TIMING: File<(WayCell, TrialTime)> =
+const TIMING: File<(WayCell, TrialTime)> =
     File::new("timing.csv", "Time of every trial", "").of_times();
 
 /// Objects that are not counted before they are loaded are as many as this, for estimates.
-pub(super) const N_OBJECTS: usize = 30;
+const N_OBJECTS: usize = 30;
 /// Processor-seconds to press, read and project one taxel in a trial, about.
 const SECONDS_PER_READING: f64 = 1e-7;
 
 impl BreakingPointsStudy {
-    /// All values of all ways, each with its name as a work item.
-    fn named_values(&self) -> impl Iterator<Item = (String, &PlannedWay, &PlannedValue)> {
-        self.plan.ways.iter().flat_map(|way| {
-            let values = way.values.iter();
-            values.map(move |value| (format!("{} at {}", way.spec.name, value.value), way, value))
-        })
+    /// All values of all ways.
+    fn values(&self) -> impl Iterator<Item = (&PlannedWay, &PlannedValue)> {
+        let ways = self.plan.ways.iter();
+        ways.flat_map(|way| way.values.iter().map(move |value| (way, value)))
+    }
+
+    /// What says which objects they touch, each once.
+    fn objects(&self) -> Vec<&ObjectsSpec> {
+        let mut specs: Vec<&ObjectsSpec> = Vec::new();
+        for plan in self.values().flat_map(|(_, value)| value.plans()) {
+            if !specs.contains(&&plan.spec.objects) {
+                specs.push(&plan.spec.objects);
+            }
+        }
+        specs
     }
 }
 
+/// What a value is called as a work item.
+fn name((way, value): &(&PlannedWay, &PlannedValue)) -> String {
+    format!("{} at {}", way.spec.name, value.value)
+}
+
 /// Numbers that a value reads of one object.
-pub(super) fn n_read(value: &PlannedValue) -> usize {
+fn n_read(value: &PlannedValue) -> usize {
     let of_plan =
         |plan: &Plan| plan.arrays[0].grid.n_taxels() * plan.placement.per_object.unwrap_or(1);
     value.plans().map(of_plan).sum()
@@ -83,31 +101,36 @@ impl PieceStudy for BreakingPointsStudy {
     type Rows = DrivenRows;
 
     fn pieces(&self) -> Vec<NamedPiece> {
-        let pieces = self.named_values().enumerate();
-        let pieces = pieces.map(|(group, (name, _, value))| {
-            let n_read = (N_OBJECTS * n_read(value) * self.plan.spec.trials) as f64;
+        let pieces = self.values().enumerate();
+        let pieces = pieces.map(|(group, value)| {
+            let n_read = (N_OBJECTS * n_read(value.1) * self.plan.spec.trials) as f64;
             let work = Piece::of_stage(0, SECONDS_PER_READING * n_read);
             // The study at this value is all that it depends on.
-            let specs: Vec<_> = value.plans().map(|plan| &plan.spec).collect();
-            NamedPiece::new(name, group, work).made_of(specs)
+            let specs: Vec<_> = value.1.plans().map(|plan| &plan.spec).collect();
+            NamedPiece::new(name(&value), group, work).made_of(specs)
         });
         pieces.collect()
     }
 
     fn measure(&self, left: &PiecesLeft<DrivenRows>) -> Result<()> {
-        let values = left.of(self.named_values(), |(name, ..)| name.clone());
-        let plans = values.iter().flat_map(|(.., value)| value.plans());
-        let sets = ObjectSets::load(plans, self.packings.as_deref(), left.progress)?;
+        let specs = self.objects();
+        left.progress.stage("objects", specs.len() as u64);
+        let sets = specs.into_iter().map(|spec| {
+            let objects = load_objects(spec, self.packings.as_deref())?;
+            left.progress.advance(1);
+            Ok((spec.clone(), objects))
+        });
+        let sets: ObjectSets = sets.collect::<Result<_>>()?;
+        let values = left.of(self.values(), name);
         left.progress.stage("drive", values.len() as u64);
         values
             .par_iter()
             // One at a time: values of one way may all be slow.
             .with_max_len(1)
-            .try_for_each(|(name, way, value)| {
-                left.finish(name, || {
-                    evaluate(&way.spec, value, &sets).map_err(|error| {
-                        error.under(format!("way {} at {}, ", way.spec.name, value.value))
-                    })
+            .try_for_each(|at| {
+                left.finish(&name(at), || {
+                    let found = evaluate(at.0, at.1, &sets);
+                    found.map_err(|error| error.under(format!("way {}, ", name(at))))
                 })
             })
     }
@@ -120,43 +143,84 @@ impl PieceStudy for BreakingPointsStudy {
             Ok((trials[0].0.clone(), score(&scores, &mut bootstrap)?))
         });
         let summary: Vec<(WayCell, CellScore)> = summary.collect::<Result<_>>()?;
-        let breaks = self.plan.ways.iter().flat_map(|way| {
-            let n_objects = rows.n_objects.get(&way.spec.name);
-            self.breaks(way, &summary, n_objects.copied().unwrap_or(0))
-        });
+        let mut breaks = Vec::new();
+        for way in &self.plan.ways {
+            let name = &way.spec.name;
+            let n_objects = rows.n_objects.get(name).copied().unwrap_or(0);
+            let seed = Seed::new(self.plan.spec.seed).named("breaking points");
+            let seed = seed.named(name);
+            let of_way = summary.iter().filter(|(cell, _)| cell.way == *name);
+            let curves = grouped(of_way, |(cell, _)| cell.classifier).into_iter();
+            for (number, (_, curve)) in curves.enumerate() {
+                let seed = seed.numbered(number as u64);
+                breaks.extend(breaking_points(&curve, way.spec.scale, n_objects, &seed));
+            }
+        }
         Ok(vec![
             ACCURACY.of(&rows.accuracy)?,
             SUMMARY.of(&summary)?,
-            BREAKS.of(&breaks.collect::<Vec<_>>())?,
+            BREAKS.of(&breaks)?,
             TIMING.of(&rows.timing)?,
         ])
     }
 }
 
-impl BreakingPointsStudy {
-    /// Where a way breaks each classifier.
-    fn breaks(
-        &self,
-        way: &PlannedWay,
-        summary: &[(WayCell, CellScore)],
-        n_objects: usize,
-    ) -> Vec<BreakingPoint> {
-        let of_way = summary.iter().filter(|(cell, _)| cell.way == way.spec.name);
-        let mut curves: Vec<(ClassifierKind, Vec<(f64, CellScore)>)> = Vec::new();
-        for (cell, score) in of_way {
-            let point = (cell.value, score.clone());
-            match curves.iter_mut().find(|curve| curve.0 == cell.classifier) {
-                Some(curve) => curve.1.push(point),
-                None => curves.push((cell.classifier, vec![point])),
-            }
+impl Kind for BreakingPointsStudy {
+    const ABOUT: About = About {
+        table: "breaking_points",
+        words: "a study of where recognition breaks",
+        may_change: &["question", "expected", "breaking_points"],
+    };
+
+    fn load(source: &Source) -> Result<Self> {
+        let mut spec = BreakingPointsSpec::parse(&source.place, &source.text)?;
+        spec.seed = source.seed(spec.seed);
+        source.replace_objects(&mut spec.objects);
+        Ok(Self {
+            plan: BreakingPointsPlan::new(&source.place, spec)?,
+            packings: source.packings.clone(),
+        })
+    }
+
+    fn facts(&self) -> Result<Facts> {
+        let mut content = BTreeMap::new();
+        for objects in self.objects() {
+            content.extend(objects_content(objects)?);
         }
-        let seed = Seed::new(self.plan.spec.seed).named("breaking points");
-        let seed = seed.named(&way.spec.name);
-        let curves = curves.iter().enumerate();
-        let breaks = curves.flat_map(|(number, (classifier, points))| {
-            let seed = seed.numbered(number as u64);
-            breaking_points((&way.spec, *classifier), points, n_objects, &seed)
-        });
-        breaks.collect()
+        Ok(Facts::of(&self.plan.spec, content))
+    }
+
+    fn scale(&self) -> Scale {
+        let values = || self.values().map(|(_, value)| value);
+        let touches = values().map(|value| value.learned.placement.per_object.unwrap_or(1));
+        let touches = touches.max().unwrap_or(0);
+        let n_cells =
+            values().map(|value| value.learned.spec.recognition.classifier.values().len());
+        let most_read = values().map(n_read).max().unwrap_or(0);
+        Scale {
+            objects: "those of each value".to_owned(),
+            touches: format!("up to {touches} of each object at each value"),
+            n_configurations: n_cells.sum(),
+            // Frames in single precision.
+            item_bytes: 4.0 * (N_OBJECTS * most_read) as f64,
+            ..Scale::default()
+        }
+    }
+
+    fn read(folder: &Path) -> Result<Vec<Table>> {
+        Ok(vec![
+            ACCURACY.read(folder)?,
+            SUMMARY.read(folder)?,
+            BREAKS.read(folder)?,
+            TIMING.read(folder)?,
+        ])
+    }
+
+    fn charts(&self, tables: &[Table]) -> Vec<ChartSpec> {
+        charts(&self.plan.ways, tables)
+    }
+
+    fn answers(&self, tables: &[Table]) -> Vec<String> {
+        answers(&self.plan.ways, tables)
     }
 }

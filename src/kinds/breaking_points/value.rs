@@ -1,8 +1,7 @@
 //! What happens at a value of a way: learned and tested as a recognition study does it.
 
-use super::plan::PlannedValue;
+use super::plan::{PlannedValue, PlannedWay};
 use super::rows::WayCell;
-use super::spec::WaySpec;
 use super::study::DrivenRows;
 use crate::error::{Error, Result};
 use crate::objects::Object;
@@ -10,51 +9,16 @@ use crate::random::Seed;
 use crate::study::evaluation::{Evaluation, Trial};
 use crate::study::frames::Frames;
 use crate::study::measurement::{Measurements, measure_group};
-use crate::study::object_files::load_objects;
 use crate::study::plan::Plan;
-use crate::study::progress::{Progress, Silent};
+use crate::study::progress::Silent;
 use crate::study::simulation::{TouchedObject, draw_touches, simulate_array};
 use crate::study::spec::ObjectsSpec;
 use crate::study::sweep::Sweep;
 use crate::study::table::Cell;
 use rayon::prelude::*;
-use std::path::Path;
-
-/// What says which objects some studies touch, each once.
-pub(super) fn object_specs<'a>(plans: impl Iterator<Item = &'a Plan>) -> Vec<&'a ObjectsSpec> {
-    let mut specs: Vec<&ObjectsSpec> = Vec::new();
-    for plan in plans {
-        if !specs.contains(&&plan.spec.objects) {
-            specs.push(&plan.spec.objects);
-        }
-    }
-    specs
-}
 
 /// The objects that ways touch, by what says so.
-pub(super) struct ObjectSets(Vec<(ObjectsSpec, Vec<Object>)>);
-
-impl ObjectSets {
-    pub fn load<'a>(
-        plans: impl Iterator<Item = &'a Plan>,
-        packings: Option<&Path>,
-        progress: &dyn Progress,
-    ) -> Result<Self> {
-        let specs = object_specs(plans);
-        progress.stage("objects", specs.len() as u64);
-        let sets = specs.into_iter().map(|spec| {
-            let objects = load_objects(spec, packings)?;
-            progress.advance(1);
-            Ok((spec.clone(), objects))
-        });
-        Ok(Self(sets.collect::<Result<_>>()?))
-    }
-
-    fn of(&self, plan: &Plan) -> Vec<Object> {
-        let set = self.0.iter().find(|(spec, _)| *spec == plan.spec.objects);
-        set.map_or_else(Vec::new, |(_, objects)| objects.clone())
-    }
-}
+pub(super) type ObjectSets = Vec<(ObjectsSpec, Vec<Object>)>;
 
 /// Touches of a plan, and how they are split.
 struct World<'a> {
@@ -67,7 +31,9 @@ struct World<'a> {
 impl<'a> World<'a> {
     fn new(plan: &'a Plan, sets: &ObjectSets) -> Result<Self> {
         let seed = Seed::new(plan.spec.seed);
-        let touched = draw_touches(sets.of(plan), &plan.placement, &seed)?;
+        let set = sets.iter().find(|(spec, _)| *spec == plan.spec.objects);
+        let objects = set.map_or_else(Vec::new, |(_, objects)| objects.clone());
+        let touched = draw_touches(objects, &plan.placement, &seed)?;
         let sweep = Sweep::new(plan, &touched)?;
         let frames = simulate_array(&touched, &plan.arrays[0], plan.frames[0], &Silent);
         Ok(Self {
@@ -85,17 +51,30 @@ impl<'a> World<'a> {
         measure_group(self.plan, group, touches, split, group.projected()[0])
     }
 
-    /// What can differ between what is learned and what is tested only by mistake.
-    fn shape(&self) -> impl PartialEq {
-        let grid = self.plan.arrays[0].grid;
-        let cell = &self.sweep.groups[0].cells[0];
-        (grid.nx, grid.ny, cell.ensemble, cell.n_features())
+    /// An error unless what is learned here can be tested there: the same touches, split alike, measured by the same projection.
+    fn check_alike(&self, tested: &Self) -> Result<()> {
+        let shape = |world: &Self| {
+            let grid = world.plan.arrays[0].grid;
+            let cell = &world.sweep.groups[0].cells[0];
+            (grid.nx, grid.ny, cell.ensemble, cell.n_features())
+        };
+        let is_alike = self.sweep.labels == tested.sweep.labels
+            && self.sweep.splits == tested.sweep.splits
+            && shape(self) == shape(tested);
+        match is_alike {
+            true => Ok(()),
+            false => Err(Error::input(
+                "key touches",
+                "other objects, touches, taxels or measurements where it is tested",
+                "all: what is learned and what is tested must be alike but for what happens to it",
+            )),
+        }
     }
 }
 
 /// Learns and tests at a value, in all trials.
 pub(super) fn evaluate(
-    way: &WaySpec,
+    PlannedWay { spec: way, .. }: &PlannedWay,
     value: &PlannedValue,
     sets: &ObjectSets,
 ) -> Result<DrivenRows> {
@@ -103,10 +82,11 @@ pub(super) fn evaluate(
     let tested = value.tested.as_ref().map(|plan| World::new(plan, sets));
     let tested = tested.transpose()?;
     if let Some(tested) = &tested {
-        check_alike(&learned, tested)?;
+        learned.check_alike(tested)?;
     }
     let families: Vec<&[Cell]> = learned.sweep.groups[0].families().collect();
-    let mut evaluations: Vec<(usize, Evaluation)> = Vec::new();
+    // Of each classifier, trial by trial.
+    let mut found: Vec<Vec<Evaluation>> = vec![Vec::new(); families.len()];
     for number in 0..value.learned.spec.trials {
         let measurements = learned.measure(number)?;
         let of_tested = tested.as_ref().map(|world| world.measure(number));
@@ -118,40 +98,26 @@ pub(super) fn evaluate(
             tested: of_tested.as_ref().unwrap_or(&measurements),
             number,
         };
-        let found = families.par_iter().map(|family| trial.evaluate(family));
-        let found = found.collect::<Result<Vec<_>>>()?.into_iter().enumerate();
-        evaluations
-            .extend(found.flat_map(|(place, found)| found.into_iter().map(move |e| (place, e))));
+        let pairs = families.par_iter().zip(&mut found);
+        pairs.try_for_each(|(family, found)| -> Result<()> {
+            found.extend(trial.evaluate(family)?);
+            Ok(())
+        })?;
     }
-    // Classifier by classifier, and of each trial by trial.
-    evaluations.sort_by_key(|(place, _)| *place);
     let mut rows = DrivenRows::default();
     rows.n_objects
         .insert(way.name.clone(), learned.touched.len());
-    for (place, Evaluation { score, time, .. }) in evaluations {
+    for (family, found) in families.iter().zip(found) {
         let cell = WayCell {
             way: way.name.clone(),
             touches: way.touches,
             value: value.value,
-            classifier: families[place][0].classifier,
+            classifier: family[0].classifier,
         };
-        rows.accuracy.push((cell.clone(), score));
-        rows.timing.push((cell, time));
+        for Evaluation { score, time, .. } in found {
+            rows.accuracy.push((cell.clone(), score));
+            rows.timing.push((cell.clone(), time));
+        }
     }
     Ok(rows)
-}
-
-/// What is learned can be tested: the same touches, split alike, measured by the same projection.
-fn check_alike(learned: &World, tested: &World) -> Result<()> {
-    let is_alike = learned.sweep.labels == tested.sweep.labels
-        && learned.sweep.splits == tested.sweep.splits
-        && learned.shape() == tested.shape();
-    match is_alike {
-        true => Ok(()),
-        false => Err(Error::input(
-            "key touches",
-            "other objects, touches, taxels or measurements where it is tested",
-            "all: what is learned and what is tested must be alike but for what happens to it",
-        )),
-    }
 }

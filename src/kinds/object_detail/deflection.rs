@@ -1,41 +1,49 @@
 //! What the skin feels of a model, beside what it feels of the mesh itself.
 
 use crate::contact::{Workspace, first_contact, press_to_depth, press_to_travel};
+use crate::error::Result;
 use crate::geometry::Pose;
 use crate::kinds::median_time::median_s;
-use crate::objects::Model;
+use crate::objects::{Model, Object};
 use crate::quantile::quantile;
-use crate::study::simulation::TouchedObject;
-use crate::world::{Patch, Scene};
+use crate::random::Seed;
+use crate::study::simulation::draw_touches;
+use crate::world::{Patch, Placement, Scene};
 use glam::DVec3;
 
-/// How far a model's deflections are from the mesh's, metres.
-#[derive(Clone, Copy, Debug, PartialEq)]
+/// How far a model's deflections are from the exact ones, mm.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(in crate::kinds) struct DeflectionError {
     /// |δ − δ*|, mean over taxels that either touches.
-    pub mean: f64,
+    pub mean_mm: f64,
     /// 95th percentile over the same.
-    pub p95: f64,
+    pub p95_mm: f64,
 }
 
 impl DeflectionError {
     /// Of the errors of single taxels, metres; 0 of none.
     pub fn of(mut errors: Vec<f64>) -> Self {
         Self {
-            mean: mean(&errors),
-            p95: quantile(&mut errors, 0.95),
+            mean_mm: in_mm(mean(&errors)),
+            p95_mm: in_mm(quantile(&mut errors, 0.95)),
         }
     }
+}
+
+/// All digits of a length in millimetres.
+pub(in crate::kinds) fn in_mm(metres: f64) -> f64 {
+    1e3 * metres
 }
 
 fn mean(errors: &[f64]) -> f64 {
     errors.iter().fold(0.0, |sum, error| sum + error) / errors.len().max(1) as f64
 }
 
-/// How a mesh was touched, and what was read.
+/// How an object was touched exactly, and what was read.
 pub(in crate::kinds) struct Truth {
     patch: Patch,
-    readings: Vec<Reading>,
+    /// Touches that met it.
+    pub readings: Vec<Reading>,
     /// Touches that met nothing.
     pub n_missed: usize,
     /// Taxels that were touched, all touches.
@@ -59,36 +67,38 @@ const N_STEPS: usize = 30;
 const N_REPEATS: usize = 3;
 
 impl Truth {
-    /// Touches a mesh exactly.
-    pub fn new(touched: &TouchedObject, patch: &Patch) -> Self {
+    /// Touches an exact model as every study would touch an object of this name.
+    pub fn new(
+        (name, exact): (&str, Model),
+        patch: &Patch,
+        placement: &Placement,
+        seed: &Seed,
+    ) -> Result<Self> {
+        let object = Object::of_one_part(name, exact);
+        let touched = draw_touches(vec![object], placement, seed)?.swap_remove(0);
         let scene = Scene::of_one(patch, &touched.object.model);
         let mut workspace = Workspace::new();
-        let (mut readings, mut n_missed, mut n_touched) = (Vec::new(), 0, 0);
+        let mut truth = Self {
+            patch: *patch,
+            readings: Vec::new(),
+            n_missed: 0,
+            n_touched: 0,
+        };
         for touch in &touched.touches {
             let pose = touch.patch_from_object(&touched.rests[touch.rest]);
             let Some(contact) = press_to_depth(&scene, &[pose], touch.depth, &mut workspace) else {
-                n_missed += 1;
+                truth.n_missed += 1;
                 continue;
             };
-            n_touched += contact.n_touched;
-            readings.push(Reading {
+            truth.n_touched += contact.n_touched;
+            truth.readings.push(Reading {
                 patch_from_object: pose,
                 depth: touch.depth,
                 travel: contact.travel,
                 deflections: workspace.deflections().to_vec(),
             });
         }
-        Self {
-            patch: *patch,
-            readings,
-            n_missed,
-            n_touched,
-        }
-    }
-
-    /// Touches that met it.
-    pub fn readings(&self) -> &[Reading] {
-        &self.readings
+        Ok(truth)
     }
 
     /// Takes other deflections for right: those that `feel` says of each touch, by the object's pose under the pressed patch.
@@ -98,23 +108,18 @@ impl Truth {
         }
     }
 
-    /// Of a model read where the mesh was, the patch drawn back by `offset` metres.
+    /// Of a model read where the object was, the patch drawn back by `offset` metres.
     pub fn error(&self, model: &Model, offset: f64) -> DeflectionError {
         DeflectionError::of(self.errors(&Scene::of_one(&self.patch, model), offset))
     }
 
-    /// Mean error of a model that is touched as far past its own first contact as the mesh past its: what a study feels that
-    /// has no other model of the object. Metres.
-    pub fn error_past_own_contact(&self, model: &Model) -> f64 {
+    /// Mean error of a model that is touched as far past its own first contact as the object past its: what a study feels that
+    /// has no other model of the object.
+    pub fn error_past_own_contact(&self, model: &Model) -> DeflectionError {
         let scene = Scene::of_one(&self.patch, model);
-        let mut workspace = Workspace::new();
-        let mut errors = Vec::new();
-        for reading in &self.readings {
-            let pose = [reading.patch_from_object];
-            press_to_depth(&scene, &pose, reading.depth, &mut workspace);
-            errors.extend(reading.errors(workspace.deflections()));
-        }
-        mean(&errors)
+        DeflectionError::of(self.errors_of(|pose, reading, workspace| {
+            press_to_depth(&scene, pose, reading.depth, workspace);
+        }))
     }
 
     /// The constant offset, metres, with which the error is least: 0 or better.
@@ -148,11 +153,17 @@ impl Truth {
 
     /// |δ − δ*| of each taxel that either touches, all touches, the patch drawn back.
     fn errors(&self, scene: &Scene, offset: f64) -> Vec<f64> {
+        self.errors_of(|pose, reading, workspace| {
+            press_to_travel(scene, pose, reading.travel - offset, workspace);
+        })
+    }
+
+    /// The same of what is pressed in some way.
+    fn errors_of(&self, press: impl Fn(&[Pose], &Reading, &mut Workspace)) -> Vec<f64> {
         let mut workspace = Workspace::new();
         let mut errors = Vec::new();
         for reading in &self.readings {
-            let travel = reading.travel - offset;
-            press_to_travel(scene, &[reading.patch_from_object], travel, &mut workspace);
+            press(&[reading.patch_from_object], reading, &mut workspace);
             errors.extend(reading.errors(workspace.deflections()));
         }
         errors

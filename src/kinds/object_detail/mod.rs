@@ -14,20 +14,18 @@
 //! With an `[object_detail.recognition]` table classifiers learn from each level of models, and are tested on other touches of
 //! the meshes themselves: what a coarse object costs a skin that meets the real one.
 
-mod answers;
 mod charts;
 mod deflection;
-mod kind;
+mod measured;
 mod plan;
 mod recognition;
 pub mod rows;
-mod score;
 mod spec;
 mod study;
 mod summary;
 mod variants;
 
-pub(in crate::kinds) use deflection::{DeflectionError, Reading, Truth};
+pub(in crate::kinds) use deflection::{DeflectionError, Reading, Truth, in_mm};
 pub use plan::ObjectDetailPlan;
 pub use spec::{DetailMethod, DetailRecognitionSpec, ObjectDetailSpec, ObjectDetailStudySpec};
 pub use study::{DetailRows, ObjectDetailStudy};

@@ -4,14 +4,15 @@ use super::spec::{DetailMethod, DetailRecognitionSpec, ObjectDetailStudySpec};
 use crate::error::Result;
 use crate::study::check::{Check, Range, TOUCHES};
 use crate::world::{Patch, Placement};
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 /// Settings of a study of object detail, ready to run.
 #[derive(Clone, Debug)]
 pub struct ObjectDetailPlan {
     /// As it was written.
     pub spec: ObjectDetailStudySpec,
-    meshes: PathBuf,
+    /// The folder of meshes.
+    pub meshes: PathBuf,
     /// The array.
     pub patch: Patch,
     /// How touches are drawn.
@@ -75,11 +76,6 @@ impl ObjectDetailPlan {
     pub fn recognition(&self) -> Option<&DetailRecognitionSpec> {
         self.spec.object_detail.recognition.as_ref()
     }
-
-    /// The folder of meshes.
-    pub fn meshes(&self) -> &Path {
-        &self.meshes
-    }
 }
 
 fn check_recognition(check: &Check, wanted: &DetailRecognitionSpec, patch: &Patch) -> Result<()> {
@@ -90,7 +86,7 @@ fn check_recognition(check: &Check, wanted: &DetailRecognitionSpec, patch: &Patc
         let allowed = format!("at most {n_taxels}, the taxels of the array");
         return Err(check.error(&key("measurements"), n_measurements, allowed));
     }
-    let n_touches = wanted.training_touches + wanted.test_touches;
+    let n_touches = wanted.n_touches();
     // Of two objects, the fewest; with more it takes more.
     let bytes = 16.0 * n_touches as f64 * n_measurements as f64;
     let what = "the measurements of all touches";

@@ -3,14 +3,13 @@
 //! Every model of an object is touched as a study touches that has no other: in the same places, as far past its own first
 //! contact.
 
-use super::deflection::Truth;
+use super::measured::Measured;
 use super::plan::ObjectDetailPlan;
 use super::rows::DetailRecognition;
-use super::score::own_contact_error_mm;
-use super::spec::{DetailMethod, DetailRecognitionSpec};
-use super::variants::Variant;
+use super::spec::DetailRecognitionSpec;
+use super::variants::{Level, Variant, levels, within};
 use crate::error::Result;
-use crate::kinds::model_recognition::{Accuracy, touches_of};
+use crate::kinds::model_recognition::{accuracy, touches_of};
 use crate::objects::Object;
 use crate::quantile::quantile;
 use crate::random::Seed;
@@ -19,107 +18,127 @@ use crate::recognition::classifier::Classifier;
 use crate::sensing::Projection;
 use crate::study::progress::Silent;
 use crate::study::simulation::{draw_touches, simulate_array};
-use crate::world::{Patch, Placement};
+use crate::world::Placement;
 use ndarray::Array2;
+use std::ops::Range;
+
+/// A classifier that learns from one level of models.
+pub(super) struct Learned {
+    /// Of the level.
+    number: usize,
+    level: Level,
+    classifier: ClassifierKind,
+}
+
+impl Learned {
+    /// Level by level, of each every classifier; none if nothing learns.
+    pub fn all(plan: &ObjectDetailPlan) -> Vec<Self> {
+        let kinds = plan.recognition().map_or(&[][..], |spec| &spec.classifiers);
+        let of_level = |(number, level)| {
+            kinds.iter().map(move |&classifier| Self {
+                number,
+                level,
+                classifier,
+            })
+        };
+        let levels = levels(plan).into_iter().enumerate();
+        levels.flat_map(of_level).collect()
+    }
+
+    /// What it is called as a work item.
+    pub fn name(&self) -> String {
+        let (method, tolerance_mm) = self.level;
+        format!(
+            "{:?} from {method:?}{}",
+            self.classifier,
+            within(tolerance_mm)
+        )
+    }
+}
 
 /// Makes measurements of models, for learning.
 pub(super) struct Sensor<'a> {
-    patch: Patch,
-    placement: Placement,
-    projection: Projection,
+    plan: &'a ObjectDetailPlan,
     spec: &'a DetailRecognitionSpec,
+    projection: Projection,
     seed: Seed,
 }
 
-/// What was felt of the models of an object, the mesh itself first.
+/// What was felt of a model.
 pub(super) struct Felt {
-    /// n_touches × m each.
-    measurements: Vec<Array2<f64>>,
-    /// Mean deflection errors past their own contact.
-    own_contact_errors_mm: Vec<f64>,
+    /// n_touches × m.
+    measurements: Array2<f64>,
+    /// Mean deflection error past its own contact.
+    own_contact_error_mm: f64,
 }
 
 impl<'a> Sensor<'a> {
     /// For a study in which something learns.
-    pub fn of(plan: &'a ObjectDetailPlan) -> Result<Option<Self>> {
-        let Some(wanted) = plan.recognition() else {
-            return Ok(None);
-        };
+    pub fn new(plan: &'a ObjectDetailPlan, spec: &'a DetailRecognitionSpec) -> Result<Self> {
         let seed = Seed::new(plan.spec.seed);
         let grid = (plan.patch.grid.ny, plan.patch.grid.nx);
         let stream = seed.named("object detail recognition");
-        Ok(Some(Self {
-            patch: plan.patch,
-            placement: Placement {
-                per_object: Some(wanted.training_touches + wanted.test_touches),
-                ..plan.placement.clone()
-            },
-            projection: Projection::new(wanted.ensemble, grid, wanted.measurements, &stream)?,
-            spec: wanted,
+        Ok(Self {
+            plan,
+            spec,
+            projection: Projection::new(spec.ensemble, grid, spec.measurements, &stream)?,
             seed,
-        }))
-    }
-
-    /// Measurements of each model of an object, in their order; the first is the mesh itself, and all are touched in the same places of
-    /// its rest poses.
-    pub fn measure(&self, name: &str, variants: &[Variant], truth: &Truth) -> Result<Felt> {
-        let object = |variant: &Variant| Object::of_one_part(name, variant.model.clone());
-        let mut touched = draw_touches(vec![object(&variants[0])], &self.placement, &self.seed)?;
-        let measured = variants.iter().map(|variant| {
-            touched[0].object = object(variant);
-            let frames = simulate_array(&touched, &self.patch, 1, &Silent);
-            Ok(self.projection.measure(frames.kept.to_array()?.view()))
-        });
-        let measurements = measured.collect::<Result<_>>()?;
-        let variants = variants.iter();
-        let errors = variants.map(|variant| own_contact_error_mm(truth, variant));
-        Ok(Felt {
-            measurements,
-            own_contact_errors_mm: errors.collect(),
         })
     }
 
-    /// What a classifier learns from a level, by its number, from what was felt of the models of each object.
-    pub fn row(
-        &self,
-        objects: &[Felt],
-        (number, (method, tolerance_mm)): (usize, (DetailMethod, Option<f64>)),
-        kind: ClassifierKind,
-    ) -> Result<DetailRecognition> {
-        let n_training = self.spec.training_touches;
-        let n_all = n_training + self.spec.test_touches;
-        let level = |level: usize| {
-            objects
-                .iter()
-                .map(move |felt| felt.measurements[level].view())
+    /// What is felt of each model of an object, in their order; the first is the mesh itself, and all are touched in the same places of
+    /// its rest poses.
+    pub fn measure(&self, made: &Measured) -> Result<Vec<Felt>> {
+        let object =
+            |variant: &Variant| Object::of_one_part(&made.mesh.name, variant.model.clone());
+        let placement = Placement {
+            per_object: Some(self.spec.n_touches()),
+            ..self.plan.placement.clone()
         };
-        let training = touches_of(level(number), 0..n_training)?;
-        let classifier = Classifier::new(kind).train(&training, &self.seed)?;
-        let tests = [
-            touches_of(level(0), n_training..n_all)?,
-            touches_of(level(number), n_training..n_all)?,
-        ];
-        let on_mesh = Accuracy::of(&classifier, &tests[0])?;
-        let on_itself = Accuracy::of(&classifier, &tests[1])?;
-        let errors = objects.iter();
-        let mut errors: Vec<f64> = errors
-            .map(|felt| felt.own_contact_errors_mm[number])
-            .collect();
+        let mut touched = draw_touches(vec![object(&made.variants[0])], &placement, &self.seed)?;
+        let measured = made.variants.iter().map(|variant| {
+            touched[0].object = object(variant);
+            let frames = simulate_array(&touched, &self.plan.patch, 1, &Silent);
+            Ok(Felt {
+                measurements: self.projection.measure(frames.kept.to_array()?.view()),
+                own_contact_error_mm: made.truth.error_past_own_contact(&variant.model).mean_mm,
+            })
+        });
+        measured.collect()
+    }
+
+    /// What a classifier learns from a level, from what was felt of the models of each object.
+    pub fn row(&self, objects: &[Vec<Felt>], learned: &Learned) -> Result<DetailRecognition> {
+        let (number, n_training) = (learned.number, self.spec.training_touches);
+        let of_level = |number: usize, touches: Range<usize>| {
+            let objects = objects.iter();
+            touches_of(
+                objects.map(|felt| felt[number].measurements.view()),
+                touches,
+            )
+        };
+        let training = of_level(number, 0..n_training)?;
+        let classifier = Classifier::new(learned.classifier).train(&training, &self.seed)?;
+        let test = of_level(0, n_training..self.spec.n_touches())?;
+        let (accuracy_on_mesh, on_mesh) = accuracy(&classifier, &test)?;
+        let of_itself = of_level(number, n_training..self.spec.n_touches())?;
+        let (accuracy_on_itself, on_itself) = accuracy(&classifier, &of_itself)?;
+        let errors = objects.iter().map(|felt| felt[number].own_contact_error_mm);
         Ok(DetailRecognition {
-            method,
-            tolerance_mm,
-            classifier: kind,
+            method: learned.level.0,
+            tolerance_mm: learned.level.1,
+            classifier: learned.classifier,
             n_objects: objects.len(),
             n_training: training.targets.len(),
-            n_test: tests[0].targets.len(),
+            n_test: test.targets.len(),
             n_measurements: self.projection.n_measurements(),
-            error_own_contact_median_mm: quantile(&mut errors, 0.5),
-            accuracy_on_mesh: on_mesh.share,
-            accuracy_on_mesh_low: on_mesh.interval.low,
-            accuracy_on_mesh_high: on_mesh.interval.high,
-            accuracy_on_itself: on_itself.share,
-            accuracy_on_itself_low: on_itself.interval.low,
-            accuracy_on_itself_high: on_itself.interval.high,
+            error_own_contact_median_mm: quantile(&mut errors.collect::<Vec<_>>(), 0.5),
+            accuracy_on_mesh,
+            accuracy_on_mesh_low: on_mesh.low,
+            accuracy_on_mesh_high: on_mesh.high,
+            accuracy_on_itself,
+            accuracy_on_itself_low: on_itself.low,
+            accuracy_on_itself_high: on_itself.high,
             n_capped: classifier.n_capped(),
         })
     }

@@ -62,6 +62,13 @@ pub struct DetailRecognitionSpec {
     pub classifiers: Vec<ClassifierKind>,
 }
 
+impl DetailRecognitionSpec {
+    /// Touches of each object, those that test included.
+    pub(super) fn n_touches(&self) -> usize {
+        self.training_touches + self.test_touches
+    }
+}
+
 /// What stands for a mesh.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]

@@ -1,25 +1,26 @@
-//! Runs a study of object detail: models of every mesh, their errors on all threads, then their times on one.
+//! A study of object detail: models of every mesh, their errors on all threads, then their times on one.
 
-use super::deflection::Truth;
+use super::charts::{answers, charts};
+use super::measured::Measured;
 use super::plan::ObjectDetailPlan;
-use super::recognition::{Felt, Sensor};
+use super::recognition::{Learned, Sensor};
 use super::rows::{
     DetailCell, DetailRecognition, DetailScore, DetailSummary, DetailTime, LevelTime,
 };
-use super::score::{cell, score, truth};
-use super::spec::DetailMethod;
+use super::spec::ObjectDetailStudySpec;
 use super::summary::{costs, summary};
-use super::variants::{Variant, levels, variants};
-use crate::error::{Error, Result};
-use crate::mesh::Surface;
-use crate::recognition::ClassifierKind;
+use super::variants::levels;
+use crate::error::Result;
+use crate::kinds::model_recognition::check_apart;
+use crate::kinds::{About, Facts, Kind, Source};
 use crate::study::object_files::NamedMesh;
-use crate::study::pieces::{NamedPiece, PieceRows, PieceStudy, PiecesLeft};
+use crate::study::pieces::{NamedPiece, PieceRows, PieceStudy, PiecesLeft, Scale};
 use crate::study::time_left::Piece;
-use crate::table::{File, Table};
+use crate::study::{load_named_meshes, objects_content};
+use crate::table::{ChartSpec, File, Table};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// A study of object detail and its meshes.
 pub struct ObjectDetailStudy {
@@ -34,9 +35,9 @@ pub struct ObjectDetailStudy {
 /// What work items of the study found.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub struct DetailRows {
-    detail: Vec<(DetailCell, DetailScore)>,
-    timing: Vec<(DetailCell, DetailTime)>,
-    recognition: Vec<DetailRecognition>,
+    pub(super) detail: Vec<(DetailCell, DetailScore)>,
+    pub(super) timing: Vec<(DetailCell, DetailTime)>,
+    pub(super) recognition: Vec<DetailRecognition>,
 }
 
 impl PieceRows for DetailRows {
@@ -54,16 +55,16 @@ const TIME_S: f64 = 0.3;
 const RECOGNISE_S: f64 = 0.5;
 
 /// Tables.
-pub(super) const DETAIL: File<(DetailCell, DetailScore)> =
+const DETAIL: File<(DetailCell, DetailScore)> =
     File::new("object_detail.csv", "Models of each object", "");
-pub(super) const SUMMARY: File<DetailSummary> = File::new(
+const SUMMARY: File<DetailSummary> = File::new(
     "object_detail_summary.csv",
     "Models over all objects",
     "Medians and quartiles over objects; deflection errors are means over touched taxels of |deflection − that of the exact mesh|, after \
      offset with the best constant depth taken off.",
 )
 .summary();
-pub(super) const TIMING: File<(DetailCell, DetailTime)> =
+const TIMING: File<(DetailCell, DetailTime)> =
     File::new("timing.csv", "Time of a touch of each model", "").of_times();
 pub(super) const COST: File<(DetailSummary, LevelTime)> =
     File::new("object_detail_cost.csv", "What errors cost", "")
@@ -89,50 +90,45 @@ impl PieceStudy for ObjectDetailStudy {
             pieces.push(NamedPiece::new(times_name(mesh), group, times));
         }
         let (group, work) = (self.meshes.len(), Piece::of_stage(2, RECOGNISE_S));
-        let learned = self.learned().into_iter();
+        let learned = Learned::all(&self.plan).into_iter();
         pieces.extend(learned.map(|learned| NamedPiece::new(learned.name(), group, work)));
         pieces
     }
 
     fn measure(&self, left: &PiecesLeft<DetailRows>) -> Result<()> {
-        let learned = left.of(self.learned(), Learned::name);
-        let sensor = match learned.is_empty() {
-            true => None,
-            false => Sensor::of(&self.plan)?,
-        };
-        if sensor.is_some() && self.meshes.len() < 2 {
-            return Err(Error::input(
-                "object_detail.recognition",
-                format!("{} meshes", self.meshes.len()),
-                "at least 2 objects to tell apart",
-            ));
-        }
+        let learned = left.of(Learned::all(&self.plan), Learned::name);
+        let learners: Vec<String> = learned.iter().map(Learned::name).collect();
+        let spec = self.plan.recognition().filter(|_| !learned.is_empty());
+        let sensor = spec.map(|spec| Sensor::new(&self.plan, spec)).transpose()?;
         let is_needed = |mesh: &&NamedMesh| {
-            sensor.is_some() || left.has(&models_name(mesh)) || left.has(&times_name(mesh))
+            !learned.is_empty() || left.has(&models_name(mesh)) || left.has(&times_name(mesh))
         };
         let needed: Vec<&NamedMesh> = self.meshes.iter().filter(is_needed).collect();
         left.progress.stage("models", needed.len() as u64);
-        let names: Vec<String> = learned.iter().map(Learned::name).collect();
-        let measured = needed
-            .into_par_iter()
-            .map(|mesh| self.object(mesh, sensor.as_ref(), &names, left))
-            .collect::<Result<Vec<_>>>()?;
-        let timed = left.of(measured.iter().flatten(), |object| times_name(object.mesh));
-        left.progress.stage("time touches", timed.len() as u64);
-        for object in timed {
+        let made = needed.into_par_iter().map(|mesh| {
+            let Some(made) = self.object(mesh, &learners, left)? else {
+                return Ok(None);
+            };
+            let felt = match &sensor {
+                Some(sensor) => left.prepare(&learners, || sensor.measure(&made))?,
+                None => None,
+            };
+            Ok(Some((made, felt)))
+        });
+        let made = made.collect::<Result<Vec<_>>>()?;
+        left.progress.stage("time touches", made.len() as u64);
+        for (object, _) in made.iter().flatten() {
             left.finish(&times_name(object.mesh), || Ok(object.times()))?;
         }
-        let felt = measured.into_iter().map(|object| object?.felt);
+        let felt = made.into_iter().map(|made| made?.1);
         let (Some(sensor), Some(felt)) = (sensor, felt.collect::<Option<Vec<_>>>()) else {
             return Ok(());
         };
         left.progress.stage("recognise", learned.len() as u64);
         learned.par_iter().try_for_each(|learned| {
             left.finish(&learned.name(), || {
-                let level = (learned.number, learned.level);
-                let row = sensor.row(&felt, level, learned.classifier)?;
                 Ok(DetailRows {
-                    recognition: vec![row],
+                    recognition: vec![sensor.row(&felt, learned)?],
                     ..DetailRows::default()
                 })
             })
@@ -155,27 +151,6 @@ impl PieceStudy for ObjectDetailStudy {
     }
 }
 
-/// What a classifier learns from one level of models.
-struct Learned {
-    /// Of the level.
-    number: usize,
-    /// Method, and tolerance in mm.
-    level: (DetailMethod, Option<f64>),
-    classifier: ClassifierKind,
-}
-
-impl Learned {
-    fn name(&self) -> String {
-        let Self {
-            level: (method, tolerance_mm),
-            classifier,
-            ..
-        } = self;
-        let within = tolerance_mm.map_or(String::new(), |mm| format!(" within {mm} mm"));
-        format!("{classifier:?} from {method:?}{within}")
-    }
-}
-
 fn models_name(mesh: &NamedMesh) -> String {
     format!("models of {}", mesh.name)
 }
@@ -185,28 +160,11 @@ fn times_name(mesh: &NamedMesh) -> String {
 }
 
 impl ObjectDetailStudy {
-    /// Level by level, of each every classifier; none if nothing learns.
-    fn learned(&self) -> Vec<Learned> {
-        let kinds = self.plan.recognition().into_iter();
-        let kinds: Vec<ClassifierKind> = kinds.flat_map(|plan| plan.classifiers.clone()).collect();
-        let levels = levels(&self.plan).into_iter().enumerate();
-        let of_level = |(number, level)| {
-            let kinds = kinds.iter();
-            kinds.map(move |&classifier| Learned {
-                number,
-                level,
-                classifier,
-            })
-        };
-        levels.flat_map(of_level).collect()
-    }
-
-    /// Makes an object's models and keeps how near they are; if they cannot be made, all fails that needs them, `learned` too.
+    /// Makes an object's models and keeps how near they are; if they cannot be made, all fails that needs them, `learners` too.
     fn object<'a>(
         &self,
         mesh: &'a NamedMesh,
-        sensor: Option<&Sensor>,
-        learned: &[String],
+        learners: &[String],
         left: &PiecesLeft<DetailRows>,
     ) -> Result<Option<Measured<'a>>> {
         let mut made = None;
@@ -214,75 +172,84 @@ impl ObjectDetailStudy {
             let object = made.insert(Measured::new(self, mesh)?);
             Ok(object.models(&self.plan))
         })?;
-        let mut names = vec![times_name(mesh)];
-        names.extend_from_slice(learned);
-        let made = left.prepare(&names, || match made {
-            Some(made) => Ok(made),
-            // Its row is there from a run before.
-            None => Measured::new(self, mesh),
-        })?;
-        let Some(mut made) = made else {
-            return Ok(None);
-        };
-        if let Some(sensor) = sensor {
-            let feel = || sensor.measure(&mesh.name, &made.variants, &made.truth);
-            let felt = left.prepare(learned, feel)?;
-            made.felt = felt;
-        }
-        Ok(Some(made))
+        let needed = [&[times_name(mesh)], learners].concat();
+        // Where it is not made, its rows are there from a run before.
+        left.prepare(&needed, || {
+            made.map_or_else(|| Measured::new(self, mesh), Ok)
+        })
     }
 }
 
-/// An object and its models.
-struct Measured<'a> {
-    mesh: &'a NamedMesh,
-    surface: Surface,
-    truth: Truth,
-    variants: Vec<Variant>,
-    /// What learning needs of each variant; none if nothing learns, or it cannot be had.
-    felt: Option<Felt>,
-}
+impl Kind for ObjectDetailStudy {
+    const ABOUT: About = About {
+        table: "object_detail",
+        words: "a study of how detailed objects are",
+        may_change: &[
+            "question",
+            "expected",
+            "object_detail.recognition.classifiers",
+        ],
+    };
 
-impl<'a> Measured<'a> {
-    fn new(study: &ObjectDetailStudy, mesh: &'a NamedMesh) -> Result<Self> {
-        let surface = Surface::new(mesh.mesh.clone());
-        let packings = study.packings.as_deref();
-        let variants = variants(&study.plan, &mesh.place, &surface, packings)?;
-        // The first of them is the mesh itself.
-        let truth = truth(&study.plan, &mesh.name, &variants[0].model)?;
+    fn load(source: &Source) -> Result<Self> {
+        let mut spec = ObjectDetailStudySpec::parse(&source.place, &source.text)?;
+        spec.seed = source.seed(spec.seed);
+        source.replace_objects(&mut spec.objects);
+        let plan = ObjectDetailPlan::new(&source.place, spec)?;
+        let meshes = load_named_meshes(&plan.meshes, &plan.spec.objects)?;
+        if plan.recognition().is_some() {
+            check_apart(&source.place, meshes.len())?;
+        }
         Ok(Self {
-            mesh,
-            surface,
-            truth,
-            variants,
-            felt: None,
+            meshes,
+            packings: source.packings.clone(),
+            plan,
         })
     }
 
-    fn models(&self, plan: &ObjectDetailPlan) -> DetailRows {
-        let n_points = plan.spec.object_detail.surface_points;
-        let detail = self.variants.iter().map(|variant| {
-            let score = score(variant, &self.surface, &self.truth, n_points);
-            (cell(&self.mesh.name, variant), score)
-        });
-        DetailRows {
-            detail: detail.collect(),
-            ..DetailRows::default()
+    fn facts(&self) -> Result<Facts> {
+        let spec = &self.plan.spec;
+        Ok(Facts::of(spec, objects_content(&spec.objects)?))
+    }
+
+    fn scale(&self) -> Scale {
+        let n_objects = self.meshes.len();
+        let n_levels = levels(&self.plan).len();
+        let per_object = self.plan.placement.per_object.unwrap_or(1);
+        let learned = self.plan.recognition();
+        let n_learned = learned.map_or(0, |learned| learned.n_touches());
+        let n_classifiers = learned.map_or(0, |learned| learned.classifiers.len());
+        let n_taxels = self.plan.patch.grid.n_taxels();
+        let n_measurements = learned.map_or(0, |learned| learned.measurements);
+        Scale {
+            objects: format!("{n_objects} meshes, in {n_levels} models each"),
+            touches: match n_learned {
+                0 => format!("{per_object} of each model"),
+                n => format!("{per_object} of each model, {n} of each for recognition"),
+            },
+            n_configurations: n_levels * (n_objects + n_classifiers),
+            bytes: 8.0 * (n_objects * n_learned * n_levels * n_measurements) as f64,
+            // Frames as they were, and as they are read.
+            item_bytes: 12.0 * (n_learned * n_taxels) as f64,
         }
     }
 
-    fn times(&self) -> DetailRows {
-        let timing = self.variants.iter().map(|variant| {
-            let time = DetailTime {
-                us_per_touch: 1e6 * self.truth.seconds_per_touch(&variant.model),
-                prepare_s: variant.prepare_s,
-                was_kept: variant.was_kept,
-            };
-            (cell(&self.mesh.name, variant), time)
-        });
-        DetailRows {
-            timing: timing.collect(),
-            ..DetailRows::default()
-        }
+    fn read(folder: &Path) -> Result<Vec<Table>> {
+        let mut tables = vec![
+            DETAIL.read(folder)?,
+            SUMMARY.read(folder)?,
+            TIMING.read(folder)?,
+            COST.read(folder)?,
+        ];
+        tables.extend(RECOGNITION.read_if_there(folder)?);
+        Ok(tables)
+    }
+
+    fn charts(&self, tables: &[Table]) -> Vec<ChartSpec> {
+        charts(tables)
+    }
+
+    fn answers(&self, tables: &[Table]) -> Vec<String> {
+        answers(tables)
     }
 }

@@ -2,12 +2,11 @@
 
 use super::rows::{DetailCell, DetailScore, DetailSummary, DetailTime, LevelTime};
 use super::spec::DetailMethod;
+use super::variants::Level;
+use crate::kinds::grouped;
 use crate::quantile::quantile;
 
 type Row = (DetailCell, DetailScore);
-
-/// A method and its tolerance, mm.
-type Level = (DetailMethod, Option<f64>);
 
 fn level(cell: &DetailCell) -> Level {
     (cell.method, cell.tolerance_mm)
@@ -15,21 +14,13 @@ fn level(cell: &DetailCell) -> Level {
 
 /// One row a method and level, in the order of their first appearance.
 pub(super) fn summary(rows: &[Row]) -> Vec<DetailSummary> {
-    let mut levels = Vec::new();
-    for (cell, _) in rows {
-        if !levels.contains(&level(cell)) {
-            levels.push(level(cell));
-        }
-    }
-    let levels = levels.into_iter();
-    levels.map(|level| summary_row(level, rows)).collect()
+    let levels = grouped(rows, |(cell, _)| level(cell)).into_iter();
+    levels
+        .map(|(level, of_level)| summary_row(level, &of_level, rows))
+        .collect()
 }
 
-fn summary_row((method, tolerance_mm): Level, rows: &[Row]) -> DetailSummary {
-    let of_level = rows.iter();
-    let of_level: Vec<&Row> = of_level
-        .filter(|(cell, _)| level(cell) == (method, tolerance_mm))
-        .collect();
+fn summary_row((method, tolerance_mm): Level, of_level: &[&Row], rows: &[Row]) -> DetailSummary {
     let quartiles = |value: &dyn Fn(&Row) -> f64| {
         let mut values: Vec<f64> = of_level.iter().map(|row| value(row)).collect();
         [0.25, 0.5, 0.75, 1.0].map(|part| quantile(&mut values, part))
@@ -79,9 +70,9 @@ pub(super) fn costs(
     summary: &[DetailSummary],
     timing: &[(DetailCell, DetailTime)],
 ) -> Vec<(DetailSummary, LevelTime)> {
-    let costs = summary.iter().map(|row| {
-        let is_it = |cell: &DetailCell| level(cell) == (row.method, row.tolerance_mm);
-        let times = timing.iter().filter(|(cell, _)| is_it(cell));
+    let cost = |row: &DetailSummary| {
+        let of_level = (row.method, row.tolerance_mm);
+        let times = timing.iter().filter(|(cell, _)| level(cell) == of_level);
         let mut times: Vec<f64> = times.map(|(_, time)| time.us_per_touch).collect();
         let us_per_touch_median = quantile(&mut times, 0.5);
         (
@@ -90,6 +81,6 @@ pub(super) fn costs(
                 us_per_touch_median,
             },
         )
-    });
-    costs.collect()
+    };
+    summary.iter().map(cost).collect()
 }

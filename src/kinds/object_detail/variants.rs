@@ -13,11 +13,17 @@ use glam::DVec3;
 use std::path::Path;
 use std::time::Instant;
 
+/// What stands for a mesh, and within how many millimetres (as written) the packing that it is, or has as many spheres as.
+pub(super) type Level = (DetailMethod, Option<f64>);
+
+/// Within so many millimetres, in words; none where there are none.
+pub(super) fn within(tolerance_mm: Option<f64>) -> String {
+    tolerance_mm.map_or(String::new(), |mm| format!(" within {mm} mm"))
+}
+
 /// A model of a mesh.
 pub(super) struct Variant {
-    pub method: DetailMethod,
-    /// Of the packing that it is, or has as many spheres as; mm, as written.
-    pub tolerance_mm: Option<f64>,
+    pub level: Level,
     pub model: Model,
     /// Seconds that making it took.
     pub prepare_s: f64,
@@ -58,8 +64,7 @@ pub(super) fn variants(
             DetailMethod::MedialSpheres => (medial_spheres(surface, packed.1)?.into(), false),
         };
         found.push(Variant {
-            method,
-            tolerance_mm,
+            level: (method, tolerance_mm),
             model,
             prepare_s: start.elapsed().as_secs_f64(),
             was_kept,
@@ -68,20 +73,20 @@ pub(super) fn variants(
     Ok(found)
 }
 
-/// Methods and tolerances (mm, as written) of the models of every mesh: the mesh itself, then methods without levels, then level by level.
-pub(super) fn levels(plan: &ObjectDetailPlan) -> Vec<(DetailMethod, Option<f64>)> {
+/// Those of the models of every mesh: the mesh itself, then methods without tolerances, then tolerance by tolerance.
+pub(super) fn levels(plan: &ObjectDetailPlan) -> Vec<Level> {
     let wanted = &plan.spec.object_detail;
     let is_wanted = |method: &DetailMethod| wanted.methods.contains(method);
-    let of_level = [
-        DetailMethod::Packing,
-        DetailMethod::DecimatedVertexSpheres,
-        DetailMethod::MedialSpheres,
-    ];
     let vertices = Some(DetailMethod::VertexSpheres).filter(is_wanted);
-    let without = [DetailMethod::Mesh].into_iter().chain(vertices);
-    let mut levels: Vec<_> = without.map(|method| (method, None)).collect();
+    let mut levels = vec![(DetailMethod::Mesh, None)];
+    levels.extend(vertices.map(|method| (method, None)));
     for &mm in &wanted.tolerances_mm {
-        let methods = of_level.into_iter().filter(is_wanted);
+        let methods = [
+            DetailMethod::Packing,
+            DetailMethod::DecimatedVertexSpheres,
+            DetailMethod::MedialSpheres,
+        ];
+        let methods = methods.into_iter().filter(is_wanted);
         levels.extend(methods.map(|method| (method, Some(mm))));
     }
     levels

@@ -1,6 +1,8 @@
-//! What is charted: what each choice costs and gives, with the fronts.
+//! What is charted and said: what each choice costs and gives, with the fronts.
 
-use super::study::{CHAINS, CONTACT};
+use super::plan::SpeedAccuracyPlan;
+use super::study::{CONTACT_PARETO, RECOGNITION_PARETO};
+use crate::report::chart::front_ends;
 use crate::table::{ChartSpec, Mark, Table};
 
 /// A chart of contact, of decisions and of trainings: of those parts that there are.
@@ -21,20 +23,20 @@ pub(super) fn charts(tables: &[Table]) -> Vec<ChartSpec> {
         panels: Some("touched".to_owned()),
         ..chart(
             "contact",
-            (CONTACT.pareto.name(), "us_per_touch", "error_mm"),
+            (CONTACT_PARETO.name(), "us_per_touch", "error_mm"),
         )
     };
     let decision = ChartSpec {
         title: "Recognition: accuracy against the time of a decision".to_owned(),
         note: "Press, noise, compression and answer of one touch, one thread; tested on the exact objects.".to_owned(),
         lines: vec!["classifier".to_owned()],
-        ..chart("decision", (CHAINS.pareto.name(), "decision_us", "accuracy"))
+        ..chart("decision", (RECOGNITION_PARETO.name(), "decision_us", "accuracy"))
     };
     let training = ChartSpec {
         title: "Recognition: accuracy against the time of a training".to_owned(),
         note: "One thread; tested on the exact objects.".to_owned(),
         lines: vec!["classifier".to_owned()],
-        ..chart("training", (CHAINS.pareto.name(), "fit_s", "accuracy"))
+        ..chart("training", (RECOGNITION_PARETO.name(), "fit_s", "accuracy"))
     };
     let all = [contact, decision, training].into_iter();
     let is_there = |chart: &ChartSpec| {
@@ -42,4 +44,22 @@ pub(super) fn charts(tables: &[Table]) -> Vec<ChartSpec> {
         table.is_some_and(|table| table.n_rows > 0)
     };
     all.filter(is_there).collect()
+}
+
+/// The cheapest and the best of each front, and what was left out because it is not there.
+pub(super) fn answers(plan: &SpeedAccuracyPlan, tables: &[Table]) -> Vec<String> {
+    let charts = charts(tables).into_iter();
+    let fronts = charts.filter_map(|chart| {
+        let [cheapest, best] = front_ends(&chart, tables)?;
+        Some(format!("{}, the front: {cheapest} … {best}.", chart.title))
+    });
+    let peers = plan.peers.as_ref().filter(|path| !path.exists());
+    let peers =
+        peers.map(|path| format!("Without other programs: there is no {}.", path.display()));
+    let scans = plan.scans().filter(|scans| !scans.meshes.is_dir());
+    let scans = scans.map(|scans| {
+        let folder = scans.meshes.display();
+        format!("Without scans: there is no folder {folder}; --objects names one.")
+    });
+    fronts.chain(peers).chain(scans).collect()
 }

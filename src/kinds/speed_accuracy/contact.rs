@@ -1,34 +1,26 @@
 //! The part on contact: what an evaluation of each model costs, and how wrong it is.
 
-use super::engines::{StepMethod, Stepper};
-use super::models::{ContactRow, Models};
-use super::plan::SpeedAccuracyPlan;
-use super::rows::Touched;
-use super::spec::ContactSpec;
-use super::study::SpeedAccuracyRows;
+use super::engines::METHODS;
+use super::models::Models;
+use super::rows::{ContactWay, Touched};
+use super::study::{SpeedAccuracyRows, SpeedAccuracyStudy};
 use super::subject::{Subject, spread_evenly};
 use crate::error::Result;
+use crate::kinds::grouped;
 use crate::study::pieces::{NamedPiece, PiecesLeft};
+use crate::study::sweep::nested;
 use crate::study::time_left::Piece;
 use rayon::prelude::*;
 use std::collections::BTreeMap;
-use std::path::Path;
 
-/// Contact of some of the objects.
-pub(super) struct ContactPart<'a> {
-    pub plan: &'a SpeedAccuracyPlan,
-    pub spec: &'a ContactSpec,
-    /// Objects of the study, then scans.
-    pub chosen: Vec<(Touched, &'a Subject)>,
-    pub packings: Option<&'a Path>,
-}
-
-/// An object stepped through time: a method, its time step, and the number of the object.
+/// A work item: all models of an object at rest, or its touches stepped through time by a method, with its step in ms.
 #[derive(Clone, Copy)]
-struct StepRun {
-    method: StepMethod,
-    dt_ms: f64,
+struct Item<'a> {
+    /// Its number among objects and scans.
     object: usize,
+    touched: Touched,
+    subject: &'a Subject,
+    stepped: Option<(ContactWay, f64)>,
 }
 
 /// Seconds for the models of an object, of a scan (which is packed), and for a step of those that are stepped through time, about.
@@ -36,115 +28,98 @@ const OBJECT_S: f64 = 0.2;
 const SCAN_S: f64 = 30.0;
 const STEP_S: f64 = 1e-4;
 
-impl ContactPart<'_> {
-    /// An object's models, and each of its ways through time, share the object's models.
-    pub fn pieces(&self) -> Vec<NamedPiece> {
-        let models = self
-            .chosen
-            .iter()
-            .enumerate()
-            .map(|(object, (touched, _))| {
-                let work = match touched {
-                    Touched::Object => OBJECT_S,
-                    Touched::Scan => SCAN_S,
-                };
-                NamedPiece::new(self.models_name(object), object, Piece::of_stage(0, work))
-            });
-        let steps = self.steps().into_iter().map(|run| {
-            let work = Piece::one_by_one(1, 1e3 * STEP_S / run.dt_ms);
-            NamedPiece::new(self.step_name(&run), run.object, work)
-        });
-        models.chain(steps).collect()
-    }
-
-    fn models_name(&self, object: usize) -> String {
-        let (touched, subject) = self.chosen[object];
-        let whose = match touched {
-            Touched::Object => "",
-            Touched::Scan => "scan ",
-        };
-        format!("contact with {whose}{}", subject.name())
-    }
-
-    fn step_name(&self, run: &StepRun) -> String {
-        let name = self.chosen[run.object].1.name();
-        format!("{:?} of {} ms with {name}", run.method, run.dt_ms)
-    }
-
-    /// Methods and steps outside, so that the tables go by them. Scans are not stepped.
-    fn steps(&self) -> Vec<StepRun> {
-        let is_object = |&object: &usize| self.chosen[object].0 == Touched::Object;
-        let objects: Vec<usize> = (0..self.chosen.len()).filter(is_object).collect();
-        let stepped = spread_evenly(&objects, self.spec.stepped_objects);
-        let mut runs = Vec::new();
-        for method in StepMethod::built() {
-            for &dt_ms in &self.spec.dt_ms {
-                runs.extend(stepped.iter().map(|&&object| StepRun {
-                    method,
-                    dt_ms,
-                    object,
-                }));
-            }
+impl Item<'_> {
+    fn name(&self) -> String {
+        let name = self.subject.name();
+        match (self.stepped, self.touched) {
+            (Some((method, dt_ms)), _) => format!("{method:?} of {dt_ms} ms with {name}"),
+            (None, Touched::Object) => format!("contact with {name}"),
+            (None, Touched::Scan) => format!("contact with scan {name}"),
         }
-        runs
     }
 
-    /// Models on all threads, times on one.
-    pub fn measure(&self, left: &PiecesLeft<SpeedAccuracyRows>) -> Result<()> {
-        let steps = left.of(self.steps(), |run| self.step_name(run));
-        let names_of = |object: usize| -> Vec<String> {
-            let of_object = steps.iter().filter(|run| run.object == object);
-            let models = left.of([self.models_name(object)], String::clone);
-            models
-                .into_iter()
-                .chain(of_object.map(|run| self.step_name(run)))
-                .collect()
-        };
-        let needed = (0..self.chosen.len()).map(|object| (object, names_of(object)));
-        let needed: Vec<_> = needed.filter(|(_, names)| !names.is_empty()).collect();
-        left.progress.stage("models", needed.len() as u64);
-        let made = needed
-            .into_par_iter()
-            // One at a time: to pack a mesh takes from seconds to a minute.
-            .with_max_len(1)
-            .map(|(object, names)| {
-                let make = || Models::new(self.plan, self.spec, self.chosen[object], self.packings);
-                let made = left.prepare(&names, make)?;
-                left.progress.advance(1);
-                Ok(made.map(|made| (object, made)))
-            })
-            .collect::<Result<Vec<_>>>()?;
-        let made: BTreeMap<usize, Models> = made.into_iter().flatten().collect();
-        left.progress.stage("time touches", made.len() as u64);
-        for (&object, models) in &made {
-            left.finish(&self.models_name(object), || {
-                Ok(of_contact(models.at_rest(self.plan)))
-            })?;
+    fn work(&self) -> Piece {
+        match (self.stepped, self.touched) {
+            (Some((_, dt_ms)), _) => Piece::one_by_one(1, 1e3 * STEP_S / dt_ms),
+            (None, Touched::Object) => Piece::of_stage(0, OBJECT_S),
+            (None, Touched::Scan) => Piece::of_stage(0, SCAN_S),
         }
-        left.progress.stage("step through time", steps.len() as u64);
-        for run in &steps {
-            if let Some(models) = made.get(&run.object) {
-                left.finish(&self.step_name(run), || self.step(*run, models))?;
-            }
-        }
-        Ok(())
-    }
-
-    fn step(&self, run: StepRun, models: &Models) -> Result<SpeedAccuracyRows> {
-        let stepper = Stepper {
-            patch: &self.plan.patch,
-            model: models.middle_packing().1,
-            method: run.method,
-            dt: 1e-3 * run.dt_ms,
-        };
-        let row = models.stepped(&stepper, run.dt_ms, self.spec.stepped_touches)?;
-        Ok(of_contact(vec![row]))
     }
 }
 
-fn of_contact(contact: Vec<ContactRow>) -> SpeedAccuracyRows {
-    SpeedAccuracyRows {
-        contact,
-        ..SpeedAccuracyRows::default()
+impl SpeedAccuracyStudy {
+    /// The models of every object of the study, and of every scan; then methods and steps outside, so that the tables go by them. Scans are
+    /// not stepped.
+    fn contact_items(&self) -> Vec<Item<'_>> {
+        let Some(spec) = &self.plan.parts().contact else {
+            return Vec::new();
+        };
+        let objects = spread_evenly(&self.subjects, spec.objects).into_iter();
+        let objects = objects.map(|subject| (Touched::Object, subject));
+        let scans = self.scans.iter().map(|scan| (Touched::Scan, scan));
+        let at_rest = objects.chain(scans).enumerate();
+        let at_rest = at_rest.map(|(object, (touched, subject))| Item {
+            object,
+            touched,
+            subject,
+            stepped: None,
+        });
+        let mut items: Vec<Item> = at_rest.collect();
+        let is_object = |item: &&Item| item.touched == Touched::Object;
+        let objects: Vec<Item> = items.iter().filter(is_object).copied().collect();
+        nested! {
+            &method in METHODS;
+            &dt_ms in &spec.dt_ms;
+            &object in spread_evenly(&objects, spec.stepped_objects);
+            items.push(Item { stepped: Some((method, dt_ms)), ..object })
+        }
+        items
+    }
+
+    /// What is done with an object shares its models.
+    pub(super) fn contact_pieces(&self) -> Vec<NamedPiece> {
+        let items = self.contact_items().into_iter();
+        let pieces = items.map(|item| NamedPiece::new(item.name(), item.object, item.work()));
+        pieces.collect()
+    }
+
+    /// Models on all threads, times on one.
+    pub(super) fn measure_contact(&self, left: &PiecesLeft<SpeedAccuracyRows>) -> Result<()> {
+        let items = left.of(self.contact_items(), Item::name);
+        let (Some(spec), false) = (&self.plan.parts().contact, items.is_empty()) else {
+            return Ok(());
+        };
+        let objects = grouped(&items, |item| item.object);
+        left.progress.stage("models", objects.len() as u64);
+        // One at a time: to pack a mesh takes from seconds to a minute.
+        let made = objects.par_iter().with_max_len(1).map(|(object, items)| {
+            let names: Vec<String> = items.iter().map(|item| item.name()).collect();
+            let of = (items[0].touched, items[0].subject);
+            let make = || Models::new(&self.plan, spec, of, self.packings.as_deref());
+            let made = left.prepare(&names, make)?;
+            left.progress.advance(1);
+            Ok(made.map(|made| (*object, made)))
+        });
+        let made = made.collect::<Result<Vec<_>>>()?;
+        let made: BTreeMap<usize, Models> = made.into_iter().flatten().collect();
+        left.progress.stage("time touches", items.len() as u64);
+        for item in &items {
+            let Some(models) = made.get(&item.object) else {
+                continue;
+            };
+            left.finish(&item.name(), || {
+                let contact = match item.stepped {
+                    None => models.at_rest(),
+                    Some((method, dt_ms)) => {
+                        vec![models.stepped(method, dt_ms, spec.stepped_touches)?]
+                    }
+                };
+                Ok(SpeedAccuracyRows {
+                    contact,
+                    ..SpeedAccuracyRows::default()
+                })
+            })?;
+        }
+        Ok(())
     }
 }

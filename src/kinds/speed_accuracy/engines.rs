@@ -22,129 +22,76 @@ const DECAY: f64 = 10.0;
 /// Steps of a touch, at least.
 const LEAST_STEPS: f64 = 5.0;
 
-/// How a touch is stepped.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum StepMethod {
-    QuasiStatic,
-    ImplicitEuler,
-    SemiImplicit,
+/// The methods of this build.
+pub(super) const METHODS: &[ContactWay] = &[
+    ContactWay::TimeSteps,
+    ContactWay::ImplicitEuler,
+    ContactWay::SemiImplicit,
     #[cfg(feature = "rapier")]
-    Rapier,
-}
+    ContactWay::Rapier,
+];
 
-/// A method with a time step, on a patch and an object.
-pub(super) struct Stepper<'a> {
-    pub patch: &'a Patch,
-    pub model: &'a Model,
-    pub method: StepMethod,
-    pub dt: f64,
-}
-
-/// What came of a touch.
-pub(super) struct Stepped {
-    /// n_taxels, metres; none where the motion diverged.
-    pub deflections: Option<Vec<f64>>,
-    pub n_steps: usize,
-}
-
-impl StepMethod {
-    /// Those that this build has.
-    pub fn built() -> Vec<Self> {
-        vec![
-            Self::QuasiStatic,
-            Self::ImplicitEuler,
-            Self::SemiImplicit,
-            #[cfg(feature = "rapier")]
-            Self::Rapier,
-        ]
-    }
-
-    pub fn way(self) -> ContactWay {
-        match self {
-            Self::QuasiStatic => ContactWay::TimeSteps,
-            Self::ImplicitEuler => ContactWay::ImplicitEuler,
-            Self::SemiImplicit => ContactWay::SemiImplicit,
-            #[cfg(feature = "rapier")]
-            Self::Rapier => ContactWay::Rapier,
-        }
-    }
-}
-
-impl Stepper<'_> {
-    /// Steps through a touch; everything that it takes counts, scene and all.
-    pub fn touch(&self, reading: &Reading) -> Result<Stepped> {
-        let (k, m) = (self.patch.taxel.stiffness, skin_sim::TAXEL_MASS);
-        let taxel = Taxel {
-            // Critical: the slowest rate is then √(k / m).
-            damping: 2.0 * (k * m).sqrt(),
-            ..self.patch.taxel
-        };
-        let patch = Patch {
-            taxel,
-            ..*self.patch
-        };
-        let way = reading.depth / SPEED;
-        let hold = DECAY / (k / m).sqrt();
-        let n_steps = ((way + hold) / self.dt).ceil().max(LEAST_STEPS) as usize;
-        let pressed = reading.pressed();
-        let above = pressed.translation + reading.depth * DVec3::Z;
-        let start = Pose::new(pressed.rotation, above);
-        let plan = descent(start, way)?;
-        if self.method == StepMethod::QuasiStatic {
-            let scene = Scene::of_one(&patch, self.model);
-            let still = VelocityPlan::new(Pose::IDENTITY, Vec::new())?;
-            let recording = simulate(&scene, &still, &[plan], self.dt, n_steps)?;
-            let last = recording.deflection.row(n_steps - 1);
-            return Ok(Stepped {
-                deflections: Some(last.to_vec()),
-                n_steps,
-            });
-        }
-        let skin = SkinPatch::from(patch);
-        let drive = Drive::Imposed(plan);
-        // No further: where an object comes is found by a press so deep, and small spheres would be behind the substrate by then.
-        let reach = reading.depth;
-        let system = System::new(&skin, m, self.model, start, drive, reach)?;
-        let mut integrator = self.integrator(&system)?;
-        let steps = Steps {
-            dt: self.dt,
-            n: n_steps,
-            frames: &[n_steps],
-            energy_limit: f64::INFINITY,
-        };
-        let recording = run(&system, integrator.as_mut(), &steps)?;
-        let is_whole = recording.divergence.is_none();
-        Ok(Stepped {
-            deflections: is_whole.then(|| recording.recording.deflection.row(0).to_vec()),
-            n_steps,
-        })
-    }
-
-    fn integrator(&self, system: &System) -> Result<Box<dyn Integrator>> {
-        match self.method {
-            StepMethod::SemiImplicit => {
-                let stiffness = SemiImplicit::stiffest(system, self.dt, 1);
-                Ok(Box::new(SemiImplicit::new(system, stiffness)))
-            }
-            #[cfg(feature = "rapier")]
-            StepMethod::Rapier => {
-                use crate::dynamics::{RapierSettings, RapierWorld};
-                let settings = RapierSettings::tuned(system);
-                Ok(Box::new(RapierWorld::new(system, settings)?))
-            }
-            StepMethod::QuasiStatic | StepMethod::ImplicitEuler => {
-                Ok(Box::new(ImplicitEuler::new(system)))
-            }
-        }
-    }
-}
-
-/// From there down with [`SPEED`].
-fn descent(start: Pose, way_s: f64) -> Result<VelocityPlan> {
+/// Steps a patch through a touch of a model, by a method among [`METHODS`] with a time step (s); everything that it takes counts, scene and
+/// all. Deflections (n_taxels, metres; none where the motion diverged), and how many steps.
+pub(super) fn step_through(
+    (patch, model): (&Patch, &Model),
+    (method, dt): (ContactWay, f64),
+    reading: &Reading,
+) -> Result<(Option<Vec<f64>>, usize)> {
+    let (k, m) = (patch.taxel.stiffness, skin_sim::TAXEL_MASS);
+    let taxel = Taxel {
+        // Critical: the slowest rate is then √(k / m).
+        damping: 2.0 * (k * m).sqrt(),
+        ..patch.taxel
+    };
+    let patch = Patch { taxel, ..*patch };
+    let way = reading.depth / SPEED;
+    let hold = DECAY / (k / m).sqrt();
+    let n_steps = ((way + hold) / dt).ceil().max(LEAST_STEPS) as usize;
+    let pressed = reading.pressed();
+    let above = pressed.translation + reading.depth * DVec3::Z;
+    let start = Pose::new(pressed.rotation, above);
     let down = Phase {
-        duration: way_s,
+        duration: way,
         linear: -SPEED * DVec3::Z,
         angular: DVec3::ZERO,
     };
-    VelocityPlan::new(start, vec![down])
+    let plan = VelocityPlan::new(start, vec![down])?;
+    if method == ContactWay::TimeSteps {
+        let scene = Scene::of_one(&patch, model);
+        let still = VelocityPlan::new(Pose::IDENTITY, Vec::new())?;
+        let recording = simulate(&scene, &still, &[plan], dt, n_steps)?;
+        let last = recording.deflection.row(n_steps - 1);
+        return Ok((Some(last.to_vec()), n_steps));
+    }
+    let skin = SkinPatch::from(patch);
+    let drive = Drive::Imposed(plan);
+    // No further: where an object comes is found by a press so deep, and small spheres would be behind the substrate by then.
+    let reach = reading.depth;
+    let system = System::new(&skin, m, model, start, drive, reach)?;
+    let steps = Steps {
+        dt,
+        n: n_steps,
+        frames: &[n_steps],
+        energy_limit: f64::INFINITY,
+    };
+    let found = run(&system, integrator(&system, (method, dt))?.as_mut(), &steps)?;
+    let last = || found.recording.deflection.row(0).to_vec();
+    Ok((found.divergence.is_none().then(last), n_steps))
+}
+
+fn integrator(system: &System, (method, dt): (ContactWay, f64)) -> Result<Box<dyn Integrator>> {
+    match method {
+        ContactWay::SemiImplicit => {
+            let stiffness = SemiImplicit::stiffest(system, dt, 1);
+            Ok(Box::new(SemiImplicit::new(system, stiffness)))
+        }
+        #[cfg(feature = "rapier")]
+        ContactWay::Rapier => {
+            use crate::dynamics::{RapierSettings, RapierWorld};
+            let settings = RapierSettings::tuned(system);
+            Ok(Box::new(RapierWorld::new(system, settings)?))
+        }
+        _ => Ok(Box::new(ImplicitEuler::new(system))),
+    }
 }

@@ -1,5 +1,6 @@
 //! A touch by rows of a flat patch, in doubles and in singles: what singles would gain, and what they cost beside the error of the model.
 
+use super::rows::ContactWay;
 use crate::contact::flat_rows::{press_f32, press_f64};
 use crate::geometry::Pose;
 use crate::objects::Sphere;
@@ -8,15 +9,6 @@ use glam::DMat3;
 
 /// Taxels that the wider of both takes at once.
 const BLOCK: usize = 16;
-
-/// How many digits a press has.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Precision {
-    /// f64.
-    Doubles,
-    /// f32.
-    Singles,
-}
 
 /// A flat square patch, its places, and scratch; reused from touch to touch.
 pub(super) struct FlatRows<'a> {
@@ -47,22 +39,24 @@ impl<'a> FlatRows<'a> {
         })
     }
 
-    /// Presses spheres at a pose (`patch_from_object`).
-    pub fn press(&mut self, precision: Precision, spheres: &[Sphere], pose: &Pose) {
+    /// Presses spheres at a pose (`patch_from_object`), in singles or in doubles.
+    pub fn press(&mut self, way: ContactWay, spheres: &[Sphere], pose: &Pose) {
         self.gather(spheres, pose);
-        match precision {
-            Precision::Doubles => press_f64(&self.spheres, &self.places, &mut self.deflections),
-            Precision::Singles => press_f32(&self.spheres, &self.singles, &mut self.rounded),
+        match way {
+            ContactWay::RowsInSingles => press_f32(&self.spheres, &self.singles, &mut self.rounded),
+            _ => press_f64(&self.spheres, &self.places, &mut self.deflections),
         }
     }
 
-    /// δ of the last press, n_taxels, metres.
-    pub fn deflections(&self, precision: Precision) -> Vec<f64> {
+    /// δ of the last press in this way, n_taxels, metres.
+    pub fn deflections(&self, way: ContactWay) -> Vec<f64> {
         let stroke = self.patch.taxel.stroke;
         let (doubles, singles) = (&self.deflections, &self.rounded);
-        match precision {
-            Precision::Doubles => doubles.iter().map(|d| d.min(stroke)).collect(),
-            Precision::Singles => singles.iter().map(|&d| f64::from(d).min(stroke)).collect(),
+        match way {
+            ContactWay::RowsInSingles => {
+                singles.iter().map(|&d| f64::from(d).min(stroke)).collect()
+            }
+            _ => doubles.iter().map(|d| d.min(stroke)).collect(),
         }
     }
 

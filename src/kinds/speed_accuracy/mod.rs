@@ -13,14 +13,12 @@
 //!
 //! Each part has a table of what it found, one of times, and one of both together.
 
-mod answers;
-mod chain_times;
+mod bench;
 mod charts;
 mod contact;
 mod contact_points;
 mod engines;
 mod flat_rows;
-mod kind;
 mod models;
 mod plan;
 mod recognition;
@@ -30,7 +28,7 @@ mod spec;
 mod study;
 mod subject;
 
-pub use plan::{RecognitionSweep, SpeedAccuracyPlan};
+pub use plan::SpeedAccuracyPlan;
 pub use spec::{
     ContactSpec, RecognitionSweepSpec, ScansSpec, SpeedAccuracySpec, SpeedAccuracyStudySpec,
 };

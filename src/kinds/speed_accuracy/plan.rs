@@ -13,8 +13,6 @@ use std::path::{Path, PathBuf};
 pub struct SpeedAccuracyPlan {
     /// As it was written.
     pub spec: SpeedAccuracyStudySpec,
-    /// The study's file, for errors.
-    pub place: String,
     /// The array of the part on contact.
     pub patch: Patch,
     /// How touches are drawn, as many an object as a part asks for.
@@ -23,19 +21,8 @@ pub struct SpeedAccuracyPlan {
     pub levels: Vec<f64>,
     /// Where the rows of other programs on contact are.
     pub peers: Option<PathBuf>,
-    /// The part on recognition.
-    pub recognition: Option<RecognitionSweep>,
-}
-
-/// The part on recognition.
-#[derive(Clone, Debug)]
-pub struct RecognitionSweep {
-    /// As it was written.
-    pub spec: RecognitionSweepSpec,
-    /// An array a pitch.
-    pub patches: Vec<Patch>,
-    /// Levels of detail, mm, coarsest first.
-    pub levels: Vec<f64>,
+    /// The arrays of the part on recognition, one a pitch.
+    pub arrays: Vec<Patch>,
 }
 
 /// What the numbers of `[speed_accuracy]` may be.
@@ -69,6 +56,19 @@ impl SpeedAccuracyPlan {
         self.parts().contact.as_ref()?.scans.as_ref()
     }
 
+    /// So many touches of each object.
+    pub(super) fn placement_of(&self, per_object: usize) -> Placement {
+        Placement {
+            per_object: Some(per_object),
+            ..self.placement.clone()
+        }
+    }
+
+    /// The finest level of detail, mm.
+    pub(super) fn finest(&self) -> f64 {
+        self.levels[self.levels.len() - 1]
+    }
+
     /// The same as objects; none where their folder is not.
     pub fn scanned(&self) -> Option<ObjectsSpec> {
         let scans = self.scans().filter(|scans| scans.meshes.is_dir())?;
@@ -97,19 +97,20 @@ impl SpeedAccuracyPlan {
         check.keys("speed_accuracy", wanted, KEYS)?;
         let levels = coarsest_first(&wanted.tolerances_mm);
         let contact = wanted.contact.as_ref();
-        let sweep = wanted.recognition.as_ref();
-        let sweep = sweep.map(|sweep| check_recognition(&check, &spec.skin, &levels, sweep));
-        if contact.is_none() && sweep.is_none() {
+        let arrays = match &wanted.recognition {
+            Some(sweep) => check_recognition(&check, &spec.skin, &levels, sweep)?,
+            None => Vec::new(),
+        };
+        if contact.is_none() && arrays.is_empty() {
             let allowed = "at least one of the tables contact and recognition";
             return Err(check.error("speed_accuracy", "no part", allowed));
         }
         let peers = contact.and_then(|contact| contact.peers.as_ref());
         Ok(Self {
-            place: place.to_owned(),
             patch,
             placement,
             peers: peers.map(|path| folder.join(path)),
-            recognition: sweep.transpose()?,
+            arrays,
             levels,
             spec,
         })
@@ -117,53 +118,50 @@ impl SpeedAccuracyPlan {
 }
 
 /// Levels of detail, coarsest first.
-fn coarsest_first(levels: &[f64]) -> Vec<f64> {
+pub(super) fn coarsest_first(levels: &[f64]) -> Vec<f64> {
     let mut levels = levels.to_vec();
     levels.sort_by(|a, b| b.total_cmp(a));
     levels
 }
 
+/// Checks what the part on recognition sweeps, and makes its arrays.
 fn check_recognition(
     check: &Check,
     skin: &SkinSpec,
     all_levels: &[f64],
     spec: &RecognitionSweepSpec,
-) -> Result<RecognitionSweep> {
+) -> Result<Vec<Patch>> {
     let key = |name: &str| format!("speed_accuracy.recognition.{name}");
-    let levels = coarsest_first(&spec.tolerances_mm);
-    if let Some(level) = levels.iter().find(|level| !all_levels.contains(level)) {
+    let mut levels = spec.tolerances_mm.iter();
+    if let Some(level) = levels.find(|level| !all_levels.contains(level)) {
         let allowed = "values of speed_accuracy.tolerances_mm";
         return Err(check.error(&key("tolerances_mm"), level, allowed));
     }
-    let patches = check.arrays(&SkinSpec {
+    let arrays = check.arrays(&SkinSpec {
         pitch_mm: Axis::Many(spec.pitch_mm.clone()),
         size_mm: Some(Axis::One(spec.size_mm)),
         taxels: None,
         taxel_radius_mm: None,
         ..skin.clone()
     })?;
-    let fewest = patches.iter().map(|patch| patch.grid.n_taxels()).min();
+    let fewest = arrays.iter().map(|patch| patch.grid.n_taxels()).min();
     let fewest = fewest.unwrap_or(1) as f64;
     if let Some(ratio) = spec.ratio.iter().find(|&&ratio| ratio > fewest) {
         let allowed = format!("1 to {fewest}, the taxels of the coarsest array");
         return Err(check.error(&key("ratio"), ratio, allowed));
     }
     let axes = [
-        patches.len(),
-        levels.len(),
+        arrays.len(),
+        spec.tolerances_mm.len(),
         spec.ensemble.len(),
         spec.ratio.len(),
         spec.classifier.len(),
     ];
     check.configurations(axes.iter().map(|&n| n as f64).product())?;
     // Of two objects, the fewest, as they are and in one detail, before they are compressed; with more it takes more.
-    let n_touches = spec.training_touches + spec.test_touches;
+    let n_touches = spec.n_touches();
     let bytes = 4.0 * n_touches as f64 * fewest;
     let what = "the frames of all touches";
     check.memory(&key("training_touches"), n_touches, bytes, what)?;
-    Ok(RecognitionSweep {
-        spec: spec.clone(),
-        patches,
-        levels,
-    })
+    Ok(arrays)
 }

@@ -31,7 +31,7 @@ pub enum ContactWay {
     RowsInSingles,
 }
 
-/// Whose an object is.
+/// Which set an object is of.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Touched {
@@ -50,7 +50,7 @@ pub struct ContactCell {
     tolerance_mm: Option<f64> => Choice "spheres within" in "mm": Log;
     /// Of the time steps, ms.
     dt_ms: Option<f64> => Choice "time step" in "ms": Log;
-    /// Whose it is that is touched.
+    /// Which set the object is of.
     touched: Touched => Subject;
     /// What is touched.
     object: String => Subject;
@@ -141,7 +141,7 @@ pub struct PeerRow {
     pub program: String,
     /// Of the program.
     pub version: String,
-    /// The way it goes about contact.
+    /// How it evaluates contact.
     pub method: String,
     /// Its settings in words.
     pub setting: String,
@@ -167,7 +167,7 @@ pub struct ContactPoint {
     setting: Option<String> => Choice;
     /// Who measured: this run, or a program with version and date.
     source: String => Note "measured by";
-    /// Whose the objects are.
+    /// Which set the objects are of.
     touched: Touched => Subject;
     /// Median microseconds a touch.
     us_per_touch: f64 => Cost "time of a touch, one thread" in "µs": Log;

@@ -1,7 +1,7 @@
 //! Exact contact with a solid: marching along each taxel's axis through its distance function.
 //!
 //! The taxel's ball comes up from under its stroke. Nothing of the solid is nearer to the centre than the distance function says, so the
-//! ball may go on by that less its radius; where it cannot, it touches. What is left of the way to its rest is the deflection.
+//! ball may go on by that less its radius; where it cannot, it touches. The remaining distance to its rest is the deflection.
 
 use crate::geometry::Pose;
 use crate::objects::Solid;

@@ -100,3 +100,10 @@ pub struct RecognitionSweepSpec {
 }
 
 toml_file!(SpeedAccuracyStudySpec);
+
+impl RecognitionSweepSpec {
+    /// Touches of each object, those that test included.
+    pub(super) fn n_touches(&self) -> usize {
+        self.training_touches + self.test_touches
+    }
+}

@@ -1,19 +1,21 @@
-//! Runs a study of speed against accuracy, part by part.
+//! A study of speed against accuracy, part by part.
 
-use super::contact::ContactPart;
+use super::charts::{answers, charts};
 use super::contact_points::contact_points;
 use super::models::ContactRow;
 use super::plan::SpeedAccuracyPlan;
-use super::recognition::RecognitionPart;
 use super::rows::{
     ChainCell, ChainScore, ChainTime, ContactCell, ContactPoint, ContactScore, ContactTime,
-    PeerRow, Touched,
 };
-use super::subject::{Subject, spread_evenly};
+use super::spec::SpeedAccuracyStudySpec;
+use super::subject::{Subject, load_subjects};
 use crate::error::Result;
+use crate::kinds::model_recognition::check_apart;
+use crate::kinds::{About, Facts, Kind, Source};
 use crate::report::csv_tables::read_rows;
-use crate::study::pieces::{NamedPiece, PieceRows, PieceStudy, PiecesLeft};
-use crate::table::{Columns, File, Table};
+use crate::study::objects_content;
+use crate::study::pieces::{NamedPiece, PieceRows, PieceStudy, PiecesLeft, Scale};
+use crate::table::{ChartSpec, File, Table};
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
 
@@ -44,125 +46,171 @@ impl PieceRows for SpeedAccuracyRows {
     }
 }
 
-/// Tables of a part: what is found, what it costs, and both together.
-pub(super) struct Part<C, S, T, P> {
-    scores: File<(C, S)>,
-    times: File<(C, T)>,
-    pub pareto: File<P>,
-}
-
-pub(super) const CONTACT: Part<ContactCell, ContactScore, ContactTime, ContactPoint> = Part {
-    scores: File::new("contact.csv", "Contact: error of every object", ""),
-    times: File::new("contact_timing.csv", "Contact: time of every object", "").of_times(),
-    pareto: File::new("contact_pareto.csv", "Contact: error against time", "")
+/// Tables of contact: what is found, what it costs, and both together.
+const CONTACT: File<(ContactCell, ContactScore)> =
+    File::new("contact.csv", "Contact: error of every object", "");
+const CONTACT_TIMES: File<(ContactCell, ContactTime)> =
+    File::new("contact_timing.csv", "Contact: time of every object", "").of_times();
+pub(super) const CONTACT_PARETO: File<ContactPoint> =
+    File::new("contact_pareto.csv", "Contact: error against time", "")
         .of_times()
-        .summary(),
-};
-pub(super) const CHAINS: Part<ChainCell, ChainScore, ChainTime, ChainRow> = Part {
-    scores: File::new(
-        "recognition.csv",
-        "Recognition: accuracy of every chain",
-        "",
-    ),
-    times: File::new(
-        "recognition_timing.csv",
-        "Recognition: time of every chain",
-        "",
-    )
-    .of_times(),
-    pareto: File::new("pareto.csv", "Recognition: accuracy against time", "")
+        .summary();
+/// Tables of recognition, in the same order.
+const RECOGNITION: File<(ChainCell, ChainScore)> = File::new(
+    "recognition.csv",
+    "Recognition: accuracy of every chain",
+    "",
+);
+const RECOGNITION_TIMES: File<(ChainCell, ChainTime)> = File::new(
+    "recognition_timing.csv",
+    "Recognition: time of every chain",
+    "",
+)
+.of_times();
+pub(super) const RECOGNITION_PARETO: File<ChainRow> =
+    File::new("pareto.csv", "Recognition: accuracy against time", "")
         .of_times()
-        .summary(),
-};
-impl SpeedAccuracyStudy {
-    fn contact(&self) -> Option<ContactPart<'_>> {
-        let spec = self.plan.parts().contact.as_ref()?;
-        let objects = spread_evenly(&self.subjects, spec.objects).into_iter();
-        let objects = objects.map(|subject| (Touched::Object, subject));
-        let scans = self.scans.iter().map(|scan| (Touched::Scan, scan));
-        Some(ContactPart {
-            plan: &self.plan,
-            spec,
-            chosen: objects.chain(scans).collect(),
-            packings: self.packings.as_deref(),
-        })
-    }
-
-    fn recognition(&self) -> Option<RecognitionPart<'_>> {
-        let sweep = self.plan.recognition.as_ref()?;
-        let objects = (self.subjects.as_slice(), self.packings.as_deref());
-        Some(RecognitionPart::new(&self.plan, sweep, objects))
-    }
-}
+        .summary();
 
 impl PieceStudy for SpeedAccuracyStudy {
     type Rows = SpeedAccuracyRows;
 
     fn pieces(&self) -> Vec<NamedPiece> {
-        let parts = [
-            self.contact().map(|part| part.pieces()),
-            self.recognition().map(|part| part.pieces()),
-        ];
-        let mut pieces: Vec<NamedPiece> = Vec::new();
-        for mut part in parts.into_iter().flatten() {
-            let groups = pieces.iter().map(|piece| piece.group);
-            let first = groups.max().map_or(0, |last| last + 1);
-            part.iter_mut().for_each(|piece| piece.group += first);
-            pieces.extend(part);
-        }
+        let mut pieces = self.contact_pieces();
+        let groups = pieces.iter().map(|piece| piece.group);
+        let n_groups = groups.max().map_or(0, |last| last + 1);
+        pieces.extend(self.chain_pieces(n_groups));
         pieces
     }
 
     fn measure(&self, left: &PiecesLeft<SpeedAccuracyRows>) -> Result<()> {
-        self.contact().map_or(Ok(()), |part| part.measure(left))?;
-        self.recognition().map_or(Ok(()), |part| part.measure(left))
+        self.measure_contact(left)?;
+        self.measure_chains(left)
     }
 
     fn tables(&self, rows: SpeedAccuracyRows) -> Result<Vec<Table>> {
         let mut tables = Vec::new();
         let parts = self.plan.parts();
         if parts.contact.is_some() {
-            let peers = read_peers(self.plan.peers.as_deref())?;
-            tables.extend(CONTACT.of(&rows.contact, &contact_points(&rows.contact, &peers))?);
+            // What other programs take for the same press, as they left it in a file.
+            let peers = match self.plan.peers.as_ref().filter(|path| path.exists()) {
+                Some(path) => read_rows(path)?,
+                None => Vec::new(),
+            };
+            let (scores, times) = apart(&rows.contact);
+            let points = contact_points(&rows.contact, &peers);
+            tables.extend([
+                CONTACT.of(&scores)?,
+                CONTACT_TIMES.of(&times)?,
+                CONTACT_PARETO.of(&points)?,
+            ]);
         }
         if parts.recognition.is_some() {
-            tables.extend(CHAINS.of(&rows.chains, &rows.chains)?);
+            let (scores, times) = apart(&rows.chains);
+            tables.extend([
+                RECOGNITION.of(&scores)?,
+                RECOGNITION_TIMES.of(&times)?,
+                RECOGNITION_PARETO.of(&rows.chains)?,
+            ]);
         }
         Ok(tables)
     }
 }
 
-impl<C: Columns, S: Columns, T: Columns, P: Columns> Part<C, S, T, P> {
-    fn of(&self, rows: &[(C, S, T)], points: &[P]) -> Result<[Table; 3]>
-    where
-        C: Serialize + Clone,
-        S: Serialize + Clone,
-        T: Serialize + Clone,
-        P: Serialize,
-    {
-        let scores = rows.iter().map(|(c, s, _)| (c.clone(), s.clone()));
-        let times = rows.iter().map(|(c, _, t)| (c.clone(), t.clone()));
-        Ok([
-            self.scores.of(&scores.collect::<Vec<_>>())?,
-            self.times.of(&times.collect::<Vec<_>>())?,
-            self.pareto.of(points)?,
-        ])
+impl Kind for SpeedAccuracyStudy {
+    const ABOUT: About = About {
+        table: "speed_accuracy",
+        words: "a study of what accuracy costs",
+        may_change: &[
+            "question",
+            "expected",
+            "speed_accuracy.contact.dt_ms",
+            "speed_accuracy.recognition.pitch_mm",
+            "speed_accuracy.recognition.tolerances_mm",
+            "speed_accuracy.recognition.ensemble",
+            "speed_accuracy.recognition.ratio",
+            "speed_accuracy.recognition.classifier",
+        ],
+    };
+
+    fn load(source: &Source) -> Result<Self> {
+        let mut spec = SpeedAccuracyStudySpec::parse(&source.place, &source.text)?;
+        spec.seed = source.seed(spec.seed);
+        let contact = spec.speed_accuracy.contact.as_mut();
+        let scans = contact.and_then(|contact| contact.scans.as_mut());
+        match (&source.objects, scans) {
+            (Some(folder), Some(scans)) => scans.meshes.clone_from(folder),
+            _ => source.replace_objects(&mut spec.objects),
+        }
+        let plan = SpeedAccuracyPlan::new(&source.place, &source.folder, spec)?;
+        let subjects = load_subjects(&plan.spec.objects)?;
+        if plan.parts().recognition.is_some() {
+            check_apart(&source.place, subjects.len())?;
+        }
+        let scans = plan.scanned();
+        Ok(Self {
+            subjects,
+            scans: scans.map_or(Ok(Vec::new()), |scans| load_subjects(&scans))?,
+            packings: source.packings.clone(),
+            plan,
+        })
     }
 
-    /// Of a folder; none of a study without this part.
-    pub fn read(&self, folder: &Path) -> Result<Vec<Table>> {
-        let Some(pareto) = self.pareto.read_if_there(folder)? else {
-            return Ok(Vec::new());
-        };
-        let found = [self.scores.read(folder)?, self.times.read(folder)?];
-        Ok(found.into_iter().chain([pareto]).collect())
+    fn facts(&self) -> Result<Facts> {
+        let spec = &self.plan.spec;
+        let mut content = objects_content(&spec.objects)?;
+        if let Some(scans) = self.plan.scanned() {
+            let scans = objects_content(&scans)?.into_iter();
+            content.extend(scans.map(|(name, hash)| (format!("scan {name}"), hash)));
+        }
+        Ok(Facts::of(spec, content))
+    }
+
+    fn scale(&self) -> Scale {
+        let parts = self.plan.parts();
+        let mut touches = Vec::new();
+        let mut bytes = 0.0;
+        if let Some(contact) = &parts.contact {
+            touches.push(format!("{} of each object in contact", contact.touches));
+        }
+        if let Some(sweep) = &parts.recognition {
+            let per_object = sweep.n_touches();
+            touches.push(format!("{per_object} of each in recognition"));
+            let n_taxels = self.plan.arrays.iter().map(|patch| patch.grid.n_taxels());
+            bytes = 8.0 * (sweep.objects * per_object * n_taxels.max().unwrap_or(0)) as f64;
+        }
+        Scale {
+            objects: self.subjects.len().to_string(),
+            touches: touches.join(", "),
+            n_configurations: self.pieces().len(),
+            bytes,
+            ..Scale::default()
+        }
+    }
+
+    fn read(folder: &Path) -> Result<Vec<Table>> {
+        let tables = [
+            CONTACT.read_if_there(folder)?,
+            CONTACT_TIMES.read_if_there(folder)?,
+            CONTACT_PARETO.read_if_there(folder)?,
+            RECOGNITION.read_if_there(folder)?,
+            RECOGNITION_TIMES.read_if_there(folder)?,
+            RECOGNITION_PARETO.read_if_there(folder)?,
+        ];
+        Ok(tables.into_iter().flatten().collect())
+    }
+
+    fn charts(&self, tables: &[Table]) -> Vec<ChartSpec> {
+        charts(tables)
+    }
+
+    fn answers(&self, tables: &[Table]) -> Vec<String> {
+        answers(&self.plan, tables)
     }
 }
 
-/// What other programs take for the same press, as they left it in a file; none where there is no file.
-fn read_peers(path: Option<&Path>) -> Result<Vec<PeerRow>> {
-    match path.filter(|path| path.exists()) {
-        Some(path) => read_rows(path),
-        None => Ok(Vec::new()),
-    }
+/// What was found, and what it costs.
+fn apart<C: Clone, S: Clone, T: Clone>(rows: &[(C, S, T)]) -> (Vec<(C, S)>, Vec<(C, T)>) {
+    let apart = |(cell, score, time): (C, S, T)| ((cell.clone(), score), (cell, time));
+    rows.iter().cloned().map(apart).unzip()
 }

@@ -1,16 +1,15 @@
 //! What is touched: a closed mesh or a solid, as spheres of each detail and exactly.
 
+use super::rows::ContactWay;
 use super::solid_contact::press_solid;
 use crate::error::Result;
-use crate::geometry::Pose;
 use crate::kinds::object_detail::Truth;
 use crate::mesh::Surface;
-use crate::objects::{Entry, MeshModel, Model, Object, Solid, vertex_spheres};
+use crate::objects::{Entry, MeshModel, Model, vertex_spheres};
 use crate::random::Seed;
 use crate::study::object_files::{NamedMesh, load_named_meshes, set_entries};
 use crate::study::packings::pack_within;
 use crate::study::plan::MM;
-use crate::study::simulation::draw_touches;
 use crate::study::spec::ObjectsSpec;
 use crate::world::{Patch, Placement};
 use std::path::Path;
@@ -35,8 +34,15 @@ pub(super) fn load_subjects(spec: &ObjectsSpec) -> Result<Vec<Subject>> {
         subjects.extend(entries.into_iter().map(Subject::Solid));
     }
     if let Some(folder) = &spec.meshes {
-        let meshes = load_named_meshes(folder, spec)?;
-        subjects.extend(meshes.into_iter().map(Subject::of_mesh));
+        let meshes = load_named_meshes(folder, spec)?.into_iter();
+        subjects.extend(meshes.map(|NamedMesh { name, place, mesh }| {
+            let surface = Box::new(Surface::new(mesh));
+            Subject::Mesh {
+                name,
+                place,
+                surface,
+            }
+        }));
     }
     Ok(subjects)
 }
@@ -50,14 +56,6 @@ pub(super) fn spread_evenly<T>(all: &[T], n: usize) -> Vec<&T> {
 }
 
 impl Subject {
-    fn of_mesh(NamedMesh { name, place, mesh }: NamedMesh) -> Self {
-        Self::Mesh {
-            name,
-            place,
-            surface: Box::new(Surface::new(mesh)),
-        }
-    }
-
     pub fn name(&self) -> &str {
         match self {
             Self::Mesh { name, .. } => name,
@@ -77,37 +75,32 @@ impl Subject {
         }
     }
 
-    /// A sphere a vertex; none of a solid.
-    pub fn vertex_spheres(&self) -> Result<Option<Model>> {
-        match self {
-            Self::Mesh { place, surface, .. } => {
-                let spheres = vertex_spheres(place, surface.mesh().vertices())?;
-                Ok(Some(spheres.into()))
-            }
-            Self::Solid(_) => Ok(None),
+    /// Ways to evaluate contact with it that have a model, with the tolerance (mm) of packed spheres, which come first.
+    pub fn models(
+        &self,
+        levels_mm: &[f64],
+        packings: Option<&Path>,
+    ) -> Result<Vec<(ContactWay, Option<f64>, Model)>> {
+        let packed = levels_mm.iter().map(|&level| {
+            let model = self.packed(level, packings)?;
+            Ok((ContactWay::PackedSpheres, Some(level), model))
+        });
+        let mut models = packed.collect::<Result<Vec<_>>>()?;
+        if let Self::Mesh { place, surface, .. } = self {
+            let mesh = surface.mesh();
+            let spheres = vertex_spheres(place, mesh.vertices())?;
+            models.push((ContactWay::VertexSpheres, None, spheres.into()));
+            let exact = MeshModel::new(mesh.clone());
+            models.push((ContactWay::ExactMesh, None, exact.into()));
         }
-    }
-
-    /// The triangles; none of a solid.
-    pub fn mesh(&self) -> Option<Model> {
-        match self {
-            Self::Mesh { surface, .. } => Some(MeshModel::new(surface.mesh().clone()).into()),
-            Self::Solid(_) => None,
-        }
-    }
-
-    pub fn solid(&self) -> Option<&Solid> {
-        match self {
-            Self::Mesh { .. } => None,
-            Self::Solid(entry) => Some(&entry.solid),
-        }
+        Ok(models)
     }
 
     /// The model that is the object itself, or as near to it as it gets: the triangles, or spheres within half of the finest tolerance.
     pub fn exact(&self, finest_mm: f64) -> Result<Model> {
-        match self.mesh() {
-            Some(mesh) => Ok(mesh),
-            None => self.packed(0.5 * finest_mm, None),
+        match self {
+            Self::Mesh { surface, .. } => Ok(MeshModel::new(surface.mesh().clone()).into()),
+            Self::Solid(_) => self.packed(0.5 * finest_mm, None),
         }
     }
 
@@ -118,11 +111,10 @@ impl Subject {
         placement: &Placement,
         (finest_mm, seed): (f64, &Seed),
     ) -> Result<Truth> {
-        let object = Object::of_one_part(self.name(), self.exact(finest_mm)?);
-        let touched = draw_touches(vec![object], placement, seed)?;
-        let mut truth = Truth::new(&touched[0], patch);
-        if let Some(solid) = self.solid() {
-            truth.feel_instead(|pose: &Pose| press_solid(patch, solid, pose));
+        let exact = (self.name(), self.exact(finest_mm)?);
+        let mut truth = Truth::new(exact, patch, placement, seed)?;
+        if let Self::Solid(entry) = self {
+            truth.feel_instead(|pose| press_solid(patch, &entry.solid, pose));
         }
         Ok(truth)
     }
