@@ -222,7 +222,7 @@ fn time_run(folder: &Path, study: &RecognitionStudy) -> Result<(f64, f64)> {
     assert!(failures.is_empty(), "{:?}", failures[0]);
     let outcome = study.outcome(finished.rows)?;
     journal.sync()?;
-    assert_eq!(outcome.tables.summary.len(), study.n_cells());
+    assert_eq!(outcome.summary.len(), study.n_cells());
     let worked = *worked.0.lock().expect("no thread panics");
     Ok((start.elapsed().as_secs_f64(), worked))
 }

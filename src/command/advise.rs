@@ -10,9 +10,9 @@ use std::path::PathBuf;
 /// Noise, sensor errors and whatever else the world sets are conditions, not choices: each condition of a study is answered for, or
 /// those that are given, or the worst.
 ///
-/// It reads what a run measured: of a study of any kind, the first table whose rows are choices with a value and a cost (of a study that
-/// recognises objects all that is known of its cells, with the times of the classifier alone). Accuracies are of simulated touches, times
-/// of the machine that measured.
+/// It reads the results of a study of any kind: the first table whose rows are choices with a value and a cost. Of a study that recognises
+/// objects this is the table of all configurations, with the times of the classifier alone. Accuracies are those of simulated touches,
+/// times those of the machine that ran the study.
 #[derive(clap::Args)]
 pub struct Args {
     /// A folder of results
@@ -20,14 +20,14 @@ pub struct Args {
     results: PathBuf,
     #[command(flatten)]
     wish: WishArgs,
-    /// What is to be small: decision_time, training_time, taxels, measurements (of a decision), or any column of costs [default:
+    /// The cost to keep small: decision_time, training_time, taxels, measurements (of a decision), or any column of costs [default:
     /// decision_time, or the first cost of the table]
     #[arg(long, value_name = "COST")]
     cost: Option<String>,
-    /// What is to be good: a column of values [default: accuracy, or the first value of the table]
+    /// The column of values to judge by [default: accuracy, or the first value of the table]
     #[arg(long, value_name = "COLUMN", conflicts_with = "accuracy")]
     value: Option<String>,
-    /// The table that is read, by its file's name, where several offer choices
+    /// The table to read, by its file's name, if several have choices
     #[arg(long, value_name = "FILE")]
     table: Option<String>,
     /// Only where a condition has this value: noise=0.05, gain_std=0.2, tested_on=another_skin; as often as needed
@@ -99,40 +99,32 @@ impl Args {
             (Some(value), _) => Wish::Value(value),
             (None, most) => Wish::Budget(most.unwrap_or(f64::NAN)),
         };
+        let conditions = offers.by_condition();
         let answer = |condition: String, choices: &[Offer]| Answer {
             condition,
             advice: offers.advise(choices, wish),
         };
-        let conditions = offers.by_condition();
-        let words = |choices: &[Offer]| offers.condition(&choices[0]);
-        let mut answers: Vec<Answer> = match (self.worst, conditions.len()) {
-            (true, 2..) => {
-                let words = format!("the worst of {} conditions", conditions.len());
-                vec![answer(words, &offers.worst())]
-            }
-            _ => {
-                let conditions = conditions.iter();
-                conditions
-                    .map(|choices| answer(words(choices), choices))
-                    .collect()
-            }
+        let answers: Vec<Answer> = if self.worst && conditions.len() > 1 {
+            let words = format!("the worst of {} conditions", conditions.len());
+            vec![answer(words, &offers.worst())]
+        } else {
+            let answer = |choices: &Vec<Offer>| answer(offers.condition(&choices[0]), choices);
+            conditions.iter().map(answer).collect()
         };
-        match answers.iter().any(|answer| answer.advice.is_ok()) {
-            true => Ok(answers),
-            false if answers.is_empty() => {
-                let given = "no choice whose value and cost are known";
-                Err(Error::input(self.results.display(), given, "at least one"))
-            }
-            false => {
-                // Of several conditions the first speaks for all.
-                let Answer { condition, advice } = answers.swap_remove(0);
-                let refused = advice.map(|_| ()).expect_err("there is advice in none");
-                Err(match &condition[..] {
-                    "" => refused,
-                    words => refused.under(format!("with {words}: ")),
-                })
-            }
+        if answers.iter().any(|answer| answer.advice.is_ok()) {
+            return Ok(answers);
         }
+        // Of several conditions the first speaks for all.
+        let first = answers.into_iter().next();
+        let Some((condition, Err(refused))) = first.map(|first| (first.condition, first.advice))
+        else {
+            let given = "no choice whose value and cost are known";
+            return Err(Error::input(self.results.display(), given, "at least one"));
+        };
+        Err(match condition.is_empty() {
+            true => refused,
+            false => refused.under(format!("with {condition}: ")),
+        })
     }
 
     fn in_words(&self, offers: &Offers, Answer { condition, advice }: &Answer) -> String {
@@ -159,19 +151,15 @@ impl Args {
             let certain = offers.in_words(certain);
             text += &format!("\nWith the whole interval good enough: {certain}");
         }
-        match &advice.next_up {
-            Some(next) => {
-                text += &format!(
-                    "\nThe next step up gains {} and costs {} more ({:.1} times as much): {}",
-                    offers.value_words((next.value - choice.value).abs()),
-                    offers.cost.number_words(next.cost - choice.cost),
-                    next.cost / choice.cost,
-                    offers.in_words(next)
-                );
-            }
-            None => text += "\nNothing here is better",
-        }
-        text
+        let Some(next) = &advice.next_up else {
+            return text + "\nNothing here is better";
+        };
+        let gain = offers.value_words((next.value - choice.value).abs());
+        let cost = offers.cost.number_words(next.cost - choice.cost);
+        let (times, next) = (next.cost / choice.cost, offers.in_words(next));
+        text + &format!(
+            "\nThe next step up gains {gain} and costs {cost} more ({times:.1} times as much): {next}"
+        )
     }
 }
 

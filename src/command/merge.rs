@@ -1,46 +1,35 @@
 //! `bubbletouch merge`: the shards of a study put together.
 
-use super::any_study::{end, ended, load_study};
-use super::listener::Listener;
-use super::memory_args::MemoryArgs;
 use super::output::output_folder;
-use super::run::results_folder;
-use super::study_args::StudyArgs;
-use bubbletouch::study::journal::{Identity, JOURNAL_FILE, Journal};
+use super::study_run::{RunArgs, StudyRun};
+use bubbletouch::study::journal::{JOURNAL_FILE, Journal};
 use bubbletouch::study::pieces::{Part, PieceManner};
 use bubbletouch::{Error, Result};
 use std::path::{Path, PathBuf};
-use std::time::SystemTime;
 
 #[derive(clap::Args)]
 pub struct Args {
     #[command(flatten)]
-    study: StudyArgs,
-    /// Where the shards were told to write [default: results/ and the study's name]
-    #[arg(long, value_name = "FOLDER")]
-    out: Option<PathBuf>,
+    run: RunArgs,
     /// More folders with journals of shards, such as those of other machines
     #[arg(long, value_name = "FOLDER")]
     from: Vec<PathBuf>,
-    #[command(flatten)]
-    memory: MemoryArgs,
-    #[command(flatten)]
-    listener: Listener,
 }
 
 pub fn merge(args: &Args) -> Result<()> {
-    let started = SystemTime::now();
-    let folder = results_folder(&args.study, args.out.as_deref())?;
-    let study = load_study(args.study.clone(), &folder, args.memory.bytes()?)?;
+    let run = StudyRun::begin(&args.run)?;
+    let (study, folder) = (run.study.as_ref(), &run.folder);
     let identity = study.identity();
-    output_folder(&folder)?;
+    output_folder(folder)?;
     let mut journal = Journal::open(&folder.join(JOURNAL_FILE), identity)?;
-    let folders = std::iter::once(&folder).chain(&args.from);
     let mut n_journals = 0;
-    for folder in folders {
+    for folder in std::iter::once(folder).chain(&args.from) {
         for path in shard_journals(folder)? {
-            take(&mut journal, &path, identity)?;
             n_journals += 1;
+            if let Some((begun, shard)) = Journal::read(&path)? {
+                begun.check_same(identity, &path.display().to_string())?;
+                journal.take_from(shard)?;
+            }
         }
     }
     journal.sync()?;
@@ -52,42 +41,28 @@ pub fn merge(args: &Args) -> Result<()> {
             "the journals of all shards, each run to its end (or bubbletouch run, which does here what is left)",
         ));
     }
-    let progress = args.listener.progress();
-    let manner = PieceManner {
+    let outcome = study.run(&PieceManner {
         journal: &journal,
         fail_fast: false,
         retries: false,
         part: Part::All,
-        progress: progress.as_ref(),
-    };
-    let outcome = study.run(&manner)?;
-    let times = (started, n_all);
-    let ended = ended(&args.study, &folder, times, progress.as_ref())?;
-    let what = format!("{n_journals} shards, ");
-    end(study.as_ref(), &outcome, &ended, (args.listener, &what))
+        progress: run.progress.as_ref(),
+    })?;
+    run.end(&outcome, n_all, &format!("{n_journals} shards, "))
 }
 
 /// Journals of shards in a folder, by name.
 fn shard_journals(folder: &Path) -> Result<Vec<PathBuf>> {
     let failed = |e| Error::io(folder, "read", e);
-    let (stem, ending) = JOURNAL_FILE.split_once('.').unwrap_or((JOURNAL_FILE, ""));
     let mut paths = Vec::new();
     for entry in std::fs::read_dir(folder).map_err(failed)? {
         let path = entry.map_err(failed)?.path();
         let name = path.file_name().unwrap_or_default().to_string_lossy();
-        let is_shard = name.starts_with(&format!("{stem}.")) && name.contains("-of-");
-        if is_shard && name.ends_with(ending) {
+        // As Shard::file_name has it.
+        if name.starts_with("journal.") && name.contains("-of-") && name.ends_with(".jsonl") {
             paths.push(path);
         }
     }
     paths.sort();
     Ok(paths)
-}
-
-fn take(journal: &mut Journal, path: &Path, identity: &Identity) -> Result<()> {
-    let Some((begun, shard)) = Journal::read(path)? else {
-        return Ok(());
-    };
-    begun.check_same(identity, &path.display().to_string())?;
-    journal.take_from(shard)
 }

@@ -1,14 +1,11 @@
 //! The command line: one file a subcommand, each `Args` → work → files or terminal.
 
 mod advise;
-mod any_study;
-mod checked_manifest;
 mod classify;
-mod command_line;
 mod compare;
 mod features;
 mod listener;
-mod memory_args;
+mod memory_limit;
 mod merge;
 mod objects;
 mod objects_pack;
@@ -20,14 +17,16 @@ mod press_place;
 mod press_poses;
 mod recording;
 mod report;
+mod results_folder;
 mod run;
 mod shell;
+mod signals;
 mod simulate;
 mod slurm;
 mod slurm_jobs;
 pub mod streams;
 mod study_args;
-mod study_folder;
+mod study_run;
 mod touches;
 mod verify;
 mod which_object;
@@ -49,11 +48,12 @@ struct CommandLine {
 enum Command {
     /// Run a study: simulate, compress, recognise; write tables, charts and a report
     ///
-    /// Its file says of which kind it is: [recognition], [reconstruction] (how well frames come back), [object_detail] (how detailed
-    /// objects must be), [whole_body] (what a body of millions of taxels costs), [stability] (where contact methods break) or
-    /// [speed_accuracy] (what accuracy costs).
+    /// A table of its file says of which kind it is: [recognition] (which object is touched), [reconstruction] (how exactly frames are
+    /// reconstructed from measurements), [object_detail] (how detailed models of objects must be), [breaking_points] (at which noise,
+    /// pitch ... recognition fails), [whole_body] (what a body of millions of taxels costs), [stability] (at which settings contact
+    /// methods fail) or [speed_accuracy] (what accuracy costs in time).
     Run(run::Args),
-    /// Put the shards of a study together
+    /// Put the shards of a study together, and write its tables, charts and report
     Merge(merge::Args),
     /// Run a study as an array of Slurm jobs, and the merge after them; what failed is submitted again by the same command
     Slurm(slurm::Args),

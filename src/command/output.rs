@@ -1,25 +1,20 @@
 //! Where results go.
 
-use super::streams::say;
 use bubbletouch::{Error, Result};
 use std::path::{Path, PathBuf};
 
 /// Makes a folder to write to; the error says if a file stands there.
 pub fn output_folder(folder: &Path) -> Result<()> {
     if folder.exists() && !folder.is_dir() {
-        return Err(Error::input(
-            folder.display(),
-            "a file",
-            "a folder, or a path where one can be made",
-        ));
+        let allowed = "a folder, or a path where one can be made";
+        return Err(Error::input(folder.display(), "a file", allowed));
     }
     std::fs::create_dir_all(folder).map_err(|e| match e.kind() {
         // Some parent is a file.
-        std::io::ErrorKind::NotADirectory | std::io::ErrorKind::AlreadyExists => Error::input(
-            folder.display(),
-            "below a file",
-            "a path where a folder can be made",
-        ),
+        std::io::ErrorKind::NotADirectory | std::io::ErrorKind::AlreadyExists => {
+            let allowed = "a path where a folder can be made";
+            Error::input(folder.display(), "below a file", allowed)
+        }
         _ => Error::io(folder, "create folder", e),
     })
 }
@@ -29,11 +24,9 @@ pub fn check_ending(path: &Path, ending: &str) -> Result<()> {
     if path.extension().is_some_and(|given| given == ending) {
         return Ok(());
     }
-    Err(Error::input(
-        path.display(),
-        format!("not a .{ending} file"),
-        format!("a name that ends in .{ending}"),
-    ))
+    let given = format!("not a .{ending} file");
+    let allowed = format!("a name that ends in .{ending}");
+    Err(Error::input(path.display(), given, allowed))
 }
 
 /// Where packed meshes are kept from run to run: beside a folder of results.
@@ -48,14 +41,4 @@ pub fn terminal_width() -> usize {
         Some((_, columns)) if terminal.is_term() => usize::from(columns),
         _ => 100,
     }
-}
-
-/// Tells a person where the results of a study are.
-pub fn tell_where(folder: &Path) -> Result<()> {
-    let page = folder.join("report.html");
-    say(format_args!(
-        "Results in {}; open {}",
-        folder.display(),
-        page.display()
-    ))
 }

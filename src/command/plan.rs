@@ -1,8 +1,6 @@
 //! `bubbletouch plan`: what a study would do, without doing it.
 
-use super::any_study::load_study;
-use super::memory_args::MemoryArgs;
-use super::run::results_folder;
+use super::memory_limit::MemoryLimit;
 use super::streams::say;
 use super::study_args::StudyArgs;
 use bubbletouch::Result;
@@ -12,16 +10,11 @@ pub struct Args {
     #[command(flatten)]
     study: StudyArgs,
     #[command(flatten)]
-    memory: MemoryArgs,
+    memory: MemoryLimit,
 }
 
-pub fn plan(args: &Args) -> Result<()> {
-    let folder = results_folder(&args.study, None)?;
-    let study = load_study(args.study.clone(), &folder, args.memory.bytes()?)?;
-    let said = study.plan()?;
-    say(format_args!("{}: {said}", args.study.name()?))?;
-    if let Some(mixed) = args.study.mixed_touches()? {
-        say(format_args!("note: {mixed}"))?;
-    }
-    Ok(())
+pub fn plan(Args { study, memory }: &Args) -> Result<()> {
+    let loaded = study.load(&study.default_results()?, memory.bytes()?)?;
+    say(format_args!("{}: {}", study.name()?, loaded.plan()?))?;
+    study.mixed_touches()?.map_or(Ok(()), say)
 }

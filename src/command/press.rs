@@ -6,7 +6,7 @@ use super::press_place::Place;
 use super::press_poses::{self, press_poses};
 use super::streams::{note, write_out};
 use super::which_object::catalogue;
-use bubbletouch::contact::{Contact, Workspace, press_at_pose, press_to_depth, press_to_force};
+use bubbletouch::contact::{Workspace, press_at_pose, press_to_depth, press_to_force};
 use bubbletouch::geometry::Pose;
 use bubbletouch::mesh::{LengthUnit, SizeLimits};
 use bubbletouch::objects::Model;
@@ -49,10 +49,10 @@ pub struct Args {
     #[command(flatten)]
     many: press_poses::Args,
     /// What a mesh becomes: vertex_spheres, mesh (itself) or packed [default: vertex_spheres]
-    #[arg(long, value_name = "MODEL", value_parser = word::<ModelSpec>)]
+    #[arg(long, value_name = "MODEL", value_parser = word::<ModelSpec>, requires = "mesh")]
     model: Option<ModelSpec>,
     /// Unit of the file of the mesh or the spheres: m, cm, mm or in [default: m, and of a size that the array can feel]
-    #[arg(long, value_name = "UNIT")]
+    #[arg(long, value_name = "UNIT", conflicts_with = "object")]
     unit: Option<LengthUnit>,
     /// How far the spheres of a built-in object, or of a packed mesh, may be from its surface [default: 0.25; of a packed mesh a
     /// tenth of the pitch]
@@ -112,30 +112,30 @@ pub fn press(args: &Args) -> Result<()> {
         patch,
         objects: vec![model],
     };
+    let depth = args.depth(&patch.taxel)?;
     if let Some(path) = &args.many.poses {
-        let depth = args.depth_mm.map(positive_depth).transpose()?;
-        if let Some(depth) = depth {
-            note_beyond_stroke(depth, &patch.taxel);
-        }
         return press_poses(&args.many, path, &scene, depth, args.out.as_deref());
     }
     let mut workspace = Workspace::new();
-    let contact = args.contact(&scene, pose, &mut workspace)?;
+    let contact = match (args.force_n, depth) {
+        (Some(force), _) => press_to_force(&scene, &[pose], force, &mut workspace)?,
+        (_, Some(depth)) => press_to_depth(&scene, &[pose], depth, &mut workspace),
+        (None, None) => Some(press_at_pose(&scene, &[pose], &mut workspace)),
+    };
+    let contact = contact.ok_or_else(|| {
+        let allowed = "an offset that brings some of it over a taxel";
+        Error::input("press", "the object is not over the array", allowed)
+    })?;
     let (nx, ny) = args.taxels;
     let frame = Array2::from_shape_vec((ny, nx), workspace.deflections().to_vec())
         .expect("a press gives one deflection a taxel");
-    match &args.out {
-        Some(path) => write_frame(path, &frame, &patch.grid)?,
-        None => {
-            let text = pressure_text(
-                &frame,
-                args.pitch_mm,
-                Quantity::Deflection,
-                Ink::of_stdout(),
-                terminal_width(),
-            )?;
-            write_out(text.as_bytes())?;
-        }
+    if let Some(path) = &args.out {
+        write_frame(path, &frame, &patch.grid)?;
+    } else {
+        let (pitch_mm, ink) = (args.pitch_mm, Ink::of_stdout());
+        let (quantity, width) = (Quantity::Deflection, terminal_width());
+        let text = pressure_text(&frame, pitch_mm, quantity, ink, width)?;
+        write_out(text.as_bytes())?;
     }
     let deepest = frame.iter().fold(0.0_f64, |a, &b| a.max(b));
     let force = args.force_n.map_or(String::new(), |_| {
@@ -155,125 +155,80 @@ pub fn press(args: &Args) -> Result<()> {
 impl Args {
     fn patch(&self) -> Result<Patch> {
         let (nx, ny) = self.taxels;
-        Patch::new(
-            Grid {
-                nx,
-                ny,
-                pitch: self.pitch_mm * MM,
-            },
-            Taxel {
-                radius: self.taxel_radius_mm.unwrap_or(0.5 * self.pitch_mm) * MM,
-                stiffness: self.stiffness_n_per_m,
-                damping: 0.0,
-                stroke: self.stroke_mm * MM,
-            },
-        )
+        let grid = Grid {
+            nx,
+            ny,
+            pitch: self.pitch_mm * MM,
+        };
+        let taxel = Taxel {
+            radius: self.taxel_radius(),
+            stiffness: self.stiffness_n_per_m,
+            damping: 0.0,
+            stroke: self.stroke_mm * MM,
+        };
+        Patch::new(grid, taxel)
+    }
+
+    /// Metres.
+    fn taxel_radius(&self) -> f64 {
+        self.taxel_radius_mm.unwrap_or(0.5 * self.pitch_mm) * MM
     }
 
     /// The object and `patch_from_object` before any travel.
     fn placed_object(&self) -> Result<(Model, Pose)> {
-        let misplaced = [
-            (
-                self.model.is_some() && self.source.mesh.is_none(),
-                "--model",
-                "--mesh FILE",
-            ),
-            (
-                self.unit.is_some() && self.source.object.is_some(),
-                "--unit",
-                "--mesh or --spheres FILE",
-            ),
-        ];
-        if let Some((_, option, beside)) = misplaced.into_iter().find(|(is_so, ..)| *is_so) {
-            let given = format!("{option} without {beside}");
-            let allowed = format!("it only beside {beside}");
-            return Err(Error::input("press", given, allowed));
-        }
-        let model = match (&self.source.spheres, &self.source.mesh, &self.source.object) {
-            (Some(path), _, _) => {
-                let spheres = load_spheres(path, self.unit, &self.sizes())?;
-                return Ok((spheres.into(), Pose::IDENTITY));
-            }
-            (_, Some(path), _) => load_mesh(path, &self.mesh_spec(), None)?.model,
-            (_, _, Some(name)) => self.build(name)?,
-            (None, None, None) => unreachable!("the command line requires one source"),
+        let (nx, ny) = self.taxels;
+        let side = nx.max(ny) as f64 * self.pitch_mm * MM;
+        let can_feel = SizeLimits::of_arrays([(side, self.taxel_radius())]);
+        let model = self.model.unwrap_or_default();
+        let default_error_mm = || model.default_surface_error_mm(self.pitch_mm);
+        let surface_error_mm = self.surface_error_mm.unwrap_or_else(default_error_mm);
+        let Source {
+            object,
+            mesh,
+            spheres,
+        } = &self.source;
+        let model = if let Some(path) = spheres {
+            let spheres = load_spheres(path, self.unit, &can_feel)?;
+            return Ok((spheres.into(), Pose::IDENTITY));
+        } else if let Some(path) = mesh {
+            let spec = ObjectsSpec {
+                unit: self.unit,
+                sizes: Some(can_feel),
+                model: self.model,
+                surface_error_mm: Some(surface_error_mm),
+                ..ObjectsSpec::default()
+            };
+            load_mesh(path, &spec, None)?.model
+        } else {
+            let catalogue = catalogue(self.objects.as_deref())?;
+            let name = object.as_deref().unwrap_or_default();
+            catalogue.object(name)?.build(MM * surface_error_mm)?.model
         };
-        let pose = self
-            .place
-            .touch()?
-            .patch_from_object(&self.place.rest(&model)?);
+        let rest = self.place.rest(&model)?;
+        let pose = self.place.touch().patch_from_object(&rest);
         Ok((model, pose))
     }
 
-    fn mesh_spec(&self) -> ObjectsSpec {
-        ObjectsSpec {
-            unit: self.unit,
-            sizes: Some(self.sizes()),
-            model: self.model,
-            surface_error_mm: Some(self.surface_error_mm()),
-            ..ObjectsSpec::default()
-        }
-    }
-
-    /// What the array can feel.
-    fn sizes(&self) -> SizeLimits {
-        let (nx, ny) = self.taxels;
-        let side = nx.max(ny) as f64 * self.pitch_mm * MM;
-        let radius_mm = self.taxel_radius_mm.unwrap_or(0.5 * self.pitch_mm);
-        SizeLimits::of_arrays([(side, radius_mm * MM)])
-    }
-
-    fn build(&self, name: &str) -> Result<Model> {
-        let catalogue = catalogue(self.objects.as_deref())?;
-        let surface_error = MM * self.surface_error_mm();
-        Ok(catalogue.object(name)?.build(surface_error)?.model)
-    }
-
-    fn surface_error_mm(&self) -> f64 {
-        let model = self.model.unwrap_or_default();
-        let default = || model.default_surface_error_mm(self.pitch_mm);
-        self.surface_error_mm.unwrap_or_else(default)
-    }
-
-    fn contact(&self, scene: &Scene, pose: Pose, workspace: &mut Workspace) -> Result<Contact> {
-        if let Some(force) = self.force_n {
-            let pressed = press_to_force(scene, &[pose], force, workspace)?;
-            return pressed.ok_or_else(not_over);
-        }
-        let depth_mm = match (self.depth_mm, &self.source.spheres) {
-            (None, Some(_)) => return Ok(press_at_pose(scene, &[pose], workspace)),
-            (depth_mm, _) => depth_mm.unwrap_or(3.0),
+    /// How far past first contact, metres; none if the press is to a force, or the object is read where it is. Says if taxels cannot
+    /// follow.
+    fn depth(&self, taxel: &Taxel) -> Result<Option<f64>> {
+        let is_placed = self.source.spheres.is_some() || self.many.poses.is_some();
+        let default = (!is_placed && self.force_n.is_none()).then_some(3.0);
+        let Some(depth_mm) = self.depth_mm.or(default) else {
+            return Ok(None);
         };
-        let depth = positive_depth(depth_mm)?;
-        note_beyond_stroke(depth, &scene.patch.taxel);
-        press_to_depth(scene, &[pose], depth, workspace).ok_or_else(not_over)
+        if !(depth_mm.is_finite() && depth_mm > 0.0) {
+            let allowed = "a positive number of millimetres";
+            return Err(Error::input("--depth-mm", depth_mm, allowed));
+        }
+        let depth = depth_mm * MM;
+        if depth > taxel.stroke {
+            note(format_args!(
+                "note: a depth of {} mm is beyond the stroke of {} mm: taxels that would go further than it are saturated",
+                millimetres(depth),
+                millimetres(taxel.stroke)
+            ));
+        }
+        Ok(Some(depth))
     }
-}
-
-/// Metres.
-fn positive_depth(depth_mm: f64) -> Result<f64> {
-    if depth_mm.is_finite() && depth_mm > 0.0 {
-        return Ok(depth_mm * MM);
-    }
-    let allowed = "a positive number of millimetres";
-    Err(Error::input("--depth-mm", depth_mm, allowed))
-}
-
-/// Says that a press goes deeper than its taxels.
-fn note_beyond_stroke(depth: f64, taxel: &Taxel) {
-    if depth > taxel.stroke {
-        note(format_args!(
-            "note: a depth of {} mm is beyond the stroke of {} mm: taxels that would go further than it are saturated",
-            millimetres(depth),
-            millimetres(taxel.stroke)
-        ));
-    }
-}
-
-fn not_over() -> Error {
-    Error::input(
-        "press",
-        "the object is not over the array",
-        "an offset that brings some of it over a taxel",
-    )
 }

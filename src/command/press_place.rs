@@ -12,44 +12,39 @@ pub struct Place {
     /// Which stable pose the object lies in, from 0 (the likeliest) [default: as modelled, its z up]
     #[arg(long, value_name = "N")]
     rest: Option<usize>,
-    /// Where the patch is over the object's middle, along x [default: 0]
-    #[arg(long, value_name = "MM", allow_negative_numbers = true)]
-    offset_x_mm: Option<f64>,
-    /// The same along y [default: 0]
-    #[arg(long, value_name = "MM", allow_negative_numbers = true)]
-    offset_y_mm: Option<f64>,
-    /// How the object is turned about the vertical [default: 0]
-    #[arg(long, value_name = "DEG", allow_negative_numbers = true)]
-    yaw_deg: Option<f64>,
-    /// How the patch is tilted about its x axis [default: 0]
-    #[arg(long, value_name = "DEG", allow_negative_numbers = true)]
-    tilt_x_deg: Option<f64>,
-    /// The same about its y axis [default: 0]
-    #[arg(long, value_name = "DEG", allow_negative_numbers = true)]
-    tilt_y_deg: Option<f64>,
+    /// Where the patch is over the object's middle, along x
+    #[arg(long, value_name = "MM", allow_negative_numbers = true, default_value_t = 0.0, value_parser = finite)]
+    offset_x_mm: f64,
+    /// The same along y
+    #[arg(long, value_name = "MM", allow_negative_numbers = true, default_value_t = 0.0, value_parser = finite)]
+    offset_y_mm: f64,
+    /// How the object is turned about the vertical
+    #[arg(long, value_name = "DEG", allow_negative_numbers = true, default_value_t = 0.0, value_parser = finite)]
+    yaw_deg: f64,
+    /// How the patch is tilted about its x axis
+    #[arg(long, value_name = "DEG", allow_negative_numbers = true, default_value_t = 0.0, value_parser = finite)]
+    tilt_x_deg: f64,
+    /// The same about its y axis
+    #[arg(long, value_name = "DEG", allow_negative_numbers = true, default_value_t = 0.0, value_parser = finite)]
+    tilt_y_deg: f64,
+}
+
+fn finite(text: &str) -> std::result::Result<f64, String> {
+    let number = text.parse().ok().filter(|number: &f64| number.is_finite());
+    number.ok_or_else(|| "expected a finite number".to_owned())
 }
 
 impl Place {
     /// Without its depth.
-    pub fn touch(&self) -> Result<Touch> {
-        let number = |name: &str, value: Option<f64>| match value.unwrap_or(0.0) {
-            v if v.is_finite() => Ok(v),
-            v => Err(Error::input(name, v, "a finite number")),
-        };
-        Ok(Touch {
+    pub fn touch(&self) -> Touch {
+        Touch {
             rest: 0,
-            offset: [
-                number("--offset-x-mm", self.offset_x_mm)? * MM,
-                number("--offset-y-mm", self.offset_y_mm)? * MM,
-            ],
-            yaw: number("--yaw-deg", self.yaw_deg)?.to_radians(),
-            tilt: [
-                number("--tilt-x-deg", self.tilt_x_deg)?.to_radians(),
-                number("--tilt-y-deg", self.tilt_y_deg)?.to_radians(),
-            ],
+            offset: [self.offset_x_mm, self.offset_y_mm].map(|mm| mm * MM),
+            yaw: self.yaw_deg.to_radians(),
+            tilt: [self.tilt_x_deg, self.tilt_y_deg].map(f64::to_radians),
             depth: 0.0,
             indices: [None; 7],
-        })
+        }
     }
 
     /// How it lies; the error names a stable pose that the object has not.
@@ -59,11 +54,9 @@ impl Place {
         };
         let mut poses = RestPoses::Stable.of(model);
         if number >= poses.len() {
-            return Err(Error::input(
-                "--rest",
-                number,
-                format!("0 to {}, the stable poses of this object", poses.len() - 1),
-            ));
+            let last = poses.len() - 1;
+            let allowed = format!("0 to {last}, the stable poses of this object");
+            return Err(Error::input("--rest", number, allowed));
         }
         Ok(poses.swap_remove(number))
     }

@@ -83,9 +83,11 @@ pub fn press_poses(
     let mut contacts: Vec<Option<Contact>> = Vec::with_capacity(poses.len());
     for (pose, mut frame) in poses.iter().zip(frames.outer_iter_mut()) {
         contacts.push(press(pose, &mut workspace));
-        for (to, from) in frame.iter_mut().zip(workspace.deflections()) {
-            *to = *from;
-        }
+        let read = workspace.deflections();
+        frame
+            .iter_mut()
+            .zip(read)
+            .for_each(|(to, from)| *to = *from);
     }
     // Round after round: a pose that is pressed again at once is nearer to the processor than a new one.
     let mut times = vec![Vec::new(); poses.len()];
@@ -99,15 +101,13 @@ pub fn press_poses(
     if let Some(out) = out {
         write_npy(out, &frames)?;
     }
-    let readings = contacts
-        .iter()
-        .zip(&mut times)
-        .map(|(contact, times)| Reading {
-            travel_mm: contact.map_or(0.0, |contact| 1e3 * contact.travel),
-            n_touched: contact.map_or(0, |contact| contact.n_touched),
-            n_saturated: contact.map_or(0, |contact| contact.n_saturated),
-            us: quantile(times, 0.5),
-        });
+    let readings = contacts.iter().zip(&mut times);
+    let readings = readings.map(|(contact, times)| Reading {
+        travel_mm: contact.map_or(0.0, |contact| 1e3 * contact.travel),
+        n_touched: contact.map_or(0, |contact| contact.n_touched),
+        n_saturated: contact.map_or(0, |contact| contact.n_saturated),
+        us: quantile(times, 0.5),
+    });
     tell(args, scene, &readings.collect::<Vec<_>>())
 }
 

@@ -1,9 +1,7 @@
-//! `bubbletouch report`: the page of a folder of results of recognition again, from its tables.
+//! `bubbletouch report`: the charts and the page of a folder of results again, from its tables.
 
-use super::any_study::load_study;
-use super::checked_manifest::checked_manifest;
+use super::results_folder::{checked_manifest, load_study};
 use super::streams::{note, say};
-use super::study_args::StudyArgs;
 use bubbletouch::report::page::StudyAbout;
 use bubbletouch::study::provenance::MANIFEST_FILE;
 use bubbletouch::{Error, Result};
@@ -27,17 +25,14 @@ pub fn report(args: &Args) -> Result<()> {
             folder.join(MANIFEST_FILE).display()
         ));
     }
-    let paths_from = manifest
-        .as_ref()
-        .map(|manifest| manifest.paths_from.clone());
-    let study = StudyArgs::of_results(folder, paths_from);
-    let name = match &manifest {
-        Some(manifest) if !manifest.study.is_empty() => manifest.study.clone(),
-        _ => folder_name(folder)?,
-    };
-    let command = match &manifest {
-        Some(manifest) => manifest.command.clone(),
-        None => format!("bubbletouch run {}", study.study.display()),
+    let study = load_study(folder, manifest.as_ref(), None)?;
+    let (name, command) = match &manifest {
+        Some(of) if !of.study.is_empty() => (of.study.clone(), of.command.clone()),
+        _ => {
+            let study = folder.join("study.toml");
+            let command = format!("bubbletouch run {}", study.display());
+            (folder_name(folder)?, command)
+        }
     };
     let about = StudyAbout {
         name,
@@ -46,17 +41,14 @@ pub fn report(args: &Args) -> Result<()> {
         all_charts: args.all_charts,
         ..StudyAbout::default()
     };
-    load_study(study, folder, None)?.report(folder, about)?;
-    say(format_args!(
-        "Wrote {}",
-        folder.join("report.html").display()
-    ))
+    study.report(folder, about)?;
+    let page = folder.join("report.html");
+    say(format_args!("Wrote {}", page.display()))
 }
 
 fn folder_name(folder: &Path) -> Result<String> {
-    let whole = folder
-        .canonicalize()
-        .map_err(|e| Error::io(folder, "read", e))?;
+    let whole = folder.canonicalize();
+    let whole = whole.map_err(|e| Error::io(folder, "read", e))?;
     let name = whole.file_name().unwrap_or_default();
     Ok(name.to_string_lossy().into_owned())
 }

@@ -1,24 +1,22 @@
 //! `bubbletouch run`: a study from its file to its folder of results.
 
-use super::any_study::{end, ended, failures, load_study, seconds_since};
-use super::command_line::merge_line;
-use super::listener::Listener;
-use super::memory_args::MemoryArgs;
-use super::study_args::StudyArgs;
-use super::study_folder::{Start, StudyFolder};
+use super::output::output_folder;
+use super::signals::keep_journal_on_signals;
+use super::study_args::QUICKSTART_FILE;
+use super::study_run::{RunArgs, StudyRun};
+use bubbletouch::kinds::AnyStudy;
 use bubbletouch::study::Shard;
+use bubbletouch::study::journal::{JOURNAL_FILE, Journal, set_aside};
 use bubbletouch::study::pieces::{Part, PieceManner};
 use bubbletouch::{Error, Result};
-use std::path::{Path, PathBuf};
-use std::time::SystemTime;
+use clap::Parser;
+use std::path::Path;
+use std::sync::Arc;
 
 #[derive(clap::Args)]
 pub struct Args {
     #[command(flatten)]
-    study: StudyArgs,
-    /// Where to write tables, charts and report.html [default: results/ and the study's name]
-    #[arg(long, value_name = "FOLDER")]
-    out: Option<PathBuf>,
+    run: RunArgs,
     /// Start over; what stands in the folder is kept beside it, as FOLDER.1, FOLDER.2 ... Without it, a run goes on from
     /// what an earlier run of the same study has finished
     #[arg(long)]
@@ -30,90 +28,92 @@ pub struct Args {
     #[arg(long, value_name = "I/N")]
     shard: Option<Shard>,
     /// End as if killed when so many work items are kept: to try what is left of a run
-    #[arg(long, value_name = "N", hide = true)]
-    abort_after: Option<usize>,
-    #[command(flatten)]
-    memory: MemoryArgs,
-    #[command(flatten)]
-    listener: Listener,
-    /// A demonstration runs anew unless it was interrupted.
-    #[arg(skip)]
-    is_demonstration: bool,
+    #[arg(long, value_name = "N", hide = true, default_value_t = 0)]
+    abort_after: usize,
+    /// Run anew, unless the run before was interrupted
+    #[arg(long, hide = true)]
+    demonstration: bool,
 }
 
 impl Args {
     /// What a bare `bubbletouch` runs.
     pub fn quickstart() -> Self {
-        Self {
-            study: StudyArgs::quickstart(),
-            out: None,
-            fresh: false,
-            fail_fast: false,
-            shard: None,
-            abort_after: None,
-            memory: MemoryArgs::default(),
-            listener: Listener::default(),
-            is_demonstration: true,
+        #[derive(Parser)]
+        struct Line {
+            #[command(flatten)]
+            args: Args,
         }
-    }
-
-    fn start(&self) -> Start {
-        match (self.fresh, self.is_demonstration) {
-            (true, _) => Start::Fresh,
-            (false, true) => Start::Demonstration,
-            (false, false) => Start::GoOn,
-        }
+        Line::parse_from(["run", QUICKSTART_FILE, "--demonstration"]).args
     }
 }
 
 pub fn run(args: &Args) -> Result<()> {
-    let started = SystemTime::now();
-    let folder = results_folder(&args.study, args.out.as_deref())?;
-    let study = load_study(args.study.clone(), &folder, args.memory.bytes()?)?;
-    if let Some(mixed) = args.study.mixed_touches()? {
-        args.listener.remark(&format!("note: {mixed}"));
+    let run = StudyRun::begin(&args.run)?;
+    let (study, progress) = (run.study.as_ref(), run.progress.as_ref());
+    if let Some(mixed) = args.run.results.study.mixed_touches()? {
+        progress.finish(&mixed);
     }
-    let how = (args.start(), args.shard);
-    let kept = StudyFolder::open(&folder, study.identity(), how, args.listener)?;
+    let journal = open_journal(args, &run)?;
     let n_all = study.n_all();
-    let n_before = n_all - study.n_left(Part::All, &kept.journal);
+    let n_before = n_all - study.n_left(Part::All, &journal);
     if n_before > 0 {
         let going_on = format!("going on: {n_before} of {n_all} work items were finished before");
-        args.listener.remark(&going_on);
+        progress.finish(&going_on);
     }
-    kept.journal.abort_after(args.abort_after.unwrap_or(0));
-    let progress = args.listener.progress();
-    let manner = PieceManner {
-        journal: &kept.journal,
+    journal.abort_after(args.abort_after);
+    let outcome = study.run(&PieceManner {
+        journal: &journal,
         fail_fast: args.fail_fast,
         retries: true,
         part: args.shard.map_or(Part::All, Part::Shard),
-        progress: progress.as_ref(),
+        progress,
+    })?;
+    journal.sync()?;
+    let Some(shard) = args.shard else {
+        return run.end(&outcome, n_before, "");
     };
-    let outcome = study.run(&manner)?;
-    kept.journal.sync()?;
-    if let Some(shard) = args.shard {
-        progress.finish(&format!("{:.1} s", seconds_since(started)));
-        let merge = merge_line(&args.study, args.out.as_deref());
-        args.listener.remark(&format!(
-            "shard {shard} is done; when all are, put them together: {merge}"
-        ));
-        return failures(study.as_ref(), &outcome, &folder);
-    }
-    let times = (started, n_before);
-    let ended = ended(&args.study, &folder, times, progress.as_ref())?;
-    let result = end(study.as_ref(), &outcome, &ended, (args.listener, ""));
-    let is_written = matches!(result, Ok(()) | Err(Error::WorkItems { .. }));
-    if args.is_demonstration && is_written {
-        kept.forget()?;
-    }
-    result
+    progress.finish(&format!("{:.1} s", run.elapsed_s()));
+    let results = &args.run.results;
+    let mut merge = results.study.arguments();
+    merge.extend(
+        results
+            .out
+            .iter()
+            .map(|out| format!("--out {}", out.display())),
+    );
+    progress.finish(&format!(
+        "shard {shard} is done; when all are, put them together: bubbletouch merge {}",
+        merge.join(" ")
+    ));
+    run.failures(&outcome)
 }
 
-/// Where a study's results go.
-pub fn results_folder(study: &StudyArgs, out: Option<&Path>) -> Result<PathBuf> {
-    match out {
-        Some(folder) => Ok(folder.to_owned()),
-        None => Ok(Path::new("results").join(study.name()?)),
+/// The journal of the run's folder, for this process alone: no signal loses what it keeps.
+fn open_journal(args: &Args, run: &StudyRun) -> Result<Arc<Journal>> {
+    let (study, folder) = (run.study.as_ref(), &run.folder);
+    if args.fresh
+        && let Some(old) = set_aside(folder)?
+    {
+        let remark = format!("the old results are in {}", old.display());
+        run.progress.finish(&remark);
     }
+    output_folder(folder)?;
+    let path = folder.join(match args.shard {
+        Some(shard) => shard.file_name(JOURNAL_FILE),
+        None => JOURNAL_FILE.to_owned(),
+    });
+    if args.demonstration && path.exists() && !is_interrupted(study, &path) {
+        std::fs::remove_file(&path).map_err(|e| Error::io(&path, "remove", e))?;
+    }
+    let journal = Arc::new(Journal::open(&path, study.identity())?);
+    keep_journal_on_signals(&journal)?;
+    Ok(journal)
+}
+
+/// Whether a journal is of this study and some of its work is left.
+fn is_interrupted(study: &dyn AnyStudy, journal: &Path) -> bool {
+    let Ok(Some((begun, journal))) = Journal::read(journal) else {
+        return false;
+    };
+    begun.differences(study.identity()).is_empty() && study.n_left(Part::All, &journal) > 0
 }

@@ -1,17 +1,15 @@
 //! `bubbletouch slurm`: the shards of a study as an array of jobs, and their merge after them.
 
-use super::any_study::load_study;
 use super::output::output_folder;
-use super::run::results_folder;
-use super::slurm_jobs::{Job, queued_shards, submit};
+use super::slurm_jobs::{queued_shards, submit};
 use super::streams::say;
-use super::study_args::StudyArgs;
+use super::study_run::ResultsArgs;
 use bubbletouch::kinds::AnyStudy;
 use bubbletouch::study::Shard;
 use bubbletouch::study::journal::{JOURNAL_FILE, Journal};
 use bubbletouch::study::pieces::Part;
 use bubbletouch::{Error, Result};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 /// Jobs of an array, at most: what Slurm can be set to.
 const MOST_JOBS: usize = 4_000_000;
@@ -19,10 +17,7 @@ const MOST_JOBS: usize = 4_000_000;
 #[derive(clap::Args)]
 pub struct Args {
     #[command(flatten)]
-    study: StudyArgs,
-    /// Where to write tables, charts and report.html [default: results/ and the study's name]
-    #[arg(long, value_name = "FOLDER")]
-    out: Option<PathBuf>,
+    results: ResultsArgs,
     /// Into how many jobs the study is divided
     #[arg(long, value_name = "N")]
     array: usize,
@@ -38,46 +33,39 @@ pub struct Args {
 }
 
 pub fn slurm(args: &Args) -> Result<()> {
-    if !(1..=MOST_JOBS).contains(&args.array) {
+    let n = args.array;
+    if !(1..=MOST_JOBS).contains(&n) {
         let allowed = format!("1 to {MOST_JOBS} jobs");
-        return Err(Error::input("--array", args.array, allowed));
+        return Err(Error::input("--array", n, allowed));
     }
-    let folder = results_folder(&args.study, args.out.as_deref())?;
-    let study = load_study(args.study.clone(), &folder, None)?;
+    let folder = args.results.folder()?;
+    let study = args.results.study.load(&folder, None)?;
     output_folder(&folder)?;
-    let jobs = Jobs::new(args, &folder)?;
-    let queued = queued_shards(&jobs.name("shards"))?;
+    let queued = queued_shards(&args.name("shards")?)?;
     let mut missing = Vec::new();
-    for shard in Shard::all(args.array) {
+    for shard in Shard::all(n) {
         let is_queued = queued.contains(&shard.index());
         if !is_queued && !is_done(study.as_ref(), &folder, shard)? {
-            missing.push(shard.index());
+            missing.push(shard.index().to_string());
         }
     }
     if !queued.is_empty() {
-        say(format_args!(
-            "{} of {} shards are in the queue",
-            queued.len(),
-            args.array
-        ))?;
+        let n_queued = queued.len();
+        say(format_args!("{n_queued} of {n} shards are in the queue"))?;
+        if missing.is_empty() {
+            return Ok(());
+        }
     }
-    if missing.is_empty() && !queued.is_empty() {
-        return Ok(());
-    }
-    let array = match missing.is_empty() {
-        true => None,
-        false => Some(submit(&jobs.shards(&missing), &folder)?),
+    let (shards, said) = match missing.len() {
+        0 => (None, say(format_args!("all {n} shards are done"))),
+        n_missing => {
+            let id = args.submit_shards(&missing, &folder)?;
+            let said = format!("submitted {n_missing} of {n} shards as job {id}");
+            (Some(id), say(said))
+        }
     };
-    let said = say(match &array {
-        Some(id) => format!(
-            "submitted {} of {} shards as job {id}",
-            missing.len(),
-            args.array
-        ),
-        None => format!("all {} shards are done", args.array),
-    });
     // Whatever became of the line: shards without a merge would be lost work.
-    let merge = submit(&jobs.merge(array.as_deref()), &folder)?;
+    let merge = args.submit_merge(shards.as_deref(), &folder)?;
     said?;
     say(format_args!(
         "submitted their merge as job {merge}; the same command submits again what fails"
@@ -94,89 +82,56 @@ fn is_done(study: &dyn AnyStudy, folder: &Path, shard: Shard) -> Result<bool> {
     Ok(study.n_left(Part::Shard(shard), &journal) == 0)
 }
 
-/// What the jobs of a study have in common.
-struct Jobs<'a> {
-    args: &'a Args,
-    study: String,
-    program: String,
-    /// The study and the folder, as arguments.
-    arguments: String,
-}
-
-impl<'a> Jobs<'a> {
-    fn new(args: &'a Args, folder: &Path) -> Result<Self> {
-        let absolute = |path: &Path| {
-            let absolute = std::path::absolute(path);
-            absolute.map_err(|e| Error::io(path, "read", e))
-        };
-        let program = std::env::current_exe().map_err(|e| Error::io("bubbletouch", "read", e))?;
-        let mut words = vec![absolute(&args.study.study)?.into_os_string()];
-        words.extend(["--out".into(), absolute(folder)?.into_os_string()]);
-        if let Some(objects) = &args.study.objects {
-            words.extend(["--objects".into(), absolute(objects)?.into_os_string()]);
-        }
-        if let Some(seed) = args.study.seed {
-            words.extend(["--seed".into(), seed.to_string().into()]);
-        }
-        let words: Vec<String> = words
-            .iter()
-            .map(|word| quoted(&word.to_string_lossy()))
-            .collect();
-        Ok(Self {
-            args,
-            study: args.study.name()?,
-            program: quoted(&program.to_string_lossy()),
-            arguments: words.join(" "),
-        })
-    }
-
+impl Args {
     /// The name of jobs in the queue.
-    fn name(&self, what: &str) -> String {
-        format!("bubbletouch-{}-{what}-of-{}", self.study, self.args.array)
+    fn name(&self, what: &str) -> Result<String> {
+        let study = self.results.study.name()?;
+        Ok(format!("bubbletouch-{study}-{what}-of-{}", self.array))
     }
 
-    fn shards(&self, indices: &[usize]) -> Job {
-        let indices: Vec<String> = indices.iter().map(usize::to_string).collect();
-        let threads = self.args.study.threads.unwrap_or(1);
+    fn submit_shards(&self, missing: &[String], folder: &Path) -> Result<String> {
+        let threads = self.results.study.threads.unwrap_or(1);
         let mut options = self.options(threads);
-        options.push(format!("--array={}", indices.join(",")));
+        options.push(format!("--array={}", missing.join(",")));
         // A job that is pre-empted goes back into the queue, and on where it stopped.
         options.push("--requeue".to_owned());
-        let (program, arguments) = (&self.program, &self.arguments);
-        let shard = format!("\"$SLURM_ARRAY_TASK_ID\"/{}", self.args.array);
-        Job {
-            name: self.name("shards"),
-            options,
-            command: format!(
-                "{program} run {arguments} --threads {threads} --quiet --shard {shard}"
-            ),
-        }
+        let shard = format!("\"$SLURM_ARRAY_TASK_ID\"/{}", self.array);
+        let line = self.line("run", folder)?;
+        let line = format!("{line} --threads {threads} --shard {shard}");
+        submit(&self.name("shards")?, &options, &line, folder)
     }
 
-    fn merge(&self, after: Option<&str>) -> Job {
+    fn submit_merge(&self, shards: Option<&str>, folder: &Path) -> Result<String> {
         let mut options = self.options(1);
         // After any end: the merge says which cells are missing, if some are.
-        options.extend(after.map(|id| format!("--dependency=afterany:{id}")));
-        Job {
-            name: self.name("merge"),
-            options,
-            command: format!("{} merge {} --quiet", self.program, self.arguments),
-        }
+        options.extend(shards.map(|id| format!("--dependency=afterany:{id}")));
+        let line = self.line("merge", folder)?;
+        submit(&self.name("merge")?, &options, &line, folder)
     }
 
+    /// What a job runs. Slurm runs it in the folder where it was submitted, so that paths need not be absolute.
+    fn line(&self, subcommand: &str, folder: &Path) -> Result<String> {
+        let program = std::env::current_exe().map_err(|e| Error::io("bubbletouch", "read", e))?;
+        let mut words = vec![program.display().to_string(), subcommand.to_owned()];
+        words.extend(self.results.study.arguments());
+        words.extend(["--out".to_owned(), folder.display().to_string()]);
+        words.push("--quiet".to_owned());
+        let quoted: Vec<String> = words.iter().map(|word| quoted(word)).collect();
+        Ok(quoted.join(" "))
+    }
+
+    /// Options of sbatch.
     fn options(&self, threads: usize) -> Vec<String> {
+        let mut options = vec![format!("--cpus-per-task={threads}")];
         let given = [
-            ("time", &self.args.time),
-            ("mem", &self.args.mem),
-            ("partition", &self.args.partition),
+            ("time", &self.time),
+            ("mem", &self.mem),
+            ("partition", &self.partition),
         ];
-        let given = given.into_iter().filter_map(|(name, value)| {
-            let value = value.as_ref()?;
-            Some(format!("--{name}={value}"))
-        });
-        given
-            .chain([format!("--cpus-per-task={threads}")])
-            .collect()
+        for (name, value) in given {
+            options.extend(value.iter().map(|value| format!("--{name}={value}")));
+        }
+        options
     }
 }
 

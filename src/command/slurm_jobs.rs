@@ -6,39 +6,21 @@ use std::io;
 use std::path::Path;
 use std::process::Command;
 
-/// A job, or an array of them.
-pub struct Job {
-    /// Its name in the queue; its script and what it says are files of that name.
-    pub name: String,
-    /// Options of sbatch.
-    pub options: Vec<String>,
-    /// What it runs.
-    pub command: String,
-}
-
-/// Writes a job's script into the folder `slurm` of a study's results and puts it into the queue; its number.
-pub fn submit(job: &Job, folder: &Path) -> Result<String> {
-    let folder = folder.join("slurm");
+/// Submits a job, or an array of them, of this name that runs a line of the shell, with more options of sbatch; its number. Its script and
+/// what it says are files of its name in the folder `slurm` of a study's results.
+pub fn submit(name: &str, options: &[String], line: &str, results: &Path) -> Result<String> {
+    let folder = results.join("slurm");
     std::fs::create_dir_all(&folder).map_err(|e| Error::io(&folder, "create folder", e))?;
-    let script = folder.join(format!("{}.sh", job.name));
-    write_bytes(
-        &script,
-        format!("#!/bin/sh\nexec {}\n", job.command).as_bytes(),
-    )?;
-    let said = folder.join(format!("{}.%j.txt", job.name));
+    let script = folder.join(format!("{name}.sh"));
+    write_bytes(&script, format!("#!/bin/sh\nexec {line}\n").as_bytes())?;
+    let said = folder.join(format!("{name}.%j.txt"));
     let mut sbatch = Command::new("sbatch");
-    sbatch
-        .args(["--parsable", "--job-name", &job.name])
-        .arg("--output")
-        .arg(said);
-    let answer = answer(sbatch.args(&job.options).arg(&script))?;
+    sbatch.args(["--parsable", "--job-name", name]);
+    sbatch.arg("--output").arg(said).args(options).arg(&script);
+    let answer = answer(&mut sbatch)?;
     // With several clusters it is `number;cluster`.
-    Ok(answer
-        .split(';')
-        .next()
-        .unwrap_or_default()
-        .trim()
-        .to_owned())
+    let number = answer.split(';').next().unwrap_or_default();
+    Ok(number.trim().to_owned())
 }
 
 /// The shards whose jobs of this name wait or run.
@@ -47,10 +29,8 @@ pub fn queued_shards(name: &str) -> Result<Vec<usize>> {
     // One line for each job of an array: its number in the array.
     squeue.args(["--noheader", "--array", "--name", name, "--format", "%K"]);
     let answer = answer(&mut squeue)?;
-    Ok(answer
-        .lines()
-        .filter_map(|line| line.trim().parse().ok())
-        .collect())
+    let numbers = answer.lines().map(|line| line.trim().parse());
+    Ok(numbers.flatten().collect())
 }
 
 /// What a command of Slurm says; the error says what it said instead.

@@ -1,7 +1,7 @@
-//! What `run`, `plan` and `touches` have in common: a study file, and what overrides it.
+//! The study that a command is about: its file, and what replaces some of it.
 
 use super::output::packings_beside;
-use bubbletouch::kinds::Source;
+use bubbletouch::kinds::{self, AnyStudy, Source};
 use bubbletouch::study::TouchesSpec;
 use bubbletouch::{Error, Result};
 use std::path::{Path, PathBuf};
@@ -9,60 +9,32 @@ use std::path::{Path, PathBuf};
 /// Threads, at most, where there are not more cores: each takes memory of its own, and none is faster than a core.
 const MOST_THREADS: usize = 1024;
 
-/// The study that a bare `bubbletouch` runs; it is part of the command, so that it runs in any folder.
+/// The study that a bare `bubbletouch` runs.
+pub const QUICKSTART_FILE: &str = "experiments/quickstart.toml";
+
+/// It is part of the command, so that it runs in any folder.
 const QUICKSTART: &str = include_str!("../../experiments/quickstart.toml");
 
-#[derive(Clone, clap::Args)]
+#[derive(clap::Args)]
 pub struct StudyArgs {
     /// The study, a TOML file
     pub study: PathBuf,
     /// A folder of PLY, OBJ or STL meshes, one object a file, or a TOML file of objects; replaces the study's objects, or the folder
     /// of its scans
     #[arg(long, value_name = "FOLDER or FILE.toml")]
-    pub objects: Option<PathBuf>,
+    objects: Option<PathBuf>,
     /// Root of all randomness; replaces the study's
     #[arg(long, value_name = "N")]
-    pub seed: Option<u64>,
+    seed: Option<u64>,
     /// Threads; all cores when left out. Results are the same at any number
     #[arg(long, value_name = "N")]
     pub threads: Option<usize>,
-    /// The folder that paths in the study are relative to; its file's when left out.
-    #[arg(skip)]
-    pub paths_from: Option<PathBuf>,
-    /// Most bytes to hold; no ceiling when left out.
-    #[arg(skip)]
-    pub memory: Option<u64>,
-    /// Where its results go; beside them packings are kept, and in them what memory cannot hold.
-    #[arg(skip)]
-    pub results: PathBuf,
 }
 
 impl StudyArgs {
-    pub fn quickstart() -> Self {
-        Self {
-            study: PathBuf::from("experiments/quickstart.toml"),
-            objects: None,
-            seed: None,
-            threads: None,
-            paths_from: None,
-            memory: None,
-            results: PathBuf::new(),
-        }
-    }
-
-    /// The study of a folder of results.
-    pub fn of_results(folder: &Path, paths_from: Option<PathBuf>) -> Self {
-        Self {
-            study: folder.join("study.toml"),
-            paths_from,
-            ..Self::quickstart()
-        }
-    }
-
-    /// The folder that paths in the study are relative to.
+    /// The folder that paths in the study are relative to: its file's.
     pub fn folder(&self) -> PathBuf {
-        let of_file = self.study.parent().unwrap_or(Path::new(""));
-        self.paths_from.clone().unwrap_or(of_file.to_owned())
+        self.study.parent().unwrap_or(Path::new("")).to_owned()
     }
 
     /// The name of the study: its file's name without the ending.
@@ -72,40 +44,65 @@ impl StudyArgs {
             .ok_or_else(|| Error::input("study", self.study.display(), "a file with a name"))
     }
 
-    /// The study's text, and what was asked for beside it.
-    pub fn source(&self) -> Result<Source> {
-        set_threads(self.threads)?;
-        Ok(Source {
-            place: self.study.display().to_string(),
-            text: self.text()?,
-            folder: self.folder(),
-            objects: self.objects.clone(),
-            seed: self.seed,
-            memory: self.memory,
-            packings: Some(packings_beside(&self.results)),
-            results: self.results.clone(),
+    /// Where its results go, unless they are sent elsewhere.
+    pub fn default_results(&self) -> Result<PathBuf> {
+        Ok(Path::new("results").join(self.name()?))
+    }
+
+    /// The study and what replaces some of it, as arguments of another command.
+    pub fn arguments(&self) -> Vec<String> {
+        let mut words = vec![self.study.display().to_string()];
+        if let Some(objects) = &self.objects {
+            words.extend(["--objects".to_owned(), objects.display().to_string()]);
+        }
+        if let Some(seed) = self.seed {
+            words.extend(["--seed".to_owned(), seed.to_string()]);
+        }
+        words
+    }
+
+    /// The command that makes the study's results again, as it would be typed.
+    pub fn command(&self) -> String {
+        format!("bubbletouch run {}", self.arguments().join(" "))
+    }
+
+    /// Reads and checks the study and loads its objects; its results go to a folder, and it is to hold at most so many bytes.
+    pub fn load(&self, results: &Path, memory: Option<u64>) -> Result<Box<dyn AnyStudy>> {
+        kinds::load(&Source {
+            packings: Some(packings_beside(results)),
+            results: results.to_owned(),
+            memory,
+            ..self.source()?
         })
     }
 
-    /// What a study of any kind is told that mixes listed values of `[touches]` where an axis may be meant.
+    /// The study's text, and what replaces some of it.
+    pub fn source(&self) -> Result<Source> {
+        set_threads(self.threads)?;
+        Ok(Source {
+            folder: self.folder(),
+            objects: self.objects.clone(),
+            seed: self.seed,
+            ..Source::of_text(&self.study.display().to_string(), &self.text()?)
+        })
+    }
+
+    /// A note on a study of any kind that mixes listed values of `[touches]` where an axis may be meant.
     pub fn mixed_touches(&self) -> Result<Option<String>> {
         let study: Option<toml::Table> = self.text()?.parse().ok();
         let touches = study.and_then(|mut study| study.remove("touches"));
         let touches: Option<TouchesSpec> = touches.and_then(|table| table.try_into().ok());
-        Ok(touches.and_then(|touches| touches.mixed_values()))
+        let mixed = touches.and_then(|touches| touches.mixed_values());
+        Ok(mixed.map(|mixed| format!("note: {mixed}")))
     }
 
     fn text(&self) -> Result<String> {
-        let quickstart = Self::quickstart();
-        if self.study == quickstart.study && !self.study.exists() {
+        if self.study == Path::new(QUICKSTART_FILE) && !self.study.exists() {
             return Ok(QUICKSTART.to_owned());
         }
         std::fs::read_to_string(&self.study).map_err(|error| {
-            Error::input(
-                self.study.display(),
-                format!("cannot be read ({error})"),
-                "a study in TOML",
-            )
+            let given = format!("cannot be read ({error})");
+            Error::input(self.study.display(), given, "a study in TOML")
         })
     }
 }
@@ -121,14 +118,9 @@ pub fn set_threads(threads: Option<usize>) -> Result<()> {
         let allowed = format!("1 to {most} (there are {n_cores} cores)");
         return Err(Error::input("--threads", threads, allowed));
     }
-    rayon::ThreadPoolBuilder::new()
-        .num_threads(threads)
-        .build_global()
-        .map_err(|error| {
-            Error::input(
-                "--threads",
-                format!("{threads} ({error})"),
-                "a number of threads that the system can start",
-            )
-        })
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads);
+    pool.build_global().map_err(|error| {
+        let allowed = "a number of threads that the system can start";
+        Error::input("--threads", format!("{threads} ({error})"), allowed)
+    })
 }

@@ -5,9 +5,9 @@ use crate::report::page::StudyAbout;
 use crate::study::journal::{Identity, Journal};
 use crate::study::pieces::{Part, PieceManner};
 use crate::study::progress::Progress;
+use crate::study::provenance::Manifest;
 use crate::table::Table;
-use std::path::{Path, PathBuf};
-use std::time::SystemTime;
+use std::path::Path;
 
 /// A study that is loaded and checked.
 pub trait AnyStudy {
@@ -32,11 +32,11 @@ pub trait AnyStudy {
     /// The journal cannot be written; what an item fails of, if the first to fail ends the run; too little memory for any item.
     fn run(&self, manner: &PieceManner) -> Result<Outcome>;
 
-    /// Writes tables, charts and page, the study and the manifest.
+    /// Writes tables, charts and page, the study and the manifest, of which what is known of the run is given.
     ///
     /// # Errors
     /// What cannot be drawn; a file that cannot be written.
-    fn write(&self, outcome: &Outcome, ended: &EndedRun) -> Result<()>;
+    fn write(&self, folder: &Path, outcome: &Outcome, run: Manifest) -> Result<()>;
 
     /// What a person reads at the end, in lines of about `width` letters.
     fn words(&self, outcome: &Outcome, width: usize) -> String;
@@ -61,29 +61,4 @@ pub struct Outcome {
     pub tables: Vec<Table>,
     /// How many work items failed.
     pub n_failed: usize,
-}
-
-/// A run that has done its work, and where its files go.
-pub struct EndedRun<'a> {
-    /// The study's name.
-    pub name: String,
-    /// The command that makes the folder again.
-    pub command: String,
-    /// The folder that paths in the study are relative to.
-    pub paths_from: PathBuf,
-    /// Where its files go.
-    pub folder: &'a Path,
-    /// When it began.
-    pub started: SystemTime,
-    /// What was finished before it.
-    pub n_before: usize,
-    /// What is told how far it is.
-    pub progress: &'a dyn Progress,
-}
-
-impl EndedRun<'_> {
-    /// Seconds since it began.
-    pub fn wall_s(&self) -> f64 {
-        self.started.elapsed().unwrap_or_default().as_secs_f64()
-    }
 }

@@ -1,11 +1,11 @@
 //! A study of a kind, for those who do not know which.
 
-use super::any_study::{AnyStudy, EndedRun, Outcome};
+use super::any_study::{AnyStudy, Outcome};
 use super::ceiling::{threads_within, within_memory};
 use super::kind::{Facts, Kind};
 use super::results::FAILURES;
 use super::source::Source;
-use super::verified::{changed_row, drawn};
+use super::verified::{drawn, same_rows};
 use crate::error::Result;
 use crate::report::page::StudyAbout;
 use crate::study::journal::{Identity, Journal};
@@ -13,6 +13,7 @@ use crate::study::pieces::{
     FinishedPieces, NamedPiece, Part, PieceEstimate, PieceManner, PiecesRun, n_pieces_left,
 };
 use crate::study::progress::{Progress, Silent};
+use crate::study::provenance::Manifest;
 use std::path::Path;
 
 /// A study that is read and checked, and what its results depend on.
@@ -82,8 +83,8 @@ impl<K: Kind> AnyStudy for Loaded<K> {
         Ok(Outcome { tables, n_failed })
     }
 
-    fn write(&self, outcome: &Outcome, ended: &EndedRun) -> Result<()> {
-        self.write_results(outcome, ended)
+    fn write(&self, folder: &Path, outcome: &Outcome, run: Manifest) -> Result<()> {
+        self.write_results(folder, outcome, run)
     }
 
     fn words(&self, outcome: &Outcome, width: usize) -> String {
@@ -108,11 +109,9 @@ impl<K: Kind> AnyStudy for Loaded<K> {
             self.kind.tables(run.run()?.rows)
         })?;
         progress.finish("");
-        // What other programs left stands in some tables, and no item made it.
-        let of_others = self.kind.tables(K::Rows::default())?;
-        let n_rows = changed_row(folder, &again, &of_others)?;
+        let n_rows = same_rows(folder, &again)?;
         Ok(format!(
-            "{} of {} work items ran again, and their {n_rows} rows without times are the same bytes",
+            "{} of {} work items ran again, and {n_rows} rows without times are the same bytes",
             chosen.len(),
             self.pieces.len(),
         ))

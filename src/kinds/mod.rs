@@ -21,7 +21,7 @@ pub mod stability;
 mod verified;
 pub mod whole_body;
 
-pub use any_study::{AnyStudy, EndedRun, Outcome};
+pub use any_study::{AnyStudy, Outcome};
 pub use ceiling::{threads_within, within_memory};
 pub use kind::{About, Facts, Kind};
 pub use loaded::Loaded;
@@ -29,7 +29,7 @@ pub use source::Source;
 
 use groups::grouped;
 
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::table::Table;
 use crate::toml_text;
 use serde::de::DeserializeOwned;
@@ -83,10 +83,7 @@ pub fn load(source: &Source) -> Result<Box<dyn AnyStudy>> {
 /// # Errors
 /// A folder without a study; a table that cannot be read, or has other columns.
 pub fn read_tables(folder: &Path) -> Result<(About, Vec<Table>)> {
-    let path = folder.join("study.toml");
-    let text = std::fs::read_to_string(&path).map_err(|e| {
-        Error::unreadable(&path, "the study of a folder that bubbletouch run wrote", e)
-    })?;
+    let text = Source::of_results(folder)?.text;
     let entry = find(&text).unwrap_or(&RECOGNITION);
     Ok((entry.about, (entry.read)(folder)?))
 }

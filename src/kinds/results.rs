@@ -1,6 +1,6 @@
 //! The folder of a study of any kind.
 
-use super::any_study::{EndedRun, Outcome};
+use super::any_study::Outcome;
 use super::kind::Kind;
 use super::loaded::Loaded;
 use crate::error::Result;
@@ -51,48 +51,35 @@ impl<K: Kind> Loaded<K> {
         }
     }
 
-    fn manifest(&self, outcome: &Outcome, ended: &EndedRun) -> Manifest {
-        let files = outcome.tables.iter().filter(|table| !table.csv.is_empty());
-        let hashes = files.map(|table| {
-            let hash = sha256(&table.csv);
-            (table.repeats, (table.file.to_owned(), hash))
-        });
-        let (repeatable, times): (Vec<_>, Vec<_>) = hashes.partition(|(repeats, _)| *repeats);
-        let hashes =
-            |of: Vec<(bool, (String, String))>| of.into_iter().map(|(_, hash)| hash).collect();
-        let methods = self.facts.methods.iter();
-        Manifest {
-            study: ended.name.clone(),
-            command: ended.command.clone(),
-            paths_from: ended.paths_from.clone(),
+    pub(super) fn write_results(&self, dir: &Path, outcome: &Outcome, run: Manifest) -> Result<()> {
+        let hashes = |repeats: bool| {
+            let tables = outcome.tables.iter();
+            let files = tables.filter(|t| t.repeats == repeats && !t.csv.is_empty());
+            let hashes = files.map(|table| (table.file.to_owned(), sha256(&table.csv)));
+            hashes.collect()
+        };
+        let words = |&(columns, method): &(&str, &str)| (columns.to_owned(), method.to_owned());
+        let manifest = Manifest {
             seed: self.facts.seed,
             n_cells: self.pieces.len(),
             n_trials: 1,
-            n_finished_before: ended.n_before,
             n_failed: outcome.n_failed,
-            tables_sha256: hashes(repeatable),
-            times_sha256: hashes(times),
-            methods: methods
-                .map(|(columns, method)| (columns.to_string(), method.to_string()))
-                .collect(),
-            ..Manifest::ended(&self.identity, ended.started)
-        }
-    }
-
-    pub(super) fn write_results(&self, outcome: &Outcome, ended: &EndedRun) -> Result<()> {
-        let manifest = self.manifest(outcome, ended);
+            tables_sha256: hashes(true),
+            times_sha256: hashes(false),
+            methods: self.facts.methods.iter().map(words).collect(),
+            ..run
+        };
         let json = manifest.to_json();
         let about = self.about(StudyAbout {
-            name: ended.name.clone(),
-            command: ended.command.clone(),
+            name: manifest.study.clone(),
+            command: manifest.command.clone(),
             manifest: Some(manifest),
             ..StudyAbout::default()
         });
-        let mut folder = Folder::of_tables(ended.folder, &outcome.tables);
-        folder.append(self.folder_of(ended.folder, &about, &outcome.tables)?);
+        let mut folder = Folder::of_tables(dir, &outcome.tables);
+        folder.append(self.folder_of(dir, &about, &outcome.tables)?);
         folder.write()?;
-        let study = self.facts.toml.as_bytes();
-        write_bytes(&ended.folder.join("study.toml"), study)?;
-        write_bytes(&ended.folder.join(MANIFEST_FILE), json.as_bytes())
+        write_bytes(&dir.join("study.toml"), self.facts.toml.as_bytes())?;
+        write_bytes(&dir.join(MANIFEST_FILE), json.as_bytes())
     }
 }

@@ -2,6 +2,7 @@
 
 use crate::error::{Error, Result};
 use crate::study::ObjectsSpec;
+use std::fmt::Display;
 use std::path::{Path, PathBuf};
 
 /// A study's text, and what was asked for beside it.
@@ -35,6 +36,18 @@ impl Source {
         }
     }
 
+    /// The study of a folder of results, with nothing that overrides it.
+    ///
+    /// # Errors
+    /// There is none, or it cannot be read.
+    pub fn of_results(folder: &Path) -> Result<Self> {
+        let path = folder.join("study.toml");
+        let allowed = "the study of a folder that bubbletouch run wrote";
+        let text = std::fs::read_to_string(&path);
+        let text = text.map_err(|e| Error::unreadable(&path, allowed, e))?;
+        Ok(Self::of_text(&path.display().to_string(), &text))
+    }
+
     /// Where packed meshes are kept, if anywhere.
     pub fn packings(&self) -> Option<&Path> {
         self.packings.as_deref()
@@ -64,14 +77,11 @@ impl Source {
     /// # Errors
     /// They were.
     pub fn refuse_objects(&self, why: &str) -> Result<()> {
-        match &self.objects {
-            Some(given) => Err(Error::input(
-                "--objects",
-                given.display(),
-                format!("no such option: {why}"),
-            )),
-            None => Ok(()),
-        }
+        refuse(
+            "--objects",
+            self.objects.as_ref().map(|path| path.display()),
+            why,
+        )
     }
 
     /// An error if a seed was asked for; `why` says why there is none.
@@ -79,13 +89,16 @@ impl Source {
     /// # Errors
     /// It was.
     pub fn refuse_seed(&self, why: &str) -> Result<()> {
-        match self.seed {
-            Some(seed) => Err(Error::input(
-                "--seed",
-                seed,
-                format!("no such option: {why}"),
-            )),
-            None => Ok(()),
-        }
+        refuse("--seed", self.seed, why)
     }
+}
+
+fn refuse(option: &str, given: Option<impl Display>, why: &str) -> Result<()> {
+    given.map_or(Ok(()), |given| {
+        Err(Error::input(
+            option,
+            given,
+            format!("no such option: {why}"),
+        ))
+    })
 }

@@ -26,21 +26,16 @@ pub fn drawn<S: PieceStudy>(
     Ok(numbers.choose_multiple(&mut rng, n).copied().collect())
 }
 
-/// How many rows of items without times stand in a folder as they came out again, those of others apart; the error names the first that
-/// does not.
-pub fn changed_row(folder: &Path, again: &[Table], of_others: &[Table]) -> Result<usize> {
+/// How many rows without times stand in a folder as they came out again; the error names the first that does not.
+pub fn same_rows(folder: &Path, again: &[Table]) -> Result<usize> {
     let mut n_rows = 0;
     let of_items = again.iter();
     for table in of_items.filter(|table| table.repeats && !table.is_summary) {
         let path = folder.join(table.file);
         let stands = std::fs::read_to_string(&path).map_err(|e| Error::io(&path, "read", e))?;
         let stands: BTreeSet<&str> = stands.lines().collect();
-        let others = of_others.iter().find(|other| other.file == table.file);
-        let others = others.map(|other| String::from_utf8_lossy(&other.csv));
-        let others = others.unwrap_or_default();
-        let others: BTreeSet<&str> = others.lines().skip(1).collect();
         let content = String::from_utf8_lossy(&table.csv);
-        for row in content.lines().skip(1).filter(|row| !others.contains(row)) {
+        for row in content.lines().skip(1) {
             if !stands.contains(row) {
                 let nearest = stands.iter().max_by_key(|other| n_alike(row, other));
                 return Err(Error::input(

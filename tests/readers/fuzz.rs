@@ -451,7 +451,7 @@ classifier = ["linear_svm", "k_nearest"]
 [report]
 published = [{ claim = "all", accuracy = 1.0, source = "nobody" }]
 "#;
-    tables_of(&crate::study::Study::new(TEXT).run().tables).unwrap()
+    tables_of(&crate::study::Study::new(TEXT).run()).unwrap()
 }
 
 #[test]

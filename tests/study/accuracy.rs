@@ -3,9 +3,8 @@
 //! A run is the same on one machine; processors round differently, so every margin is several test rows wide.
 
 use crate::study::Study;
-use bubbletouch::kinds::recognition::Outcome;
 use bubbletouch::sensing::Ensemble;
-use bubbletouch::study::table::{Cell, CellScore};
+use bubbletouch::study::table::{Cell, CellScore, Tables};
 
 const STUDY: &str = r#"
 question = "What does accuracy obey?"
@@ -41,8 +40,8 @@ classifier = "linear_svm"
 /// One in this many guesses is right.
 const N_OBJECTS: f64 = 8.0;
 
-fn score(outcome: &Outcome, is_wanted: impl Fn(&Cell) -> bool) -> &CellScore {
-    let mut rows = outcome.tables.summary.iter().filter(|(c, _)| is_wanted(c));
+fn score(outcome: &Tables, is_wanted: impl Fn(&Cell) -> bool) -> &CellScore {
+    let mut rows = outcome.summary.iter().filter(|(c, _)| is_wanted(c));
     let (_, score) = rows.next().expect("a cell with these settings");
     assert!(rows.next().is_none(), "one cell with these settings");
     score

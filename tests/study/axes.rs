@@ -2,12 +2,12 @@
 
 use crate::command::Case;
 use crate::study::Study;
-use bubbletouch::kinds::recognition::{Outcome, RecognitionStudy};
+use bubbletouch::kinds::recognition::RecognitionStudy;
 use bubbletouch::report::folder::Folder;
 use bubbletouch::report::recognition::{read_tables, tables_of};
 use bubbletouch::study::pieces::PieceStudy;
 use bubbletouch::study::progress::Silent;
-use bubbletouch::study::table::TrialScore;
+use bubbletouch::study::table::{Tables, TrialScore};
 use bubbletouch::study::{Plan, StudySpec};
 
 const REST: &str = r#"
@@ -41,7 +41,7 @@ fn laid_out(text: &str) -> RecognitionStudy {
     RecognitionStudy::load(plans, None, None).unwrap()
 }
 
-fn run(study: &RecognitionStudy) -> Outcome {
+fn run(study: &RecognitionStudy) -> Tables {
     study.run(&Silent).unwrap()
 }
 
@@ -49,8 +49,8 @@ fn with_axes(axes: &str) -> String {
     format!("{HEAD}{REST}{LEARNING}[axes]\n{axes}")
 }
 
-fn scores(outcome: &Outcome) -> Vec<TrialScore> {
-    let rows = outcome.tables.accuracy.iter();
+fn scores(outcome: &Tables) -> Vec<TrialScore> {
+    let rows = outcome.accuracy.iter();
     rows.map(|(_, score)| score.clone()).collect()
 }
 
@@ -76,7 +76,7 @@ fn each_combination_scores_what_the_study_with_its_values_scores() {
         }
     }
     assert_eq!(scores(&outcome), expected);
-    let places = outcome.tables.summary.iter().enumerate();
+    let places = outcome.summary.iter().enumerate();
     for (place, (cell, _)) in places {
         assert_eq!(cell.cell, place);
         let columns = cell.variant.values.iter().map(|v| &v.column.name[..]);
@@ -89,7 +89,7 @@ fn each_combination_scores_what_the_study_with_its_values_scores() {
 fn what_does_not_change_is_made_once() {
     let stages = |axes: &str| {
         let outcome = run(&laid_out(&with_axes(axes)));
-        let stages = outcome.tables.stages.iter();
+        let stages = outcome.stages.iter();
         let counted = stages.map(|row| (row.stage.clone(), row.n_touches));
         counted.collect::<Vec<_>>()
     };
@@ -131,7 +131,7 @@ fn tables_of_a_study_with_axes_read_back_as_they_are() {
     let axes = "touches.depth_mm = [1.0, 3.0]\nskin.stroke_mm = [5.0]\nrecognition.classifier = [\"k_nearest\"]\nobjects.names = [[\"golf\", \"baseball\"]]";
     let text = with_axes(axes).replace("names = [\"golf\", \"tennis\", \"baseball\"]", "");
     let study = laid_out(&text);
-    let tables = run(&study).tables;
+    let tables = run(&study);
     let folder = tempfile::tempdir().unwrap();
     std::fs::write(
         folder.path().join("study.toml"),

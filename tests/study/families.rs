@@ -3,7 +3,7 @@
 
 use crate::study::{Study, trials_of};
 use bubbletouch::contact::{Workspace, press_to_depth};
-use bubbletouch::kinds::recognition::{Outcome, recognition_scale};
+use bubbletouch::kinds::recognition::recognition_scale;
 use bubbletouch::random::Seed;
 use bubbletouch::recognition::ClassifierKind;
 use bubbletouch::recognition::classifier::{Classifier, Cost, TrainedClassifier};
@@ -12,7 +12,7 @@ use bubbletouch::recognition::features::Features;
 use bubbletouch::recognition::fusion::fuse_rows;
 use bubbletouch::sensing::Projection;
 use bubbletouch::signal::{Chain, Noise, NoiseUnit, Scratch, SignalStep};
-use bubbletouch::study::table::{Cell, TrialScore};
+use bubbletouch::study::table::{Cell, Tables, TrialScore};
 use bubbletouch::world::Scene;
 use ndarray::{Array1, Array2, Axis};
 use std::collections::BTreeMap;
@@ -150,8 +150,8 @@ fn n_equal(a: &Array1<usize>, b: &Array1<usize>) -> usize {
 fn frames_and_features_are_what_a_slow_pipeline_makes_of_each_touch() {
     let study = Study::new(&with("frames = [1, 3]", ALL_FEATURES));
     let outcome = study.run();
-    assert_eq!(outcome.tables.accuracy.len(), 2 * 4 * 2);
-    for (cell, score) in &outcome.tables.accuracy {
+    assert_eq!(outcome.accuracy.len(), 2 * 4 * 2);
+    for (cell, score) in &outcome.accuracy {
         let (trained, test, truth) = slow_fit(&study, cell, score.trial);
         let n_correct = n_equal(&trained.labels(test.view()).unwrap(), &truth);
         // Sums in another order can turn a row that is close to two objects.
@@ -168,7 +168,7 @@ fn frames_and_features_are_what_a_slow_pipeline_makes_of_each_touch() {
 fn fused_touches_are_decided_on_by_the_sum_of_their_scores() {
     let study = Study::new(&with("", "fused_touches = [1, 2, 5]"));
     let outcome = study.run();
-    for (cell, score) in &outcome.tables.accuracy {
+    for (cell, score) in &outcome.accuracy {
         let (trained, test, truth) = slow_fit(&study, cell, score.trial);
         let scores = trained.scores(test.view()).unwrap();
         if cell.fused_touches == 1 {
@@ -203,7 +203,7 @@ fn cells_that_differ_in_fused_touches_share_one_fit_and_all_c_are_trained_togeth
     assert_eq!(study.sweep.n_cells(), 6);
     let outcome = study.run();
     let mut fits: BTreeMap<(usize, String), Vec<u64>> = BTreeMap::new();
-    for (cell, time) in &outcome.tables.timing {
+    for (cell, time) in &outcome.timing {
         let key = (time.trial, format!("{:?}", cell.c));
         fits.entry(key).or_default().push(time.fit_s.to_bits());
     }
@@ -231,15 +231,15 @@ fn a_cell_does_not_depend_on_the_other_values_of_these_axes() {
         "features = [\"unit_norm\", \"raw\"]\nfused_touches = [3, 1]\nc = [0.1, 1.0]",
     );
     let among = Study::new(&wide).run();
-    let cell = &alone.tables.accuracy[0].0;
-    let expected: Vec<&TrialScore> = alone.tables.accuracy.iter().map(|(_, s)| s).collect();
+    let cell = &alone.accuracy[0].0;
+    let expected: Vec<&TrialScore> = alone.accuracy.iter().map(|(_, s)| s).collect();
     assert_eq!(expected.len(), 2);
     assert_eq!(trials_of(&among, cell), expected);
     assert_eq!((cell.frames, cell.fused_touches), (1, 1));
 }
 
-fn accuracy(outcome: &Outcome, is_wanted: impl Fn(&Cell) -> bool) -> f64 {
-    let mut rows = outcome.tables.summary.iter().filter(|(c, _)| is_wanted(c));
+fn accuracy(outcome: &Tables, is_wanted: impl Fn(&Cell) -> bool) -> f64 {
+    let mut rows = outcome.summary.iter().filter(|(c, _)| is_wanted(c));
     let (_, score) = rows.next().expect("a cell with these settings");
     assert!(rows.next().is_none(), "one cell with these settings");
     score.accuracy
@@ -264,7 +264,7 @@ fn the_only_candidate_is_what_is_given_and_a_useless_one_is_not_chosen() {
     let rbf = STUDY.replace("linear_svm", "rbf_svm");
     let with = |keys: &str| {
         let text = rbf.replace("[recognition]", &format!("[recognition]\n{keys}"));
-        Study::new(&text).run().tables.accuracy
+        Study::new(&text).run().accuracy
     };
     let given = with("c = 10.0");
     let only = with("choose_c = [10.0]\nchoose_gamma = [1.0]");
@@ -281,17 +281,8 @@ fn the_only_candidate_is_what_is_given_and_a_useless_one_is_not_chosen() {
         }
     }
     let linear = Study::new(STUDY).run();
-    assert!(
-        linear
-            .tables
-            .accuracy
-            .iter()
-            .all(|(_, s)| s.gamma_used.is_none())
-    );
-    assert_eq!(
-        linear.tables.accuracy[0].0.classifier,
-        ClassifierKind::LinearSvm
-    );
+    assert!(linear.accuracy.iter().all(|(_, s)| s.gamma_used.is_none()));
+    assert_eq!(linear.accuracy[0].0.classifier, ClassifierKind::LinearSvm);
 }
 
 #[test]
@@ -299,8 +290,8 @@ fn a_choice_by_some_of_the_touches_does_not_see_the_others() {
     let keys = "choose_c = [0.01, 1.0]\nchoose_touches = 5\nchoose_folds = 5";
     let few = Study::new(&with("", &format!("{keys}\ntrain_touches = 5"))).run();
     let many = Study::new(&with("", &format!("{keys}\ntrain_touches = [5, 20]"))).run();
-    let chosen = |outcome: &Outcome, touches: usize| -> Vec<Option<f64>> {
-        let rows = outcome.tables.accuracy.iter();
+    let chosen = |outcome: &Tables, touches: usize| -> Vec<Option<f64>> {
+        let rows = outcome.accuracy.iter();
         rows.filter(|(cell, _)| cell.train_touches == touches)
             .map(|(_, score)| score.c_used)
             .collect()
@@ -329,7 +320,7 @@ fn keys_of_trees_and_neighbours_reach_them() {
         let new = format!("classifier = \"{classifier}\"\n{keys}");
         let quiet = STUDY.replace("noise_std_full_scale = 0.2", "noise_std_full_scale = 0.0");
         let study = Study::new(&quiet.replace("classifier = \"linear_svm\"", &new));
-        let rows = study.run().tables.accuracy;
+        let rows = study.run().accuracy;
         let shares = rows.iter().map(|(_, score)| score.accuracy);
         shares.sum::<f64>() / rows.len() as f64
     };

@@ -342,7 +342,7 @@ fn over_the_folds_each_touch_is_tested_exactly_once() {
 #[test]
 fn a_study_tests_what_its_splits_hold_out() {
     let study = with_recognition("folds = 3\ntrain_touches = [5, 10]");
-    for (cell, score) in &study.run().tables.accuracy {
+    for (cell, score) in &study.run().accuracy {
         assert_eq!(score.n_test, study.sweep.splits[score.trial].test.len());
         assert_eq!(score.n_train, 3 * cell.train_touches);
         assert_eq!(score.accuracy, score.n_correct as f64 / score.n_test as f64);

@@ -69,8 +69,8 @@ fn one_at_a_time_scores_what_all_combinations_score_there() {
     let all = Study::new(&with_signal(signal)).run();
     let alone = format!("{signal}\ncombine = \"one_at_a_time\"");
     let alone = Study::new(&with_signal(&alone)).run();
-    assert_eq!(all.tables.summary.len(), 3 * 2 * 2);
-    let settings: Vec<_> = alone.tables.summary.iter().map(|(cell, _)| cell).collect();
+    assert_eq!(all.summary.len(), 3 * 2 * 2);
+    let settings: Vec<_> = alone.summary.iter().map(|(cell, _)| cell).collect();
     let told: Vec<_> = settings
         .iter()
         .map(|c| {
@@ -101,11 +101,11 @@ fn one_at_a_time_scores_what_all_combinations_score_there() {
 fn a_skin_without_strength_scores_as_one_without_the_keys_and_only_used_keys_are_columns() {
     let with = Study::new(&with_signal(ALL)).run();
     let without = Study::new(&with_signal("noise_std_full_scale = [0.0, 0.1]")).run();
-    for (plain, score) in &without.tables.accuracy {
+    for (plain, score) in &without.accuracy {
         let same = |cell: &bubbletouch::study::table::Cell| {
             cell.noise_std == plain.noise_std && cell.strengths.present().count() == 0
         };
-        let mut rows = with.tables.accuracy.iter();
+        let mut rows = with.accuracy.iter();
         let found = rows.find(|(cell, s)| same(cell) && s.trial == score.trial);
         assert_eq!(&found.expect("a cell of no strength").1, score);
         let strengths = plain.strengths;
@@ -116,10 +116,10 @@ fn a_skin_without_strength_scores_as_one_without_the_keys_and_only_used_keys_are
         let text = String::from_utf8(accuracy.csv).unwrap();
         text.lines().next().unwrap().to_owned()
     };
-    assert!(!header(&without.tables).contains("gain_std"));
+    assert!(!header(&without).contains("gain_std"));
     let named = "smoothing_mm,hysteresis_full_scale,crosstalk,gain_std,drift_std_full_scale,\
                  dead_fraction,stuck_fraction,scan_time_ms,adc_bits,ensemble";
-    assert!(header(&with.tables).contains(named));
+    assert!(header(&with).contains(named));
 }
 
 #[test]
@@ -244,7 +244,7 @@ fn the_tables_are_the_same_bytes_at_any_number_of_threads() {
 #[test]
 fn every_strength_gets_its_chart_and_every_imperfection_its_picture() {
     let study = Study::new(&with_signal(ALL));
-    let mut charts = charts(&tables_of(&study.run().tables).unwrap(), None);
+    let mut charts = charts(&tables_of(&study.run()).unwrap(), None);
     charts.retain(|spec| spec.y == "accuracy");
     let names: Vec<&str> = charts.iter().map(|spec| spec.name.as_str()).collect();
     let expected = [

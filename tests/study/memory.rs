@@ -84,9 +84,9 @@ fn frames_in_a_file_and_one_item_at_a_time_give_the_same_tables() {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(n_threads);
         let run = || items.run(&Silent).unwrap();
         let outcome = pool.build().unwrap().install(run);
-        assert_eq!(outcome.tables.accuracy, usual.tables.accuracy);
-        assert_eq!(outcome.tables.confusion, usual.tables.confusion);
-        assert_eq!(outcome.arrays, usual.arrays);
+        assert_eq!(outcome.accuracy, usual.accuracy);
+        assert_eq!(outcome.confusion, usual.confusion);
+        assert_eq!(outcome.limits, usual.limits);
     }
     let left = fs::read_dir(folder.path().join("results")).unwrap();
     assert_eq!(left.count(), 0, "frames are gone with the run");

@@ -22,7 +22,7 @@ fn the_quickstart_still_gives_its_committed_results() {
     }
     let committed: Vec<TrialScore> = read_rows(&committed).unwrap();
     let text = fs::read_to_string(root.join("experiments/quickstart.toml")).unwrap();
-    let computed = Study::new(&text).run().tables.accuracy;
+    let computed = Study::new(&text).run().accuracy;
     assert_eq!(computed.len(), committed.len());
     for ((cell, score), old) in computed.iter().zip(&committed) {
         assert_eq!(

@@ -160,11 +160,11 @@ fn a_cell_does_not_depend_on_the_other_cells_of_its_study() {
         });
         let alone = Study::new(&narrow).run();
         let among = Study::new(&wide).run();
-        assert_eq!(alone.tables.accuracy.len(), 2);
-        assert!(among.tables.accuracy.len() > 100);
-        let cell = &alone.tables.accuracy[0].0;
+        assert_eq!(alone.accuracy.len(), 2);
+        assert!(among.accuracy.len() > 100);
+        let cell = &alone.accuracy[0].0;
         let trials = trials_of(&among, cell);
-        let expected: Vec<_> = alone.tables.accuracy.iter().map(|(_, s)| s).collect();
+        let expected: Vec<_> = alone.accuracy.iter().map(|(_, s)| s).collect();
         assert_eq!(trials, expected, "{ensemble}");
     }
 }

@@ -1,10 +1,9 @@
 //! What a split does to the accuracy, told from what the projection does.
 
 use crate::study::Study;
-use bubbletouch::kinds::recognition::Outcome;
 use bubbletouch::report::folder::Folder;
 use bubbletouch::report::recognition::{read_tables, tables_of};
-use bubbletouch::study::table::{Cell, PStatus, Source, TrialScore, Variance};
+use bubbletouch::study::table::{Cell, PStatus, Source, Tables, TrialScore, Variance};
 use bubbletouch::study::{Plan, StudySpec};
 use std::path::Path;
 
@@ -45,14 +44,14 @@ classifier = "linear_svm"
     )
 }
 
-fn row(outcome: &Outcome, cell: usize, source: Source) -> &Variance {
-    let mut rows = outcome.tables.variance.iter();
+fn row(outcome: &Tables, cell: usize, source: Source) -> &Variance {
+    let mut rows = outcome.variance.iter();
     rows.find(|row| row.cell == cell && row.source == source)
         .unwrap()
 }
 
-fn trials(outcome: &Outcome, cell: usize) -> Vec<&TrialScore> {
-    let rows = outcome.tables.accuracy.iter();
+fn trials(outcome: &Tables, cell: usize) -> Vec<&TrialScore> {
+    let rows = outcome.accuracy.iter();
     let of_cell = rows.filter(|(row, _): &&(Cell, TrialScore)| row.cell == cell);
     of_cell.map(|(_, score)| score).collect()
 }
@@ -62,7 +61,7 @@ fn without_noise_all_that_varies_is_the_split_unless_a_projection_is_drawn() {
     let crossed = "trials = 20\nprojections_per_split = 4";
     let study = Study::new(&text(crossed, r#"["identity", "gaussian"]"#, 0.0));
     let outcome = study.run();
-    assert_eq!(outcome.tables.variance.len(), 6);
+    assert_eq!(outcome.variance.len(), 6);
     for (source, n_levels) in [
         (Source::Split, 5),
         (Source::Projection, 4),
@@ -120,23 +119,19 @@ fn crossed_trials_share_splits_and_projections_and_the_first_is_that_of_trials_o
         );
     }
     // Two splits and three projections are few: an interval, but no p-value below four splits.
-    let compared = crossed.tables.comparison.iter();
+    let compared = crossed.comparison.iter();
     let compared: Vec<_> = compared.filter(|row| row.cell != row.best_cell).collect();
     assert_eq!(compared.len(), 1);
     assert!(compared[0].difference_low.is_some() && compared[0].p_value.is_none());
     assert_eq!(compared[0].p_status, PStatus::TooFewTrials);
     assert_eq!(compared[0].n_trials_needed, Some(12));
-    assert!(own.tables.variance.is_empty());
+    assert!(own.variance.is_empty());
 }
 
 #[test]
 fn the_table_is_written_only_where_it_has_rows_and_is_read_again() {
     let folder = tempfile::tempdir().unwrap();
-    let study = |repeats| {
-        Study::new(&text(repeats, r#""gaussian""#, 0.02))
-            .run()
-            .tables
-    };
+    let study = |repeats| Study::new(&text(repeats, r#""gaussian""#, 0.02)).run();
     let crossed = study("trials = 25\nprojections_per_split = 5");
     assert!(crossed.summary[0].1.bootstrap_low.unwrap() < crossed.summary[0].1.accuracy);
     let written = |folder: &Path, tables| {

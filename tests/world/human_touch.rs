@@ -2,10 +2,11 @@
 
 use crate::command::Case;
 use bubbletouch::contact::{SkinWorkspace, press_skin, spring_load};
-use bubbletouch::kinds::recognition::{Outcome, RecognitionStudy};
+use bubbletouch::kinds::recognition::RecognitionStudy;
 use bubbletouch::objects::{FingerPose, Model};
 use bubbletouch::random::Seed;
 use bubbletouch::study::progress::Silent;
+use bubbletouch::study::table::Tables;
 use bubbletouch::study::{
     FramePlace, HumanTouches, Plan, StudySpec, Sweep, TouchSet, record_touch,
 };
@@ -359,15 +360,14 @@ fn laid_out(text: &str) -> bubbletouch::Result<(Plan, HumanTouches, Sweep)> {
     Ok((plan, touches, sweep))
 }
 
-fn outcome(kinds: &str) -> Outcome {
+fn outcome(kinds: &str) -> Tables {
     let (plan, touches, _) = laid_out(&STUDY.replace("KINDS", kinds)).unwrap();
     let study = RecognitionStudy::new(plan, Box::new(touches)).unwrap();
     study.run(&Silent).unwrap()
 }
 
-fn accuracies(outcome: &Outcome) -> Vec<f64> {
+fn accuracies(outcome: &Tables) -> Vec<f64> {
     outcome
-        .tables
         .summary
         .iter()
         .map(|(_, score)| score.accuracy)

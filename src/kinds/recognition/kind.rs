@@ -40,7 +40,11 @@ const METHODS: [(&str, &str); 5] = [
 ];
 
 impl Kind for RecognitionStudy {
-    const ABOUT: About = super::RECOGNITION;
+    const ABOUT: About = About {
+        table: "recognition",
+        words: "a study that recognises objects",
+        may_change: crate::study::spec::MAY_CHANGE,
+    };
 
     fn load(source: &Source) -> Result<Self> {
         load_study(source)

@@ -1,55 +1,62 @@
 //! How often limits of the model were reached.
 
-use super::rows::ArrayOutcome;
+use super::rows::TouchRow;
 use super::study::RecognitionStudy;
-use crate::study::table::{Limit, Tables};
+use crate::study::table::{Cell, Limit, TrialScore};
 
 impl RecognitionStudy {
     /// Of touches on all arrays, and of fits.
-    pub(super) fn limits(&self, tables: &Tables, arrays: &[ArrayOutcome]) -> Vec<Limit> {
-        let sum = |count: fn(&ArrayOutcome) -> usize| -> u64 {
-            arrays.iter().map(|array| count(array) as u64).sum()
+    pub(super) fn limits(&self, fits: &[(Cell, TrialScore)], rows: &[TouchRow]) -> Vec<Limit> {
+        // The deepest frame is the same however many come before it.
+        let is_counted = |row: &&TouchRow| {
+            let (part, _, n_frames) = self.on(row.on);
+            row.is_made && n_frames == part.plan.frames[0]
         };
-        let n_touches = sum(|a| a.n_touches);
-        let fits = tables.accuracy.iter();
-        let n_capped = fits.filter(|(_, score)| score.n_capped > 0).count();
-        let limit = |what: &str, (count, of), meaning: &str| Limit {
+        let made: Vec<&TouchRow> = rows.iter().filter(is_counted).collect();
+        let sum = |count: fn(&TouchRow) -> usize| made.iter().map(|row| count(row)).sum();
+        let n_touches = sum(|row| row.n_touches);
+        let deeper = made.iter().map(|row| {
+            let (part, patch, _) = self.on(row.on);
+            part.touched.n_deeper_than(patch.taxel.stroke)
+        });
+        let n_deeper: usize = deeper.sum();
+        let n_capped = fits.iter().filter(|(_, score)| score.n_capped > 0).count();
+        let missed = match self.first().plan.spec.human_touch {
+            Some(_) => {
+                "the hand was beyond the array or between its taxels; their frames hold no contact"
+            }
+            None => "no part of the object was over the array; their frames hold no contact",
+        };
+        let limit = |what: &str, (count, of): (usize, usize), meaning: &str| Limit {
             what: what.to_owned(),
-            count,
-            of,
+            count: count as u64,
+            of: of as u64,
             meaning: meaning.to_owned(),
         };
         let mut limits = vec![
             limit(
                 "touches that met nothing",
-                (sum(|a| a.n_missed), n_touches),
-                match self.first().plan.spec.human_touch {
-                    Some(_) => {
-                        "the hand was beyond the array or between its taxels; their frames hold no contact"
-                    }
-                    None => {
-                        "no part of the object was over the array; their frames hold no contact"
-                    }
-                },
+                (sum(|row| row.n_missed), n_touches),
+                missed,
             ),
             limit(
                 "touches with a saturated taxel",
-                (sum(|a| a.n_saturated), n_touches),
+                (sum(|row| row.n_saturated), n_touches),
                 "a taxel was at its stroke, where it cannot tell how much further the object pushes",
             ),
             limit(
                 "fits stopped at the solver's iteration cap",
-                (n_capped as u64, tables.accuracy.len() as u64),
+                (n_capped, fits.len()),
                 "at least one of their SVMs is short of its tolerance",
             ),
-        ];
-        let n_deep = sum(|a| a.n_deeper);
-        if n_deep > 0 {
-            limits.push(limit(
+            limit(
                 "touches deeper than the stroke",
-                (n_deep, n_touches),
+                (n_deeper, n_touches),
                 "the patch went on past the depth at which its first taxel was at its stroke: more taxels are saturated, the deeper the more",
-            ));
+            ),
+        ];
+        if n_deeper == 0 {
+            limits.pop();
         }
         limits
     }

@@ -3,7 +3,7 @@
 use super::scale::recognition_scale;
 use super::study::RecognitionStudy;
 use crate::error::{Error, Result};
-use crate::kinds::{self, Source};
+use crate::kinds::{self, Kind, Source};
 use crate::random::Seed;
 use crate::study::HumanTouches;
 use crate::study::axes::AxisValues;
@@ -14,6 +14,7 @@ use crate::study::simulation::draw_touches;
 use crate::study::spec::StudySpec;
 use crate::study::touch_set::TouchSet;
 use std::collections::HashMap;
+use std::collections::hash_map::Entry;
 use std::path::Path;
 use std::sync::Arc;
 
@@ -28,9 +29,9 @@ pub fn read_plan(source: &Source) -> Result<Plan> {
 /// The same: a plan for each combination of its own axes.
 fn read_plans(source: &Source) -> Result<Vec<(AxisValues, Plan)>> {
     if let Some(about) = kinds::about(&source.text)
-        && about.table != super::RECOGNITION.table
+        && about.table != RecognitionStudy::ABOUT.table
     {
-        let recognition = super::RECOGNITION.words;
+        let recognition = RecognitionStudy::ABOUT.words;
         let allowed = format!("{recognition} (bubbletouch run runs all kinds)");
         return Err(Error::input(&source.place, about.words, allowed));
     }
@@ -72,26 +73,22 @@ impl RecognitionStudy {
         let mut drawn: HashMap<String, Arc<dyn TouchSet + Send>> = HashMap::new();
         let mut variants = Vec::with_capacity(plans.len());
         for (variant, plan) in plans {
-            let built = format!("{:?}", plan.spec.objects);
-            let (key, seed) = (touch_content(&plan), plan.spec.seed);
-            let touched = match (drawn.get(&key), &plan.spec.human_touch) {
-                (Some(known), _) => known.clone(),
-                (None, Some(human)) => {
-                    check_touches(&plan, human.kinds.len(), ceiling)?;
-                    Arc::new(HumanTouches::draw(human, &Seed::new(seed))?)
-                }
-                (None, None) => {
-                    if !objects.contains_key(&built) {
-                        let loaded = load_objects(&plan.spec.objects, packings)?;
-                        objects.insert(built.clone(), loaded);
-                    }
-                    let objects = &objects[&built];
-                    check_touches(&plan, objects.len(), ceiling)?;
-                    let seed = Seed::new(seed);
-                    Arc::new(draw_touches(objects.clone(), &plan.placement, &seed)?)
-                }
+            let (content, seed) = (touch_content(&plan), Seed::new(plan.spec.seed));
+            let touched: Arc<dyn TouchSet + Send> = if let Some(known) = drawn.get(&content) {
+                known.clone()
+            } else if let Some(human) = &plan.spec.human_touch {
+                check_touches(&plan, human.kinds.len(), ceiling)?;
+                Arc::new(HumanTouches::draw(human, &seed)?)
+            } else {
+                let known = objects.entry(format!("{:?}", plan.spec.objects));
+                let objects = match known {
+                    Entry::Occupied(known) => known.into_mut(),
+                    Entry::Vacant(new) => new.insert(load_objects(&plan.spec.objects, packings)?),
+                };
+                check_touches(&plan, objects.len(), ceiling)?;
+                Arc::new(draw_touches(objects.clone(), &plan.placement, &seed)?)
             };
-            drawn.insert(key, touched.clone());
+            drawn.insert(content, touched.clone());
             variants.push((variant, plan, touched));
         }
         Self::of_variants(variants)

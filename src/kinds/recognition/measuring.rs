@@ -1,7 +1,8 @@
 //! Makes the touches of an array once, measures each group once a trial, evaluates every family that is left.
 
+use super::cost::measure_s;
 use super::rows::{CellRow, RecognitionRows, TouchRow};
-use super::study::{RecognitionStudy, in_frames};
+use super::study::{MEASURE, RecognitionStudy, in_frames};
 use crate::error::Result;
 use crate::study::evaluation::Trial;
 use crate::study::frames::Frames;
@@ -9,16 +10,18 @@ use crate::study::measurement::{Measurements, measure_group};
 use crate::study::pieces::PiecesLeft;
 use crate::study::progress::{Progress, Silent};
 use crate::study::simulation::describe;
+use crate::study::time_left::Piece;
 use rayon::prelude::*;
 use std::cmp::Reverse;
 use std::collections::BTreeMap;
 
-/// A group in a trial, and those of its families that are left.
+/// What is measured once in a trial, and those of the families that learn from it that are left.
 pub(super) struct Job<'a> {
     study: &'a RecognitionStudy,
     /// The first of the groups that are measured together.
-    pub group: usize,
+    group: usize,
     trial: usize,
+    n_measurements: usize,
     families: Vec<usize>,
 }
 
@@ -27,10 +30,12 @@ impl RecognitionStudy {
         for part in self.parts() {
             part.touched.prepare();
         }
-        let all: Vec<_> = self.touch_sets.iter().collect();
-        let mut order: Vec<usize> = (0..all.len()).collect();
+        let mut order: Vec<usize> = (0..self.touch_sets.len()).collect();
         // Most frames first: what learns from them takes longest, and how much longer than planned is then known early.
-        order.sort_by_key(|&t| (all[t].part, all[t].array, Reverse(all[t].n_frames)));
+        order.sort_by_key(|&touches| {
+            let (part, array, n_frames) = self.made_on(touches);
+            (part, array, Reverse(n_frames))
+        });
         let jobs = order
             .into_iter()
             .map(|touches| (touches, self.jobs(left, touches)));
@@ -54,25 +59,36 @@ impl RecognitionStudy {
         self.parts().len() > 1
     }
 
-    /// Groups in trials of which some families are left, of some touches; those that are measured alike together.
+    /// What is measured of some touches for families that are left. A group of prefixes is measured once and serves all cells; else each m
+    /// serves its own.
     pub(super) fn jobs(&self, left: &PiecesLeft<RecognitionRows>, touches: usize) -> Vec<Job<'_>> {
         let mut alike: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
-        for group in self.groups.iter().filter(|group| group.touches == touches) {
-            let families = alike.entry(group.measured_as).or_default();
-            families.extend(group.families.clone());
+        for (number, family) in self.families.iter().enumerate() {
+            let group = &self.groups[family.group];
+            if group.touches == touches {
+                alike.entry(group.measured_as).or_default().push(number);
+            }
         }
         let mut jobs = Vec::new();
         for trial in 0..self.n_trials() {
             for (&group, families) in &alike {
-                let is_left = |&family: &usize| left.has_number(self.family_item(trial, family));
-                let families: Vec<usize> = families.iter().copied().filter(is_left).collect();
-                if !families.is_empty() {
-                    jobs.push(Job {
-                        study: self,
-                        group,
-                        trial,
-                        families,
-                    });
+                let measured = self.group(group).1;
+                let is_nested = measured.ensemble.is_prefix_nested();
+                for n_measurements in measured.projected() {
+                    let is_served = |&family: &usize| {
+                        (is_nested || self.family(family).1[0].measurements == n_measurements)
+                            && left.has_number(self.family_item(trial, family))
+                    };
+                    let families: Vec<usize> = families.iter().copied().filter(is_served).collect();
+                    if !families.is_empty() {
+                        jobs.push(Job {
+                            study: self,
+                            group,
+                            trial,
+                            n_measurements,
+                            families,
+                        });
+                    }
                 }
             }
         }
@@ -115,10 +131,11 @@ impl RecognitionStudy {
         left.finish_number(touches, || {
             let row = TouchRow {
                 is_made: true,
+                n_touches: part.sweep.labels.len(),
                 n_missed: frames.facts.n_missed,
                 n_saturated: frames.facts.n_saturated,
                 cpu_s: frames.facts.cpu_s,
-                ..TouchRow::default()
+                on: 0,
             };
             Ok(RecognitionRows {
                 touches: vec![row],
@@ -136,57 +153,44 @@ impl Job<'_> {
         families.map(|&family| self.study.family_item(self.trial, family))
     }
 
-    /// What is measured once, and the families that it serves: a group of prefixes is projected once and serves all cells; else
-    /// each m serves its own.
-    pub fn batches(&self) -> Vec<(usize, Vec<usize>)> {
-        let (_, group) = self.study.group(self.group);
-        let nested = group.ensemble.is_prefix_nested();
-        let served = |m| {
-            let serves =
-                |&family: &usize| nested || self.study.family(family).1[0].measurements == m;
-            let families: Vec<usize> = self.families.iter().copied().filter(serves).collect();
-            (!families.is_empty()).then_some((m, families))
-        };
-        group.projected().into_iter().filter_map(served).collect()
+    /// What it is planned to take, but for the families.
+    pub fn work(&self) -> Piece {
+        let (part, group) = self.study.group(self.group);
+        let measured = (part.sweep.labels.len(), self.n_measurements);
+        Piece::of_stage(MEASURE, measure_s(&part.plan, group, measured))
     }
 
     /// Measures, then evaluates the families.
     fn run(&self, left: &PiecesLeft<RecognitionRows>, frames: &Frames) -> Result<()> {
-        let item = |family| self.study.family_item(self.trial, family);
-        for (n_measurements, families) in self.batches() {
-            let need: Vec<usize> = families.iter().map(|&family| item(family)).collect();
-            let measure = || self.measure(frames, n_measurements);
-            let work = self.study.measure_work(self.group, n_measurements);
-            let Some(measured) = left.prepare_numbers(&need, measure)? else {
-                // Nobody waits for it.
-                left.progress.worked(&work, 0.0);
-                continue;
-            };
-            left.progress.worked(&work, measured.cpu_s);
-            let families = families.par_iter().enumerate();
-            families.try_for_each(|(place, &family)| {
-                left.finish_number(item(family), || {
-                    let mut rows = self.evaluate(family, &measured)?;
-                    // It is told once.
-                    if place == 0 {
-                        rows.touches.push(TouchRow {
-                            n_measured: self.study.group(self.group).0.sweep.labels.len(),
-                            cpu_s: measured.cpu_s,
-                            ..TouchRow::default()
-                        });
-                    }
-                    Ok(rows)
-                })
-            })?;
-        }
-        Ok(())
+        let need: Vec<usize> = self.items().collect();
+        let measured = left.prepare_numbers(&need, || self.measure(frames))?;
+        let cpu_s = measured.as_ref().map_or(0.0, |measured| measured.cpu_s);
+        left.progress.worked(&self.work(), cpu_s);
+        let Some(measured) = measured else {
+            return Ok(());
+        };
+        let families = self.families.par_iter().zip(&need).enumerate();
+        families.try_for_each(|(place, (&family, &item))| {
+            left.finish_number(item, || {
+                let mut rows = self.evaluate(family, &measured)?;
+                // It is told once.
+                if place == 0 {
+                    rows.touches.push(TouchRow {
+                        n_touches: self.study.group(self.group).0.sweep.labels.len(),
+                        cpu_s,
+                        ..TouchRow::default()
+                    });
+                }
+                Ok(rows)
+            })
+        })
     }
 
-    fn measure(&self, frames: &Frames, n_measurements: usize) -> Result<Measurements> {
+    fn measure(&self, frames: &Frames) -> Result<Measurements> {
         let (part, group) = self.study.group(self.group);
         let touches = (part.touched.as_ref() as _, frames);
         let trial = (self.trial, &part.sweep.splits[self.trial]);
-        measure_group(&part.plan, group, touches, trial, n_measurements)
+        measure_group(&part.plan, group, touches, trial, self.n_measurements)
     }
 
     fn evaluate(&self, family: usize, measurements: &Measurements) -> Result<RecognitionRows> {

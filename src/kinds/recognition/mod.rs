@@ -10,15 +10,6 @@ mod scale;
 mod study;
 
 pub use load::{load_study, read_plan};
-pub use rows::{ArrayOutcome, Outcome, RecognitionRows};
+pub use rows::RecognitionRows;
 pub use scale::recognition_scale;
 pub use study::{RecognitionStudy, StudyPart};
-
-use super::About;
-
-/// What studies that recognise objects are.
-pub const RECOGNITION: About = About {
-    table: "recognition",
-    words: "a study that recognises objects",
-    may_change: crate::study::spec::MAY_CHANGE,
-};

@@ -2,8 +2,6 @@
 
 use crate::study::evaluation::Evaluation;
 use crate::study::pieces::PieceRows;
-use crate::study::table::Tables;
-use crate::world::Patch;
 use serde::{Deserialize, Serialize};
 
 /// What work items found.
@@ -35,12 +33,12 @@ pub(super) struct TouchRow {
     pub on: usize,
     /// Whether they were made; else measured.
     pub is_made: bool,
-    /// Touches that met nothing, of those that were made.
+    /// How many.
+    pub n_touches: usize,
+    /// Those that met nothing, of those that were made.
     pub n_missed: usize,
-    /// Touches with at least one taxel at its stroke, of those that were made.
+    /// Those with at least one taxel at its stroke, of those that were made.
     pub n_saturated: usize,
-    /// Touches that were measured, counted as often as they were.
-    pub n_measured: usize,
     /// Processor-seconds.
     pub cpu_s: f64,
 }
@@ -50,28 +48,4 @@ impl PieceRows for RecognitionRows {
         self.cells.extend(next.cells);
         self.touches.extend(next.touches);
     }
-}
-
-/// What a study found.
-#[derive(Clone, Debug)]
-pub struct Outcome {
-    /// All tables.
-    pub tables: Tables,
-    /// What happened while the touches of each array were made.
-    pub arrays: Vec<ArrayOutcome>,
-}
-
-/// What happened while the touches of an array were made.
-#[derive(Clone, Debug, PartialEq)]
-pub struct ArrayOutcome {
-    /// The array.
-    pub patch: Patch,
-    /// How many touches.
-    pub n_touches: usize,
-    /// Touches that met nothing.
-    pub n_missed: usize,
-    /// Touches with at least one taxel at its stroke.
-    pub n_saturated: usize,
-    /// Touches deeper than the stroke.
-    pub n_deeper: usize,
 }

@@ -40,12 +40,9 @@ pub fn recognition_scale(
     };
     let learned = |(part, group): Placed| {
         let n_test = part.sweep.splits.iter().map(|split| split.test.len());
-        let rows = Rows {
-            n_test: n_test.max().unwrap_or(0) as f64,
-            n_classes: part.touched.class_names().len(),
-        };
-        let families = group.families();
-        largest(families.map(|family| rows.family_bytes(&part.plan, &family[0])))
+        let (n_test, n_classes) = (n_test.max().unwrap_or(0), part.touched.class_names().len());
+        let bytes = |family: &[Cell]| family_bytes(&part.plan, &family[0], n_test, n_classes);
+        largest(group.families().map(bytes))
     };
     let in_memory = largest(groups().map(|g| n_frames(g) * (most_bytes(n_taxels(g)) + 16) as f64));
     // Where each frame is, and what is held before it is put there.
@@ -74,52 +71,33 @@ pub fn recognition_scale(
     }
 }
 
-/// Rows that a family learns from and is tested on.
-struct Rows {
-    n_test: f64,
-    n_classes: usize,
-}
-
-impl Rows {
-    fn family_bytes(&self, plan: &Plan, cell: &Cell) -> f64 {
-        let m = cell.n_features() as f64;
-        let n_train = (cell.train_touches * self.n_classes) as f64;
-        let fuses = plan
-            .spec
-            .recognition
-            .fused_touches
-            .values()
-            .iter()
-            .any(|&k| k > 1);
-        let n_scores = match (cell.classifier.has_c(), plan.spec.recognition.multiclass) {
-            // Some rows at a time, unless scores are fused.
-            (true, _) if !fuses => 0,
-            (true, Multiclass::OneVsOne) => self.n_classes * (self.n_classes - 1) / 2,
-            _ => self.n_classes,
-        };
-        TRAINING_BYTES * n_train * m
-            + TEST_BYTES * self.n_test * m
-            + SCORE_BYTES * self.n_test * n_scores as f64
-            + self.solver_bytes(plan, cell)
-    }
-
-    /// Kernel values, at most as many as the solver is allowed.
-    fn solver_bytes(&self, plan: &Plan, cell: &Cell) -> f64 {
-        let is_kernel_svm = cell.classifier.about().kernel.is_some();
-        let recognition = &plan.spec.recognition;
-        if !is_kernel_svm || recognition.solver == Solver::CoordinateDescent {
-            return 0.0;
-        }
-        let n_train = (cell.train_touches * self.n_classes) as f64;
-        let of_all = 8.0 * n_train * n_train;
-        let of_pair = 8.0 * (2.0 * cell.train_touches as f64).powi(2);
-        match (recognition.solver, recognition.multiclass) {
-            (_, Multiclass::CrammerSinger) => 0.0,
-            (Solver::Linfa, Multiclass::OneVsOne) => of_pair,
-            (Solver::Linfa, Multiclass::OneVsRest) => of_all,
-            _ => of_all.min(solver_memory(recognition.solver_memory_gib) as f64),
-        }
-    }
+/// Rows that a family learns from and is tested on, the scores of these, and the kernel values of its solver.
+fn family_bytes(plan: &Plan, cell: &Cell, n_test: usize, n_classes: usize) -> f64 {
+    let learned = &plan.spec.recognition;
+    let fuses = learned.fused_touches.values().iter().any(|&k| k > 1);
+    let n_scores = match (cell.classifier.has_c(), learned.multiclass) {
+        // Some rows at a time, unless scores are fused.
+        (true, _) if !fuses => 0,
+        (true, Multiclass::OneVsOne) => n_classes * (n_classes - 1) / 2,
+        _ => n_classes,
+    };
+    let n_train = (cell.train_touches * n_classes) as f64;
+    let (m, n_test) = (cell.n_features() as f64, n_test as f64);
+    let of_pair = 8.0 * (2.0 * cell.train_touches as f64).powi(2);
+    let of_all = 8.0 * n_train * n_train;
+    let is_kernel_svm = cell.classifier.about().kernel.is_some();
+    let kernel_values = match (learned.solver, learned.multiclass) {
+        _ if !is_kernel_svm => 0.0,
+        (Solver::CoordinateDescent, _) | (_, Multiclass::CrammerSinger) => 0.0,
+        (Solver::Linfa, Multiclass::OneVsOne) => of_pair,
+        (Solver::Linfa, Multiclass::OneVsRest) => of_all,
+        // At most as many as the solver is allowed.
+        _ => of_all.min(solver_memory(learned.solver_memory_gib) as f64),
+    };
+    TRAINING_BYTES * n_train * m
+        + TEST_BYTES * n_test * m
+        + SCORE_BYTES * n_test * n_scores as f64
+        + kernel_values
 }
 
 fn largest(values: impl Iterator<Item = f64>) -> f64 {

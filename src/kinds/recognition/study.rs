@@ -1,8 +1,9 @@
 //! A study that recognises objects: its work items, and the tables of what they found.
 
-use super::cost::{family_s, measure_s, touch_s};
+use super::cost::{family_s, touch_s};
 use super::load::touch_content;
-use super::rows::{ArrayOutcome, Outcome, RecognitionRows};
+use super::measuring::Job;
+use super::rows::{RecognitionRows, TouchRow};
 use crate::error::Result;
 use crate::random::Seed;
 use crate::report::recognition::tables_of;
@@ -18,7 +19,7 @@ use crate::study::progress::Progress;
 use crate::study::published::{check_published, compare_with_published};
 use crate::study::short_hash;
 use crate::study::sweep::{Group, Sweep};
-use crate::study::table::{Cell, StageTime};
+use crate::study::table::{Cell, StageTime, Tables};
 use crate::study::tabulate::tabulate;
 use crate::study::time_left::Piece;
 use crate::study::touch_set::TouchSet;
@@ -30,7 +31,7 @@ use std::sync::Arc;
 
 /// Stages, for the time left; each classifier has its own.
 const TOUCH: u8 = 0;
-const MEASURE: u8 = 1;
+pub(super) const MEASURE: u8 = 1;
 const LEARN: u8 = 2;
 
 /// A recognition study that is laid out.
@@ -48,7 +49,7 @@ pub struct RecognitionStudy {
     /// All groups, part by part.
     pub(super) groups: Vec<PlacedGroup>,
     /// All families, group by group.
-    families: Vec<Family>,
+    pub(super) families: Vec<Family>,
 }
 
 /// What is run of one combination of a study's own axes.
@@ -63,14 +64,10 @@ pub struct StudyPart {
 
 /// Touches of an array that are made, with so many frames each.
 pub(super) struct Touches {
-    /// The first part that reads them.
-    pub part: usize,
-    /// The array, by its place in the part's plan.
-    pub array: usize,
-    /// Frames a touch.
-    pub n_frames: usize,
-    /// What tells them from others in the name of their work item; empty in a study without axes of its own.
-    key: String,
+    /// The first group that reads them.
+    group: usize,
+    /// What they are called as a work item: the same for the same touches of the same study.
+    name: String,
 }
 
 /// A group of a part.
@@ -83,13 +80,11 @@ pub(super) struct PlacedGroup {
     pub touches: usize,
     /// The first group that reads and measures the same.
     pub measured_as: usize,
-    /// Its families.
-    pub families: Range<usize>,
 }
 
-/// A [family](Group::families) of cells.
-struct Family {
-    group: usize,
+/// A [family](Group::families) of cells: its group, and which cells of that.
+pub(super) struct Family {
+    pub group: usize,
     cells: Range<usize>,
 }
 
@@ -118,7 +113,6 @@ impl RecognitionStudy {
             groups: Vec::new(),
             families: Vec::new(),
         };
-        let is_one = variants.len() == 1;
         let mut n_cells = 0;
         for (variant, plan, touched) in variants {
             let mut sweep = Sweep::lay_out(&plan, touched.as_ref())?;
@@ -132,50 +126,32 @@ impl RecognitionStudy {
         }
         let cells: Vec<&Cell> = study.all_cells().collect();
         check_published(&study.first().plan.spec.report.published, &cells)?;
-        study.place_groups(is_one);
+        study.place_groups();
         Ok(study)
     }
 
-    /// Finds what touches and measurements have the same content.
-    fn place_groups(&mut self, is_one: bool) {
+    /// Lists groups and families, and finds which groups have the same touches and measurements.
+    fn place_groups(&mut self) {
         let mut known_touches: HashMap<String, usize> = HashMap::new();
         let mut known_groups: HashMap<String, usize> = HashMap::new();
-        for (part, study) in self.parts.iter().enumerate() {
-            let touched = if is_one {
-                String::new()
-            } else {
-                touch_content(&study.plan)
-            };
-            for (place, group) in study.sweep.groups.iter().enumerate() {
-                let StudyPart { plan, .. } = study;
-                let patch = &plan.arrays[group.array];
-                let made = match is_one {
-                    true => format!("{} {}", group.array, group.frames),
-                    false => format!("{touched} {patch:?} {}", group.frames),
-                };
-                let next = self.touch_sets.len();
-                let touches = *known_touches.entry(made.clone()).or_insert(next);
-                if touches == next {
-                    self.touch_sets.push(Touches {
-                        part,
-                        array: group.array,
-                        n_frames: group.frames,
-                        key: if is_one {
-                            String::new()
-                        } else {
-                            format!(", {}", short_hash(&made, 12))
-                        },
-                    });
-                }
-                let number = self.groups.len();
-                let measured_as = match is_one {
-                    true => number,
-                    false => {
-                        let content = format!("{touches} {}", measured_content(plan, group));
-                        *known_groups.entry(content).or_insert(number)
-                    }
-                };
-                let first = self.families.len();
+        for (part, StudyPart { plan, sweep, .. }) in self.parts.iter().enumerate() {
+            let touched = touch_content(plan);
+            for (place, group) in sweep.groups.iter().enumerate() {
+                let (patch, number) = (&plan.arrays[group.array], self.groups.len());
+                let content = format!("{touched} {patch:?} {}", group.frames);
+                let name = touches_name(patch, group.frames, &content);
+                let touches = *known_touches.entry(content).or_insert_with(|| {
+                    let group = number;
+                    self.touch_sets.push(Touches { group, name });
+                    self.touch_sets.len() - 1
+                });
+                let content = format!("{touches} {}", measured_content(plan, group));
+                self.groups.push(PlacedGroup {
+                    part,
+                    place,
+                    touches,
+                    measured_as: *known_groups.entry(content).or_insert(number),
+                });
                 let mut start = 0;
                 self.families.extend(group.families().map(|family| {
                     let cells = start..start + family.len();
@@ -185,13 +161,6 @@ impl RecognitionStudy {
                         cells,
                     }
                 }));
-                self.groups.push(PlacedGroup {
-                    part,
-                    place,
-                    touches,
-                    measured_as,
-                    families: first..self.families.len(),
-                });
             }
         }
     }
@@ -227,7 +196,8 @@ impl RecognitionStudy {
 
     /// Arrays on which touches are made.
     pub fn n_arrays(&self) -> usize {
-        let arrays = self.touch_sets.iter().map(|t| (t.part, t.array));
+        let made = (0..self.touch_sets.len()).map(|touches| self.made_on(touches));
+        let arrays = made.map(|(part, array, _)| (part, array));
         arrays.collect::<HashSet<_>>().len()
     }
 
@@ -274,16 +244,17 @@ impl RecognitionStudy {
         self.family_item(self.n_trials(), 0) + touches
     }
 
+    /// The part and the array, by their numbers, that touches are made on, and their frames.
+    pub(super) fn made_on(&self, touches: usize) -> (usize, usize, usize) {
+        let group = self.touch_sets[touches].group;
+        let (_, Group { array, frames, .. }) = self.group(group);
+        (self.groups[group].part, *array, *frames)
+    }
+
     /// What is touched, and on what.
     pub(super) fn on(&self, touches: usize) -> (&StudyPart, &Patch, usize) {
-        let Touches {
-            part,
-            array,
-            n_frames,
-            ..
-        } = self.touch_sets[touches];
-        let part = &self.parts[part];
-        (part, &part.plan.arrays[array], n_frames)
+        let (part, group) = self.group(self.touch_sets[touches].group);
+        (part, &part.plan.arrays[group.array], group.frames)
     }
 
     pub(super) fn touch_work(&self, touches: usize) -> Piece {
@@ -293,12 +264,6 @@ impl RecognitionStudy {
         Piece::one_by_one(TOUCH, planned_s / rayon::current_num_threads() as f64)
     }
 
-    pub(super) fn measure_work(&self, group: usize, n_measurements: usize) -> Piece {
-        let (part, group) = self.group(group);
-        let measured = (part.sweep.labels.len(), n_measurements);
-        Piece::of_stage(MEASURE, measure_s(&part.plan, group, measured))
-    }
-
     fn learn_work(&self, (part, family): (&StudyPart, &[Cell])) -> Piece {
         let n_objects = part.touched.class_names().len();
         let of = (n_objects, part.sweep.labels.len());
@@ -306,40 +271,39 @@ impl RecognitionStudy {
         Piece::of_stage(stage, family_s(&part.plan, family, of))
     }
 
-    /// Of all touches what was made, measured, missed and saturated.
-    fn add_arrays(&self, outcome: &mut Outcome, rows: &RecognitionRows) {
-        for touches in 0..self.touch_sets.len() {
-            let of_array = || rows.touches.iter().filter(|row| row.on == touches);
-            if of_array().next().is_none() {
-                continue;
-            }
-            let (part, patch, n_frames) = self.on(touches);
-            let n_touches = part.sweep.labels.len();
-            let seconds = |is_made: bool| -> f64 {
-                let rows = of_array().filter(|row| row.is_made == is_made);
-                rows.map(|row| row.cpu_s).sum()
-            };
-            let n_measured = of_array().map(|row| row.n_measured).sum();
-            for (stage, n_touches, cpu_s) in [
-                ("simulate", n_touches, seconds(true)),
-                ("measure", n_measured, seconds(false)),
-            ] {
-                let stage = in_frames(stage, n_frames);
-                let time = stage_time(stage, patch, (n_touches, cpu_s));
-                outcome.tables.stages.push(time);
-            }
-            // The deepest frame is the same however many come before it.
-            if n_frames == part.plan.frames[0] {
-                outcome.arrays.push(ArrayOutcome {
-                    patch: *patch,
+    /// What it took to make and to measure touches.
+    fn stages(&self, rows: &[TouchRow]) -> Vec<StageTime> {
+        let mut stages = Vec::new();
+        for on in 0..self.touch_sets.len() {
+            let (_, Patch { grid, .. }, n_frames) = self.on(on);
+            for (stage, is_made) in [("simulate", true), ("measure", false)] {
+                let rows = rows.iter().filter(|row| row.on == on);
+                let rows: Vec<&TouchRow> = rows.filter(|row| row.is_made == is_made).collect();
+                if rows.is_empty() {
+                    continue;
+                }
+                let n_touches = rows.iter().map(|row| row.n_touches).sum();
+                let cpu_s: f64 = rows.iter().map(|row| row.cpu_s).sum();
+                stages.push(StageTime {
+                    stage: in_frames(stage, n_frames),
+                    pitch_mm: millimetres(grid.pitch),
+                    nx: grid.nx,
+                    ny: grid.ny,
                     n_touches,
-                    n_missed: of_array().map(|row| row.n_missed).sum(),
-                    n_saturated: of_array().map(|row| row.n_saturated).sum(),
-                    n_deeper: part.touched.n_deeper_than(patch.taxel.stroke),
+                    cpu_s,
+                    us_per_touch: 1e6 * cpu_s / n_touches as f64,
                 });
             }
         }
+        stages
     }
+}
+
+/// What touches are called as a work item.
+fn touches_name(patch: &Patch, n_frames: usize, content: &str) -> String {
+    let (grid, content) = (&patch.grid, short_hash(content, 12));
+    let (nx, ny, pitch) = (grid.nx, grid.ny, grid.pitch);
+    format!("touches of {n_frames} frames on {nx}x{ny} taxels at {pitch} m, {content}")
 }
 
 /// All that the measurements of a group depend on, beside its touches.
@@ -358,7 +322,7 @@ impl RecognitionStudy {
     ///
     /// # Errors
     /// What an item fails of.
-    pub fn run(&self, progress: &dyn Progress) -> Result<Outcome> {
+    pub fn run(&self, progress: &dyn Progress) -> Result<Tables> {
         self.outcome(run_whole(self, progress)?)
     }
 
@@ -366,23 +330,20 @@ impl RecognitionStudy {
     ///
     /// # Errors
     /// Those of [`PieceStudy::tables`].
-    pub fn outcome(&self, rows: RecognitionRows) -> Result<Outcome> {
-        let mut outcome = Outcome {
-            tables: Default::default(),
-            arrays: Vec::new(),
-        };
-        self.add_arrays(&mut outcome, &rows);
+    pub fn outcome(&self, rows: RecognitionRows) -> Result<Tables> {
+        let mut tables = Tables::default();
         let scored = rows.cells.into_iter().map(|row| {
             let cell = &self.group(row.at.0).1.cells[row.at.1];
             (cell.clone(), row.evaluation)
         });
         let names: Vec<Vec<&str>> = self.parts.iter().map(|p| p.touched.class_names()).collect();
         let name = |cell: &Cell, label: usize| names[cell.variant.number][label].to_owned();
-        tabulate(&mut outcome.tables, scored.collect(), name)?;
+        tabulate(&mut tables, scored.collect(), name)?;
         let published = &self.first().plan.spec.report.published;
-        outcome.tables.published = compare_with_published(published, &outcome.tables.summary)?;
-        outcome.tables.limits = self.limits(&outcome.tables, &outcome.arrays);
-        Ok(outcome)
+        tables.published = compare_with_published(published, &tables.summary)?;
+        tables.stages = self.stages(&rows.touches);
+        tables.limits = self.limits(&tables.accuracy, &rows.touches);
+        Ok(tables)
     }
 
     /// A few touches for the eye, of the first combination of the study's own axes.
@@ -413,18 +374,10 @@ impl PieceStudy for RecognitionStudy {
                 pieces.push(NamedPiece::new(name, group, *work));
             }
         }
-        for (number, touches) in self.touch_sets.iter().enumerate() {
-            let (_, patch, n_frames) = self.on(number);
-            let (nx, ny, pitch) = (patch.grid.nx, patch.grid.ny, patch.grid.pitch);
-            let name = format!(
-                "touches of {n_frames} frames on {nx}x{ny} taxels at {pitch} m{}",
-                touches.key
-            );
-            let mut groups = self.groups.iter();
-            let group = groups.position(|group| group.touches == number);
+        for touches in &self.touch_sets {
             // What it takes is told while all that needs the touches waits for them.
             let work = Piece::one_by_one(TOUCH, 0.0);
-            pieces.push(NamedPiece::new(name, group.unwrap_or_default(), work));
+            pieces.push(NamedPiece::new(touches.name.clone(), touches.group, work));
         }
         pieces
     }
@@ -441,10 +394,7 @@ impl PieceStudy for RecognitionStudy {
                 continue;
             }
             work.push(self.touch_work(touches));
-            for job in jobs {
-                let batches = job.batches().into_iter();
-                work.extend(batches.map(|(m, _)| self.measure_work(job.group, m)));
-            }
+            work.extend(jobs.iter().map(Job::work));
         }
         work
     }
@@ -475,17 +425,14 @@ impl PieceStudy for RecognitionStudy {
         let settings = settings.as_object().into_iter().flatten();
         let settings = settings.filter(|(_, value)| !value.is_null());
         let mut words: Vec<String> = settings
-            .map(|(key, value)| match value.as_str() {
-                Some(word) => format!("{key} = {word}"),
-                None => format!("{key} = {value}"),
-            })
+            .map(|(key, value)| format!("{key} = {}", value.to_string().trim_matches('"')))
             .collect();
         words.push(format!("trial = {trial}"));
         words.join(", ")
     }
 
     fn tables(&self, rows: RecognitionRows) -> Result<Vec<Table>> {
-        tables_of(&self.outcome(rows)?.tables)
+        tables_of(&self.outcome(rows)?)
     }
 }
 
@@ -494,18 +441,5 @@ pub(super) fn in_frames(stage: &str, n_frames: usize) -> String {
     match n_frames {
         1 => stage.to_owned(),
         n => format!("{stage}, {n} frames a touch"),
-    }
-}
-
-fn stage_time(stage: String, patch: &Patch, (n_touches, cpu_s): (usize, f64)) -> StageTime {
-    let grid = &patch.grid;
-    StageTime {
-        stage,
-        pitch_mm: millimetres(grid.pitch),
-        nx: grid.nx,
-        ny: grid.ny,
-        n_touches,
-        cpu_s,
-        us_per_touch: 1e6 * cpu_s / n_touches.max(1) as f64,
     }
 }

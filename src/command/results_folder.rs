@@ -1,5 +1,7 @@
-//! Whether the files of a folder are those that its run wrote.
+//! A folder of results: whether its files are those that its run wrote, and the study that they are of.
 
+use super::output::packings_beside;
+use bubbletouch::kinds::{self, AnyStudy, Source};
 use bubbletouch::report::csv_tables::sha256_of;
 use bubbletouch::study::provenance::Manifest;
 use bubbletouch::{Error, Result};
@@ -10,10 +12,8 @@ pub fn checked_manifest(folder: &Path) -> Result<Option<Manifest>> {
     let Some(manifest) = Manifest::read(folder)? else {
         return Ok(None);
     };
-    let study = [("study.toml", &manifest.study_sha256)];
-    let tables = manifest.tables_sha256.iter().chain(&manifest.times_sha256);
-    let tables = tables.map(|(name, hash)| (name.as_str(), hash));
-    for (name, hash) in study.into_iter().chain(tables) {
+    check(&folder.join("study.toml"), &manifest.study_sha256)?;
+    for (name, hash) in manifest.tables_sha256.iter().chain(&manifest.times_sha256) {
         check(&folder.join(name), hash)?;
     }
     Ok(Some(manifest))
@@ -27,4 +27,19 @@ fn check(path: &Path, hash: &str) -> Result<()> {
     };
     let allowed = "the file that manifest.json names by its SHA-256 (bubbletouch run writes it)";
     Err(Error::input(path.display(), given, allowed))
+}
+
+/// The study of a folder, which is to hold at most so many bytes. Without a manifest, paths in it are relative to the folder.
+pub fn load_study(
+    folder: &Path,
+    manifest: Option<&Manifest>,
+    memory: Option<u64>,
+) -> Result<Box<dyn AnyStudy>> {
+    kinds::load(&Source {
+        folder: manifest.map_or(folder, |of| &of.paths_from).to_owned(),
+        packings: Some(packings_beside(folder)),
+        results: folder.to_owned(),
+        memory,
+        ..Source::of_results(folder)?
+    })
 }

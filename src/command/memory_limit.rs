@@ -3,25 +3,24 @@
 use bubbletouch::study::memory::{GIB, machine_memory};
 use bubbletouch::{Error, Result};
 
-#[derive(Clone, Copy, Debug, Default, clap::Args)]
-pub struct MemoryArgs {
+#[derive(clap::Args)]
+pub struct MemoryLimit {
     /// Most memory to take, in GiB: less is done at once, frames are read from disk, or the study is refused [default: what the
     /// machine has]
     #[arg(long, value_name = "GIB")]
     memory_gib: Option<f64>,
 }
 
-impl MemoryArgs {
+impl MemoryLimit {
     /// Most bytes to take: what was asked for, or what the machine has, if it tells.
     pub fn bytes(&self) -> Result<Option<u64>> {
         match self.memory_gib {
             None => Ok(machine_memory()),
             Some(gib) if gib.is_finite() && gib > 0.0 => Ok(Some((gib * GIB) as u64)),
-            Some(gib) => Err(Error::input(
-                "--memory-gib",
-                gib,
-                "a positive number of gibibytes",
-            )),
+            Some(gib) => {
+                let allowed = "a positive number of gibibytes";
+                Err(Error::input("--memory-gib", gib, allowed))
+            }
         }
     }
 }

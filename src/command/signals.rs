@@ -1,0 +1,20 @@
+//! Ctrl-C, and a scheduler that ends the process: nothing is half-written, and a line says how to go on.
+
+use super::streams::note;
+use bubbletouch::study::journal::Journal;
+use bubbletouch::{Error, Result};
+use std::sync::Arc;
+
+/// From now on a signal ends the process with all that the journal keeps on the disk.
+pub fn keep_journal_on_signals(journal: &Arc<Journal>) -> Result<()> {
+    let journal = Arc::clone(journal);
+    let set = ctrlc::set_handler(move || {
+        let synced = journal.stop();
+        note("\nstopped: all that is finished is kept; the same command goes on from there");
+        if let Err(error) = synced {
+            note(format_args!("error: {error}"));
+        }
+        std::process::exit(130);
+    });
+    set.map_err(|error| Error::io("signals", "listen", std::io::Error::other(error)))
+}

@@ -1,0 +1,118 @@
+//! A run of a study from its file to its folder of results: how `run` and `merge` begin, and how they end.
+
+use super::listener::Listener;
+use super::memory_limit::MemoryLimit;
+use super::output::terminal_width;
+use super::streams::{say, write_out};
+use super::study_args::StudyArgs;
+use bubbletouch::kinds::{AnyStudy, Outcome};
+use bubbletouch::report::csv_tables::FAILURES_FILE;
+use bubbletouch::study::progress::Progress;
+use bubbletouch::study::provenance::Manifest;
+use bubbletouch::{Error, Result};
+use std::path::PathBuf;
+use std::time::SystemTime;
+
+/// What `run`, `merge` and `slurm` are about.
+#[derive(clap::Args)]
+pub struct ResultsArgs {
+    #[command(flatten)]
+    pub study: StudyArgs,
+    /// The folder of results: tables, charts and report.html [default: results/ and the study's name]
+    #[arg(long, value_name = "FOLDER")]
+    pub out: Option<PathBuf>,
+}
+
+impl ResultsArgs {
+    /// Where results go.
+    pub fn folder(&self) -> Result<PathBuf> {
+        let given = self.out.clone();
+        given.map_or_else(|| self.study.default_results(), Ok)
+    }
+}
+
+#[derive(clap::Args)]
+pub struct RunArgs {
+    #[command(flatten)]
+    pub results: ResultsArgs,
+    #[command(flatten)]
+    memory: MemoryLimit,
+    #[command(flatten)]
+    listener: Listener,
+}
+
+/// A study that is loaded, and the folder of its results.
+pub struct StudyRun<'a> {
+    pub study: Box<dyn AnyStudy>,
+    pub folder: PathBuf,
+    /// Hears how far the run is; a message that ends no stage is a remark.
+    pub progress: Box<dyn Progress>,
+    args: &'a RunArgs,
+    started: SystemTime,
+}
+
+impl<'a> StudyRun<'a> {
+    /// Reads and checks the study and loads its objects; nothing is written yet.
+    pub fn begin(args: &'a RunArgs) -> Result<Self> {
+        let started = SystemTime::now();
+        let folder = args.results.folder()?;
+        Ok(Self {
+            study: args.results.study.load(&folder, args.memory.bytes()?)?,
+            folder,
+            progress: args.listener.progress(),
+            args,
+            started,
+        })
+    }
+
+    /// Seconds since it began.
+    pub fn elapsed_s(&self) -> f64 {
+        self.started.elapsed().unwrap_or_default().as_secs_f64()
+    }
+
+    /// Writes the folder and says what was found; an error if some of the work failed. `what` is said before the time it took.
+    pub fn end(&self, outcome: &Outcome, n_before: usize, what: &str) -> Result<()> {
+        let (study, folder) = (self.study.as_ref(), &self.folder);
+        let of_study = &self.args.results.study;
+        self.progress.stage("report", 1);
+        let manifest = Manifest {
+            study: of_study.name()?,
+            command: of_study.command(),
+            paths_from: of_study.folder(),
+            n_finished_before: n_before,
+            ..Manifest::ended(study.identity(), self.started)
+        };
+        study.write(folder, outcome, manifest)?;
+        self.progress.advance(1);
+        let elapsed_s = self.elapsed_s();
+        self.progress.finish(&format!("{what}{elapsed_s:.1} s"));
+        if self.args.listener.json {
+            say(serde_json::json!({
+                "event": "finished",
+                "folder": folder,
+                "work_items": study.n_all(),
+                "finished_before": n_before,
+                "failed": outcome.n_failed,
+                "elapsed_s": elapsed_s,
+            }))?;
+        } else if !self.args.listener.quiet {
+            write_out(study.words(outcome, terminal_width()).as_bytes())?;
+            let page = folder.join("report.html");
+            let (folder, page) = (folder.display(), page.display());
+            say(format_args!("Results in {folder}; open {page}"))?;
+        }
+        self.failures(outcome)
+    }
+
+    /// An error if some of the work failed.
+    pub fn failures(&self, outcome: &Outcome) -> Result<()> {
+        match outcome.n_failed {
+            0 => Ok(()),
+            n_failed => Err(Error::WorkItems {
+                path: self.folder.join(FAILURES_FILE),
+                n_failed,
+                n_all: self.study.n_all(),
+            }),
+        }
+    }
+}
