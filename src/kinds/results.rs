@@ -15,8 +15,17 @@ use crate::study::sha256;
 use crate::table::{File, Table};
 use std::path::Path;
 
-/// Work items that failed; none where no run left the file.
-pub const FAILURES: File<PieceFailure> = File::new(FAILURES_FILE, "What failed, and why", "");
+const FAILURES: File<PieceFailure> = File::new(FAILURES_FILE, "What failed, and why", "");
+
+/// Work items that failed.
+pub fn failures_table(failures: &[PieceFailure]) -> Result<Table> {
+    FAILURES.of(failures)
+}
+
+/// The same, of a folder; none where no run left the file.
+pub fn read_failures(folder: &Path) -> Result<Option<Table>> {
+    FAILURES.read_if_there(folder)
+}
 
 impl<K: Kind> Loaded<K> {
     /// Charts, pictures and page, for a folder: nothing is written yet.

@@ -5,6 +5,7 @@ use crate::error::{Error, Result};
 use crate::report::swept::Swept;
 use crate::study::column_name;
 use crate::table::{Better, Column, Data, Role, Scale, Table, Value, front};
+use std::collections::HashSet;
 
 /// A column that is sought in tables.
 struct Sought {
@@ -110,9 +111,9 @@ impl<'a> Offers<'a> {
             return Err(Error::input("advice", "no table offers choices", allowed));
         }
         if let Some(file) = &asked.table {
-            let known: Vec<&str> = offering.iter().map(|table| table.file).collect();
+            let known = offering.iter().map(|table| table.file).collect();
             offering.retain(|table| table.file == file);
-            refuse_none(&offering, ("--table", file), &known)?;
+            refuse_none(&offering, ("--table", file), known)?;
         }
         let value = VALUE.narrow(&mut offering, asked.value.as_deref())?;
         let cost = COST.narrow(&mut offering, asked.cost.as_deref())?;
@@ -364,23 +365,22 @@ impl Sought {
         let mut known: Vec<&str> = all.map(|column| &column.name[..]).collect();
         known.extend(self.shared.iter().map(|(name, _)| name));
         tables.retain(|table| has(table, name));
-        refuse_none(tables, (self.option, name.unwrap_or_default()), &known)?;
+        refuse_none(tables, (self.option, name.unwrap_or_default()), known)?;
         Ok(name)
     }
 }
 
-fn refuse_none<T>(found: &[T], (option, given): (&str, &str), known: &[&str]) -> Result<()> {
-    if !found.is_empty() {
-        return Ok(());
+fn refuse_none<T>(found: &[T], (option, given): (&str, &str), mut known: Vec<&str>) -> Result<()> {
+    let mut told = HashSet::new();
+    known.retain(|name| told.insert(*name));
+    match found.is_empty() {
+        true => Err(Error::input(
+            option,
+            given,
+            format!("one of {}", known.join(", ")),
+        )),
+        false => Ok(()),
     }
-    let mut names: Vec<&str> = Vec::new();
-    for name in known {
-        if !names.contains(name) {
-            names.push(name);
-        }
-    }
-    let allowed = format!("one of {}", names.join(", "));
-    Err(Error::input(option, given, allowed))
 }
 
 /// Those of some rows that have a condition: `noise=0.05`.

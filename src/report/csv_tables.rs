@@ -5,6 +5,7 @@
 
 use crate::error::{Error, Result};
 use crate::study::sha256;
+use crate::table::csv_place;
 use serde::de::DeserializeOwned;
 use std::fs::File;
 use std::path::Path;
@@ -34,11 +35,7 @@ pub fn read_rows<R: DeserializeOwned>(path: &Path) -> Result<Vec<R>> {
 }
 
 fn read_error(path: &Path, error: csv::Error) -> Error {
-    let line = error.position().map(|position| position.line());
-    let place = match line {
-        Some(line) => format!("{}: line {line}", path.display()),
-        None => path.display().to_string(),
-    };
+    let place = csv_place(path, error.position().map(csv::Position::line));
     let said = error.to_string();
     match error.into_kind() {
         csv::ErrorKind::Io(source) => Error::unreadable(path, A_TABLE, source),

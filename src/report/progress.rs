@@ -54,7 +54,6 @@ struct State<W: Write> {
     writer: W,
     clock: Option<RunClock>,
     stage: Option<Stage>,
-    is_passed_on: bool,
 }
 
 struct Stage {
@@ -66,13 +65,15 @@ struct Stage {
 
 impl<W: Write + Send + 'static> Told<W> {
     fn to(form: Form, writer: W) -> Self {
-        Self(Arc::new(Mutex::new(State {
+        let state = Arc::new(Mutex::new(State {
             form,
             writer,
             clock: None,
             stage: None,
-            is_passed_on: form == Form::Lines,
-        })))
+        }));
+        let told = Arc::downgrade(&state);
+        thread::spawn(move || tell_now_and_then(&told));
+        Self(state)
     }
 
     fn state(&self) -> MutexGuard<'_, State<W>> {
@@ -92,10 +93,6 @@ impl<W: Write + Send + 'static> Progress for Told<W> {
         });
         if state.form == Form::Json {
             state.write(&json!({ "event": "stage", "name": name, "total": total }));
-        }
-        if !std::mem::replace(&mut state.is_passed_on, true) {
-            let told = Arc::downgrade(&self.0);
-            thread::spawn(move || tell_now_and_then(&told));
         }
     }
 
@@ -133,8 +130,7 @@ fn tell_now_and_then<W: Write>(told: &Weak<Mutex<State<W>>>) {
         let Some(told) = told.upgrade() else {
             return;
         };
-        let mut state = told.lock().unwrap_or_else(PoisonError::into_inner);
-        state.tell();
+        told.lock().unwrap_or_else(PoisonError::into_inner).tell();
     }
 }
 
@@ -151,9 +147,10 @@ impl<W: Write> State<W> {
 
     /// Where the stage is now.
     fn tell(&mut self) {
-        let (Some(stage), now) = (&self.stage, Instant::now()) else {
+        let Some(stage) = &self.stage else {
             return;
         };
+        let now = Instant::now();
         match self.form {
             Form::Lines => {}
             Form::Json => {

@@ -46,9 +46,6 @@ pub struct Beyond {
 /// heavy for a phone, and minutes for what the page shows anyway when it is asked.
 pub const MOST_CHARTS: usize = 24;
 
-/// Letters of a picture that stays an SVG in the page: a point a row of ten thousand is megabytes.
-const LIGHT: usize = 300_000;
-
 /// Charts, pictures and the page, for the folder `dir`, with what else there is, which is made while charts are drawn: nothing is written
 /// yet. A chart that no row has a place in is left out.
 ///
@@ -70,12 +67,12 @@ pub fn folder_with<'a>(
         }
     }
     let draw = |(number, spec): (usize, &ChartSpec)| {
-        let drawing = chart::draw(spec, found.tables)?;
         let (name, title) = (&spec.name, &spec.title);
+        let drawing = chart::draw(spec, found.tables)?;
         Ok(match number < MOST_CHARTS {
             true => {
-                let files = picture_files(name, title, &drawing)?;
-                (files, Some(light_picture(&drawing, title)?))
+                let picture = Picture::of(&drawing, title);
+                (picture_files(name, title, &drawing)?, Some(picture))
             }
             false => (vec![svg_file(name, title, &drawing)], None),
         })
@@ -125,22 +122,13 @@ fn svg_file(name: &str, title: &str, drawing: &Drawing) -> (String, Vec<u8>) {
 /// # Errors
 /// What cannot be drawn.
 pub(super) fn page_of(about: &StudyAbout, found: &Found) -> Result<String> {
-    let mut beside = Beside::default();
-    for spec in found.charts {
-        let drawing = chart::draw(spec, found.tables)?;
-        beside.charts.push(light_picture(&drawing, &spec.title)?);
-    }
+    let draw = |spec| Ok(Picture::of(&chart::draw(spec, found.tables)?, &spec.title));
+    let charts = found.charts.iter().map(draw).collect::<Result<_>>()?;
+    let beside = Beside {
+        charts,
+        ..Beside::default()
+    };
     Ok(study_page(about, found, beside))
-}
-
-/// A drawing for the page, as SVG if that is light.
-fn light_picture(drawing: &Drawing, title: &str) -> Result<Picture> {
-    let picture = Picture::of(drawing, title);
-    if picture.element.len() <= LIGHT {
-        return Ok(picture);
-    }
-    let size = (drawing.width as usize, drawing.height as usize);
-    Ok(Picture::of_png(&drawing.png()?, size, title))
 }
 
 /// What a person reads at the end of a run, in lines of about `width` letters: the first of some tables, the answers, then the others.

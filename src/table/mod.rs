@@ -20,4 +20,5 @@ pub use column::{Better, Column, Columns, Role, Scale};
 pub use file::File;
 pub use front::front;
 pub use numbers::{short_number, time_words};
+pub(crate) use table::csv_place;
 pub use table::{Data, Table, Value};

@@ -218,12 +218,8 @@ impl Table {
         csv: Vec<u8>,
     ) -> Result<Self> {
         let mut reader = csv::Reader::from_reader(&csv[..]);
-        let bad = |line: Option<u64>, given: String, allowed: String| {
-            let place = match line {
-                Some(line) => format!("{}: line {line}", path.display()),
-                None => path.display().to_string(),
-            };
-            Error::input(place, given, allowed)
+        let bad = |line, given: String, allowed: String| {
+            Error::input(csv_place(path, line), given, allowed)
         };
         let broken = |e: csv::Error| {
             let line = e.position().map(csv::Position::line);
@@ -274,6 +270,14 @@ impl Table {
             n_rows,
             csv,
         })
+    }
+}
+
+/// A line of a file, for an error.
+pub(crate) fn csv_place(path: &Path, line: Option<u64>) -> String {
+    match line {
+        Some(line) => format!("{}: line {line}", path.display()),
+        None => path.display().to_string(),
     }
 }
 

@@ -57,7 +57,16 @@ impl PageData {
         let mut letters = 0;
         let mut texts = Vec::new();
         for table in order {
-            let text = json_of(&TableData::of(table));
+            let data = table.columns.iter().zip(&table.data);
+            let text = json_of(&TableData {
+                file: table.file,
+                title: table.title,
+                n: table.n_rows,
+                columns: &table.columns,
+                data: data
+                    .map(|(column, data)| ColumnData::of(column, data))
+                    .collect(),
+            });
             if letters + text.len() <= MOST_LETTERS {
                 letters += text.len();
                 held.insert(table.file);
@@ -84,21 +93,6 @@ impl PageData {
 
 fn json_of(value: &impl Serialize) -> String {
     serde_json::to_string(value).expect("numbers and texts have a JSON form")
-}
-
-impl<'a> TableData<'a> {
-    fn of(table: &'a Table) -> Self {
-        let data = table.columns.iter().zip(&table.data);
-        Self {
-            file: table.file,
-            title: table.title,
-            n: table.n_rows,
-            columns: &table.columns,
-            data: data
-                .map(|(column, data)| ColumnData::of(column, data))
-                .collect(),
-        }
-    }
 }
 
 impl<'a> ColumnData<'a> {

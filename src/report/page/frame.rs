@@ -6,7 +6,7 @@ use crate::report::drawing::escape;
 const TEMPLATE: &str = include_str!("page.html");
 const STYLE: &str = include_str!("page.css");
 /// In the order in which each may use what comes before it.
-const SCRIPT: [&str; 10] = [
+const SCRIPT: [&str; 11] = [
     include_str!("script/elements.js"),
     include_str!("script/points.js"),
     include_str!("script/data.js"),
@@ -16,10 +16,8 @@ const SCRIPT: [&str; 10] = [
     include_str!("script/filter.js"),
     include_str!("script/explorer.js"),
     include_str!("script/tables.js"),
-    concat!(
-        include_str!("script/advice.js"),
-        include_str!("script/main.js")
-    ),
+    include_str!("script/advice.js"),
+    include_str!("script/main.js"),
 ];
 
 /// A part of a page with a heading.

@@ -19,7 +19,7 @@ const MOST_TABLES: usize = 150_000;
 /// What stands on a page beside tables and charts.
 #[derive(Default)]
 pub(crate) struct Beside {
-    /// The charts as pictures, as many as are drawn, for readers without script.
+    /// The charts as pictures, in their order, for readers without script.
     pub charts: Vec<Picture>,
     /// Names of charts that were not drawn.
     pub left_out: Vec<String>,
@@ -52,15 +52,16 @@ pub(crate) fn page(about: &StudyAbout, found: &Found, beside: Beside) -> String 
 /// A chart that the script draws, and its picture for readers without.
 fn charts_html(charts: &[ChartSpec], data: &PageData, beside: &Beside) -> String {
     let mut letters = 0;
-    let held = charts.iter().filter(|chart| data.holds(chart.table));
-    let place = |(number, chart): (usize, &ChartSpec)| {
-        let mut pictures = beside.charts.iter();
-        let picture = pictures.find(|picture| picture.title == chart.title);
-        letters += picture.map_or(0, |picture| picture.element.len());
+    let drawn = charts.iter().zip(&beside.charts);
+    let held = drawn.filter(|(chart, _)| data.holds(chart.table));
+    let place = |(number, (chart, picture)): (usize, (&ChartSpec, &Picture))| {
         let name = escape(&chart.name);
-        let without = match picture.filter(|_| letters <= MOST_PICTURES) {
-            Some(picture) => figure(picture),
-            None => format!("<p>This chart lies beside the page: {name}.svg.</p>"),
+        let without = match letters + picture.element.len() <= MOST_PICTURES {
+            true => {
+                letters += picture.element.len();
+                figure(picture)
+            }
+            false => format!("<p>This chart lies beside the page: {name}.svg.</p>"),
         };
         let title = escape(&chart.title);
         let note = match chart.note.is_empty() {

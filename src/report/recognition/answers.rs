@@ -1,17 +1,17 @@
 //! What a study of recognition found, in sentences made from its tables.
 
-use super::CELLS;
+use super::{CELLS, filled};
 use crate::report::advice::{Offer, Offers, Wish};
 use crate::report::study_folder::words_of;
 use crate::report::swept::{Setting, Swept, without};
 use crate::table::{Table, Value};
 
-/// Values up to which a sentence lists them all.
+/// Values that a sentence lists, and conditions that have sentences, at most.
 const MOST_LISTED: usize = 8;
 
 /// What is best in each condition and within its interval the least to measure, what each setting does by itself, and what was left out.
 pub fn answers(tables: &[Table]) -> Vec<String> {
-    let Some(cells) = table(tables, CELLS) else {
+    let Some(cells) = filled(tables, CELLS) else {
         return vec!["No cell has been computed.".to_owned()];
     };
     let mut sentences = bests(cells).unwrap_or_default();
@@ -23,31 +23,27 @@ pub fn answers(tables: &[Table]) -> Vec<String> {
 /// What a run prints at its end: all cells, the answers, and what is beside what was published and confused most often.
 pub fn words(tables: &[Table], width: usize) -> String {
     let shown = [CELLS, "published.csv", "confused.csv", "variance.csv"];
-    let shown = shown.into_iter().filter_map(|file| table(tables, file));
+    let shown = shown.into_iter().filter_map(|file| filled(tables, file));
     words_of(&shown.collect::<Vec<_>>(), &answers(tables), width)
 }
 
-/// A table that has rows.
-fn table<'a>(tables: &'a [Table], file: &str) -> Option<&'a Table> {
-    let mut tables = tables.iter();
-    tables.find(|table| table.file == file && table.n_rows > 0)
-}
-
-/// The best of each condition; of very many conditions how far these are apart, and the best of the first.
+/// The best of each condition, of the first ones if these are very many.
 fn bests(cells: &Table) -> Option<Vec<String>> {
     let (accuracy, _) = cells.column("accuracy")?;
     let (measurements, _) = cells.column("measurements_per_decision")?;
     let offers = Offers::of_columns(cells, accuracy, measurements);
-    let mut conditions = offers.by_condition();
-    let mut sentences = Vec::new();
+    let conditions = offers.by_condition();
+    let listed = conditions.iter().take(MOST_LISTED);
+    let mut sentences: Vec<String> = listed
+        .filter_map(|choices| best(&offers, choices))
+        .flatten()
+        .collect();
     if conditions.len() > MOST_LISTED {
-        sentences.push(range(&offers, &conditions)?);
-        conditions.truncate(1);
+        let n = conditions.len() - MOST_LISTED;
+        sentences.push(format!(
+            "The best of {n} more conditions are in the tables."
+        ));
     }
-    let said = conditions
-        .iter()
-        .filter_map(|choices| best(&offers, choices));
-    sentences.extend(said.flatten());
     Some(sentences)
 }
 
@@ -80,25 +76,6 @@ fn best(offers: &Offers, choices: &[Offer]) -> Option<Vec<String>> {
         });
     }
     Some(sentences)
-}
-
-/// In which condition the best is most accurate, and in which least.
-fn range(offers: &Offers, conditions: &[Vec<Offer>]) -> Option<String> {
-    let bests = conditions
-        .iter()
-        .map(|choices| offers.front(choices).last().copied());
-    let mut bests: Vec<Offer> = bests.flatten().collect();
-    bests.sort_by(|a, b| b.value.total_cmp(&a.value));
-    let end = |best: &Offer| {
-        let accuracy = offers.table.bounded(offers.value, best.row);
-        format!("{accuracy} with {}", offers.condition(best))
-    };
-    Some(format!(
-        "Best accuracy in each of {} conditions: from {} down to {}.",
-        conditions.len(),
-        end(bests.first()?),
-        end(bests.last()?)
-    ))
 }
 
 /// Mean accuracy at each value of each setting, over those combinations of the others that have all of its values.
@@ -137,7 +114,7 @@ fn effects(cells: &Table) -> Option<Vec<String>> {
 /// What was left out, what stopped at a limit, and how many trials a p-value needs where there are too few.
 fn remarks(tables: &[Table]) -> Vec<String> {
     let numbers = |file: &str, column: &str| -> &[f64] {
-        let numbers = table(tables, file).and_then(|table| table.numbers(column));
+        let numbers = filled(tables, file).and_then(|table| table.numbers(column));
         numbers.unwrap_or_default()
     };
     let n_left_out = numbers("accuracy.csv", "n_left_out")
@@ -150,7 +127,7 @@ fn remarks(tables: &[Table]) -> Vec<String> {
         .enumerate();
     let too_few = Value::from("too_few_trials");
     let is_short = |row| {
-        table(tables, "comparison.csv").is_some_and(|t| t.has_setting("p_status", row, &too_few))
+        filled(tables, "comparison.csv").is_some_and(|t| t.has_setting("p_status", row, &too_few))
     };
     let n_needed = n_needed
         .filter(|(row, n)| n.is_finite() && is_short(*row))

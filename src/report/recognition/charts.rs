@@ -3,7 +3,7 @@
 //! Every setting that varies has a place, so no chart mixes cells that differ in something it does not show: x takes the number of most
 //! values, lines and panels the first two others of the table; each combination of the rest gets a chart of its own.
 
-use super::CELLS;
+use super::{CELLS, filled};
 use crate::report::swept::{Setting, Swept, without};
 use crate::table::{Along, At, ChartSpec, Mark, Role, Rule, Shown, Table, Value};
 
@@ -12,17 +12,14 @@ const MANY_CLASSIFIERS: usize = 3;
 
 /// Accuracy by what varies; against time if classifiers are compared or a study asks; and what the best cell takes for what.
 pub fn charts(tables: &[Table], pareto: Option<bool>) -> Vec<ChartSpec> {
-    let Some(cells) = tables
-        .iter()
-        .find(|table| table.file == CELLS && table.n_rows > 0)
-    else {
+    let Some(cells) = filled(tables, CELLS) else {
         return Vec::new();
     };
-    let confusion = tables.iter().find(|table| table.file == "confusion.csv");
+    let confusion = filled(tables, "confusion.csv");
     let chart = ChartSpec {
         table: CELLS,
         y: "accuracy".to_owned(),
-        rules: confusion.and_then(chance).into_iter().collect(),
+        rules: confusion.map(chance).into_iter().collect(),
         ..ChartSpec::default()
     };
     let mut charts = accuracy_charts(cells, &chart);
@@ -39,13 +36,13 @@ pub fn charts(tables: &[Table], pareto: Option<bool>) -> Vec<ChartSpec> {
 }
 
 /// A line at the share that guessing recognises.
-fn chance(confusion: &Table) -> Option<Rule> {
-    let n = confusion.groups(&["object"], 0..confusion.n_rows).len();
-    (n > 0).then(|| Rule {
+fn chance(confusion: &Table) -> Rule {
+    let n_objects = confusion.groups(&["object"], 0..confusion.n_rows).len();
+    Rule {
         along: Along::Y,
-        at: At::Value(1.0 / n as f64),
-        words: format!("chance (1 in {n})"),
-    })
+        at: At::Value(1.0 / n_objects as f64),
+        words: format!("chance (1 in {n_objects})"),
+    }
 }
 
 /// The charts of accuracy that show every cell. Settings of the signal that leave their first values one at a time get charts of their own,

@@ -1,5 +1,6 @@
 //! What the page of a study of recognition has beside that of any study: sample touches, settings, and how often limits were reached.
 
+use super::{CELLS, filled};
 use crate::error::Result;
 use crate::report::csv_tables::LIMITS_FILE;
 use crate::report::drawing::escape;
@@ -30,7 +31,7 @@ fn settings_html(settings: &[(String, String)], tables: &[Table]) -> String {
     let mut html: String = settings
         .map(|(name, value)| definition(&escape(name), value))
         .collect();
-    if let Some(cells) = tables.iter().find(|table| table.file == super::CELLS) {
+    if let Some(cells) = filled(tables, CELLS) {
         let rows: Vec<usize> = (0..cells.n_rows).collect();
         let Swept { free, fixed, .. } = Swept::of(cells, &rows);
         let free = free
@@ -48,8 +49,7 @@ fn settings_html(settings: &[(String, String)], tables: &[Table]) -> String {
 
 /// Limits of the model and of the solver that were reached.
 fn limits_html(tables: &[Table]) -> String {
-    let mut tables = tables.iter().filter(|table| table.n_rows > 0);
-    let Some(table) = tables.find(|table| table.file == LIMITS_FILE) else {
+    let Some(table) = filled(tables, LIMITS_FILE) else {
         return String::new();
     };
     let item = |row: usize| {
