@@ -11,7 +11,7 @@ use crate::recognition::dataset::Dataset;
 use crate::signal::Scratch;
 use crate::study::frames::KeptFrames;
 use crate::study::measurement::{TouchToRead, touches_to_read};
-use crate::study::simulation::TouchedObject;
+use crate::study::simulation::{TouchedObject, touched_classes};
 use crate::world::{Patch, Scene};
 use ndarray::{Array2, s};
 
@@ -33,7 +33,10 @@ pub(super) struct Bench<'a> {
 impl Bench<'_> {
     /// Each touch is noisy in its own way, by its name.
     pub fn to_read(&self) -> Vec<TouchToRead> {
-        touches_to_read(self.touched, &self.seed.named("speed accuracy signal"))
+        touches_to_read(
+            touched_classes(self.touched),
+            &self.seed.named("speed accuracy signal"),
+        )
     }
 
     /// Median microseconds of a press.
