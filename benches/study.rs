@@ -9,7 +9,7 @@ use bubbletouch::kinds::recognition::{RecognitionRows, RecognitionStudy};
 use bubbletouch::random::Seed;
 use bubbletouch::study::journal::{Identity, JOURNAL_FILE, Journal};
 use bubbletouch::study::pieces::{
-    NamedPiece, Part, PieceManner, PieceRows, PieceStudy, PiecesLeft, PiecesRun, n_pieces_left,
+    NamedPiece, Part, PieceManner, PieceRows, PieceStudy, PiecesLeft, PiecesRun,
 };
 use bubbletouch::study::progress::{Progress, Silent};
 use bubbletouch::study::time_left::Piece;
@@ -134,6 +134,14 @@ fn journal(folder: &Path, name: &str) -> Result<Journal> {
     Journal::open(&folder.join(format!("{name}_{JOURNAL_FILE}")), &identity)
 }
 
+fn n_left(study: &impl PieceStudy, journal: &Journal) -> usize {
+    let manner = PieceManner {
+        journal,
+        ..PieceManner::whole(&Silent)
+    };
+    PiecesRun::new(study, &study.pieces(), &manner).n_left()
+}
+
 fn time_pieces(folder: &Path) -> Result<()> {
     for what in ["done and kept", "read and put into rows"] {
         let start = Instant::now();
@@ -146,18 +154,15 @@ fn time_pieces(folder: &Path) -> Result<()> {
             progress: &Silent,
         };
         let pieces = Nothing.pieces();
-        let finished = PiecesRun::new(&Nothing, &pieces, &manner).run()?;
+        let (rows, _) = PiecesRun::new(&Nothing, &pieces, &manner).run()?;
         journal.sync()?;
-        assert_eq!(finished.rows.rows.len(), N_PIECES);
+        assert_eq!(rows.rows.len(), N_PIECES);
         let seconds = start.elapsed().as_secs_f64();
         say(&format!("a piece, {what}"), seconds, N_PIECES);
     }
     let journal = journal(folder, "pieces")?;
     let start = Instant::now();
-    assert_eq!(
-        n_pieces_left::<Rows>(&Nothing.pieces(), Part::All, &journal),
-        0
-    );
+    assert_eq!(n_left(&Nothing, &journal), 0);
     let seconds = start.elapsed().as_secs_f64();
     say("a piece, seen to be done", seconds, N_PIECES);
     Ok(())
@@ -192,10 +197,7 @@ fn time_cells(folder: &Path) -> Result<()> {
     }
     let journal = journal(folder, "cells")?;
     let start = Instant::now();
-    assert_eq!(
-        n_pieces_left::<RecognitionRows>(&study.pieces(), Part::All, &journal),
-        0
-    );
+    assert_eq!(n_left(&study, &journal), 0);
     say(
         "a cell, seen to be done",
         start.elapsed().as_secs_f64(),
@@ -217,10 +219,9 @@ fn time_run(folder: &Path, study: &RecognitionStudy) -> Result<(f64, f64)> {
         progress: &worked,
     };
     let pieces = study.pieces();
-    let finished = PiecesRun::new(study, &pieces, &manner).run()?;
-    let failures = finished.failures;
+    let (rows, failures) = PiecesRun::new(study, &pieces, &manner).run()?;
     assert!(failures.is_empty(), "{:?}", failures[0]);
-    let outcome = study.outcome(finished.rows)?;
+    let outcome = study.outcome(rows)?;
     journal.sync()?;
     assert_eq!(outcome.summary.len(), study.n_cells());
     let worked = *worked.0.lock().expect("no thread panics");

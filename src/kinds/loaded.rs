@@ -9,9 +9,7 @@ use super::verified::{drawn, same_rows};
 use crate::error::Result;
 use crate::report::page::StudyAbout;
 use crate::study::journal::{Identity, Journal};
-use crate::study::pieces::{
-    FinishedPieces, NamedPiece, Part, PieceEstimate, PieceManner, PiecesRun, n_pieces_left,
-};
+use crate::study::pieces::{NamedPiece, Part, PieceManner, PiecesRun};
 use crate::study::progress::{Progress, Silent};
 use crate::study::provenance::Manifest;
 use std::path::Path;
@@ -58,24 +56,26 @@ impl<K: Kind> AnyStudy for Loaded<K> {
     fn plan(&self) -> Result<String> {
         let n_threads = threads_within(&self.kind.scale(), self.memory)?;
         let manner = PieceManner::whole(&Silent);
-        let estimate = PieceEstimate {
-            scale: self.kind.scale(),
-            n_pieces: self.pieces.len(),
-            n_threads,
-            work: PiecesRun::new(&self.kind, &self.pieces, &manner).workload(),
-        };
+        let work = PiecesRun::new(&self.kind, &self.pieces, &manner).workload();
+        let scale = self.kind.scale();
+        let estimate = scale.estimate(self.pieces.len(), &work, n_threads);
         Ok(format!("{}\n{estimate}", self.facts.question))
     }
 
     fn n_left(&self, part: Part, journal: &Journal) -> usize {
-        n_pieces_left::<K::Rows>(&self.pieces, part, journal)
+        let manner = PieceManner {
+            journal,
+            part,
+            ..PieceManner::whole(&Silent)
+        };
+        PiecesRun::new(&self.kind, &self.pieces, &manner).n_left()
     }
 
     fn run(&self, manner: &PieceManner) -> Result<Outcome> {
         let (finished, mut tables) = within_memory(&self.kind.scale(), self.memory, || {
             let pieces = PiecesRun::new(&self.kind, &self.pieces, manner);
             manner.progress.expect(&pieces.workload());
-            let FinishedPieces { rows, failures, .. } = pieces.run()?;
+            let (rows, failures) = pieces.run()?;
             Ok((failures, self.kind.tables(rows)?))
         })?;
         tables.push(failures_table(&finished)?);
@@ -106,7 +106,7 @@ impl<K: Kind> AnyStudy for Loaded<K> {
         };
         let again = within_memory(&self.kind.scale(), self.memory, || {
             let run = PiecesRun::new(&self.kind, &self.pieces, &manner);
-            self.kind.tables(run.run()?.rows)
+            self.kind.tables(run.run()?.0)
         })?;
         progress.finish("");
         let n_rows = same_rows(folder, &again)?;

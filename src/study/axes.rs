@@ -15,7 +15,7 @@ use crate::toml_text::check_brackets;
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
-use std::sync::{Arc, Mutex};
+use std::sync::Arc;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
@@ -52,11 +52,23 @@ pub struct AxisValues {
     pub values: Arc<[AxisValue]>,
 }
 
+impl AxisValues {
+    /// Of a combination, in tables whose columns are these.
+    pub fn new(number: usize, columns: &[Column], values: &[toml::Value]) -> Self {
+        let values = columns.iter().zip(values);
+        let values = values.map(|(column, value)| AxisValue::new(column, value));
+        Self {
+            number,
+            values: values.collect(),
+        }
+    }
+}
+
 /// A value on an axis, as tables have it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct AxisValue {
     /// What the axis is.
-    pub column: &'static Column,
+    pub column: Column,
     /// A number, a truth value, or a text; a list or a table is the text of it.
     pub value: toml::Value,
 }
@@ -64,36 +76,13 @@ pub struct AxisValue {
 impl AxisValue {
     fn new(column: &Column, value: &toml::Value) -> Self {
         use toml::Value::{Boolean, Float, Integer, String};
-        let column = known_column(column);
         let value = match value {
             Integer(_) | Float(_) | Boolean(_) | String(_) => value.clone(),
             other => other.to_string().into(),
         };
+        let column = column.clone();
         Self { column, value }
     }
-
-    /// Of a column's text in a file.
-    pub fn of_text(column: &Column, text: &str) -> Self {
-        let number = || text.parse().ok().map(toml::Value::Integer);
-        let number = number().or_else(|| text.parse().ok().map(toml::Value::Float));
-        Self::new(column, &number.unwrap_or_else(|| text.into()))
-    }
-}
-
-/// A column that lives as long as the program, as written ones do; each is kept once.
-fn known_column(column: &Column) -> &'static Column {
-    static KNOWN: Mutex<Vec<&'static Column>> = Mutex::new(Vec::new());
-    let mut known = KNOWN.lock().unwrap_or_else(|broken| broken.into_inner());
-    if let Some(known) = known.iter().find(|known| **known == column) {
-        return known;
-    }
-    let name: &'static str = column.name.clone().into_owned().leak();
-    let column = Column {
-        name: name.into(),
-        ..column.clone()
-    };
-    known.push(Box::leak(Box::new(column)));
-    known[known.len() - 1]
 }
 
 /// What a table has at a path of keys.
@@ -288,6 +277,8 @@ impl StudyAxis {
             true => self.key.replace('.', "_"),
             false => last.to_owned(),
         };
+        // It lives as long as the program, as names that are written there do: those of a row's fields must.
+        let name: &'static str = name.leak();
         let found = UNITS.iter().find_map(|(suffix, unit)| {
             let words = last.strip_suffix(suffix)?;
             (!words.is_empty()).then_some((words, *unit))
@@ -378,21 +369,6 @@ impl StudyAxes {
             axis.column(|name| is_shared || is_taken(name))
         };
         self.0.iter().map(column).collect()
-    }
-
-    /// The place of a combination in tables whose columns are these.
-    pub fn point(
-        &self,
-        columns: &[Column],
-        (number, values): (usize, &[toml::Value]),
-    ) -> AxisValues {
-        let values = columns.iter().zip(values);
-        AxisValues {
-            number,
-            values: values
-                .map(|(column, value)| AxisValue::new(column, value))
-                .collect(),
-        }
     }
 
     /// How many combinations of values there are.

@@ -165,11 +165,6 @@ impl Cell {
         self.over_time
             .map_or(all, |kind| kind.n_features(n_frames, m))
     }
-
-    /// Numbers that are read for one decision: measurements of each frame of each fused touch.
-    pub fn measurements_of_decision(&self) -> usize {
-        self.measurements * self.frames * self.fused_touches
-    }
 }
 
 #[cfg(test)]

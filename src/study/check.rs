@@ -43,6 +43,8 @@ pub enum Range {
     AtLeastOne,
     /// Whole numbers from one to another.
     Count(usize, usize),
+    /// Those that something allows, and which these are, in words.
+    Of(fn(f64) -> bool, &'static str),
     /// Words, or numbers that something else checks.
     Any,
 }
@@ -57,6 +59,7 @@ impl Range {
             Self::Part => value > 0.0 && value < 1.0,
             Self::AtLeastOne => value.is_finite() && value >= 1.0,
             Self::Count(least, most) => (least as f64..=most as f64).contains(&value),
+            Self::Of(is_allowed, _) => is_allowed(value),
             Self::Any => true,
         }
     }
@@ -72,6 +75,7 @@ impl fmt::Display for Range {
             Self::Part => write!(f, "between 0 and 1"),
             Self::AtLeastOne => write!(f, "a number of at least 1"),
             Self::Count(least, most) => write!(f, "at least {least} and at most {most}"),
+            Self::Of(_, words) => write!(f, "{words}"),
             Self::Any => write!(f, "any value"),
         }
     }

@@ -12,7 +12,7 @@ use crate::recognition::fusion::{fuse_rows, fuse_scores};
 use crate::recognition::interval::Interval;
 use crate::recognition::metrics::ConfusionMatrix;
 use crate::recognition::split::Split;
-use ndarray::{Array1, Array2, Axis};
+use ndarray::{Array1, Axis};
 use serde::{Deserialize, Serialize};
 use std::time::Instant;
 
@@ -49,39 +49,27 @@ pub struct Trial<'a> {
 struct AnsweredTouches<'a> {
     fitted: &'a Fitted,
     test: &'a Dataset,
-    answers: Answers,
+    decide: Decide<'a>,
     answer_s: f64,
     n_train: usize,
 }
 
-/// What a fit says of each touch.
-enum Answers {
-    /// Its label: all that is needed where touches are decided on one by one, and less work.
-    Labels(Array1<usize>),
-    /// Its scores, n × n_scores.
-    Scores(Array2<f64>),
-}
+/// One label for each group of touches.
+type Decide<'a> = Box<dyn Fn(&[Vec<usize>]) -> Array1<usize> + 'a>;
 
-impl Answers {
-    /// To test touches of the cells of one fit.
-    fn new(fitted: &Fitted, test: &Dataset, cells: &[Cell]) -> Result<Self> {
-        let features = test.records.view();
-        Ok(match cells.iter().all(|cell| cell.fused_touches == 1) {
-            true => Self::Labels(fitted.classifier.labels(features)?),
-            false => Self::Scores(fitted.classifier.scores(features)?),
-        })
+/// How a fit decides on test touches of its cells.
+fn decider<'a>(fitted: &'a Fitted, test: &Dataset, cells: &[Cell]) -> Result<Decide<'a>> {
+    let (classifier, features) = (&fitted.classifier, test.records.view());
+    // Labels are all that is needed where touches are decided on one by one, and less work.
+    if cells.iter().all(|cell| cell.fused_touches == 1) {
+        let labels = classifier.labels(features)?;
+        let label = move |group: &Vec<usize>| labels[group[0]];
+        return Ok(Box::new(move |groups| groups.iter().map(&label).collect()));
     }
-
-    /// One label for each group of touches.
-    fn decide(&self, fitted: &Fitted, groups: &[Vec<usize>]) -> Array1<usize> {
-        match self {
-            Self::Labels(labels) => groups.iter().map(|group| labels[group[0]]).collect(),
-            Self::Scores(scores) => {
-                let fused = fuse_scores(scores.view(), groups);
-                fitted.classifier.labels_of_scores(fused.view())
-            }
-        }
-    }
+    let scores = classifier.scores(features)?;
+    Ok(Box::new(move |groups| {
+        classifier.labels_of_scores(fuse_scores(scores.view(), groups).view())
+    }))
 }
 
 impl Trial<'_> {
@@ -99,7 +87,7 @@ impl Trial<'_> {
             let answered = AnsweredTouches {
                 fitted,
                 test: &test,
-                answers: Answers::new(fitted, &test, cells)?,
+                decide: decider(fitted, &test, cells)?,
                 answer_s: start.elapsed().as_secs_f64(),
                 n_train: split.train.len(),
             };
@@ -116,18 +104,20 @@ impl Trial<'_> {
         let seed = self.seed("fused_touches");
         let rows = fuse_rows(truth.view(), cell.fused_touches, &seed);
         let start = Instant::now();
-        let predicted = answered.answers.decide(answered.fitted, &rows.groups);
+        let predicted = (answered.decide)(&rows.groups);
         let predict_s = answered.answer_s + start.elapsed().as_secs_f64();
         let truth = rows.groups.iter().map(|group| truth[group[0]]).collect();
         let truth: Array1<usize> = truth;
         let matrix = ConfusionMatrix::new(truth.view(), predicted.view(), self.n_objects())?;
-        let (split, projection) = self.plan.repeats.numbers(self.number);
+        let spec = &self.plan.spec;
+        // Only where they say more than the trial's number.
+        let is_crossed = spec.projections_per_split.is_some();
         let interval = Interval::wilson(matrix.n_correct(), matrix.n_rows(), CONFIDENCE)?;
         Ok(Evaluation {
             score: TrialScore {
                 trial: self.number,
-                split,
-                projection,
+                split: is_crossed.then(|| spec.split_of(self.number)),
+                projection: is_crossed.then(|| spec.projection_of(self.number)),
                 n_train: answered.n_train,
                 n_test: matrix.n_rows(),
                 n_left_out: rows.n_left_out,
@@ -166,7 +156,6 @@ impl Trial<'_> {
             .learned_labels(self.plan, (cell, self.number), split)?;
         Ok(Training {
             recognition: &self.plan.spec.recognition,
-            choice: &self.plan.choice,
             kind: cell.classifier,
             data: rows(cell, (self.measurements, &split.train), &labels)?,
             group_keys: keys.map(|keys| keys.select(Axis(0), &split.train)),

@@ -2,7 +2,7 @@
 
 use super::frames::{FramePlace, Frames};
 use super::human_samples::human_samples;
-use super::measurement::TouchToRead;
+use super::measurement::{TouchToRead, touches_to_read};
 use super::plan::Plan;
 use super::progress::Progress;
 use super::samples::Samples;
@@ -14,7 +14,7 @@ use crate::error::{Error, Result};
 use crate::objects::{Hand, Model};
 use crate::random::Seed;
 use crate::world::{HumanTouch, Patch, SkinPatch, TouchRanges};
-use ndarray::{Array1, ArrayViewMut2};
+use ndarray::ArrayViewMut2;
 use rand::Rng;
 use rayon::prelude::*;
 
@@ -104,14 +104,11 @@ pub fn record_touch(
 }
 
 impl TouchSet for HumanTouches {
-    fn class_names(&self) -> Vec<&str> {
-        self.spec.kinds.iter().map(|kind| kind.name()).collect()
-    }
-
-    fn labels(&self) -> Array1<usize> {
-        let labels = 0..self.spec.kinds.len();
-        let labels = labels.flat_map(|label| std::iter::repeat_n(label, self.spec.per_kind));
-        labels.collect()
+    fn classes(&self) -> Vec<(&str, usize)> {
+        let kinds = self.spec.kinds.iter();
+        kinds
+            .map(|kind| (kind.name(), self.spec.per_kind))
+            .collect()
     }
 
     fn simulate(
@@ -134,19 +131,11 @@ impl TouchSet for HumanTouches {
     }
 
     fn to_read(&self, _plan: &Plan, _n_frames: usize, seed: &Seed) -> Vec<TouchToRead> {
-        let of_kind = |(label, name): (usize, &'static str)| {
-            let kind = seed.named(name);
-            let n = self.spec.per_kind;
-            (0..n).map(move |touch| TouchToRead {
-                number: label * n + touch,
-                seed: kind.numbered(touch as u64),
-                interval: Some(self.spec.interval()),
-                before: None,
-                skin: 0,
-            })
-        };
-        let names = self.spec.kinds.iter().map(|kind| kind.name());
-        names.enumerate().flat_map(of_kind).collect()
+        let mut touches = touches_to_read(self.classes(), seed);
+        for touch in &mut touches {
+            touch.interval = Some(self.spec.interval());
+        }
+        touches
     }
 
     fn samples(&self, plan: &Plan, _sweep: &Sweep) -> Result<Samples> {

@@ -3,7 +3,6 @@
 use super::frames::{Frames, KeptFrames};
 use super::plan::Plan;
 use super::sensor_errors::{TestedOn, skin};
-use super::simulation::TouchedObject;
 use super::spec::StepSpec;
 use super::sweep::Group;
 use super::table::Cell;
@@ -15,7 +14,6 @@ use crate::sensing::Projection;
 use crate::signal::{Chain, Noise, Recording, Scratch, SignalStep};
 use crate::world::Taxel;
 use ndarray::{Array1, Array2, ArrayView2, ArrayViewMut2, Axis, s};
-use rand::Rng;
 use rayon::prelude::*;
 use std::time::Instant;
 
@@ -97,37 +95,25 @@ pub struct TouchToRead {
     pub skin: usize,
 }
 
-/// All touches, named by their object and their number within it; each at rest while it is read, on a fresh skin.
-pub fn touches_to_read(touched: &[TouchedObject], seed: &Seed) -> Vec<TouchToRead> {
-    let mut number = 0;
-    let of_object = |t: &TouchedObject| {
-        let object = seed.named(&t.object.name);
-        let first = number;
-        number += t.touches.len();
-        (0..t.touches.len()).map(move |touch| TouchToRead {
-            number: first + touch,
-            seed: object.numbered(touch as u64),
-            interval: None,
-            before: None,
-            skin: 0,
-        })
-    };
-    touched.iter().flat_map(of_object).collect()
-}
-
-/// The same as they follow each other in a study: pressed at its speed, each after another one that is drawn at random.
-pub fn touches_of_study(
-    plan: &Plan,
-    (touched, n_frames): (&[TouchedObject], usize),
+/// All touches of some classes, named by their class and their number within it; each at rest while it is read, on a fresh skin.
+pub fn touches_to_read<'a>(
+    classes: impl IntoIterator<Item = (&'a str, usize)>,
     seed: &Seed,
 ) -> Vec<TouchToRead> {
-    let mut touches = touches_to_read(touched, seed);
-    let n_touches = touches.len();
-    let depths = touched.iter().flat_map(|t| &t.touches).map(|t| t.depth);
-    for (touch, depth) in touches.iter_mut().zip(depths) {
-        touch.interval = (plan.speed > 0.0).then(|| depth / (n_frames as f64 * plan.speed));
-        let mut rng = touch.seed.named("before").rng();
-        touch.before = Some(rng.gen_range(0..n_touches));
+    let mut touches = Vec::new();
+    for (name, n_touches) in classes {
+        let class = seed.named(name);
+        touches.extend(
+            (touches.len()..)
+                .zip(0..n_touches as u64)
+                .map(|(number, touch)| TouchToRead {
+                    number,
+                    seed: class.numbered(touch),
+                    interval: None,
+                    before: None,
+                    skin: 0,
+                }),
+        );
     }
     touches
 }
@@ -146,7 +132,7 @@ pub fn measure_group(
 ) -> Result<Measurements> {
     let patch = &plan.arrays[group.array];
     let seed = Seed::new(plan.spec.seed);
-    let drawn = plan.repeats.projection(trial) as u64;
+    let drawn = plan.spec.projection_of(trial) as u64;
     let trial = trial as u64;
     let projection = Projection::new(
         group.ensemble,
@@ -241,7 +227,7 @@ pub fn measure(
 struct Working {
     /// Frames of a block.
     frames: Vec<f64>,
-    /// Those of a touch, after what came before it.
+    /// Those of a touch, behind two that may have come before it.
     with_history: Vec<f64>,
     rates: Vec<f64>,
     scratch: Scratch,
@@ -256,62 +242,39 @@ fn measure_block(
     out: ArrayViewMut2<f64>,
 ) -> Result<()> {
     let n_taxels = kept.n_taxels();
-    let Working {
-        frames,
-        with_history,
-        rates,
-        scratch,
-    } = working;
+    let n_values = n_frames * n_taxels;
     // Whatever is there of another block is read over.
-    frames.resize(touches.len() * n_frames * n_taxels, 0.0);
-    for (touch, frames) in touches
-        .iter()
-        .zip(frames.chunks_exact_mut(n_frames * n_taxels))
-    {
+    working.frames.resize(touches.len() * n_values, 0.0);
+    working.with_history.resize(2 * n_taxels + n_values, 0.0);
+    let of_touches = working.frames.chunks_exact_mut(n_values);
+    for (touch, out) in touches.iter().zip(of_touches) {
+        let chain = &reading.chains[touch.skin];
+        let (history, frames) = working.with_history.split_at_mut(2 * n_taxels);
         for (frame, row) in frames.chunks_exact_mut(n_taxels).enumerate() {
             kept.read(touch.number * n_frames + frame, row)?;
         }
-        let before = touch
-            .before
-            .filter(|_| reading.chains[touch.skin].remembers());
-        let Some(before) = before else {
-            reading.read(touch, (frames, 0), rates, scratch);
-            continue;
-        };
         // The deepest frame of the touch before, and the skin let go.
-        with_history.clear();
-        with_history.resize(2 * n_taxels, 0.0);
-        let deepest = (before + 1) * n_frames - 1;
-        kept.read(deepest, &mut with_history[..n_taxels])?;
-        with_history.extend_from_slice(frames);
-        reading.read(touch, (with_history, 2), rates, scratch);
-        frames.copy_from_slice(&with_history[2 * n_taxels..]);
-    }
-    let shape = (touches.len() * n_frames, n_taxels);
-    let frames = ArrayView2::from_shape(shape, frames).expect("whole frames");
-    reading.projection.measure_into(frames, out);
-    Ok(())
-}
-
-impl Reading<'_> {
-    /// Reads a touch in place; the leading frames came before it.
-    fn read(
-        &self,
-        touch: &TouchToRead,
-        (frames, n_before): (&mut [f64], usize),
-        rates: &mut Vec<f64>,
-        scratch: &mut Scratch,
-    ) {
-        let rates = rates_of(frames, &self.taxel, self.speed, rates);
+        let before = touch.before.filter(|_| chain.remembers());
+        if let Some(before) = before {
+            let (deepest, free) = history.split_at_mut(n_taxels);
+            kept.read((before + 1) * n_frames - 1, deepest)?;
+            free.fill(0.0);
+        }
+        let n_before = if before.is_some() { 2 } else { 0 };
+        let frames = &mut working.with_history[(2 - n_before) * n_taxels..];
         let recording = Recording {
+            rates: rates_of(frames, &reading.taxel, reading.speed, &mut working.rates),
             frames,
-            rates,
             n_before,
             interval: touch.interval,
         };
-        let chain = &self.chains[touch.skin];
-        chain.apply_recording(recording, &touch.seed, scratch);
+        chain.apply_recording(recording, &touch.seed, &mut working.scratch);
+        out.copy_from_slice(&working.with_history[2 * n_taxels..]);
     }
+    let shape = (touches.len() * n_frames, n_taxels);
+    let frames = ArrayView2::from_shape(shape, &working.frames).expect("whole frames");
+    reading.projection.measure_into(frames, out);
+    Ok(())
 }
 
 /// δ̇ of every taxel: the approach speed (m/s) where the object pushes a taxel that can still move; `None` at rest.

@@ -57,7 +57,6 @@ pub(crate) mod touch_set;
 mod training;
 mod variance_table;
 
-pub use crate::table::Role;
 pub use axis::Axis;
 pub(crate) use check::{Check, not_negative, positive};
 pub(crate) use conditions::column_name;
@@ -73,10 +72,9 @@ pub use object_files::{
 };
 pub use packings::{Packed, pack_within, packing_path};
 pub(crate) use plan::MM;
-pub use plan::{Amount, Plan, SplitKind, SplitPlan, millimetres};
+pub use plan::{Amount, Plan, millimetres};
 pub use plan_signal::Condition;
 pub use pose_groups::KeepTogether;
-pub use repeats::Repeats;
 pub use samples::{Samples, sample_frames};
 pub use sensor_errors::{Strengths, TestedOn, all_strengths, strength_columns};
 pub use shard::Shard;
@@ -86,4 +84,3 @@ pub use spec::*;
 pub use sweep::{Group, Sweep};
 pub use touch_files::{ReadFrames, write_touches};
 pub use touch_set::TouchSet;
-pub use training::ChoicePlan;

@@ -5,9 +5,7 @@
 use super::axes::AxisValues;
 use super::check::Check;
 use super::pose_groups::KeepTogether;
-use super::repeats::Repeats;
 use super::spec::{SpreadSpec, StudySpec, TouchesSpec};
-use super::training::ChoicePlan;
 use crate::error::Result;
 use crate::sensing::Ensemble;
 use crate::signal::NoiseUnit;
@@ -44,12 +42,8 @@ pub struct Plan {
     pub amounts: Vec<Amount>,
     /// The axis of frames a touch.
     pub frames: Vec<usize>,
-    /// How C and γ are chosen where they are.
-    pub choice: ChoicePlan,
-    /// How touches are split.
-    pub split: SplitPlan,
-    /// What trials draw anew.
-    pub repeats: Repeats,
+    /// What stays on one side of a split.
+    pub keep_together: Option<KeepTogether>,
 }
 
 /// How many measurements: absolute, or as a fraction of the taxels.
@@ -59,24 +53,6 @@ pub enum Amount {
     Ratio(f64),
     /// m.
     Measurements(usize),
-}
-
-/// How touches are split into training and test rows, trial by trial.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct SplitPlan {
-    /// Hold-out or folds.
-    pub kind: SplitKind,
-    /// What stays together.
-    pub keep_together: Option<KeepTogether>,
-}
-
-/// The kind of a split.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum SplitKind {
-    /// This fraction is for testing, drawn anew each trial.
-    HoldOut(f64),
-    /// Trial t tests fold t mod k of division t / k.
-    Folds(usize),
 }
 
 impl Amount {
@@ -119,11 +95,11 @@ impl Plan {
         };
         check.recognition(&spec.recognition)?;
         check.over_time(&spec.recognition, &frames)?;
+        check.folds(&spec)?;
+        check.repeats(&spec)?;
         let plan = Self {
             speed: spec.touches.speed_mm_per_s * MM,
-            choice: spec.recognition.choice(),
-            split: check.split(&spec)?,
-            repeats: check.repeats(&spec)?,
+            keep_together: spec.recognition.kept_together(),
             arrays,
             placement,
             noise_unit,
@@ -154,7 +130,7 @@ impl Plan {
             };
             let plan = Self::new(place, study);
             let plan = plan.map_err(|error| axes.refused(place, &values, &error.to_string()))?;
-            Ok((axes.point(&columns, (number, &values)), plan))
+            Ok((AxisValues::new(number, &columns, &values), plan))
         });
         let plans = plans.collect::<Result<Vec<_>>>()?;
         check.configurations(plans.iter().map(|(_, plan)| plan.n_cells()).sum())?;

@@ -2,10 +2,9 @@
 
 use super::axis::Axis;
 use super::check::Check;
-use super::plan::{Amount, MM, SplitKind, SplitPlan};
+use super::plan::{Amount, MM};
 use super::pose_groups::KeepTogether;
 use super::spec::{RecognitionSpec, SensingSpec, StudySpec};
-use super::training::{ChoicePlan, DEFAULT_FOLDS};
 use crate::error::Result;
 use crate::recognition::ClassifierKind;
 use crate::recognition::over_time::OverTime;
@@ -52,30 +51,25 @@ const BESIDE: [(&str, &[&str]); 4] = [
 impl Check<'_> {
     pub fn amounts(&self, sensing: &SensingSpec, arrays: &[Patch]) -> Result<Vec<Amount>> {
         self.table("sensing", sensing)?;
-        let smallest = arrays.iter().map(|a| a.grid.n_taxels()).min().unwrap_or(0);
-        let (key, amounts): (_, Vec<Amount>) = match (&sensing.ratio, &sensing.measurements) {
+        let ratios = sensing.ratio.iter().flat_map(Axis::values);
+        let counts = sensing.measurements.iter().flat_map(Axis::values);
+        let counts = counts.map(Amount::Measurements);
+        let amounts: Vec<Amount> = ratios.map(Amount::Ratio).chain(counts).collect();
+        let key = match (&sensing.ratio, &sensing.measurements) {
             (Some(_), Some(_)) => {
                 let given = "both ratio and measurements";
                 return Err(self.error("sensing", given, "one of them"));
             }
             (None, None) => return Ok(vec![Amount::Ratio(1.0)]),
-            (Some(ratios), None) => {
-                let ratios = ratios.values().into_iter();
-                ("sensing.ratio", ratios.map(Amount::Ratio).collect())
-            }
-            (None, Some(counts)) => {
-                let counts = counts.values().into_iter();
-                (
-                    "sensing.measurements",
-                    counts.map(Amount::Measurements).collect(),
-                )
-            }
+            (Some(_), None) => "sensing.ratio",
+            (None, Some(_)) => "sensing.measurements",
         };
-        let too_large = amounts.iter().find_map(|amount| match *amount {
-            Amount::Ratio(ratio) => Some(ratio).filter(|&ratio| ratio > smallest as f64),
-            Amount::Measurements(m) => Some(m as f64).filter(|_| m > smallest),
+        let smallest = arrays.iter().map(|a| a.grid.n_taxels()).min().unwrap_or(0);
+        let mut asked = amounts.iter().map(|amount| match *amount {
+            Amount::Ratio(ratio) => ratio,
+            Amount::Measurements(m) => m as f64,
         });
-        if let Some(given) = too_large {
+        if let Some(given) = asked.find(|&asked| asked > smallest as f64) {
             let allowed = format!("at most {smallest}, the taxels of the smallest array");
             return Err(self.error(key, given, allowed));
         }
@@ -132,39 +126,36 @@ impl Check<'_> {
         Ok(())
     }
 
-    /// How touches are split, and how near is together where values are drawn.
-    pub fn split(&self, spec: &StudySpec) -> Result<SplitPlan> {
-        let recognition = &spec.recognition;
-        let kind = match recognition.folds {
-            None => SplitKind::HoldOut(recognition.test_fraction.unwrap_or(0.25)),
-            Some(k) if spec.trials.is_multiple_of(k) => SplitKind::Folds(k),
-            Some(k) => {
+    /// Folds that trials come out even with.
+    pub fn folds(&self, spec: &StudySpec) -> Result<()> {
+        match spec.recognition.folds {
+            Some(k) if !spec.trials.is_multiple_of(k) => {
                 let allowed = format!("a multiple of recognition.folds = {k}");
-                return Err(self.error("trials", spec.trials, allowed));
+                Err(self.error("trials", spec.trials, allowed))
             }
-        };
-        let degree = std::f64::consts::PI / 180.0;
-        let keep_together = recognition.keep_together.map(|kind| KeepTogether {
-            kind,
-            metres: recognition.keep_together_mm.map(|mm| MM * mm),
-            radians: recognition.keep_together_deg.map(|deg| degree * deg),
-        });
-        Ok(SplitPlan {
-            kind,
-            keep_together,
-        })
+            _ => Ok(()),
+        }
     }
 }
 
 impl RecognitionSpec {
-    /// How C and γ are chosen, for fits that leave one of them open.
-    pub fn choice(&self) -> ChoicePlan {
-        ChoicePlan {
-            c: self.choose_c.clone().unwrap_or_default(),
-            gamma_multiples: self.choose_gamma.clone().unwrap_or_default(),
-            folds: self.choose_folds.unwrap_or(DEFAULT_FOLDS),
-            touches: self.choose_touches,
-        }
+    /// The fraction of touches held out for testing, where there are no folds.
+    pub fn test_share(&self) -> f64 {
+        self.test_fraction.unwrap_or(0.25)
+    }
+
+    /// Folds of the cross-validation that chooses C and γ.
+    pub fn n_choice_folds(&self) -> usize {
+        self.choose_folds.unwrap_or(5)
+    }
+
+    /// What stays on one side of a split, and how near is together where values are drawn.
+    pub fn kept_together(&self) -> Option<KeepTogether> {
+        Some(KeepTogether {
+            kind: self.keep_together?,
+            metres: self.keep_together_mm.map(|mm| MM * mm),
+            radians: self.keep_together_deg.map(f64::to_radians),
+        })
     }
 
     /// The C axis, for classifiers that have one; `None` is a C chosen by cross-validation.

@@ -1,10 +1,10 @@
 //! The checks of `[signal]`, and the conditions that its axes make.
 
-use super::check::Check;
+use super::check::{Check, Range};
 use super::plan::{MM, Plan};
 use super::sensor_errors::{Strengths, all_strengths};
 use super::spec::{CombineSpec, SignalSpec, StepSpec, TouchesSpec};
-use super::spec_signal::NOISES;
+use super::spec_signal::{NOISES, SignalAxis};
 use crate::error::Result;
 use crate::signal::{NoiseUnit, SENSOR_ERRORS, Strength};
 
@@ -60,14 +60,9 @@ impl Check<'_> {
             let axis = signal.axes.of(strength.key);
             axis.map_or_else(Vec::new, |axis| axis.values())
         };
-        for (_, strength) in all_strengths() {
-            for value in values(strength) {
-                self.value(&key(strength), value, strength.is_allowed, strength.allowed)?;
-            }
-            if signal.axes.of(strength.key).is_some() {
-                self.list(&key(strength), values(strength))?;
-            }
-        }
+        let range = |strength: &Strength| Range::Of(strength.is_allowed, strength.allowed);
+        let ranges = all_strengths().map(|(_, strength)| (strength.key, range(strength)));
+        self.keys("signal", signal, ranges)?;
         let largest = |strength| values(strength).into_iter().fold(0.0, f64::max);
         for error in SENSOR_ERRORS {
             let about = error.about();
@@ -162,22 +157,16 @@ impl Plan {
     /// Every condition of the signal that the study asks for: all combinations of its axes, or each axis alone.
     pub fn conditions(&self) -> Vec<Condition> {
         let signal = &self.spec.signal;
-        let axes = signal.axes.given();
-        let axes: Vec<_> = axes
-            .map(|(key, step, axis)| (*key, *step, axis.values()))
-            .collect();
-        let first = axes
-            .iter()
-            .fold(Condition::default(), |condition, (key, step, values)| {
-                condition.with((*key, *step), values[0])
-            });
+        let first = |condition: Condition, (key, step, axis): &SignalAxis| {
+            condition.with((key, *step), axis.values()[0])
+        };
+        let first = signal.axes.given().fold(Condition::default(), first);
         let mut conditions = vec![first];
-        for (key, step, values) in axes {
+        for (key, step, axis) in signal.axes.given() {
+            let values = axis.values();
             let with = |condition: Condition, values: &[f64]| -> Vec<Condition> {
-                let values = values.iter();
-                values
-                    .map(|&value| condition.with((key, step), value))
-                    .collect()
+                let with = |value: &f64| condition.with((key, *step), *value);
+                values.iter().map(with).collect()
             };
             match signal.combine {
                 CombineSpec::OneAtATime => conditions.extend(with(first, &values[1..])),

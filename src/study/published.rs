@@ -94,29 +94,22 @@ pub fn compare_with_published(
                 .iter()
                 .map(|&place| (place, summary[place].1.accuracy));
             if let Some(best) = most_accurate(accuracies) {
-                rows.push(beside(claim, &summary[best], about.len()));
+                let (cell, score) = &summary[best];
+                let ours = Published {
+                    claim: claim.claim.clone(),
+                    source: claim.source.clone(),
+                    published_accuracy: claim.accuracy,
+                    accuracy: score.accuracy,
+                    accuracy_low: score.accuracy_low,
+                    accuracy_high: score.accuracy_high,
+                    difference: score.accuracy - claim.accuracy,
+                    n_matching: about.len(),
+                };
+                rows.push((cell.clone(), ours));
             }
         }
     }
     Ok(rows)
-}
-
-fn beside(
-    claim: &PublishedSpec,
-    (cell, score): &(Cell, CellScore),
-    n_matching: usize,
-) -> (Cell, Published) {
-    let ours = Published {
-        claim: claim.claim.clone(),
-        source: claim.source.clone(),
-        published_accuracy: claim.accuracy,
-        accuracy: score.accuracy,
-        accuracy_low: score.accuracy_low,
-        accuracy_high: score.accuracy_high,
-        difference: score.accuracy - claim.accuracy,
-        n_matching,
-    };
-    (cell.clone(), ours)
 }
 
 #[cfg(test)]

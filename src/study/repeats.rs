@@ -12,47 +12,26 @@ use crate::recognition::interval::Interval;
 use ndarray::Array2;
 use std::collections::BTreeSet;
 
-/// How the trials of a study are made. Noise and what else is drawn is drawn anew in each.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Repeats {
-    /// Trial t: split t, projection t.
-    Own,
-    /// Trial t: split t / P and projection t mod P, so that each split meets each of P projections.
-    Crossed(usize),
-}
-
-impl Repeats {
+/// Trial t has split t and projection t; with P `projections_per_split`, split t / P and projection t mod P, so that each split meets each of
+/// P projections. Noise and what else is drawn is drawn anew in each.
+impl StudySpec {
     /// The number of a trial's split.
-    pub fn split(self, trial: usize) -> usize {
-        match self {
-            Self::Own => trial,
-            Self::Crossed(n_projections) => trial / n_projections,
-        }
+    pub fn split_of(&self, trial: usize) -> usize {
+        trial / self.projections_per_split.unwrap_or(1)
     }
 
     /// The number of a trial's projection.
-    pub fn projection(self, trial: usize) -> usize {
-        match self {
-            Self::Own => trial,
-            Self::Crossed(n_projections) => trial % n_projections,
-        }
-    }
-
-    /// The numbers as the accuracy table has them: only where they say more than the trial's own.
-    pub fn numbers(self, trial: usize) -> (Option<usize>, Option<usize>) {
-        match self {
-            Self::Own => (None, None),
-            Self::Crossed(_) => (Some(self.split(trial)), Some(self.projection(trial))),
-        }
+    pub fn projection_of(&self, trial: usize) -> usize {
+        self.projections_per_split.map_or(trial, |n| trial % n)
     }
 }
 
 impl Check<'_> {
     /// `projections_per_split`, and whether trials come out even.
-    pub fn repeats(&self, spec: &StudySpec) -> Result<Repeats> {
+    pub fn repeats(&self, spec: &StudySpec) -> Result<()> {
         const KEY: &str = "projections_per_split";
         let Some(n_projections) = spec.projections_per_split else {
-            return Ok(Repeats::Own);
+            return Ok(());
         };
         if n_projections < 2 {
             let allowed = "at least 2, or no such key: a projection of its own for each trial";
@@ -69,7 +48,7 @@ impl Check<'_> {
                 let allowed = format!("a multiple of recognition.folds = {k} splits");
                 Err(self.error("trials", given, allowed))
             }
-            _ => Ok(Repeats::Crossed(n_projections)),
+            _ => Ok(()),
         }
     }
 }
@@ -160,16 +139,9 @@ impl Paired {
     pub fn tested(&self) -> Result<Tested> {
         let n_needed = trials_needed(self.size, CONFIDENCE)?;
         let split = |trial: &Repeat| trial.place.map_or(trial.trial, |(split, _)| split);
-        let mut splits: Vec<usize> = self.ours.iter().map(split).collect();
-        splits.sort_unstable();
-        splits.dedup();
+        let splits: BTreeSet<usize> = self.ours.iter().map(split).collect();
         let is_enough = n_needed.is_some_and(|needed| splits.len() >= needed);
-        let n_projections = self
-            .ours
-            .len()
-            .checked_div(splits.len())
-            .unwrap_or(1)
-            .max(1);
+        let n_projections = (self.ours.len() / splits.len().max(1)).max(1);
         let test = self.test()?;
         Ok(Tested {
             p_status: match (&test, is_enough) {
@@ -202,40 +174,44 @@ impl Paired {
 mod tests {
     use super::*;
 
-    fn trial(trial: usize, repeats: Repeats, score: f64) -> Repeat {
-        let (split, projection) = repeats.numbers(trial);
-        Repeat {
-            trial,
-            place: split.zip(projection),
-            score,
+    fn study(projections_per_split: Option<usize>) -> StudySpec {
+        let text = "question = \"?\"\n[skin]\npitch_mm = 2.0\nstroke_mm = 5.0\n[sensing]\n[recognition]\nclassifier = \"linear_svm\"";
+        StudySpec {
+            projections_per_split,
+            ..StudySpec::parse("study.toml", text).unwrap()
         }
     }
 
     #[test]
     fn crossed_trials_meet_every_projection_with_every_split_once() {
-        let crossed = Repeats::Crossed(3);
+        let crossed = study(Some(3));
         let met: BTreeSet<_> = (0..12)
-            .map(|t| (crossed.split(t), crossed.projection(t)))
+            .map(|t| (crossed.split_of(t), crossed.projection_of(t)))
             .collect();
         assert_eq!(met.len(), 12);
         assert!(
             met.iter()
                 .all(|&(split, projection)| split < 4 && projection < 3)
         );
-        assert_eq!((Repeats::Own.split(7), Repeats::Own.projection(7)), (7, 7));
-        assert_eq!(Repeats::Own.numbers(7), (None, None));
+        let own = study(None);
+        assert_eq!((own.split_of(7), own.projection_of(7)), (7, 7));
     }
 
     #[test]
     fn scores_stand_in_the_place_of_their_split_and_projection_whatever_their_order() {
-        let crossed = Repeats::Crossed(2);
-        let all = [5, 0, 3, 1, 4, 2].map(|t| trial(t, crossed, t as f64 / 10.0));
+        let trial = |trial: usize, place| Repeat {
+            trial,
+            place,
+            score: trial as f64 / 10.0,
+        };
+        let all = [5, 0, 3, 1, 4, 2].map(|t| trial(t, Some((t / 2, t % 2))));
         let expected = ndarray::array![[0.0, 0.1], [0.2, 0.3], [0.4, 0.5]];
         assert_eq!(scores(&all), Some(expected));
         assert_eq!(scores(&all[1..]), None, "one is missing");
         let twice = [all[0], all[1], all[1], all[3]];
         assert_eq!(scores(&twice), None);
-        let own: Vec<Repeat> = (0..3).map(|t| trial(t, Repeats::Own, 0.5)).collect();
-        assert_eq!(scores(&own), Some(Array2::from_elem((3, 1), 0.5)));
+        let own = [0, 1, 2].map(|t| trial(t, None));
+        let expected = ndarray::array![[0.0], [0.1], [0.2]];
+        assert_eq!(scores(&own), Some(expected));
     }
 }

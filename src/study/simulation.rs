@@ -42,11 +42,18 @@ pub fn draw_touches(
         .collect()
 }
 
-/// The object of every touch, by its number.
-pub fn touch_labels(touched: &[TouchedObject]) -> Array1<usize> {
-    let objects = touched.iter().enumerate();
-    let labels = objects.flat_map(|(label, t)| std::iter::repeat_n(label, t.touches.len()));
+/// The label of every touch of some classes.
+pub fn touch_labels(classes: &[(&str, usize)]) -> Array1<usize> {
+    let classes = classes.iter().enumerate();
+    let labels = classes.flat_map(|(label, (_, n))| std::iter::repeat_n(label, *n));
     labels.collect()
+}
+
+/// The objects of some touches, and how many of each there are.
+pub fn touched_classes(touched: &[TouchedObject]) -> Vec<(&str, usize)> {
+    let classes = touched.iter();
+    let classes = classes.map(|t| (t.object.name.as_str(), t.touches.len()));
+    classes.collect()
 }
 
 /// An array in words: `64×64 at 2 mm`.

@@ -33,7 +33,10 @@ pub struct SignalSpec {
 /// trial by trial; it begins with every zero at zero. Scan: the press goes on at `touches.speed_mm_per_s` while the array is read; the last
 /// frame of a touch is read at rest.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct SignalAxes(BTreeMap<usize, (&'static str, StepSpec, Axis<f64>)>);
+pub struct SignalAxes(BTreeMap<usize, SignalAxis>);
+
+/// A key, the step that it belongs to, and its values.
+pub type SignalAxis = (&'static str, StepSpec, Axis<f64>);
 
 /// All of them, in the order in which conditions go through them.
 fn all_axes() -> impl Iterator<Item = (&'static str, StepSpec)> {
@@ -60,7 +63,7 @@ impl SignalAxes {
     }
 
     /// Those that a study has.
-    pub fn given(&self) -> impl Iterator<Item = &(&'static str, StepSpec, Axis<f64>)> {
+    pub fn given(&self) -> impl Iterator<Item = &SignalAxis> {
         self.0.values()
     }
 

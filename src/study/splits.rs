@@ -1,7 +1,7 @@
 //! Which touches train and which test, trial by trial, and whether they are enough for what is asked of them.
 
 use super::axis::Axis;
-use super::plan::{Plan, SplitKind};
+use super::plan::Plan;
 use crate::error::{Error, Result};
 use crate::random::Seed;
 use crate::recognition::split::{
@@ -16,17 +16,18 @@ pub fn draw_split(
     keys: Option<&Array1<usize>>,
     trial: usize,
 ) -> Result<Split> {
-    let trial = plan.repeats.split(trial);
+    let trial = plan.spec.split_of(trial);
     let seed = Seed::new(plan.spec.seed).named("split");
-    match plan.split.kind {
-        SplitKind::HoldOut(fraction) => {
+    match plan.spec.recognition.folds {
+        None => {
+            let fraction = plan.spec.recognition.test_share();
             let seed = seed.numbered(trial as u64);
             match keys {
                 None => stratified_hold_out(labels.view(), fraction, &seed),
                 Some(keys) => group_hold_out(labels.view(), keys.view(), fraction, &seed),
             }
         }
-        SplitKind::Folds(k) => {
+        Some(k) => {
             let seed = seed.numbered((trial / k) as u64);
             let mut folds = match keys {
                 None => stratified_k_fold(labels.view(), k, &seed)?,
@@ -64,11 +65,17 @@ pub fn train_touches(plan: &Plan, splits: &[Split], labels: &Array1<usize>) -> R
         at_most("fused_touches", k as f64, fewest_tested, what)?;
     }
     let least = train_touches.iter().min().copied().unwrap_or(0);
-    let choice = &plan.choice;
-    if !(choice.c.is_empty() && choice.gamma_multiples.is_empty()) {
-        let of_folds = choice.touches.map_or(least, |most| least.min(most));
+    if recognition.choose_c.is_some() || recognition.choose_gamma.is_some() {
+        let of_folds = recognition
+            .choose_touches
+            .map_or(least, |most| least.min(most));
         let what = "the training touches of every object that take part";
-        at_most("choose_folds", choice.folds as f64, of_folds, what)?;
+        at_most(
+            "choose_folds",
+            recognition.n_choice_folds() as f64,
+            of_folds,
+            what,
+        )?;
     }
     for ratio in recognition.class_imbalance.iter().flat_map(Axis::values) {
         let what = "twice the training touches of every object";

@@ -12,7 +12,6 @@ use super::axes::AxisValues;
 use super::axis::Axis;
 use super::plan::{Plan, millimetres};
 use super::plan_signal::Condition;
-use super::published::check_published;
 use super::samples::named_samples;
 use super::sensor_errors::TestedOn;
 use super::splits::{draw_split, train_touches};
@@ -103,14 +102,6 @@ impl Group {
 impl Sweep {
     /// Lays out splits and cells; the error says which objects or touches are too few, or shown without being there.
     pub fn new(plan: &Plan, touched: &dyn TouchSet) -> Result<Self> {
-        let sweep = Self::lay_out(plan, touched)?;
-        let cells: Vec<&Cell> = sweep.cells().collect();
-        check_published(&plan.spec.report.published, &cells)?;
-        Ok(sweep)
-    }
-
-    /// The same, but for claims of others, which may be about another combination of the study's own axes.
-    pub(crate) fn lay_out(plan: &Plan, touched: &dyn TouchSet) -> Result<Self> {
         let classes = touched.class_names();
         // Asked before it runs: samples are drawn when it is over.
         named_samples(plan, &classes)?;
@@ -128,7 +119,6 @@ impl Sweep {
         }
         let labels = touched.labels();
         let keys = plan
-            .split
             .keep_together
             .as_ref()
             .map(|together| touched.group_keys(together))

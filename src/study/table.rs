@@ -185,7 +185,7 @@ pub struct TrialTime {
 row! {
 /// What a cell's accuracy costs (with the [`Cell`] before it: a row of `pareto.csv`).
 ///
-/// A cell is on a front if no cell of the same [condition](crate::study::Role::Condition) is at least as accurate in at most the same
+/// A cell is on a front if no cell of the same [condition](crate::table::Role::Condition) is at least as accurate in at most the same
 /// time and better in one of the two.
 pub struct Pareto {
     /// Mean accuracy over trials.

@@ -7,8 +7,8 @@ use std::collections::BTreeMap;
 pub struct Piece {
     /// Which kind of work: the plan of each kind may be wrong by a factor of its own.
     stage: u8,
-    /// Whether it has all threads, or one.
-    has_all_threads: bool,
+    /// Threads that it has.
+    n_threads: usize,
     /// What it was planned to take, processor-seconds: only how those of a stage compare counts once some of them are finished.
     pub planned_s: f64,
 }
@@ -16,28 +16,28 @@ pub struct Piece {
 impl Piece {
     /// Of a stage whose pieces have a thread each.
     pub fn of_stage(stage: u8, planned_s: f64) -> Self {
+        let n_threads = 1;
         Self {
             stage,
-            has_all_threads: false,
+            n_threads,
             planned_s,
         }
     }
 
     /// Of a stage whose pieces come one after the other, each with all threads: seconds by the clock.
     pub fn one_by_one(stage: u8, planned_wall_s: f64) -> Self {
+        let n_threads = rayon::current_num_threads();
+        let planned_s = planned_wall_s * n_threads as f64;
         Self {
             stage,
-            has_all_threads: true,
-            planned_s: planned_wall_s * rayon::current_num_threads() as f64,
+            n_threads,
+            planned_s,
         }
     }
 
     /// Processor-seconds that so much time by the clock is.
     pub fn spent_s(&self, wall_s: f64) -> f64 {
-        match self.has_all_threads {
-            true => wall_s * rayon::current_num_threads() as f64,
-            false => wall_s,
-        }
+        wall_s * self.n_threads as f64
     }
 }
 
@@ -45,7 +45,7 @@ impl Piece {
 #[derive(Clone, Debug)]
 pub struct TimeLeft {
     n_threads: f64,
-    stages: BTreeMap<(u8, bool), Spent>,
+    stages: BTreeMap<(u8, usize), Spent>,
 }
 
 /// Processor-seconds of a stage.
@@ -90,7 +90,7 @@ impl TimeLeft {
     }
 
     fn stage(&mut self, piece: &Piece) -> &mut Spent {
-        let stage = (piece.stage, piece.has_all_threads);
+        let stage = (piece.stage, piece.n_threads);
         self.stages.entry(stage).or_default()
     }
 }

@@ -16,7 +16,7 @@ use super::feature_files::{find, measured};
 use super::npy::{npy_header, write_integers, write_npy};
 use super::plan::Plan;
 use super::progress::Progress;
-use super::simulation::{TouchedObject, describe, touch_labels};
+use super::simulation::{TouchedObject, describe, touch_labels, touched_classes};
 use super::sweep::{Group, Sweep};
 use super::touch_set::TouchSet;
 use crate::contact::{Workspace, press_to_depth};
@@ -122,7 +122,7 @@ pub fn write_touches(
     read: Option<&ReadFrames>,
     progress: &dyn Progress,
 ) -> Result<usize> {
-    let labels = touch_labels(touched);
+    let labels = touch_labels(&touched_classes(touched));
     let n_touches = labels.len();
     progress.stage(&format!("touch {}", describe(patch)), n_touches as u64);
     let mut frames = WholeFile::create(&folder.join("frames.npy"))?;

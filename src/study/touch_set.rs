@@ -2,38 +2,41 @@
 
 use super::content_hash::{bytes_of_model, sha256};
 use super::frames::{FramePlace, Frames};
-use super::measurement::{TouchToRead, touches_of_study};
+use super::measurement::{TouchToRead, touches_to_read};
 use super::plan::Plan;
 use super::pose_groups::KeepTogether;
 use super::progress::Progress;
 use super::samples::{Samples, sample_frames};
-use super::simulation::{TouchedObject, simulate_into, touch_labels};
+use super::simulation::{TouchedObject, simulate_into, touch_labels, touched_classes};
 use super::sweep::Sweep;
 use crate::contact::saturation_limit;
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::objects::Model;
 use crate::random::Seed;
 use crate::world::Patch;
 use ndarray::Array1;
+use rand::Rng;
 use rayon::prelude::*;
 use std::collections::BTreeMap;
 
 /// Touches of several classes: objects, or kinds of touch. They follow each other class by class.
 pub trait TouchSet: Sync {
+    /// Name of every class, by its label, and how many touches it has.
+    fn classes(&self) -> Vec<(&str, usize)>;
+
     /// Name of every class, by its label.
-    fn class_names(&self) -> Vec<&str>;
+    fn class_names(&self) -> Vec<&str> {
+        self.classes().into_iter().map(|(name, _)| name).collect()
+    }
 
     /// Label of every touch.
-    fn labels(&self) -> Array1<usize>;
+    fn labels(&self) -> Array1<usize> {
+        touch_labels(&self.classes())
+    }
 
-    /// Group of every touch, for splits that keep groups together; the error says that these touches have no such groups.
+    /// Group of every touch, for splits that keep groups together: its own, where touches share nothing.
     fn group_keys(&self, _together: &KeepTogether) -> Result<Array1<usize>> {
-        let allowed = "no such key: these touches have no groups";
-        Err(Error::input(
-            "key recognition.keep_together",
-            "given",
-            allowed,
-        ))
+        Ok((0..self.labels().len()).collect())
     }
 
     /// Makes what all touches need on all threads now; the first touches would make it one after the other.
@@ -50,7 +53,8 @@ pub trait TouchSet: Sync {
         progress: &dyn Progress,
     ) -> Result<Frames>;
 
-    /// How each touch is read in a trial, F frames each, whose randomness is drawn from `seed`.
+    /// How each touch is read in a trial, F frames each, whose randomness is drawn from `seed`: pressed objects at the study's speed, each after
+    /// another touch that is drawn at random.
     fn to_read(&self, plan: &Plan, n_frames: usize, seed: &Seed) -> Vec<TouchToRead>;
 
     /// A few touches for the eye.
@@ -74,12 +78,8 @@ pub trait TouchSet: Sync {
 }
 
 impl TouchSet for Vec<TouchedObject> {
-    fn class_names(&self) -> Vec<&str> {
-        self.iter().map(|t| t.object.name.as_str()).collect()
-    }
-
-    fn labels(&self) -> Array1<usize> {
-        touch_labels(self)
+    fn classes(&self) -> Vec<(&str, usize)> {
+        touched_classes(self)
     }
 
     fn group_keys(&self, together: &KeepTogether) -> Result<Array1<usize>> {
@@ -100,7 +100,15 @@ impl TouchSet for Vec<TouchedObject> {
     }
 
     fn to_read(&self, plan: &Plan, n_frames: usize, seed: &Seed) -> Vec<TouchToRead> {
-        touches_of_study(plan, (self, n_frames), seed)
+        let mut touches = touches_to_read(self.classes(), seed);
+        let n_touches = touches.len();
+        let depths = self.iter().flat_map(|t| &t.touches).map(|t| t.depth);
+        for (touch, depth) in touches.iter_mut().zip(depths) {
+            touch.interval = (plan.speed > 0.0).then(|| depth / (n_frames as f64 * plan.speed));
+            let mut rng = touch.seed.named("before").rng();
+            touch.before = Some(rng.gen_range(0..n_touches));
+        }
+        touches
     }
 
     fn samples(&self, plan: &Plan, sweep: &Sweep) -> Result<Samples> {

@@ -13,28 +13,10 @@ use crate::recognition::split::{Split, group_k_fold, stratified_k_fold};
 use ndarray::{Array1, s};
 use std::time::Instant;
 
-/// Folds of the cross-validation that chooses C and γ, when a study does not say.
-pub const DEFAULT_FOLDS: usize = 5;
-
-/// How C and γ are chosen by cross-validation within the training rows.
-#[derive(Clone, Debug, PartialEq)]
-pub struct ChoicePlan {
-    /// Values of C to try; none when C is given.
-    pub c: Vec<f64>,
-    /// Values of γ to try, as multiples of 'scale'; none when γ is given.
-    pub gamma_multiples: Vec<f64>,
-    /// Folds.
-    pub folds: usize,
-    /// Training touches an object that take part, at most; `None` is all of them.
-    pub touches: Option<usize>,
-}
-
 /// The training rows of a family in one trial, and what they are trained with.
 pub struct Training<'a> {
     /// The study's keys.
     pub recognition: &'a RecognitionSpec,
-    /// How what is left open is chosen.
-    pub choice: &'a ChoicePlan,
     /// Which classifier.
     pub kind: ClassifierKind,
     /// Training rows in drawing order, one of each object in turn.
@@ -71,7 +53,7 @@ impl Training<'_> {
     }
 
     fn chooses_gamma(&self) -> bool {
-        self.kind.has_gamma() && !self.choice.gamma_multiples.is_empty()
+        self.kind.has_gamma() && self.recognition.choose_gamma.is_some()
     }
 
     /// For several C that are given: what they share is computed once, and its time told to each in equal parts.
@@ -98,8 +80,11 @@ impl Training<'_> {
         if self.kind.has_c() {
             let data = self.choosing_rows();
             let candidates = Candidates {
-                c: c.map_or_else(|| self.choice.c.clone(), |c| vec![c]),
-                gamma_scales: self.choice.gamma_multiples.clone(),
+                c: c.map_or_else(
+                    || self.recognition.choose_c.clone().unwrap_or_default(),
+                    |c| vec![c],
+                ),
+                gamma_scales: self.recognition.choose_gamma.clone().unwrap_or_default(),
             };
             let folds = self.folds(&data)?;
             let chosen = classifier.choose(&data, &folds, &candidates, &self.seed)?;
@@ -136,10 +121,13 @@ impl Training<'_> {
     fn choosing_rows(&self) -> Dataset {
         let labels = &self.data.targets;
         let n_objects = labels.iter().max().map_or(0, |last| last + 1);
-        let wanted = self.choice.touches.map_or(usize::MAX, |touches| {
-            // Rows come one of each object in turn, so these hold as many of each.
-            touches.saturating_mul(n_objects)
-        });
+        let wanted = self
+            .recognition
+            .choose_touches
+            .map_or(usize::MAX, |touches| {
+                // Rows come one of each object in turn, so these hold as many of each.
+                touches.saturating_mul(n_objects)
+            });
         let n_rows = wanted.min(labels.len());
         Dataset::new(
             self.data.records.slice(s![..n_rows, ..]).to_owned(),
@@ -150,7 +138,7 @@ impl Training<'_> {
     /// What stays together in the study's split stays together here.
     fn folds(&self, data: &Dataset) -> Result<Vec<Split>> {
         let labels = data.targets.view();
-        let k = self.choice.folds;
+        let k = self.recognition.n_choice_folds();
         match &self.group_keys {
             None => stratified_k_fold(labels, k, &self.seed),
             Some(keys) => group_k_fold(labels, keys.slice(s![..labels.len()]), k, &self.seed),

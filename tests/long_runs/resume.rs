@@ -208,14 +208,11 @@ fn a_journal_whose_lines_are_of_no_study_or_of_another_is_refused_and_stays_as_i
         (theirs[1..].concat(), "line 1: is no record of a study"),
         (
             [&ours[..], &theirs[1..]].concat().concat(),
-            &format!("line {}: is of another study than line 1", n + 1),
+            &format!("line {}: does not match its checksum", n + 1),
         ),
         (
             [&ours[..], &ours[..]].concat().concat(),
-            &format!(
-                "line {}: is of another study than line 1, or begins one anew",
-                n + 1
-            ),
+            &format!("line {}: does not match its checksum", n + 1),
         ),
     ];
     let refused = |study: &str, content: &str, expected: &str| {
@@ -232,7 +229,7 @@ fn a_journal_whose_lines_are_of_no_study_or_of_another_is_refused_and_stays_as_i
     }
     // A first line that was made to fit another study does not fit what follows it.
     let [forged, honest] = [&header, &ours[0]].map(|first| first.clone() + &ours[1..].concat());
-    refused("other.toml", &forged, "line 1: names another study");
+    refused("other.toml", &forged, "line 2: does not match its checksum");
     refused("other.toml", &honest, "skin.stroke_mm: was 5.0, is 4.0");
     // Shards are asked the same.
     fs::create_dir(case.path("parts")).unwrap();

@@ -2,7 +2,7 @@
 //! those that finished.
 
 use crate::recognition::svm::{Multiclass, Solver};
-use crate::study::plan::{Plan, SplitKind};
+use crate::study::plan::Plan;
 use crate::study::sweep::Group;
 use crate::study::table::Cell;
 use crate::study::touch_set::TouchSet;
@@ -49,26 +49,30 @@ pub(super) fn family_s(
 /// A fit, with what it chooses, and its test.
 fn fit_s(plan: &Plan, cell: &Cell, (n_classes, n_touches): (f64, f64)) -> f64 {
     let n_train = cell.train_touches as f64 * n_classes;
-    let n_test = match plan.split.kind {
-        SplitKind::HoldOut(share) => share * n_touches,
-        SplitKind::Folds(n) => n_touches / n as f64,
+    let recognition = &plan.spec.recognition;
+    let n_test = match recognition.folds {
+        None => recognition.test_share() * n_touches,
+        Some(n) => n_touches / n as f64,
     };
-    let choice = &plan.choice;
-    let n_c = match cell.classifier.has_c() && cell.c.is_none() {
-        true => choice.c.len().max(1),
-        false => 1,
+    let n_candidates = |candidates: &Option<Vec<f64>>, chooses: bool| match candidates {
+        Some(candidates) if chooses => candidates.len(),
+        _ => 1,
     };
-    let n_gamma = match cell.classifier.has_gamma() {
-        true => choice.gamma_multiples.len().max(1),
-        false => 1,
-    };
-    let n_chosen = choice
-        .touches
+    let n_c = n_candidates(
+        &recognition.choose_c,
+        cell.classifier.has_c() && cell.c.is_none(),
+    );
+    let n_gamma = n_candidates(&recognition.choose_gamma, cell.classifier.has_gamma());
+    let n_chosen = recognition
+        .choose_touches
         .map_or(n_train, |n| n_train.min(n as f64 * n_classes));
     let choose_s = match n_c * n_gamma {
         1 => 0.0,
         // Each solution goes on from another, and products of rows are made once.
-        n => 0.5 * (n * choice.folds) as f64 * train_s(plan, cell, n_chosen, n_classes),
+        n => {
+            0.5 * (n * recognition.n_choice_folds()) as f64
+                * train_s(plan, cell, n_chosen, n_classes)
+        }
     };
     choose_s + train_s(plan, cell, n_train, n_classes) + n_test * test_s(cell, n_train, n_classes)
 }

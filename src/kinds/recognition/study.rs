@@ -115,7 +115,7 @@ impl RecognitionStudy {
         };
         let mut n_cells = 0;
         for (variant, plan, touched) in variants {
-            let mut sweep = Sweep::lay_out(&plan, touched.as_ref())?;
+            let mut sweep = Sweep::new(&plan, touched.as_ref())?;
             sweep.place(n_cells, &variant);
             n_cells += sweep.n_cells();
             study.parts.push(StudyPart {
@@ -310,9 +310,14 @@ fn touches_name(patch: &Patch, n_frames: usize, content: &str) -> String {
 fn measured_content(plan: &Plan, group: &Group) -> String {
     let patch = &plan.arrays[group.array];
     let steps = signal_steps(plan, group, &Seed::new(plan.spec.seed));
+    let recognition = &plan.spec.recognition;
     // Test touches are read by another skin only where there is one.
-    let split = (group.tested_on != TestedOn::SameSkin).then_some((plan.split, &plan.repeats));
-    let drawn = (plan.spec.seed, &plan.repeats, plan.speed);
+    let split = (group.tested_on != TestedOn::SameSkin).then_some((
+        plan.keep_together,
+        recognition.folds,
+        recognition.test_fraction,
+    ));
+    let drawn = (plan.spec.seed, plan.spec.projections_per_split, plan.speed);
     let (ensemble, m) = (group.ensemble, group.projected());
     format!("{patch:?} {steps:?} {split:?} {drawn:?} {ensemble:?} {m:?}")
 }

@@ -109,8 +109,16 @@ impl Cells {
     /// What is around the cells: axes in millimetres of a grid, a scale bar of another skin.
     pub fn draw_frame(&self, drawing: &mut Drawing, is_grid: bool) {
         if is_grid {
-            for (side, pixels) in [(Side::Below, self.area.width), (Side::Left, self.area.height)] {
-                draw_map_axis(drawing, self.area, side, pixels / self.pixels_per_metre * 1e3);
+            for (side, pixels) in [
+                (Side::Below, self.area.width),
+                (Side::Left, self.area.height),
+            ] {
+                draw_map_axis(
+                    drawing,
+                    self.area,
+                    side,
+                    pixels / self.pixels_per_metre * 1e3,
+                );
             }
             drawing.frame(self.area, Stroke::new(INK, 1.0));
             return;

@@ -2,13 +2,9 @@
 
 use crate::error::{Error, Result};
 use crate::study::axes::is_at;
-use crate::study::content_hash::short_hash;
 use crate::toml_text;
 use serde::{Deserialize, Serialize};
 use std::collections::{BTreeMap, BTreeSet};
-
-/// Hexadecimal digits of what binds a line to its study. Fewer: lines of two studies may be taken for each other's.
-const BINDING_DIGITS: usize = 16;
 
 /// Everything that decides the bytes of a study's tables.
 ///
@@ -76,12 +72,6 @@ impl Identity {
         ))
     }
 
-    /// What every line of a journal carries: the same for the same study, another for every other.
-    pub(super) fn binding(&self) -> String {
-        let facts = self.facts(self.may_change);
-        short_hash(format!("{facts:?}"), BINDING_DIGITS)
-    }
-
     /// All that counts, by name: of the study the values of its keys, but for those that may change.
     fn facts(&self, may_change: &[&str]) -> BTreeMap<String, String> {
         let mut facts = BTreeMap::new();
@@ -139,7 +129,6 @@ mod tests {
         let said = old.check_same(&new, "results/x").unwrap_err();
         assert_eq!(said.exit_code(), 2);
         assert!(said.to_string().contains(expected[0]), "{said}");
-        assert_ne!(old.binding(), new.binding());
     }
 
     #[test]
@@ -153,6 +142,5 @@ mod tests {
             "question = \"b\"\ntrials = 2\n[skin]\npitch_mm = [1.0, 2.0]\n[report]\nsamples = [\"mug\"]",
         );
         assert!(old.check_same(&new, "x").is_ok());
-        assert_eq!(old.binding(), new.binding());
     }
 }

@@ -1,7 +1,7 @@
 //! The journal of a run: one file, one writer at a time.
 
 use super::identity::Identity;
-use super::line::{Records, decode, encode};
+use super::line::{NO_STUDY, Records, decode, encode};
 use crate::error::{Error, Result};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
@@ -27,8 +27,8 @@ const SYNC_INTERVAL: Duration = Duration::from_millis(100);
 #[derive(Debug, Default)]
 pub struct Journal {
     path: PathBuf,
-    /// What every line is bound to its study with.
-    of: String,
+    /// Checksum of the first line, from which those of all others go on.
+    first: u32,
     before: Records,
     /// Bytes of whole lines when it was opened.
     n_whole: usize,
@@ -59,29 +59,22 @@ impl Journal {
     /// which; it is damaged before its last line, or has lines of two studies; it cannot be read or written.
     pub fn open(path: &Path, identity: &Identity) -> Result<Self> {
         let (mut file, bytes) = read_locked(path)?;
-        let (begun, journal) = Self::of_bytes(path, &bytes)?;
-        let of = identity.binding();
+        let (begun, mut journal) = Self::of_bytes(path, &bytes)?;
         if let Some(begun) = &begun {
             begun.check_same(identity, &path.display().to_string())?;
-            check_bound(path, &journal.of, &of)?;
         }
         let n_whole = journal.n_whole as u64;
         let cut = file
             .set_len(n_whole)
             .and_then(|()| file.seek(SeekFrom::End(0)));
         cut.map_err(|e| Error::io(path, "write", e))?;
-        let writer = Writer {
+        journal.writer = Mutex::new(Some(Writer {
             file,
             synced: Instant::now(),
             is_broken: false,
-        };
-        let journal = Self {
-            of,
-            writer: Mutex::new(Some(writer)),
-            ..journal
-        };
+        }));
         if begun.is_none() {
-            journal.keep(HEADER, identity)?;
+            journal.first = journal.append(HEADER, identity)?;
             journal.sync()?;
         }
         Ok(journal)
@@ -102,27 +95,24 @@ impl Journal {
 
     /// What a file holds, and the study that it was begun with: none where no line is whole.
     fn of_bytes(path: &Path, bytes: &[u8]) -> Result<(Option<Identity>, Self)> {
-        let decoded = decode(bytes);
-        if let Some((line, given)) = decoded.damage {
-            return Err(damaged(path, line, given));
-        }
-        let mut journal = Self {
+        let damaged = |(line, given): (usize, &str)| {
+            let allowed = "a journal as it was written; --fresh starts over and keeps the old results beside the new";
+            Error::input(format!("{}: line {line}", path.display()), given, allowed)
+        };
+        let decoded = decode(HEADER, bytes).map_err(damaged)?;
+        let journal = Self {
             path: path.to_owned(),
+            first: decoded.first,
             before: decoded.records,
             n_whole: decoded.n_whole,
             ..Self::default()
         };
-        let Some(first) = decoded.first else {
-            return Ok((None, journal));
-        };
-        journal.of = first.of;
-        match serde_json::from_str(first.record.get()) {
-            Ok(begun) if first.key == HEADER => Ok((Some(begun), journal)),
-            _ => {
-                let given =
-                    "is no record of a study: nothing says which study the finished work is of";
-                Err(damaged(path, 1, given))
-            }
+        let header = decoded
+            .header
+            .map(|header| serde_json::from_str(header.get()));
+        match header.transpose() {
+            Ok(begun) => Ok((begun, journal)),
+            Err(_) => Err(damaged((1, NO_STUDY))),
         }
     }
 
@@ -131,22 +121,23 @@ impl Journal {
         serde_json::from_str(self.before.get(key)?.get()).ok()
     }
 
-    /// How many records there were when it was opened.
-    pub fn n_before(&self) -> usize {
-        self.before.len()
-    }
-
     /// Keeps a record: when this returns, the end of the process cannot lose it.
     pub fn keep(&self, key: &str, record: &impl Serialize) -> Result<()> {
-        if let Some(writer) = self.lock().as_mut() {
-            let line = encode(&self.of, key, record).map_err(io::Error::from);
-            let kept = line.and_then(|line| writer.append(&line));
-            kept.map_err(|e| Error::io(&self.path, "write", e))?;
-            if self.aborts_after.load(Relaxed) > 0 && self.aborts_after.fetch_sub(1, Relaxed) == 1 {
-                std::process::abort();
-            }
+        self.append(key, record).map(|_| ())
+    }
+
+    /// Writes a line, unless this journal keeps nothing; its checksum.
+    fn append(&self, key: &str, record: &impl Serialize) -> Result<u32> {
+        let Some(writer) = &mut *self.lock() else {
+            return Ok(0);
+        };
+        let line = encode(self.first, key, record).map_err(io::Error::from);
+        let kept = line.and_then(|(checksum, line)| writer.append(&line).map(|()| checksum));
+        let checksum = kept.map_err(|e| Error::io(&self.path, "write", e))?;
+        if self.aborts_after.load(Relaxed) > 0 && self.aborts_after.fetch_sub(1, Relaxed) == 1 {
+            std::process::abort();
         }
-        Ok(())
+        Ok(checksum)
     }
 
     /// Ends the process, as a kill does, when so many more records are kept: to try what is left of it.
@@ -157,9 +148,8 @@ impl Journal {
     /// Adds what another journal of the same study holds and this one did not hold when it was opened.
     ///
     /// # Errors
-    /// Its lines are of another study; this journal cannot be written.
+    /// This journal cannot be written.
     pub fn take_from(&mut self, other: Self) -> Result<()> {
-        check_bound(&other.path, &other.of, &self.of)?;
         for (key, record) in other.before {
             if !self.before.contains_key(&key) {
                 self.keep(&key, &record)?;
@@ -212,15 +202,8 @@ impl Writer {
     }
 }
 
-/// Opens a journal, or makes an empty one, for this process alone, and reads it.
-fn read_locked(path: &Path) -> Result<(File, Vec<u8>)> {
-    let options = OpenOptions::new()
-        .read(true)
-        .write(true)
-        .create(true)
-        .truncate(false)
-        .open(path);
-    let mut file = options.map_err(|e| Error::io(path, "write", e))?;
+/// Keeps a journal from other processes as long as the file is open.
+pub(super) fn lock(path: &Path, file: &File) -> Result<()> {
     file.try_lock().map_err(|error| match error {
         TryLockError::WouldBlock => Error::input(
             path.display(),
@@ -228,27 +211,21 @@ fn read_locked(path: &Path) -> Result<(File, Vec<u8>)> {
             "one run in a folder at a time: wait for that one, or name another folder with --out",
         ),
         TryLockError::Error(error) => Error::io(path, "lock", error),
-    })?;
+    })
+}
+
+/// Opens a journal, or makes an empty one, for this process alone, and reads it.
+fn read_locked(path: &Path) -> Result<(File, Vec<u8>)> {
+    let file = OpenOptions::new()
+        .read(true)
+        .write(true)
+        .create(true)
+        .truncate(false)
+        .open(path);
+    let mut file = file.map_err(|e| Error::io(path, "write", e))?;
+    lock(path, &file)?;
     let mut bytes = Vec::new();
     file.read_to_end(&mut bytes)
         .map_err(|e| Error::io(path, "read", e))?;
     Ok((file, bytes))
-}
-
-/// Lines that are bound to a study are of the study that the first of them names.
-fn check_bound(path: &Path, of: &str, expected: &str) -> Result<()> {
-    match of == expected {
-        true => Ok(()),
-        false => Err(damaged(
-            path,
-            1,
-            "names another study than the one that the lines are of",
-        )),
-    }
-}
-
-fn damaged(path: &Path, line: usize, given: &str) -> Error {
-    let allowed =
-        "a journal as it was written; --fresh starts over and keeps the old results beside the new";
-    Error::input(format!("{}: line {line}", path.display()), given, allowed)
 }

@@ -1,10 +1,11 @@
-//! A line of a journal: the checksum of what follows, a space, and JSON.
+//! A line of a journal: a checksum, a space, and JSON.
 //!
 //! ```text
-//! 1c291ca3 {"of":"5d41402abc4b2a76","key":"cell 0, trial 0","record":{…}}
+//! 1c291ca3 {"key":"piece 0f3a, trial 0","record":{…}}
 //! ```
 //!
-//! `of` is the same in every line: what it says of the study ([`Identity`](super::Identity)) keeps lines of two studies apart.
+//! The checksum of the first line, which names the study, is the CRC-32 of its JSON; that of every other line goes on from it, and so does not
+//! fit a journal of another study.
 
 use serde::{Deserialize, Serialize};
 use serde_json::value::RawValue;
@@ -13,89 +14,98 @@ use std::collections::BTreeMap;
 /// Records by key, as JSON; of those with the same key the last.
 pub type Records = BTreeMap<String, Box<RawValue>>;
 
+/// What is wrong with a first line that names no study.
+pub const NO_STUDY: &str =
+    "is no record of a study: nothing says which study the finished work is of";
+const CHANGED: &str = "does not match its checksum: it was changed, or is of another study than line 1 or of an earlier version";
+
 #[derive(Serialize)]
 struct Written<'a, R> {
-    of: &'a str,
     key: &'a str,
     record: &'a R,
 }
 
-/// A whole line.
 #[derive(Deserialize)]
-pub struct Line {
-    /// What binds it to its study; nothing in journals of older programs.
-    #[serde(default)]
-    pub of: String,
-    /// What was kept.
-    pub key: String,
-    /// The same, as JSON.
-    pub record: Box<RawValue>,
+struct Line {
+    key: String,
+    record: Box<RawValue>,
 }
 
-/// One line with its end.
-pub fn encode(of: &str, key: &str, record: &impl Serialize) -> serde_json::Result<String> {
-    let json = serde_json::to_string(&Written { of, key, record })?;
-    Ok(format!("{:08x} {json}\n", crc32fast::hash(json.as_bytes())))
+/// One line with its end, and its checksum; `first` is that of the journal's first line, 0 for this line itself.
+pub fn encode(first: u32, key: &str, record: &impl Serialize) -> serde_json::Result<(u32, String)> {
+    let json = serde_json::to_string(&Written { key, record })?;
+    let checksum = checksum(first, &json);
+    Ok((checksum, format!("{checksum:08x} {json}\n")))
 }
 
-/// What the lines of a file say.
+fn checksum(first: u32, json: &str) -> u32 {
+    let mut hasher = crc32fast::Hasher::new_with_initial(first);
+    hasher.update(json.as_bytes());
+    hasher.finalize()
+}
+
+/// What the whole lines of a file say.
 #[derive(Default)]
 pub struct Decoded {
-    /// The first line, if it is whole.
-    pub first: Option<Line>,
-    /// Records of the other whole lines.
+    /// The record of the first line, if that is whole.
+    pub header: Option<Box<RawValue>>,
+    /// Its checksum.
+    pub first: u32,
+    /// Records of the other lines.
     pub records: Records,
     /// Bytes up to the end of the last whole line.
     pub n_whole: usize,
-    /// Number from 1 of a line that no interrupted write leaves behind, and what is wrong with it.
-    pub damage: Option<(usize, &'static str)>,
 }
 
-/// Reads lines up to the first that is torn, or foreign.
-pub fn decode(bytes: &[u8]) -> Decoded {
+/// Reads a file whose first line has the key `header`, up to a torn line at its end; the error says which line, from 1, no interrupted write
+/// leaves behind, and what is wrong with it.
+pub fn decode(header: &str, bytes: &[u8]) -> Result<Decoded, (usize, &'static str)> {
     let mut decoded = Decoded::default();
     for (number, line) in bytes.split_inclusive(|&byte| byte == b'\n').enumerate() {
-        let Some(read) = decode_line(line) else {
-            let is_last = decoded.n_whole + line.len() == bytes.len();
-            let given = "does not match its checksum, though lines follow it";
-            decoded.damage = (!is_last).then_some((number + 1, given));
-            break;
-        };
-        match &decoded.first {
-            None => decoded.first = Some(read),
-            Some(first) if read.key == first.key || read.of != first.of => {
-                let given = "is of another study than line 1, or begins one anew";
-                decoded.damage = Some((number + 1, given));
-                break;
+        let read = decode_line(decoded.first, line);
+        match (read, number) {
+            (Some((checksum, line)), 0) if line.key == header => {
+                decoded.first = checksum;
+                decoded.header = Some(line.record);
             }
-            Some(_) => {
-                decoded.records.insert(read.key, read.record);
+            (Some((_, line)), 1..) => {
+                decoded.records.insert(line.key, line.record);
             }
+            // It was torn.
+            (None, _) if decoded.n_whole + line.len() == bytes.len() => break,
+            (_, 0) => return Err((1, NO_STUDY)),
+            _ => return Err((number + 1, CHANGED)),
         }
         decoded.n_whole += line.len();
     }
-    decoded
+    Ok(decoded)
 }
 
-fn decode_line(line: &[u8]) -> Option<Line> {
+fn decode_line(first: u32, line: &[u8]) -> Option<(u32, Line)> {
     let line = std::str::from_utf8(line.strip_suffix(b"\n")?).ok()?;
-    let (checksum, json) = line.split_once(' ')?;
-    let is_whole = checksum == format!("{:08x}", crc32fast::hash(json.as_bytes()));
-    is_whole.then(|| serde_json::from_str(json).ok())?
+    let (written, json) = line.split_once(' ')?;
+    let checksum = checksum(first, json);
+    let is_whole = written == format!("{checksum:08x}");
+    is_whole.then(|| Some((checksum, serde_json::from_str(json).ok()?)))?
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    fn line(of: &str, key: &str, number: usize) -> String {
-        encode(of, key, &(number, 0.1 + number as f64)).unwrap()
+    const KEYS: [&str; 5] = ["study", "a", "b\n\"", "c", "a"];
+
+    fn lines(study: &str) -> Vec<String> {
+        let (first, header) = encode(0, KEYS[0], &study).unwrap();
+        let line = |number: usize| {
+            let record = (number, 0.1 + number as f64);
+            encode(first, KEYS[number], &record).unwrap().1
+        };
+        [vec![header], (1..KEYS.len()).map(line).collect()].concat()
     }
 
     fn file() -> Vec<u8> {
-        let lines = ["study", "a", "b\n\"", "c", "a"].iter().enumerate();
-        let lines = lines.map(|(number, key)| line("1f", key, number));
-        lines.collect::<String>().into_bytes()
+        lines("one").concat().into_bytes()
     }
 
     fn number(decoded: &Decoded, key: &str) -> Option<(usize, f64)> {
@@ -103,13 +113,18 @@ mod tests {
         Some(serde_json::from_str(record.get()).unwrap())
     }
 
+    fn damage(bytes: &[u8]) -> Option<(usize, &'static str)> {
+        decode("study", bytes).err()
+    }
+
     #[test]
-    fn what_is_written_is_read_and_the_last_of_a_key_counts() {
-        let decoded = decode(&file());
-        assert_eq!((decoded.n_whole, decoded.damage), (file().len(), None));
-        assert_eq!(decoded.first.as_ref().unwrap().key, "study");
-        assert_eq!(number(&decoded, "b\n\""), Some((2, 2.1)));
+    fn records_come_back_by_key_and_the_last_of_a_key_counts() {
+        let decoded = decode("study", &file()).unwrap();
         assert_eq!(number(&decoded, "a"), Some((4, 4.1)));
+        assert_eq!(number(&decoded, "b\n\""), Some((2, 2.1)));
+        assert_eq!(number(&decoded, "d"), None);
+        assert_eq!(decoded.n_whole, file().len());
+        assert_eq!(decoded.header.unwrap().get(), "\"one\"");
     }
 
     #[test]
@@ -117,15 +132,11 @@ mod tests {
         let bytes = file();
         let ends: Vec<usize> = (0..bytes.len()).filter(|&k| bytes[k] == b'\n').collect();
         for n in 0..bytes.len() {
-            let decoded = decode(&bytes[..n]);
+            let decoded = decode("study", &bytes[..n]).unwrap();
             let whole = ends.iter().take_while(|&&end| end < n).count();
             let expected = whole.checked_sub(1).map_or(0, |last| ends[last] + 1);
-            assert_eq!(
-                (decoded.n_whole, decoded.damage),
-                (expected, None),
-                "{n} bytes"
-            );
-            assert_eq!(decoded.first.is_some(), whole > 0);
+            assert_eq!(decoded.n_whole, expected, "{n} bytes");
+            assert_eq!(decoded.header.is_some(), whole > 0);
             assert_eq!(decoded.records.len(), whole.saturating_sub(1));
         }
     }
@@ -137,17 +148,19 @@ mod tests {
         for k in 0..last - 20 {
             let mut bytes = bytes.clone();
             bytes[k] ^= 1;
-            let decoded = decode(&bytes);
-            assert!(decoded.damage.is_some(), "byte {k}");
+            assert!(damage(&bytes).is_some(), "byte {k}");
         }
     }
 
     #[test]
-    fn a_line_of_another_study_is_told_from_the_others() {
-        for foreign in [line("2e", "d", 5), line("1f", "study", 5)] {
-            let bytes = [file(), foreign.into_bytes(), file()].concat();
-            let decoded = decode(&bytes);
-            assert!(matches!(decoded.damage, Some((6, said)) if said.starts_with("is of another")));
+    fn a_line_of_another_study_or_of_none_is_told_from_the_others() {
+        let (ours, theirs) = (lines("one"), lines("two"));
+        for foreign in [&theirs[1..], &ours[..1], &theirs[..]] {
+            let bytes = [&ours[..], foreign, &ours[1..]].concat().concat();
+            let (line, said) = damage(bytes.as_bytes()).unwrap();
+            assert!(line == 6 && said.contains("of another study"), "{line}");
         }
+        let nameless = damage(ours[1..].concat().as_bytes());
+        assert!(matches!(nameless, Some((1, said)) if said.starts_with("is no record")));
     }
 }

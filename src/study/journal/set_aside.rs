@@ -1,8 +1,8 @@
 //! Old results, kept beside the new.
 
-use super::journal_file::JOURNAL_FILE;
+use super::journal_file::{JOURNAL_FILE, lock};
 use crate::error::{Error, Result};
-use std::fs::{self, File, TryLockError};
+use std::fs::{self, File};
 use std::path::{Path, PathBuf};
 
 /// Renames a folder of results to the first free of `NAME.1`, `NAME.2` …; its new name, or `None` where there is none.
@@ -18,20 +18,10 @@ pub fn set_aside(folder: &Path) -> Result<Option<PathBuf>> {
         return Err(Error::input(folder.display(), "a file", allowed));
     }
     let journal = folder.join(JOURNAL_FILE);
-    let _held = match File::open(&journal) {
-        Ok(file) => match file.try_lock() {
-            Err(TryLockError::WouldBlock) => {
-                let given = "another run is writing to it";
-                return Err(Error::input(
-                    journal.display(),
-                    given,
-                    "a folder that no run is writing to",
-                ));
-            }
-            _ => Some(file),
-        },
-        Err(_) => None,
-    };
+    let held = File::open(&journal);
+    if let Ok(file) = &held {
+        lock(&journal, file)?;
+    }
     let name = folder.file_name().unwrap_or_default().to_string_lossy();
     let free = (1..)
         .map(|k| folder.with_file_name(format!("{name}.{k}")))

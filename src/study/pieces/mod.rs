@@ -12,12 +12,9 @@ mod scale;
 mod shared;
 
 pub use left::PiecesLeft;
-pub use piece_study::{
-    FinishedPieces, Part, PieceFailure, PieceManner, PieceStudy, PiecesRun, n_pieces_left,
-    run_whole,
-};
+pub use piece_study::{Part, PieceFailure, PieceManner, PieceStudy, PiecesRun, run_whole};
 pub use record::PieceRows;
-pub use scale::{PieceEstimate, Scale};
+pub use scale::Scale;
 pub use shared::Shared;
 
 use super::content_hash::short_hash;

@@ -81,15 +81,6 @@ pub struct PieceFailure {
     error: String => Note;
 } }
 
-/// What came of all pieces, in this run and those before it.
-#[derive(Clone, Debug)]
-pub struct FinishedPieces<R> {
-    /// Rows of those that did not fail, in the order of pieces.
-    pub rows: R,
-    /// Those that failed, in the same order.
-    pub failures: Vec<PieceFailure>,
-}
-
 impl<'a> PieceManner<'a> {
     /// All at once; nothing is kept, and the first piece that fails ends the run.
     pub fn whole(progress: &'a dyn Progress) -> Self {
@@ -115,7 +106,8 @@ pub struct PiecesRun<'a, S: PieceStudy> {
 impl<'a, S: PieceStudy> PiecesRun<'a, S> {
     /// Of this study, with all its pieces.
     pub fn new(study: &'a S, pieces: &'a [NamedPiece], manner: &PieceManner<'a>) -> Self {
-        let before = in_journal(pieces, manner.journal);
+        let results = pieces.iter().map(|piece| manner.journal.get(&piece.key()));
+        let before: Vec<Option<PieceResult<S::Rows>>> = results.collect();
         let is_in = is_in(pieces, manner.part);
         let is_left = before.iter().enumerate().map(|(number, result)| {
             let is_done = matches!(result, Some(Ok(_))) || (result.is_some() && !manner.retries);
@@ -129,6 +121,11 @@ impl<'a, S: PieceStudy> PiecesRun<'a, S> {
         }
     }
 
+    /// How many pieces it will do.
+    pub fn n_left(&self) -> usize {
+        self.left.n()
+    }
+
     /// What it will do: for [`Progress::expect`]. What a journal has is not done again.
     pub fn workload(&self) -> Vec<Piece> {
         let mut work = match self.left.n() {
@@ -139,11 +136,12 @@ impl<'a, S: PieceStudy> PiecesRun<'a, S> {
         work
     }
 
-    /// Does what the journal has not yet. The rows but for times are the same as if all were done at once.
+    /// Does what the journal has not yet: rows of all pieces that did not fail, now or before, in the order of pieces, and those that failed.
+    /// The rows but for times are the same as if all were done at once.
     ///
     /// # Errors
     /// The journal cannot be written; what a piece fails of, if the first to fail ends the run; what no piece can do without.
-    pub fn run(self) -> Result<FinishedPieces<S::Rows>> {
+    pub fn run(self) -> Result<(S::Rows, Vec<PieceFailure>)> {
         let Self { study, left, .. } = self;
         if left.n() > 0 {
             study.measure(&left)?;
@@ -170,19 +168,8 @@ impl<'a, S: PieceStudy> PiecesRun<'a, S> {
                 None => {}
             }
         }
-        Ok(FinishedPieces { rows, failures })
+        Ok((rows, failures))
     }
-}
-
-/// What a journal says came of each piece.
-fn in_journal<R: PieceRows>(
-    pieces: &[NamedPiece],
-    journal: &Journal,
-) -> Vec<Option<PieceResult<R>>> {
-    pieces
-        .iter()
-        .map(|piece| journal.get(&piece.key()))
-        .collect()
 }
 
 /// Runs a whole study at once, keeps nothing, and ends at the first piece that fails.
@@ -192,16 +179,7 @@ fn in_journal<R: PieceRows>(
 pub fn run_whole<S: PieceStudy>(study: &S, progress: &dyn Progress) -> Result<S::Rows> {
     let pieces = study.pieces();
     let run = PiecesRun::new(study, &pieces, &PieceManner::whole(progress));
-    Ok(run.run()?.rows)
-}
-
-/// Pieces of a part of which a journal does not say what came of them.
-pub fn n_pieces_left<R: PieceRows>(pieces: &[NamedPiece], part: Part, journal: &Journal) -> usize {
-    let is_in = is_in(pieces, part);
-    let results = in_journal::<R>(pieces, journal).into_iter().enumerate();
-    results
-        .filter(|(number, result)| result.is_none() && is_in(*number))
-        .count()
+    Ok(run.run()?.0)
 }
 
 /// Whether a piece, by its number, belongs to a part.

@@ -3,7 +3,6 @@
 use crate::spelling::counted;
 use crate::study::memory::Bytes;
 use crate::study::time_left::Piece;
-use std::fmt;
 
 /// Bytes of the program, its objects and the pictures that it draws at the end, about.
 const PROGRAM_BYTES: f64 = 2e8;
@@ -36,53 +35,26 @@ impl Scale {
         within.next()
     }
 
+    /// A study of so many work items as `bubbletouch plan` tells it, in lines: its scale, and how long all of its work, shared work included,
+    /// is planned to take with so many threads. Mostly right within a factor of 3 on a usual machine.
+    pub fn estimate(&self, n_items: usize, work: &[Piece], n_threads: usize) -> String {
+        let wall_s = work.iter().map(|piece| piece.planned_s).sum::<f64>() / n_threads as f64;
+        let (objects, touches) = (&self.objects, &self.touches);
+        let configurations = counted(self.n_configurations, "configuration");
+        let bytes = Bytes(self.bytes_at_once(n_threads));
+        let (seconds, threads) = (seconds(wall_s), counted(n_threads, "thread"));
+        [
+            format!("  objects  {objects}"),
+            format!("  touches  {touches}"),
+            format!("  items    {n_items}, of {configurations}"),
+            format!("  memory   about {bytes}"),
+            format!("  time     about {seconds} on {threads} (mostly right within a factor of 3)"),
+        ]
+        .join("\n")
+    }
+
     fn bytes_at_once(&self, n_items: usize) -> f64 {
         PROGRAM_BYTES + self.bytes + n_items as f64 * self.item_bytes
-    }
-}
-
-/// A study of pieces as `bubbletouch plan` tells it: its scale, and what its pieces are planned to take, those that are shared and those
-/// at the end included.
-///
-/// Times are those of the pieces' plans: mostly right within a factor of 3 on a usual machine.
-#[derive(Clone, Debug)]
-pub struct PieceEstimate {
-    /// How large it is.
-    pub scale: Scale,
-    /// Pieces that the journal counts.
-    pub n_pieces: usize,
-    /// Threads that do them.
-    pub n_threads: usize,
-    /// All work.
-    pub work: Vec<Piece>,
-}
-
-impl PieceEstimate {
-    /// Seconds until the study is done, with all threads.
-    pub fn wall_s(&self) -> f64 {
-        let n_threads = self.n_threads as f64;
-        self.work.iter().map(|piece| piece.planned_s).sum::<f64>() / n_threads
-    }
-}
-
-impl fmt::Display for PieceEstimate {
-    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        let Scale {
-            objects,
-            touches,
-            n_configurations,
-            ..
-        } = &self.scale;
-        let configurations = counted(*n_configurations, "configuration");
-        let bytes = Bytes(self.scale.bytes_at_once(self.n_threads));
-        let seconds = seconds(self.wall_s());
-        let threads = counted(self.n_threads, "thread");
-        writeln!(f, "  objects  {objects}")?;
-        writeln!(f, "  touches  {touches}")?;
-        writeln!(f, "  items    {}, of {configurations}", self.n_pieces)?;
-        writeln!(f, "  memory   about {bytes}")?;
-        let right = "(mostly right within a factor of 3)";
-        write!(f, "  time     about {seconds} on {threads} {right}")
     }
 }
 
