@@ -70,11 +70,8 @@ struct MeshArgs {
     unit: Option<LengthUnit>,
 }
 
-/// An object and the set it is from.
-struct Listed {
-    set: String,
-    object: Object,
-}
+/// An object behind the name of its set.
+type Listed = (String, Object);
 
 pub fn objects(args: &Args) -> Result<()> {
     match &args.action {
@@ -90,7 +87,7 @@ pub fn objects(args: &Args) -> Result<()> {
     check_ending(path, "png")?;
     let tiles: Vec<_> = listed
         .iter()
-        .map(|l| (l.object.name.as_str(), l.spheres()))
+        .map(|(_, object)| (object.name.as_str(), spheres(object)))
         .collect();
     let tile = if tiles.len() == 1 { PICTURE } else { TILE };
     let picture = contact_sheet(&tiles, COLUMNS, tile)?;
@@ -103,11 +100,9 @@ fn report(args: &MeshArgs) -> Result<()> {
     say(MeshReport::new(&mesh))
 }
 
-impl Listed {
-    fn spheres(&self) -> &SphereUnion {
-        let spheres = self.object.model.spheres();
-        spheres.expect("solids and vertices are listed as spheres")
-    }
+fn spheres(object: &Object) -> &SphereUnion {
+    let spheres = object.model.spheres();
+    spheres.expect("solids and vertices are listed as spheres")
 }
 
 impl Args {
@@ -117,19 +112,16 @@ impl Args {
                 unit: self.unit,
                 ..ObjectsSpec::default()
             };
-            return Ok(vec![Listed {
-                set: "mesh".to_owned(),
-                object: load_mesh(path, &spec, None)?,
-            }]);
+            return Ok(vec![("mesh".to_owned(), load_mesh(path, &spec, None)?)]);
         }
         let catalogue = catalogue(self.objects.as_deref())?;
         self.chosen(&catalogue)?
             .into_par_iter()
             .map(|entry| {
-                Ok(Listed {
-                    set: entry.set.clone(),
-                    object: entry.build(self.surface_error_mm * 1e-3)?,
-                })
+                Ok((
+                    entry.set.clone(),
+                    entry.build(self.surface_error_mm * 1e-3)?,
+                ))
             })
             .collect()
     }
@@ -141,10 +133,8 @@ impl Args {
         if self.names.is_empty() {
             return Ok(catalogue.entries().iter().collect());
         }
-        self.names
-            .iter()
-            .map(|name| catalogue.object(name))
-            .collect()
+        let named = self.names.iter().map(|name| catalogue.object(name));
+        named.collect()
     }
 }
 
@@ -152,7 +142,7 @@ fn table(listed: &[Listed]) -> Table {
     let mut table = Table::new();
     table.load_preset(NOTHING);
     table.set_header(["set", "name", "parts", "spheres", "size (mm)"]);
-    for Listed { set, object } in listed {
+    for (set, object) in listed {
         let size = object.model.bounds().size() * 1e3;
         table.add_row([
             set.clone(),

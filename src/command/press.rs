@@ -49,7 +49,7 @@ pub struct Args {
     #[command(flatten)]
     many: press_poses::Args,
     /// What a mesh becomes: vertex_spheres, mesh (itself) or packed [default: vertex_spheres]
-    #[arg(long, value_name = "MODEL", value_parser = word::<ModelSpec>, requires = "mesh")]
+    #[arg(long, value_name = "MODEL", value_parser = word::<ModelSpec>, conflicts_with_all = ["object", "spheres"])]
     model: Option<ModelSpec>,
     /// Unit of the file of the mesh or the spheres: m, cm, mm or in [default: m, and of a size that the array can feel]
     #[arg(long, value_name = "UNIT", conflicts_with = "object")]

@@ -3,9 +3,8 @@
 use super::CommandLine;
 use super::output::output_folder;
 use super::streams::{say, write_out};
-use bubbletouch::files::write_bytes;
 use bubbletouch::{Error, Result};
-use clap::{Command, CommandFactory};
+use clap::CommandFactory;
 use clap_complete::Shell;
 use clap_mangen::Man;
 use std::path::PathBuf;
@@ -35,37 +34,16 @@ pub fn completions(args: &CompletionArgs) -> Result<()> {
 
 /// Writes manual pages.
 pub fn man(args: &ManArgs) -> Result<()> {
+    if let Some(folder) = &args.out {
+        output_folder(folder)?;
+        let written = clap_mangen::generate_to(CommandLine::command(), folder);
+        written.map_err(|error| Error::io(folder, "write", error))?;
+        return say(format_args!("Manual pages in {}", folder.display()));
+    }
     let mut command = CommandLine::command().disable_help_subcommand(true);
     command.build();
-    let Some(folder) = &args.out else {
-        return write_out(&page(command)?);
-    };
-    output_folder(folder)?;
-    let pages = pages(command)?;
-    for (name, page) in &pages {
-        write_bytes(&folder.join(name), page)?;
-    }
-    say(format_args!(
-        "{} pages in {}",
-        pages.len(),
-        folder.display()
-    ))
-}
-
-/// Of a command and all that are below it: file name and content.
-fn pages(command: Command) -> Result<Vec<(String, Vec<u8>)>> {
-    let below: Vec<Command> = command.get_subcommands().cloned().collect();
-    let name = command.get_display_name().unwrap_or(command.get_name());
-    let mut all = vec![(format!("{name}.1"), page(command.clone())?)];
-    for command in below {
-        all.extend(pages(command)?);
-    }
-    Ok(all)
-}
-
-fn page(command: Command) -> Result<Vec<u8>> {
     let mut page = Vec::new();
-    let failed = |error| Error::io("manual page", "write", error);
-    Man::new(command).render(&mut page).map_err(failed)?;
-    Ok(page)
+    let rendered = Man::new(command).render(&mut page);
+    rendered.map_err(|error| Error::io("manual page", "write", error))?;
+    write_out(&page)
 }

@@ -120,7 +120,6 @@ impl<K: Kind> AnyStudy for Loaded<K> {
     fn report(&self, folder: &Path, about: StudyAbout) -> Result<()> {
         let mut tables = self.kind.read_tables(folder)?;
         tables.extend(read_failures(folder)?);
-        let about = self.about(about);
-        self.folder_of(folder, &about, &tables)?.write().map(|_| ())
+        self.folder_of(folder, about, &tables)?.write().map(|_| ())
     }
 }

@@ -28,19 +28,27 @@ pub fn read_failures(folder: &Path) -> Result<Option<Table>> {
 }
 
 impl<K: Kind> Loaded<K> {
-    /// Charts, pictures and page, for a folder: nothing is written yet.
+    /// Charts, pictures and page, for a folder, with what is known of its run: nothing is written yet.
     pub(super) fn folder_of<'a>(
         &self,
         folder: &'a Path,
-        about: &StudyAbout,
+        of_run: StudyAbout,
         tables: &[Table],
     ) -> Result<Folder<'a>> {
+        let wall_s = of_run.manifest.as_ref().and_then(Manifest::wall_s);
+        let about = StudyAbout {
+            question: self.facts.question.clone(),
+            expected: self.facts.expected.clone(),
+            wall_s: wall_s.unwrap_or(f64::NAN),
+            program: PROGRAM.to_owned(),
+            ..of_run
+        };
         let found = Found {
             tables,
             charts: &self.kind.charts(tables),
             answers: &self.kind.answers(tables),
         };
-        folder_with(folder, about, &found, || {
+        folder_with(folder, &about, &found, || {
             Ok(Beyond {
                 pictures: self.kind.pictures(tables)?,
                 sections: self.kind.sections(tables)?,
@@ -48,18 +56,7 @@ impl<K: Kind> Loaded<K> {
         })
     }
 
-    /// What the page says of the study itself, beside what is known of its run.
-    pub(super) fn about(&self, of_run: StudyAbout) -> StudyAbout {
-        let wall_s = of_run.manifest.as_ref().and_then(Manifest::wall_s);
-        StudyAbout {
-            question: self.facts.question.clone(),
-            expected: self.facts.expected.clone(),
-            wall_s: wall_s.unwrap_or(f64::NAN),
-            program: PROGRAM.to_owned(),
-            ..of_run
-        }
-    }
-
+    /// Writes what [`AnyStudy::write`](super::AnyStudy::write) does.
     pub(super) fn write_results(&self, dir: &Path, outcome: &Outcome, run: Manifest) -> Result<()> {
         let hashes = |repeats: bool| {
             let tables = outcome.tables.iter();
@@ -79,14 +76,14 @@ impl<K: Kind> Loaded<K> {
             ..run
         };
         let json = manifest.to_json();
-        let about = self.about(StudyAbout {
+        let of_run = StudyAbout {
             name: manifest.study.clone(),
             command: manifest.command.clone(),
             manifest: Some(manifest),
             ..StudyAbout::default()
-        });
+        };
         let mut folder = Folder::of_tables(dir, &outcome.tables);
-        folder.append(self.folder_of(dir, &about, &outcome.tables)?);
+        folder.append(self.folder_of(dir, of_run, &outcome.tables)?);
         folder.write()?;
         write_bytes(&dir.join("study.toml"), self.facts.toml.as_bytes())?;
         write_bytes(&dir.join(MANIFEST_FILE), json.as_bytes())

@@ -35,19 +35,8 @@ pub(super) fn measure_s(plan: &Plan, group: &Group, (n_touches, m): (usize, usiz
     (n_touches * group.frames * n_taxels) as f64 * (TAXEL_S + project_s)
 }
 
-/// To fit and test a family in one trial.
-pub(super) fn family_s(
-    plan: &Plan,
-    family: &[Cell],
-    (n_classes, n_touches): (usize, usize),
-) -> f64 {
-    let fits = Group::fits(family);
-    fits.map(|cells| fit_s(plan, &cells[0], (n_classes as f64, n_touches as f64)))
-        .sum()
-}
-
-/// A fit, with what it chooses, and its test.
-fn fit_s(plan: &Plan, cell: &Cell, (n_classes, n_touches): (f64, f64)) -> f64 {
+/// A fit in one trial, with what it chooses, and its test.
+pub(super) fn fit_s(plan: &Plan, cell: &Cell, (n_classes, n_touches): (f64, f64)) -> f64 {
     let n_train = cell.train_touches as f64 * n_classes;
     let recognition = &plan.spec.recognition;
     let n_test = match recognition.folds {
@@ -74,7 +63,8 @@ fn fit_s(plan: &Plan, cell: &Cell, (n_classes, n_touches): (f64, f64)) -> f64 {
                 * train_s(plan, cell, n_chosen, n_classes)
         }
     };
-    choose_s + train_s(plan, cell, n_train, n_classes) + n_test * test_s(cell, n_train, n_classes)
+    let test_s = (cell.classifier.about().test_s)(n_train, cell.n_features() as f64, n_classes);
+    choose_s + train_s(plan, cell, n_train, n_classes) + n_test * test_s
 }
 
 fn train_s(plan: &Plan, cell: &Cell, n_train: f64, n_classes: f64) -> f64 {
@@ -94,9 +84,4 @@ fn train_s(plan: &Plan, cell: &Cell, n_train: f64, n_classes: f64) -> f64 {
         Multiclass::OneVsRest | Multiclass::CrammerSinger => n_classes * n_train * n_train,
     };
     n_entries * entry_s + 0.5 * PRODUCT_S * n_train * n_train * m
-}
-
-/// A test touch.
-fn test_s(cell: &Cell, n_train: f64, n_classes: f64) -> f64 {
-    (cell.classifier.about().test_s)(n_train, cell.n_features() as f64, n_classes)
 }

@@ -1,6 +1,6 @@
 //! A study that recognises objects: its work items, and the tables of what they found.
 
-use super::cost::{family_s, touch_s};
+use super::cost::{fit_s, touch_s};
 use super::load::touch_content;
 use super::measuring::Job;
 use super::rows::{RecognitionRows, TouchRow};
@@ -266,9 +266,9 @@ impl RecognitionStudy {
 
     fn learn_work(&self, (part, family): (&StudyPart, &[Cell])) -> Piece {
         let n_objects = part.touched.class_names().len();
-        let of = (n_objects, part.sweep.labels.len());
-        let stage = LEARN + family[0].classifier as u8;
-        Piece::of_stage(stage, family_s(&part.plan, family, of))
+        let of = (n_objects as f64, part.sweep.labels.len() as f64);
+        let fits = Group::fits(family).map(|cells| fit_s(&part.plan, &cells[0], of));
+        Piece::of_stage(LEARN + family[0].classifier as u8, fits.sum())
     }
 
     /// What it took to make and to measure touches.
