@@ -190,7 +190,7 @@ impl Table {
         table
     }
 
-    /// A column of another table for the rows of this one, found by a column that both have; absent for rows that the other one lacks.
+    /// A column of another table for the rows of this one, found by a column of numbers that both have; absent for rows that the other one lacks.
     pub fn look_up(&self, other: &Self, key: &str, column: &str) -> Option<(Column, Data)> {
         let ((_, known), (_, wanted)) = (other.column(key)?, self.column(key)?);
         let (column, data) = other.column(column)?;

@@ -38,7 +38,7 @@ fn every_cell_is_a_point_in_exactly_one_of_the_main_charts() {
     for (cells, n_charts) in [
         (quickstart_cells(), 1),
         (noise_cells(), 1),
-        (many_cells(), 10),
+        (many_cells(), 4),
         (vec![cell()], 1),
     ] {
         let n_cells = cells.len();

@@ -117,21 +117,16 @@ fn remarks(tables: &[Table]) -> Vec<String> {
         let numbers = filled(tables, file).and_then(|table| table.numbers(column));
         numbers.unwrap_or_default()
     };
-    let n_left_out = numbers("accuracy.csv", "n_left_out")
-        .iter()
-        .copied()
-        .fold(0.0, f64::max);
+    let n_left_out = numbers("accuracy.csv", "n_left_out").iter();
+    let n_left_out = n_left_out.copied().fold(0.0, f64::max);
     let n_capped: f64 = numbers(CELLS, "n_capped").iter().sum();
-    let n_needed = numbers("comparison.csv", "n_trials_needed")
-        .iter()
-        .enumerate();
     let too_few = Value::from("too_few_trials");
     let is_short = |row| {
         filled(tables, "comparison.csv").is_some_and(|t| t.has_setting("p_status", row, &too_few))
     };
-    let n_needed = n_needed
-        .filter(|(row, n)| n.is_finite() && is_short(*row))
-        .next();
+    let n_needed = numbers("comparison.csv", "n_trials_needed").iter();
+    let mut n_needed = n_needed.enumerate();
+    let n_needed = n_needed.find(|(row, n)| n.is_finite() && is_short(*row));
     let said = [
         (n_left_out > 0.0).then(|| format!(
             "Up to {n_left_out} test touches of a trial fill no whole group of fused touches and are left out."

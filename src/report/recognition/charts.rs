@@ -1,11 +1,12 @@
 //! What is charted of a study of recognition.
 //!
 //! Every setting that varies has a place, so no chart mixes cells that differ in something it does not show: x takes the number of most
-//! values, lines and panels the first two others of the table; each combination of the rest gets a chart of its own.
+//! values, lines and panels the others of most values, of equals words before numbers; each combination of the rest gets a chart of its own.
 
 use super::{CELLS, filled};
 use crate::report::swept::{Setting, Swept, without};
 use crate::table::{Along, At, ChartSpec, Mark, Role, Rule, Shown, Table, Value};
+use std::cmp::Reverse;
 
 /// Classifiers from which on a study is about choosing one.
 const MANY_CLASSIFIERS: usize = 3;
@@ -80,7 +81,8 @@ fn charts_along(
 ) -> Vec<ChartSpec> {
     let swept = Swept::of(cells, rows);
     let x = x.or_else(|| swept.main(rows));
-    let others = x.map_or_else(|| swept.free.clone(), |x| without(&swept.free, &x));
+    let mut others = x.map_or_else(|| swept.free.clone(), |x| without(&swept.free, &x));
+    others.sort_by_key(|one| (Reverse(one.levels(rows).len()), one.is_number()));
     let (used, fixed) = others.split_at(others.len().min(2));
     let [lines, panels] = [used.first(), used.get(1)].map(|one| one.map(name_of));
     let x = x.map_or_else(|| "ratio".to_owned(), |x| name_of(&x));
