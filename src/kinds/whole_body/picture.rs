@@ -1,88 +1,171 @@
-//! What the scene looks like that touches most of a robot.
+//! The picture of the scene that touches most of a robot: with what touches it, and the pressure on its patches without.
 
-use super::objects::of_scene;
 use super::plan::{ScenePlan, WholeBodyPlan};
-use super::study::{Posture, begin};
 use crate::error::Result;
 use crate::objects::Sphere;
+use crate::report::canvas::View;
+use crate::report::colours::share;
+use crate::report::picture::{Label, Picture};
+use crate::report::shaded_view::{Lighting, PAINT, Stage};
+use crate::report::study_folder::{Image, NamedPicture};
 use crate::table::Table;
-use crate::whole_body::CoveredRobot;
-use glam::DVec3;
+use glam::{DQuat, DVec2, DVec3};
+use std::f64::consts::FRAC_PI_2;
 
 /// What a scene looks like, in the world frame.
-#[derive(Clone, Debug)]
-pub struct BodyPicture {
-    /// The scene.
-    pub scene: String,
+struct SceneView {
     /// Places on the skin, metres, some millimetres apart, and the pressure on their patch: force over area, Pa.
-    pub skin: Vec<(DVec3, f64)>,
+    skin: Vec<(DVec3, f64)>,
     /// Touched taxels, metres.
-    pub touched: Vec<DVec3>,
+    touched: Vec<DVec3>,
     /// What touches, metres.
-    pub object: Vec<Sphere>,
+    object: Vec<Sphere>,
 }
 
 /// Between the places of a picture's skin, metres.
 const PICTURE_PITCH: f64 = 4e-3;
+/// Pixels of a panel.
+const PANEL: [usize; 2] = [600, 900];
+/// Skin that nothing touches, and taxels that something does.
+const BARE: [u8; 3] = [226, 214, 200];
+const TOUCHED: [u8; 3] = [0xd5, 0x5e, 0x00];
+/// Radius of a place on the skin, metres: neighbours overlap. A touched taxel stands a little out.
+const SKIN_RADIUS: f64 = 3.4e-3;
+const TOUCHED_RADIUS: f64 = 3.8e-3;
+/// From where the eye looks, radians: to the right of the robot's front, and up.
+const AZIMUTH: f64 = 0.7;
+const ELEVATION: f64 = 0.3;
 
 /// The scene in which most patches are touched, of those in which any taxel is; the last of equals.
 ///
 /// # Errors
 /// As of a run.
-pub(super) fn picture_body(plan: &WholeBodyPlan, cases: &Table) -> Result<Option<BodyPicture>> {
-    let number = |column, row: &usize| cases.number(column, *row);
+pub(super) fn picture_of_body(plan: &WholeBodyPlan, cases: &Table) -> Result<Option<NamedPicture>> {
+    let patches = |row: &usize| cases.number("patches_touched_mean", *row);
     let most = (0..cases.n_rows)
         .filter(|&row| cases.word("series", row) == "scene")
-        .filter(|row| number("touched_max", row) > 0.0)
-        .max_by(|a, b| {
-            let patches = |row| number("patches_touched_mean", row);
-            patches(a).total_cmp(&patches(b))
-        });
+        .filter(|&row| cases.number("touched_max", row) > 0.0)
+        .max_by(|a, b| patches(a).total_cmp(&patches(b)));
     let name = most.map(|row| cases.word("name", row));
     let mut scenes = plan.scenes.iter();
-    let scene = scenes.find(|scene| Some(scene.spec.name.as_str()) == name);
-    scene.map(|scene| picture(plan, scene)).transpose()
+    let Some(scene) = scenes.find(|scene| Some(scene.spec.name.as_str()) == name) else {
+        return Ok(None);
+    };
+    let name = &scene.spec.name;
+    let drawn = draw(name, &view(plan, scene)?)?;
+    Ok(Some(NamedPicture {
+        name: "touched".to_owned(),
+        title: format!("The scene {name}, and the pressure on each patch"),
+        image: Image::Png(drawn.png()?, (drawn.width, drawn.height)),
+    }))
 }
 
-fn picture(plan: &WholeBodyPlan, scene: &ScenePlan) -> Result<BodyPicture> {
-    let covered = CoveredRobot::new(&plan.robot, plan.taxel, plan.pitch, plan.side)?;
-    let object = of_scene(&scene.spec, plan.surface_error)?;
-    let posture = Posture::new(plan, &covered, &scene.positions)?;
-    let mut drive = begin(scene, &posture, &object)?;
-    let path = drive.path;
-    drive.probe(&path);
+fn view(plan: &WholeBodyPlan, scene: &ScenePlan) -> Result<SceneView> {
+    let covered = plan.cover(plan.pitch)?;
+    let poses = plan.posture(&covered, &scene.positions)?.patches;
+    let (mut drive, object) = plan.begin(scene, &covered)?;
+    drive.probe(drive.path);
+    let felt: Vec<(usize, f64)> = drive.touched().collect();
+    let (mut pressures, mut touched) = (Vec::new(), Vec::new());
     let body = covered.body();
-    let mut pressures = vec![0.0; body.patches().len()];
-    let mut touched = Vec::new();
-    let (mut patch, mut layout) = (usize::MAX, None);
-    for (taxel, deflection) in drive.touched() {
-        let of = body.firsts().partition_point(|&first| first <= taxel) - 1;
-        if of != patch || layout.is_none() {
-            patch = of;
-            layout = Some(body.patches()[patch].layout());
-        }
-        pressures[patch] += plan.taxel.stiffness * deflection;
-        if let Some(layout) = &layout {
-            let center = layout.centers()[taxel - body.firsts()[patch]];
-            touched.push(posture.posed.poses[patch].transform_point(center));
+    for ((patch, pose), &first) in body.patches().iter().zip(&poses).zip(body.firsts()) {
+        let taxels = first..first + patch.n_taxels();
+        let of_patch = felt.iter().filter(|(taxel, _)| taxels.contains(taxel));
+        let of_patch: Vec<&(usize, f64)> = of_patch.collect();
+        let forces = of_patch.iter().map(|(_, d)| plan.taxel.stiffness * d);
+        let force: f64 = forces.sum();
+        pressures.push(force / (patch.n_taxels() as f64 * plan.pitch * plan.pitch));
+        if !of_patch.is_empty() {
+            let layout = patch.layout();
+            let centers = of_patch
+                .iter()
+                .map(|(taxel, _)| layout.centers()[taxel - first]);
+            touched.extend(centers.map(|center| pose.transform_point(center)));
         }
     }
-    for (pressure, patch) in pressures.iter_mut().zip(body.patches()) {
-        *pressure /= patch.n_taxels() as f64 * plan.pitch * plan.pitch;
+    let coarse = plan.cover(PICTURE_PITCH.max(plan.pitch))?;
+    let patches = coarse.body().patches().iter().zip(&poses).zip(&pressures);
+    let mut skin = Vec::new();
+    for ((patch, pose), &pressure) in patches {
+        let layout = patch.layout();
+        let centers = layout.centers().iter();
+        skin.extend(centers.map(|&center| (pose.transform_point(center), pressure)));
     }
-    let pitch = PICTURE_PITCH.max(plan.pitch);
-    let coarse = CoveredRobot::new(&plan.robot, plan.taxel, pitch, plan.side)?;
-    let skin = coarse.body().patches().iter().zip(&posture.posed.poses);
-    let skin = skin.zip(&pressures).flat_map(|((patch, pose), &pressure)| {
-        let centers = patch.layout().centers().to_vec();
-        centers
-            .into_iter()
-            .map(move |center| (pose.transform_point(center), pressure))
-    });
-    Ok(BodyPicture {
-        scene: scene.spec.name.clone(),
-        skin: skin.collect(),
+    Ok(SceneView {
+        skin,
         touched,
-        object: object.moved(&path.at(0.0)).spheres().to_vec(),
+        object: object.moved(&drive.path.at(0.0)).spheres().to_vec(),
     })
+}
+
+/// Two panels: the robot with what touches it, and the robot alone, its patches the bluer the higher their mean pressure, touched taxels
+/// orange. The same bytes for the same input.
+fn draw(name: &str, scene: &SceneView) -> Result<Picture> {
+    let turn = DQuat::from_rotation_z(-FRAC_PI_2);
+    let sphere = |center: DVec3, radius| Sphere {
+        center: turn * center,
+        radius,
+    };
+    let skin = scene.skin.iter().map(|place| sphere(place.0, SKIN_RADIUS));
+    let touched = scene.touched.iter().map(|&at| sphere(at, TOUCHED_RADIUS));
+    let alone: Vec<Sphere> = skin.chain(touched).collect();
+    let object = scene.object.iter().map(|s| sphere(s.center, s.radius));
+    let both: Vec<Sphere> = alone.iter().copied().chain(object).collect();
+    let highest = scene.skin.iter().map(|place| place.1).fold(0.0, f64::max);
+    let pressure = |number: usize| match scene.skin.get(number) {
+        Some(&(_, pressure)) if pressure > 0.0 => share(0.15 + 0.85 * pressure / highest),
+        Some(_) => BARE,
+        None => TOUCHED,
+    };
+    let colour = |number: usize| match number {
+        number if number < scene.skin.len() => BARE,
+        number if number < alone.len() => TOUCHED,
+        _ => PAINT,
+    };
+
+    let [width, height] = PANEL;
+    let room = DVec2::new(0.62 * width as f64, height as f64 - 150.0);
+    let stage = Stage::seen(View::from_angles(AZIMUTH, ELEVATION), &both, PANEL, room);
+    let mut picture = Picture::blank(2 * width, height)?;
+    let mut panel =
+        |left: usize, spheres: &[Sphere], colour: &(dyn Fn(usize) -> [u8; 3] + Sync)| {
+            let hits = stage.canvas.hits(spheres);
+            let paint = |ray: usize| colour(hits[ray].map_or(0, |hit| hit.part));
+            let view = stage.view(&hits, Lighting::Smoothed, paint);
+            picture.place(&view, [left, 0], PANEL);
+        };
+    panel(0, &both, &colour);
+    panel(width, &alone, &pressure);
+
+    let label = |panel: f64, text: String, y: f64, size: u32| Label {
+        text,
+        x: (panel + 0.5) * width as f64,
+        y,
+        size,
+    };
+    let n_touched = scene.touched.len();
+    let touched = format!("{n_touched} touched taxels in orange");
+    let mut labels = vec![
+        label(0.0, name.to_owned(), 30.0, 16),
+        label(1.0, "mean pressure on each patch".to_owned(), 30.0, 16),
+        label(1.0, touched, 50.0, 13),
+    ];
+    let below = [0.5 * width as f64, height as f64 - 24.0];
+    labels.push(picture.draw_scale(stage.pixels_per_metre, width as f64, below, 13));
+    // The colours from no pressure to the highest.
+    for column in 0..width / 2 {
+        let colour = share(0.15 + 0.85 * column as f64 / (width / 2) as f64);
+        let left = width + width / 4 + column;
+        picture.fill(left..left + 1, height - 40..height - 28, colour);
+    }
+    for (place, pressure) in [(-0.25, 0.0), (0.0, 0.5), (0.25, 1.0)] {
+        let kilopascals = 1e-3 * pressure * highest;
+        let kilopascals = match highest >= 1e4 {
+            true => format!("{kilopascals:.0} kPa"),
+            false => format!("{kilopascals:.2} kPa"),
+        };
+        labels.push(label(1.0 + place, kilopascals, height as f64 - 12.0, 12));
+    }
+    picture.write_labels(&labels)?;
+    Ok(picture)
 }
