@@ -1,6 +1,6 @@
 //! A chart as a value: which columns of which table it shows, and how.
 
-use super::{Column, Value};
+use super::{Column, Table, Value};
 use serde::Serialize;
 
 /// What a chart shows. One renderer draws it as SVG and PNG, and the page's script draws the same.
@@ -33,6 +33,37 @@ pub struct ChartSpec {
     pub rules: Vec<Rule>,
     /// Whether the Pareto front of the points is drawn: x is what it costs, and y is better as its [role](super::Role) says.
     pub front: bool,
+}
+
+impl Table {
+    /// A line chart of two of its columns, y against x, with the table's note.
+    pub fn chart(
+        &self,
+        name: impl Into<String>,
+        title: impl Into<String>,
+        (y, x): (&str, &str),
+    ) -> ChartSpec {
+        ChartSpec {
+            name: name.into(),
+            title: title.into(),
+            note: self.note.clone(),
+            table: self.file,
+            x: x.to_owned(),
+            y: y.to_owned(),
+            ..ChartSpec::default()
+        }
+    }
+}
+
+impl Rule {
+    /// At a value of an axis.
+    pub fn at(along: Along, value: f64, words: impl Into<String>) -> Self {
+        Self {
+            along,
+            at: At::Value(value),
+            words: words.into(),
+        }
+    }
 }
 
 /// Rows of which a column has a value.

@@ -3,7 +3,7 @@
 use crate::command::Case;
 use bubbletouch::kinds;
 use bubbletouch::kinds::whole_body::rows::{
-    BodyCase, BodyCount, BodyRecognition, BodySensed, BodyStep, BodyTime, Series, Stage,
+    BodyCase, BodyCount, BodyRecognition, BodySensed, BodyStage, BodyTouch, Series, Stage, StepTime,
 };
 use bubbletouch::kinds::whole_body::{WholeBodyPlan, WholeBodyStudySpec};
 use bubbletouch::report::csv_tables::read_rows;
@@ -168,22 +168,24 @@ fn tables_but_for_times_are_the_same_bytes_at_any_number_of_threads_and_obey_the
         "larger blocks read more"
     );
     let timed: Vec<BodyCase> = read_rows(&case.path("1/timing.csv")).unwrap();
-    let times: Vec<BodyTime> = read_rows(&case.path("1/timing.csv")).unwrap();
+    let stages: Vec<BodyStage> = read_rows(&case.path("1/timing.csv")).unwrap();
+    let times: Vec<StepTime> = read_rows(&case.path("1/timing.csv")).unwrap();
     assert_eq!(times.len(), 3 * (1 + 3 * 3) + 7);
-    for (case, time) in timed.iter().zip(&times) {
+    for ((case, of), time) in timed.iter().zip(&stages).zip(&times) {
         assert!(time.us_p05 <= time.us_median && time.us_median <= time.us_p95);
         assert_eq!(
-            time.compression.is_empty(),
-            time.stage == Stage::Press,
+            of.compression.is_empty(),
+            of.stage == Stage::Press,
             "{case:?}"
         );
     }
-    let steps: Vec<BodyStep> = read_rows(&case.path("1/steps.csv")).unwrap();
+    let steps: Vec<BodyTouch> = read_rows(&case.path("1/steps.csv")).unwrap();
+    let times: Vec<StepTime> = read_rows(&case.path("1/steps.csv")).unwrap();
     assert_eq!(steps.len(), cases.len(), "one with all threads of each");
-    for (step, count) in steps.iter().zip(&counts) {
+    for ((step, time), count) in steps.iter().zip(&times).zip(&counts) {
         assert_eq!(step.touched_mean, count.touched_mean);
         assert!((step.touched - step.touched_mean).abs() <= 0.05 * step.touched_mean);
-        assert!((step.steps_per_s * step.us_median / 1e6 - 1.0).abs() < 1e-12);
+        assert!((time.steps_per_s * time.us_median / 1e6 - 1.0).abs() < 1e-12);
     }
     for chart in [
         "time_by_taxels",

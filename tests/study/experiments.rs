@@ -95,7 +95,7 @@ fn every_experiment_can_run() {
             let spec = StabilityStudySpec::parse(&place, &text).unwrap();
             assert!(!spec.question.is_empty() && !spec.expected.is_empty());
             let plan = StabilityPlan::new(&place, path.parent().unwrap(), spec).unwrap();
-            assert!(plan.cells().count() > 1, "{place} compares something");
+            assert!(plan.cells.len() > 1, "{place} compares something");
             continue;
         }
         let spec = StudySpec::parse(&place, &text).unwrap();

@@ -1,6 +1,6 @@
 //! What is charted, and what was found in sentences.
 
-use crate::table::{Along, At, ChartSpec, Mark, Rule, Table, short_number};
+use crate::table::{Along, ChartSpec, Mark, Rule, Table, short_number};
 
 /// Of each noise level: error by measurements for each ensemble, then error against time.
 pub(super) fn charts(tables: &[Table]) -> Vec<ChartSpec> {
@@ -15,21 +15,17 @@ pub(super) fn charts(tables: &[Table]) -> Vec<ChartSpec> {
             .filter(|rows| cells.word("ensemble", rows[0]) != "identity");
         charts.extend(compressed.map(|rows| by_measurements(cells, rows)));
         let noise = noise_words(cells, of_level[0]);
+        let level = cells.number("noise_std", of_level[0]);
         charts.push(ChartSpec {
-            name: format!(
-                "error_by_time_noise_{}",
-                cells.number("noise_std", of_level[0])
-            ),
-            title: format!("Error of reconstructed frames against their time, {noise}"),
-            note: pareto.note.clone(),
-            table: pareto.file,
             shown: cells.shown("noise_std", of_level[0]).into_iter().collect(),
-            x: "us_per_frame".to_owned(),
-            y: "error".to_owned(),
             lines: vec!["solver".to_owned()],
             mark: Mark::Points,
             front: true,
-            ..ChartSpec::default()
+            ..pareto.chart(
+                format!("error_by_time_noise_{level}"),
+                format!("Error of reconstructed frames against their time, {noise}"),
+                ("error", "us_per_frame"),
+            )
         });
     }
     charts
@@ -37,33 +33,27 @@ pub(super) fn charts(tables: &[Table]) -> Vec<ChartSpec> {
 
 /// A panel a dictionary, a line a solver; the noisy frame itself as a rule.
 fn by_measurements(cells: &Table, rows: &[usize]) -> ChartSpec {
-    let ensemble = cells.words("ensemble", rows[0]);
+    let (code, ensemble) = (
+        cells.word("ensemble", rows[0]),
+        cells.words("ensemble", rows[0]),
+    );
+    let level = cells.number("noise_std", rows[0]);
     let noise = noise_words(cells, rows[0]);
     let full = cells.number("full_sampling_error", rows[0]);
-    let rule = Rule {
-        along: Along::Y,
-        at: At::Value(full),
-        words: "full sampling: the noisy frame itself".to_owned(),
-    };
-    let shown = ["noise_std", "ensemble"].iter();
+    let rule = Rule::at(Along::Y, full, "full sampling: the noisy frame itself");
+    let shown = ["noise_std", "ensemble"].into_iter();
     ChartSpec {
-        name: format!(
-            "error_{}_noise_{}",
-            cells.word("ensemble", rows[0]),
-            cells.number("noise_std", rows[0])
-        ),
-        title: format!("Error of reconstructed frames by measurements, {ensemble}, {noise}"),
-        note: cells.note.clone(),
-        table: cells.file,
         shown: shown
             .filter_map(|column| cells.shown(column, rows[0]))
             .collect(),
-        x: "measurements".to_owned(),
-        y: "error".to_owned(),
         lines: vec!["solver".to_owned()],
         panels: Some("dictionary".to_owned()),
         rules: (full > 0.0).then_some(rule).into_iter().collect(),
-        ..ChartSpec::default()
+        ..cells.chart(
+            format!("error_{code}_noise_{level}"),
+            format!("Error of reconstructed frames by measurements, {ensemble}, {noise}"),
+            ("error", "measurements"),
+        )
     }
 }
 

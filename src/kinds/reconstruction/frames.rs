@@ -1,6 +1,6 @@
 //! A picture of a few test frames: as they were, as they were read, and as some cells reconstruct them.
 
-use super::rows::ReconstructionCell;
+use super::charts::{cell_words, noise_words};
 use super::study::ReconstructionStudy;
 use crate::error::Result;
 use crate::report::snapshots::snapshots;
@@ -27,44 +27,38 @@ impl ReconstructionStudy {
         };
         let all = self.plan.cells();
         let shown = shown_rows(cells, noisy.level);
-        let shown_cells = shown
-            .iter()
-            .map(|&row| &all[cells.number("cell", row) as usize]);
-        let shown_cells: Vec<&ReconstructionCell> = shown_cells.collect();
         let read = touches.pick(&noisy.frames);
-        let back = |cell: &&ReconstructionCell| {
-            let dictionary = touches.learn(&self.plan, cell.dictionary)?;
+        let back = |&row: &usize| {
+            let cell = &all[cells.number("cell", row) as usize];
+            let dictionary = touches.dictionary(&self.plan, cell.dictionary)?;
             let projection = self.plan.projection(cell.ensemble, cell.measurements)?;
-            let sensed = SensedDictionary::new(&projection, &dictionary)?;
+            let sensed = SensedDictionary::new(&projection, dictionary)?;
             let effort = &self.plan.spec.reconstruction.effort();
             let reconstructor = Reconstructor::new(cell.solver, &sensed, effort, noisy.std)?;
-            Ok(reconstructor
-                .reconstruct(projection.measure(read.view()).view())?
-                .frames)
+            let measured = projection.measure(read.view());
+            let [solver, m] = ["solver", "measurements"].map(|name| cells.words(name, row));
+            let back = reconstructor.reconstruct(measured.view())?.frames;
+            Ok((format!("{solver} of m = {m}"), back))
         };
-        let back = shown_cells.iter().map(back);
-        let back = back.collect::<Result<Vec<Array2<f64>>>>()?;
-        let grid = self.plan.patch.grid;
-        let mut frames = Vec::new();
+        let back = shown.iter().map(back).collect::<Result<Vec<_>>>()?;
         let clean = touches.pick(&touches.test);
+        let mut frames = Vec::new();
         for (sample, (_, name)) in touches.shown.iter().enumerate() {
-            let of_sample = |frames: &Array2<f64>| {
-                let values = frames.row(sample).to_vec();
-                Array2::from_shape_vec((grid.ny, grid.nx), values).expect("one value a taxel")
+            let mut add = |name: String, of_all: &Array2<f64>| {
+                let values = of_all.row(sample).to_vec();
+                let frame = Array2::from_shape_vec(self.plan.shape(), values);
+                frames.push((name, frame.expect("one value a taxel")));
             };
-            frames.push((name.replace('_', " "), of_sample(&clean)));
-            frames.push(("full, noisy".to_owned(), of_sample(&read)));
-            for (&row, back) in shown.iter().zip(&back) {
-                let [solver, m] = ["solver", "measurements"].map(|name| cells.words(name, row));
-                frames.push((format!("{solver} of m = {m}"), of_sample(back)));
+            add(name.replace('_', " "), &clean);
+            add("full, noisy".to_owned(), &read);
+            for (name, back) in &back {
+                add(name.clone(), back);
             }
         }
-        let noise = super::charts::noise_words(cells, shown.first().copied().unwrap_or(0));
-        let words = shown
-            .iter()
-            .map(|&row| super::charts::cell_words(cells, row));
-        let caption = format!("{noise}; {}", words.collect::<Vec<_>>().join("; "));
-        let pitch_mm = millimetres(grid.pitch);
+        let noise = noise_words(cells, shown.first().copied().unwrap_or(0));
+        let words: Vec<String> = shown.iter().map(|&row| cell_words(cells, row)).collect();
+        let caption = format!("{noise}; {}", words.join("; "));
+        let pitch_mm = millimetres(self.plan.patch.grid.pitch);
         let picture = snapshots(&frames, pitch_mm, self.plan.quantity(), &caption)?;
         Ok(vec![NamedPicture {
             name: "frames".to_owned(),
@@ -81,22 +75,18 @@ fn shown_rows(cells: &Table, level: f64) -> Vec<usize> {
         .filter(|&row| cells.number("noise_std", row) == level)
         .filter(|&row| cells.word("ensemble", row) != "identity")
         .collect();
-    let m = |row: usize| cells.number("measurements", row);
-    let off = |row: usize| (cells.number("ratio", row) / 4.0).ln().abs();
-    let rows = || of_level.iter().copied();
-    let quarter = rows().min_by(|&a, &b| off(a).total_cmp(&off(b)));
-    let fewest = rows().min_by(|&a, &b| m(a).total_cmp(&m(b)));
+    let least = |of: &dyn Fn(usize) -> f64| {
+        let rows = of_level.iter().copied();
+        rows.min_by(|&a, &b| of(a).total_cmp(&of(b)))
+    };
+    let m = |row| cells.number("measurements", row);
+    let quarter = least(&|row| (cells.number("ratio", row) / 4.0).ln().abs());
     let best = |like: usize| {
-        let of_m = rows().filter(|&row| m(row) == m(like));
-        of_m.min_by(|&a, &b| {
-            cells
-                .number("error", a)
-                .total_cmp(&cells.number("error", b))
+        least(&|row| match m(row) == m(like) {
+            true => cells.number("error", row),
+            false => f64::INFINITY,
         })
     };
-    [quarter, fewest]
-        .into_iter()
-        .flatten()
-        .filter_map(best)
-        .collect()
+    let like = [quarter, least(&m)].into_iter().flatten();
+    like.filter_map(best).collect()
 }

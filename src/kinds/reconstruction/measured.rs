@@ -1,12 +1,15 @@
 //! All that is reconstructed from the same measurements.
 
-use super::isometry::statistics;
 use super::plan::ReconstructionPlan;
-use super::rows::{ReconstructionCell, ReconstructionRows, ReconstructionTime};
-use super::score::{Outcome, square_errors};
+use super::rows::{
+    EnsembleStatistics, ReconstructionCell, ReconstructionRow, ReconstructionRows,
+    ReconstructionTime,
+};
+use super::score::{Found, square_errors};
 use super::touches::{Noisy, Touches};
 use crate::error::Result;
-use crate::sensing::{Basis, Dictionary, Reconstruction, Reconstructor, SensedDictionary};
+use crate::random::Seed;
+use crate::sensing::{Basis, Extremes, Reconstructor, SensedDictionary};
 use crate::study::pieces::{PiecesLeft, Shared};
 use ndarray::{Array2, Axis};
 use rayon::prelude::*;
@@ -15,111 +18,117 @@ use std::time::Instant;
 /// Frames reconstructed together by one thread: enough for matrix products, few enough to share out.
 const BLOCK: usize = 64;
 
-/// All cells of an ensemble and m.
-pub(super) struct OnMeasured<'a> {
-    pub plan: &'a ReconstructionPlan,
-    /// At least one.
-    pub cells: &'a [ReconstructionCell],
-    pub touches: &'a Touches,
+/// Does what is left of all cells of an ensemble and m; dictionaries are learned when something needs them.
+pub(super) fn measure_cells(
+    (plan, touches): (&ReconstructionPlan, &Touches),
+    cells: &[ReconstructionCell],
+    left: &PiecesLeft<ReconstructionRows>,
+) -> Result<()> {
+    let first = &cells[0];
+    let projection = Shared::default();
+    let projection = || projection.get(|| plan.projection(first.ensemble, first.measurements));
+    let sensed = plan.of_each_dictionary();
+    let sense = |basis: Basis| {
+        let sense = || SensedDictionary::new(projection()?, touches.dictionary(plan, basis)?);
+        sensed[plan.place_of(basis)].get(sense)
+    };
+    plan.dictionaries.par_iter().try_for_each(|&basis| {
+        left.finish(&first.isometry_name(basis), || {
+            Ok((Vec::new(), statistics(plan, sense(basis)?)?))
+        })
+    })?;
+    let of_levels = cells.chunk_by(|a, b| a.noise_std == b.noise_std);
+    for (noisy, cells) in touches.noisy.iter().zip(of_levels) {
+        let measurements = Shared::default();
+        for cell in cells {
+            left.finish(&cell.name(), || {
+                let measure = || Ok(projection()?.measure(noisy.frames.view()));
+                let measurements = measurements.get(measure)?;
+                let sensed = sense(cell.dictionary)?;
+                let row = reconstruct((plan, touches), cell, sensed, (noisy, measurements))?;
+                Ok((vec![row], Vec::new()))
+            })?;
+        }
+    }
+    Ok(())
 }
 
-impl OnMeasured<'_> {
-    /// Does what is left of it; a dictionary is learned when something needs it.
-    pub fn measure<'d>(
-        &self,
-        learned: &(impl Fn(Basis) -> Result<&'d Dictionary> + Sync),
-        left: &PiecesLeft<ReconstructionRows>,
-    ) -> Result<()> {
-        let (plan, first) = (self.plan, &self.cells[0]);
-        let isometry = |basis: &&Basis| left.has(&first.isometry_name(**basis));
-        let isometries: Vec<&Basis> = plan.dictionaries.iter().filter(isometry).collect();
-        let cells = left.of(self.cells, |cell| cell.name());
-        if isometries.is_empty() && cells.is_empty() {
-            return Ok(());
-        }
-        let projection = Shared::default();
-        let projection = || projection.get(|| plan.projection(first.ensemble, first.measurements));
-        // By one, before several ask for it at once; whoever needs it says what is wrong with it.
-        let _ = projection();
-        let n_bases = plan.dictionaries.len();
-        let sensed: Vec<_> = (0..n_bases).map(|_| Shared::default()).collect();
-        let sense = |basis: Basis| {
-            sensed[plan.place_of(basis)]
-                .get(|| SensedDictionary::new(projection()?, learned(basis)?))
-        };
-        isometries.into_par_iter().try_for_each(|&basis| {
-            left.finish(&first.isometry_name(basis), || {
-                Ok(ReconstructionRows {
-                    ensembles: statistics(plan, sense(basis)?)?,
-                    ..ReconstructionRows::default()
-                })
-            })
-        })?;
-        for noisy in &self.touches.noisy {
-            let measurements = Shared::default();
-            for cell in cells.iter().filter(|cell| cell.noise_std == noisy.level) {
-                left.finish(&cell.name(), || {
-                    let measure = || Ok(projection()?.measure(noisy.frames.view()));
-                    let measurements = measurements.get(measure)?;
-                    self.reconstruct(cell, sense(cell.dictionary)?, noisy, measurements)
-                })?;
-            }
-        }
-        Ok(())
-    }
-
-    /// Errors and times of a cell.
-    fn reconstruct(
-        &self,
-        cell: &ReconstructionCell,
-        sensed: &SensedDictionary,
-        noisy: &Noisy,
-        measurements: &Array2<f64>,
-    ) -> Result<ReconstructionRows> {
+/// Errors and times of a cell.
+fn reconstruct(
+    (plan, touches): (&ReconstructionPlan, &Touches),
+    cell: &ReconstructionCell,
+    sensed: &SensedDictionary,
+    (noisy, measurements): (&Noisy, &Array2<f64>),
+) -> Result<ReconstructionRow> {
+    let start = Instant::now();
+    let effort = &plan.spec.reconstruction.effort();
+    let reconstructor = Reconstructor::new(cell.solver, sensed, effort, noisy.std)?;
+    let prepare_s = start.elapsed().as_secs_f64();
+    let clean = touches.test.axis_chunks_iter(Axis(0), BLOCK);
+    let blocks = measurements.axis_chunks_iter(Axis(0), BLOCK);
+    let blocks = blocks.into_par_iter().zip(clean.into_par_iter());
+    let found = blocks.map(|(measurements, clean)| {
         let start = Instant::now();
-        let effort = &self.plan.spec.reconstruction.effort();
-        let reconstructor = Reconstructor::new(cell.solver, sensed, effort, noisy.std)?;
-        let prepare_s = start.elapsed().as_secs_f64();
-        let blocks = measurements
-            .axis_chunks_iter(Axis(0), BLOCK)
-            .into_par_iter()
-            .map(|block| {
-                let start = Instant::now();
-                let found = reconstructor.reconstruct(block)?;
-                Ok((found, start.elapsed().as_secs_f64()))
-            })
-            .collect::<Result<Vec<_>>>()?;
-        let seconds = blocks.iter().map(|(_, seconds)| seconds).sum::<f64>();
-        let us_per_frame = 1e6 * seconds / measurements.nrows() as f64;
-        let time = ReconstructionTime {
-            prepare_s,
-            us_per_frame,
-            frames_per_s_per_core: 1e6 / us_per_frame,
-        };
-        let found: Vec<Reconstruction> = blocks.into_iter().map(|(found, _)| found).collect();
-        let truth = &self.touches.truth;
-        let score = truth.score(&self.outcome(&found), &noisy.errors);
-        let cell = ReconstructionCell {
-            atoms: sensed.dictionary().n_atoms(),
-            ..cell.clone()
-        };
-        Ok(ReconstructionRows {
-            reconstruction: vec![(cell.clone(), score)],
-            timing: vec![(cell, time)],
-            ..ReconstructionRows::default()
+        let back = reconstructor.reconstruct(measurements)?;
+        Ok(Found {
+            seconds: start.elapsed().as_secs_f64(),
+            errors: square_errors(back.frames.view(), clean),
+            n_atoms: back.n_atoms.iter().sum(),
+            n_capped: back.capped.iter().filter(|&&capped| capped).count(),
         })
-    }
+    });
+    let found = found.collect::<Result<Vec<Found>>>()?;
+    let seconds: f64 = found.iter().map(|block| block.seconds).sum();
+    let us_per_frame = 1e6 * seconds / measurements.nrows() as f64;
+    let cell = ReconstructionCell {
+        atoms: sensed.dictionary().n_atoms(),
+        ..cell.clone()
+    };
+    let time = ReconstructionTime {
+        prepare_s,
+        us_per_frame,
+        frames_per_s_per_core: 1e6 / us_per_frame,
+    };
+    Ok((cell, touches.truth.score(&found, &noisy.errors), time))
+}
 
-    fn outcome(&self, found: &[Reconstruction]) -> Outcome {
-        let clean = self.touches.test.axis_chunks_iter(Axis(0), BLOCK);
-        let blocks = found.iter().zip(clean);
-        let capped = found.iter().flat_map(|block| &block.capped);
-        Outcome {
-            errors: blocks
-                .flat_map(|(block, clean)| square_errors(block.frames.view(), clean))
-                .collect(),
-            n_atoms: found.iter().flat_map(|block| &block.n_atoms).sum(),
-            n_capped: capped.filter(|&&capped| capped).count(),
-        }
-    }
+/// What a dictionary keeps apart, seen through a projection: a row a size of supports.
+fn statistics(
+    plan: &ReconstructionPlan,
+    sensed: &SensedDictionary,
+) -> Result<Vec<EnsembleStatistics>> {
+    let (projection, dictionary) = (sensed.projection(), sensed.dictionary());
+    let coherence = sensed.coherence();
+    let n_subsets = plan.spec.reconstruction.isometry_subsets;
+    let seed = Seed::new(plan.spec.seed);
+    let sizes = plan.spec.reconstruction.isometry_sparsity.values();
+    let rows = sizes.into_iter().map(|sparsity| {
+        let sparsity = sparsity.min(dictionary.n_atoms());
+        let extremes = sensed.isometry(sparsity, n_subsets, &seed)?;
+        let quantile = |of: fn(&Extremes) -> f64, part: f64| {
+            let mut values: Vec<f64> = extremes.iter().map(of).collect();
+            values.sort_by(f64::total_cmp);
+            values[((values.len() - 1) as f64 * part).round() as usize]
+        };
+        let (low, high) = (|e: &Extremes| e.low, |e: &Extremes| e.high);
+        Ok(EnsembleStatistics {
+            ensemble: projection.ensemble(),
+            measurements: projection.n_measurements(),
+            ratio: projection.n_taxels() as f64 / projection.n_measurements() as f64,
+            dictionary: dictionary.basis(),
+            atoms: dictionary.n_atoms(),
+            coherence: coherence.mutual,
+            welch_bound: coherence.welch_bound,
+            n_invisible: coherence.n_invisible,
+            sparsity,
+            n_subsets,
+            low_min: quantile(low, 0.0),
+            low_median: quantile(low, 0.5),
+            high_median: quantile(high, 0.5),
+            high_max: quantile(high, 1.0),
+            deviation_median: quantile(Extremes::deviation, 0.5),
+            delta_lower_bound: quantile(Extremes::deviation, 1.0),
+        })
+    });
+    rows.collect()
 }

@@ -8,7 +8,6 @@
 
 mod charts;
 mod frames;
-mod isometry;
 mod measured;
 mod plan;
 pub mod rows;

@@ -8,6 +8,7 @@ use crate::sensing::{Basis, Dictionary, Ensemble, Projection};
 use crate::signal::{Noise, NoiseUnit, Quantity, SignalStep};
 use crate::study::Amount;
 use crate::study::check::{COUNT, Check, Range};
+use crate::study::pieces::Shared;
 use crate::study::plan::MM;
 use crate::study::sweep::nested;
 use crate::study::{SignalSpec, StepSpec};
@@ -91,14 +92,13 @@ impl ReconstructionPlan {
     pub fn signal_steps(&self, noise: Option<f64>) -> Vec<SignalStep> {
         let unit = self.noise_unit;
         let steps = self.spec.signal.steps.iter();
-        steps
-            .filter_map(|step| match step {
-                StepSpec::Force => Some(SignalStep::Force),
-                StepSpec::Noise => noise.map(|std| SignalStep::Noise(Noise { std, unit })),
-                // Steps that a reconstruction has no place for are refused.
-                _ => None,
-            })
-            .collect()
+        let steps = steps.filter_map(|step| match step {
+            StepSpec::Force => Some(SignalStep::Force),
+            StepSpec::Noise => noise.map(|std| SignalStep::Noise(Noise { std, unit })),
+            // Steps that a reconstruction has no place for are refused.
+            _ => None,
+        });
+        steps.collect()
     }
 
     /// What frames are when noise is added.
@@ -123,9 +123,21 @@ impl ReconstructionPlan {
 
     /// The study's projection of an ensemble to m measurements.
     pub(super) fn projection(&self, ensemble: Ensemble, m: usize) -> Result<Projection> {
-        let grid = (self.patch.grid.ny, self.patch.grid.nx);
         let seed = Seed::new(self.spec.seed).named("projection").numbered(0);
-        Projection::new(ensemble, grid, m, &seed)
+        Projection::new(ensemble, self.shape(), m, &seed)
+    }
+
+    /// Of a frame: rows and columns.
+    pub(super) fn shape(&self) -> (usize, usize) {
+        (self.patch.grid.ny, self.patch.grid.nx)
+    }
+
+    /// One for each dictionary, in their order.
+    pub(super) fn of_each_dictionary<T>(&self) -> Vec<Shared<T>> {
+        self.dictionaries
+            .iter()
+            .map(|_| Shared::default())
+            .collect()
     }
 
     /// Which of its dictionaries it is.
@@ -163,46 +175,40 @@ impl ReconstructionPlan {
 impl Check<'_> {
     /// Solvers assume independent noise on every taxel, and a clean frame to compare with: nothing may follow the noise.
     fn noise_is_last(&self, signal: &SignalSpec) -> Result<()> {
+        let refuse = |key, given: &str, allowed| Err(self.error(key, given, allowed));
         if signal.axes.of("smoothing_mm").is_some() {
-            return Err(self.error(
+            return refuse(
                 "signal.smoothing_mm",
                 "smoothing before reconstruction",
                 "no smoothing: solvers take the noise of taxels to be independent",
-            ));
+            );
         }
-        if let Some(step) = signal
-            .steps
-            .iter()
-            .find(|step| matches!(step, StepSpec::Error(_)))
-        {
-            return Err(self.error(
+        let mut steps = signal.steps.iter();
+        if let Some(step) = steps.find(|step| matches!(step, StepSpec::Error(_))) {
+            return refuse(
                 "signal.steps",
-                format!("\"{}\" before reconstruction", step.word()),
+                &format!("\"{}\" before reconstruction", step.word()),
                 "force and noise: solvers take taxels to differ from the truth by independent noise alone",
-            ));
+            );
         }
         let place = |step| signal.steps.iter().position(|s| *s == step);
         match (place(StepSpec::Force), place(StepSpec::Noise)) {
-            (Some(force), Some(noise)) if force > noise => Err(self.error(
+            (Some(force), Some(noise)) if force > noise => refuse(
                 "signal.steps",
                 "force after noise",
                 "noise after force: solvers take noise to be Gaussian, and force cuts it at zero",
-            )),
+            ),
             _ => Ok(()),
         }
     }
 
     fn dictionaries(&self, wanted: &ReconstructionSpec, grid: &Grid) -> Result<Vec<Basis>> {
-        let key = "reconstruction.dictionary";
         let bases = wanted.dictionary.values();
         for &basis in bases.iter().filter(|&&basis| basis != Basis::Pca) {
-            if let Err(error) = Dictionary::complete(basis, (grid.ny, grid.nx)) {
-                return Err(self.error(
-                    key,
-                    format!("{basis:?} ({error})"),
-                    "a basis of this array",
-                ));
-            }
+            Dictionary::complete(basis, (grid.ny, grid.nx)).map_err(|error| {
+                let given = format!("{basis:?} ({error})");
+                self.error("reconstruction.dictionary", given, "a basis of this array")
+            })?;
         }
         Ok(bases)
     }

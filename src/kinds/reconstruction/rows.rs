@@ -3,7 +3,6 @@
 use crate::row;
 use crate::sensing::{Basis, Ensemble, Solver};
 use crate::signal::NoiseUnit;
-use serde::{Deserialize, Serialize};
 
 /// What people call ensembles, dictionaries and solvers.
 const ENSEMBLES: &[(&str, &str)] = &[("sbhe", "SBHE"), ("gaussian", "Gaussian")];
@@ -41,17 +40,14 @@ pub struct ReconstructionCell {
 impl ReconstructionCell {
     /// What it is called as a work item: by its settings, since its number is another where an axis has more values.
     pub(super) fn name(&self) -> String {
-        let Self {
-            noise_std,
-            noise_unit,
-            ensemble,
-            measurements: m,
-            dictionary,
-            solver,
-            ..
-        } = self;
         format!(
-            "{solver:?} in {dictionary:?} of {ensemble:?}, m = {m}, noise {noise_std} {noise_unit:?}"
+            "{:?} in {:?} of {:?}, m = {}, noise {} {:?}",
+            self.solver,
+            self.dictionary,
+            self.ensemble,
+            self.measurements,
+            self.noise_std,
+            self.noise_unit
         )
     }
 
@@ -148,13 +144,8 @@ pub struct EnsembleStatistics {
     delta_lower_bound: f64 => Value(Less) "lower bound of δ": Linear;
 } }
 
-/// Rows of work items.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct ReconstructionRows {
-    /// One a cell.
-    pub reconstruction: Vec<(ReconstructionCell, ReconstructionScore)>,
-    /// One a cell.
-    pub timing: Vec<(ReconstructionCell, ReconstructionTime)>,
-    /// One an ensemble, m, dictionary and sparsity.
-    pub ensembles: Vec<EnsembleStatistics>,
-}
+/// What came of a cell, and what it cost.
+pub type ReconstructionRow = (ReconstructionCell, ReconstructionScore, ReconstructionTime);
+
+/// Rows of work items: of cells, and of ensembles, m, dictionaries and sparsities.
+pub type ReconstructionRows = (Vec<ReconstructionRow>, Vec<EnsembleStatistics>);

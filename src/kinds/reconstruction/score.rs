@@ -1,7 +1,7 @@
 //! Errors of reconstructed frames, and which cells no other beats.
 
 use super::rows::{
-    ReconstructionCell, ReconstructionPareto, ReconstructionRows, ReconstructionScore,
+    ReconstructionCell, ReconstructionPareto, ReconstructionRow, ReconstructionScore,
 };
 use crate::table::front;
 use ndarray::{Array2, ArrayView2};
@@ -25,13 +25,14 @@ pub(super) struct Truth {
     full_scale: f64,
 }
 
-/// What a cell's solver did.
-pub(super) struct Outcome {
-    /// ‖x̂ − x‖² of each test frame.
+/// What a cell's solver made of some test frames.
+pub(super) struct Found {
+    /// ‖x̂ − x‖² of each.
     pub errors: Vec<f64>,
     /// Coefficients that are not zero, all frames.
     pub n_atoms: usize,
     pub n_capped: usize,
+    pub seconds: f64,
 }
 
 impl Truth {
@@ -44,13 +45,15 @@ impl Truth {
         }
     }
 
-    /// `full` holds ‖noisy − x‖² of each frame.
-    pub(super) fn score(&self, outcome: &Outcome, full: &[f64]) -> ReconstructionScore {
+    /// Of all test frames; `full` holds ‖noisy − x‖² of each.
+    pub(super) fn score(&self, found: &[Found], full: &[f64]) -> ReconstructionScore {
         let n_frames = self.squares.len();
-        let (error, half_width) = self.ratio(&outcome.errors);
+        let errors: Vec<f64> = found.iter().flat_map(|f| f.errors.clone()).collect();
+        let n_atoms: usize = found.iter().map(|found| found.n_atoms).sum();
+        let (error, half_width) = self.ratio(&errors);
         let (full_sampling, _) = self.ratio(full);
         let n_values = (n_frames * self.n_taxels) as f64;
-        let mean_square = outcome.errors.iter().sum::<f64>() / n_values;
+        let mean_square = errors.iter().sum::<f64>() / n_values;
         ReconstructionScore {
             n_frames,
             error: error.sqrt(),
@@ -59,8 +62,8 @@ impl Truth {
             full_sampling_error: full_sampling.sqrt(),
             snr_db: -10.0 * error.log10(),
             psnr_db: -10.0 * (mean_square / (self.full_scale * self.full_scale)).log10(),
-            atoms_used: outcome.n_atoms as f64 / n_frames as f64,
-            n_capped: outcome.n_capped,
+            atoms_used: n_atoms as f64 / n_frames as f64,
+            n_capped: found.iter().map(|found| found.n_capped).sum(),
         }
     }
 
@@ -77,30 +80,26 @@ impl Truth {
 }
 
 /// Marks, among cells of one noise level, those that no other beats in both error and rate.
-pub(super) fn pareto(rows: &ReconstructionRows) -> Vec<(ReconstructionCell, ReconstructionPareto)> {
-    let cells = rows.reconstruction.iter().zip(&rows.timing);
-    let mut all: Vec<_> = cells
-        .map(|((cell, score), (_, time))| {
-            let row = ReconstructionPareto {
-                error: score.error,
-                us_per_frame: time.us_per_frame,
-                frames_per_s_per_core: time.frames_per_s_per_core,
-                on_front: false,
-            };
-            (cell.clone(), row)
-        })
-        .collect();
-    let mut levels: Vec<f64> = all.iter().map(|(cell, _)| cell.noise_std).collect();
-    levels.sort_by(f64::total_cmp);
-    levels.dedup();
-    for level in levels {
+pub(super) fn pareto(
+    rows: &[ReconstructionRow],
+    levels: &[f64],
+) -> Vec<(ReconstructionCell, ReconstructionPareto)> {
+    let row = |(cell, score, time): &ReconstructionRow| {
+        let row = ReconstructionPareto {
+            error: score.error,
+            us_per_frame: time.us_per_frame,
+            frames_per_s_per_core: time.frames_per_s_per_core,
+            on_front: false,
+        };
+        (cell.clone(), row)
+    };
+    let mut all: Vec<_> = rows.iter().map(row).collect();
+    for &level in levels {
         let of_level = all.iter_mut().filter(|(cell, _)| cell.noise_std == level);
-        let mut of_level: Vec<_> = of_level.collect();
-        let points: Vec<(f64, f64)> = of_level
-            .iter()
-            .map(|(_, row)| (row.us_per_frame, row.error))
-            .collect();
-        for ((_, row), on_front) in of_level.iter_mut().zip(front(&points, |a, b| a < b)) {
+        let of_level: Vec<_> = of_level.map(|(_, row)| row).collect();
+        let points = of_level.iter().map(|row| (row.us_per_frame, row.error));
+        let on_front = front(&points.collect::<Vec<_>>(), |a, b| a < b);
+        for (row, on_front) in of_level.into_iter().zip(on_front) {
             row.on_front = on_front;
         }
     }
@@ -116,12 +115,13 @@ mod tests {
     fn the_error_is_relative_to_the_clean_frames_and_its_interval_covers_it() {
         let clean = array![[3.0, 4.0], [0.0, 5.0], [5.0, 0.0]];
         let truth = Truth::new(&clean, 10.0);
-        let outcome = Outcome {
+        let found = Found {
             errors: vec![1.0, 2.0, 0.0],
             n_atoms: 6,
             n_capped: 1,
+            seconds: 1.0,
         };
-        let score = truth.score(&outcome, &[25.0, 25.0, 25.0]);
+        let score = truth.score(&[found], &[25.0, 25.0, 25.0]);
         // 3 of 75.
         assert!((score.error - 0.2).abs() < 1e-15);
         assert_eq!((score.full_sampling_error, score.atoms_used), (1.0, 2.0));

@@ -1,7 +1,7 @@
 //! Runs a reconstruction study: touches once, dictionaries once, then every ensemble, m, noise, dictionary and solver.
 
 use super::charts::{answers, charts};
-use super::measured::OnMeasured;
+use super::measured::measure_cells;
 use super::plan::ReconstructionPlan;
 use super::rows::{
     EnsembleStatistics, ReconstructionCell, ReconstructionPareto, ReconstructionRows,
@@ -14,8 +14,7 @@ use crate::error::Result;
 use crate::kinds::{About, Facts, Kind, Source};
 use crate::random::Seed;
 use crate::report::study_folder::NamedPicture;
-use crate::sensing::Basis;
-use crate::study::pieces::{NamedPiece, PieceRows, PieceStudy, PiecesLeft, Scale, Shared};
+use crate::study::pieces::{NamedPiece, PieceStudy, PiecesLeft, Scale, Shared};
 use crate::study::progress::Progress;
 use crate::study::time_left::Piece;
 use crate::study::{TouchedObject, draw_touches, load_objects, objects_content};
@@ -136,54 +135,47 @@ impl PieceStudy for ReconstructionStudy {
     /// Of each ensemble and m what every dictionary keeps apart, then its cells.
     fn pieces(&self) -> Vec<NamedPiece> {
         let mut pieces = Vec::new();
-        let [isometry, reconstruct] =
-            [STATISTICS, CELL].map(|(stage, s)| Piece::one_by_one(stage, s));
         for (group, cells) in on_measured(&self.plan.cells()).enumerate() {
-            let names = self
-                .plan
-                .dictionaries
-                .iter()
-                .map(|&basis| cells[0].isometry_name(basis));
-            pieces.extend(names.map(|name| NamedPiece::new(name, group, isometry)));
-            let names = cells.iter().map(ReconstructionCell::name);
-            pieces.extend(names.map(|name| NamedPiece::new(name, group, reconstruct)));
+            let mut add = |name: String, (stage, wall_s): (u8, f64)| {
+                let work = Piece::one_by_one(stage, wall_s);
+                pieces.push(NamedPiece::new(name, group, work));
+            };
+            for &basis in &self.plan.dictionaries {
+                add(cells[0].isometry_name(basis), STATISTICS);
+            }
+            for cell in cells {
+                add(cell.name(), CELL);
+            }
         }
         pieces
     }
 
     fn measure(&self, left: &PiecesLeft<ReconstructionRows>) -> Result<()> {
         let touches = self.frames(left.progress)?;
-        let n_bases = self.plan.dictionaries.len();
-        let dictionaries: Vec<_> = (0..n_bases).map(|_| Shared::default()).collect();
-        let learned = |basis: Basis| {
-            dictionaries[self.plan.place_of(basis)].get(|| touches.learn(&self.plan, basis))
-        };
         left.progress.stage("reconstruct", left.n() as u64);
-        on_measured(&self.plan.cells()).try_for_each(|cells| {
-            let plan = &self.plan;
-            let on = OnMeasured {
-                plan,
-                cells,
-                touches,
-            };
-            on.measure(&learned, left)
-        })
+        let cells = self.plan.cells();
+        let mut groups = on_measured(&cells);
+        groups.try_for_each(|cells| measure_cells((&self.plan, touches), cells, left))
     }
 
-    fn tables(&self, mut rows: ReconstructionRows) -> Result<Vec<Table>> {
+    fn tables(&self, (mut rows, statistics): ReconstructionRows) -> Result<Vec<Table>> {
         // Cells that were finished when axes had other values have other numbers.
         let numbers = self.plan.cells().into_iter();
         let numbers: BTreeMap<String, usize> =
             numbers.map(|cell| (cell.name(), cell.cell)).collect();
-        let cells = rows.reconstruction.iter_mut().map(|row| &mut row.0);
-        for cell in cells.chain(rows.timing.iter_mut().map(|row| &mut row.0)) {
+        for (cell, ..) in &mut rows {
             cell.cell = numbers[&cell.name()];
         }
+        let pareto = pareto(&rows, &self.plan.noise);
+        let rows = rows.into_iter();
+        let (scores, times): (Vec<_>, Vec<_>) = rows
+            .map(|(cell, score, time)| ((cell.clone(), score), (cell, time)))
+            .unzip();
         Ok(vec![
-            CELLS.of(&rows.reconstruction)?,
-            ENSEMBLES.of(&rows.ensembles)?,
-            TIMING.of(&rows.timing)?,
-            PARETO.of(&pareto(&rows))?,
+            CELLS.of(&scores)?,
+            ENSEMBLES.of(&statistics)?,
+            TIMING.of(&times)?,
+            PARETO.of(&pareto)?,
         ])
     }
 }
@@ -198,13 +190,5 @@ impl ReconstructionStudy {
     pub(super) fn frames(&self, progress: &dyn Progress) -> Result<&Touches> {
         let simulate = || Touches::simulate(&self.plan, &self.touched, progress);
         self.frames.get(simulate)
-    }
-}
-
-impl PieceRows for ReconstructionRows {
-    fn append(&mut self, next: Self) {
-        self.reconstruction.extend(next.reconstruction);
-        self.timing.extend(next.timing);
-        self.ensembles.extend(next.ensembles);
     }
 }

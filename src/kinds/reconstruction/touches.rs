@@ -9,6 +9,7 @@ use crate::sensing::{Basis, Dictionary, Ensemble};
 use crate::signal::{Chain, Noise, NoiseUnit};
 use crate::study::Frames;
 use crate::study::measurement::{Reading, TouchToRead, measure, touches_to_read};
+use crate::study::pieces::Shared;
 use crate::study::progress::Progress;
 use crate::study::simulation::{TouchedObject, simulate_array, touch_labels, touched_classes};
 use ndarray::{Array1, Array2, Axis};
@@ -24,6 +25,8 @@ pub(super) struct Touches {
     pub test: Array2<f64>,
     pub truth: Truth,
     pub noisy: Vec<Noisy>,
+    /// Learned from training frames once something needs them, in the order of the plan.
+    dictionaries: Vec<Shared<Dictionary>>,
     /// The test rows that are kept for the eye, and their objects.
     pub shown: Vec<(usize, String)>,
 }
@@ -53,28 +56,22 @@ impl Touches {
         let touches = touches_to_read(touched_classes(touched), &seed.named("signal").numbered(0));
         let read = |rows: &[usize], noise| read(plan, &frames, &touches, rows, noise);
         let test = read(&split.test, None)?;
+        let unit = plan.noise_unit;
+        let std = |std, unit| Noise { std, unit }.std_of(plan.quantity(), &plan.patch.taxel);
         let noisy = plan.noise.iter().map(|&level| {
             let frames = read(&split.test, Some(level))?;
-            let noise = Noise {
-                std: level,
-                unit: plan.noise_unit,
-            };
             Ok(Noisy {
                 level,
-                std: noise.std_of(plan.quantity(), &plan.patch.taxel)?,
+                std: std(level, unit)?,
                 errors: square_errors(frames.view(), test.view()),
                 frames,
             })
         });
         let noisy = noisy.collect::<Result<Vec<_>>>()?;
-        let one = Noise {
-            std: 1.0,
-            unit: NoiseUnit::FullScale,
-        };
-        let full_scale = one.std_of(plan.quantity(), &plan.patch.taxel)?;
         Ok(Self {
             train: read(&split.train, None)?,
-            truth: Truth::new(&test, full_scale),
+            truth: Truth::new(&test, std(1.0, NoiseUnit::FullScale)?),
+            dictionaries: plan.of_each_dictionary(),
             shown: shown(touched, &labels, &split),
             test,
             noisy,
@@ -82,11 +79,16 @@ impl Touches {
     }
 
     /// A dictionary of the training frames.
-    pub(super) fn learn(&self, plan: &ReconstructionPlan, basis: Basis) -> Result<Dictionary> {
-        let grid = (plan.patch.grid.ny, plan.patch.grid.nx);
-        let atoms = plan.spec.reconstruction.atoms;
-        let seed = Seed::new(plan.spec.seed).named("dictionary");
-        Dictionary::learned(basis, grid, self.train.view(), atoms, &seed)
+    pub(super) fn dictionary(
+        &self,
+        plan: &ReconstructionPlan,
+        basis: Basis,
+    ) -> Result<&Dictionary> {
+        self.dictionaries[plan.place_of(basis)].get(|| {
+            let atoms = plan.spec.reconstruction.atoms;
+            let seed = Seed::new(plan.spec.seed).named("dictionary");
+            Dictionary::learned(basis, plan.shape(), self.train.view(), atoms, &seed)
+        })
     }
 
     /// Those of some test frames that are for the eye.
@@ -120,13 +122,10 @@ fn read(
 fn shown(touched: &[TouchedObject], labels: &Array1<usize>, split: &Split) -> Vec<(usize, String)> {
     let n = N_SAMPLES.min(touched.len());
     let objects = (0..n).map(|sample| sample * touched.len() / n);
-    objects
-        .filter_map(|object| {
-            let row = split
-                .test
-                .iter()
-                .position(|&touch| labels[touch] == object)?;
-            Some((row, touched[object].object.name.clone()))
-        })
-        .collect()
+    let first = |object: usize| {
+        let mut tested = split.test.iter();
+        let row = tested.position(|&touch| labels[touch] == object)?;
+        Some((row, touched[object].object.name.clone()))
+    };
+    objects.filter_map(first).collect()
 }

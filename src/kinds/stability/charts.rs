@@ -15,16 +15,13 @@ pub(super) fn charts(tables: &[Table]) -> Vec<ChartSpec> {
         if n(&["method", "solver_iterations"]) < 2 || n(&["dt_s", "taxel_mass_kg"]) < 2 {
             continue;
         }
-        let map = map(cells, &rows);
-        let n_before = charts
-            .iter()
-            .filter(|chart| chart.title == map.title)
-            .count();
-        let name = match n_before {
-            0 => map.name,
-            n => format!("{}_{}", map.name, n + 1),
-        };
-        charts.push(ChartSpec { name, ..map });
+        let mut map = map(cells, &rows);
+        let of_scene = charts.iter().filter(|chart| chart.title == map.title);
+        let n_before = of_scene.count();
+        if n_before > 0 {
+            map.name += &format!("_{}", n_before + 1);
+        }
+        charts.push(map);
     }
     charts.extend(joint_charts(joints));
     charts
@@ -38,50 +35,48 @@ fn map(cells: &Table, rows: &[usize]) -> ChartSpec {
         "press" => "A ball is pressed on taxels with 0.5 m/s, held, and taken off",
         _ => "A plunger is let go on SkinSim's taxels",
     };
-    let has_peers = rows
-        .iter()
-        .any(|&row| cells.word("method", row).starts_with("mujoco"));
     let settings = [
         "stiffness_n_per_m",
         "object_mass_kg",
         "taxels",
         "solver_iterations",
     ];
-    ChartSpec {
-        name: format!("stability_{scene}"),
-        title: format!("{what}: what is right, and what breaks"),
-        note: if has_peers {
-            cells.note.clone()
-        } else {
-            String::new()
-        },
-        table: cells.file,
+    let mut chart = ChartSpec {
         shown: cells.shown("part", rows[0]).into_iter().collect(),
-        x: "dt_s".to_owned(),
-        y: "taxel_mass_kg".to_owned(),
         lines: varying(cells, &settings, rows),
         panels: Some("method".to_owned()),
-        mark: Mark::Tiles {
-            fill: "outcome".to_owned(),
-            sign: Some("deflection_error".to_owned()),
-        },
+        mark: tiles("deflection_error"),
         rules: vec![Rule {
             along: Along::X,
             at: At::Column("explicit_limit_s".to_owned()),
             words: "limit of an explicit spring without damper, Δt = 2 √(m / k)".to_owned(),
         }],
-        ..ChartSpec::default()
+        ..cells.chart(
+            format!("stability_{scene}"),
+            format!("{what}: what is right, and what breaks"),
+            ("taxel_mass_kg", "dt_s"),
+        )
+    };
+    let mut methods = rows.iter().map(|&row| cells.word("method", row));
+    if !methods.any(|method| method.starts_with("mujoco")) {
+        chart.note.clear();
+    }
+    chart
+}
+
+/// Tiles of outcomes.
+fn tiles(sign: &str) -> Mark {
+    Mark::Tiles {
+        fill: "outcome".to_owned(),
+        sign: Some(sign.to_owned()),
     }
 }
 
 /// Those of some columns that have several values in these rows.
 fn varying(table: &Table, columns: &[&str], rows: &[usize]) -> Vec<String> {
-    let varies = |column: &&&str| table.groups(&[**column], rows.iter().copied()).len() > 1;
-    columns
-        .iter()
-        .filter(varies)
-        .map(|column| (*column).to_owned())
-        .collect()
+    let varies = |column: &str| table.groups(&[column], rows.iter().copied()).len() > 1;
+    let varying = columns.iter().filter(|column| varies(column));
+    varying.map(|column| (*column).to_owned()).collect()
 }
 
 /// Of each time step what joints cost, then what comes of all of them.
@@ -90,47 +85,33 @@ fn joint_charts(joints: &Table) -> Vec<ChartSpec> {
     if all.is_empty() {
         return Vec::new();
     }
-    let chart = ChartSpec {
-        note: format!(
-            "Each taxel carries {}. {}",
-            joints.words("carried_kg", 0),
-            joints.note
-        ),
-        table: joints.file,
-        x: "joints".to_owned(),
+    let carried = joints.words("carried_kg", 0);
+    let limit = "SkinSim's authors: unstable near 280 joints";
+    let chart = |name: String, title: String, y: &str| ChartSpec {
+        note: format!("Each taxel carries {carried}. {}", joints.note),
         panels: Some("taxel_mass_kg".to_owned()),
-        rules: vec![Rule {
-            along: Along::X,
-            at: At::Value(UNSTABLE_JOINTS as f64),
-            words: "SkinSim's authors: unstable near 280 joints".to_owned(),
-        }],
-        ..ChartSpec::default()
+        rules: vec![Rule::at(Along::X, UNSTABLE_JOINTS as f64, limit)],
+        ..joints.chart(name, title, (y, "joints"))
     };
     let cost = |rows: &Vec<usize>| {
+        let name = format!("stability_joints_dt_{}", joints.number("dt_s", rows[0]));
         let step = joints.words("dt_s", rows[0]);
+        let title = format!(
+            "Taxels on joints: what a simulated second costs as their number rises, steps of {step}"
+        );
         ChartSpec {
-            name: format!("stability_joints_dt_{}", joints.number("dt_s", rows[0])),
-            title: format!(
-                "Taxels on joints: what a simulated second costs as their number rises, steps of {step}"
-            ),
             shown: joints.shown("dt_s", rows[0]).into_iter().collect(),
-            y: "time_s".to_owned(),
             lines: varying(joints, &["method", "solver_iterations"], rows),
-            ..chart.clone()
+            ..chart(name, title, "time_s")
         }
     };
     let steps = joints.groups(&["dt_s"], all.iter().copied());
     let mut charts: Vec<ChartSpec> = steps.iter().map(cost).collect();
+    let title = "Taxels on joints: what is right as their number rises, and what breaks";
     charts.push(ChartSpec {
-        name: "stability_joints".to_owned(),
-        title: "Taxels on joints: what is right as their number rises, and what breaks".to_owned(),
-        y: "method".to_owned(),
         lines: varying(joints, &["dt_s", "solver_iterations"], &all),
-        mark: Mark::Tiles {
-            fill: "outcome".to_owned(),
-            sign: Some("time_s".to_owned()),
-        },
-        ..chart
+        mark: tiles("time_s"),
+        ..chart("stability_joints".to_owned(), title.to_owned(), "method")
     });
     charts
 }
@@ -140,32 +121,21 @@ pub(super) fn answers(tables: &[Table]) -> Vec<String> {
     let [_, summary, ..] = tables else {
         return Vec::new();
     };
-    let sum = |column: &str, rows: &[usize]| {
-        rows.iter()
-            .map(|&row| summary.number(column, row))
-            .sum::<f64>()
-    };
     let methods = summary.groups(&["method", "solver_iterations"], 0..summary.n_rows);
-    let mut found: Vec<(f64, String)> = methods
-        .iter()
-        .map(|rows| {
-            let (n_right, n_cells) = (sum("n_right", rows), sum("n_cells", rows));
-            let share = n_right / n_cells.max(1.0);
-            let iterations = summary.words("solver_iterations", rows[0]);
-            let iterations = match iterations.is_empty() {
-                true => iterations,
-                false => format!(", {iterations} iterations"),
-            };
-            let method = summary.words("method", rows[0]);
-            let percent = 100.0 * share;
-            (
-                share,
-                format!(
-                    "Right in {n_right} of {n_cells} cells ({percent:.0} %): {method}{iterations}."
-                ),
-            )
-        })
-        .collect();
+    let found = methods.iter().map(|rows| {
+        let sum = |column| rows.iter().map(|&row| summary.number(column, row)).sum();
+        let (n_right, n_cells): (f64, f64) = (sum("n_right"), sum("n_cells"));
+        let share = n_right / n_cells.max(1.0);
+        let mut method = summary.words("method", rows[0]);
+        let iterations = summary.words("solver_iterations", rows[0]);
+        if !iterations.is_empty() {
+            method += &format!(", {iterations} iterations");
+        }
+        let percent = 100.0 * share;
+        let sentence = format!("Right in {n_right} of {n_cells} cells ({percent:.0} %): {method}.");
+        (share, sentence)
+    });
+    let mut found: Vec<(f64, String)> = found.collect();
     found.sort_by(|a, b| b.0.total_cmp(&a.0));
     found.into_iter().map(|(_, sentence)| sentence).collect()
 }

@@ -25,7 +25,7 @@ mod spec;
 mod study;
 
 pub use cell::{LEAST_STEPS, Outcome, TOLERANCE};
-pub use plan::{StabilityPart, StabilityPlan};
+pub use plan::StabilityPlan;
 pub use spec::{
     ContactMethod, StabilityPartSpec, StabilityScene, StabilitySpec, StabilityStudySpec,
 };

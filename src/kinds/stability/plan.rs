@@ -6,6 +6,7 @@ use crate::error::Result;
 use crate::study::MM;
 use crate::study::check::{COUNT, Check, Range};
 use crate::study::sweep::nested;
+use crate::world::Taxel;
 use std::path::{Path, PathBuf};
 
 /// Settings of a study of stability, ready to run.
@@ -13,21 +14,10 @@ use std::path::{Path, PathBuf};
 pub struct StabilityPlan {
     /// As it was written.
     pub spec: StabilityStudySpec,
-    /// Between neighbouring taxels, metres.
-    pub pitch: f64,
-    /// What is tried, in this order.
-    pub parts: Vec<StabilityPart>,
+    /// Part by part, each with its taxels before they are damped; methods that this build does not have are left out.
+    pub cells: Vec<(StabilityCell, Taxel)>,
     /// Where the rows of other programs are.
     pub peers: Option<PathBuf>,
-}
-
-/// Cells that share what no axis says.
-#[derive(Clone, Debug, PartialEq)]
-pub struct StabilityPart {
-    /// s, metres.
-    pub stroke: f64,
-    /// What is simulated; methods that this build does not have are left out.
-    pub cells: Vec<StabilityCell>,
 }
 
 /// Taxels a side, at most: a million and more of bodies is no question of stability.
@@ -53,149 +43,114 @@ impl StabilityPlan {
         let wanted = &spec.stability;
         check.keys("stability", wanted, [("pitch_mm", Range::Positive)])?;
         check.list("stability.parts", wanted.parts.clone())?;
-        let parts = wanted.parts.iter().enumerate();
-        let parts = parts.map(|(number, part)| {
-            let part = PartCheck {
-                check: &check,
-                number,
-                part,
+        let mut cells = Vec::new();
+        for (number, part) in wanted.parts.iter().enumerate() {
+            let taxel = |cell: &StabilityCell| Taxel {
+                radius: 0.5 * wanted.pitch_mm * MM,
+                stiffness: cell.stiffness_n_per_m,
+                damping: 0.0,
+                stroke: part.stroke_mm * MM,
             };
-            part.lay_out()
-        });
-        let parts = parts.collect::<Result<Vec<_>>>()?;
+            let of_part = check.stability_part(number + 1, part)?.into_iter();
+            cells.extend(of_part.map(|cell| (cell.clone(), taxel(&cell))));
+        }
         Ok(Self {
-            pitch: wanted.pitch_mm * MM,
-            parts,
+            cells,
             peers: wanted.peers.as_ref().map(|path| folder.join(path)),
             spec,
         })
     }
-
-    /// All cells, each with its stroke, metres.
-    pub fn cells(&self) -> impl Iterator<Item = (&StabilityCell, f64)> {
-        let parts = self.parts.iter();
-        parts.flat_map(|part| part.cells.iter().map(|cell| (cell, part.stroke)))
-    }
 }
 
-/// One part, and what it is called in errors.
-struct PartCheck<'a> {
-    check: &'a Check<'a>,
-    number: usize,
-    part: &'a StabilityPartSpec,
-}
-
-impl PartCheck<'_> {
-    fn key(&self, name: &str) -> String {
-        format!("stability.parts[{}].{name}", self.number + 1)
-    }
-
-    fn lay_out(&self) -> Result<StabilityPart> {
-        let part = self.part;
-        let name = format!("stability.parts[{}]", self.number + 1);
-        self.check.keys(&name, part, KEYS)?;
-        if part.methods.iter().any(|method| method.is_peer()) {
+impl Check<'_> {
+    fn stability_part(
+        &self,
+        part: usize,
+        wanted: &StabilityPartSpec,
+    ) -> Result<Vec<StabilityCell>> {
+        let name = format!("stability.parts[{part}]");
+        let error =
+            |[key, given, allowed]: [&str; 3]| self.error(&format!("{name}.{key}"), given, allowed);
+        self.keys(&name, wanted, KEYS)?;
+        if wanted.methods.iter().any(|method| method.is_peer()) {
             let allowed =
                 "methods of this program: other programs leave their rows in stability.peers";
-            return Err(self.check.error(&self.key("methods"), "MuJoCo", allowed));
+            return Err(error(["methods", "MuJoCo", allowed]));
         }
-        let sides = self.sides()?;
-        let stiffnesses = part.stiffness_n_per_m.values();
-        let taxel_masses = part.taxel_mass_kg.values();
-        let masses = self.object_masses()?;
-        let dts = part.dt_s.values();
-        let iterations = part.solver_iterations.values();
-        let built = part.methods.iter().filter(|method| method.is_built());
-        let ways = built.flat_map(|&method| {
-            let engine = iterations.iter().map(|&n| Some(n)).collect();
-            let counts: Vec<_> = if method.is_engine() {
-                engine
-            } else {
-                vec![None]
-            };
-            counts.into_iter().map(move |n| (method, n))
-        });
-        let ways: Vec<(ContactMethod, Option<usize>)> = ways.collect();
+        let sides = wanted.taxels.values();
+        // Even, so that the ball lies between four taxels and not on one.
+        if let Some(n) = sides.iter().find(|&&n| n % 2 != 0 || n > MOST_TAXELS) {
+            let allowed = format!("even numbers from 2 to {MOST_TAXELS}");
+            return Err(error(["taxels", &n.to_string(), &allowed]));
+        }
+        let masses = object_masses(wanted).map_err(error)?;
+        let iterations = |method: ContactMethod| match method.is_engine() {
+            true => wanted
+                .solver_iterations
+                .values()
+                .into_iter()
+                .map(Some)
+                .collect(),
+            false => vec![None],
+        };
+        let methods = wanted.methods.iter().copied();
+        let methods: Vec<ContactMethod> = methods.filter(|method| method.is_built()).collect();
         let axes = [
-            ways.len(),
+            methods.iter().map(|&method| iterations(method).len()).sum(),
             sides.len(),
-            stiffnesses.len(),
+            wanted.stiffness_n_per_m.values().len(),
             masses.len(),
-            taxel_masses.len(),
-            dts.len(),
+            wanted.taxel_mass_kg.values().len(),
+            wanted.dt_s.values().len(),
         ];
-        let n_all = axes.iter().map(|&n| n as f64).product();
-        self.check.configurations(n_all)?;
+        self.configurations(axes.iter().map(|&n| n as f64).product())?;
         let mut cells = Vec::new();
         nested! {
-            (method, solver_iterations) in ways;
+            method in methods;
+            solver_iterations in iterations(method);
             &taxels in &sides;
-            &stiffness_n_per_m in &stiffnesses;
+            stiffness_n_per_m in wanted.stiffness_n_per_m.values();
             &mass in &masses;
-            &taxel_mass_kg in &taxel_masses;
-            &dt_s in &dts;
+            taxel_mass_kg in wanted.taxel_mass_kg.values();
+            dt_s in wanted.dt_s.values();
             {
-                let mut cell = StabilityCell {
-                    part: self.number + 1,
-                    scene: part.scene,
+                let n_carriers = match wanted.object_mass_per_taxel_kg {
+                    Some(_) => taxels * taxels,
+                    None => 1,
+                };
+                cells.push(StabilityCell {
+                    part,
+                    scene: wanted.scene,
                     method,
                     solver_iterations,
                     taxels,
                     stiffness_n_per_m,
                     taxel_mass_kg,
-                    object_mass_kg: mass,
+                    object_mass_kg: mass.map(|mass| n_carriers as f64 * mass),
                     dt_s,
-                };
-                if part.object_mass_per_taxel_kg.is_some() {
-                    cell.object_mass_kg = mass.map(|mass| cell.n_taxels() as f64 * mass);
-                }
-                cells.push(cell);
+                });
             }
         }
-        Ok(StabilityPart {
-            stroke: part.stroke_mm * MM,
-            cells,
-        })
+        Ok(cells)
     }
+}
 
-    /// Even, so that the ball lies between four taxels and not on one.
-    fn sides(&self) -> Result<Vec<usize>> {
-        let key = self.key("taxels");
-        let sides = self.part.taxels.values();
-        match sides.iter().find(|&&n| n % 2 != 0 || n > MOST_TAXELS) {
-            Some(n) => {
-                let allowed = format!("even numbers from 2 to {MOST_TAXELS}");
-                Err(self.check.error(&key, n, allowed))
-            }
-            None => Ok(sides),
+/// M or, where it is given so, M over the number of taxels; none where the ball's motion is imposed. The error is a key, what was given, and
+/// what is allowed.
+fn object_masses(
+    part: &StabilityPartSpec,
+) -> std::result::Result<Vec<Option<f64>>, [&'static str; 3]> {
+    let [whole, per_taxel] = ["object_mass_kg", "object_mass_per_taxel_kg"];
+    let imposed = "no such key: the ball's motion is imposed";
+    let is_imposed = part.scene == StabilityScene::Press;
+    match (&part.object_mass_kg, &part.object_mass_per_taxel_kg) {
+        (None, None) if is_imposed => Ok(vec![None]),
+        (Some(_), _) if is_imposed => Err([whole, "a mass", imposed]),
+        (None, Some(_)) if is_imposed => Err([per_taxel, "a mass", imposed]),
+        (None, None) => Err([whole, "none", "a mass: the ball is free"]),
+        (Some(_), Some(_)) => Err([per_taxel, "a mass", "one of this key and object_mass_kg"]),
+        (Some(axis), None) | (None, Some(axis)) => {
+            Ok(axis.values().into_iter().map(Some).collect())
         }
-    }
-
-    /// M or, where it is given so, M over the number of taxels; none where the ball's motion is imposed.
-    fn object_masses(&self) -> Result<Vec<Option<f64>>> {
-        let part = self.part;
-        let given = [
-            ("object_mass_kg", part.object_mass_kg.as_ref()),
-            (
-                "object_mass_per_taxel_kg",
-                part.object_mass_per_taxel_kg.as_ref(),
-            ),
-        ];
-        let mut given = given
-            .into_iter()
-            .filter_map(|(name, axis)| Some((name, axis?)));
-        let (first, second) = (given.next(), given.next());
-        let (name, given, allowed) = match (first, second, part.scene) {
-            (None, _, StabilityScene::Press) => return Ok(vec![None]),
-            (Some((name, _)), _, StabilityScene::Press) => {
-                (name, "a mass", "no such key: the ball's motion is imposed")
-            }
-            (None, ..) => ("object_mass_kg", "none", "a mass: the ball is free"),
-            (_, Some((name, _)), _) => (name, "a mass", "one of this key and object_mass_kg"),
-            (Some((_, axis)), None, _) => {
-                return Ok(axis.values().into_iter().map(Some).collect());
-            }
-        };
-        Err(self.check.error(&self.key(name), given, allowed))
     }
 }

@@ -134,14 +134,8 @@ pub struct Joints {
     time_s: f64 => Cost "computing a simulated second" in "s": Log;
 } }
 
-/// Rows of work items.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct StabilityRows {
-    /// One a cell, in the order of the plan.
-    pub stability: Vec<(StabilityCell, StabilityScore)>,
-    /// The same.
-    pub timing: Vec<(StabilityCell, StabilityTime)>,
-}
+/// What came of a work item, and what it cost.
+pub type StabilityRow = (StabilityCell, StabilityScore, StabilityTime);
 
 /// Who measured a row of another program: it ends with these columns.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

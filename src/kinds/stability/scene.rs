@@ -27,46 +27,13 @@ const REACH: f64 = 1.5;
 /// A free ball is watched at least so long, seconds.
 const LEAST_TIME: f64 = 0.5;
 
-/// All taxels of a cradle, metres and newtons per metre; see the module's title page.
+/// All taxels of a cradle under a ball; see the module's title page.
 #[derive(Clone, Debug)]
 pub(super) struct Cradle {
     pub patch: SkinPatch,
     pub ball: Model,
     /// `patch_from_object` at first contact.
     pub pose: Pose,
-}
-
-/// What must be at the moment of judgement.
-#[derive(Clone, Debug)]
-pub(super) struct Truth {
-    /// n_taxels, metres.
-    pub deflection: Vec<f64>,
-    /// Σ f, newtons.
-    pub force: f64,
-    /// Taxels that are touched.
-    pub n_touched: usize,
-    /// What the most loaded taxel carries, its stop included, newtons.
-    pub heaviest: f64,
-}
-
-/// When things happen, seconds.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Times {
-    /// The moment of judgement: the end of the hold, or the end.
-    pub judged: f64,
-    /// The end.
-    pub end: f64,
-}
-
-impl Times {
-    /// The steps of `dt` seconds after which something is looked at, from 1: the moment of judgement, and the end where that is another.
-    pub fn frames(&self, dt: f64) -> Vec<usize> {
-        let end = (self.end / dt).ceil() as usize;
-        match self.judged < self.end {
-            true => vec![(self.judged / dt).floor() as usize, end],
-            false => vec![end],
-        }
-    }
 }
 
 /// A cell's scene, ready to be simulated in any way.
@@ -76,37 +43,41 @@ pub(super) struct CellScene {
     pub taxel: Taxel,
     /// Of the ball.
     pub drive: Drive,
-    pub truth: Truth,
-    pub times: Times,
+    /// What must be at the moment of judgement.
+    pub truth: Rest,
+    /// Σ f at that moment, newtons.
+    pub force: f64,
+    /// The moment of judgement, seconds: the end of the hold, or the end.
+    judged: f64,
+    /// The end, seconds.
+    end: f64,
     /// Joules that the scene never has.
     pub energy_limit: f64,
 }
 
 impl Cradle {
     /// A square of `side` taxels a side under a ball as large as it.
-    fn new(side: usize, pitch: f64, taxel: Taxel) -> Result<Self> {
+    fn new(side: usize, taxel: Taxel) -> Result<Self> {
         let grid = Grid {
             nx: side,
             ny: side,
-            pitch,
+            pitch: 2.0 * taxel.radius,
         };
-        let radius = side as f64 * pitch;
+        let radius = side as f64 * grid.pitch;
         let reach = radius + taxel.radius;
         let corner = grid.x(0).powi(2) + grid.y(0).powi(2);
         let places = (0..side).flat_map(|row| (0..side).map(move |column| (column, row)));
-        let centers = places.map(|(column, row)| {
+        let center = |(column, row)| {
             let (x, y) = (grid.x(column), grid.y(row));
             let across = x * x + y * y;
             let under_ball = reach - (reach * reach - across).sqrt();
             DVec3::new(x, y, under_ball - 0.25 * taxel.stroke * across / corner)
-        });
-        let centers: Vec<DVec3> = centers.collect();
-        let axes = vec![DVec3::Z; centers.len()];
-        let layout = Layout::new(centers, axes)?;
+        };
+        let layout = Layout::new(places.map(center).collect(), vec![DVec3::Z; side * side])?;
         let center = DVec3::ZERO;
         let ball = SphereUnion::new(vec![Sphere { center, radius }])?;
         // The innermost taxels are met first.
-        let innermost = DVec3::new(0.5 * pitch, 0.5 * pitch, 0.0).length_squared();
+        let innermost = DVec3::new(0.5 * grid.pitch, 0.5 * grid.pitch, 0.0).length_squared();
         let lift = reach - 0.25 * taxel.stroke * innermost / corner;
         Ok(Self {
             patch: SkinPatch::new("cradle", layout, Taxels::Equal(taxel))?,
@@ -114,89 +85,89 @@ impl Cradle {
             pose: Pose::from_translation(lift * DVec3::Z),
         })
     }
+
+    /// Where an imposed ball starts.
+    fn above(&self) -> Pose {
+        Pose::from_translation(self.pose.translation + APPROACH * DVec3::Z)
+    }
+
+    /// As the methods with mass see it: the ball at a pose, and taxels that it meets within a reach, metres.
+    fn system(&self, mass: f64, drive: &Drive, reach: f64) -> Result<System<'_>> {
+        let pose = match drive {
+            Drive::Free { .. } => self.pose,
+            Drive::Imposed(_) => self.above(),
+        };
+        System::new(&self.patch, mass, &self.ball, pose, drive.clone(), reach)
+    }
 }
 
 impl CellScene {
-    /// Of a cell with this pitch and stroke, metres.
-    pub fn new(cell: &StabilityCell, pitch: f64, stroke: f64) -> Result<Self> {
-        let undamped = Taxel {
-            radius: 0.5 * pitch,
-            stiffness: cell.stiffness_n_per_m,
-            damping: 0.0,
-            stroke,
+    /// Of a cell, with its taxels before they are damped.
+    pub fn new(cell: &StabilityCell, undamped: Taxel) -> Result<Self> {
+        let cradle = Cradle::new(cell.taxels, undamped)?;
+        let mut scene = match cell.object_mass_kg {
+            Some(mass) => Self::of_free(cell, cradle, undamped, mass)?,
+            None => Self::of_imposed(cell, cradle, undamped)?,
         };
-        let cradle = Cradle::new(cell.taxels, pitch, undamped)?;
-        match cell.object_mass_kg {
-            Some(mass) => Self::of_free(cell, cradle, undamped, mass, pitch),
-            None => Self::of_imposed(cell, cradle, undamped, pitch),
-        }
+        let layout = scene.cradle.patch.layout().clone();
+        scene.cradle.patch = SkinPatch::new("cradle", layout, Taxels::Equal(scene.taxel))?;
+        Ok(scene)
     }
 
     /// Everything as the methods with mass see it.
     pub fn system(&self, cell: &StabilityCell) -> Result<System<'_>> {
-        let Cradle { patch, ball, pose } = &self.cradle;
-        let pose = match self.drive {
-            Drive::Free { .. } => *pose,
-            Drive::Imposed(_) => Pose::from_translation(pose.translation + APPROACH * DVec3::Z),
-        };
         let reach = APPROACH + REACH * self.taxel.stroke;
-        System::new(
-            patch,
-            cell.taxel_mass_kg,
-            ball,
-            pose,
-            self.drive.clone(),
-            reach,
-        )
+        self.cradle.system(cell.taxel_mass_kg, &self.drive, reach)
     }
 
-    fn of_free(
-        cell: &StabilityCell,
-        cradle: Cradle,
-        taxel: Taxel,
-        mass: f64,
-        pitch: f64,
-    ) -> Result<Self> {
+    /// The steps of `dt` seconds after which something is looked at, from 1: the moment of judgement, and the end where that is another.
+    pub fn frames(&self, dt: f64) -> Vec<usize> {
+        let end = (self.end / dt).ceil() as usize;
+        match self.judged < self.end {
+            true => vec![(self.judged / dt).floor() as usize, end],
+            false => vec![end],
+        }
+    }
+
+    fn of_free(cell: &StabilityCell, cradle: Cradle, taxel: Taxel, mass: f64) -> Result<Self> {
         let drive = Drive::Free {
             mass,
             gravity: GRAVITY,
             travel: 0.0,
         };
-        let m = cell.taxel_mass_kg;
-        let reach = REACH * taxel.stroke;
-        let system = System::new(
-            &cradle.patch,
-            m,
-            &cradle.ball,
-            cradle.pose,
-            drive.clone(),
-            reach,
-        )?;
-        let rest = rest(&system).expect("a free ball over taxels comes to rest");
-        let n_touched = rest.deflection.iter().filter(|d| **d > 0.0).count();
+        let (k, m) = (taxel.stiffness, cell.taxel_mass_kg);
+        let system = cradle.system(m, &drive, REACH * taxel.stroke)?;
+        let truth = rest(&system).expect("a free ball over taxels comes to rest");
+        let n_touched = truth.deflection.iter().filter(|d| **d > 0.0).count();
         // What each taxel has to move, itself included.
         let share = mass / n_touched as f64 + m;
-        let (damping, end) = free(cell, share);
-        let taxel = Taxel { damping, ..taxel };
+        let damping = match cell.scene {
+            StabilityScene::Plunger => k * skin_sim::DAMPING / skin_sim::STIFFNESS,
+            _ => 2.0 * (k * share).sqrt(),
+        };
+        let end = LEAST_TIME
+            .max(DECAY / slowest(k, damping, share))
+            .max(LEAST_STEPS * cell.dt_s);
         Ok(Self {
-            cradle: Cradle::new(cell.taxels, pitch, taxel)?,
-            truth: Truth {
-                heaviest: heaviest(&taxel, &rest),
-                deflection: rest.deflection,
-                force: mass * GRAVITY,
-                n_touched,
-            },
-            times: Times { judged: end, end },
+            cradle,
+            truth,
+            force: mass * GRAVITY,
+            judged: end,
+            end,
             // It begins with none, and all that it gains by falling goes into springs and dampers.
             energy_limit: mass * GRAVITY * taxel.stroke,
-            taxel,
+            taxel: Taxel { damping, ..taxel },
             drive,
         })
     }
 
-    fn of_imposed(cell: &StabilityCell, cradle: Cradle, taxel: Taxel, pitch: f64) -> Result<Self> {
+    fn of_imposed(cell: &StabilityCell, cradle: Cradle, taxel: Taxel) -> Result<Self> {
         let (k, m) = (taxel.stiffness, cell.taxel_mass_kg);
-        let (damping, hold) = imposed(cell, k, m);
+        let ratio = skin_sim::DAMPING / (2.0 * (skin_sim::STIFFNESS * skin_sim::TAXEL_MASS).sqrt());
+        let damping = 2.0 * ratio * (k * m).sqrt();
+        let hold = LEAST_HOLD
+            .max(DECAY / slowest(k, damping, m))
+            .max(LEAST_HOLD_STEPS * cell.dt_s);
         let depth = 0.5 * taxel.stroke;
         let way = (APPROACH + depth) / SPEED;
         let phase = |duration, speed| Phase {
@@ -204,73 +175,30 @@ impl CellScene {
             linear: speed * DVec3::Z,
             angular: DVec3::ZERO,
         };
-        let high = Pose::from_translation(cradle.pose.translation + APPROACH * DVec3::Z);
         let phases = vec![phase(way, -SPEED), phase(hold, 0.0), phase(way, SPEED)];
-        let drive = Drive::Imposed(VelocityPlan::new(high, phases)?);
-        let taxel = Taxel { damping, ..taxel };
-        let cradle = Cradle::new(cell.taxels, pitch, taxel)?;
-        let reach = APPROACH + REACH * taxel.stroke;
-        let system = System::new(&cradle.patch, m, &cradle.ball, high, drive.clone(), reach)?;
-        let deepest = APPROACH + depth;
-        let deflection = system
-            .starts()
-            .iter()
-            .map(|start| (deepest - start).max(0.0));
-        let deflection: Vec<f64> = deflection.collect();
-        let springs: f64 = deflection.iter().sum();
-        // What springs hold at the deepest, and what taxels have that are hit at twice the speed: four times that.
+        let drive = Drive::Imposed(VelocityPlan::new(cradle.above(), phases)?);
+        let system = cradle.system(m, &drive, APPROACH + REACH * taxel.stroke)?;
+        let travel = APPROACH + depth;
+        let starts = system.starts().iter();
+        let deflection: Vec<f64> = starts.map(|start| (travel - start).max(0.0)).collect();
+        // What springs hold at the deepest, and what taxels have that are hit at twice the speed.
         let n_taxels = deflection.len() as f64;
         let most = 0.5 * n_taxels * (k * depth * depth + m * (2.0 * SPEED).powi(2));
         Ok(Self {
-            truth: Truth {
-                force: k * springs,
-                heaviest: k * depth,
-                n_touched: deflection.iter().filter(|d| **d > 0.0).count(),
+            force: k * deflection.iter().sum::<f64>(),
+            truth: Rest {
+                travel,
                 deflection,
+                stops: 0.0,
             },
-            times: Times {
-                judged: way + hold,
-                end: way + hold + way + hold,
-            },
+            judged: way + hold,
+            end: way + hold + way + hold,
             energy_limit: 4.0 * most,
             cradle,
-            taxel,
+            taxel: Taxel { damping, ..taxel },
             drive,
         })
     }
-}
-
-/// The damping of a taxel that has so much mass to move, and when its ball is at rest, N s/m and seconds.
-fn free(cell: &StabilityCell, share: f64) -> (f64, f64) {
-    let k = cell.stiffness_n_per_m;
-    let damping = match cell.scene {
-        StabilityScene::Plunger => k * skin_sim::DAMPING / skin_sim::STIFFNESS,
-        _ => 2.0 * (k * share).sqrt(),
-    };
-    let end = LEAST_TIME
-        .max(DECAY / slowest(k, damping, share))
-        .max(LEAST_STEPS * cell.dt_s);
-    (damping, end)
-}
-
-/// The damping of a taxel under an imposed ball, and how long that holds, N s/m and seconds.
-fn imposed(cell: &StabilityCell, k: f64, m: f64) -> (f64, f64) {
-    let ratio = skin_sim::DAMPING / (2.0 * (skin_sim::STIFFNESS * skin_sim::TAXEL_MASS).sqrt());
-    let damping = 2.0 * ratio * (k * m).sqrt();
-    let hold = LEAST_HOLD
-        .max(DECAY / slowest(k, damping, m))
-        .max(LEAST_HOLD_STEPS * cell.dt_s);
-    (damping, hold)
-}
-
-/// The taxels that are in as far as any share what the stops carry.
-fn heaviest(taxel: &Taxel, rest: &Rest) -> f64 {
-    let deepest = rest.deflection.iter().copied().fold(0.0, f64::max);
-    let are_there = rest
-        .deflection
-        .iter()
-        .filter(|&&d| d >= deepest * (1.0 - 1e-9));
-    taxel.stiffness * deepest + rest.stops / are_there.count() as f64
 }
 
 /// The rate of decay of the slower motion of `m ẍ + c ẋ + k x = 0`, per second.
@@ -305,7 +233,13 @@ mod tests {
                 object_mass_kg: Some(1.0),
                 dt_s: 1e-3,
             };
-            let scene = CellScene::new(&cell, 4e-3, 2e-3).unwrap();
+            let undamped = Taxel {
+                radius: 2e-3,
+                stiffness: 100.0,
+                damping: 0.0,
+                stroke: 2e-3,
+            };
+            let scene = CellScene::new(&cell, undamped).unwrap();
             let system = scene.system(&cell).unwrap();
             let (mut low, mut high) = (f64::INFINITY, 0.0_f64);
             for &start in system.starts() {

@@ -3,16 +3,16 @@
 use super::LEAST_STEPS;
 use super::cell::{Outcome, measure};
 use super::charts::{answers, charts};
-use super::peers::{join_peers, peer_rows};
+use super::peers::peer_rows;
 use super::plan::StabilityPlan;
 use super::rows::{
-    Joints, StabilityCell, StabilityRows, StabilityScore, StabilitySummary, StabilityTime,
+    Joints, StabilityCell, StabilityRow, StabilityScore, StabilitySummary, StabilityTime,
 };
 use super::spec::{StabilityScene, StabilityStudySpec};
 use crate::error::Result;
 use crate::kinds::{About, Facts, Kind, Source};
 use crate::study::millimetres;
-use crate::study::pieces::{NamedPiece, PieceRows, PieceStudy, PiecesLeft, Scale};
+use crate::study::pieces::{NamedPiece, PieceStudy, PiecesLeft, Scale};
 use crate::study::time_left::Piece;
 use crate::table::{ChartSpec, File, Table};
 use rayon::prelude::*;
@@ -58,12 +58,12 @@ impl Kind for StabilityPlan {
     fn scale(&self) -> Scale {
         // Of a taxel: the state, its history and an engine's body.
         const TAXEL_BYTES: f64 = 2000.0;
-        let most = self.cells().map(|(cell, _)| cell.n_taxels()).max();
-        let most = most.unwrap_or(0);
+        let n_taxels = self.cells.iter().map(|(cell, _)| cell.n_taxels());
+        let most = n_taxels.max().unwrap_or(0);
         Scale {
             objects: "a ball and a plunger".to_owned(),
             touches: format!("one a configuration, on up to {most} taxels"),
-            n_configurations: self.cells().count(),
+            n_configurations: self.cells.len(),
             item_bytes: TAXEL_BYTES * most as f64,
             ..Scale::default()
         }
@@ -94,54 +94,52 @@ impl Kind for StabilityPlan {
 }
 
 impl PieceStudy for StabilityPlan {
-    type Rows = StabilityRows;
+    type Rows = Vec<StabilityRow>;
 
+    /// By their settings: which cells there are depends on what the program was built with.
     fn pieces(&self) -> Vec<NamedPiece> {
-        let piece = |(cell, stroke)| (name(cell, stroke), Piece::of_stage(0, planned_s(cell)));
-        NamedPiece::each_alone(self.cells().map(piece))
+        let pieces = self.cells.iter().map(|(cell, taxel)| {
+            let settings = format!("{cell:?}");
+            let settings = settings.trim_start_matches("StabilityCell ");
+            let stroke_mm = millimetres(taxel.stroke);
+            let name = format!("{settings} and a stroke of {stroke_mm} mm");
+            (name, Piece::of_stage(0, planned_s(cell)))
+        });
+        NamedPiece::each_alone(pieces)
     }
 
-    fn measure(&self, left: &PiecesLeft<StabilityRows>) -> Result<()> {
-        let cells = left.of(self.cells(), |&(cell, stroke)| name(cell, stroke));
-        left.progress.stage("stability", cells.len() as u64);
-        cells
-            .par_iter()
-            // One at a time: a cell takes from microseconds to a minute.
-            .with_max_len(1)
-            .try_for_each(|&(cell, stroke)| {
-                left.finish(&name(cell, stroke), || {
-                    let (score, time) = measure(cell, self.pitch, stroke)?;
-                    Ok(StabilityRows {
-                        stability: vec![(cell.clone(), score)],
-                        timing: vec![(cell.clone(), time)],
-                    })
-                })
+    fn measure(&self, left: &PiecesLeft<Self::Rows>) -> Result<()> {
+        left.progress.stage("stability", left.n() as u64);
+        let cells = self.cells.par_iter().enumerate();
+        // One at a time: a cell takes from microseconds to a minute.
+        let cells = cells.with_max_len(1);
+        cells.try_for_each(|(number, (cell, undamped))| {
+            left.finish_number(number, || {
+                let (score, time) = measure(cell, *undamped)?;
+                Ok(vec![(cell.clone(), score, time)])
             })
+        })
     }
 
-    fn tables(&self, mut rows: StabilityRows) -> Result<Vec<Table>> {
-        let sources = join_peers(self, &mut rows)?;
+    fn tables(&self, mut rows: Self::Rows) -> Result<Vec<Table>> {
+        let (peers, sources) = peer_rows(self)?;
+        // Behind those of the parts that have such a cell.
+        for row in peers {
+            let behind = rows.partition_point(|(cell, ..)| cell.part <= row.0.part);
+            rows.insert(behind, row);
+        }
+        let (summary, joints) = (summary(&rows), joints(&rows));
+        let rows = rows.into_iter();
+        let (scores, times): (Vec<_>, Vec<_>) = rows
+            .map(|(cell, score, time)| ((cell.clone(), score), (cell, time)))
+            .unzip();
         Ok(vec![
-            CELLS.of(&rows.stability)?.noted(sources),
-            SUMMARY.of(&summary(&rows.stability))?,
-            TIMING.of(&rows.timing)?,
-            JOINTS.of(&joints(&rows))?,
+            CELLS.of(&scores)?.noted(sources),
+            SUMMARY.of(&summary)?,
+            TIMING.of(&times)?,
+            JOINTS.of(&joints)?,
         ])
     }
-}
-
-impl PieceRows for StabilityRows {
-    fn append(&mut self, next: Self) {
-        self.stability.extend(next.stability);
-        self.timing.extend(next.timing);
-    }
-}
-
-/// By its settings: which cells there are depends on what the program was built with.
-fn name(cell: &StabilityCell, stroke: f64) -> String {
-    let settings = format!("{cell:?}");
-    let settings = settings.trim_start_matches("StabilityCell ");
-    format!("{settings} and a stroke of {} mm", millimetres(stroke))
 }
 
 /// Seconds of a thread, about, if nothing takes longer than it must.
@@ -152,23 +150,21 @@ fn planned_s(cell: &StabilityCell) -> f64 {
 }
 
 /// A row a scene, method and number of iterations, in the order of first occurrence.
-fn summary(rows: &[(StabilityCell, StabilityScore)]) -> Vec<StabilitySummary> {
+fn summary(rows: &[StabilityRow]) -> Vec<StabilitySummary> {
     let key = |cell: &StabilityCell| (cell.scene, cell.method, cell.solver_iterations);
     let mut keys = Vec::new();
-    for (cell, _) in rows {
+    for (cell, ..) in rows {
         if !keys.contains(&key(cell)) {
             keys.push(key(cell));
         }
     }
     let summarise = |of| {
-        let of_key = rows.iter().filter(|(cell, _)| key(cell) == of);
-        let scores: Vec<&StabilityScore> = of_key.map(|(_, score)| score).collect();
+        let of_key = rows.iter().filter(|(cell, ..)| key(cell) == of);
+        let scores: Vec<&StabilityScore> = of_key.map(|(_, score, _)| score).collect();
         let count = |outcome| scores.iter().filter(|s| s.outcome == outcome).count();
         let worst = |error: fn(&StabilityScore) -> Option<f64>| {
-            scores
-                .iter()
-                .filter_map(|score| error(score))
-                .reduce(f64::max)
+            let errors = scores.iter().filter_map(|score| error(score));
+            errors.reduce(f64::max)
         };
         StabilitySummary {
             scene: of.0,
@@ -191,11 +187,11 @@ fn summary(rows: &[(StabilityCell, StabilityScore)]) -> Vec<StabilitySummary> {
 const LEAST_RUNGS: usize = 3;
 
 /// The plungers whose taxels carry the same on most sizes of arrays; none where no three sizes do.
-fn joints(rows: &StabilityRows) -> Vec<Joints> {
-    let rows = rows.stability.iter().zip(&rows.timing);
-    let plungers = rows.filter(|((cell, _), _)| cell.scene == StabilityScene::Plunger);
+fn joints(rows: &[StabilityRow]) -> Vec<Joints> {
+    let plungers = rows.iter();
+    let plungers = plungers.filter(|(cell, ..)| cell.scene == StabilityScene::Plunger);
     let mut all: Vec<Joints> = plungers
-        .map(|((cell, score), (_, time))| Joints {
+        .map(|(cell, score, time)| Joints {
             method: cell.method,
             solver_iterations: cell.solver_iterations,
             taxel_mass_kg: cell.taxel_mass_kg,
@@ -210,12 +206,10 @@ fn joints(rows: &StabilityRows) -> Vec<Joints> {
         let of_load = all.iter().filter(|row| row.carried_kg == load);
         of_load.map(|row| row.joints).collect::<BTreeSet<_>>().len()
     };
-    let loads = all
-        .iter()
-        .map(|row| (n_sizes(row.carried_kg), row.carried_kg));
-    let most = loads.max_by_key(|&(n_sizes, _)| n_sizes);
-    let most = most.filter(|&(n_sizes, _)| n_sizes >= LEAST_RUNGS);
-    all.retain(|row| most.is_some_and(|(_, load)| row.carried_kg == load));
+    let loads = all.iter().map(|row| row.carried_kg);
+    let most = loads.max_by_key(|&load| n_sizes(load));
+    let most = most.filter(|&load| n_sizes(load) >= LEAST_RUNGS);
+    all.retain(|row| most == Some(row.carried_kg));
     all
 }
 

@@ -1,15 +1,17 @@
-//! What a step costs by the size of skin, touch and object: rungs of sleeves under a cushion of spheres.
+//! What a step costs by the size of skin, touch and object: rungs of equal sleeves, far from each other, under a cushion of spheres.
 
-use super::drive::{Drive, Driven, PosedBody};
+use super::drive::{Drive, Posture};
 use super::objects::cushion;
 use super::path::Path;
-use super::plan::WholeBodyPlan;
-use super::rows::{BodyCase, Series};
-use super::sleeves::Sleeve;
+use super::plan::{Aim, WholeBodyPlan};
+use super::rows::{Driven, Series};
 use super::spec::LaddersSpec;
 use crate::error::Result;
 use crate::geometry::Pose;
-use glam::DVec3;
+use crate::whole_body::{BodyPatch, WholeBody};
+use crate::world::{Extrusion, Taxel};
+use glam::{DQuat, DVec3};
+use std::f64::consts::TAU;
 
 /// Patches around and along a sleeve of the ladder of skins, ten, so that 100,000 taxels are one sleeve of patches of 10,000; and
 /// of the other ladders, where the touch needs more room: as large as a trunk.
@@ -37,77 +39,121 @@ pub(super) struct Rung {
 
 /// All rungs, ladder by ladder.
 pub(super) fn rungs(wanted: &LaddersSpec) -> Vec<Rung> {
-    let n_spheres = wanted.spheres[0];
+    let small = SMALL.0 * SMALL.1 * 10_000;
     let mut rungs = Vec::new();
     for &n_touched in &wanted.touched_at_taxels {
-        for &n_taxels in &wanted.taxels {
-            let sleeve = SMALL.0 * SMALL.1 * 10_000;
-            if n_touched as f64 <= MOST_TOUCHED * n_taxels.min(sleeve) as f64 {
-                rungs.push(Rung {
-                    series: Series::Skin,
-                    name: format!("{n_taxels} taxels, {n_touched} touched"),
-                    sleeve: SMALL,
-                    n_taxels,
-                    n_touched,
-                    n_spheres,
-                });
-            }
-        }
+        let has_room = |n: &&usize| n_touched as f64 <= MOST_TOUCHED * small.min(**n) as f64;
+        rungs.extend(wanted.taxels.iter().filter(has_room).map(|&n_taxels| Rung {
+            series: Series::Skin,
+            name: format!("{n_taxels} taxels, {n_touched} touched"),
+            sleeve: SMALL,
+            n_taxels,
+            n_touched,
+            n_spheres: wanted.spheres[0],
+        }));
     }
-    let n_taxels = wanted.taxels_at_touch;
     let large = |series, name, n_touched, n_spheres| Rung {
         series,
         name,
         sleeve: LARGE,
-        n_taxels,
+        n_taxels: wanted.taxels_at_touch,
         n_touched,
         n_spheres,
     };
-    for &n_touched in &wanted.touched {
-        let name = format!("{n_touched} touched");
-        rungs.push(large(Series::Touch, name, n_touched, n_spheres));
-    }
-    for &n_spheres in &wanted.spheres {
-        let name = format!("{n_spheres} spheres");
-        let n_touched = wanted.touched_at_spheres;
-        rungs.push(large(Series::Spheres, name, n_touched, n_spheres));
-    }
+    rungs.extend(wanted.touched.iter().map(|&n| {
+        let name = format!("{n} touched");
+        large(Series::Touch, name, n, wanted.spheres[0])
+    }));
+    rungs.extend(wanted.spheres.iter().map(|&n| {
+        let name = format!("{n} spheres");
+        large(Series::Spheres, name, wanted.touched_at_spheres, n)
+    }));
     rungs
 }
 
 /// Climbs a rung.
-pub(super) fn climb(plan: &WholeBodyPlan, rung: &Rung) -> Result<(BodyCase, Driven)> {
+pub(super) fn climb(plan: &WholeBodyPlan, rung: &Rung) -> Result<Driven> {
     let sleeve = Sleeve::of_body(rung.n_taxels, rung.sleeve, plan.pitch);
-    let (body, poses) = sleeve.body(rung.n_taxels, plan.taxel, plan.pitch)?;
+    let (body, patches) = sleeve.body(rung.n_taxels, plan.taxel, plan.pitch)?;
     let side = plan.pitch * (rung.n_touched as f64).sqrt();
     // Its spheres are where a taxel's own sphere begins.
     let object = cushion(rung.n_spheres, side, sleeve.radius() + plan.taxel.radius)?;
-    let posed = PosedBody { body: &body, poses };
+    let posture = Posture {
+        body: &body,
+        patches,
+        links: vec![Pose::IDENTITY],
+    };
     let path = Path {
-        world_from_link: Pose::IDENTITY,
-        start: Pose::IDENTITY,
         moves: SLIDE * side * DVec3::Z,
         swing: SWING,
         period: PERIOD,
+        ..Path::resting(Pose::IDENTITY)
     };
-    let mut drive = Drive::new(&posed, &object, path);
+    let aim = Aim {
+        link: 0,
+        from: DVec3::X,
+        path,
+    };
+    let mut drive = Drive::new(&posture, &object, &aim);
     // A cushion that goes deeper than the stroke only saturates more.
     let (mut out, mut deep) = (0.0, plan.taxel.stroke);
     for _ in 0..N_HALVINGS {
         let depth = 0.5 * (out + deep);
-        let pressed = path.shifted(-depth * DVec3::X);
-        match drive.probe(&pressed).n_touched < rung.n_touched {
+        match drive.probe(path.shifted(-depth * aim.from)).n_touched < rung.n_touched {
             true => out = depth,
             false => deep = depth,
         }
     }
-    drive.path = path.shifted(-deep * DVec3::X);
-    let case = BodyCase {
-        series: rung.series,
-        name: rung.name.clone(),
-        n_taxels: body.n_taxels(),
-        n_patches: body.patches().len(),
-        n_spheres: drive.n_spheres(),
-    };
-    Ok((case, drive.run(plan.n_steps(), plan.dt, &[])?))
+    drive.path = path.shifted(-deep * aim.from);
+    drive.run(plan, (rung.series, &rung.name), &[])
+}
+
+/// A sleeve: how many patches of `side` metres are around it and along it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Sleeve {
+    n_around: usize,
+    n_along: usize,
+    side: f64,
+}
+
+/// From sleeve to sleeve, metres.
+const APART: f64 = 1.0;
+
+impl Sleeve {
+    /// Patches of 100 × 100 taxels, or smaller ones of a body that has fewer taxels than one sleeve of those.
+    fn of_body(n_taxels: usize, (n_around, n_along): (usize, usize), pitch: f64) -> Self {
+        let a_patch = (n_taxels as f64 / (n_around * n_along) as f64).min(1e4);
+        Self {
+            n_around,
+            n_along,
+            side: pitch * a_patch.sqrt().round(),
+        }
+    }
+
+    /// Of the rest centres, metres.
+    fn radius(&self) -> f64 {
+        self.n_around as f64 * self.side / TAU
+    }
+
+    /// Sleeves about z in rows of twenty, the first at the origin, the last with patches missing: about `n_taxels` in all.
+    fn body(&self, n_taxels: usize, taxel: Taxel, pitch: f64) -> Result<(WholeBody, Vec<Pose>)> {
+        let (radius, length) = (self.radius(), self.side - pitch);
+        let part = Extrusion::cylinder(radius, length, length / radius, pitch)?;
+        let n_patches = (n_taxels as f64 / part.n_taxels() as f64).round().max(1.0) as usize;
+        let patches = (0..n_patches)
+            .map(|number| BodyPatch::new(format!("patch {number}"), part.clone(), taxel));
+        let poses = (0..n_patches).map(|number| self.pose(number)).collect();
+        Ok((WholeBody::new(patches.collect::<Result<_>>()?)?, poses))
+    }
+
+    fn pose(&self, number: usize) -> Pose {
+        let a_sleeve = self.n_around * self.n_along;
+        let (sleeve, place) = (number / a_sleeve, number % a_sleeve);
+        let (row, column) = ((sleeve / 20) as f64, (sleeve % 20) as f64);
+        let turn = TAU * (place % self.n_around) as f64 / self.n_around as f64;
+        let ring = (place / self.n_around) as f64;
+        let height = (ring - 0.5 * (self.n_along - 1) as f64) * self.side;
+        let place = DVec3::new(APART * row, APART * column, height);
+        Pose::new(DQuat::from_rotation_z(turn), place)
+    }
 }

@@ -5,15 +5,13 @@ use crate::table::{ChartSpec, Mark, Table};
 /// Accuracy against the bytes that a compression keeps for each taxel, with the front; none where nothing was learned.
 pub(super) fn memory_chart(recognition: &Table) -> Option<ChartSpec> {
     (recognition.n_rows > 0).then(|| ChartSpec {
-        name: "accuracy_by_memory".to_owned(),
-        title: "Which object is it: accuracy against memory of a taxel".to_owned(),
-        note: recognition.note.clone(),
-        table: recognition.file,
-        x: "bytes_per_taxel".to_owned(),
-        y: "accuracy".to_owned(),
         lines: vec!["compression".to_owned()],
         mark: Mark::Points,
         front: true,
-        ..ChartSpec::default()
+        ..recognition.chart(
+            "accuracy_by_memory",
+            "Which object is it: accuracy against memory of a taxel",
+            ("accuracy", "bytes_per_taxel"),
+        )
     })
 }

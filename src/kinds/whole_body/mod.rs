@@ -12,7 +12,6 @@
 //! Counts, sums and decisions are the same bytes at any number of threads; times have tables of their own.
 
 mod charts;
-mod drawn;
 mod drive;
 mod ladders;
 mod memory_chart;
@@ -22,8 +21,8 @@ mod picture;
 mod plan;
 mod recognition;
 pub mod rows;
-mod sleeves;
 mod spec;
+mod steps;
 mod study;
 
 pub use path::Path;

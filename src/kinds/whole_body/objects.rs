@@ -27,10 +27,10 @@ pub(super) fn built_in(name: &str, surface_error: f64) -> Result<SphereUnion> {
 }
 
 fn part(part: &BodyPartSpec) -> Result<Part> {
-    let (shape, at) = match *part {
+    let (at_mm, shape) = match *part {
         BodyPartSpec::Ball { diameter_mm, at_mm } => {
             let diameter = MM * diameter_mm;
-            (Shape::Ball { diameter }, at_mm)
+            (at_mm, Shape::Ball { diameter })
         }
         BodyPartSpec::Capsule {
             diameter_mm,
@@ -38,22 +38,25 @@ fn part(part: &BodyPartSpec) -> Result<Part> {
             at_mm,
         } => {
             let (diameter, length) = (MM * diameter_mm, MM * length_mm);
-            (Shape::Capsule { diameter, length }, at_mm)
+            (at_mm, Shape::Capsule { diameter, length })
         }
         BodyPartSpec::Torus {
             ring_diameter_mm,
             tube_diameter_mm,
             at_mm,
         } => {
-            let (ring_diameter, tube_diameter) = (MM * ring_diameter_mm, MM * tube_diameter_mm);
-            let shape = Shape::Torus {
-                ring_diameter,
-                tube_diameter,
-            };
-            (shape, at_mm)
+            let ring_diameter = MM * ring_diameter_mm;
+            let tube_diameter = MM * tube_diameter_mm;
+            (
+                at_mm,
+                Shape::Torus {
+                    ring_diameter,
+                    tube_diameter,
+                },
+            )
         }
     };
-    Part::new(shape, Pose::from_translation(MM * DVec3::from_array(at)))
+    Part::new(shape, Pose::from_translation(MM * DVec3::from_array(at_mm)))
 }
 
 /// Radius of the spheres of a cushion, in distances between them. Larger: each taxel is under more of them.

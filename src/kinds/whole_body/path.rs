@@ -20,6 +20,17 @@ pub struct Path {
 }
 
 impl Path {
+    /// Of an object that does not move.
+    pub fn resting(start: Pose) -> Self {
+        Self {
+            world_from_link: Pose::IDENTITY,
+            start,
+            moves: DVec3::ZERO,
+            swing: 0.0,
+            period: 1.0,
+        }
+    }
+
     /// `world_from_object` at a time, seconds.
     pub fn at(&self, time: f64) -> Pose {
         let share = (TAU * time / self.period).sin();

@@ -32,8 +32,8 @@ pub struct WholeBodyPlan {
     pub surface_error: f64,
     /// In the order of the file.
     pub scenes: Vec<ScenePlan>,
-    /// Taxels of a Hadamard block, or none for very sparse rows: each a compression.
-    pub compressions: Vec<(Ensemble, Option<usize>)>,
+    /// By name (`sbhe_32`, `sparse`): taxels of a Hadamard block, or none for very sparse rows.
+    pub compressions: Vec<(String, Option<usize>)>,
     /// Where objects are aimed that are told apart.
     pub aim: Aim,
 }
@@ -43,10 +43,8 @@ pub struct WholeBodyPlan {
 pub struct ScenePlan {
     /// As it was written.
     pub spec: BodySceneSpec,
-    /// Where the object is aimed.
+    /// Where the object is aimed, and its path.
     pub aim: Aim,
-    /// Its path; the link stands at the origin until a posture is known.
-    pub path: ObjectPath,
     /// Values of the robot's coordinates, radians or metres.
     pub positions: Vec<f64>,
 }
@@ -56,10 +54,10 @@ pub struct ScenePlan {
 pub struct Aim {
     /// The link's number.
     pub link: usize,
-    /// Metres.
-    pub at: DVec3,
     /// From where it comes, unit.
     pub from: DVec3,
+    /// Its path; the link stands at the origin until a posture is known.
+    pub path: ObjectPath,
 }
 
 /// Steps of a scene, at most: the time of each is in memory.
@@ -158,20 +156,15 @@ impl Check<'_> {
             return Err(self.error(&key("object"), given, "one of object and parts"));
         }
         self.keys(&prefix, scene, SCENE_KEYS)?;
-        let aim = self.aim(&prefix, (&scene.link, scene.at_mm, scene.from), robot)?;
+        let mut aim = self.aim(&prefix, (&scene.link, scene.at_mm, scene.from), robot)?;
         let turn = self.vector(&key("turn_deg"), scene.turn_deg)?;
-        let turn = rotation_from_rpy(turn.map(f64::to_radians));
-        let path = ObjectPath {
-            world_from_link: Pose::IDENTITY,
-            start: Pose::new(turn, aim.at),
-            moves: MM * self.vector(&key("moves_mm"), scene.moves_mm)?,
-            swing: scene.swing_deg.to_radians(),
-            period: MM * scene.period_ms,
-        };
+        aim.path.start.rotation = rotation_from_rpy(turn.map(f64::to_radians));
+        aim.path.moves = MM * self.vector(&key("moves_mm"), scene.moves_mm)?;
+        aim.path.swing = scene.swing_deg.to_radians();
+        aim.path.period = MM * scene.period_ms;
         Ok(ScenePlan {
             spec: scene.clone(),
             aim,
-            path,
             positions: self.positions(&key("posture_deg"), scene, robot)?,
         })
     }
@@ -199,14 +192,19 @@ impl Check<'_> {
     ) -> Result<Aim> {
         let key = |name: &str| format!("{prefix}.{name}");
         let found = robot.link(link);
-        let from_key = key("from");
-        let direction = self.vector(&from_key, from)?.try_normalize();
+        let direction = self.vector(&key("from"), from)?.try_normalize();
+        let zero = || {
+            self.error(
+                &key("from"),
+                format!("{from:?}"),
+                "a vector that is not zero",
+            )
+        };
+        let at = MM * self.vector(&key("at_mm"), at)?;
         Ok(Aim {
             link: found.map_err(|_| self.error(&key("link"), link, "links of the robot"))?,
-            at: MM * self.vector(&key("at_mm"), at)?,
-            from: direction.ok_or_else(|| {
-                self.error(&from_key, format!("{from:?}"), "a vector that is not zero")
-            })?,
+            from: direction.ok_or_else(zero)?,
+            path: ObjectPath::resting(Pose::from_translation(at)),
         })
     }
 
@@ -217,26 +215,23 @@ impl Check<'_> {
         }
     }
 
-    fn compressions(&self, wanted: &BodySensingSpec) -> Result<Vec<(Ensemble, Option<usize>)>> {
-        let key = "whole_body.sensing.ensembles";
+    fn compressions(&self, wanted: &BodySensingSpec) -> Result<Vec<(String, Option<usize>)>> {
         let blocks = &wanted.sbhe_blocks;
         if let Some(block) = blocks.iter().find(|block| !block.is_power_of_two()) {
             return Err(self.error("whole_body.sensing.sbhe_blocks", block, "powers of two"));
         }
-        let mut compressions = Vec::new();
-        for &ensemble in &wanted.ensembles {
-            match ensemble {
-                Ensemble::Sbhe => {
-                    compressions.extend(blocks.iter().map(|&block| (ensemble, Some(block))));
-                }
-                Ensemble::Sparse => compressions.push((ensemble, None)),
-                _ => {
-                    let allowed = "sbhe and sparse, which need no dense matrix";
-                    return Err(self.error(key, format!("{ensemble:?}"), allowed));
-                }
-            }
-        }
-        Ok(compressions)
+        let sbhe = |&block: &usize| (format!("sbhe_{block}"), Some(block));
+        let of_ensemble = |ensemble: &Ensemble| match ensemble {
+            Ensemble::Sbhe => Ok(blocks.iter().map(sbhe).collect()),
+            Ensemble::Sparse => Ok(vec![("sparse".to_owned(), None)]),
+            _ => Err(self.error(
+                "whole_body.sensing.ensembles",
+                format!("{ensemble:?}"),
+                "sbhe and sparse, which need no dense matrix",
+            )),
+        };
+        let compressions = wanted.ensembles.iter().map(of_ensemble);
+        Ok(compressions.collect::<Result<Vec<_>>>()?.concat())
     }
 
     fn body_recognition(
@@ -257,8 +252,7 @@ impl Check<'_> {
         let n_touches = wanted.n_touches();
         let bytes = 8.0 * n_touches as f64 * n_measured as f64;
         let what = format!("{n_measured} measurements of each of {n_touches} touches");
-        let of_each = wanted.training_touches + wanted.test_touches;
-        self.memory(&key("training_touches"), of_each, bytes, &what)?;
+        self.memory(&key("training_touches"), wanted.of_each(), bytes, &what)?;
         self.aim(prefix, (&wanted.link, wanted.at_mm, wanted.from), robot)
     }
 }

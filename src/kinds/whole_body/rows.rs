@@ -118,31 +118,28 @@ pub enum Stage {
 }
 
 row! {
-/// What a step cost (with the [`BodyCase`] before it: a row of `timing.csv`).
-pub struct BodyTime {
-    /// What was timed.
+/// What was timed (between [`BodyCase`] and [`StepTime`]: a row of `timing.csv`).
+pub struct BodyStage {
+    /// What.
     stage: Stage => Note;
     /// The compression; empty for `press`.
     compression: String => Choice;
     /// Threads that a large touch is shared by.
     n_threads: usize => Choice "threads": Linear;
-    /// Median over steps, µs.
-    us_median: f64 => Cost "time of a step" in "us": Log between [us_p05, us_p95];
-    /// 5th percentile, µs.
-    us_p05: f64 => Note "5th to 95th percentile, lower end" in "us": Log;
-    /// 95th percentile, µs.
-    us_p95: f64 => Note "5th to 95th percentile, upper end" in "us": Log;
-    /// By the median.
-    steps_per_s: f64 => Value(More) "steps a second": Log;
 } }
 
 row! {
-/// What a step of the skin cost with all threads (with the [`BodyCase`] before it: a row of `steps.csv`).
-pub struct BodyStep {
+/// How much was touched while a step of the skin was timed with all threads (between [`BodyCase`] and [`StepTime`]: a row of `steps.csv`).
+pub struct BodyTouch {
     /// Taxels with a deflection, to two digits.
     touched: f64 => Condition "touched taxels, about": Log;
     /// The same, mean over steps.
     touched_mean: f64 => Note "touched taxels": Log;
+} }
+
+row! {
+/// What a step cost.
+pub struct StepTime {
     /// Median over steps, µs.
     us_median: f64 => Cost "time of a step" in "us": Log between [us_p05, us_p95];
     /// 5th percentile, µs.
@@ -153,15 +150,18 @@ pub struct BodyStep {
     steps_per_s: f64 => Value(More) "steps a second": Log;
 } }
 
-/// Rows of work items.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct WholeBodyRows {
-    /// One a scene or rung.
-    pub cases: Vec<(BodyCase, BodyCount)>,
-    /// One a scene and compression.
-    pub sensed: Vec<BodySensed>,
+/// What came of a scene or a rung.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Driven {
+    /// Which.
+    pub case: BodyCase,
+    /// What happened.
+    pub count: BodyCount,
+    /// The press, then of each compression all stages; where there are threads, at the end the press with one.
+    pub times: Vec<(BodyStage, StepTime)>,
     /// One a compression.
-    pub recognition: Vec<BodyRecognition>,
-    /// One a scene or rung, stage and compression.
-    pub timing: Vec<(BodyCase, BodyTime)>,
+    pub sensed: Vec<BodySensed>,
 }
+
+/// Rows of work items: of compressions, and of scenes and rungs.
+pub type WholeBodyRows = (Vec<BodyRecognition>, Vec<Driven>);

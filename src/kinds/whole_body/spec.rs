@@ -197,9 +197,14 @@ pub struct LaddersSpec {
 }
 
 impl BodyRecognitionSpec {
+    /// Touches of each object.
+    pub fn of_each(&self) -> usize {
+        self.training_touches + self.test_touches
+    }
+
     /// Touches of all objects.
     pub fn n_touches(&self) -> usize {
-        self.objects.len() * (self.training_touches + self.test_touches)
+        self.objects.len() * self.of_each()
     }
 }
 

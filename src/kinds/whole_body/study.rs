@@ -1,16 +1,14 @@
 //! Runs a study of a whole body: learn, then the scenes and the ladders one after the other, so that nothing else is timed.
 
 use super::charts::{answers, charts};
-use super::drawn::whole_body_picture;
-use super::drive::{Drive, Driven, PosedBody};
+use super::drive::{Drive, Posture};
 use super::ladders::{Rung, climb, rungs};
 use super::objects::of_scene;
-use super::path::Path;
-use super::picture::picture_body;
+use super::picture::picture_of_body;
 use super::plan::{ScenePlan, WholeBodyPlan};
-use super::recognition::{Compression, learn, name_of};
+use super::recognition::learn;
 use super::rows::{
-    BodyCase, BodyCount, BodyRecognition, BodySensed, BodyStep, BodyTime, Series, Stage,
+    BodyCase, BodyCount, BodyRecognition, BodySensed, BodyStage, BodyTouch, Series, StepTime,
     WholeBodyRows,
 };
 use super::spec::WholeBodyStudySpec;
@@ -19,7 +17,7 @@ use crate::geometry::Pose;
 use crate::kinds::{About, Facts, Kind, Source};
 use crate::objects::SphereUnion;
 use crate::report::study_folder::NamedPicture;
-use crate::study::pieces::{NamedPiece, PieceRows, PieceStudy, PiecesLeft, Scale, Shared};
+use crate::study::pieces::{NamedPiece, PieceStudy, PiecesLeft, Scale, Shared};
 use crate::study::time_left::Piece;
 use crate::study::{MM, file_content};
 use crate::table::{ChartSpec, File, Table};
@@ -32,13 +30,13 @@ const RECOGNITION: File<BodyRecognition> = File::new(
     "A linear SVM, trained and tested on simulated touches.",
 );
 const SENSED: File<BodySensed> = File::new("sensed.csv", "What scenes are taken for", "");
-const TIMING: File<(BodyCase, BodyTime)> = File::new(
+const TIMING: File<(BodyCase, BodyStage, StepTime)> = File::new(
     "timing.csv",
     "From touch to answer",
     "Medians over steps, on this machine.",
 )
 .of_times();
-const STEPS: File<(BodyCase, BodyStep)> = File::new(
+const STEPS: File<(BodyCase, BodyTouch, StepTime)> = File::new(
     "steps.csv",
     "Steps of the skin",
     "Medians over steps of a moving object; of ladders, a cushion of spheres, half of them on its far side.",
@@ -116,16 +114,7 @@ impl Kind for WholeBodyPlan {
     }
 
     fn pictures(&self, tables: &[Table]) -> Result<Vec<NamedPicture>> {
-        let Some(scene) = picture_body(self, &tables[0])? else {
-            return Ok(Vec::new());
-        };
-        let drawn = whole_body_picture(&scene)?;
-        Ok(vec![NamedPicture {
-            name: "touched".to_owned(),
-            title: format!("The scene {}, and the pressure on each patch", scene.scene),
-            png: drawn.png()?,
-            size: (drawn.width, drawn.height),
-        }])
+        Ok(picture_of_body(self, &tables[0])?.into_iter().collect())
     }
 
     fn answers(&self, tables: &[Table]) -> Vec<String> {
@@ -138,107 +127,79 @@ impl PieceStudy for WholeBodyPlan {
 
     /// Compressions and scenes need all that is learned; rungs need nothing.
     fn pieces(&self) -> Vec<NamedPiece> {
-        let n_steps = self.n_steps() as f64;
-        let compressions = self.compression_names().into_iter();
-        let learn_s = TOUCH_S * self.recognition().n_touches() as f64 / compressions.len() as f64;
-        let learn = Piece::one_by_one(LEARN, learn_s);
-        let compressions = compressions.map(|name| NamedPiece::new(name, 0, learn));
-        let play = Piece::one_by_one(PLAY, STEP_S * n_steps);
-        let scenes = self.scenes.iter();
-        let scenes = scenes.map(|scene| NamedPiece::new(scene_name(scene), 0, play).made_of(scene));
-        let climb = Piece::one_by_one(CLIMB, STEP_S * n_steps);
-        let rungs = self.rungs().into_iter().enumerate();
-        let rungs = rungs.map(|(number, rung)| {
-            NamedPiece::new(rung_name(&rung), number + 1, climb).made_of(rung)
+        let learn_s = TOUCH_S * self.recognition().n_touches() as f64;
+        let learn = Piece::one_by_one(LEARN, learn_s / self.compressions.len() as f64);
+        let [play, climb] =
+            [PLAY, CLIMB].map(|stage| Piece::one_by_one(stage, STEP_S * self.n_steps() as f64));
+        let compressions = self
+            .compressions
+            .iter()
+            .map(|(name, _)| NamedPiece::new(format!("learn from {name}"), 0, learn));
+        let scenes = self.scenes.iter().map(|scene| {
+            NamedPiece::new(format!("scene {}", scene.spec.name), 0, play).made_of(scene)
+        });
+        let rungs = self.rungs().into_iter().enumerate().map(|(number, rung)| {
+            let name = format!("ladder of {:?}, {}", rung.series, rung.name).to_lowercase();
+            NamedPiece::new(name, number + 1, climb).made_of(rung)
         });
         compressions.chain(scenes).chain(rungs).collect()
     }
 
     fn measure(&self, left: &PiecesLeft<WholeBodyRows>) -> Result<()> {
         let (covered, compressions) = (Shared::default(), Shared::default());
-        let cover = || {
-            let cover = || CoveredRobot::new(&self.robot, self.taxel, self.pitch, self.side);
-            covered.get(cover)
-        };
+        let cover = || covered.get(|| self.cover(self.pitch));
         let learn = || {
             compressions.get(|| {
-                let straight = vec![0.0; self.robot.n_positions()];
-                let straight = Posture::new(self, cover()?, &straight)?;
-                learn(self, &straight.posed, &straight.links, left.progress)
+                let straight = self.posture(cover()?, &vec![0.0; self.robot.n_positions()])?;
+                learn(self, &straight, left.progress)
             })
         };
-        for (number, name) in self.compression_names().iter().enumerate() {
-            left.finish(name, || {
-                Ok(WholeBodyRows {
-                    recognition: vec![learn()?[number].score.clone()],
-                    ..WholeBodyRows::default()
-                })
+        let n_compressions = self.compressions.len();
+        for number in 0..n_compressions {
+            left.finish_number(number, || {
+                Ok((vec![learn()?[number].score.clone()], Vec::new()))
             })?;
         }
-        let scenes = left.of(&self.scenes, |scene| scene_name(scene));
-        left.progress.stage("scenes", scenes.len() as u64);
-        for scene in scenes {
-            left.finish(&scene_name(scene), || play(self, scene, cover()?, learn()?))?;
+        let rungs = self.rungs();
+        let first_rung = n_compressions + self.scenes.len();
+        let driven = n_compressions..first_rung + rungs.len();
+        let n_left = driven.filter(|&number| left.has_number(number)).count();
+        left.progress.stage("scenes and ladders", n_left as u64);
+        for (scene, number) in self.scenes.iter().zip(n_compressions..) {
+            left.finish_number(number, || {
+                let (mut drive, _) = self.begin(scene, cover()?)?;
+                let driven = drive.run(self, (Series::Scene, &scene.spec.name), learn()?)?;
+                Ok((Vec::new(), vec![driven]))
+            })?;
         }
-        let rungs = left.of(self.rungs(), rung_name);
-        left.progress.stage("ladders", rungs.len() as u64);
-        rungs.iter().try_for_each(|rung| {
-            left.finish(&rung_name(rung), || {
-                let (case, driven) = climb(self, rung)?;
-                Ok(WholeBodyRows::of(&case, driven))
-            })
-        })
+        for (rung, number) in rungs.iter().zip(first_rung..) {
+            left.finish_number(number, || Ok((Vec::new(), vec![climb(self, rung)?])))?;
+        }
+        Ok(())
     }
 
-    fn tables(&self, rows: WholeBodyRows) -> Result<Vec<Table>> {
+    fn tables(&self, (recognition, driven): WholeBodyRows) -> Result<Vec<Table>> {
+        let mut sensed = Vec::new();
+        let (mut cases, mut times, mut steps) = (Vec::new(), Vec::new(), Vec::new());
+        for of in driven {
+            let touch = BodyTouch {
+                touched: round_to_two(of.count.touched_mean),
+                touched_mean: of.count.touched_mean,
+            };
+            steps.push((of.case.clone(), touch, of.times[0].1.clone()));
+            let of_case = |(stage, time)| (of.case.clone(), stage, time);
+            times.extend(of.times.into_iter().map(of_case));
+            cases.push((of.case, of.count));
+            sensed.extend(of.sensed);
+        }
         Ok(vec![
-            CASES.of(&rows.cases)?,
-            RECOGNITION.of(&rows.recognition)?,
-            SENSED.of(&rows.sensed)?,
-            TIMING.of(&rows.timing)?,
-            STEPS.of(&steps(&rows))?,
+            CASES.of(&cases)?,
+            RECOGNITION.of(&recognition)?,
+            SENSED.of(&sensed)?,
+            TIMING.of(&times)?,
+            STEPS.of(&steps)?,
         ])
     }
-}
-
-impl PieceRows for WholeBodyRows {
-    fn append(&mut self, next: Self) {
-        self.cases.extend(next.cases);
-        self.sensed.extend(next.sensed);
-        self.recognition.extend(next.recognition);
-        self.timing.extend(next.timing);
-    }
-}
-
-impl WholeBodyRows {
-    /// What happened in a case, and what it cost.
-    fn of(case: &BodyCase, driven: Driven) -> Self {
-        let times = driven.times.into_iter();
-        Self {
-            cases: vec![(case.clone(), driven.count)],
-            timing: times.map(|time| (case.clone(), time)).collect(),
-            ..Self::default()
-        }
-    }
-}
-
-/// Of each case the step of the skin with all threads.
-fn steps(rows: &WholeBodyRows) -> Vec<(BodyCase, BodyStep)> {
-    let of_case = |(case, count): &(BodyCase, BodyCount)| {
-        // The press is there once more with one thread.
-        let is_it = |(of, time): &&(BodyCase, BodyTime)| of == case && time.stage == Stage::Press;
-        let (_, time) = rows.timing.iter().find(is_it)?;
-        let step = BodyStep {
-            touched: round_to_two(count.touched_mean),
-            touched_mean: count.touched_mean,
-            us_median: time.us_median,
-            us_p05: time.us_p05,
-            us_p95: time.us_p95,
-            steps_per_s: time.steps_per_s,
-        };
-        Some((case.clone(), step))
-    };
-    rows.cases.iter().filter_map(of_case).collect()
 }
 
 /// To two digits: a touch of 10,008 taxels is one of 10,000.
@@ -247,97 +208,48 @@ fn round_to_two(value: f64) -> f64 {
     (value / unit).round() * unit
 }
 
-fn scene_name(scene: &ScenePlan) -> String {
-    format!("scene {}", scene.spec.name)
-}
-
-fn rung_name(rung: &Rung) -> String {
-    format!("ladder of {:?}, {}", rung.series, rung.name).to_lowercase()
-}
-
 impl WholeBodyPlan {
-    /// What each compression is called as a work item.
-    fn compression_names(&self) -> Vec<String> {
-        let compressions = self.compressions.iter();
-        let name = |&(ensemble, block)| format!("learn from {}", name_of(ensemble, block));
-        compressions.map(name).collect()
-    }
-
     fn rungs(&self) -> Vec<Rung> {
         let ladders = self.spec.whole_body.ladders.as_ref();
         ladders.map_or_else(Vec::new, rungs)
     }
-}
 
-/// Where everything of a robot is.
-pub(super) struct Posture<'a> {
-    pub links: Vec<Pose>,
-    pub posed: PosedBody<'a>,
-}
+    /// The robot under skin with so many metres between taxels.
+    pub(super) fn cover(&self, pitch: f64) -> Result<CoveredRobot> {
+        CoveredRobot::new(&self.robot, self.taxel, pitch, self.side)
+    }
 
-impl<'a> Posture<'a> {
-    pub fn new(plan: &WholeBodyPlan, covered: &'a CoveredRobot, positions: &[f64]) -> Result<Self> {
-        let links = plan.robot.forward(&Pose::IDENTITY, positions)?;
-        let mut poses = Vec::new();
-        covered.patch_poses(&links, &mut poses);
-        let posed = PosedBody {
+    /// Where everything of the robot is.
+    pub(super) fn posture<'a>(
+        &self,
+        covered: &'a CoveredRobot,
+        positions: &[f64],
+    ) -> Result<Posture<'a>> {
+        let links = self.robot.forward(&Pose::IDENTITY, positions)?;
+        let mut patches = Vec::new();
+        covered.patch_poses(&links, &mut patches);
+        Ok(Posture {
             body: covered.body(),
-            poses,
+            patches,
+            links,
+        })
+    }
+
+    /// The object of a scene where that begins; the error names the scene.
+    pub(super) fn begin<'a>(
+        &self,
+        scene: &ScenePlan,
+        covered: &'a CoveredRobot,
+    ) -> Result<(Drive<'a>, SphereUnion)> {
+        let begin = || {
+            let object = of_scene(&scene.spec, self.surface_error)?;
+            let posture = self.posture(covered, &scene.positions)?;
+            let mut drive = Drive::new(&posture, &object, &scene.aim);
+            if let Some(depth_mm) = scene.spec.depth_mm {
+                drive.approach(scene.aim.from, MM * depth_mm)?;
+            }
+            Ok((drive, object))
         };
-        Ok(Self { links, posed })
+        begin().map_err(|error: Error| error.under(format!("scene {}, ", scene.spec.name)))
     }
-}
-
-/// Brings an object to where its scene begins.
-pub(super) fn begin<'a>(
-    scene: &ScenePlan,
-    posture: &Posture<'a>,
-    object: &SphereUnion,
-) -> Result<Drive<'a>> {
-    let path = Path {
-        world_from_link: posture.links[scene.aim.link],
-        ..scene.path
-    };
-    let mut drive = Drive::new(&posture.posed, object, path);
-    if let Some(depth_mm) = scene.spec.depth_mm {
-        drive.approach(scene.aim.from, MM * depth_mm)?;
-    }
-    Ok(drive)
-}
-
-/// Plays a scene; the error names it.
-fn play(
-    plan: &WholeBodyPlan,
-    scene: &ScenePlan,
-    covered: &CoveredRobot,
-    compressions: &[Compression],
-) -> Result<WholeBodyRows> {
-    let in_scene = |error: Error| error.under(format!("scene {}, ", scene.spec.name));
-    let object = of_scene(&scene.spec, plan.surface_error).map_err(in_scene)?;
-    let posture = Posture::new(plan, covered, &scene.positions)?;
-    let mut drive = begin(scene, &posture, &object).map_err(in_scene)?;
-    let case = BodyCase {
-        series: Series::Scene,
-        name: scene.spec.name.clone(),
-        n_taxels: covered.body().n_taxels(),
-        n_patches: covered.body().patches().len(),
-        n_spheres: drive.n_spheres(),
-    };
-    let driven = drive.run(plan.n_steps(), plan.dt, compressions)?;
-    let sensed = compressions.iter().zip(&driven.sensed);
-    let sensed = sensed.map(|(compression, (sum, decisions))| {
-        let most = decisions.iter().copied().max().unwrap_or(0);
-        let label = decisions.iter().position(|&n| n == most).unwrap_or(0);
-        BodySensed {
-            scene: scene.spec.name.clone(),
-            compression: compression.score.compression.clone(),
-            measurement_sum_mm: *sum,
-            decision: plan.recognition().objects[label].clone(),
-            decision_share: most as f64 / driven.count.n_steps as f64,
-        }
-    });
-    Ok(WholeBodyRows {
-        sensed: sensed.collect(),
-        ..WholeBodyRows::of(&case, driven)
-    })
 }

@@ -10,6 +10,19 @@ pub trait PieceRows: Default + Serialize + DeserializeOwned + Send {
     fn append(&mut self, next: Self);
 }
 
+impl<R: Serialize + DeserializeOwned + Send> PieceRows for Vec<R> {
+    fn append(&mut self, next: Self) {
+        self.extend(next);
+    }
+}
+
+impl<A: PieceRows, B: PieceRows> PieceRows for (A, B) {
+    fn append(&mut self, next: Self) {
+        self.0.append(next.0);
+        self.1.append(next.1);
+    }
+}
+
 /// What came of a piece: rows, or what went wrong.
 pub type PieceResult<R> = std::result::Result<R, String>;
 
