@@ -80,13 +80,8 @@ fn png(places: &Array2<f64>) -> Result<Vec<u8>> {
     encoder.set_compression(png::Compression::High);
     let rows = places.outer_iter().rev();
     let last = (N_COLOURS - 1) as f64;
-    let pixels: Vec<u8> = rows
-        .flat_map(|row| {
-            row.iter()
-                .map(|v| (v * last).round() as u8)
-                .collect::<Vec<_>>()
-        })
-        .collect();
+    let pixels = rows.flatten().map(|place| (place * last).round() as u8);
+    let pixels: Vec<u8> = pixels.collect();
     let mut writer = encoder.write_header().map_err(failed)?;
     writer.write_image_data(&pixels).map_err(failed)?;
     writer.finish().map_err(failed)?;
