@@ -90,15 +90,12 @@ impl<'a> Front<'a> {
             Setting::of_roles(view.table, &[Role::Choice, Role::Condition, Role::Subject]);
         let settings = settings.filter(|one| one.varies(&view.rows));
         let settings: Vec<Setting> = settings.collect();
-        let of = |name: &str, row| {
-            view.column(name)
-                .map_or_else(|_| String::new(), |c| c.label(row))
-        };
+        let of = |name: &str, row| view.column(name).map(|column| column.label(row));
         let said = places.map(|place| {
             let row = place.row;
             let given = settings.iter().filter(|one| one.data.value(row).is_some());
             let words: Vec<String> = given.map(|one| one.title(row)).collect();
-            let (y, x) = (of(&view.spec.y, row), of(&view.spec.x, row));
+            let [y, x] = [&view.spec.y, &view.spec.x].map(|name| of(name, row).unwrap_or_default());
             format!("{}: {y} at {x}", words.join(", "))
         });
         said.collect()

@@ -141,31 +141,30 @@ impl<'a> Look<'a> {
     fn sign(&self, row: usize) -> String {
         let sign = self.sign.filter(|sign| sign.data.value(row).is_some());
         let Setting { column, data } = sign.unwrap_or(self.fill);
-        match (data.value(row), data) {
-            (None, _) => String::new(),
-            (Some(Value::Number(number)), _) => column.tick(number),
-            (Some(Value::Word(word)), _) if sign.is_some() => column.word(&word),
-            (_, Data::Words { codes, .. }) => self.letter(codes[row] as usize),
-            (_, Data::Numbers(_)) => String::new(),
+        match data.value(row) {
+            None => String::new(),
+            Some(Value::Number(number)) => column.tick(number),
+            Some(Value::Word(word)) if sign.is_some() => column.word(&word),
+            Some(Value::Word(outcome)) => self.letter(&outcome),
         }
     }
 
     /// The first letters of an outcome that none before it has.
-    fn letter(&self, code: usize) -> String {
+    fn letter(&self, outcome: &str) -> String {
         let Data::Words { levels, .. } = self.fill.data else {
             return String::new();
         };
-        let words = levels
-            .iter()
-            .map(|level| self.fill.column.word(level).to_lowercase());
-        let words: Vec<String> = words.take(code + 1).collect();
-        let start = |word: &String, n: usize| word.chars().take(n).collect::<String>();
-        let is_free = |n: &usize| {
-            let mut before = words[..code].iter();
-            before.all(|other| start(other, *n) != start(&words[code], *n))
+        let start = |level: &str, n: usize| {
+            let word = self.fill.column.word(level).to_lowercase();
+            word.chars().take(n).collect::<String>()
         };
-        let n = (1..=3).find(is_free).unwrap_or(3);
-        start(&words[code], n)
+        let before = levels.iter().take_while(|level| *level != outcome);
+        let is_free = |n: &usize| {
+            before
+                .clone()
+                .all(|level| start(level, *n) != start(outcome, *n))
+        };
+        start(outcome, (1..3).find(is_free).unwrap_or(3))
     }
 
     fn legend(&self, view: &View) -> Vec<LegendEntry> {
@@ -185,7 +184,11 @@ impl<'a> Look<'a> {
                 };
                 entries.extend((0..levels.len()).filter(is_shown).map(|code| {
                     let colour = OUTCOMES[code % OUTCOMES.len()];
-                    tile(column.word(&levels[code]), colour, self.letter(code))
+                    tile(
+                        column.word(&levels[code]),
+                        colour,
+                        self.letter(&levels[code]),
+                    )
                 }));
             }
             Data::Numbers(_) => {
