@@ -3,10 +3,10 @@
 //! Arrays in memory are written and read by ndarray-npy ([`write_npy`], [`npy_numbers`](super::npy_numbers)); it has no header without its array.
 
 use crate::error::Result;
-use crate::files::write_whole;
+use crate::files::{WholeFile, write_whole};
 use ndarray::Array1;
 use ndarray_npy::WriteNpyExt;
-use std::io::{self, Read};
+use std::io::{self, Read, Write};
 use std::path::Path;
 
 /// What stands before the length of a header: version 1, which NumPy writes for all arrays of numbers and texts.
@@ -55,6 +55,41 @@ pub(crate) fn check_npy_header(text: &str, descr: &str, shape: &[usize]) -> io::
     match plain(text) == plain(&expected) {
         true => Ok(()),
         false => Err(io::Error::other(format!("{text} instead of {expected}"))),
+    }
+}
+
+/// An array that is written element by element; it stands at its path when it is whole.
+pub(crate) struct NpyFile(WholeFile);
+
+impl NpyFile {
+    /// Starts an array of elements such as `<f4`.
+    ///
+    /// # Errors
+    /// A file that cannot be written.
+    pub fn create(path: &Path, descr: &str, shape: &[usize]) -> Result<Self> {
+        let mut file = WholeFile::create(path)?;
+        file.write(|file| file.write_all(&npy_header(descr, shape)))?;
+        Ok(Self(file))
+    }
+
+    /// Writes the next elements, of `N` bytes each.
+    ///
+    /// # Errors
+    /// A file that cannot be written.
+    pub fn push<const N: usize>(
+        &mut self,
+        elements: impl IntoIterator<Item = [u8; N]>,
+    ) -> Result<()> {
+        let bytes: Vec<u8> = elements.into_iter().flatten().collect();
+        self.0.write(|file| file.write_all(&bytes))
+    }
+
+    /// Puts it in place.
+    ///
+    /// # Errors
+    /// A file that cannot be written.
+    pub fn commit(self) -> Result<()> {
+        self.0.commit()
     }
 }
 

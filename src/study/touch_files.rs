@@ -13,21 +13,20 @@
 //! ([`ReadFrames`]) have all of these, in metres or, with the step `force`, in newtons; only `frames.npy` differs.
 
 use super::feature_files::{find, measured};
-use super::npy::{npy_header, write_integers, write_npy};
+use super::npy::NpyFile;
 use super::plan::Plan;
 use super::progress::Progress;
-use super::simulation::{TouchedObject, describe, touch_labels, touched_classes};
+use super::simulation::{TouchedObject, describe};
 use super::sweep::{Group, Sweep};
 use super::touch_set::TouchSet;
 use crate::contact::{Workspace, press_to_depth};
 use crate::error::Result;
-use crate::files::{CsvFile, WholeFile};
+use crate::files::CsvFile;
 use crate::sensing::Ensemble;
 use crate::world::{Patch, RestPose, Scene, Touch};
-use ndarray::{Array1, Array2};
+use ndarray::Array2;
 use rayon::prelude::*;
 use serde::Serialize;
-use std::io::Write;
 use std::path::Path;
 
 /// Frames simulated before they are written: all of them that are held in memory at once.
@@ -122,15 +121,19 @@ pub fn write_touches(
     read: Option<&ReadFrames>,
     progress: &dyn Progress,
 ) -> Result<usize> {
-    let labels = touch_labels(&touched_classes(touched));
-    let n_touches = labels.len();
+    let n_touches = touched.iter().map(|touched| touched.touches.len()).sum();
     progress.stage(&format!("touch {}", describe(patch)), n_touches as u64);
-    let mut frames = WholeFile::create(&folder.join("frames.npy"))?;
-    let shape = [n_touches, patch.grid.ny, patch.grid.nx];
-    frames.write(|file| file.write_all(&npy_header("<f4", &shape)))?;
+    let array = |name: &str, descr, shape: &[usize]| {
+        let shape = [&[n_touches], shape].concat();
+        NpyFile::create(&folder.join(name), descr, &shape)
+    };
+    let mut frames = array("frames.npy", "<f4", &[patch.grid.ny, patch.grid.nx])?;
+    let mut labels = array("labels.npy", "<i8", &[])?;
+    let mut poses = array("poses.npy", "<f8", &[7])?;
+    let mut depths = array("depths.npy", "<f8", &[])?;
+    let mut numbers = 0..n_touches;
     let mut table = CsvFile::create(&folder.join("touches.csv"))?;
     let mut objects = CsvFile::create(&folder.join("objects.csv"))?;
-    let (mut poses, mut depths) = (Vec::new(), Vec::new());
     for (label, touched) in touched.iter().enumerate() {
         let (object, touches) = (&touched.object, &touched.touches);
         objects.row(ObjectRow {
@@ -145,22 +148,21 @@ pub fn write_touches(
                 pressed(&scene, &touched.rests[touch.rest], touch, workspace)
             };
             let readings = touches.par_iter().map_init(Workspace::new, press);
-            for (touch, reading) in touches.iter().zip(readings.collect::<Vec<_>>()) {
-                let number = poses.len();
+            let readings = readings.collect::<Vec<_>>();
+            for ((touch, reading), number) in touches.iter().zip(readings).zip(&mut numbers) {
                 table.row(touch_row((number, label), &object.name, touch, &reading))?;
-                poses.push(reading.pose);
-                depths.push(touch.depth);
+                labels.push([(label as i64).to_le_bytes()])?;
+                poses.push(reading.pose.map(f64::to_le_bytes))?;
+                depths.push([touch.depth.to_le_bytes()])?;
                 let frame = read.map_or(reading.frame, |read| read.frame(number));
-                let bytes: Vec<u8> = frame.into_iter().flat_map(f32::to_le_bytes).collect();
-                frames.write(|file| file.write_all(&bytes))?;
+                frames.push(frame.into_iter().map(f32::to_le_bytes))?;
             }
             progress.advance(touches.len() as u64);
         }
     }
-    frames.commit()?;
-    write_integers(&folder.join("labels.npy"), labels)?;
-    write_npy(&folder.join("poses.npy"), &Array2::from(poses))?;
-    write_npy(&folder.join("depths.npy"), &Array1::from(depths))?;
+    for file in [frames, labels, poses, depths] {
+        file.commit()?;
+    }
     table.commit()?;
     objects.commit()?;
     Ok(n_touches)

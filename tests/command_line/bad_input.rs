@@ -203,7 +203,7 @@ fn what_the_user_names_wrongly_is_refused_as_bad_input() {
     case.file("file", "precious");
     let before = case.names();
     for (arguments, words) in [
-        ("report empty", &["empty/study.toml", "cannot be read"][..]),
+        ("report empty", &["empty/study.toml", "is missing"][..]),
         ("compare empty empty", &["empty/study.toml", "is missing"]),
         ("compare nothere empty", &["nothere/study.toml"]),
         ("recording nothere.npz", &["nothere.npz", "is missing"]),

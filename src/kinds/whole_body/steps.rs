@@ -161,7 +161,8 @@ fn count(steps: &[Step], bytes_per_taxel: f64) -> BodyCount {
         patches_touched_mean: mean(|step| step.contact.n_patches),
         spheres_evaluated_mean: mean(|step| step.contact.n_evaluated),
         spheres_rejected_mean: mean(|step| step.contact.n_rejected),
-        deflection_sum_mm: millimetres(steps.iter().map(|step| step.deflection).sum()),
+        // From 0: an empty sum would be −0.
+        deflection_sum_mm: millimetres(steps.iter().fold(0.0, |sum, step| sum + step.deflection)),
         bytes_per_taxel,
     }
 }
