@@ -552,15 +552,18 @@ fn journals() {
     .run();
 }
 
-/// Every line with the checksum of what follows its first space.
+/// Every line with the checksum of what follows its first space; those behind the first line go on from its checksum.
 fn with_checksums(input: &[u8]) -> Vec<u8> {
+    let mut first = None;
     let line = |line: &[u8]| -> Vec<u8> {
         let json = line
             .splitn(2, |&byte| byte == b' ')
             .nth(1)
             .unwrap_or_default();
-        let sum = format!("{:08x} ", crc32(json.strip_suffix(b"\n").unwrap_or(json)));
-        [sum.as_bytes(), json].concat()
+        let whole = json.strip_suffix(b"\n").unwrap_or(json);
+        let sum = crc32(first.unwrap_or(0), whole);
+        first.get_or_insert(sum);
+        [format!("{sum:08x} ").as_bytes(), json].concat()
     };
     input
         .split_inclusive(|&byte| byte == b'\n')
@@ -568,9 +571,9 @@ fn with_checksums(input: &[u8]) -> Vec<u8> {
         .collect()
 }
 
-/// CRC-32 as in zip, bit by bit.
-fn crc32(bytes: &[u8]) -> u32 {
-    let mut sum = !0_u32;
+/// CRC-32 as in zip, bit by bit, of bytes that follow those of another sum; that of none is 0.
+fn crc32(before: u32, bytes: &[u8]) -> u32 {
+    let mut sum = !before;
     for byte in bytes {
         sum ^= u32::from(*byte);
         for _ in 0..8 {
