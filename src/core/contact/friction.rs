@@ -87,7 +87,6 @@ pub struct FrictionLoad {
 /// The shear springs of one patch between steps.
 ///
 /// ```
-/// # use bubbletouch_core as bubbletouch;
 /// use bubbletouch::contact::{FrictionState, NormalForce, SkinWorkspace, press_skin};
 /// use bubbletouch::geometry::Pose;
 /// use bubbletouch::objects::{Sphere, SphereUnion};
