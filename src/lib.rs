@@ -99,7 +99,7 @@
 //! | [`scene`] | TOML → robots, skin and objects that move → frames over time |
 //! | [`report`] | tables and frames → files for people |
 //!
-//! The ten stages from `mesh` to `recognition` are a crate of their own, `bubbletouch-core`, and pure: no files (but a robot's, if it is asked for by its path), clock,
+//! The ten stages from `mesh` to `recognition` are pure: no files (but a robot's, if it is asked for by its path), clock,
 //! threads, printing or global state. Threads live in `study`, and in `whole_body` for large touches; files in `study`, `scene`
 //! (what a scene names) and `report`.
 //!
