@@ -147,18 +147,29 @@
 // They panic where nobody reads any more.
 #![cfg_attr(not(test), deny(clippy::print_stdout, clippy::print_stderr))]
 
+pub mod contact;
+pub mod dynamics;
+pub mod error;
 pub mod files;
+pub mod geometry;
 pub mod guide;
 pub mod kinds;
+pub mod mesh;
+mod numbers_csv;
+pub mod objects;
+pub mod packing;
+pub mod quantile;
+pub mod random;
+pub mod recognition;
 pub mod report;
 pub mod scene;
+pub mod sensing;
+pub mod signal;
+mod spelling;
 pub mod study;
 pub mod table;
+mod toml_text;
+pub mod whole_body;
+pub mod world;
 
-pub use bubbletouch_core::{Error, Result};
-#[doc(inline)]
-pub use bubbletouch_core::{
-    contact, dynamics, error, geometry, mesh, objects, packing, quantile, random, recognition,
-    sensing, signal, whole_body, world,
-};
-use bubbletouch_core::{numbers_csv, spelling, toml_text};
+pub use error::{Error, Result};

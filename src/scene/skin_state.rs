@@ -30,11 +30,18 @@ pub(super) const OUT_OF_REACH: Pose = Pose {
 impl PlacedObjects {
     /// Whether any object may push a patch that is there: by a box around its taxels and balls around the objects.
     pub fn can_reach(&self, skin: &SkinPatch, world_from_patch: &Pose) -> bool {
-        let mut objects = self.poses.iter().zip(&self.balls);
-        objects.any(|(pose, &(center, radius))| {
-            let center = pose.seen_from(world_from_patch).transform_point(center);
-            skin.may_touch(center, radius)
-        })
+        let Some(bounds) = skin.tree().bounds() else {
+            return false;
+        };
+        self.poses
+            .iter()
+            .zip(&self.balls)
+            .any(|(pose, &(center, radius))| {
+                let center = pose.seen_from(world_from_patch).transform_point(center);
+                let reach = radius + skin.tree().largest_radius();
+                // What rounding may add, far above 1e-16 and far below what is felt.
+                bounds.distance_squared(center) <= reach * reach * (1.0 + 1e-9)
+            })
     }
 }
 

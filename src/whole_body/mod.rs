@@ -16,7 +16,6 @@
 //! ([`BodyState::touched`], [`BodyState::forces`]); [`WholeBody::frame`] makes a dense frame of them.
 //!
 //! ```
-//! # use bubbletouch_core as bubbletouch;
 //! use bubbletouch::geometry::Pose;
 //! use bubbletouch::objects::{Sphere, SphereUnion};
 //! use bubbletouch::whole_body::{BodyPatch, BodyState, SphereClusters, WholeBody};

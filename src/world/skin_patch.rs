@@ -3,7 +3,6 @@
 use super::taxel_tree::TaxelTree;
 use super::{Grid, Layout, Patch, PerTaxel, Taxel};
 use crate::error::{Error, Result};
-use glam::DVec3;
 
 /// A rigid substrate with taxels of any layout, equal or not.
 ///
@@ -79,14 +78,6 @@ impl SkinPatch {
     /// Its taxels, so that those near a ball are found.
     pub(crate) fn tree(&self) -> &TaxelTree {
         &self.tree
-    }
-
-    /// Whether a ball (patch frame, metres) may touch any of its taxels, by a box around these.
-    pub fn may_touch(&self, center: DVec3, radius: f64) -> bool {
-        let reach = radius + self.tree.largest_radius();
-        let bounds = self.tree.bounds();
-        // What rounding may add, far above 1e-16 and far below what is felt.
-        bounds.is_some_and(|bounds| bounds.distance_squared(center) <= reach * reach * (1.0 + 1e-9))
     }
 
     /// The grid that it is, if all its taxels are as large and go as deep.

@@ -11,13 +11,12 @@ use toml_parser::lexer::TokenKind;
 const MOST_OPEN: usize = 200;
 
 /// What a text says; the error names `place` (the file), line and column.
-pub fn read<T: DeserializeOwned>(place: &str, text: &str) -> Result<T> {
+pub(crate) fn read<T: DeserializeOwned>(place: &str, text: &str) -> Result<T> {
     check_brackets(place, text)?;
     toml::from_str(text).map_err(|error| Error::toml(place, text, &error))
 }
 
 /// What a file says, as a type that is read from its text.
-#[macro_export]
 macro_rules! toml_file {
     ($file:ident) => {
         impl $file {
@@ -28,21 +27,21 @@ macro_rules! toml_file {
         }
     };
 }
-pub use toml_file;
+pub(crate) use toml_file;
 
 /// A study with every default spelt out.
-pub fn write(study: &impl Serialize) -> String {
+pub(crate) fn write(study: &impl Serialize) -> String {
     toml::to_string(study).expect("every field of a study has a TOML form")
 }
 
 /// The table that a text is, if it is one.
-pub fn table(text: &str) -> Option<toml::Table> {
+pub(crate) fn table(text: &str) -> Option<toml::Table> {
     check_brackets("", text).ok()?;
     text.parse().ok()
 }
 
 /// Refuses text that is no TOML and would need a deep stack to say so.
-pub fn check_brackets(place: &str, text: &str) -> Result<()> {
+pub(crate) fn check_brackets(place: &str, text: &str) -> Result<()> {
     // Square, and curly: in broken text either may be closed by the other, or not.
     let mut open = [0_usize; 2];
     for token in Source::new(text).lex() {

@@ -87,12 +87,7 @@ impl Kernel {
 }
 
 impl Gamma {
-    /// The value for these features (rows × features): given, or 1 / (number of features · variance of all their values), 1 where these
-    /// do not vary.
-    ///
-    /// # Errors
-    /// A value that is not positive and finite.
-    pub fn resolve(self, features: ArrayView2<f64>) -> Result<f64> {
+    pub(crate) fn resolve(self, features: ArrayView2<f64>) -> Result<f64> {
         match self {
             Self::Value(gamma) if gamma > 0.0 && gamma.is_finite() => Ok(gamma),
             Self::Value(gamma) => Err(Error::input(

@@ -1,7 +1,7 @@
 //! The catalogue: named objects, as parametric solids with real dimensions.
 //!
 //! A catalogue file is a list of objects, each a union of parts, less what is subtracted from them
-//! (all shapes and keys: `guide/own_objects.md`):
+//! ([all shapes and keys](crate::guide::own_objects)):
 //!
 //! ```toml
 //! [[object]]
@@ -34,10 +34,10 @@ use toml::Spanned;
 
 /// The files of `objects/`, by the name of their set.
 const BUILTIN: [(&str, &str); 4] = [
-    ("balls", include_str!("../../../objects/balls.toml")),
-    ("boxes", include_str!("../../../objects/boxes.toml")),
-    ("cans", include_str!("../../../objects/cans.toml")),
-    ("household", include_str!("../../../objects/household.toml")),
+    ("balls", include_str!("../../objects/balls.toml")),
+    ("boxes", include_str!("../../objects/boxes.toml")),
+    ("cans", include_str!("../../objects/cans.toml")),
+    ("household", include_str!("../../objects/household.toml")),
 ];
 
 /// Named objects in named sets. Invariant: no two objects of one set share a name, every set has an object.

@@ -4,13 +4,13 @@
 const OFFERED: usize = 8;
 
 /// A number of things, each called `one`: `1 thread`, `2 threads`.
-pub fn counted(number: usize, one: &str) -> String {
+pub(crate) fn counted(number: usize, one: &str) -> String {
     let plural = if number == 1 { "" } else { "s" };
     format!("{number} {one}{plural}")
 }
 
 /// The error's last part for a name that is not among `names`: those it resembles, else the first few there are.
-pub fn nearest_names<'a>(name: &str, names: impl IntoIterator<Item = &'a str>) -> String {
+pub(crate) fn nearest_names<'a>(name: &str, names: impl IntoIterator<Item = &'a str>) -> String {
     let all: Vec<&str> = names.into_iter().collect();
     let mut near: Vec<(usize, &str)> = all
         .iter()
@@ -31,7 +31,7 @@ pub fn nearest_names<'a>(name: &str, names: impl IntoIterator<Item = &'a str>) -
 }
 
 /// The known word that an unknown one is a slip of, if it is: at most two letters off and no more than a third of it.
-pub fn slip_of<'a>(word: &str, known: &[&'a str]) -> Option<&'a str> {
+pub(crate) fn slip_of<'a>(word: &str, known: &[&'a str]) -> Option<&'a str> {
     let near = |known: &&&str| {
         let far = distance(word, known);
         far <= 2 && far * 3 <= known.chars().count()

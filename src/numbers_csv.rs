@@ -4,7 +4,7 @@ use crate::error::{Error, Result};
 use std::io::{self, Read};
 
 /// A reader of rows of any length, blanks around fields dropped, no row taken for a header.
-pub fn rows_of<R: Read>(source: R) -> csv::Reader<R> {
+pub(crate) fn rows_of<R: Read>(source: R) -> csv::Reader<R> {
     csv::ReaderBuilder::new()
         .has_headers(false)
         .flexible(true)
@@ -13,7 +13,7 @@ pub fn rows_of<R: Read>(source: R) -> csv::Reader<R> {
 }
 
 /// The error of a file that cannot be read or is no text; `allowed` says what its rows are.
-pub fn unreadable(place: &str, error: csv::Error, allowed: impl ToString) -> Error {
+pub(crate) fn unreadable(place: &str, error: csv::Error, allowed: impl ToString) -> Error {
     let text = error.to_string();
     match error.into_kind() {
         csv::ErrorKind::Io(source) if source.kind() != io::ErrorKind::InvalidData => {
@@ -24,12 +24,12 @@ pub fn unreadable(place: &str, error: csv::Error, allowed: impl ToString) -> Err
 }
 
 /// The line that a row begins in, from 1.
-pub fn line_of(record: &csv::StringRecord) -> u64 {
+pub(crate) fn line_of(record: &csv::StringRecord) -> u64 {
     record.position().map_or(0, |position| position.line())
 }
 
 /// The error is another number of fields in a row at `place`.
-pub fn check_width(place: &str, record: &csv::StringRecord, width: usize) -> Result<()> {
+pub(crate) fn check_width(place: &str, record: &csv::StringRecord, width: usize) -> Result<()> {
     if record.len() == width {
         return Ok(());
     }
@@ -41,7 +41,7 @@ pub fn check_width(place: &str, record: &csv::StringRecord, width: usize) -> Res
 }
 
 /// The finite number that a field of a row at `place` is; `allowed` says what of.
-pub fn finite(place: &str, column: &str, field: &str, allowed: &str) -> Result<f64> {
+pub(crate) fn finite(place: &str, column: &str, field: &str, allowed: &str) -> Result<f64> {
     match field.parse::<f64>() {
         Ok(value) if value.is_finite() => Ok(value),
         _ => Err(Error::input(

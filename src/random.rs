@@ -4,7 +4,6 @@
 //! any draw can be made alone, on any thread or machine, and is the same.
 //!
 //! ```
-//! # use bubbletouch_core as bubbletouch;
 //! use bubbletouch::random::Seed;
 //! use rand::Rng;
 //!

@@ -8,7 +8,6 @@ use super::projection::Projection;
 /// rows, n for averages; of dense ensembles all m · n.
 ///
 /// ```
-/// # use bubbletouch_core as bubbletouch;
 /// use bubbletouch::random::Seed;
 /// use bubbletouch::sensing::{Ensemble, Projection};
 ///

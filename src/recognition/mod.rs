@@ -16,7 +16,6 @@
 //! [`ClassModel`](class_model::ClassModel)s.
 //!
 //! ```
-//! # use bubbletouch_core as bubbletouch;
 //! use bubbletouch::random::Seed;
 //! use bubbletouch::recognition::ClassifierKind;
 //! use bubbletouch::recognition::classifier::{Classifier, predict_split};

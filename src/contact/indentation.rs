@@ -242,9 +242,9 @@ pub fn press_at_pose(
     workspace.indent(&scene.patch, 0.0)
 }
 
-/// How far a taxel of this stroke may be pushed without being saturated, metres: a press to a depth of exactly the stroke saturates
+/// How far a taxel of this stroke may be pushed without being saturated: a press to a depth of exactly the stroke saturates
 /// nothing, and rounding (1e-12 of the stroke) does not count.
-pub fn saturation_limit(stroke: f64) -> f64 {
+pub(crate) fn saturation_limit(stroke: f64) -> f64 {
     stroke * (1.0 + 1e-12)
 }
 

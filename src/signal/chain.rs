@@ -9,7 +9,6 @@ use std::sync::Arc;
 /// Checked signal steps, prepared for one patch. The empty chain leaves deflections as they are.
 ///
 /// ```
-/// # use bubbletouch_core as bubbletouch;
 /// use bubbletouch::random::Seed;
 /// use bubbletouch::signal::{Chain, Noise, NoiseUnit, Scratch, SignalStep};
 /// use bubbletouch::world::{Grid, Patch, Taxel};

@@ -13,7 +13,6 @@ use std::path::Path;
 /// A rigid multi-link body. Invariant: its joints make one tree of its links.
 ///
 /// ```
-/// # use bubbletouch_core as bubbletouch;
 /// use bubbletouch::geometry::Pose;
 /// use bubbletouch::world::Robot;
 ///

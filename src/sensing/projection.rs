@@ -11,7 +11,6 @@ use std::sync::Arc;
 /// A map y = Φx from frames of n taxels to m measurements, drawn once and applied to any number of frames.
 ///
 /// ```
-/// # use bubbletouch_core as bubbletouch;
 /// use bubbletouch::random::Seed;
 /// use bubbletouch::sensing::{Ensemble, Projection};
 /// use ndarray::Array2;

@@ -28,7 +28,6 @@ pub enum Basis {
 /// k orthonormal atoms ψⱼ of n taxels, and the point they start from: a frame is x = x₀ + Σⱼ αⱼ ψⱼ, nearly.
 ///
 /// ```
-/// # use bubbletouch_core as bubbletouch;
 /// use bubbletouch::sensing::{Basis, Dictionary};
 /// use ndarray::Array2;
 ///

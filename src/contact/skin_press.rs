@@ -58,7 +58,7 @@ impl SkinWorkspace {
 
     /// From now on each of these parts pushes its taxel behind the substrate too, until other parts are held: on its way through the
     /// front of a patch an object goes on pressing what it has pressed.
-    pub fn hold<'a>(&mut self, contacts: impl IntoIterator<Item = &'a TaxelContact>) {
+    pub(crate) fn hold<'a>(&mut self, contacts: impl IntoIterator<Item = &'a TaxelContact>) {
         self.held.clear();
         self.held.extend(contacts);
     }
@@ -69,7 +69,7 @@ impl SkinWorkspace {
     }
 
     /// Whether any part is held.
-    pub fn holds_any(&self) -> bool {
+    pub(crate) fn holds_any(&self) -> bool {
         !self.held.is_empty()
     }
 
@@ -110,7 +110,6 @@ impl SkinWorkspace {
 /// taxel; where two need the same, the object that comes first, and of a union the first of its spheres.
 ///
 /// ```
-/// # use bubbletouch_core as bubbletouch;
 /// use bubbletouch::contact::{SkinWorkspace, press_skin, spring_load};
 /// use bubbletouch::geometry::Pose;
 /// use bubbletouch::objects::{Sphere, SphereUnion};

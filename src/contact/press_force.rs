@@ -27,7 +27,6 @@ pub(super) const ACCURACY: f64 = 1e-13;
 /// If there are not as many poses as objects.
 ///
 /// ```
-/// # use bubbletouch_core as bubbletouch;
 /// use bubbletouch::contact::{Workspace, press_to_force};
 /// use bubbletouch::geometry::Pose;
 /// use bubbletouch::objects::{Sphere, SphereUnion};

@@ -10,7 +10,7 @@ pub fn quantile(values: &mut [f64], part: f64) -> f64 {
 }
 
 /// The same of values that are sorted, at least one.
-pub fn of_sorted(values: &[f64], part: f64) -> f64 {
+pub(crate) fn of_sorted(values: &[f64], part: f64) -> f64 {
     let place = part * (values.len() - 1) as f64;
     let below = place as usize;
     let above = (below + 1).min(values.len() - 1);

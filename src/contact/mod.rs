@@ -67,9 +67,9 @@ pub use damper::{DamperState, relaxation_factor};
 pub use friction::{FrictionLoad, FrictionState, Grip, GripCounts, NormalForce};
 pub(crate) use grid_lines::Lines;
 pub use hold_force::{HeldForce, MovedObject};
+pub(crate) use indentation::saturation_limit;
 pub use indentation::{
     Contact, Workspace, first_contact, press_at_pose, press_to_depth, press_to_travel,
-    saturation_limit,
 };
 pub use instructions::Instructions;
 pub(crate) use instructions::for_instructions;

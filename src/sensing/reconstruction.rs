@@ -63,7 +63,6 @@ pub struct Reconstruction {
 /// A solver prepared for one projection, dictionary and noise level; it serves any number of frames.
 ///
 /// ```
-/// # use bubbletouch_core as bubbletouch;
 /// use bubbletouch::random::Seed;
 /// use bubbletouch::sensing::{Basis, Dictionary, Effort, Ensemble, Projection, Reconstructor, SensedDictionary, Solver};
 /// use ndarray::Array2;

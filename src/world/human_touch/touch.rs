@@ -15,7 +15,6 @@ use std::ops::RangeInclusive;
 /// A touch of a forearm.
 ///
 /// ```
-/// # use bubbletouch_core as bubbletouch;
 /// use bubbletouch::random::Seed;
 /// use bubbletouch::world::{HumanTouch, TouchKind, TouchRanges};
 ///
