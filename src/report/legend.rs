@@ -26,11 +26,14 @@ pub(super) struct Heading {
     legend: Vec<Vec<LegendEntry>>,
 }
 
+/// Draws a mark into an area.
+type DrawMark = Box<dyn Fn(&mut Drawing, Area)>;
+
 /// A mark and what it means.
 pub(super) struct LegendEntry {
     text: String,
     /// None of a text without a mark: the legend's title.
-    mark: Option<Box<dyn Fn(&mut Drawing, Area)>>,
+    mark: Option<DrawMark>,
 }
 
 impl Heading {
@@ -82,7 +85,7 @@ impl LegendEntry {
 
     /// A text behind a mark, which is drawn into an area as it is drawn among data.
     pub(super) fn new(text: String, mark: impl Fn(&mut Drawing, Area) + 'static) -> Self {
-        let mark: Box<dyn Fn(&mut Drawing, Area)> = Box::new(mark);
+        let mark: DrawMark = Box::new(mark);
         Self {
             text,
             mark: Some(mark),

@@ -209,8 +209,11 @@ impl Kind for SpeedAccuracyStudy {
     }
 }
 
+/// Rows of a table: of what each is, and what of it.
+type RowsOf<C, S> = Vec<(C, S)>;
+
 /// What was found, and what it costs.
-fn apart<C: Clone, S: Clone, T: Clone>(rows: &[(C, S, T)]) -> (Vec<(C, S)>, Vec<(C, T)>) {
+fn apart<C: Clone, S: Clone, T: Clone>(rows: &[(C, S, T)]) -> (RowsOf<C, S>, RowsOf<C, T>) {
     let apart = |(cell, score, time): (C, S, T)| ((cell.clone(), score), (cell, time));
     rows.iter().cloned().map(apart).unzip()
 }

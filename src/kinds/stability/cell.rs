@@ -296,6 +296,6 @@ fn judge(cell: &StabilityCell, scene: &CellScene, answer: &Answer) -> StabilityS
         force_imbalance: is_whole.then_some(answer.force_imbalance),
         deflection_error: is_whole.then_some(error),
         n_steps: answer.n_steps,
-        simulated_s: (answer.n_steps > 0).then(|| answer.n_steps as f64 * cell.dt_s),
+        simulated_s: (answer.n_steps > 0).then_some(answer.n_steps as f64 * cell.dt_s),
     }
 }
