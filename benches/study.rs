@@ -5,7 +5,7 @@
 //!    they take; what is left of the time is the engine's: laying out, journal, tables.
 
 use bubbletouch::Result;
-use bubbletouch::kinds::recognition::{RecognitionRows, RecognitionStudy};
+use bubbletouch::kinds::recognition::RecognitionStudy;
 use bubbletouch::random::Seed;
 use bubbletouch::study::journal::{Identity, JOURNAL_FILE, Journal};
 use bubbletouch::study::pieces::{
