@@ -1,6 +1,6 @@
 //! Pictures: every cell is drawn, every frame is readable, names are only names.
 
-use crate::report_synthetic::{cell, many_cells, noise_cells, press, quickstart_cells, tables};
+use crate::report_synthetic::{cell, many_cells, noise_cells, quickstart_cells, tables};
 use bubbletouch::report::chart::{draw, places};
 use bubbletouch::report::colours::heat;
 use bubbletouch::report::drawing::{Drawing, TextStyle};
@@ -150,8 +150,12 @@ fn a_name_is_drawn_letter_by_letter_whatever_it_holds() {
 
 #[test]
 fn snapshots_show_every_frame_on_one_scale() {
+    let touched = |n: usize| {
+        let middle = |(row, column)| if row == 4 && column == 4 { 1e-3 } else { 0.0 };
+        (1.0 + n as f64) * Array2::from_shape_fn((8, 8), middle)
+    };
     let frames: Vec<_> = (0..5)
-        .map(|n| (format!("object {n}"), press(8, 8, n, 0.0)))
+        .map(|n| (format!("object {n}"), touched(n)))
         .collect();
     let picture = snapshots(&frames, 2.0, Quantity::Deflection, "a caption").unwrap();
     // Nothing touches the border of a frame, 8 taxels of 24 pixels of two elements: rows of the picture cross four maps, or one.
