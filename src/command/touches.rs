@@ -5,9 +5,7 @@ use super::study_args::StudyArgs;
 use bubbletouch::kinds::recognition::{load_study, read_plan};
 use bubbletouch::random::Seed;
 use bubbletouch::report::progress;
-use bubbletouch::study::{
-    Plan, ReadFrames, draw_touches, load_objects, millimetres, write_touches,
-};
+use bubbletouch::study::{Plan, ReadFrames, load_objects, millimetres, write_touches};
 use bubbletouch::{Error, Result};
 use std::path::PathBuf;
 
@@ -52,7 +50,7 @@ pub fn touches(args: &Args) -> Result<()> {
     };
     args.check(&plan)?;
     let objects = load_objects(&plan.spec.objects, Some(&packings))?;
-    let touched = draw_touches(objects, &plan.placement, &Seed::new(plan.spec.seed))?;
+    let drawn = (&plan.placement, &Seed::new(plan.spec.seed));
     let mut n_touches = 0;
     let arrays: Vec<_> = match &read {
         None => plan.arrays.iter().collect(),
@@ -69,7 +67,14 @@ pub fn touches(args: &Args) -> Result<()> {
             }
         };
         output_folder(&folder)?;
-        n_touches += write_touches(&folder, &touched, patch, read.as_ref(), progress.as_ref())?;
+        n_touches += write_touches(
+            &folder,
+            &objects,
+            drawn,
+            patch,
+            read.as_ref(),
+            progress.as_ref(),
+        )?;
     }
     let how = match args.cell {
         None => "without noise (--cell N writes them as cell N of the study reads them)".to_owned(),

@@ -103,23 +103,37 @@ impl KeepTogether {
 
 /// For each touch the first of those that neighbours connect it with.
 fn connected(touches: &[Touch], listed: &[Vec<usize>], drawn: &[(TouchAxis, f64)]) -> Vec<usize> {
-    let mut firsts = vec![None; touches.len()];
-    for first in 0..touches.len() {
-        let mut reached = vec![first];
-        while let Some(a) = reached.pop() {
-            if firsts[a].is_some() {
-                continue;
+    let mut first: Vec<usize> = (0..touches.len()).collect();
+    let Some(&(along, distance)) = drawn.first() else {
+        return first;
+    };
+    // Sorted along one axis, only touches within its distance are compared; a yaw comes once more a turn later.
+    let mut order: Vec<(f64, usize)> = Vec::new();
+    for (number, touch) in touches.iter().enumerate() {
+        let value = value(touch, along);
+        match along {
+            TouchAxis::Yaw => {
+                let turned = value.rem_euclid(TAU);
+                order.push((turned, number));
+                if turned < distance {
+                    order.push((turned + TAU, number));
+                }
             }
-            firsts[a] = Some(first);
-            let is_near = |&b: &usize| {
-                firsts[b].is_none()
-                    && listed[a] == listed[b]
-                    && are_neighbours(&touches[a], &touches[b], drawn)
-            };
-            reached.extend((first + 1..touches.len()).filter(is_near));
+            _ => order.push((value, number)),
         }
     }
-    firsts.into_iter().flatten().collect()
+    order.sort_by(|a, b| a.0.total_cmp(&b.0));
+    for (place, &(low, a)) in order.iter().enumerate() {
+        let near = order[place + 1..].iter();
+        for &(_, b) in near.take_while(|(high, _)| high - low < distance) {
+            if listed[a] == listed[b] && are_neighbours(&touches[a], &touches[b], drawn) {
+                join(&mut first, a, b);
+            }
+        }
+    }
+    (0..touches.len())
+        .map(|number| root(&mut first, number))
+        .collect()
 }
 
 fn are_neighbours(a: &Touch, b: &Touch, drawn: &[(TouchAxis, f64)]) -> bool {
@@ -147,4 +161,18 @@ fn value(touch: &Touch, axis: TouchAxis) -> f64 {
         TouchAxis::TiltY => touch.tilt[1],
         TouchAxis::Depth => touch.depth,
     }
+}
+
+/// The first of a touch's group; shortens the way there.
+fn root(first: &mut [usize], mut number: usize) -> usize {
+    while first[number] != number {
+        first[number] = first[first[number]];
+        number = first[number];
+    }
+    number
+}
+
+fn join(first: &mut [usize], a: usize, b: usize) {
+    let (a, b) = (root(first, a), root(first, b));
+    first[a.max(b)] = a.min(b);
 }

@@ -16,14 +16,16 @@ use super::feature_files::{find, measured};
 use super::npy::NpyFile;
 use super::plan::Plan;
 use super::progress::Progress;
-use super::simulation::{TouchedObject, describe};
+use super::simulation::{describe, touch_stream};
 use super::sweep::{Group, Sweep};
 use super::touch_set::TouchSet;
 use crate::contact::{Workspace, press_to_depth};
 use crate::error::Result;
 use crate::files::CsvFile;
+use crate::objects::Object;
+use crate::random::Seed;
 use crate::sensing::Ensemble;
-use crate::world::{Patch, RestPose, Scene, Touch};
+use crate::world::{Patch, Placement, RestPose, Scene, Touch, TouchSource};
 use ndarray::Array2;
 use rayon::prelude::*;
 use serde::Serialize;
@@ -109,19 +111,26 @@ impl ReadFrames {
     }
 }
 
-/// Simulates all touches of an array and writes them into a folder that exists, with frames as they were `read` if these are given;
-/// returns how many.
+/// Simulates all touches of an array, drawn a block at a time, and writes them into a folder that exists, with frames as they were `read`
+/// if these are given; returns how many.
 ///
 /// # Errors
-/// A file that cannot be written.
+/// What [`TouchSource::new`] refuses; a file that cannot be written.
 pub fn write_touches(
     folder: &Path,
-    touched: &[TouchedObject],
+    objects: &[Object],
+    (placement, seed): (&Placement, &Seed),
     patch: &Patch,
     read: Option<&ReadFrames>,
     progress: &dyn Progress,
 ) -> Result<usize> {
-    let n_touches = touched.iter().map(|touched| touched.touches.len()).sum();
+    let rests = objects.par_iter();
+    let rests: Vec<_> = rests.map(|o| placement.rest.of(&o.model)).collect();
+    let sources = objects.iter().zip(&rests);
+    let sources =
+        sources.map(|(o, rests)| TouchSource::new(placement, rests, &touch_stream(seed, o)));
+    let sources = sources.collect::<Result<Vec<_>>>()?;
+    let n_touches = sources.iter().map(TouchSource::n_touches).sum();
     progress.stage(&format!("touch {}", describe(patch)), n_touches as u64);
     let array = |name: &str, descr, shape: &[usize]| {
         let shape = [&[n_touches], shape].concat();
@@ -133,38 +142,40 @@ pub fn write_touches(
     let mut depths = array("depths.npy", "<f8", &[])?;
     let mut numbers = 0..n_touches;
     let mut table = CsvFile::create(&folder.join("touches.csv"))?;
-    let mut objects = CsvFile::create(&folder.join("objects.csv"))?;
-    for (label, touched) in touched.iter().enumerate() {
-        let (object, touches) = (&touched.object, &touched.touches);
-        objects.row(ObjectRow {
+    let mut rows = CsvFile::create(&folder.join("objects.csv"))?;
+    for (label, ((object, rests), source)) in objects.iter().zip(&rests).zip(&sources).enumerate() {
+        rows.row(ObjectRow {
             label,
             object: &object.name,
             n_spheres: object.model.n_spheres(),
-            n_touches: touches.len(),
+            n_touches: source.n_touches(),
         })?;
         let scene = Scene::of_one(patch, &object.model);
-        for touches in touches.chunks(BLOCK) {
-            let press = |workspace: &mut Workspace, touch: &Touch| {
-                pressed(&scene, &touched.rests[touch.rest], touch, workspace)
+        for first in (0..source.n_touches()).step_by(BLOCK) {
+            let block = first..source.n_touches().min(first + BLOCK);
+            let press = |workspace: &mut Workspace, number| {
+                let touch = source.touch(number);
+                let reading = pressed(&scene, &rests[touch.rest], &touch, workspace);
+                (touch, reading)
             };
-            let readings = touches.par_iter().map_init(Workspace::new, press);
-            let readings = readings.collect::<Vec<_>>();
-            for ((touch, reading), number) in touches.iter().zip(readings).zip(&mut numbers) {
-                table.row(touch_row((number, label), &object.name, touch, &reading))?;
+            let readings = block.clone().into_par_iter();
+            let readings: Vec<_> = readings.map_init(Workspace::new, press).collect();
+            for ((touch, reading), number) in readings.into_iter().zip(&mut numbers) {
+                table.row(touch_row((number, label), &object.name, &touch, &reading))?;
                 labels.push([(label as i64).to_le_bytes()])?;
                 poses.push(reading.pose.map(f64::to_le_bytes))?;
                 depths.push([touch.depth.to_le_bytes()])?;
                 let frame = read.map_or(reading.frame, |read| read.frame(number));
                 frames.push(frame.into_iter().map(f32::to_le_bytes))?;
             }
-            progress.advance(touches.len() as u64);
+            progress.advance(block.len() as u64);
         }
     }
     for file in [frames, labels, poses, depths] {
         file.commit()?;
     }
     table.commit()?;
-    objects.commit()?;
+    rows.commit()?;
     Ok(n_touches)
 }
 

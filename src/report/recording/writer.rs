@@ -9,6 +9,7 @@ use crate::study::content_hash::bytes_of_numbers;
 use crate::study::npy::npy_header;
 use std::fs::File;
 use std::io::{self, BufWriter, Read, Seek, SeekFrom, Write};
+use std::mem::ManuallyDrop;
 use std::path::Path;
 use zip::write::SimpleFileOptions;
 use zip::{CompressionMethod, DateTime, ZipWriter};
@@ -117,7 +118,8 @@ impl RecordingWriter {
         let block_bytes = rows_per_block * frame_bytes(&self.members) as u64;
         let (blocks, mut place) = (&mut self.blocks, 0);
         self.target.write(|file| {
-            let mut zip = ZipWriter::new(file);
+            // Not dropped where a write fails: it would try again, and say so on standard error.
+            let mut zip = ManuallyDrop::new(ZipWriter::new(file));
             for (name, bytes) in constant_members(&self.header) {
                 start(&mut zip, &name)?;
                 zip.write_all(&bytes)?;
@@ -129,11 +131,12 @@ impl RecordingWriter {
                 let n_bytes = member.row_bytes() as u64 * rows_per_block;
                 for block in 0..self.n_blocks as u64 {
                     blocks.seek(SeekFrom::Start(block * block_bytes + place))?;
-                    io::copy(&mut blocks.take(n_bytes), &mut zip)?;
+                    io::copy(&mut blocks.take(n_bytes), &mut *zip)?;
                 }
                 zip.write_all(rows)?;
                 place += n_bytes;
             }
+            let zip = ManuallyDrop::into_inner(zip);
             zip.finish().map(drop).map_err(io::Error::from)
         })?;
         self.target.commit()?;

@@ -71,8 +71,10 @@ pub fn decode(header: &str, bytes: &[u8]) -> Result<Decoded, (usize, &'static st
             (Some((_, line)), 1..) => {
                 decoded.records.insert(line.key, line.record);
             }
-            // It was torn.
-            (None, _) if decoded.n_whole + line.len() == bytes.len() => break,
+            // It was torn: a whole one with another checksum is of another study.
+            (None, _) if decoded.n_whole + line.len() == bytes.len() && split(line).is_none() => {
+                break;
+            }
             (_, 0) => return Err((1, NO_STUDY)),
             _ => return Err((number + 1, CHANGED)),
         }
@@ -82,11 +84,16 @@ pub fn decode(header: &str, bytes: &[u8]) -> Result<Decoded, (usize, &'static st
 }
 
 fn decode_line(first: u32, line: &[u8]) -> Option<(u32, Line)> {
+    let (written, json, line) = split(line)?;
+    let checksum = checksum(first, json);
+    (written == format!("{checksum:08x}")).then_some((checksum, line))
+}
+
+/// The checksum, the JSON and what it says, of a line that is whole.
+fn split(line: &[u8]) -> Option<(&str, &str, Line)> {
     let line = std::str::from_utf8(line.strip_suffix(b"\n")?).ok()?;
     let (written, json) = line.split_once(' ')?;
-    let checksum = checksum(first, json);
-    let is_whole = written == format!("{checksum:08x}");
-    is_whole.then(|| Some((checksum, serde_json::from_str(json).ok()?)))?
+    Some((written, json, serde_json::from_str(json).ok()?))
 }
 
 #[cfg(test)]
@@ -160,6 +167,9 @@ mod tests {
             let (line, said) = damage(bytes.as_bytes()).unwrap();
             assert!(line == 6 && said.contains("of another study"), "{line}");
         }
+        let last = [&ours[..], &theirs[1..2]].concat().concat();
+        let (line, said) = damage(last.as_bytes()).unwrap();
+        assert!(line == 6 && said.contains("of another study"), "{line}");
         let nameless = damage(ours[1..].concat().as_bytes());
         assert!(matches!(nameless, Some((1, said)) if said.starts_with("is no record")));
     }
