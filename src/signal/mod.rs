@@ -10,6 +10,7 @@
 //! | [`Smoothing`](SignalStep::Smoothing) | x ← G_w ∗ x along y, then along x | w metres |
 //! | [`Hysteresis`](SensorError::Hysteresis) | x ← (1 − 4w) x + w Σⱼ Pⱼ\[x\], Pⱼ play operators over time | w of the full scale |
 //! | [`Crosstalk`](SensorError::Crosstalk) | xᵢ ← (1 − κ) xᵢ + κ/4 Σ xⱼ over four neighbours | κ a fraction |
+//! | [`MatrixReadout`](SensorError::MatrixReadout) | xᵢⱼ ← X t² (A⁻¹)ᵢⱼ, A the network of taxels and lines, t = 1/ε \[DA\] | ε of a fully pressed taxel's resistance |
 //! | [`Scan`](SensorError::Scan) | xᵢ(t) ← xᵢ(t + T i/n), n taxels read one after another | T seconds |
 //! | [`Gain`](SensorError::Gain) | xᵢ ← gᵢ xᵢ, g log-normal of mean 1 | std of g |
 //! | [`Drift`](SensorError::Drift) | xᵢ ← xᵢ + σ Wᵢ(t), W a Wiener process, t the touch's time | σ of the full scale |
@@ -46,6 +47,7 @@ mod strength;
 sensor_errors! {
     Hysteresis hysteresis "Loading and unloading read differently.";
     Crosstalk crosstalk "Values leak to the neighbours.";
+    MatrixReadout matrix_readout "Taxels of a resistive matrix are read through lines that they share.";
     Gain gain "Each taxel has its own gain.";
     Drift drift "Each taxel's zero drifts from touch to touch.";
     Faults faults "Some taxels are dead or stuck.";
@@ -61,6 +63,7 @@ pub use faults::Faults;
 pub use force::force;
 pub use gain::GainMismatch;
 pub use hysteresis::Hysteresis;
+pub use matrix_readout::MatrixReadout;
 pub use noise::{Noise, NoiseUnit};
 pub use quantisation::Quantisation;
 pub use scan::Scan;

@@ -44,6 +44,7 @@ fn imperfections(times: f64) -> Vec<SignalStep> {
         SensorError::Drift.step(&[0.1 * times], skin),
         SensorError::Faults.step(&[0.1 * times, 0.1 * times], skin),
         SensorError::Quantisation.step(&[(6.0 * times).floor()], skin),
+        SensorError::MatrixReadout.step(&[0.1 * times], skin),
     ]
 }
 
@@ -123,8 +124,8 @@ fn gains_and_faults_stay_with_the_skin_and_zeros_wander_from_touch_to_touch() {
 #[test]
 fn steps_act_in_the_order_of_the_list() {
     let frames = press(1);
-    let [_, crosstalk, _, gain, _, faults, converter] = imperfections(1.0)[..] else {
-        panic!("seven steps");
+    let [_, crosstalk, _, gain, _, faults, converter, _] = imperfections(1.0)[..] else {
+        panic!("eight steps");
     };
     for (first, second) in [(crosstalk, gain), (faults, crosstalk), (converter, NOISE)] {
         let one_way = read(&[first, second], &frames, 0, 4);
@@ -229,6 +230,10 @@ fn a_strength_that_no_skin_has_is_refused_by_name() {
         (
             SensorError::Quantisation.step(&[25.0], skin),
             "converter bits: 25;",
+        ),
+        (
+            SensorError::MatrixReadout.step(&[-0.1], skin),
+            "line resistance: -0.1;",
         ),
     ] {
         let error = Chain::new(&[step], &patch()).unwrap_err();

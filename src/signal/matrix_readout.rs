@@ -1,0 +1,289 @@
+//! Matrix readout: resistive taxels at the crossings of rows and columns are read through lines that they share.
+//!
+//! A taxel conducts in proportion to what it feels: g = x/X, where X is the full scale and a fully pressed taxel conducts 1. A reader puts 1 V
+//! on one row, holds all other lines at 0 V, and takes the current of one column; each line has a resistance ε of its own (wire and
+//! switch), in parts of that of a fully pressed taxel, which is why the taxels of a line are not independent \[DA\]. With t = 1/ε the voltages v
+//! of all lines obey A v = t eᵢ,
+//!
+//! A = ⎡ diag(t + Σⱼ gᵢⱼ)       −G        ⎤  and what is read is  xᵢⱼ ← X t² (A⁻¹)ᵢⱼ,
+//!     ⎣       −Gᵀ        diag(t + Σᵢ gᵢⱼ) ⎦
+//!
+//! exactly, for all rows i and columns j. Two things show: a taxel whose lines carry much reads too little, and where three corners of a
+//! rectangle are pressed the fourth reads too (a ghost). With ε = 0 each taxel is read as it is. A value below zero (noise came before)
+//! conducts nothing and stays.
+//!
+//! \[DA\] D'Alessio, *Measurement errors in the scanning of piezoresistive sensors arrays*, Sensors and Actuators A 72, 1999.
+
+use super::sensor_error::{Effect, ErrorAbout, Strength, TouchRead};
+use super::strength::not_negative;
+use crate::error::Result;
+use crate::world::Grid;
+
+/// A reader of one line resistance, prepared for one grid and full scale.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MatrixReadout {
+    nx: usize,
+    ny: usize,
+    /// ε.
+    resistance: f64,
+    /// X, in the frame's unit.
+    full_scale: f64,
+}
+
+impl MatrixReadout {
+    /// Prepares lines of a resistance ε (zero or more, in parts of that of a fully pressed taxel), for frames of this full scale in their own
+    /// unit.
+    ///
+    /// # Errors
+    /// A resistance that is negative or not finite.
+    pub fn new(resistance: f64, full_scale: f64, grid: &Grid) -> Result<Self> {
+        Ok(Self {
+            nx: grid.nx,
+            ny: grid.ny,
+            resistance: not_negative("line resistance", resistance)?,
+            full_scale,
+        })
+    }
+
+    /// Replaces what a frame of ny × nx taxels feels, in place, by what is read.
+    ///
+    /// # Panics
+    /// When the frame has another size, or the scratch has fewer than nx (nx + 2) numbers.
+    pub fn read(&self, frame: &mut [f64], scratch: &mut [f64]) {
+        assert_eq!(frame.len(), self.nx * self.ny, "one value for each taxel");
+        if self.resistance == 0.0 {
+            return;
+        }
+        let line = 1.0 / self.resistance;
+        let conductance = |&value: &f64| value.max(0.0) / self.full_scale;
+        let (schur, rest) = scratch.split_at_mut(self.nx * self.nx);
+        let (currents, row) = rest.split_at_mut(self.nx);
+        let row = &mut row[..self.nx];
+        // What is left of A when the rows are eliminated: diag(t + Σᵢ gᵢⱼ) − Gᵀ diag(t + Σⱼ gᵢⱼ)⁻¹ G.
+        schur.fill(0.0);
+        currents.fill(0.0);
+        for values in frame.chunks_exact(self.nx) {
+            let total: f64 = values.iter().map(conductance).sum();
+            if total == 0.0 {
+                continue;
+            }
+            for (a, value) in values.iter().enumerate() {
+                let share = conductance(value) / (line + total);
+                currents[a] += conductance(value);
+                if share > 0.0 {
+                    let below = schur[a * self.nx..].iter_mut().zip(&values[..=a]);
+                    below.for_each(|(entry, other)| *entry -= share * conductance(other));
+                }
+            }
+        }
+        for (a, current) in currents.iter().enumerate() {
+            schur[a * self.nx + a] += line + current;
+        }
+        factorise(schur, self.nx);
+        for values in frame.chunks_exact_mut(self.nx) {
+            let total: f64 = values.iter().map(conductance).sum();
+            if total == 0.0 {
+                continue;
+            }
+            for (entry, value) in row.iter_mut().zip(values.iter()) {
+                *entry = conductance(value) / (line + total);
+            }
+            solve(schur, row);
+            for (value, voltage) in values.iter_mut().zip(row.iter()) {
+                *value = value.min(0.0) + self.full_scale * line * line * voltage;
+            }
+        }
+    }
+}
+
+/// The Cholesky factor L of a symmetric matrix whose diagonal outweighs each row, in place of its lower triangle. (One matrix of a line a column
+/// each frame: a crate for it would be the larger part.)
+fn factorise(matrix: &mut [f64], n: usize) {
+    for a in 0..n {
+        let (above, row) = matrix.split_at_mut(a * n);
+        for b in 0..a {
+            let other = &above[b * n..=b * n + b];
+            row[b] = (row[b] - dot(&row[..b], other)) / other[b];
+        }
+        row[a] = (row[a] - dot(&row[..a], &row[..a])).sqrt();
+    }
+}
+
+/// Solves L Lᵀ x = b in place.
+fn solve(factor: &[f64], b: &mut [f64]) {
+    let n = b.len();
+    for a in 0..n {
+        let row = &factor[a * n..=a * n + a];
+        b[a] = (b[a] - dot(&b[..a], row)) / row[a];
+    }
+    for a in (0..n).rev() {
+        let row = &factor[a * n..=a * n + a];
+        b[a] /= row[a];
+        let x = b[a];
+        b[..a].iter_mut().zip(row).for_each(|(b, l)| *b -= l * x);
+    }
+}
+
+/// Of the leading numbers that both have.
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
+}
+
+pub(super) const ABOUT: ErrorAbout = ErrorAbout {
+    taxel_s: |_| 2e-7,
+    ..ErrorAbout::new(
+        "matrix_readout",
+        &[Strength::share(
+            "line_resistance",
+            "line resistance",
+            "zero or a positive part of the resistance of a fully pressed taxel",
+        )],
+        |&[resistance, _], skin| {
+            let (full_scale, grid) = (skin.full_scale, &skin.grid);
+            Ok(Box::new(MatrixReadout::new(resistance, full_scale, grid)?))
+        },
+    )
+};
+
+impl Effect for MatrixReadout {
+    fn scratch_len(&self) -> usize {
+        self.nx * (self.nx + 2)
+    }
+
+    fn apply(&self, frames: &mut [f64], touch: &TouchRead, scratch: &mut [f64]) {
+        let frames = frames.chunks_exact_mut(touch.n_taxels);
+        frames.for_each(|frame| self.read(frame, scratch));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::random::Seed;
+    use rand::Rng;
+
+    const FULL_SCALE: f64 = 5e-3;
+
+    fn read(frame: &[f64], (nx, ny): (usize, usize), resistance: f64) -> Vec<f64> {
+        let pitch = 2e-3;
+        let readout = MatrixReadout::new(resistance, FULL_SCALE, &Grid { nx, ny, pitch }).unwrap();
+        let mut out = frame.to_vec();
+        readout.read(&mut out, &mut vec![f64::NAN; nx * (nx + 2) + 5]);
+        out
+    }
+
+    /// Some taxels pressed, some not.
+    fn pressed(n: usize, case: u64) -> Vec<f64> {
+        let mut rng = Seed::new(3).numbered(case).rng();
+        let value = |_| FULL_SCALE * rng.gen_range(-1.0..1.0_f64).max(0.0);
+        (0..n).map(value).collect()
+    }
+
+    /// Kirchhoff's law at every line, row by row, by elimination: the currents that columns give while a row is driven.
+    fn network(frame: &[f64], (nx, ny): (usize, usize), resistance: f64) -> Vec<f64> {
+        let line = 1.0 / resistance;
+        let mut out = Vec::new();
+        for driven in 0..ny {
+            let n = nx + ny;
+            let mut a = vec![vec![0.0; n + 1]; n];
+            for (k, equation) in a.iter_mut().enumerate() {
+                equation[k] = line;
+            }
+            a[driven][n] = line;
+            for (taxel, value) in frame.iter().enumerate() {
+                let (i, j) = (taxel / nx, ny + taxel % nx);
+                let g = value / FULL_SCALE;
+                for (one, other) in [(i, j), (j, i)] {
+                    a[one][one] += g;
+                    a[one][other] -= g;
+                }
+            }
+            for k in 0..n {
+                let pivot = a[k].clone();
+                for (row, equation) in a.iter_mut().enumerate() {
+                    let part = equation[k] / pivot[k];
+                    if row != k {
+                        let pairs = equation.iter_mut().zip(&pivot);
+                        pairs.for_each(|(entry, p)| *entry -= part * p);
+                    }
+                }
+            }
+            let voltage = |column: usize| a[ny + column][n] / a[ny + column][ny + column];
+            out.extend((0..nx).map(|column| FULL_SCALE * line * voltage(column)));
+        }
+        out
+    }
+
+    #[test]
+    fn it_is_the_current_of_the_network_of_lines_and_taxels() {
+        for (case, &(nx, ny)) in [(1, 1), (1, 6), (5, 1), (7, 4), (6, 9)].iter().enumerate() {
+            let frame = pressed(nx * ny, case as u64);
+            for resistance in [1e-6, 0.01, 0.3, 20.0] {
+                let expected = network(&frame, (nx, ny), resistance);
+                for (out, expected) in read(&frame, (nx, ny), resistance).iter().zip(&expected) {
+                    let error = (out - expected).abs();
+                    assert!(
+                        error < 1e-12 * FULL_SCALE,
+                        "{nx} × {ny}, {resistance}: {error}"
+                    );
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn lines_without_resistance_read_each_taxel_as_it_is() {
+        let frame = pressed(20, 1);
+        assert_eq!(read(&frame, (5, 4), 0.0), frame);
+        // One taxel alone is in series with its two lines.
+        let one = read(&[FULL_SCALE], (1, 1), 0.25)[0];
+        assert!((one - FULL_SCALE / 1.5).abs() < 1e-17);
+        // Below zero nothing conducts.
+        assert_eq!(read(&[-1e-3, 0.0], (2, 1), 0.25), [-1e-3, 0.0]);
+    }
+
+    #[test]
+    fn three_corners_of_a_rectangle_show_the_fourth_and_two_show_no_other() {
+        let mut frame = vec![0.0; 20]; // 5 × 4
+        (frame[6], frame[16]) = (FULL_SCALE, FULL_SCALE); // column 1 of rows 1 and 3
+        let out = read(&frame, (5, 4), 0.1);
+        assert!(
+            out.iter()
+                .zip(&frame)
+                .all(|(out, felt)| (*out > 0.0) == (*felt > 0.0))
+        );
+        frame[18] = FULL_SCALE; // column 3 of row 3
+        let out = read(&frame, (5, 4), 0.1);
+        let ghost = out[8] / FULL_SCALE; // column 3 of row 1
+        assert!((0.005..0.1).contains(&ghost), "{ghost}");
+        // The line that two taxels share carries more: both read less.
+        assert!(out[16] < out[6] && out[18] > out[16]);
+    }
+
+    #[test]
+    fn rows_and_columns_may_change_places() {
+        let (nx, ny) = (6, 3);
+        let frame = pressed(nx * ny, 8);
+        let transposed: Vec<f64> = (0..nx * ny).map(|k| frame[k % ny * nx + k / ny]).collect();
+        let (out, other) = (
+            read(&frame, (nx, ny), 0.2),
+            read(&transposed, (ny, nx), 0.2),
+        );
+        for (k, value) in other.iter().enumerate() {
+            assert!((value - out[k % ny * nx + k / ny]).abs() < 1e-17);
+        }
+    }
+
+    #[test]
+    fn a_resistance_below_zero_is_refused() {
+        let grid = Grid {
+            nx: 2,
+            ny: 2,
+            pitch: 1e-3,
+        };
+        for resistance in [-0.1, f64::NAN, f64::INFINITY] {
+            let error = MatrixReadout::new(resistance, 1.0, &grid).unwrap_err();
+            assert!(error.to_string().starts_with("line resistance"), "{error}");
+        }
+    }
+}
