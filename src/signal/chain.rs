@@ -1,12 +1,16 @@
 //! Signal steps in the order in which the study lists them.
 
-use super::{Effect, Noise, Quantity, SignalStep, Skin, Smoothing, TouchRead, force, noise};
+use super::read_skin::Shape;
+use super::surface_smoothing::SurfaceSmoothing;
+use super::{
+    Effect, Noise, Quantity, ReadSkin, SignalStep, Skin, Smoothing, TouchRead, force, noise,
+};
 use crate::error::{Error, Result};
 use crate::random::Seed;
-use crate::world::{Grid, Patch, Taxel};
+use crate::world::Taxel;
 use std::sync::Arc;
 
-/// Checked signal steps, prepared for one patch. The empty chain leaves deflections as they are.
+/// Checked signal steps, prepared for one patch of any layout. The empty chain leaves deflections as they are.
 ///
 /// ```
 /// use bubbletouch::random::Seed;
@@ -28,7 +32,7 @@ pub struct Chain {
     steps: Vec<Prepared>,
     /// Leading steps that a touch's history passes through, the last of them one that remembers it; 0 if none does.
     n_remembering: usize,
-    grid: Grid,
+    n_taxels: usize,
     taxel: Taxel,
     quantity: Quantity,
     scratch_len: usize,
@@ -56,23 +60,29 @@ pub struct Scratch(Vec<f64>);
 #[derive(Clone, Debug)]
 enum Prepared {
     Force,
-    Noise { std: f64, place: u64 },
+    Noise {
+        std: f64,
+        place: u64,
+    },
     Smoothing(Smoothing),
-    Error(Arc<dyn Effect>),
+    /// A sensor error, or a smoothing of a skin that is no grid.
+    Effect(Arc<dyn Effect>),
 }
 
 impl Chain {
-    /// Checks the steps in their order and prepares them for the patch's grid and taxels.
+    /// Checks the steps in their order and prepares them for the layout and the taxels of a patch: a [`Patch`](crate::world::Patch) or a
+    /// [`SkinPatch`](crate::world::SkinPatch).
     ///
     /// # Errors
     /// Force listed twice; a noise level or unit that the frame does not have by then (see [`Noise::std_of`]); a
-    /// strength out of its step's range (see each step's own type).
-    pub fn new(steps: &[SignalStep], patch: &Patch) -> Result<Self> {
+    /// strength out of its step's range (see each step's own type); taxels that do not read alike; a step that this layout cannot have.
+    pub fn new<'s>(steps: &[SignalStep], skin: impl Into<ReadSkin<'s>>) -> Result<Self> {
+        let skin = skin.into();
         let mut chain = Self {
             steps: Vec::with_capacity(steps.len()),
             n_remembering: 0,
-            grid: patch.grid,
-            taxel: patch.taxel,
+            n_taxels: skin.n_taxels(),
+            taxel: skin.taxel()?,
             quantity: Quantity::Deflection,
             scratch_len: 0,
         };
@@ -80,7 +90,7 @@ impl Chain {
         for step in steps {
             n_noises += u64::from(matches!(step, SignalStep::Noise(_)));
             let n_before = chain.steps.len();
-            let prepared = chain.prepare(step, n_noises)?;
+            let prepared = chain.prepare(step, n_noises, &skin)?;
             chain.steps.extend(prepared);
             if chain.steps.len() > n_before && step.remembers() {
                 chain.n_remembering = chain.steps.len();
@@ -172,7 +182,7 @@ impl Chain {
                 let frames = frames.chunks_exact_mut(n_taxels);
                 frames.for_each(|frame| smoothing.apply(frame, scratch));
             }
-            Prepared::Error(effect) => {
+            Prepared::Effect(effect) => {
                 let touch = TouchRead {
                     n_taxels,
                     n_before: recording.n_before,
@@ -185,31 +195,34 @@ impl Chain {
     }
 
     fn n_taxels(&self) -> usize {
-        self.grid.n_taxels()
+        self.n_taxels
     }
 
     /// The step for frames as they are by now; none if it has no strength.
-    fn prepare(&mut self, step: &SignalStep, n_noises: u64) -> Result<Option<Prepared>> {
+    fn prepare(
+        &mut self,
+        step: &SignalStep,
+        n_noises: u64,
+        skin: &ReadSkin,
+    ) -> Result<Option<Prepared>> {
         Ok(Some(match step {
             SignalStep::Force => self.prepare_force()?,
             SignalStep::Noise(noise) => self.prepare_noise(noise, n_noises)?,
-            SignalStep::Smoothing { width } => self.prepare_smoothing(*width)?,
+            SignalStep::Smoothing { width } => self.prepare_smoothing(*width, skin)?,
             SignalStep::Error { strengths, .. } if strengths.iter().all(|&s| s == 0.0) => {
                 return Ok(None);
             }
             SignalStep::Error {
                 error,
                 strengths,
-                skin,
+                skin: name,
             } => {
                 let skin = Skin {
-                    grid: self.grid,
+                    taxels: *skin,
                     full_scale: self.quantity.full_scale(&self.taxel),
-                    name: *skin,
+                    name: *name,
                 };
-                let effect = (error.about().prepare)(strengths, &skin)?;
-                self.scratch_len = self.scratch_len.max(effect.scratch_len());
-                Prepared::Error(effect.into())
+                self.prepare_effect((error.about().prepare)(strengths, &skin)?)
             }
         }))
     }
@@ -231,10 +244,22 @@ impl Chain {
         Ok(Prepared::Noise { std, place })
     }
 
-    fn prepare_smoothing(&mut self, width: f64) -> Result<Prepared> {
-        let smoothing = Smoothing::new(width, &self.grid)?;
+    fn prepare_smoothing(&mut self, width: f64, skin: &ReadSkin) -> Result<Prepared> {
+        let grid = match skin.shape() {
+            Shape::Grid(grid) => grid,
+            Shape::Surface(surface) => {
+                let smoothing = SurfaceSmoothing::new(width, surface)?;
+                return Ok(self.prepare_effect(Box::new(smoothing)));
+            }
+        };
+        let smoothing = Smoothing::new(width, &grid)?;
         self.scratch_len = self.scratch_len.max(smoothing.scratch_len());
         Ok(Prepared::Smoothing(smoothing))
+    }
+
+    fn prepare_effect(&mut self, effect: Box<dyn Effect>) -> Prepared {
+        self.scratch_len = self.scratch_len.max(effect.scratch_len());
+        Prepared::Effect(effect.into())
     }
 }
 

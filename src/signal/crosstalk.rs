@@ -6,10 +6,11 @@
 //! but adds none. Four neighbours and not eight, because coupling falls with distance: a diagonal one gets its share by
 //! leaking twice.
 
+use super::read_skin::Shape;
 use super::sensor_error::{Effect, ErrorAbout, Strength, TouchRead};
 use super::strength::fraction;
 use crate::error::Result;
-use crate::world::Grid;
+use crate::world::{Grid, Neighbours};
 
 /// A leak, prepared for one grid.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -56,8 +57,42 @@ impl Crosstalk {
 pub(super) const ABOUT: ErrorAbout = ErrorAbout::new(
     "crosstalk",
     &[Strength::fraction("crosstalk", "crosstalk")],
-    |&[leak, _], skin| Ok(Box::new(Crosstalk::new(leak, &skin.grid)?)),
+    |&[leak, _], skin| {
+        Ok(match skin.taxels.shape() {
+            Shape::Grid(grid) => Box::new(Crosstalk::new(leak, &grid)?),
+            Shape::Surface(surface) => Box::new(SurfaceLeak {
+                leak: fraction("crosstalk", leak)?,
+                neighbours: Neighbours::of(surface),
+            }),
+        })
+    },
 );
+
+/// A leak to the neighbours on a skin that is no grid.
+#[derive(Debug)]
+struct SurfaceLeak {
+    leak: f64,
+    neighbours: Neighbours,
+}
+
+impl Effect for SurfaceLeak {
+    fn scratch_len(&self) -> usize {
+        self.neighbours.n_taxels()
+    }
+
+    fn apply(&self, frames: &mut [f64], touch: &TouchRead, scratch: &mut [f64]) {
+        let share = self.leak / self.neighbours.most().max(1) as f64;
+        for frame in frames.chunks_exact_mut(touch.n_taxels) {
+            let felt = &mut scratch[..frame.len()];
+            felt.copy_from_slice(frame);
+            for (taxel, out) in frame.iter_mut().enumerate() {
+                let differences = self.neighbours.of_taxel(taxel);
+                let differences = differences.map(|other| felt[other] - felt[taxel]);
+                *out += share * differences.sum::<f64>();
+            }
+        }
+    }
+}
 
 impl Effect for Crosstalk {
     fn scratch_len(&self) -> usize {

@@ -67,7 +67,7 @@ pub(super) const ABOUT: ErrorAbout = ErrorAbout {
                 stuck,
                 skin: skin.name,
             };
-            let taxels = faults.taxels(skin.grid.n_taxels(), skin.full_scale)?;
+            let taxels = faults.taxels(skin.taxels.n_taxels(), skin.full_scale)?;
             Ok(Box::new(Levels(taxels)))
         },
     )

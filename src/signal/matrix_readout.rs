@@ -14,9 +14,10 @@
 //!
 //! \[DA\] D'Alessio, *Measurement errors in the scanning of piezoresistive sensors arrays*, Sensors and Actuators A 72, 1999.
 
+use super::read_skin::Shape;
 use super::sensor_error::{Effect, ErrorAbout, Strength, TouchRead};
 use super::strength::not_negative;
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::world::Grid;
 
 /// A reader of one line resistance, prepared for one grid and full scale.
@@ -139,8 +140,16 @@ pub(super) const ABOUT: ErrorAbout = ErrorAbout {
             "zero or a positive part of the resistance of a fully pressed taxel",
         )],
         |&[resistance, _], skin| {
-            let (full_scale, grid) = (skin.full_scale, &skin.grid);
-            Ok(Box::new(MatrixReadout::new(resistance, full_scale, grid)?))
+            let Shape::Grid(grid) = skin.taxels.shape() else {
+                let allowed = "a grid: a matrix has rows and columns";
+                return Err(Error::input(
+                    "matrix readout",
+                    "a skin that is no grid",
+                    allowed,
+                ));
+            };
+            let readout = MatrixReadout::new(resistance, skin.full_scale, &grid)?;
+            Ok(Box::new(readout))
         },
     )
 };

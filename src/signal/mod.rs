@@ -1,7 +1,8 @@
 //! Signal: deflections → frames.
 //!
 //! A [`Chain`] is a list of [`SignalStep`]s, applied to one frame at a time in the order in which the study lists them.
-//! A frame is ny × nx numbers, one per taxel, row = patch y, ascending, stored row after row.
+//! A frame is one number per taxel: ny × nx on a grid, row = patch y, ascending, stored row after row; else in the order of the layout.
+//! Crosstalk and smoothing go over the [neighbours](crate::world::Neighbours) of a layout that is no grid; a matrix readout needs a grid.
 //!
 //! | step | equation | symbols |
 //! |---|---|---|
@@ -37,11 +38,13 @@
 mod chain;
 mod force;
 mod noise;
+mod read_skin;
 #[macro_use]
 mod sensor_error;
 mod smoothing;
 mod step;
 mod strength;
+mod surface_smoothing;
 
 // Everything that a study may say of a sensor error follows from its line here and from the file that it names.
 sensor_errors! {
@@ -66,6 +69,7 @@ pub use hysteresis::Hysteresis;
 pub use matrix_readout::MatrixReadout;
 pub use noise::{Noise, NoiseUnit};
 pub use quantisation::Quantisation;
+pub use read_skin::{ReadSkin, Shape};
 pub use scan::Scan;
 pub use sensor_error::{Effect, ErrorAbout, MOST_STRENGTHS, Prepare, Skin, Strength, TouchRead};
 pub use smoothing::Smoothing;

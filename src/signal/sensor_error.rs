@@ -1,9 +1,8 @@
 //! What a sensor error says of itself: its step, its strengths, what it belongs to, what it costs, and how it is made.
 
-use super::{SENSOR_ERRORS, SensorError, SignalStep};
+use super::{ReadSkin, SENSOR_ERRORS, SensorError, SignalStep};
 use crate::error::Result;
 use crate::random::Seed;
-use crate::world::Grid;
 use std::fmt::Debug;
 
 /// A number that says how strong a sensor error is; zero is none of it.
@@ -52,9 +51,9 @@ pub const MOST_STRENGTHS: usize = 2;
 
 /// Whose signal it is.
 #[derive(Clone, Copy, Debug)]
-pub struct Skin {
+pub struct Skin<'a> {
     /// Its taxels.
-    pub grid: Grid,
+    pub taxels: ReadSkin<'a>,
     /// The value of a taxel at its stroke: metres, or newtons.
     pub full_scale: f64,
     /// The name of the piece of hardware, the same in each touch.

@@ -16,6 +16,7 @@ mod layout_flat;
 mod layout_order;
 mod mass;
 mod motion;
+mod neighbours;
 mod patch;
 mod per_taxel;
 mod placement;
@@ -38,6 +39,7 @@ pub use human_touch::{HandState, HumanTouch, TOUCH_KINDS, TouchKind, TouchRanges
 pub use layout::{Layout, MOST_TAXELS};
 pub use mass::center_of_mass;
 pub use motion::{Interpolation, JointTrajectory, Motion, PoseTrajectory};
+pub use neighbours::Neighbours;
 pub use patch::{Grid, Patch, Taxel};
 pub use per_taxel::PerTaxel;
 pub use placement::{Placement, RestPoses, Spread, Touch, TouchAxis};

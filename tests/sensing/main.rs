@@ -9,4 +9,5 @@ mod sensing_reconstruction;
 mod signal_allocation;
 mod signal_chain;
 mod signal_imperfections;
+mod signal_layouts;
 mod signal_limits;

@@ -1,0 +1,86 @@
+//! Gaussian smoothing on a skin that is no grid.
+//!
+//! xᵢ ← Σⱼ wᵢⱼ xⱼ / Σⱼ wᵢⱼ, wᵢⱼ = exp(−½ (dᵢⱼ / w)²), over all taxels whose distance d along the surface ([`Neighbours`]) is at most 4 w; w is
+//! the width (σ) in metres, as on a [grid](super::Smoothing). Beyond an edge is nothing, and an even frame stays even.
+
+use super::sensor_error::{Effect, TouchRead};
+use crate::error::{Error, Result};
+use crate::world::{Neighbours, SkinPatch};
+
+/// The kernel's reach in widths.
+const TRUNCATE: f64 = 4.0;
+/// Weights, at most: a gigabyte.
+const MOST_WEIGHTS: usize = 1 << 26;
+
+/// A smoothing of one width, prepared for one skin.
+#[derive(Debug)]
+pub(super) struct SurfaceSmoothing {
+    /// Where the weights of each taxel begin, and behind the last where they end.
+    starts: Vec<usize>,
+    taxels: Vec<u32>,
+    /// Of sum 1, taxel by taxel.
+    weights: Vec<f64>,
+}
+
+impl SurfaceSmoothing {
+    /// Prepares a width (σ, metres, zero or positive).
+    ///
+    /// # Errors
+    /// A negative or non-finite width; one that reaches so many taxels that their weights have no room.
+    pub fn new(width: f64, skin: &SkinPatch) -> Result<Self> {
+        let refused =
+            |allowed: &str| Error::input("smoothing width", format!("{width} m"), allowed);
+        if !(width >= 0.0 && width.is_finite()) {
+            return Err(refused("zero or a positive number"));
+        }
+        let neighbours = Neighbours::of(skin);
+        let mut smoothing = Self {
+            starts: vec![0],
+            taxels: Vec::new(),
+            weights: Vec::new(),
+        };
+        for taxel in 0..skin.n_taxels() {
+            let mut near = neighbours.within(skin, taxel, TRUNCATE * width);
+            if smoothing.taxels.len() + near.len() > MOST_WEIGHTS {
+                return Err(refused(
+                    "fewer than 67,108,864 pairs of taxels within four widths",
+                ));
+            }
+            near.sort_unstable_by_key(|(other, _)| *other);
+            let weight = |distance: f64| match distance == 0.0 {
+                true => 1.0,
+                false => (-0.5 * (distance / width).powi(2)).exp(),
+            };
+            let sum: f64 = near.iter().map(|(_, distance)| weight(*distance)).sum();
+            for (other, distance) in near {
+                smoothing.taxels.push(other as u32);
+                smoothing.weights.push(weight(distance) / sum);
+            }
+            smoothing.starts.push(smoothing.taxels.len());
+        }
+        Ok(smoothing)
+    }
+}
+
+impl Effect for SurfaceSmoothing {
+    fn scratch_len(&self) -> usize {
+        self.starts.len() - 1
+    }
+
+    fn apply(&self, frames: &mut [f64], touch: &TouchRead, scratch: &mut [f64]) {
+        for frame in frames.chunks_exact_mut(touch.n_taxels) {
+            let felt = &mut scratch[..frame.len()];
+            felt.copy_from_slice(frame);
+            for (out, ends) in frame.iter_mut().zip(self.starts.windows(2)) {
+                let (taxels, weights) = (
+                    &self.taxels[ends[0]..ends[1]],
+                    &self.weights[ends[0]..ends[1]],
+                );
+                let parts = taxels.iter().zip(weights);
+                *out = parts
+                    .map(|(&other, weight)| weight * felt[other as usize])
+                    .sum();
+            }
+        }
+    }
+}
