@@ -3,7 +3,7 @@
 use super::recording::{ForceKind, RecordedPatch, RecordingHeader, RecordingWriter};
 use crate::error::Result;
 use crate::files::{CsvFile, write_bytes};
-use crate::scene::{Frame, FrameSink, PatchReading, PlannedPatch, ScenePlan};
+use crate::scene::{Frame, FrameSink, PatchReading, PlannedPatch, PlannedSignal, ScenePlan};
 use serde::Serialize;
 use std::path::{Path, PathBuf};
 
@@ -124,5 +124,6 @@ fn recorded(patch: &PlannedPatch) -> RecordedPatch {
             Some(_) => ForceKind::Vector,
             None => ForceKind::Normal,
         },
+        signal: patch.signal.as_ref().map(PlannedSignal::quantity),
     }
 }

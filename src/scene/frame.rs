@@ -26,6 +26,8 @@ pub struct PatchReading {
     /// n_taxels, newtons along the axes, never negative; zero on a taxel that only relaxes. Of a taxel at its stroke that carries a free
     /// object, with the reaction of its stop; of an imposed object, what stops carry is not known and not counted.
     pub force: Vec<f64>,
+    /// n_taxels, what the patch's signal reads: metres or newtons. Of a patch with a signal.
+    pub signal: Option<Vec<f64>>,
     /// Taxels with a force.
     pub n_touched: usize,
     /// Taxels at their stroke that an object would push further, or whose stop carries a free object.

@@ -1,6 +1,7 @@
 //! Skin of a scene: layouts and taxels, and what carries them.
 
 use super::plan_robot::PlannedRobot;
+use super::plan_signal::PlannedSignal;
 use super::reader::{MM, Reader};
 use super::spec::{LayoutSpec, PatchSpec};
 use crate::error::Result;
@@ -20,6 +21,8 @@ pub struct PlannedPatch {
     pub mount: Mount,
     /// The shear springs of its taxels, if it has friction.
     pub shears: Option<Shears>,
+    /// Its signal, if it has any steps.
+    pub signal: Option<PlannedSignal>,
 }
 
 /// What carries a patch.
@@ -96,6 +99,7 @@ impl Reader<'_> {
             self.under(key, shears.check(&skin))?;
         }
         Ok(PlannedPatch {
+            signal: self.signal(key, &spec.signal, &skin, seed)?,
             skin,
             mount: self.mount(key, spec, robots)?,
             shears,

@@ -11,6 +11,7 @@ use super::skin_state::{PlacedObjects, SkinState};
 use crate::contact::Wrench;
 use crate::error::Result;
 use crate::geometry::Pose;
+use crate::signal::Scratch;
 
 /// Whether to step where nothing is remembered from step to step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -32,6 +33,7 @@ pub struct Simulation<'p> {
     pressed: PressedObjects,
     free: FreeObjects,
     frame: Frame,
+    scratch: Scratch,
     next_frame: usize,
     n_steps: usize,
 }
@@ -60,6 +62,7 @@ impl<'p> Simulation<'p> {
             pressed: PressedObjects::of(plan),
             free: FreeObjects::of(plan),
             frame,
+            scratch: Scratch::default(),
             next_frame: 0,
             n_steps: 0,
             plan,
@@ -162,6 +165,10 @@ impl<'p> Simulation<'p> {
         for (number, ((skin, patch), reading)) in patches {
             let stops = self.free.stops(number);
             skin.step_and_read(patch, &plan.models, &self.objects, dt, stops, reading);
+            if let Some(signal) = &patch.signal {
+                let share = self.next_frame as f64 / (plan.n_frames - 1).max(1) as f64;
+                signal.read(reading, (self.next_frame, share), &mut self.scratch);
+            }
         }
         for (reading, &pose) in self.frame.objects.iter_mut().zip(&self.objects.poses) {
             reading.pose = pose;
@@ -177,6 +184,7 @@ fn untouched(patch: &PlannedPatch) -> PatchReading {
         pose: Pose::IDENTITY,
         deflection: vec![0.0; n_taxels],
         force: vec![0.0; n_taxels],
+        signal: None,
         n_touched: 0,
         n_saturated: 0,
         n_grazing: 0,

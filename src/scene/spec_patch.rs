@@ -4,6 +4,7 @@ use super::numbers::Numbers;
 use super::spec::PoseSpec;
 use crate::mesh::LengthUnit;
 use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
 use std::path::PathBuf;
 
 /// `[[patches]]`: skin.
@@ -45,6 +46,19 @@ pub struct PatchSpec {
     /// A file with a row a taxel: columns under the names of the keys above, those that differ.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub taxels_csv: Option<PathBuf>,
+    /// What its electronics make of what it feels, step by step.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub signal: Vec<SignalStepSpec>,
+}
+
+/// A step of `signal = ["force", { noise_std_n = 0.1 }, { dead_fraction = 0.01 }]`: the keys of a study's `[signal]`.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(untagged)]
+pub enum SignalStepSpec {
+    /// `"force"`, as the first: the signal begins with forces and not with deflections.
+    Word(String),
+    /// How strong a step is; two keys of one step may stand together.
+    Strengths(BTreeMap<String, f64>),
 }
 
 /// `layout = { grid = { nx = 64, ny = 64, pitch_mm = 2.0 } }`: see [`Layout`](crate::world::Layout).

@@ -50,6 +50,8 @@ pub struct Recording<'a> {
     pub n_before: usize,
     /// Seconds between frames; `None` when the press waits at each frame until it is read.
     pub interval: Option<f64>,
+    /// The share of the session that has gone, 0 to 1; `None` for a touch of a session whose touches come in any order: its name decides.
+    pub time: Option<f64>,
 }
 
 /// Working memory of [`Chain::apply`]: one per thread, any chain; it grows to the largest frame it has seen.
@@ -77,13 +79,25 @@ impl Chain {
     /// Force listed twice; a noise level or unit that the frame does not have by then (see [`Noise::std_of`]); a
     /// strength out of its step's range (see each step's own type); taxels that do not read alike; a step that this layout cannot have.
     pub fn new<'s>(steps: &[SignalStep], skin: impl Into<ReadSkin<'s>>) -> Result<Self> {
+        Self::of(steps, skin, Quantity::Deflection)
+    }
+
+    /// The same of frames that are something else than deflections when they come.
+    ///
+    /// # Errors
+    /// Those of [`new`](Self::new).
+    pub fn of<'s>(
+        steps: &[SignalStep],
+        skin: impl Into<ReadSkin<'s>>,
+        quantity: Quantity,
+    ) -> Result<Self> {
         let skin = skin.into();
         let mut chain = Self {
             steps: Vec::with_capacity(steps.len()),
             n_remembering: 0,
             n_taxels: skin.n_taxels(),
             taxel: skin.taxel()?,
-            quantity: Quantity::Deflection,
+            quantity,
             scratch_len: 0,
         };
         let mut n_noises = 0;
@@ -128,6 +142,7 @@ impl Chain {
             rates,
             n_before: 0,
             interval: None,
+            time: None,
         };
         self.apply_recording(recording, touch, scratch);
     }
@@ -187,6 +202,7 @@ impl Chain {
                     n_taxels,
                     n_before: recording.n_before,
                     interval: recording.interval,
+                    time: recording.time,
                     seed: touch,
                 };
                 effect.apply(frames, &touch, scratch);

@@ -116,7 +116,7 @@ impl Effect for Zeros {
 
     fn apply(&self, frames: &mut [f64], touch: &TouchRead, scratch: &mut [f64]) {
         let now = &mut scratch[..self.n_taxels];
-        self.at(time_of(touch.seed), now);
+        self.at(touch.time.unwrap_or_else(|| time_of(touch.seed)), now);
         for frame in frames.chunks_exact_mut(self.n_taxels) {
             for (value, zero) in frame.iter_mut().zip(&*now) {
                 *value += zero;

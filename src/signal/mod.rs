@@ -78,7 +78,7 @@ pub use step::SignalStep;
 use crate::world::Taxel;
 
 /// What the numbers of a frame are.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Quantity {
     /// Metres.

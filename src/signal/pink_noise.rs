@@ -79,6 +79,7 @@ mod tests {
             n_taxels: n_readings,
             n_before: 0,
             interval: None,
+            time: None,
             seed: &seed,
         };
         PinkNoise { std: 1.0 }.apply(&mut readings, &touch, &mut []);

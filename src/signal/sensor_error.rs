@@ -80,6 +80,8 @@ pub struct TouchRead<'a> {
     pub n_before: usize,
     /// Seconds between frames; `None` when the press waits at each until it is read.
     pub interval: Option<f64>,
+    /// The share of the session that has gone, 0 to 1; `None` when the touch's name decides.
+    pub time: Option<f64>,
     /// The touch's own name.
     pub seed: &'a Seed,
 }

@@ -267,6 +267,7 @@ fn measure_block(
             frames,
             n_before,
             interval: touch.interval,
+            time: None,
         };
         chain.apply_recording(recording, &touch.seed, &mut working.scratch);
         out.copy_from_slice(&working.with_history[2 * n_taxels..]);

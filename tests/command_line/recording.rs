@@ -27,6 +27,7 @@ fn recorded() -> Case {
         axes,
         grid: None,
         force: ForceKind::Vector,
+        signal: None,
     };
     let header = RecordingHeader {
         patches: vec![

@@ -34,6 +34,7 @@ fn header() -> RecordingHeader {
         axes,
         grid: None,
         force: ForceKind::Vector,
+        signal: None,
     };
     RecordingHeader {
         patches: vec![RecordedPatch::of_grid("palm", GRID, ForceKind::Normal), tip],

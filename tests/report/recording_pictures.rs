@@ -44,6 +44,7 @@ fn tube() -> RecordedPatch {
         axes,
         grid: None,
         force: ForceKind::Normal,
+        signal: None,
     }
 }
 

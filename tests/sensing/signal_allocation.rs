@@ -49,6 +49,7 @@ fn touches_after_the_first_allocate_nothing() {
             rates: Some(&rates),
             n_before: 1,
             interval: Some(0.1),
+            time: None,
         };
         chain.apply_recording(recording, &seed, &mut scratch);
     };

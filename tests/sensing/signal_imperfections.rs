@@ -65,6 +65,7 @@ fn read(steps: &[SignalStep], frames: &[f64], n_before: usize, touch: u64) -> Ve
         rates: None,
         n_before,
         interval: Some(0.04),
+        time: None,
     };
     let chain = Chain::new(steps, &patch()).unwrap();
     let touch = Seed::new(2018).numbered(touch);

@@ -216,6 +216,7 @@ fn a_touch_is_read_as_a_press_that_goes_on_after_another_touch() {
             rates: None,
             n_before: 2,
             interval: Some(touch.depth / 0.02 / 2.0),
+            time: None,
         };
         chain.apply_recording(recording, &name, &mut Scratch::default());
         assert_eq!(rows.row(row).to_vec(), frames[2 * n..], "touch {row}");

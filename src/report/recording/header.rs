@@ -34,6 +34,9 @@ pub struct RecordedPatch {
     pub grid: Option<Grid>,
     /// What is recorded of the forces.
     pub force: ForceKind,
+    /// What its signal is in, of a patch that has one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub signal: Option<Quantity>,
 }
 
 impl RecordedPatch {
@@ -53,6 +56,7 @@ impl RecordedPatch {
             axes: vec![DVec3::Z; grid.n_taxels()],
             grid: Some(grid),
             force,
+            signal: None,
         }
     }
 
@@ -167,7 +171,7 @@ impl RecordingHeader {
         Ok(())
     }
 
-    /// Members with one row a frame: time, then deflection, force and pose of each patch, then each object's pose.
+    /// Members with one row a frame: time, then deflection, force, signal (where there is one) and pose of each patch, then each object's pose.
     pub(super) fn members(&self) -> Vec<Member> {
         use Element::{Double, Single};
         let pose = |name: &String| Member::new(format!("{name}/pose"), Double, &[7]);
@@ -180,6 +184,8 @@ impl RecordingHeader {
             };
             members.push(Member::new(format!("{name}/deflection"), Single, &[n]));
             members.push(Member::new(format!("{name}/force"), Single, force));
+            let signal = patch.signal.map(|_| format!("{name}/signal"));
+            members.extend(signal.map(|name| Member::new(name, Single, &[n])));
             members.push(pose(name));
         }
         members.extend(self.objects.iter().map(pose));
@@ -188,11 +194,10 @@ impl RecordingHeader {
 
     /// The member with what a patch reported.
     pub(super) fn member(&self, patch: usize, quantity: Quantity) -> Member {
-        let first = 1 + 3 * patch;
-        self.members().swap_remove(match quantity {
-            Quantity::Deflection => first,
-            Quantity::Force => first + 1,
-        })
+        let name = format!("{}/{}", self.patches[patch].name, quantity.name());
+        let mut members = self.members().into_iter();
+        let member = members.find(|member| member.name == name);
+        member.expect("a patch has a member of each quantity")
     }
 
     /// The text of `meta`.

@@ -12,6 +12,7 @@
 //! | `PATCH/axes` | n_taxels × 3 | f64, unit vectors, patch frame: away from the substrate |
 //! | `PATCH/deflection` | n_frames × n_taxels | f32, metres |
 //! | `PATCH/force` | n_frames × n_taxels (normal) or n_frames × n_taxels × 3 (vectors, patch frame) | f32, newtons |
+//! | `PATCH/signal` | n_frames × n_taxels, of a patch with a signal | f32, metres or newtons (`meta` says which) |
 //! | `PATCH/pose` | n_frames × 7 | f64, world from patch: x, y, z in metres, unit quaternion x, y, z, w |
 //! | `OBJECT/pose` | n_frames × 7 | f64, world from object, the same |
 //!

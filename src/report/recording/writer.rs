@@ -184,6 +184,7 @@ fn numbers(frame: &Frame) -> Vec<Vec<f64>> {
             Some(friction) => friction.force3.iter().flat_map(|f| f.to_array()).collect(),
             None => patch.force.clone(),
         });
+        numbers.extend(patch.signal.clone());
         numbers.push(seven(&patch.pose));
     }
     numbers.extend(frame.objects.iter().map(|object| seven(&object.pose)));

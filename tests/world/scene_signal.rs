@@ -1,0 +1,163 @@
+//! Signals of skins in scenes: a chain by hand, frame by frame; what cannot be one is refused by its key.
+
+use bubbletouch::random::Seed;
+use bubbletouch::report::scene_files::SceneFiles;
+use bubbletouch::scene::{Frame, ScenePlan, SceneSpec, Simulation, Stepping};
+use bubbletouch::signal::{
+    Chain, Noise, NoiseUnit, Quantity, Recording, Scratch, SensorError, SignalStep,
+};
+use ndarray::Array2;
+use ndarray_npy::NpzReader;
+use std::path::Path;
+
+fn try_plan(signal: &str) -> bubbletouch::Result<ScenePlan> {
+    let text = format!(
+        r#"
+        title = "A ball on a finger"
+        output_hz = 50.0
+        [[patches]]
+        name = "finger"
+        layout = {{ cylinder = {{ radius_mm = 9.0, length_mm = 24.0, arc_deg = 200.0, pitch_mm = 2.0 }} }}
+        stroke_mm = 4.0
+        damping_n_s_per_m = 1.5
+        {signal}
+        [[objects]]
+        name = "ball"
+        object = "golf"
+        at = {{ position_mm = [35.0, 0.0, -21.0] }}
+        motion = {{ phases = [{{ duration_s = 0.2, linear_mm_per_s = [-30.0, 10.0, 0.0] }}] }}
+        "#
+    );
+    ScenePlan::new("s.toml", Path::new(""), SceneSpec::parse("s.toml", &text)?)
+}
+
+fn frames(plan: &ScenePlan) -> Vec<Frame> {
+    let mut frames = Vec::new();
+    let mut simulation = Simulation::new(plan, Stepping::AsNeeded);
+    simulation.run(&mut [&mut frames]).unwrap();
+    frames
+}
+
+const SIGNAL: &str = r#"signal = ["force", { crosstalk = 0.2 }, { smoothing_mm = 3.0 }, { gain_std = 0.1 },
+    { drift_std_full_scale = 0.05 }, { noise_std_n = 0.01 }, { dead_fraction = 0.05, stuck_fraction = 0.02 }, { adc_bits = 8 }]"#;
+
+#[test]
+fn the_signal_of_a_frame_is_what_the_chain_makes_of_its_forces() {
+    let (plan, bare) = (try_plan(SIGNAL).unwrap(), try_plan("").unwrap());
+    let (frames, bare) = (frames(&plan), frames(&bare));
+    assert!(bare.iter().any(|frame| frame.patches[0].n_touched > 10));
+    let seed = Seed::new(2018);
+    let skin = seed.named("skin").named("finger");
+    let noise = Noise {
+        std: 0.01,
+        unit: NoiseUnit::N,
+    };
+    let steps = [
+        SensorError::Crosstalk.step(&[0.2], skin),
+        SignalStep::Smoothing { width: 3e-3 },
+        SensorError::Gain.step(&[0.1], skin),
+        SensorError::Drift.step(&[0.05], skin),
+        SignalStep::Noise(noise),
+        SensorError::Faults.step(&[0.05, 0.02], skin),
+        SensorError::Quantisation.step(&[8.0], skin),
+    ];
+    let chain = Chain::of(&steps, &plan.patches[0].skin, Quantity::Force).unwrap();
+    for (number, (frame, bare)) in frames.iter().zip(&bare).enumerate() {
+        let (reading, bare) = (&frame.patches[0], &bare.patches[0]);
+        assert_eq!(
+            (&reading.force, &reading.deflection),
+            (&bare.force, &bare.deflection)
+        );
+        assert_eq!(bare.signal, None);
+        let mut expected = reading.force.clone();
+        let recording = Recording {
+            frames: &mut expected,
+            rates: None,
+            n_before: 0,
+            interval: None,
+            time: Some(number as f64 / (frames.len() - 1) as f64),
+        };
+        let name = seed.named("signal").named("finger").numbered(number as u64);
+        chain.apply_recording(recording, &name, &mut Scratch::default());
+        assert_eq!(reading.signal.as_ref(), Some(&expected), "frame {number}");
+    }
+}
+
+#[test]
+fn zeros_drift_from_frame_to_frame_and_the_skin_has_the_same_faults_in_all() {
+    let plan = try_plan("signal = [{ drift_std_full_scale = 0.1 }, { stuck_fraction = 0.1 }]");
+    let frames = frames(&plan.unwrap());
+    let signal = |frame: usize| frames[frame].patches[0].signal.as_ref().unwrap();
+    let n = signal(0).len();
+    let stuck: Vec<usize> = (0..n).filter(|&k| signal(0)[k] != 0.0).collect();
+    // Of a session that begins, no zero has wandered yet.
+    assert_eq!(stuck.len(), (0.1 * n as f64).round() as usize);
+    let last = frames.len() - 1;
+    assert!(stuck.iter().all(|&k| signal(last)[k] == signal(0)[k]));
+    let wandered = (0..n).filter(|&k| signal(last)[k] != signal(0)[k]).count();
+    assert_eq!(wandered, n - stuck.len());
+}
+
+#[test]
+fn a_recording_has_the_signal_beside_deflection_and_force() {
+    let folder = tempfile::tempdir().unwrap();
+    let plan = try_plan(SIGNAL).unwrap();
+    let mut files = SceneFiles::create(folder.path(), &plan).unwrap();
+    let mut frames = Vec::new();
+    let mut simulation = Simulation::new(&plan, Stepping::AsNeeded);
+    simulation.run(&mut [&mut files, &mut frames]).unwrap();
+    files.finish().unwrap();
+    let path = std::fs::read_dir(folder.path()).unwrap().flatten();
+    let mut path = path.map(|entry| entry.path());
+    let path = path.find(|path| path.extension().is_some_and(|end| end == "npz"));
+    let mut stored = NpzReader::new(std::fs::File::open(path.unwrap()).unwrap()).unwrap();
+    let signal: Array2<f32> = stored.by_name("finger/signal").unwrap();
+    let force: Array2<f32> = stored.by_name("finger/force").unwrap();
+    assert_eq!(signal.dim(), force.dim());
+    for (row, frame) in signal.outer_iter().zip(&frames) {
+        let expected = frame.patches[0].signal.as_ref().unwrap();
+        assert!(row.iter().zip(expected).all(|(a, b)| *a == *b as f32));
+    }
+}
+
+#[test]
+fn what_cannot_be_a_signal_is_refused_with_its_key() {
+    for (signal, parts) in [
+        (
+            "[\"noise\"]",
+            &["patches.finger.signal", "\"noise\" as step 1"][..],
+        ),
+        ("[{ crosstalk = 0.1 }, \"force\"]", &["\"force\" as step 2"]),
+        ("[{ noise = 0.1 }]", &["`noise`", "noise_std"]),
+        (
+            "[{ noise_std_n = 0.1 }]",
+            &["patches.finger.signal", "noise unit: n"],
+        ),
+        ("[{ noise_std_mm = -1.0 }]", &["signal.noise_std_mm", "-1"]),
+        (
+            "[{ crosstalk = 1.5 }]",
+            &["signal.crosstalk", "1.5", "0 to 1"],
+        ),
+        (
+            "[{ crosstalk = 0.1, gain_std = 0.1 }]",
+            &["`gain_std` beside `crosstalk`"],
+        ),
+        (
+            "[{ smoothing_mm = 1.0, gain_std = 0.1 }]",
+            &["one step in each"],
+        ),
+        (
+            "[{ hysteresis_full_scale = 0.1 }]",
+            &["needs the frames before"],
+        ),
+        ("[{ scan_time_ms = 5.0 }]", &["needs the frames before"]),
+        ("[{ line_resistance = 0.1 }]", &["a skin that is no grid"]),
+        ("[{}]", &["a step without a key"]),
+    ] {
+        let error = try_plan(&format!("signal = {signal}")).unwrap_err();
+        assert_eq!(error.exit_code(), 2, "{error}");
+        let said = error.to_string();
+        let has_all = parts.iter().all(|part| said.contains(part));
+        assert!(said.starts_with("s.toml") && has_all, "{said}");
+    }
+}
