@@ -20,7 +20,10 @@ pub struct WholeFile {
 }
 
 impl WholeFile {
-    /// Starts a file that will stand at `path`; the error says why it cannot.
+    /// Starts a file that will stand at `path`.
+    ///
+    /// # Errors
+    /// There can be no file.
     pub fn create(path: &Path) -> Result<Self> {
         let name = path.file_name().ok_or_else(|| {
             Error::input(path.display(), "no file name", "a path that ends in one")
@@ -58,6 +61,9 @@ impl WholeFile {
     }
 
     /// Writes part of it.
+    ///
+    /// # Errors
+    /// It cannot be written.
     pub fn write(
         &mut self,
         fill: impl FnOnce(&mut BufWriter<File>) -> io::Result<()>,
@@ -66,6 +72,9 @@ impl WholeFile {
     }
 
     /// Makes it durable and puts it in place, over what stood there.
+    ///
+    /// # Errors
+    /// It cannot be written.
     pub fn commit(mut self) -> Result<()> {
         let Some(partial) = self.partial.clone() else {
             return self.write(|writer| writer.flush());
@@ -98,6 +107,9 @@ pub struct CsvFile {
 
 impl CsvFile {
     /// Starts a table that will stand at `path`.
+    ///
+    /// # Errors
+    /// There can be no file.
     pub fn create(path: &Path) -> Result<Self> {
         Ok(Self {
             file: WholeFile::create(path)?,
@@ -106,6 +118,9 @@ impl CsvFile {
     }
 
     /// Adds a row: a struct with one field a column.
+    ///
+    /// # Errors
+    /// It cannot be written.
     pub fn row(&mut self, row: impl Serialize) -> Result<()> {
         let is_first = !std::mem::replace(&mut self.has_header, true);
         // Through a buffer of its own: flushing the CSV writer would flush the file with every row.
@@ -119,6 +134,9 @@ impl CsvFile {
     }
 
     /// Makes it durable and puts it in place.
+    ///
+    /// # Errors
+    /// It cannot be written.
     pub fn commit(self) -> Result<()> {
         self.file.commit()
     }
@@ -134,6 +152,9 @@ pub fn table_error(path: &Path, allowed: &str) -> impl Fn(csv::Error) -> Error {
 }
 
 /// Writes a file through `fill`; on any failure what stood under `path` still stands there.
+///
+/// # Errors
+/// It cannot be written; what `fill` says.
 pub fn write_whole(
     path: &Path,
     fill: impl FnOnce(&mut BufWriter<File>) -> io::Result<()>,
@@ -144,6 +165,9 @@ pub fn write_whole(
 }
 
 /// Writes bytes as a whole file.
+///
+/// # Errors
+/// It cannot be written.
 pub fn write_bytes(path: &Path, bytes: &[u8]) -> Result<()> {
     write_whole(path, |writer| writer.write_all(bytes))
 }

@@ -20,7 +20,10 @@ pub(crate) fn read<T: DeserializeOwned>(place: &str, text: &str) -> Result<T> {
 macro_rules! toml_file {
     ($file:ident) => {
         impl $file {
-            /// Reads a file; the error names it, the line and the key.
+            /// Reads a file.
+            ///
+            /// # Errors
+            /// A key that is unknown, missing or of another type; it names the file, the line and the key.
             pub fn parse(place: &str, text: &str) -> $crate::Result<Self> {
                 $crate::toml_text::read(place, text)
             }

@@ -141,7 +141,10 @@ struct Held {
 }
 
 impl FrictionState {
-    /// An untouched patch. The error is that of [`Shears::check`].
+    /// An untouched patch.
+    ///
+    /// # Errors
+    /// Those of [`Shears::check`].
     pub fn at_rest(patch: &SkinPatch, shears: Shears) -> Result<Self> {
         shears.check(patch)?;
         Ok(Self {

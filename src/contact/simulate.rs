@@ -26,6 +26,8 @@ pub struct Recording {
 /// lies behind it counts if it counted in the frame before.
 ///
 /// `world_from_objects`: one plan an object; a fixed object's plan has no phases. Any `dt` is stable.
+///
+/// # Errors
 /// The error names a `dt` that is not positive, or a number of plans that is not the number of objects.
 pub fn simulate(
     scene: &Scene,

@@ -48,6 +48,7 @@ const LOOK_EVERY: usize = 64;
 
 /// Steps a system from where the integrator is.
 ///
+/// # Errors
 /// The error names a `dt` that is not positive, and frames that are not ascending within the steps.
 pub fn run(
     system: &System,

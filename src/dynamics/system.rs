@@ -43,6 +43,7 @@ pub struct System<'a> {
 impl<'a> System<'a> {
     /// Checks and prepares a system. Taxels that the object does not meet within `reach` metres of travel are never pushed.
     ///
+    /// # Errors
     /// The error names a mass, a gravity or a reach that is not positive, and the first taxel whose axis is not +z.
     pub fn new(
         patch: &'a SkinPatch,

@@ -37,6 +37,9 @@ pub enum LengthUnit {
 
 impl MeshFormat {
     /// By the ending of a file's name, in any case.
+    ///
+    /// # Errors
+    /// An ending that no format has.
     pub fn of(path: &Path) -> Result<Self> {
         let ending = path.extension().unwrap_or_default().to_string_lossy();
         match ending.to_ascii_lowercase().as_str() {
@@ -51,7 +54,10 @@ impl MeshFormat {
         }
     }
 
-    /// What a file of this format and unit holds, in metres; errors begin with `place`, its name.
+    /// What a file of this format and unit holds, in metres.
+    ///
+    /// # Errors
+    /// Errors begin with `place`, its name.
     pub fn read(self, place: &str, unit: LengthUnit, source: impl BufRead) -> Result<MeshFile> {
         let file = match self {
             Self::Ply => read_ply(place, source),

@@ -15,7 +15,10 @@ pub struct MeshFile {
 }
 
 impl MeshFile {
-    /// Checks the invariant. Errors begin with `place` and count from 1; vertices are metres.
+    /// Checks the invariant; vertices are metres.
+    ///
+    /// # Errors
+    /// Where it does not hold; errors begin with `place` and count from 1.
     pub fn new(place: &str, vertices: Vec<DVec3>, polygons: Vec<Vec<u32>>) -> Result<Self> {
         check_vertices(place, &vertices)?;
         if let Some(index) = polygons.iter().position(|corners| corners.len() < 3) {
@@ -55,6 +58,7 @@ impl MeshFile {
 
     /// The surface; polygons of more than three corners are cut into a fan around their first: 0 1 2, 0 2 3, 0 3 4, …
     ///
+    /// # Errors
     /// An error if there are no polygons, or if a fan would fold over itself: its polygon is not convex, or bent.
     pub fn into_mesh(self, place: &str) -> Result<TriangleMesh> {
         if let Some(index) = self.polygons.iter().position(|p| self.folds(p)) {

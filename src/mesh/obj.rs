@@ -6,9 +6,12 @@ use glam::DVec3;
 use std::io::{BufRead, Cursor};
 use tobj::{LoadError, LoadOptions};
 
-/// A mesh from an OBJ file's content; errors begin with `place`, the file's name.
+/// A mesh from an OBJ file's content.
 ///
-/// Only vertices that a face has are kept. An error for a file without faces, a number that is none, or an index of no vertex.
+/// Only vertices that a face has are kept.
+///
+/// # Errors
+/// A file without faces, a number that is none, or an index of no vertex.
 pub fn read_obj(place: &str, source: impl BufRead) -> Result<MeshFile> {
     let shape = positions_and_faces(place, source)?;
     let options = LoadOptions {

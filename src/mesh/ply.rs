@@ -14,6 +14,7 @@ use std::io::{BufRead, ErrorKind};
 
 /// A mesh from a PLY file's content; errors begin with `place`, the file's name.
 ///
+/// # Errors
 /// An error for anything that is not a whole PLY file: another format, a cut-off file, no vertices, a coordinate that is
 /// not a finite number, an index of no vertex.
 pub fn read_ply(place: &str, mut source: impl BufRead) -> Result<MeshFile> {

@@ -41,8 +41,10 @@ impl SizeLimits {
             })
     }
 
-    /// An error that begins with `place` and names the likely unit, for a box of this size (metres) whose file was read in metres
-    /// because nobody gave a unit.
+    /// Whether a box of this size (metres), whose file was read in metres because nobody gave a unit, is of a size that can be.
+    ///
+    /// # Errors
+    /// It is not; the error begins with `place` and names the likely unit.
     pub fn check(&self, place: &str, size: DVec3) -> Result<()> {
         let length = size.max_element();
         if (self.smallest..=self.largest).contains(&length) {

@@ -12,6 +12,7 @@ const TRIANGLE: usize = 50;
 
 /// A mesh from an STL file's content; errors begin with `place`, the file's name.
 ///
+/// # Errors
 /// An error for a file that is cut off, or that is neither kind of STL.
 pub fn read_stl(place: &str, mut source: impl BufRead) -> Result<MeshFile> {
     let mut content = Vec::new();

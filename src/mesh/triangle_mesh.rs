@@ -15,7 +15,10 @@ pub struct TriangleMesh {
 }
 
 impl TriangleMesh {
-    /// Checks the invariant. Errors begin with `place` and count from 1; vertices are metres.
+    /// Checks the invariant; vertices are metres.
+    ///
+    /// # Errors
+    /// Where it does not hold; errors begin with `place` and count from 1.
     pub fn new(place: &str, vertices: Vec<DVec3>, triangles: Vec<[u32; 3]>) -> Result<Self> {
         check_vertices(place, &vertices)?;
         if triangles.is_empty() {

@@ -61,6 +61,9 @@ pub struct Entry {
 
 impl Entry {
     /// Spheres for the shape, with this surface error in metres: see [`pack`].
+    ///
+    /// # Errors
+    /// Those of [`pack`].
     pub fn build(&self, surface_error: f64) -> Result<Object> {
         Ok(Object {
             name: self.name.clone(),
@@ -72,6 +75,9 @@ impl Entry {
 
 impl Catalogue {
     /// The objects that come with the crate: 16 balls, 16 boxes, 9 cans, a household, and hands.
+    ///
+    /// # Errors
+    /// None: the files that come with the crate are tested.
     pub fn builtin() -> Result<Self> {
         let mut entries = Vec::new();
         for (set, text) in BUILTIN {
@@ -81,7 +87,10 @@ impl Catalogue {
         Ok(Self { entries })
     }
 
-    /// One set from the text of a catalogue file; errors begin with `place`, the file's name.
+    /// One set from the text of a catalogue file.
+    ///
+    /// # Errors
+    /// Errors begin with `place`, the file's name.
     pub fn parse(set: &str, place: &str, text: &str) -> Result<Self> {
         toml_text::check_brackets(place, text)?;
         let file: File = toml::from_str(text).map_err(|e| unreadable(place, text, &e))?;
@@ -115,7 +124,10 @@ impl Catalogue {
         sets
     }
 
-    /// The objects of a set, in the order of its file. The error lists the sets there are.
+    /// The objects of a set, in the order of its file.
+    ///
+    /// # Errors
+    /// The error lists the sets there are.
     pub fn set(&self, set: &str) -> Result<Vec<&Entry>> {
         let entries: Vec<&Entry> = self.entries.iter().filter(|e| e.set == set).collect();
         if entries.is_empty() {
@@ -128,7 +140,10 @@ impl Catalogue {
         Ok(entries)
     }
 
-    /// The object of this name, in any set. The error offers the names that resemble it.
+    /// The object of this name, in any set.
+    ///
+    /// # Errors
+    /// The error offers the names that resemble it.
     pub fn object(&self, name: &str) -> Result<&Entry> {
         if let Some(entry) = self.entries.iter().find(|e| e.name == name) {
             return Ok(entry);

@@ -140,7 +140,10 @@ impl Hand {
         hand
     }
 
-    /// The hand as a union of strands. The error names the joint and the range that it is out of.
+    /// The hand as a union of strands.
+    ///
+    /// # Errors
+    /// The error names the joint and the range that it is out of.
     pub fn solid(&self) -> Result<Solid> {
         self.check()?;
         let parts = self.strands().into_iter().map(|balls| {

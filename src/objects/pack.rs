@@ -23,11 +23,12 @@ pub const MAX_SPHERES: usize = 2_000_000;
 
 /// Spheres whose union is the solid to within `tolerance` (metres, positive).
 ///
-/// No sphere reaches more than half of `tolerance` outside the solid, and no point of the solid's outer surface lies more than
-/// `tolerance` outside the spheres ([`surface_error`](super::surface_error) measures both); on average the two surfaces are
-/// equally high. A ball is one sphere, its own. The same input gives the same
-/// spheres, in the order of the parts. An error for a tolerance that is not positive, or so small that a part would need
-/// more than [`MAX_SPHERES`].
+/// No sphere reaches more than half of `tolerance` outside the solid, and no point of the solid's outer surface lies more than `tolerance`
+/// outside the spheres ([`surface_error`](super::surface_error) measures both); on average the two surfaces are equally high. A ball is one
+/// sphere, its own. The same input gives the same spheres, in the order of the parts.
+///
+/// # Errors
+/// A tolerance that is not positive, or so small that a part would need more than [`MAX_SPHERES`].
 pub fn pack(solid: &Solid, tolerance: f64) -> Result<SphereUnion> {
     if !(tolerance.is_finite() && tolerance > 0.0) {
         return Err(Error::input(

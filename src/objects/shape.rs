@@ -180,7 +180,10 @@ impl Wording {
 }
 
 impl Shape {
-    /// The error names the first dimension that is out of its range.
+    /// Whether it can be.
+    ///
+    /// # Errors
+    /// The first dimension that is out of its range.
     pub fn check(&self) -> Result<()> {
         self.check_worded(Wording::Metres)
     }

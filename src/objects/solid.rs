@@ -46,7 +46,10 @@ enum Kernel {
 }
 
 impl Part {
-    /// The error names the first dimension that is out of its range.
+    /// A shape at a pose.
+    ///
+    /// # Errors
+    /// The first dimension that is out of its range.
     pub fn new(shape: Shape, pose: Pose) -> Result<Self> {
         shape.check()?;
         if !(pose.translation.is_finite() && pose.rotation.is_finite()) {
@@ -141,7 +144,10 @@ impl Part {
 }
 
 impl Solid {
-    /// An error for no parts.
+    /// A solid of parts.
+    ///
+    /// # Errors
+    /// No parts.
     pub fn new(parts: Vec<Part>) -> Result<Self> {
         if parts.is_empty() {
             return Err(Error::input("solid", "no parts", "at least one part"));
@@ -153,8 +159,10 @@ impl Solid {
         })
     }
 
-    /// What these shapes leave of the solid. An error if they leave nothing of one of its parts' surfaces, as far as points a
-    /// hundredth of its size apart can tell.
+    /// What these shapes leave of the solid.
+    ///
+    /// # Errors
+    /// They leave nothing of one of its parts' surfaces, as far as points a hundredth of its size apart can tell.
     pub fn less(self, cuts: Vec<Part>) -> Result<Self> {
         let seam = SEAM * self.bounds().size().length();
         let solid = Self { cuts, seam, ..self };
@@ -173,6 +181,9 @@ impl Solid {
     }
 
     /// A solid of one shape in its own frame.
+    ///
+    /// # Errors
+    /// Those of [`Part::new`].
     pub fn of(shape: Shape) -> Result<Self> {
         Self::new(vec![Part::new(shape, Pose::IDENTITY)?])
     }
@@ -247,6 +258,9 @@ impl Solid {
     }
 
     /// [`super::pack`] as a method.
+    ///
+    /// # Errors
+    /// Those of [`super::pack`].
     pub fn pack(&self, tolerance: f64) -> Result<SphereUnion> {
         super::pack::pack(self, tolerance)
     }

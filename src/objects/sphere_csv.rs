@@ -9,8 +9,10 @@ use std::io::{self, Read, Write};
 /// The columns, in order.
 const COLUMNS: [&str; 4] = ["x", "y", "z", "r"];
 
-/// Spheres from `x,y,z,r` in metres, with a header (columns in any order, others ignored) or without one (exactly four
-/// columns). Errors begin with `place`, the file's name, and give line and column.
+/// Spheres from `x,y,z,r` in metres, with a header (columns in any order, others ignored) or without one (exactly four columns).
+///
+/// # Errors
+/// Errors begin with `place`, the file's name, and give line and column.
 pub fn read_spheres(place: &str, source: impl Read) -> Result<SphereUnion> {
     let mut reader = rows_of(source);
     let mut layout = None;
@@ -41,6 +43,9 @@ pub fn read_spheres(place: &str, source: impl Read) -> Result<SphereUnion> {
 }
 
 /// Writes a header and one row a sphere, 17 significant digits: [`read_spheres`] gives back the same bits.
+///
+/// # Errors
+/// The sink cannot be written.
 pub fn write_spheres(union: &SphereUnion, mut sink: impl Write) -> io::Result<()> {
     writeln!(sink, "{}", COLUMNS.join(","))?;
     for Sphere { center, radius } in union.spheres() {

@@ -42,7 +42,10 @@ impl PartialEq for SphereUnion {
 }
 
 impl SphereUnion {
-    /// Checks the invariant; the error names the first offending sphere.
+    /// Checks the invariant.
+    ///
+    /// # Errors
+    /// The error names the first offending sphere.
     pub fn new(spheres: Vec<Sphere>) -> Result<Self> {
         if spheres.is_empty() {
             return Err(Error::input(

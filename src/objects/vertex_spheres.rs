@@ -7,9 +7,11 @@ use glam::DVec3;
 
 /// A sphere around each vertex, all of radius R = 2 × the mean distance from a vertex to its nearest neighbour \[BT\].
 ///
-/// Vertices at exactly the same place (files that store a corner once a face) count once: their nearest neighbour would
-/// be themselves, and R would shrink with how a file is written. Order: first occurrence. An error for fewer than two
-/// places; it begins with `place`.
+/// Vertices at exactly the same place (files that store a corner once a face) count once: their nearest neighbour would be themselves, and R
+/// would shrink with how a file is written. Order: first occurrence.
+///
+/// # Errors
+/// Fewer than two places; it begins with `place`.
 pub fn vertex_spheres(place: &str, vertices: &[DVec3]) -> Result<SphereUnion> {
     let centers = distinct_places(vertices);
     if centers.len() < 2 {

@@ -17,6 +17,7 @@ pub struct DetailChain {
 impl DetailChain {
     /// Packs a mesh to each of these tolerances (metres, in any order, each once or more).
     ///
+    /// # Errors
     /// An error for no tolerances, and for what [`pack_mesh`] does not pack.
     pub fn pack(surface: &Surface, body: Body, tolerances: &[f64]) -> Result<Self> {
         let mut tolerances = tolerances.to_vec();
@@ -29,7 +30,10 @@ impl DetailChain {
         Self::new(packings?)
     }
 
-    /// Packings of one mesh at different tolerances, in any order; an error for none, or two at one tolerance.
+    /// Packings of one mesh at different tolerances, in any order.
+    ///
+    /// # Errors
+    /// No packing, or two at one tolerance.
     pub fn new(mut packings: Vec<Packing>) -> Result<Self> {
         packings.sort_by(|a, b| b.tolerance.total_cmp(&a.tolerance));
         let is_twice = |pair: &[Packing]| pair[0].tolerance == pair[1].tolerance;
@@ -51,6 +55,7 @@ impl DetailChain {
 
     /// The packing with the largest tolerance that is at most this one (metres).
     ///
+    /// # Errors
     /// An error if even the finest is coarser.
     pub fn coarsest_within(&self, tolerance: f64) -> Result<&Packing> {
         let fitting = self

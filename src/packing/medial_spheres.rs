@@ -13,9 +13,11 @@ const THINNEST: f64 = 1e-6;
 /// The largest spheres inside a closed mesh that touch it at `n` points spread evenly over its area, as Ma, Bae and Choi (2012)
 /// find them; points where none fits are left out.
 ///
-/// The spheres lie inside the mesh and touch it; what is between the points is as far outside them as it happens to be.
-/// Stolpner, Kry and Siddiqi (2011) approximate shapes by such spheres. Errors as for
-/// [`pack_mesh`](super::pack_mesh), and if no sphere is left.
+/// The spheres lie inside the mesh and touch it; what is between the points is as far outside them as it happens to be. Stolpner, Kry and Siddiqi
+/// (2011) approximate shapes by such spheres.
+///
+/// # Errors
+/// Errors as for [`pack_mesh`](super::pack_mesh), and if no sphere is left.
 pub fn medial_spheres(surface: &Surface, n: usize) -> Result<SphereUnion> {
     let size = surface.bounds().size().length();
     let target = Target::new(surface, Body::Solid, THINNEST * size)?;

@@ -29,6 +29,9 @@ pub fn pack_mesh(surface: &Surface, body: Body, tolerance: f64) -> Result<Packin
 }
 
 /// [`pack_mesh`] that says now and then which share of its work is done, about, from 0 to 1.
+///
+/// # Errors
+/// Those of [`pack_mesh`].
 pub fn pack_mesh_watched(
     surface: &Surface,
     body: Body,

@@ -110,6 +110,9 @@ impl Held {
 /// Who is handed each frame as soon as it is made.
 pub trait FrameSink {
     /// Takes a frame; an error ends the simulation.
+    ///
+    /// # Errors
+    /// Whatever ends the simulation.
     fn frame(&mut self, frame: &Frame) -> Result<()>;
 }
 

@@ -44,6 +44,9 @@ pub struct ScenePlan {
 
 impl ScenePlan {
     /// Reads a scene from its file.
+    ///
+    /// # Errors
+    /// A file that cannot be read; those of [`new`](Self::new).
     pub fn read(path: &Path) -> Result<Self> {
         let place = path.display().to_string();
         let text = std::fs::read_to_string(path).map_err(|e| {
@@ -53,7 +56,10 @@ impl ScenePlan {
         Self::new(&place, folder, SceneSpec::parse(&place, &text)?)
     }
 
-    /// Checks a scene; paths in it are relative to `folder`, and errors begin with `place`, its file's name, and the key.
+    /// Checks a scene; paths in it are relative to `folder`.
+    ///
+    /// # Errors
+    /// Errors begin with `place`, its file's name, and the key.
     pub fn new(place: &str, folder: &Path, mut spec: SceneSpec) -> Result<Self> {
         let check = Check { place };
         let reader = Reader { check, folder };
@@ -103,7 +109,10 @@ impl ScenePlan {
         })
     }
 
-    /// Ends it early, seconds; a scene that is shorter stays as it is. The error is a time that is negative or not finite.
+    /// Ends it early, seconds; a scene that is shorter stays as it is.
+    ///
+    /// # Errors
+    /// A time that is negative or not finite.
     pub fn cut(&mut self, place: &str, until: f64) -> Result<()> {
         if !not_negative(until) {
             let allowed = "zero or a positive number of seconds";

@@ -69,8 +69,10 @@ impl<'p> Simulation<'p> {
         }
     }
 
-    /// Makes all frames that are left, and hands each to all sinks. The error is one of theirs, or of
-    /// [`next_frame`](Self::next_frame).
+    /// Makes all frames that are left, and hands each to all sinks.
+    ///
+    /// # Errors
+    /// The error is one of theirs, or of [`next_frame`](Self::next_frame).
     pub fn run(&mut self, sinks: &mut [&mut dyn FrameSink]) -> Result<()> {
         while let Some(frame) = self.next_frame()? {
             for sink in sinks.iter_mut() {
@@ -80,8 +82,10 @@ impl<'p> Simulation<'p> {
         Ok(())
     }
 
-    /// Goes to the next frame; `None` after the last. The error is a pose beyond all numbers, or two free objects
-    /// that rest on one taxel.
+    /// Goes to the next frame; `None` after the last.
+    ///
+    /// # Errors
+    /// A pose beyond all numbers, or two free objects that rest on one taxel.
     pub fn next_frame(&mut self) -> Result<Option<&Frame>> {
         let plan = self.plan;
         if self.next_frame == plan.n_frames {

@@ -144,7 +144,10 @@ pub struct JointsSpec {
 }
 
 impl SceneSpec {
-    /// Reads a scene; the error names the file, the line and the key.
+    /// Reads a scene.
+    ///
+    /// # Errors
+    /// The error names the file, the line and the key.
     pub fn parse(place: &str, text: &str) -> Result<Self> {
         toml_text::read(place, text)
     }

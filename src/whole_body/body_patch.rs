@@ -26,7 +26,10 @@ pub(super) enum Surface {
 }
 
 impl BodyPatch {
-    /// A flat patch or a part of a cylinder. The error names the patch and the property of its taxels that is out of its range.
+    /// A flat patch or a part of a cylinder.
+    ///
+    /// # Errors
+    /// The error names the patch and the property of its taxels that is out of its range.
     pub fn new(name: impl Into<String>, extrusion: Extrusion, taxel: Taxel) -> Result<Self> {
         let name = name.into();
         check_taxel(&name, &taxel)?;
@@ -34,8 +37,10 @@ impl BodyPatch {
         Ok(Self { name, surface })
     }
 
-    /// A part of a sphere. The error names the patch and the property of its taxels that is out of its range, or a sphere too
-    /// small for their stroke.
+    /// A part of a sphere.
+    ///
+    /// # Errors
+    /// The error names the patch and the property of its taxels that is out of its range, or a sphere too small for their stroke.
     pub fn dome(name: impl Into<String>, dome: Dome, taxel: Taxel) -> Result<Self> {
         let name = name.into();
         check_taxel(&name, &taxel)?;
@@ -51,10 +56,12 @@ impl BodyPatch {
         Ok(Self { name, surface })
     }
 
-    /// Taxels anywhere, such as on a mesh ([`Layout::draped`]), numbered as in the layout. The error names the patch and the property
-    /// of its taxels that is out of its range.
+    /// Taxels anywhere, such as on a mesh ([`Layout::draped`]), numbered as in the layout.
     ///
     /// It is fast if neighbours have near numbers: see [`Layout::with_neighbours_together`].
+    ///
+    /// # Errors
+    /// The error names the patch and the property of its taxels that is out of its range.
     pub fn draped(name: impl Into<String>, layout: &Layout, taxel: Taxel) -> Result<Self> {
         let name = name.into();
         check_taxel(&name, &taxel)?;
@@ -145,7 +152,10 @@ pub struct WholeBody {
 }
 
 impl WholeBody {
-    /// The error names a patch that has the name of another one.
+    /// A body of patches.
+    ///
+    /// # Errors
+    /// A patch that has the name of another one.
     pub fn new(patches: Vec<BodyPatch>) -> Result<Self> {
         let mut names: Vec<&str> = patches.iter().map(BodyPatch::name).collect();
         names.sort_unstable();

@@ -58,8 +58,10 @@ impl CoveredRobot {
     ///   wholly; each half is cut from pole to rim: `head cap 2.3` is the third part of the second half ball of the file. A ball
     ///   within a larger one of another link, such as an elbow's inner one, is never touched, and left out.
     ///
-    /// Flat ends and boxes stay bare. The error is a robot with nothing to cover, a taxel that cannot be, or a pitch or side for
-    /// which a patch has no or too many taxels.
+    /// Flat ends and boxes stay bare.
+    ///
+    /// # Errors
+    /// A robot with nothing to cover, a taxel that cannot be, or a pitch or side for which a patch has no or too many taxels.
     pub fn new(robot: &Robot, taxel: Taxel, pitch: f64, side: f64) -> Result<Self> {
         let cover = Cover { taxel, pitch, side };
         let mut covered = Covered::default();

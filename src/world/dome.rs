@@ -40,9 +40,11 @@ pub struct DomeRing {
 impl Dome {
     /// Covers a lune: `polar` radians from the pole (above 0 to π), `arc` radians wide (above 0 to 2π), its middle at +x.
     ///
-    /// Rings are about `pitch` apart, and the taxels of a ring as well as whole numbers allow; half a step is left at every
-    /// edge, so that taxels go on at the same distance on a lune or a cylinder beside it. The error names an argument out of
-    /// its range, or a layout of too many taxels.
+    /// Rings are about `pitch` apart, and the taxels of a ring as well as whole numbers allow; half a step is left at every edge, so that taxels
+    /// go on at the same distance on a lune or a cylinder beside it.
+    ///
+    /// # Errors
+    /// The error names an argument out of its range, or a layout of too many taxels.
     pub fn new(radius: f64, polar: f64, arc: f64, pitch: f64) -> Result<Self> {
         check_positive("taxel pitch", pitch, "m")?;
         check_positive("dome radius", radius, "m")?;

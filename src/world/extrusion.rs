@@ -26,6 +26,7 @@ pub struct Extrusion {
 impl Extrusion {
     /// The grid of [`Layout::grid`]: u, v, w are the patch's x, z, y.
     ///
+    /// # Errors
     /// The error names what is out of its range: see [`Grid::check`].
     pub fn grid(grid: &Grid) -> Result<Self> {
         grid.check()?;
@@ -42,6 +43,9 @@ impl Extrusion {
 
     /// A grid bent around a cylinder: what [`Layout::cylinder`] says of its taxels, arguments and errors. u, v, w are the
     /// patch's x, y, z.
+    ///
+    /// # Errors
+    /// Those of [`Layout::cylinder`].
     pub fn cylinder(radius: f64, length: f64, arc: f64, pitch: f64) -> Result<Self> {
         check_positive("taxel pitch", pitch, "m")?;
         check_positive("cylinder radius", radius, "m")?;

@@ -30,6 +30,7 @@ pub struct Layout {
 impl Layout {
     /// Any places (metres) with any axes (unit, away from the substrate).
     ///
+    /// # Errors
     /// The error names the first taxel (from 1) whose place or axis cannot be used, or the lengths if they differ.
     pub fn new(centers: Vec<DVec3>, axes: Vec<DVec3>) -> Result<Self> {
         if centers.len() != axes.len() {
@@ -67,6 +68,7 @@ impl Layout {
 
     /// A grid in the plane z = 0, row (patch y, ascending) by row; the layout remembers that it is one.
     ///
+    /// # Errors
     /// The error names what is out of its range: see [`Grid::check`].
     pub fn grid(grid: &Grid) -> Result<Self> {
         grid.check()?;

@@ -20,6 +20,7 @@ impl Layout {
     /// - `pitch`: metres along the surface, met as well as whole numbers of rings and columns allow. A length or an arc
     ///   shorter than 0.75 pitches has one ring or column, in its middle.
     ///
+    /// # Errors
     /// The error names an argument out of its range, or a layout of more than [`MOST_TAXELS`](super::MOST_TAXELS).
     pub fn cylinder(radius: f64, length: f64, arc: f64, pitch: f64) -> Result<Self> {
         Ok(Self::from(&Extrusion::cylinder(
@@ -34,6 +35,7 @@ impl Layout {
     /// - `pitch`: metres along the surface, met as well as whole numbers of rings and of taxels in a ring allow. A cap
     ///   smaller than 0.75 pitches from its pole to its end is the one taxel at its pole.
     ///
+    /// # Errors
     /// The error names an argument out of its range, or a layout of more than [`MOST_TAXELS`](super::MOST_TAXELS).
     pub fn sphere_cap(radius: f64, half_angle: f64, pitch: f64) -> Result<Self> {
         check_positive("taxel pitch", pitch, "m")?;

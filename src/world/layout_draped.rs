@@ -30,6 +30,7 @@ impl Layout {
     /// Axes are the mean normals of the surface within half a pitch, so that the facets of a scan do not show and the sides
     /// of a box stay flat; outwards, if the mesh's triangles turn counter-clockwise seen from outside.
     ///
+    /// # Errors
     /// The error names a pitch that is not positive, a surface without area, or a pitch too fine for its surface: there is
     /// memory for some 100,000 taxels.
     pub fn draped(mesh: &TriangleMesh, pitch: f64, seed: &Seed) -> Result<Self> {

@@ -13,6 +13,7 @@ impl Layout {
     /// `ny` rows of `nx` taxels, every other row moved by half a pitch, so that each inner taxel has six neighbours at exactly
     /// `pitch` metres; row (patch y, ascending) by row, centred on the origin.
     ///
+    /// # Errors
     /// The error names a pitch that is not positive, or a number of taxels that is zero or beyond
     /// [`MOST_TAXELS`](super::MOST_TAXELS).
     pub fn hexagonal(nx: usize, ny: usize, pitch: f64) -> Result<Self> {
@@ -35,6 +36,7 @@ impl Layout {
     /// The places of a hexagonal lattice around the origin that are no farther from it than `radius` metres: the nearest
     /// neighbours of each taxel are exactly `pitch` metres away; row by row.
     ///
+    /// # Errors
     /// The error names a length that is not positive, or a disc of more than [`MOST_TAXELS`](super::MOST_TAXELS). A
     /// radius below the pitch leaves the one taxel in the middle.
     pub fn disc(radius: f64, pitch: f64) -> Result<Self> {
@@ -66,6 +68,8 @@ impl Layout {
     ///
     /// The pitch is met as well as whole numbers of rings and of taxels in a ring allow: rings are between 0.75 and 1.5
     /// pitches apart. An annulus narrower than 0.75 pitches is a single ring in the middle.
+    ///
+    /// # Errors
     /// The error names a length that is not positive, radii that are not in ascending order, or a ring of more than
     /// [`MOST_TAXELS`](super::MOST_TAXELS).
     pub fn annulus(inner: f64, outer: f64, pitch: f64) -> Result<Self> {

@@ -16,7 +16,10 @@ pub struct Taxel {
 }
 
 impl Taxel {
-    /// The error names the first property that is out of its range.
+    /// Whether it can be.
+    ///
+    /// # Errors
+    /// The first property that is out of its range, by its name.
     pub fn check(&self) -> Result<()> {
         check_positive("taxel radius", self.radius, "m")?;
         check_positive("taxel stiffness", self.stiffness, "N/m")?;
@@ -60,7 +63,10 @@ impl Grid {
         (row as f64 - 0.5 * (self.ny as f64 - 1.0)) * self.pitch
     }
 
-    /// The error names the first property that is out of its range.
+    /// Whether it can be.
+    ///
+    /// # Errors
+    /// The first property that is out of its range, by its name.
     pub fn check(&self) -> Result<()> {
         if self.nx == 0 || self.ny == 0 {
             return Err(Error::input(
@@ -84,6 +90,9 @@ pub struct Patch {
 
 impl Patch {
     /// Checks both parts.
+    ///
+    /// # Errors
+    /// Those of [`Grid::check`] and [`Taxel::check`].
     pub fn new(grid: Grid, taxel: Taxel) -> Result<Self> {
         grid.check()?;
         taxel.check()?;

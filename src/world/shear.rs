@@ -19,7 +19,10 @@ impl Shear {
         self.friction * force / self.stiffness
     }
 
-    /// The error names the first property that is out of its range.
+    /// Whether it can be.
+    ///
+    /// # Errors
+    /// The first property that is out of its range, by its name.
     pub fn check(&self) -> Result<()> {
         check_positive("shear stiffness", self.stiffness, "N/m")?;
         if self.friction.is_finite() && self.friction >= 0.0 {
@@ -37,8 +40,10 @@ impl Shear {
 pub type Shears = PerTaxel<Shear>;
 
 impl Shears {
-    /// Whether they fit a patch. The error names a property out of its range and its taxel (from 1), or the numbers of shear
-    /// springs and taxels if they differ.
+    /// Whether they fit a patch.
+    ///
+    /// # Errors
+    /// The error names a property out of its range and its taxel (from 1), or the numbers of shear springs and taxels if they differ.
     pub fn check(&self, patch: &SkinPatch) -> Result<()> {
         match self {
             Self::Equal(equal) => equal.check(),

@@ -32,6 +32,7 @@ pub type Taxels = PerTaxel<Taxel>;
 impl SkinPatch {
     /// Checks the taxels and prepares the patch; about a microsecond a taxel.
     ///
+    /// # Errors
     /// The error names a property out of its range and its taxel (from 1), or the numbers of taxels and places if they
     /// differ; it begins with the patch's name.
     pub fn new(name: impl Into<String>, layout: Layout, taxels: Taxels) -> Result<Self> {

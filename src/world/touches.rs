@@ -75,7 +75,10 @@ impl<'a> TouchSource<'a> {
     }
 }
 
-/// All touches of one object; errors as [`TouchSource::new`].
+/// All touches of one object.
+///
+/// # Errors
+/// Those of [`TouchSource::new`].
 pub fn touches(placement: &Placement, rests: &[RestPose], seed: &Seed) -> Result<Vec<Touch>> {
     let source = TouchSource::new(placement, rests, seed)?;
     Ok((0..source.n_touches()).map(|n| source.touch(n)).collect())

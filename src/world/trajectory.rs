@@ -26,7 +26,10 @@ pub struct VelocityPlan {
 }
 
 impl VelocityPlan {
-    /// The error names the first phase (from 1) with a negative duration or a value that is not finite.
+    /// From a pose, one phase after the other.
+    ///
+    /// # Errors
+    /// The first phase (from 1) with a negative duration or a value that is not finite.
     pub fn new(start: Pose, phases: Vec<Phase>) -> Result<Self> {
         for (index, phase) in phases.iter().enumerate() {
             let place = format!("velocity plan, phase {}", index + 1);

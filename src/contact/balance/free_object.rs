@@ -19,6 +19,7 @@ pub struct FreeObject<'a> {
 impl<'a> FreeObject<'a> {
     /// An object of `mass` (kg, positive) with its centre of mass somewhere in its own frame (metres).
     ///
+    /// # Errors
     /// The error names what is not finite or not positive.
     pub fn new(spheres: &'a SphereUnion, mass: f64, center_of_mass: DVec3) -> Result<Self> {
         if !(mass.is_finite() && mass > 0.0) {

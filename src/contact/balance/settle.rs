@@ -106,8 +106,11 @@ impl Balancer {
 
     /// Puts an object to rest from a pose (`world_from_object`), under `gravity` (m/s², in the world).
     ///
-    /// It goes to the rest that lies downhill; from a pose at rest it does not move. The skins do not move meanwhile, and
-    /// their dampers do not count. The error names a gravity that is zero or not finite, and a pose that is not finite.
+    /// It goes to the rest that lies downhill; from a pose at rest it does not move. The skins do not move meanwhile, and their dampers do not
+    /// count.
+    ///
+    /// # Errors
+    /// The error names a gravity that is zero or not finite, and a pose that is not finite.
     pub fn settle<'s>(
         &mut self,
         object: &FreeObject,

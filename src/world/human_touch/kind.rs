@@ -45,7 +45,10 @@ impl TouchKind {
         }
     }
 
-    /// The kind of a name; the error says which it perhaps meant.
+    /// The kind of a name.
+    ///
+    /// # Errors
+    /// The error says which it perhaps meant.
     pub fn named(name: &str) -> Result<Self> {
         let found = TOUCH_KINDS.into_iter().find(|kind| kind.name() == name);
         let names = TOUCH_KINDS.map(Self::name);

@@ -107,7 +107,10 @@ impl TouchRanges {
         }
     }
 
-    /// Refuses a range that is empty or not finite, or in which a touch would make no sense; the error names it.
+    /// Refuses a range that is empty or not finite, or in which a touch would make no sense.
+    ///
+    /// # Errors
+    /// Such a range, by its name.
     pub fn check(&self) -> Result<()> {
         let length = "lengths above 0 to 0.2 m, the smaller first";
         let seconds = "0.02 to 10 s, the shorter first";

@@ -25,8 +25,10 @@ impl JointTrajectory {
     /// Through `positions` (a row a way-point, a column a position of the robot; rad and m) at `times` (seconds, strictly
     /// ascending).
     ///
-    /// The limits are checked along the whole curve, in closed form: between way-points, too. The error names the joint, the
-    /// time, the value and the limit; or the way-point that is not finite or not in time.
+    /// The limits are checked along the whole curve, in closed form: between way-points, too.
+    ///
+    /// # Errors
+    /// The error names the joint, the time, the value and the limit; or the way-point that is not finite or not in time.
     pub fn new(
         robot: &Robot,
         times: Vec<f64>,
@@ -48,9 +50,11 @@ impl JointTrajectory {
         Self::through(robot, &way_points.checked()?, interpolation)
     }
 
-    /// From CSV: a column `time_s` and one for each of the robot's [coordinates](Robot::coordinates), in any order. Angles are
-    /// in radians under the coordinate's name (or with `_rad` behind it) and in degrees with `_deg`; lengths in metres (`_m`)
-    /// and in millimetres with `_mm`. Errors begin with `place`, the file's name, and give the line.
+    /// From CSV: a column `time_s` and one for each of the robot's [coordinates](Robot::coordinates), in any order. Angles are in radians under
+    /// the coordinate's name (or with `_rad` behind it) and in degrees with `_deg`; lengths in metres (`_m`) and in millimetres with `_mm`.
+    ///
+    /// # Errors
+    /// Errors begin with `place`, the file's name, and give the line.
     pub fn read_csv(
         robot: &Robot,
         place: &str,

@@ -28,8 +28,10 @@ pub struct PoseTrajectory {
 }
 
 impl PoseTrajectory {
-    /// Through `poses` (`world_from_body`, one a time) at `times` (seconds, strictly ascending). The error names the way-point
-    /// that is not finite, not in time, or whose quaternion has not length 1 (within 0.001).
+    /// Through `poses` (`world_from_body`, one a time) at `times` (seconds, strictly ascending).
+    ///
+    /// # Errors
+    /// The error names the way-point that is not finite, not in time, or whose quaternion has not length 1 (within 0.001).
     pub fn new(times: Vec<f64>, poses: &[Pose], interpolation: Interpolation) -> Result<Self> {
         let numbers = poses.iter().flat_map(|pose| {
             let [x, y, z] = pose.translation.to_array();
@@ -45,9 +47,11 @@ impl PoseTrajectory {
         Self::through(&way_points.checked()?, interpolation)
     }
 
-    /// From CSV: columns `time_s`; `x`, `y`, `z` in metres (`_m`) or with `_mm`; and either `qx`, `qy`, `qz`, `qw` or `roll`,
-    /// `pitch`, `yaw` in radians (`_rad`) or with `_deg`: turns about the fixed axes x, y, z in turn. Errors begin with
-    /// `place`, the file's name, and give the line.
+    /// From CSV: columns `time_s`; `x`, `y`, `z` in metres (`_m`) or with `_mm`; and either `qx`, `qy`, `qz`, `qw` or `roll`, `pitch`, `yaw` in
+    /// radians (`_rad`) or with `_deg`: turns about the fixed axes x, y, z in turn.
+    ///
+    /// # Errors
+    /// Errors begin with `place`, the file's name, and give the line.
     pub fn read_csv(place: &str, source: impl Read, interpolation: Interpolation) -> Result<Self> {
         let mut table = Table::read(place, source)?;
         let mut columns = claim_all(&mut table, &POSITION, LENGTH)?;

@@ -45,12 +45,18 @@ pub struct Robot {
 }
 
 impl Robot {
-    /// A robot from the text of a URDF file; errors begin with `place`, the file's name, and give the line.
+    /// A robot from the text of a URDF file.
+    ///
+    /// # Errors
+    /// Errors begin with `place`, the file's name, and give the line.
     pub fn from_urdf(place: &str, text: &str) -> Result<Self> {
         read_urdf(place, text)
     }
 
     /// A robot from a URDF file. Mesh files that it names are not opened: see [`check_meshes`](Self::check_meshes).
+    ///
+    /// # Errors
+    /// A file that cannot be read; those of [`from_urdf`](Self::from_urdf).
     pub fn read_urdf(path: &Path) -> Result<Self> {
         let place = path.display().to_string();
         let text = std::fs::read_to_string(path)
@@ -145,7 +151,10 @@ impl Robot {
         self.coordinates.len()
     }
 
-    /// Index of a link by its name; the error offers names that resemble it.
+    /// Index of a link by its name.
+    ///
+    /// # Errors
+    /// The error offers names that resemble it.
     pub fn link(&self, name: &str) -> Result<usize> {
         self.find(
             "link",
@@ -154,7 +163,10 @@ impl Robot {
         )
     }
 
-    /// Index of a joint by its name; the error offers names that resemble it.
+    /// Index of a joint by its name.
+    ///
+    /// # Errors
+    /// The error offers names that resemble it.
     pub fn joint(&self, name: &str) -> Result<usize> {
         self.find(
             "joint",
@@ -178,6 +190,9 @@ impl Robot {
 
     /// `world_from_link` of every link, in their order; `world_from_base` is where the base is. See
     /// [`forward_into`](Self::forward_into).
+    ///
+    /// # Errors
+    /// Those of [`forward_into`](Self::forward_into).
     pub fn forward(&self, world_from_base: &Pose, positions: &[f64]) -> Result<Vec<Pose>> {
         let mut world_from_link = vec![Pose::IDENTITY; self.links.len()];
         self.forward_into(world_from_base, positions, &mut world_from_link)?;
@@ -186,8 +201,10 @@ impl Robot {
 
     /// The same into a slice of one pose a link, without allocation.
     ///
-    /// Limits are not checked here: see [`JointTrajectory`](crate::world::JointTrajectory). The error is a slice of another
-    /// length than the robot has positions or links, or a position that is not finite.
+    /// Limits are not checked here: see [`JointTrajectory`](crate::world::JointTrajectory).
+    ///
+    /// # Errors
+    /// A slice of another length than the robot has positions or links, or a position that is not finite.
     pub fn forward_into(
         &self,
         world_from_base: &Pose,
@@ -234,7 +251,10 @@ impl Robot {
         }
     }
 
-    /// Checks that every mesh file of its links is there, for a URDF that lies in `folder`. The error gives the line.
+    /// Checks that every mesh file of its links is there, for a URDF that lies in `folder`.
+    ///
+    /// # Errors
+    /// The error gives the line.
     pub fn check_meshes(&self, folder: &Path) -> Result<()> {
         for link in &self.links {
             for shape in &link.shapes {
