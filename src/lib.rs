@@ -100,8 +100,8 @@
 //! | [`report`] | tables and frames → files for people |
 //!
 //! The ten stages from `mesh` to `recognition` are pure: no files (but a robot's, if it is asked for by its path), clock,
-//! threads, printing or global state. Threads live in `study`, and in `whole_body` for large touches; files in `study`, `scene`
-//! (what a scene names) and `report`.
+//! threads, printing or global state; but large touches in `whole_body` and chains of packings in `packing` use the threads of the pool. All
+//! other threads live in `study`, `kinds` and `report`, files in these, in `scene` (what a scene names) and in the command.
 //!
 //! The [`guide`] has chapters for users of the command and of the library, from a [first study](guide::first_study) and the
 //! [study file](guide::study_file) to [objects of your own](guide::own_objects), [statistics](guide::statistics), [long

@@ -1,7 +1,7 @@
 //! Whole body: millions of taxels that are mostly not touched → the touched ones, at a cost that follows the contact.
 //!
-//! The equations are those of [`contact`](crate::contact), and so are the results, to 1e-12 m. What differs is what is looked
-//! at:
+//! The equations are those of [`contact`](crate::contact), and so are the results, to 1e-12 m; with dampers to
+//! [`AT_REST`], below which a taxel that relaxes counts as at rest. What differs is what is looked at:
 //!
 //! 1. **patches** ([`BodyPatch`]): those whose ball is near an object's, and those on which something still relaxes;
 //! 2. **spheres** ([`SphereClusters`]): a cluster of neighbours at a time, only those near a bundle of the patch's columns;
