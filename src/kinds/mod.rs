@@ -23,7 +23,7 @@ pub mod whole_body;
 
 pub use any_study::{AnyStudy, Outcome};
 pub use ceiling::{threads_within, within_memory};
-pub use kind::{About, Facts, Kind};
+pub use kind::{About, AnyFile, Facts, Files, Findings, Kind};
 pub use loaded::Loaded;
 pub use source::Source;
 

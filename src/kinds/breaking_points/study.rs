@@ -1,13 +1,12 @@
 //! A study of breaking points: every value of every way, on all threads.
 
-use super::charts::{answers, charts};
 use super::half::breaking_points;
 use super::plan::{BreakingPointsPlan, PlannedValue, PlannedWay};
 use super::rows::{BreakingPoint, CellScore, TrialScore, TrialTime, WayCell};
 use super::spec::BreakingPointsSpec;
 use super::value::{ObjectSets, evaluate};
 use crate::error::Result;
-use crate::kinds::{About, Facts, Kind, Source, grouped};
+use crate::kinds::{About, Facts, Files, Kind, Source, grouped};
 use crate::random::Seed;
 use crate::recognition::bootstrap::Bootstrap;
 use crate::study::Plan;
@@ -16,11 +15,11 @@ use crate::study::pieces::{NamedPiece, PieceRows, PieceStudy, PiecesLeft, Scale}
 use crate::study::spec::ObjectsSpec;
 use crate::study::summary::score;
 use crate::study::time_left::Piece;
-use crate::table::{ChartSpec, File, Table};
+use crate::table::{File, Table};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 /// A study of breaking points, and where packings are looked for and kept, if anywhere.
 pub struct BreakingPointsStudy {
@@ -171,6 +170,7 @@ impl Kind for BreakingPointsStudy {
         words: "a study of where recognition breaks",
         may_change: &["question", "expected", "breaking_points"],
     };
+    const FILES: Files = &[&ACCURACY, &SUMMARY, &BREAKS, &TIMING];
 
     fn load(source: &Source) -> Result<Self> {
         let mut spec = BreakingPointsSpec::parse(&source.place, &source.text)?;
@@ -205,22 +205,5 @@ impl Kind for BreakingPointsStudy {
             item_bytes: 4.0 * (N_OBJECTS * most_read) as f64,
             ..Scale::default()
         }
-    }
-
-    fn read(folder: &Path) -> Result<Vec<Table>> {
-        Ok(vec![
-            ACCURACY.read(folder)?,
-            SUMMARY.read(folder)?,
-            BREAKS.read(folder)?,
-            TIMING.read(folder)?,
-        ])
-    }
-
-    fn charts(&self, tables: &[Table]) -> Vec<ChartSpec> {
-        charts(&self.plan.ways, tables)
-    }
-
-    fn answers(&self, tables: &[Table]) -> Vec<String> {
-        answers(&self.plan.ways, tables)
     }
 }

@@ -1,6 +1,5 @@
 //! A study of object detail: models of every mesh, their errors on all threads, then their times on one.
 
-use super::charts::{answers, charts};
 use super::measured::Measured;
 use super::plan::ObjectDetailPlan;
 use super::recognition::{Learned, Sensor};
@@ -12,15 +11,15 @@ use super::summary::{costs, summary};
 use super::variants::levels;
 use crate::error::Result;
 use crate::kinds::model_recognition::check_apart;
-use crate::kinds::{About, Facts, Kind, Source};
+use crate::kinds::{About, Facts, Files, Kind, Source};
 use crate::study::object_files::NamedMesh;
 use crate::study::pieces::{NamedPiece, PieceRows, PieceStudy, PiecesLeft, Scale};
 use crate::study::time_left::Piece;
 use crate::study::{load_named_meshes, objects_content};
-use crate::table::{ChartSpec, File, Table};
+use crate::table::{File, Table};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 /// A study of object detail and its meshes.
 pub struct ObjectDetailStudy {
@@ -190,6 +189,8 @@ impl Kind for ObjectDetailStudy {
             "object_detail.recognition.classifiers",
         ],
     };
+    const FILES: Files = &[&DETAIL, &SUMMARY, &TIMING, &COST];
+    const FILES_OF_PARTS: Files = &[&RECOGNITION];
 
     fn load(source: &Source) -> Result<Self> {
         let mut spec = ObjectDetailStudySpec::parse(&source.place, &source.text)?;
@@ -232,24 +233,5 @@ impl Kind for ObjectDetailStudy {
             // Frames as they were, and as they are read.
             item_bytes: 12.0 * (n_learned * n_taxels) as f64,
         }
-    }
-
-    fn read(folder: &Path) -> Result<Vec<Table>> {
-        let mut tables = vec![
-            DETAIL.read(folder)?,
-            SUMMARY.read(folder)?,
-            TIMING.read(folder)?,
-            COST.read(folder)?,
-        ];
-        tables.extend(RECOGNITION.read_if_there(folder)?);
-        Ok(tables)
-    }
-
-    fn charts(&self, tables: &[Table]) -> Vec<ChartSpec> {
-        charts(tables)
-    }
-
-    fn answers(&self, tables: &[Table]) -> Vec<String> {
-        answers(tables)
     }
 }

@@ -1,6 +1,5 @@
 //! Runs a reconstruction study: touches once, dictionaries once, then every ensemble, m, noise, dictionary and solver.
 
-use super::charts::{answers, charts};
 use super::measured::measure_cells;
 use super::plan::ReconstructionPlan;
 use super::rows::{
@@ -11,16 +10,14 @@ use super::score::pareto;
 use super::spec::ReconstructionStudySpec;
 use super::touches::Touches;
 use crate::error::Result;
-use crate::kinds::{About, Facts, Kind, Source};
+use crate::kinds::{About, Facts, Files, Kind, Source};
 use crate::random::Seed;
-use crate::report::study_folder::NamedPicture;
 use crate::study::pieces::{NamedPiece, PieceStudy, PiecesLeft, Scale, Shared};
 use crate::study::progress::Progress;
 use crate::study::time_left::Piece;
 use crate::study::{TouchedObject, draw_touches, load_objects, objects_content};
-use crate::table::{ChartSpec, File, Table};
+use crate::table::{File, Table};
 use std::collections::BTreeMap;
-use std::path::Path;
 
 /// A reconstruction study and its touches.
 pub struct ReconstructionStudy {
@@ -73,6 +70,7 @@ impl Kind for ReconstructionStudy {
             "reconstruction.dictionary",
         ],
     };
+    const FILES: Files = &[&CELLS, &ENSEMBLES, &TIMING, &PARETO];
 
     fn load(source: &Source) -> Result<Self> {
         let mut spec = ReconstructionStudySpec::parse(&source.place, &source.text)?;
@@ -105,27 +103,6 @@ impl Kind for ReconstructionStudy {
             bytes: 8.0 * (frames + n_taxels * n_taxels),
             ..Scale::default()
         }
-    }
-
-    fn read(folder: &Path) -> Result<Vec<Table>> {
-        Ok(vec![
-            CELLS.read(folder)?,
-            ENSEMBLES.read(folder)?,
-            TIMING.read(folder)?,
-            PARETO.read(folder)?,
-        ])
-    }
-
-    fn charts(&self, tables: &[Table]) -> Vec<ChartSpec> {
-        charts(tables)
-    }
-
-    fn pictures(&self, tables: &[Table]) -> Result<Vec<NamedPicture>> {
-        self.sample_frames(tables)
-    }
-
-    fn answers(&self, tables: &[Table]) -> Vec<String> {
-        answers(tables)
     }
 }
 

@@ -1,6 +1,5 @@
 //! A study of speed against accuracy, part by part.
 
-use super::charts::{answers, charts};
 use super::contact_points::contact_points;
 use super::models::ContactRow;
 use super::plan::SpeedAccuracyPlan;
@@ -11,13 +10,13 @@ use super::spec::SpeedAccuracyStudySpec;
 use super::subject::{Subject, load_subjects};
 use crate::error::Result;
 use crate::kinds::model_recognition::check_apart;
-use crate::kinds::{About, Facts, Kind, Source};
+use crate::kinds::{About, Facts, Files, Kind, Source};
 use crate::report::csv_tables::read_rows;
 use crate::study::objects_content;
 use crate::study::pieces::{NamedPiece, PieceRows, PieceStudy, PiecesLeft, Scale};
-use crate::table::{ChartSpec, File, Table};
+use crate::table::{File, Table};
 use serde::{Deserialize, Serialize};
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 /// A study of speed against accuracy and its objects.
 pub struct SpeedAccuracyStudy {
@@ -132,6 +131,14 @@ impl Kind for SpeedAccuracyStudy {
             "speed_accuracy.recognition.classifier",
         ],
     };
+    const FILES_OF_PARTS: Files = &[
+        &CONTACT,
+        &CONTACT_TIMES,
+        &CONTACT_PARETO,
+        &RECOGNITION,
+        &RECOGNITION_TIMES,
+        &RECOGNITION_PARETO,
+    ];
 
     fn load(source: &Source) -> Result<Self> {
         let mut spec = SpeedAccuracyStudySpec::parse(&source.place, &source.text)?;
@@ -186,26 +193,6 @@ impl Kind for SpeedAccuracyStudy {
             bytes,
             ..Scale::default()
         }
-    }
-
-    fn read(folder: &Path) -> Result<Vec<Table>> {
-        let tables = [
-            CONTACT.read_if_there(folder)?,
-            CONTACT_TIMES.read_if_there(folder)?,
-            CONTACT_PARETO.read_if_there(folder)?,
-            RECOGNITION.read_if_there(folder)?,
-            RECOGNITION_TIMES.read_if_there(folder)?,
-            RECOGNITION_PARETO.read_if_there(folder)?,
-        ];
-        Ok(tables.into_iter().flatten().collect())
-    }
-
-    fn charts(&self, tables: &[Table]) -> Vec<ChartSpec> {
-        charts(tables)
-    }
-
-    fn answers(&self, tables: &[Table]) -> Vec<String> {
-        answers(&self.plan, tables)
     }
 }
 

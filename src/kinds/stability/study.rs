@@ -2,7 +2,6 @@
 
 use super::LEAST_STEPS;
 use super::cell::{Outcome, measure};
-use super::charts::{answers, charts};
 use super::peers::peer_rows;
 use super::plan::StabilityPlan;
 use super::rows::{
@@ -10,11 +9,11 @@ use super::rows::{
 };
 use super::spec::{StabilityScene, StabilityStudySpec};
 use crate::error::Result;
-use crate::kinds::{About, Facts, Kind, Source};
+use crate::kinds::{About, Facts, Files, Kind, Source};
 use crate::study::millimetres;
 use crate::study::pieces::{NamedPiece, PieceStudy, PiecesLeft, Scale};
 use crate::study::time_left::Piece;
-use crate::table::{ChartSpec, File, Table};
+use crate::table::{File, Table};
 use rayon::prelude::*;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
@@ -43,6 +42,7 @@ impl Kind for StabilityPlan {
         words: "a study of where contact methods break",
         may_change: &["question", "expected", "stability.parts"],
     };
+    const FILES: Files = &[&CELLS, &SUMMARY, &TIMING, &JOINTS];
 
     fn load(source: &Source) -> Result<Self> {
         source.refuse_objects("a ball is what touches")?;
@@ -69,27 +69,10 @@ impl Kind for StabilityPlan {
         }
     }
 
-    fn read(folder: &Path) -> Result<Vec<Table>> {
-        Ok(vec![
-            CELLS.read(folder)?,
-            SUMMARY.read(folder)?,
-            TIMING.read(folder)?,
-            JOINTS.read(folder)?,
-        ])
-    }
-
     fn read_tables(&self, folder: &Path) -> Result<Vec<Table>> {
         let mut tables = Self::read(folder)?;
         tables[0].note = peer_rows(self)?.1;
         Ok(tables)
-    }
-
-    fn charts(&self, tables: &[Table]) -> Vec<ChartSpec> {
-        charts(tables)
-    }
-
-    fn answers(&self, tables: &[Table]) -> Vec<String> {
-        answers(tables)
     }
 }
 
