@@ -27,7 +27,7 @@ pub use kind::{About, AnyFile, Facts, Files, Findings, Kind};
 pub use loaded::Loaded;
 pub use source::Source;
 
-use groups::grouped;
+use groups::{found_and_cost, grouped};
 
 use crate::error::Result;
 use crate::table::Table;

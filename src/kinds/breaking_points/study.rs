@@ -6,18 +6,17 @@ use super::rows::{BreakingPoint, CellScore, TrialScore, TrialTime, WayCell};
 use super::spec::BreakingPointsSpec;
 use super::value::{ObjectSets, evaluate};
 use crate::error::Result;
-use crate::kinds::{About, Facts, Files, Kind, Source, grouped};
+use crate::kinds::{About, Facts, Files, Kind, Source, found_and_cost, grouped};
 use crate::random::Seed;
 use crate::recognition::bootstrap::Bootstrap;
 use crate::study::Plan;
 use crate::study::object_files::{load_objects, objects_content};
-use crate::study::pieces::{NamedPiece, PieceRows, PieceStudy, PiecesLeft, Scale};
+use crate::study::pieces::{NamedPiece, PieceStudy, PiecesLeft, Scale};
 use crate::study::spec::ObjectsSpec;
 use crate::study::summary::score;
 use crate::study::time_left::Piece;
 use crate::table::{File, Table};
 use rayon::prelude::*;
-use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 
@@ -29,22 +28,8 @@ pub struct BreakingPointsStudy {
     pub packings: Option<PathBuf>,
 }
 
-/// What was found at a value of a way, or at several.
-#[derive(Clone, Debug, Default, Serialize, Deserialize)]
-pub struct DrivenRows {
-    pub(super) accuracy: Vec<(WayCell, TrialScore)>,
-    pub(super) timing: Vec<(WayCell, TrialTime)>,
-    /// How many objects each way tells apart.
-    pub(super) n_objects: BTreeMap<String, usize>,
-}
-
-impl PieceRows for DrivenRows {
-    fn append(&mut self, next: Self) {
-        self.n_objects.extend(next.n_objects);
-        self.accuracy.extend(next.accuracy);
-        self.timing.extend(next.timing);
-    }
-}
+/// What was found at values of ways, trial by trial; and how many objects a way tells apart.
+pub type DrivenRows = (Vec<(WayCell, TrialScore, TrialTime)>, Vec<(String, usize)>);
 
 /// Tables.
 const ACCURACY: File<(WayCell, TrialScore)> =
@@ -134,18 +119,19 @@ impl PieceStudy for BreakingPointsStudy {
             })
     }
 
-    fn tables(&self, rows: DrivenRows) -> Result<Vec<Table>> {
+    fn tables(&self, (rows, n_objects): DrivenRows) -> Result<Vec<Table>> {
+        let n_objects: BTreeMap<String, usize> = n_objects.into_iter().collect();
         let mut bootstrap = Bootstrap::default();
-        let cells = rows.accuracy.chunk_by(|a, b| a.0 == b.0);
+        let cells = rows.chunk_by(|a, b| a.0 == b.0);
         let summary = cells.map(|trials| {
-            let scores: Vec<&TrialScore> = trials.iter().map(|(_, score)| score).collect();
+            let scores: Vec<&TrialScore> = trials.iter().map(|(_, score, _)| score).collect();
             Ok((trials[0].0.clone(), score(&scores, &mut bootstrap)?))
         });
         let summary: Vec<(WayCell, CellScore)> = summary.collect::<Result<_>>()?;
         let mut breaks = Vec::new();
         for way in &self.plan.ways {
             let name = &way.spec.name;
-            let n_objects = rows.n_objects.get(name).copied().unwrap_or(0);
+            let n_objects = n_objects.get(name).copied().unwrap_or(0);
             let seed = Seed::new(self.plan.spec.seed).named("breaking points");
             let seed = seed.named(name);
             let of_way = summary.iter().filter(|(cell, _)| cell.way == *name);
@@ -155,12 +141,9 @@ impl PieceStudy for BreakingPointsStudy {
                 breaks.extend(breaking_points(&curve, way.spec.scale, n_objects, &seed));
             }
         }
-        Ok(vec![
-            ACCURACY.of(&rows.accuracy)?,
-            SUMMARY.of(&summary)?,
-            BREAKS.of(&breaks)?,
-            TIMING.of(&rows.timing)?,
-        ])
+        let [accuracy, timing] = found_and_cost((&ACCURACY, &TIMING), &rows)?;
+        let (summary, breaks) = (SUMMARY.of(&summary)?, BREAKS.of(&breaks)?);
+        Ok(vec![accuracy, summary, breaks, timing])
     }
 }
 

@@ -13,12 +13,11 @@ use crate::error::Result;
 use crate::kinds::model_recognition::check_apart;
 use crate::kinds::{About, Facts, Files, Kind, Source};
 use crate::study::object_files::NamedMesh;
-use crate::study::pieces::{NamedPiece, PieceRows, PieceStudy, PiecesLeft, Scale};
+use crate::study::pieces::{NamedPiece, PieceStudy, PiecesLeft, Scale};
 use crate::study::time_left::Piece;
 use crate::study::{load_named_meshes, objects_content};
 use crate::table::{File, Table};
 use rayon::prelude::*;
-use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
 
 /// A study of object detail and its meshes.
@@ -31,21 +30,12 @@ pub struct ObjectDetailStudy {
     pub packings: Option<PathBuf>,
 }
 
-/// What work items of the study found.
-#[derive(Clone, Debug, Default, Serialize, Deserialize)]
-pub struct DetailRows {
-    pub(super) detail: Vec<(DetailCell, DetailScore)>,
-    pub(super) timing: Vec<(DetailCell, DetailTime)>,
-    pub(super) recognition: Vec<DetailRecognition>,
-}
-
-impl PieceRows for DetailRows {
-    fn append(&mut self, next: Self) {
-        self.detail.extend(next.detail);
-        self.timing.extend(next.timing);
-        self.recognition.extend(next.recognition);
-    }
-}
+/// What work items of the study found: how near models are, what they cost, and what was learned from them.
+pub type DetailRows = (
+    Vec<(DetailCell, DetailScore)>,
+    Vec<(DetailCell, DetailTime)>,
+    Vec<DetailRecognition>,
+);
 
 /// Seconds for an object's models, a metre of the side of a square as large as its surface (the median of 37 scans of the YCB set); to time
 /// them; for a classifier.
@@ -117,7 +107,9 @@ impl PieceStudy for ObjectDetailStudy {
         let made = made.collect::<Result<Vec<_>>>()?;
         left.progress.stage("time touches", made.len() as u64);
         for (object, _) in made.iter().flatten() {
-            left.finish(&times_name(object.mesh), || Ok(object.times()))?;
+            left.finish(&times_name(object.mesh), || {
+                Ok((Vec::new(), object.times(), Vec::new()))
+            })?;
         }
         let felt = made.into_iter().map(|made| made?.1);
         let (Some(sensor), Some(felt)) = (sensor, felt.collect::<Option<Vec<_>>>()) else {
@@ -126,25 +118,23 @@ impl PieceStudy for ObjectDetailStudy {
         left.progress.stage("recognise", learned.len() as u64);
         learned.par_iter().try_for_each(|learned| {
             left.finish(&learned.name(), || {
-                Ok(DetailRows {
-                    recognition: vec![sensor.row(&felt, learned)?],
-                    ..DetailRows::default()
-                })
+                let row = sensor.row(&felt, learned)?;
+                Ok((Vec::new(), Vec::new(), vec![row]))
             })
         })
     }
 
-    fn tables(&self, rows: DetailRows) -> Result<Vec<Table>> {
-        let summary = summary(&rows.detail);
-        let costs = costs(&summary, &rows.timing);
+    fn tables(&self, (detail, timing, recognition): DetailRows) -> Result<Vec<Table>> {
+        let summary = summary(&detail);
+        let costs = costs(&summary, &timing);
         let mut tables = vec![
-            DETAIL.of(&rows.detail)?,
+            DETAIL.of(&detail)?,
             SUMMARY.of(&summary)?,
-            TIMING.of(&rows.timing)?,
+            TIMING.of(&timing)?,
             COST.of(&costs)?,
         ];
         if self.plan.recognition().is_some() {
-            tables.push(RECOGNITION.of(&rows.recognition)?);
+            tables.push(RECOGNITION.of(&recognition)?);
         }
         Ok(tables)
     }
@@ -169,7 +159,7 @@ impl ObjectDetailStudy {
         let mut made = None;
         left.finish(&models_name(mesh), || {
             let object = made.insert(Measured::new(self, mesh)?);
-            Ok(object.models(&self.plan))
+            Ok((object.models(&self.plan), Vec::new(), Vec::new()))
         })?;
         let needed = [&[times_name(mesh)], learners].concat();
         // Where it is not made, its rows are there from a run before.

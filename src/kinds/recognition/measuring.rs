@@ -137,10 +137,7 @@ impl RecognitionStudy {
                 cpu_s: frames.facts.cpu_s,
                 on: 0,
             };
-            Ok(RecognitionRows {
-                touches: vec![row],
-                ..RecognitionRows::default()
-            })
+            Ok((Vec::new(), vec![row]))
         })?;
         jobs.par_iter().try_for_each(|job| job.run(left, &frames))
     }
@@ -172,16 +169,16 @@ impl Job<'_> {
         let families = self.families.par_iter().zip(&need).enumerate();
         families.try_for_each(|(place, (&family, &item))| {
             left.finish_number(item, || {
-                let mut rows = self.evaluate(family, &measured)?;
                 // It is told once.
-                if place == 0 {
-                    rows.touches.push(TouchRow {
-                        n_touches: self.study.group(self.group).0.sweep.labels.len(),
-                        cpu_s,
-                        ..TouchRow::default()
-                    });
-                }
-                Ok(rows)
+                let touches = (place == 0).then(|| TouchRow {
+                    n_touches: self.study.group(self.group).0.sweep.labels.len(),
+                    cpu_s,
+                    ..TouchRow::default()
+                });
+                Ok((
+                    self.evaluate(family, &measured)?,
+                    touches.into_iter().collect(),
+                ))
             })
         })
     }
@@ -193,7 +190,7 @@ impl Job<'_> {
         measure_group(&part.plan, group, touches, trial, self.n_measurements)
     }
 
-    fn evaluate(&self, family: usize, measurements: &Measurements) -> Result<RecognitionRows> {
+    fn evaluate(&self, family: usize, measurements: &Measurements) -> Result<Vec<CellRow>> {
         let (part, cells) = self.study.family(family);
         let trial = Trial {
             plan: &part.plan,
@@ -207,9 +204,6 @@ impl Job<'_> {
             at: (0, 0),
             evaluation,
         });
-        Ok(RecognitionRows {
-            cells: rows.collect(),
-            ..RecognitionRows::default()
-        })
+        Ok(rows.collect())
     }
 }

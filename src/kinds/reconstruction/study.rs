@@ -10,7 +10,7 @@ use super::score::pareto;
 use super::spec::ReconstructionStudySpec;
 use super::touches::Touches;
 use crate::error::Result;
-use crate::kinds::{About, Facts, Files, Kind, Source};
+use crate::kinds::{About, Facts, Files, Kind, Source, found_and_cost};
 use crate::random::Seed;
 use crate::study::pieces::{NamedPiece, PieceStudy, PiecesLeft, Scale, Shared};
 use crate::study::progress::Progress;
@@ -144,16 +144,9 @@ impl PieceStudy for ReconstructionStudy {
             cell.cell = numbers[&cell.name()];
         }
         let pareto = pareto(&rows, &self.plan.noise);
-        let rows = rows.into_iter();
-        let (scores, times): (Vec<_>, Vec<_>) = rows
-            .map(|(cell, score, time)| ((cell.clone(), score), (cell, time)))
-            .unzip();
-        Ok(vec![
-            CELLS.of(&scores)?,
-            ENSEMBLES.of(&statistics)?,
-            TIMING.of(&times)?,
-            PARETO.of(&pareto)?,
-        ])
+        let [cells, timing] = found_and_cost((&CELLS, &TIMING), &rows)?;
+        let ensembles = ENSEMBLES.of(&statistics)?;
+        Ok(vec![cells, ensembles, timing, PARETO.of(&pareto)?])
     }
 }
 

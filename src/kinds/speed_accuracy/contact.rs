@@ -114,10 +114,7 @@ impl SpeedAccuracyStudy {
                         vec![models.stepped(method, dt_ms, spec.stepped_touches)?]
                     }
                 };
-                Ok(SpeedAccuracyRows {
-                    contact,
-                    ..SpeedAccuracyRows::default()
-                })
+                Ok((contact, Vec::new()))
             })?;
         }
         Ok(())

@@ -137,10 +137,7 @@ impl SpeedAccuracyStudy {
                     for setting in same {
                         left.finish(&setting.name(), || {
                             let row = one_thread.install(|| bench.row(&setting.cell, &measured))?;
-                            Ok(SpeedAccuracyRows {
-                                chains: vec![row],
-                                ..SpeedAccuracyRows::default()
-                            })
+                            Ok((Vec::new(), vec![row]))
                         })?;
                     }
                 }

@@ -9,7 +9,7 @@ use super::rows::{
 };
 use super::spec::{StabilityScene, StabilityStudySpec};
 use crate::error::Result;
-use crate::kinds::{About, Facts, Files, Kind, Source};
+use crate::kinds::{About, Facts, Files, Kind, Source, found_and_cost, grouped};
 use crate::study::millimetres;
 use crate::study::pieces::{NamedPiece, PieceStudy, PiecesLeft, Scale};
 use crate::study::time_left::Piece;
@@ -111,17 +111,10 @@ impl PieceStudy for StabilityPlan {
             let behind = rows.partition_point(|(cell, ..)| cell.part <= row.0.part);
             rows.insert(behind, row);
         }
-        let (summary, joints) = (summary(&rows), joints(&rows));
-        let rows = rows.into_iter();
-        let (scores, times): (Vec<_>, Vec<_>) = rows
-            .map(|(cell, score, time)| ((cell.clone(), score), (cell, time)))
-            .unzip();
-        Ok(vec![
-            CELLS.of(&scores)?.noted(sources),
-            SUMMARY.of(&summary)?,
-            TIMING.of(&times)?,
-            JOINTS.of(&joints)?,
-        ])
+        let [cells, timing] = found_and_cost((&CELLS, &TIMING), &rows)?;
+        let summary = SUMMARY.of(&summary(&rows))?;
+        let joints = JOINTS.of(&joints(&rows))?;
+        Ok(vec![cells.noted(sources), summary, timing, joints])
     }
 }
 
@@ -134,25 +127,20 @@ fn planned_s(cell: &StabilityCell) -> f64 {
 
 /// A row a scene, method and number of iterations, in the order of first occurrence.
 fn summary(rows: &[StabilityRow]) -> Vec<StabilitySummary> {
-    let key = |cell: &StabilityCell| (cell.scene, cell.method, cell.solver_iterations);
-    let mut keys = Vec::new();
-    for (cell, ..) in rows {
-        if !keys.contains(&key(cell)) {
-            keys.push(key(cell));
-        }
-    }
-    let summarise = |of| {
-        let of_key = rows.iter().filter(|(cell, ..)| key(cell) == of);
-        let scores: Vec<&StabilityScore> = of_key.map(|(_, score, _)| score).collect();
+    let settings = grouped(rows, |(cell, ..)| {
+        (cell.scene, cell.method, cell.solver_iterations)
+    });
+    let summarise = |((scene, method, solver_iterations), rows): (_, Vec<&StabilityRow>)| {
+        let scores: Vec<&StabilityScore> = rows.iter().map(|(_, score, _)| score).collect();
         let count = |outcome| scores.iter().filter(|s| s.outcome == outcome).count();
         let worst = |error: fn(&StabilityScore) -> Option<f64>| {
             let errors = scores.iter().filter_map(|score| error(score));
             errors.reduce(f64::max)
         };
         StabilitySummary {
-            scene: of.0,
-            method: of.1,
-            solver_iterations: of.2,
+            scene,
+            method,
+            solver_iterations,
             n_cells: scores.len(),
             n_right: count(Outcome::Right),
             n_inaccurate: count(Outcome::Inaccurate),
@@ -163,7 +151,7 @@ fn summary(rows: &[StabilityRow]) -> Vec<StabilitySummary> {
             worst_deflection_error: worst(|score| score.deflection_error),
         }
     };
-    keys.into_iter().map(summarise).collect()
+    settings.into_iter().map(summarise).collect()
 }
 
 /// Arrays of different sizes that make a ladder, at least.
