@@ -3,7 +3,7 @@
 use super::any_study::{AnyStudy, Outcome};
 use super::ceiling::{threads_within, within_memory};
 use super::kind::{Facts, Kind};
-use super::results::{failures_table, read_failures};
+use super::results::FAILURES;
 use super::source::Source;
 use super::verified::{drawn, same_rows};
 use crate::error::Result;
@@ -78,7 +78,7 @@ impl<K: Kind> AnyStudy for Loaded<K> {
             let (rows, failures) = pieces.run()?;
             Ok((failures, self.kind.tables(rows)?))
         })?;
-        tables.push(failures_table(&finished)?);
+        tables.push(FAILURES.of(&finished)?);
         let n_failed = finished.len();
         Ok(Outcome { tables, n_failed })
     }
@@ -119,7 +119,7 @@ impl<K: Kind> AnyStudy for Loaded<K> {
 
     fn report(&self, folder: &Path, about: StudyAbout) -> Result<()> {
         let mut tables = self.kind.read_tables(folder)?;
-        tables.extend(read_failures(folder)?);
+        tables.extend(FAILURES.read_if_there(folder)?);
         self.folder_of(folder, about, &tables)?.write().map(|_| ())
     }
 }

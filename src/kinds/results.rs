@@ -15,17 +15,9 @@ use crate::study::sha256;
 use crate::table::{File, Table};
 use std::path::Path;
 
-const FAILURES: File<PieceFailure> = File::new(FAILURES_FILE, "What failed, and why", "");
-
 /// Work items that failed.
-pub fn failures_table(failures: &[PieceFailure]) -> Result<Table> {
-    FAILURES.of(failures)
-}
-
-/// The same, of a folder; none where no run left the file.
-pub fn read_failures(folder: &Path) -> Result<Option<Table>> {
-    FAILURES.read_if_there(folder)
-}
+pub(super) const FAILURES: File<PieceFailure> =
+    File::new(FAILURES_FILE, "What failed, and why", "");
 
 impl<K: Kind> Loaded<K> {
     /// Charts, pictures and page, for a folder, with what is known of its run: nothing is written yet.
