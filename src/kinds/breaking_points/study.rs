@@ -105,14 +105,14 @@ impl PieceStudy for BreakingPointsStudy {
             Ok((spec.clone(), objects))
         });
         let sets: ObjectSets = sets.collect::<Result<_>>()?;
-        let values = left.of(self.values(), name);
+        let values = left.of(0, self.values());
         left.progress.stage("drive", values.len() as u64);
         values
             .par_iter()
             // One at a time: values of one way may all be slow.
             .with_max_len(1)
-            .try_for_each(|at| {
-                left.finish(&name(at), || {
+            .try_for_each(|(number, at)| {
+                left.finish(*number, || {
                     let found = evaluate(at.0, at.1, &sets);
                     found.map_err(|error| error.under(format!("way {}, ", name(at))))
                 })

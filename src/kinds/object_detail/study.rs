@@ -74,9 +74,17 @@ impl PieceStudy for ObjectDetailStudy {
         for (group, mesh) in self.meshes.iter().enumerate() {
             // To pack a larger surface takes longer.
             let models = Piece::of_stage(0, MODELS_S_PER_M * mesh.mesh.area().sqrt());
-            pieces.push(NamedPiece::new(models_name(mesh), group, models));
+            pieces.push(NamedPiece::new(
+                format!("models of {}", mesh.name),
+                group,
+                models,
+            ));
             let times = Piece::one_by_one(1, TIME_S);
-            pieces.push(NamedPiece::new(times_name(mesh), group, times));
+            pieces.push(NamedPiece::new(
+                format!("times of {}", mesh.name),
+                group,
+                times,
+            ));
         }
         let (group, work) = (self.meshes.len(), Piece::of_stage(2, RECOGNISE_S));
         let learned = Learned::all(&self.plan).into_iter();
@@ -85,39 +93,39 @@ impl PieceStudy for ObjectDetailStudy {
     }
 
     fn measure(&self, left: &PiecesLeft<DetailRows>) -> Result<()> {
-        let learned = left.of(Learned::all(&self.plan), Learned::name);
-        let learners: Vec<String> = learned.iter().map(Learned::name).collect();
+        let learned = left.of(models_item(self.meshes.len()), Learned::all(&self.plan));
+        let learners: Vec<usize> = learned.iter().map(|(number, _)| *number).collect();
         let spec = self.plan.recognition().filter(|_| !learned.is_empty());
         let sensor = spec.map(|spec| Sensor::new(&self.plan, spec)).transpose()?;
-        let is_needed = |mesh: &&NamedMesh| {
-            !learned.is_empty() || left.has(&models_name(mesh)) || left.has(&times_name(mesh))
+        let is_needed = |object: &usize| {
+            !learned.is_empty() || left.has(models_item(*object)) || left.has(times_item(*object))
         };
-        let needed: Vec<&NamedMesh> = self.meshes.iter().filter(is_needed).collect();
+        let needed: Vec<usize> = (0..self.meshes.len()).filter(is_needed).collect();
         left.progress.stage("models", needed.len() as u64);
-        let made = needed.into_par_iter().map(|mesh| {
-            let Some(made) = self.object(mesh, &learners, left)? else {
+        let made = needed.into_par_iter().map(|object| {
+            let Some(made) = self.object(object, &learners, left)? else {
                 return Ok(None);
             };
             let felt = match &sensor {
                 Some(sensor) => left.prepare(&learners, || sensor.measure(&made))?,
                 None => None,
             };
-            Ok(Some((made, felt)))
+            Ok(Some((object, made, felt)))
         });
         let made = made.collect::<Result<Vec<_>>>()?;
         left.progress.stage("time touches", made.len() as u64);
-        for (object, _) in made.iter().flatten() {
-            left.finish(&times_name(object.mesh), || {
-                Ok((Vec::new(), object.times(), Vec::new()))
+        for (object, made, _) in made.iter().flatten() {
+            left.finish(times_item(*object), || {
+                Ok((Vec::new(), made.times(), Vec::new()))
             })?;
         }
-        let felt = made.into_iter().map(|made| made?.1);
+        let felt = made.into_iter().map(|made| made?.2);
         let (Some(sensor), Some(felt)) = (sensor, felt.collect::<Option<Vec<_>>>()) else {
             return Ok(());
         };
         left.progress.stage("recognise", learned.len() as u64);
-        learned.par_iter().try_for_each(|learned| {
-            left.finish(&learned.name(), || {
+        learned.par_iter().try_for_each(|(number, learned)| {
+            left.finish(*number, || {
                 let row = sensor.row(&felt, learned)?;
                 Ok((Vec::new(), Vec::new(), vec![row]))
             })
@@ -140,28 +148,30 @@ impl PieceStudy for ObjectDetailStudy {
     }
 }
 
-fn models_name(mesh: &NamedMesh) -> String {
-    format!("models of {}", mesh.name)
+/// The number of an object's models as a work item; of one more than the last object, that of the first classifier.
+fn models_item(object: usize) -> usize {
+    2 * object
 }
 
-fn times_name(mesh: &NamedMesh) -> String {
-    format!("times of {}", mesh.name)
+/// The number of their times.
+fn times_item(object: usize) -> usize {
+    models_item(object) + 1
 }
 
 impl ObjectDetailStudy {
     /// Makes an object's models and keeps how near they are; if they cannot be made, all fails that needs them, `learners` too.
-    fn object<'a>(
+    fn object(
         &self,
-        mesh: &'a NamedMesh,
-        learners: &[String],
+        object: usize,
+        learners: &[usize],
         left: &PiecesLeft<DetailRows>,
-    ) -> Result<Option<Measured<'a>>> {
-        let mut made = None;
-        left.finish(&models_name(mesh), || {
+    ) -> Result<Option<Measured<'_>>> {
+        let (mesh, mut made) = (&self.meshes[object], None);
+        left.finish(models_item(object), || {
             let object = made.insert(Measured::new(self, mesh)?);
             Ok((object.models(&self.plan), Vec::new(), Vec::new()))
         })?;
-        let needed = [&[times_name(mesh)], learners].concat();
+        let needed = [&[times_item(object)], learners].concat();
         // Where it is not made, its rows are there from a run before.
         left.prepare(&needed, || {
             made.map_or_else(|| Measured::new(self, mesh), Ok)

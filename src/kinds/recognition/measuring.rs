@@ -40,7 +40,7 @@ impl RecognitionStudy {
             .into_iter()
             .map(|touches| (touches, self.jobs(left, touches)));
         let is_left = |(touches, jobs): &(usize, Vec<Job>)| {
-            !jobs.is_empty() || left.has_number(self.touches_item(*touches))
+            !jobs.is_empty() || left.has(self.touches_item(*touches))
         };
         let jobs: Vec<(usize, Vec<Job>)> = jobs.filter(is_left).collect();
         if self.has_axes() {
@@ -77,7 +77,7 @@ impl RecognitionStudy {
                 for n_measurements in measured.projected() {
                     let is_served = |&family: &usize| {
                         (is_nested || self.family(family).1[0].measurements == n_measurements)
-                            && left.has_number(self.family_item(trial, family))
+                            && left.has(self.family_item(trial, family))
                     };
                     let families: Vec<usize> = families.iter().copied().filter(is_served).collect();
                     if !families.is_empty() {
@@ -122,13 +122,13 @@ impl RecognitionStudy {
                 part.touched.simulate(on, &self.place, touched)
             })
         };
-        let Some(frames) = left.prepare_numbers(&need, make)? else {
+        let Some(frames) = left.prepare(&need, make)? else {
             return Ok(());
         };
         if !self.has_axes() {
             stage("recognise", n_families + 1);
         }
-        left.finish_number(touches, || {
+        left.finish(touches, || {
             let row = TouchRow {
                 is_made: true,
                 n_touches: part.sweep.labels.len(),
@@ -160,7 +160,7 @@ impl Job<'_> {
     /// Measures, then evaluates the families.
     fn run(&self, left: &PiecesLeft<RecognitionRows>, frames: &Frames) -> Result<()> {
         let need: Vec<usize> = self.items().collect();
-        let measured = left.prepare_numbers(&need, || self.measure(frames))?;
+        let measured = left.prepare(&need, || self.measure(frames))?;
         let cpu_s = measured.as_ref().map_or(0.0, |measured| measured.cpu_s);
         left.progress.worked(&self.work(), cpu_s);
         let Some(measured) = measured else {
@@ -168,7 +168,7 @@ impl Job<'_> {
         };
         let families = self.families.par_iter().zip(&need).enumerate();
         families.try_for_each(|(place, (&family, &item))| {
-            left.finish_number(item, || {
+            left.finish(item, || {
                 // It is told once.
                 let touches = (place == 0).then(|| TouchRow {
                     n_touches: self.study.group(self.group).0.sweep.labels.len(),

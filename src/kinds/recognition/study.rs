@@ -395,7 +395,7 @@ impl PieceStudy for RecognitionStudy {
         let mut work = Vec::new();
         for touches in 0..self.touch_sets.len() {
             let jobs = self.jobs(left, touches);
-            if jobs.is_empty() && !left.has_number(self.touches_item(touches)) {
+            if jobs.is_empty() && !left.has(self.touches_item(touches)) {
                 continue;
             }
             work.push(self.touch_work(touches));

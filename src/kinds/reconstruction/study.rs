@@ -131,8 +131,8 @@ impl PieceStudy for ReconstructionStudy {
         let touches = self.frames(left.progress)?;
         left.progress.stage("reconstruct", left.n() as u64);
         let cells = self.plan.cells();
-        let mut groups = on_measured(&cells);
-        groups.try_for_each(|cells| measure_cells((&self.plan, touches), cells, left))
+        let mut groups = on_measured(&cells).enumerate();
+        groups.try_for_each(|group| measure_cells((&self.plan, touches), group, left))
     }
 
     fn tables(&self, (mut rows, statistics): ReconstructionRows) -> Result<Vec<Table>> {

@@ -85,29 +85,30 @@ impl SpeedAccuracyStudy {
 
     /// Models on all threads, times on one.
     pub(super) fn measure_contact(&self, left: &PiecesLeft<SpeedAccuracyRows>) -> Result<()> {
-        let items = left.of(self.contact_items(), Item::name);
+        let items = left.of(0, self.contact_items());
         let (Some(spec), false) = (&self.plan.parts().contact, items.is_empty()) else {
             return Ok(());
         };
-        let objects = grouped(&items, |item| item.object);
+        let objects = grouped(&items, |(_, item)| item.object);
         left.progress.stage("models", objects.len() as u64);
         // One at a time: to pack a mesh takes from seconds to a minute.
         let made = objects.par_iter().with_max_len(1).map(|(object, items)| {
-            let names: Vec<String> = items.iter().map(|item| item.name()).collect();
-            let of = (items[0].touched, items[0].subject);
+            let numbers: Vec<usize> = items.iter().map(|(number, _)| *number).collect();
+            let (_, first) = items[0];
+            let of = (first.touched, first.subject);
             let make = || Models::new(&self.plan, spec, of, self.packings.as_deref());
-            let made = left.prepare(&names, make)?;
+            let made = left.prepare(&numbers, make)?;
             left.progress.advance(1);
             Ok(made.map(|made| (*object, made)))
         });
         let made = made.collect::<Result<Vec<_>>>()?;
         let made: BTreeMap<usize, Models> = made.into_iter().flatten().collect();
         left.progress.stage("time touches", items.len() as u64);
-        for item in &items {
+        for (number, item) in &items {
             let Some(models) = made.get(&item.object) else {
                 continue;
             };
-            left.finish(&item.name(), || {
+            left.finish(*number, || {
                 let contact = match item.stepped {
                     None => models.at_rest(),
                     Some((method, dt_ms)) => {

@@ -97,7 +97,7 @@ impl PieceStudy for StabilityPlan {
         // One at a time: a cell takes from microseconds to a minute.
         let cells = cells.with_max_len(1);
         cells.try_for_each(|(number, (cell, undamped))| {
-            left.finish_number(number, || {
+            left.finish(number, || {
                 let (score, time) = measure(cell, *undamped)?;
                 Ok(vec![(cell.clone(), score, time)])
             })

@@ -132,24 +132,24 @@ impl PieceStudy for WholeBodyPlan {
         };
         let n_compressions = self.compressions.len();
         for number in 0..n_compressions {
-            left.finish_number(number, || {
+            left.finish(number, || {
                 Ok((vec![learn()?[number].score.clone()], Vec::new()))
             })?;
         }
         let rungs = self.rungs();
         let first_rung = n_compressions + self.scenes.len();
         let driven = n_compressions..first_rung + rungs.len();
-        let n_left = driven.filter(|&number| left.has_number(number)).count();
+        let n_left = driven.filter(|&number| left.has(number)).count();
         left.progress.stage("scenes and ladders", n_left as u64);
         for (scene, number) in self.scenes.iter().zip(n_compressions..) {
-            left.finish_number(number, || {
+            left.finish(number, || {
                 let (mut drive, _) = self.begin(scene, cover()?)?;
                 let driven = drive.run(self, (Series::Scene, &scene.spec.name), learn()?)?;
                 Ok((Vec::new(), vec![driven]))
             })?;
         }
         for (rung, number) in rungs.iter().zip(first_rung..) {
-            left.finish_number(number, || Ok((Vec::new(), vec![climb(self, rung)?])))?;
+            left.finish(number, || Ok((Vec::new(), vec![climb(self, rung)?])))?;
         }
         Ok(())
     }
