@@ -5,13 +5,16 @@ use super::ceiling::{threads_within, within_memory};
 use super::kind::{Facts, Kind};
 use super::results::FAILURES;
 use super::source::Source;
-use super::verified::{drawn, same_rows};
+use super::verified::same_rows;
 use crate::error::Result;
+use crate::files::write_bytes;
+use crate::report::folder::Folder;
 use crate::report::page::StudyAbout;
 use crate::study::journal::{Identity, Journal};
 use crate::study::pieces::{NamedPiece, Part, PieceManner, PiecesRun};
 use crate::study::progress::{Progress, Silent};
-use crate::study::provenance::Manifest;
+use crate::study::provenance::{MANIFEST_FILE, Manifest};
+use crate::study::sha256;
 use std::path::Path;
 
 /// A study that is read and checked, and what its results depend on.
@@ -83,8 +86,36 @@ impl<K: Kind> AnyStudy for Loaded<K> {
         Ok(Outcome { tables, n_failed })
     }
 
-    fn write(&self, folder: &Path, outcome: &Outcome, run: Manifest) -> Result<()> {
-        self.write_results(folder, outcome, run)
+    fn write(&self, dir: &Path, outcome: &Outcome, run: Manifest) -> Result<()> {
+        let hashes = |repeats: bool| {
+            let tables = outcome.tables.iter();
+            let files = tables.filter(|t| t.repeats == repeats && !t.csv.is_empty());
+            let hashes = files.map(|table| (table.file.to_owned(), sha256(&table.csv)));
+            hashes.collect()
+        };
+        let words = |&(columns, method): &(&str, &str)| (columns.to_owned(), method.to_owned());
+        let manifest = Manifest {
+            seed: self.facts.seed,
+            n_cells: self.pieces.len(),
+            n_trials: 1,
+            n_failed: outcome.n_failed,
+            tables_sha256: hashes(true),
+            times_sha256: hashes(false),
+            methods: self.facts.methods.iter().map(words).collect(),
+            ..run
+        };
+        let json = manifest.to_json();
+        let of_run = StudyAbout {
+            name: manifest.study.clone(),
+            command: manifest.command.clone(),
+            manifest: Some(manifest),
+            ..StudyAbout::default()
+        };
+        let mut folder = Folder::of_tables(dir, &outcome.tables);
+        folder.append(self.folder_of(dir, of_run, &outcome.tables)?);
+        folder.write()?;
+        write_bytes(&dir.join("study.toml"), self.facts.toml.as_bytes())?;
+        write_bytes(&dir.join(MANIFEST_FILE), json.as_bytes())
     }
 
     fn words(&self, outcome: &Outcome, width: usize) -> String {
@@ -99,7 +130,7 @@ impl<K: Kind> AnyStudy for Loaded<K> {
         draw: u64,
         progress: &dyn Progress,
     ) -> Result<String> {
-        let chosen = drawn(&self.kind, &self.pieces, folder, (n, draw))?;
+        let chosen = self.drawn(folder, (n, draw))?;
         let manner = PieceManner {
             part: Part::Only(&chosen),
             ..PieceManner::whole(progress)

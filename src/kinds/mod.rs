@@ -22,7 +22,6 @@ mod verified;
 pub mod whole_body;
 
 pub use any_study::{AnyStudy, Outcome};
-pub use ceiling::{threads_within, within_memory};
 pub use kind::{About, AnyFile, Facts, Files, Findings, Kind};
 pub use loaded::Loaded;
 pub use source::Source;
@@ -32,7 +31,6 @@ use groups::{found_and_cost, grouped};
 use crate::error::Result;
 use crate::table::Table;
 use crate::toml_text;
-use serde::de::DeserializeOwned;
 use std::path::Path;
 
 /// A kind, for those who do not know which.
@@ -93,10 +91,4 @@ fn find(text: &str) -> Option<&'static Entry> {
     let table = toml_text::table(text)?;
     let mut kinds = KINDS.iter();
     kinds.find(|entry| table.contains_key(entry.about.table))
-}
-
-/// The rows of a file among tables; none without it.
-fn rows_of<R: DeserializeOwned>(tables: &[Table], file: &str) -> Vec<R> {
-    let table = tables.iter().find(|table| table.file == file);
-    table.map_or_else(Vec::new, Table::rows)
 }

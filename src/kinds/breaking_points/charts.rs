@@ -1,17 +1,16 @@
 //! What is charted and said: accuracy along each way, and where it is half of its best.
 
 use super::plan::PlannedWay;
-use super::rows::BreakingPoint;
 use super::scale::WayScale;
-use super::spec::DrivenTouches;
-use super::study::{BREAKS, BreakingPointsStudy, SUMMARY};
-use crate::kinds::{Findings, rows_of};
+use super::spec::{DrivenTouches, WaySpec};
+use super::study::{BreakingPointsStudy, SUMMARY};
+use crate::kinds::Findings;
 use crate::table::{Along, ChartSpec, Column, Role, Rule, Scale, Shown, Table, short_number};
 
 impl Findings for BreakingPointsStudy {
     /// A chart a way.
     fn charts(&self, tables: &[Table]) -> Vec<ChartSpec> {
-        let breaks: Vec<BreakingPoint> = rows_of(tables, BREAKS.name());
+        let breaks = &tables[2];
         let chart = |PlannedWay { spec: way, .. }: &PlannedWay| {
             let touches = match way.touches {
                 DrivenTouches::All => "Training and test touches have it alike.",
@@ -24,14 +23,13 @@ impl Findings for BreakingPointsStudy {
                 WayScale::Linear => Scale::Linear,
                 WayScale::Logarithmic => Scale::Log,
             };
-            let of_way = || breaks.iter().filter(|row| row.way == way.name);
-            let chance = of_way()
-                .next()
-                .map(|row| Rule::at(Along::Y, row.chance, "chance"));
-            let halves = of_way().filter_map(|row| {
-                let (classifier, place) = (row.classifier.about().words, break_words(row)?);
-                let words = format!("{classifier}: half of its best at {place}");
-                Some(Rule::at(Along::X, row.breaks_at?, words))
+            let of_way = of_way(breaks, way);
+            let chance = of_way.first().map(|&row| breaks.number("chance", row));
+            let chance = chance.map(|chance| Rule::at(Along::Y, chance, "chance"));
+            let halves = of_way.iter().filter_map(|&row| {
+                let classifier = breaks.words("classifier", row);
+                let words = format!("{classifier}: half of its best at {}", place(breaks, row)?);
+                Some(Rule::at(Along::X, breaks.number("breaks_at", row), words))
             });
             let label = way.label.clone();
             ChartSpec {
@@ -56,15 +54,15 @@ impl Findings for BreakingPointsStudy {
 
     /// How many settings break recognition, where each does, and which do not.
     fn answers(&self, tables: &[Table]) -> Vec<String> {
-        let breaks: Vec<BreakingPoint> = rows_of(tables, BREAKS.name());
-        let place = |row: &BreakingPoint| {
-            let words = row.classifier.about().words;
-            Some(format!("{} ({words})", break_words(row)?))
+        let breaks = &tables[2];
+        let place_of = |row: usize| {
+            let classifier = breaks.words("classifier", row);
+            Some(format!("{} ({classifier})", place(breaks, row)?))
         };
         let (mut said, mut unbroken) = (vec![String::new()], Vec::new());
         for PlannedWay { spec: way, .. } in &self.plan.ways {
-            let rows = breaks.iter().filter(|row| row.way == way.name);
-            let places: Vec<String> = rows.filter_map(place).collect();
+            let rows = of_way(breaks, way).into_iter();
+            let places: Vec<String> = rows.filter_map(place_of).collect();
             let (label, places) = (&way.label, places.join(", "));
             match places.is_empty() {
                 true => unbroken.push(label.as_str()),
@@ -83,11 +81,19 @@ impl Findings for BreakingPointsStudy {
     }
 }
 
+/// The rows of a way among those of all breaking points.
+fn of_way(breaks: &Table, way: &WaySpec) -> Vec<usize> {
+    let rows = 0..breaks.n_rows;
+    rows.filter(|&row| breaks.word("way", row) == way.name)
+        .collect()
+}
+
 /// Where it is half of its best, with the interval: `0.53 (0.48 to 0.6)`; none if it does not break.
-fn break_words(row: &BreakingPoint) -> Option<String> {
-    let end = |end: Option<f64>| end.map_or("beyond".to_owned(), three_digits);
-    let (low, high) = (end(row.breaks_at_low), end(row.breaks_at_high));
-    let at = three_digits(row.breaks_at?);
+fn place(breaks: &Table, row: usize) -> Option<String> {
+    let number = |column| Some(breaks.number(column, row)).filter(|place| !place.is_nan());
+    let end = |column| number(column).map_or("beyond".to_owned(), three_digits);
+    let at = three_digits(number("breaks_at")?);
+    let (low, high) = (end("breaks_at_low"), end("breaks_at_high"));
     Some(format!("{at} ({low} to {high})"))
 }
 

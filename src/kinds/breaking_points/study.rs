@@ -36,7 +36,7 @@ const ACCURACY: File<(WayCell, TrialScore)> =
     File::new("accuracy.csv", "Accuracy of every trial", "");
 pub(super) const SUMMARY: File<(WayCell, CellScore)> =
     File::new("summary.csv", "Accuracy at every value", "");
-pub(super) const BREAKS: File<BreakingPoint> = File::new(
+const BREAKS: File<BreakingPoint> = File::new(
     "breaking_points.csv",
     "Breaking points",
     "Each setting alone is driven to its ends; the interval is that of the place where accuracy is half of its best.",

@@ -30,19 +30,12 @@ impl RecognitionStudy {
         for part in self.parts() {
             part.touched.prepare();
         }
-        let mut order: Vec<usize> = (0..self.touch_sets.len()).collect();
+        let mut jobs = self.jobs_left(left);
         // Most frames first: what learns from them takes longest, and how much longer than planned is then known early.
-        order.sort_by_key(|&touches| {
-            let (part, array, n_frames) = self.made_on(touches);
+        jobs.sort_by_key(|(touches, _)| {
+            let (part, array, n_frames) = self.made_on(*touches);
             (part, array, Reverse(n_frames))
         });
-        let jobs = order
-            .into_iter()
-            .map(|touches| (touches, self.jobs(left, touches)));
-        let is_left = |(touches, jobs): &(usize, Vec<Job>)| {
-            !jobs.is_empty() || left.has(self.touches_item(*touches))
-        };
-        let jobs: Vec<(usize, Vec<Job>)> = jobs.filter(is_left).collect();
         if self.has_axes() {
             // A line for the touches of each combination would hide the others.
             let n_items =
@@ -59,9 +52,22 @@ impl RecognitionStudy {
         self.parts().len() > 1
     }
 
+    /// Touches that are made or that families need that are left, with what is measured of them.
+    pub(super) fn jobs_left(
+        &self,
+        left: &PiecesLeft<RecognitionRows>,
+    ) -> Vec<(usize, Vec<Job<'_>>)> {
+        let touches = 0..self.touch_sets.len();
+        let jobs = touches.map(|touches| (touches, self.jobs(left, touches)));
+        let is_left = |(touches, jobs): &(usize, Vec<Job>)| {
+            !jobs.is_empty() || left.has(self.touches_item(*touches))
+        };
+        jobs.filter(is_left).collect()
+    }
+
     /// What is measured of some touches for families that are left. A group of prefixes is measured once and serves all cells; else each m
     /// serves its own.
-    pub(super) fn jobs(&self, left: &PiecesLeft<RecognitionRows>, touches: usize) -> Vec<Job<'_>> {
+    fn jobs(&self, left: &PiecesLeft<RecognitionRows>, touches: usize) -> Vec<Job<'_>> {
         let mut alike: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
         for (number, family) in self.families.iter().enumerate() {
             let group = &self.groups[family.group];

@@ -393,11 +393,7 @@ impl PieceStudy for RecognitionStudy {
 
     fn shared_work(&self, left: &PiecesLeft<RecognitionRows>) -> Vec<Piece> {
         let mut work = Vec::new();
-        for touches in 0..self.touch_sets.len() {
-            let jobs = self.jobs(left, touches);
-            if jobs.is_empty() && !left.has(self.touches_item(touches)) {
-                continue;
-            }
+        for (touches, jobs) in self.jobs_left(left) {
             work.push(self.touch_work(touches));
             work.extend(jobs.iter().map(Job::work));
         }

@@ -77,7 +77,7 @@ impl Kind for ReconstructionStudy {
         spec.seed = source.seed(spec.seed);
         source.replace_objects(&mut spec.objects);
         let plan = ReconstructionPlan::new(&source.place, spec)?;
-        let objects = load_objects(&plan.spec.objects, source.packings())?;
+        let objects = load_objects(&plan.spec.objects, source.packings.as_deref())?;
         let touched = draw_touches(objects, &plan.placement, &Seed::new(plan.spec.seed))?;
         Ok(Self {
             plan,
