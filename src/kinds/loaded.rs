@@ -3,25 +3,30 @@
 use super::any_study::{AnyStudy, Outcome};
 use super::ceiling::{threads_within, within_memory};
 use super::kind::{Facts, Kind};
-use super::results::FAILURES;
 use super::source::Source;
 use super::verified::same_rows;
 use crate::error::Result;
 use crate::files::write_bytes;
+use crate::report::csv_tables::FAILURES_FILE;
 use crate::report::folder::Folder;
 use crate::report::page::StudyAbout;
+use crate::report::study_folder::{Beyond, Found, folder_with};
 use crate::study::journal::{Identity, Journal};
-use crate::study::pieces::{NamedPiece, Part, PieceManner, PiecesRun};
+use crate::study::pieces::{NamedPiece, Part, PieceFailure, PieceManner, PiecesRun};
 use crate::study::progress::{Progress, Silent};
-use crate::study::provenance::{MANIFEST_FILE, Manifest};
+use crate::study::provenance::{MANIFEST_FILE, Manifest, PROGRAM};
 use crate::study::sha256;
+use crate::table::{File, Table};
 use std::path::Path;
+
+/// Work items that failed.
+const FAILURES: File<PieceFailure> = File::new(FAILURES_FILE, "What failed, and why", "");
 
 /// A study that is read and checked, and what its results depend on.
 pub struct Loaded<K> {
     pub(super) kind: K,
-    pub(super) facts: Facts,
-    pub(super) identity: Identity,
+    facts: Facts,
+    identity: Identity,
     pub(super) pieces: Vec<NamedPiece>,
     /// Most bytes to hold.
     memory: Option<u64>,
@@ -45,6 +50,34 @@ impl<K: Kind> Loaded<K> {
             kind,
         })
     }
+
+    /// Charts, pictures and page, for a folder, with what is known of its run: nothing is written yet.
+    fn folder_of<'a>(
+        &self,
+        folder: &'a Path,
+        of_run: StudyAbout,
+        tables: &[Table],
+    ) -> Result<Folder<'a>> {
+        let wall_s = of_run.manifest.as_ref().and_then(Manifest::wall_s);
+        let about = StudyAbout {
+            question: self.facts.question.clone(),
+            expected: self.facts.expected.clone(),
+            wall_s: wall_s.unwrap_or(f64::NAN),
+            program: PROGRAM.to_owned(),
+            ..of_run
+        };
+        let found = Found {
+            tables,
+            charts: &self.kind.charts(tables),
+            answers: &self.kind.answers(tables),
+        };
+        folder_with(folder, &about, &found, || {
+            Ok(Beyond {
+                pictures: self.kind.pictures(tables)?,
+                sections: self.kind.sections(tables)?,
+            })
+        })
+    }
 }
 
 impl<K: Kind> AnyStudy for Loaded<K> {
@@ -57,10 +90,10 @@ impl<K: Kind> AnyStudy for Loaded<K> {
     }
 
     fn plan(&self) -> Result<String> {
-        let n_threads = threads_within(&self.kind.scale(), self.memory)?;
+        let scale = self.kind.scale();
+        let n_threads = threads_within(&scale, self.memory)?;
         let manner = PieceManner::whole(&Silent);
         let work = PiecesRun::new(&self.kind, &self.pieces, &manner).workload();
-        let scale = self.kind.scale();
         let estimate = scale.estimate(self.pieces.len(), &work, n_threads);
         Ok(format!("{}\n{estimate}", self.facts.question))
     }

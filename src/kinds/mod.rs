@@ -14,7 +14,6 @@ mod model_recognition;
 pub mod object_detail;
 pub mod recognition;
 pub mod reconstruction;
-mod results;
 mod source;
 pub mod speed_accuracy;
 pub mod stability;

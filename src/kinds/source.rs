@@ -72,11 +72,8 @@ impl Source {
     /// # Errors
     /// They were.
     pub fn refuse_objects(&self, why: &str) -> Result<()> {
-        refuse(
-            "--objects",
-            self.objects.as_ref().map(|path| path.display()),
-            why,
-        )
+        let given = self.objects.as_ref().map(|path| path.display());
+        refuse("--objects", given, why)
     }
 
     /// An error if a seed was asked for; `why` says why there is none.

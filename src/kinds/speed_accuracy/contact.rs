@@ -29,21 +29,19 @@ const SCAN_S: f64 = 30.0;
 const STEP_S: f64 = 1e-4;
 
 impl Item<'_> {
-    fn name(&self) -> String {
+    /// What is done with an object shares its models.
+    fn piece(&self) -> NamedPiece {
         let name = self.subject.name();
-        match (self.stepped, self.touched) {
-            (Some((method, dt_ms)), _) => format!("{method:?} of {dt_ms} ms with {name}"),
-            (None, Touched::Object) => format!("contact with {name}"),
-            (None, Touched::Scan) => format!("contact with scan {name}"),
-        }
-    }
-
-    fn work(&self) -> Piece {
-        match (self.stepped, self.touched) {
-            (Some((_, dt_ms)), _) => Piece::one_by_one(1, 1e3 * STEP_S / dt_ms),
-            (None, Touched::Object) => Piece::of_stage(0, OBJECT_S),
-            (None, Touched::Scan) => Piece::of_stage(0, SCAN_S),
-        }
+        let at_rest = |name, planned_s| (name, Piece::of_stage(0, planned_s));
+        let (name, work) = match (self.stepped, self.touched) {
+            (Some((method, dt_ms)), _) => {
+                let name = format!("{method:?} of {dt_ms} ms with {name}");
+                (name, Piece::one_by_one(1, 1e3 * STEP_S / dt_ms))
+            }
+            (None, Touched::Object) => at_rest(format!("contact with {name}"), OBJECT_S),
+            (None, Touched::Scan) => at_rest(format!("contact with scan {name}"), SCAN_S),
+        };
+        NamedPiece::new(name, self.object, work)
     }
 }
 
@@ -76,11 +74,9 @@ impl SpeedAccuracyStudy {
         items
     }
 
-    /// What is done with an object shares its models.
+    /// Its work items.
     pub(super) fn contact_pieces(&self) -> Vec<NamedPiece> {
-        let items = self.contact_items().into_iter();
-        let pieces = items.map(|item| NamedPiece::new(item.name(), item.object, item.work()));
-        pieces.collect()
+        self.contact_items().iter().map(Item::piece).collect()
     }
 
     /// Models on all threads, times on one.
