@@ -3,7 +3,7 @@
 use super::plan::PlannedWay;
 use super::scale::WayScale;
 use super::spec::{DrivenTouches, WaySpec};
-use super::study::{BreakingPointsStudy, SUMMARY};
+use super::study::BreakingPointsStudy;
 use crate::kinds::Findings;
 use crate::table::{Along, ChartSpec, Column, Role, Rule, Scale, Shown, Table, short_number};
 
@@ -31,22 +31,18 @@ impl Findings for BreakingPointsStudy {
                 let words = format!("{classifier}: half of its best at {}", place(breaks, row)?);
                 Some(Rule::at(Along::X, breaks.number("breaks_at", row), words))
             });
-            let label = way.label.clone();
+            let (name, label) = (way.name.clone(), way.label.clone());
+            let title = format!("Accuracy by {label}");
             ChartSpec {
-                name: way.name.clone(),
-                title: format!("Accuracy by {label}"),
                 note: touches.to_owned(),
-                table: SUMMARY.name(),
                 shown: vec![Shown {
                     column: "way".to_owned(),
                     value: way.name.as_str().into(),
                 }],
-                x: "value".to_owned(),
                 x_is: Some(Column::new("value", Role::Note, label, "", scale)),
-                y: "accuracy".to_owned(),
                 lines: vec!["classifier".to_owned()],
                 rules: chance.into_iter().chain(halves).collect(),
-                ..ChartSpec::default()
+                ..tables[1].chart(name, title, ("accuracy", "value"))
             }
         };
         self.plan.ways.iter().map(chart).collect()

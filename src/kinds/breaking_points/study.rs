@@ -34,8 +34,7 @@ pub type DrivenRows = (Vec<(WayCell, TrialScore, TrialTime)>, Vec<(String, usize
 /// Tables.
 const ACCURACY: File<(WayCell, TrialScore)> =
     File::new("accuracy.csv", "Accuracy of every trial", "");
-pub(super) const SUMMARY: File<(WayCell, CellScore)> =
-    File::new("summary.csv", "Accuracy at every value", "");
+const SUMMARY: File<(WayCell, CellScore)> = File::new("summary.csv", "Accuracy at every value", "");
 const BREAKS: File<BreakingPoint> = File::new(
     "breaking_points.csv",
     "Breaking points",

@@ -1,6 +1,6 @@
 //! What is charted and said: what spheres buy, what they cost, and what an object's errors cost a classifier that has learned from it.
 
-use super::study::{COST, ObjectDetailStudy, RECOGNITION};
+use super::study::{ObjectDetailStudy, RECOGNITION};
 use super::variants::within;
 use crate::kinds::Findings;
 use crate::table::{ChartSpec, Table, short_number};
@@ -57,29 +57,27 @@ impl Findings for ObjectDetailStudy {
     fn charts(&self, tables: &[Table]) -> Vec<ChartSpec> {
         let by_cost = [(FELT, SPHERES), (FELT, TIME), (SURFACE, SPHERES)];
         let errors = by_cost.into_iter().flat_map(|(errors, (by, of, x))| {
-            errors.map(|(name, words, y)| ChartSpec {
-                name: format!("{name}_by_{by}"),
-                title: format!("{words} by {of}"),
-                note: "Medians over objects with their quartiles.".to_owned(),
-                table: COST.name(),
-                x: x.to_owned(),
-                y: y.to_owned(),
-                lines: vec!["method".to_owned()],
-                ..ChartSpec::default()
+            errors.map(|(name, words, y)| {
+                let (name, title) = (format!("{name}_by_{by}"), format!("{words} by {of}"));
+                ChartSpec {
+                    note: "Medians over objects with their quartiles.".to_owned(),
+                    lines: vec!["method".to_owned()],
+                    ..tables[3].chart(name, title, (y, x))
+                }
             })
         });
-        let has_learned = tables.iter().any(|table| table.file == RECOGNITION.name());
-        let learned = LEARNED.into_iter().filter(|_| has_learned);
-        let learned = learned.map(|(name, title, y)| ChartSpec {
-            name: format!("{name}_by_deflection_error"),
-            title: title.to_owned(),
-            table: RECOGNITION.name(),
-            x: "error_own_contact_median_mm".to_owned(),
-            y: y.to_owned(),
-            lines: vec!["method".to_owned()],
-            panels: Some("classifier".to_owned()),
-            ..ChartSpec::default()
-        });
+        let by_error = |learned: &Table| {
+            LEARNED.map(|(name, title, y)| ChartSpec {
+                lines: vec!["method".to_owned()],
+                panels: Some("classifier".to_owned()),
+                ..learned.chart(
+                    format!("{name}_by_deflection_error"),
+                    title,
+                    (y, "error_own_contact_median_mm"),
+                )
+            })
+        };
+        let learned = learned(tables).into_iter().flat_map(by_error);
         errors.chain(learned).collect()
     }
 
@@ -100,10 +98,14 @@ impl Findings for ObjectDetailStudy {
             let said = least(costs, small, "n_spheres_median")?;
             Some(format!("Fewest spheres within {SMALL_MM} mm by {said}"))
         });
-        let misled = tables.iter().find(|table| table.file == RECOGNITION.name());
-        let misled = misled.and_then(misled_most);
+        let misled = learned(tables).and_then(misled_most);
         best.into_iter().chain(fewest).chain(misled).collect()
     }
+}
+
+/// What classifiers learned, if any did.
+fn learned(tables: &[Table]) -> Option<&Table> {
+    tables.iter().find(|table| table.file == RECOGNITION.name())
 }
 
 /// Models that are spheres.

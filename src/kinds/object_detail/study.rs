@@ -55,7 +55,7 @@ const SUMMARY: File<DetailSummary> = File::new(
 .summary();
 const TIMING: File<(DetailCell, DetailTime)> =
     File::new("timing.csv", "Time of a touch of each model", "").of_times();
-pub(super) const COST: File<(DetailSummary, LevelTime)> =
+const COST: File<(DetailSummary, LevelTime)> =
     File::new("object_detail_cost.csv", "What errors cost", "")
         .of_times()
         .summary();
