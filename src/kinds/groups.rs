@@ -22,7 +22,8 @@ pub(super) fn grouped<'a, T, K: PartialEq>(
 
 /// Rows of what something is, what was found of it and what it costs, as a table of what was found and one of what it costs.
 pub(super) fn found_and_cost<C, F, T>(
-    (found, cost): (&File<(C, F)>, &File<(C, T)>),
+    found: &File<(C, F)>,
+    cost: &File<(C, T)>,
     rows: &[(C, F, T)],
 ) -> Result<[Table; 2]>
 where

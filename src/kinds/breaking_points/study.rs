@@ -140,7 +140,7 @@ impl PieceStudy for BreakingPointsStudy {
                 breaks.extend(breaking_points(&curve, way.spec.scale, n_objects, &seed));
             }
         }
-        let [accuracy, timing] = found_and_cost((&ACCURACY, &TIMING), &rows)?;
+        let [accuracy, timing] = found_and_cost(&ACCURACY, &TIMING, &rows)?;
         let (summary, breaks) = (SUMMARY.of(&summary)?, BREAKS.of(&breaks)?);
         Ok(vec![accuracy, summary, breaks, timing])
     }

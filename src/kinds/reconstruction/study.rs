@@ -144,7 +144,7 @@ impl PieceStudy for ReconstructionStudy {
             cell.cell = numbers[&cell.name()];
         }
         let pareto = pareto(&rows, &self.plan.noise);
-        let [cells, timing] = found_and_cost((&CELLS, &TIMING), &rows)?;
+        let [cells, timing] = found_and_cost(&CELLS, &TIMING, &rows)?;
         let ensembles = ENSEMBLES.of(&statistics)?;
         Ok(vec![cells, ensembles, timing, PARETO.of(&pareto)?])
     }

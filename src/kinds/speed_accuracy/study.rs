@@ -84,11 +84,11 @@ impl PieceStudy for SpeedAccuracyStudy {
                 Some(path) => read_rows(path)?,
                 None => Vec::new(),
             };
-            tables.extend(found_and_cost((&CONTACT, &CONTACT_TIMES), &contact)?);
+            tables.extend(found_and_cost(&CONTACT, &CONTACT_TIMES, &contact)?);
             tables.push(CONTACT_PARETO.of(&contact_points(&contact, &peers))?);
         }
         if parts.recognition.is_some() {
-            tables.extend(found_and_cost((&RECOGNITION, &RECOGNITION_TIMES), &chains)?);
+            tables.extend(found_and_cost(&RECOGNITION, &RECOGNITION_TIMES, &chains)?);
             tables.push(RECOGNITION_PARETO.of(&chains)?);
         }
         Ok(tables)

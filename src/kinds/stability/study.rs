@@ -111,7 +111,7 @@ impl PieceStudy for StabilityPlan {
             let behind = rows.partition_point(|(cell, ..)| cell.part <= row.0.part);
             rows.insert(behind, row);
         }
-        let [cells, timing] = found_and_cost((&CELLS, &TIMING), &rows)?;
+        let [cells, timing] = found_and_cost(&CELLS, &TIMING, &rows)?;
         let summary = SUMMARY.of(&summary(&rows))?;
         let joints = JOINTS.of(&joints(&rows))?;
         Ok(vec![cells.noted(sources), summary, timing, joints])
