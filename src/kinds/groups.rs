@@ -1,5 +1,9 @@
 //! Rows by what they are rows of.
 
+use crate::error::Result;
+use crate::table::{Columns, File, Table};
+use serde::Serialize;
+
 /// Things of the same key together, keys in the order of their first.
 pub(super) fn grouped<'a, T, K: PartialEq>(
     things: impl IntoIterator<Item = &'a T>,
@@ -14,4 +18,23 @@ pub(super) fn grouped<'a, T, K: PartialEq>(
         }
     }
     groups
+}
+
+/// Rows of what something is, what was found of it and what it costs, as a table of what was found and one of what it costs.
+pub(super) fn found_and_cost<C, F, T>(
+    found: &File<(C, F)>,
+    cost: &File<(C, T)>,
+    rows: &[(C, F, T)],
+) -> Result<[Table; 2]>
+where
+    C: Columns + Serialize,
+    F: Columns + Serialize,
+    T: Columns + Serialize,
+{
+    let of_found: Vec<(&C, &F)> = rows.iter().map(|(of, found, _)| (of, found)).collect();
+    let of_cost: Vec<(&C, &T)> = rows.iter().map(|(of, _, cost)| (of, cost)).collect();
+    Ok([
+        found.of_columns(<(C, F)>::columns(), &of_found)?,
+        cost.of_columns(<(C, T)>::columns(), &of_cost)?,
+    ])
 }

@@ -5,7 +5,7 @@ use crate::error::Result;
 use crate::report::page::Section;
 use crate::report::study_folder::{NamedPicture, first_found, words_of};
 use crate::study::pieces::{PieceStudy, Scale};
-use crate::table::{ChartSpec, Table};
+use crate::table::{ChartSpec, Columns, File, Table};
 use crate::toml_text;
 use serde::Serialize;
 use std::collections::BTreeMap;
@@ -62,10 +62,44 @@ impl Facts {
     }
 }
 
+/// A [`File`] of rows of any type.
+pub trait AnyFile {
+    /// See [`File::read`].
+    ///
+    /// # Errors
+    /// Those of it.
+    fn read(&self, folder: &Path) -> Result<Table>;
+
+    /// See [`File::read_if_there`].
+    ///
+    /// # Errors
+    /// Those of it.
+    fn read_if_there(&self, folder: &Path) -> Result<Option<Table>>;
+}
+
+impl<R: Columns> AnyFile for File<R> {
+    fn read(&self, folder: &Path) -> Result<Table> {
+        self.read(folder)
+    }
+
+    fn read_if_there(&self, folder: &Path) -> Result<Option<Table>> {
+        self.read_if_there(folder)
+    }
+}
+
+/// Files of tables, in their order.
+pub type Files = &'static [&'static dyn AnyFile];
+
 /// A kind of study. The engine does all else: it runs, keeps, resumes, deals out, merges, plans, verifies and reports it.
-pub trait Kind: PieceStudy + Sized + Sync + 'static {
+pub trait Kind: PieceStudy + Findings + Sized + Sync + 'static {
     /// Which it is.
     const ABOUT: About;
+
+    /// The files of [`PieceStudy::tables`].
+    const FILES: Files = &[];
+
+    /// Those behind them, of parts that a study may leave out.
+    const FILES_OF_PARTS: Files = &[];
 
     /// Reads and checks a study, and loads its objects.
     ///
@@ -86,7 +120,13 @@ pub trait Kind: PieceStudy + Sized + Sync + 'static {
     ///
     /// # Errors
     /// A table that cannot be read, or has other columns.
-    fn read(folder: &Path) -> Result<Vec<Table>>;
+    fn read(folder: &Path) -> Result<Vec<Table>> {
+        let files = Self::FILES.iter().map(|file| file.read(folder).map(Some));
+        let of_parts = Self::FILES_OF_PARTS.iter();
+        let of_parts = of_parts.map(|file| file.read_if_there(folder));
+        let tables = files.chain(of_parts).filter_map(Result::transpose);
+        tables.collect()
+    }
 
     /// The same, with what this study says of them.
     ///
@@ -95,7 +135,10 @@ pub trait Kind: PieceStudy + Sized + Sync + 'static {
     fn read_tables(&self, folder: &Path) -> Result<Vec<Table>> {
         Self::read(folder)
     }
+}
 
+/// What a study found, for whoever reads it.
+pub trait Findings {
     /// What is charted, the most telling first.
     fn charts(&self, tables: &[Table]) -> Vec<ChartSpec>;
 

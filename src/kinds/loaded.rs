@@ -3,22 +3,30 @@
 use super::any_study::{AnyStudy, Outcome};
 use super::ceiling::{threads_within, within_memory};
 use super::kind::{Facts, Kind};
-use super::results::{failures_table, read_failures};
 use super::source::Source;
-use super::verified::{drawn, same_rows};
+use super::verified::same_rows;
 use crate::error::Result;
+use crate::files::write_bytes;
+use crate::report::csv_tables::FAILURES_FILE;
+use crate::report::folder::Folder;
 use crate::report::page::StudyAbout;
+use crate::report::study_folder::{Beyond, Found, folder_with};
 use crate::study::journal::{Identity, Journal};
-use crate::study::pieces::{NamedPiece, Part, PieceManner, PiecesRun};
+use crate::study::pieces::{NamedPiece, Part, PieceFailure, PieceManner, PiecesRun};
 use crate::study::progress::{Progress, Silent};
-use crate::study::provenance::Manifest;
+use crate::study::provenance::{MANIFEST_FILE, Manifest, PROGRAM};
+use crate::study::sha256;
+use crate::table::{File, Table};
 use std::path::Path;
+
+/// Work items that failed.
+const FAILURES: File<PieceFailure> = File::new(FAILURES_FILE, "What failed, and why", "");
 
 /// A study that is read and checked, and what its results depend on.
 pub struct Loaded<K> {
     pub(super) kind: K,
-    pub(super) facts: Facts,
-    pub(super) identity: Identity,
+    facts: Facts,
+    identity: Identity,
     pub(super) pieces: Vec<NamedPiece>,
     /// Most bytes to hold.
     memory: Option<u64>,
@@ -42,6 +50,34 @@ impl<K: Kind> Loaded<K> {
             kind,
         })
     }
+
+    /// Charts, pictures and page, for a folder, with what is known of its run: nothing is written yet.
+    fn folder_of<'a>(
+        &self,
+        folder: &'a Path,
+        of_run: StudyAbout,
+        tables: &[Table],
+    ) -> Result<Folder<'a>> {
+        let wall_s = of_run.manifest.as_ref().and_then(Manifest::wall_s);
+        let about = StudyAbout {
+            question: self.facts.question.clone(),
+            expected: self.facts.expected.clone(),
+            wall_s: wall_s.unwrap_or(f64::NAN),
+            program: PROGRAM.to_owned(),
+            ..of_run
+        };
+        let found = Found {
+            tables,
+            charts: &self.kind.charts(tables),
+            answers: &self.kind.answers(tables),
+        };
+        folder_with(folder, &about, &found, || {
+            Ok(Beyond {
+                pictures: self.kind.pictures(tables)?,
+                sections: self.kind.sections(tables)?,
+            })
+        })
+    }
 }
 
 impl<K: Kind> AnyStudy for Loaded<K> {
@@ -54,10 +90,10 @@ impl<K: Kind> AnyStudy for Loaded<K> {
     }
 
     fn plan(&self) -> Result<String> {
-        let n_threads = threads_within(&self.kind.scale(), self.memory)?;
+        let scale = self.kind.scale();
+        let n_threads = threads_within(&scale, self.memory)?;
         let manner = PieceManner::whole(&Silent);
         let work = PiecesRun::new(&self.kind, &self.pieces, &manner).workload();
-        let scale = self.kind.scale();
         let estimate = scale.estimate(self.pieces.len(), &work, n_threads);
         Ok(format!("{}\n{estimate}", self.facts.question))
     }
@@ -78,13 +114,41 @@ impl<K: Kind> AnyStudy for Loaded<K> {
             let (rows, failures) = pieces.run()?;
             Ok((failures, self.kind.tables(rows)?))
         })?;
-        tables.push(failures_table(&finished)?);
+        tables.push(FAILURES.of(&finished)?);
         let n_failed = finished.len();
         Ok(Outcome { tables, n_failed })
     }
 
-    fn write(&self, folder: &Path, outcome: &Outcome, run: Manifest) -> Result<()> {
-        self.write_results(folder, outcome, run)
+    fn write(&self, dir: &Path, outcome: &Outcome, run: Manifest) -> Result<()> {
+        let hashes = |repeats: bool| {
+            let tables = outcome.tables.iter();
+            let files = tables.filter(|t| t.repeats == repeats && !t.csv.is_empty());
+            let hashes = files.map(|table| (table.file.to_owned(), sha256(&table.csv)));
+            hashes.collect()
+        };
+        let words = |&(columns, method): &(&str, &str)| (columns.to_owned(), method.to_owned());
+        let manifest = Manifest {
+            seed: self.facts.seed,
+            n_cells: self.pieces.len(),
+            n_trials: 1,
+            n_failed: outcome.n_failed,
+            tables_sha256: hashes(true),
+            times_sha256: hashes(false),
+            methods: self.facts.methods.iter().map(words).collect(),
+            ..run
+        };
+        let json = manifest.to_json();
+        let of_run = StudyAbout {
+            name: manifest.study.clone(),
+            command: manifest.command.clone(),
+            manifest: Some(manifest),
+            ..StudyAbout::default()
+        };
+        let mut folder = Folder::of_tables(dir, &outcome.tables);
+        folder.append(self.folder_of(dir, of_run, &outcome.tables)?);
+        folder.write()?;
+        write_bytes(&dir.join("study.toml"), self.facts.toml.as_bytes())?;
+        write_bytes(&dir.join(MANIFEST_FILE), json.as_bytes())
     }
 
     fn words(&self, outcome: &Outcome, width: usize) -> String {
@@ -99,7 +163,7 @@ impl<K: Kind> AnyStudy for Loaded<K> {
         draw: u64,
         progress: &dyn Progress,
     ) -> Result<String> {
-        let chosen = drawn(&self.kind, &self.pieces, folder, (n, draw))?;
+        let chosen = self.drawn(folder, (n, draw))?;
         let manner = PieceManner {
             part: Part::Only(&chosen),
             ..PieceManner::whole(progress)
@@ -119,7 +183,7 @@ impl<K: Kind> AnyStudy for Loaded<K> {
 
     fn report(&self, folder: &Path, about: StudyAbout) -> Result<()> {
         let mut tables = self.kind.read_tables(folder)?;
-        tables.extend(read_failures(folder)?);
+        tables.extend(FAILURES.read_if_there(folder)?);
         self.folder_of(folder, about, &tables)?.write().map(|_| ())
     }
 }

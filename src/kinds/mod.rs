@@ -14,7 +14,6 @@ mod model_recognition;
 pub mod object_detail;
 pub mod recognition;
 pub mod reconstruction;
-mod results;
 mod source;
 pub mod speed_accuracy;
 pub mod stability;
@@ -22,17 +21,15 @@ mod verified;
 pub mod whole_body;
 
 pub use any_study::{AnyStudy, Outcome};
-pub use ceiling::{threads_within, within_memory};
-pub use kind::{About, Facts, Kind};
+pub use kind::{About, AnyFile, Facts, Files, Findings, Kind};
 pub use loaded::Loaded;
 pub use source::Source;
 
-use groups::grouped;
+use groups::{found_and_cost, grouped};
 
 use crate::error::Result;
 use crate::table::Table;
 use crate::toml_text;
-use serde::de::DeserializeOwned;
 use std::path::Path;
 
 /// A kind, for those who do not know which.
@@ -93,10 +90,4 @@ fn find(text: &str) -> Option<&'static Entry> {
     let table = toml_text::table(text)?;
     let mut kinds = KINDS.iter();
     kinds.find(|entry| table.contains_key(entry.about.table))
-}
-
-/// The rows of a file among tables; none without it.
-fn rows_of<R: DeserializeOwned>(tables: &[Table], file: &str) -> Vec<R> {
-    let table = tables.iter().find(|table| table.file == file);
-    table.map_or_else(Vec::new, Table::rows)
 }

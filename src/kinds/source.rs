@@ -48,11 +48,6 @@ impl Source {
         Ok(Self::of_text(&path.display().to_string(), &text))
     }
 
-    /// Where packed meshes are kept, if anywhere.
-    pub fn packings(&self) -> Option<&Path> {
-        self.packings.as_deref()
-    }
-
     /// The study's seed, or the one that replaces it.
     pub fn seed(&self, of_study: u64) -> u64 {
         self.seed.unwrap_or(of_study)
@@ -77,11 +72,8 @@ impl Source {
     /// # Errors
     /// They were.
     pub fn refuse_objects(&self, why: &str) -> Result<()> {
-        refuse(
-            "--objects",
-            self.objects.as_ref().map(|path| path.display()),
-            why,
-        )
+        let given = self.objects.as_ref().map(|path| path.display());
+        refuse("--objects", given, why)
     }
 
     /// An error if a seed was asked for; `why` says why there is none.

@@ -1,29 +1,29 @@
 //! Work items that run again beside the rows that stand in a folder.
 
+use super::kind::Kind;
+use super::loaded::Loaded;
 use crate::error::{Error, Result};
 use crate::random::Seed;
 use crate::report::csv_tables::{FAILURES_FILE, read_rows};
-use crate::study::pieces::{NamedPiece, PieceFailure, PieceStudy};
+use crate::study::pieces::PieceFailure;
 use crate::table::Table;
 use rand::seq::SliceRandom;
 use std::collections::BTreeSet;
 use std::path::Path;
 
-/// Numbers of some of the items of a folder that did not fail: how many, drawn from a seed.
-pub fn drawn<S: PieceStudy>(
-    study: &S,
-    pieces: &[NamedPiece],
-    folder: &Path,
-    (n, seed): (usize, u64),
-) -> Result<BTreeSet<usize>> {
-    let failed: Vec<PieceFailure> = read_rows(&folder.join(FAILURES_FILE))?;
-    let has_failed = |number: usize| {
-        let words = || study.words(number, &pieces[number]);
-        !failed.is_empty() && failed.iter().any(|row| row.work_item == words())
-    };
-    let numbers: Vec<usize> = (0..pieces.len()).filter(|&n| !has_failed(n)).collect();
-    let mut rng = Seed::new(seed).named("verify").rng();
-    Ok(numbers.choose_multiple(&mut rng, n).copied().collect())
+impl<K: Kind> Loaded<K> {
+    /// Numbers of some of the items of a folder that did not fail: how many, drawn from a seed.
+    pub(super) fn drawn(&self, folder: &Path, (n, seed): (usize, u64)) -> Result<BTreeSet<usize>> {
+        let failed: Vec<PieceFailure> = read_rows(&folder.join(FAILURES_FILE))?;
+        let has_failed = |number: usize| {
+            let words = || self.kind.words(number, &self.pieces[number]);
+            failed.iter().any(|row| row.work_item == words())
+        };
+        let numbers = (0..self.pieces.len()).filter(|&number| !has_failed(number));
+        let mut rng = Seed::new(seed).named("verify").rng();
+        let numbers: Vec<usize> = numbers.collect();
+        Ok(numbers.choose_multiple(&mut rng, n).copied().collect())
+    }
 }
 
 /// How many rows without times stand in a folder as they came out again; the error names the first that does not.

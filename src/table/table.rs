@@ -3,7 +3,6 @@
 use super::{Better, Column, Role, Scale};
 use crate::error::{Error, Result};
 use serde::Serialize;
-use serde::de::DeserializeOwned;
 use std::collections::HashMap;
 use std::fmt;
 use std::path::Path;
@@ -202,12 +201,6 @@ impl Table {
         };
         let texts = (0..self.n_rows).map(|row| text(row).unwrap_or_default());
         Some((column.clone(), Data::of_texts(column.scale, texts)))
-    }
-
-    /// Its rows, typed; those that are not of the type are left out. Of a row of two structs each is read alone.
-    pub fn rows<R: DeserializeOwned>(&self) -> Vec<R> {
-        let rows = csv::Reader::from_reader(&self.csv[..]).into_deserialize();
-        rows.filter_map(|row| row.ok()).collect()
     }
 
     /// Of the content of a file, which stands at a path.

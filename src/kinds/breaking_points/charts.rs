@@ -1,96 +1,95 @@
 //! What is charted and said: accuracy along each way, and where it is half of its best.
 
 use super::plan::PlannedWay;
-use super::rows::BreakingPoint;
 use super::scale::WayScale;
-use super::spec::DrivenTouches;
-use super::study::{BREAKS, SUMMARY};
-use crate::kinds::rows_of;
-use crate::table::{
-    Along, At, ChartSpec, Column, Role, Rule, Scale, Shown, Table, Value, short_number,
-};
+use super::spec::{DrivenTouches, WaySpec};
+use super::study::BreakingPointsStudy;
+use crate::kinds::Findings;
+use crate::table::{Along, ChartSpec, Column, Role, Rule, Scale, Shown, Table, short_number};
 
-/// A chart a way.
-pub(super) fn charts(ways: &[PlannedWay], tables: &[Table]) -> Vec<ChartSpec> {
-    let breaks: Vec<BreakingPoint> = rows_of(tables, BREAKS.name());
-    let chart = |PlannedWay { spec: way, .. }: &PlannedWay| {
-        let touches = match way.touches {
-            DrivenTouches::All => "Training and test touches have it alike.",
-            DrivenTouches::Training => "Training touches have it; what is tested stays as it was.",
-            DrivenTouches::Test => "Test touches have it; what is learned stays as it was.",
+impl Findings for BreakingPointsStudy {
+    /// A chart a way.
+    fn charts(&self, tables: &[Table]) -> Vec<ChartSpec> {
+        let breaks = &tables[2];
+        let chart = |PlannedWay { spec: way, .. }: &PlannedWay| {
+            let touches = match way.touches {
+                DrivenTouches::All => "Training and test touches have it alike.",
+                DrivenTouches::Training => {
+                    "Training touches have it; what is tested stays as it was."
+                }
+                DrivenTouches::Test => "Test touches have it; what is learned stays as it was.",
+            };
+            let scale = match way.scale {
+                WayScale::Linear => Scale::Linear,
+                WayScale::Logarithmic => Scale::Log,
+            };
+            let of_way = of_way(breaks, way);
+            let chance = of_way.first().map(|&row| breaks.number("chance", row));
+            let chance = chance.map(|chance| Rule::at(Along::Y, chance, "chance"));
+            let halves = of_way.iter().filter_map(|&row| {
+                let classifier = breaks.words("classifier", row);
+                let words = format!("{classifier}: half of its best at {}", place(breaks, row)?);
+                Some(Rule::at(Along::X, breaks.number("breaks_at", row), words))
+            });
+            let (name, label) = (way.name.clone(), way.label.clone());
+            let title = format!("Accuracy by {label}");
+            ChartSpec {
+                note: touches.to_owned(),
+                shown: vec![Shown {
+                    column: "way".to_owned(),
+                    value: way.name.as_str().into(),
+                }],
+                x_is: Some(Column::new("value", Role::Note, label, "", scale)),
+                lines: vec!["classifier".to_owned()],
+                rules: chance.into_iter().chain(halves).collect(),
+                ..tables[1].chart(name, title, ("accuracy", "value"))
+            }
         };
-        let scale = match way.scale {
-            WayScale::Linear => Scale::Linear,
-            WayScale::Logarithmic => Scale::Log,
+        self.plan.ways.iter().map(chart).collect()
+    }
+
+    /// How many settings break recognition, where each does, and which do not.
+    fn answers(&self, tables: &[Table]) -> Vec<String> {
+        let breaks = &tables[2];
+        let place_of = |row: usize| {
+            let classifier = breaks.words("classifier", row);
+            Some(format!("{} ({classifier})", place(breaks, row)?))
         };
-        let of_way = || breaks.iter().filter(|row| row.way == way.name);
-        let chance = of_way().next().map(|row| Rule {
-            along: Along::Y,
-            at: At::Value(row.chance),
-            words: "chance".to_owned(),
-        });
-        let halves = of_way().filter_map(|row| {
-            let words = format!("{}: half of its best at", row.classifier.about().words);
-            Some(Rule {
-                along: Along::X,
-                at: At::Value(row.breaks_at?),
-                words: format!("{words} {}", break_words(row)?),
-            })
-        });
-        let label = way.label.clone();
-        ChartSpec {
-            name: way.name.clone(),
-            title: format!("Accuracy by {label}"),
-            note: touches.to_owned(),
-            table: SUMMARY.name(),
-            shown: vec![Shown {
-                column: "way".to_owned(),
-                value: Value::Word(way.name.clone()),
-            }],
-            x: "value".to_owned(),
-            x_is: Some(Column::new("value", Role::Note, label, "", scale)),
-            y: "accuracy".to_owned(),
-            lines: vec!["classifier".to_owned()],
-            rules: chance.into_iter().chain(halves).collect(),
-            ..ChartSpec::default()
+        let (mut said, mut unbroken) = (vec![String::new()], Vec::new());
+        for PlannedWay { spec: way, .. } in &self.plan.ways {
+            let rows = of_way(breaks, way).into_iter();
+            let places: Vec<String> = rows.filter_map(place_of).collect();
+            let (label, places) = (&way.label, places.join(", "));
+            match places.is_empty() {
+                true => unbroken.push(label.as_str()),
+                false => said.push(format!("{label}: half of the best at {places}.")),
+            }
         }
-    };
-    ways.iter().map(chart).collect()
+        said[0] = format!(
+            "{} of {} settings, driven to their ends, take a classifier to half of its best accuracy or below.",
+            said.len() - 1,
+            self.plan.ways.len()
+        );
+        if !unbroken.is_empty() {
+            said.push(format!("Nowhere: {}.", unbroken.join("; ")));
+        }
+        said
+    }
 }
 
-/// How many settings break recognition, where each does, and which do not.
-pub(super) fn answers(ways: &[PlannedWay], tables: &[Table]) -> Vec<String> {
-    let breaks: Vec<BreakingPoint> = rows_of(tables, BREAKS.name());
-    let place = |row: &BreakingPoint| {
-        let words = row.classifier.about().words;
-        Some(format!("{} ({words})", break_words(row)?))
-    };
-    let (mut said, mut unbroken) = (vec![String::new()], Vec::new());
-    for PlannedWay { spec: way, .. } in ways {
-        let rows = breaks.iter().filter(|row| row.way == way.name);
-        let places: Vec<String> = rows.filter_map(place).collect();
-        let (label, places) = (&way.label, places.join(", "));
-        match places.is_empty() {
-            true => unbroken.push(label.as_str()),
-            false => said.push(format!("{label}: half of the best at {places}.")),
-        }
-    }
-    said[0] = format!(
-        "{} of {} settings, driven to their ends, take a classifier to half of its best accuracy or below.",
-        said.len() - 1,
-        ways.len()
-    );
-    if !unbroken.is_empty() {
-        said.push(format!("Nowhere: {}.", unbroken.join("; ")));
-    }
-    said
+/// The rows of a way among those of all breaking points.
+fn of_way(breaks: &Table, way: &WaySpec) -> Vec<usize> {
+    let rows = 0..breaks.n_rows;
+    rows.filter(|&row| breaks.word("way", row) == way.name)
+        .collect()
 }
 
 /// Where it is half of its best, with the interval: `0.53 (0.48 to 0.6)`; none if it does not break.
-fn break_words(row: &BreakingPoint) -> Option<String> {
-    let end = |end: Option<f64>| end.map_or("beyond".to_owned(), three_digits);
-    let (low, high) = (end(row.breaks_at_low), end(row.breaks_at_high));
-    let at = three_digits(row.breaks_at?);
+fn place(breaks: &Table, row: usize) -> Option<String> {
+    let number = |column| Some(breaks.number(column, row)).filter(|place| !place.is_nan());
+    let end = |column| number(column).map_or("beyond".to_owned(), three_digits);
+    let at = three_digits(number("breaks_at")?);
+    let (low, high) = (end("breaks_at_low"), end("breaks_at_high"));
     Some(format!("{at} ({low} to {high})"))
 }
 

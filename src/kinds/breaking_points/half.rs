@@ -26,11 +26,10 @@ struct Curve {
 impl Curve {
     /// The index of the highest accuracy, the first of equals.
     fn best(&self) -> usize {
-        let higher = |best: usize, next: usize| match self.accuracy[next] > self.accuracy[best] {
-            true => next,
-            false => best,
-        };
-        (0..self.accuracy.len()).fold(0, higher)
+        let accuracy = &self.accuracy;
+        let backwards = (0..accuracy.len()).rev();
+        let best = backwards.max_by(|&a, &b| accuracy[a].total_cmp(&accuracy[b]));
+        best.unwrap_or(0)
     }
 
     /// Indices from the best to the last value on a side.

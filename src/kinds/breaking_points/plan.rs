@@ -41,9 +41,7 @@ pub struct PlannedValue {
 impl PlannedValue {
     /// The studies that it touches objects for.
     pub fn plans(&self) -> impl Iterator<Item = &Plan> {
-        [Some(&self.learned), self.tested.as_ref()]
-            .into_iter()
-            .flatten()
+        std::iter::once(&self.learned).chain(&self.tested)
     }
 }
 

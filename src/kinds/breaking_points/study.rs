@@ -1,26 +1,24 @@
 //! A study of breaking points: every value of every way, on all threads.
 
-use super::charts::{answers, charts};
 use super::half::breaking_points;
 use super::plan::{BreakingPointsPlan, PlannedValue, PlannedWay};
 use super::rows::{BreakingPoint, CellScore, TrialScore, TrialTime, WayCell};
 use super::spec::BreakingPointsSpec;
 use super::value::{ObjectSets, evaluate};
 use crate::error::Result;
-use crate::kinds::{About, Facts, Kind, Source, grouped};
+use crate::kinds::{About, Facts, Files, Kind, Source, found_and_cost, grouped};
 use crate::random::Seed;
 use crate::recognition::bootstrap::Bootstrap;
 use crate::study::Plan;
 use crate::study::object_files::{load_objects, objects_content};
-use crate::study::pieces::{NamedPiece, PieceRows, PieceStudy, PiecesLeft, Scale};
+use crate::study::pieces::{NamedPiece, PieceStudy, PiecesLeft, Scale};
 use crate::study::spec::ObjectsSpec;
 use crate::study::summary::score;
 use crate::study::time_left::Piece;
-use crate::table::{ChartSpec, File, Table};
+use crate::table::{File, Table};
 use rayon::prelude::*;
-use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 /// A study of breaking points, and where packings are looked for and kept, if anywhere.
 pub struct BreakingPointsStudy {
@@ -30,29 +28,14 @@ pub struct BreakingPointsStudy {
     pub packings: Option<PathBuf>,
 }
 
-/// What was found at a value of a way, or at several.
-#[derive(Clone, Debug, Default, Serialize, Deserialize)]
-pub struct DrivenRows {
-    pub(super) accuracy: Vec<(WayCell, TrialScore)>,
-    pub(super) timing: Vec<(WayCell, TrialTime)>,
-    /// How many objects each way tells apart.
-    pub(super) n_objects: BTreeMap<String, usize>,
-}
-
-impl PieceRows for DrivenRows {
-    fn append(&mut self, next: Self) {
-        self.n_objects.extend(next.n_objects);
-        self.accuracy.extend(next.accuracy);
-        self.timing.extend(next.timing);
-    }
-}
+/// What was found at values of ways, trial by trial; and how many objects a way tells apart.
+pub type DrivenRows = (Vec<(WayCell, TrialScore, TrialTime)>, Vec<(String, usize)>);
 
 /// Tables.
 const ACCURACY: File<(WayCell, TrialScore)> =
     File::new("accuracy.csv", "Accuracy of every trial", "");
-pub(super) const SUMMARY: File<(WayCell, CellScore)> =
-    File::new("summary.csv", "Accuracy at every value", "");
-pub(super) const BREAKS: File<BreakingPoint> = File::new(
+const SUMMARY: File<(WayCell, CellScore)> = File::new("summary.csv", "Accuracy at every value", "");
+const BREAKS: File<BreakingPoint> = File::new(
     "breaking_points.csv",
     "Breaking points",
     "Each setting alone is driven to its ends; the interval is that of the place where accuracy is half of its best.",
@@ -121,32 +104,33 @@ impl PieceStudy for BreakingPointsStudy {
             Ok((spec.clone(), objects))
         });
         let sets: ObjectSets = sets.collect::<Result<_>>()?;
-        let values = left.of(self.values(), name);
+        let values = left.of(0, self.values());
         left.progress.stage("drive", values.len() as u64);
         values
             .par_iter()
             // One at a time: values of one way may all be slow.
             .with_max_len(1)
-            .try_for_each(|at| {
-                left.finish(&name(at), || {
+            .try_for_each(|(number, at)| {
+                left.finish(*number, || {
                     let found = evaluate(at.0, at.1, &sets);
                     found.map_err(|error| error.under(format!("way {}, ", name(at))))
                 })
             })
     }
 
-    fn tables(&self, rows: DrivenRows) -> Result<Vec<Table>> {
+    fn tables(&self, (rows, n_objects): DrivenRows) -> Result<Vec<Table>> {
+        let n_objects: BTreeMap<String, usize> = n_objects.into_iter().collect();
         let mut bootstrap = Bootstrap::default();
-        let cells = rows.accuracy.chunk_by(|a, b| a.0 == b.0);
+        let cells = rows.chunk_by(|a, b| a.0 == b.0);
         let summary = cells.map(|trials| {
-            let scores: Vec<&TrialScore> = trials.iter().map(|(_, score)| score).collect();
+            let scores: Vec<&TrialScore> = trials.iter().map(|(_, score, _)| score).collect();
             Ok((trials[0].0.clone(), score(&scores, &mut bootstrap)?))
         });
         let summary: Vec<(WayCell, CellScore)> = summary.collect::<Result<_>>()?;
         let mut breaks = Vec::new();
         for way in &self.plan.ways {
             let name = &way.spec.name;
-            let n_objects = rows.n_objects.get(name).copied().unwrap_or(0);
+            let n_objects = n_objects.get(name).copied().unwrap_or(0);
             let seed = Seed::new(self.plan.spec.seed).named("breaking points");
             let seed = seed.named(name);
             let of_way = summary.iter().filter(|(cell, _)| cell.way == *name);
@@ -156,12 +140,9 @@ impl PieceStudy for BreakingPointsStudy {
                 breaks.extend(breaking_points(&curve, way.spec.scale, n_objects, &seed));
             }
         }
-        Ok(vec![
-            ACCURACY.of(&rows.accuracy)?,
-            SUMMARY.of(&summary)?,
-            BREAKS.of(&breaks)?,
-            TIMING.of(&rows.timing)?,
-        ])
+        let [accuracy, timing] = found_and_cost(&ACCURACY, &TIMING, &rows)?;
+        let (summary, breaks) = (SUMMARY.of(&summary)?, BREAKS.of(&breaks)?);
+        Ok(vec![accuracy, summary, breaks, timing])
     }
 }
 
@@ -171,6 +152,7 @@ impl Kind for BreakingPointsStudy {
         words: "a study of where recognition breaks",
         may_change: &["question", "expected", "breaking_points"],
     };
+    const FILES: Files = &[&ACCURACY, &SUMMARY, &BREAKS, &TIMING];
 
     fn load(source: &Source) -> Result<Self> {
         let mut spec = BreakingPointsSpec::parse(&source.place, &source.text)?;
@@ -205,22 +187,5 @@ impl Kind for BreakingPointsStudy {
             item_bytes: 4.0 * (N_OBJECTS * most_read) as f64,
             ..Scale::default()
         }
-    }
-
-    fn read(folder: &Path) -> Result<Vec<Table>> {
-        Ok(vec![
-            ACCURACY.read(folder)?,
-            SUMMARY.read(folder)?,
-            BREAKS.read(folder)?,
-            TIMING.read(folder)?,
-        ])
-    }
-
-    fn charts(&self, tables: &[Table]) -> Vec<ChartSpec> {
-        charts(&self.plan.ways, tables)
-    }
-
-    fn answers(&self, tables: &[Table]) -> Vec<String> {
-        answers(&self.plan.ways, tables)
     }
 }

@@ -104,9 +104,7 @@ pub(super) fn evaluate(
             Ok(())
         })?;
     }
-    let mut rows = DrivenRows::default();
-    rows.n_objects
-        .insert(way.name.clone(), learned.touched.len());
+    let mut rows = Vec::new();
     for (family, found) in families.iter().zip(found) {
         let cell = WayCell {
             way: way.name.clone(),
@@ -115,9 +113,8 @@ pub(super) fn evaluate(
             classifier: family[0].classifier,
         };
         for Evaluation { score, time, .. } in found {
-            rows.accuracy.push((cell.clone(), score));
-            rows.timing.push((cell.clone(), time));
+            rows.push((cell.clone(), score, time));
         }
     }
-    Ok(rows)
+    Ok((rows, vec![(way.name.clone(), learned.touched.len())]))
 }

@@ -4,7 +4,7 @@ use super::deflection::{Truth, in_mm};
 use super::plan::ObjectDetailPlan;
 use super::rows::{DetailCell, DetailScore, DetailTime};
 use super::spec::DetailMethod;
-use super::study::{DetailRows, ObjectDetailStudy};
+use super::study::ObjectDetailStudy;
 use super::variants::{Variant, variants};
 use crate::error::Result;
 use crate::mesh::Surface;
@@ -50,24 +50,17 @@ impl<'a> Measured<'a> {
             .collect()
     }
 
-    pub fn models(&self, plan: &ObjectDetailPlan) -> DetailRows {
+    pub fn models(&self, plan: &ObjectDetailPlan) -> Vec<(DetailCell, DetailScore)> {
         let n_points = plan.spec.object_detail.surface_points;
-        DetailRows {
-            detail: self.rows(|variant| self.score(variant, n_points)),
-            ..DetailRows::default()
-        }
+        self.rows(|variant| self.score(variant, n_points))
     }
 
-    pub fn times(&self) -> DetailRows {
-        let time = |variant: &Variant| DetailTime {
+    pub fn times(&self) -> Vec<(DetailCell, DetailTime)> {
+        self.rows(|variant| DetailTime {
             us_per_touch: 1e6 * self.truth.seconds_per_touch(&variant.model),
             prepare_s: variant.prepare_s,
             was_kept: variant.was_kept,
-        };
-        DetailRows {
-            timing: self.rows(time),
-            ..DetailRows::default()
-        }
+        })
     }
 
     /// How near a model is to its mesh, seen from so many points of it.

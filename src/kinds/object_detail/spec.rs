@@ -88,27 +88,6 @@ pub enum DetailMethod {
 
 toml_file!(ObjectDetailStudySpec);
 
-impl DetailMethod {
-    /// Those that are spheres.
-    pub const OF_SPHERES: [Self; 4] = [
-        Self::Packing,
-        Self::VertexSpheres,
-        Self::DecimatedVertexSpheres,
-        Self::MedialSpheres,
-    ];
-
-    /// In words.
-    pub fn words(self) -> &'static str {
-        match self {
-            Self::Mesh => "exact mesh",
-            Self::Packing => "packing",
-            Self::VertexSpheres => "vertex spheres",
-            Self::DecimatedVertexSpheres => "decimated vertex spheres",
-            Self::MedialSpheres => "medial spheres",
-        }
-    }
-}
-
 fn default_ensemble() -> Ensemble {
     Ensemble::Sbhe
 }

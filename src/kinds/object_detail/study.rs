@@ -1,6 +1,5 @@
 //! A study of object detail: models of every mesh, their errors on all threads, then their times on one.
 
-use super::charts::{answers, charts};
 use super::measured::Measured;
 use super::plan::ObjectDetailPlan;
 use super::recognition::{Learned, Sensor};
@@ -12,15 +11,14 @@ use super::summary::{costs, summary};
 use super::variants::levels;
 use crate::error::Result;
 use crate::kinds::model_recognition::check_apart;
-use crate::kinds::{About, Facts, Kind, Source};
+use crate::kinds::{About, Facts, Files, Kind, Source};
 use crate::study::object_files::NamedMesh;
-use crate::study::pieces::{NamedPiece, PieceRows, PieceStudy, PiecesLeft, Scale};
+use crate::study::pieces::{NamedPiece, PieceStudy, PiecesLeft, Scale};
 use crate::study::time_left::Piece;
 use crate::study::{load_named_meshes, objects_content};
-use crate::table::{ChartSpec, File, Table};
+use crate::table::{File, Table};
 use rayon::prelude::*;
-use serde::{Deserialize, Serialize};
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 /// A study of object detail and its meshes.
 pub struct ObjectDetailStudy {
@@ -32,21 +30,12 @@ pub struct ObjectDetailStudy {
     pub packings: Option<PathBuf>,
 }
 
-/// What work items of the study found.
-#[derive(Clone, Debug, Default, Serialize, Deserialize)]
-pub struct DetailRows {
-    pub(super) detail: Vec<(DetailCell, DetailScore)>,
-    pub(super) timing: Vec<(DetailCell, DetailTime)>,
-    pub(super) recognition: Vec<DetailRecognition>,
-}
-
-impl PieceRows for DetailRows {
-    fn append(&mut self, next: Self) {
-        self.detail.extend(next.detail);
-        self.timing.extend(next.timing);
-        self.recognition.extend(next.recognition);
-    }
-}
+/// What work items of the study found: how near models are, what they cost, and what was learned from them.
+pub type DetailRows = (
+    Vec<(DetailCell, DetailScore)>,
+    Vec<(DetailCell, DetailTime)>,
+    Vec<DetailRecognition>,
+);
 
 /// Seconds for an object's models, a metre of the side of a square as large as its surface (the median of 37 scans of the YCB set); to time
 /// them; for a classifier.
@@ -66,7 +55,7 @@ const SUMMARY: File<DetailSummary> = File::new(
 .summary();
 const TIMING: File<(DetailCell, DetailTime)> =
     File::new("timing.csv", "Time of a touch of each model", "").of_times();
-pub(super) const COST: File<(DetailSummary, LevelTime)> =
+const COST: File<(DetailSummary, LevelTime)> =
     File::new("object_detail_cost.csv", "What errors cost", "")
         .of_times()
         .summary();
@@ -85,9 +74,17 @@ impl PieceStudy for ObjectDetailStudy {
         for (group, mesh) in self.meshes.iter().enumerate() {
             // To pack a larger surface takes longer.
             let models = Piece::of_stage(0, MODELS_S_PER_M * mesh.mesh.area().sqrt());
-            pieces.push(NamedPiece::new(models_name(mesh), group, models));
+            pieces.push(NamedPiece::new(
+                format!("models of {}", mesh.name),
+                group,
+                models,
+            ));
             let times = Piece::one_by_one(1, TIME_S);
-            pieces.push(NamedPiece::new(times_name(mesh), group, times));
+            pieces.push(NamedPiece::new(
+                format!("times of {}", mesh.name),
+                group,
+                times,
+            ));
         }
         let (group, work) = (self.meshes.len(), Piece::of_stage(2, RECOGNISE_S));
         let learned = Learned::all(&self.plan).into_iter();
@@ -96,83 +93,85 @@ impl PieceStudy for ObjectDetailStudy {
     }
 
     fn measure(&self, left: &PiecesLeft<DetailRows>) -> Result<()> {
-        let learned = left.of(Learned::all(&self.plan), Learned::name);
-        let learners: Vec<String> = learned.iter().map(Learned::name).collect();
+        let learned = left.of(models_item(self.meshes.len()), Learned::all(&self.plan));
+        let learners: Vec<usize> = learned.iter().map(|(number, _)| *number).collect();
         let spec = self.plan.recognition().filter(|_| !learned.is_empty());
         let sensor = spec.map(|spec| Sensor::new(&self.plan, spec)).transpose()?;
-        let is_needed = |mesh: &&NamedMesh| {
-            !learned.is_empty() || left.has(&models_name(mesh)) || left.has(&times_name(mesh))
+        let is_needed = |object: &usize| {
+            !learned.is_empty() || left.has(models_item(*object)) || left.has(times_item(*object))
         };
-        let needed: Vec<&NamedMesh> = self.meshes.iter().filter(is_needed).collect();
+        let needed: Vec<usize> = (0..self.meshes.len()).filter(is_needed).collect();
         left.progress.stage("models", needed.len() as u64);
-        let made = needed.into_par_iter().map(|mesh| {
-            let Some(made) = self.object(mesh, &learners, left)? else {
+        let made = needed.into_par_iter().map(|object| {
+            let Some(made) = self.object(object, &learners, left)? else {
                 return Ok(None);
             };
             let felt = match &sensor {
                 Some(sensor) => left.prepare(&learners, || sensor.measure(&made))?,
                 None => None,
             };
-            Ok(Some((made, felt)))
+            Ok(Some((object, made, felt)))
         });
         let made = made.collect::<Result<Vec<_>>>()?;
         left.progress.stage("time touches", made.len() as u64);
-        for (object, _) in made.iter().flatten() {
-            left.finish(&times_name(object.mesh), || Ok(object.times()))?;
+        for (object, made, _) in made.iter().flatten() {
+            left.finish(times_item(*object), || {
+                Ok((Vec::new(), made.times(), Vec::new()))
+            })?;
         }
-        let felt = made.into_iter().map(|made| made?.1);
+        let felt = made.into_iter().map(|made| made?.2);
         let (Some(sensor), Some(felt)) = (sensor, felt.collect::<Option<Vec<_>>>()) else {
             return Ok(());
         };
         left.progress.stage("recognise", learned.len() as u64);
-        learned.par_iter().try_for_each(|learned| {
-            left.finish(&learned.name(), || {
-                Ok(DetailRows {
-                    recognition: vec![sensor.row(&felt, learned)?],
-                    ..DetailRows::default()
-                })
+        learned.par_iter().try_for_each(|(number, learned)| {
+            left.finish(*number, || {
+                let row = sensor.row(&felt, learned)?;
+                Ok((Vec::new(), Vec::new(), vec![row]))
             })
         })
     }
 
-    fn tables(&self, rows: DetailRows) -> Result<Vec<Table>> {
-        let summary = summary(&rows.detail);
-        let costs = costs(&summary, &rows.timing);
+    fn tables(&self, (detail, timing, recognition): DetailRows) -> Result<Vec<Table>> {
+        let summary = summary(&detail);
+        let costs = costs(&summary, &timing);
         let mut tables = vec![
-            DETAIL.of(&rows.detail)?,
+            DETAIL.of(&detail)?,
             SUMMARY.of(&summary)?,
-            TIMING.of(&rows.timing)?,
+            TIMING.of(&timing)?,
             COST.of(&costs)?,
         ];
         if self.plan.recognition().is_some() {
-            tables.push(RECOGNITION.of(&rows.recognition)?);
+            tables.push(RECOGNITION.of(&recognition)?);
         }
         Ok(tables)
     }
 }
 
-fn models_name(mesh: &NamedMesh) -> String {
-    format!("models of {}", mesh.name)
+/// The number of an object's models as a work item; of one more than the last object, that of the first classifier.
+fn models_item(object: usize) -> usize {
+    2 * object
 }
 
-fn times_name(mesh: &NamedMesh) -> String {
-    format!("times of {}", mesh.name)
+/// The number of their times.
+fn times_item(object: usize) -> usize {
+    models_item(object) + 1
 }
 
 impl ObjectDetailStudy {
     /// Makes an object's models and keeps how near they are; if they cannot be made, all fails that needs them, `learners` too.
-    fn object<'a>(
+    fn object(
         &self,
-        mesh: &'a NamedMesh,
-        learners: &[String],
+        object: usize,
+        learners: &[usize],
         left: &PiecesLeft<DetailRows>,
-    ) -> Result<Option<Measured<'a>>> {
-        let mut made = None;
-        left.finish(&models_name(mesh), || {
+    ) -> Result<Option<Measured<'_>>> {
+        let (mesh, mut made) = (&self.meshes[object], None);
+        left.finish(models_item(object), || {
             let object = made.insert(Measured::new(self, mesh)?);
-            Ok(object.models(&self.plan))
+            Ok((object.models(&self.plan), Vec::new(), Vec::new()))
         })?;
-        let needed = [&[times_name(mesh)], learners].concat();
+        let needed = [&[times_item(object)], learners].concat();
         // Where it is not made, its rows are there from a run before.
         left.prepare(&needed, || {
             made.map_or_else(|| Measured::new(self, mesh), Ok)
@@ -190,6 +189,8 @@ impl Kind for ObjectDetailStudy {
             "object_detail.recognition.classifiers",
         ],
     };
+    const FILES: Files = &[&DETAIL, &SUMMARY, &TIMING, &COST];
+    const FILES_OF_PARTS: Files = &[&RECOGNITION];
 
     fn load(source: &Source) -> Result<Self> {
         let mut spec = ObjectDetailStudySpec::parse(&source.place, &source.text)?;
@@ -232,24 +233,5 @@ impl Kind for ObjectDetailStudy {
             // Frames as they were, and as they are read.
             item_bytes: 12.0 * (n_learned * n_taxels) as f64,
         }
-    }
-
-    fn read(folder: &Path) -> Result<Vec<Table>> {
-        let mut tables = vec![
-            DETAIL.read(folder)?,
-            SUMMARY.read(folder)?,
-            TIMING.read(folder)?,
-            COST.read(folder)?,
-        ];
-        tables.extend(RECOGNITION.read_if_there(folder)?);
-        Ok(tables)
-    }
-
-    fn charts(&self, tables: &[Table]) -> Vec<ChartSpec> {
-        charts(tables)
-    }
-
-    fn answers(&self, tables: &[Table]) -> Vec<String> {
-        answers(tables)
     }
 }

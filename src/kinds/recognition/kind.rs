@@ -3,7 +3,7 @@
 use super::load::load_study;
 use super::study::RecognitionStudy;
 use crate::error::Result;
-use crate::kinds::kind::{About, Facts, Kind};
+use crate::kinds::kind::{About, Facts, Findings, Kind};
 use crate::kinds::source::Source;
 use crate::report::page::{Section, Snapshots};
 use crate::report::recognition;
@@ -65,7 +65,9 @@ impl Kind for RecognitionStudy {
     fn read(folder: &Path) -> Result<Vec<Table>> {
         recognition::read_tables(folder)
     }
+}
 
+impl Findings for RecognitionStudy {
     fn charts(&self, tables: &[Table]) -> Vec<ChartSpec> {
         recognition::charts(tables, self.first().plan.spec.report.pareto)
     }

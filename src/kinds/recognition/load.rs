@@ -53,7 +53,7 @@ fn read_plans(source: &Source) -> Result<Vec<(AxisValues, Plan)>> {
 /// Those of [`read_plan`]; an object that cannot be read; touches that memory cannot hold.
 pub fn load_study(source: &Source) -> Result<RecognitionStudy> {
     let plans = read_plans(source)?;
-    let mut study = RecognitionStudy::load(plans, source.packings(), source.memory)?;
+    let mut study = RecognitionStudy::load(plans, source.packings.as_deref(), source.memory)?;
     (study.scale, study.place) = recognition_scale(&study, source.memory, &source.results);
     Ok(study)
 }

@@ -30,19 +30,12 @@ impl RecognitionStudy {
         for part in self.parts() {
             part.touched.prepare();
         }
-        let mut order: Vec<usize> = (0..self.touch_sets.len()).collect();
+        let mut jobs = self.jobs_left(left);
         // Most frames first: what learns from them takes longest, and how much longer than planned is then known early.
-        order.sort_by_key(|&touches| {
-            let (part, array, n_frames) = self.made_on(touches);
+        jobs.sort_by_key(|(touches, _)| {
+            let (part, array, n_frames) = self.made_on(*touches);
             (part, array, Reverse(n_frames))
         });
-        let jobs = order
-            .into_iter()
-            .map(|touches| (touches, self.jobs(left, touches)));
-        let is_left = |(touches, jobs): &(usize, Vec<Job>)| {
-            !jobs.is_empty() || left.has_number(self.touches_item(*touches))
-        };
-        let jobs: Vec<(usize, Vec<Job>)> = jobs.filter(is_left).collect();
         if self.has_axes() {
             // A line for the touches of each combination would hide the others.
             let n_items =
@@ -59,9 +52,22 @@ impl RecognitionStudy {
         self.parts().len() > 1
     }
 
+    /// Touches that are made or that families need that are left, with what is measured of them.
+    pub(super) fn jobs_left(
+        &self,
+        left: &PiecesLeft<RecognitionRows>,
+    ) -> Vec<(usize, Vec<Job<'_>>)> {
+        let touches = 0..self.touch_sets.len();
+        let jobs = touches.map(|touches| (touches, self.jobs(left, touches)));
+        let is_left = |(touches, jobs): &(usize, Vec<Job>)| {
+            !jobs.is_empty() || left.has(self.touches_item(*touches))
+        };
+        jobs.filter(is_left).collect()
+    }
+
     /// What is measured of some touches for families that are left. A group of prefixes is measured once and serves all cells; else each m
     /// serves its own.
-    pub(super) fn jobs(&self, left: &PiecesLeft<RecognitionRows>, touches: usize) -> Vec<Job<'_>> {
+    fn jobs(&self, left: &PiecesLeft<RecognitionRows>, touches: usize) -> Vec<Job<'_>> {
         let mut alike: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
         for (number, family) in self.families.iter().enumerate() {
             let group = &self.groups[family.group];
@@ -77,7 +83,7 @@ impl RecognitionStudy {
                 for n_measurements in measured.projected() {
                     let is_served = |&family: &usize| {
                         (is_nested || self.family(family).1[0].measurements == n_measurements)
-                            && left.has_number(self.family_item(trial, family))
+                            && left.has(self.family_item(trial, family))
                     };
                     let families: Vec<usize> = families.iter().copied().filter(is_served).collect();
                     if !families.is_empty() {
@@ -122,13 +128,13 @@ impl RecognitionStudy {
                 part.touched.simulate(on, &self.place, touched)
             })
         };
-        let Some(frames) = left.prepare_numbers(&need, make)? else {
+        let Some(frames) = left.prepare(&need, make)? else {
             return Ok(());
         };
         if !self.has_axes() {
             stage("recognise", n_families + 1);
         }
-        left.finish_number(touches, || {
+        left.finish(touches, || {
             let row = TouchRow {
                 is_made: true,
                 n_touches: part.sweep.labels.len(),
@@ -137,10 +143,7 @@ impl RecognitionStudy {
                 cpu_s: frames.facts.cpu_s,
                 on: 0,
             };
-            Ok(RecognitionRows {
-                touches: vec![row],
-                ..RecognitionRows::default()
-            })
+            Ok((Vec::new(), vec![row]))
         })?;
         jobs.par_iter().try_for_each(|job| job.run(left, &frames))
     }
@@ -163,7 +166,7 @@ impl Job<'_> {
     /// Measures, then evaluates the families.
     fn run(&self, left: &PiecesLeft<RecognitionRows>, frames: &Frames) -> Result<()> {
         let need: Vec<usize> = self.items().collect();
-        let measured = left.prepare_numbers(&need, || self.measure(frames))?;
+        let measured = left.prepare(&need, || self.measure(frames))?;
         let cpu_s = measured.as_ref().map_or(0.0, |measured| measured.cpu_s);
         left.progress.worked(&self.work(), cpu_s);
         let Some(measured) = measured else {
@@ -171,17 +174,17 @@ impl Job<'_> {
         };
         let families = self.families.par_iter().zip(&need).enumerate();
         families.try_for_each(|(place, (&family, &item))| {
-            left.finish_number(item, || {
-                let mut rows = self.evaluate(family, &measured)?;
+            left.finish(item, || {
                 // It is told once.
-                if place == 0 {
-                    rows.touches.push(TouchRow {
-                        n_touches: self.study.group(self.group).0.sweep.labels.len(),
-                        cpu_s,
-                        ..TouchRow::default()
-                    });
-                }
-                Ok(rows)
+                let touches = (place == 0).then(|| TouchRow {
+                    n_touches: self.study.group(self.group).0.sweep.labels.len(),
+                    cpu_s,
+                    ..TouchRow::default()
+                });
+                Ok((
+                    self.evaluate(family, &measured)?,
+                    touches.into_iter().collect(),
+                ))
             })
         })
     }
@@ -193,7 +196,7 @@ impl Job<'_> {
         measure_group(&part.plan, group, touches, trial, self.n_measurements)
     }
 
-    fn evaluate(&self, family: usize, measurements: &Measurements) -> Result<RecognitionRows> {
+    fn evaluate(&self, family: usize, measurements: &Measurements) -> Result<Vec<CellRow>> {
         let (part, cells) = self.study.family(family);
         let trial = Trial {
             plan: &part.plan,
@@ -207,9 +210,6 @@ impl Job<'_> {
             at: (0, 0),
             evaluation,
         });
-        Ok(RecognitionRows {
-            cells: rows.collect(),
-            ..RecognitionRows::default()
-        })
+        Ok(rows.collect())
     }
 }

@@ -1,23 +1,14 @@
 //! What work items of a recognition study find.
 
 use crate::study::evaluation::Evaluation;
-use crate::study::pieces::PieceRows;
 use serde::{Deserialize, Serialize};
 
-/// What work items found.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct RecognitionRows {
-    /// Cells in a trial.
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub(super) cells: Vec<CellRow>,
-    /// Touches that were made or measured.
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub(super) touches: Vec<TouchRow>,
-}
+/// What work items found: cells in a trial, and touches that were made or measured.
+pub type RecognitionRows = (Vec<CellRow>, Vec<TouchRow>);
 
 /// A cell in a trial.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub(super) struct CellRow {
+pub struct CellRow {
     /// Its group and its place there, in the study as it is today.
     #[serde(skip)]
     pub at: (usize, usize),
@@ -27,7 +18,7 @@ pub(super) struct CellRow {
 
 /// Touches of an array, read in so many frames each.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub(super) struct TouchRow {
+pub struct TouchRow {
     /// Which touches, by their place in the study as it is today.
     #[serde(skip)]
     pub on: usize,
@@ -41,11 +32,4 @@ pub(super) struct TouchRow {
     pub n_saturated: usize,
     /// Processor-seconds.
     pub cpu_s: f64,
-}
-
-impl PieceRows for RecognitionRows {
-    fn append(&mut self, next: Self) {
-        self.cells.extend(next.cells);
-        self.touches.extend(next.touches);
-    }
 }

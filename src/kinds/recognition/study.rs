@@ -335,9 +335,9 @@ impl RecognitionStudy {
     ///
     /// # Errors
     /// Those of [`PieceStudy::tables`].
-    pub fn outcome(&self, rows: RecognitionRows) -> Result<Tables> {
+    pub fn outcome(&self, (cells, touches): RecognitionRows) -> Result<Tables> {
         let mut tables = Tables::default();
-        let scored = rows.cells.into_iter().map(|row| {
+        let scored = cells.into_iter().map(|row| {
             let cell = &self.group(row.at.0).1.cells[row.at.1];
             (cell.clone(), row.evaluation)
         });
@@ -346,8 +346,8 @@ impl RecognitionStudy {
         tabulate(&mut tables, scored.collect(), name)?;
         let published = &self.first().plan.spec.report.published;
         tables.published = compare_with_published(published, &tables.summary)?;
-        tables.stages = self.stages(&rows.touches);
-        tables.limits = self.limits(&tables.accuracy, &rows.touches);
+        tables.stages = self.stages(&touches);
+        tables.limits = self.limits(&tables.accuracy, &touches);
         Ok(tables)
     }
 
@@ -393,29 +393,25 @@ impl PieceStudy for RecognitionStudy {
 
     fn shared_work(&self, left: &PiecesLeft<RecognitionRows>) -> Vec<Piece> {
         let mut work = Vec::new();
-        for touches in 0..self.touch_sets.len() {
-            let jobs = self.jobs(left, touches);
-            if jobs.is_empty() && !left.has_number(self.touches_item(touches)) {
-                continue;
-            }
+        for (touches, jobs) in self.jobs_left(left) {
             work.push(self.touch_work(touches));
             work.extend(jobs.iter().map(Job::work));
         }
         work
     }
 
-    fn place(&self, number: usize, rows: &mut RecognitionRows) {
+    fn place(&self, number: usize, (rows, touch_rows): &mut RecognitionRows) {
         let touches = match number.checked_sub(self.touches_item(0)) {
             Some(touches) => touches,
             None => {
                 let Family { group, cells } = &self.families[number % self.families.len()];
-                for (row, cell) in rows.cells.iter_mut().zip(cells.clone()) {
+                for (row, cell) in rows.iter_mut().zip(cells.clone()) {
                     row.at = (*group, cell);
                 }
                 self.groups[*group].touches
             }
         };
-        for row in &mut rows.touches {
+        for row in touch_rows {
             row.on = touches;
         }
     }

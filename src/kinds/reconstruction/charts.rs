@@ -1,34 +1,80 @@
 //! What is charted, and what was found in sentences.
 
+use super::study::ReconstructionStudy;
+use crate::error::Result;
+use crate::kinds::Findings;
+use crate::report::study_folder::NamedPicture;
 use crate::table::{Along, ChartSpec, Mark, Rule, Table, short_number};
 
-/// Of each noise level: error by measurements for each ensemble, then error against time.
-pub(super) fn charts(tables: &[Table]) -> Vec<ChartSpec> {
-    let [cells, _, _, pareto, ..] = tables else {
-        return Vec::new();
-    };
-    let mut charts = Vec::new();
-    for of_level in cells.groups(&["noise_std"], 0..cells.n_rows) {
-        let ensembles = cells.groups(&["ensemble"], of_level.iter().copied());
-        let compressed = ensembles
-            .iter()
-            .filter(|rows| cells.word("ensemble", rows[0]) != "identity");
-        charts.extend(compressed.map(|rows| by_measurements(cells, rows)));
-        let noise = noise_words(cells, of_level[0]);
-        let level = cells.number("noise_std", of_level[0]);
-        charts.push(ChartSpec {
-            shown: cells.shown("noise_std", of_level[0]).into_iter().collect(),
-            lines: vec!["solver".to_owned()],
-            mark: Mark::Points,
-            front: true,
-            ..pareto.chart(
-                format!("error_by_time_noise_{level}"),
-                format!("Error of reconstructed frames against their time, {noise}"),
-                ("error", "us_per_frame"),
-            )
-        });
+impl Findings for ReconstructionStudy {
+    /// Of each noise level: error by measurements for each ensemble, then error against time.
+    fn charts(&self, tables: &[Table]) -> Vec<ChartSpec> {
+        let (cells, pareto) = (&tables[0], &tables[3]);
+        let mut charts = Vec::new();
+        for of_level in cells.groups(&["noise_std"], 0..cells.n_rows) {
+            let ensembles = cells.groups(&["ensemble"], of_level.iter().copied());
+            let compressed = ensembles
+                .iter()
+                .filter(|rows| cells.word("ensemble", rows[0]) != "identity");
+            charts.extend(compressed.map(|rows| by_measurements(cells, rows)));
+            let noise = noise_words(cells, of_level[0]);
+            let level = cells.number("noise_std", of_level[0]);
+            charts.push(ChartSpec {
+                shown: cells.shown("noise_std", of_level[0]).into_iter().collect(),
+                lines: vec!["solver".to_owned()],
+                mark: Mark::Points,
+                front: true,
+                ..pareto.chart(
+                    format!("error_by_time_noise_{level}"),
+                    format!("Error of reconstructed frames against their time, {noise}"),
+                    ("error", "us_per_frame"),
+                )
+            });
+        }
+        charts
     }
-    charts
+
+    fn pictures(&self, tables: &[Table]) -> Result<Vec<NamedPicture>> {
+        self.sample_frames(tables)
+    }
+
+    /// At each noise level: the best cell of all, and the fewest measurements from which some cell is as good as full sampling.
+    fn answers(&self, tables: &[Table]) -> Vec<String> {
+        let (cells, timing) = (&tables[0], &tables[2]);
+        let error = |row: usize| cells.number("error", row);
+        let full = |row: usize| cells.number("full_sampling_error", row);
+        let mut sentences = Vec::new();
+        for rows in cells.groups(&["noise_std"], 0..cells.n_rows) {
+            let least = rows
+                .iter()
+                .copied()
+                .min_by(|&a, &b| error(a).total_cmp(&error(b)));
+            sentences.extend(least.map(|row| {
+                format!(
+                    "With {}: least error {:.3} ({}; {:.0} frames/s a core).",
+                    noise_words(cells, row),
+                    error(row),
+                    cell_words(cells, row),
+                    timing.number("frames_per_s_per_core", row)
+                )
+            }));
+            let as_good = rows.into_iter().filter(|&row| error(row) <= full(row));
+            let key = |row: usize| (cells.number("measurements", row), error(row));
+            let fewest =
+                as_good.min_by(|&a, &b| key(a).partial_cmp(&key(b)).expect("errors are numbers"));
+            sentences.extend(fewest.map(|row| {
+                format!(
+                    "As good as full sampling ({:.3}) from {} measurements ({:.0}:1): {:.3} ({}).",
+                    full(row),
+                    cells.number("measurements", row),
+                    cells.number("ratio", row),
+                    error(row),
+                    cell_words(cells, row)
+                )
+            }));
+        }
+        sentences
+    }
 }
 
 /// A panel a dictionary, a line a solver; the noisy frame itself as a rule.
@@ -73,44 +119,4 @@ pub(super) fn cell_words(cells: &Table, row: usize) -> String {
     let names = ["solver", "dictionary", "ensemble", "measurements"];
     let [solver, dictionary, ensemble, m] = names.map(|column| cells.words(column, row));
     format!("{solver}, {dictionary}, {ensemble}, m = {m}")
-}
-
-/// At each noise level: the best cell of all, and the fewest measurements from which some cell is as good as full sampling.
-pub(super) fn answers(tables: &[Table]) -> Vec<String> {
-    let [cells, _, timing, ..] = tables else {
-        return Vec::new();
-    };
-    let error = |row: usize| cells.number("error", row);
-    let full = |row: usize| cells.number("full_sampling_error", row);
-    let mut sentences = Vec::new();
-    for rows in cells.groups(&["noise_std"], 0..cells.n_rows) {
-        let least = rows
-            .iter()
-            .copied()
-            .min_by(|&a, &b| error(a).total_cmp(&error(b)));
-        sentences.extend(least.map(|row| {
-            format!(
-                "With {}: least error {:.3} ({}; {:.0} frames/s a core).",
-                noise_words(cells, row),
-                error(row),
-                cell_words(cells, row),
-                timing.number("frames_per_s_per_core", row)
-            )
-        }));
-        let as_good = rows.into_iter().filter(|&row| error(row) <= full(row));
-        let key = |row: usize| (cells.number("measurements", row), error(row));
-        let fewest =
-            as_good.min_by(|&a, &b| key(a).partial_cmp(&key(b)).expect("errors are numbers"));
-        sentences.extend(fewest.map(|row| {
-            format!(
-                "As good as full sampling ({:.3}) from {} measurements ({:.0}:1): {:.3} ({}).",
-                full(row),
-                cells.number("measurements", row),
-                cells.number("ratio", row),
-                error(row),
-                cell_words(cells, row)
-            )
-        }));
-    }
-    sentences
 }

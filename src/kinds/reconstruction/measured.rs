@@ -18,13 +18,16 @@ use std::time::Instant;
 /// Frames reconstructed together by one thread: enough for matrix products, few enough to share out.
 const BLOCK: usize = 64;
 
-/// Does what is left of all cells of an ensemble and m; dictionaries are learned when something needs them.
+/// Does what is left of all cells of an ensemble and m, by the number of these; dictionaries are learned when something needs them.
 pub(super) fn measure_cells(
     (plan, touches): (&ReconstructionPlan, &Touches),
-    cells: &[ReconstructionCell],
+    (group, cells): (usize, &[ReconstructionCell]),
     left: &PiecesLeft<ReconstructionRows>,
 ) -> Result<()> {
     let first = &cells[0];
+    // Of each group the isometry of every dictionary comes before the cells.
+    let n_dictionaries = plan.dictionaries.len();
+    let isometries = first.cell + group * n_dictionaries;
     let projection = Shared::default();
     let projection = || projection.get(|| plan.projection(first.ensemble, first.measurements));
     let sensed = plan.of_each_dictionary();
@@ -32,8 +35,9 @@ pub(super) fn measure_cells(
         let sense = || SensedDictionary::new(projection()?, touches.dictionary(plan, basis)?);
         sensed[plan.place_of(basis)].get(sense)
     };
-    plan.dictionaries.par_iter().try_for_each(|&basis| {
-        left.finish(&first.isometry_name(basis), || {
+    let dictionaries = plan.dictionaries.par_iter().enumerate();
+    dictionaries.try_for_each(|(place, &basis)| {
+        left.finish(isometries + place, || {
             Ok((Vec::new(), statistics(plan, sense(basis)?)?))
         })
     })?;
@@ -41,7 +45,7 @@ pub(super) fn measure_cells(
     for (noisy, cells) in touches.noisy.iter().zip(of_levels) {
         let measurements = Shared::default();
         for cell in cells {
-            left.finish(&cell.name(), || {
+            left.finish(cell.cell + (group + 1) * n_dictionaries, || {
                 let measure = || Ok(projection()?.measure(noisy.frames.view()));
                 let measurements = measurements.get(measure)?;
                 let sensed = sense(cell.dictionary)?;

@@ -134,10 +134,8 @@ impl ReconstructionPlan {
 
     /// One for each dictionary, in their order.
     pub(super) fn of_each_dictionary<T>(&self) -> Vec<Shared<T>> {
-        self.dictionaries
-            .iter()
-            .map(|_| Shared::default())
-            .collect()
+        let each = self.dictionaries.iter();
+        each.map(|_| Shared::default()).collect()
     }
 
     /// Which of its dictionaries it is.

@@ -1,6 +1,5 @@
 //! Runs a reconstruction study: touches once, dictionaries once, then every ensemble, m, noise, dictionary and solver.
 
-use super::charts::{answers, charts};
 use super::measured::measure_cells;
 use super::plan::ReconstructionPlan;
 use super::rows::{
@@ -11,16 +10,14 @@ use super::score::pareto;
 use super::spec::ReconstructionStudySpec;
 use super::touches::Touches;
 use crate::error::Result;
-use crate::kinds::{About, Facts, Kind, Source};
+use crate::kinds::{About, Facts, Files, Kind, Source, found_and_cost};
 use crate::random::Seed;
-use crate::report::study_folder::NamedPicture;
 use crate::study::pieces::{NamedPiece, PieceStudy, PiecesLeft, Scale, Shared};
 use crate::study::progress::Progress;
 use crate::study::time_left::Piece;
 use crate::study::{TouchedObject, draw_touches, load_objects, objects_content};
-use crate::table::{ChartSpec, File, Table};
+use crate::table::{File, Table};
 use std::collections::BTreeMap;
-use std::path::Path;
 
 /// A reconstruction study and its touches.
 pub struct ReconstructionStudy {
@@ -73,13 +70,14 @@ impl Kind for ReconstructionStudy {
             "reconstruction.dictionary",
         ],
     };
+    const FILES: Files = &[&CELLS, &ENSEMBLES, &TIMING, &PARETO];
 
     fn load(source: &Source) -> Result<Self> {
         let mut spec = ReconstructionStudySpec::parse(&source.place, &source.text)?;
         spec.seed = source.seed(spec.seed);
         source.replace_objects(&mut spec.objects);
         let plan = ReconstructionPlan::new(&source.place, spec)?;
-        let objects = load_objects(&plan.spec.objects, source.packings())?;
+        let objects = load_objects(&plan.spec.objects, source.packings.as_deref())?;
         let touched = draw_touches(objects, &plan.placement, &Seed::new(plan.spec.seed))?;
         Ok(Self {
             plan,
@@ -105,27 +103,6 @@ impl Kind for ReconstructionStudy {
             bytes: 8.0 * (frames + n_taxels * n_taxels),
             ..Scale::default()
         }
-    }
-
-    fn read(folder: &Path) -> Result<Vec<Table>> {
-        Ok(vec![
-            CELLS.read(folder)?,
-            ENSEMBLES.read(folder)?,
-            TIMING.read(folder)?,
-            PARETO.read(folder)?,
-        ])
-    }
-
-    fn charts(&self, tables: &[Table]) -> Vec<ChartSpec> {
-        charts(tables)
-    }
-
-    fn pictures(&self, tables: &[Table]) -> Result<Vec<NamedPicture>> {
-        self.sample_frames(tables)
-    }
-
-    fn answers(&self, tables: &[Table]) -> Vec<String> {
-        answers(tables)
     }
 }
 
@@ -154,8 +131,8 @@ impl PieceStudy for ReconstructionStudy {
         let touches = self.frames(left.progress)?;
         left.progress.stage("reconstruct", left.n() as u64);
         let cells = self.plan.cells();
-        let mut groups = on_measured(&cells);
-        groups.try_for_each(|cells| measure_cells((&self.plan, touches), cells, left))
+        let mut groups = on_measured(&cells).enumerate();
+        groups.try_for_each(|group| measure_cells((&self.plan, touches), group, left))
     }
 
     fn tables(&self, (mut rows, statistics): ReconstructionRows) -> Result<Vec<Table>> {
@@ -167,16 +144,9 @@ impl PieceStudy for ReconstructionStudy {
             cell.cell = numbers[&cell.name()];
         }
         let pareto = pareto(&rows, &self.plan.noise);
-        let rows = rows.into_iter();
-        let (scores, times): (Vec<_>, Vec<_>) = rows
-            .map(|(cell, score, time)| ((cell.clone(), score), (cell, time)))
-            .unzip();
-        Ok(vec![
-            CELLS.of(&scores)?,
-            ENSEMBLES.of(&statistics)?,
-            TIMING.of(&times)?,
-            PARETO.of(&pareto)?,
-        ])
+        let [cells, timing] = found_and_cost(&CELLS, &TIMING, &rows)?;
+        let ensembles = ENSEMBLES.of(&statistics)?;
+        Ok(vec![cells, ensembles, timing, PARETO.of(&pareto)?])
     }
 }
 

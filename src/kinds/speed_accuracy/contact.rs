@@ -29,21 +29,19 @@ const SCAN_S: f64 = 30.0;
 const STEP_S: f64 = 1e-4;
 
 impl Item<'_> {
-    fn name(&self) -> String {
+    /// What is done with an object shares its models.
+    fn piece(&self) -> NamedPiece {
         let name = self.subject.name();
-        match (self.stepped, self.touched) {
-            (Some((method, dt_ms)), _) => format!("{method:?} of {dt_ms} ms with {name}"),
-            (None, Touched::Object) => format!("contact with {name}"),
-            (None, Touched::Scan) => format!("contact with scan {name}"),
-        }
-    }
-
-    fn work(&self) -> Piece {
-        match (self.stepped, self.touched) {
-            (Some((_, dt_ms)), _) => Piece::one_by_one(1, 1e3 * STEP_S / dt_ms),
-            (None, Touched::Object) => Piece::of_stage(0, OBJECT_S),
-            (None, Touched::Scan) => Piece::of_stage(0, SCAN_S),
-        }
+        let at_rest = |name, planned_s| (name, Piece::of_stage(0, planned_s));
+        let (name, work) = match (self.stepped, self.touched) {
+            (Some((method, dt_ms)), _) => {
+                let name = format!("{method:?} of {dt_ms} ms with {name}");
+                (name, Piece::one_by_one(1, 1e3 * STEP_S / dt_ms))
+            }
+            (None, Touched::Object) => at_rest(format!("contact with {name}"), OBJECT_S),
+            (None, Touched::Scan) => at_rest(format!("contact with scan {name}"), SCAN_S),
+        };
+        NamedPiece::new(name, self.object, work)
     }
 }
 
@@ -76,48 +74,44 @@ impl SpeedAccuracyStudy {
         items
     }
 
-    /// What is done with an object shares its models.
+    /// Its work items.
     pub(super) fn contact_pieces(&self) -> Vec<NamedPiece> {
-        let items = self.contact_items().into_iter();
-        let pieces = items.map(|item| NamedPiece::new(item.name(), item.object, item.work()));
-        pieces.collect()
+        self.contact_items().iter().map(Item::piece).collect()
     }
 
     /// Models on all threads, times on one.
     pub(super) fn measure_contact(&self, left: &PiecesLeft<SpeedAccuracyRows>) -> Result<()> {
-        let items = left.of(self.contact_items(), Item::name);
+        let items = left.of(0, self.contact_items());
         let (Some(spec), false) = (&self.plan.parts().contact, items.is_empty()) else {
             return Ok(());
         };
-        let objects = grouped(&items, |item| item.object);
+        let objects = grouped(&items, |(_, item)| item.object);
         left.progress.stage("models", objects.len() as u64);
         // One at a time: to pack a mesh takes from seconds to a minute.
         let made = objects.par_iter().with_max_len(1).map(|(object, items)| {
-            let names: Vec<String> = items.iter().map(|item| item.name()).collect();
-            let of = (items[0].touched, items[0].subject);
+            let numbers: Vec<usize> = items.iter().map(|(number, _)| *number).collect();
+            let (_, first) = items[0];
+            let of = (first.touched, first.subject);
             let make = || Models::new(&self.plan, spec, of, self.packings.as_deref());
-            let made = left.prepare(&names, make)?;
+            let made = left.prepare(&numbers, make)?;
             left.progress.advance(1);
             Ok(made.map(|made| (*object, made)))
         });
         let made = made.collect::<Result<Vec<_>>>()?;
         let made: BTreeMap<usize, Models> = made.into_iter().flatten().collect();
         left.progress.stage("time touches", items.len() as u64);
-        for item in &items {
+        for (number, item) in &items {
             let Some(models) = made.get(&item.object) else {
                 continue;
             };
-            left.finish(&item.name(), || {
+            left.finish(*number, || {
                 let contact = match item.stepped {
                     None => models.at_rest(),
                     Some((method, dt_ms)) => {
                         vec![models.stepped(method, dt_ms, spec.stepped_touches)?]
                     }
                 };
-                Ok(SpeedAccuracyRows {
-                    contact,
-                    ..SpeedAccuracyRows::default()
-                })
+                Ok((contact, Vec::new()))
             })?;
         }
         Ok(())

@@ -1,7 +1,7 @@
 //! Ways to evaluate contact over all objects: what each costs, and how wrong it is.
 
 use super::models::ContactRow;
-use super::rows::{ContactPoint, ContactWay, PeerRow, Touched};
+use super::rows::{ContactPoint, ContactWay, PeerRow};
 use crate::kinds::grouped;
 use crate::quantile::quantile;
 
@@ -13,7 +13,7 @@ pub(super) fn contact_points(rows: &[ContactRow], peers: &[PeerRow]) -> Vec<Cont
         dt_ms: cell.dt_ms,
         source: "this run".to_owned(),
         touched: cell.touched,
-        ..NOTHING
+        ..ContactPoint::default()
     });
     let ours = ours.into_iter().filter_map(|(setting, rows)| {
         let errors = rows.iter().map(|(_, score, _)| score.error_mm);
@@ -30,7 +30,7 @@ pub(super) fn contact_points(rows: &[ContactRow], peers: &[PeerRow]) -> Vec<Cont
         },
         setting: Some(row.setting.clone()),
         source: format!("{} {}", row.program, row.version),
-        ..NOTHING
+        ..ContactPoint::default()
     });
     let others = others.into_iter().map(|(setting, rows)| {
         let last = rows.iter().map(|row| row.date.as_str()).max();
@@ -62,20 +62,6 @@ impl ContactWay {
         }
     }
 }
-
-/// A setting before anything of it is known.
-const NOTHING: ContactPoint = ContactPoint {
-    way: String::new(),
-    tolerance_mm: None,
-    dt_ms: None,
-    setting: None,
-    source: String::new(),
-    touched: Touched::Object,
-    us_per_touch: 0.0,
-    error_mm: 0.0,
-    error_q1_mm: 0.0,
-    error_q3_mm: 0.0,
-};
 
 /// A setting over several objects: medians, and the quartiles of the errors.
 fn over_objects(setting: ContactPoint, mut errors: Vec<f64>, mut costs: Vec<f64>) -> ContactPoint {

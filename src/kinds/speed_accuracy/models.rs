@@ -58,9 +58,9 @@ impl<'a> Models<'a> {
     /// Every model at rest, where the pose is given.
     pub fn at_rest(&self) -> Vec<ContactRow> {
         let models = self.models.iter().map(|(way, tolerance_mm, model)| {
-            let cell = self.cell(*way, *tolerance_mm, model.n_spheres());
-            let score = self.score(Some(self.truth.error(model, 0.0)));
-            row(cell, score, self.truth.seconds_per_touch(model))
+            let error = Some(self.truth.error(model, 0.0));
+            let seconds = self.truth.seconds_per_touch(model);
+            self.row((*way, *tolerance_mm, model.n_spheres()), error, seconds)
         });
         let mut rows: Vec<ContactRow> = models.collect();
         rows.extend(self.by_rows().into_iter().flatten());
@@ -90,8 +90,11 @@ impl<'a> Models<'a> {
                     mean_mm: in_mm(errors.iter().sum()) / errors.len().max(1) as f64,
                     p95_mm: in_mm(quantile(&mut errors, 0.95)),
                 };
-                let cell = self.cell(way, *tolerance_mm, model.n_spheres());
-                row(cell, self.score(Some(error)), seconds)
+                self.row(
+                    (way, *tolerance_mm, model.n_spheres()),
+                    Some(error),
+                    seconds,
+                )
             }),
         )
     }
@@ -104,12 +107,8 @@ impl<'a> Models<'a> {
         let seconds = median_s(&self.truth.readings, |reading: &Reading| {
             press_solid(self.patch, &entry.solid, &reading.pressed());
         });
-        let cell = self.cell(ContactWay::SolidMarching, None, 0);
-        Some(row(
-            cell,
-            self.score(Some(DeflectionError::default())),
-            seconds,
-        ))
+        let of = (ContactWay::SolidMarching, None, 0);
+        Some(self.row(of, Some(DeflectionError::default()), seconds))
     }
 
     /// Some touches of the middle packing by one method with one time step.
@@ -129,41 +128,36 @@ impl<'a> Models<'a> {
         }
         is_finite &= errors.iter().all(|error| error.is_finite());
         let error = is_finite.then(|| DeflectionError::of(errors));
-        let cell = ContactCell {
-            dt_ms: Some(dt_ms),
-            ..self.cell(method, *tolerance_mm, model.n_spheres())
-        };
-        let score = ContactScore {
-            n_touches: chosen.len(),
-            n_steps: Some(n_steps),
-            ..self.score(error)
-        };
-        Ok(row(cell, score, quantile(&mut seconds, 0.5)))
+        let of = (method, *tolerance_mm, model.n_spheres());
+        let (mut cell, mut score, time) = self.row(of, error, quantile(&mut seconds, 0.5));
+        cell.dt_ms = Some(dt_ms);
+        (score.n_touches, score.n_steps) = (chosen.len(), Some(n_steps));
+        Ok((cell, score, time))
     }
 
-    fn cell(&self, way: ContactWay, tolerance_mm: Option<f64>, n_spheres: usize) -> ContactCell {
-        ContactCell {
+    /// Of all touches, where nothing is stepped: a way with its tolerance (mm) and spheres, how wrong it is (no error where a number was not
+    /// finite), and seconds a touch.
+    fn row(
+        &self,
+        (way, tolerance_mm, n_spheres): (ContactWay, Option<f64>, usize),
+        error: Option<DeflectionError>,
+        seconds: f64,
+    ) -> ContactRow {
+        let cell = ContactCell {
             way,
             tolerance_mm,
             dt_ms: None,
             touched: self.touched,
             object: self.subject.name().to_owned(),
             n_spheres,
-        }
-    }
-
-    /// Of all touches; no error where a number was not finite.
-    fn score(&self, error: Option<DeflectionError>) -> ContactScore {
-        ContactScore {
+        };
+        let score = ContactScore {
             n_touches: self.truth.readings.len(),
             error_mm: error.map(|error| error.mean_mm),
             error_p95_mm: error.map(|error| error.p95_mm),
             n_steps: None,
-        }
+        };
+        let us_per_touch = 1e6 * seconds;
+        (cell, score, ContactTime { us_per_touch })
     }
-}
-
-fn row(cell: ContactCell, score: ContactScore, seconds: f64) -> ContactRow {
-    let us_per_touch = 1e6 * seconds;
-    (cell, score, ContactTime { us_per_touch })
 }

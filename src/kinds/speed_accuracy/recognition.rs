@@ -90,13 +90,12 @@ impl SpeedAccuracyStudy {
 
     /// Touches are made on all threads; fits and decisions are timed on one.
     pub(super) fn measure_chains(&self, left: &PiecesLeft<SpeedAccuracyRows>) -> Result<()> {
-        let settings = left.of(self.settings(), Setting::name);
-        let names = |of: &[Setting]| -> Vec<String> { of.iter().map(Setting::name).collect() };
+        let settings = left.of(self.contact_pieces().len(), self.settings());
         let (Some(spec), false) = (&self.plan.parts().recognition, settings.is_empty()) else {
             return Ok(());
         };
         let build = || self.touched(spec, left.progress);
-        let Some((exact, levels)) = left.prepare(&names(&settings), build)? else {
+        let Some((exact, levels)) = left.prepare(&numbers(&settings), build)? else {
             return Ok(());
         };
         left.progress.stage("recognise", settings.len() as u64);
@@ -106,16 +105,16 @@ impl SpeedAccuracyStudy {
             &seed.named("speed accuracy signal"),
         );
         let one_thread = &one_thread()?;
-        for of_array in settings.chunk_by(|a, b| a.array == b.array) {
-            let patch = &self.plan.arrays[of_array[0].array];
+        for of_array in settings.chunk_by(|(_, a), (_, b)| a.array == b.array) {
+            let patch = &self.plan.arrays[of_array[0].1.array];
             let noise = SignalStep::Noise(Noise {
                 std: spec.noise_std_full_scale,
                 unit: NoiseUnit::FullScale,
             });
             let chain = &Chain::new(&[noise], patch)?;
             let tested = &simulate_array(&exact, patch, 1, &Silent).kept;
-            for of_level in of_array.chunk_by(|a, b| a.level == b.level) {
-                let touched = &levels[of_level[0].level];
+            for of_level in of_array.chunk_by(|(_, a), (_, b)| a.level == b.level) {
+                let touched = &levels[of_level[0].1.level];
                 let bench = Bench {
                     spec,
                     seed,
@@ -128,19 +127,17 @@ impl SpeedAccuracyStudy {
                     one_thread,
                 };
                 let sense_us = one_thread.install(|| bench.time_presses());
-                let compression = |setting: &Setting| (setting.cell.ensemble, setting.cell.ratio);
+                let compression =
+                    |(_, setting): &(usize, Setting)| (setting.cell.ensemble, setting.cell.ratio);
                 for same in of_level.chunk_by(|a, b| compression(a) == compression(b)) {
-                    let compress = || bench.compress(&same[0].cell, sense_us);
-                    let Some(measured) = left.prepare(&names(same), compress)? else {
+                    let compress = || bench.compress(&same[0].1.cell, sense_us);
+                    let Some(measured) = left.prepare(&numbers(same), compress)? else {
                         continue;
                     };
-                    for setting in same {
-                        left.finish(&setting.name(), || {
+                    for (number, setting) in same {
+                        left.finish(*number, || {
                             let row = one_thread.install(|| bench.row(&setting.cell, &measured))?;
-                            Ok(SpeedAccuracyRows {
-                                chains: vec![row],
-                                ..SpeedAccuracyRows::default()
-                            })
+                            Ok((Vec::new(), vec![row]))
                         })?;
                     }
                 }
@@ -183,6 +180,10 @@ impl SpeedAccuracyStudy {
         let levels = levels.collect::<Result<_>>()?;
         Ok((exact, levels))
     }
+}
+
+fn numbers(settings: &[(usize, Setting)]) -> Vec<usize> {
+    settings.iter().map(|(number, _)| *number).collect()
 }
 
 /// A pool of one thread, to time on.

@@ -32,10 +32,11 @@ pub enum ContactWay {
 }
 
 /// Which set an object is of.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Touched {
     /// The study's.
+    #[default]
     Object,
     /// One of the meshes that are touched [beside](crate::kinds::speed_accuracy::ScansSpec) them.
     Scan,
@@ -156,6 +157,7 @@ pub struct PeerRow {
 row! {
 /// A way to evaluate contact over all objects: a row of `contact_pareto.csv`. A way of which an object has no number (a method that
 /// diverged) has none.
+#[derive(Default)]
 pub struct ContactPoint {
     /// How.
     way: String => Choice "way to evaluate contact";

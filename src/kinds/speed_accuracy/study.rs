@@ -1,6 +1,5 @@
 //! A study of speed against accuracy, part by part.
 
-use super::charts::{answers, charts};
 use super::contact_points::contact_points;
 use super::models::ContactRow;
 use super::plan::SpeedAccuracyPlan;
@@ -11,13 +10,12 @@ use super::spec::SpeedAccuracyStudySpec;
 use super::subject::{Subject, load_subjects};
 use crate::error::Result;
 use crate::kinds::model_recognition::check_apart;
-use crate::kinds::{About, Facts, Kind, Source};
+use crate::kinds::{About, Facts, Files, Kind, Source, found_and_cost};
 use crate::report::csv_tables::read_rows;
 use crate::study::objects_content;
-use crate::study::pieces::{NamedPiece, PieceRows, PieceStudy, PiecesLeft, Scale};
-use crate::table::{ChartSpec, File, Table};
-use serde::{Deserialize, Serialize};
-use std::path::{Path, PathBuf};
+use crate::study::pieces::{NamedPiece, PieceStudy, PiecesLeft, Scale};
+use crate::table::{File, Table};
+use std::path::PathBuf;
 
 /// A study of speed against accuracy and its objects.
 pub struct SpeedAccuracyStudy {
@@ -32,19 +30,8 @@ pub struct SpeedAccuracyStudy {
 /// A chain: what it is, what it gives, and what it costs.
 pub(super) type ChainRow = (ChainCell, ChainScore, ChainTime);
 
-/// What work items of the study found: a setting, how near or how often right it is, and what it costs.
-#[derive(Clone, Debug, Default, Serialize, Deserialize)]
-pub struct SpeedAccuracyRows {
-    pub(super) contact: Vec<ContactRow>,
-    pub(super) chains: Vec<ChainRow>,
-}
-
-impl PieceRows for SpeedAccuracyRows {
-    fn append(&mut self, next: Self) {
-        self.contact.extend(next.contact);
-        self.chains.extend(next.chains);
-    }
-}
+/// What work items of the study found in contact and in recognition: a setting, how near or how often right it is, and what it costs.
+pub type SpeedAccuracyRows = (Vec<ContactRow>, Vec<ChainRow>);
 
 /// Tables of contact: what is found, what it costs, and both together.
 const CONTACT: File<(ContactCell, ContactScore)> =
@@ -88,7 +75,7 @@ impl PieceStudy for SpeedAccuracyStudy {
         self.measure_chains(left)
     }
 
-    fn tables(&self, rows: SpeedAccuracyRows) -> Result<Vec<Table>> {
+    fn tables(&self, (contact, chains): SpeedAccuracyRows) -> Result<Vec<Table>> {
         let mut tables = Vec::new();
         let parts = self.plan.parts();
         if parts.contact.is_some() {
@@ -97,21 +84,12 @@ impl PieceStudy for SpeedAccuracyStudy {
                 Some(path) => read_rows(path)?,
                 None => Vec::new(),
             };
-            let (scores, times) = apart(&rows.contact);
-            let points = contact_points(&rows.contact, &peers);
-            tables.extend([
-                CONTACT.of(&scores)?,
-                CONTACT_TIMES.of(&times)?,
-                CONTACT_PARETO.of(&points)?,
-            ]);
+            tables.extend(found_and_cost(&CONTACT, &CONTACT_TIMES, &contact)?);
+            tables.push(CONTACT_PARETO.of(&contact_points(&contact, &peers))?);
         }
         if parts.recognition.is_some() {
-            let (scores, times) = apart(&rows.chains);
-            tables.extend([
-                RECOGNITION.of(&scores)?,
-                RECOGNITION_TIMES.of(&times)?,
-                RECOGNITION_PARETO.of(&rows.chains)?,
-            ]);
+            tables.extend(found_and_cost(&RECOGNITION, &RECOGNITION_TIMES, &chains)?);
+            tables.push(RECOGNITION_PARETO.of(&chains)?);
         }
         Ok(tables)
     }
@@ -132,6 +110,14 @@ impl Kind for SpeedAccuracyStudy {
             "speed_accuracy.recognition.classifier",
         ],
     };
+    const FILES_OF_PARTS: Files = &[
+        &CONTACT,
+        &CONTACT_TIMES,
+        &CONTACT_PARETO,
+        &RECOGNITION,
+        &RECOGNITION_TIMES,
+        &RECOGNITION_PARETO,
+    ];
 
     fn load(source: &Source) -> Result<Self> {
         let mut spec = SpeedAccuracyStudySpec::parse(&source.place, &source.text)?;
@@ -187,33 +173,4 @@ impl Kind for SpeedAccuracyStudy {
             ..Scale::default()
         }
     }
-
-    fn read(folder: &Path) -> Result<Vec<Table>> {
-        let tables = [
-            CONTACT.read_if_there(folder)?,
-            CONTACT_TIMES.read_if_there(folder)?,
-            CONTACT_PARETO.read_if_there(folder)?,
-            RECOGNITION.read_if_there(folder)?,
-            RECOGNITION_TIMES.read_if_there(folder)?,
-            RECOGNITION_PARETO.read_if_there(folder)?,
-        ];
-        Ok(tables.into_iter().flatten().collect())
-    }
-
-    fn charts(&self, tables: &[Table]) -> Vec<ChartSpec> {
-        charts(tables)
-    }
-
-    fn answers(&self, tables: &[Table]) -> Vec<String> {
-        answers(&self.plan, tables)
-    }
-}
-
-/// Rows of a table: of what each is, and what of it.
-type RowsOf<C, S> = Vec<(C, S)>;
-
-/// What was found, and what it costs.
-fn apart<C: Clone, S: Clone, T: Clone>(rows: &[(C, S, T)]) -> (RowsOf<C, S>, RowsOf<C, T>) {
-    let apart = |(cell, score, time): (C, S, T)| ((cell.clone(), score), (cell, time));
-    rows.iter().cloned().map(apart).unzip()
 }

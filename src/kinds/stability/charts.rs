@@ -1,30 +1,55 @@
 //! What is charted: a map for each part of a study, and what taxels on joints cost.
 
+use super::plan::StabilityPlan;
 use crate::dynamics::skin_sim::UNSTABLE_JOINTS;
+use crate::kinds::Findings;
 use crate::table::{Along, At, ChartSpec, Mark, Rule, Table};
 
-/// Maps of parts with several methods and several steps or masses: time steps across, taxel masses up, a panel a method and a row of
-/// panels a setting; then the ladder of joints.
-pub(super) fn charts(tables: &[Table]) -> Vec<ChartSpec> {
-    let [cells, _, _, joints, ..] = tables else {
-        return Vec::new();
-    };
-    let mut charts: Vec<ChartSpec> = Vec::new();
-    for rows in cells.groups(&["part"], 0..cells.n_rows) {
-        let n = |columns: &[&str]| cells.groups(columns, rows.iter().copied()).len();
-        if n(&["method", "solver_iterations"]) < 2 || n(&["dt_s", "taxel_mass_kg"]) < 2 {
-            continue;
+impl Findings for StabilityPlan {
+    /// Maps of parts with several methods and several steps or masses: time steps across, taxel masses up, a panel a method and a row of
+    /// panels a setting; then the ladder of joints.
+    fn charts(&self, tables: &[Table]) -> Vec<ChartSpec> {
+        let (cells, joints) = (&tables[0], &tables[3]);
+        let mut charts: Vec<ChartSpec> = Vec::new();
+        for rows in cells.groups(&["part"], 0..cells.n_rows) {
+            let n = |columns: &[&str]| cells.groups(columns, rows.iter().copied()).len();
+            if n(&["method", "solver_iterations"]) < 2 || n(&["dt_s", "taxel_mass_kg"]) < 2 {
+                continue;
+            }
+            let mut map = map(cells, &rows);
+            let of_scene = charts.iter().filter(|chart| chart.title == map.title);
+            let n_before = of_scene.count();
+            if n_before > 0 {
+                map.name += &format!("_{}", n_before + 1);
+            }
+            charts.push(map);
         }
-        let mut map = map(cells, &rows);
-        let of_scene = charts.iter().filter(|chart| chart.title == map.title);
-        let n_before = of_scene.count();
-        if n_before > 0 {
-            map.name += &format!("_{}", n_before + 1);
-        }
-        charts.push(map);
+        charts.extend(joint_charts(joints));
+        charts
     }
-    charts.extend(joint_charts(joints));
-    charts
+
+    /// How often each method is right, the best first.
+    fn answers(&self, tables: &[Table]) -> Vec<String> {
+        let summary = &tables[1];
+        let methods = summary.groups(&["method", "solver_iterations"], 0..summary.n_rows);
+        let found = methods.iter().map(|rows| {
+            let sum = |column| rows.iter().map(|&row| summary.number(column, row)).sum();
+            let (n_right, n_cells): (f64, f64) = (sum("n_right"), sum("n_cells"));
+            let share = n_right / n_cells.max(1.0);
+            let mut method = summary.words("method", rows[0]);
+            let iterations = summary.words("solver_iterations", rows[0]);
+            if !iterations.is_empty() {
+                method += &format!(", {iterations} iterations");
+            }
+            let percent = 100.0 * share;
+            let sentence =
+                format!("Right in {n_right} of {n_cells} cells ({percent:.0} %): {method}.");
+            (share, sentence)
+        });
+        let mut found: Vec<(f64, String)> = found.collect();
+        found.sort_by(|a, b| b.0.total_cmp(&a.0));
+        found.into_iter().map(|(_, sentence)| sentence).collect()
+    }
 }
 
 /// Of one part.
@@ -114,28 +139,4 @@ fn joint_charts(joints: &Table) -> Vec<ChartSpec> {
         ..chart("stability_joints".to_owned(), title.to_owned(), "method")
     });
     charts
-}
-
-/// How often each method is right, the best first.
-pub(super) fn answers(tables: &[Table]) -> Vec<String> {
-    let [_, summary, ..] = tables else {
-        return Vec::new();
-    };
-    let methods = summary.groups(&["method", "solver_iterations"], 0..summary.n_rows);
-    let found = methods.iter().map(|rows| {
-        let sum = |column| rows.iter().map(|&row| summary.number(column, row)).sum();
-        let (n_right, n_cells): (f64, f64) = (sum("n_right"), sum("n_cells"));
-        let share = n_right / n_cells.max(1.0);
-        let mut method = summary.words("method", rows[0]);
-        let iterations = summary.words("solver_iterations", rows[0]);
-        if !iterations.is_empty() {
-            method += &format!(", {iterations} iterations");
-        }
-        let percent = 100.0 * share;
-        let sentence = format!("Right in {n_right} of {n_cells} cells ({percent:.0} %): {method}.");
-        (share, sentence)
-    });
-    let mut found: Vec<(f64, String)> = found.collect();
-    found.sort_by(|a, b| b.0.total_cmp(&a.0));
-    found.into_iter().map(|(_, sentence)| sentence).collect()
 }

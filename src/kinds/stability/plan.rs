@@ -84,13 +84,9 @@ impl Check<'_> {
             return Err(error(["taxels", &n.to_string(), &allowed]));
         }
         let masses = object_masses(wanted).map_err(error)?;
+        let of_engines = wanted.solver_iterations.values();
         let iterations = |method: ContactMethod| match method.is_engine() {
-            true => wanted
-                .solver_iterations
-                .values()
-                .into_iter()
-                .map(Some)
-                .collect(),
+            true => of_engines.iter().copied().map(Some).collect(),
             false => vec![None],
         };
         let methods = wanted.methods.iter().copied();

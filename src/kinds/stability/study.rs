@@ -2,7 +2,6 @@
 
 use super::LEAST_STEPS;
 use super::cell::{Outcome, measure};
-use super::charts::{answers, charts};
 use super::peers::peer_rows;
 use super::plan::StabilityPlan;
 use super::rows::{
@@ -10,11 +9,11 @@ use super::rows::{
 };
 use super::spec::{StabilityScene, StabilityStudySpec};
 use crate::error::Result;
-use crate::kinds::{About, Facts, Kind, Source};
+use crate::kinds::{About, Facts, Files, Kind, Source, found_and_cost, grouped};
 use crate::study::millimetres;
 use crate::study::pieces::{NamedPiece, PieceStudy, PiecesLeft, Scale};
 use crate::study::time_left::Piece;
-use crate::table::{ChartSpec, File, Table};
+use crate::table::{File, Table};
 use rayon::prelude::*;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
@@ -43,6 +42,7 @@ impl Kind for StabilityPlan {
         words: "a study of where contact methods break",
         may_change: &["question", "expected", "stability.parts"],
     };
+    const FILES: Files = &[&CELLS, &SUMMARY, &TIMING, &JOINTS];
 
     fn load(source: &Source) -> Result<Self> {
         source.refuse_objects("a ball is what touches")?;
@@ -69,27 +69,10 @@ impl Kind for StabilityPlan {
         }
     }
 
-    fn read(folder: &Path) -> Result<Vec<Table>> {
-        Ok(vec![
-            CELLS.read(folder)?,
-            SUMMARY.read(folder)?,
-            TIMING.read(folder)?,
-            JOINTS.read(folder)?,
-        ])
-    }
-
     fn read_tables(&self, folder: &Path) -> Result<Vec<Table>> {
         let mut tables = Self::read(folder)?;
         tables[0].note = peer_rows(self)?.1;
         Ok(tables)
-    }
-
-    fn charts(&self, tables: &[Table]) -> Vec<ChartSpec> {
-        charts(tables)
-    }
-
-    fn answers(&self, tables: &[Table]) -> Vec<String> {
-        answers(tables)
     }
 }
 
@@ -114,7 +97,7 @@ impl PieceStudy for StabilityPlan {
         // One at a time: a cell takes from microseconds to a minute.
         let cells = cells.with_max_len(1);
         cells.try_for_each(|(number, (cell, undamped))| {
-            left.finish_number(number, || {
+            left.finish(number, || {
                 let (score, time) = measure(cell, *undamped)?;
                 Ok(vec![(cell.clone(), score, time)])
             })
@@ -128,17 +111,10 @@ impl PieceStudy for StabilityPlan {
             let behind = rows.partition_point(|(cell, ..)| cell.part <= row.0.part);
             rows.insert(behind, row);
         }
-        let (summary, joints) = (summary(&rows), joints(&rows));
-        let rows = rows.into_iter();
-        let (scores, times): (Vec<_>, Vec<_>) = rows
-            .map(|(cell, score, time)| ((cell.clone(), score), (cell, time)))
-            .unzip();
-        Ok(vec![
-            CELLS.of(&scores)?.noted(sources),
-            SUMMARY.of(&summary)?,
-            TIMING.of(&times)?,
-            JOINTS.of(&joints)?,
-        ])
+        let [cells, timing] = found_and_cost(&CELLS, &TIMING, &rows)?;
+        let summary = SUMMARY.of(&summary(&rows))?;
+        let joints = JOINTS.of(&joints(&rows))?;
+        Ok(vec![cells.noted(sources), summary, timing, joints])
     }
 }
 
@@ -151,25 +127,20 @@ fn planned_s(cell: &StabilityCell) -> f64 {
 
 /// A row a scene, method and number of iterations, in the order of first occurrence.
 fn summary(rows: &[StabilityRow]) -> Vec<StabilitySummary> {
-    let key = |cell: &StabilityCell| (cell.scene, cell.method, cell.solver_iterations);
-    let mut keys = Vec::new();
-    for (cell, ..) in rows {
-        if !keys.contains(&key(cell)) {
-            keys.push(key(cell));
-        }
-    }
-    let summarise = |of| {
-        let of_key = rows.iter().filter(|(cell, ..)| key(cell) == of);
-        let scores: Vec<&StabilityScore> = of_key.map(|(_, score, _)| score).collect();
+    let settings = grouped(rows, |(cell, ..)| {
+        (cell.scene, cell.method, cell.solver_iterations)
+    });
+    let summarise = |((scene, method, solver_iterations), rows): (_, Vec<&StabilityRow>)| {
+        let scores: Vec<&StabilityScore> = rows.iter().map(|(_, score, _)| score).collect();
         let count = |outcome| scores.iter().filter(|s| s.outcome == outcome).count();
         let worst = |error: fn(&StabilityScore) -> Option<f64>| {
             let errors = scores.iter().filter_map(|score| error(score));
             errors.reduce(f64::max)
         };
         StabilitySummary {
-            scene: of.0,
-            method: of.1,
-            solver_iterations: of.2,
+            scene,
+            method,
+            solver_iterations,
             n_cells: scores.len(),
             n_right: count(Outcome::Right),
             n_inaccurate: count(Outcome::Inaccurate),
@@ -180,7 +151,7 @@ fn summary(rows: &[StabilityRow]) -> Vec<StabilitySummary> {
             worst_deflection_error: worst(|score| score.deflection_error),
         }
     };
-    keys.into_iter().map(summarise).collect()
+    settings.into_iter().map(summarise).collect()
 }
 
 /// Arrays of different sizes that make a ladder, at least.

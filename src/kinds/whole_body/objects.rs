@@ -45,15 +45,11 @@ fn part(part: &BodyPartSpec) -> Result<Part> {
             tube_diameter_mm,
             at_mm,
         } => {
-            let ring_diameter = MM * ring_diameter_mm;
-            let tube_diameter = MM * tube_diameter_mm;
-            (
-                at_mm,
-                Shape::Torus {
-                    ring_diameter,
-                    tube_diameter,
-                },
-            )
+            let shape = Shape::Torus {
+                ring_diameter: MM * ring_diameter_mm,
+                tube_diameter: MM * tube_diameter_mm,
+            };
+            (at_mm, shape)
         }
     };
     Part::new(shape, Pose::from_translation(MM * DVec3::from_array(at_mm)))

@@ -193,13 +193,8 @@ impl Check<'_> {
         let key = |name: &str| format!("{prefix}.{name}");
         let found = robot.link(link);
         let direction = self.vector(&key("from"), from)?.try_normalize();
-        let zero = || {
-            self.error(
-                &key("from"),
-                format!("{from:?}"),
-                "a vector that is not zero",
-            )
-        };
+        let given = format!("{from:?}");
+        let zero = || self.error(&key("from"), given, "a vector that is not zero");
         let at = MM * self.vector(&key("at_mm"), at)?;
         Ok(Aim {
             link: found.map_err(|_| self.error(&key("link"), link, "links of the robot"))?,

@@ -73,14 +73,11 @@ impl Drive<'_> {
         let n_bytes = self.body.n_bytes() + self.state.n_bytes();
         let mut steps = Vec::with_capacity(n_steps);
         let of_each = compressions.iter();
-        let mut sensed: Vec<(Vec<f64>, Vec<SensedStep>)> = of_each
-            .map(|of| {
-                (
-                    vec![0.0; of.columns.n_measurements()],
-                    Vec::with_capacity(n_steps),
-                )
-            })
-            .collect();
+        let of_each = of_each.map(|of| {
+            let row = vec![0.0; of.columns.n_measurements()];
+            (row, Vec::with_capacity(n_steps))
+        });
+        let mut sensed: Vec<(Vec<f64>, Vec<SensedStep>)> = of_each.collect();
         for step in 0..n_steps {
             let pose = [self.path.at(step as f64 * plan.dt)];
             let start = Instant::now();
@@ -96,17 +93,14 @@ impl Drive<'_> {
             }
         }
         let steps = &steps[WARM_UP..];
-        let mut times = vec![time(
-            Stage::Press,
-            "",
-            steps.iter().map(|step| step.press_s),
-        )];
+        let press = steps.iter().map(|step| step.press_s);
+        let mut times = vec![time(Stage::Press, "", press.clone())];
         let mut decided = Vec::new();
         for (compression, (_, sensed)) in compressions.iter().zip(&sensed) {
             let sensed = &sensed[WARM_UP..];
             let name = &compression.score.compression;
-            let press = steps.iter().map(|step| step.press_s).zip(sensed);
-            let whole = press.map(|(press_s, of)| press_s + of.compress_s + of.classify_s);
+            let whole = press.clone().zip(sensed);
+            let whole = whole.map(|(press_s, of)| press_s + of.compress_s + of.classify_s);
             let compress = sensed.iter().map(|of| of.compress_s);
             let classify = sensed.iter().map(|of| of.classify_s);
             times.push(time(Stage::Compress, name, compress));

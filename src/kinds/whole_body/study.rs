@@ -1,10 +1,8 @@
 //! Runs a study of a whole body: learn, then the scenes and the ladders one after the other, so that nothing else is timed.
 
-use super::charts::{answers, charts};
 use super::drive::{Drive, Posture};
 use super::ladders::{Rung, climb, rungs};
 use super::objects::of_scene;
-use super::picture::picture_of_body;
 use super::plan::{ScenePlan, WholeBodyPlan};
 use super::recognition::learn;
 use super::rows::{
@@ -14,13 +12,12 @@ use super::rows::{
 use super::spec::WholeBodyStudySpec;
 use crate::error::{Error, Result};
 use crate::geometry::Pose;
-use crate::kinds::{About, Facts, Kind, Source};
+use crate::kinds::{About, Facts, Files, Kind, Source};
 use crate::objects::SphereUnion;
-use crate::report::study_folder::NamedPicture;
 use crate::study::pieces::{NamedPiece, PieceStudy, PiecesLeft, Scale, Shared};
 use crate::study::time_left::Piece;
 use crate::study::{MM, file_content};
-use crate::table::{ChartSpec, File, Table};
+use crate::table::{File, Table};
 use crate::whole_body::CoveredRobot;
 
 const CASES: File<(BodyCase, BodyCount)> = File::new("whole_body.csv", "Scenes and rungs", "");
@@ -67,6 +64,7 @@ impl Kind for WholeBodyPlan {
             "whole_body.ladders.spheres",
         ],
     };
+    const FILES: Files = &[&CASES, &RECOGNITION, &SENSED, &TIMING, &STEPS];
 
     fn load(source: &Source) -> Result<Self> {
         source.refuse_objects("a whole body is touched by the objects that its study names")?;
@@ -97,28 +95,6 @@ impl Kind for WholeBodyPlan {
             bytes: TAXEL_BYTES * n_taxels,
             ..Scale::default()
         }
-    }
-
-    fn read(folder: &std::path::Path) -> Result<Vec<Table>> {
-        Ok(vec![
-            CASES.read(folder)?,
-            RECOGNITION.read(folder)?,
-            SENSED.read(folder)?,
-            TIMING.read(folder)?,
-            STEPS.read(folder)?,
-        ])
-    }
-
-    fn charts(&self, tables: &[Table]) -> Vec<ChartSpec> {
-        charts(tables)
-    }
-
-    fn pictures(&self, tables: &[Table]) -> Result<Vec<NamedPicture>> {
-        Ok(picture_of_body(self, &tables[0])?.into_iter().collect())
-    }
-
-    fn answers(&self, tables: &[Table]) -> Vec<String> {
-        answers(tables)
     }
 }
 
@@ -156,24 +132,24 @@ impl PieceStudy for WholeBodyPlan {
         };
         let n_compressions = self.compressions.len();
         for number in 0..n_compressions {
-            left.finish_number(number, || {
+            left.finish(number, || {
                 Ok((vec![learn()?[number].score.clone()], Vec::new()))
             })?;
         }
         let rungs = self.rungs();
         let first_rung = n_compressions + self.scenes.len();
         let driven = n_compressions..first_rung + rungs.len();
-        let n_left = driven.filter(|&number| left.has_number(number)).count();
+        let n_left = driven.filter(|&number| left.has(number)).count();
         left.progress.stage("scenes and ladders", n_left as u64);
         for (scene, number) in self.scenes.iter().zip(n_compressions..) {
-            left.finish_number(number, || {
+            left.finish(number, || {
                 let (mut drive, _) = self.begin(scene, cover()?)?;
                 let driven = drive.run(self, (Series::Scene, &scene.spec.name), learn()?)?;
                 Ok((Vec::new(), vec![driven]))
             })?;
         }
         for (rung, number) in rungs.iter().zip(first_rung..) {
-            left.finish_number(number, || Ok((Vec::new(), vec![climb(self, rung)?])))?;
+            left.finish(number, || Ok((Vec::new(), vec![climb(self, rung)?])))?;
         }
         Ok(())
     }

@@ -7,11 +7,11 @@ use crate::study::attempt::attempt;
 use crate::study::journal::Journal;
 use crate::study::progress::Progress;
 use crate::study::time_left::Piece;
-use std::collections::{BTreeMap, HashMap};
-use std::sync::{Mutex, OnceLock};
+use std::collections::BTreeMap;
+use std::sync::Mutex;
 use std::time::Instant;
 
-/// The pieces that are left to a run, for whoever measures them: by name, or by their number among all pieces.
+/// The pieces that are left to a run, for whoever measures them: by their number among all pieces.
 pub struct PiecesLeft<'a, R> {
     journal: &'a Journal,
     fail_fast: bool,
@@ -20,8 +20,6 @@ pub struct PiecesLeft<'a, R> {
     pieces: &'a [NamedPiece],
     /// Of each piece.
     is_left: Vec<bool>,
-    /// Of those that are left, by name; made when a name is first asked for.
-    numbers: OnceLock<HashMap<&'a str, usize>>,
     /// By number, once it is finished.
     results: Mutex<BTreeMap<usize, PieceResult<R>>>,
 }
@@ -38,7 +36,6 @@ impl<'a, R: PieceRows> PiecesLeft<'a, R> {
             progress: manner.progress,
             pieces,
             is_left,
-            numbers: OnceLock::new(),
             results: Mutex::default(),
         }
     }
@@ -58,46 +55,22 @@ impl<'a, R: PieceRows> PiecesLeft<'a, R> {
         (0..self.pieces.len()).filter(|&number| self.is_left[number])
     }
 
-    /// Whether a piece is to be done, by its number.
-    pub fn has_number(&self, number: usize) -> bool {
+    /// Whether a piece is to be done.
+    pub fn has(&self, number: usize) -> bool {
         self.is_left[number]
     }
 
-    /// Whether a piece is to be done.
-    pub fn has(&self, name: &str) -> bool {
-        self.number(name).is_some()
-    }
-
-    fn number(&self, name: &str) -> Option<usize> {
-        let numbers = self.numbers.get_or_init(|| {
-            let named = self.left().map(|n| (self.pieces[n].name.as_str(), n));
-            named.collect()
-        });
-        numbers.get(name).copied()
-    }
-
-    /// Those of some things whose pieces are to be done.
-    pub fn of<T>(&self, all: impl IntoIterator<Item = T>, name: impl Fn(&T) -> String) -> Vec<T> {
-        let all = all.into_iter();
-        all.filter(|thing| self.has(&name(thing))).collect()
+    /// Those of some things whose pieces are to be done, with their numbers: these go up from that of the first.
+    pub fn of<T>(&self, first: usize, all: impl IntoIterator<Item = T>) -> Vec<(usize, T)> {
+        let numbered = (first..).zip(all);
+        numbered.filter(|(number, _)| self.has(*number)).collect()
     }
 
     /// Does a piece that is left, if it is, and keeps what came of it.
     ///
     /// # Errors
     /// The journal cannot be written; what went wrong, if the first failure ends the run.
-    pub fn finish(&self, name: &str, measure: impl FnOnce() -> Result<R>) -> Result<()> {
-        match self.number(name) {
-            Some(number) => self.finish_number(number, measure),
-            None => Ok(()),
-        }
-    }
-
-    /// The same by its number.
-    ///
-    /// # Errors
-    /// As of [`finish`](Self::finish).
-    pub fn finish_number(&self, number: usize, measure: impl FnOnce() -> Result<R>) -> Result<()> {
+    pub fn finish(&self, number: usize, measure: impl FnOnce() -> Result<R>) -> Result<()> {
         if !self.is_left[number] {
             return Ok(());
         }
@@ -120,19 +93,6 @@ impl<'a, R: PieceRows> PiecesLeft<'a, R> {
     /// # Errors
     /// As of [`finish`](Self::finish).
     pub fn prepare<T>(
-        &self,
-        names: &[String],
-        make: impl FnOnce() -> Result<T>,
-    ) -> Result<Option<T>> {
-        let numbers: Vec<usize> = names.iter().filter_map(|name| self.number(name)).collect();
-        self.prepare_numbers(&numbers, make)
-    }
-
-    /// The same by their numbers.
-    ///
-    /// # Errors
-    /// As of [`finish`](Self::finish).
-    pub fn prepare_numbers<T>(
         &self,
         numbers: &[usize],
         make: impl FnOnce() -> Result<T>,

@@ -23,6 +23,14 @@ impl<A: PieceRows, B: PieceRows> PieceRows for (A, B) {
     }
 }
 
+impl<A: PieceRows, B: PieceRows, C: PieceRows> PieceRows for (A, B, C) {
+    fn append(&mut self, next: Self) {
+        self.0.append(next.0);
+        self.1.append(next.1);
+        self.2.append(next.2);
+    }
+}
+
 /// What came of a piece: rows, or what went wrong.
 pub type PieceResult<R> = std::result::Result<R, String>;
 
