@@ -63,7 +63,7 @@ pub(crate) use conditions::column_name;
 pub(crate) use content_hash::{sha256, short_hash};
 pub use evaluation::CONFIDENCE;
 pub use feature_files::{FeatureSet, cell_features, read_features, write_features};
-pub use frames::{FrameFacts, FramePlace, Frames, KeptFrames};
+pub use frames::{FrameFacts, FramePlace, Frames};
 pub use human_touches::{HumanTouches, RecordedTouch, record_touch};
 pub use npy::{write_integers, write_npy};
 pub use object_files::{

@@ -121,7 +121,7 @@ fn read(
         taxel: patch.taxel,
         speed: plan.speed,
     };
-    let (values, _) = measure(reading, (&frames.kept, 1), &touches)?;
+    let (values, _) = measure(reading, &frames, &touches)?;
     let frame = |row: ArrayView1<f64>| Array2::from_shape_vec(shape, row.to_vec());
     let frames = values.outer_iter().map(frame);
     Ok(frames

@@ -115,7 +115,7 @@ fn read(
         speed: plan.speed,
     };
     let touches: Vec<TouchToRead> = rows.iter().map(|&row| touches[row]).collect();
-    Ok(measure(reading, (&frames.kept, 1), &touches)?.0)
+    Ok(measure(reading, frames, &touches)?.0)
 }
 
 /// The first test touch of a few objects spread over the list.

@@ -113,7 +113,7 @@ impl SpeedAccuracyStudy {
                 unit: NoiseUnit::FullScale,
             });
             let chain = &Chain::new(&[noise], patch)?;
-            let tested = &simulate_array(&exact, patch, 1, &Silent).kept;
+            let tested = &simulate_array(&exact, patch, 1, &Silent);
             for of_level in of_array.chunk_by(|a, b| a.level == b.level) {
                 let touched = &levels[of_level[0].level];
                 let bench = Bench {
@@ -121,7 +121,7 @@ impl SpeedAccuracyStudy {
                     seed,
                     patch,
                     touched,
-                    learned: &simulate_array(touched, patch, 1, &Silent).kept,
+                    learned: &simulate_array(touched, patch, 1, &Silent),
                     tested,
                     to_read,
                     chain,
