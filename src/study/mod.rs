@@ -72,7 +72,7 @@ pub use object_files::{
 };
 pub use packings::{Packed, pack_within, packing_path};
 pub(crate) use plan::MM;
-pub use plan::{Amount, Plan, millimetres};
+pub use plan::{Plan, millimetres};
 pub use plan_signal::Condition;
 pub use pose_groups::KeepTogether;
 pub use samples::{Samples, sample_frames};

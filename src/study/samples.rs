@@ -4,9 +4,10 @@ use super::measurement::{Reading, measure, signal_steps, touches_to_read};
 use super::plan::{Plan, millimetres};
 use super::progress::Silent;
 use super::sensor_errors::{skin, strength_columns};
-use super::simulation::{TouchedObject, simulate_array, touched_classes};
+use super::simulation::{TouchedObject, simulate_array};
 use super::spec::{CombineSpec, StepSpec};
 use super::sweep::{Group, Sweep};
+use super::touch_set::TouchSet;
 use crate::error::{Error, Result};
 use crate::random::Seed;
 use crate::sensing::{Ensemble, Projection};
@@ -111,7 +112,7 @@ fn read(
     };
     let firsts: Vec<TouchedObject> = touched.iter().map(first).collect();
     let frames = simulate_array(&firsts, &patch, 1, &Silent);
-    let mut touches = touches_to_read(touched_classes(&firsts), &seed.named("signal").numbered(0));
+    let mut touches = touches_to_read(firsts.classes(), &seed.named("signal").numbered(0));
     for touch in &mut touches {
         touch.before = Some(before);
     }

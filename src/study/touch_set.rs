@@ -7,7 +7,7 @@ use super::plan::Plan;
 use super::pose_groups::KeepTogether;
 use super::progress::Progress;
 use super::samples::{Samples, sample_frames};
-use super::simulation::{TouchedObject, simulate_into, touch_labels, touched_classes};
+use super::simulation::{TouchedObject, press_objects, touch_labels};
 use super::sweep::Sweep;
 use crate::contact::saturation_limit;
 use crate::error::Result;
@@ -79,7 +79,9 @@ pub trait TouchSet: Sync {
 
 impl TouchSet for Vec<TouchedObject> {
     fn classes(&self) -> Vec<(&str, usize)> {
-        touched_classes(self)
+        let classes = self.iter();
+        let classes = classes.map(|t| (t.object.name.as_str(), t.touches.len()));
+        classes.collect()
     }
 
     fn group_keys(&self, together: &KeepTogether) -> Result<Array1<usize>> {
@@ -96,7 +98,7 @@ impl TouchSet for Vec<TouchedObject> {
         place: &FramePlace,
         progress: &dyn Progress,
     ) -> Result<Frames> {
-        simulate_into(self, on, place, progress)
+        press_objects(self, on, place, progress)
     }
 
     fn to_read(&self, plan: &Plan, n_frames: usize, seed: &Seed) -> Vec<TouchToRead> {

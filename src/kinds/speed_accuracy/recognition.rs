@@ -10,11 +10,12 @@ use crate::error::{Error, Result};
 use crate::objects::{Model, Object};
 use crate::random::Seed;
 use crate::signal::{Chain, Noise, NoiseUnit, SignalStep};
+use crate::study::TouchSet;
 use crate::study::measurement::touches_to_read;
 use crate::study::pieces::{NamedPiece, PiecesLeft};
 use crate::study::plan::millimetres;
 use crate::study::progress::{Progress, Silent};
-use crate::study::simulation::{TouchedObject, draw_touches, simulate_array, touched_classes};
+use crate::study::simulation::{TouchedObject, draw_touches, simulate_array};
 use crate::study::sweep::nested;
 use crate::study::time_left::Piece;
 use rayon::prelude::*;
@@ -101,10 +102,7 @@ impl SpeedAccuracyStudy {
         };
         left.progress.stage("recognise", settings.len() as u64);
         let seed = Seed::new(self.plan.spec.seed);
-        let to_read = &touches_to_read(
-            touched_classes(&exact),
-            &seed.named("speed accuracy signal"),
-        );
+        let to_read = &touches_to_read(exact.classes(), &seed.named("speed accuracy signal"));
         let one_thread = &one_thread()?;
         for of_array in settings.chunk_by(|a, b| a.array == b.array) {
             let patch = &self.plan.arrays[of_array[0].array];
