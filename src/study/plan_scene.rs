@@ -175,14 +175,12 @@ impl Check<'_> {
             self.value(key, value, is_allowed, allowed)?;
         }
         if let SpreadSpec::Range(RangeSpec::Uniform(low, high)) = *spread {
-            let given = format!("uniform from {low} to {high}");
-            return match low < high {
-                true => Ok(Spread::Uniform {
-                    low: low * unit,
-                    high: high * unit,
-                }),
-                false => Err(self.error(key, given, "low below high")),
-            };
+            if low >= high {
+                let given = format!("uniform from {low} to {high}");
+                return Err(self.error(key, given, "low below high"));
+            }
+            let (low, high) = (low * unit, high * unit);
+            return Ok(Spread::Uniform { low, high });
         }
         let values = self.list(key, values)?;
         Ok(Spread::Values(values.iter().map(|v| v * unit).collect()))

@@ -46,11 +46,12 @@ pub fn train_touches(plan: &Plan, splits: &[Split], labels: &Array1<usize>) -> R
         if given <= most as f64 {
             return Ok(());
         }
-        let (key, allowed) = (
+        let allowed = format!("at most {most}, {what}");
+        Err(Error::input(
             format!("key recognition.{key}"),
-            format!("at most {most}, {what}"),
-        );
-        Err(Error::input(key, given, allowed))
+            given,
+            allowed,
+        ))
     };
     let fewest = fewest_per_object(splits.iter().map(|split| &split.train), labels);
     let asked = Axis::of(&recognition.train_touches).into_iter();
@@ -66,16 +67,10 @@ pub fn train_touches(plan: &Plan, splits: &[Split], labels: &Array1<usize>) -> R
     }
     let least = train_touches.iter().min().copied().unwrap_or(0);
     if recognition.choose_c.is_some() || recognition.choose_gamma.is_some() {
-        let of_folds = recognition
-            .choose_touches
-            .map_or(least, |most| least.min(most));
+        let of_folds = least.min(recognition.choose_touches.unwrap_or(least));
+        let n_folds = recognition.n_choice_folds() as f64;
         let what = "the training touches of every object that take part";
-        at_most(
-            "choose_folds",
-            recognition.n_choice_folds() as f64,
-            of_folds,
-            what,
-        )?;
+        at_most("choose_folds", n_folds, of_folds, what)?;
     }
     for ratio in recognition.class_imbalance.iter().flat_map(Axis::values) {
         let what = "twice the training touches of every object";

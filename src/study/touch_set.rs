@@ -1,6 +1,5 @@
 //! What a recognition study asks of its touches: of pressed objects, or of human touches.
 
-use super::content_hash::{bytes_of_model, sha256};
 use super::frames::{FramePlace, Frames};
 use super::measurement::{TouchToRead, touches_to_read};
 use super::plan::Plan;
@@ -17,7 +16,6 @@ use crate::world::Patch;
 use ndarray::Array1;
 use rand::Rng;
 use rayon::prelude::*;
-use std::collections::BTreeMap;
 
 /// Touches of several classes: objects, or kinds of touch. They follow each other class by class.
 pub trait TouchSet: Sync {
@@ -70,11 +68,6 @@ pub trait TouchSet: Sync {
 
     /// What a report says about them: name and value.
     fn settings(&self) -> Vec<(String, String)>;
-
-    /// SHA-256 of what each object is made of, by its name; empty if the study's text says all.
-    fn content(&self) -> BTreeMap<String, String> {
-        BTreeMap::new()
-    }
 }
 
 impl TouchSet for Vec<TouchedObject> {
@@ -153,11 +146,5 @@ impl TouchSet for Vec<TouchedObject> {
             }
         }
         rows
-    }
-
-    fn content(&self) -> BTreeMap<String, String> {
-        let objects = self.iter().map(|t| &t.object);
-        let hashed = objects.map(|o| (o.name.clone(), sha256(bytes_of_model(&o.model))));
-        hashed.collect()
     }
 }
