@@ -326,30 +326,20 @@ impl Maker {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::columns;
+    use crate::row;
     use crate::table::File;
-    use serde::Deserialize;
 
-    #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-    struct Setting {
-        method: String,
+    row! {
+    pub struct Setting {
+        method: String => Choice;
         #[serde(default, skip_serializing_if = "Option::is_none")]
-        leak: Option<f64>,
-        step_s: f64,
-    }
-
-    #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-    struct Found {
-        error: Option<f64>,
-    }
-
-    columns! { Setting {
-        method: Choice;
-        leak: Condition "crosstalk" in "%": Share, optional;
-        step_s: Choice "time step" in "s": Log;
+        leak: Option<f64> => Condition "crosstalk" in "%": Share, optional;
+        step_s: f64 => Choice "time step" in "s": Log;
     } }
-    columns! { Found {
-        error: Value(Less) "deflection error": Log;
+
+    row! {
+    pub struct Found {
+        error: Option<f64> => Value(Less) "deflection error": Log;
     } }
 
     const FOUND: File<(Setting, Found)> = File::new("found.csv", "Found", "");
