@@ -150,16 +150,13 @@ impl TouchSet for HumanTouches {
         let row = |name: &str, value: String| (name.to_owned(), value);
         let names = self.class_names();
         let hz = 1.0 / self.spec.interval();
+        let kinds = format!("{}: {}", names.len(), names.join(", "));
+        let frames = format!("{} at {hz:.0} Hz", self.spec.n_frames());
+        let arm = format!("{:.0} mm across", 2e3 * self.spec.surface());
         vec![
-            row(
-                "Kinds of touch",
-                format!("{}: {}", names.len(), names.join(", ")),
-            ),
-            row(
-                "Frames a touch",
-                format!("{} at {hz:.0} Hz", self.spec.n_frames()),
-            ),
-            row("Arm", format!("{:.0} mm across", 2e3 * self.spec.surface())),
+            row("Kinds of touch", kinds),
+            row("Frames a touch", frames),
+            row("Arm", arm),
         ]
     }
 }

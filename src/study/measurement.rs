@@ -103,17 +103,15 @@ pub fn touches_to_read<'a>(
     let mut touches = Vec::new();
     for (name, n_touches) in classes {
         let class = seed.named(name);
-        touches.extend(
-            (touches.len()..)
-                .zip(0..n_touches as u64)
-                .map(|(number, touch)| TouchToRead {
-                    number,
-                    seed: class.numbered(touch),
-                    interval: None,
-                    before: None,
-                    skin: 0,
-                }),
-        );
+        for touch in 0..n_touches as u64 {
+            touches.push(TouchToRead {
+                number: touches.len(),
+                seed: class.numbered(touch),
+                interval: None,
+                before: None,
+                skin: 0,
+            });
+        }
     }
     touches
 }
@@ -133,18 +131,13 @@ pub fn measure_group(
     let patch = &plan.arrays[group.array];
     let seed = Seed::new(plan.spec.seed);
     let drawn = plan.spec.projection_of(trial) as u64;
+    let drawn = seed.named("projection").numbered(drawn);
     let trial = trial as u64;
-    let projection = Projection::new(
-        group.ensemble,
-        (patch.grid.ny, patch.grid.nx),
-        n_measurements,
-        &seed.named("projection").numbered(drawn),
-    )?;
+    let shape = (patch.grid.ny, patch.grid.nx);
+    let projection = Projection::new(group.ensemble, shape, n_measurements, &drawn)?;
     let skins = skins(plan, group, trial);
-    let chains: Vec<Chain> = skins
-        .iter()
-        .map(|skin| Chain::new(&signal_steps(plan, group, skin), patch))
-        .collect::<Result<_>>()?;
+    let chain = |skin| Chain::new(&signal_steps(plan, group, skin), patch);
+    let chains = skins.iter().map(chain).collect::<Result<Vec<_>>>()?;
     let reading = Reading {
         chains: &chains,
         projection: &projection,

@@ -30,12 +30,8 @@ impl Check<'_> {
         };
         let key = format!("signal.{name}");
         if let Some((second, ..)) = given.next() {
-            let given = format!("given beside {key}");
-            return Err(self.error(
-                &format!("signal.{second}"),
-                given,
-                "one unit of noise a study",
-            ));
+            let (second, given) = (format!("signal.{second}"), format!("given beside {key}"));
+            return Err(self.error(&second, given, "one unit of noise a study"));
         }
         let place = |wanted| signal.steps.iter().position(|step| *step == wanted);
         let force = place(StepSpec::Force);
@@ -142,10 +138,8 @@ fn key(strength: &Strength) -> String {
 impl SignalSpec {
     /// How many conditions there are.
     pub(super) fn n_conditions(&self) -> f64 {
-        let lengths = self
-            .axes
-            .given()
-            .map(|(.., axis)| axis.values().len() as f64);
+        let axes = self.axes.given();
+        let lengths = axes.map(|(.., axis)| axis.values().len() as f64);
         match self.combine {
             CombineSpec::All => lengths.product(),
             CombineSpec::OneAtATime => 1.0 + lengths.map(|n| n - 1.0).sum::<f64>(),

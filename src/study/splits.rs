@@ -47,11 +47,8 @@ pub fn train_touches(plan: &Plan, splits: &[Split], labels: &Array1<usize>) -> R
             return Ok(());
         }
         let allowed = format!("at most {most}, {what}");
-        Err(Error::input(
-            format!("key recognition.{key}"),
-            given,
-            allowed,
-        ))
+        let key = format!("key recognition.{key}");
+        Err(Error::input(key, given, allowed))
     };
     let fewest = fewest_per_object(splits.iter().map(|split| &split.train), labels);
     let asked = Axis::of(&recognition.train_touches).into_iter();

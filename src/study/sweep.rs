@@ -111,18 +111,14 @@ impl Sweep {
                 Some(_) => ("key human_touch.kinds", "kind", "kinds"),
                 None => ("objects", "object", "objects"),
             };
-            return Err(Error::input(
-                place,
-                format!("{n_classes} {given}"),
-                format!("at least two, since recognition tells {allowed} apart"),
-            ));
+            let given = format!("{n_classes} {given}");
+            let allowed = format!("at least two, since recognition tells {allowed} apart");
+            return Err(Error::input(place, given, allowed));
         }
         let labels = touched.labels();
-        let keys = plan
-            .keep_together
-            .as_ref()
-            .map(|together| touched.group_keys(together))
-            .transpose()?;
+        let together = plan.keep_together.as_ref();
+        let keys = together.map(|together| touched.group_keys(together));
+        let keys = keys.transpose()?;
         let splits = (0..plan.spec.trials)
             .map(|trial| draw_split(plan, &labels, keys.as_ref(), trial))
             .collect::<Result<Vec<_>>>()?;

@@ -129,10 +129,8 @@ impl TouchSet for Vec<TouchedObject> {
     fn settings(&self) -> Vec<(String, String)> {
         let names = self.class_names();
         let row = |name: &str, value: String| (name.to_owned(), value);
-        let mut rows = vec![row(
-            "Objects",
-            format!("{}: {}", names.len(), names.join(", ")),
-        )];
+        let objects = format!("{}: {}", names.len(), names.join(", "));
+        let mut rows = vec![row("Objects", objects)];
         let models = || self.iter().map(|t| &t.object.model);
         let spheres: Vec<usize> = models().map(Model::n_spheres).collect();
         let triangles: Vec<usize> = models().map(Model::n_triangles).collect();

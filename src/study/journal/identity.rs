@@ -62,12 +62,10 @@ impl Identity {
         if differences.is_empty() {
             return Ok(());
         }
+        let differences = differences.join("\n  ");
         Err(Error::input(
             place,
-            format!(
-                "was begun with another study\n  {}",
-                differences.join("\n  ")
-            ),
+            format!("was begun with another study\n  {differences}"),
             "\n  to go on: the same study, objects and program (axes may have more values or fewer, and words may change); --fresh starts over and keeps the old results beside the new",
         ))
     }
