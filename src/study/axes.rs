@@ -208,17 +208,10 @@ fn insert<'i>(
 ) -> Option<()> {
     let name = |name: &str| Spanned::new(start..start, Cow::Owned(name.to_owned()));
     let Some((first, rest)) = key.split_once('.') else {
-        if table.contains_key(key) {
-            return None;
-        }
-        table.insert(name(key), value);
-        return Some(());
+        return table.insert(name(key), value).is_none().then_some(());
     };
-    if !table.contains_key(first) {
-        let empty = Spanned::new(start..start, DeValue::Table(DeTable::new()));
-        table.insert(name(first), empty);
-    }
-    match table.get_mut(first)?.get_mut() {
+    let empty = || Spanned::new(start..start, DeValue::Table(DeTable::new()));
+    match table.entry(name(first)).or_insert_with(empty).get_mut() {
         DeValue::Table(inner) => insert(inner, rest, (start, value)),
         _ => None,
     }

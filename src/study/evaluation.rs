@@ -112,6 +112,8 @@ impl Trial<'_> {
         let spec = &self.plan.spec;
         // Only where they say more than the trial's number.
         let is_crossed = spec.projections_per_split.is_some();
+        let counts = matrix.counts.indexed_iter();
+        let counts = counts.filter(|(_, count)| **count > 0);
         let interval = Interval::wilson(matrix.n_correct(), matrix.n_rows(), CONFIDENCE)?;
         Ok(Evaluation {
             score: TrialScore {
@@ -136,10 +138,7 @@ impl Trial<'_> {
                 predict_s,
                 predict_us_per_touch: 1e6 * predict_s / answered.test.targets.len() as f64,
             },
-            confusion: matrix
-                .counts
-                .indexed_iter()
-                .filter(|(_, count)| **count > 0)
+            confusion: counts
                 .map(|((object, predicted), &count)| (object, predicted, count))
                 .collect(),
         })
@@ -151,9 +150,8 @@ impl Trial<'_> {
 
     fn training(&self, cell: &Cell, split: &Split) -> Result<Training<'_>> {
         let keys = self.sweep.group_keys.as_ref();
-        let labels = self
-            .sweep
-            .learned_labels(self.plan, (cell, self.number), split)?;
+        let of = (cell, self.number);
+        let labels = self.sweep.learned_labels(self.plan, of, split)?;
         Ok(Training {
             recognition: &self.plan.spec.recognition,
             kind: cell.classifier,

@@ -69,11 +69,10 @@ pub fn cell_features(
     let (group, cell) = find(sweep, cell)?;
     let split = sweep.split(plan, cell, trial)?;
     // As the run does it: nested measurements are the leading ones of the largest m.
-    let n_projected = group
-        .projected()
-        .into_iter()
-        .find(|&m| group.ensemble.is_prefix_nested() || m == cell.measurements)
-        .unwrap_or(cell.measurements);
+    let n_projected = match group.ensemble.is_prefix_nested() {
+        true => group.projected()[0],
+        false => cell.measurements,
+    };
     let of = (touched, group, n_projected);
     let measured = measured(plan, of, (trial, &split), ("touch", progress))?;
     let all: Vec<usize> = (0..sweep.labels.len()).collect();

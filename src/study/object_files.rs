@@ -204,11 +204,10 @@ pub fn load_named_meshes(folder: &Path, spec: &ObjectsSpec) -> Result<Vec<NamedM
 pub(crate) fn set_entries(set: &str, names: Option<&[String]>) -> Result<Vec<Entry>> {
     let mut entries: Vec<Entry> = match set.ends_with(".toml") {
         true => load_catalogue(Path::new(set))?.entries().to_vec(),
-        false => Catalogue::builtin()?
-            .set(set)?
-            .into_iter()
-            .cloned()
-            .collect(),
+        false => {
+            let builtin = Catalogue::builtin()?;
+            builtin.set(set)?.into_iter().cloned().collect()
+        }
     };
     entries.retain(|entry| is_wanted(&entry.name, names));
     Ok(entries)

@@ -14,18 +14,20 @@ use crate::world::Patch;
 type Has = fn(ClassifierKind) -> bool;
 
 /// Keys that belong to some classifiers, and what those have: where no classifier of a study has it, the key would be silently ignored.
-const OF_SOME: [(&str, Has, &str); 7] = [
-    ("c", ClassifierKind::has_c, A_C),
-    ("choose_c", ClassifierKind::has_c, A_C),
-    ("gamma", ClassifierKind::has_gamma, A_GAMMA),
-    ("choose_gamma", ClassifierKind::has_gamma, A_GAMMA),
+const OF_SOME: [(&[&str], Has, &str); 5] = [
+    (&["c", "choose_c"], ClassifierKind::has_c, A_C),
     (
-        "n_neighbours",
-        |kind| kind.about().has_neighbours,
+        &["gamma", "choose_gamma"],
+        ClassifierKind::has_gamma,
+        A_GAMMA,
+    ),
+    (
+        &["n_neighbours"],
+        |of| of.about().has_neighbours,
         NEIGHBOURS,
     ),
-    ("n_trees", |kind| kind.about().has_trees, TREES),
-    ("max_depth", |kind| kind.about().has_depth, A_DEPTH),
+    (&["n_trees"], |of| of.about().has_trees, TREES),
+    (&["max_depth"], |of| of.about().has_depth, A_DEPTH),
 ];
 const A_C: &str = "a C (an SVM or logistic regression)";
 const A_GAMMA: &str = "a γ (an RBF or polynomial SVM)";
@@ -76,9 +78,10 @@ impl Check<'_> {
                 return Err(self.error("recognition", both, "one of them"));
             }
         }
-        for (key, has_it, what) in OF_SOME {
+        for (keys, has_it, what) in OF_SOME {
             let mut kinds = recognition.classifier.values().into_iter();
-            if given.contains_key(key) && !kinds.any(has_it) {
+            let key = keys.iter().find(|key| given.contains_key(**key));
+            if let (Some(key), false) = (key, kinds.any(has_it)) {
                 let key = format!("recognition.{key}");
                 let given = "given, but no classifier of the study has a use for it";
                 let allowed = format!("a classifier with {what}, or no such key");

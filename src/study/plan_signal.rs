@@ -1,5 +1,6 @@
 //! The checks of `[signal]`, and the conditions that its axes make.
 
+use super::axis::Axis;
 use super::check::{Check, Range};
 use super::plan::{MM, Plan};
 use super::sensor_errors::{Strengths, all_strengths};
@@ -52,14 +53,13 @@ impl Check<'_> {
 
     /// The strengths of sensor errors, and that the press moves while frames are read where one shows only then.
     pub fn sensor_errors(&self, signal: &SignalSpec, touches: &TouchesSpec) -> Result<()> {
-        let values = |strength: &Strength| {
-            let axis = signal.axes.of(strength.key);
-            axis.map_or_else(Vec::new, |axis| axis.values())
-        };
         let range = |strength: &Strength| Range::Of(strength.is_allowed, strength.allowed);
         let ranges = all_strengths().map(|(_, strength)| (strength.key, range(strength)));
         self.keys("signal", signal, ranges)?;
-        let largest = |strength| values(strength).into_iter().fold(0.0, f64::max);
+        let largest = |strength: &Strength| {
+            let axis = signal.axes.of(strength.key).into_iter();
+            axis.flat_map(Axis::values).fold(0.0, f64::max)
+        };
         for error in SENSOR_ERRORS {
             let about = error.about();
             if let [first, second] = about.strengths

@@ -1,5 +1,6 @@
 //! Published accuracies beside ours: which cells a claim is about, and the most accurate of them.
 
+use super::axes::number;
 use super::conditions::{by_condition, column_name, most_accurate, settings_of};
 use super::spec::PublishedSpec;
 use super::table::{Cell, CellScore, Published};
@@ -57,8 +58,7 @@ fn check(claim: &PublishedSpec, cells: &Table) -> Result<()> {
 
 /// A value as a study writes it.
 fn setting(written: &toml::Value) -> Value {
-    let number = written.as_integer().map(|integer| integer as f64);
-    match (number.or(written.as_float()), written.as_str()) {
+    match (number(written), written.as_str()) {
         (Some(number), _) => Value::Number(number),
         (_, Some(word)) => Value::Word(word.to_owned()),
         _ => Value::Word(written.to_string()),

@@ -57,10 +57,8 @@ pub fn sample_frames(plan: &Plan, sweep: &Sweep, touched: &[TouchedObject]) -> R
         level => format!("noise of {}", plan.describe_noise(level)),
     };
     let each_caption = format!("One touch each on {array}, {noise}");
-    let each = read(plan, group, (touched, before))?
-        .into_iter()
-        .enumerate();
-    let each: Vec<_> = each.map(|(label, frame)| (name(label), frame)).collect();
+    let each = read(plan, group, (touched, before))?;
+    let each: Vec<_> = (0..names.len()).map(name).zip(each).collect();
     let groups = imperfect_groups(plan, sweep, group.array);
     let (frames, caption) = match chosen.first() {
         Some(&first) if !groups.is_empty() => {
@@ -123,11 +121,11 @@ fn read(
         speed: plan.speed,
     };
     let (values, _) = measure(reading, &frames, &touches)?;
-    let frame = |row: ArrayView1<f64>| Array2::from_shape_vec(shape, row.to_vec());
-    let frames = values.outer_iter().map(frame);
-    Ok(frames
-        .map(|frame| frame.expect("a value a taxel"))
-        .collect())
+    let frame = |row: ArrayView1<f64>| {
+        let frame = Array2::from_shape_vec(shape, row.to_vec());
+        frame.expect("a value a taxel")
+    };
+    Ok(values.outer_iter().map(frame).collect())
 }
 
 /// The signal's steps but for smoothing, which hides what it is there to hide.

@@ -29,18 +29,16 @@ pub fn draw_touches(
     placement: &Placement,
     seed: &Seed,
 ) -> Result<Vec<TouchedObject>> {
-    objects
-        .into_par_iter()
-        .map(|object| {
-            let rests = placement.rest.of(&object.model);
-            let touches = touches(placement, &rests, &touch_stream(seed, &object))?;
-            Ok(TouchedObject {
-                object,
-                rests,
-                touches,
-            })
+    let touched = objects.into_par_iter().map(|object| {
+        let rests = placement.rest.of(&object.model);
+        let touches = touches(placement, &rests, &touch_stream(seed, &object))?;
+        Ok(TouchedObject {
+            object,
+            rests,
+            touches,
         })
-        .collect()
+    });
+    touched.collect()
 }
 
 /// The label of every touch of some classes.

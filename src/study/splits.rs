@@ -17,25 +17,19 @@ pub fn draw_split(
     trial: usize,
 ) -> Result<Split> {
     let trial = plan.spec.split_of(trial);
+    let labels = labels.view();
+    let recognition = &plan.spec.recognition;
+    let fraction = recognition.test_share();
+    let n_folds = recognition.folds.unwrap_or(1);
     let seed = Seed::new(plan.spec.seed).named("split");
-    match plan.spec.recognition.folds {
-        None => {
-            let fraction = plan.spec.recognition.test_share();
-            let seed = seed.numbered(trial as u64);
-            match keys {
-                None => stratified_hold_out(labels.view(), fraction, &seed),
-                Some(keys) => group_hold_out(labels.view(), keys.view(), fraction, &seed),
-            }
-        }
-        Some(k) => {
-            let seed = seed.numbered((trial / k) as u64);
-            let mut folds = match keys {
-                None => stratified_k_fold(labels.view(), k, &seed)?,
-                Some(keys) => group_k_fold(labels.view(), keys.view(), k, &seed)?,
-            };
-            Ok(folds.swap_remove(trial % k))
-        }
-    }
+    let seed = seed.numbered((trial / n_folds) as u64);
+    let mut folds = match (recognition.folds, keys) {
+        (None, None) => return stratified_hold_out(labels, fraction, &seed),
+        (None, Some(keys)) => return group_hold_out(labels, keys.view(), fraction, &seed),
+        (Some(k), None) => stratified_k_fold(labels, k, &seed)?,
+        (Some(k), Some(keys)) => group_k_fold(labels, keys.view(), k, &seed)?,
+    };
+    Ok(folds.swap_remove(trial % n_folds))
 }
 
 /// The training-touches axis: what is asked for, or all that the smallest training split has for every object. Every object has test touches

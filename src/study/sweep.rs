@@ -119,9 +119,9 @@ impl Sweep {
         let together = plan.keep_together.as_ref();
         let keys = together.map(|together| touched.group_keys(together));
         let keys = keys.transpose()?;
-        let splits = (0..plan.spec.trials)
-            .map(|trial| draw_split(plan, &labels, keys.as_ref(), trial))
-            .collect::<Result<Vec<_>>>()?;
+        let split = |trial| draw_split(plan, &labels, keys.as_ref(), trial);
+        let splits = (0..plan.spec.trials).map(split);
+        let splits = splits.collect::<Result<Vec<_>>>()?;
         let train_touches = train_touches(plan, &splits, &labels)?;
         let mut sweep = Self {
             groups: Vec::new(),

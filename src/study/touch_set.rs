@@ -131,14 +131,13 @@ impl TouchSet for Vec<TouchedObject> {
         let row = |name: &str, value: String| (name.to_owned(), value);
         let objects = format!("{}: {}", names.len(), names.join(", "));
         let mut rows = vec![row("Objects", objects)];
-        let models = || self.iter().map(|t| &t.object.model);
-        let spheres: Vec<usize> = models().map(Model::n_spheres).collect();
-        let triangles: Vec<usize> = models().map(Model::n_triangles).collect();
-        for (name, counts) in [
-            ("Spheres an object", spheres),
-            ("Triangles an object", triangles),
-        ] {
-            let counts = || counts.iter().filter(|&&n| n > 0);
+        let counted: [(&str, fn(&Model) -> usize); 2] = [
+            ("Spheres an object", Model::n_spheres),
+            ("Triangles an object", Model::n_triangles),
+        ];
+        for (name, count) in counted {
+            let counts = || self.iter().map(|t| count(&t.object.model));
+            let counts = || counts().filter(|&n| n > 0);
             if let (Some(least), Some(most)) = (counts().min(), counts().max()) {
                 rows.push(row(name, format!("{least} to {most}")));
             }

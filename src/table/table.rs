@@ -94,15 +94,6 @@ impl Value {
 }
 
 impl Data {
-    /// Of texts as files have them, row by row; empty ones are absent.
-    fn of_texts(scale: Scale, texts: impl IntoIterator<Item = String>) -> Self {
-        let mut maker = Maker::new(scale);
-        for text in texts {
-            maker.push(&text);
-        }
-        maker.data
-    }
-
     /// Whether it has several values in some rows.
     pub fn varies(&self, rows: impl IntoIterator<Item = usize>) -> bool {
         let mut keys = rows.into_iter().map(|row| self.key(row));
@@ -200,8 +191,11 @@ impl Table {
             let value = data.value(*rows.get(&wanted.key(row))?)?;
             Some(value.to_string())
         };
-        let texts = (0..self.n_rows).map(|row| text(row).unwrap_or_default());
-        Some((column.clone(), Data::of_texts(column.scale, texts)))
+        let mut maker = Maker::new(column.scale);
+        for row in 0..self.n_rows {
+            maker.push(&text(row).unwrap_or_default());
+        }
+        Some((column.clone(), maker.data))
     }
 
     /// Its rows, typed; those that are not of the type are left out. Of a row of two structs each is read alone.
