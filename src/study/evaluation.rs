@@ -108,7 +108,8 @@ impl Trial<'_> {
         let predict_s = answered.answer_s + start.elapsed().as_secs_f64();
         let truth = rows.groups.iter().map(|group| truth[group[0]]).collect();
         let truth: Array1<usize> = truth;
-        let matrix = ConfusionMatrix::new(truth.view(), predicted.view(), self.n_objects())?;
+        let n_objects = self.sweep.labels.iter().max().map_or(0, |last| last + 1);
+        let matrix = ConfusionMatrix::new(truth.view(), predicted.view(), n_objects)?;
         let spec = &self.plan.spec;
         // Only where they say more than the trial's number.
         let is_crossed = spec.projections_per_split.is_some();
@@ -142,10 +143,6 @@ impl Trial<'_> {
                 .map(|((object, predicted), &count)| (object, predicted, count))
                 .collect(),
         })
-    }
-
-    fn n_objects(&self) -> usize {
-        self.sweep.labels.iter().max().map_or(0, |last| last + 1)
     }
 
     fn training(&self, cell: &Cell, split: &Split) -> Result<Training<'_>> {

@@ -131,7 +131,8 @@ impl TouchSet for Vec<TouchedObject> {
         let row = |name: &str, value: String| (name.to_owned(), value);
         let objects = format!("{}: {}", names.len(), names.join(", "));
         let mut rows = vec![row("Objects", objects)];
-        let counted: [(&str, fn(&Model) -> usize); 2] = [
+        type Count = fn(&Model) -> usize;
+        let counted: [(&str, Count); 2] = [
             ("Spheres an object", Model::n_spheres),
             ("Triangles an object", Model::n_triangles),
         ];

@@ -212,13 +212,11 @@ impl Table {
         csv: Vec<u8>,
     ) -> Result<Self> {
         let mut reader = csv::Reader::from_reader(&csv[..]);
-        let bad = |line, given: String, allowed: String| {
-            Error::input(csv_place(path, line), given, allowed)
+        let bad = |at: Option<&csv::Position>, given: String, allowed: &str| {
+            let place = csv_place(path, at.map(csv::Position::line));
+            Error::input(place, given, allowed)
         };
-        let broken = |e: csv::Error| {
-            let line = e.position().map(csv::Position::line);
-            bad(line, e.to_string(), "a row of the table".to_owned())
-        };
+        let broken = |e: csv::Error| bad(e.position(), e.to_string(), "a row of the table");
         let header = reader.headers().map_err(broken)?.clone();
         let mut columns = Vec::with_capacity(header.len());
         let mut all = known.into_iter();
@@ -228,17 +226,15 @@ impl Table {
                 Some(column) if column.name == name => columns.push(column),
                 other => {
                     let given = format!("column {name:?}");
-                    let allowed = match other {
-                        Some(column) => format!("column {:?}", column.name),
-                        None => "no such column".to_owned(),
-                    };
-                    return Err(bad(Some(1), given, allowed));
+                    let wanted = other.map(|column| format!("column {:?}", column.name));
+                    let allowed = wanted.as_deref().unwrap_or("no such column");
+                    return Err(bad(header.position(), given, allowed));
                 }
             }
         }
         if let Some(missing) = all.find(|column| !column.is_optional) {
             let given = format!("no column {:?}", missing.name);
-            return Err(bad(Some(1), given, "all columns of the table".to_owned()));
+            return Err(bad(header.position(), given, "all columns of the table"));
         }
         let mut makers: Vec<Maker> = columns.iter().map(|c| Maker::new(c.scale)).collect();
         let mut n_rows = 0;
@@ -247,9 +243,8 @@ impl Table {
             n_rows += 1;
             for ((maker, column), text) in makers.iter_mut().zip(&columns).zip(&record) {
                 if !maker.push(text) {
-                    let line = record.position().map(csv::Position::line);
                     let given = format!("{text:?} in column {:?}", column.name);
-                    return Err(bad(line, given, "a number, or nothing".to_owned()));
+                    return Err(bad(record.position(), given, "a number, or nothing"));
                 }
             }
         }
