@@ -55,8 +55,15 @@ pub struct AxisValues {
 impl AxisValues {
     /// Of a combination, in tables whose columns are these.
     pub fn new(number: usize, columns: &[Column], values: &[toml::Value]) -> Self {
+        use toml::Value::{Boolean, Float, Integer, String};
         let values = columns.iter().zip(values);
-        let values = values.map(|(column, value)| AxisValue::new(column, value));
+        let values = values.map(|(column, value)| AxisValue {
+            column: column.clone(),
+            value: match value {
+                Integer(_) | Float(_) | Boolean(_) | String(_) => value.clone(),
+                other => other.to_string().into(),
+            },
+        });
         Self {
             number,
             values: values.collect(),
@@ -73,18 +80,6 @@ pub struct AxisValue {
     pub value: toml::Value,
 }
 
-impl AxisValue {
-    fn new(column: &Column, value: &toml::Value) -> Self {
-        use toml::Value::{Boolean, Float, Integer, String};
-        let value = match value {
-            Integer(_) | Float(_) | Boolean(_) | String(_) => value.clone(),
-            other => other.to_string().into(),
-        };
-        let column = column.clone();
-        Self { column, value }
-    }
-}
-
 /// What a table has at a path of keys.
 pub fn value_at<'t>(table: &'t toml::Table, path: &str) -> Option<&'t toml::Value> {
     let mut names = path.split('.');
@@ -92,23 +87,31 @@ pub fn value_at<'t>(table: &'t toml::Table, path: &str) -> Option<&'t toml::Valu
     names.try_fold(first, |value, name| value.get(name))
 }
 
+/// The table in which the last key of a path stands, made with those on the way where there is none, and that key; none through something
+/// that is no table.
+fn table_at<'t, 'k>(
+    table: &'t mut toml::Table,
+    path: &'k str,
+) -> Option<(&'t mut toml::Table, &'k str)> {
+    let Some((first, rest)) = path.split_once('.') else {
+        return Some((table, path));
+    };
+    let inner = table.entry(first);
+    let inner = inner.or_insert_with(|| toml::Table::new().into());
+    table_at(inner.as_table_mut()?, rest)
+}
+
 /// A table with a value at a path of keys, in place of what was there; tables on the way are made.
 ///
 /// # Errors
 /// A path without a key, or through something that is no table.
 pub fn with_value(table: &toml::Table, key: &str, value: toml::Value) -> Result<toml::Table> {
-    fn put(table: &mut toml::Table, key: &str, value: toml::Value) -> Option<()> {
-        if let Some((first, rest)) = key.split_once('.') {
-            let inner = table.entry(first);
-            let inner = inner.or_insert_with(|| toml::Table::new().into());
-            return put(inner.as_table_mut()?, rest, value);
-        }
-        table.insert(key.to_owned(), value);
-        Some(())
-    }
     let mut changed = table.clone();
-    match put(&mut changed, key, value) {
-        Some(()) if !key.split('.').any(str::is_empty) => Ok(changed),
+    match table_at(&mut changed, key) {
+        Some((inner, last)) if !key.split('.').any(str::is_empty) => {
+            inner.insert(last.to_owned(), value);
+            Ok(changed)
+        }
         _ => {
             let allowed = "names of tables and of a key, with a point between them: skin.stroke_mm";
             Err(Error::input("key", format!("{key:?}"), allowed))
@@ -205,17 +208,10 @@ fn insert<'i>(
 ) -> Option<()> {
     let name = |name: &str| Spanned::new(start..start, Cow::Owned(name.to_owned()));
     let Some((first, rest)) = key.split_once('.') else {
-        if table.contains_key(key) {
-            return None;
-        }
-        table.insert(name(key), value);
-        return Some(());
+        return table.insert(name(key), value).is_none().then_some(());
     };
-    if !table.contains_key(first) {
-        let empty = Spanned::new(start..start, DeValue::Table(DeTable::new()));
-        table.insert(name(first), empty);
-    }
-    match table.get_mut(first)?.get_mut() {
+    let empty = || Spanned::new(start..start, DeValue::Table(DeTable::new()));
+    match table.entry(name(first)).or_insert_with(empty).get_mut() {
         DeValue::Table(inner) => insert(inner, rest, (start, value)),
         _ => None,
     }
@@ -443,7 +439,9 @@ pub fn to_toml<S: Serialize>(study: &S, axes: &StudyAxes) -> String {
     let mut table = toml::Table::try_from(study).expect(HAS_FORM);
     let mut lines = "\n[axes]\n".to_owned();
     for StudyAxis { key, values, .. } in &axes.0 {
-        remove(&mut table, key);
+        if let Some((inner, last)) = table_at(&mut table, key) {
+            inner.remove(last);
+        }
         let values = toml::Value::Array(values.clone());
         lines.push_str(&format!("{:?} = {values}\n", key));
     }
@@ -454,19 +452,6 @@ pub fn to_toml<S: Serialize>(study: &S, axes: &StudyAxes) -> String {
 pub(crate) fn is_at(key: &str, name: &str) -> bool {
     let rest = key.strip_prefix(name);
     rest.is_some_and(|rest| rest.is_empty() || rest.starts_with('.'))
-}
-
-fn remove(table: &mut toml::Table, key: &str) {
-    match key.split_once('.') {
-        None => {
-            table.remove(key);
-        }
-        Some((first, rest)) => {
-            if let Some(toml::Value::Table(inner)) = table.get_mut(first) {
-                remove(inner, rest);
-            }
-        }
-    }
 }
 
 #[cfg(test)]

@@ -88,16 +88,8 @@ impl Serialize for Cell {
                 }
             )*};
         }
-        put!(
-            cell,
-            pitch_mm,
-            nx,
-            ny,
-            size_mm,
-            noise_std,
-            noise_unit,
-            smoothing_mm
-        );
+        put!(cell, pitch_mm, nx, ny, size_mm);
+        put!(noise_std, noise_unit, smoothing_mm);
         for (_, strength, value) in self.strengths.given() {
             match strength.is_whole {
                 true => row.serialize_field(strength.key, &(value as u64))?,

@@ -22,10 +22,8 @@ pub fn family_name(plan: &Plan, family: &[Cell]) -> String {
     let settings = settings(plan, &family[0]);
     let differ = family.iter().map(|cell| (cell.c, cell.fused_touches));
     let differ: Vec<_> = differ.collect();
-    short_hash(
-        format!("{settings:?} {steps:?} {path:?} {differ:?}"),
-        DIGITS,
-    )
+    let content = format!("{settings:?} {steps:?} {path:?} {differ:?}");
+    short_hash(content, DIGITS)
 }
 
 /// A cell without its number, and with all that is left out said: an axis that a study does not have is one whose value does nothing.
@@ -59,13 +57,8 @@ fn active_steps(plan: &Plan, cell: &Cell) -> Vec<StepSpec> {
         StepSpec::Smoothing => cell.smoothing_mm != 0.0,
         StepSpec::Error(error) => cell.strengths.present().any(|(own, ..)| own == *error),
     };
-    plan.spec
-        .signal
-        .steps
-        .iter()
-        .filter(is_active)
-        .copied()
-        .collect()
+    let steps = plan.spec.signal.steps.iter();
+    steps.filter(is_active).copied().collect()
 }
 
 /// The C's of which each is solved from where the last one ended: the last digits of a solution depend on them all. None where each fit

@@ -7,7 +7,7 @@ use super::plan_scene::MOST_SIDE;
 use crate::error::{Error, Result};
 use crate::world::MOST_TOUCHES;
 use serde::Serialize;
-use std::fmt;
+use std::borrow::Cow;
 
 pub fn positive(value: f64) -> bool {
     value.is_finite() && value > 0.0
@@ -50,34 +50,24 @@ pub enum Range {
 }
 
 impl Range {
-    fn has(self, value: f64) -> bool {
-        match self {
-            Self::Positive => positive(value),
-            Self::NotNegative => not_negative(value),
-            Self::Finite => value.is_finite(),
-            Self::Fraction => (0.0..=1.0).contains(&value),
-            Self::Part => value > 0.0 && value < 1.0,
-            Self::AtLeastOne => value.is_finite() && value >= 1.0,
-            Self::Count(least, most) => (least as f64..=most as f64).contains(&value),
-            Self::Of(is_allowed, _) => is_allowed(value),
-            Self::Any => true,
-        }
-    }
-}
-
-impl fmt::Display for Range {
-    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        match self {
-            Self::Positive => write!(f, "a positive number"),
-            Self::NotNegative => write!(f, "zero or a positive number"),
-            Self::Finite => write!(f, "a finite number"),
-            Self::Fraction => write!(f, "a fraction, 0 to 1"),
-            Self::Part => write!(f, "between 0 and 1"),
-            Self::AtLeastOne => write!(f, "a number of at least 1"),
-            Self::Count(least, most) => write!(f, "at least {least} and at most {most}"),
-            Self::Of(_, words) => write!(f, "{words}"),
-            Self::Any => write!(f, "any value"),
-        }
+    /// Whether a number is allowed, and which are, in words.
+    fn allows(self, value: f64) -> (bool, Cow<'static, str>) {
+        let (is_allowed, words) = match self {
+            Self::Positive => (positive(value), "a positive number"),
+            Self::NotNegative => (not_negative(value), "zero or a positive number"),
+            Self::Finite => (value.is_finite(), "a finite number"),
+            Self::Fraction => ((0.0..=1.0).contains(&value), "a fraction, 0 to 1"),
+            Self::Part => (value > 0.0 && value < 1.0, "between 0 and 1"),
+            Self::AtLeastOne => (value.is_finite() && value >= 1.0, "a number of at least 1"),
+            Self::Count(least, most) => {
+                let is_allowed = (least as f64..=most as f64).contains(&value);
+                let words = format!("at least {least} and at most {most}");
+                return (is_allowed, words.into());
+            }
+            Self::Of(is_allowed, words) => (is_allowed(value), words),
+            Self::Any => (true, "any value"),
+        };
+        (is_allowed, words.into())
     }
 }
 
@@ -185,8 +175,10 @@ impl Check<'_> {
                 }
                 true => self.list(path, numbers.clone()).map(drop)?,
             }
-            if let Some(number) = numbers.into_iter().find(|&number| !range.has(number)) {
-                return Err(self.error(path, number, range));
+            for number in numbers {
+                if let (false, allowed) = range.allows(number) {
+                    return Err(self.error(path, number, allowed));
+                }
             }
         }
         Ok(table)

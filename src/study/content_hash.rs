@@ -1,7 +1,6 @@
 //! SHA-256 of what things are made of, to name them by their content.
 
 use crate::mesh::TriangleMesh;
-use crate::objects::Model;
 use sha2::{Digest, Sha256};
 
 /// The hash of bytes or a text, in 64 hexadecimal digits.
@@ -30,16 +29,4 @@ pub fn bytes_of_mesh(mesh: &TriangleMesh) -> Vec<u8> {
     let corners = mesh.triangles().iter().flatten();
     bytes.extend(corners.flat_map(|corner| corner.to_le_bytes()));
     bytes
-}
-
-/// What taxels touch: centres and radii of spheres, metres, or a mesh.
-pub fn bytes_of_model(model: &Model) -> Vec<u8> {
-    match model {
-        Model::Spheres(union) => {
-            let spheres = union.spheres().iter();
-            let numbers = spheres.flat_map(|s| [s.center.x, s.center.y, s.center.z, s.radius]);
-            [b"spheres".to_vec(), bytes_of_numbers(numbers)].concat()
-        }
-        Model::Mesh(mesh) => [b"mesh".to_vec(), bytes_of_mesh(mesh.mesh())].concat(),
-    }
 }

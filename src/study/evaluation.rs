@@ -108,10 +108,13 @@ impl Trial<'_> {
         let predict_s = answered.answer_s + start.elapsed().as_secs_f64();
         let truth = rows.groups.iter().map(|group| truth[group[0]]).collect();
         let truth: Array1<usize> = truth;
-        let matrix = ConfusionMatrix::new(truth.view(), predicted.view(), self.n_objects())?;
+        let n_objects = self.sweep.labels.iter().max().map_or(0, |last| last + 1);
+        let matrix = ConfusionMatrix::new(truth.view(), predicted.view(), n_objects)?;
         let spec = &self.plan.spec;
         // Only where they say more than the trial's number.
         let is_crossed = spec.projections_per_split.is_some();
+        let counts = matrix.counts.indexed_iter();
+        let counts = counts.filter(|(_, count)| **count > 0);
         let interval = Interval::wilson(matrix.n_correct(), matrix.n_rows(), CONFIDENCE)?;
         Ok(Evaluation {
             score: TrialScore {
@@ -136,24 +139,16 @@ impl Trial<'_> {
                 predict_s,
                 predict_us_per_touch: 1e6 * predict_s / answered.test.targets.len() as f64,
             },
-            confusion: matrix
-                .counts
-                .indexed_iter()
-                .filter(|(_, count)| **count > 0)
+            confusion: counts
                 .map(|((object, predicted), &count)| (object, predicted, count))
                 .collect(),
         })
     }
 
-    fn n_objects(&self) -> usize {
-        self.sweep.labels.iter().max().map_or(0, |last| last + 1)
-    }
-
     fn training(&self, cell: &Cell, split: &Split) -> Result<Training<'_>> {
         let keys = self.sweep.group_keys.as_ref();
-        let labels = self
-            .sweep
-            .learned_labels(self.plan, (cell, self.number), split)?;
+        let of = (cell, self.number);
+        let labels = self.sweep.learned_labels(self.plan, of, split)?;
         Ok(Training {
             recognition: &self.plan.spec.recognition,
             kind: cell.classifier,

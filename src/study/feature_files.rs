@@ -69,11 +69,10 @@ pub fn cell_features(
     let (group, cell) = find(sweep, cell)?;
     let split = sweep.split(plan, cell, trial)?;
     // As the run does it: nested measurements are the leading ones of the largest m.
-    let n_projected = group
-        .projected()
-        .into_iter()
-        .find(|&m| group.ensemble.is_prefix_nested() || m == cell.measurements)
-        .unwrap_or(cell.measurements);
+    let n_projected = match group.ensemble.is_prefix_nested() {
+        true => group.projected()[0],
+        false => cell.measurements,
+    };
     let of = (touched, group, n_projected);
     let measured = measured(plan, of, (trial, &split), ("touch", progress))?;
     let all: Vec<usize> = (0..sweep.labels.len()).collect();
@@ -155,11 +154,9 @@ pub fn read_features(folder: &Path) -> Result<FeatureSet> {
         test: read_rows(&file("test.npy"), n_rows)?,
     };
     check_split(folder, &split, n_rows)?;
-    let data = dataset(
-        features.as_standard_layout().into_owned(),
-        Array1::from(labels),
-    )
-    .map_err(|error| error.under(format!("{}: ", folder.display())))?;
+    let features = features.as_standard_layout().into_owned();
+    let data = dataset(features, Array1::from(labels));
+    let data = data.map_err(|error| error.under(format!("{}: ", folder.display())))?;
     Ok(FeatureSet { data, split })
 }
 
@@ -197,11 +194,8 @@ fn check_split(folder: &Path, split: &Split, n_rows: usize) -> Result<()> {
                     true => format!("row {row} twice"),
                     false => format!("row {row}, which {earlier} names too"),
                 };
-                return Err(Error::input(
-                    folder.join(file).display(),
-                    given,
-                    "every row at most once, to train on or to test",
-                ));
+                let allowed = "every row at most once, to train on or to test";
+                return Err(Error::input(folder.join(file).display(), given, allowed));
             }
         }
     }
@@ -210,16 +204,11 @@ fn check_split(folder: &Path, split: &Split, n_rows: usize) -> Result<()> {
 
 /// A cell by its number, and its group.
 pub(super) fn find(sweep: &Sweep, number: usize) -> Result<(&Group, &Cell)> {
-    sweep
-        .groups
-        .iter()
-        .flat_map(|group| group.cells.iter().map(move |cell| (group, cell)))
-        .find(|(_, cell)| cell.cell == number)
-        .ok_or_else(|| {
-            Error::input(
-                "cell",
-                number,
-                format!("0 to {}, the cells of the study", sweep.n_cells() - 1),
-            )
-        })
+    let groups = sweep.groups.iter();
+    let mut cells = groups.flat_map(|group| group.cells.iter().map(move |cell| (group, cell)));
+    let found = cells.find(|(_, cell)| cell.cell == number);
+    found.ok_or_else(|| {
+        let allowed = format!("0 to {}, the cells of the study", sweep.n_cells() - 1);
+        Error::input("cell", number, allowed)
+    })
 }

@@ -37,10 +37,8 @@ pub fn human_samples(plan: &Plan, touches: &HumanTouches) -> Result<Samples> {
             record_touch(&skin, touch, interval, rows.view_mut(), room);
             rows
         });
-        let recorded: Vec<_> = recorded.collect();
-        let firmest = recorded
-            .into_iter()
-            .max_by(|a, b| a.sum().total_cmp(&b.sum()));
+        let recorded = recorded.collect::<Vec<_>>().into_iter();
+        let firmest = recorded.max_by(|a, b| a.sum().total_cmp(&b.sum()));
         let Some(rows) = firmest else { continue };
         let is_touched = |frame: &usize| rows.row(*frame).iter().any(|&d| d > 0.0);
         let touched: Vec<usize> = (0..rows.nrows()).filter(is_touched).collect();
@@ -49,11 +47,8 @@ pub fn human_samples(plan: &Plan, touches: &HumanTouches) -> Result<Samples> {
         };
         for part in 0..N_FRAMES {
             let frame = first + (part * (last - first) + N_FRAMES / 2) / (N_FRAMES - 1);
-            let name = format!(
-                "{} {:.2} s",
-                touches.spec.kinds[label].name(),
-                (frame - first) as f64 * interval
-            );
+            let seconds = (frame - first) as f64 * interval;
+            let name = format!("{} {seconds:.2} s", touches.spec.kinds[label].name());
             let row = rows.row(frame).mapv(f64::from);
             let frame = row.into_shape_with_order((grid.ny, grid.nx));
             let frame = frame.expect("one value a taxel");

@@ -49,25 +49,22 @@ impl HumanTouches {
         let kinds = spec.kinds.iter();
         let all = kinds.flat_map(|&kind| (0..spec.per_kind as u64).map(move |k| (kind, k)));
         let all: Vec<_> = all.collect();
-        let touches = all
-            .into_par_iter()
-            .map(|(kind, number)| {
-                let seed = seed.named(kind.name()).numbered(number);
-                let ranges = TouchRanges::usual(kind);
-                let touch = HumanTouch::draw(kind, &ranges, spec.surface(), &seed)?;
-                let spare = spec.duration() - touch.duration();
-                if spare < 0.0 {
-                    let given = format!("{} s", spec.duration());
-                    let allowed = format!("more: a {} of {:.2} s", kind.name(), touch.duration());
-                    return Err(Error::input("key human_touch.duration_s", given, allowed));
-                }
-                let onset = seed.named("onset").rng().gen_range(0.0..=spare);
-                Ok(RecordedTouch { touch, onset })
-            })
-            .collect::<Result<_>>()?;
+        let touches = all.into_par_iter().map(|(kind, number)| {
+            let seed = seed.named(kind.name()).numbered(number);
+            let ranges = TouchRanges::usual(kind);
+            let touch = HumanTouch::draw(kind, &ranges, spec.surface(), &seed)?;
+            let spare = spec.duration() - touch.duration();
+            if spare < 0.0 {
+                let given = format!("{} s", spec.duration());
+                let allowed = format!("more: a {} of {:.2} s", kind.name(), touch.duration());
+                return Err(Error::input("key human_touch.duration_s", given, allowed));
+            }
+            let onset = seed.named("onset").rng().gen_range(0.0..=spare);
+            Ok(RecordedTouch { touch, onset })
+        });
         Ok(Self {
             spec: spec.clone(),
-            touches,
+            touches: touches.collect::<Result<_>>()?,
         })
     }
 
@@ -117,10 +114,8 @@ impl TouchSet for HumanTouches {
         place: &FramePlace,
         progress: &dyn Progress,
     ) -> Result<Frames> {
-        let skin = self
-            .spec
-            .skin(patch)
-            .expect("the plan has checked that it fits");
+        let skin = self.spec.skin(patch);
+        let skin = skin.expect("the plan has checked that it fits");
         let interval = self.spec.interval();
         let mut frames = Frames::new((patch.grid.n_taxels(), n_frames), place)?;
         let record = |touch: &_, workspace: &mut _, rows: ArrayViewMut2<f32>| {
@@ -150,16 +145,13 @@ impl TouchSet for HumanTouches {
         let row = |name: &str, value: String| (name.to_owned(), value);
         let names = self.class_names();
         let hz = 1.0 / self.spec.interval();
+        let kinds = format!("{}: {}", names.len(), names.join(", "));
+        let frames = format!("{} at {hz:.0} Hz", self.spec.n_frames());
+        let arm = format!("{:.0} mm across", 2e3 * self.spec.surface());
         vec![
-            row(
-                "Kinds of touch",
-                format!("{}: {}", names.len(), names.join(", ")),
-            ),
-            row(
-                "Frames a touch",
-                format!("{} at {hz:.0} Hz", self.spec.n_frames()),
-            ),
-            row("Arm", format!("{:.0} mm across", 2e3 * self.spec.surface())),
+            row("Kinds of touch", kinds),
+            row("Frames a touch", frames),
+            row("Arm", arm),
         ]
     }
 }

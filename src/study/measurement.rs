@@ -1,6 +1,6 @@
 //! Frames → signal → measurements, for one condition of the signal, ensemble and trial.
 
-use super::frames::{Frames, KeptFrames};
+use super::frames::Frames;
 use super::plan::Plan;
 use super::sensor_errors::{TestedOn, skin};
 use super::spec::StepSpec;
@@ -103,17 +103,15 @@ pub fn touches_to_read<'a>(
     let mut touches = Vec::new();
     for (name, n_touches) in classes {
         let class = seed.named(name);
-        touches.extend(
-            (touches.len()..)
-                .zip(0..n_touches as u64)
-                .map(|(number, touch)| TouchToRead {
-                    number,
-                    seed: class.numbered(touch),
-                    interval: None,
-                    before: None,
-                    skin: 0,
-                }),
-        );
+        for touch in 0..n_touches as u64 {
+            touches.push(TouchToRead {
+                number: touches.len(),
+                seed: class.numbered(touch),
+                interval: None,
+                before: None,
+                skin: 0,
+            });
+        }
     }
     touches
 }
@@ -133,18 +131,13 @@ pub fn measure_group(
     let patch = &plan.arrays[group.array];
     let seed = Seed::new(plan.spec.seed);
     let drawn = plan.spec.projection_of(trial) as u64;
+    let drawn = seed.named("projection").numbered(drawn);
     let trial = trial as u64;
-    let projection = Projection::new(
-        group.ensemble,
-        (patch.grid.ny, patch.grid.nx),
-        n_measurements,
-        &seed.named("projection").numbered(drawn),
-    )?;
+    let shape = (patch.grid.ny, patch.grid.nx);
+    let projection = Projection::new(group.ensemble, shape, n_measurements, &drawn)?;
     let skins = skins(plan, group, trial);
-    let chains: Vec<Chain> = skins
-        .iter()
-        .map(|skin| Chain::new(&signal_steps(plan, group, skin), patch))
-        .collect::<Result<_>>()?;
+    let chain = |skin| Chain::new(&signal_steps(plan, group, skin), patch);
+    let chains = skins.iter().map(chain).collect::<Result<Vec<_>>>()?;
     let reading = Reading {
         chains: &chains,
         projection: &projection,
@@ -157,7 +150,7 @@ pub fn measure_group(
     for &touch in &split.test {
         touches[touch].skin = skins.len() - 1;
     }
-    let (values, cpu_s) = measure(reading, (&frames.kept, n_frames), &touches)?;
+    let (values, cpu_s) = measure(reading, frames, &touches)?;
     let ones = Array2::ones((1, patch.grid.n_taxels()));
     Ok(Measurements {
         values,
@@ -194,16 +187,16 @@ fn skins(plan: &Plan, group: &Group, trial: u64) -> Vec<Seed> {
     }
 }
 
-/// Reads touches of F frames of deflection each. With the measurements (n_touches · F) × m come processor-seconds.
+/// Reads touches. With the measurements (n_touches · F) × m come processor-seconds.
 ///
 /// # Errors
 /// Frames that are in a file cannot be read.
 pub fn measure(
     reading: Reading,
-    (frames, n_frames): (&KeptFrames, usize),
+    frames: &Frames,
     touches: &[TouchToRead],
 ) -> Result<(Array2<f64>, f64)> {
-    let n_touches = touches.len();
+    let (n_touches, n_frames) = (touches.len(), frames.facts.n_frames);
     let block = (BLOCK / n_frames.max(1)).max(1);
     let n_measurements = reading.projection.n_measurements();
     let mut values = Array2::zeros((n_touches * n_frames, n_measurements));
@@ -213,7 +206,7 @@ pub fn measure(
         .zip(touches.par_chunks(block))
         .map_init(Working::default, |working, (out, touches)| {
             let start = Instant::now();
-            measure_block(reading, (frames, n_frames), touches, working, out)?;
+            measure_block(reading, frames, touches, working, out)?;
             Ok(start.elapsed().as_secs_f64())
         })
         .collect::<Result<Vec<_>>>()?
@@ -236,12 +229,12 @@ struct Working {
 /// Reads some touches, F frames each.
 fn measure_block(
     reading: Reading,
-    (kept, n_frames): (&KeptFrames, usize),
+    kept: &Frames,
     touches: &[TouchToRead],
     working: &mut Working,
     out: ArrayViewMut2<f64>,
 ) -> Result<()> {
-    let n_taxels = kept.n_taxels();
+    let (n_frames, n_taxels) = (kept.facts.n_frames, kept.n_taxels);
     let n_values = n_frames * n_taxels;
     // Whatever is there of another block is read over.
     working.frames.resize(touches.len() * n_values, 0.0);

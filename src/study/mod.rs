@@ -63,7 +63,7 @@ pub(crate) use conditions::column_name;
 pub(crate) use content_hash::{sha256, short_hash};
 pub use evaluation::CONFIDENCE;
 pub use feature_files::{FeatureSet, cell_features, read_features, write_features};
-pub use frames::{FrameFacts, FramePlace, Frames, KeptFrames};
+pub use frames::{FrameFacts, FramePlace, Frames};
 pub use human_touches::{HumanTouches, RecordedTouch, record_touch};
 pub use npy::{write_integers, write_npy};
 pub use object_files::{
@@ -72,7 +72,7 @@ pub use object_files::{
 };
 pub use packings::{Packed, pack_within, packing_path};
 pub(crate) use plan::MM;
-pub use plan::{Amount, Plan, millimetres};
+pub use plan::{Plan, millimetres};
 pub use plan_signal::Condition;
 pub use pose_groups::KeepTogether;
 pub use samples::{Samples, sample_frames};

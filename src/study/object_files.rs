@@ -202,13 +202,12 @@ pub fn load_named_meshes(folder: &Path, spec: &ObjectsSpec) -> Result<Vec<NamedM
 
 /// The wanted objects of a set, built-in or of a TOML file, as solids.
 pub(crate) fn set_entries(set: &str, names: Option<&[String]>) -> Result<Vec<Entry>> {
-    let mut entries = match set.ends_with(".toml") {
+    let mut entries: Vec<Entry> = match set.ends_with(".toml") {
         true => load_catalogue(Path::new(set))?.entries().to_vec(),
-        false => Catalogue::builtin()?
-            .set(set)?
-            .into_iter()
-            .cloned()
-            .collect(),
+        false => {
+            let builtin = Catalogue::builtin()?;
+            builtin.set(set)?.into_iter().cloned().collect()
+        }
     };
     entries.retain(|entry| is_wanted(&entry.name, names));
     Ok(entries)
@@ -270,11 +269,8 @@ fn check_names<'a>(names: impl Iterator<Item = &'a str>, spec: &ObjectsSpec) -> 
     for name in names {
         if !seen.insert(name) {
             let given = format!("two objects named {name}");
-            return Err(Error::input(
-                key,
-                given,
-                "each name once over all sets and meshes",
-            ));
+            let allowed = "each name once over all sets and meshes";
+            return Err(Error::input(key, given, allowed));
         }
     }
     let mut wanted = spec.names.iter().flatten();

@@ -38,31 +38,10 @@ pub struct Plan {
     pub speed: f64,
     /// What the noise axis is measured in.
     pub noise_unit: NoiseUnit,
-    /// The axis of measurements.
-    pub amounts: Vec<Amount>,
     /// The axis of frames a touch.
     pub frames: Vec<usize>,
     /// What stays on one side of a split.
     pub keep_together: Option<KeepTogether>,
-}
-
-/// How many measurements: absolute, or as a fraction of the taxels.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Amount {
-    /// n / m.
-    Ratio(f64),
-    /// m.
-    Measurements(usize),
-}
-
-impl Amount {
-    /// m on an array of `n_taxels`, at least 1.
-    pub fn measurements(&self, n_taxels: usize) -> usize {
-        match *self {
-            Self::Measurements(m) => m,
-            Self::Ratio(ratio) => ((n_taxels as f64 / ratio).round() as usize).max(1),
-        }
-    }
 }
 
 impl Plan {
@@ -88,7 +67,7 @@ impl Plan {
         check.sensor_errors(&spec.signal, &spec.touches)?;
         check.steps(&spec.signal)?;
         check.tested_on(&spec.signal)?;
-        let amounts = check.amounts(&spec.sensing, &arrays)?;
+        check.sensing(&spec.sensing, &arrays)?;
         let frames = match &spec.human_touch {
             Some(human) => vec![human.n_frames()],
             None => spec.touches.frames.values(),
@@ -103,7 +82,6 @@ impl Plan {
             arrays,
             placement,
             noise_unit,
-            amounts,
             frames,
             spec,
         };
@@ -151,11 +129,9 @@ impl Plan {
             return vec![n_taxels];
         }
         let mut named = HashSet::new();
-        let counts = self
-            .amounts
-            .iter()
-            .map(|amount| amount.measurements(n_taxels));
-        counts.filter(|&m| named.insert(m)).collect()
+        let mut counts = self.spec.sensing.measurements_on(n_taxels);
+        counts.retain(|&m| named.insert(m));
+        counts
     }
 }
 

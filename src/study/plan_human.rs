@@ -85,12 +85,9 @@ impl Check<'_> {
         }
         let (pitch_mm, width_mm) = (millimetres(grid.pitch), width / MM);
         let columns = format!("{} columns at {pitch_mm} mm", grid.nx);
+        let given = format!("{columns}, {width_mm:.1} mm together");
         let around_mm = around.max(0.0) / MM;
         let allowed = format!("at most {around_mm:.1} mm, once around the taxels' rest centres");
-        Err(self.error(
-            "skin",
-            format!("{columns}, {width_mm:.1} mm together"),
-            allowed,
-        ))
+        Err(self.error("skin", given, allowed))
     }
 }

@@ -2,7 +2,7 @@
 
 use super::axis::Axis;
 use super::check::Check;
-use super::plan::{Amount, MM};
+use super::plan::MM;
 use super::pose_groups::KeepTogether;
 use super::spec::{RecognitionSpec, SensingSpec, StudySpec};
 use crate::error::Result;
@@ -14,18 +14,20 @@ use crate::world::Patch;
 type Has = fn(ClassifierKind) -> bool;
 
 /// Keys that belong to some classifiers, and what those have: where no classifier of a study has it, the key would be silently ignored.
-const OF_SOME: [(&str, Has, &str); 7] = [
-    ("c", ClassifierKind::has_c, A_C),
-    ("choose_c", ClassifierKind::has_c, A_C),
-    ("gamma", ClassifierKind::has_gamma, A_GAMMA),
-    ("choose_gamma", ClassifierKind::has_gamma, A_GAMMA),
+const OF_SOME: [(&[&str], Has, &str); 5] = [
+    (&["c", "choose_c"], ClassifierKind::has_c, A_C),
     (
-        "n_neighbours",
-        |kind| kind.about().has_neighbours,
+        &["gamma", "choose_gamma"],
+        ClassifierKind::has_gamma,
+        A_GAMMA,
+    ),
+    (
+        &["n_neighbours"],
+        |of| of.about().has_neighbours,
         NEIGHBOURS,
     ),
-    ("n_trees", |kind| kind.about().has_trees, TREES),
-    ("max_depth", |kind| kind.about().has_depth, A_DEPTH),
+    (&["n_trees"], |of| of.about().has_trees, TREES),
+    (&["max_depth"], |of| of.about().has_depth, A_DEPTH),
 ];
 const A_C: &str = "a C (an SVM or logistic regression)";
 const A_GAMMA: &str = "a γ (an RBF or polynomial SVM)";
@@ -49,31 +51,22 @@ const BESIDE: [(&str, &[&str]); 4] = [
 ];
 
 impl Check<'_> {
-    pub fn amounts(&self, sensing: &SensingSpec, arrays: &[Patch]) -> Result<Vec<Amount>> {
+    /// A ratio or measurements, no more than any array has taxels.
+    pub fn sensing(&self, sensing: &SensingSpec, arrays: &[Patch]) -> Result<()> {
         self.table("sensing", sensing)?;
+        if sensing.ratio.is_some() && sensing.measurements.is_some() {
+            return Err(self.error("sensing", "both ratio and measurements", "one of them"));
+        }
         let ratios = sensing.ratio.iter().flat_map(Axis::values);
+        let ratios = ratios.map(|ratio| ("sensing.ratio", ratio));
         let counts = sensing.measurements.iter().flat_map(Axis::values);
-        let counts = counts.map(Amount::Measurements);
-        let amounts: Vec<Amount> = ratios.map(Amount::Ratio).chain(counts).collect();
-        let key = match (&sensing.ratio, &sensing.measurements) {
-            (Some(_), Some(_)) => {
-                let given = "both ratio and measurements";
-                return Err(self.error("sensing", given, "one of them"));
-            }
-            (None, None) => return Ok(vec![Amount::Ratio(1.0)]),
-            (Some(_), None) => "sensing.ratio",
-            (None, Some(_)) => "sensing.measurements",
-        };
+        let counts = counts.map(|m| ("sensing.measurements", m as f64));
         let smallest = arrays.iter().map(|a| a.grid.n_taxels()).min().unwrap_or(0);
-        let mut asked = amounts.iter().map(|amount| match *amount {
-            Amount::Ratio(ratio) => ratio,
-            Amount::Measurements(m) => m as f64,
-        });
-        if let Some(given) = asked.find(|&asked| asked > smallest as f64) {
+        if let Some((key, given)) = ratios.chain(counts).find(|(_, n)| *n > smallest as f64) {
             let allowed = format!("at most {smallest}, the taxels of the smallest array");
             return Err(self.error(key, given, allowed));
         }
-        Ok(amounts)
+        Ok(())
     }
 
     /// The keys of `[recognition]`: each in its range, none that contradicts another, none that nothing has a use for.
@@ -85,9 +78,10 @@ impl Check<'_> {
                 return Err(self.error("recognition", both, "one of them"));
             }
         }
-        for (key, has_it, what) in OF_SOME {
+        for (keys, has_it, what) in OF_SOME {
             let mut kinds = recognition.classifier.values().into_iter();
-            if given.contains_key(key) && !kinds.any(has_it) {
+            let key = keys.iter().find(|key| given.contains_key(**key));
+            if let (Some(key), false) = (key, kinds.any(has_it)) {
                 let key = format!("recognition.{key}");
                 let given = "given, but no classifier of the study has a use for it";
                 let allowed = format!("a classifier with {what}, or no such key");
@@ -134,6 +128,18 @@ impl Check<'_> {
                 Err(self.error("trials", spec.trials, allowed))
             }
             _ => Ok(()),
+        }
+    }
+}
+
+impl SensingSpec {
+    /// The axis of m on an array of `n_taxels`, each at least 1: all taxels where nothing is asked.
+    pub fn measurements_on(&self, n_taxels: usize) -> Vec<usize> {
+        let of_ratio = |ratio: f64| ((n_taxels as f64 / ratio).round() as usize).max(1);
+        match (&self.ratio, &self.measurements) {
+            (Some(ratios), _) => ratios.values().into_iter().map(of_ratio).collect(),
+            (None, Some(counts)) => counts.values(),
+            (None, None) => vec![n_taxels],
         }
     }
 }

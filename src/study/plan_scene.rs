@@ -62,19 +62,16 @@ impl ObjectsSpec {
 
 impl Check<'_> {
     pub fn objects(&self, objects: &ObjectsSpec) -> Result<()> {
-        self.table("objects", objects)?;
+        let given = self.table("objects", objects)?;
         if objects.meshes.is_some() {
             return Ok(());
         }
-        let of_meshes = [
-            ("objects.model", objects.model.is_some()),
-            ("objects.unit", objects.unit.is_some()),
-            ("objects.close_holes_mm", objects.close_holes_mm.is_some()),
-        ];
-        if let Some((key, _)) = of_meshes.iter().find(|(_, is_given)| *is_given) {
+        let of_meshes = ["model", "unit", "close_holes_mm"];
+        if let Some(key) = of_meshes.iter().find(|key| given.contains_key(**key)) {
+            let key = format!("objects.{key}");
             let allowed =
                 "it only beside meshes = \"FOLDER\": solids are spheres within surface_error_mm";
-            return Err(self.error(key, "given without meshes", allowed));
+            return Err(self.error(&key, "given without meshes", allowed));
         }
         if objects.sets.is_empty() {
             let allowed = "sets = [...] or meshes = \"FOLDER\" (or --objects FOLDER)";
@@ -86,13 +83,12 @@ impl Check<'_> {
     pub fn arrays(&self, skin: &SkinSpec) -> Result<Vec<Patch>> {
         self.table("skin", skin)?;
         let pitches = skin.pitch_mm.values();
+        let refuse = |given| Err(self.error("skin", given, "one of them"));
         let n_sizes = match (&skin.size_mm, &skin.taxels) {
             (Some(sizes), None) => sizes.values().len(),
             (None, Some(counts)) => counts.values().len(),
-            (None, None) => {
-                return Err(self.error("skin", "neither size_mm nor taxels", "one of them"));
-            }
-            _ => return Err(self.error("skin", "both size_mm and taxels", "one of them")),
+            (None, None) => return refuse("neither size_mm nor taxels"),
+            _ => return refuse("both size_mm and taxels"),
         };
         self.configurations(pitches.len() as f64 * n_sizes as f64)?;
         let mut arrays = Vec::new();
@@ -175,14 +171,12 @@ impl Check<'_> {
             self.value(key, value, is_allowed, allowed)?;
         }
         if let SpreadSpec::Range(RangeSpec::Uniform(low, high)) = *spread {
-            let given = format!("uniform from {low} to {high}");
-            return match low < high {
-                true => Ok(Spread::Uniform {
-                    low: low * unit,
-                    high: high * unit,
-                }),
-                false => Err(self.error(key, given, "low below high")),
-            };
+            if low >= high {
+                let given = format!("uniform from {low} to {high}");
+                return Err(self.error(key, given, "low below high"));
+            }
+            let (low, high) = (low * unit, high * unit);
+            return Ok(Spread::Uniform { low, high });
         }
         let values = self.list(key, values)?;
         Ok(Spread::Values(values.iter().map(|v| v * unit).collect()))

@@ -1,5 +1,6 @@
 //! The checks of `[signal]`, and the conditions that its axes make.
 
+use super::axis::Axis;
 use super::check::{Check, Range};
 use super::plan::{MM, Plan};
 use super::sensor_errors::{Strengths, all_strengths};
@@ -30,12 +31,8 @@ impl Check<'_> {
         };
         let key = format!("signal.{name}");
         if let Some((second, ..)) = given.next() {
-            let given = format!("given beside {key}");
-            return Err(self.error(
-                &format!("signal.{second}"),
-                given,
-                "one unit of noise a study",
-            ));
+            let (second, given) = (format!("signal.{second}"), format!("given beside {key}"));
+            return Err(self.error(&second, given, "one unit of noise a study"));
         }
         let place = |wanted| signal.steps.iter().position(|step| *step == wanted);
         let force = place(StepSpec::Force);
@@ -56,14 +53,13 @@ impl Check<'_> {
 
     /// The strengths of sensor errors, and that the press moves while frames are read where one shows only then.
     pub fn sensor_errors(&self, signal: &SignalSpec, touches: &TouchesSpec) -> Result<()> {
-        let values = |strength: &Strength| {
-            let axis = signal.axes.of(strength.key);
-            axis.map_or_else(Vec::new, |axis| axis.values())
-        };
         let range = |strength: &Strength| Range::Of(strength.is_allowed, strength.allowed);
         let ranges = all_strengths().map(|(_, strength)| (strength.key, range(strength)));
         self.keys("signal", signal, ranges)?;
-        let largest = |strength| values(strength).into_iter().fold(0.0, f64::max);
+        let largest = |strength: &Strength| {
+            let axis = signal.axes.of(strength.key).into_iter();
+            axis.flat_map(Axis::values).fold(0.0, f64::max)
+        };
         for error in SENSOR_ERRORS {
             let about = error.about();
             if let [first, second] = about.strengths
@@ -142,10 +138,8 @@ fn key(strength: &Strength) -> String {
 impl SignalSpec {
     /// How many conditions there are.
     pub(super) fn n_conditions(&self) -> f64 {
-        let lengths = self
-            .axes
-            .given()
-            .map(|(.., axis)| axis.values().len() as f64);
+        let axes = self.axes.given();
+        let lengths = axes.map(|(.., axis)| axis.values().len() as f64);
         match self.combine {
             CombineSpec::All => lengths.product(),
             CombineSpec::OneAtATime => 1.0 + lengths.map(|n| n - 1.0).sum::<f64>(),

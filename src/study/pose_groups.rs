@@ -92,11 +92,8 @@ impl KeepTogether {
 
     /// The indices of the values on the other axes.
     fn listed(&self, touch: &Touch) -> Vec<usize> {
-        let indices = self
-            .kind
-            .axes()
-            .iter()
-            .map(|&axis| touch.indices[axis as usize]);
+        let axes = self.kind.axes().iter();
+        let indices = axes.map(|&axis| touch.indices[axis as usize]);
         indices.flatten().collect()
     }
 }
@@ -111,14 +108,12 @@ fn connected(touches: &[Touch], listed: &[Vec<usize>], drawn: &[(TouchAxis, f64)
     let mut order: Vec<(f64, usize)> = Vec::new();
     for (number, touch) in touches.iter().enumerate() {
         let value = value(touch, along);
+        let turned = value.rem_euclid(TAU);
         match along {
-            TouchAxis::Yaw => {
-                let turned = value.rem_euclid(TAU);
-                order.push((turned, number));
-                if turned < distance {
-                    order.push((turned + TAU, number));
-                }
+            TouchAxis::Yaw if turned < distance => {
+                order.extend([(turned, number), (turned + TAU, number)]);
             }
+            TouchAxis::Yaw => order.push((turned, number)),
             _ => order.push((value, number)),
         }
     }

@@ -1,10 +1,12 @@
 //! Published accuracies beside ours: which cells a claim is about, and the most accurate of them.
 
+use super::axes::number;
 use super::conditions::{by_condition, column_name, most_accurate, settings_of};
 use super::spec::PublishedSpec;
 use super::table::{Cell, CellScore, Published};
 use crate::error::{Error, Result};
 use crate::table::{Table, Value};
+use std::fmt::Display;
 
 /// Every claim is an accuracy about at least one cell.
 ///
@@ -20,10 +22,13 @@ pub fn check_published(published: &[PublishedSpec], cells: &[&Cell]) -> Result<(
 }
 
 fn check(claim: &PublishedSpec, cells: &Table) -> Result<()> {
-    let place = |key: &str| format!("key report.published, claim '{}', {key}", claim.claim);
+    let refuse = |key: &str, given: &dyn Display, allowed: &str| {
+        let place = format!("key report.published, claim '{}', {key}", claim.claim);
+        Err(Error::input(place, given, allowed))
+    };
     if !(0.0..=1.0).contains(&claim.accuracy) {
         let allowed = "a share of test touches, 0 to 1";
-        return Err(Error::input(place("accuracy"), claim.accuracy, allowed));
+        return refuse("accuracy", &claim.accuracy, allowed);
     }
     let known = |name: &str| match name {
         "cell" => String::new(),
@@ -36,30 +41,24 @@ fn check(claim: &PublishedSpec, cells: &Table) -> Result<()> {
             let names = cells.columns.iter().map(|column| &column.name[..]);
             let names: Vec<&str> = names.filter(|name| !known(name).is_empty()).collect();
             let allowed = format!("one of {}", names.join(", "));
-            return Err(Error::input(
-                place(key),
-                "is no setting of this study",
-                allowed,
-            ));
+            return refuse(key, &"is no setting of this study", &allowed);
         }
         if !(0..cells.n_rows).any(|row| cells.has_setting(name, row, &wanted)) {
-            return Err(Error::input(place(key), wanted, values));
+            return refuse(key, &wanted, &values);
         }
     }
     match (0..cells.n_rows).any(|row| is_about(claim, cells, row)) {
         true => Ok(()),
-        false => Err(Error::input(
-            place("all keys together"),
-            &claim.at,
-            "values that one cell of the study has together",
-        )),
+        false => {
+            let allowed = "values that one cell of the study has together";
+            refuse("all keys together", &claim.at, allowed)
+        }
     }
 }
 
 /// A value as a study writes it.
 fn setting(written: &toml::Value) -> Value {
-    let number = written.as_integer().map(|integer| integer as f64);
-    match (number.or(written.as_float()), written.as_str()) {
+    match (number(written), written.as_str()) {
         (Some(number), _) => Value::Number(number),
         (_, Some(word)) => Value::Word(word.to_owned()),
         _ => Value::Word(written.to_string()),
@@ -86,14 +85,10 @@ pub fn compare_with_published(
     let mut rows = Vec::new();
     for claim in published {
         for alike in &conditions {
-            let about = alike
-                .iter()
-                .filter(|&&place| is_about(claim, &settings, place));
-            let about: Vec<usize> = about.copied().collect();
-            let accuracies = about
-                .iter()
-                .map(|&place| (place, summary[place].1.accuracy));
-            if let Some(best) = most_accurate(accuracies) {
+            let mut about = alike.clone();
+            about.retain(|&place| is_about(claim, &settings, place));
+            let accuracy = |&place: &usize| (place, summary[place].1.accuracy);
+            if let Some(best) = most_accurate(about.iter().map(accuracy)) {
                 let (cell, score) = &summary[best];
                 let ours = Published {
                     claim: claim.claim.clone(),

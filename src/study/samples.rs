@@ -4,9 +4,10 @@ use super::measurement::{Reading, measure, signal_steps, touches_to_read};
 use super::plan::{Plan, millimetres};
 use super::progress::Silent;
 use super::sensor_errors::{skin, strength_columns};
-use super::simulation::{TouchedObject, simulate_array, touched_classes};
+use super::simulation::{TouchedObject, simulate_array};
 use super::spec::{CombineSpec, StepSpec};
 use super::sweep::{Group, Sweep};
+use super::touch_set::TouchSet;
 use crate::error::{Error, Result};
 use crate::random::Seed;
 use crate::sensing::{Ensemble, Projection};
@@ -56,10 +57,8 @@ pub fn sample_frames(plan: &Plan, sweep: &Sweep, touched: &[TouchedObject]) -> R
         level => format!("noise of {}", plan.describe_noise(level)),
     };
     let each_caption = format!("One touch each on {array}, {noise}");
-    let each = read(plan, group, (touched, before))?
-        .into_iter()
-        .enumerate();
-    let each: Vec<_> = each.map(|(label, frame)| (name(label), frame)).collect();
+    let each = read(plan, group, (touched, before))?;
+    let each: Vec<_> = (0..names.len()).map(name).zip(each).collect();
     let groups = imperfect_groups(plan, sweep, group.array);
     let (frames, caption) = match chosen.first() {
         Some(&first) if !groups.is_empty() => {
@@ -111,7 +110,7 @@ fn read(
     };
     let firsts: Vec<TouchedObject> = touched.iter().map(first).collect();
     let frames = simulate_array(&firsts, &patch, 1, &Silent);
-    let mut touches = touches_to_read(touched_classes(&firsts), &seed.named("signal").numbered(0));
+    let mut touches = touches_to_read(firsts.classes(), &seed.named("signal").numbered(0));
     for touch in &mut touches {
         touch.before = Some(before);
     }
@@ -121,12 +120,12 @@ fn read(
         taxel: patch.taxel,
         speed: plan.speed,
     };
-    let (values, _) = measure(reading, (&frames.kept, 1), &touches)?;
-    let frame = |row: ArrayView1<f64>| Array2::from_shape_vec(shape, row.to_vec());
-    let frames = values.outer_iter().map(frame);
-    Ok(frames
-        .map(|frame| frame.expect("a value a taxel"))
-        .collect())
+    let (values, _) = measure(reading, &frames, &touches)?;
+    let frame = |row: ArrayView1<f64>| {
+        let frame = Array2::from_shape_vec(shape, row.to_vec());
+        frame.expect("a value a taxel")
+    };
+    Ok(values.outer_iter().map(frame).collect())
 }
 
 /// The signal's steps but for smoothing, which hides what it is there to hide.

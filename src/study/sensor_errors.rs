@@ -32,11 +32,8 @@ const N_STRENGTHS: usize = {
 pub fn all_strengths() -> impl Iterator<Item = (SensorError, &'static Strength)> {
     let errors = SENSOR_ERRORS.iter();
     errors.flat_map(|error| {
-        error
-            .about()
-            .strengths
-            .iter()
-            .map(|strength| (*error, strength))
+        let strengths = error.about().strengths.iter();
+        strengths.map(|strength| (*error, strength))
     })
 }
 
@@ -100,11 +97,9 @@ impl Strengths {
 
 /// The skin of a study's array: the same in each touch and trial.
 pub(super) fn skin(study: &Seed, grid: &Grid) -> Seed {
-    let sides = [grid.nx as u64, grid.ny as u64];
-    let named = sides
-        .iter()
-        .fold(study.named("skin"), |seed, &n| seed.numbered(n));
-    named.numbered(grid.pitch.to_bits())
+    let sides = study.named("skin").numbered(grid.nx as u64);
+    let sides = sides.numbered(grid.ny as u64);
+    sides.numbered(grid.pitch.to_bits())
 }
 
 #[cfg(test)]

@@ -59,13 +59,8 @@ impl FromStr for Shard {
             };
             (1..=shard.count).contains(&shard.index).then_some(shard)
         });
-        numbers.ok_or_else(|| {
-            Error::input(
-                "--shard",
-                text,
-                "I/N with whole numbers, I from 1 to N: 3/8",
-            )
-        })
+        let allowed = "I/N with whole numbers, I from 1 to N: 3/8";
+        numbers.ok_or_else(|| Error::input("--shard", text, allowed))
     }
 }
 

@@ -3,6 +3,7 @@
 use super::frames::{FramePlace, Frames};
 use super::plan::millimetres;
 use super::progress::Progress;
+use super::touch_set::TouchSet;
 use crate::contact::{Contact, Workspace, press_to_depth};
 use crate::error::Result;
 use crate::objects::Object;
@@ -28,18 +29,16 @@ pub fn draw_touches(
     placement: &Placement,
     seed: &Seed,
 ) -> Result<Vec<TouchedObject>> {
-    objects
-        .into_par_iter()
-        .map(|object| {
-            let rests = placement.rest.of(&object.model);
-            let touches = touches(placement, &rests, &touch_stream(seed, &object))?;
-            Ok(TouchedObject {
-                object,
-                rests,
-                touches,
-            })
+    let touched = objects.into_par_iter().map(|object| {
+        let rests = placement.rest.of(&object.model);
+        let touches = touches(placement, &rests, &touch_stream(seed, &object))?;
+        Ok(TouchedObject {
+            object,
+            rests,
+            touches,
         })
-        .collect()
+    });
+    touched.collect()
 }
 
 /// The label of every touch of some classes.
@@ -47,13 +46,6 @@ pub fn touch_labels(classes: &[(&str, usize)]) -> Array1<usize> {
     let classes = classes.iter().enumerate();
     let labels = classes.flat_map(|(label, (_, n))| std::iter::repeat_n(label, *n));
     labels.collect()
-}
-
-/// The objects of some touches, and how many of each there are.
-pub fn touched_classes(touched: &[TouchedObject]) -> Vec<(&str, usize)> {
-    let classes = touched.iter();
-    let classes = classes.map(|t| (t.object.name.as_str(), t.touches.len()));
-    classes.collect()
 }
 
 /// An array in words: `64×64 at 2 mm`.
@@ -67,22 +59,22 @@ pub fn touch_stream(seed: &Seed, object: &Object) -> Seed {
     seed.named("touches").named(&object.name)
 }
 
-/// Presses one array on every object, touch by touch, and keeps the frames in memory; the same bytes at any number of threads.
-///
-/// A touch to a depth d is read at `n_frames` ≥ 1 depths, d/F, 2d/F … d: each is a direct press of its own, since a taxel at
-/// rest does not remember how it came there.
+/// Makes all touches on an array and keeps the frames in memory.
 pub fn simulate_array(
-    touched: &[TouchedObject],
+    touched: &dyn TouchSet,
     patch: &Patch,
     n_frames: usize,
     progress: &dyn Progress,
 ) -> Frames {
-    let frames = simulate_into(touched, (patch, n_frames), &FramePlace::Memory, progress);
+    let frames = touched.simulate((patch, n_frames), &FramePlace::Memory, progress);
     frames.expect("memory takes all frames")
 }
 
-/// The same into a place.
-pub(super) fn simulate_into(
+/// Presses one array on every object, touch by touch; the same bytes at any number of threads.
+///
+/// A touch to a depth d is read at `n_frames` ≥ 1 depths, d/F, 2d/F … d: each is a direct press of its own, since a taxel at
+/// rest does not remember how it came there.
+pub(super) fn press_objects(
     touched: &[TouchedObject],
     (patch, n_frames): (&Patch, usize),
     place: &FramePlace,

@@ -67,13 +67,12 @@ impl SignalAxes {
         self.0.values()
     }
 
-    /// Puts an axis at a key; whether there is such a key.
-    pub fn set(&mut self, key: &str, axis: Axis<f64>) -> bool {
+    /// Puts an axis at a key, if there is such a key.
+    fn set(&mut self, key: &str, axis: Axis<f64>) {
         let found = all_axes().enumerate().find(|(_, (known, _))| *known == key);
         if let Some((place, (key, step))) = found {
             self.0.insert(place, (key, step, axis));
         }
-        found.is_some()
     }
 }
 
@@ -191,7 +190,7 @@ impl<'de> Visitor<'de> for SpecVisitor {
                 "steps" => spec.steps = map.next_value()?,
                 "tested_on" => spec.tested_on = Some(map.next_value()?),
                 "combine" => spec.combine = map.next_value()?,
-                axis => drop(spec.axes.set(axis, map.next_value()?)),
+                axis => spec.axes.set(axis, map.next_value()?),
             }
         }
         Ok(spec)

@@ -17,25 +17,19 @@ pub fn draw_split(
     trial: usize,
 ) -> Result<Split> {
     let trial = plan.spec.split_of(trial);
+    let labels = labels.view();
+    let recognition = &plan.spec.recognition;
+    let fraction = recognition.test_share();
+    let n_folds = recognition.folds.unwrap_or(1);
     let seed = Seed::new(plan.spec.seed).named("split");
-    match plan.spec.recognition.folds {
-        None => {
-            let fraction = plan.spec.recognition.test_share();
-            let seed = seed.numbered(trial as u64);
-            match keys {
-                None => stratified_hold_out(labels.view(), fraction, &seed),
-                Some(keys) => group_hold_out(labels.view(), keys.view(), fraction, &seed),
-            }
-        }
-        Some(k) => {
-            let seed = seed.numbered((trial / k) as u64);
-            let mut folds = match keys {
-                None => stratified_k_fold(labels.view(), k, &seed)?,
-                Some(keys) => group_k_fold(labels.view(), keys.view(), k, &seed)?,
-            };
-            Ok(folds.swap_remove(trial % k))
-        }
-    }
+    let seed = seed.numbered((trial / n_folds) as u64);
+    let mut folds = match (recognition.folds, keys) {
+        (None, None) => return stratified_hold_out(labels, fraction, &seed),
+        (None, Some(keys)) => return group_hold_out(labels, keys.view(), fraction, &seed),
+        (Some(k), None) => stratified_k_fold(labels, k, &seed)?,
+        (Some(k), Some(keys)) => group_k_fold(labels, keys.view(), k, &seed)?,
+    };
+    Ok(folds.swap_remove(trial % n_folds))
 }
 
 /// The training-touches axis: what is asked for, or all that the smallest training split has for every object. Every object has test touches
@@ -46,10 +40,8 @@ pub fn train_touches(plan: &Plan, splits: &[Split], labels: &Array1<usize>) -> R
         if given <= most as f64 {
             return Ok(());
         }
-        let (key, allowed) = (
-            format!("key recognition.{key}"),
-            format!("at most {most}, {what}"),
-        );
+        let allowed = format!("at most {most}, {what}");
+        let key = format!("key recognition.{key}");
         Err(Error::input(key, given, allowed))
     };
     let fewest = fewest_per_object(splits.iter().map(|split| &split.train), labels);
@@ -66,16 +58,10 @@ pub fn train_touches(plan: &Plan, splits: &[Split], labels: &Array1<usize>) -> R
     }
     let least = train_touches.iter().min().copied().unwrap_or(0);
     if recognition.choose_c.is_some() || recognition.choose_gamma.is_some() {
-        let of_folds = recognition
-            .choose_touches
-            .map_or(least, |most| least.min(most));
+        let of_folds = least.min(recognition.choose_touches.unwrap_or(least));
+        let n_folds = recognition.n_choice_folds() as f64;
         let what = "the training touches of every object that take part";
-        at_most(
-            "choose_folds",
-            recognition.n_choice_folds() as f64,
-            of_folds,
-            what,
-        )?;
+        at_most("choose_folds", n_folds, of_folds, what)?;
     }
     for ratio in recognition.class_imbalance.iter().flat_map(Axis::values) {
         let what = "twice the training touches of every object";

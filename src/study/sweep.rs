@@ -111,21 +111,17 @@ impl Sweep {
                 Some(_) => ("key human_touch.kinds", "kind", "kinds"),
                 None => ("objects", "object", "objects"),
             };
-            return Err(Error::input(
-                place,
-                format!("{n_classes} {given}"),
-                format!("at least two, since recognition tells {allowed} apart"),
-            ));
+            let given = format!("{n_classes} {given}");
+            let allowed = format!("at least two, since recognition tells {allowed} apart");
+            return Err(Error::input(place, given, allowed));
         }
         let labels = touched.labels();
-        let keys = plan
-            .keep_together
-            .as_ref()
-            .map(|together| touched.group_keys(together))
-            .transpose()?;
-        let splits = (0..plan.spec.trials)
-            .map(|trial| draw_split(plan, &labels, keys.as_ref(), trial))
-            .collect::<Result<Vec<_>>>()?;
+        let together = plan.keep_together.as_ref();
+        let keys = together.map(|together| touched.group_keys(together));
+        let keys = keys.transpose()?;
+        let split = |trial| draw_split(plan, &labels, keys.as_ref(), trial);
+        let splits = (0..plan.spec.trials).map(split);
+        let splits = splits.collect::<Result<Vec<_>>>()?;
         let train_touches = train_touches(plan, &splits, &labels)?;
         let mut sweep = Self {
             groups: Vec::new(),

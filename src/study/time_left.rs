@@ -16,10 +16,9 @@ pub struct Piece {
 impl Piece {
     /// Of a stage whose pieces have a thread each.
     pub fn of_stage(stage: u8, planned_s: f64) -> Self {
-        let n_threads = 1;
         Self {
             stage,
-            n_threads,
+            n_threads: 1,
             planned_s,
         }
     }
@@ -27,11 +26,10 @@ impl Piece {
     /// Of a stage whose pieces come one after the other, each with all threads: seconds by the clock.
     pub fn one_by_one(stage: u8, planned_wall_s: f64) -> Self {
         let n_threads = rayon::current_num_threads();
-        let planned_s = planned_wall_s * n_threads as f64;
         Self {
             stage,
             n_threads,
-            planned_s,
+            planned_s: planned_wall_s * n_threads as f64,
         }
     }
 

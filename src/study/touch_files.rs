@@ -59,12 +59,13 @@ struct ObjectRow<'a> {
 }
 
 /// One touch as it goes into the files.
-struct Reading {
+struct Reading<'a> {
+    row: TouchRow<'a>,
     frame: Vec<f32>,
     /// Translation and quaternion.
     pose: [f64; 7],
-    n_touched: usize,
-    n_saturated: usize,
+    /// Metres past first contact.
+    depth: f64,
 }
 
 /// The deepest frame of every touch as a cell reads it in one trial: what its measurements are made of.
@@ -140,7 +141,7 @@ pub fn write_touches(
     let mut labels = array("labels.npy", "<i8", &[])?;
     let mut poses = array("poses.npy", "<f8", &[7])?;
     let mut depths = array("depths.npy", "<f8", &[])?;
-    let mut numbers = 0..n_touches;
+    let mut n_before = 0;
     let mut table = CsvFile::create(&folder.join("touches.csv"))?;
     let mut rows = CsvFile::create(&folder.join("objects.csv"))?;
     for (label, ((object, rests), source)) in objects.iter().zip(&rests).zip(&sources).enumerate() {
@@ -154,22 +155,22 @@ pub fn write_touches(
         for first in (0..source.n_touches()).step_by(BLOCK) {
             let block = first..source.n_touches().min(first + BLOCK);
             let press = |workspace: &mut Workspace, number| {
-                let touch = source.touch(number);
-                let reading = pressed(&scene, &rests[touch.rest], &touch, workspace);
-                (touch, reading)
+                let named = (n_before + number, label, object.name.as_str());
+                pressed((&scene, rests), named, &source.touch(number), workspace)
             };
             let readings = block.clone().into_par_iter();
             let readings: Vec<_> = readings.map_init(Workspace::new, press).collect();
-            for ((touch, reading), number) in readings.into_iter().zip(&mut numbers) {
-                table.row(touch_row((number, label), &object.name, &touch, &reading))?;
+            for reading in readings {
                 labels.push([(label as i64).to_le_bytes()])?;
                 poses.push(reading.pose.map(f64::to_le_bytes))?;
-                depths.push([touch.depth.to_le_bytes()])?;
-                let frame = read.map_or(reading.frame, |read| read.frame(number));
+                depths.push([reading.depth.to_le_bytes()])?;
+                let frame = read.map_or(reading.frame, |read| read.frame(reading.row.touch));
                 frames.push(frame.into_iter().map(f32::to_le_bytes))?;
+                table.row(reading.row)?;
             }
             progress.advance(block.len() as u64);
         }
+        n_before += source.n_touches();
     }
     for file in [frames, labels, poses, depths] {
         file.commit()?;
@@ -179,37 +180,34 @@ pub fn write_touches(
     Ok(n_touches)
 }
 
-fn pressed(scene: &Scene, rest: &RestPose, touch: &Touch, workspace: &mut Workspace) -> Reading {
-    let mut pose = touch.patch_from_object(rest);
+/// Presses a touch, of which the number, the label and the name of its object are known.
+fn pressed<'a>(
+    (scene, rests): (&Scene, &[RestPose]),
+    (number, label, object): (usize, usize, &'a str),
+    touch: &Touch,
+    workspace: &mut Workspace,
+) -> Reading<'a> {
+    let mut pose = touch.patch_from_object(&rests[touch.rest]);
     let contact = press_to_depth(scene, &[pose], touch.depth, workspace);
     pose.translation.z -= contact.map_or(0.0, |c| c.travel);
     let (t, q) = (pose.translation, pose.rotation);
     Reading {
+        row: TouchRow {
+            touch: number,
+            label,
+            object,
+            rest: touch.rest,
+            offset_x_mm: 1e3 * touch.offset[0],
+            offset_y_mm: 1e3 * touch.offset[1],
+            yaw_deg: touch.yaw.to_degrees(),
+            tilt_x_deg: touch.tilt[0].to_degrees(),
+            tilt_y_deg: touch.tilt[1].to_degrees(),
+            depth_mm: 1e3 * touch.depth,
+            n_touched: contact.map_or(0, |c| c.n_touched),
+            n_saturated: contact.map_or(0, |c| c.n_saturated),
+        },
         frame: workspace.deflections().iter().map(|&d| d as f32).collect(),
         pose: [t.x, t.y, t.z, q.x, q.y, q.z, q.w],
-        n_touched: contact.map_or(0, |c| c.n_touched),
-        n_saturated: contact.map_or(0, |c| c.n_saturated),
-    }
-}
-
-fn touch_row<'a>(
-    (number, label): (usize, usize),
-    object: &'a str,
-    touch: &Touch,
-    reading: &Reading,
-) -> TouchRow<'a> {
-    TouchRow {
-        touch: number,
-        label,
-        object,
-        rest: touch.rest,
-        offset_x_mm: 1e3 * touch.offset[0],
-        offset_y_mm: 1e3 * touch.offset[1],
-        yaw_deg: touch.yaw.to_degrees(),
-        tilt_x_deg: touch.tilt[0].to_degrees(),
-        tilt_y_deg: touch.tilt[1].to_degrees(),
-        depth_mm: 1e3 * touch.depth,
-        n_touched: reading.n_touched,
-        n_saturated: reading.n_saturated,
+        depth: touch.depth,
     }
 }

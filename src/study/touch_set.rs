@@ -1,13 +1,12 @@
 //! What a recognition study asks of its touches: of pressed objects, or of human touches.
 
-use super::content_hash::{bytes_of_model, sha256};
 use super::frames::{FramePlace, Frames};
 use super::measurement::{TouchToRead, touches_to_read};
 use super::plan::Plan;
 use super::pose_groups::KeepTogether;
 use super::progress::Progress;
 use super::samples::{Samples, sample_frames};
-use super::simulation::{TouchedObject, simulate_into, touch_labels, touched_classes};
+use super::simulation::{TouchedObject, press_objects, touch_labels};
 use super::sweep::Sweep;
 use crate::contact::saturation_limit;
 use crate::error::Result;
@@ -17,7 +16,6 @@ use crate::world::Patch;
 use ndarray::Array1;
 use rand::Rng;
 use rayon::prelude::*;
-use std::collections::BTreeMap;
 
 /// Touches of several classes: objects, or kinds of touch. They follow each other class by class.
 pub trait TouchSet: Sync {
@@ -70,16 +68,13 @@ pub trait TouchSet: Sync {
 
     /// What a report says about them: name and value.
     fn settings(&self) -> Vec<(String, String)>;
-
-    /// SHA-256 of what each object is made of, by its name; empty if the study's text says all.
-    fn content(&self) -> BTreeMap<String, String> {
-        BTreeMap::new()
-    }
 }
 
 impl TouchSet for Vec<TouchedObject> {
     fn classes(&self) -> Vec<(&str, usize)> {
-        touched_classes(self)
+        let classes = self.iter();
+        let classes = classes.map(|t| (t.object.name.as_str(), t.touches.len()));
+        classes.collect()
     }
 
     fn group_keys(&self, together: &KeepTogether) -> Result<Array1<usize>> {
@@ -96,7 +91,7 @@ impl TouchSet for Vec<TouchedObject> {
         place: &FramePlace,
         progress: &dyn Progress,
     ) -> Result<Frames> {
-        simulate_into(self, on, place, progress)
+        press_objects(self, on, place, progress)
     }
 
     fn to_read(&self, plan: &Plan, n_frames: usize, seed: &Seed) -> Vec<TouchToRead> {
@@ -134,28 +129,20 @@ impl TouchSet for Vec<TouchedObject> {
     fn settings(&self) -> Vec<(String, String)> {
         let names = self.class_names();
         let row = |name: &str, value: String| (name.to_owned(), value);
-        let mut rows = vec![row(
-            "Objects",
-            format!("{}: {}", names.len(), names.join(", ")),
-        )];
-        let models = || self.iter().map(|t| &t.object.model);
-        let spheres: Vec<usize> = models().map(Model::n_spheres).collect();
-        let triangles: Vec<usize> = models().map(Model::n_triangles).collect();
-        for (name, counts) in [
-            ("Spheres an object", spheres),
-            ("Triangles an object", triangles),
-        ] {
-            let counts = || counts.iter().filter(|&&n| n > 0);
+        let objects = format!("{}: {}", names.len(), names.join(", "));
+        let mut rows = vec![row("Objects", objects)];
+        type Count = fn(&Model) -> usize;
+        let counted: [(&str, Count); 2] = [
+            ("Spheres an object", Model::n_spheres),
+            ("Triangles an object", Model::n_triangles),
+        ];
+        for (name, count) in counted {
+            let counts = || self.iter().map(|t| count(&t.object.model));
+            let counts = || counts().filter(|&n| n > 0);
             if let (Some(least), Some(most)) = (counts().min(), counts().max()) {
                 rows.push(row(name, format!("{least} to {most}")));
             }
         }
         rows
-    }
-
-    fn content(&self) -> BTreeMap<String, String> {
-        let objects = self.iter().map(|t| &t.object);
-        let hashed = objects.map(|o| (o.name.clone(), sha256(bytes_of_model(&o.model))));
-        hashed.collect()
     }
 }

@@ -75,28 +75,21 @@ impl Training<'_> {
     /// With this C, or one that is chosen, or none; and a γ that may be chosen.
     fn train(&self, c: Option<f64>) -> Result<Fitted> {
         let start = Instant::now();
-        let mut classifier = self.classifier();
-        let (mut gamma, mut path) = (None, None);
-        if self.kind.has_c() {
+        let classifier = self.classifier();
+        let (classifier, gamma) = if self.kind.has_c() {
             let data = self.choosing_rows();
+            let given = c.map(|c| vec![c]).or(self.recognition.choose_c.clone());
             let candidates = Candidates {
-                c: c.map_or_else(
-                    || self.recognition.choose_c.clone().unwrap_or_default(),
-                    |c| vec![c],
-                ),
+                c: given.unwrap_or_default(),
                 gamma_scales: self.recognition.choose_gamma.clone().unwrap_or_default(),
             };
             let folds = self.folds(&data)?;
             let chosen = classifier.choose(&data, &folds, &candidates, &self.seed)?;
-            classifier = classifier.with_choice(&chosen);
-            gamma = chosen.best.gamma;
-            path = Some([chosen.best.c]);
-        }
-        let classifier = match path {
-            Some(path) => classifier
-                .train_path(&self.data, &path, &self.seed)?
-                .swap_remove(0),
-            None => classifier.train(&self.data, &self.seed)?,
+            let (best, classifier) = (chosen.best, classifier.with_choice(&chosen));
+            let mut trained = classifier.train_path(&self.data, &[best.c], &self.seed)?;
+            (trained.swap_remove(0), best.gamma)
+        } else {
+            (classifier.train(&self.data, &self.seed)?, None)
         };
         Ok(Fitted {
             c: classifier.c(),
@@ -121,14 +114,9 @@ impl Training<'_> {
     fn choosing_rows(&self) -> Dataset {
         let labels = &self.data.targets;
         let n_objects = labels.iter().max().map_or(0, |last| last + 1);
-        let wanted = self
-            .recognition
-            .choose_touches
-            .map_or(usize::MAX, |touches| {
-                // Rows come one of each object in turn, so these hold as many of each.
-                touches.saturating_mul(n_objects)
-            });
-        let n_rows = wanted.min(labels.len());
+        // Rows come one of each object in turn, so these hold as many of each.
+        let touches = self.recognition.choose_touches.unwrap_or(usize::MAX);
+        let n_rows = touches.saturating_mul(n_objects).min(labels.len());
         Dataset::new(
             self.data.records.slice(s![..n_rows, ..]).to_owned(),
             labels.slice(s![..n_rows]).to_owned(),

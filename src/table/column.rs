@@ -198,16 +198,12 @@ pub trait Columns {
 
 impl<A: Columns, B: Columns> Columns for (A, B) {
     fn columns() -> Vec<Column> {
-        let mut columns = A::columns();
-        columns.extend(B::columns());
-        columns
+        [A::columns(), B::columns()].concat()
     }
 }
 
 impl<A: Columns, B: Columns, C: Columns> Columns for (A, B, C) {
     fn columns() -> Vec<Column> {
-        let mut columns = <(A, B)>::columns();
-        columns.extend(C::columns());
-        columns
+        [A::columns(), B::columns(), C::columns()].concat()
     }
 }

@@ -93,15 +93,6 @@ impl Value {
 }
 
 impl Data {
-    /// Of texts as files have them, row by row; empty ones are absent.
-    fn of_texts(scale: Scale, texts: impl IntoIterator<Item = String>) -> Self {
-        let mut maker = Maker::new(scale);
-        for text in texts {
-            maker.push(&text);
-        }
-        maker.data
-    }
-
     /// Whether it has several values in some rows.
     pub fn varies(&self, rows: impl IntoIterator<Item = usize>) -> bool {
         let mut keys = rows.into_iter().map(|row| self.key(row));
@@ -199,8 +190,11 @@ impl Table {
             let value = data.value(*rows.get(&wanted.key(row))?)?;
             Some(value.to_string())
         };
-        let texts = (0..self.n_rows).map(|row| text(row).unwrap_or_default());
-        Some((column.clone(), Data::of_texts(column.scale, texts)))
+        let mut maker = Maker::new(column.scale);
+        for row in 0..self.n_rows {
+            maker.push(&text(row).unwrap_or_default());
+        }
+        Some((column.clone(), maker.data))
     }
 
     /// Of the content of a file, which stands at a path.
@@ -211,13 +205,11 @@ impl Table {
         csv: Vec<u8>,
     ) -> Result<Self> {
         let mut reader = csv::Reader::from_reader(&csv[..]);
-        let bad = |line, given: String, allowed: String| {
-            Error::input(csv_place(path, line), given, allowed)
+        let bad = |at: Option<&csv::Position>, given: String, allowed: &str| {
+            let place = csv_place(path, at.map(csv::Position::line));
+            Error::input(place, given, allowed)
         };
-        let broken = |e: csv::Error| {
-            let line = e.position().map(csv::Position::line);
-            bad(line, e.to_string(), "a row of the table".to_owned())
-        };
+        let broken = |e: csv::Error| bad(e.position(), e.to_string(), "a row of the table");
         let header = reader.headers().map_err(broken)?.clone();
         let mut columns = Vec::with_capacity(header.len());
         let mut all = known.into_iter();
@@ -227,17 +219,15 @@ impl Table {
                 Some(column) if column.name == name => columns.push(column),
                 other => {
                     let given = format!("column {name:?}");
-                    let allowed = match other {
-                        Some(column) => format!("column {:?}", column.name),
-                        None => "no such column".to_owned(),
-                    };
-                    return Err(bad(Some(1), given, allowed));
+                    let wanted = other.map(|column| format!("column {:?}", column.name));
+                    let allowed = wanted.as_deref().unwrap_or("no such column");
+                    return Err(bad(header.position(), given, allowed));
                 }
             }
         }
         if let Some(missing) = all.find(|column| !column.is_optional) {
             let given = format!("no column {:?}", missing.name);
-            return Err(bad(Some(1), given, "all columns of the table".to_owned()));
+            return Err(bad(header.position(), given, "all columns of the table"));
         }
         let mut makers: Vec<Maker> = columns.iter().map(|c| Maker::new(c.scale)).collect();
         let mut n_rows = 0;
@@ -246,9 +236,8 @@ impl Table {
             n_rows += 1;
             for ((maker, column), text) in makers.iter_mut().zip(&columns).zip(&record) {
                 if !maker.push(text) {
-                    let line = record.position().map(csv::Position::line);
                     let given = format!("{text:?} in column {:?}", column.name);
-                    return Err(bad(line, given, "a number, or nothing".to_owned()));
+                    return Err(bad(record.position(), given, "a number, or nothing"));
                 }
             }
         }
@@ -319,30 +308,20 @@ impl Maker {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::columns;
+    use crate::row;
     use crate::table::File;
-    use serde::Deserialize;
 
-    #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-    struct Setting {
-        method: String,
+    row! {
+    pub struct Setting {
+        method: String => Choice;
         #[serde(default, skip_serializing_if = "Option::is_none")]
-        leak: Option<f64>,
-        step_s: f64,
-    }
-
-    #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-    struct Found {
-        error: Option<f64>,
-    }
-
-    columns! { Setting {
-        method: Choice;
-        leak: Condition "crosstalk" in "%": Share, optional;
-        step_s: Choice "time step" in "s": Log;
+        leak: Option<f64> => Condition "crosstalk" in "%": Share, optional;
+        step_s: f64 => Choice "time step" in "s": Log;
     } }
-    columns! { Found {
-        error: Value(Less) "deflection error": Log;
+
+    row! {
+    pub struct Found {
+        error: Option<f64> => Value(Less) "deflection error": Log;
     } }
 
     const FOUND: File<(Setting, Found)> = File::new("found.csv", "Found", "");

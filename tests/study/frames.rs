@@ -42,7 +42,7 @@ fn every_frame_is_its_touch_pressed_alone() {
     let study = Study::new(STUDY);
     let patch = study.plan.arrays[0];
     let frames = simulate_array(&study.touched, &patch, 1, &Silent);
-    let deflection = frames.kept.to_array().unwrap();
+    let deflection = frames.to_array().unwrap();
     let mut row = 0;
     let (mut n_missed, mut n_saturated) = (0, 0);
     for object in &study.touched {
@@ -74,7 +74,7 @@ fn frames_without_a_deflection_are_counted_and_none_is_of_a_deep_touch() {
         let study = Study::new(&text.replace(", 400.0]", "]"));
         let patch = study.plan.arrays[0];
         let frames = simulate_array(&study.touched, &patch, 3, &Silent);
-        let deflection = frames.kept.to_array().unwrap();
+        let deflection = frames.to_array().unwrap();
         let empty = deflection.outer_iter().skip(2).step_by(3);
         let n_empty = empty.filter(|row| row.iter().all(|&d| d == 0.0)).count();
         assert_eq!(frames.facts.n_missed, n_empty);
@@ -119,7 +119,7 @@ fn missed_and_saturated_touches_are_counted_as_the_equations_say() {
     let patch = study.plan.arrays[0];
     let stroke = patch.taxel.stroke;
     let frames = simulate_array(&study.touched, &patch, 1, &Silent);
-    let deflection = frames.kept.to_array().unwrap();
+    let deflection = frames.to_array().unwrap();
     let touches = study
         .touched
         .iter()
@@ -361,7 +361,7 @@ fn a_damper_pushes_back_on_taxels_that_move_and_not_on_saturated_ones() {
     let study = Study::new(&text);
     let patch = study.plan.arrays[0];
     let frames = simulate_array(&study.touched, &patch, 1, &Silent);
-    let frames = frames.kept.to_array().unwrap();
+    let frames = frames.to_array().unwrap();
     let samples = sample_frames(&study.plan, &study.sweep, &study.touched).unwrap();
     assert_eq!(samples.frames.len(), study.touched.len());
     let per_object = study.touched[0].touches.len();

@@ -416,7 +416,7 @@ fn touches_are_balanced_and_alone_the_same() {
     let patch = plan.arrays[0];
     let skin = human.skin(&patch).unwrap();
     let frames = touches.simulate((&patch, human.n_frames()), &FramePlace::Memory, &Silent);
-    let deflection = frames.unwrap().kept.to_array().unwrap();
+    let deflection = frames.unwrap().to_array().unwrap();
     assert_eq!(deflection.dim(), (240 * 49, 1024));
     let mut workspace = SkinWorkspace::new();
     for number in [3, 100, 205] {

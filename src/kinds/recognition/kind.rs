@@ -54,7 +54,7 @@ impl Kind for RecognitionStudy {
         let spec = &self.first().plan.spec;
         Ok(Facts {
             methods: METHODS.into(),
-            ..Facts::of_toml(spec.to_toml(), self.content())
+            ..Facts::of_toml(spec.to_toml(), self.content()?)
         })
     }
 

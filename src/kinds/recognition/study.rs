@@ -13,11 +13,13 @@ use crate::study::axes::AxisValues;
 use crate::study::cell_content::family_name;
 use crate::study::frames::FramePlace;
 use crate::study::measurement::signal_steps;
+use crate::study::object_files::objects_content;
 use crate::study::pieces::{NamedPiece, PieceStudy, PiecesLeft, Scale, Shared, run_whole};
 use crate::study::plan::{Plan, millimetres};
 use crate::study::progress::Progress;
 use crate::study::published::{check_published, compare_with_published};
 use crate::study::short_hash;
+use crate::study::spec::ObjectsSpec;
 use crate::study::sweep::{Group, Sweep};
 use crate::study::table::{Cell, StageTime, Tables};
 use crate::study::tabulate::tabulate;
@@ -202,17 +204,20 @@ impl RecognitionStudy {
     }
 
     /// SHA-256 of what each object is made of, by its name and, where combinations of the study's own axes differ in it, by those.
-    pub fn content(&self) -> BTreeMap<String, String> {
-        let mut all = self.first().touched.content();
-        for part in &self.parts {
-            for (name, hash) in part.touched.content() {
+    pub fn content(&self) -> Result<BTreeMap<String, String>> {
+        let mut all = BTreeMap::new();
+        let objects = self.parts.iter().map(|part| &part.plan.spec.objects);
+        let mut objects: Vec<&ObjectsSpec> = objects.collect();
+        objects.dedup();
+        for objects in objects {
+            for (name, hash) in objects_content(objects)? {
                 let known = all.entry(name.clone()).or_insert_with(|| hash.clone());
                 if *known != hash {
                     all.insert(format!("{name} of {}", &hash[..12]), hash);
                 }
             }
         }
-        all
+        Ok(all)
     }
 
     /// Trials of each cell.

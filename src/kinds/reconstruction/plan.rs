@@ -6,7 +6,6 @@ use crate::error::Result;
 use crate::random::Seed;
 use crate::sensing::{Basis, Dictionary, Ensemble, Projection};
 use crate::signal::{Noise, NoiseUnit, Quantity, SignalStep};
-use crate::study::Amount;
 use crate::study::check::{COUNT, Check, Range};
 use crate::study::pieces::Shared;
 use crate::study::plan::MM;
@@ -29,8 +28,6 @@ pub struct ReconstructionPlan {
     pub noise_unit: NoiseUnit,
     /// The noise axis, in `noise_unit`.
     pub noise: Vec<f64>,
-    /// The axis of measurements.
-    pub amounts: Vec<Amount>,
     /// The dictionary axis.
     pub dictionaries: Vec<Basis>,
 }
@@ -64,13 +61,13 @@ impl ReconstructionPlan {
         let (noise_unit, noise) = check.noise(&spec.signal)?;
         check.steps(&spec.signal)?;
         check.noise_is_last(&spec.signal)?;
-        let amounts = check.amounts(&spec.sensing, &[patch])?;
+        check.sensing(&spec.sensing, &[patch])?;
         let wanted = &spec.reconstruction;
         check.keys("reconstruction", wanted, KEYS)?;
         let dictionaries = check.dictionaries(wanted, &patch.grid)?;
         let axes = [
             spec.sensing.ensemble.values().len(),
-            amounts.len(),
+            spec.sensing.measurements_on(patch.grid.n_taxels()).len(),
             noise.len(),
             dictionaries.len(),
             wanted.solver.values().len(),
@@ -82,7 +79,6 @@ impl ReconstructionPlan {
             speed: spec.touches.speed_mm_per_s * MM,
             noise_unit,
             noise,
-            amounts,
             dictionaries,
             spec,
         })
@@ -115,7 +111,7 @@ impl ReconstructionPlan {
         if ensemble == Ensemble::Identity {
             return vec![n];
         }
-        let mut counts: Vec<usize> = self.amounts.iter().map(|a| a.measurements(n)).collect();
+        let mut counts = self.spec.sensing.measurements_on(n);
         counts.sort_unstable();
         counts.dedup();
         counts

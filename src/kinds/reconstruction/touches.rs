@@ -7,11 +7,11 @@ use crate::random::Seed;
 use crate::recognition::split::{Split, stratified_hold_out};
 use crate::sensing::{Basis, Dictionary, Ensemble};
 use crate::signal::{Chain, Noise, NoiseUnit};
-use crate::study::Frames;
 use crate::study::measurement::{Reading, TouchToRead, measure, touches_to_read};
 use crate::study::pieces::Shared;
 use crate::study::progress::Progress;
-use crate::study::simulation::{TouchedObject, simulate_array, touch_labels, touched_classes};
+use crate::study::simulation::{TouchedObject, simulate_array};
+use crate::study::{Frames, TouchSet};
 use ndarray::{Array1, Array2, Axis};
 
 /// Test frames that are kept for the eye.
@@ -44,16 +44,16 @@ pub(super) struct Noisy {
 impl Touches {
     pub(super) fn simulate(
         plan: &ReconstructionPlan,
-        touched: &[TouchedObject],
+        touched: &Vec<TouchedObject>,
         progress: &dyn Progress,
     ) -> Result<Self> {
-        let labels = touch_labels(&touched_classes(touched));
+        let labels = touched.labels();
         progress.stage("touch", labels.len() as u64);
         let frames = simulate_array(touched, &plan.patch, 1, progress);
         let seed = Seed::new(plan.spec.seed);
         let fraction = plan.spec.reconstruction.test_fraction;
         let split = stratified_hold_out(labels.view(), fraction, &seed.named("split").numbered(0))?;
-        let touches = touches_to_read(touched_classes(touched), &seed.named("signal").numbered(0));
+        let touches = touches_to_read(touched.classes(), &seed.named("signal").numbered(0));
         let read = |rows: &[usize], noise| read(plan, &frames, &touches, rows, noise);
         let test = read(&split.test, None)?;
         let unit = plan.noise_unit;
@@ -115,7 +115,7 @@ fn read(
         speed: plan.speed,
     };
     let touches: Vec<TouchToRead> = rows.iter().map(|&row| touches[row]).collect();
-    Ok(measure(reading, (&frames.kept, 1), &touches)?.0)
+    Ok(measure(reading, frames, &touches)?.0)
 }
 
 /// The first test touch of a few objects spread over the list.

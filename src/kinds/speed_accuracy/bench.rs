@@ -13,7 +13,7 @@ use crate::random::Seed;
 use crate::recognition::classifier::Classifier;
 use crate::sensing::Projection;
 use crate::signal::{Chain, Scratch};
-use crate::study::frames::KeptFrames;
+use crate::study::Frames;
 use crate::study::measurement::{Reading, TouchToRead, measure};
 use crate::study::simulation::TouchedObject;
 use crate::world::{Patch, Scene};
@@ -28,9 +28,9 @@ pub(super) struct Bench<'a> {
     /// Objects of this detail.
     pub touched: &'a [TouchedObject],
     /// A frame a touch of them.
-    pub learned: &'a KeptFrames,
+    pub learned: &'a Frames,
     /// The same touches of the exact objects.
-    pub tested: &'a KeptFrames,
+    pub tested: &'a Frames,
     /// How each touch is read, noisy in its own way, by its name.
     pub to_read: &'a [TouchToRead],
     /// The noise.
@@ -55,7 +55,7 @@ impl Bench<'_> {
         let scenes = scenes.map(|touched| Scene::of_one(self.patch, &touched.object.model));
         let scenes: Vec<Scene> = scenes.collect();
         let mut workspace = Workspace::new();
-        self.median_us(self.learned.len(), |touch| {
+        self.median_us(self.learned.n(), |touch| {
             let touched = &self.touched[touch / per_object];
             let place = &touched.touches[touch % per_object];
             let pose = place.patch_from_object(&touched.rests[place.rest]);
@@ -76,8 +76,8 @@ impl Bench<'_> {
             speed: 0.0,
         };
         Ok(Measured {
-            learned: measure(reading, (self.learned, 1), self.to_read)?.0,
-            tested: measure(reading, (self.tested, 1), self.to_read)?.0,
+            learned: measure(reading, self.learned, self.to_read)?.0,
+            tested: measure(reading, self.tested, self.to_read)?.0,
             sense_us,
             project_us: self
                 .one_thread
@@ -88,10 +88,10 @@ impl Bench<'_> {
     /// Median microseconds of noise and compression.
     fn time_compression(&self, projection: &Projection) -> Result<f64> {
         let mut scratch = Scratch::default();
-        let mut frame = Array2::zeros((1, self.learned.n_taxels()));
+        let mut frame = Array2::zeros((1, self.learned.n_taxels));
         let mut row = Array2::zeros((1, projection.n_measurements()));
         let felt = self.learned.to_array()?;
-        Ok(self.median_us(self.learned.len(), |touch| {
+        Ok(self.median_us(self.learned.n(), |touch| {
             frame.row_mut(0).assign(&felt.row(touch));
             let values = frame.as_slice_mut().expect("one whole row");
             let seed = &self.to_read[touch].seed;

@@ -10,11 +10,12 @@ use crate::error::{Error, Result};
 use crate::objects::{Model, Object};
 use crate::random::Seed;
 use crate::signal::{Chain, Noise, NoiseUnit, SignalStep};
+use crate::study::TouchSet;
 use crate::study::measurement::touches_to_read;
 use crate::study::pieces::{NamedPiece, PiecesLeft};
 use crate::study::plan::millimetres;
 use crate::study::progress::{Progress, Silent};
-use crate::study::simulation::{TouchedObject, draw_touches, simulate_array, touched_classes};
+use crate::study::simulation::{TouchedObject, draw_touches, simulate_array};
 use crate::study::sweep::nested;
 use crate::study::time_left::Piece;
 use rayon::prelude::*;
@@ -100,10 +101,7 @@ impl SpeedAccuracyStudy {
         };
         left.progress.stage("recognise", settings.len() as u64);
         let seed = Seed::new(self.plan.spec.seed);
-        let to_read = &touches_to_read(
-            touched_classes(&exact),
-            &seed.named("speed accuracy signal"),
-        );
+        let to_read = &touches_to_read(exact.classes(), &seed.named("speed accuracy signal"));
         let one_thread = &one_thread()?;
         for of_array in settings.chunk_by(|(_, a), (_, b)| a.array == b.array) {
             let patch = &self.plan.arrays[of_array[0].1.array];
@@ -112,7 +110,7 @@ impl SpeedAccuracyStudy {
                 unit: NoiseUnit::FullScale,
             });
             let chain = &Chain::new(&[noise], patch)?;
-            let tested = &simulate_array(&exact, patch, 1, &Silent).kept;
+            let tested = &simulate_array(&exact, patch, 1, &Silent);
             for of_level in of_array.chunk_by(|(_, a), (_, b)| a.level == b.level) {
                 let touched = &levels[of_level[0].1.level];
                 let bench = Bench {
@@ -120,7 +118,7 @@ impl SpeedAccuracyStudy {
                     seed,
                     patch,
                     touched,
-                    learned: &simulate_array(touched, patch, 1, &Silent).kept,
+                    learned: &simulate_array(touched, patch, 1, &Silent),
                     tested,
                     to_read,
                     chain,

@@ -1,5 +1,6 @@
 //! What is charted, and what was found in sentences.
 
+use super::memory_chart::memory_chart;
 use super::picture::picture_of_body;
 use super::plan::WholeBodyPlan;
 use crate::error::Result;
@@ -105,18 +106,4 @@ fn of_series(table: &Table, series: &str) -> Option<Shown> {
     let mut rows = 0..table.n_rows;
     let row = rows.find(|&row| table.word("series", row) == series)?;
     table.shown("series", row)
-}
-
-/// Accuracy against the bytes that a compression keeps for each taxel, with the front; none where nothing was learned.
-fn memory_chart(recognition: &Table) -> Option<ChartSpec> {
-    (recognition.n_rows > 0).then(|| ChartSpec {
-        lines: vec!["compression".to_owned()],
-        mark: Mark::Points,
-        front: true,
-        ..recognition.chart(
-            "accuracy_by_memory",
-            "Which object is it: accuracy against memory of a taxel",
-            ("accuracy", "bytes_per_taxel"),
-        )
-    })
 }

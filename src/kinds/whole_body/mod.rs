@@ -14,6 +14,7 @@
 mod charts;
 mod drive;
 mod ladders;
+mod memory_chart;
 mod objects;
 mod path;
 mod picture;

@@ -1,5 +1,6 @@
 //! Frames kept in memory, or in a temporary file and read as they are wanted.
 
+use super::FrameFacts;
 use super::coding::decode;
 use crate::error::{Error, Result};
 use ndarray::{Array2, Axis};
@@ -19,10 +20,14 @@ pub enum FramePlace {
     File(PathBuf),
 }
 
-/// Frames of n_taxels metres of deflection each; only touched taxels are kept.
+/// (n_touches · F) frames of an array, n_taxels metres of deflection each, and what happened while they were made: object by object, touch by
+/// touch, the deepest frame of a touch last. Only touched taxels are kept.
 #[derive(Debug)]
-pub struct KeptFrames {
-    n_taxels: usize,
+pub struct Frames {
+    /// What happened.
+    pub facts: FrameFacts,
+    /// Taxels of each.
+    pub n_taxels: usize,
     place: Place,
 }
 
@@ -37,12 +42,12 @@ enum Place {
     },
 }
 
-impl KeptFrames {
-    /// None yet.
+impl Frames {
+    /// None yet, of so many a touch.
     ///
     /// # Errors
     /// No file can be made in the folder.
-    pub fn new(n_taxels: usize, place: &FramePlace) -> Result<Self> {
+    pub fn new((n_taxels, n_frames): (usize, usize), place: &FramePlace) -> Result<Self> {
         let place = match place {
             FramePlace::Memory => Place::Memory(Vec::new()),
             FramePlace::File(folder) => {
@@ -57,7 +62,15 @@ impl KeptFrames {
                 }
             }
         };
-        Ok(Self { n_taxels, place })
+        let facts = FrameFacts {
+            n_frames,
+            ..FrameFacts::default()
+        };
+        Ok(Self {
+            facts,
+            n_taxels,
+            place,
+        })
     }
 
     /// Takes the next frames, encoded.
@@ -81,21 +94,11 @@ impl KeptFrames {
     }
 
     /// How many.
-    pub fn len(&self) -> usize {
+    pub fn n(&self) -> usize {
         match &self.place {
             Place::Memory(frames) => frames.len(),
             Place::File { offsets, .. } => offsets.len() - 1,
         }
-    }
-
-    /// Whether there is none.
-    pub fn is_empty(&self) -> bool {
-        self.len() == 0
-    }
-
-    /// Taxels of each.
-    pub fn n_taxels(&self) -> usize {
-        self.n_taxels
     }
 
     /// Writes frame `number` into `frame` (n_taxels, metres); several threads read.
@@ -127,12 +130,12 @@ impl KeptFrames {
         Ok(())
     }
 
-    /// All frames, len × n_taxels metres.
+    /// All frames, n × n_taxels metres.
     ///
     /// # Errors
     /// The file cannot be read.
     pub fn to_array(&self) -> Result<Array2<f64>> {
-        let mut array = Array2::zeros((self.len(), self.n_taxels));
+        let mut array = Array2::zeros((self.n(), self.n_taxels));
         let rows = array.axis_iter_mut(Axis(0)).into_par_iter().enumerate();
         rows.try_for_each(|(number, mut row)| {
             self.read(number, row.as_slice_mut().expect("rows of a new array"))

@@ -1,7 +1,6 @@
 //! Frames made on all threads, and put down in their order.
 
 use super::coding::encode;
-use super::kept::{FramePlace, KeptFrames};
 use super::{FrameFacts, Frames};
 use crate::error::Result;
 use crate::study::progress::Progress;
@@ -25,19 +24,6 @@ pub fn made_at_once(n_frames: usize) -> usize {
 }
 
 impl Frames {
-    /// None yet, of so many a touch.
-    ///
-    /// # Errors
-    /// They cannot be kept where they are to be.
-    pub fn new((n_taxels, n_frames): (usize, usize), place: &FramePlace) -> Result<Self> {
-        let facts = FrameFacts {
-            n_frames,
-            ..FrameFacts::default()
-        };
-        let kept = KeptFrames::new(n_taxels, place)?;
-        Ok(Self { kept, facts })
-    }
-
     /// Makes the frames of some touches, each thread in a workspace of its own; the same bytes at any number of threads. `press` writes a touch
     /// into its F frames (F × n_taxels, metres), and says whether it met nothing, and whether it saturated a taxel when it was deepest.
     ///
@@ -50,7 +36,7 @@ impl Frames {
         press: impl Fn(&T, &mut W, ArrayViewMut2<f32>) -> (bool, bool) + Sync,
         progress: &dyn Progress,
     ) -> Result<()> {
-        let shape = (self.facts.n_frames, self.kept.n_taxels());
+        let shape = (self.facts.n_frames, self.n_taxels);
         for touches in touches.chunks(made_at_once(shape.0)) {
             let blocks = touches.par_chunks(block(shape.0));
             let made = blocks.map_init(&workspace, |workspace, touches: &[T]| {
@@ -73,7 +59,7 @@ impl Frames {
                 self.facts.n_missed += facts.n_missed;
                 self.facts.n_saturated += facts.n_saturated;
                 self.facts.cpu_s += facts.cpu_s;
-                self.kept.put(frames)?;
+                self.put(frames)?;
             }
         }
         Ok(())

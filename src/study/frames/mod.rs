@@ -5,17 +5,8 @@ mod kept;
 mod making;
 
 pub(crate) use coding::most_bytes;
-pub use kept::{FramePlace, KeptFrames};
+pub use kept::{FramePlace, Frames};
 pub(crate) use making::made_at_once;
-
-/// Frames of an array and what happened while they were made.
-#[derive(Debug)]
-pub struct Frames {
-    /// (n_touches · F) frames of metres of deflection; object by object, touch by touch, the deepest frame of a touch last.
-    pub kept: KeptFrames,
-    /// What happened.
-    pub facts: FrameFacts,
-}
 
 /// What happened while frames were made.
 #[derive(Clone, Debug, Default, PartialEq)]

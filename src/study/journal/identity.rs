@@ -44,16 +44,14 @@ impl Identity {
     /// What another one, of a study that is here, has that this one has not, and the reverse, a line each.
     pub fn differences(&self, other: &Self) -> Vec<String> {
         let [ours, theirs] = [self, other].map(|identity| identity.facts(other.may_change));
-        let names: BTreeSet<&String> = ours.keys().chain(theirs.keys()).collect();
-        let differ = names
-            .into_iter()
-            .filter(|name| ours.get(*name) != theirs.get(*name));
+        let mut names: BTreeSet<&String> = ours.keys().chain(theirs.keys()).collect();
+        names.retain(|name| ours.get(*name) != theirs.get(*name));
         let words = |value: Option<&String>| value.map_or("nothing".to_owned(), String::clone);
         let line = |name: &String| {
             let (was, is) = (words(ours.get(name)), words(theirs.get(name)));
             format!("{name}: was {was}, is {is}")
         };
-        differ.map(line).collect()
+        names.into_iter().map(line).collect()
     }
 
     /// An error that says what differs unless the other is the same study; `place` is where this one stands.
@@ -62,12 +60,10 @@ impl Identity {
         if differences.is_empty() {
             return Ok(());
         }
+        let differences = differences.join("\n  ");
         Err(Error::input(
             place,
-            format!(
-                "was begun with another study\n  {}",
-                differences.join("\n  ")
-            ),
+            format!("was begun with another study\n  {differences}"),
             "\n  to go on: the same study, objects and program (axes may have more values or fewer, and words may change); --fresh starts over and keeps the old results beside the new",
         ))
     }

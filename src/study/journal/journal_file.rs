@@ -1,7 +1,7 @@
 //! The journal of a run: one file, one writer at a time.
 
 use super::identity::Identity;
-use super::line::{NO_STUDY, Records, decode, encode};
+use super::line::{Decoded, NO_STUDY, decode, encode};
 use crate::error::{Error, Result};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
@@ -27,11 +27,8 @@ const SYNC_INTERVAL: Duration = Duration::from_millis(100);
 #[derive(Debug, Default)]
 pub struct Journal {
     path: PathBuf,
-    /// Checksum of the first line, from which those of all others go on.
-    first: u32,
-    before: Records,
-    /// Bytes of whole lines when it was opened.
-    n_whole: usize,
+    /// What its lines said when it was opened; its header is taken out.
+    before: Decoded,
     writer: Mutex<Option<Writer>>,
     /// Records after which the process ends; 0: it does not.
     aborts_after: AtomicUsize,
@@ -63,7 +60,7 @@ impl Journal {
         if let Some(begun) = &begun {
             begun.check_same(identity, &path.display().to_string())?;
         }
-        let n_whole = journal.n_whole as u64;
+        let n_whole = journal.before.n_whole as u64;
         let cut = file
             .set_len(n_whole)
             .and_then(|()| file.seek(SeekFrom::End(0)));
@@ -74,7 +71,7 @@ impl Journal {
             is_broken: false,
         }));
         if begun.is_none() {
-            journal.first = journal.append(HEADER, identity)?;
+            journal.before.first = journal.append(HEADER, identity)?;
             journal.sync()?;
         }
         Ok(journal)
@@ -99,26 +96,22 @@ impl Journal {
             let allowed = "a journal as it was written; --fresh starts over and keeps the old results beside the new";
             Error::input(format!("{}: line {line}", path.display()), given, allowed)
         };
-        let decoded = decode(HEADER, bytes).map_err(damaged)?;
+        let mut before = decode(HEADER, bytes).map_err(damaged)?;
+        let header = before.header.take();
+        let begun = header.map(|header| serde_json::from_str(header.get()));
+        let begun = begun.transpose().map_err(|_| damaged((1, NO_STUDY)))?;
+        let path = path.to_owned();
         let journal = Self {
-            path: path.to_owned(),
-            first: decoded.first,
-            before: decoded.records,
-            n_whole: decoded.n_whole,
+            path,
+            before,
             ..Self::default()
         };
-        let header = decoded
-            .header
-            .map(|header| serde_json::from_str(header.get()));
-        match header.transpose() {
-            Ok(begun) => Ok((begun, journal)),
-            Err(_) => Err(damaged((1, NO_STUDY))),
-        }
+        Ok((begun, journal))
     }
 
     /// What was kept under a key before this journal was opened; `None` too for a record of another kind.
     pub fn get<R: DeserializeOwned>(&self, key: &str) -> Option<R> {
-        serde_json::from_str(self.before.get(key)?.get()).ok()
+        serde_json::from_str(self.before.records.get(key)?.get()).ok()
     }
 
     /// Keeps a record: when this returns, the end of the process cannot lose it.
@@ -131,7 +124,7 @@ impl Journal {
         let Some(writer) = &mut *self.lock() else {
             return Ok(0);
         };
-        let line = encode(self.first, key, record).map_err(io::Error::from);
+        let line = encode(self.before.first, key, record).map_err(io::Error::from);
         let kept = line.and_then(|(checksum, line)| writer.append(&line).map(|()| checksum));
         let checksum = kept.map_err(|e| Error::io(&self.path, "write", e))?;
         if self.aborts_after.load(Relaxed) > 0 && self.aborts_after.fetch_sub(1, Relaxed) == 1 {
@@ -150,10 +143,10 @@ impl Journal {
     /// # Errors
     /// This journal cannot be written.
     pub fn take_from(&mut self, other: Self) -> Result<()> {
-        for (key, record) in other.before {
-            if !self.before.contains_key(&key) {
+        for (key, record) in other.before.records {
+            if !self.before.records.contains_key(&key) {
                 self.keep(&key, &record)?;
-                self.before.insert(key, record);
+                self.before.records.insert(key, record);
             }
         }
         Ok(())

@@ -45,11 +45,11 @@ fn checksum(first: u32, json: &str) -> u32 {
 }
 
 /// What the whole lines of a file say.
-#[derive(Default)]
+#[derive(Debug, Default)]
 pub struct Decoded {
     /// The record of the first line, if that is whole.
     pub header: Option<Box<RawValue>>,
-    /// Its checksum.
+    /// Its checksum, from which those of all other lines go on.
     pub first: u32,
     /// Records of the other lines.
     pub records: Records,

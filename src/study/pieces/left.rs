@@ -4,7 +4,6 @@ use super::record::{PieceResult, PieceRows};
 use super::{NamedPiece, PieceManner};
 use crate::error::Result;
 use crate::study::attempt::attempt;
-use crate::study::journal::Journal;
 use crate::study::progress::Progress;
 use crate::study::time_left::Piece;
 use std::collections::BTreeMap;
@@ -13,8 +12,7 @@ use std::time::Instant;
 
 /// The pieces that are left to a run, for whoever measures them: by their number among all pieces.
 pub struct PiecesLeft<'a, R> {
-    journal: &'a Journal,
-    fail_fast: bool,
+    manner: PieceManner<'a>,
     /// What is told how far the run is. Each finished piece advances it by one.
     pub progress: &'a dyn Progress,
     pieces: &'a [NamedPiece],
@@ -31,8 +29,7 @@ impl<'a, R: PieceRows> PiecesLeft<'a, R> {
         (pieces, is_left): (&'a [NamedPiece], Vec<bool>),
     ) -> Self {
         Self {
-            journal: manner.journal,
-            fail_fast: manner.fail_fast,
+            manner: *manner,
             progress: manner.progress,
             pieces,
             is_left,
@@ -75,7 +72,7 @@ impl<'a, R: PieceRows> PiecesLeft<'a, R> {
             return Ok(());
         }
         let work = &self.pieces[number].work;
-        let result = self.during(work, || attempt(self.fail_fast, measure))?;
+        let result = self.during(work, || attempt(self.manner.fail_fast, measure))?;
         self.keep(number, result)
     }
 
@@ -97,7 +94,7 @@ impl<'a, R: PieceRows> PiecesLeft<'a, R> {
         numbers: &[usize],
         make: impl FnOnce() -> Result<T>,
     ) -> Result<Option<T>> {
-        match attempt(self.fail_fast, make)? {
+        match attempt(self.manner.fail_fast, make)? {
             Ok(made) => Ok(Some(made)),
             Err(said) => {
                 for &number in numbers.iter().filter(|&&number| self.is_left[number]) {
@@ -116,7 +113,7 @@ impl<'a, R: PieceRows> PiecesLeft<'a, R> {
             "rows of {} have a number that JSON has not: any_number writes it",
             piece.name
         );
-        self.journal.keep(&piece.key(), &result)?;
+        self.manner.journal.keep(&piece.key(), &result)?;
         // What a thread that panicked held is whole: nothing is inserted in parts.
         let results = self.results.lock();
         let mut results = results.unwrap_or_else(|poisoned| poisoned.into_inner());

@@ -1,0 +1,57 @@
+//! The one place in which a row says what its fields are.
+
+/// A row of a table: a struct, and what each of its fields is, behind the field's type: `=> Role "words" in "unit": Scale between [low, high]
+/// named NAMES, optional;` of which the words and all after them may be left out: words are then the field's name, and the scale is that of
+/// words. `NAMES` is a constant that says what people call codes, as `[("rbf_svm", "RBF SVM")]`.
+///
+/// ```
+/// use bubbletouch::row;
+/// row! {
+/// /// What was found.
+/// pub struct Row {
+///     /// How it is simulated.
+///     method: String => Choice;
+///     /// Seconds from one state to the next.
+///     step_s: f64 => Choice "time step" in "s": Log;
+///     /// Σ |δ − δ*| / Σ δ*.
+///     error: f64 => Value(Less) "deflection error": Log;
+/// } }
+/// let row = Row { method: "press".to_owned(), step_s: 0.5, error: 0.1 };
+/// let found = bubbletouch::table::File::new("found.csv", "Found", "").of(&[row]);
+/// assert_eq!(found.unwrap().csv, b"method,step_s,error\npress,0.5,0.1\n");
+/// ```
+/// A field of which nothing is said does not compile.
+#[macro_export]
+macro_rules! row {
+    ($(#[$of_row:meta])* pub struct $row:ident { $($(#[$of_field:meta])* $field:ident: $type:ty =>
+        $role:ident $(($better:ident))? $($words:literal)? $(in $unit:literal)? $(: $scale:ident)?
+        $(between [$low:ident, $high:ident])? $(named $names:path)? $(, $optional:ident)?;)* }) => {
+        $(#[$of_row])*
+        #[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+        pub struct $row {
+            $($(#[$of_field])* pub $field: $type,)*
+        }
+
+        impl $crate::table::Columns for $row {
+            fn columns() -> Vec<$crate::table::Column> {
+                vec![$({
+                    let role = $crate::table::Role::$role $(($crate::table::Better::$better))?;
+                    #[allow(unused_mut, unused_assignments)]
+                    let mut words = stringify!($field).replace('_', " ");
+                    $(words = $words.to_owned();)?
+                    #[allow(unused_mut, unused_assignments)]
+                    let mut unit = "";
+                    $(unit = $unit;)?
+                    #[allow(unused_mut, unused_assignments)]
+                    let mut scale = $crate::table::Scale::Words;
+                    $(scale = $crate::table::Scale::$scale;)?
+                    let column = $crate::table::Column::new(stringify!($field), role, words, unit, scale);
+                    $(let column = column.between(stringify!($low), stringify!($high));)?
+                    $(let column = column.named($names);)?
+                    $(let column = column.$optional();)?
+                    column
+                }),*]
+            }
+        }
+    };
+}
