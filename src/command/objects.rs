@@ -9,8 +9,8 @@ use bubbletouch::files::write_bytes;
 use bubbletouch::mesh::{LengthUnit, MeshReport, SizeLimits};
 use bubbletouch::objects::{Catalogue, Entry, Object, SphereUnion};
 use bubbletouch::report::object_picture::contact_sheet;
+use bubbletouch::report::terminal::rows_text;
 use bubbletouch::study::{ObjectsSpec, load_mesh, read_mesh_file};
-use comfy_table::{CellAlignment, Table, presets::NOTHING};
 use rayon::prelude::*;
 use std::path::PathBuf;
 
@@ -138,24 +138,17 @@ impl Args {
     }
 }
 
-fn table(listed: &[Listed]) -> Table {
-    let mut table = Table::new();
-    table.load_preset(NOTHING);
-    table.set_header(["set", "name", "parts", "spheres", "size (mm)"]);
-    for (set, object) in listed {
+fn table(listed: &[Listed]) -> String {
+    let header = ["set", "name", "parts", "spheres", "size (mm)"];
+    let rows = listed.iter().map(|(set, object)| {
         let size = object.model.bounds().size() * 1e3;
-        table.add_row([
+        vec![
             set.clone(),
             object.name.clone(),
             object.n_parts.to_string(),
             object.model.n_spheres().to_string(),
             format!("{:.0} × {:.0} × {:.0}", size.x, size.y, size.z),
-        ]);
-    }
-    for column in [2, 3] {
-        if let Some(column) = table.column_mut(column) {
-            column.set_cell_alignment(CellAlignment::Right);
-        }
-    }
-    table
+        ]
+    });
+    rows_text(&header, &[0, 1, 4], rows)
 }

@@ -45,11 +45,7 @@ pub fn show(args: &Args) -> Result<()> {
         Some(path) => load_spheres(path, args.spheres_unit, &SizeLimits::ANY)?,
         None => args.object.pack(&object, args.surface_error_mm * 1e-3)?,
     };
-    let picture = fit_picture(
-        &args.object.name(),
-        object.original(),
-        &spheres,
-        args.panel_px,
-    )?;
+    let name = args.object.name();
+    let picture = fit_picture(&name, &object, &spheres, args.panel_px)?;
     write_bytes(&args.out, &picture.png()?)
 }

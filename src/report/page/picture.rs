@@ -13,9 +13,7 @@ pub(super) fn png_element(png: &[u8], (width, height): (usize, usize), title: &s
 /// An `<svg>` or `<img>` element in its frame.
 pub(super) fn figure(element: &str, title: &str) -> String {
     let title = escape(title);
-    format!(
-        "<figure class=\"card\" tabindex=\"0\" aria-label=\"{title}\">{element}</figure>"
-    )
+    format!("<figure class=\"card\" tabindex=\"0\" aria-label=\"{title}\">{element}</figure>")
 }
 
 /// RFC 4648 with padding.
