@@ -85,7 +85,7 @@ fn draw_frame(args: &Args, file: &mut RecordingFile, frame: usize) -> Result<()>
     match (&args.out, patch.grid) {
         (Some(path), _) => {
             let scale = ColourScale::over(&values, args.quantity);
-            let skin = SkinPicture::new(patch, args.quantity, scale)?;
+            let skin = SkinPicture::new(patch, scale)?;
             write_bytes(path, &skin.frame(&values, &said)?.png()?)?;
         }
         (None, Some(grid)) => {

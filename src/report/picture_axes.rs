@@ -4,7 +4,6 @@ use super::chart::even_ticks;
 use super::colours::{INK, Rgb, heat};
 use super::drawing::{Align, Area, Drawing, Point, Stroke, TextStyle};
 use super::heat_map::ColourScale;
-use crate::signal::Quantity;
 use crate::table::short_number;
 
 /// Where an axis stands.
@@ -54,15 +53,10 @@ pub(crate) fn draw_map_axis(drawing: &mut Drawing, area: Area, side: Side, lengt
 }
 
 /// A bar of colours to the right of what it explains, `area` wide and high.
-pub(crate) fn draw_colour_bar(
-    drawing: &mut Drawing,
-    scale: ColourScale,
-    quantity: Quantity,
-    area: Area,
-) {
+pub(crate) fn draw_colour_bar(drawing: &mut Drawing, scale: ColourScale, area: Area) {
     draw_colours(drawing, area, heat);
     drawing.frame(area, Stroke::new(INK, 1.0));
-    let title = format!("{} ({})", quantity.name(), quantity.unit());
+    let title = format!("{} ({})", scale.quantity.name(), scale.quantity.unit());
     draw_axis(drawing, area, Side::Right, (scale.low, scale.high), &title);
 }
 

@@ -74,12 +74,12 @@ pub fn snapshots(
         width: 16.0,
         height: box_side,
     };
-    draw_colour_bar(&mut drawing, scale, quantity, bar);
+    draw_colour_bar(&mut drawing, scale, bar);
     let style = TextStyle::new(12).colour(MUTED);
     drawing.text((left, height - 10.0), caption, style);
     let mut picture = drawing.picture()?;
     for (cells, shown) in &maps {
-        let colours = shown.iter().map(|&value| scale.colour(value, quantity));
+        let colours = shown.iter().map(|&value| scale.colour(value));
         paint(&mut picture, cells, 2.0, &colours.collect::<Vec<_>>());
     }
     Ok(picture)

@@ -30,11 +30,11 @@ pub fn touches_html(set: &Snapshots) -> Result<String> {
         escape(&set.caption),
         block_sentence(block)
     );
-    html += &colour_bar(set, scale)?;
+    html += &colour_bar(scale)?;
     html += "<div class=\"touches\">";
     for (name, frame) in set.frames.iter().take(MOST_TOUCHES) {
         let shown = largest_of_blocks(frame, (block, block));
-        let places = shown.mapv(|value| scale.place(value * set.quantity.factor()));
+        let places = shown.mapv(|value| scale.place(value));
         let title = format!("{name}: largest {}", value_words(frame, set));
         let (image, name) = (image(&places, &title)?, escape(name));
         html += &format!("<figure>{image}<figcaption>{name}</figcaption></figure>");
@@ -53,11 +53,11 @@ fn value_words(frame: &Array2<f64>, set: &Snapshots) -> String {
     format!("{} {shown} {}", set.quantity.name(), set.quantity.unit())
 }
 
-fn colour_bar(set: &Snapshots, scale: ColourScale) -> Result<String> {
+fn colour_bar(scale: ColourScale) -> Result<String> {
     let bar = Array2::from_shape_fn((1, 129), |(_, x)| x as f64 / N_COLOURS);
     let image = image(&bar, "dark is low, light is high")?;
     let [low, high] = [scale.low, scale.high].map(|end| format!("{end:.2}").replace('-', "−"));
-    let (name, unit) = (set.quantity.name(), set.quantity.unit());
+    let (name, unit) = (scale.quantity.name(), scale.quantity.unit());
     Ok(format!(
         "<p class=\"colours\">{name} <span>{low}</span>{image}<span>{high} {unit}</span></p>"
     ))
