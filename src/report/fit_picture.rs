@@ -168,12 +168,8 @@ impl Scale {
 
     /// A bar under the third panel, with its ends and its middle in millimetres.
     fn draw(&self, drawing: &mut Drawing, side: f64, style: TextStyle) {
-        let bar = Area {
-            x: 2.25 * side,
-            y: (13.0 / 14.0 * side).floor(),
-            width: 0.5 * side,
-            height: (0.02 * side).max(4.0),
-        };
+        let corner = (2.25 * side, (13.0 / 14.0 * side).floor());
+        let bar = Area::new(corner, (0.5 * side, (0.02 * side).max(4.0)));
         draw_colours(drawing, bar, |part| diverging(2.0 * part - 1.0));
         for (part, text) in [
             (0.0, signed_millimetres(-self.end)),

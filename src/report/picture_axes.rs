@@ -66,18 +66,12 @@ pub(crate) fn draw_colours(drawing: &mut Drawing, area: Area, colour: impl Fn(f6
     for step in 0..STEPS {
         let [from, to] = [step, step + 1].map(|step| step as f64 / STEPS as f64);
         // Each reaches to the end, so that no gap shines through between two steps.
-        let piece = if area.width > area.height {
-            Area {
-                x: area.at(from, 0.0).0,
-                width: area.width * (1.0 - from),
-                ..area
-            }
-        } else {
-            Area {
-                height: area.height * (1.0 - from),
-                ..area
-            }
+        let (across, up) = match area.width > area.height {
+            true => (from, 0.0),
+            false => (0.0, from),
         };
+        let size = (area.width * (1.0 - across), area.height * (1.0 - up));
+        let piece = Area::new(area.at(across, 1.0), size);
         drawing.area(piece, colour(0.5 * (from + to)));
     }
 }

@@ -68,12 +68,7 @@ pub fn snapshots(
         }
         maps.push((cells, largest_of_blocks(frame, (block, block))));
     }
-    let bar = Area {
-        x: right,
-        y: top,
-        width: 16.0,
-        height: box_side,
-    };
+    let bar = Area::new((right, top), (16.0, box_side));
     draw_colour_bar(&mut drawing, scale, bar);
     let style = TextStyle::new(12).colour(MUTED);
     drawing.text((left, height - 10.0), caption, style);

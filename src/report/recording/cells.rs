@@ -52,12 +52,7 @@ impl Cells {
     /// Of blocks of a grid's taxels, from a top left corner on, so many pixels wide and high each.
     pub fn of_grid(grid: &Grid, block: usize, side: f64, (x, y): Point) -> Self {
         let (rows, columns) = (grid.ny.div_ceil(block), grid.nx.div_ceil(block));
-        let area = Area {
-            x,
-            y,
-            width: side * columns as f64,
-            height: side * rows as f64,
-        };
+        let area = Area::new((x, y), (side * columns as f64, side * rows as f64));
         let place = |cell: usize| {
             let (row, column) = ((cell / columns) as f64, (cell % columns) as f64);
             DVec2::new(
@@ -94,12 +89,7 @@ impl Cells {
         };
         let plural = if places.len() == 1 { "" } else { "s" };
         Self {
-            area: Area {
-                x: LEFT,
-                y: TOP,
-                width: scale * size.x,
-                height: scale * size.y,
-            },
+            area: Area::new((LEFT, TOP), (scale * size.x, scale * size.y)),
             places: places.iter().map(place).collect(),
             radius: scale * radius,
             distance: f64::hypot,
@@ -111,24 +101,17 @@ impl Cells {
 
     /// What is around the cells: axes in millimetres of a grid, a scale bar of another skin.
     pub fn draw_frame(&self, drawing: &mut Drawing, is_grid: bool) {
+        let area = self.area;
         if is_grid {
-            for (side, pixels) in [
-                (Side::Below, self.area.width),
-                (Side::Left, self.area.height),
-            ] {
-                draw_map_axis(
-                    drawing,
-                    self.area,
-                    side,
-                    pixels / self.pixels_per_metre * 1e3,
-                );
-            }
-            drawing.frame(self.area, Stroke::new(INK, 1.0));
+            let millimetres = |pixels: f64| pixels / self.pixels_per_metre * 1e3;
+            draw_map_axis(drawing, area, Side::Below, millimetres(area.width));
+            draw_map_axis(drawing, area, Side::Left, millimetres(area.height));
+            drawing.frame(area, Stroke::new(INK, 1.0));
             return;
         }
-        drawing.area(self.area, GRID);
-        let (x, y) = self.area.at(0.5, 0.0);
-        let longest = 0.3 * self.area.width;
+        drawing.area(area, GRID);
+        let (x, y) = area.at(0.5, 0.0);
+        let longest = 0.3 * area.width;
         draw_scale_bar(drawing, (x, y + 26.0), self.pixels_per_metre, longest);
     }
 }

@@ -93,12 +93,8 @@ impl SkinPicture {
 /// Title, a line below it, and the colour bar.
 fn paper(name: &str, cells: &Cells, scale: ColourScale) -> Drawing {
     let (area, below) = (cells.area, &cells.sentence);
-    let bar = Area {
-        x: area.x + area.width + 18.0,
-        width: 16.0,
-        height: area.height.max(120.0),
-        ..area
-    };
+    let corner = (area.x + area.width + 18.0, area.y);
+    let bar = Area::new(corner, (16.0, area.height.max(120.0)));
     let text_right = LEFT + text_width(below, 11.0).max(text_width(name, 15.0)) + 16.0;
     let width = (bar.x + 92.0).max(text_right).max(LEFT + NOTE.2);
     let mut drawing = Drawing::new(width, area.y + bar.height + 54.0);
