@@ -24,12 +24,8 @@ pub struct Args {
 }
 
 pub fn compare(args: &Args) -> Result<()> {
-    if let Some(out) = &args.out {
-        check_ending(out, "csv")?;
-    }
-    if let Some(html) = &args.html {
-        check_ending(html, "html")?;
-    }
+    check_ending(args.out.as_deref(), "csv")?;
+    check_ending(args.html.as_deref(), "html")?;
     let (kind, first) = kinds::read_tables(&args.first)?;
     let (other, second) = kinds::read_tables(&args.second)?;
     let [first_name, second_name] =

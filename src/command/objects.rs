@@ -84,7 +84,7 @@ pub fn objects(args: &Args) -> Result<()> {
     let Some(path) = &args.out else {
         return say(table(&listed));
     };
-    check_ending(path, "png")?;
+    check_ending(Some(path), "png")?;
     let tiles: Vec<_> = listed
         .iter()
         .map(|(_, object)| (object.name.as_str(), spheres(object)))

@@ -38,7 +38,7 @@ pub struct Args {
 }
 
 pub fn pack(args: &Args) -> Result<()> {
-    check_ending(&args.out, "csv")?;
+    check_ending(Some(&args.out), "csv")?;
     let object = args.object.load()?;
     let tolerance = args.surface_error_mm * MM;
     let spheres = args.object.pack(&object, tolerance)?;

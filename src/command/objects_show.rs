@@ -39,7 +39,7 @@ pub struct Args {
 }
 
 pub fn show(args: &Args) -> Result<()> {
-    check_ending(&args.out, "png")?;
+    check_ending(Some(&args.out), "png")?;
     let object = args.object.load()?;
     let spheres = match &args.spheres {
         Some(path) => load_spheres(path, args.spheres_unit, &SizeLimits::ANY)?,

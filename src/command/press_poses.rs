@@ -69,9 +69,7 @@ pub fn press_poses(
         let allowed = format!("1 to {MOST_REPEATS}");
         return Err(Error::input("--repeat", args.repeat, allowed));
     }
-    if let Some(out) = out {
-        check_ending(out, "npy")?;
-    }
+    check_ending(out, "npy")?;
     let poses = read_poses(path)?;
     let grid = &scene.patch.grid;
     let mut frames = Array3::zeros((poses.len(), grid.ny, grid.nx));

@@ -46,10 +46,8 @@ pub struct Args {
 }
 
 pub fn recording(args: &Args) -> Result<()> {
-    let pictures = [&args.out, &args.animate];
-    for path in pictures.into_iter().flatten() {
-        check_ending(path, "png")?;
-    }
+    check_ending(args.out.as_deref(), "png")?;
+    check_ending(args.animate.as_deref(), "png")?;
     let mut file = RecordingFile::open(&args.file)?;
     match (args.frame, &args.animate) {
         (Some(frame), _) => draw_frame(args, &mut file, frame),

@@ -46,7 +46,8 @@ pub fn differences_page(
     };
     let values = values(found)?.noted(note);
     let charts = found.iter().filter(|one| !is_cost(one));
-    let charts = charts.filter_map(|one| Some(chart(one, one.rows.first()?, (first, second))));
+    let charts =
+        charts.filter_map(|one| Some(chart(&values, one, one.rows.first()?, (first, second))));
     let charts: Vec<ChartSpec> = charts.take(MOST_CHARTS).collect();
     let costs = table(&COSTS, found.iter().filter(|one| is_cost(one)))?;
     page_of(
@@ -61,6 +62,7 @@ pub fn differences_page(
 
 /// A column in the second run against the first.
 fn chart(
+    values: &Table,
     one: &ColumnDifferences,
     Difference { table, column, .. }: &Difference,
     (first, second): (&str, &str),
@@ -69,14 +71,11 @@ fn chart(
         column: column.to_owned(),
         value: value.into(),
     };
+    let name = format!("{}_{column}", table.trim_end_matches(".csv"));
+    let title = format!("{} in both runs", one.column.words);
     ChartSpec {
-        name: format!("{}_{column}", table.trim_end_matches(".csv")),
-        title: format!("{} in both runs", one.column.words),
         note: format!("Up: {second}. Across: {first}. Each point is a setting of {table}."),
-        table: VALUES.name(),
         shown: vec![shown("table", table), shown("column", column)],
-        x: "first".to_owned(),
-        y: "second".to_owned(),
         lines: vec!["moved".to_owned()],
         mark: Mark::Points,
         rules: vec![Rule {
@@ -84,7 +83,7 @@ fn chart(
             at: At::Column("first".to_owned()),
             words: "no difference".to_owned(),
         }],
-        ..ChartSpec::default()
+        ..values.chart(name, title, ("second", "first"))
     }
 }
 
