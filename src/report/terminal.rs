@@ -118,8 +118,7 @@ fn shown_columns(table: &Table) -> Vec<Setting<'_>> {
         Role::Cost => 2,
         Role::Note => 3,
     };
-    let columns = table.columns.iter().zip(&table.data);
-    let columns = columns.map(|(column, data)| Setting { column, data });
+    let columns = Setting::all(table);
     let mut shown: Vec<Setting> = columns.filter(|one| is_telling(table, one)).collect();
     shown.sort_by_key(rank);
     shown
