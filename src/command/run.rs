@@ -61,12 +61,8 @@ pub fn run(args: &Args) -> Result<()> {
     progress.finish(&format!("{:.1} s", run.elapsed_s()));
     let results = &args.run.results;
     let mut merge = results.study.arguments();
-    merge.extend(
-        results
-            .out
-            .iter()
-            .map(|out| format!("--out {}", out.display())),
-    );
+    let out = results.out.iter();
+    merge.extend(out.map(|out| format!("--out {}", out.display())));
     progress.finish(&format!(
         "shard {shard} is done; when all are, put them together: bubbletouch merge {}",
         merge.join(" ")

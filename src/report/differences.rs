@@ -240,20 +240,16 @@ fn of_setting(
     if ours_told.is_empty() || theirs_told.is_empty() {
         return Ok(None);
     }
-    let size = second.trial_size(ours[0]);
-    let untested = TrialSize {
-        n_train: 1,
-        n_test: 1,
-    };
-    let paired = Paired::of(&ours_told, &theirs_told, size.unwrap_or(untested));
+    let paired = Paired::of(&ours_told, &theirs_told);
     let setting = second.words(ours[0]);
     if paired.n_trials() == 0 {
         let given = format!("{}: {setting}: no trial is in both", second.table.file);
         let allowed = "runs that share their trials";
         return Err(Error::input("two runs", given, allowed));
     }
-    let is_tested = size.is_some() && column.role != Role::Cost;
-    let tested = is_tested.then(|| paired.tested()).transpose()?;
+    let size = second.trial_size(ours[0]);
+    let size = size.filter(|_| column.role != Role::Cost);
+    let tested = size.map(|size| paired.tested(size)).transpose()?;
     let tested = tested.as_ref();
     let (ours_mean, theirs_mean) = paired.means();
     let intervals = first.table.interval(column, theirs[0]);

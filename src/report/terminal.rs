@@ -161,18 +161,12 @@ fn columns_text(mut columns: Vec<TextColumn>, n_lines: usize, width: usize) -> (
     for line in 0..n_lines {
         shown.add_row(columns.iter().map(|column| &column.said[line]));
     }
-    for (
-        TextColumn {
-            said, is_number, ..
-        },
-        column,
-    ) in columns.iter().zip(shown.column_iter_mut())
-    {
+    for (text, column) in columns.iter().zip(shown.column_iter_mut()) {
         column.set_padding((0, 2));
-        if *is_number {
+        if text.is_number {
             column.set_cell_alignment(CellAlignment::Right);
         }
-        if said.iter().any(|text| text.contains('[')) {
+        if text.said.iter().any(|text| text.contains('[')) {
             // An interval broken over two lines cannot be read down the column.
             column.set_constraint(ColumnConstraint::ContentWidth);
         }

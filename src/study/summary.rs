@@ -101,12 +101,12 @@ fn against(trials: &[Row], best: &[Row]) -> Result<Comparison> {
         n_train: first.n_train,
         n_test: first.n_test * cell.fused_touches,
     };
-    let paired = Paired::of(&ours, &theirs, size);
+    let paired = Paired::of(&ours, &theirs);
     let (ours, theirs) = match paired.n_trials() {
         0 => (mean(trials, |t| t.accuracy), mean(best, |t| t.accuracy)),
         _ => paired.means(),
     };
-    let tested = paired.tested()?;
+    let tested = paired.tested(size)?;
     Ok(Comparison {
         cell: trials[0].0.cell,
         best_cell: best[0].0.cell,

@@ -5,7 +5,7 @@
 
 use super::{CELLS, filled};
 use crate::report::swept::{Setting, Swept, without};
-use crate::table::{Along, ChartSpec, Mark, Role, Rule, Shown, Table, Value};
+use crate::table::{Along, ChartSpec, Mark, Role, Rule, Table, Value};
 use std::cmp::Reverse;
 
 /// Classifiers from which on a study is about choosing one.
@@ -58,9 +58,9 @@ fn accuracy_charts(cells: &Table, chart: &ChartSpec) -> Vec<ChartSpec> {
             others.all(|other| other.data.key(*row) == other.data.key(0))
         };
         let rows: Vec<usize> = all.iter().copied().filter(is_first).collect();
-        let shown = others.iter().filter_map(|other| shown(cells, other, 0));
+        let others = others.iter().map(|other| &other.column.name);
         let chart = ChartSpec {
-            shown: shown.collect(),
+            shown: others.filter_map(|name| cells.shown(name, 0)).collect(),
             ..chart.clone()
         };
         charts_along(cells, &chart, Some(*setting), &rows)
@@ -84,7 +84,8 @@ fn charts_along(
     let [lines, panels] = [used.first(), used.get(1)].map(|one| one.map(name_of));
     let x = x.map_or_else(|| "ratio".to_owned(), |x| name_of(&x));
     let of_rows = |rows: Vec<usize>| {
-        let here = fixed.iter().filter_map(|one| shown(cells, one, rows[0]));
+        let here = fixed.iter().map(|one| &one.column.name);
+        let here = here.filter_map(|name| cells.shown(name, rows[0]));
         ChartSpec {
             name: format!("accuracy_by_{}{}", word(&x), name_ending(fixed, rows[0])),
             title: title(cells, &x, (used, fixed), rows[0]),
@@ -111,10 +112,6 @@ fn charts_along(
 
 fn name_of(setting: &Setting) -> String {
     setting.column.name.to_string()
-}
-
-fn shown(cells: &Table, setting: &Setting, row: usize) -> Option<Shown> {
-    cells.shown(&setting.column.name, row)
 }
 
 /// `Accuracy by compression, for each pitch and array size (noise 10 %)`.
