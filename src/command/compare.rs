@@ -5,7 +5,6 @@ use super::streams::{say, write_out};
 use bubbletouch::files::{CsvFile, write_bytes};
 use bubbletouch::report::compared::{differences_page, differences_text};
 use bubbletouch::report::differences::differences;
-use bubbletouch::study::provenance::PROGRAM;
 use bubbletouch::{Error, Result, kinds};
 use std::path::PathBuf;
 
@@ -44,7 +43,7 @@ pub fn compare(args: &Args) -> Result<()> {
         file.commit()?;
     }
     if let Some(html) = &args.html {
-        let page = differences_page(&found, (&first_name, &second_name), PROGRAM)?;
+        let page = differences_page(&found, (&first_name, &second_name))?;
         write_bytes(html, page.as_bytes())?;
     }
     say(format_args!("First: {first_name}; second: {second_name}."))?;

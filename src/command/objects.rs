@@ -114,16 +114,11 @@ impl Args {
             };
             return Ok(vec![("mesh".to_owned(), load_mesh(path, &spec, None)?)]);
         }
+        let surface_error = self.surface_error_mm * 1e-3;
+        let built = |entry: &Entry| Ok((entry.set.clone(), entry.build(surface_error)?));
         let catalogue = catalogue(self.objects.as_deref())?;
-        self.chosen(&catalogue)?
-            .into_par_iter()
-            .map(|entry| {
-                Ok((
-                    entry.set.clone(),
-                    entry.build(self.surface_error_mm * 1e-3)?,
-                ))
-            })
-            .collect()
+        let chosen = self.chosen(&catalogue)?.into_par_iter();
+        chosen.map(built).collect()
     }
 
     fn chosen<'a>(&self, catalogue: &'a Catalogue) -> Result<Vec<&'a Entry>> {

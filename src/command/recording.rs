@@ -94,14 +94,9 @@ fn draw_frame(args: &Args, file: &mut RecordingFile, frame: usize) -> Result<()>
             write_out(text.as_bytes())?;
         }
         (None, None) => {
-            return Err(Error::input(
-                "--frame",
-                format!(
-                    "patch {} is no grid, which the terminal could show",
-                    patch.name
-                ),
-                "--out FILE.png beside it",
-            ));
+            let name = &patch.name;
+            let given = format!("patch {name} is no grid, which the terminal could show");
+            return Err(Error::input("--frame", given, "--out FILE.png beside it"));
         }
     }
     note(format_args!("{}: {said}", patch.name));

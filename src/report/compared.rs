@@ -7,6 +7,7 @@ use crate::report::page::StudyAbout;
 use crate::report::study_folder::{Found, MOST_CHARTS, page_of};
 use crate::report::terminal::{paragraph, table_text};
 use crate::spelling::counted;
+use crate::study::provenance::PROGRAM;
 use crate::study::table::PStatus;
 use crate::table::{
     Along, At, Better, ChartSpec, File, Mark, Role, Rule, Shown, Table, short_number,
@@ -28,19 +29,18 @@ pub fn differences_text(found: &[ColumnDifferences], width: usize) -> Result<Str
     ))
 }
 
-/// The page of two folders by their names, and the program that made it.
+/// The page of two folders by their names.
 ///
 /// # Errors
 /// As [`differences_text`]; a chart that cannot be drawn.
 pub fn differences_page(
     found: &[ColumnDifferences],
     (first, second): (&str, &str),
-    program: &str,
 ) -> Result<String> {
     let note = format!("First: {first}; second: {second}. What moved most surely comes first.");
     let about = StudyAbout {
         name: format!("{first} and {second}"),
-        program: program.to_owned(),
+        program: PROGRAM.to_owned(),
         wall_s: f64::NAN,
         ..StudyAbout::default()
     };
